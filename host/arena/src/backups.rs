@@ -1,4 +1,4 @@
-//! `backups`: count of backups per robot. Entries into the supporting role, as its beacons tell (paper
+//! `backups`: count of backups per robot. Entries into the supporting role, as its beacons report (paper
 //! §5.2.1, Table 2; docs/papers.md R36).
 
 use protocol::RobotId;
@@ -25,7 +25,7 @@ impl BackupCount {
         Self { robots: robots.into_iter().map(entry).collect() }
     }
 
-    /// `robot` said at `time` seconds what its role is.
+    /// `robot` reported `role` at `time` seconds.
     pub(crate) fn hear(&mut self, time: f32, robot: RobotId, role: Role) {
         let Some(entry) = self.robots.iter_mut().find(|entry| entry.robot == robot) else { return };
         let enters = role == Role::Supporter && entry.role != Role::Supporter;

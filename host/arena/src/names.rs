@@ -5,7 +5,7 @@ use casebase::Symmetry;
 use hil_sim::Role;
 use protocol::{CaseId, RobotId};
 
-/// Who is who on the carpet: attackers by id, then opponents, as in `hil_sim::four_legged::world::World`.
+/// Identities of the robots: attackers by id, then opponents, as in `hil_sim::four_legged::world::World`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Cast {
     /// The robots led by brains.

@@ -32,7 +32,8 @@ pub struct TrialReport {
     pub possession: Possession,
     /// How often each attacker backed up.
     pub backups: Backups,
-    /// Who touched a ball last that went out: `attackers`, `defender`, `midfield` or `goalie`; null for every other outcome.
+    /// The robot that last touched a ball that went out: `attackers`, `defender`, `midfield` or `goalie`;
+    /// null for every other outcome.
     pub out_by: Option<&'static str>,
     /// What the retrievals came to.
     pub cases: CaseCounts,
@@ -100,7 +101,7 @@ impl CaseCounts {
 pub struct CycleReport {
     /// `counter.proposer`.
     pub cycle: String,
-    /// Who coordinated.
+    /// Number of the coordinator.
     pub coordinator: u8,
     /// `region/name`; null where no case was found.
     pub case: Option<String>,
@@ -108,7 +109,7 @@ pub struct CycleReport {
     pub symmetry: Option<&'static str>,
     /// Case robot (from 1) to robot id.
     pub r#match: Option<BTreeMap<usize, u8>>,
-    /// Seconds from kick-off: first heard of.
+    /// Seconds from kick-off at which its first beacon was received.
     pub start_s: f64,
     /// Seconds from kick-off: over.
     pub end_s: f64,

@@ -21,9 +21,9 @@ use crate::report::{Backups, CaseCounts, CycleReport, Possession, TrialReport, i
 /// Everything that decides a trial but its back end.
 #[derive(Clone, Debug)]
 pub struct TrialConfig<'a> {
-    /// Where everybody stands.
+    /// Start positions.
     pub scenario: Scenario,
-    /// Where everybody stands instead, if it is no named scenario.
+    /// Start positions if it is no named scenario.
     pub layout: Option<Layout>,
     /// Which opponents play.
     pub opponents: Configuration,
@@ -33,13 +33,13 @@ pub struct TrialConfig<'a> {
     pub seed: u64,
     /// How robots retrieve.
     pub settings: Settings,
-    /// When a case's actions begin.
+    /// When a case's actions start.
     pub positioning: Positioning,
     /// Attackers, 1 to 4; the paper has 2.
     pub robots: usize,
     /// How many of them may retrieve: those with the highest ids, so that the elector need not be one (paper §4.1).
     pub retrievers: usize,
-    /// How the air treats packets.
+    /// Radio settings: loss, delay, duplicates.
     pub air: AirSettings,
     /// How perception is blurred.
     pub noise: Noise,
@@ -112,7 +112,7 @@ impl<'a> TrialConfig<'a> {
     }
 }
 
-/// Somebody at the edge of the field, with eyes and a radio receiver.
+/// An observer at the edge of the field that sees everything and has a radio receiver.
 pub trait Watcher {
     /// A tick has passed.
     fn watch(&mut self, moment: &Moment<'_>);
@@ -121,19 +121,19 @@ pub trait Watcher {
     fn end(&mut self, _moment: &Moment<'_>, _report: &TrialReport) {}
 }
 
-/// What a watcher is shown.
+/// What a watcher gets each tick.
 pub struct Moment<'a> {
     /// The trial's configuration.
     pub config: &'a TrialConfig<'a>,
-    /// Who is who.
+    /// Identities of the robots.
     pub cast: &'a Cast,
-    /// The carpet, as it is at the end of the tick.
+    /// The true state of the field at the end of the tick.
     pub world: &'a World,
     /// The tick.
     pub tick: &'a Tick,
-    /// The referee, who counts.
+    /// The referee, with its counts.
     pub referee: &'a Referee,
-    /// What robots said in the tick, in order; packets that are no beacons of this team are left out.
+    /// Beacons of the tick, in order; packets that are no beacons of this team are left out.
     pub beacons: &'a [(RobotId, Beacon)],
     /// The cycles so far, these beacons included.
     pub cycles: &'a CycleLog,
@@ -157,7 +157,7 @@ pub fn run<'a>(
     Ok(game.end(verdict, watchers))
 }
 
-/// A trial under way; it ends when its caller says so.
+/// A running trial; its caller ends it.
 pub(crate) struct Game<'c, 'a> {
     config: &'c TrialConfig<'a>,
     backend: &'static str,
@@ -197,7 +197,7 @@ impl<'c, 'a> Game<'c, 'a> {
         })
     }
 
-    /// A tick, shown to the watchers.
+    /// Runs one tick and passes it to the watchers.
     pub(crate) fn step(&mut self, watchers: &mut [&mut dyn Watcher]) -> Result<(), SimulationError> {
         let tick = self.simulation.step()?;
         self.beacons.clear();
@@ -220,12 +220,12 @@ impl<'c, 'a> Game<'c, 'a> {
         Ok(())
     }
 
-    /// Does the team play by a case, and if not, why?
+    /// Tracks whether the team plays by a case, and if not, why.
     fn watch_defaults(&mut self) {
         let Self { config, simulation, cast, cycles, defaults, news, .. } = self;
         for news in news.iter() {
             let (News::Decided(i) | News::Ended(i)) = *news else { continue };
-            // What is still said of an older cycle leads nobody any more.
+            // Late reports of an older cycle have no effect any more.
             if let [cycle] = &cycles.cycles()[i..] {
                 let deceleration = config.parameters.ball.deceleration;
                 let problem = defaults::problem(simulation.world(), &cast.attackers, deceleration);
@@ -249,7 +249,7 @@ impl<'c, 'a> Game<'c, 'a> {
         }
     }
 
-    /// The trial is over: its report, told to the watchers.
+    /// Ends the trial: returns its report and passes it to the watchers.
     pub(crate) fn end(mut self, verdict: Verdict, watchers: &mut [&mut dyn Watcher]) -> TrialReport {
         self.cycles.finish(verdict.time);
         let report = self.report(verdict);
@@ -292,7 +292,7 @@ impl<'c, 'a> Game<'c, 'a> {
     }
 }
 
-/// The word of an approach in options and reports.
+/// The label of an approach in options and reports.
 pub const fn approach_word(approach: Approach) -> &'static str {
     match approach {
         Approach::Cases => "cbr",
@@ -301,7 +301,7 @@ pub const fn approach_word(approach: Approach) -> &'static str {
     }
 }
 
-/// The approach of that word.
+/// The approach with this label.
 pub fn approach_from_word(word: &str) -> Option<Approach> {
     APPROACHES.into_iter().find(|approach| approach_word(*approach) == word)
 }
@@ -309,7 +309,7 @@ pub fn approach_from_word(word: &str) -> Option<Approach> {
 /// All approaches, in the order of tables: the paper's two first.
 pub const APPROACHES: [Approach; 3] = [Approach::Cases, Approach::Reactive, Approach::Hybrid];
 
-/// The word of a positioning in options and reports.
+/// The label of a positioning in options and reports.
 pub const fn positioning_word(positioning: Positioning) -> &'static str {
     match positioning {
         Positioning::Dependent => "dependent",
@@ -317,7 +317,7 @@ pub const fn positioning_word(positioning: Positioning) -> &'static str {
     }
 }
 
-/// The attackers' team on the air.
+/// The attackers' team on the radio.
 pub const TEAM: TeamId = TeamId(1);
 /// The league trials are played in.
 const LEAGUE: &str = "four-legged";

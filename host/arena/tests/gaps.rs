@@ -1,4 +1,5 @@
-//! `gaps`: vision and radio that fail for 40–150 ms again and again, and real silences: who stands, and who brakes in time.
+//! `gaps`: vision and radio that fail for 40–150 ms again and again, and real silences: which robots stand,
+//! and which brake in time.
 //!
 //! A robot *stands* where its true speed is below 0.05 m/s while the game runs and it has an order to move: a place farther
 //! away than 0.15 m, or an order without a place (get the ball, a case) while its governor holds it back.
@@ -17,7 +18,7 @@ use protocol::lockstep::TickIn;
 use protocol::{Instant, Who};
 use rules::{Colour, League, Phase};
 
-/// What the governors said in the last tick, by team number and robot.
+/// The governors' rulings of the last tick, by team number and robot.
 type Rulings = Rc<RefCell<BTreeMap<(u8, u8), Ruling>>>;
 
 /// Native brains whose governors can be looked at.
@@ -226,8 +227,9 @@ fn with_gaps_of_40_to_150_ms_at_random_for_60_s_robots_stand_for_at_most_a_twent
     }
 }
 
-/// A match with gaps in vision and radio for 12 s; then `fail` is called, and the game goes on for so many ticks of 10 ms. Gives for each
-/// of them how many robots have an order and how many of them brake because their host is silent.
+/// A match with gaps in vision and radio for 12 s; then `fail` is called, and the game goes on for `ticks`
+/// ticks of 10 ms. Returns for each of them how many robots have an order and how many of them brake because
+/// their host is silent.
 fn silence(seed: u64, ticks: u32, fail: impl Fn(&mut Game<'static>, u32)) -> Vec<(usize, usize)> {
     let config = GameConfig::new(League::DivisionB, seed, 60.0);
     let (mut backend, rulings) = watched();
@@ -238,7 +240,7 @@ fn silence(seed: u64, ticks: u32, fail: impl Fn(&mut Game<'static>, u32)) -> Vec
         game.lose(if radio_gaps.next() { 1.0 } else { 0.0 });
         game.step(&mut Nobody).unwrap();
     }
-    // All is well for half a second, so that the silence begins with its first tick.
+    // No fault for half a second, so that the silence starts with its first tick.
     game.blind(false);
     game.lose(0.0);
     (0..50).for_each(|_| game.step(&mut Nobody).unwrap());

@@ -51,7 +51,8 @@ impl Stage<'_> {
         self.game.put_ball(Ball::at(at));
     }
 
-    /// Plays on; the seconds until the ball is farther than `way` from where it lay, if that comes within `seconds`.
+    /// Plays on; the seconds until the ball is farther than `way` from where it lay, if that comes within
+    /// `seconds`.
     fn until_moved(&mut self, seconds: f64, way: f32, mut meanwhile: impl FnMut(&mut Self)) -> Option<f64> {
         let (from, begin) = (self.game.world().ball.position, self.game.time());
         while self.game.time() - begin < seconds {

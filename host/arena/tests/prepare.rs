@@ -13,7 +13,7 @@ use rules::{Colour, Duty, League, Phase};
 
 /// What the controller gives teams to prepare, s.
 const TIME: f64 = 10.0;
-/// Who has to move stands no longer than this, s.
+/// A robot that has to move stands no longer than this, s.
 const STANDS: f64 = 1.0;
 const STANDING: f32 = 0.03;
 
@@ -24,7 +24,7 @@ fn share(state: &mut u64) -> f32 {
     (state.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 40) as f32 / 8_388_608.0 - 1.0
 }
 
-/// All robots to random places of the carpet, apart from each other, from the ball and from goals' walls.
+/// All robots to random places of the field, apart from each other, from the ball and from goals' walls.
 fn scatter(game: &mut Game<'_>, league: League, state: &mut u64) {
     let field = league.field();
     let who: Vec<Who> = game.world().robots().iter().filter(|robot| robot.present).map(|r| r.who).collect();
@@ -96,13 +96,13 @@ fn prepare(league: League, command: Command, seed: u64) -> Vec<String> {
         game.step(&mut Nobody).unwrap();
         for (who, (now, longest)) in all.iter().zip(&mut stood) {
             let stands = game.world().robot(*who).is_some_and(|robot| robot.velocity.norm() < STANDING);
-            // The picture of a robot that was lifted elsewhere settles within the first half second.
+            // The tracked state of a robot that was lifted elsewhere settles within the first half second.
             let late = game.time() - begun > 0.5;
             *now = if late && stands && offence(&game, league, *who).is_some() { *now + 0.01 } else { 0.0 };
             *longest = longest.max(*now);
         }
     }
-    // Where the referee went on it has seen everybody ready.
+    // If the referee went on, it has seen all robots ready.
     let ended = game.referee().phase() == wanted;
     let mut wrong = Vec::new();
     for (who, (_, longest)) in all.iter().zip(&stood) {

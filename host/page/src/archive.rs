@@ -1,5 +1,5 @@
 //! `archive`: history of scenes. Scenes are finished and encoded here, once each, off the match's own thread:
-//! the newest for viewers, whole seconds gzipped for those who look back, one sample a second for plots.
+//! the newest for viewers, whole seconds gzipped for viewers that seek back, one sample a second for plots.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -23,9 +23,9 @@ use crate::sketch::Sketch;
 /// More scenes than this wait to be finished and encoded, a third of a second of them: the next one is left out, for they are worth
 /// nothing once they are old.
 const WAITING_MAX: usize = 8;
-/// So many seconds are kept, an hour: some 25 kB each.
+/// Number of seconds that are kept, an hour: some 25 kB each.
 const SECONDS_MAX: usize = 3_600;
-/// Of happenings, the newest so many: a match has some thousand.
+/// Number of newest events that are kept: a match has some thousand.
 const HAPPENINGS_MAX: usize = 100_000;
 
 /// Numbers at a second, for plots.
@@ -46,7 +46,7 @@ pub(crate) struct Kept {
     pub(crate) samples: Vec<Sample>,
     /// From the first to the last scene, s.
     pub(crate) span: Option<(f64, f64)>,
-    /// How often it was begun anew.
+    /// Number of restarts.
     pub(crate) life: u32,
 }
 
@@ -66,7 +66,7 @@ pub(crate) struct Archive {
 }
 
 impl Archive {
-    /// Begins; every newest scene goes to `newest`.
+    /// Starts; every newest scene goes to `newest`.
     pub(crate) fn begin(newest: watch::Sender<Utf8Bytes>) -> Self {
         let (mail, inbox) = channel();
         let (waiting, kept) = (Arc::new(AtomicUsize::new(0)), Arc::new(Mutex::new(Kept::default())));
@@ -94,16 +94,16 @@ impl Archive {
 
     fn push(&self, sketch: Sketch) {
         self.waiting.fetch_add(1, Ordering::Relaxed);
-        // Nobody hears only while the program ends.
+        // The receiver is gone only while the program ends.
         let _ = self.mail.send(Mail::Sketch(Box::new(sketch)));
     }
 
-    /// Takes a happening.
+    /// Takes an event.
     pub(crate) fn tell(&self, happening: Happening) {
         let _ = self.mail.send(Mail::Happening(Box::new(happening)));
     }
 
-    /// Forgets everything: another match begins.
+    /// Drops everything: another match starts.
     pub(crate) fn clear(&self) {
         let _ = self.mail.send(Mail::Clear);
     }
@@ -131,7 +131,7 @@ impl Worker {
             match mail {
                 Mail::Sketch(sketch) => {
                     let scene = sketch.finished();
-                    // Strings, numbers and lists of them: nothing that JSON cannot say.
+                    // Strings, numbers and lists of them: always valid JSON.
                     let text = Utf8Bytes::from(serde_json::to_string(&scene).unwrap_or_default());
                     look(&self.kept, |kept| kept.add(&scene, text.clone()));
                     self.newest.send_replace(text);
@@ -156,7 +156,7 @@ impl Kept {
         let same = matches!(&self.open, Some((open, _)) if *open == second);
         if same {
             if let Some((_, texts)) = &mut self.open {
-                // What stands still is one moment, however often it is shown.
+                // While paused, the same moment arrives repeatedly and is kept once.
                 if texts.last().is_some_and(|(t, _)| *t == scene.t) {
                     texts.pop();
                 }
@@ -190,7 +190,7 @@ impl Kept {
         open.map(|(_, texts)| gzip(texts)).or_else(|| self.seconds.get(&second).cloned())
     }
 
-    /// The last scene that was shown by `t`.
+    /// The last scene at or before `t`.
     pub(crate) fn scene_at(&self, t: f64) -> Option<Scene> {
         let mut text = String::new();
         std::io::Read::read_to_string(

@@ -1,4 +1,4 @@
-//! `happening`: time-line events. One entry of the time line, told once and kept.
+//! `happening`: time-line events. One entry of the time line, reported once and kept.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,10 +11,10 @@ pub struct Happening {
     pub t: f64,
     /// What kind of thing.
     pub kind: Kind,
-    /// Whose, where it is somebody's.
+    /// The team, if the event belongs to one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub team: Option<Team>,
-    /// In a few words.
+    /// A short text.
     pub words: String,
     /// Where.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -24,7 +24,7 @@ pub struct Happening {
     pub problem: Option<serde_json::Value>,
 }
 
-/// Kinds of happenings; the time line has a row for each.
+/// Kinds of events; the time line has a row for each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
@@ -32,13 +32,13 @@ pub enum Kind {
     Goal,
     /// The referee's command.
     Command,
-    /// A part of the match began.
+    /// A part of the match started.
     Stage,
     /// An offence.
     Foul,
     /// Something else that the referee noted.
     Event,
-    /// A cycle began or ended without a case.
+    /// A cycle started or ended without a case.
     Cycle,
     /// A case was chosen.
     Case,

@@ -1,10 +1,11 @@
 //! `page`: the web page: what happens on the field, and why. A web page, served by the program itself (runs
 //! on the PC).
 //!
-//! Whoever drives a match fills a [`Scene`] some 25 times a second and hands it to [`Page::show`], which never waits; what takes long
-//! to work out is done to it later, on the page's own thread ([`Sketch`]). Viewers get the newest one over a WebSocket; the seconds
-//! that have passed are kept, so that every viewer can look back for itself. What viewers ask for comes back as [`Request`]s, which
-//! the driver takes when it has time ([`Page::next_request`]).
+//! The driver of a match fills a [`Scene`] some 25 times a second and passes it to [`Page::show`], which
+//! never waits; expensive parts are computed later, on the page's own thread ([`Sketch`]). Viewers get the
+//! newest one over a WebSocket; the seconds that have passed are kept, so that every viewer can seek back for
+//! itself. Viewers' requests come back as [`Request`]s, which the driver takes when it has time
+//! ([`Page::next_request`]).
 //!
 //! ```text
 //! match ── Sketch ─► archive: finished and encoded once ─┬─► newest ─► every viewer at its own pace

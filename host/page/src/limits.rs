@@ -1,6 +1,7 @@
 //! `limits`: how long and how many connections a page serves, and the guards that count them.
 //!
-//! A page is reachable by whoever reaches its address. None of them may hold what the others need: descriptors, memory, or the match.
+//! Every client that reaches the page's address can open connections. None of them may exhaust what the
+//! others need: descriptors, memory, or the match.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -13,7 +14,8 @@ pub struct Limits {
     pub header: Duration,
     /// A request's body and its answer are given up after that time.
     pub request: Duration,
-    /// A connection that is no viewer's socket is closed after that time, whatever it is doing: a reader that never reads.
+    /// A connection that is not a viewer's socket is closed after this time, whatever it is doing: it may be
+    /// a reader that never reads.
     pub connection: Duration,
     /// Connections served at once, viewers' sockets aside. Others wait in the system's queue.
     pub connections: usize,

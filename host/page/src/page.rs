@@ -1,5 +1,5 @@
-//! `page`: handle of a match's page. [`Page::open`] takes the port; from then on the match shows and tells,
-//! and never waits.
+//! `page`: handle of a match's page. [`Page::open`] takes the port; from then on the match passes scenes and
+//! events, and never waits.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -20,7 +20,7 @@ use crate::server::{self, Ask, Refusals, Shared};
 use crate::sketch::Sketch;
 use crate::token::Token;
 
-/// More requests than this wait for the match: viewers are told that it is busy.
+/// Requests that may wait for the match; further ones are answered that it is busy.
 const REQUESTS_MAX: usize = 256;
 
 /// What a page is opened with.
@@ -30,7 +30,7 @@ pub struct Settings {
     pub listen: SocketAddr,
     /// What stands in its head.
     pub title: String,
-    /// It shows what was recorded: viewers begin at its beginning, not at its newest moment.
+    /// It plays a recording: viewers start at its beginning, not at its newest moment.
     pub recorded: bool,
     /// What viewers may ask for.
     pub powers: Powers,
@@ -40,9 +40,10 @@ pub struct Settings {
     pub limits: Limits,
 }
 
-/// Answers viewers' questions, beside the match and never in its way.
+/// Answers viewers' questions, on another thread than the match.
 pub trait Oracle: Send + Sync {
-    /// Why that case? A problem as `onetwo cases explain` takes it; the answer as it gives it with `--json`.
+    /// Explains why a case is retrieved: `problem` as `onetwo cases explain` takes it; the answer as it gives
+    /// it with `--json`.
     fn explain(&self, problem: &str) -> Result<String, String>;
 
     /// The situations that a simulation can be put into, by name.
@@ -54,7 +55,7 @@ pub trait Oracle: Send + Sync {
 /// Why there is no page.
 #[derive(Debug)]
 pub enum PageError {
-    /// Somebody else has the port.
+    /// Another program has the port.
     Taken(SocketAddr),
     /// The address cannot be served.
     Listen(SocketAddr, io::Error),
@@ -81,7 +82,7 @@ impl fmt::Display for PageError {
 
 impl std::error::Error for PageError {}
 
-/// A page that is served as long as this lives.
+/// A page that is served until this value is dropped.
 pub struct Page {
     address: SocketAddr,
     archive: Archive,
@@ -137,7 +138,7 @@ impl Page {
         self.address
     }
 
-    /// Shows a moment; where the page's thread is behind it is left out. Never waits.
+    /// Passes a moment to the page; if the page's thread is behind, it is left out. Never waits.
     pub fn show(&mut self, sketch: impl Into<Sketch>) {
         let sketch = self.dated(sketch.into());
         if !self.archive.show(sketch) {
@@ -155,13 +156,13 @@ impl Page {
         sketch
     }
 
-    /// Tells of something that happened. Never waits.
+    /// Passes an event to the page. Never waits.
     pub fn tell(&mut self, happening: Happening) {
         self.told += 1;
         self.archive.tell(happening);
     }
 
-    /// Forgets what was: another match begins.
+    /// Drops the history: another match starts.
     pub fn clear(&mut self) {
         self.told = 0;
         self.archive.clear();
@@ -174,10 +175,10 @@ impl Page {
         Some(request)
     }
 
-    /// Tells the viewer whose request was taken last why it is not done.
+    /// Answers the viewer whose request was taken last with the reason why it is refused.
     pub fn refuse(&self, words: impl Into<String>) {
         if let Some(asker) = &*self.asker.borrow() {
-            // A viewer that is gone, or that asks faster than it reads, is told nothing.
+            // A viewer that is gone, or that asks faster than it reads, gets no answer.
             let _ = asker.try_send(words.into());
         }
     }

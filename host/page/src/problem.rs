@@ -23,7 +23,7 @@ pub enum Freeze {
 const CASE_ROBOTS_MAX: usize = 4;
 /// Most of a team in a problem.
 const PROBLEM_ROBOTS_MAX: usize = 11;
-/// The ball's scope to begin with, mm: as in the example of docs/case-format.md §1.
+/// The ball's initial scope, mm: as in the example of docs/case-format.md §1.
 const BALL_SCOPE: &str = "[450, 250]";
 /// An opponent's, mm.
 const OPPONENT_SCOPE: &str = "[300, 300]";

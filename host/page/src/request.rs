@@ -23,7 +23,7 @@ pub enum Request {
         /// Stand still.
         on: bool,
     },
-    /// Go on by so many ticks, and stand still again.
+    /// Go on by this number of ticks, then pause again.
     Step {
         /// 1 to 100.
         ticks: u32,
@@ -33,14 +33,14 @@ pub enum Request {
         /// 0.05 to 20.
         factor: f32,
     },
-    /// Begin anew.
+    /// Restart the match.
     Restart {
         /// Where chance comes from; none: as before.
         seed: Option<u64>,
     },
     /// Put ball and robots as a case's author drew them, and let the game go on from there.
     Situation {
-        /// One of those that the page was told of.
+        /// One of the names that the page received.
         name: String,
     },
     /// Put or pull the ball there.
@@ -66,7 +66,7 @@ pub enum Request {
         /// Boots.
         on: bool,
     },
-    /// The air loses this share of packets.
+    /// The radio loses this share of packets.
     Loss {
         /// 0 to 1.
         share: f32,
@@ -113,7 +113,7 @@ impl std::fmt::Display for Refused {
 }
 
 impl Request {
-    /// From a viewer's words, where such a thing may be asked here.
+    /// Parses a viewer's message, within what may be requested here.
     pub fn read(text: &str, powers: Powers) -> Result<Self, Refused> {
         let request: Self =
             serde_json::from_str(text).map_err(|error| Refused::Malformed(error.to_string()))?;
@@ -152,7 +152,7 @@ impl Request {
 
 /// Slower is standing still.
 const SPEED_MIN: f32 = 0.05;
-/// A full match of two teams plays at no more than this on one core, whatever is asked.
+/// A full match of two teams reaches at most this speed on one core.
 const SPEED_MAX: f32 = 20.0;
 /// No case has a longer name, bytes.
 const NAME_MAX: usize = 200;

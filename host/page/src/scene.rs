@@ -1,7 +1,7 @@
-//! `scene`: one moment as data. Plain data that JSON can say; m, m/s, rad, s, field frame.
+//! `scene`: one moment as data that JSON can represent; m, m/s, rad, s, field frame.
 //!
-//! Everything but time and field may be missing: a league's log file knows no minds, a real field no truth. The page shows what
-//! is there.
+//! Everything but time and field may be missing: a league's log file has no robot states, a real field no
+//! truth. The page displays what is there.
 
 use serde::{Deserialize, Serialize};
 
@@ -17,26 +17,26 @@ pub struct Scene {
     pub field: Field,
     /// The ball, where it is known.
     pub ball: Option<Ball>,
-    /// Everybody on the field, as filtered.
+    /// All robots on the field, as filtered.
     pub robots: Vec<Robot>,
     /// What cameras saw, before any filter.
     pub raw: Raw,
     /// The match so far.
     pub game: Match,
-    /// The newest cycle of each team that tells of one.
+    /// The newest cycle of each team that reports one.
     pub cycles: Vec<Cycle>,
     /// What more can be drawn, by name.
     pub layers: Vec<Layer>,
-    /// Numbers that are shown and plotted.
+    /// Numbers that are displayed and plotted.
     pub gauges: Vec<Gauge>,
     /// What is wrong now and an operator should act on, each in a sentence.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub alarms: Vec<String>,
-    /// How many happenings there were up to now.
+    /// Number of events up to now.
     pub happened: u64,
-    /// It stands still because somebody asked for it.
+    /// It is paused by a viewer.
     pub paused: bool,
-    /// Simulated seconds a second; 0 where it is not ours to say.
+    /// Simulated seconds a second; 0 where the pace is not ours to set.
     pub speed: f32,
     /// Where chance comes from, in a simulation.
     pub seed: Option<u64>,
@@ -74,15 +74,15 @@ pub struct Field {
 pub struct Ball {
     /// Where.
     pub at: [f32; 2],
-    /// Above the carpet.
+    /// Above the field surface.
     pub height: f32,
-    /// Along the carpet.
+    /// Along the field surface.
     pub velocity: [f32; 2],
     /// 0 (lost) to 1 (seen just now).
     pub confidence: f32,
     /// Where it was, oldest first.
     pub trail: Vec<[f32; 2]>,
-    /// Where it will be if nobody meets it, a tenth of a second from one to the next.
+    /// Where it will be if no robot intercepts it, a tenth of a second from one to the next.
     pub ahead: Vec<[f32; 2]>,
 }
 
@@ -104,7 +104,7 @@ pub struct Robot {
     /// What it thinks, where its host is ours.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mind: Option<Mind>,
-    /// How it is, where it tells.
+    /// Its hardware state, if it reports it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vitals: Option<Vitals>,
 }
@@ -112,9 +112,9 @@ pub struct Robot {
 /// Why a robot does what it does.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Mind {
-    /// What it is in its team: "keeper", "defender 1", "taker".
+    /// Its role in the team: "keeper", "defender 1", "taker".
     pub role: String,
-    /// What it is told: "go to (1.2, 0.4)".
+    /// Its order: "go to (1.2, 0.4)".
     pub directive: String,
     /// What decided that.
     pub why: String,
@@ -156,15 +156,15 @@ pub struct Timer {
 pub struct Vitals {
     /// V; none where it is not measured.
     pub battery: Option<f32>,
-    /// Since it was last heard, ms.
+    /// Since its last frame was received, ms.
     pub silence_ms: Option<f32>,
     /// Round trip, ms.
     pub trip_ms: Option<f32>,
-    /// Of ours that it did not hear, percent.
+    /// Of our frames that it did not receive, percent.
     pub loss_down: Option<f32>,
-    /// Of its that we did not hear, percent.
+    /// Of its frames that we did not receive, percent.
     pub loss_up: Option<f32>,
-    /// Frames heard from it a second.
+    /// Frames received from it a second.
     pub frames: Option<f32>,
     /// Frames that it refused.
     pub refused: u32,
@@ -192,11 +192,11 @@ pub struct Raw {
 /// The match so far.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Match {
-    /// What may be done now, in words.
+    /// What may be done now, as text.
     pub phase: String,
-    /// What follows the stop, in words; empty while nobody says.
+    /// What follows the stop, as text; empty while unknown.
     pub next: String,
-    /// The part of the match, in words.
+    /// The part of the match, as text.
     pub stage: String,
     /// Playing time left in it, s.
     pub stage_left: Option<f32>,
@@ -257,7 +257,7 @@ pub struct Cycle {
     pub team: Option<Team>,
     /// Its number.
     pub number: u32,
-    /// Who coordinates it.
+    /// Number of its coordinator.
     pub coordinator: u8,
     /// "deciding", "no case", "playing", "finished", or why it was stopped.
     pub state: String,
@@ -267,13 +267,13 @@ pub struct Cycle {
     pub symmetry: String,
     /// What its author meant.
     pub meant: String,
-    /// Who plays: robot's number for case robot 1, 2, …
+    /// Players: robot's number for case robot 1, 2, …
     pub players: Vec<u8>,
-    /// Since it began, s.
+    /// Since it started, s.
     pub seconds: f32,
 }
 
-/// A number to be shown and plotted.
+/// A number to be displayed and plotted.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Gauge {
     /// Under which heading.

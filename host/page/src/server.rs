@@ -1,8 +1,9 @@
 //! `server`: HTTP and WebSocket server on a thread of its own.
 //!
-//! A viewer's socket carries the newest scene whenever the viewer has taken the one before: it says so with a dot. So a slow viewer
-//! sees fewer scenes, none of them old, and one that is gone holds nothing up. Connections are served within
-//! [`Limits`](crate::Limits): so many at once, and none for longer than it may take.
+//! A viewer's socket carries the newest scene whenever the viewer has taken the one before: it acknowledges
+//! with a dot. So a slow viewer sees fewer scenes, none of them old, and one that is gone holds nothing up.
+//! Connections are served within [`Limits`](crate::Limits): a bounded number at once, each for a bounded
+//! time.
 
 use std::io;
 use std::net::TcpListener;
@@ -35,17 +36,17 @@ use crate::problem::{Freeze, problem, skeleton};
 use crate::request::{Request, Team};
 use crate::{files, guard};
 
-/// Scenes on their way to a viewer that has not yet taken them.
+/// Scenes sent to a viewer that it has not yet acknowledged.
 const UNTAKEN_MAX: u32 = 2;
-/// A viewer that takes nothing for so long is gone.
+/// A viewer that takes nothing for this time is gone.
 const GONE: Duration = Duration::from_secs(30);
 /// Refusals that wait for a viewer that does not read; more are dropped.
 const REFUSALS_MAX: usize = 16;
 /// Where no connection can be taken (no descriptor is left), the next attempt is after that time.
 const ACCEPT_AGAIN: Duration = Duration::from_millis(50);
-/// The longest word of a viewer, bytes: a request, a problem.
+/// The longest message of a viewer, bytes: a request, a problem.
 const WORD_MAX: usize = 16 * 1024;
-/// Happenings in one answer.
+/// Events in one answer.
 const HAPPENINGS_A_TIME: usize = 5_000;
 
 /// What every answer is made from.
@@ -62,20 +63,20 @@ pub(crate) struct Shared {
 /// Why something that was asked for is not done, to the viewer that asked.
 pub(crate) type Refusals = mpsc::Sender<String>;
 
-/// What a viewer asked for, and how it is told that it is not done.
+/// A viewer's request, and the channel for the answer if it is refused.
 pub(crate) struct Ask {
     pub(crate) request: Request,
     pub(crate) asker: Refusals,
 }
 
 impl Shared {
-    /// May a viewer that brought that token ask for anything?
+    /// Whether a viewer with this token may send requests.
     fn may_ask(&self, brought: Option<&str>) -> bool {
         self.settings.token.as_ref().is_none_or(|token| brought.is_some_and(|brought| token.is(brought)))
     }
 }
 
-/// Serves on a thread of its own until `ended` says so or is dropped.
+/// Serves on a thread of its own until `ended` is signalled or dropped.
 pub(crate) fn serve(listener: TcpListener, shared: Shared, ended: oneshot::Receiver<()>) -> io::Result<()> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     thread::spawn(move || {
@@ -104,7 +105,7 @@ pub(crate) fn serve(listener: TcpListener, shared: Shared, ended: oneshot::Recei
     Ok(())
 }
 
-/// Serves connection by connection, no more at once than the limits say.
+/// Serves connection by connection, at most the limit's number at once.
 async fn accept(listener: tokio::net::TcpListener, routes: Router, limits: Limits) {
     let places = Arc::new(Semaphore::new(limits.connections));
     loop {
@@ -128,7 +129,7 @@ async fn accept(listener: tokio::net::TcpListener, routes: Router, limits: Limit
     }
 }
 
-/// Turns foreign pages away, and tells browsers what this page may do.
+/// Refuses foreign pages, and sends browsers the headers that restrict this page.
 async fn guarded(State(shared): State<Arc<Shared>>, request: HttpRequest, next: Next) -> Response {
     if let Err(foreign) = guard::check(request.headers(), shared.port) {
         return (StatusCode::FORBIDDEN, foreign.words()).into_response();
@@ -142,7 +143,8 @@ async fn guarded(State(shared): State<Arc<Shared>>, request: HttpRequest, next: 
     response
 }
 
-/// Nothing from elsewhere, in nobody's frame, nothing kept by the browser: another version may be served tomorrow.
+/// Nothing from elsewhere, not in another page's frame, nothing cached by the browser: another version may be
+/// served tomorrow.
 const HEADERS: [(&str, &str); 5] = [
     (
         "content-security-policy",
@@ -274,7 +276,7 @@ async fn look_on(mut socket: WebSocket, shared: &Shared, may_ask: bool) {
         tokio::select! {
             changed = news.changed(), if sends => {
                 let scene = news.borrow_and_update().clone();
-                // The match is over with its page: the socket closes, and viewers say so.
+                // The match is over with its page: the socket closes, and viewers display that.
                 if changed.is_err() { return; }
                 if scene.is_empty() { continue; }
                 if !sent(&mut socket, scene).await { return; }
@@ -285,7 +287,7 @@ async fn look_on(mut socket: WebSocket, shared: &Shared, may_ask: bool) {
             }
             word = timeout(GONE, socket.recv()) => match word {
                 Ok(Some(Ok(Message::Text(word)))) if word.as_str() == "." => untaken = untaken.saturating_sub(1),
-                // A viewer of something that stands still says that it is there.
+                // A viewer of a paused match reports that it is still connected.
                 Ok(Some(Ok(Message::Text(word)))) if word.is_empty() => {}
                 Ok(Some(Ok(Message::Text(word)))) => {
                     let asked = if may_ask { ask(shared, &asker, &word) } else { Err(NO_TOKEN.to_owned()) };
@@ -300,7 +302,7 @@ async fn look_on(mut socket: WebSocket, shared: &Shared, may_ask: bool) {
     }
 }
 
-/// What a viewer without the token is told.
+/// Answer to a viewer without the token.
 const NO_TOKEN: &str = "this page is open to the network: to ask for anything, open it by the address with ?token= that the program \
                         printed when it started";
 

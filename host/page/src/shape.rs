@@ -1,5 +1,5 @@
-//! `shape`: shapes of overlays. Named layers of plain shapes: whoever fills a scene can show anything, and
-//! the page need not know what it means. m, field frame.
+//! `shape`: shapes of overlays. Named layers of plain shapes: a scene can contain any overlay, and the page
+//! need not know what it means. m, field frame.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 pub struct Layer {
     /// Its name in addresses and settings: `case-scopes`.
     pub name: String,
-    /// What people read.
+    /// The label in the page's list.
     pub label: String,
-    /// Shown unless somebody switches it off.
+    /// Visible unless the viewer switches it off.
     pub on: bool,
     /// Drawn in this order.
     pub shapes: Vec<Shape>,
@@ -50,7 +50,7 @@ pub enum Shape {
         tone: Tone,
         /// Filled, thinly; else its outline alone.
         fill: bool,
-        /// Told where somebody points at it.
+        /// Displayed where the viewer points at it.
         #[serde(default, skip_serializing_if = "String::is_empty")]
         note: String,
     },
@@ -62,7 +62,7 @@ pub enum Shape {
         tone: Tone,
         /// Filled, thinly.
         fill: bool,
-        /// Told where somebody points at it.
+        /// Displayed where the viewer points at it.
         #[serde(default, skip_serializing_if = "String::is_empty")]
         note: String,
     },
@@ -76,11 +76,11 @@ pub enum Shape {
         radius: f32,
         /// Its meaning.
         tone: Tone,
-        /// Told where somebody points at it.
+        /// Displayed where the viewer points at it.
         #[serde(default, skip_serializing_if = "String::is_empty")]
         note: String,
     },
-    /// A way.
+    /// A path.
     Line {
         /// Its points.
         points: Vec<[f32; 2]>,
@@ -91,11 +91,11 @@ pub enum Shape {
         /// Dashed.
         dashed: bool,
     },
-    /// A word.
+    /// A label.
     Text {
         /// Its middle.
         at: [f32; 2],
-        /// What it says.
+        /// The label's text.
         text: String,
         /// Its meaning.
         tone: Tone,
@@ -117,6 +117,6 @@ pub struct Heat {
     pub cells: Vec<u8>,
     /// What 255 means, a probability.
     pub most: f32,
-    /// Told with the value of a place where somebody points at it: "a pass to here arrives".
+    /// Displayed with the value of a place where the viewer points at it: "a pass to here arrives".
     pub note: String,
 }

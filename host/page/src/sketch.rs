@@ -1,5 +1,5 @@
 //! `sketch`: a scene with deferred work. A sketch is a scene and what still has to be done to it: the page's
-//! own thread does that, so that planned ways, maps and beliefs cost whoever drives the match nothing.
+//! own thread does that, so that planned paths, maps and beliefs cost the match's thread nothing.
 
 use std::fmt;
 
@@ -16,7 +16,8 @@ pub struct Sketch {
 }
 
 impl Sketch {
-    /// A scene that `finish` completes; sketches are finished in the order in which they are shown.
+    /// A scene that `finish` completes; sketches are finished in the order in which they are passed to the
+    /// page.
     pub fn new(scene: Scene, finish: impl FnOnce(&mut Scene) + Send + 'static) -> Self {
         Self { scene, finish: Some(Box::new(finish)) }
     }

@@ -1,6 +1,7 @@
 //! `attacks`: connections that hold on, viewers that all come at once, and requests without the token, over real sockets.
 //!
-//! Times are injected ([`Limits`]); what is asserted is who is answered and who is not, never how soon.
+//! Times are injected ([`Limits`]); the assertions are about which requests are answered, never about how
+//! soon.
 
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
@@ -91,7 +92,7 @@ fn three_hundred_half_requests_are_closed_and_the_page_goes_on_answering() {
     let held: Vec<_> = (0..ATTACKERS).map(|n| begin(at, halves[n % halves.len()])).collect();
     assert!(get(at, "/").starts_with("HTTP/1.1 200"), "a viewer is answered while they hold on");
     for stream in held {
-        // The page may say why; it does not serve them.
+        // The page may give the reason; it does not serve them.
         assert!(!rest(stream).contains("200 OK"));
     }
 }

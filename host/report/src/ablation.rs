@@ -27,7 +27,7 @@ pub struct Ablation<'a> {
     pub facts: &'a [Facts],
 }
 
-/// A measure's word in files, its head, its unit, its decimals, and whether it is a share.
+/// A measure's name in files, its head, its unit, its decimals, and whether it is a share.
 type Look = (&'static str, &'static str, &'static str, usize, bool);
 
 impl Ablation<'_> {
@@ -194,7 +194,7 @@ impl Ablation<'_> {
     }
 }
 
-/// A number as it is written, and the effect that it tells of.
+/// A number as it is written, and the effect that it belongs to.
 type Said<'a> = (String, Option<&'a Effect>);
 
 /// Opponents and scenario of a cell.

@@ -17,7 +17,7 @@ pub(crate) struct Column {
 pub(crate) enum Kind {
     /// Something that is tested.
     Measured(Measure),
-    /// Something that is only told.
+    /// A number without a test.
     Told(fn(&TableRow) -> Option<f64>),
 }
 
@@ -86,7 +86,7 @@ fn percent(Interval { low, high }: Interval) -> Option<Interval> {
     Some(Interval { low: 100.0 * low, high: 100.0 * high })
 }
 
-/// The columns of a table; one that nobody has a value for is left out, and timeouts where there are none.
+/// The columns of a table; one without any value is left out, and timeouts where there are none.
 pub(crate) fn columns(table: u8, rows: &[&TableRow]) -> Vec<Column> {
     let all = match table {
         1 => &TABLE_1[..],

@@ -1,5 +1,5 @@
-//! `facts`: provenance of an evaluation. Everything the evaluation's files say of themselves, by name and
-//! value, nothing left out.
+//! `facts`: provenance of an evaluation. All provenance in the evaluation's files, by name and value, nothing
+//! left out.
 
 use arena::evaluation::Identity;
 use serde_json::Value;
@@ -39,7 +39,7 @@ impl Facts {
     }
 }
 
-/// What the number is called that tells two evaluations apart.
+/// Name of the number that distinguishes two evaluations.
 pub(crate) const HASH: &str = "csv hash of the trials";
 
 /// The parts that are long enough for a heading of their own.
@@ -60,7 +60,7 @@ fn word(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
-/// Numbers and words below each other, named by their way down.
+/// Numbers and texts below each other, named by their path.
 fn flatten(name: &str, value: &Value, entries: &mut Vec<(String, String)>) {
     let below = |key: &str| if name.is_empty() { key.to_owned() } else { format!("{name}.{key}") };
     match value {

@@ -6,8 +6,8 @@
 //! Mapper: trials played again ─► Map ────────┼─► pictures()  the same plots and maps, one SVG each
 //!                                            └─► markdown()  docs/evaluation.md, between its markers
 //! ```
-//! Numbers come from `arena::evaluation` and are shown, never changed: what a table prints is rounded for the reader, and
-//! every interval and p stands beside its number.
+//! Numbers come from `arena::evaluation` and are printed, never changed: what a table prints is rounded for
+//! the reader, and every interval and p stands beside its number.
 #![forbid(unsafe_code)]
 
 mod ablation;
@@ -48,17 +48,17 @@ pub struct Report<'a> {
     pub papers_between: &'a [Comparison],
     /// What became of each case.
     pub uses: &'a [CaseUse],
-    /// What the paper says in prose, and whether the numbers bear it out.
+    /// The paper's claims in prose, and whether the numbers support them.
     pub claims: &'a [Claim],
-    /// Does the pattern of its results come out?
+    /// Whether the pattern of its results is reproduced.
     pub lines: &'a [Line],
     /// Everything that decided the trials: parameters, options, hashes, commit.
     pub facts: &'a [Facts],
-    /// Where the ball was and who passed to whom, one a cell.
+    /// Where the ball was and the passes between robots, one a cell.
     pub maps: &'a [Map],
 }
 
-/// A picture with the name of its file, without an ending.
+/// A figure with the name of its file, without an extension.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
     /// `table-1-outcomes`.
@@ -79,12 +79,13 @@ impl Report<'_> {
         plots.chain(map::sheets(self.maps)).collect()
     }
 
-    /// Tables and claims for the documentation; pictures are named relative to `pictures`, say `pictures/`.
+    /// Tables and claims for the documentation; figures are named relative to `pictures`, for example
+    /// `pictures/`.
     pub fn markdown(&self, pictures: &str) -> String {
         markdown::markdown(self, pictures)
     }
 
-    /// `report.html` and `plots/*.svg` under `folder`; gives what was drawn.
+    /// `report.html` and `plots/*.svg` under `folder`; returns the figures.
     pub fn write(&self, folder: &Path) -> io::Result<Vec<Picture>> {
         let plots = folder.join("plots");
         fs::create_dir_all(&plots)?;

@@ -1,4 +1,4 @@
-//! `markdown`: the report's part of the documentation. The tables in few columns, the claims, the pictures;
+//! `markdown`: the report's part of the documentation. The tables in few columns, the claims, the figures;
 //! between two markers of a file.
 
 use std::fmt;
@@ -10,7 +10,7 @@ use crate::facts::HASH;
 use crate::table::{Cell, LineKind, Table, tables};
 use crate::{Report, map, table, words};
 
-/// Tables, claims and pictures as Markdown.
+/// Tables, claims and figures as Markdown.
 pub(crate) fn markdown(report: &Report<'_>, pictures: &str) -> String {
     let mut text = String::new();
     let facts = || report.facts.iter().flat_map(|facts| &facts.entries);
@@ -133,7 +133,7 @@ fn lines(text: &mut String, lines: &[Line]) {
     text.push('\n');
 }
 
-/// Words that stay in their cell.
+/// Text that stays in its cell.
 fn cell(words: &str) -> String {
     words.replace('|', "\\|").replace('*', "\\*").replace('\n', " ")
 }

@@ -1,4 +1,4 @@
-//! `style`: style sheet of the report; in dark mode the same pictures change their colours by rule.
+//! `style`: style sheet of the report; in dark mode the same figures change their colours by rule.
 
 use std::fmt::Write as _;
 
@@ -7,7 +7,7 @@ use drawing::{Colors, Theme};
 use crate::map::{CHANCE, LOST, SHADES};
 use crate::plot::GRID;
 
-/// The style sheet, dark colours of pictures included.
+/// The style sheet, dark colours of figures included.
 pub(crate) fn sheet() -> String {
     let mut css = include_str!("report.css").to_owned();
     css += "@media screen and (prefers-color-scheme: dark) {\n";
@@ -15,7 +15,7 @@ pub(crate) fn sheet() -> String {
         let _ =
             writeln!(css, "svg [fill=\"{light}\"]{{fill:{dark}}}svg [stroke=\"{light}\"]{{stroke:{dark}}}");
     }
-    // A field's lines are white on a light carpet, as the paper is.
+    // A field's lines are white on a light field surface, as the paper is.
     let line = Theme::Dark.colors().line;
     let white = Theme::Light.colors().line;
     let _ = writeln!(css, ".maps svg [stroke=\"{white}\"]{{stroke:{line}}}");
@@ -23,7 +23,7 @@ pub(crate) fn sheet() -> String {
     css
 }
 
-/// A picture's colours on a light and on a dark page.
+/// A figure's colours on a light and on a dark page.
 fn pairs() -> Vec<(&'static str, &'static str)> {
     let (light, dark) = (Theme::Light.colors(), Theme::Dark.colors());
     let of = |c: &Colors| {

@@ -35,16 +35,16 @@ pub(crate) struct Line {
     pub(crate) cells: Vec<Cell>,
 }
 
-/// What a line tells.
+/// Contents of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LineKind {
-    /// Our numbers, of so many trials.
+    /// Our numbers, of this number of trials.
     Ours(u32),
-    /// The paper's, of so many.
+    /// The paper's, of this number.
     Paper(u32),
     /// Ours less the paper's.
     Difference,
-    /// Ours less our other approach's, of so many trials.
+    /// Ours less our other approach's, of these numbers of trials.
     Against(Approach, [u32; 2]),
     /// The paper's less its other approach's.
     PaperAgainst(Approach),
@@ -219,7 +219,7 @@ fn less(column: &Column, first: &TableRow, second: &TableRow, comparisons: &[Com
     Cell { value, marks, beside, lacks: 0 }
 }
 
-/// The comparison of these two rows, whichever of them it begins with.
+/// The comparison of these two rows, in either order.
 fn tested<'c>(
     column: &Column,
     first: &TableRow,

@@ -1,5 +1,5 @@
-//! `report`: tests: the page shows everything that was measured, and nothing else. The paper's rows stand in
-//! for ours, a little changed.
+//! `report`: tests: the page contains everything that was measured, and nothing else. The paper's rows stand
+//! in for ours, a little changed.
 
 use arena::TrialConfig;
 use arena::evaluation::{
@@ -86,7 +86,7 @@ impl Made {
     }
 }
 
-/// What the page says, without its tags.
+/// The text of the page, without its tags.
 fn cells(html: &str) -> Vec<String> {
     html.split('<').filter_map(|part| part.split_once('>')).map(|(_, text)| text.trim().to_owned()).collect()
 }

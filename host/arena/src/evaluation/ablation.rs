@@ -1,8 +1,9 @@
 //! `ablation`: ablations: what each part of the approach is worth. Case-based attackers with one thing
 //! changed, on the seeds of the unchanged ones.
 //!
-//! Trials of equal seed begin alike and meet the same chances while they go alike, so they are compared in pairs: McNemar's exact
-//! test for shares, the paired t for means; the unpaired tests stand beside them. Over the arms, p is corrected by Holm.
+//! Trials of equal seed start alike and draw the same random numbers while they stay alike, so they are
+//! compared in pairs: McNemar's exact test for shares, the paired t for means; the unpaired tests stand
+//! beside them. Over the arms, p is corrected by Holm.
 
 use std::fmt::Write as _;
 
@@ -66,7 +67,7 @@ impl Arm {
         setup
     }
 
-    /// Is it the unchanged team?
+    /// Whether it is the unchanged team.
     pub fn is_default(&self) -> bool {
         self.change == Change::Nothing
     }
@@ -149,9 +150,9 @@ pub struct Effect {
 
 /// What is looked at in a trial.
 enum Look {
-    /// Did it happen? In percent of trials.
+    /// Whether it happened; in percent of trials.
     Share(fn(&TrialRow) -> bool),
-    /// How much of it? A mean.
+    /// How much of it; a mean.
     Mean(fn(&TrialRow) -> f64),
 }
 
@@ -303,8 +304,9 @@ mod tests {
 
     #[test]
     fn trials_are_compared_in_pairs() {
-        // By hand: 10 pairs; only the default goes to goal in 6 of them, only the arm in 1, both in 2.
-        // McNemar: 2 · P(at most 1 of 7) = 2 · 8 / 128 = 0.125. Seconds: 1 more in every second pair.
+        // By manual calculation: 10 pairs; only the default goes to goal in 6 of them, only the arm in 1,
+        // both in 2. McNemar: 2 · P(at most 1 of 7) = 2 · 8 / 128 = 0.125. Seconds: 1 more in every second
+        // pair.
         let outcome = |goal| if goal { Outcome::Goal } else { Outcome::Out };
         let trial = |trial, goal, time_s| TrialRow { trial, outcome: outcome(goal), time_s, ..row() };
         let default: Vec<_> = (0..10).map(|i| trial(i, i < 8, 10.0)).collect();

@@ -43,7 +43,7 @@ pub struct Comparison {
     pub table: u8,
     /// Which of its trials.
     pub sample: Extent,
-    /// Where everybody stood.
+    /// Start positions.
     pub scenario: Scenario,
     /// The first row's approach.
     pub first_approach: Approach,
@@ -129,7 +129,7 @@ impl Measure {
         Self::Time,
     ];
 
-    /// Its word, as the column of `tables.json` begins.
+    /// Its label, with which the column of `tables.json` starts.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Goal => "goal",
@@ -144,7 +144,7 @@ impl Measure {
         }
     }
 
-    /// The measure of that word.
+    /// The measure with this label.
     pub fn from_word(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|measure| measure.word() == word)
     }
@@ -164,7 +164,7 @@ impl Measure {
         }
     }
 
-    /// Is it a share of trials, not a mean?
+    /// Whether it is a share of trials, not a mean.
     pub const fn is_share(self) -> bool {
         !matches!(self, Self::Possession | Self::MidfieldPossession | Self::Time)
     }
@@ -189,7 +189,7 @@ impl Measure {
         Some(Sample { n: row.trials, mean: self.value(row)?, sd })
     }
 
-    /// Do they differ?
+    /// Tests whether they differ.
     pub(super) fn test(self, first: &TableRow, second: &TableRow) -> Option<Test> {
         match (self.count(first), self.count(second)) {
             (Some(a), Some(b)) => two_proportions(a, b),
@@ -275,13 +275,14 @@ mod tests {
     fn what_the_paper_shows_stands_after_correction_where_it_is_strong() {
         let comparisons = compare(paper(), Approach::Cases, Approach::Reactive);
         let p = |scenario, measure| find(&comparisons, 1, scenario, measure).p_holm.unwrap();
-        // By hand from 0.04, 0.31, 2.2e-7 and 2.4e-9: twice the third least, the greatest as it is.
+        // By manual calculation from 0.04, 0.31, 2.2e-7 and 2.4e-9: twice the third least, the greatest as it
+        // is.
         assert!((p(Scenario::MiddleBack, Measure::ToGoal) - 0.08).abs() < 0.005);
         assert!((p(Scenario::LeftSide, Measure::ToGoal) - 0.31).abs() < 0.005);
         assert!(p(Scenario::DefenderAhead, Measure::ToGoal) < 1e-6);
         assert!(Scenario::PAPER.into_iter().all(|scenario| p(scenario, Measure::Out) < 0.01));
         assert!(Scenario::PAPER.into_iter().all(|scenario| p(scenario, Measure::Possession) < 0.01));
-        // Nobody printed how trial times spread.
+        // The paper does not print the spread of trial times.
         assert_eq!(find(&comparisons, 1, Scenario::LeftSide, Measure::Time).test, None);
         assert_eq!(find(&comparisons, 1, Scenario::LeftSide, Measure::Time).p_holm, None);
     }

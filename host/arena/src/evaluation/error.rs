@@ -44,7 +44,7 @@ pub enum EvaluationError {
         /// Its number.
         trial: usize,
     },
-    /// Trials of the plan are in none of the files.
+    /// Trials of the plan are missing in all files.
     Missing {
         /// How many.
         trials: usize,
@@ -87,7 +87,7 @@ impl From<csv::Error> for EvaluationError {
     }
 }
 
-/// A file's name as it can be shown.
+/// A file's name in printable form.
 fn shown(file: &Path) -> String {
     printable(&file.to_string_lossy()).into_owned()
 }

@@ -1,9 +1,9 @@
 //! `judge`: judgement whether the pattern of the paper's results comes out. Verdicts on a list of lines, each
 //! worked out from table rows.
 //!
-//! Lines a to g are the pattern that any faithful simulation should show, whatever its parameters; the rest is what this project
-//! holds itself to. They are meant for thousands of trials a cell (`onetwo evaluate judge`), on starts nothing was tuned on. A
-//! missed line is a finding, not an error.
+//! Lines a to g are the pattern that any faithful simulation should reproduce, whatever its parameters; the
+//! others are this project's own requirements. They are intended for thousands of trials a cell (`onetwo
+//! evaluate judge`), on starts that were not used for tuning. A missed line is a finding, not an error.
 
 use brain::Approach::{self, Cases, Reactive};
 use hil_sim::Scenario::{self, DefenderAhead, DefenderClose, LeftSide, MiddleBack, Random};
@@ -23,13 +23,13 @@ pub struct Line {
     pub id: &'static str,
     /// What should be.
     pub line: &'static str,
-    /// Is it?
+    /// Whether it holds.
     pub verdict: Held,
     /// The numbers.
     pub evidence: String,
 }
 
-/// Does a line hold?
+/// Whether a line holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Held {
@@ -42,7 +42,7 @@ pub enum Held {
 }
 
 impl Held {
-    /// Its word in files.
+    /// Its label in files.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Held => "held",
@@ -179,7 +179,7 @@ const LINES: &[Entry] = &[
     }),
 ];
 
-/// Line a: the paper's own direction, whatever the p.
+/// Line a: the paper's own direction, for any p.
 fn out(r: Rows<'_>) -> Finding {
     let found = compare(r, cells(), Measure::Out, [Cases, Reactive])?;
     Some((found.iter().all(|cell| cell.difference < 0.0), told(&found)))

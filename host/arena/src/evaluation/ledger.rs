@@ -1,8 +1,9 @@
 //! `ledger`: crash-safe file of finished trials. Every trial is a line, appended to its shard's file when it
 //! is over.
 //!
-//! The first line says which evaluation the file is of, the second names the columns. A last line without its end was torn by the
-//! interrupt: it is cut off, and its trial played again. Lines stand in the order in which trials ended; whoever reads sorts.
+//! The first line identifies the evaluation, the second names the columns. A last line without its end was
+//! torn by the interrupt: it is cut off, and its trial played again. Lines stand in the order in which trials
+//! ended; the reader sorts.
 
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions, TryLockError};
@@ -17,19 +18,19 @@ use super::error::EvaluationError;
 use super::plan::{Cell, Plan};
 use super::row::{TrialRow, to_csv, to_line};
 
-/// A row that a ledger keeps: one of a plan's trials, when it is over.
+/// A row of such a file: one of a plan's trials, when it is over.
 pub trait Entry: Clone + PartialEq + Serialize + DeserializeOwned + Send {
     /// Which evaluation its file is of.
     type Identity: Clone + Serialize + DeserializeOwned;
-    /// What its file begins with.
+    /// Mark at the start of its file.
     const MARK: &'static str;
     /// Its number in the plan, from 0.
     fn number(&self) -> usize;
-    /// Is it what that evaluation plans under its number?
+    /// Whether the row is what that evaluation plans under its number.
     fn is_planned(&self, identity: &Self::Identity) -> bool;
     /// How many are planned.
     fn planned(identity: &Self::Identity) -> usize;
-    /// In what two evaluations differ, for people; empty between equals.
+    /// Names of the settings in which two evaluations differ; empty between equals.
     fn differences(own: &Self::Identity, other: &Self::Identity) -> Vec<&'static str>;
 }
 
@@ -50,12 +51,13 @@ impl Entry for TrialRow {
     }
 }
 
-/// Which evaluation a file is of: whatever decides its trials. Only equals are resumed or merged.
+/// Identity of the evaluation of a file: all settings that its trials depend on. Only equals are resumed or
+/// merged.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Identity {
     /// Version and commit of the program.
     pub program: String,
-    /// Whose cases: a league's name, or a folder.
+    /// The case library: a league's name, or a directory.
     pub library: String,
     /// Hash of the case base, 8 hexadecimal digits.
     pub case_base: String,
@@ -71,7 +73,7 @@ pub struct Identity {
     pub positioning: String,
     /// How many of the two robots may retrieve.
     pub retrievers: usize,
-    /// Share of packets that a receiver does not hear.
+    /// Share of packets that a receiver does not get.
     pub loss: f32,
     /// How the world behaves.
     pub parameters: Parameters,
@@ -80,7 +82,7 @@ pub struct Identity {
 }
 
 impl Identity {
-    /// In what the other differs, for people; empty between equals.
+    /// Names of the settings in which the other differs; empty between equals.
     pub fn differences(&self, other: &Self) -> Vec<&'static str> {
         let Self { program, library: _, case_base, cases: _, symmetry, case_opponents, .. } = self;
         let Self { settings, positioning, retrievers, loss, parameters, plan, .. } = self;
@@ -172,7 +174,7 @@ pub(super) struct Ledger {
 }
 
 impl Ledger {
-    /// Opens or begins a file of `identity`; the trials it holds already come with it.
+    /// Opens or creates a file of `identity`; returns it with the trials that it already holds.
     pub(super) fn open<R: Entry>(
         path: &Path,
         identity: &R::Identity,

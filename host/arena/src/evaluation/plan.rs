@@ -1,8 +1,9 @@
 //! `plan`: the trials of an evaluation. Cells of (profile, opponents, scenario, approach), trials numbered
 //! through, a seed each.
 //!
-//! Common random numbers: the k-th trial of every approach has the same seed, so that approaches meet the same chances. A seed
-//! is enough to play a trial again alone: `onetwo trial --scenario S --opponents O --approach A --seed N`.
+//! Common random numbers: the k-th trial of every approach has the same seed, so that approaches draw the
+//! same random numbers. A seed is enough to play a trial again alone: `onetwo trial --scenario S --opponents
+//! O --approach A --seed N`.
 
 use brain::Approach;
 use hil_sim::{Configuration, Fnv, Scenario};
@@ -26,7 +27,7 @@ impl Profile {
     /// Both.
     pub const ALL: [Self; 2] = [Self::Simulated, Self::Robots];
 
-    /// Its word in options and files.
+    /// Its label in options and files.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Simulated => "simulated",
@@ -34,7 +35,7 @@ impl Profile {
         }
     }
 
-    /// The profile of that word.
+    /// The profile with this label.
     pub fn from_word(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|profile| profile.word() == word)
     }
@@ -57,7 +58,7 @@ pub struct Cell {
     pub profile: Profile,
     /// Which opponents play.
     pub configuration: Configuration,
-    /// Where everybody stands.
+    /// Start positions.
     #[serde(with = "words::scenario")]
     pub scenario: Scenario,
     /// What leads the attackers.
@@ -94,7 +95,8 @@ impl Plan {
         Self::of(seed, &Scenario::PAPER, [500, 200, 500])
     }
 
-    /// Enough trials to tell 3 percent of 30 from chance, random starts among them; on seeds of their own.
+    /// Enough trials to distinguish 3 percent of 30 from chance, random starts among them; on seeds of their
+    /// own.
     pub fn judge(seed: u64) -> Self {
         let scenarios: Vec<_> = Scenario::PAPER.into_iter().chain([Scenario::Random]).collect();
         Self::of(seed, &scenarios, [5000; 3])
@@ -139,7 +141,7 @@ impl Plan {
         self
     }
 
-    /// The same cells with that many trials each.
+    /// The same cells with this number of trials each.
     pub fn with_trials(mut self, trials: u32) -> Self {
         for cell in &mut self.cells {
             cell.trials = trials;
@@ -175,7 +177,7 @@ impl Plan {
         (0..self.len()).filter(move |number| shard.has(*number)).filter_map(|number| self.get(number))
     }
 
-    /// Neither the approach nor the profile enters: they meet the same chances.
+    /// The seed is independent of approach and profile: they draw the same random numbers.
     fn seed_of(&self, cell: Cell, trial: u32) -> u64 {
         let mut hash = Fnv::default();
         hash.add(&self.seed.to_le_bytes());
@@ -198,18 +200,18 @@ impl Shard {
     /// Everything.
     pub const WHOLE: Self = Self { index: 1, of: 1 };
 
-    /// The part of that number, from 1, of so many.
+    /// The part `index`, from 1, of `of` parts.
     pub fn new(index: usize, of: usize) -> Option<Self> {
         (1..=of).contains(&index).then_some(Self { index, of })
     }
 
-    /// As people write it: `2/3`.
+    /// Parses the form `2/3`.
     pub fn from_word(word: &str) -> Option<Self> {
         let (index, of) = word.split_once('/')?;
         Self::new(index.parse().ok()?, of.parse().ok()?)
     }
 
-    /// Does the trial of that number belong to it?
+    /// Whether the trial of this number belongs to it.
     pub fn has(self, number: usize) -> bool {
         number % self.of == self.index - 1
     }
@@ -230,7 +232,7 @@ impl Shard {
 const PLAYED_BY_ROBOTS: [Scenario; 2] = [Scenario::DefenderAhead, Scenario::DefenderClose];
 /// How long the paper's robots stood still after every cycle (§5.3).
 const PAUSE_OF_ROBOTS: Duration = Duration::millis(5000);
-/// Seeds are short enough for every reader of JSON (53 bits) and for people.
+/// Length of a seed, bits: exact for every reader of JSON (53 bits), and short to type.
 const SEED_BITS: u32 = 48;
 
 #[cfg(test)]

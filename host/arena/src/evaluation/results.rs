@@ -1,12 +1,12 @@
-//! `results`: results of an evaluation. Everything that is written into its folder, put together from the
-//! rows of its trials alone.
+//! `results`: results of an evaluation. Everything that is written into its directory, computed from the rows
+//! of its trials alone.
 //!
 //! | file | what |
 //! |---|---|
 //! | `trials.csv` | every trial, in the plan's order |
 //! | `tables.json`, `tables.csv` | the paper's tables (docs/case-format.md §5.2) |
 //! | `comparisons.json`, `comparisons.csv` | ours against the paper's, and approach against approach |
-//! | `claims.json` | what the paper says in prose, and whether our numbers and its own bear it out |
+//! | `claims.json` | the paper's claims in prose, and whether our numbers and its own support them |
 //! | `judge.json` | whether the pattern of its results comes out |
 //! | `cases.csv` | what became of each case |
 //! | `run.json` | which evaluation it was: program, seed, numbers, cases, settings, world |
@@ -41,9 +41,9 @@ pub struct Results {
     pub with_paper: Vec<Comparison>,
     /// Every approach against every later one.
     pub between_approaches: Vec<Comparison>,
-    /// What the paper says, and what the numbers say to it.
+    /// The paper's claims, and the verdicts of the numbers.
     pub claims: Vec<Claim>,
-    /// Does the pattern of the paper's results come out?
+    /// Whether the pattern of the paper's results is reproduced.
     pub lines: Vec<Line>,
     /// What became of each case.
     pub uses: Vec<CaseUse>,
@@ -82,7 +82,7 @@ impl Results {
         })
     }
 
-    /// Writes every file into a folder that is there.
+    /// Writes every file into an existing directory.
     pub fn write(&self, folder: &Path) -> Result<(), EvaluationError> {
         let all: Vec<_> = self.with_paper.iter().chain(&self.between_approaches).collect();
         let paper = self.with_paper.len();
@@ -108,7 +108,7 @@ impl Results {
     }
 }
 
-/// Writes the effects of an ablation into a folder that is there.
+/// Writes the effects of an ablation into an existing directory.
 pub fn write_effects(effects: &[Effect], folder: &Path) -> Result<(), EvaluationError> {
     for (name, bytes) in [("ablations.json", json(&effects)), ("ablations.csv", as_csv(effects))] {
         let file = folder.join(name);
@@ -118,7 +118,7 @@ pub fn write_effects(effects: &[Effect], folder: &Path) -> Result<(), Evaluation
     Ok(())
 }
 
-/// JSON for programs and people: a line a list's element would be too long, so it is indented.
+/// Indented JSON: one line for each element of a list would be too long to read.
 fn json(value: &impl Serialize) -> std::io::Result<Vec<u8>> {
     let mut bytes = serde_json::to_vec_pretty(value)?;
     bytes.push(b'\n');

@@ -40,7 +40,7 @@ pub struct TrialRow {
     pub backups_a: u32,
     /// How often robot B did.
     pub backups_b: u32,
-    /// Who put the ball out; empty for every other outcome.
+    /// The robot that put the ball out; empty for every other outcome.
     pub out_by: Option<String>,
     /// Cases for one robot.
     pub individual: u32,
@@ -50,17 +50,17 @@ pub struct TrialRow {
     pub none: u32,
     /// Seconds of default behaviour; empty, as the next six, where no cases are played.
     pub default_s: Option<f64>,
-    /// How many times it began.
+    /// Number of spells.
     pub default_spells: Option<u32>,
     /// Retrievals that failed as the ball lay in no scope.
     pub no_case_ball: Option<u32>,
     /// As there were too few robots.
     pub no_case_robots: Option<u32>,
-    /// As somebody had too far to go.
+    /// Because a robot had too far to go.
     pub no_case_thr_c: Option<u32>,
-    /// As an opponent stood in the way.
+    /// Because an opponent stood in the path.
     pub no_case_path: Option<u32>,
-    /// As the case could not begin.
+    /// Because the case could not start.
     pub no_case_held: Option<u32>,
     /// Equal for equal trials.
     pub trace_hash: String,
@@ -103,7 +103,7 @@ impl TrialRow {
         }
     }
 
-    /// Is it a row of this trial?
+    /// Whether it is a row of this trial.
     pub(super) fn is_of(&self, planned: &Planned) -> bool {
         let cell = &planned.cell;
         let own = (self.profile, self.configuration, self.scenario, self.approach);
@@ -139,7 +139,7 @@ pub(super) fn to_line<R: Serialize>(row: &R) -> Result<Vec<u8>, csv::Error> {
     writer.into_inner().map_err(|error| error.into_error().into())
 }
 
-/// The number that tells two evaluations apart: FNV-1a-64 of their `trials.csv`, 16 hexadecimal digits.
+/// The number that identifies an evaluation: FNV-1a-64 of its `trials.csv`, 16 hexadecimal digits.
 pub fn csv_hash(csv: &[u8]) -> String {
     let mut hash = Fnv::default();
     hash.add(csv);

@@ -31,7 +31,7 @@ pub struct Evaluation<'a> {
     pub base: CaseBase<'a>,
     /// What its cases are called.
     pub names: CaseNames,
-    /// Whose cases: a league's name, or a folder.
+    /// The case library: a league's name, or a directory.
     pub library: String,
     /// How the attackers play.
     pub setup: Setup,
@@ -49,7 +49,7 @@ pub struct Progress {
 }
 
 impl<'a> Evaluation<'a> {
-    /// What its files say they are of.
+    /// The identity that its files carry.
     pub fn identity(&self) -> Identity {
         let setup = &self.setup;
         let settings = setup.settings.describe();
@@ -85,8 +85,8 @@ impl<'a> Evaluation<'a> {
 
     /// Plays what `file` lacks of a shard, on all threads of the current rayon pool; its rows in the plan's order.
     ///
-    /// `progress` is told at the beginning and after every trial, and may stop the run: what is over is kept, and the next run of
-    /// the same shard into the same file goes on from there.
+    /// `progress` is called at the start and after every trial, and may stop the run: finished trials are
+    /// kept, and the next run of the same shard into the same file continues from there.
     pub fn play_shard(
         &self,
         shard: Shard,

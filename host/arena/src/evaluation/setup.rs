@@ -12,11 +12,11 @@ use crate::trial::TrialConfig;
 pub struct Setup {
     /// How robots retrieve.
     pub settings: Settings,
-    /// When a case's actions begin.
+    /// When a case's actions start.
     pub positioning: Positioning,
     /// How many of the two may retrieve (paper §4.1).
     pub retrievers: usize,
-    /// Share of packets that a receiver does not hear.
+    /// Share of packets that a receiver does not get.
     pub loss: f32,
     /// Cases are mirrored (paper §2.4); without it only authored ones are known.
     pub symmetry: bool,
@@ -38,7 +38,8 @@ impl Default for Setup {
 }
 
 impl Setup {
-    /// The same trial played so; whoever opens the library sees to `symmetry` and `opponents`.
+    /// The same trial with this set-up; `symmetry` and `opponents` must be applied when the library is
+    /// opened.
     pub fn apply<'a>(&self, config: TrialConfig<'a>) -> TrialConfig<'a> {
         TrialConfig {
             settings: self.settings.clone(),

@@ -31,7 +31,8 @@ pub struct Interval {
     pub high: f64,
 }
 
-/// Wilson's interval with that confidence, say 0.95; `None` of no trials or where the confidence is not between 0 and 1.
+/// Wilson's interval with this confidence, for example 0.95; `None` without trials or where the confidence is
+/// not between 0 and 1.
 pub fn wilson(count: Count, confidence: f64) -> Option<Interval> {
     let share = count.share().filter(|_| confidence > 0.0 && confidence < 1.0)?;
     let n = f64::from(count.of);
@@ -63,7 +64,7 @@ pub fn student(sample: Sample, confidence: f64) -> Option<Interval> {
     Some(Interval { low: sample.mean - reach, high: sample.mean + reach })
 }
 
-/// What a test says.
+/// Result of a test.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Test {
     /// z or t; above 0 where the first is the greater.
@@ -85,7 +86,7 @@ impl Test {
     }
 }
 
-/// Do two shares differ? The pooled z test; `None` where one of them is of no trials.
+/// Tests whether two shares differ, by the pooled z test; `None` where one of them has no trials.
 pub fn two_proportions(first: Count, second: Count) -> Option<Test> {
     let (a, b) = (first.share()?, second.share()?);
     let (n, m) = (f64::from(first.of), f64::from(second.of));
@@ -98,19 +99,22 @@ pub fn two_proportions(first: Count, second: Count) -> Option<Test> {
     Some(Test { statistic: z, p: 2.0 * Normal::standard().sf(z.abs()) })
 }
 
-/// Does a share differ from a given one, 0 to 1? The z test of one share; `None` of no trials, or against 0 or 1.
+/// Tests whether a share differs from a given one, 0 to 1, by the z test of one share; `None` without trials,
+/// or against 0 or 1.
 pub fn against(count: Count, expected: f64) -> Option<Test> {
     let spread = expected * (1.0 - expected) / f64::from(count.of.max(1));
     normal(count.share()? - expected, spread)
 }
 
-/// Does a normally distributed number of that variance differ from 0? `None` where it does not vary.
+/// Tests whether a normally distributed number of this variance differs from 0; `None` where it does not
+/// vary.
 pub fn normal(value: f64, variance: f64) -> Option<Test> {
     let z = (variance > 0.0).then(|| value / variance.sqrt())?;
     Some(Test { statistic: z, p: 2.0 * Normal::standard().sf(z.abs()) })
 }
 
-/// Do two shares of the same trials differ? McNemar's exact test on the trials in which only one of the two happened.
+/// Tests whether two shares of the same trials differ: McNemar's exact test on the trials in which only one
+/// of the two happened.
 pub fn mcnemar(only_first: u32, only_second: u32) -> Option<Test> {
     let (first, second) = (f64::from(only_first), f64::from(only_second));
     let changed = u64::from(only_first) + u64::from(only_second);
@@ -121,7 +125,8 @@ pub fn mcnemar(only_first: u32, only_second: u32) -> Option<Test> {
     Some(Test { statistic: (first - second) / (first + second).sqrt(), p: (2.0 * tail).min(1.0) })
 }
 
-/// Do differences of pairs have a mean other than 0? Student's paired t; `None` where their spread is not known.
+/// Tests whether differences of pairs have a mean other than 0: Student's paired t; `None` where their spread
+/// is not known.
 pub fn paired(differences: Sample) -> Option<Test> {
     let sd = differences.sd?;
     if sd == 0.0 {
@@ -139,7 +144,7 @@ pub struct Sample {
     pub n: u32,
     /// Their mean.
     pub mean: f64,
-    /// Their standard deviation (of a sample: n − 1); `None` of fewer than two, or where nobody printed it.
+    /// Their standard deviation (of a sample: n − 1); `None` of fewer than two, or where it was not printed.
     pub sd: Option<f64>,
 }
 
@@ -153,7 +158,7 @@ impl Sample {
     }
 }
 
-/// Do two means differ, whatever their spreads? `None` where a spread is not known.
+/// Tests whether two means differ, with unequal spreads; `None` where a spread is not known.
 pub fn welch(first: Sample, second: Sample) -> Option<Test> {
     let variance =
         |sample: Sample| sample.sd.filter(|_| sample.n > 1).map(|sd| sd * sd / f64::from(sample.n));
@@ -242,7 +247,7 @@ mod tests {
 
     #[test]
     fn two_shares_are_compared_by_the_pooled_z() {
-        // By hand: 15/25 against 7/25: pooled 0.44, spread 0.140399, z = 2.27922, p = 0.02265.
+        // By manual calculation: 15/25 against 7/25: pooled 0.44, spread 0.140399, z = 2.27922, p = 0.02265.
         let test = two_proportions(count(15, 25), count(7, 25)).unwrap();
         near(test.statistic, 2.27922, 1e-5);
         near(test.p, 0.02265, 1e-5);
@@ -343,7 +348,7 @@ mod tests {
 
     #[test]
     fn holm_steps_down_and_never_falls() {
-        // By hand: 4 × 0.005, 3 × 0.01, 2 × 0.03, 0.04 raised to 0.06.
+        // By manual calculation: 4 × 0.005, 3 × 0.01, 2 × 0.03, 0.04 raised to 0.06.
         let adjusted = holm(&[0.01, 0.04, 0.03, 0.005]);
         for (value, expected) in adjusted.into_iter().zip([0.03, 0.06, 0.06, 0.02]) {
             near(value, expected, 1e-12);

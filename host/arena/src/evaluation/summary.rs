@@ -1,8 +1,8 @@
 //! `summary`: the tables as terminal text. Ours, the paper's in brackets, and under each scenario how far the
 //! approaches lie apart.
 //!
-//! Stars are p after Holm's correction over the scenarios: * < 0.05, ** < 0.01, *** < 0.001. After a bracket they say that ours is
-//! not the paper's; in a line of differences, that the approaches differ.
+//! Stars are p after Holm's correction over the scenarios: * < 0.05, ** < 0.01, *** < 0.001. After a bracket
+//! they mean that ours differs from the paper's; in a line of differences, that the approaches differ.
 
 use std::fmt::Write as _;
 

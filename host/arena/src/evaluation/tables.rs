@@ -23,12 +23,12 @@ use super::words;
 pub enum Extent {
     /// The paper's: all of them, but of Table 6 the first 30.
     Paper,
-    /// Table 6 alone: all of them, to say what 30 could not.
+    /// Table 6 alone: all of them, for what 30 do not decide.
     Large,
 }
 
 impl Extent {
-    /// Its word in files.
+    /// Its label in files.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Paper => "paper",
@@ -93,17 +93,17 @@ pub struct TableRow {
     pub out_by_opponents: Option<u32>,
     /// Default behaviour, percent of all time.
     pub default_time: Option<f64>,
-    /// How many times it began, a trial.
+    /// Number of spells a trial.
     pub default_spells: Option<f64>,
     /// Why retrievals failed, a trial: the ball lay in no scope.
     pub none_ball: Option<f64>,
     /// Too few robots.
     pub none_robots: Option<f64>,
-    /// Somebody had too far to go.
+    /// A robot had too far to go.
     pub none_thr_c: Option<f64>,
-    /// An opponent stood in the way.
+    /// An opponent stood in the path.
     pub none_path: Option<f64>,
-    /// The case could not begin.
+    /// The case could not start.
     pub none_held: Option<f64>,
     /// Seconds of the trials that came to goal: what rankings were chosen by (paper §3.4).
     pub time_to_goal_mean: Option<f64>,
@@ -176,10 +176,10 @@ pub fn tables(rows: &[TrialRow]) -> Vec<TableRow> {
 
 /// Of the intervals of shares.
 const CONFIDENCE: f64 = 0.95;
-/// The paper's robots played so many trials a row of Table 6 (§5.3).
+/// Trials of the paper's robots a row of Table 6 (§5.3).
 pub(super) const TRIALS_OF_ROBOTS: usize = 30;
 
-/// What tells rows of a table apart.
+/// Key of a table's row.
 type Key = (Scenario, Approach);
 
 fn belongs(table: u8, row: &TrialRow) -> bool {
@@ -353,7 +353,7 @@ impl Mean {
     }
 }
 
-/// To a ten-thousandth: more than any number of trials says, and it reads well.
+/// To a ten-thousandth: finer than the resolution of any number of trials, and short to read.
 pub(super) fn rounded(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
 }

@@ -24,11 +24,11 @@ pub struct CaseUse {
     pub case: String,
     /// How many times it was played.
     pub retrieved: u32,
-    /// How these plays ended, as [`CycleEnd::WORDS`].
+    /// Counts of the ends of these plays, in the order of [`CycleEnd::WORDS`].
     pub ends: [u32; CycleEnd::WORDS.len()],
     /// Trials in which it was played.
     pub trials: u32,
-    /// How they ended, as [`Outcome`]'s words in [`OUTCOMES`].
+    /// Counts of the outcomes, in the order of [`OUTCOMES`].
     pub outcomes: [u32; OUTCOMES.len()],
 }
 

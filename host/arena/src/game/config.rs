@@ -36,7 +36,7 @@ pub struct TeamSetup {
     pub colour: Colour,
     /// How many robots.
     pub robots: u8,
-    /// Who decides its open play.
+    /// What decides its open play.
     pub plays: Team,
     /// What robots without a host's order let themselves be led by.
     pub approach: Approach,
@@ -47,7 +47,7 @@ pub struct TeamSetup {
 }
 
 impl GameConfig {
-    /// Two full teams of ours, for so many simulated seconds.
+    /// Two full teams of ours, for `duration_s` simulated seconds.
     pub fn new(league: League, seed: u64, duration_s: f64) -> Self {
         let robots = match league {
             League::DivisionA => 11,
@@ -84,7 +84,7 @@ impl GameConfig {
             setup.plays = if setup.colour == Colour::Blue { blue } else { yellow };
             // A team that stands cannot place a ball, and the referee does not wait for it to.
             self.referee.team_mut(setup.colour).can_place_ball &= setup.plays != Team::Idle;
-            // People carry its robots where they block the match.
+            // Its robots are moved manually where they block the match.
             self.referee.team_mut(setup.colour).drives &= setup.plays != Team::Idle;
         }
         self
@@ -92,7 +92,7 @@ impl GameConfig {
 }
 
 impl GameConfig {
-    /// Who decides a side's open play.
+    /// What decides a side's open play.
     pub fn plays(&self, colour: Colour) -> Team {
         self.teams.iter().find(|setup| setup.colour == colour).map_or(Team::Ours, |setup| setup.plays)
     }
@@ -110,7 +110,7 @@ impl TeamSetup {
 }
 
 impl GameConfig {
-    /// With what a team's host begins.
+    /// The settings that a team's host starts with.
     pub fn host_settings(&self, colour: Colour) -> host::HostSettings {
         super::side::host_settings(self, colour)
     }

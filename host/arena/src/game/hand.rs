@@ -1,4 +1,4 @@
-//! `hand`: changes to a match under way: ball and robots, the referee's commands, robots' computers, the air.
+//! `hand`: changes to a running match: ball and robots, the referee's commands, robots' computers, the radio.
 //! A match without them is the same to the bit; one with them cannot be repeated from its seed.
 
 use geometry::{Field, Point, Pose, Vector};
@@ -33,7 +33,7 @@ impl<'a> Game<'a> {
         self.world.put_ball(ball);
     }
 
-    /// The ball is there at once, at rest or rolling; robots in its way are moved aside.
+    /// Puts the ball there at once, standing or rolling; robots at its place are moved aside.
     pub fn put_ball(&mut self, ball: Ball) {
         self.world.put_ball(ball);
         self.world.make_room_for_ball();
@@ -55,7 +55,7 @@ impl<'a> Game<'a> {
         self.world.put(who, pose);
     }
 
-    /// The referee is told to say that; false where it makes no sense now.
+    /// Orders the referee to send a command; false where that is not possible now.
     pub fn command(&mut self, command: Command) -> bool {
         self.referee.command_by_hand(command)
     }
@@ -66,12 +66,12 @@ impl<'a> Game<'a> {
         self.referee.restart_by_hand(next, place)
     }
 
-    /// A HALT or STOP by hand ends.
+    /// Ends a HALT or STOP that was ordered manually.
     pub fn go_on(&mut self) {
         self.referee.go_on_by_hand();
     }
 
-    /// That team is shown a card.
+    /// Gives a team a card.
     pub fn card(&mut self, team: Colour, card: Card) {
         self.referee.card_by_hand(team, card);
     }
@@ -93,7 +93,7 @@ impl<'a> Game<'a> {
         }
     }
 
-    /// Whether vision's packets are lost on their way to both hosts from now on.
+    /// Whether vision's packets are lost before both hosts from now on.
     pub fn blind(&mut self, blind: bool) {
         self.blind = blind;
     }

@@ -6,8 +6,8 @@
 //! world 1 ms ─► cameras ─► vision datagrams ─► host ─► radio frames ─► air ─► brains 10 ms ─► orders ─► world
 //!    └► referee 10 ms ─► referee datagrams ─► host        ▲── beacons, telemetry ──┘
 //! ```
-//! [`Game`] is the match, tick by tick; [`play`] runs it to its end and gives a [`GameReport`]. What somebody wants to keep or show
-//! is told to a [`Watcher`], which changes nothing.
+//! [`Game`] is the match, tick by tick; [`play`] runs it to its end and returns a [`GameReport`]. A
+//! [`Watcher`] gets everything that may be stored or displayed, and changes nothing.
 
 mod config;
 mod hand;
@@ -57,7 +57,7 @@ pub trait Watcher {
     fn tick(&mut self, _game: &Game<'_>) {}
 }
 
-/// A match under way.
+/// A running match.
 pub struct Game<'a> {
     world: World,
     cameras: Cameras,
@@ -98,7 +98,7 @@ impl std::fmt::Display for GameError {
 impl std::error::Error for GameError {}
 
 impl<'a> Game<'a> {
-    /// Robots on their halves, the ball in the middle, the referee before the first whistle.
+    /// Robots on their halves, the ball in the middle, the referee before its first command.
     pub fn new(config: &GameConfig, backend: &mut dyn Backend<'a>) -> Result<Self, GameError> {
         let league = config.league;
         let model = WorldModel::of(league, &config.world).ok_or_else(|| {
@@ -133,7 +133,7 @@ impl<'a> Game<'a> {
         self.world.time()
     }
 
-    /// The time on everybody's clock.
+    /// The common time of hosts and robots.
     pub fn now(&self) -> Instant {
         Instant(u64::from(self.tick) * TICK_US)
     }
@@ -158,7 +158,7 @@ impl<'a> Game<'a> {
         &self.events
     }
 
-    /// Who held the ball in play, and for how long.
+    /// Which robots held the ball in play, and for how long.
     fn holds(&self) -> &Holds {
         &self.holds
     }
@@ -258,7 +258,7 @@ impl<'a> Game<'a> {
     }
 }
 
-/// Plays a match to its end, or for so many simulated seconds.
+/// Plays a match to its end, or for its configured duration.
 pub fn play(
     config: &GameConfig,
     backend: &mut dyn Backend<'_>,
@@ -267,7 +267,7 @@ pub fn play(
     play_until(config, backend, watcher, || false)
 }
 
-/// The same, but ends at the first tick at which `stop` says so; the report is of what was played.
+/// The same, but ends at the first tick at which `stop` is true; the report is of what was played.
 pub fn play_until(
     config: &GameConfig,
     backend: &mut dyn Backend<'_>,
@@ -286,7 +286,7 @@ pub fn play_until(
 pub struct Nobody;
 impl Watcher for Nobody {}
 
-/// Our robots' numbers in a team of so many.
+/// Our robots' numbers in a team of `robots`.
 pub(crate) fn numbers(robots: u8) -> impl Iterator<Item = RobotId> {
     RobotId::all().take(usize::from(robots))
 }

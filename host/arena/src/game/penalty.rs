@@ -1,9 +1,10 @@
-//! `penalty`: how many of so many simulated penalties a keeper saves. SI, field frame.
+//! `penalty`: number of simulated penalties that a keeper saves. SI, field frame.
 //!
-//! The keeper is ours, led by its host and its brain, seen and told through cameras and radio as in a match; the shooter is a body that
-//! a script moves, so that its shots do not depend on the keeper: it waits behind the ball for a random time, turns to a random place
-//! near a random post, goes up to the ball, and the ball leaves with a random speed. The keeper of the comparison is switched off as
-//! soon as it stands on its line. Seeded: the same shots for both.
+//! The keeper is ours, controlled by its host and its brain, through cameras and radio as in a match; the
+//! shooter is a body that a script moves, so that its shots do not depend on the keeper: it waits behind the
+//! ball for a random time, turns to a random place near a random post, goes up to the ball, and the ball
+//! leaves with a random speed. The keeper of the comparison is switched off as soon as it stands on its line.
+//! Seeded: the same shots for both.
 
 use geometry::{Angle, Field, GoalEnd, Point, Pose, Vector};
 use hil_sim::NativeBackend;
@@ -17,12 +18,12 @@ use rules::{Colour, League, Phase};
 use super::{Game, GameConfig, GameError, Nobody};
 use crate::evaluation::statistics::Count;
 
-/// Who guards the goal.
+/// The keeper in the goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Keeper {
     /// Our host and brain.
     Plays,
-    /// The same body, left where it stands when the penalty begins.
+    /// The same body, left where it stands when the penalty starts.
     Stands,
 }
 
@@ -35,7 +36,7 @@ pub struct Shot {
     pub aim: f32,
     /// m/s.
     pub speed: f32,
-    /// For so long before the shooter goes up to the ball and turns to its aim, s.
+    /// Duration before the kick in which the shooter goes up to the ball and turns to its aim, s.
     pub run_up: f64,
 }
 
@@ -156,7 +157,7 @@ pub fn shoot(league: League, seed: u64, keeper: Keeper) -> Result<Outcome, GameE
 
 /// A penalty takes no longer, simulated s.
 const MATCH: f64 = 40.0;
-/// No ball is longer on its way, s: 8 m at 4 m/s take 2.6 s.
+/// Longest flight of a ball, s: 8 m at 4 m/s take 2.6 s.
 const FLIGHT: f64 = 4.0;
 /// Shots are aimed this far inside a post, m, and up to [`CORNER`] farther.
 const POST: f32 = 0.06;
@@ -164,7 +165,7 @@ const CORNER: f32 = 0.2;
 /// Shots' speeds, m/s.
 const SLOWEST: f32 = 4.0;
 const FASTEST: f32 = 6.3;
-/// The shooter goes up to the ball and turns to its target within so long at least and at most, s.
+/// Least and greatest time in which the shooter goes up to the ball and turns to its target, s.
 const RUN_UP: [f64; 2] = [0.1, 0.4];
 /// From where, m from centre to centre.
 const STANDS_OFF: f32 = 0.35;

@@ -1,5 +1,5 @@
-//! `recording`: header of a match recording. Everything both hosts heard and said; [`host::record::Recorder`]
-//! writes it (docs/architecture.md §7.4).
+//! `recording`: header of a match recording. Everything both hosts received and sent;
+//! [`host::record::Recorder`] writes it (docs/architecture.md §7.4).
 
 use host::Input;
 use host::radio::To;

@@ -35,7 +35,7 @@ pub struct GameReport {
     pub long_holds: Vec<Hold>,
     /// How often the referee stopped the match because the ball made no progress.
     pub no_progress: u32,
-    /// Who decided each side's open play.
+    /// What decided each side's open play.
     pub teams: PerTeam<Team>,
     /// What else was counted.
     pub metrics: PerTeam<TeamReport>,
@@ -56,7 +56,7 @@ pub struct GameReport {
 pub struct BlockedReport {
     /// From this simulated second.
     pub from_s: f32,
-    /// For so long.
+    /// Duration, s.
     pub lasted_s: f32,
     /// Whose doing it was, at last; none for the ball's place.
     pub team: Option<&'static str>,

@@ -1,4 +1,4 @@
-//! `calibration`: calibration plot of P(receive). One picture: for each tenth of P(receive), how many of the
+//! `calibration`: calibration plot of P(receive). One figure: for each tenth of P(receive), how many of the
 //! passes their receiver had, with Wilson's 95 % interval; on the diagonal both agree (Biswas et al. 2014,
 //! equation 5). px, shares from 0 to 1.
 

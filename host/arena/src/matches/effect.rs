@@ -17,7 +17,7 @@ use crate::evaluation::statistics::{Sample, paired, student};
 pub struct Change {
     /// A difference, 0 where the part changes nothing; or a ratio, 1 where it changes nothing.
     pub mean: f64,
-    /// Lower end of its 95 % interval; none of a single match.
+    /// Lower end of its 95 % interval; `None` of a single match.
     pub low: Option<f64>,
     /// Upper end.
     pub high: Option<f64>,
@@ -46,9 +46,9 @@ impl Change {
 pub struct Effect {
     /// Its name; several with a `+` between.
     pub part: String,
-    /// Who played with it.
+    /// The team that played with it.
     pub with: Entrant,
-    /// Who played without.
+    /// The team that played without it.
     pub without: Entrant,
     /// Matches.
     pub matches: u32,

@@ -7,11 +7,12 @@ use std::fmt;
 use host::strategy::{Tactics, Team};
 use serde::{Deserialize, Serialize};
 
-/// A team with its tactics, written as one word: `zone`, `ours`, `ours-without-second-level`, `ours-with-coerce+pass-ahead`.
+/// A team with its tactics, written as one label: `zone`, `ours`, `ours-without-second-level`,
+/// `ours-with-coerce+pass-ahead`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub struct Entrant {
-    /// Who decides its open play.
+    /// What decides its open play.
     pub team: Team,
     /// What its host plays of the second paper.
     pub tactics: Tactics,
@@ -36,7 +37,7 @@ impl Entrant {
         parts(Tactics::ALL).iter().filter_map(flipped).collect()
     }
 
-    /// From its word.
+    /// Parses its label.
     pub fn parse(word: &str) -> Result<Self, String> {
         let wrong = || {
             let teams = Team::ALL.map(Team::word).join(", ");
@@ -113,7 +114,7 @@ impl TryFrom<String> for Entrant {
     }
 }
 
-/// Their names, as [`Tactics::words`] has them: a part that is added there is one here.
+/// Names of the enabled parts, from [`Tactics::words`]: a part that is added there is listed here too.
 fn parts(tactics: Tactics) -> BTreeSet<String> {
     let words = tactics.words();
     words.split(',').filter(|word| *word != "none").map(str::to_owned).collect()

@@ -67,7 +67,7 @@ pub struct MatchIdentity {
 }
 
 impl MatchIdentity {
-    /// In what the other differs, for people; empty between equals.
+    /// Names of the settings in which the other differs; empty between equals.
     pub fn differences(&self, other: &Self) -> Vec<&'static str> {
         let (own, theirs) = (&self.plan, &other.plan);
         let pairs = [
@@ -86,7 +86,7 @@ impl MatchIdentity {
 }
 
 impl Matches<'_> {
-    /// What its files say they are of.
+    /// The identity that its files carry.
     pub fn identity(&self) -> MatchIdentity {
         let settings = self.settings.describe();
         MatchIdentity {

@@ -18,7 +18,7 @@ use crate::evaluation::statistics::{Sample, paired, student};
 pub struct Estimate {
     /// It.
     pub mean: f64,
-    /// Lower end of its 95 % interval; none of a single match.
+    /// Lower end of its 95 % interval; `None` of a single match.
     pub low: Option<f64>,
     /// Upper end.
     pub high: Option<f64>,
@@ -27,7 +27,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Of these numbers, none of which can be more than `most`; none without any.
+    /// Estimate of these numbers, each at most `most`; `None` without numbers.
     fn of(values: impl Iterator<Item = f64> + Clone, most: f64) -> Option<Self> {
         let sample = Sample::of(values)?;
         let interval = student(sample, CONFIDENCE);
@@ -43,7 +43,7 @@ impl Estimate {
 /// All matches of two teams.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Outcome {
-    /// Whose numbers are told first.
+    /// The team whose numbers come first.
     pub own: Entrant,
     /// Against whom.
     pub opponent: Entrant,
@@ -57,7 +57,7 @@ pub struct Outcome {
     pub goals_for: Option<Estimate>,
     /// Goals against a match.
     pub goals_against: Option<Estimate>,
-    /// The chance of such a difference of goals between equals, by the paired t; none of a single match.
+    /// p of such a difference of goals between equals, by the paired t; `None` of a single match.
     pub goals_p: Option<f64>,
     /// Offence ratio, the mean of the matches' own.
     pub offence_ratio: Option<Estimate>,
@@ -156,7 +156,8 @@ fn played(rows: &[&MatchRow]) -> [PlayTally; 2] {
     sums
 }
 
-/// The passes of restarts of our team in all these matches, whatever its tactics; both sides' where it met itself.
+/// The passes of restarts of our team in all these matches, with any tactics; of both sides where it played
+/// itself.
 pub fn our_passes(rows: &[MatchRow]) -> Passes {
     let mut sum = PlayTally::default();
     for row in rows {

@@ -82,9 +82,9 @@ fn named(fates: &mut Fates) -> [(&'static str, &mut u32); 7] {
 pub struct Share {
     /// So often it was so.
     pub hits: u32,
-    /// Of so many.
+    /// Number of trials.
     pub of: u32,
-    /// 0 to 1; none of none.
+    /// 0 to 1; `None` of zero trials.
     pub share: Option<f64>,
     /// Lower end of its 95 % interval.
     pub low: Option<f64>,
@@ -93,7 +93,7 @@ pub struct Share {
 }
 
 impl Share {
-    /// Of that many.
+    /// The share of `hits` of `of` trials.
     pub fn new(hits: u32, of: u32) -> Self {
         let count = Count { hits, of };
         let interval: Option<Interval> = wilson(count, CONFIDENCE);
@@ -107,9 +107,9 @@ impl Share {
 pub struct Kicked {
     /// `flat` or `chip`.
     pub kick: &'static str,
-    /// Begun, kicked or not.
+    /// Started, kicked or not.
     pub ordered: u32,
-    /// Of those that were kicked, those that the receiver or another mate had.
+    /// Of those that were kicked, those that the receiver or another teammate received.
     pub arrived: Share,
     /// What became of each.
     pub fates: Fates,

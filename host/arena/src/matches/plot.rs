@@ -1,4 +1,4 @@
-//! `plot`: plot of the match ratios beside the paper's. One picture: offence and attack ratio a pair, with 95
+//! `plot`: plot of the match ratios beside the paper's. One figure: offence and attack ratio a pair, with 95
 //! % intervals; the paper's range as a band. px, a ratio's axis is logarithmic, for 2 and 1/2 are as far from
 //! 1.
 

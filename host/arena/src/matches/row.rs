@@ -1,4 +1,4 @@
-//! `row`: one row of `matches.csv`: who met whom, and every measure of both sides. s; `own` is the first of
+//! `row`: one row of `matches.csv`: the two teams, and every measure of both sides. s; `own` is the first of
 //! the pair.
 
 use std::collections::BTreeMap;
@@ -18,7 +18,7 @@ use crate::game::{GameReport, PerTeam};
 pub struct MatchRow {
     /// Its number in the plan, from 0.
     pub number: usize,
-    /// Whose numbers are told first.
+    /// The team whose numbers come first.
     pub own: Entrant,
     /// Against whom.
     pub opponent: Entrant,
@@ -68,7 +68,7 @@ pub struct MatchRow {
     pub cap_attempts: u32,
     /// … that arrived.
     pub cap_successes: u32,
-    /// … whose receiver had coerced somebody before.
+    /// … whose receiver had coerced an opponent before.
     pub cap_reuses: u32,
     /// … of those, that arrived.
     pub cap_reuse_successes: u32,
@@ -76,7 +76,7 @@ pub struct MatchRow {
     pub cap_attempts_against: u32,
     /// … that arrived.
     pub cap_successes_against: u32,
-    /// … whose receiver had coerced somebody before.
+    /// … whose receiver had coerced an opponent before.
     pub cap_reuses_against: u32,
     /// … of those, that arrived.
     pub cap_reuse_successes_against: u32,

@@ -11,7 +11,7 @@ use crate::evaluation::{csv_hash, merge, read, to_csv};
 
 const GO_ON: &(dyn Fn(Progress) -> ControlFlow<()> + Sync) = &|_| ControlFlow::Continue(());
 
-/// A folder of a test's own, gone when the test is.
+/// A directory of a test's own, removed at the end of the test.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -228,7 +228,7 @@ fn a_part_is_worth_what_the_side_with_it_was_ahead() {
     assert!((effect.attack_ratio.unwrap().mean - 5.0_f64.sqrt()).abs() < 1e-9);
     // 2 and −1 once more: spread 2.1213, t = 1/3 with 1 degree, p = 0.7952.
     assert!((effect.goals.unwrap().p.unwrap() - 0.7952).abs() < 1e-4);
-    // The same told from the other side.
+    // The same from the other side.
     let turned = Plan { pairings: vec![Pairing { own: without, opponent: Entrant::ours() }], ..plan };
     let rows = [row(0, [0, 2], [100.0, 200.0], [1, 7])].map(|row| MatchRow {
         own: without,

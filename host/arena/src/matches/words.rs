@@ -46,7 +46,7 @@ fn worth(text: &mut String, effects: &[Effect]) {
     }
 }
 
-/// Of all matches of each team, where one meets several.
+/// Standings over all matches of each team, where one plays several opponents.
 fn standings(text: &mut String, outcomes: &[Outcome]) {
     let mut teams: Vec<(Entrant, [u32; 3], [u32; 2])> = Vec::new();
     for o in outcomes {
@@ -171,7 +171,7 @@ fn planned(text: &mut String, outcomes: &[Outcome]) {
         outcomes.iter().find(met).map_or(0, |o| o.matches)
     };
     let ours = Entrant::ours().team;
-    // Beside the paper's also where nothing was planned; else only of those who plan.
+    // Beside the paper's also where no plan was made; else only for teams that plan.
     let all = as_the_papers(outcomes);
     for (who, against, passes) in sides(outcomes) {
         if who.team != ours || !(all || who.tactics.coerce || passes.cap.attempts > 0) {

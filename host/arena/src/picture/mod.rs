@@ -1,10 +1,10 @@
-//! `picture`: picture of a whole trial on one sheet. An SVG: field, tracks, the ball's path and who sent it,
+//! `picture`: figure of a whole trial on one sheet. An SVG: field, tracks, the ball's path and its kickers,
 //! kicks, gameplays, outcome.
 //!
-//! Attackers are circles and opponents squares, as in the paper's figures; hollow where they began, filled where they ended.
-//! The ball's path is thick where it was carried and dotted where it rolled, in the colour of whoever carried or last kicked
-//! it. Numbers stand where the ball was when a gameplay began; the list below says which. Colours are Okabe and Ito's, told
-//! apart by every eye.
+//! Attackers are circles and opponents squares, as in the paper's figures; hollow where they started, filled
+//! where they ended. The ball's path is thick where it was carried and dotted where it rolled, in the colour
+//! of the robot that carried or last kicked it. Numbers stand where the ball was when a gameplay started; the
+//! list below names them. Colours are Okabe and Ito's, distinguishable with colour blindness.
 
 mod legend;
 mod page;
@@ -20,7 +20,7 @@ use drawing::{Anchor, Font};
 
 use page::{Page, Px, SCALE, bold, font};
 
-/// The picture of a trial that has ended; an empty field for a recording of nothing.
+/// The figure of a trial that has ended; an empty field for an empty recording.
 pub fn picture(recording: &Recording) -> String {
     let mut page = Page::new(Px::new(WIDTH * 0.5, HEADER + HALF_HEIGHT));
     let starts = shown_starts(recording);
@@ -143,15 +143,15 @@ fn ball_path(page: &mut Page, recording: &Recording) {
     }
 }
 
-/// Who has the ball.
+/// Which robot controls the ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Control {
     Carried(usize),
-    /// After this robot's kick, if anybody has kicked yet.
+    /// After this robot's kick, if there was one yet.
     Rolls(Option<usize>),
 }
 
-/// An arrowhead half way along a path that is long enough for one.
+/// An arrowhead at the middle of a path that is long enough for one.
 fn arrow_on(page: &mut Page, points: &[Px], color: &str) {
     let length: f32 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
     if length < SHORTEST_ARROW {
@@ -166,7 +166,7 @@ fn arrow_on(page: &mut Page, points: &[Px], color: &str) {
     }
 }
 
-/// A robot on the picture.
+/// A robot on the figure.
 struct Actor<'a> {
     robot: usize,
     attackers: usize,
@@ -273,7 +273,7 @@ fn thinned(page: &Page, places: impl Iterator<Item = Point<Field>>) -> Vec<Px> {
     points
 }
 
-/// A robot's colour: the attackers' tell them apart, the opponents' are grey.
+/// A robot's colour: each attacker has its own, the opponents' are grey.
 fn color(robot: usize, attackers: usize) -> &'static str {
     match robot.checked_sub(attackers) {
         None => ATTACKERS[robot % ATTACKERS.len()],
@@ -290,13 +290,13 @@ const FAINT: &str = "#5f6368";
 const CARPET: &str = "#e3eedd";
 /// Orange (Okabe and Ito), as the league's ball.
 const BALL: &str = "#E69F00";
-/// Width of the picture, px.
+/// Width of the figure, px.
 const WIDTH: f32 = 1000.0;
 /// White to the left and right, px.
 const SIDE: f32 = 18.0;
 /// Height of the title, px.
 const HEADER: f32 = 72.0;
-/// Half the height of the carpet shown, px.
+/// Half the height of the drawn part of the field, px.
 const HALF_HEIGHT: f32 = 2.06 * SCALE;
 /// Seconds between times along the ball's path.
 const EVERY: f32 = 5.0;

@@ -21,7 +21,8 @@ pub struct Score {
     pub retrieved: usize,
     /// Gameplays played to their end.
     pub completed: usize,
-    /// What was retrieved instead, by name; `none` where no case fitted, `nothing` where nobody decided.
+    /// What was retrieved instead, by name; `none` where no case fitted, `nothing` where no decision was
+    /// made.
     pub instead: BTreeMap<String, usize>,
     /// How the gameplays that were not completed ended.
     pub aborted: BTreeMap<&'static str, usize>,

@@ -1,4 +1,5 @@
-//! `situation`: start situation drawn from a case: who stands where when an attempt begins. m, field frame.
+//! `situation`: start situation drawn from a case: the robots' places at the start of an attempt. m, field
+//! frame.
 //!
 //! - The ball lies in the scope's core, where the similarity is H (at least 0.8), every place there equally likely.
 //! - Everything else moves along with it, as adaptation does. Robots stand 0.15 m (one standard deviation) about their places and look
@@ -56,7 +57,7 @@ pub(super) fn draw(case: &Case<'_>, opposition: Opposition, parameters: &Paramet
     Layout { ball, attackers, opponents: opponents.collect() }
 }
 
-/// The first draw that fits and is clear of the ball and of everybody placed before.
+/// The first draw that fits and is clear of the ball and of all robots placed before.
 fn clear(
     chance: &mut Stream,
     ball: Point<Field>,
@@ -118,9 +119,9 @@ const BORDER: f32 = 1.002_393;
 const SCATTER: f32 = 0.15;
 /// How far past the ball they look, degrees, one standard deviation: an estimate.
 const LOOKS_PAST_DEG: f32 = 20.0;
-/// Nobody begins in touch with the ball, m: 0.1625 would be.
+/// Least distance of a robot from the ball at the start, m: at 0.1625 they would touch.
 const CLEAR_OF_BALL: f32 = 0.18;
-/// Nor with another robot, m: two radii and a hand.
+/// Least distance between robots at the start, m: two radii and a gap.
 const APART: f32 = 0.3;
 /// Half of the midfield's depth, m (`hil-sim/data/four-legged.toml`).
 const HALF_DEPTH: f32 = 0.75;

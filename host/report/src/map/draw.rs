@@ -32,7 +32,7 @@ pub(crate) fn html(maps: &[Map]) -> Markup {
     }
 }
 
-/// One picture a configuration: passes on the left, the ball on the right, for files.
+/// One figure a configuration: passes on the left, the ball on the right, for files.
 pub(crate) fn sheets(maps: &[Map]) -> Vec<Picture> {
     let mut pictures = Vec::new();
     for (configuration, scenario, row) in rows(maps) {
@@ -127,7 +127,7 @@ fn heat(map: &Map) -> Svg {
     svg
 }
 
-/// Which shade so many seconds a trial have; none for next to nothing.
+/// The shade for this number of seconds a trial; `None` for next to nothing.
 fn shade(seconds: f64) -> Option<usize> {
     STEPS.iter().rposition(|least| seconds >= *least)
 }
@@ -159,7 +159,7 @@ fn passes(map: &Map) -> Svg {
     svg
 }
 
-/// Where somebody stood: attackers are circles and opponents squares, as in the paper's figures.
+/// Where a robot stood: attackers are circles and opponents squares, as in the paper's figures.
 fn kick_off(svg: &mut Svg, [x, y]: [f64; 2], attacker: bool) {
     let colors = Theme::Light.colors();
     let color = if attacker { colors.team } else { colors.opponent };
@@ -229,7 +229,7 @@ fn end(svg: &mut Svg, [x, y]: [f64; 2], outcome: Outcome) {
     }
 }
 
-/// A place on the picture: what lies farther out stands at its edge.
+/// A place on the figure: what lies farther out is drawn at its edge.
 fn shown(field: &FieldMm, [x, y]: [f64; 2]) -> [f64; 2] {
     let [right, top] = half_extent(field).map(|half| half - 50.0);
     [x.clamp(-right, right), y.clamp(-top, top)]
@@ -239,7 +239,7 @@ fn millimetres(place: Point<Field>) -> [f64; 2] {
     [f64::from(place.x()) * 1000.0, f64::from(place.y()) * 1000.0]
 }
 
-/// A map as a picture of its own.
+/// A map as a figure of its own.
 fn alone(svg: &Svg, map: &Map, title: &str) -> String {
     let [x, y] = half_extent(&map.field);
     let mut page = Svg::default();
@@ -308,7 +308,7 @@ fn legend(svg: &mut Svg, [left, top]: [f64; 2], [from, right]: [f64; 2], size: f
     down - size * 0.5
 }
 
-/// The shades with the seconds each begins at.
+/// The shades with the seconds at which each starts.
 fn scale(width: f64, size: f64) -> Svg {
     let colors = Theme::Light.colors();
     let mut svg = Svg::default();
@@ -333,7 +333,7 @@ fn scale_svg() -> String {
     svg.finish([0.0, -29.0], [340.0, 1.0], 1.0, Theme::Light.colors().paper, "seconds a trial")
 }
 
-/// From near the carpet's lightness evenly to dark: one hue, so that more is darker to every eye.
+/// From near the field surface's lightness evenly to dark: one hue, so that darker always reads as more.
 pub(crate) const SHADES: [&str; 7] =
     ["#c9d9ea", "#a5c0de", "#7fa3cf", "#5d83bc", "#4562a3", "#374382", "#2a2459"];
 /// Seconds a trial from which on a square has each shade.

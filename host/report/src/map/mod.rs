@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 pub(crate) use draw::{CHANCE, LOST, SHADES, html, sheets};
 
-/// What a map tells that was a trial could not be played again.
+/// The error of a map whose trial could not be played again.
 pub type MapError = SimulationError;
 
 /// The ball and the passes of a cell's first trials.
@@ -29,7 +29,7 @@ pub struct Map {
     pub seconds: Vec<f64>,
     /// The attackers' passes.
     pub passes: Vec<Pass>,
-    /// Where everybody stood at kick-off; none where each trial has its own.
+    /// Where the robots stood at kick-off; `None` where each trial has its own layout.
     pub start: Option<Layout>,
     /// Where the ball was at the end, and what that was.
     pub ends: Vec<(Point<Field>, Outcome)>,
@@ -49,9 +49,9 @@ pub struct Pass {
 /// What became of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PassKind {
-    /// Meant for a teammate, who got it.
+    /// Intended for a teammate, and received by it.
     Completed,
-    /// Meant for a teammate, and somebody else got it, or nobody.
+    /// Intended for a teammate, and received by another robot, or by none.
     Lost,
     /// A kick ahead that a teammate got: the only passes reactive attackers have (paper §5).
     Chance,
@@ -142,7 +142,7 @@ pub struct Mapper {
     flying: Option<Flight>,
 }
 
-/// A ball an attacker has kicked and nobody has got yet.
+/// A ball that an attacker has kicked and no robot has received yet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Flight {
     by: usize,
@@ -210,7 +210,7 @@ fn squares(side: i32) -> usize {
     (f64::from(side.max(0)) / EDGE).ceil() as usize
 }
 
-/// Side of a square, mm: about the ball's diameter, and what a picture shows well.
+/// Side of a square, mm: about the ball's diameter, and well visible in a figure.
 pub const EDGE: f64 = 100.0;
 
 #[cfg(test)]

@@ -60,7 +60,7 @@ impl Axis {
 const TICKS: f64 = 6.0;
 /// What the axis takes below `bottom`, px.
 pub(crate) const BELOW: f64 = 36.0;
-/// Lines that guide the eye and no more.
+/// Colour of grid lines, less prominent than the data.
 pub(crate) const GRID: &str = "#dadada";
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use super::{Entry, Figure, PANEL, Panel, Shape, entries, keys, scenarios, style}
 use crate::columns::interval;
 use crate::{Report, numbers, words};
 
-/// A measure of the bars: its word, its value, its interval.
+/// A measure of the bars: its label, its value, its interval.
 type Bar = (&'static str, fn(&TableRow) -> Option<f64>, fn(&TableRow) -> Option<Interval>);
 
 /// Outcomes of Table 1, 4 or 6.
@@ -124,7 +124,7 @@ pub(super) fn whisker(svg: &mut Svg, low: f64, high: f64, y: f64) {
     }
 }
 
-/// Where bars begin, px.
+/// Where bars start, px.
 const LEFT: f64 = 66.0;
 /// Room for the numbers behind the longest bar, px.
 const RIGHT: f64 = 30.0;

@@ -53,7 +53,7 @@ fn effects(report: &Report<'_>, table: u8, scenario: Scenario, measure: Measure)
     let entries = entries(report, table, scenario);
     let mut effects: Vec<(Key, Dot)> = Vec::new();
     for (first, second) in pairs(report.between, table, scenario) {
-        // One difference an approach: its colour tells it.
+        // One difference an approach: identified by its colour.
         if effects.iter().any(|(_, dot)| dot.approach == first) {
             continue;
         }

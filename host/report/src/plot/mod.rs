@@ -24,7 +24,7 @@ use crate::{Picture, Report, words};
 /// A plot of several panels.
 #[derive(Debug)]
 pub(crate) struct Figure {
-    /// The table whose numbers it shows; 0 for all.
+    /// The table whose numbers it plots; 0 for all.
     pub(crate) table: u8,
     pub(crate) name: String,
     pub(crate) title: String,

@@ -79,7 +79,7 @@ impl Dot {
     }
 }
 
-/// Where the axis begins, px: after the scenarios' names.
+/// Where the axis starts, px: after the scenarios' names.
 const LEFT: f64 = 140.0;
 /// Room for the numbers behind the last dot, px.
 const RIGHT: f64 = 40.0;

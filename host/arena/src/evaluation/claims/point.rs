@@ -1,5 +1,5 @@
-//! `point`: pairwise comparison of two measurements with a significance test. The bricks of claims and
-//! verdicts.
+//! `point`: pairwise comparison of two measurements with a significance test. Claims and verdicts consist of
+//! these.
 
 use std::fmt;
 
@@ -29,7 +29,7 @@ pub struct Point {
     pub p: Option<f64>,
     /// Corrected over the claim's points by Holm.
     pub p_holm: Option<f64>,
-    /// Does it speak for the claim?
+    /// Whether it supports the claim.
     pub stands: Standing,
     #[serde(skip)]
     wanted: Wanted,
@@ -37,13 +37,13 @@ pub struct Point {
     decimals: usize,
 }
 
-/// Does a point speak for its claim?
+/// Whether a point supports its claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Standing {
     /// It does.
     Holds,
-    /// It says the opposite.
+    /// It supports the opposite.
     Against,
     /// It may be chance.
     Open,
@@ -89,7 +89,7 @@ impl Point {
         point
     }
 
-    /// With so many digits behind the point.
+    /// With this number of decimals.
     pub(in super::super) fn with_decimals(self, decimals: usize) -> Self {
         Self { decimals, ..self }
     }
@@ -135,7 +135,7 @@ impl fmt::Display for Point {
     }
 }
 
-/// A chance as people read it: `p 0.035`, `p < 0.001`.
+/// A p value in the usual form: `p 0.035`, `p < 0.001`.
 pub(in super::super) fn p_text(p: f64) -> String {
     if p < 0.001 { "p < 0.001".to_owned() } else { format!("p {p:.3}") }
 }
@@ -230,7 +230,7 @@ impl<'a> Rows<'a> {
         Some((difference, variance(a).zip(variance(b)).map(|(x, y)| x + y)))
     }
 
-    /// A mean of the first approach against so many times that of the second.
+    /// A mean of the first approach against a multiple of that of the second.
     pub(in super::super) fn times(
         self,
         (table, scenario): (u8, Scenario),

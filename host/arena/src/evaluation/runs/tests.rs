@@ -12,7 +12,7 @@ use crate::evaluation::ledger::read;
 use crate::evaluation::plan::{Cell, Profile};
 use crate::evaluation::row::{csv_hash, to_csv};
 
-/// A folder of a test's own, gone when the test is.
+/// A directory of a test's own, removed at the end of the test.
 struct Folder(PathBuf);
 
 impl Folder {
