@@ -14,7 +14,7 @@ use hil_sim::SimulationError;
 
 use crate::output::{note, shown};
 
-/// One variant per thing the person can do something about.
+/// One variant for each failure that the operator can fix.
 #[derive(Debug)]
 pub(crate) enum Failure {
     /// `--library` names no directory.
@@ -23,20 +23,20 @@ pub(crate) enum Failure {
     FaultyLibrary {
         /// The league's directory.
         folder: PathBuf,
-        /// What is wrong, errors among them.
+        /// The findings, errors among them.
         findings: Vec<Finding>,
     },
     /// `--league` names no built-in league.
     UnknownLeague(String),
-    /// A case asked for by a name or id that the library lacks.
+    /// A case requested by a name or id that the library lacks.
     UnknownCase {
-        /// What was asked for.
+        /// The name or id as given.
         asked: String,
-        /// Whose cases.
+        /// The league of the library.
         league: String,
-        /// Stored cases there are.
+        /// Number of stored cases.
         stored: usize,
-        /// A name much like it.
+        /// A similar name.
         near: Option<String>,
     },
     /// A problem to draw cannot be read.
@@ -66,28 +66,28 @@ pub(crate) enum Failure {
     Firmware(String),
     /// A figure could not be written.
     Picture {
-        /// Where to.
+        /// The output file.
         file: PathBuf,
-        /// Why.
+        /// The reason.
         words: String,
     },
     /// A Markdown file has no place for figures.
     Markdown {
-        /// Which.
+        /// The file.
         file: PathBuf,
-        /// What it lacks.
+        /// What is missing in it.
         error: report::MarkerError,
     },
     /// No authored case of that name.
     UnknownName {
-        /// What was asked for.
+        /// The name as given.
         asked: String,
-        /// Whose cases.
+        /// The league of the library.
         league: String,
     },
     /// Cases of a field that no simulator plays on.
     NoSimulator {
-        /// Whose cases.
+        /// The league of the library.
         league: String,
     },
     /// No case can be drafted from the problem.
@@ -96,18 +96,18 @@ pub(crate) enum Failure {
     Robot(String),
     /// Threads cannot be started.
     Threads(String),
-    /// An evaluation could not be played, kept or put together.
+    /// An evaluation could not be played, stored or merged.
     Evaluation(EvaluationError),
     /// The filters of an evaluation leave nothing.
     NoTrials,
-    /// A recording could not be read, or has not what was asked for.
+    /// A recording could not be read, or lacks what was requested.
     Recorded {
-        /// Which.
+        /// The file.
         file: PathBuf,
         /// What is wrong, and how to fix it.
         words: String,
     },
-    /// What a verb on the league's networks cannot go on without.
+    /// A verb on the league's networks cannot continue.
     Network(String),
     /// Stdin could not be read.
     Input(io::Error),

@@ -1,4 +1,4 @@
-//! `net`: sockets of the verbs. By group where an address is multicast, straight where it is one machine's.
+//! `net`: sockets of the verbs. Multicast where the address is a group, unicast where it is one machine's.
 
 use std::net::{Ipv4Addr, SocketAddr};
 use std::time::Duration;
@@ -9,11 +9,11 @@ use ssl::net::{Datagram, Interfaces, NetError, Port, Receiver, Sender};
 #[derive(Debug)]
 pub(crate) struct Mouth {
     to: SocketAddr,
-    /// The interface to speak by; none: the system's choice.
+    /// The interface to send by; `None`: the system's choice.
     by: Option<String>,
     sender: Option<Sender>,
     troubled: bool,
-    /// Datagrams that went out.
+    /// Number of datagrams sent.
     pub(crate) sent: u64,
 }
 
@@ -23,12 +23,12 @@ impl Mouth {
         Self { to, by: by.map(str::to_owned), sender: None, troubled: false, sent: 0 }
     }
 
-    /// Where it speaks to.
+    /// The address that it sends to.
     pub(crate) const fn to(&self) -> SocketAddr {
         self.to
     }
 
-    /// Speaks to another port of the same address from now on.
+    /// Sends to another port of the same address from now on.
     pub(crate) fn set_port(&mut self, port: u16) {
         if self.to.port() != port {
             self.to.set_port(port);
@@ -42,7 +42,7 @@ impl Mouth {
         let words = match self.try_send(bytes) {
             Ok(()) => return self.works(),
             Err(NetError::NoRoute { .. }) if self.by.is_none() && self.to.ip().is_multicast() => {
-                // No network at all: this machine still has itself.
+                // Without any network this machine can still be reached.
                 self.by = Some(Ipv4Addr::LOCALHOST.to_string());
                 self.sender = None;
                 match self.try_send(bytes) {
@@ -84,7 +84,7 @@ impl Mouth {
 pub(crate) enum Ear {
     /// A multicast group.
     Group(Receiver),
-    /// A port that is spoken to straight.
+    /// A unicast port.
     Own(Port),
 }
 

@@ -10,7 +10,7 @@ use resvg::usvg::{self, fontdb};
 
 use crate::Failure;
 
-/// Writes the SVG, or what it looks like when the name ends in `.png`.
+/// Writes the SVG, or its PNG when the name ends in `.png`.
 pub(crate) fn write(file: &Path, svg: &str) -> Result<(), Failure> {
     let written = if has_extension(file, "png") {
         png(svg).and_then(|bytes| std::fs::write(file, bytes).map_err(|error| error.to_string()))
@@ -68,7 +68,7 @@ mod tests {
     fn a_case_in_every_symmetry_has_a_png_of_the_promised_size() {
         for league in case_library::LEAGUES {
             let base = league.base();
-            // Every seventeenth stored case: all symmetries come up.
+            // Every seventeenth stored case: all symmetries occur.
             for case in base.cases().step_by(17) {
                 let picture =
                     CasePicture { base, case, name: "a/b", intent: "", overlay: None, theme: Theme::Print };

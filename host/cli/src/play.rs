@@ -26,7 +26,7 @@ use crate::live::{AnewWatcher, CaseOracle, End, PageArgs, Theatre, shelf_of};
 use crate::output::{self, note};
 use crate::stop::{signal, stopped_by_hand};
 
-/// What decides a match.
+/// Settings of a match.
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct PlayArgs {
@@ -42,7 +42,7 @@ pub(crate) struct PlayArgs {
     /// Length of the match, simulated seconds.
     #[arg(long, value_name = "SECONDS", default_value_t = 600.0, value_parser = seconds)]
     duration: f64,
-    /// Where all chance comes from.
+    /// Random seed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Field, robots and rules: ssl-2013, division-b or division-a.
@@ -61,13 +61,14 @@ pub(crate) struct PlayArgs {
     /// Robots of each team; the league's number by default.
     #[arg(long, value_parser = clap::value_parser!(u8).range(1..=11))]
     robots: Option<u8>,
-    /// What ours plays of the second paper as yellow: none, all, usual, or names such as threats,pass-ahead.
+    /// Yellow's tactics of the second paper, if it is ours: none, all, usual, or names such as
+    /// threats,pass-ahead.
     #[arg(long, value_name = "TACTICS", default_value = "usual", value_parser = Tactics::parse)]
     yellow_tactics: Tactics,
     /// The same for blue.
     #[arg(long, value_name = "TACTICS", default_value = "usual", value_parser = Tactics::parse)]
     blue_tactics: Tactics,
-    /// Keep the match as NAME.log.gz (for the league's tools) and NAME.trace (for `onetwo replay`).
+    /// Record the match as NAME.log.gz (for the league's tools) and NAME.trace (for `onetwo replay`).
     #[arg(long, value_name = "NAME")]
     record: Option<PathBuf>,
     /// Print the report as JSON, and nothing else; implies --headless.
@@ -191,7 +192,7 @@ fn on_page(
     }
 }
 
-/// Teller and recorder of a match on the page.
+/// Event printer and recorder of a match on the page.
 struct Watched {
     teller: Teller,
     recording: Option<Recorder>,
@@ -225,7 +226,8 @@ impl Watcher for Watched {
     }
 }
 
-/// The league's cases; a league without any plays by the reactive behaviour where the host leaves robots free.
+/// The league's cases; a league without any plays by the reactive behaviour where the host leaves robots
+/// free.
 pub(crate) fn cases(folder: &FolderArgs, league: League) -> Result<Option<Shelf>, Failure> {
     let shelf = shelf_of(league, folder.library.as_deref())?;
     if shelf.is_none() {

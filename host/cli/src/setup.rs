@@ -1,6 +1,7 @@
 //! `setup`: the flags of every verb that plays trials of the first paper.
 //!
-//! Each is a change to the paper's team, so that `onetwo trial` plays any trial of an evaluation or of an ablation again.
+//! Each is a change to the paper's team, so that `onetwo trial` can replay any trial of an evaluation or of
+//! an ablation.
 
 use arena::evaluation::{Profile, Setup};
 use brain::Positioning;
@@ -27,7 +28,7 @@ pub(crate) struct SetupArgs {
     /// Without the mirrored copies of cases: only authored ones are known.
     #[arg(long)]
     no_symmetry: bool,
-    /// Without the opponents of cases: they neither ask for them nor rank by them.
+    /// Without the opponents of cases: they are neither a condition nor a criterion of rank.
     #[arg(long)]
     no_opponents: bool,
     #[command(flatten)]
@@ -61,7 +62,7 @@ impl SetupArgs {
         })
     }
 
-    /// The cases of that set-up; refused where they are of a field that no simulator has.
+    /// The cases of that set-up; refused if they are of a field that no simulator has.
     pub(crate) fn open(&self, setup: &Setup) -> Result<Shelf, Failure> {
         let shelf = Shelf::open_reduced(&self.library, reduction(setup))?;
         refuse_other_fields(&shelf)?;
@@ -115,7 +116,7 @@ impl SetupArgs {
     }
 }
 
-/// What of a library a set-up keeps.
+/// The part of a library that a set-up keeps.
 pub(crate) const fn reduction(setup: &Setup) -> Reduction {
     Reduction { symmetry: setup.symmetry, opponents: setup.opponents }
 }
@@ -136,17 +137,17 @@ pub(crate) fn scenario(word: &str) -> Result<hil_sim::Scenario, String> {
     hil_sim::Scenario::from_word(word).ok_or_else(|| "take 1, 2, 3, 4 or random".to_owned())
 }
 
-/// Of opponents.
+/// Parses opponents.
 pub(crate) fn opponents(word: &str) -> Result<hil_sim::Configuration, String> {
     hil_sim::Configuration::from_word(word).ok_or_else(|| "take dg or 2d".to_owned())
 }
 
-/// Of worlds.
+/// Parses a world.
 pub(crate) fn profile(word: &str) -> Result<Profile, String> {
     Profile::from_word(word).ok_or_else(|| "take simulated or robots".to_owned())
 }
 
-/// Of what leads the attackers.
+/// Parses the approach of the attackers.
 pub(crate) fn approach(word: &str) -> Result<brain::Approach, String> {
     arena::approach_from_word(word).ok_or_else(|| {
         let known: Vec<_> = arena::APPROACHES.map(arena::approach_word).into();

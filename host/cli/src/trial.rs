@@ -20,7 +20,7 @@ use crate::live::{CaseOracle, Legged, PageArgs, stay};
 use crate::output;
 use crate::setup::{SetupArgs, opponents, profile, scenario};
 
-/// What decides a trial.
+/// Settings of a trial.
 #[derive(Debug, Args)]
 pub(crate) struct TrialArgs {
     /// Start positions: the paper's 1 to 4, or random.
@@ -29,16 +29,16 @@ pub(crate) struct TrialArgs {
     /// Defender and goalie, or two defenders.
     #[arg(long, default_value = "dg", value_parser = opponents)]
     opponents: Configuration,
-    /// What leads the attackers.
+    /// Approach of the attackers.
     #[arg(long, value_enum, default_value_t = ApproachWord::Cbr)]
     approach: ApproachWord,
-    /// Where all chance comes from.
+    /// Random seed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Where the attackers' brains run.
     #[arg(long, value_enum, default_value_t = BackendWord::Native)]
     backend: BackendWord,
-    /// As the paper's simulator, or as its robots: noise in what they see, 5 s of standing still after every cycle.
+    /// As the paper's simulator, or as its robots: noisy perception, 5 s of standing still after every cycle.
     #[arg(long, default_value = "simulated", value_parser = profile)]
     profile: Profile,
     /// Attackers; the paper has 2.
@@ -46,7 +46,7 @@ pub(crate) struct TrialArgs {
     robots: u8,
     #[command(flatten)]
     setup: SetupArgs,
-    /// Show it on the page, every moment of it, until Ctrl-C.
+    /// Display it on the page, every moment of it, until Ctrl-C.
     #[arg(long, conflicts_with = "json")]
     watch: bool,
     #[command(flatten)]
@@ -113,7 +113,7 @@ pub(crate) fn run(args: &TrialArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The page that keeps the trial's course.
+/// The page that stores the trial's course.
 fn on_page(args: &TrialArgs) -> Result<Legged, Failure> {
     let setup = args.setup.choose(usize::from(args.robots))?;
     let shelf = args.setup.open(&setup)?;
@@ -123,7 +123,7 @@ fn on_page(args: &TrialArgs) -> Result<Legged, Failure> {
     Ok(Legged::new(args.page.open(title, true, Powers::None, oracle)?, base))
 }
 
-/// Plays it.
+/// Plays the trial.
 fn play(args: &TrialArgs, watchers: &mut [&mut dyn Watcher]) -> Result<TrialReport, Failure> {
     let approach = match args.approach {
         ApproachWord::Cbr => Approach::Cases,

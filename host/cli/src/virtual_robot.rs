@@ -33,7 +33,7 @@ pub(crate) struct VirtualRobotArgs {
     /// Its team: blue or yellow.
     #[arg(long, value_parser = colour)]
     team: Colour,
-    /// What it plays: ssl-2013, division-b or division-a.
+    /// Its league: ssl-2013, division-b or division-a.
     #[arg(long, value_parser = league, default_value = "division-b")]
     league: League,
     /// Its host, as HOST:PORT.
@@ -57,7 +57,7 @@ pub(crate) struct VirtualRobotArgs {
     settings: SettingsArgs,
 }
 
-/// Plays until it is stopped.
+/// Runs until it is stopped.
 pub(crate) fn run(args: &VirtualRobotArgs) -> Result<ExitCode, Failure> {
     let (key, end) = if args.with_parent {
         (key_of_parent()?, parent_gone())
@@ -67,11 +67,12 @@ pub(crate) fn run(args: &VirtualRobotArgs) -> Result<ExitCode, Failure> {
     let shelf = args.folder.library.as_deref().map(Shelf::read).transpose()?;
     let base = match &shelf {
         Some(shelf) => shelf.base(),
-        // A league without cases of its own is played without.
+        // A league without a case library is played without cases.
         None => host::cases_of(args.league),
     };
     let brain = BrainConfig {
-        // Seconds since 1970: rises with every start that is a second after the last, which `control` sees to.
+        // Seconds since 1970: rises with every start that is a second after the last, which `control`
+        // ensures.
         epoch: SystemTime::now().duration_since(UNIX_EPOCH).map_or(1, |time| time.as_secs() as u32),
         defending: args.defending,
         settings: args.settings.choose()?.settings,

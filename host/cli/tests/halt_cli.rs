@@ -1,5 +1,6 @@
-//! `halt_cli`: HALT against floods, second referees and slow lines, with the built `onetwo control` on loopback and a pseudo
-//! terminal. Measured values are printed; limits are generous, because machines that test are loaded. Times: s and ms.
+//! `halt_cli`: HALT against floods, second referees and slow lines, with the built `onetwo control` on
+//! loopback and a pseudo terminal. Measured values are printed; limits are generous, because test machines
+//! are loaded. Times: s and ms.
 #![cfg(target_os = "linux")]
 
 use std::io::{BufRead, BufReader};
@@ -26,7 +27,7 @@ use ssl::vision::{DetectionBall, DetectionFrame, DetectionRobot, WrapperPacket};
 
 /// Generous: a loaded machine is no failure.
 const PATIENCE: Duration = Duration::from_mins(1);
-/// HALT takes this long at most on a machine that is loaded; 1.2 to 9.3 s before queues were bounded.
+/// Longest latency of HALT on a loaded machine; 1.2 to 9.3 s before queues were bounded.
 const HALT_MAX: Duration = Duration::from_millis(500);
 /// Resident memory may grow by at most this under a flood, bytes; 465 MB before.
 const GROWTH_MAX: u64 = 24 << 20;
@@ -138,7 +139,7 @@ impl Controller {
         this
     }
 
-    /// Gives a command, at once.
+    /// Sends a command, at once.
     fn say(&self, command: Wire) -> Instant {
         let counter = {
             let mut said = self.command.lock().expect("no panic");
@@ -211,7 +212,7 @@ fn camera(to: SocketAddr, end: &Arc<AtomicBool>) {
     });
 }
 
-/// The radio ends of six robots: they answer the host's welcomes, so that it leads them.
+/// The radio ends of six robots: they answer the host's welcomes, so that it commands them.
 struct Robots {
     links: Vec<Link>,
     began: Instant,
@@ -295,7 +296,7 @@ fn wait_for(frames: &Receiver<(Instant, bool)>, halt: bool, since: Instant) -> D
     }
 }
 
-/// Sends datagrams at a gigabit until the end; how many it sent.
+/// Sends datagrams at a gigabit until the end; returns the number sent.
 fn flood(to: SocketAddr, datagrams: Vec<Vec<u8>>, end: &Arc<AtomicBool>) -> Arc<AtomicU64> {
     let (sent, end) = (Arc::new(AtomicU64::new(0)), end.clone());
     let count = sent.clone();
@@ -316,7 +317,8 @@ fn flood(to: SocketAddr, datagrams: Vec<Vec<u8>>, end: &Arc<AtomicBool>) -> Arc<
     sent
 }
 
-/// HALT under a flood of those datagrams on vision's port: median and worst of several HALTs, and what memory grew by.
+/// HALT under a flood of those datagrams on vision's port: median and worst of several HALTs, and the growth
+/// of memory.
 fn halts_under(flooded: Vec<Vec<u8>>, alarm: &str) {
     let (robots, frames) = station();
     let mut field = Field::start(&format!("udp://{robots}"), &[]);
@@ -411,7 +413,8 @@ fn finding_10_on_a_slow_line_halt_comes_before_what_is_stale_and_the_rate_is_rep
     let mut field = Field::start(&format!("serial:{}:115200", device.display()), &[]);
     let end = Arc::new(AtomicBool::new(false));
     let read = Arc::new(AtomicU64::new(0));
-    // The base station takes bytes as fast as the line brings them; for each frame: HALT or not, and bytes so far.
+    // The base station takes bytes as fast as the line delivers them; for each frame: HALT or not, and bytes
+    // so far.
     let (send, frames) = channel();
     let (count, stop) = (read.clone(), end.clone());
     thread::spawn(move || {
@@ -429,7 +432,7 @@ fn finding_10_on_a_slow_line_halt_comes_before_what_is_stale_and_the_rate_is_rep
                 continue;
             }
             let got = station.read(&mut bytes[..room]).unwrap_or(0);
-            // What the line did not use is gone.
+            // Capacity that the line did not use is lost.
             taken = if got == 0 { may } else { taken + got as u64 };
             count.fetch_add(got as u64, Ordering::Relaxed);
             for byte in &bytes[..got] {

@@ -73,7 +73,7 @@ fn a_client_sees_its_robot_move_and_is_told_what_is_wrong() {
         }
     }
     assert!(moved > 300.0, "robot 3 moved {moved} mm along +x");
-    // What came before is answered before.
+    // Earlier datagrams are answered earlier.
     client.send_to(&order(99, 1.0), blue).expect("sent");
     let mut bytes = [0; 8192];
     let refused = (0..3000).find_map(|_| {
@@ -138,7 +138,7 @@ fn control_says_what_it_waits_for_and_goes_on_when_it_comes() {
         let line = waits.iter().find(|line| line.contains(&format!("waiting for {what}")));
         assert!(line.is_some_and(|line| line.contains(mend)), "{what}: {waits:?}");
     }
-    // 2 s are promised; a loaded machine may take longer to start a program at all.
+    // Specified are 2 s; a loaded machine may take longer to start a program at all.
     assert!(latest < Duration::from_secs(15), "{latest:?}");
     let arguments = ["simulate", "--ports", "0", "--listen", "127.0.0.1", "--duration", "60"];
     let _simulator =

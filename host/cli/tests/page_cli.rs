@@ -1,5 +1,5 @@
-//! `page_cli`: tests: the verbs serve their page and accept only permitted requests. Seen by a viewer that is
-//! no browser.
+//! `page_cli`: tests: the verbs serve their page and accept only permitted requests. Tested with a viewer
+//! that is no browser.
 
 #[path = "page_browser/program.rs"]
 mod program;
@@ -120,7 +120,7 @@ fn a_page_on_the_network_is_looked_at_by_all_and_asked_by_those_with_its_token()
     own.until(|scene| scene["paused"] == true);
 }
 
-/// Distance of a shape of the layer of truth from a place, m.
+/// Distance of a shape of the truth layer from a place, m.
 fn off(shape: &Value, at: [f64; 2]) -> f64 {
     let place = |i: usize| shape["at"][i].as_f64().unwrap();
     (place(0) - at[0]).hypot(place(1) - at[1])
@@ -130,14 +130,14 @@ fn off(shape: &Value, at: [f64; 2]) -> f64 {
 fn a_case_is_played_from_its_own_situation() {
     let play = played();
     let mut viewer = Viewer::of(&play);
-    // Its own side is known once the referee has spoken.
+    // Its own side is known after the first referee packet.
     viewer.until(|scene| robots(scene) == 12 && scene["t"].as_f64().unwrap() > 2.0);
     viewer.ask(r#"{"ask":"situation","name":"nowhere/nothing"}"#);
     let refused = viewer.until(|word| word.get("refused").is_some());
     assert!(refused["refused"].as_str().unwrap().contains("nowhere/nothing"), "{refused}");
     viewer.ask(r#"{"ask":"pause","on":true}"#);
     viewer.until(|scene| scene["paused"] == true);
-    // Of its file: three robots that build up from the back.
+    // From its file: three robots that build up from the back.
     let (ball, mates) = ([-3.2, 0.5], [[-3.35, 0.5], [-2.2, 1.7], [-0.9, 0.5]]);
     viewer.ask(r#"{"ask":"situation","name":"back/build-up"}"#);
     let there = viewer.until(|scene| {

@@ -1,6 +1,6 @@
 //! `remote_match_cli`: tests of `onetwo simulate` under an external game controller. A scripted controller on
 //! this machine: referee packets made here, and the port for automatic referees; a client of the simulation
-//! protocol and of the vision sees what came of it.
+//! protocol and of the vision checks the effects.
 
 mod running;
 

@@ -250,7 +250,8 @@ fn bridged(seed: u32) -> PathBuf {
     stem.with_extension("trace")
 }
 
-/// The reasons of every order of a case's pass while a trace is decided again: the case and its robots, each once.
+/// The reasons of every order of a case's pass while a trace is decided again: the case and its robots, each
+/// once.
 fn parts_in_passes_of_cases(file: &Path) -> BTreeSet<(u16, usize)> {
     let unpacked = flate2::read::MultiGzDecoder::new(fs::File::open(file).expect("the trace"));
     let mut reader = Reader::new(unpacked).expect("a trace");
@@ -274,7 +275,7 @@ fn hosts_that_refine_passes_of_cases_decide_the_same_again() {
     for seed in 1..8 {
         let file = bridged(seed);
         let parts = parts_in_passes_of_cases(&file);
-        // Such passes are few: not every minute has one.
+        // Such passes are rare: not every minute has one.
         let Some((case, _)) = parts.first() else { continue };
         assert!(parts.iter().filter(|(of, _)| of == case).count() >= 2, "passer and receiver: {parts:?}");
         assert_eq!(json(&[&file.display().to_string(), "--check"], 0)["same_decisions"], true);

@@ -2,7 +2,7 @@
 //! that is reached by the league's protocol alone, are restarted when they end, and end with their host.
 //!
 //! The host's radio and link on one side, the sans-IO simulator with sockets on the other, the built program between.
-// Processes are asked and ended by `kill`.
+// Processes are checked and killed by `kill`.
 #![cfg(unix)]
 
 use std::net::UdpSocket;
@@ -30,7 +30,7 @@ fn id(n: u8) -> RobotId {
     RobotId::new(n).unwrap()
 }
 
-/// Where each robot shall go, m.
+/// Where each robot is ordered to go, m.
 fn target(robot: RobotId) -> Point<Field> {
     Point::new(-2.5, f32::from(robot.number()) * 0.6 - 1.5)
 }

@@ -30,10 +30,10 @@ pub(crate) struct CheckArgs {
     /// One JSON list of findings instead of lines.
     #[arg(long)]
     json: bool,
-    /// How many problems are drawn, in search of cases that are never retrieved.
+    /// Number of problems that are drawn to find cases that are never retrieved.
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(..=100_000_000))]
     problems: u64,
-    /// The draw: the same seed gives the same problems.
+    /// Random seed: the same seed draws the same problems.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Explain a code of a finding, or `all` of them, and check nothing.
@@ -119,7 +119,7 @@ impl Report {
         Self::new(league, crate::library::load(folder), args)
     }
 
-    /// From the texts this program carries; the build refused errors, so what is left are warnings.
+    /// From the texts in this program; the build refused errors, so only warnings are left.
     fn built_in(league: &League, args: &CheckArgs) -> Result<Self, Failure> {
         let cases: Vec<_> = league.names.iter().copied().zip(league.sources.iter().copied()).collect();
         let files = Files::from_texts(league.name, league.rules, &cases);

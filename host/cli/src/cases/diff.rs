@@ -92,14 +92,14 @@ impl<'a> Difference<'a> {
     }
 }
 
-/// The criterion at which two candidates part.
+/// The first criterion in which two candidates differ.
 fn separated_by(a: &Match, b: &Match, settings: &Settings) -> &'static str {
     for criterion in settings.ranking {
         match criterion {
             Criterion::Conditions if a.conditions != b.conditions => return "conditions",
             Criterion::Teammates if a.teammates != b.teammates => return "teammates",
             Criterion::IntervalCost => {
-                // Only fuzzy paths are compared by how free they are; crisp ones are all 1.
+                // Only fuzzy paths are compared by their degree; crisp ones are all 1.
                 if a.free != b.free {
                     return "free path";
                 }

@@ -90,7 +90,7 @@ pub(super) fn run(args: &ExplainArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The explanation of a problem as `--json` gives it; else what is wrong with the problem.
+/// The explanation of a problem in the form of `--json`; or the error in the problem.
 pub(crate) fn explained(shelf: &Shelf, chosen: &Chosen, line: &str) -> Result<String, String> {
     let problem = super::problem::parse(line).map_err(|malformed| malformed.to_string())?;
     let explanation = Explanation::new(shelf, &shelf.base(), &problem, chosen);
@@ -103,8 +103,8 @@ struct Explanation<'a> {
     winner: Option<u16>,
     candidates: usize,
     cases: Vec<Row<'a>>,
-    /// For candidates that lose and the nearest misses (with `--all`: for all): what would make them win. Only where
-    /// asked for.
+    /// For candidates that lose and the nearest misses (with `--all`: for all): what would make them win.
+    /// Only on request.
     #[serde(skip_serializing_if = "Option::is_none")]
     counterfactuals: Option<Vec<WhatIf>>,
     /// What differs from retrieval's defaults; left out where nothing does.
@@ -139,7 +139,7 @@ enum Evidence {
     Ball {
         similarity: f64,
         threshold: f32,
-        /// How much nearer to the case's ball it would have to lie.
+        /// Distance by which the ball would have to be nearer to the case's ball, mm.
         outside_mm: f64,
     },
     Robots {

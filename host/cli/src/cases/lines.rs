@@ -67,7 +67,7 @@ mod tests {
 
     const GOOD: &str = r#"{"ball":[1,2],"defending":"cyan","teammates":{},"opponents":[]}"#;
 
-    /// "ok" or the error, one entry a line that is answered.
+    /// "ok" or the error, one entry for each answered line.
     fn answers(input: &[u8]) -> Vec<String> {
         let mut output = Vec::new();
         for_each_problem(input, &mut output, |output, _, problem| {
@@ -112,7 +112,7 @@ mod tests {
 
     #[test]
     fn an_answer_is_out_before_the_next_question_is_awaited() {
-        /// Gives one line, then wants to see its answer before it gives the next.
+        /// Sends one line, then requires its answer before it sends the next.
         struct Dialogue<'a> {
             asked: usize,
             flushed: &'a std::cell::Cell<usize>,

@@ -26,7 +26,7 @@ pub(crate) struct NewArgs {
     /// The file to write: `<region>/<name>.toml` in a league's directory; stdout by default.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Write over a file that is there.
+    /// Overwrite an existing file.
     #[arg(long, requires = "out")]
     force: bool,
     #[command(flatten)]
@@ -64,7 +64,7 @@ pub(super) fn run(args: &NewArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// `league.toml` of the league meant.
+/// `league.toml` of the selected league.
 fn rules(args: &LibraryArgs) -> Result<SourceFile, Failure> {
     if let Some(folder) = &args.folder.library {
         let path = folder.join("league.toml");
@@ -79,7 +79,7 @@ fn rules(args: &LibraryArgs) -> Result<SourceFile, Failure> {
     Ok(Files::from_texts(league.name, league.rules, &[]).rules)
 }
 
-/// The one problem of a file.
+/// Reads the one problem of a file.
 fn read(from: &Path) -> Result<Problem, Failure> {
     let most = LINE_MAX as u64;
     let (name, read) = if from == Path::new("-") {

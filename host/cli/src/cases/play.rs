@@ -33,7 +33,7 @@ pub(crate) struct PlayArgs {
     /// Attempts a case and kind of opposition.
     #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     trials: u32,
-    /// Where all chance comes from.
+    /// Random seed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Opponents that stand in the path, or the paper's scripted opponents; both by default.
@@ -84,7 +84,7 @@ pub(super) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The authored cases asked for, in the order of ids.
+/// The authored cases that are selected, in the order of ids.
 fn chosen<'a>(args: &PlayArgs, shelf: &Shelf, rehearsal: &Rehearsal<'a>) -> Result<Vec<Case<'a>>, Failure> {
     let names = shelf.names();
     let means = |asked: &str, name: &str| {
@@ -100,7 +100,7 @@ fn chosen<'a>(args: &PlayArgs, shelf: &Shelf, rehearsal: &Rehearsal<'a>) -> Resu
     Ok(cases.filter_map(|(number, _)| rehearsal.case(number)).collect())
 }
 
-/// All attempts, on the threads asked for.
+/// All attempts, on the selected number of threads.
 fn play(
     args: &PlayArgs,
     rehearsal: &Rehearsal<'_>,
@@ -110,7 +110,7 @@ fn play(
     let pool = rayon::ThreadPoolBuilder::new().num_threads(args.jobs.map_or(0, usize::from)).build();
     let pool = pool.map_err(|error| Failure::Threads(error.to_string()))?;
     let attempts = u64::from(args.trials) * (cases.len() * oppositions.len()) as u64;
-    // Drawn on stderr where that is a terminal, and nowhere else.
+    // Drawn only if stderr is a terminal.
     let bar = ProgressBar::new(attempts);
     if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}, {eta} to go") {
         bar.set_style(style);
@@ -156,7 +156,7 @@ fn tell(
 }
 
 impl PlayArgs {
-    /// What stands above the table.
+    /// Lines above the table.
     fn heading(&self, rehearsal: &Rehearsal<'_>, scores: &[Score]) -> String {
         let [trials, seed, hash] = [u64::from(self.trials), self.seed, u64::from(rehearsal.base.hash())];
         let reached = |word: &str| {

@@ -12,7 +12,7 @@ use protocol::RobotId;
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::value::RawValue;
 
-/// The problem a line holds.
+/// Parses the problem of a line.
 pub(crate) fn parse(line: &str) -> Result<Problem, Malformed> {
     let Members(members) = serde_json::from_str(line).map_err(|error| not_an_object(&error))?;
     let (mut ball, mut defending, mut teammates, mut opponents) = (None, None, None, None);
@@ -37,7 +37,7 @@ pub(crate) fn parse(line: &str) -> Result<Problem, Malformed> {
 /// Longest place that is printed, characters: a key of the line may be as long as the line.
 const PLACE_LEN: usize = 60;
 
-/// Why a line holds no problem.
+/// Why a line is not a valid problem.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Malformed {
     /// Where in the line, if not all of it.
@@ -138,8 +138,8 @@ fn point(value: &RawValue, place: &str) -> Result<PointMm, Malformed> {
         .ok_or_else(|| Malformed::at(place, "expected [x, y] in mm"))
 }
 
-/// A number written as an integer. One that no `i32` holds lies further than 2,000 km away: it is taken at that
-/// distance, which decides no differently.
+/// A number written as an integer. One that does not fit an `i32` lies farther than 2,000 km away: it is
+/// clamped, which decides no differently.
 fn integer(value: &RawValue) -> Option<i32> {
     let text = value.get();
     let digits = text.strip_prefix('-').unwrap_or(text);

@@ -151,7 +151,7 @@ fn candidate(verdict: &Verdict) -> Option<&Match> {
     }
 }
 
-/// The problem that the argument holds or names.
+/// Reads the problem from the argument or from the file that it names.
 fn read(argument: &str) -> Result<Problem, Failure> {
     let text = if argument.trim_start().starts_with('{') {
         argument.to_owned()

@@ -20,7 +20,7 @@ use crate::output;
 /// Arguments of `cases schema`.
 #[derive(Debug, Args)]
 pub(crate) struct SchemaArgs {
-    /// Of league.toml instead of a case file.
+    /// Schema of league.toml instead of a case file.
     #[arg(long)]
     league_file: bool,
 }

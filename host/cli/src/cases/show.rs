@@ -62,7 +62,7 @@ fn near(names: &[String], asked: &str) -> Option<String> {
     (best.0 >= ALIKE).then(|| best.1.clone())
 }
 
-/// Share of letters that two names have in common at least, to be taken for a slip of the pen.
+/// Least share of letters in common for two names to be taken for a typing error.
 const ALIKE: f64 = 0.6;
 
 fn write_case(output: &mut impl Write, shelf: &Shelf, case: &Case<'_>) -> io::Result<()> {

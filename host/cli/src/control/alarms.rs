@@ -1,5 +1,5 @@
-//! `alarms`: what is wrong now and an operator should act on, for terminal and page. Each is printed at once, and again every
-//! [`AGAIN`] while it lasts. Times on the host's clock.
+//! `alarms`: faults that an operator should act on now, for terminal and page. Each is printed at once, and
+//! again every [`AGAIN`] while it lasts. Times on the host's clock.
 
 use host::Host;
 use host::sanity::{Finding, Sanity};
@@ -24,7 +24,7 @@ pub(super) struct Alarm {
     repeats: bool,
 }
 
-/// What is wrong, and what of it was printed when.
+/// Current faults, and when each was printed.
 #[derive(Debug, Default)]
 pub(super) struct Alarms {
     sanity: Sanity,
@@ -37,17 +37,17 @@ pub(super) struct Alarms {
 }
 
 impl Alarms {
-    /// The host's loop runs: at least every 100 ms, or this computer stood still.
+    /// Records that the host's loop runs: if more than 100 ms have passed, this computer was blocked.
     pub(super) fn ran(&mut self, now: Instant) {
         self.sanity.ran(now);
     }
 
-    /// The robots' line is too slow.
+    /// Records that the robots' line is too slow.
     pub(super) fn slow(&mut self, now: Instant, words: String) {
         self.slow = Some((words, now));
     }
 
-    /// What is wrong now, for the page.
+    /// Current faults, for the page.
     pub(super) fn now(&self) -> &[String] {
         &self.now
     }

@@ -9,12 +9,12 @@ use crate::library::Shelf;
 use crate::live::{CaseOracle, Composer, Moment, PageArgs, SCENE_EVERY_S, tick};
 use crate::output::note;
 
-/// A page and what fills it.
+/// A page and its composer.
 pub(super) struct Board {
     page: Page,
     composer: Composer,
     shown: Option<Instant>,
-    /// What an input takes, as a sliding mean.
+    /// Time an input takes, as a sliding mean.
     took: Duration,
 }
 
@@ -42,7 +42,7 @@ impl Board {
         self.composer.referee(bytes, now.0 as f64 * 1e-6, false);
     }
 
-    /// Something is wrong: a line among what happened.
+    /// Adds a fault to the page's events.
     pub(super) fn fault(&mut self, now: protocol::Instant, words: String) {
         let t = now.0 as f64 * 1e-6;
         self.page.tell(Happening { t, kind: Kind::Fault, team: None, words, at: None, problem: None });

@@ -43,21 +43,21 @@ use crate::net::Mouth;
 use crate::output::{note, shown};
 use crate::stop::stopped_by_hand;
 
-/// Looks at what is missing, and at Ctrl-C, at least this often.
+/// Longest time between two checks for missing sources and Ctrl-C.
 const LOOK: Duration = Duration::from_millis(100);
 /// HALT is sent for this time before the program ends: thirty snapshots, so that one of them arrives over a
 /// lossy radio.
 const HALTING: Duration = Duration::from_millis(300);
 /// A longer file is not read as a settings file, bytes.
 const LEARNED_LEN_MAX: u64 = 1 << 20;
-/// One HALT after the other.
+/// Period of HALT frames.
 const HALT_EVERY: Duration = Duration::from_millis(10);
 
-/// What is kept on the disk.
+/// Files that are written.
 pub(super) struct Keeps<'p> {
-    /// The match, as `onetwo replay` takes it.
+    /// The recording of the match, as `onetwo replay` takes it.
     pub(super) record: Option<&'p Path>,
-    /// What was learned, as lines of `team.toml`.
+    /// Learned values, as lines of `team.toml`.
     pub(super) learned: Option<&'p Path>,
 }
 
@@ -247,14 +247,14 @@ struct Counts {
 struct Desk {
     host: Host,
     began: Instant,
-    /// What is asked of the game controller.
+    /// Requests to the game controller.
     ask: Sender<Request>,
     out: Arc<Mutex<Outbox>>,
     us: Colour,
     recorder: Option<BackgroundRecorder>,
-    /// How a recording ended that ended before the match.
+    /// Error of a recording that ended before the match.
     recording: io::Result<()>,
-    /// It was reported that the trace has ended.
+    /// Whether the end of the trace was reported.
     trace_ended: bool,
     watch: Watch,
     alarms: Alarms,
@@ -271,7 +271,7 @@ impl Desk {
         protocol::Instant(self.began.elapsed().as_micros() as u64)
     }
 
-    /// Waits for mail or the host's deadline, and does what it brings.
+    /// Waits for mail or the host's deadline, and handles it.
     fn wait(&mut self, inbox: &Inbox) {
         let due = self.host.poll_timeout().map(|due| Duration::from_micros(due.since(self.now()).0));
         if let Some(mail) = inbox.take(due.unwrap_or(LOOK).min(LOOK)) {
@@ -343,7 +343,7 @@ impl Desk {
 
     fn send(&mut self, now: protocol::Instant) {
         while let Some(request) = self.host.poll_request() {
-            // Without a controller to ask there is no thread that takes it.
+            // Without a game controller no thread receives the request.
             let _ = self.ask.send(request);
         }
         let mut batch = Vec::new();
@@ -377,7 +377,7 @@ impl Desk {
         }
     }
 
-    /// What keeps robots and host apart goes to terminal and page.
+    /// Reports refused handshakes and frames between robots and host on terminal and page.
     fn look_at_radio(&mut self, now: protocol::Instant) {
         for words in self.radio_alarms.look(now, self.host.radio()) {
             if let Some(board) = &mut self.board {
@@ -393,7 +393,7 @@ impl Desk {
         self.words.extend(self.alarms.look(now, &self.host, inbox.dropped(), vision));
     }
 
-    /// Whether the recording keeps up, and whether the disk takes it.
+    /// Checks whether the recording keeps up and the disk accepts it.
     fn look_at_recording(&mut self) {
         let Some(recorder) = &self.recorder else { return };
         if recorder.failed() {
@@ -436,7 +436,7 @@ impl Desk {
         }
     }
 
-    /// A line for a terminal.
+    /// The status line for a terminal.
     fn status(&self) -> String {
         let (now, host) = (self.now(), &self.host);
         let seen = host.world().ours(host.settings().us).count();

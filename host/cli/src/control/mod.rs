@@ -97,8 +97,9 @@ pub(crate) struct ControlArgs {
     /// How much faster than ordered a robot's kicks are, such as 3=1.06; may be repeated.
     #[arg(long = "kick", value_name = "ROBOT=FACTOR", value_parser = kick)]
     kicks: Vec<Calibration>,
-    /// Keep what is learned of kickers, latencies and the ball in this file, which may be the team.toml: what it holds is read at the start
-    /// (unless --config names it already), and what is known at the end replaces the lines that an earlier run wrote.
+    /// Keep what is learned of kickers, latencies and the ball in this file, which may be the team.toml: its
+    /// contents are read at the start (unless --config names it already), and the values at the end replace
+    /// the lines that an earlier run wrote.
     #[arg(long, value_name = "FILE")]
     learned: Option<PathBuf>,
     /// Do not play by what is learned (it is displayed all the same): kicks are ordered by `--kick` and
@@ -107,10 +108,10 @@ pub(crate) struct ControlArgs {
     no_learning: bool,
     #[command(flatten)]
     cases: CasesArgs,
-    /// Keep the match as NAME.log.gz (for the league's tools) and NAME.trace (for `onetwo replay`).
+    /// Record the match as NAME.log.gz (for the league's tools) and NAME.trace (for `onetwo replay`).
     #[arg(long, value_name = "NAME")]
     record: Option<PathBuf>,
-    /// Without the page.
+    /// Run without the page.
     #[arg(long)]
     headless: bool,
     #[command(flatten)]
@@ -177,13 +178,13 @@ fn read(path: &Path) -> Result<TeamSettings, Failure> {
     TeamSettings::from_toml(&text).map_err(|error| said(error.to_string()))
 }
 
-/// Flags over the file over what is usual.
+/// Flags override the file, which overrides the defaults.
 fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
     let mut file = args.config.as_deref().map_or_else(|| Ok(TeamSettings::default()), read)?;
     if let Some(learned) = args.learned.as_deref().filter(|path| args.config.as_deref() != Some(*path))
         && learned.exists()
     {
-        // What the team set itself comes later, and counts.
+        // The team's own settings come later, and override.
         let TeamSettings { calibration, ball, .. } = read(learned)?;
         file.calibration = [calibration, file.calibration].concat();
         file.ball.roll = file.ball.roll.or(ball.roll);

@@ -76,7 +76,7 @@ fn connect(address: SocketAddr) -> Option<TcpStream> {
     Some(stream)
 }
 
-/// Sends what is to be sent and reads what came; false where the connection is gone.
+/// Sends and receives what is pending; false if the connection is gone.
 fn exchange(stream: &mut TcpStream, port: &mut TeamPort, now: protocol::Instant) -> bool {
     use std::io::ErrorKind::{Interrupted, TimedOut, WouldBlock};
     while let Some(bytes) = port.poll_transmit() {

@@ -14,7 +14,7 @@ pub(super) struct RadioAlarms {
 }
 
 impl RadioAlarms {
-    /// The lines to show now.
+    /// The lines to print now.
     pub(super) fn look(&mut self, now: Instant, radio: &Radio) -> Vec<String> {
         let current: Vec<RadioWarning> = radio.warnings(now).collect();
         self.said.retain(|(warning, at)| current.contains(warning) || now.since(*at) < AGAIN);

@@ -33,7 +33,7 @@ impl Terminal {
         Self { prints, thread: thread::spawn(move || print(&waiting)), dropped: 0 }
     }
 
-    /// A line that stays.
+    /// Prints a permanent line.
     pub(super) fn line(&mut self, words: String) {
         let words = match self.dropped {
             0 => words,
@@ -47,12 +47,12 @@ impl Terminal {
         }
     }
 
-    /// The line that is replaced by the next of its kind.
+    /// Prints the line that is replaced by the next of its kind.
     pub(super) fn status(&self, words: String) {
         let _ = self.prints.try_send(Print::Status(words));
     }
 
-    /// Prints what waits.
+    /// Prints the waiting lines.
     pub(super) fn close(self) {
         drop(self.prints);
         let until = Instant::now() + AT_END;

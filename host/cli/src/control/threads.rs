@@ -1,4 +1,5 @@
-//! A thread for each socket: it waits, and passes on what came. One that cannot be opened is tried again every second.
+//! A thread for each socket: it waits, and passes on what arrives. A socket that cannot be opened is tried
+//! again every second.
 
 use std::net::SocketAddr;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -31,9 +32,9 @@ impl Source {
     }
 }
 
-/// A thread looks this often whether it shall end.
+/// A thread checks this often whether to end.
 const LOOK: Duration = Duration::from_millis(100);
-/// What could not be opened is tried again after this.
+/// A socket that could not be opened is tried again after this.
 const AGAIN: Duration = Duration::from_secs(1);
 /// A link that fails repeatedly is reported this often.
 const TROUBLE_EVERY: Duration = Duration::from_secs(10);
@@ -41,11 +42,11 @@ const TROUBLE_EVERY: Duration = Duration::from_secs(10);
 /// snapshot's period.
 const LINK_WAIT: Duration = Duration::from_millis(1);
 
-/// Whether a line keeps up is looked at this often.
+/// Whether a line keeps up is checked this often.
 const PACE_EVERY: Duration = Duration::from_secs(1);
 /// One in this number of snapshots may be replaced by a newer one: threads are late now and then.
 const SPARED: u64 = 20;
-/// Rates that adapters have, bit/s.
+/// Bit rates of usual adapters, bit/s.
 const RATES: [u64; 7] = [115_200, 230_400, 460_800, 921_600, 1_000_000, 2_000_000, 3_000_000];
 /// Time for the last frames to be sent at the end.
 const AT_END: Duration = Duration::from_millis(200);
@@ -93,7 +94,7 @@ pub(super) fn hear(
     })
 }
 
-/// A datagram as it waits; none where it is longer than any of its kind.
+/// A datagram as mail; `None` if it is longer than its kind can be.
 fn letter(source: Source, Datagram { bytes, from }: Datagram<'_>) -> Option<Mail> {
     let most = if source == Source::Vision { VISION_LEN_MAX } else { REFEREE_LEN_MAX };
     let fits = bytes.len() <= most;
@@ -103,7 +104,7 @@ fn letter(source: Source, Datagram { bytes, from }: Datagram<'_>) -> Option<Mail
     })
 }
 
-/// Carries frames to the robots and back, until `end`; then what waits goes out, HALT as a rule.
+/// Carries frames to the robots and back, until `end`; then the waiting frames are sent, usually HALT.
 pub(super) fn carry(
     mut link: Box<dyn Link>,
     frames: Arc<Mutex<Outbox>>,
@@ -150,7 +151,7 @@ fn look_at(frames: &Mutex<Outbox>) -> std::sync::MutexGuard<'_, Outbox> {
     frames.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Sends what the link takes at once.
+/// Sends as much as the link takes without blocking.
 fn send(link: &mut dyn Link, frames: &Mutex<Outbox>) -> Result<(), String> {
     let mut result = Ok(());
     loop {
@@ -169,7 +170,7 @@ fn send(link: &mut dyn Link, frames: &Mutex<Outbox>) -> Result<(), String> {
     }
 }
 
-/// Whether a line keeps up, looked at every second.
+/// Checks every second whether a line keeps up.
 struct Pace {
     since: Instant,
     before: OutCounts,

@@ -28,7 +28,7 @@ pub(super) struct Watch {
     link_advice: String,
 }
 
-/// One thing that may be missing.
+/// A source that may be missing.
 #[derive(Debug, Default)]
 struct Waiting {
     told: bool,
@@ -107,7 +107,7 @@ impl Watch {
         );
         let never = matches!(silence, Silence::Never(_));
         self.missing.extend(never.then(|| waits.clone()));
-        // One that falls silent is an alarm.
+        // A source that falls silent is an alarm.
         let came = self.referee.see(
             !matches!(silence, Silence::Heard(_)),
             |_| if never { waits } else { String::new() },

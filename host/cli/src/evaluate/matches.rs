@@ -27,7 +27,7 @@ use crate::args::{FolderArgs, SettingsArgs, VERSION};
 use crate::library::Shelf;
 use crate::play::{cases, league, seconds};
 
-/// Which matches, and where to.
+/// Which matches, and the output.
 #[derive(Debug, Args)]
 pub(super) struct MatchesArgs {
     /// Field, robots and rules: division-b, ssl-2013 (the paper's) or division-a.
@@ -43,7 +43,7 @@ pub(super) struct MatchesArgs {
     /// Length of a match, simulated seconds.
     #[arg(long, value_name = "SECONDS", default_value_t = 600.0, value_parser = seconds)]
     duration: f64,
-    /// Where all chance comes from.
+    /// Random seed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// The team that plays against the opponents; named as they are.
@@ -60,7 +60,7 @@ pub(super) struct MatchesArgs {
     /// Each team against each: ours and the opponents.
     #[arg(long)]
     round_robin: bool,
-    /// Every n-th match from the i-th on, for a cluster; `--merge` puts the shards together.
+    /// Every n-th match from the i-th on, for a cluster; `--merge` merges the shards.
     #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = work::shard, conflicts_with = "merge")]
     shard: Shard,
     /// Play nothing: merge the shards that were written to this directory; may be repeated.
@@ -70,7 +70,7 @@ pub(super) struct MatchesArgs {
     /// beside it.
     #[arg(long, value_name = "FILE")]
     markdown: Option<PathBuf>,
-    /// Which markers: those of that name.
+    /// Name of the markers.
     #[arg(long, value_name = "NAME", default_value = "matches", requires = "markdown")]
     section: String,
     #[command(flatten)]
@@ -160,7 +160,7 @@ impl MatchesArgs {
     }
 }
 
-/// What all matches come to.
+/// Results of all matches.
 struct Made<'a> {
     identity: &'a MatchIdentity,
     matches: usize,

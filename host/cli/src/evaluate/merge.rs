@@ -10,7 +10,7 @@ use super::report::{self, ReportArgs};
 use super::work;
 use crate::Failure;
 
-/// Whose trials, and where to.
+/// The shards to merge, and the output.
 #[derive(Debug, Args)]
 pub(super) struct MergeArgs {
     /// Directories that shards were written to.

@@ -33,7 +33,7 @@ pub(crate) struct EvaluateArgs {
 /// One verb, one file.
 #[derive(Debug, Subcommand)]
 enum EvaluateVerb {
-    /// Put the shards of an evaluation together.
+    /// Merge the shards of an evaluation.
     Merge(merge::MergeArgs),
     /// Write the report of a played evaluation again.
     Report(report::AgainArgs),

@@ -21,7 +21,7 @@ use crate::library::Shelf;
 use crate::output::{note, say, shown};
 use crate::{picture, setup};
 
-/// What a report has.
+/// Contents of a report.
 #[derive(Debug, Args)]
 pub(super) struct ReportArgs {
     /// Trials of each cell that are played again for the report's maps; 0 for none.
@@ -32,7 +32,7 @@ pub(super) struct ReportArgs {
     png: bool,
 }
 
-/// Which evaluation is reported, and where else.
+/// The evaluation to report, and further outputs.
 #[derive(Debug, Args)]
 pub(super) struct AgainArgs {
     /// The directory an evaluation was written to.
@@ -46,7 +46,7 @@ pub(super) struct AgainArgs {
     markdown: Option<PathBuf>,
 }
 
-/// What the page of an ablation has, and where else its table goes.
+/// Contents of an ablation's page, and further outputs for its table.
 #[derive(Debug, Args)]
 pub(super) struct PageArgs {
     /// The plot as PNG too, beside its SVG.
@@ -58,7 +58,7 @@ pub(super) struct PageArgs {
     markdown: Option<PathBuf>,
 }
 
-/// The page of an ablation that was played.
+/// Writes the page of a played ablation.
 pub(super) fn write_ablation(ablation: &Ablation<'_>, folder: &Path, args: &PageArgs) -> Result<(), Failure> {
     let drawn = ablation.write(folder).map_err(|error| unwritten(&folder.join(PAGE), &error))?;
     if args.png {
@@ -90,7 +90,7 @@ pub(super) fn write(results: &Results, folder: &Path, args: &ReportArgs) -> Resu
     Made::new(results, args)?.write(results, folder, args)
 }
 
-/// What a report needs beside the results.
+/// Parts of a report beside the results.
 struct Made {
     facts: Vec<Facts>,
     maps: Vec<Map>,
@@ -169,7 +169,7 @@ fn unwritten(file: &Path, error: &std::io::Error) -> Failure {
     Failure::Picture { file: file.to_owned(), words: error.to_string() }
 }
 
-/// The maps of the first trials of each cell, if this program plays the very same ones.
+/// The maps of the first trials of each cell, if this program plays identical ones.
 fn maps(identity: &Identity, trials: u32) -> Result<Vec<Map>, Failure> {
     if trials == 0 {
         return Ok(Vec::new());

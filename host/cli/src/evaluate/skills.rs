@@ -29,7 +29,7 @@ pub(super) struct SkillsArgs {
     /// Tries of each skill in each world.
     #[arg(long, default_value_t = 20, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     tries: u32,
-    /// Where all chance comes from.
+    /// Random seed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Only these skills, with commas between: placement, get-ball, receive, dribble, turn-with-ball, kick, chip, save.
@@ -53,7 +53,7 @@ pub(super) struct SkillsArgs {
     /// Put the table between the markers of this Markdown file.
     #[arg(long, value_name = "FILE")]
     markdown: Option<PathBuf>,
-    /// Which markers: those of that name.
+    /// Name of the markers.
     #[arg(long, value_name = "NAME", default_value = "skills", requires = "markdown")]
     section: String,
 }

@@ -19,10 +19,10 @@ pub(super) struct TablesArgs {
     /// defenders.
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     trials: Option<u32>,
-    /// Where all chance comes from.
+    /// Random seed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Every n-th trial from the i-th on, for a cluster; `evaluate merge` puts the shards together.
+    /// Every n-th trial from the i-th on, for a cluster; `evaluate merge` merges the shards.
     #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = work::shard)]
     shard: Shard,
     #[command(flatten)]

@@ -21,7 +21,7 @@ use crate::output;
 use crate::setup::SetupArgs;
 use crate::stop::stopped_by_hand;
 
-/// Where and how fast.
+/// Output directory and number of threads.
 #[derive(Debug, Args)]
 pub(super) struct WorkArgs {
     /// Threads; the number of cores by default.
@@ -58,7 +58,7 @@ impl WorkArgs {
         Ok(&self.out)
     }
 
-    /// Takes a file of trials away, if it is there and that was asked for.
+    /// Removes a file of trials, if it exists and `fresh` is set.
     pub(super) fn freshen(&self, file: &Path) -> Result<(), Failure> {
         if self.fresh && file.exists() { forget(file) } else { Ok(()) }
     }
@@ -75,13 +75,13 @@ pub(super) fn make(folder: &Path) -> Result<(), Failure> {
     made.map_err(|error| EvaluationError::File { file: folder.to_owned(), error }.into())
 }
 
-/// Everything that decides the trials of a plan.
+/// All settings that the trials of a plan depend on.
 pub(super) fn evaluation(plan: Plan, setup: Setup, shelf: &Shelf, library: String) -> Evaluation<'_> {
     let names = CaseNames::new(shelf.names());
     Evaluation { plan, base: shelf.base(), names, library, setup, program: VERSION.to_owned() }
 }
 
-/// Plays what `file` lacks of a shard; with `title` before the bar.
+/// Plays the trials of a shard that are missing in `file`; with `title` before the bar.
 pub(super) fn play(
     evaluation: &Evaluation<'_>,
     shard: Shard,
@@ -100,7 +100,7 @@ pub(super) fn with_bar<R: Send>(
 ) -> Result<R, Failure> {
     // The running trials are still finished and stored.
     let stopped = stopped_by_hand();
-    // Drawn on a terminal's stderr, and nowhere else.
+    // Drawn only if stderr is a terminal.
     let bar = ProgressBar::new(0);
     if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}, {eta} to go") {
         bar.set_style(style);

@@ -14,16 +14,16 @@ use super::{build, failed};
 use crate::Failure;
 use crate::output::note;
 
-/// What goes where.
+/// What is flashed, and where.
 #[derive(Debug, Args)]
 pub(crate) struct FlashArgs {
     /// The firmware image: a board's ELF file; by default the one for firmware/boards/stm32, built first.
     #[arg(long, value_name = "FILE", requires = "chip")]
     elf: Option<PathBuf>,
-    /// The chip, as `probe-rs chip list` names it; that board's unless one is named.
+    /// The chip, as `probe-rs chip list` names it; by default that board's.
     #[arg(long, value_name = "CHIP")]
     chip: Option<String>,
-    /// What `provision` wrote.
+    /// The page that `provision` wrote.
     #[arg(long, value_name = "FILE")]
     page: Option<PathBuf>,
     /// Address of the page in the chip's flash; by default the last sector of that board.

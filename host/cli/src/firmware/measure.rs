@@ -15,16 +15,16 @@ use rules::{Colour, League};
 use super::{build, failed};
 use crate::Failure;
 
-/// What a program took at its deepest and longest.
+/// Deepest stack and longest step of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Measured {
     /// Bytes of stack.
     pub(super) stack: u32,
-    /// Instructions of the step in the middle.
+    /// Instructions of the median step.
     pub(super) median: u32,
     /// Of the worst step.
     pub(super) worst: u32,
-    /// Steps looked at.
+    /// Number of measured steps.
     pub(super) steps: usize,
 }
 
@@ -75,5 +75,5 @@ fn emulated(body: Body) -> Result<std::path::PathBuf, Failure> {
 
 /// One seed, so that two runs of the same firmware measure the same.
 const SEED: u64 = 1;
-/// Of a match (docs/architecture.md §2.3).
+/// Steps of a match (docs/architecture.md §2.3).
 const TICKS_A_SECOND: f64 = 100.0;

@@ -54,9 +54,9 @@ pub(crate) struct ImagesArgs {
 /// Name of a firmware image.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum ImageWord {
-    /// A walking robot, led tick by tick by the simulator.
+    /// A walking robot, stepped tick by tick by the simulator.
     Legged,
-    /// A robot on wheels, led likewise.
+    /// A robot on wheels, stepped by the simulator.
     Omni,
     /// A robot on wheels that runs by its own clock.
     Free,
@@ -81,7 +81,7 @@ impl ImagesArgs {
     }
 }
 
-/// Does it.
+/// Runs the verb.
 pub(crate) fn run(verb: &FirmwareVerb) -> Result<ExitCode, Failure> {
     match verb {
         FirmwareVerb::Build(args) => {

@@ -24,13 +24,13 @@ pub(crate) struct ProvisionArgs {
     /// Its team's number on the radio.
     #[arg(long, value_name = "N")]
     team: u8,
-    /// What it plays.
+    /// Its league.
     #[arg(long, value_enum, default_value_t = LeagueWord::DivisionB)]
     league: LeagueWord,
     /// A file with 32 hexadecimal digits, as `openssl rand -hex 16` makes them.
     #[arg(long, value_name = "FILE")]
     key_file: PathBuf,
-    /// Where the page goes.
+    /// Output file of the page.
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 }
@@ -75,7 +75,7 @@ pub(super) fn run(args: &ProvisionArgs) -> Result<(), Failure> {
         keys: key.key.of_robot(robot),
     };
     let bytes: [u8; PAGE_LEN] = page(&who);
-    // The robot's own reading of it: a key of zeros is refused here already.
+    // The page is read back as by the robot: a key of zeros is refused here already.
     read(&bytes, false).map_err(failed)?;
     write_for_owner(&args.out, &bytes).map_err(|error| at(&args.out, error))?;
     say(&format!(
@@ -85,7 +85,7 @@ pub(super) fn run(args: &ProvisionArgs) -> Result<(), Failure> {
     ))
 }
 
-/// A file that its owner alone can read, for it holds a key.
+/// Writes a file that only its owner can read, because it contains a key.
 fn write_for_owner(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     let mut options = fs::OpenOptions::new();
     options.write(true).create(true).truncate(true);

@@ -26,7 +26,7 @@ pub(crate) struct RunArgs {
 
 /// Runs it until it is ended; the robot's log is on stderr.
 pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
-    // Before anything is built or started.
+    // Checked before anything is built or started.
     let page = args.page.as_deref().map(|file| check(file).map(|()| file)).transpose()?;
     let qemu = ensure_qemu(Install::ForUser).map_err(failed)?;
     let mut command = Command::new(qemu);
@@ -35,7 +35,7 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     if status.success() { Ok(()) } else { Err(failed(format!("QEMU ended with {status}"))) }
 }
 
-/// Longest file of a key page that is read, bytes: a sector of flash is the most that it could be.
+/// Longest file of a key page that is read, bytes: one sector of flash.
 const PAGE_FILE_LEN_MAX: u64 = 1 << 17;
 
 /// Whether a robot could read the page.
@@ -53,7 +53,7 @@ fn words(image: &Path, page: Option<&Path>, serial: &str) -> Vec<String> {
     words.extend(["-semihosting-config", "enable=on,target=native", "-kernel"].map(str::to_owned));
     words.push(image.display().to_string());
     if let Some(file) = page {
-        // QEMU's options take a doubled comma for one.
+        // In QEMU's options a doubled comma stands for one.
         let path = file.to_string_lossy().replace(',', ",,");
         words.push("-device".to_owned());
         words.push(format!("loader,file={path},addr={PAGE_ADDRESS:#x},force-raw=on"));

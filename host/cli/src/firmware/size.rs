@@ -19,16 +19,16 @@ use crate::output::say;
 pub(crate) struct SizeArgs {
     #[command(flatten)]
     images: ImagesArgs,
-    /// How many crates and symbols to name.
+    /// Number of crates and symbols to list.
     #[arg(long, default_value_t = 20, value_name = "N")]
     largest: usize,
-    /// Look into the files alone: no QEMU, so neither stack nor worst step.
+    /// Inspect the files only: no QEMU, so neither stack nor worst step.
     #[arg(long)]
     still: bool,
     /// Simulated seconds of the match that robots on wheels are measured in.
     #[arg(long, default_value_t = 5.0, value_name = "SECONDS", conflicts_with = "still")]
     seconds: f64,
-    /// As data.
+    /// Print as JSON.
     #[arg(long)]
     json: bool,
 }
@@ -80,7 +80,7 @@ pub(super) struct Share {
     pub(super) flash: Option<f64>,
     /// Statics and the deepest stack.
     pub(super) ram: f64,
-    /// Of its time, were every step the worst and every instruction a cycle.
+    /// Of its time, if every step were the worst and every instruction took one cycle.
     pub(super) step: Option<f64>,
 }
 
@@ -208,7 +208,7 @@ fn tell(known: &Known, largest: usize, told: &mut String) {
     }
 }
 
-/// Statics that are named, bytes: below, they are flags and counters.
+/// Least size of a static that is listed, bytes: smaller ones are flags and counters.
 pub(super) const POOL_LEAST: u64 = 256;
 /// One brain step on its worst path (docs/architecture.md §9), guest instructions.
 pub(super) const STEP_BUDGET: u32 = 40_000;

@@ -27,12 +27,12 @@ use super::{spaced, team};
 use crate::library::Shelf;
 use crate::replay::phase_words;
 
-/// The ball's trail reaches back so far, s.
+/// Length of the ball's trail, s.
 const TRAIL_S: f64 = 1.5;
 /// Number of points of the ball's prediction, one each tenth of a second; it ends at the stop position.
 const AHEAD: usize = 15;
 
-/// What cases are called, and what they mean.
+/// Names and intents of the cases.
 #[derive(Debug, Default)]
 pub(crate) struct Names {
     names: Vec<String>,
@@ -59,9 +59,9 @@ impl Names {
     }
 }
 
-/// What there is to look at.
+/// Inputs of a scene.
 pub(crate) struct Moment<'a> {
-    /// Seconds since the beginning.
+    /// Seconds since the start.
     pub(crate) t: f64,
     /// On the hosts' clock.
     pub(crate) now: Instant,
@@ -69,11 +69,11 @@ pub(crate) struct Moment<'a> {
     pub(crate) eyes: &'a Host,
     /// The hosts whose robots' states are displayed.
     pub(crate) hosts: &'a [&'a Host],
-    /// What truly is, in a simulation.
+    /// The true state, in a simulation.
     pub(crate) truth: Option<&'a Truth>,
     /// The simulation's own referee.
     pub(crate) referee: Option<&'a InternalReferee>,
-    /// What the loop measures of itself.
+    /// Measurements of the loop itself.
     pub(crate) gauges: Vec<Gauge>,
 }
 
@@ -124,7 +124,7 @@ impl Composer {
         self.news.packet(bytes, t, own, &mut self.happenings);
     }
 
-    /// What happened since the last call.
+    /// Events since the last call.
     pub(crate) fn take_happenings(&mut self) -> Vec<Happening> {
         std::mem::take(&mut self.happenings)
     }
@@ -335,7 +335,7 @@ fn sheet(game: &Game, referee: Option<&InternalReferee>, seen: &Possession) -> M
     out
 }
 
-/// Where everything truly is, to be held against what is believed.
+/// The true state of everything, to compare with what is believed.
 fn truth(world: &Truth) -> Layer {
     let radius = milli(ROBOT_RADIUS);
     let mut shapes: Vec<Shape> = world

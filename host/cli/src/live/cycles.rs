@@ -102,7 +102,7 @@ impl TeamCycles {
         })
     }
 
-    /// What is played right now, if something is.
+    /// The case that is played at the moment, if any.
     pub(super) fn played<'b>(&'b self, base: Option<&CaseBase<'b>>, names: &Names) -> Option<Played<'b>> {
         let (state, _) = self.newest.as_ref()?;
         Played::of(base?, |case| names.of(case), state.play()?)

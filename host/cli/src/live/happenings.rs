@@ -9,7 +9,7 @@ use ssl::referee::Referee;
 
 use crate::replay::happening::{self, Finder};
 
-/// Finds what is new.
+/// Detects new events.
 #[derive(Debug, Default)]
 pub(super) struct News {
     finder: Finder,
@@ -51,7 +51,7 @@ impl News {
         }
     }
 
-    /// What the simulation's own referee noted since the last call.
+    /// Events of the simulation's own referee since the last call.
     pub(super) fn referee(&mut self, referee: &InternalReferee, t: f64, into: &mut Vec<Happening>) {
         for event in referee.events().iter().skip(self.events) {
             let kind = event.what.kind();
@@ -67,7 +67,7 @@ impl News {
         self.events = referee.events().len();
     }
 
-    /// A kick that was noticed.
+    /// A detected kick.
     pub(super) fn kick(&mut self, kick: Option<Kick>, t: f64, into: &mut Vec<Happening>) {
         let Some(kick) = kick else { return };
         let same =
@@ -94,7 +94,7 @@ impl News {
 /// The tracker refits a kick as it sees more of it; within this time it is the same one, µs.
 const SAME_KICK_US: u64 = 200_000;
 
-/// A game event of the league by its name: what a team did wrong, or anything else.
+/// Kind of a game event of the league by its name: a foul, or any other event.
 pub(crate) fn foul_or_event(name: &str) -> Kind {
     let foul = [
         "BOT_",
@@ -118,7 +118,7 @@ fn whose(words: &str) -> Option<Team> {
     match (has("blue"), has("yellow")) {
         (true, false) => Some(Team::Blue),
         (false, true) => Some(Team::Yellow),
-        // "goal, yellow, blue 0 : 1 yellow" is the first one's.
+        // "goal, yellow, blue 0 : 1 yellow": the first team is the one that scored.
         (true, true) => words.split(", ").find_map(|part| match part {
             "blue" => Some(Team::Blue),
             "yellow" => Some(Team::Yellow),

@@ -14,7 +14,7 @@ use super::words::spaced;
 /// A keep-out zone larger than this share of the field is drawn by its border alone.
 const FILLED: f32 = 0.35;
 
-/// What a team plays.
+/// A case in play by a team.
 pub(super) struct Played<'a> {
     pub(super) case: Case<'a>,
     pub(super) name: String,
@@ -125,7 +125,7 @@ pub(super) fn of_cases(plays: &[(Colour, Played<'_>)]) -> [Layer; 3] {
     ]
 }
 
-/// Where field players of each team must not be now.
+/// Where field players of each team must not be at the moment.
 pub(super) fn keep_outs(
     field: &FieldSpec,
     phase: Phase<Colour>,

@@ -156,7 +156,7 @@ impl Legged {
         }
     }
 
-    /// The trial's page, to stay.
+    /// The trial's page, which stays open.
     pub(crate) fn into_page(self) -> Page {
         self.page
     }

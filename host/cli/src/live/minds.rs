@@ -22,7 +22,7 @@ pub(super) struct Clocks {
     roles: BTreeMap<(bool, u8), (String, f64)>,
 }
 
-/// Seconds since that was first so.
+/// Seconds since the state of `who` is `words`.
 fn since(of: &mut BTreeMap<(bool, u8), (String, f64)>, who: (bool, u8), words: &str, t: f64) -> f32 {
     let entry = of.entry(who).or_insert_with(|| (words.to_owned(), t));
     if entry.0 != words || t < entry.1 {
@@ -87,7 +87,7 @@ pub(super) fn mind(
     Some((mind, aim))
 }
 
-/// How a robot and its link are.
+/// State of a robot and its link.
 pub(super) fn vitals(host: &Host, robot: &Robot, now: Instant) -> Option<Vitals> {
     let quality = host.quality(robot.who.id)?;
     let heard = quality.heard_at()?;

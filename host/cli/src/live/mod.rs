@@ -60,11 +60,11 @@ pub(crate) struct PageArgs {
     flag: &'static str,
 }
 
-/// Its usual name.
+/// The usual name of the flag.
 const LISTEN: &str = "--listen";
 
 impl PageArgs {
-    /// Served there, by a verb that has another name for it.
+    /// Arguments for a page at `listen`, by a verb that has another name for the flag.
     pub(crate) fn at(listen: SocketAddr, flag: &'static str) -> Self {
         Self { listen, flag }
     }
@@ -125,7 +125,7 @@ pub(crate) const fn team(colour: Colour) -> Team {
     }
 }
 
-/// And back.
+/// The inverse of [`team`].
 pub(crate) const fn colour(team: Team) -> Colour {
     match team {
         Team::Blue => Colour::Blue,

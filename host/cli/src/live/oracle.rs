@@ -6,7 +6,7 @@ use crate::args::Chosen;
 use crate::cases;
 use crate::library::Shelf;
 
-/// A library, and how it is asked.
+/// A library, with settings of retrieval.
 pub(crate) struct CaseOracle {
     shelf: Option<Shelf>,
     chosen: Chosen,

@@ -21,28 +21,28 @@ pub(super) struct Aim {
     pub(super) duty: Duty,
 }
 
-/// All that painting needs of a moment.
+/// Snapshot of a moment, with all inputs of the overlays.
 #[derive(Clone, Debug)]
 pub(super) struct Picture {
-    /// Seconds since the beginning.
+    /// Seconds since the start.
     pub(super) t: f64,
     pub(super) world: World,
     pub(super) game: Game,
     pub(super) field: FieldSpec,
     pub(super) league: League,
-    /// The one team whose host is ours; none where both are, or none.
+    /// The one team whose host is ours; `None` where both are, or neither.
     pub(super) us: Option<Colour>,
     pub(super) aims: Vec<Aim>,
 }
 
-/// Paints one moment after the other; what it remembers between them is shared by its sketches.
+/// Paints one moment after the other; state between moments is shared by its sketches.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Painter {
     tactics: Arc<Mutex<Tactics>>,
 }
 
 impl Painter {
-    /// The scene as it is, to be painted when the page's thread has time.
+    /// The scene as it is, with the overlays deferred to the page's thread.
     pub(super) fn sketch(&self, scene: Scene, picture: Picture) -> Sketch {
         let tactics = self.tactics.clone();
         Sketch::new(scene, move |scene| {

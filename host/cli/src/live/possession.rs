@@ -1,12 +1,12 @@
-//! `possession`: possession statistics. Counted from what is seen, where no referee of our own counts (Biswas
-//! et al. 2014 §6).
+//! `possession`: possession statistics. Counted from vision, where there is no referee of our own (Biswas et
+//! al. 2014 §6).
 
 use host::world::World;
 use rules::{Colour, Phase};
 
 /// A robot whose centre is nearer to the ball than this touches it, m: hull, ball, and 30 mm for noise.
 const TOUCH: f32 = 0.14;
-/// Between two looks no more than this counts, s: what is longer is a gap.
+/// Longest time between two samples that is counted, s: what is longer is a gap.
 const GAP_S: f64 = 0.5;
 
 /// Seconds by team: yellow, blue.

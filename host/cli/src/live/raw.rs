@@ -24,7 +24,7 @@ pub(super) struct Images {
 impl Images {
     pub(super) fn hear(&mut self, bytes: &[u8]) {
         self.count += 1;
-        // The oldest one's room is used again.
+        // The oldest packet's buffer is used again.
         let mut room = if self.packets.len() >= PACKETS {
             self.packets.pop_front().unwrap_or_default()
         } else {

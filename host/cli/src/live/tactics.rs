@@ -30,7 +30,7 @@ const WORTHLESS: f32 = 0.001;
 /// What is worth less than this share of the best place is not drawn.
 const FAINT: f32 = 0.04;
 
-/// What is remembered from one moment to the next.
+/// State from one moment to the next.
 #[derive(Debug, Default)]
 pub(super) struct Tactics {
     kicks: Option<Kicks>,
@@ -41,13 +41,13 @@ pub(super) struct Tactics {
     /// The team in possession, and since when another team's robot is nearer to the ball.
     attackers: Option<Colour>,
     nearer_since: Option<f64>,
-    /// When the maps were made, and they.
+    /// When the maps were computed, s.
     made: Option<f64>,
     maps: [Vec<Shape>; 2],
 }
 
 impl Tactics {
-    /// The layers of a moment: maps, which lie under everything else, and what lies above.
+    /// The layers of a moment: maps, which are drawn under everything else, and the layers above.
     pub(super) fn layers(&mut self, picture: &Picture) -> [[Layer; 2]; 2] {
         let Picture { t, world, game, us, .. } = picture;
         // Another match, or a recording from its beginning.

@@ -95,7 +95,7 @@ fn played(seconds: u32) -> Played {
             if tick + 100 > ticks {
                 out.seen.extend(scene.raw.robots.iter().map(|robot| (robot.0, robot.1)));
             }
-            // What is known of the field has settled.
+            // By then the learned field parameters have settled.
             if tick >= 500 {
                 out.judge(&scene);
             }
@@ -151,6 +151,7 @@ fn a_retrieval_that_is_told_can_be_explained_and_mostly_comes_to_the_same_case()
         told += 1;
         same += u32::from(happening.words.contains(name));
     }
-    // The coordinator retrieved by its own belief of a moment before: where two cases are near to each other it may differ.
+    // The coordinator retrieved by its own belief of a moment before: where two cases are similar it may
+    // differ.
     assert!(told >= 5 && same * 2 > told, "{same} of {told}");
 }

@@ -33,7 +33,7 @@ const BEHIND_MAX_S: f64 = 0.25;
 const SCENE_EVERY_MAX_S: f64 = 0.2;
 /// Longest part of a name sent by a viewer that is quoted in an answer, characters.
 const NAME_LEN: usize = 60;
-/// What stands still looks for requests so often.
+/// Period of polling for requests while paused.
 const IDLE: Duration = Duration::from_millis(10);
 
 /// A match and its page.
@@ -55,11 +55,11 @@ struct Hands {
     /// The clock, and the match at that time.
     clock: (Instant, f64),
     took: Duration,
-    /// Simulated seconds a second, as reached.
+    /// Simulated seconds per second of wall time, as reached.
     reached: f32,
 }
 
-/// How an evening ends.
+/// How a run ends.
 pub(crate) enum End {
     /// The match is over; its report.
     Over(GameReport),
@@ -118,7 +118,7 @@ impl<'s> Theatre<'s> {
         None
     }
 
-    /// Another match from that seed.
+    /// Restarts with another seed.
     pub(crate) fn anew(&mut self, seed: u64) {
         self.config.seed = seed;
         self.page.clear();
@@ -285,7 +285,7 @@ fn situate(game: &mut Game<'_>, shelf: Option<&Shelf>, name: &str) -> bool {
 }
 
 impl Hands {
-    /// Until the clock is where the match is.
+    /// Waits until the clock reaches the match time.
     fn wait(&mut self, t: f64) {
         let (began, from) = self.clock;
         let due = (t - from) / f64::from(self.speed);

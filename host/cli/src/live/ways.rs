@@ -17,7 +17,7 @@ const STEP: f32 = 0.1;
 const STEPS: usize = 15;
 /// A path ends this near its goal, m.
 const THERE: f32 = 0.03;
-/// Between bodies, and more than the rules' distances, m: as the robot's own.
+/// Least distance between bodies, and added to the rules' distances, m: as the robot's own.
 const MARGIN: f32 = 0.03;
 
 /// Plans the paths of one team's robots at a moment.
@@ -30,7 +30,7 @@ pub(super) struct Ways<'a> {
 }
 
 impl Ways<'_> {
-    /// From where the robot is to `to`.
+    /// Path from the robot's position to `to`.
     pub(super) fn to(&self, robot: &Robot, to: [f32; 2], duty: Duty) -> Vec<[f32; 2]> {
         let to = Point::<Field>::new(to[0], to[1]);
         let rules = keep_out(&Situation {
@@ -82,7 +82,7 @@ impl Ways<'_> {
     }
 }
 
-/// A disc, farther on.
+/// A disc, displaced by `by`.
 fn moved(shape: geometry::Shape<Field>, by: geometry::Vector<Field>) -> geometry::Shape<Field> {
     match shape {
         geometry::Shape::Disc { center, radius } => geometry::Shape::Disc { center: center + by, radius },

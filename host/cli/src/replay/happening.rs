@@ -14,11 +14,11 @@ use ssl::referee::{Command, Referee, Stage, TeamInfo};
 pub(crate) struct Happening {
     /// Seconds since the start of the file.
     pub(crate) at_s: f64,
-    /// What kind of thing.
+    /// Kind of event.
     pub(crate) kind: Kind,
     /// Its name, as the league writes it.
     pub(crate) name: String,
-    /// Whose, or by whom, and with what number.
+    /// Team or player, and number.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub(crate) words: String,
 }
@@ -33,18 +33,18 @@ pub(crate) enum Kind {
     GameEvent,
     /// A yellow or red card was given.
     Card,
-    /// As many robots as a team may have, where that changed.
+    /// The number of robots that a team may have changed.
     MaxBots,
-    /// A team's name, where it changed.
+    /// A team's name changed.
     TeamName,
-    /// The ball is to be placed somewhere else.
+    /// The position for ball placement changed.
     DesignatedPosition,
 }
 
 /// Most game events that are reported; a source with more is not a referee.
 const EVENTS_MAX: usize = 65_536;
 
-/// Finds what is new in each packet of the referee.
+/// Detects new events in each packet of the referee.
 #[derive(Debug, Default)]
 pub(crate) struct Finder {
     last: Option<Last>,
@@ -85,7 +85,7 @@ impl Account {
 }
 
 impl Finder {
-    /// What is new in a packet that came at `at_s`.
+    /// Events in a packet that came at `at_s`.
     pub(crate) fn read(&mut self, packet: &Referee, at_s: f64, into: &mut Vec<Happening>) {
         let now = Last {
             command: packet.command,

@@ -1,6 +1,7 @@
 //! A league log file: one pass that counts, tracks, listens, and stops at a moment if one is asked for.
 //!
-//! The clock is counted from the recorder's, from the file's first message on ([`LogClock`]): where that is set, ours goes on.
+//! Time is summed from the recorder's clock, from the file's first message on ([`LogClock`]): where that is
+//! set, ours goes on.
 
 use std::process::ExitCode;
 
@@ -20,8 +21,8 @@ use super::{ReplayArgs, failed};
 use crate::Failure;
 use crate::output::say;
 
-/// Vision that is silent longer than this is a gap: robots are blind for three of their beats at 60 Hz, and teams
-/// complain from 0.2 s on.
+/// Vision that is silent longer than this is a gap: robots are blind after three missed periods at 60 Hz, and
+/// teams complain from 0.2 s on.
 const VISION_GAP_S: f64 = 0.2;
 /// The referee's: pauses of 1.5 s come on a loaded machine.
 const REFEREE_GAP_S: f64 = 2.0;
@@ -75,7 +76,7 @@ struct Pass<'a> {
     listener: Listener,
     finder: Finder,
     team: Option<Team>,
-    /// Events as asked for that have been met.
+    /// Number of requested events found so far.
     met: u32,
 }
 
@@ -110,7 +111,7 @@ impl<'a> Pass<'a> {
         })
     }
 
-    /// The next message; a moment, if this is the one.
+    /// Reads the next message; returns a moment, if this is the requested one.
     fn read(&mut self, number: u64, record: &Record) -> Option<Moment> {
         self.began_ns.get_or_insert(record.timestamp_ns);
         let later = self.clock.read(record.timestamp_ns);
@@ -164,7 +165,7 @@ impl<'a> Pass<'a> {
         None
     }
 
-    /// The moment of the event that was asked for, if it is among the newest.
+    /// The moment of the requested event, if it is among the newest.
     fn asked_for(&mut self, since: usize) -> Option<Moment> {
         let word = self.args.event.as_deref()?;
         for place in since..self.report.happenings.len() {
@@ -225,7 +226,7 @@ impl<'a> Pass<'a> {
         }
     }
 
-    /// What is seen now.
+    /// Records the current state of the tracker.
     fn look(&mut self) {
         let world = self.tracker.picture();
         for robot in world.robots() {
@@ -244,7 +245,7 @@ impl<'a> Pass<'a> {
         let Some(team) = &mut self.team else { return };
         while let Some(due) = team.host.poll_timeout().filter(|due| *due < self.now) {
             team.tell(due, Input::Timeout);
-            // A deadline that stands after it was met would stand for ever.
+            // A deadline that is not moved after it was met would never end.
             if team.host.poll_timeout().is_some_and(|next| next <= due) {
                 break;
             }
@@ -290,7 +291,7 @@ impl Team {
     }
 }
 
-/// No field has more.
+/// Most cameras of a field.
 const CAMERAS_MAX: usize = 64;
 /// FNV-1a-64, as the trace hash (docs/architecture.md §2.5).
 const FNV_BASIS: u64 = 0xcbf2_9ce4_8422_2325;

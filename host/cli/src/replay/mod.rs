@@ -27,7 +27,7 @@ pub(crate) use moment::phase_words;
 use crate::Failure;
 use crate::live::PageArgs;
 
-/// Which file, and what of it.
+/// The file, and what to print of it.
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct ReplayArgs {
@@ -36,7 +36,7 @@ pub(crate) struct ReplayArgs {
     /// Print the result as JSON, and nothing else.
     #[arg(long)]
     json: bool,
-    /// Show it on the page, every moment of it, until Ctrl-C.
+    /// Display it on the page, every moment of it, until Ctrl-C.
     #[arg(long, conflicts_with_all = ["json", "at", "event", "check"])]
     watch: bool,
     #[command(flatten)]
@@ -57,11 +57,11 @@ pub(crate) struct ReplayArgs {
     /// The league of that host: ssl-2013, division-b or division-a; a trace knows its own.
     #[arg(long, value_name = "NAME", default_value = "division-b", value_parser = league)]
     league: League,
-    /// Feed the hosts of a trace again and hold every packet they send to the record, byte for byte: so it is done with every
-    /// trace, and asked of anything else it is an error.
+    /// Feed the hosts of a trace again and compare every packet they send with the record, byte for byte:
+    /// this is done with every trace, and an error with any other file.
     #[arg(long)]
     check: bool,
-    /// The key of the team that recorded a trace, where it had one: 32 hexadecimal digits in a file.
+    /// The key of the team that recorded a trace, if it had one: 32 hexadecimal digits in a file.
     #[arg(long, value_name = "FILE")]
     key_file: Option<PathBuf>,
 }

@@ -1,5 +1,5 @@
-//! `moment`: the state of a recorded match at one moment. Tracker, referee and hosts as they stood then. SI,
-//! field frame.
+//! `moment`: the state of a recorded match at one moment. Tracker, referee and hosts at that time. SI, field
+//! frame.
 
 use geometry::{Field, Point};
 use host::Host;
@@ -16,7 +16,7 @@ use crate::live::words::spaced;
 pub(super) struct Moment {
     /// Seconds since the start of the file.
     at_s: f64,
-    /// What it was asked for by, if by an event.
+    /// The event that it was requested by, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     event: Option<String>,
     phase: String,
@@ -59,7 +59,7 @@ struct Robot {
     speed: f32,
     /// 0–1.
     confidence: f32,
-    /// By the host of its team, where the file has one.
+    /// Decision of the host of its team, if the file has one.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     decided: Option<Decided>,
 }

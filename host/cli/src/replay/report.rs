@@ -25,7 +25,7 @@ pub(super) struct Report {
     pub(super) undecodable: u64,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) first_undecodable: Option<String>,
-    /// How the file ended, where it did not end as it should.
+    /// The damage, if the file did not end properly.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) damage: Option<String>,
     /// Messages that are earlier than the one before.
@@ -34,12 +34,12 @@ pub(super) struct Report {
     pub(super) clock_steps: Vec<ClockStep>,
     /// Steps beyond those that are listed.
     pub(super) clock_steps_more: u64,
-    /// Field and teams, as they were at last.
+    /// Last state of field and teams.
     #[serde(flatten)]
     pub(super) sheet: Sheet,
     pub(super) cameras: BTreeMap<u32, Camera>,
     pub(super) robots: Robots,
-    /// The fastest ball that the tracker believed, m/s.
+    /// The highest ball speed of the tracker, m/s.
     pub(super) ball_speed_max: f32,
     pub(super) score: Score,
     pub(super) happenings: Vec<Happening>,
@@ -73,14 +73,14 @@ pub(super) struct Camera {
     pub(super) rate: Rate,
 }
 
-/// Shell numbers that the tracker believed.
+/// Shell numbers of the tracker's robots.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct Robots {
     pub(super) blue: BTreeSet<u8>,
     pub(super) yellow: BTreeSet<u8>,
 }
 
-/// Nothing came for long.
+/// A time without messages.
 #[derive(Debug, Serialize)]
 pub(super) struct Gap {
     pub(super) at_s: f64,
@@ -101,7 +101,7 @@ pub(super) struct Tracker {
     pub(super) restarts: u64,
 }
 
-/// What became of the referee's packets.
+/// Counts of the referee's packets by what was done with them.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct Referee {
     pub(super) taken: u64,
@@ -113,14 +113,14 @@ pub(super) struct Referee {
     pub(super) unknown: u64,
 }
 
-/// What a host made of it.
+/// Output of a host for the log file.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct Host {
     pub(super) colour: String,
     pub(super) inputs: u64,
     pub(super) packets: u64,
     pub(super) bytes: u64,
-    /// The same over all packets: two runs can be compared by it.
+    /// Hash over all packets, to compare two runs.
     pub(super) packets_hash: String,
 }
 

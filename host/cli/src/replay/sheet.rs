@@ -13,13 +13,13 @@ const NAME_LEN: usize = 60;
 /// Field and teams.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub(super) struct Sheet {
-    /// By vision; none where it never sent one.
+    /// By vision; `None` if it never sent one.
     pub(super) field: Option<FieldSize>,
-    /// By the referee; none where it was never received.
+    /// By the referee; `None` if it was never received.
     pub(super) teams: Option<Teams>,
 }
 
-/// The field's measures, as vision sends them.
+/// The field's dimensions, as vision sends them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct FieldSize {
     pub(super) length: f64,
@@ -40,12 +40,12 @@ pub(super) struct Teams {
     pub(super) yellow: Team,
 }
 
-/// A team by the referee's account.
+/// A team as the referee reports it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct Team {
     pub(super) name: String,
     pub(super) goalkeeper: u32,
-    /// Ever given.
+    /// Number given in total.
     pub(super) yellow_cards: u32,
     /// Still counting down.
     pub(super) yellow_cards_active: usize,

@@ -1,4 +1,4 @@
-//! A recording on the page: every moment of it, for each viewer to look through at its own pace.
+//! A recording on the page: every moment of it, for each viewer to seek through at its own pace.
 //!
 //! A trace replays the decisions of its hosts: they are built from its header and decide again. A league's
 //! log file gives what was on the field and what the referee sent; with `--team` a host of ours is fed with
@@ -30,7 +30,7 @@ pub(super) fn run(args: &ReplayArgs, page: &PageArgs) -> Result<ExitCode, Failur
     if begins(&args.file)?.starts_with(TRACE) { show_trace(args, page) } else { show_log(args, page) }
 }
 
-/// The page, and what fills it.
+/// The page and its composer.
 struct Projector {
     page: Page,
     composer: Composer,
@@ -75,7 +75,7 @@ impl Projector {
         self.look(now, eyes, hosts);
     }
 
-    /// All is read: it stays to be looked at.
+    /// Keeps the page open after the whole file was read.
     fn stay(self, words: &str) -> ExitCode {
         stay(self.page, words);
         if self.broken { ExitCode::FAILURE } else { ExitCode::SUCCESS }

@@ -18,11 +18,11 @@ pub(super) const NAME: &str = "onetwo";
 const RETRY_AFTER: Duration = Duration::from_secs(2);
 /// The controller answers within its tick of 25 ms; a loaded machine was seen to pause for 1.6 s.
 const REPLY_TIME: Duration = Duration::from_secs(3);
-/// An idle connection is looked at this often, to see that it still stands.
+/// An idle connection is checked this often for being alive.
 const IDLE: Duration = Duration::from_millis(200);
 /// Events that wait for the connection; more are dropped.
 const WAITING_MAX: usize = 64;
-/// An event that waited longer is not reported: the game went on without it.
+/// An event that waited longer is not reported: the game has moved on.
 const OLD_AFTER: Duration = Duration::from_secs(1);
 
 /// Reports events to a controller.
@@ -50,7 +50,7 @@ impl Reporter {
         &self.to
     }
 
-    /// Reports an event as soon as the controller listens.
+    /// Reports an event as soon as the controller is connected.
     pub(super) fn report(&mut self, event: GameEvent) {
         match self.events.try_send((Instant::now(), event)) {
             Ok(()) => {}
@@ -69,7 +69,7 @@ impl Reporter {
     }
 }
 
-/// The thread's part.
+/// The part that runs on the thread.
 struct Talk {
     to: String,
     events: Receiver<(Instant, GameEvent)>,
@@ -78,7 +78,7 @@ struct Talk {
     trouble: Option<String>,
 }
 
-/// The program has no use for the connection any more.
+/// The program has dropped the connection.
 struct Ended;
 
 impl Talk {
@@ -97,11 +97,11 @@ impl Talk {
         }
     }
 
-    /// Until the connection fails (why), or the program ends.
+    /// Runs until the connection fails (with the reason), or the program ends.
     fn connect_and_report(&mut self) -> Result<Ended, String> {
         let mut connection =
             Connection::open(self.address()?, REPLY_TIME).map_err(|error| error.to_string())?;
-        // The controller speaks first.
+        // The controller sends first.
         reply(&mut connection)?;
         send(&mut connection, &AutoRefRegistration { identifier: NAME.to_owned(), signature: None })?;
         let answer = reply(&mut connection)?;
@@ -158,7 +158,7 @@ fn reply(connection: &mut Connection) -> Result<ControllerReply, String> {
     })
 }
 
-/// Why the controller will not have it.
+/// The controller's reason for refusing.
 fn refused(reply: &ControllerReply) -> Option<String> {
     let rejected = reply.status_code == Some(StatusCode::Rejected as i32);
     rejected.then(|| reply.reason.clone().unwrap_or_else(|| "no reason given".to_owned()))
@@ -170,7 +170,7 @@ fn name_of(event: &GameEvent) -> String {
     format!("{:?}", kind.unwrap_or(GameEventType::Unknown))
 }
 
-/// `HOST` or `HOST:PORT`, as it was asked for, with the league's port where none is given.
+/// `HOST` or `HOST:PORT`, as given, with the league's port where none is given.
 pub(super) fn address(text: &str) -> Result<String, String> {
     let port = addresses::AUTOREF_PORT;
     let whole = match text.rsplit_once(':') {

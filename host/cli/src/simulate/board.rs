@@ -22,11 +22,11 @@ const NAME_LEN: usize = 60;
 /// Requests of viewers to the simulator loop.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Wish {
-    /// Another pace; 0 stands still.
+    /// New speed; 0 pauses.
     pub(super) pace: Option<f32>,
     /// Number of further ticks of 10 ms, after which it stands still.
     pub(super) ticks: u32,
-    /// Another game, from that seed.
+    /// A restart with this seed.
     pub(super) anew: Option<u64>,
 }
 
@@ -36,7 +36,7 @@ pub(super) struct Board {
     composer: Composer,
     eyes: Host,
     shown: Option<Instant>,
-    /// The speed to go on with after a pause.
+    /// The speed after a pause.
     speed: f32,
     seed: u64,
     /// Simulated seconds.

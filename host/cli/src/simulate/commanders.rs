@@ -1,5 +1,5 @@
-//! `commanders`: detection of two programs that command one robot of the simulator. Two teams' programs of
-//! one colour take turns then, and its robots shake between two wills. Times in the program's own.
+//! `commanders`: detection of two programs that command one robot of the simulator. Both programs' commands
+//! are then executed alternately, and the robots shake. Times in the program's own.
 
 use std::collections::BTreeMap;
 use std::net::SocketAddr;

@@ -137,7 +137,7 @@ impl Crew {
         }
     }
 
-    /// Looks at the world, reports and does; `events` are the world's since the last look.
+    /// Runs the services on the world; `events` are the world's since the last call.
     pub(super) fn look(&mut self, world: &mut World, events: &[Event], lines: &mut Vec<String>) {
         self.game.set_field(world.pitch().field);
         self.game.tick(time_of(world), world.ball.position);

@@ -1,7 +1,8 @@
 //! Server loop of `onetwo simulate`: the clock that drives the field, the network around it, the referee
 //! beside it.
 //!
-//! One thread: every millisecond it looks at three sockets, lets the world follow the clock and sends what fell due.
+//! One thread: every millisecond it polls three sockets, advances the world to the clock and sends what is
+//! due.
 
 use std::net::SocketAddr;
 use std::process::ExitCode;
@@ -30,7 +31,7 @@ use crate::net::Mouth;
 use crate::output::note;
 use crate::stop::stopped_by_hand;
 
-/// The referee looks this often, simulated ms: what its detectors are tuned with.
+/// Period of the referee, simulated ms: its detectors are tuned for it.
 const REFEREE_EVERY: u64 = 10;
 /// Period of the loop: one step of the world.
 const BEAT: Duration = Duration::from_millis(1);
@@ -172,7 +173,7 @@ pub(super) fn run(
 fn advance(server: &mut Server, now: u64, whistle: &mut Referee, words: &mut Vec<String>) {
     let step = (REFEREE_EVERY as f32 * 1000.0 / server.pace().max(1.0)) as u64;
     let mut at = whistle.advanced;
-    // The simulator itself leaves out what a pause of this program was too long for.
+    // The simulator itself skips the time of a pause of this program that was too long.
     if now.saturating_sub(at) > 1_000_000 {
         at = now - 1_000_000;
     }
@@ -189,9 +190,9 @@ struct Referee {
     who: Blower,
     mouth: Mouth,
     events: Vec<Event>,
-    /// The step of the world in which it last looked.
+    /// The step of the world at its last call.
     looked: u64,
-    /// How far the world has followed, µs.
+    /// Time that the world has been advanced to, µs.
     advanced: u64,
     /// Packets it sent since the page last took them.
     said: Vec<Vec<u8>>,
@@ -298,7 +299,7 @@ fn internal(args: &SimulateArgs, unix_us: u64, seed: u64) -> Result<Box<Internal
     ours.map(Box::new).map_err(|error| Failure::Network(error.to_string()))
 }
 
-/// Our own tracker's view of the simulated vision.
+/// Our own tracker on the simulated vision.
 struct Tracked {
     tracker: Tracker,
     publisher: Publisher,

@@ -37,7 +37,7 @@ pub(crate) struct SimulateArgs {
     /// Robots of each team; the league's number by default.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=16))]
     robots: Option<u8>,
-    /// Where all chance comes from.
+    /// Random seed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Simulated seconds a second; clients change it by the protocol.
@@ -57,17 +57,17 @@ pub(crate) struct SimulateArgs {
     /// Without noise: vision sees everything as it is.
     #[arg(long)]
     ideal: bool,
-    /// Where vision goes: a multicast group, or one machine.
+    /// Destination of vision: a multicast group, or one machine.
     #[arg(long, value_name = "ADDRESS:PORT", default_value_t = addresses::VISION_SIMULATED.into())]
     vision: SocketAddr,
     /// The control port; blue's robots are at the next one, yellow's at the one after. 0: any three that are free.
     #[arg(long, value_name = "PORT", default_value_t = addresses::SIMULATOR_PORT, value_parser = clap::value_parser!(u16).range(0..=65533))]
     ports: u16,
-    /// Step the field by TCP instead of by the clock: blue's port, yellow's is the next one (the simulation protocol's
-    /// SimulationSyncRequest, each after its length). 0: any two that are free.
+    /// Step the field by TCP instead of by the clock: blue's port, yellow's is the next one (the simulation
+    /// protocol's SimulationSyncRequest, each after its length). 0: any two that are free.
     #[arg(long, value_name = "ADDRESS:PORT")]
     sync: Option<SocketAddr>,
-    /// Whose address takes control; 127.0.0.1 keeps others away.
+    /// Address that accepts control; with 127.0.0.1 other machines have no access.
     #[arg(long, value_name = "ADDRESS", default_value = "0.0.0.0")]
     listen: std::net::IpAddr,
     /// The interface that multicast leaves by, its name or address; the system's choice by default.
@@ -85,13 +85,13 @@ pub(crate) struct SimulateArgs {
     /// referee; port 10007 by default. With --assistant it also decides about goals.
     #[arg(long, value_name = "HOST[:PORT]", value_parser = autoref::address)]
     autoref: Option<String>,
-    /// Where the internal referee's packets go.
+    /// Destination of the internal referee's packets.
     #[arg(long, value_name = "ADDRESS:PORT", default_value_t = addresses::REFEREE.into())]
     referee_to: SocketAddr,
-    /// Send what our own tracker makes of the vision, too: the league's address is 224.5.23.2:10010.
+    /// Send the output of our own tracker, too: the league's address is 224.5.23.2:10010.
     #[arg(long, value_name = "ADDRESS:PORT")]
     tracker: Option<SocketAddr>,
-    /// Without the page.
+    /// Run without the page.
     #[arg(long)]
     headless: bool,
     /// Address of the page; it is reachable from other machines only if an address other than the loopback is
@@ -123,9 +123,9 @@ enum Whistle {
 /// A profile on the command line.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum ProfileWord {
-    /// As this simulator is.
+    /// This simulator's own behaviour.
     Ours,
-    /// As grSim: four cameras at once, its own seconds, no noise.
+    /// As grSim: four cameras at once, its own time base, no noise.
     Grsim,
     /// As ER-Force's simulator: one camera, geometry with every frame, answers that get lost.
     ErForce,

@@ -10,9 +10,9 @@ use ssl::net::Port;
 
 use super::commanders::Commanders;
 
-/// A taken port is tried again this often.
+/// A port in use is tried again this often.
 const AGAIN: Duration = Duration::from_secs(1);
-/// Datagrams of one port between two steps, at most: a flood of commands must not stop the world.
+/// Most datagrams of one port between two steps: a flood of commands must not stop the world.
 const AT_ONCE: usize = 64;
 
 /// Sockets of the simulation protocol.
@@ -97,7 +97,7 @@ impl Ports {
         }
     }
 
-    /// What came goes to the simulator.
+    /// Passes received datagrams to the simulator.
     pub(super) fn listen(&mut self, server: &mut Server, words: &mut Vec<String>) {
         for door in &mut self.doors {
             let Some(socket) = &mut door.socket else { continue };
@@ -134,7 +134,8 @@ impl Ports {
         }
     }
 
-    /// Robots' states, in grSim's older protocol. One that cannot be sent is lost, as any datagram may be.
+    /// Sends robots' states, in grSim's older protocol. One that cannot be sent is lost, as any datagram may
+    /// be.
     pub(super) fn tell(&self, to: SocketAddr, bytes: &[u8]) {
         self.answer(server::Port::Legacy, to, bytes);
     }

@@ -15,7 +15,7 @@ use ssl::simulation::SimulationSyncRequest;
 
 /// Clients of one team's port; more are turned away.
 const CLIENTS_MAX: usize = 8;
-/// Requests of one client between two beats of the simulator, at most: Ctrl-C and the page want their turn.
+/// Most requests of one client in one period of the simulator: Ctrl-C and the page must be served too.
 const AT_ONCE: usize = 64;
 
 /// Both teams' ports.
@@ -56,7 +56,7 @@ impl SyncPorts {
         )
     }
 
-    /// Does what clients ask for; `each` gets the world after every step of it.
+    /// Handles clients' requests; `each` gets the world after every step of it.
     pub(super) fn serve(
         &mut self,
         server: &mut Server,
@@ -93,7 +93,7 @@ fn ssl_io(error: io::Error) -> ssl::net::NetError {
     ssl::net::NetError::System { doing: "talk with", address: SocketAddr::from(([0; 4], 0)), error }
 }
 
-/// Answers what one client has asked; an error ends the connection.
+/// Answers the requests of one client; an error ends the connection.
 fn answer(
     client: &mut Connection,
     colour: Colour,

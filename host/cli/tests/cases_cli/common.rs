@@ -54,7 +54,7 @@ at = [-150, 40]
 scope = [300, 300]
 "#;
 
-/// A robot alone that shoots; applies wherever its ball is.
+/// A case with a robot alone that shoots; applies at every ball position.
 pub(crate) fn shot_at(x: i32, y: i32) -> String {
     format!(
         "intent = \"Alone near the goal: shoot.\"\ndefending = \"yellow\"\n\
@@ -87,7 +87,7 @@ pub(crate) fn worked_example(test: &str) -> PathBuf {
     library(test, &[("center/pass-around.toml", PASS_AROUND)])
 }
 
-/// What a run of the program left behind.
+/// Result of a run of the program.
 pub(crate) struct Run {
     pub(crate) code: i32,
     pub(crate) stdout: String,
@@ -116,7 +116,7 @@ fn onetwo_fed(arguments: &[&str], input: &[u8]) -> Run {
     let mut stdin = child.stdin.take().unwrap();
     let output = std::thread::scope(|scope| {
         scope.spawn(move || {
-            // A program that ends without reading its input is no fault of the test.
+            // A program that ends without reading its input does not fail the test.
             let _ = stdin.write_all(input);
         });
         child.wait_with_output().unwrap()

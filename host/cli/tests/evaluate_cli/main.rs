@@ -201,7 +201,7 @@ fn a_change_to_the_team_is_recorded_and_reaches_the_robots() {
     ] {
         let run = base(flags);
         assert_ne!(run[key], plain[key], "{flags:?}");
-        // One retriever of two, or the largest distance instead of the sum, need not show in two trials.
+        // One retriever of two, or the largest distance instead of the sum, may have no effect in two trials.
         if !matches!(key, "retrievers" | "settings") {
             assert_ne!(run["csv_hash"], plain["csv_hash"], "{flags:?}");
         }

@@ -11,7 +11,7 @@ use std::time::Duration;
 use page_browser::{Browser, Tab};
 use program::Program;
 
-/// Nothing went wrong where a person would never look.
+/// No error on the browser's console.
 fn no_errors(tab: &mut Tab<'_>) {
     assert_eq!(tab.errors(), Vec::<String>::new());
 }
@@ -111,7 +111,7 @@ fn explained_on_the_field(tab: &mut Tab<'_>) {
     tab.eval("['pass-receive', 'believed'].forEach((name) => onetwo.setLayer(name, false))").unwrap();
 }
 
-/// Within a few tries: everything moves.
+/// Retries a few times: everything moves.
 fn onetwo_says(tab: &mut Tab<'_>, script: &str, words: &str) {
     let mut said = String::new();
     for _ in 0..40 {
@@ -153,7 +153,7 @@ fn control(tab: &mut Tab<'_>) {
     tab.wait("onetwo.store.latest.game.phase !== 'halt'", 10).unwrap();
 }
 
-/// Back in time while the match goes on, and to its newest moment again.
+/// Seeks back while the match goes on, and returns to its newest moment.
 fn look_back(tab: &mut Tab<'_>) {
     tab.eval("location.hash = '#t=1.00'").unwrap();
     tab.wait("!onetwo.time.live && Math.abs(onetwo.store.scene.t - 1) < 0.1", 20).unwrap();
@@ -191,7 +191,7 @@ fn a_recording_seeks_to_its_goal_and_to_the_moment_of_an_address() {
         5,
     )
     .unwrap();
-    // What a moment becomes is a problem that retrieval takes.
+    // A moment is exported as a problem that retrieval accepts.
     let line = tab
         .eval("fetch('/api/freeze', { method: 'POST', body: JSON.stringify({ t: 2, team: 'blue', what: 'problem' }) }).then((a) => a.text())")
         .unwrap();
@@ -205,7 +205,7 @@ fn a_lost_connection_is_shown_and_heals() {
     let words = ["play", "--duration", "600", "--seed", "3", "--listen"];
     let first = Program::start(&[&words[..], &["127.0.0.1:0"]].concat());
     let mut browser = Browser::start().unwrap();
-    // A telephone's width: everything is within it.
+    // At a telephone's width everything is within the screen.
     let mut tab = browser.open(&first.url(""), 390, 844).unwrap();
     tab.resize(390, 844, true).unwrap();
     tab.wait("window.onetwo?.store.scene", 60).unwrap();

@@ -49,7 +49,7 @@ pub(super) struct Situation {
     pub(super) robots: Vec<(Who, Pose<Field>)>,
 }
 
-/// The situation of the case of that name; none where there is no such case.
+/// The situation of the case of that name; `None` if there is no such case.
 pub(super) fn of_case(shelf: &Shelf, name: &str, sides: &Sides<'_>) -> Option<Situation> {
     let authored = shelf.names().iter().position(|known| known == name)?;
     place(&shelf.base(), CaseId(u16::try_from(authored * 4).ok()?), sides)
