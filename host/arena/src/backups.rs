@@ -14,7 +14,7 @@ pub(crate) struct BackupCount {
 struct Entry {
     robot: RobotId,
     role: Role,
-    /// When it was last counted, s.
+    /// Time of the last counted entry, s.
     counted_at: Option<f32>,
     count: u32,
 }
@@ -36,13 +36,13 @@ impl BackupCount {
         }
     }
 
-    /// How often, by robot in the order given.
+    /// Number of backups, by robot in the order given.
     pub(crate) fn counts(&self) -> Vec<u32> {
         self.robots.iter().map(|entry| entry.count).collect()
     }
 }
 
-/// Seconds between two entries that count: flicker between roles is one backing up.
+/// Least time between two counted entries, s: flicker between roles is one backing up.
 const GAP: f32 = 0.5;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! `cycles`: log of a team's retrieve–reuse cycles. Put together from overheard beacons alone (paper §4;
+//! `cycles`: log of a team's retrieve–reuse cycles. Derived from overheard beacons alone (paper §4;
 //! docs/architecture.md §5).
 
 use protocol::team::{AbortReason, Closure, CycleState, Decision, Play};
@@ -7,17 +7,17 @@ use protocol::{CycleId, RobotId};
 /// A cycle as seen from outside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CycleSeen {
-    /// Which.
+    /// Its id.
     pub id: CycleId,
     /// Its coordinator.
     pub coordinator: RobotId,
-    /// What was played, if a case was found.
+    /// The play, if a case was found.
     pub play: Option<Play>,
     /// The coordinator reported that no case fits.
     pub no_case: bool,
     /// Seconds from kick-off at which its first beacon was received.
     pub start: f32,
-    /// When and how it ended, once it has.
+    /// Time and kind of its end, once it has ended.
     pub end: Option<(f32, CycleEnd)>,
 }
 
@@ -82,10 +82,10 @@ pub struct CycleLog {
     cycles: Vec<CycleSeen>,
 }
 
-/// What a beacon added to the log.
+/// Change of the log by a beacon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum News {
-    /// Nothing.
+    /// No change.
     Nothing,
     /// A cycle started.
     Began(usize),
@@ -137,14 +137,14 @@ impl CycleLog {
         }
     }
 
-    /// The trial is over; what still ran ends with it.
+    /// Ends the trial; running cycles end with it.
     pub fn finish(&mut self, time: f32) {
         for cycle in &mut self.cycles {
             cycle.end = cycle.end.or(Some((time, CycleEnd::TrialOver)));
         }
     }
 
-    /// What is known, in the order of ids.
+    /// The known cycles, in the order of ids.
     pub fn cycles(&self) -> &[CycleSeen] {
         &self.cycles
     }

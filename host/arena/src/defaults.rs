@@ -17,11 +17,11 @@ use crate::report::in_seconds;
 /// A trial's default behaviour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct DefaultReport {
-    /// Seconds of it.
+    /// Its duration, s.
     pub time_s: f64,
     /// Number of spells.
     pub spells: u32,
-    /// Why, by decision; a spell has one every quarter of a second or so.
+    /// Causes, by decision; a spell has one every quarter of a second or so.
     pub causes: Causes,
 }
 
@@ -52,12 +52,12 @@ pub(crate) struct DefaultWatch {
 }
 
 impl DefaultWatch {
-    /// A tick is over.
+    /// Counts one tick.
     pub(crate) fn tick(&mut self) {
         self.ticks += u32::from(self.active);
     }
 
-    /// The newest cycle was decided on or ended.
+    /// Takes the newest cycle when it is decided on or ended.
     pub(crate) fn hear(
         &mut self,
         cycle: &CycleSeen,
@@ -102,7 +102,7 @@ impl Causes {
         }
     }
 
-    /// All of them.
+    /// Sum over all causes.
     pub fn total(&self) -> u32 {
         let Self { ball, robots, thr_c, path, held } = *self;
         ball + robots + thr_c + path + held

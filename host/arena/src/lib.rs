@@ -13,7 +13,7 @@
 //!
 //! [`skills`] plays tries of single skills through the whole loop, in worlds of any physics.
 //!
-//! [`evaluation`] plays the paper's thousands of trials and makes its tables of them.
+//! [`evaluation`] plays the paper's thousands of trials and computes its tables.
 //!
 //! **Invariants.** Watching changes nothing; reports come from the true state and the radio, never from
 //! inside a brain.

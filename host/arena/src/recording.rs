@@ -26,7 +26,7 @@ pub struct Recording {
     pub report: Option<TrialReport>,
 }
 
-/// Where everything was at the end of a tick.
+/// Positions of ball and robots at the end of a tick.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
     /// Seconds from kick-off.
@@ -46,24 +46,24 @@ pub struct Kick {
     pub time: f32,
     /// The robot that kicked.
     pub robot: usize,
-    /// How.
+    /// Kind of kick.
     pub kick: LeggedKick,
-    /// From where.
+    /// Position of the ball.
     pub from: Point<Field>,
     /// The ball's stop position, undisturbed.
     pub rest: Point<Field>,
 }
 
-/// The beginning of a gameplay.
+/// Start of a gameplay.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {
     /// Seconds from kick-off.
     pub time: f32,
-    /// Where the ball was.
+    /// Position of the ball.
     pub ball: Point<Field>,
     /// `region/name`.
     pub case: String,
-    /// Which copy of it.
+    /// Symmetry of the stored case.
     pub symmetry: &'static str,
     /// The players, in the order of case robots.
     pub players: Vec<String>,

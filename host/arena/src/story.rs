@@ -27,7 +27,7 @@ pub struct Story {
 }
 
 impl Story {
-    /// The lines so far that were not taken yet.
+    /// The lines since the last call.
     pub fn take_lines(&mut self) -> Vec<String> {
         std::mem::take(&mut self.lines)
     }
@@ -213,7 +213,7 @@ impl Watcher for Story {
     }
 }
 
-/// The action in place `n` of the list of the case robot in place `part`.
+/// Action `n` of the list of the case robot at index `part`.
 fn action(moment: &Moment<'_>, play: &Play, part: usize, n: usize) -> Option<Action> {
     moment.config.base.case(play.case)?.action(CaseRobot::new(part)?, n)
 }

@@ -18,40 +18,41 @@ use crate::defaults::{self, DefaultWatch};
 use crate::names::{CaseNames, Cast};
 use crate::report::{Backups, CaseCounts, CycleReport, Possession, TrialReport, in_seconds};
 
-/// Everything that decides a trial but its back end.
+/// All settings that a trial depends on except its backend.
 #[derive(Clone, Debug)]
 pub struct TrialConfig<'a> {
     /// Start positions.
     pub scenario: Scenario,
     /// Start positions if it is no named scenario.
     pub layout: Option<Layout>,
-    /// Which opponents play.
+    /// The opponents.
     pub opponents: Configuration,
-    /// What leads the attackers.
+    /// Approach of the attackers.
     pub approach: Approach,
-    /// Where all chance comes from.
+    /// Random seed.
     pub seed: u64,
-    /// How robots retrieve.
+    /// Settings of retrieval.
     pub settings: Settings,
     /// When a case's actions start.
     pub positioning: Positioning,
     /// Attackers, 1 to 4; the paper has 2.
     pub robots: usize,
-    /// How many of them may retrieve: those with the highest ids, so that the elector need not be one (paper §4.1).
+    /// Number of them that may retrieve: those with the highest ids, so that the elector need not be one
+    /// (paper §4.1).
     pub retrievers: usize,
     /// Radio settings: loss, delay, duplicates.
     pub air: AirSettings,
-    /// How perception is blurred.
+    /// Noise of perception.
     pub noise: Noise,
-    /// How long robots stand still after every cycle.
+    /// Time that robots stand still after every cycle.
     pub pause_after_cycle: Duration,
-    /// What goes wrong, and when.
+    /// Scheduled faults.
     pub faults: Vec<ScheduledFault>,
-    /// How the world behaves.
+    /// Parameters of the simulated world.
     pub parameters: Parameters,
     /// The case base in every robot.
     pub base: CaseBase<'a>,
-    /// What its cases are called.
+    /// Names of its cases.
     pub names: CaseNames,
 }
 
@@ -86,7 +87,7 @@ impl<'a> TrialConfig<'a> {
         Self { base, names, ..self }
     }
 
-    /// What the simulator needs to know.
+    /// The simulator's configuration.
     pub fn simulation(&self) -> SimulationConfig {
         let ids = (1..=self.robots).filter_map(|n| RobotId::new(u8::try_from(n).ok()?));
         let brains = ids.enumerate().map(|(i, robot)| BrainConfig {
@@ -114,10 +115,10 @@ impl<'a> TrialConfig<'a> {
 
 /// An observer at the edge of the field that sees everything and has a radio receiver.
 pub trait Watcher {
-    /// A tick has passed.
+    /// Called after every tick.
     fn watch(&mut self, moment: &Moment<'_>);
 
-    /// The trial is over.
+    /// Called at the end of the trial.
     fn end(&mut self, _moment: &Moment<'_>, _report: &TrialReport) {}
 }
 
@@ -137,7 +138,7 @@ pub struct Moment<'a> {
     pub beacons: &'a [(RobotId, Beacon)],
     /// The cycles so far, these beacons included.
     pub cycles: &'a CycleLog,
-    /// What these beacons added to them.
+    /// Changes of the cycles by these beacons.
     pub news: &'a [News],
 }
 
@@ -172,7 +173,7 @@ pub(crate) struct Game<'c, 'a> {
 }
 
 impl<'c, 'a> Game<'c, 'a> {
-    /// At kick-off.
+    /// A trial at kick-off.
     pub(crate) fn new(
         config: &'c TrialConfig<'a>,
         backend: Box<dyn Backend<'a> + 'a>,
@@ -235,7 +236,7 @@ impl<'c, 'a> Game<'c, 'a> {
         defaults.tick();
     }
 
-    /// The end of the last tick.
+    /// The state at the end of the last tick.
     pub(crate) fn moment(&self) -> Moment<'_> {
         Moment {
             config: self.config,
@@ -319,7 +320,7 @@ pub const fn positioning_word(positioning: Positioning) -> &'static str {
 
 /// The attackers' team on the radio.
 pub const TEAM: TeamId = TeamId(1);
-/// The league trials are played in.
+/// The league of trials.
 const LEAGUE: &str = "four-legged";
 
 #[cfg(test)]

@@ -177,10 +177,10 @@ fn a_hand_moves_ball_and_robots_whether_the_match_runs_or_stands() {
     assert!(game.world().ball.position.distance(elsewhere) < 0.3, "{:?}", game.world().ball.position);
 }
 
-/// How far robots that stand about went, how many of them there are, and whether a robot of ours went to the ball.
+/// Displacement of robots that stand about, their number, and whether a robot of ours went to the ball.
 #[derive(Default)]
 struct StandingAbout {
-    /// Where each stood first.
+    /// Start position of each.
     places: Vec<(Who, Point<geometry::Field>)>,
     unpushed: usize,
     touched: bool,
@@ -210,7 +210,7 @@ fn a_match_among_bystanders_is_played_without_them_and_is_had_again_from_its_wor
     let mut standing = StandingAbout::default();
     let report = play_in("random:3", &mut standing);
     assert_eq!((standing.places.len(), &*report.world), (10, "random:3"));
-    // Players may run into one or two.
+    // Players may push one or two.
     assert!(standing.unpushed >= 7, "{} of 10 stand where they stood", standing.unpushed);
     assert!(standing.touched, "somebody took the kick-off");
     assert!(!report.fouls.blue.contains_key("too_many_robots"), "{:?}", report.fouls);

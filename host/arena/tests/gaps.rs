@@ -21,7 +21,7 @@ use rules::{Colour, League, Phase};
 /// The governors' rulings of the last tick, by team number and robot.
 type Rulings = Rc<RefCell<BTreeMap<(u8, u8), Ruling>>>;
 
-/// Native brains whose governors can be looked at.
+/// Native brains whose governors can be inspected.
 struct Watched {
     base: CaseBase<'static>,
     rulings: Rulings,
@@ -77,7 +77,7 @@ impl Mcu for Computer {
     }
 }
 
-/// Good and dead stretches by turns, ticks of 10 ms.
+/// Alternating intervals with and without the link, ticks of 10 ms.
 struct Gaps {
     chance: Stream,
     dead: bool,
@@ -145,7 +145,7 @@ enum Fails {
     Late,
 }
 
-/// A match in which that fails from 1 s on.
+/// A match in which `fails` fails from 1 s on.
 fn play(seed: u64, seconds: f64, fails: Fails) -> Stood {
     let mut config = GameConfig::new(League::DivisionB, seed, seconds);
     match fails {
@@ -213,7 +213,8 @@ fn look(
 #[test]
 fn with_gaps_of_40_to_150_ms_at_random_for_60_s_robots_stand_for_at_most_a_twentieth_of_the_time_in_play() {
     for fails in [Fails::Vision, Fails::Radio, Fails::Both, Fails::EachLink, Fails::Late] {
-        // How long robots have an order to move is the match's: three together have enough of it.
+        // The time in which robots have an order to move depends on the match: three together have enough of
+        // it.
         let mut all = Stood::default();
         for seed in [1, 2, 3] {
             let stood = play(seed, 60.0, fails);
@@ -221,7 +222,8 @@ fn with_gaps_of_40_to_150_ms_at_random_for_60_s_robots_stand_for_at_most_a_twent
             all.add(&stood);
         }
         assert!(all.ordered > 250.0, "{fails:?}: {all:?}");
-        // Stretches of random length may last half a second; that is a silence, after which a robot is armed again.
+        // Intervals of random length may last half a second; that is a silence, after which a robot is armed
+        // again.
         let longest = if fails == Fails::EachLink { 1.2 } else { 0.5 };
         assert!(all.share() <= 0.05 && all.longest <= longest, "{fails:?}: {all:?}");
     }
@@ -258,8 +260,8 @@ fn silence(seed: u64, ticks: u32, fail: impl Fn(&mut Game<'static>, u32)) -> Vec
 fn in_a_real_silence_of_the_radio_every_robot_brakes_before_what_it_heard_is_200_ms_old_and_goes_on_after_it()
 {
     for seed in [1, 2, 3] {
-        // After a gap the first frame counts; after half a second of silence half a second of hearing, and a telemetry packet (10 Hz) by which
-        // the host knows the robot again.
+        // After a gap the first frame counts; after half a second of silence, half a second of receiving, and
+        // a telemetry packet (10 Hz) by which the host knows the robot again.
         for (dead_ticks, again_ticks) in [(30, 2), (45, 2), (100, 65)] {
             let seen = silence(seed, dead_ticks + 70, |game, tick| {
                 game.lose(if tick < dead_ticks { 1.0 } else { 0.0 });

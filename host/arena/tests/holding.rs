@@ -1,5 +1,5 @@
-//! `holding`: tests: a robot with the ball always does something with it. Situations in which robots stood
-//! with the ball, or beside it, put up in a match in play; seconds until the ball has gone on.
+//! `holding`: tests: a robot with the ball always acts on it. Situations in which robots stood with the ball,
+//! or beside it, set up in a match in play; seconds until the ball has moved on.
 
 use arena::game::{Game, GameConfig, GameReport, Nobody};
 use geometry::{Angle, Field, GoalEnd, Point, Pose, Vector};

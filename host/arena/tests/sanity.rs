@@ -58,7 +58,7 @@ fn a_healthy_match_of_either_division_says_nothing_ever() {
     }
 }
 
-/// The time of the first finding that `is` it, ms, by both hosts.
+/// The time of the first finding for which `is` is true, ms, by both hosts.
 fn first(
     config: &GameConfig,
     hand: impl FnMut(&mut Game<'static>, u32),

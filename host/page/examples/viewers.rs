@@ -40,7 +40,7 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Until the page ends, or it is gone itself; how many scenes it took.
+/// Reads until the page ends or the viewer is gone; returns the number of scenes taken.
 fn look(way: char, mut viewer: Viewer) -> u64 {
     if way == 'v' {
         thread::sleep(Duration::from_secs(1));

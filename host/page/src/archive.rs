@@ -20,44 +20,44 @@ use crate::happening::Happening;
 use crate::scene::Scene;
 use crate::sketch::Sketch;
 
-/// More scenes than this wait to be finished and encoded, a third of a second of them: the next one is left out, for they are worth
-/// nothing once they are old.
+/// Scenes that may wait to be finished and encoded, a third of a second of them: further ones are left out,
+/// because old scenes are of no use.
 const WAITING_MAX: usize = 8;
 /// Number of seconds that are kept, an hour: some 25 kB each.
 const SECONDS_MAX: usize = 3_600;
 /// Number of newest events that are kept: a match has some thousand.
 const HAPPENINGS_MAX: usize = 100_000;
 
-/// Numbers at a second, for plots.
+/// Values of one second, for plots.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Sample {
-    /// Seconds since the beginning.
+    /// Seconds since the start.
     pub t: f64,
-    /// `group/name` and value.
+    /// `group/name` of a gauge, with its value.
     pub values: BTreeMap<String, f32>,
 }
 
-/// All that is kept.
+/// The stored history.
 #[derive(Debug, Default)]
 pub(crate) struct Kept {
     seconds: BTreeMap<u32, Bytes>,
     open: Option<(u32, Vec<(f64, Utf8Bytes)>)>,
     pub(crate) happenings: Vec<Happening>,
     pub(crate) samples: Vec<Sample>,
-    /// From the first to the last scene, s.
+    /// Time of the first and the last scene, s.
     pub(crate) span: Option<(f64, f64)>,
     /// Number of restarts.
     pub(crate) life: u32,
 }
 
-/// What comes to the archive.
+/// A message to the archive's thread.
 enum Mail {
     Sketch(Box<Sketch>),
     Happening(Box<Happening>),
     Clear,
 }
 
-/// The match's end of it.
+/// The match's handle of the archive.
 #[derive(Debug)]
 pub(crate) struct Archive {
     mail: Sender<Mail>,
@@ -75,7 +75,7 @@ impl Archive {
         Self { mail, waiting, kept }
     }
 
-    /// Takes a scene, unless it is behind. Never waits.
+    /// Passes a scene to the archive, unless it is behind. Never waits.
     pub(crate) fn show(&self, sketch: Sketch) -> bool {
         if self.waiting.load(Ordering::Relaxed) >= WAITING_MAX {
             return false;
@@ -84,7 +84,7 @@ impl Archive {
         true
     }
 
-    /// Takes a scene in any case, and waits for that.
+    /// Passes a scene to the archive in any case, and waits for it.
     pub(crate) fn keep(&self, sketch: Sketch) {
         while self.waiting.load(Ordering::Relaxed) >= WAITING_MAX {
             thread::sleep(Duration::from_millis(1));
@@ -113,7 +113,7 @@ impl Archive {
     }
 }
 
-/// Looks at what is kept; what a thread that failed left there is whole.
+/// Accesses the history; a thread that panicked left it consistent.
 pub(crate) fn look<T>(kept: &Mutex<Kept>, at: impl FnOnce(&mut Kept) -> T) -> T {
     at(&mut kept.lock().unwrap_or_else(PoisonError::into_inner))
 }
@@ -219,7 +219,7 @@ fn gzip(texts: &[(f64, Utf8Bytes)]) -> Bytes {
         }
         out.write_all(b"]")
     };
-    // Memory takes everything.
+    // Writing to memory cannot fail.
     let _ = write();
     out.finish().unwrap_or_default().into()
 }

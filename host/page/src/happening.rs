@@ -4,19 +4,19 @@ use serde::{Deserialize, Serialize};
 
 use crate::request::Team;
 
-/// Something that happened.
+/// An event of the time line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Happening {
-    /// Seconds since the beginning.
+    /// Seconds since the start.
     pub t: f64,
-    /// What kind of thing.
+    /// Kind of event.
     pub kind: Kind,
     /// The team, if the event belongs to one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub team: Option<Team>,
     /// A short text.
     pub words: String,
-    /// Where.
+    /// Place of the event, m, field frame.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at: Option<[f32; 2]>,
     /// The situation that was retrieved with, as `onetwo cases explain` takes it.
@@ -30,13 +30,13 @@ pub struct Happening {
 pub enum Kind {
     /// A goal.
     Goal,
-    /// The referee's command.
+    /// A command of the referee.
     Command,
     /// A part of the match started.
     Stage,
     /// An offence.
     Foul,
-    /// Something else that the referee noted.
+    /// Another event of the referee.
     Event,
     /// A cycle started or ended without a case.
     Cycle,
@@ -44,6 +44,6 @@ pub enum Kind {
     Case,
     /// A pass or a shot.
     Kick,
-    /// Something went wrong with a robot or the radio.
+    /// A fault of a robot or the radio.
     Fault,
 }

@@ -23,20 +23,20 @@ use crate::token::Token;
 /// Requests that may wait for the match; further ones are answered that it is busy.
 const REQUESTS_MAX: usize = 256;
 
-/// What a page is opened with.
+/// Settings of a page.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// Where it is served; port 0: any that is free.
+    /// Address that it is served on; port 0: any free port.
     pub listen: SocketAddr,
-    /// What stands in its head.
+    /// Title of the page.
     pub title: String,
     /// It plays a recording: viewers start at its beginning, not at its newest moment.
     pub recorded: bool,
-    /// What viewers may ask for.
+    /// What viewers may request.
     pub powers: Powers,
-    /// What a viewer has to bring to ask for anything; none: every viewer may ask.
+    /// Token that a viewer needs for requests; `None`: every viewer may send them.
     pub token: Option<Token>,
-    /// How much of it others can hold.
+    /// Bounds on the resources that clients can hold.
     pub limits: Limits,
 }
 
@@ -52,7 +52,7 @@ pub trait Oracle: Send + Sync {
     }
 }
 
-/// Why there is no page.
+/// Why a page cannot be opened.
 #[derive(Debug)]
 pub enum PageError {
     /// Another program has the port.
@@ -87,7 +87,7 @@ pub struct Page {
     address: SocketAddr,
     archive: Archive,
     requests: Receiver<Ask>,
-    /// To the viewer whose request was taken last.
+    /// Channel to the viewer whose request was taken last.
     asker: RefCell<Option<Refusals>>,
     viewers: Arc<AtomicUsize>,
     told: u64,
@@ -96,7 +96,7 @@ pub struct Page {
 }
 
 impl Page {
-    /// Takes the port and serves.
+    /// Opens the port and serves.
     pub fn open(settings: Settings, oracle: Arc<dyn Oracle>) -> Result<Self, PageError> {
         let listen = settings.listen;
         let failed = |error: io::Error| match error.kind() {
@@ -133,7 +133,7 @@ impl Page {
         })
     }
 
-    /// Where it is served.
+    /// Address that it is served on.
     pub fn address(&self) -> SocketAddr {
         self.address
     }
@@ -146,7 +146,7 @@ impl Page {
         }
     }
 
-    /// Keeps a moment in any case, and waits for that: for recordings.
+    /// Stores a moment in any case, and waits for it: for recordings.
     pub fn keep(&mut self, sketch: impl Into<Sketch>) {
         self.archive.keep(self.dated(sketch.into()));
     }
@@ -168,7 +168,7 @@ impl Page {
         self.archive.clear();
     }
 
-    /// The next thing that a viewer asks for.
+    /// The next request of a viewer.
     pub fn next_request(&self) -> Option<Request> {
         let Ask { request, asker } = self.requests.try_recv().ok()?;
         self.asker.replace(Some(asker));
@@ -183,7 +183,7 @@ impl Page {
         }
     }
 
-    /// How many look on now.
+    /// Number of viewers at the moment.
     pub fn viewers(&self) -> usize {
         self.viewers.load(Ordering::Relaxed)
     }

@@ -42,14 +42,14 @@ const UNTAKEN_MAX: u32 = 2;
 const GONE: Duration = Duration::from_secs(30);
 /// Refusals that wait for a viewer that does not read; more are dropped.
 const REFUSALS_MAX: usize = 16;
-/// Where no connection can be taken (no descriptor is left), the next attempt is after that time.
+/// If no connection can be accepted (no descriptor is left), the next attempt is after this time.
 const ACCEPT_AGAIN: Duration = Duration::from_millis(50);
 /// The longest message of a viewer, bytes: a request, a problem.
 const WORD_MAX: usize = 16 * 1024;
 /// Events in one answer.
 const HAPPENINGS_A_TIME: usize = 5_000;
 
-/// What every answer is made from.
+/// State shared by all request handlers.
 pub(crate) struct Shared {
     pub(crate) port: u16,
     pub(crate) settings: Settings,
@@ -60,7 +60,7 @@ pub(crate) struct Shared {
     pub(crate) viewers: Arc<AtomicUsize>,
 }
 
-/// Why something that was asked for is not done, to the viewer that asked.
+/// Channel to a viewer for the reasons why its requests are refused.
 pub(crate) type Refusals = mpsc::Sender<String>;
 
 /// A viewer's request, and the channel for the answer if it is refused.
@@ -109,20 +109,21 @@ pub(crate) fn serve(listener: TcpListener, shared: Shared, ended: oneshot::Recei
 async fn accept(listener: tokio::net::TcpListener, routes: Router, limits: Limits) {
     let places = Arc::new(Semaphore::new(limits.connections));
     loop {
-        // Nothing closes the semaphore.
+        // The semaphore is never closed.
         let Ok(place) = places.clone().acquire_owned().await else { return };
         let Ok((stream, _)) = listener.accept().await else {
             sleep(ACCEPT_AGAIN).await;
             continue;
         };
-        // Scenes are small and wanted at once.
+        // Scenes are small and needed at once.
         let _ = stream.set_nodelay(true);
         let service = TowerToHyperService::new(routes.clone());
         let mut builder = http1::Builder::new();
         builder.timer(TokioTimer::new()).header_read_timeout(limits.header).half_close(false);
         let connection = builder.serve_connection(TokioIo::new(stream), service).with_upgrades();
         tokio::spawn(async move {
-            // A viewer's socket leaves its connection with the answer to its request: its time is its own (`GONE`).
+            // A viewer's socket leaves its connection with the answer to its request: it has a time limit of
+            // its own (`GONE`).
             let _ = timeout(limits.connection, connection).await;
             drop(place);
         });
@@ -242,7 +243,7 @@ async fn freeze(State(shared): State<Arc<Shared>>, body: Bytes) -> Response {
     }
 }
 
-/// The token that a viewer's address has.
+/// The token in a viewer's address.
 #[derive(Deserialize)]
 struct Brought {
     token: Option<String>,
@@ -253,7 +254,7 @@ async fn socket(
     Query(Brought { token }): Query<Brought>,
     upgrade: WebSocketUpgrade,
 ) -> Response {
-    // Taken before the answer: of those that come at once none can pass while the others are not counted yet.
+    // Taken before the answer: of simultaneous requests none can pass while the others are not counted yet.
     let Some(seat) = Seat::take(&shared.viewers, shared.settings.limits.viewers) else {
         return (StatusCode::SERVICE_UNAVAILABLE, "too many look on").into_response();
     };
@@ -265,7 +266,7 @@ async fn socket(
     })
 }
 
-/// One viewer, until it goes.
+/// Serves one viewer until it disconnects.
 async fn look_on(mut socket: WebSocket, shared: &Shared, may_ask: bool) {
     let mut news = shared.news.clone();
     news.mark_changed();

@@ -16,7 +16,7 @@ pub struct Layer {
     pub shapes: Vec<Shape>,
 }
 
-/// What a shape means; the page has a colour for each, by day and by night.
+/// Meaning of a shape; the page has a colour for each, in light and dark mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Tone {
@@ -28,11 +28,11 @@ pub enum Tone {
     Ball,
     /// A case's.
     Case,
-    /// To be kept out of.
+    /// A keep-out region.
     Forbidden,
     /// Good.
     Good,
-    /// Neither.
+    /// Neutral.
     Plain,
 }
 
@@ -48,7 +48,7 @@ pub enum Shape {
         radii: [f32; 2],
         /// Its meaning.
         tone: Tone,
-        /// Filled, thinly; else its outline alone.
+        /// Filled transparently; else only its outline.
         fill: bool,
         /// Displayed where the viewer points at it.
         #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -60,7 +60,7 @@ pub enum Shape {
         points: Vec<[f32; 2]>,
         /// Its meaning.
         tone: Tone,
-        /// Filled, thinly.
+        /// Filled transparently.
         fill: bool,
         /// Displayed where the viewer points at it.
         #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -72,7 +72,7 @@ pub enum Shape {
         from: [f32; 2],
         /// The other end.
         to: [f32; 2],
-        /// Around it.
+        /// Radius of the capsule.
         radius: f32,
         /// Its meaning.
         tone: Tone,
@@ -115,7 +115,7 @@ pub struct Heat {
     pub columns: u32,
     /// Row by row, least y first, 0 (nothing, not drawn) to 255.
     pub cells: Vec<u8>,
-    /// What 255 means, a probability.
+    /// The value that 255 stands for, a probability.
     pub most: f32,
     /// Displayed with the value of a place where the viewer points at it: "a pass to here arrives".
     pub note: String,

@@ -5,12 +5,12 @@ use std::fmt;
 
 use crate::scene::Scene;
 
-/// Finishes a scene from what it has kept of the moment.
+/// Finishes a scene from captured state of the moment.
 type Finish = Box<dyn FnOnce(&mut Scene) + Send>;
 
 /// A scene, to be finished off the match's thread.
 pub struct Sketch {
-    /// What is known at once.
+    /// The part that is known at once.
     pub scene: Scene,
     finish: Option<Finish>,
 }
@@ -22,7 +22,7 @@ impl Sketch {
         Self { scene, finish: Some(Box::new(finish)) }
     }
 
-    /// The whole scene.
+    /// The finished scene.
     pub fn finished(self) -> Scene {
         let Self { mut scene, finish } = self;
         if let Some(finish) = finish {

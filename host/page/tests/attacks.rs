@@ -1,4 +1,5 @@
-//! `attacks`: connections that hold on, viewers that all come at once, and requests without the token, over real sockets.
+//! `attacks`: connections that never end, viewers that all connect at once, and requests without the token,
+//! over real sockets.
 //!
 //! Times are injected ([`Limits`]); the assertions are about which requests are answered, never about how
 //! soon.
@@ -15,13 +16,13 @@ use tungstenite::{Message, WebSocket};
 
 type Viewer = WebSocket<MaybeTlsStream<TcpStream>>;
 
-/// Attackers of each test.
+/// Number of attackers of each test.
 const ATTACKERS: usize = 300;
-/// Longer than any test may take: what is limited so is not limited by it.
+/// Longer than any test: a limit of this length has no effect.
 const NEVER: Duration = Duration::from_hours(1);
-/// Soon, on a machine under load.
+/// A short limit for a machine under load.
 const SOON: Duration = Duration::from_millis(300);
-/// A test gives up.
+/// Time after which a test gives up.
 const PATIENCE: Duration = Duration::from_mins(1);
 
 struct Silent;
@@ -59,7 +60,7 @@ fn begin(at: SocketAddr, bytes: &str) -> TcpStream {
 fn rest(mut stream: TcpStream) -> String {
     let mut bytes = Vec::new();
     if let Err(error) = stream.read_to_end(&mut bytes) {
-        // Reset is closed too; a time-out is not.
+        // A reset counts as closed; a time-out does not.
         assert_eq!(error.kind(), std::io::ErrorKind::ConnectionReset, "the page keeps the connection");
     }
     String::from_utf8_lossy(&bytes).into_owned()
@@ -102,7 +103,7 @@ fn no_more_connections_are_served_at_once_than_the_limit() {
     let page = open(Limits { header: NEVER, connection: NEVER, connections: 8, ..Limits::default() }, None);
     let at = page.address();
     let mut held: Vec<_> = (0..8).map(|_| begin(at, "GET / HTTP/1.1\r\n")).collect();
-    // They are answered in the order in which they came: when the last of them is being served, all are.
+    // They are served in the order in which they connected: when the last of them is being served, all are.
     held[7].write_all(format!("Host: {at}\r\n\r\n").as_bytes()).unwrap();
     let mut answer = [0; 12];
     held[7].read_exact(&mut answer).unwrap();
@@ -125,7 +126,7 @@ fn a_body_that_never_comes_and_a_reader_that_never_reads_are_given_up() {
     let page = open(Limits { header: NEVER, connection: SOON, ..Limits::default() }, None);
     let at = page.address();
     let asks = format!("GET /main.js HTTP/1.1\r\nHost: {at}\r\n\r\n").repeat(100);
-    // A hundred answers wait for a reader: the connection is closed all the same.
+    // A hundred answers wait for a reader that never reads: the connection is closed all the same.
     let deaf = begin(at, &asks);
     thread::sleep(2 * SOON);
     let _ = rest(deaf);

@@ -1,5 +1,5 @@
 //! `viewers`: tests: viewers get the newest scene, and only viewers get anything. Real sockets; viewers that
-//! read, that do not, that vanish, and pages of others that try.
+//! read, that do not, that disconnect, and foreign pages that try.
 
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
@@ -50,7 +50,7 @@ fn viewer(page: &Page) -> Viewer {
     viewer
 }
 
-/// The next scene's time; it is taken, so that another may come.
+/// Takes the next scene and returns its time, so that another may come.
 fn next(viewer: &mut Viewer) -> f64 {
     let Message::Text(text) = viewer.read().unwrap() else { panic!("no text") };
     viewer.send(Message::text(".")).unwrap();
@@ -71,7 +71,7 @@ fn shown(page: &mut Page, t: f64) {
     wait_for(|| get(page.address(), "/api/state", "").1.contains(&format!(",{t:?}]")));
 }
 
-/// An answer: status and body.
+/// Requests a path: status and body.
 fn get(at: SocketAddr, path: &str, more: &str) -> (u16, String) {
     let host = if more.contains("Host:") { String::new() } else { format!("Host: {at}\r\n") };
     ask(at, &format!("GET {path} HTTP/1.1\r\n{host}{more}Connection: close\r\n\r\n"))

@@ -16,14 +16,14 @@ use crate::plot::{Dot, Row, axis, panel};
 use crate::plot::{Figure, Key, Shape};
 use crate::{Facts, Picture, numbers, style, words};
 
-/// Everything the page of an ablation is made of.
+/// Inputs of an ablation's page.
 #[derive(Clone, Copy, Debug)]
 pub struct Ablation<'a> {
-    /// What was changed, in the order of lines.
+    /// The changes, in the order of lines.
     pub arms: &'a [Arm],
-    /// What it did, in every cell and over all.
+    /// Their effects, in every cell and over all.
     pub effects: &'a [Effect],
-    /// Everything that decided the trials.
+    /// All settings that the trials depend on.
     pub facts: &'a [Facts],
 }
 
@@ -31,7 +31,7 @@ pub struct Ablation<'a> {
 type Look = (&'static str, &'static str, &'static str, usize, bool);
 
 impl Ablation<'_> {
-    /// The page and its plot.
+    /// Writes the page and its plot.
     pub fn write(&self, folder: &Path) -> io::Result<Picture> {
         let plots = folder.join("plots");
         fs::create_dir_all(&plots)?;
@@ -200,12 +200,12 @@ type Said<'a> = (String, Option<&'a Effect>);
 /// Opponents and scenario of a cell.
 type Place<'a> = (&'static str, &'a str);
 
-/// None for an effect over all cells.
+/// `None` for an effect over all cells.
 fn place(effect: &Effect) -> Option<Place<'_>> {
     Some((words::opponents(effect.configuration?), effect.scenario?))
 }
 
-/// Newcombe's interval, as if the trials were no pairs: wider than need be.
+/// Newcombe's interval, as if the trials were not paired: wider than necessary.
 fn reach(effect: &Effect) -> Option<(f64, f64)> {
     let count = |percent: f64| Count {
         hits: (percent / 100.0 * f64::from(effect.trials)).round() as u32,

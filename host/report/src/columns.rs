@@ -15,7 +15,7 @@ pub(crate) struct Column {
 /// Where its values come from.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Kind {
-    /// Something that is tested.
+    /// A measure that is tested.
     Measured(Measure),
     /// A number without a test.
     Told(fn(&TableRow) -> Option<f64>),
@@ -119,7 +119,7 @@ fn used(row: &TableRow) -> Option<f64> {
     Some(row.individual? + row.cooperative?)
 }
 
-/// What the whole report is sure with.
+/// Confidence level of the whole report.
 pub(crate) const CONFIDENCE: f64 = 0.95;
 
 const GOAL: Column = Column::share("goal", Measure::Goal);

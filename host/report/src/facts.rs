@@ -4,7 +4,7 @@
 use arena::evaluation::Identity;
 use serde_json::Value;
 
-/// What decided the trials, under one heading.
+/// Settings that the trials depend on, under one heading.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Facts {
     /// The heading.
@@ -14,7 +14,7 @@ pub struct Facts {
 }
 
 impl Facts {
-    /// All of an evaluation, whose trials hash to this.
+    /// All of an evaluation whose trials have this hash.
     pub fn of(identity: &Identity, csv_hash: &str) -> Vec<Self> {
         let mut first = Self { title: "Program, cases and trials".to_owned(), entries: Vec::new() };
         let mut rest = Vec::new();
@@ -68,7 +68,7 @@ fn flatten(name: &str, value: &Value, entries: &mut Vec<(String, String)>) {
         Value::Array(parts) if parts.iter().any(Value::is_object) => {
             for (i, part) in parts.iter().enumerate() {
                 match part {
-                    // One line an element: what stands in it belongs together.
+                    // One line for each element: its members belong together.
                     Value::Object(part) => {
                         let said: Vec<_> =
                             part.iter().map(|(key, value)| format!("{key} {}", word(value))).collect();

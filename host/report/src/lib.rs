@@ -33,26 +33,26 @@ pub use facts::Facts;
 pub use map::{EDGE, Map, MapError, Mapper, Pass, PassKind};
 pub use markdown::{MarkerError, between_markers};
 
-/// Everything a report is made of.
+/// Inputs of a report.
 #[derive(Clone, Copy, Debug)]
 pub struct Report<'a> {
     /// Our rows of the paper's tables.
     pub rows: &'a [TableRow],
     /// The paper's own.
     pub paper: &'a [TableRow],
-    /// Ours against the paper's, measure by measure.
+    /// Ours compared with the paper's, measure by measure.
     pub with_paper: &'a [Comparison],
-    /// Our approaches against each other, pair by pair.
+    /// Our approaches compared with each other, pair by pair.
     pub between: &'a [Comparison],
-    /// The paper's approaches against each other.
+    /// The paper's approaches compared with each other.
     pub papers_between: &'a [Comparison],
-    /// What became of each case.
+    /// Uses and outcomes of each case.
     pub uses: &'a [CaseUse],
     /// The paper's claims in prose, and whether the numbers support them.
     pub claims: &'a [Claim],
     /// Whether the pattern of its results is reproduced.
     pub lines: &'a [Line],
-    /// Everything that decided the trials: parameters, options, hashes, commit.
+    /// All settings that the trials depend on: parameters, options, hashes, commit.
     pub facts: &'a [Facts],
     /// Where the ball was and the passes between robots, one a cell.
     pub maps: &'a [Map],
@@ -61,9 +61,9 @@ pub struct Report<'a> {
 /// A figure with the name of its file, without an extension.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
-    /// `table-1-outcomes`.
+    /// Such as `table-1-outcomes`.
     pub name: String,
-    /// It, as SVG.
+    /// The figure as SVG.
     pub svg: String,
 }
 

@@ -8,7 +8,7 @@ pub(crate) fn plain(value: f64, decimals: usize) -> String {
     if zero { text.trim_start_matches('-').to_owned() } else { text.replace('-', "−") }
 }
 
-/// As it was printed: whole where it is.
+/// As the paper prints it: without decimals where it is whole.
 pub(crate) fn printed(value: f64, decimals: usize) -> String {
     if (value - value.round()).abs() < 1e-9 { plain(value, 0) } else { plain(value, decimals) }
 }

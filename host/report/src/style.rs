@@ -30,9 +30,9 @@ fn pairs() -> Vec<(&'static str, &'static str)> {
         [c.paper, c.carpet, c.ink, c.faint, c.ball, c.team, c.opponent, c.path, c.warning, c.yellow, c.cyan]
     };
     let mut pairs: Vec<_> = of(light).into_iter().zip(of(dark)).collect();
-    // Much is bright on a dark page.
+    // The scale is reversed: on a dark page more is brighter.
     pairs.extend(SHADES.into_iter().zip(SHADES.into_iter().rev()));
-    // Greys stay as far from the page as they are on white.
+    // Greys keep the contrast to the page that they have on white.
     pairs.extend([("#8c8c8c", "#7d8488"), ("#c4c4c4", "#4a5156")]);
     pairs.extend([(GRID, "#363c40"), (LOST, "#ff7cc0"), (CHANCE, "#79b3f2")]);
     pairs

@@ -30,7 +30,7 @@ pub(crate) struct Block {
 #[derive(Debug)]
 pub(crate) struct Line {
     pub(crate) kind: LineKind,
-    /// Whose it is; of two, the first's.
+    /// Its approach; of two, the first.
     pub(crate) approach: Approach,
     pub(crate) cells: Vec<Cell>,
 }
@@ -50,7 +50,7 @@ pub(crate) enum LineKind {
     PaperAgainst(Approach),
 }
 
-/// What stands under a column.
+/// Contents of a table's cell.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cell {
     /// The number.
@@ -59,7 +59,7 @@ pub(crate) struct Cell {
     pub(crate) marks: &'static str,
     /// Its interval, spread or p.
     pub(crate) beside: String,
-    /// Decimals it lacks beside its neighbours.
+    /// Number of decimals that it has less than its neighbours.
     lacks: usize,
 }
 
@@ -133,7 +133,7 @@ impl Source<'_> {
             let own = columns.iter().map(|column| measured(column, row, false)).collect();
             lines.push(line(LineKind::Ours(row.trials), own));
             let Some(paper) = self.paper.iter().find(|paper| paper.approach == approach) else { continue };
-            // Below ours of another size it stands already.
+            // It is already below ours with another number of trials.
             if before.replace(approach) != Some(approach) {
                 let printed = columns.iter().map(|column| measured(column, paper, true)).collect();
                 lines.push(line(LineKind::Paper(paper.trials), printed));
@@ -148,7 +148,8 @@ impl Source<'_> {
             {
                 let of = |approach| rows.iter().filter(move |row: &&TableRow| row.approach == approach);
                 for a in of(first) {
-                    // Where a table has rows of several sizes, like is held against like.
+                    // Where a table has rows of several numbers of trials, rows of equal numbers are
+                    // compared.
                     let mut others = of(second);
                     let alike = others.clone().find(|b| b.trials == a.trials);
                     let Some(b) = alike.or_else(|| others.next()) else { continue };
@@ -178,7 +179,7 @@ fn by_approach(rows: &[TableRow]) -> Vec<&TableRow> {
     approaches.into_iter().flat_map(own).collect()
 }
 
-/// Pairs of approaches that are held against each other in that table and scenario.
+/// Pairs of approaches that are compared in that table and scenario.
 pub(crate) fn pairs(comparisons: &[Comparison], table: u8, scenario: Scenario) -> Vec<(Approach, Approach)> {
     let mut pairs = Vec::new();
     for c in comparisons.iter().filter(|c| (c.table, c.scenario) == (table, scenario)) {
@@ -209,7 +210,7 @@ fn measured(column: &Column, row: &TableRow, paper: bool) -> Cell {
 /// The first row's number less the second's, with its test if there is one.
 fn less(column: &Column, first: &TableRow, second: &TableRow, comparisons: &[Comparison]) -> Cell {
     let (Some(a), Some(b)) = (column.value(first), column.value(second)) else { return Cell::default() };
-    // Counts are of their trials: only among as many can they be compared.
+    // Counts depend on the number of trials: only equal numbers can be compared.
     if column.is_count() && first.trials != second.trials {
         return Cell::default();
     }
@@ -246,7 +247,7 @@ impl Line {
                 }
                 @for cell in &self.cells { td {
                     (cell.value)
-                    // Digits stand below digits.
+                    // Decimals are aligned.
                     @if cell.lacks > 0 { span.pad aria-hidden="true" { "." ("0".repeat(cell.lacks)) } }
                     @if !cell.marks.is_empty() { sup { (cell.marks) } }
                     @if !cell.beside.is_empty() { small { (cell.beside) } }
@@ -265,7 +266,7 @@ impl Line {
         }
     }
 
-    /// Of how many trials it is.
+    /// Its number of trials.
     pub(crate) fn trials(&self) -> Option<String> {
         match self.kind {
             LineKind::Ours(trials) | LineKind::Paper(trials) => Some(trials.to_string()),

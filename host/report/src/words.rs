@@ -21,7 +21,7 @@ pub(crate) fn color(approach: Approach) -> &'static str {
     }
 }
 
-/// The same colour for the page, which turns it over to the dark one itself.
+/// The same colour for the page, which has its own dark variant of it.
 pub(crate) fn css(approach: Approach) -> String {
     format!("--approach:var(--{})", approach_word(approach))
 }
@@ -43,7 +43,7 @@ fn short(title: &str) -> &str {
     title.rsplit(", ").next().unwrap_or(title)
 }
 
-/// Whom the attackers play against.
+/// The attackers' opponents.
 pub(crate) const fn opponents(configuration: Configuration) -> &'static str {
     match configuration {
         Configuration::DefenderGoalie => "a defender and a goalie",
@@ -51,7 +51,7 @@ pub(crate) const fn opponents(configuration: Configuration) -> &'static str {
     }
 }
 
-/// What a table of the paper is of.
+/// Title of a table of the paper.
 pub(crate) const fn table(table: u8) -> &'static str {
     match table {
         1 => "Outcomes, possession and time against a defender and a goalie",

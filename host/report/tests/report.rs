@@ -9,7 +9,7 @@ use brain::Approach;
 use hil_sim::{Configuration, Scenario};
 use report::{EDGE, Facts, Map, Report};
 
-/// Rows that could be ours: the paper's, some of them elsewhere.
+/// Rows that could be ours: the paper's, some of them changed.
 fn ours() -> Vec<TableRow> {
     let mut rows = paper().to_vec();
     for row in rows.iter_mut().filter(|row| row.table == 1 && row.approach == Approach::Cases) {
@@ -117,7 +117,7 @@ fn the_page_has_every_table_with_its_plots() {
     // At a glance; outcomes and means of Tables 1 and 6; 2; 3; 4; 5.
     assert_eq!(tag("figure"), 1 + 2 + 1 + 1 + 1 + 1 + 2);
     assert_eq!(tag("svg"), html.matches("</svg>").count());
-    // Links lead somewhere.
+    // Every link has a target.
     for link in html.split("href=\"#").skip(1).map(|rest| rest.split('"').next().unwrap()) {
         assert!(html.contains(&format!("id=\"{link}\"")), "#{link}");
     }

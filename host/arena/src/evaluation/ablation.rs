@@ -18,20 +18,20 @@ use super::statistics::{Count, Sample, Test, holm, mcnemar, paired, two_proporti
 use super::summary::stars;
 use super::tables::rounded;
 
-/// One thing changed.
+/// One change to the team.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Arm {
     /// Its short name.
     pub name: &'static str,
-    /// What to give `onetwo trial` and `onetwo evaluate` for the same team.
+    /// Flags that give the same team in `onetwo trial` and `onetwo evaluate`.
     pub flags: &'static str,
-    /// What is changed.
+    /// Description of the change.
     pub what: &'static str,
     #[serde(skip)]
     change: Change,
 }
 
-/// What an arm changes.
+/// Kind of change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Change {
     Nothing,
@@ -39,7 +39,7 @@ enum Change {
     Set(&'static str, &'static str),
     NoSymmetry,
     NoOpponents,
-    /// Percent.
+    /// Packet loss, percent.
     Loss(u8),
     OneRetriever,
 }
@@ -121,7 +121,7 @@ pub const ARMS: &[Arm] = &[
     set!("reject", "out_of_field", "reject", "no case with an adapted place outside the field"),
 ];
 
-/// What an arm changes in a measure.
+/// Effect of an arm on a measure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Effect {
     /// The arm.
@@ -132,23 +132,23 @@ pub struct Effect {
     pub scenario: Option<&'static str>,
     /// `to_goal`, `out`, `timeout` (percent); `possession` (all opponents'), `time` (s), `cases`, `default_s` a trial.
     pub measure: &'static str,
-    /// Pairs of trials.
+    /// Number of pairs of trials.
     pub trials: u32,
-    /// The unchanged team's.
+    /// Value of the unchanged team.
     pub default: f64,
-    /// The arm's.
+    /// Value of the arm.
     pub value: f64,
-    /// The arm's less the unchanged team's.
+    /// Value of the arm less that of the unchanged team.
     pub difference: f64,
     /// Of trials in pairs: McNemar's exact test, or the paired t.
     pub p_paired: Option<f64>,
-    /// As if they had nothing in common: z, or Welch's t.
+    /// As if they were independent: z, or Welch's t.
     pub p_unpaired: Option<f64>,
     /// `p_paired` corrected over the arms.
     pub p_holm: Option<f64>,
 }
 
-/// What is looked at in a trial.
+/// The quantity that is measured in a trial.
 enum Look {
     /// Whether it happened; in percent of trials.
     Share(fn(&TrialRow) -> bool),

@@ -13,18 +13,18 @@ use super::statistics::{Count, Sample, Test, holm, two_proportions, welch};
 use super::tables::{Extent, TableRow, rounded};
 use crate::trial::approach_word;
 
-/// What is compared.
+/// A measure that is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
     /// Share of goals.
     Goal,
     /// Share of near misses.
     Close,
-    /// Share of balls the goalie got.
+    /// Share of balls that the goalie caught or kicked.
     Block,
     /// Share of balls out.
     Out,
-    /// Share of trials that ran out of time.
+    /// Share of trials with a timeout.
     Timeout,
     /// Share of goals and near misses.
     ToGoal,
@@ -36,12 +36,12 @@ pub enum Measure {
     Time,
 }
 
-/// A measure of two rows.
+/// Comparison of a measure in two rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     /// The paper's table.
     pub table: u8,
-    /// Which of its trials.
+    /// Which of its trials: the paper's number, or all.
     pub sample: Extent,
     /// Start positions.
     pub scenario: Scenario,
@@ -116,7 +116,7 @@ impl Comparison {
 }
 
 impl Measure {
-    /// All of them.
+    /// All measures.
     pub const ALL: [Self; 9] = [
         Self::Goal,
         Self::Close,
@@ -198,7 +198,7 @@ impl Measure {
     }
 }
 
-/// Every measure of every row of `first` against its row of `second`.
+/// Compares every measure of every row of `first` with its row of `second`.
 pub fn compare(rows: &[TableRow], first: Approach, second: Approach) -> Vec<Comparison> {
     let pairs = rows.iter().filter(|row| row.approach == first).filter_map(|row| {
         let key = |row: &TableRow| (row.table, row.sample, row.scenario);
@@ -208,7 +208,7 @@ pub fn compare(rows: &[TableRow], first: Approach, second: Approach) -> Vec<Comp
     of_pairs(&pairs.collect::<Vec<_>>())
 }
 
-/// Every measure of every row of ours against the paper's.
+/// Compares every measure of every row of ours with the paper's.
 pub fn with_paper(ours: &[TableRow], paper: &[TableRow]) -> Vec<Comparison> {
     let key = |row: &TableRow| (row.table, row.scenario, row.approach);
     let pairs = ours.iter().filter_map(|row| Some((row, paper.iter().find(|other| key(other) == key(row))?)));

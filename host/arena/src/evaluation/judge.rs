@@ -1,5 +1,5 @@
-//! `judge`: judgement whether the pattern of the paper's results comes out. Verdicts on a list of lines, each
-//! worked out from table rows.
+//! `judge`: judgement whether the pattern of the paper's results is reproduced. Verdicts on a list of lines,
+//! each computed from table rows.
 //!
 //! Lines a to g are the pattern that any faithful simulation should reproduce, whatever its parameters; the
 //! others are this project's own requirements. They are intended for thousands of trials a cell (`onetwo
@@ -21,7 +21,7 @@ use crate::trial::{APPROACHES, approach_word};
 pub struct Line {
     /// Its short name.
     pub id: &'static str,
-    /// What should be.
+    /// The expected result.
     pub line: &'static str,
     /// Whether it holds.
     pub verdict: Held,
@@ -33,9 +33,9 @@ pub struct Line {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Held {
-    /// It does.
+    /// It holds.
     Held,
-    /// It does not.
+    /// It does not hold.
     Missed,
     /// Not all trials that it needs were played.
     Unmeasured,
@@ -69,7 +69,7 @@ pub fn judge(rows: &[TableRow]) -> Vec<Line> {
     lines.collect()
 }
 
-/// Name, line, how it is found.
+/// Name, line, and the function that judges it.
 type Entry = (&'static str, &'static str, fn(Rows<'_>) -> Finding);
 
 const LINES: &[Entry] = &[
@@ -215,13 +215,13 @@ fn compare(
         let (a, b) = (rows.row(table, scenario, first)?, rows.row(table, scenario, second)?);
         let (x, y) = (measure.value(a)?, measure.value(b)?);
         let name = format!("{} {scenario}", a.configuration.word());
-        // Of single trials the spread is unknown: nothing is sure then.
+        // The spread of single trials is unknown: nothing is significant then.
         let p = measure.test(a, b).map_or(1.0, |test| test.p);
         Some(Cell { name, first: x, second: y, difference: x - y, p })
     })
 }
 
-/// All of them, or nothing where one is missing.
+/// All of them, or `None` where one is missing.
 fn each<T, V>(items: impl IntoIterator<Item = T>, of: impl FnMut(T) -> Option<V>) -> Option<Vec<V>> {
     items.into_iter().map(of).collect()
 }
@@ -237,7 +237,7 @@ fn numbers(values: &[f64], decimals: usize) -> String {
     values.iter().map(|value| format!("{value:.decimals$}")).collect::<Vec<_>>().join(", ")
 }
 
-/// What the pattern calls sure.
+/// p below which a difference counts as significant.
 const SURE: f64 = 0.01;
 
 #[cfg(test)]

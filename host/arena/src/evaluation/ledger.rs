@@ -20,7 +20,7 @@ use super::row::{TrialRow, to_csv, to_line};
 
 /// A row of such a file: one of a plan's trials, when it is over.
 pub trait Entry: Clone + PartialEq + Serialize + DeserializeOwned + Send {
-    /// Which evaluation its file is of.
+    /// The identity of the evaluation of its file.
     type Identity: Clone + Serialize + DeserializeOwned;
     /// Mark at the start of its file.
     const MARK: &'static str;
@@ -28,7 +28,7 @@ pub trait Entry: Clone + PartialEq + Serialize + DeserializeOwned + Send {
     fn number(&self) -> usize;
     /// Whether the row is what that evaluation plans under its number.
     fn is_planned(&self, identity: &Self::Identity) -> bool;
-    /// How many are planned.
+    /// Number of planned rows.
     fn planned(identity: &Self::Identity) -> usize;
     /// Names of the settings in which two evaluations differ; empty between equals.
     fn differences(own: &Self::Identity, other: &Self::Identity) -> Vec<&'static str>;
@@ -63,9 +63,9 @@ pub struct Identity {
     pub case_base: String,
     /// Its authored cases by name, in the order of ids.
     pub cases: Vec<String>,
-    /// Cases are mirrored.
+    /// Whether cases are mirrored.
     pub symmetry: bool,
-    /// Cases know opponents.
+    /// Whether cases contain opponents.
     pub case_opponents: bool,
     /// The named settings of retrieval, name and value.
     pub settings: BTreeMap<String, String>,
@@ -75,7 +75,7 @@ pub struct Identity {
     pub retrievers: usize,
     /// Share of packets that a receiver does not get.
     pub loss: f32,
-    /// How the world behaves.
+    /// Parameters of the simulated world.
     pub parameters: Parameters,
     /// All trials.
     pub plan: Plan,
@@ -106,16 +106,16 @@ impl Identity {
     }
 }
 
-/// What a file of trials holds.
+/// Contents of a file of trials.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kept<R: Entry = TrialRow> {
-    /// Where it lies.
+    /// Its path.
     pub file: PathBuf,
-    /// Which evaluation it is of.
+    /// The identity of its evaluation.
     pub identity: R::Identity,
     /// Its trials, in the order of the file.
     pub rows: Vec<R>,
-    /// Bytes up to the end of the last whole line.
+    /// Bytes up to the end of the last complete line.
     whole: usize,
 }
 
@@ -152,10 +152,10 @@ fn parse<R: Entry>(path: &Path, bytes: &[u8]) -> Result<Option<Kept<R>>, Evaluat
     Ok(Some(Kept { file: path.to_owned(), identity, rows, whole }))
 }
 
-/// Which column of a row holds a number that is none, or an endless one. No trial has such a measure, and one alone spoils every
-/// mean it enters.
+/// The column of a row that holds a NaN or an infinity, if any. No trial has such a measure, and a single one
+/// makes every mean that contains it invalid.
 fn not_finite<R: Entry>(columns: &csv::StringRecord, row: &R) -> Option<String> {
-    // Written again, such a number has one spelling, however it was spelt in the file: `nan`, `+inf`, `1e999`.
+    // Written again, such a number has one spelling, for any spelling in the file: `nan`, `+inf`, `1e999`.
     let line = to_line(row).ok()?;
     let mut again = csv::ReaderBuilder::new().has_headers(false).from_reader(&line[..]);
     let cells = again.records().next()?.ok()?;
@@ -164,12 +164,12 @@ fn not_finite<R: Entry>(columns: &csv::StringRecord, row: &R) -> Option<String> 
     Some(format!("{column} is {}, not a finite number", cells.get(at).unwrap_or_default()))
 }
 
-/// A file of trials that grows.
+/// A file of trials that is appended to.
 #[derive(Debug)]
 pub(super) struct Ledger {
     file: File,
     path: PathBuf,
-    /// The line with the columns' names is there; it comes with the first trial.
+    /// Whether the line with the columns' names is written; it comes with the first trial.
     headed: bool,
 }
 
@@ -187,7 +187,7 @@ impl Ledger {
             .truncate(false)
             .open(path)
             .map_err(failed)?;
-        // Where the file system knows no locks, two processes on one shard are the user's own doing.
+        // If the file system has no locks, the user must not run two processes on one shard.
         if let Err(TryLockError::WouldBlock) = file.try_lock() {
             return Err(EvaluationError::InUse(path.to_owned()));
         }
@@ -208,7 +208,7 @@ impl Ledger {
         Ok((ledger, kept.rows))
     }
 
-    /// Keeps a trial: once this returns, killing the process does not lose it.
+    /// Stores a trial: once this returns, killing the process does not lose it.
     pub(super) fn keep<R: Entry>(&mut self, row: &R) -> Result<(), EvaluationError> {
         let line = if self.headed { to_line(row) } else { to_csv(std::slice::from_ref(row)) };
         let line = line.map_err(|error| self.unwritten(error))?;
@@ -238,7 +238,7 @@ pub(super) mod tests {
         format!("{}{}\n", TrialRow::MARK, serde_json::to_string(identity).unwrap())
     }
 
-    /// Of some evaluation.
+    /// The identity of an evaluation, for tests.
     pub(in super::super) fn identity() -> Identity {
         Identity {
             program: "test".to_owned(),
@@ -295,7 +295,7 @@ pub(super) mod tests {
             approach: planned.cell.approach,
             seed: planned.seed,
             time_s: 10.125,
-            // A hash that reads as a number beyond all numbers is a hash all the same.
+            // A hash that parses as an infinite number is still a hash.
             trace_hash: "1234567890e99999".to_owned(),
             ..super::super::row::tests::row()
         };

@@ -40,7 +40,7 @@ impl Profile {
         Self::ALL.into_iter().find(|profile| profile.word() == word)
     }
 
-    /// The same trial in this world.
+    /// The same trial in the world of this profile.
     pub fn apply(self, config: TrialConfig<'_>) -> TrialConfig<'_> {
         match self {
             Self::Simulated => config,
@@ -51,29 +51,29 @@ impl Profile {
     }
 }
 
-/// Trials that differ in their seed alone.
+/// Trials that differ only in their seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Cell {
     /// The world.
     pub profile: Profile,
-    /// Which opponents play.
+    /// The opponents.
     pub configuration: Configuration,
     /// Start positions.
     #[serde(with = "words::scenario")]
     pub scenario: Scenario,
-    /// What leads the attackers.
+    /// Approach of the attackers.
     #[serde(with = "words::approach")]
     pub approach: Approach,
-    /// How many.
+    /// Number of trials.
     pub trials: u32,
 }
 
 /// All trials of an evaluation.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Plan {
-    /// Where the seeds of trials come from.
+    /// Seed from which the trials' seeds are derived.
     pub seed: u64,
-    /// In the order of trials.
+    /// The cells, in the order of trials.
     pub cells: Vec<Cell>,
 }
 
@@ -102,7 +102,7 @@ impl Plan {
         Self::of(seed, &scenarios, [5000; 3])
     }
 
-    /// Case-based attackers in the paper's eight simulated cells: what changes to their team are measured on.
+    /// Case-based attackers in the paper's eight simulated cells: the reference for ablations.
     pub fn ablation(seed: u64) -> Self {
         Self::of(seed, &Scenario::PAPER, [200; 3])
             .only(|cell| cell.profile == Profile::Simulated && cell.approach == Approach::Cases)
@@ -124,7 +124,7 @@ impl Plan {
         }
     }
 
-    /// With random starts behind the other cells, as many trials as their configuration's.
+    /// With random starts after the other cells, as many trials as their configuration's.
     pub fn with_random(mut self) -> Self {
         for configuration in [Configuration::DefenderGoalie, Configuration::TwoDefenders] {
             let mut alike = self.cells.iter().filter(|cell| cell.configuration == configuration);
@@ -135,7 +135,7 @@ impl Plan {
         self
     }
 
-    /// The cells that are wanted.
+    /// Keeps only the cells for which `wanted` is true.
     pub fn only(mut self, wanted: impl Fn(&Cell) -> bool) -> Self {
         self.cells.retain(wanted);
         self
@@ -154,12 +154,12 @@ impl Plan {
         self.cells.iter().map(|cell| cell.trials as usize).sum()
     }
 
-    /// There is nothing to play.
+    /// Whether it has no trials.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The trial of that number.
+    /// The trial with this number.
     pub fn get(&self, number: usize) -> Option<Planned> {
         let mut within = number;
         for cell in &self.cells {
@@ -189,7 +189,7 @@ impl Plan {
     }
 }
 
-/// A part of a plan: every n-th trial, so that all parts take about as long.
+/// A part of a plan: every n-th trial, so that all parts take about the same time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     index: usize,
@@ -197,7 +197,7 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// Everything.
+    /// The whole plan.
     pub const WHOLE: Self = Self { index: 1, of: 1 };
 
     /// The part `index`, from 1, of `of` parts.
@@ -216,7 +216,7 @@ impl Shard {
         number % self.of == self.index - 1
     }
 
-    /// The part whose file has that name.
+    /// The part whose file has this name.
     pub fn from_file_name(name: &str) -> Option<Self> {
         let (index, of) = name.strip_prefix("trials-")?.strip_suffix(".csv")?.split_once("-of-")?;
         Self::new(index.parse().ok()?, of.parse().ok()?)
@@ -228,9 +228,9 @@ impl Shard {
     }
 }
 
-/// What the paper's robots played (§5.3), against defender and goalie.
+/// Scenarios of the paper's robots (§5.3), against defender and goalie.
 const PLAYED_BY_ROBOTS: [Scenario; 2] = [Scenario::DefenderAhead, Scenario::DefenderClose];
-/// How long the paper's robots stood still after every cycle (§5.3).
+/// Time that the paper's robots stood still after every cycle (§5.3).
 const PAUSE_OF_ROBOTS: Duration = Duration::millis(5000);
 /// Length of a seed, bits: exact for every reader of JSON (53 bits), and short to type.
 const SEED_BITS: u32 = 48;

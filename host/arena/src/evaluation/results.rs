@@ -7,9 +7,9 @@
 //! | `tables.json`, `tables.csv` | the paper's tables (docs/case-format.md §5.2) |
 //! | `comparisons.json`, `comparisons.csv` | ours against the paper's, and approach against approach |
 //! | `claims.json` | the paper's claims in prose, and whether our numbers and its own support them |
-//! | `judge.json` | whether the pattern of its results comes out |
-//! | `cases.csv` | what became of each case |
-//! | `run.json` | which evaluation it was: program, seed, numbers, cases, settings, world |
+//! | `judge.json` | whether the pattern of its results is reproduced |
+//! | `cases.csv` | uses and outcomes of each case |
+//! | `run.json` | identity of the evaluation: program, seed, numbers, cases, settings, world |
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -31,21 +31,21 @@ use crate::trial::APPROACHES;
 /// An evaluation that was played to its end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Results {
-    /// Which evaluation it was.
+    /// Its identity.
     pub identity: Identity,
     /// Its trials, in the plan's order.
     pub rows: Vec<TrialRow>,
     /// The paper's tables.
     pub tables: Vec<TableRow>,
-    /// Every row against the paper's.
+    /// Every row compared with the paper's.
     pub with_paper: Vec<Comparison>,
-    /// Every approach against every later one.
+    /// Every approach compared with every later one.
     pub between_approaches: Vec<Comparison>,
     /// The paper's claims, and the verdicts of the numbers.
     pub claims: Vec<Claim>,
     /// Whether the pattern of the paper's results is reproduced.
     pub lines: Vec<Line>,
-    /// What became of each case.
+    /// Uses and outcomes of each case.
     pub uses: Vec<CaseUse>,
     /// [`csv_hash`] of its trials.
     pub hash: String,
@@ -61,7 +61,7 @@ struct Run<'a> {
 }
 
 impl Results {
-    /// Of an evaluation's trials in the plan's order, as [`merge`](super::merge) gives them.
+    /// Results of an evaluation's trials in the plan's order, as [`merge`](super::merge) returns them.
     pub fn new(identity: Identity, rows: Vec<TrialRow>) -> Result<Self, EvaluationError> {
         let hash = csv_hash(&to_csv(&rows)?);
         let tables = tables(&rows);
@@ -125,7 +125,7 @@ fn json(value: &impl Serialize) -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// A row of CSV an element, with the columns' names in the first line.
+/// A row of CSV for each element, with the columns' names in the first line.
 fn as_csv<T: Serialize>(rows: &[T]) -> std::io::Result<Vec<u8>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows {

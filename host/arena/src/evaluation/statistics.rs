@@ -6,10 +6,10 @@
 
 use statrs::distribution::{Binomial, ContinuousCDF, DiscreteCDF, Normal, StudentsT};
 
-/// How many of how many.
+/// A count of hits among trials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Count {
-    /// Trials in which it was so.
+    /// Trials in which it happened.
     pub hits: u32,
     /// All trials.
     pub of: u32,
@@ -22,7 +22,7 @@ impl Count {
     }
 }
 
-/// From where to where a value may lie: a share from 0 to 1, a mean or a difference in its own unit.
+/// Ends of an interval: a share from 0 to 1, a mean or a difference in its own unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     /// Its lower end.
@@ -44,8 +44,8 @@ pub fn wilson(count: Count, confidence: f64) -> Option<Interval> {
     Some(Interval { low: end(centre - reach), high: end(centre + reach) })
 }
 
-/// How much greater the first share is than the second, at least and at most, −1 to 1: Newcombe's score interval (1998, method
-/// 10), made of Wilson's; `None` as there.
+/// Interval of the first share less the second, −1 to 1: Newcombe's score interval (1998, method 10), made of
+/// Wilson's; `None` as there.
 pub fn newcombe(first: Count, second: Count, confidence: f64) -> Option<Interval> {
     let (a, b) = (first.share()?, second.share()?);
     let (own, other) = (wilson(first, confidence)?, wilson(second, confidence)?);
@@ -69,15 +69,15 @@ pub fn student(sample: Sample, confidence: f64) -> Option<Interval> {
 pub struct Test {
     /// z or t; above 0 where the first is the greater.
     pub statistic: f64,
-    /// The chance of a difference at least as great between equals.
+    /// Probability of a difference at least as large between equals.
     pub p: f64,
 }
 
 impl Test {
-    /// Of two that are the same and do not vary.
+    /// Result for two equal samples that do not vary.
     const EQUAL: Self = Self { statistic: 0.0, p: 1.0 };
 
-    /// Of a difference that is always the same: for sure, or none.
+    /// Result for a difference that does not vary: p is 0, or 1 for no difference.
     fn unvarying(difference: f64) -> Self {
         if difference == 0.0 {
             return Self::EQUAL;
@@ -137,10 +137,10 @@ pub fn paired(differences: Sample) -> Option<Test> {
     Some(Test { statistic: t, p: 2.0 * student.sf(t.abs()) })
 }
 
-/// Numbers, by their mean and spread.
+/// Size, mean and spread of a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// How many.
+    /// Number of values.
     pub n: u32,
     /// Their mean.
     pub mean: f64,
@@ -149,7 +149,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Of these numbers; `None` without any.
+    /// The sample of these numbers; `None` without any.
     pub fn of(values: impl Iterator<Item = f64> + Clone) -> Option<Self> {
         let n = u32::try_from(values.clone().count()).ok().filter(|n| *n > 0)?;
         let mean = values.clone().sum::<f64>() / f64::from(n);
@@ -174,7 +174,7 @@ pub fn welch(first: Sample, second: Sample) -> Option<Test> {
     Some(Test { statistic: t, p: 2.0 * student.sf(t.abs()) })
 }
 
-/// Holm's step-down: what each p of a family of tests comes to, in the order given.
+/// Holm's step-down: the corrected p of each test of a family, in the order given.
 pub fn holm(family: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..family.len()).collect();
     order.sort_by(|&a, &b| family[a].total_cmp(&family[b]));

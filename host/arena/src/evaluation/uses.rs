@@ -18,11 +18,11 @@ pub struct CaseUse {
     pub profile: Profile,
     /// Their opponents.
     pub configuration: Configuration,
-    /// What led the attackers.
+    /// Approach of the attackers.
     pub approach: Approach,
     /// `region/name`.
     pub case: String,
-    /// How many times it was played.
+    /// Number of times it was played.
     pub retrieved: u32,
     /// Counts of the ends of these plays, in the order of [`CycleEnd::WORDS`].
     pub ends: [u32; CycleEnd::WORDS.len()],
@@ -77,7 +77,7 @@ impl CaseUse {
         ends.filter(|(word, _)| **word == end).for_each(|(_, count)| *count += 1);
     }
 
-    /// Plays in which every robot did its part.
+    /// Number of plays in which every robot completed its part.
     pub const fn finished(&self) -> u32 {
         self.ends[0]
     }

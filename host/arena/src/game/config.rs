@@ -15,17 +15,17 @@ use rules::{Colour, League};
 pub struct GameConfig {
     /// Field, robots, ball and rules.
     pub league: League,
-    /// Where all chance comes from.
+    /// Random seed.
     pub seed: u64,
     /// Simulated seconds.
     pub duration_s: f64,
-    /// How the referee runs it.
+    /// Settings of the referee.
     pub referee: RefereeSettings,
     /// Yellow and blue, in this order.
     pub teams: [TeamSetup; 2],
-    /// How each team's air treats packets; delays in ticks of 10 ms.
+    /// Radio settings of each team; delays in ticks of 10 ms.
     pub air: AirSettings,
-    /// Which world of the family it is played in.
+    /// The world of the family that it is played in.
     pub world: WorldChoice,
 }
 
@@ -34,15 +34,15 @@ pub struct GameConfig {
 pub struct TeamSetup {
     /// Its colour.
     pub colour: Colour,
-    /// How many robots.
+    /// Number of robots.
     pub robots: u8,
     /// What decides its open play.
     pub plays: Team,
-    /// What robots without a host's order let themselves be led by.
+    /// Approach of robots without an order of a host.
     pub approach: Approach,
-    /// How they retrieve.
+    /// Settings of retrieval.
     pub settings: Settings,
-    /// Which of the second paper's tactics its host plays.
+    /// Tactics of the second paper that its host plays.
     pub tactics: Tactics,
 }
 

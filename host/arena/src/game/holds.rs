@@ -15,15 +15,15 @@ use super::Game;
 /// One robot's time with the ball at its front.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Hold {
-    /// Whose.
+    /// Its team.
     pub team: &'static str,
-    /// Which robot.
+    /// Its number.
     pub robot: u8,
-    /// From this simulated second.
+    /// Start, simulated s.
     pub from_s: f32,
     /// Duration, s.
     pub lasted_s: f32,
-    /// How often it changed the sense in which it turns, by more than 5° each.
+    /// Number of changes of the sense in which it turns, by more than 5° each.
     pub reversals: u32,
 }
 
@@ -45,7 +45,7 @@ struct Spell {
     turning: Turning,
 }
 
-/// How a heading goes to and fro.
+/// Counter of a heading's changes of direction.
 #[derive(Clone, Copy, Debug)]
 struct Turning {
     heading: f32,
@@ -77,7 +77,7 @@ impl Turning {
 }
 
 impl Holds {
-    /// A tick of the match is over.
+    /// Takes a tick of the match.
     pub(super) fn look(&mut self, game: &Game<'_>) {
         let now = game.time();
         if game.referee().phase() != Phase::Run {
@@ -97,7 +97,7 @@ impl Holds {
         self.end(now);
     }
 
-    /// Closes the spells that have not gone on for [`GAP`].
+    /// Closes the spells that were interrupted for longer than [`GAP`].
     fn end(&mut self, now: f64) {
         let (open, over): (Vec<_>, Vec<_>) = self.open.iter().partition(|spell| now - spell.until <= GAP);
         self.open = open;
@@ -134,7 +134,7 @@ impl Holds {
         self.longest[team as usize]
     }
 
-    /// How many of a team's spells lasted for [`LONG`] and longer.
+    /// Number of a team's spells that lasted for [`LONG`] and longer.
     pub(super) fn over(&self, team: Colour) -> u32 {
         self.over[team as usize]
     }
@@ -160,9 +160,9 @@ const NEAR: f32 = 0.02;
 const GAP: f64 = 0.25;
 /// Duration from which a spell is long, s: the opponents' robots reach it twice in ten minutes.
 const LONG: f32 = 2.5;
-/// A turn by less than this is none, rad: 5°.
+/// A turn by less than this is not counted, rad: 5°.
 const SWING: f32 = 0.087;
-/// Ball and robots, m (rules).
+/// Radius of the ball, m (rules).
 const BALL_RADIUS: f32 = rules::limits::BALL_RADIUS;
 const BODY_HEIGHT: f32 = 0.15;
 

@@ -43,17 +43,17 @@ pub const STEPS_A_TICK: u64 = 10;
 /// Length of a tick, µs (docs/architecture.md §2.3).
 pub const TICK_US: u64 = 10_000;
 
-/// Sees a match from outside.
+/// An observer of a match.
 pub trait Watcher {
-    /// A datagram of the cameras, as both teams get it.
+    /// A datagram of the cameras, as both teams receive it.
     fn vision(&mut self, _now: Instant, _bytes: &[u8]) {}
     /// A datagram of the referee.
     fn referee(&mut self, _now: Instant, _bytes: &[u8]) {}
-    /// Something came to a host.
+    /// An input of a host.
     fn input(&mut self, _now: Instant, _host: Colour, _input: host::Input<'_>) {}
-    /// A host sent something.
+    /// A packet sent by a host.
     fn sent(&mut self, _now: Instant, _host: Colour, _to: host::radio::To, _packet: &[u8]) {}
-    /// A tick is over.
+    /// Called after every tick.
     fn tick(&mut self, _game: &Game<'_>) {}
 }
 
@@ -75,11 +75,11 @@ pub struct Game<'a> {
 /// Why a match cannot be played.
 #[derive(Debug)]
 pub enum GameError {
-    /// A robot's computer.
+    /// A robot's computer failed.
     Computer {
-        /// Whose.
+        /// The robot.
         who: Who,
-        /// What is wrong with it.
+        /// The error.
         error: McuError,
     },
     /// The league has no such matches.
@@ -128,7 +128,7 @@ impl<'a> Game<'a> {
         })
     }
 
-    /// Seconds since the beginning.
+    /// Seconds since the start.
     pub fn time(&self) -> f64 {
         self.world.time()
     }
@@ -138,7 +138,7 @@ impl<'a> Game<'a> {
         Instant(u64::from(self.tick) * TICK_US)
     }
 
-    /// The truth.
+    /// The true world.
     pub fn world(&self) -> &World {
         &self.world
     }
@@ -153,7 +153,7 @@ impl<'a> Game<'a> {
         &self.teams[team as usize].host
     }
 
-    /// What happened in the last tick.
+    /// Events of the last tick.
     pub fn events(&self) -> &[Event] {
         &self.events
     }
@@ -163,7 +163,7 @@ impl<'a> Game<'a> {
         &self.holds
     }
 
-    /// The hash of all ticks so far.
+    /// The hash over all ticks so far.
     pub fn trace(&self) -> TraceHash {
         self.trace
     }
@@ -173,12 +173,12 @@ impl<'a> Game<'a> {
         self.referee.is_over()
     }
 
-    /// Most instructions that a robot's tick has taken, where they can be counted.
+    /// Most instructions of a robot's tick, where they can be counted.
     pub fn worst_instructions(&self) -> u32 {
         self.teams.iter().map(Team::worst_instructions).max().unwrap_or(0)
     }
 
-    /// 10 ms: brains think and order, then physics moves, cameras look and the referee judges.
+    /// Runs 10 ms: brains step and order, then physics moves, cameras capture and the referee judges.
     pub fn step(&mut self, watcher: &mut dyn Watcher) -> Result<(), GameError> {
         self.advance(watcher)?;
         self.judge(watcher);
@@ -232,7 +232,7 @@ impl<'a> Game<'a> {
         }
     }
 
-    /// A packet of the referee reaches both teams.
+    /// Delivers a packet of the referee to both teams.
     pub(crate) fn announce(
         &mut self,
         now: Instant,
@@ -247,7 +247,7 @@ impl<'a> Game<'a> {
         }
     }
 
-    /// The true world, to put things into for a drill.
+    /// The true world, for placing objects in a drill.
     pub(crate) fn world_mut(&mut self) -> &mut World {
         &mut self.world
     }
@@ -282,7 +282,7 @@ pub fn play_until(
     Ok(GameReport::of(config, &game))
 }
 
-/// Watches nothing.
+/// A watcher that does nothing.
 pub struct Nobody;
 impl Watcher for Nobody {}
 

@@ -29,7 +29,7 @@ impl Watcher for Recorder {
     }
 }
 
-/// The header of a match's recording, by that version and commit of the program.
+/// The header of a match's recording, with version and commit of the program.
 pub fn header(version: &str, commit: &str, config: &GameConfig) -> RecordingHeader {
     let hosts = [Colour::Yellow, Colour::Blue];
     RecordingHeader {

@@ -22,10 +22,10 @@ pub(super) struct Team<'a> {
     players: Vec<Player<'a>>,
 }
 
-/// A robot led by a brain.
+/// A robot with a brain.
 struct Player<'a> {
     who: Who,
-    /// None while it is off.
+    /// `None` while it is off.
     computer: Option<Box<dyn Mcu + 'a>>,
     /// The tick in which it booted: its clock's zero.
     booted: u32,
@@ -88,14 +88,14 @@ impl<'a> Team<'a> {
         }
     }
 
-    /// The host's deadline, if it has come: a computer wakes up for it, it does not wait for robots' steps.
+    /// Feeds the host's deadline if it is due: a host wakes up for it and does not wait for robots' steps.
     pub(super) fn deadline(&mut self, tick: u32, now: Instant, watcher: &mut dyn Watcher) {
         if self.host.poll_timeout().is_some_and(|due| due <= now) {
             self.tell(tick, now, Input::Timeout, watcher);
         }
     }
 
-    /// Its air loses this share of packets from now on.
+    /// Its radio loses this share of packets from now on.
     pub(super) fn lose(&mut self, share: f32) {
         let settings = AirSettings { loss: share, ..self.air.settings().clone() };
         self.air.set(settings);

@@ -14,12 +14,12 @@ use serde::{Deserialize, Serialize};
 pub struct Entrant {
     /// What decides its open play.
     pub team: Team,
-    /// What its host plays of the second paper.
+    /// Tactics of the second paper that its host plays.
     pub tactics: Tactics,
 }
 
 impl Entrant {
-    /// Our team as usual.
+    /// Our team with the usual tactics.
     pub fn ours() -> Self {
         Self::from(Team::Ours)
     }
@@ -60,7 +60,7 @@ impl Entrant {
             parts.extend(with.split('+').map(str::to_owned));
         }
         for part in without.into_iter().flat_map(|without| without.split('+')) {
-            // What it is without is a part, too: a slip of the pen must not pass for the usual team.
+            // The parts after `without` are checked too: a typing error must not be read as the usual team.
             with_parts(&BTreeSet::from([part.to_owned()])).map_err(|_| wrong())?;
             parts.remove(part);
         }
@@ -68,7 +68,8 @@ impl Entrant {
         Ok(Self { team: Team::Ours, tactics })
     }
 
-    /// The parts of the second paper that this one plays and the other does not; none between different teams.
+    /// The parts of the second paper that this one plays and the other does not; empty between different
+    /// teams.
     pub(super) fn beyond(self, other: Self) -> Vec<String> {
         if self.team != other.team {
             return Vec::new();

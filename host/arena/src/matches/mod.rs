@@ -40,20 +40,20 @@ pub use words::markdown;
 use crate::evaluation::{EvaluationError, Progress, Shard, play_open};
 use crate::game::{GameConfig, Nobody, play};
 
-/// Everything that decides the matches of a plan.
+/// All settings that the matches of a plan depend on.
 #[derive(Clone, Debug)]
 pub struct Matches<'a> {
-    /// Which matches.
+    /// The matches.
     pub plan: Plan,
     /// The case base in every robot.
     pub base: CaseBase<'a>,
-    /// How it is searched.
+    /// Settings of retrieval.
     pub settings: Settings,
     /// Version and commit of the program: matches of two programs are never mixed.
     pub program: String,
 }
 
-/// Which evaluation a file of matches is of.
+/// Identity of the evaluation of a file of matches.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MatchIdentity {
     /// Version and commit of the program.
@@ -111,7 +111,7 @@ impl Matches<'_> {
         Ok(config)
     }
 
-    /// Plays the match of that number.
+    /// Plays the match with this number.
     pub fn play(&self, number: usize) -> Result<MatchRow, EvaluationError> {
         let planned = self.plan.get(number).ok_or(EvaluationError::Nothing)?;
         let report = play(&self.config(&planned)?, &mut NativeBackend::new(self.base), &mut Nobody)
@@ -119,8 +119,8 @@ impl Matches<'_> {
         Ok(MatchRow::new(&planned, &report))
     }
 
-    /// Plays what `file` lacks of a shard, on all threads of the current rayon pool; its rows in the plan's order. As
-    /// [`crate::evaluation::Evaluation::play_shard`].
+    /// Plays the matches of a shard that are missing in `file`, on all threads of the current rayon pool;
+    /// returns its rows in the plan's order. As [`crate::evaluation::Evaluation::play_shard`].
     pub fn play_shard(
         &self,
         shard: Shard,

@@ -13,16 +13,16 @@ use super::entrant::Entrant;
 pub struct Pairing {
     /// The team whose numbers come first.
     pub own: Entrant,
-    /// Against whom.
+    /// The opponents.
     pub opponent: Entrant,
 }
 
 /// Numbers the matches: pair by pair.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
-    /// Where all chance comes from.
+    /// Random seed.
     pub seed: u64,
-    /// Its name: field, robots and rules.
+    /// Name of the league: field, robots and rules.
     pub league: String,
     /// The world of each match; the league's own where an older file does not name one.
     #[serde(default)]
@@ -44,7 +44,7 @@ pub struct Planned {
     pub pairing: Pairing,
     /// Whether the first of the pair plays blue.
     pub own_is_blue: bool,
-    /// Plays it again.
+    /// Seed that replays it.
     pub seed: u64,
 }
 
@@ -75,7 +75,7 @@ impl Plan {
         self.pairings.len() * self.matches as usize
     }
 
-    /// There is nothing to play.
+    /// Whether it has no matches.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -87,7 +87,7 @@ impl Plan {
             .find(|league| league.name() == self.league)
     }
 
-    /// The match of that number.
+    /// The match with this number.
     pub fn get(&self, number: usize) -> Option<Planned> {
         let matches = self.matches as usize;
         let pairing = *self.pairings.get(number.checked_div(matches)?)?;

@@ -1,4 +1,4 @@
-//! Tests: equal plans give equal files, however they were played, and the sums are right.
+//! Tests: equal plans give equal files, for any way of running them, and the sums are right.
 
 use std::fs;
 use std::path::PathBuf;
@@ -100,7 +100,7 @@ fn matches_of_different_worlds_are_of_different_evaluations_and_a_plan_keeps_its
     for matches in [nominal, grsim, random] {
         let json = serde_json::to_string(&matches.plan).unwrap();
         assert_eq!(serde_json::from_str::<Plan>(&json).unwrap(), matches.plan);
-        // A file from before there were several worlds.
+        // A file of a version with a single world.
         let older = json.replace(&format!("\"world\":\"{}\",", matches.plan.world), "");
         assert_eq!(serde_json::from_str::<Plan>(&older).unwrap().world, WorldPlan::default());
     }

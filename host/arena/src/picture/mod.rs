@@ -56,7 +56,7 @@ pub fn picture(recording: &Recording) -> String {
     page.finish(WIDTH, height, &title)
 }
 
-/// The gameplays that lived long enough to be seen.
+/// The gameplays that lasted long enough to be visible.
 fn shown_starts(recording: &Recording) -> Vec<&Start> {
     let lived = |start: &&Start| {
         let cycles = recording.report.as_ref().map(|report| &report.cycles);
@@ -91,7 +91,7 @@ fn header(page: &mut Page, report: &TrialReport) {
     }
 }
 
-/// Where a robot went.
+/// Draws the path of a robot.
 fn track(page: &mut Page, recording: &Recording, robot: usize) {
     let places =
         recording.samples.iter().filter_map(|sample| sample.robots.get(robot)).map(|pose| pose.position);
@@ -101,7 +101,7 @@ fn track(page: &mut Page, recording: &Recording, robot: usize) {
     page.path(&points, &style);
 }
 
-/// The ball's path in stretches of one carrier or one sender each.
+/// The ball's path in stretches of one carrier or one kicker each.
 fn ball_path(page: &mut Page, recording: &Recording) {
     let attackers = recording.cast.attackers.len();
     let mut kicks = recording.kicks.iter().peekable();
@@ -210,7 +210,7 @@ fn ball(page: &mut Page, at: Point<Field>, filled: bool) {
     page.circle(at, League::FourLegged.ball().radius * SCALE, &style);
 }
 
-/// Small times along the ball's path, where the ball has moved since the last.
+/// Small time labels along the ball's path, where the ball has moved since the last.
 fn seconds(page: &mut Page, samples: &[Sample], taken: &mut Vec<Px>) {
     let mut last: Option<Px> = None;
     let mut next = EVERY;
@@ -231,7 +231,7 @@ fn seconds(page: &mut Page, samples: &[Sample], taken: &mut Vec<Px>) {
     }
 }
 
-/// A numbered disc near `at`, tied to it.
+/// A numbered disc near `at`, connected to it.
 fn badge(page: &mut Page, number: usize, at: Px, taken: &mut Vec<Px>) {
     let spot = free_spot(at, 34.0, taken);
     page.line(at, spot, &format!(r#"stroke="{INK}" stroke-width="1""#));
@@ -239,7 +239,7 @@ fn badge(page: &mut Page, number: usize, at: Px, taken: &mut Vec<Px>) {
     taken.push(spot);
 }
 
-/// A spot `away` from `at`, or farther, clear of everything taken; upwards first.
+/// A spot at distance `away` from `at`, or farther, clear of everything taken; upwards first.
 fn free_spot(at: Px, away: f32, taken: &[Px]) -> Px {
     let mut best = (f32::MIN, at);
     for ring in 0..3 {
@@ -286,13 +286,13 @@ const ATTACKERS: [&str; 4] = ["#0072B2", "#D55E00", "#009E73", "#CC79A7"];
 const OPPONENTS: [&str; 2] = ["#5f6368", "#303336"];
 const INK: &str = "#202124";
 const FAINT: &str = "#5f6368";
-/// The field's, behind letters on it.
+/// Colour of the field, behind labels on it.
 const CARPET: &str = "#e3eedd";
 /// Orange (Okabe and Ito), as the league's ball.
 const BALL: &str = "#E69F00";
 /// Width of the figure, px.
 const WIDTH: f32 = 1000.0;
-/// White to the left and right, px.
+/// White margin to the left and right, px.
 const SIDE: f32 = 18.0;
 /// Height of the title, px.
 const HEADER: f32 = 72.0;
@@ -300,13 +300,13 @@ const HEADER: f32 = 72.0;
 const HALF_HEIGHT: f32 = 2.06 * SCALE;
 /// Seconds between times along the ball's path.
 const EVERY: f32 = 5.0;
-/// A gameplay superseded sooner than this left nothing to see, s.
+/// A gameplay superseded sooner than this leaves no visible path, s.
 const SHORTEST: f64 = 0.1;
-/// Path length that bears an arrowhead, px.
+/// Least path length for an arrowhead, px.
 const SHORTEST_ARROW: f32 = 40.0;
 /// Distance that keeps labels from touching, px.
 const CLEAR: f32 = 30.0;
-/// Where labels go, the best first: up, then around.
+/// Directions of labels, the best first: up, then around.
 const DIRECTIONS: [(f32, f32); 8] = [
     (0.0, -1.0),
     (0.71, -0.71),

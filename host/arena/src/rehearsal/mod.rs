@@ -5,8 +5,8 @@
 //! ([`situation`]). An attempt ends with the first retrieval's gameplay; then the ball is watched until it
 //! stops or is taken. m, s; every attempt attacks +x.
 //!
-//! **Invariants.** An attempt depends on its seed, the case's name and the attempt's number alone: neither on other cases of the
-//! library's list nor on the number of threads.
+//! **Invariants.** An attempt depends only on its seed, the case's name and the attempt's number: neither on
+//! other cases of the library nor on the number of threads.
 
 mod score;
 mod situation;
@@ -26,7 +26,7 @@ use crate::cycles::{CycleEnd, CycleSeen};
 use crate::names::CaseNames;
 use crate::trial::{Game, TrialConfig, Watcher};
 
-/// What the opponents of a case do.
+/// Behaviour of the opponents of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Opposition {
     /// They hold their places, as static obstacles.
@@ -53,12 +53,12 @@ impl Opposition {
     }
 }
 
-/// What the first retrieval of an attempt gave.
+/// Result of the first retrieval of an attempt.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Retrieved {
     /// The tested case, in any of its symmetries.
     Own,
-    /// This one.
+    /// Another case.
     Other(String),
     /// No case fitted.
     None,
@@ -66,7 +66,7 @@ pub enum Retrieved {
     Nothing,
 }
 
-/// What came of one attempt.
+/// Result of one attempt.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Attempt {
     /// The first retrieval.
@@ -75,9 +75,10 @@ pub struct Attempt {
     pub end: Option<CycleEnd>,
     /// Seconds from the retrieval to that end.
     pub duration: f32,
-    /// How the referee would have ended a trial until the ball lay still or was taken; `None`: it is still in play.
+    /// The outcome that the referee would have given a trial until the ball lay still or was taken; `None`:
+    /// it is still in play.
     pub outcome: Option<Outcome>,
-    /// How far the ball came towards the attacked goal meanwhile, m.
+    /// Distance that the ball came towards the attacked goal meanwhile, m.
     pub progress: f32,
 }
 
@@ -93,13 +94,13 @@ impl Attempt {
 pub struct Rehearsal<'a> {
     /// The case base in every robot.
     pub base: CaseBase<'a>,
-    /// What its cases are called.
+    /// Names of its cases.
     pub names: CaseNames,
-    /// How robots retrieve.
+    /// Settings of retrieval.
     pub settings: Settings,
     /// Attempts a case.
     pub trials: u32,
-    /// Where all chance comes from.
+    /// Random seed.
     pub seed: u64,
 }
 
@@ -124,7 +125,7 @@ impl<'a> Rehearsal<'a> {
         (0..self.trials).into_par_iter().map(attempt).collect()
     }
 
-    /// One attempt, watched.
+    /// Plays one attempt.
     pub fn attempt(
         &self,
         case: &Case<'a>,
@@ -173,7 +174,7 @@ impl<'a> Rehearsal<'a> {
     }
 }
 
-/// How far an attempt has come.
+/// Progress of an attempt.
 #[derive(Clone, Debug, Default)]
 struct Course {
     /// The first decision's place in the list of cycles.
@@ -224,11 +225,12 @@ fn is_of(cycle: &CycleSeen, case: &Case<'_>) -> bool {
     cycle.play.as_ref().is_some_and(|play| usize::from(play.case.0 / 4) == case.authored())
 }
 
-/// A decision comes within this time of kick-off, s: a lease of listening, an election and a retrieval are half a second.
+/// A decision comes within this time of kick-off, s: a lease of receiving, an election and a retrieval are
+/// half a second.
 const DECIDED_WITHIN: f32 = 3.0;
 /// Time for which robots may still report after the referee's verdict, s: two beacons and an answer.
 const LAST_WORDS: f32 = 0.4;
-/// No gameplay takes this long, s: its own limit is 1.5 times the expected duration and 2 s.
+/// Longest gameplay, s: its own limit is 1.5 times the expected duration and 2 s.
 const GIVEN_UP_AFTER: f32 = 120.0;
 /// Time for which the ball is watched after the gameplay, s: a hard kick rolls for 3.5 s.
 const WATCHED_FOR: f32 = 4.0;

@@ -148,7 +148,7 @@ fn passes(map: &Map) -> Svg {
     for kind in [PassKind::Lost, PassKind::Chance, PassKind::Completed] {
         let own = map.passes.iter().filter(|pass| pass.kind == kind);
         let ways: Vec<_> = own.map(|pass| (millimetres(pass.from), millimetres(pass.to))).collect();
-        // Where many lie on each other it is darker.
+        // Overlapping arrows add up to a darker colour.
         arrows(&mut svg, &ways, kind, "0.4");
     }
     for outcome in [Outcome::Timeout, Outcome::Out, Outcome::Block, Outcome::Close, Outcome::Goal] {
@@ -290,7 +290,7 @@ fn entries() -> Vec<(Svg, &'static str)> {
     starts.chain(passes).chain(ends).collect()
 }
 
-/// Signs from `left`, the scale from `from`; gives where they end.
+/// Signs from `left`, the scale from `from`; returns their right end.
 fn legend(svg: &mut Svg, [left, top]: [f64; 2], [from, right]: [f64; 2], size: f64) -> f64 {
     let colors = Theme::Light.colors();
     let font = Font { size, fill: colors.ink, bold: false, halo: None };
@@ -336,7 +336,7 @@ fn scale_svg() -> String {
 /// From near the field surface's lightness evenly to dark: one hue, so that darker always reads as more.
 pub(crate) const SHADES: [&str; 7] =
     ["#c9d9ea", "#a5c0de", "#7fa3cf", "#5d83bc", "#4562a3", "#374382", "#2a2459"];
-/// Seconds a trial from which on a square has each shade.
+/// Seconds a trial at which each shade starts.
 const STEPS: [f64; 7] = [0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
 /// Length of an arrow's head, mm.
 const HEAD: f64 = 85.0;
@@ -344,7 +344,7 @@ const COMPLETED: &str = "#1b1b1b";
 /// Reddish purple (Okabe and Ito), darker.
 pub(crate) const LOST: &str = "#b3367d";
 pub(crate) const CHANCE: &str = "#2f6fb7";
-/// How wide a map is on a page, px.
+/// Width of a map on a page, px.
 const PAGE_PX: f64 = 560.0;
-/// How wide a sheet of two beside each other is, px.
+/// Width of a sheet of two maps beside each other, px.
 const SHEET_PX: f64 = 1100.0;

@@ -19,9 +19,9 @@ pub type MapError = SimulationError;
 /// The ball and the passes of a cell's first trials.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
-    /// Which cell.
+    /// The cell.
     pub cell: Cell,
-    /// How many of its trials.
+    /// Number of its trials.
     pub trials: u32,
     /// The field they were played on.
     pub field: casebase::FieldMm,
@@ -31,29 +31,29 @@ pub struct Map {
     pub passes: Vec<Pass>,
     /// Where the robots stood at kick-off; `None` where each trial has its own layout.
     pub start: Option<Layout>,
-    /// Where the ball was at the end, and what that was.
+    /// Where the ball was at the end of each trial, and the outcome.
     pub ends: Vec<(Point<Field>, Outcome)>,
 }
 
-/// A ball from one attacker meant for another, or that came to one.
+/// A ball that one attacker intended for another, or that another one received.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pass {
-    /// From here.
+    /// Start.
     pub from: Point<Field>,
-    /// To here: where it was received or lost.
+    /// End: where it was received or lost.
     pub to: Point<Field>,
-    /// What became of it.
+    /// Its result.
     pub kind: PassKind,
 }
 
-/// What became of a pass.
+/// Result of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PassKind {
     /// Intended for a teammate, and received by it.
     Completed,
     /// Intended for a teammate, and received by another robot, or by none.
     Lost,
-    /// A kick ahead that a teammate got: the only passes reactive attackers have (paper §5).
+    /// A kick ahead that a teammate received: the only passes reactive attackers have (paper §5).
     Chance,
 }
 
@@ -86,7 +86,7 @@ impl Map {
         self.ends.extend(mapper.end);
     }
 
-    /// The square a place lies in; none beside the field.
+    /// The square of a place; `None` beside the field.
     fn square(&self, place: Point<Field>) -> Option<usize> {
         let along = |value: f32, side: i32, squares: usize| {
             let mm = f64::from(value) * 1000.0 + f64::from(side) * 0.5;
@@ -147,7 +147,7 @@ pub struct Mapper {
 struct Flight {
     by: usize,
     from: Point<Field>,
-    /// Meant as a pass.
+    /// Intended as a pass.
     pass: bool,
 }
 
@@ -196,7 +196,7 @@ impl Watcher for Mapper {
 
     fn end(&mut self, moment: &Moment<'_>, report: &TrialReport) {
         let ball = moment.world.ball.position;
-        // A pass that goes in or passes a post was no bad one.
+        // A pass that goes in or passes a post is not counted as lost.
         if let Some(Flight { from, pass: true, .. }) = self.flying.take()
             && !matches!(report.outcome, Outcome::Goal | Outcome::Close)
         {

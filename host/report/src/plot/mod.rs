@@ -40,7 +40,7 @@ pub(crate) struct Panel {
     pub(crate) height: f64,
 }
 
-/// What a sign means.
+/// Entry of the legend: meaning of a sign.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Key {
     pub(crate) word: String,
@@ -49,7 +49,7 @@ pub(crate) struct Key {
     pub(crate) shape: Shape,
 }
 
-/// What a number is drawn as.
+/// Sign that a number is drawn with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shape {
     Bar,
@@ -73,14 +73,15 @@ pub(crate) fn figures(report: &Report<'_>) -> Vec<Figure> {
     figures
 }
 
-/// A number's owner: whose approach, ours or the paper's.
+/// Approach of a number, ours or the paper's.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Entry<'a> {
     pub(crate) row: &'a TableRow,
     pub(crate) ours: bool,
 }
 
-/// The rows of a table and scenario: by approach, ours before the paper's. Of ours of several sizes the largest.
+/// The rows of a table and scenario: by approach, ours before the paper's. Of ours with several numbers of
+/// trials, the row with most.
 pub(crate) fn entries<'a>(report: &Report<'a>, table: u8, scenario: Scenario) -> Vec<Entry<'a>> {
     let own = |row: &&TableRow| (row.table, row.scenario) == (table, scenario);
     let mut entries: Vec<Entry<'a>> = Vec::new();
@@ -217,11 +218,11 @@ impl Key {
     }
 }
 
-/// How wide a panel is, px: two beside each other on a page, one on a phone with letters that can be read.
+/// Width of a panel, px: two beside each other on a page, one on a phone with readable letters.
 pub(crate) const PANEL: f64 = 440.0;
-/// What a panel's title takes, px.
+/// Height of a panel's title, px.
 const TITLE: f64 = 26.0;
-/// Between panels, px.
+/// Gap between panels, px.
 const GAP: f64 = 28.0;
-/// Around a figure, px.
+/// Margin around a figure, px.
 const EDGE: f64 = 14.0;

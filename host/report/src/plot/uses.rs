@@ -91,7 +91,7 @@ const ENDS: [(&str, &str, &[&str]); 7] = [
 ];
 /// Where bars start, px: after the cases' names.
 const LEFT: f64 = 176.0;
-/// Room for the number of plays, px.
+/// Space for the number of plays, px.
 const RIGHT: f64 = 52.0;
 /// Height of a bar with the gap to the next, px.
 const ROW: f64 = 15.0;

@@ -306,5 +306,5 @@ pub(super) const CLAIMS: &[Entry] = &[
 
 /// Between equal and double, at the middle: less than double and clearly more than equal.
 const ALMOST_DOUBLE: f64 = 1.5;
-/// The paper prints no share it calls insignificant; this is ours, percent.
+/// The paper prints no share that it calls insignificant; this limit is our estimate, percent.
 const LITTLE_PERCENT: f64 = 5.0;

@@ -39,13 +39,13 @@ pub struct Claim {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
-    /// They do.
+    /// The numbers support it.
     Supported,
     /// The opposite holds, in one point at least.
     Contradicted,
     /// The numbers do not decide it.
     Undecided,
-    /// There are none.
+    /// There are no numbers.
     Unmeasured,
 }
 
@@ -73,7 +73,7 @@ pub struct Judgement {
 }
 
 impl Judgement {
-    /// Of the points of a claim; `None` stands for one that was not measured.
+    /// Judges the points of a claim; `None` stands for one that was not measured.
     pub(super) fn new(points: Vec<Option<Point>>) -> Self {
         let all = points.len();
         let mut points: Vec<Point> = points.into_iter().flatten().collect();
