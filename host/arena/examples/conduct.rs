@@ -3,8 +3,8 @@
 //! fouls.
 //!
 //! `cargo run --release -p arena --example conduct -- LEAGUE WORLD OPPONENT FIRST_SEED COUNT SECONDS`, as in
-//! `conduct division-b random ours 1 200 120`; ours is blue, and with `random` each match has the random world of its own seed.
-//! `conduct LEAGUE WORLD` prints that world's numbers.
+//! `conduct division-b random ours 1 200 120`; ours is blue, and with `random` each match has the random
+//! world of its own seed. `conduct LEAGUE WORLD` prints that world's numbers.
 
 use std::collections::BTreeMap;
 

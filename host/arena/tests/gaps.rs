@@ -1,8 +1,9 @@
 //! `gaps`: vision and radio that fail for 40–150 ms again and again, and real silences: which robots stand,
 //! and which brake in time.
 //!
-//! A robot *stands* where its true speed is below 0.05 m/s while the game runs and it has an order to move: a place farther
-//! away than 0.15 m, or an order without a place (get the ball, a case) while its governor holds it back.
+//! A robot *stands* where its true speed is below 0.05 m/s while the game runs and it has an order to move: a
+//! place farther away than 0.15 m, or an order without a place (get the ball, a case) while its governor
+//! holds it back.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -100,8 +101,8 @@ impl Gaps {
     }
 }
 
-/// Robot-seconds in play with an order to move; those of them in which the robot stood, and in which its governor held it; and the longest
-/// time for which one robot stood.
+/// Robot-seconds in play with an order to move; those of them in which the robot stood, and in which its
+/// governor held it; and the longest time for which one robot stood.
 #[derive(Debug, Default)]
 struct Stood {
     ordered: f64,

@@ -79,7 +79,8 @@ const OURS: [(f32, f32, f32); 6] = [
     (0.0, -2.0, 0.0),
 ];
 
-/// An opponent that stays on the line from the ball to its goal, this far before the ball, no faster than 1.5 m/s.
+/// An opponent that stays on the line from the ball to its goal, this far before the ball, no faster than 1.5
+/// m/s.
 fn mirror(stage: &mut Stage<'_>, number: u8, off: f32) {
     let ball = stage.game.world().ball.position;
     let goal = stage.at(4.5, 0.0);

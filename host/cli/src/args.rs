@@ -38,7 +38,8 @@ pub(crate) enum Verb {
     /// Inspect a recorded match: its contents, the field at a moment, and whether the hosts decide the same
     /// again.
     Replay(Box<ReplayArgs>),
-    /// A Small Size field for any team's software: vision out, the league's simulation protocol in, a referee beside it.
+    /// A Small Size field for any team's software: vision out, the league's simulation protocol in, a referee
+    /// beside it.
     Simulate(Box<SimulateArgs>),
     /// Check, list, show, retrieve and explain cases.
     Cases {

@@ -48,8 +48,8 @@ pub(crate) struct PlayArgs {
     /// Field, robots and rules: ssl-2013, division-b or division-a.
     #[arg(long, default_value = "division-b", value_parser = league)]
     league: League,
-    /// Which world of the family it is played in: nominal, grsim, erforce, erforce-none, sumatra, slow-dribbler, poor-vision,
-    /// weak-kickers or random:SEED (docs/fields.md).
+    /// Which world of the family it is played in: nominal, grsim, erforce, erforce-none, sumatra,
+    /// slow-dribbler, poor-vision, weak-kickers or random:SEED (docs/fields.md).
     #[arg(long, value_name = "WORLD", default_value_t)]
     world: WorldChoice,
     /// Blue team: ours, reactive, marking, zone or idle.

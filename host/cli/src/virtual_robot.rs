@@ -39,7 +39,8 @@ pub(crate) struct VirtualRobotArgs {
     /// Its host, as HOST:PORT.
     #[arg(long, value_parser = address)]
     host: SocketAddr,
-    /// The simulator, as HOST or HOST:PORT; without a port the league's for its team, 10301 blue, 10302 yellow.
+    /// The simulator, as HOST or HOST:PORT; without a port the league's for its team, 10301 blue, 10302
+    /// yellow.
     #[arg(long, value_name = "HOST[:PORT]")]
     simulator: String,
     /// The goal its team defends until its host sends it.

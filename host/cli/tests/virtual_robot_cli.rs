@@ -1,7 +1,8 @@
 //! `virtual_robot_cli`: tests of virtual robots in processes of their own: they obey the host in a simulator
 //! that is reached by the league's protocol alone, are restarted when they end, and end with their host.
 //!
-//! The host's radio and link on one side, the sans-IO simulator with sockets on the other, the built program between.
+//! The host's radio and link on one side, the sans-IO simulator with sockets on the other, the built program
+//! between.
 // Processes are checked and killed by `kill`.
 #![cfg(unix)]
 

@@ -33,7 +33,8 @@ impl Default for Limits {
             request: Duration::from_secs(20),
             // A second of a match is the longest answer: 100 kB.
             connection: Duration::from_mins(1),
-            // Browsers open 6 to a host. With the viewers' it stays below a fifth of the usual 1,024 descriptors of a process.
+            // Browsers open 6 to a host. With the viewers' it stays below a fifth of the usual 1,024
+            // descriptors of a process.
             connections: 128,
             // Enough for a team and its guests.
             viewers: 64,

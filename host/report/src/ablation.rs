@@ -265,8 +265,8 @@ mod tests {
         let text = ablation.markdown("evaluation/");
         assert!(text.contains(&format!("| {name} | +12.0\\*\\* | +12.0\\*\\* |")), "{text}");
         assert!(text.contains("](evaluation/ablations.svg)"));
-        // 42 against 30 of 100; Wilson's are 0.32798–0.51794 and 0.21895–0.39585, so 12 less 13.287 = 100 √(0.09202² + 0.09585²)
-        // and more 12.712 = 100 √(0.09794² + 0.08105²).
+        // 42 against 30 of 100; Wilson's are 0.32798–0.51794 and 0.21895–0.39585, so 12 less 13.287 = 100
+        // √(0.09202² + 0.09585²) and more 12.712 = 100 √(0.09794² + 0.08105²).
         let (low, high) = reach(&effects[0]).unwrap();
         assert!((low + 1.287).abs() < 1e-3 && (high - 24.712).abs() < 1e-3, "{low} {high}");
     }

@@ -1,7 +1,8 @@
 //! `table`: lines of the report's tables. Ours, the paper's, their difference; then one approach against
 //! another.
 //!
-//! The same model becomes HTML here and Markdown in `markdown`. A difference carries Holm's p over the scenarios of its table.
+//! The same model becomes HTML here and Markdown in `markdown`. A difference carries Holm's p over the
+//! scenarios of its table.
 
 use arena::evaluation::{Comparison, TableRow};
 use brain::Approach;

@@ -182,7 +182,8 @@ fn intervals_differences_and_their_significance_are_those_of_a_hand_calculation(
     let cells = cells(block);
     // Wilson of 170 of 500: centre (0.34 + 3.8415 / 1000) / 1.0076829 = 0.34122, reach 0.04140.
     assert!(cells.contains(&"30.0–38.3".to_owned()), "{cells:?}");
-    // 51 against 45 of 500: +1.2; pooled 0.096, z = 0.006 × 2 / 0.018632 = 0.644, p = 0.52, four such scenarios: 1.
+    // 51 against 45 of 500: +1.2; pooled 0.096, z = 0.006 × 2 / 0.018632 = 0.644, p = 0.52, four such
+    // scenarios: 1.
     assert!(cells.contains(&"+1.2".to_owned()), "{cells:?}");
     // Out, the paper's 28 less 37: −9.0; z = −3.04, p = 0.0024, the greatest of four: as it is, two stars.
     assert!(cells.contains(&"−9.0".to_owned()) && cells.contains(&"p = 0.002".to_owned()), "{cells:?}");

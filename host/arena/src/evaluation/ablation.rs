@@ -130,7 +130,8 @@ pub struct Effect {
     pub configuration: Option<Configuration>,
     /// 1 to 4; null over all cells.
     pub scenario: Option<&'static str>,
-    /// `to_goal`, `out`, `timeout` (percent); `possession` (all opponents'), `time` (s), `cases`, `default_s` a trial.
+    /// `to_goal`, `out`, `timeout` (percent); `possession` (all opponents'), `time` (s), `cases`, `default_s`
+    /// a trial.
     pub measure: &'static str,
     /// Number of pairs of trials.
     pub trials: u32,

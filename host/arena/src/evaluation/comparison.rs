@@ -1,8 +1,8 @@
 //! `comparison`: comparison of two table rows, measure by measure. Two rows measure by measure, and Holm's
 //! correction over the paper's scenarios.
 //!
-//! Shares by the two-proportion z test, means by Welch's t. A family of tests is one measure of one table over scenarios 1 to 4;
-//! the random starts stand beside it, uncorrected: they are one test.
+//! Shares by the two-proportion z test, means by Welch's t. A family of tests is one measure of one table
+//! over scenarios 1 to 4; the random starts stand beside it, uncorrected: they are one test.
 
 use brain::Approach;
 use hil_sim::Scenario;

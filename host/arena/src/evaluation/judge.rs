@@ -253,7 +253,8 @@ mod tests {
         let lines = judge(paper());
         for line in &lines {
             let expected = match line.id {
-                // 500 trials are too few for p < 0.01 in scenarios 1 and 2 against a goalie: 4 + 2 cells of 8 are left.
+                // 500 trials are too few for p < 0.01 in scenarios 1 and 2 against a goalie: 4 + 2 cells of 8
+                // are left.
                 "a" | "b" | "c" | "d" | "e" | "f" | "g" | "to-goal" | "out" | "reactive" => Held::Held,
                 // The paper has no hybrid, no random starts, and prints no time-outs for this configuration.
                 _ => Held::Unmeasured,

@@ -19,7 +19,8 @@ use crate::trial::{APPROACHES, TrialConfig};
 pub enum Profile {
     /// The paper's simulator: noiseless perception (§5.2).
     Simulated,
-    /// As the paper's robots: noise in perception, 5 s of standing still after every cycle (§5.3; docs/papers.md R40).
+    /// As the paper's robots: noise in perception, 5 s of standing still after every cycle (§5.3;
+    /// docs/papers.md R40).
     Robots,
 }
 
@@ -89,8 +90,8 @@ pub struct Planned {
 }
 
 impl Plan {
-    /// The paper's trials: 500 a cell against defender and goalie, 200 against two defenders; and those of its robots, 500 a
-    /// cell, of which the first 30 are as many as the paper's.
+    /// The paper's trials: 500 a cell against defender and goalie, 200 against two defenders; and those of
+    /// its robots, 500 a cell, of which the first 30 are as many as the paper's.
     pub fn paper(seed: u64) -> Self {
         Self::of(seed, &Scenario::PAPER, [500, 200, 500])
     }

@@ -1,8 +1,9 @@
 //! `statistics`: confidence intervals and significance tests. Intervals of shares, tests of shares and means,
 //! and many tests at once.
 //!
-//! Wilson 1927 for a share's interval, the pooled z test for two shares, Welch 1947 for two means of unequal spread, McNemar's
-//! exact test and the paired t for trials of equal seeds, Holm 1979 for a family of tests. Two-sided throughout, no continuity correction; p from `statrs`' distributions.
+//! Wilson 1927 for a share's interval, the pooled z test for two shares, Welch 1947 for two means of unequal
+//! spread, McNemar's exact test and the paired t for trials of equal seeds, Holm 1979 for a family of tests.
+//! Two-sided throughout, no continuity correction; p from `statrs`' distributions.
 
 use statrs::distribution::{Binomial, ContinuousCDF, DiscreteCDF, Normal, StudentsT};
 
@@ -56,7 +57,8 @@ pub fn newcombe(first: Count, second: Count, confidence: f64) -> Option<Interval
     })
 }
 
-/// Student's interval of a mean; `None` where the spread is not known or the confidence is not between 0 and 1.
+/// Student's interval of a mean; `None` where the spread is not known or the confidence is not between 0 and
+/// 1.
 pub fn student(sample: Sample, confidence: f64) -> Option<Interval> {
     let sd = sample.sd.filter(|_| sample.n > 1 && confidence > 0.0 && confidence < 1.0)?;
     let student = StudentsT::new(0.0, 1.0, f64::from(sample.n - 1)).ok()?;
@@ -288,8 +290,9 @@ mod tests {
 
     #[test]
     fn every_test_agrees_with_scipy_and_statsmodels() {
-        // scipy 1.17.1, statsmodels 0.15.0: proportion_confint(method="wilson"), proportions_ztest, ttest_ind_from_stats
-        // (equal_var=False), mcnemar(exact=True), ttest_1samp, proportions_ztest(value=0.5, prop_var=0.5), multipletests("holm").
+        // scipy 1.17.1, statsmodels 0.15.0: proportion_confint(method="wilson"), proportions_ztest,
+        // ttest_ind_from_stats (equal_var=False), mcnemar(exact=True), ttest_1samp,
+        // proportions_ztest(value=0.5, prop_var=0.5), multipletests("holm").
         for (hits, of, low, high) in [
             (155, 500, 0.271_038_91, 0.351_858_34),
             (11, 30, 0.218_739_21, 0.544_864_36),

@@ -1,7 +1,8 @@
 //! `uses`: use of each case. How often it was retrieved, how its plays ended, and how the trials ended in
 //! which it was played.
 //!
-//! One line a case and kind of trial (profile, opponents, approach), cases that were never retrieved among them: `cases.csv`.
+//! One line a case and kind of trial (profile, opponents, approach), cases that were never retrieved among
+//! them: `cases.csv`.
 
 use brain::Approach;
 use hil_sim::{Configuration, Outcome};

@@ -1,8 +1,9 @@
 //! `effect`: effect of one part of the second paper. Our team with it against our team without, in the same
 //! matches (docs/papers.md D24).
 //!
-//! Goals by their difference a match; the paper's two ratios (Biswas et al. 2014 §6) by the mean of their logarithms, for 2 and 1/2 are
-//! as far from 1, half a shot added to each side so that a match without shots has a ratio too. Student's 95 % intervals, paired t.
+//! Goals by their difference a match; the paper's two ratios (Biswas et al. 2014 §6) by the mean of their
+//! logarithms, for 2 and 1/2 are as far from 1, half a shot added to each side so that a match without shots
+//! has a ratio too. Student's 95 % intervals, paired t.
 
 use serde::Serialize;
 

@@ -24,7 +24,8 @@ impl Entrant {
         Self::from(Team::Ours)
     }
 
-    /// Our team once for each part of the second paper, without it where it is usual and with it where it is not.
+    /// Our team once for each part of the second paper, without it where it is usual and with it where it is
+    /// not.
     pub fn ablations() -> Vec<Self> {
         let usual = parts(Tactics::default());
         let flipped = |part: &String| {

@@ -4,8 +4,8 @@
 //! ```text
 //! Plan ─► Matches::play_shard ─► trials-1-of-3.csv … ─► merge ─► rows ─► outcomes, effects ─► matches.json, tables in words, plots
 //! ```
-//! Shards, files, resuming and merging are [`crate::evaluation`]'s: equal plans give equal bytes for any number of threads, shards
-//! and interrupts.
+//! Shards, files, resuming and merging are [`crate::evaluation`]'s: equal plans give equal bytes for any
+//! number of threads, shards and interrupts.
 
 mod calibration;
 mod effect;

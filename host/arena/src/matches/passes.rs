@@ -28,7 +28,8 @@ pub(super) fn fates_column(passes: &PassTally) -> String {
     text
 }
 
-/// P(receive) by tenths: `9:12:11.2:10` are 12 passes of the tenth from 0.9, with 11.2 expected to arrive and 10 that did.
+/// P(receive) by tenths: `9:12:11.2:10` are 12 passes of the tenth from 0.9, with 11.2 expected to arrive and
+/// 10 that did.
 pub(super) fn calibration_column(passes: &PassTally) -> String {
     let bins = passes.calibration.iter().enumerate().filter(|(_, bin)| bin.passes > 0);
     let words: Vec<_> = bins

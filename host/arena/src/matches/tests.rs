@@ -187,7 +187,8 @@ fn ratios_goals_and_intervals_are_those_counted_by_hand() {
     let ours = our_passes(&rows);
     let text = markdown(std::slice::from_ref(&outcome), &[], &ours);
     assert!(text.contains("| ours | zone | 3 | 2, 1, 0 | 6 : 1 |"), "{text}");
-    // Twelve flat passes of three matches, nine arrived: Wilson's 0.4677 to 0.9111. Six planned, half of them.
+    // Twelve flat passes of three matches, nine arrived: Wilson's 0.4677 to 0.9111. Six planned, half of
+    // them.
     assert!(text.contains("| ours | zone | flat | 12 | 12 | 9 | 0.75 (0.47 to 0.91) |"), "{text}");
     assert!(text.contains("| zone | ours | chip | 3 | 3 | 3 | 1.00 (0.44 to 1.00) |"), "{text}");
     assert!(text.contains("| ours | zone | 3 | 6 | 3 | 0.50 (0.19 to 0.81) | 3 | 0 |"), "{text}");

@@ -105,7 +105,8 @@ pub struct Rehearsal<'a> {
 }
 
 impl<'a> Rehearsal<'a> {
-    /// The stored case that stands for the authored case number `authored`: the copy that attacks +x with its sides unswapped.
+    /// The stored case that stands for the authored case number `authored`: the copy that attacks +x with its
+    /// sides unswapped.
     pub fn case(&self, authored: usize) -> Option<Case<'a>> {
         self.base.cases().find(|case| case.authored() == authored && case.defending() == GoalEnd::Negative)
     }

@@ -1,7 +1,8 @@
 //! `situation`: start situation drawn from a case: the robots' places at the start of an attempt. m, field
 //! frame.
 //!
-//! - The ball lies in the scope's core, where the similarity is H (at least 0.8), every place there equally likely.
+//! - The ball lies in the scope's core, where the similarity is H (at least 0.8), every place there equally
+//!   likely.
 //! - Everything else moves along with it, as adaptation does. Robots stand 0.15 m (one standard deviation)
 //!   about their places and face 20° past the ball.
 //! - Opponents are drawn on their scopes as the scope weighs places: a Gaussian with the scope's radii, cut

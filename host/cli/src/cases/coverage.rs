@@ -23,7 +23,8 @@ use crate::picture;
 pub(crate) struct CoverageArgs {
     #[command(flatten)]
     survey: SurveyArgs,
-    /// Print the N worst holes as problems, one a line, as `cases retrieve` reads them; one of each cell, worst first.
+    /// Print the N worst holes as problems, one a line, as `cases retrieve` reads them; one of each cell,
+    /// worst first.
     #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "10", conflicts_with = "json")]
     gaps: Option<usize>,
     /// Print one JSON object instead of maps and tables.

@@ -1,8 +1,9 @@
 //! `problem`: parser of problem lines (docs/case-format.md §5.1, `cases retrieve`).
 //!
-//! A problem is one JSON object with exactly the keys `ball`, `defending`, `teammates` and `opponents`; integers in mm,
-//! field frame. Strict: a missing, unknown or repeated key, a repeated robot or a number that is no integer is
-//! malformed, and the error names its place, such as `teammates.3`. List places count from 1, as lines do.
+//! A problem is one JSON object with exactly the keys `ball`, `defending`, `teammates` and `opponents`;
+//! integers in mm, field frame. Strict: a missing, unknown or repeated key, a repeated robot or a number that
+//! is no integer is malformed, and the error names its place, such as `teammates.3`. List places count from
+//! 1, as lines do.
 
 use std::fmt;
 

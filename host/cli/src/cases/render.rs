@@ -20,7 +20,8 @@ use crate::picture;
 /// Arguments of `cases render`.
 #[derive(Debug, Args)]
 pub(crate) struct RenderArgs {
-    /// `region/name` of a case (drawn as authored), or the id of a stored case; with --problem the retrieved one.
+    /// `region/name` of a case (drawn as authored), or the id of a stored case; with --problem the retrieved
+    /// one.
     #[arg(value_name = "NAME|ID", required_unless_present_any = ["problem", "all", "sheet"])]
     case: Option<String>,
     /// A situation to draw over the case: a file, - for stdin, or the line of JSON itself.

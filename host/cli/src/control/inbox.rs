@@ -15,7 +15,8 @@ use protocol::link::Packet;
 
 use super::threads::Source;
 
-/// The longest datagram of vision, bytes: a camera frame of 32 robots, 100 balls and the field's geometry has 9 kB.
+/// The longest datagram of vision, bytes: a camera frame of 32 robots, 100 balls and the field's geometry has
+/// 9 kB.
 pub(super) const VISION_LEN_MAX: usize = 10_240;
 /// The longest packet of the referee, bytes: the controller sends 0.6 to 4 kB, with all game events that it
 /// stores.

@@ -58,15 +58,16 @@ pub(crate) struct ControlArgs {
     /// interface.
     #[arg(long, value_name = "ADDRESS")]
     interface: Option<IpAddr>,
-    /// Where the robots are: `sim://HOST[:PORT]` (brains of our own in a simulator; its control port, 10300), `udp://HOST:PORT` or
-    /// `serial:DEVICE[:BAUD]`.
+    /// Where the robots are: `sim://HOST[:PORT]` (brains of our own in a simulator; its control port, 10300),
+    /// `udp://HOST:PORT` or `serial:DEVICE[:BAUD]`.
     #[arg(long, value_name = "LINK")]
     robots: Option<String>,
     /// Which robots are started in a simulator, such as 0-5 or 1,4,7; by default the league's number, from 0
     /// on.
     #[arg(long, value_name = "IDS", value_parser = ids)]
     ids: Option<Ids>,
-    /// The team's key: 32 hexadecimal digits in a file, as `openssl rand -hex 16` makes them; needed for udp:// and serial:.
+    /// The team's key: 32 hexadecimal digits in a file, as `openssl rand -hex 16` makes them; needed for
+    /// udp:// and serial:.
     #[arg(long, value_name = "FILE")]
     key_file: Option<PathBuf>,
     /// Control real robots without a key of the team's own: any sender in radio range can then command them.
@@ -78,8 +79,9 @@ pub(crate) struct ControlArgs {
     /// Address where the referee is received: 224.5.23.1:10003.
     #[arg(long, value_name = "ADDRESS:PORT")]
     referee: Option<SocketAddr>,
-    /// The only referee that is obeyed: the address of its machine (192.168.1.5), its address with port, or its identifier. Others
-    /// are ignored and reported. Without it the strictest command of all of them is obeyed.
+    /// The only referee that is obeyed: the address of its machine (192.168.1.5), its address with port, or
+    /// its identifier. Others are ignored and reported. Without it the strictest command of all of them is
+    /// obeyed.
     #[arg(long, value_name = "ADDRESS|IDENTIFIER")]
     referee_source: Option<String>,
     /// What the robots do when no packet came from the referee for 2 s: `halt` (the default), or `go-on` by
@@ -121,7 +123,8 @@ pub(crate) struct ControlArgs {
     duration: Option<f64>,
 }
 
-/// Which cases robots in a simulator retrieve, and how; the page explains by them. Robots on a field have theirs in flash.
+/// Which cases robots in a simulator retrieve, and how; the page explains by them. Robots on a field have
+/// theirs in flash.
 #[derive(Debug, Args)]
 pub(crate) struct CasesArgs {
     #[command(flatten)]

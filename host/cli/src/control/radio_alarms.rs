@@ -1,5 +1,5 @@
-//! `radio_alarms`: robots that refuse this host, or that it refuses, for terminal and page: at once, and again every [`AGAIN`] while it
-//! lasts. Times on the host's clock.
+//! `radio_alarms`: robots that refuse this host, or that it refuses, for terminal and page: at once, and
+//! again every [`AGAIN`] while it lasts. Times on the host's clock.
 
 use host::radio::{Radio, RadioWarning};
 use protocol::{Duration, Instant};

@@ -33,8 +33,9 @@ pub(super) struct MatchesArgs {
     /// Field, robots and rules: division-b, ssl-2013 (the paper's) or division-a.
     #[arg(long, default_value = "division-b", value_parser = league)]
     league: League,
-    /// The world of all matches: nominal, grsim, erforce, erforce-none, sumatra, slow-dribbler, poor-vision, weak-kickers or
-    /// random:SEED; or random: each match in the random world of its own seed (docs/fields.md).
+    /// The world of all matches: nominal, grsim, erforce, erforce-none, sumatra, slow-dribbler, poor-vision,
+    /// weak-kickers or random:SEED; or random: each match in the random world of its own seed
+    /// (docs/fields.md).
     #[arg(long, value_name = "WORLD", default_value_t)]
     world: WorldPlan,
     /// Matches of each pair of teams.

@@ -32,7 +32,8 @@ pub(super) struct SkillsArgs {
     /// Random seed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Only these skills, with commas between: placement, get-ball, receive, dribble, turn-with-ball, kick, chip, save.
+    /// Only these skills, with commas between: placement, get-ball, receive, dribble, turn-with-ball, kick,
+    /// chip, save.
     #[arg(long = "skill", value_name = "LIST", value_delimiter = ',', value_parser = skill)]
     skills: Vec<Skill>,
     /// Number of the first try of each skill, to repeat one.

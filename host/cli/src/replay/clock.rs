@@ -1,5 +1,5 @@
-//! `clock`: the time in a league log file, and how often something comes in it, where the recorder's clock was set while it recorded.
-//! Times in s since the file's first message.
+//! `clock`: the time in a league log file, and how often something comes in it, where the recorder's clock
+//! was set while it recorded. Times in s since the file's first message.
 //!
 //! Time is summed from differences between neighbours, so that a step of the clock affects one difference and
 //! not all later ones.

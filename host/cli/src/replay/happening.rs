@@ -146,7 +146,8 @@ impl Finder {
     }
 }
 
-/// Where the ball is to be placed, mm, where the command is such that the place counts (README of `ssl`, trap 3).
+/// Where the ball is to be placed, mm, where the command is such that the place counts (README of `ssl`, trap
+/// 3).
 fn place(packet: &Referee) -> Option<[i32; 2]> {
     let placing = matches!(
         Command::try_from(packet.command),

@@ -47,8 +47,9 @@ pub(crate) struct SimulateArgs {
     /// program against.
     #[arg(long, value_enum, default_value_t = ProfileWord::Ours)]
     profile: ProfileWord,
-    /// Which world of the family is simulated: nominal, grsim, erforce, erforce-none, sumatra, slow-dribbler, poor-vision,
-    /// weak-kickers or random:SEED (docs/fields.md). A profile other than ours has cameras and noise of its own.
+    /// Which world of the family is simulated: nominal, grsim, erforce, erforce-none, sumatra, slow-dribbler,
+    /// poor-vision, weak-kickers or random:SEED (docs/fields.md). A profile other than ours has cameras and
+    /// noise of its own.
     #[arg(long, value_name = "WORLD", default_value_t)]
     world: WorldChoice,
     /// Cameras: 1, 2 or 4; by default the league's or the profile's number.
@@ -60,7 +61,8 @@ pub(crate) struct SimulateArgs {
     /// Destination of vision: a multicast group, or one machine.
     #[arg(long, value_name = "ADDRESS:PORT", default_value_t = addresses::VISION_SIMULATED.into())]
     vision: SocketAddr,
-    /// The control port; blue's robots are at the next one, yellow's at the one after. 0: any three that are free.
+    /// The control port; blue's robots are at the next one, yellow's at the one after. 0: any three that are
+    /// free.
     #[arg(long, value_name = "PORT", default_value_t = addresses::SIMULATOR_PORT, value_parser = clap::value_parser!(u16).range(0..=65533))]
     ports: u16,
     /// Step the field by TCP instead of by the clock: blue's port, yellow's is the next one (the simulation

@@ -1,5 +1,6 @@
-//! `sync`: the simulation protocol's synchronous mode, `--sync`. TCP, each message after its length as a varint, one port for each
-//! team; simulated time passes only where a client asks for a step, so that the same requests give the same answers.
+//! `sync`: the simulation protocol's synchronous mode, `--sync`. TCP, each message after its length as a
+//! varint, one port for each team; simulated time passes only where a client asks for a step, so that the
+//! same requests give the same answers.
 //!
 //! The protocol has the messages and proposes this transport; it names no port, so there is none by default.
 

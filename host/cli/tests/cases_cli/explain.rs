@@ -45,7 +45,8 @@ fn a_missing_robot_and_a_blocked_leg_are_told_apart() {
 
 #[test]
 fn candidates_are_ranked_as_retrieval_ranks_them() {
-    // Two shots whose ball scopes overlap; robot 2 stands at the second's place, so that the second costs nothing.
+    // Two shots whose ball scopes overlap; robot 2 stands at the second's place, so that the second costs
+    // nothing.
     let folder = library(
         "explain-ranks",
         &[("front/near.toml", &shot_at(1000, 300)), ("front/nearer.toml", &shot_at(1040, 300))],
@@ -138,7 +139,8 @@ fn two_cases_are_set_side_by_side() {
     let diff = |a: &str, b: &str, more: &[&str]| {
         cases("explain", &folder, &[&["--diff", a, b], more].concat(), problem)
     };
-    // Both in interval H; from (900, 300) it is 10 mm to (910, 300) for both: the nearer ball is the more similar one.
+    // Both in interval H; from (900, 300) it is 10 mm to (910, 300) for both: the nearer ball is the more
+    // similar one.
     let run = diff("front/near", "4", &["--json"]);
     let read: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
     assert_eq!((&read["first"], &read["by"]), (&4.into(), &"similarity".into()), "{}", run.stdout);

@@ -2,7 +2,8 @@
 //! layers switch, an explanation opens, a drag works, a recording seeks to its goal, a lost connection is
 //! displayed and recovers, no error on the console.
 //!
-//! `cargo xtask test --only page` installs the browser where it can and runs this; plain `cargo test` does without.
+//! `cargo xtask test --only page` installs the browser where it can and runs this; plain `cargo test` does
+//! without.
 
 mod program;
 

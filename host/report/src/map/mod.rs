@@ -25,7 +25,8 @@ pub struct Map {
     pub trials: u32,
     /// The field they were played on.
     pub field: casebase::FieldMm,
-    /// Seconds of the ball in each square of [`EDGE`], row by row from the least y, each from the least x; all trials together.
+    /// Seconds of the ball in each square of [`EDGE`], row by row from the least y, each from the least x;
+    /// all trials together.
     pub seconds: Vec<f64>,
     /// The attackers' passes.
     pub passes: Vec<Pass>,
@@ -98,7 +99,8 @@ impl Map {
         Some(row * self.columns() + column)
     }
 
-    /// The maps of an evaluation's simulated cells: the first `trials` of each, played again on all threads of the pool.
+    /// The maps of an evaluation's simulated cells: the first `trials` of each, played again on all threads
+    /// of the pool.
     pub fn of(evaluation: &Evaluation<'_>, trials: u32) -> Result<Vec<Self>, MapError> {
         let plan = &evaluation.plan;
         let cells = plan.cells.iter().filter(|cell| cell.profile == Profile::Simulated);

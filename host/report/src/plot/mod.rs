@@ -1,7 +1,8 @@
 //! `plot`: plots and their arrangement as figures. One panel a scenario or measure; beside each other on a
 //! page, stacked on a phone, in one file for a paper.
 //!
-//! Everywhere: ours is filled, the paper's is hollow, an approach keeps its colour, whiskers are 95 % intervals.
+//! Everywhere: ours is filled, the paper's is hollow, an approach keeps its colour, whiskers are 95 %
+//! intervals.
 
 mod axis;
 mod bars;

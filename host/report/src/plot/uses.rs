@@ -117,7 +117,8 @@ mod tests {
             outcomes: [0; 5],
         };
         let plays: Vec<_> = ENDS.iter().map(|(_, _, words)| ends(&case, words)).collect();
-        // Robot lost 4, ball at rest 7, timeout 8, no decision 9, unknown case 10, superseded 11 are anything else.
+        // Robot lost 4, ball at rest 7, timeout 8, no decision 9, unknown case 10, superseded 11 are anything
+        // else.
         assert_eq!(plays, [1, 2, 3, 5, 6, 4 + 7 + 8 + 9 + 10 + 11, 12]);
         assert_eq!(plays.iter().sum::<u32>(), case.retrieved);
         assert!(panel(&[&case], 3).unwrap().height > ROW);

@@ -130,8 +130,9 @@ mod tests {
 
     #[test]
     fn the_papers_tables_bear_out_what_independent_tests_of_them_do() {
-        // Two-proportion and Welch tests of the printed tables, computed apart (`data/derived_cbr_vs_reactive_z.csv`), and
-        // the contradictions between tables and prose that its transcription found.
+        // Two-proportion and Welch tests of the printed tables, computed apart
+        // (`data/derived_cbr_vs_reactive_z.csv`), and the contradictions between tables and prose that its
+        // transcription found.
         for (id, verdict) in [
             ("dg-to-goal", Verdict::Undecided),
             ("dg-to-goal-3-4", Verdict::Supported),

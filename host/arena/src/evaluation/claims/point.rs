@@ -195,7 +195,8 @@ impl<'a> Rows<'a> {
         Some(point.with_decimals(decimals(measure)))
     }
 
-    /// How much greater a measure is in one approach than in another, in two cells; in the first cell it should be more.
+    /// How much greater a measure is in one approach than in another, in two cells; in the first cell it
+    /// should be more.
     pub(in super::super) fn effects(
         self,
         first: (u8, Scenario, Measure),
