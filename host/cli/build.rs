@@ -1,6 +1,6 @@
-//! Build script: the commit that this program is built from. Answered by git at build time, for `onetwo
-//! --version` and for everything that records where it came from; "unknown" where there is no git or no
-//! repository of ours.
+//! `build`: build script: the commit that this program is built from. Answered by git at build time, for
+//! `onetwo --version` and for everything that records where it came from; "unknown" where there is no git or
+//! no repository of ours.
 #![forbid(unsafe_code)]
 
 use std::path::Path;

@@ -1,6 +1,6 @@
-//! Load generator for `cargo xtask bench page`: opens many viewers of a page at once. `viewers ADDRESS
-//! WAYS`, a letter for each viewer: `r` reads as fast as it can, `s` takes a scene a second, `d` never
-//! reads, `v` disconnects without closing. Ends with the page, and prints how many were accepted.
+//! `viewers`: load generator for `cargo xtask bench page`: opens many viewers of a page at once. `viewers
+//! ADDRESS WAYS`, a letter for each viewer: `r` reads as fast as it can, `s` takes a scene a second, `d`
+//! never reads, `v` disconnects without closing. Ends with the page, and prints how many were accepted.
 
 use std::net::TcpStream;
 use std::process::ExitCode;

@@ -9,7 +9,7 @@
 //!
 //! ```text
 //! match ── Sketch ─► archive: finished and encoded once ─┬─► newest ─► every viewer at its own pace
-//!   ▲                                                  └─► seconds, happenings, plots ─► HTTP, on demand
+//!   ▲                                                  └─► seconds, events, plots ─► HTTP, on demand
 //!   └──────── Request ◄── WebSocket ◄── viewers of this very page only (Origin and Host are checked)
 //! ```
 //! **Invariants.** It knows no host, no simulator and no strategy: what it draws beyond ball, robots and

@@ -3,7 +3,7 @@
 //! the same match to the bit, on any machine.
 //!
 //! ```text
-//! world 1 ms ─► cameras ─► vision datagrams ─► host ─► radio frames ─► air ─► brains 10 ms ─► orders ─► world
+//! world 1 ms ─► cameras ─► vision datagrams ─► host ─► radio frames ─► brains 10 ms ─► orders ─► world
 //!    └► referee 10 ms ─► referee datagrams ─► host        ▲── beacons, telemetry ──┘
 //! ```
 //! [`Game`] is the match, tick by tick; [`play`] runs it to its end and returns a [`GameReport`]. A

@@ -1,5 +1,5 @@
-//! One side of a match: its host, its robots' computers, and the radio between them. Times in ticks of 10 ms
-//! and µs.
+//! `side`: one side of a match: its host, its robots' computers, and the radio between them. Times in ticks
+//! of 10 ms and µs.
 
 use geometry::{Angle, GoalEnd, Pose};
 use hil_sim::small_size::World;

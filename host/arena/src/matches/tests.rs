@@ -1,4 +1,5 @@
-//! Tests: equal plans give equal files, for any way of running them, and the sums are right.
+//! Tests: equal plans give equal files, independent of threads, shards and interrupts, and the sums are
+//! right.
 
 use std::fs;
 use std::path::PathBuf;

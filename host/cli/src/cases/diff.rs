@@ -1,5 +1,5 @@
-//! Two cases side by side on one problem: the result of each retrieval test for both, and the criterion by
-//! which one ranks first.
+//! `diff`: two cases side by side on one problem: the result of each retrieval test for both, and the
+//! criterion by which one ranks first.
 
 use std::io::{self, Write};
 

@@ -1,4 +1,4 @@
-//! The page beside a real field: displays what the host knows, and accepts HALT, nothing else.
+//! `board`: the page beside a real field: displays what the host knows, and accepts HALT, nothing else.
 
 use std::time::{Duration, Instant};
 

@@ -1,5 +1,5 @@
-//! The game controller's port for teams: a connection that is reopened when lost, around [`TeamPort`], which
-//! holds the protocol.
+//! `port_for_teams`: the game controller's port for teams: a connection that is reopened when lost, around
+//! [`TeamPort`], which holds the protocol.
 
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};

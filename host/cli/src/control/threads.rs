@@ -1,5 +1,5 @@
-//! A thread for each socket: it waits, and passes on what arrives. A socket that cannot be opened is tried
-//! again every second.
+//! `threads`: a thread for each socket: it waits, and passes on what arrives. A socket that cannot be opened
+//! is tried again every second.
 
 use std::net::SocketAddr;
 use std::sync::atomic::{AtomicBool, Ordering};

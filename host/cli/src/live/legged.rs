@@ -1,5 +1,5 @@
-//! A trial of the four-legged league on the page: the true state of the field, and the attackers' radio
-//! messages.
+//! `legged`: a trial of the four-legged league on the page: the true state of the field, and the attackers'
+//! radio messages.
 
 use arena::{Moment, News, TrialReport, Watcher};
 use casebase::CaseBase;

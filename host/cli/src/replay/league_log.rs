@@ -1,4 +1,5 @@
-//! A league log file: one pass that counts, tracks, listens, and stops at a moment if one is asked for.
+//! `league_log`: replay of a league log file: one pass that counts, tracks, listens, and stops at a moment if
+//! one is asked for.
 //!
 //! Time is summed from the recorder's clock, from the file's first message on ([`LogClock`]): where that is
 //! set, ours goes on.

@@ -1,4 +1,4 @@
-//! A recording on the page: every moment of it, for each viewer to seek through at its own pace.
+//! `show`: a recording on the page: every moment of it, for each viewer to seek through at its own pace.
 //!
 //! A trace replays the decisions of its hosts: they are built from its header and decide again. A league's
 //! log file gives what was on the field and what the referee sent; with `--team` a host of ours is fed with

@@ -1,5 +1,5 @@
-//! The page beside a simulated field on which other programs play: the truth, the output of our tracker for
-//! the vision, and controls for the ball.
+//! `board`: the page beside a simulated field on which other programs play: the truth, the output of our
+//! tracker for the vision, and controls for the ball.
 
 use std::time::{Duration, Instant};
 

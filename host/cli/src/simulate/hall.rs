@@ -1,5 +1,5 @@
-//! Server loop of `onetwo simulate`: the clock that drives the field, the network around it, the referee
-//! beside it.
+//! `hall`: server loop of `onetwo simulate`: the clock that drives the field, the network around it, the
+//! referee beside it.
 //!
 //! One thread: every millisecond it polls three sockets, advances the world to the clock and sends what is
 //! due.

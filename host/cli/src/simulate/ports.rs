@@ -1,5 +1,5 @@
-//! The ports that clients command the simulator by: the league's three, and grSim's own. A port in use is
-//! reported, and opened as soon as it is free.
+//! `ports`: the ports that clients command the simulator by: the league's three, and grSim's own. A port in
+//! use is reported, and opened as soon as it is free.
 
 use std::net::{IpAddr, SocketAddr};
 use std::time::{Duration, Instant};

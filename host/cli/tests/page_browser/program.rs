@@ -1,4 +1,4 @@
-//! The built program with its page: started, connected, and ended with the test.
+//! `program`: the built program with its page: started, connected, and ended with the test.
 
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, Command, Stdio};

@@ -1,4 +1,4 @@
-//! The claims of §5, each with the place of its numbers. The sentences are ours; their content is the
+//! `list`: the claims of §5, each with the place of its numbers. The sentences are ours; their content is the
 //! paper's.
 
 use brain::Approach::{self, Cases, Reactive};

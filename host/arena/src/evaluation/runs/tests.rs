@@ -1,4 +1,4 @@
-//! Tests: equal evaluations give equal files, for any way of running them.
+//! Tests: equal evaluations give equal files, independent of threads, shards and interrupts.
 
 use std::fs;
 use std::path::PathBuf;
