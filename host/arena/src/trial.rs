@@ -40,7 +40,7 @@ pub struct TrialConfig<'a> {
     /// Number of them that may retrieve: those with the highest ids, so that the elector need not be one
     /// (paper §4.1).
     pub retrievers: usize,
-    /// Radio settings: loss, delay, duplicates.
+    /// Radio settings: loss, delay, duplication, reordering and bursts.
     pub air: AirSettings,
     /// Noise of perception.
     pub noise: Noise,

@@ -1,5 +1,5 @@
 //! `output`: everything that is printed, on stdout and stderr. Control characters of a terminal are escaped,
-//! whatever their source: a referee's program, a log file, a file's name.
+//! from any source: a referee's program, a log file, a file's name.
 //!
 //! Line ends and tabs pass, because they are the program's own; a foreign value that is put into a line goes
 //! through [`foreign::printable`] first, so that it cannot end the line. Nothing else in this crate prints (a

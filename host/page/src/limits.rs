@@ -15,7 +15,7 @@ pub struct Limits {
     pub header: Duration,
     /// Longest time for a request's body and its answer.
     pub request: Duration,
-    /// A connection that is not a viewer's socket is closed after this time, whatever it is doing: it may be
+    /// A connection that is not a viewer's socket is closed after this time in any state: it may be
     /// a reader that never reads.
     pub connection: Duration,
     /// Connections served at once, viewers' sockets aside. Others wait in the system's queue.

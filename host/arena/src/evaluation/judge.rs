@@ -1,7 +1,7 @@
 //! `judge`: judgement whether the pattern of the paper's results is reproduced. Verdicts on a list of lines,
 //! each computed from table rows.
 //!
-//! Lines a to g are the pattern that any faithful simulation should reproduce, whatever its parameters; the
+//! Lines a to g are the pattern that any faithful simulation should reproduce, for any parameters; the
 //! others are this project's own requirements. They are intended for thousands of trials a cell (`onetwo
 //! evaluate judge`), on starts that were not used for tuning. A missed line is a finding, not an error.
 

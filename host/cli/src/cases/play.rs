@@ -3,7 +3,7 @@
 //!
 //! The answer is a text table, Markdown for the file beside the cases, or JSON: a list of scores. The same
 //! seed gives the same answer for any number of jobs. `--story` prints the events of single attempts instead,
-//! for the author who fixes a case.
+//! to debug a case.
 
 use std::fmt::Write as _;
 use std::io::Write as _;

@@ -29,7 +29,7 @@ use crate::stop::stopped_by_hand;
 /// If the match is farther behind the clock than this, s, the clock is reset: the match does not run faster
 /// to catch up.
 const BEHIND_MAX_S: f64 = 0.25;
-/// At every speed, simulated time between two scenes is at most this, s, for viewers who seek back.
+/// At every speed, simulated time between two scenes is at most this, s, for viewers that seek back.
 const SCENE_EVERY_MAX_S: f64 = 0.2;
 /// Longest part of a name sent by a viewer that is quoted in an answer, characters.
 const NAME_LEN: usize = 60;
