@@ -1,6 +1,6 @@
-//! Build script: the commit that this program is built from. Answered by git at build time, for `onetwo
-//! --version` and for everything that records where it came from; "unknown" where there is no git or no
-//! repository of ours.
+//! `build`: build script: the commit that this program is built from. Answered by git at build time, for
+//! `onetwo --version` and for everything that records where it came from; "unknown" where there is no git or
+//! no repository of ours.
 #![forbid(unsafe_code)]
 
 use std::path::Path;
@@ -12,12 +12,13 @@ fn main() {
     rerun_when_head_moves();
 }
 
-/// A source archive unpacked inside somebody else's repository must not name that repository's commit.
+/// A source archive unpacked inside a foreign repository must not be labelled with that repository's commit.
 fn is_tracked() -> bool {
     git(&["ls-files", "--error-unmatch", "build.rs"]).is_some()
 }
 
-/// HEAD itself changes on a checkout, the branch it names on a commit; a packed branch lives in `packed-refs`.
+/// HEAD itself changes on a checkout, the branch it names on a commit; a packed branch is stored in
+/// `packed-refs`.
 fn rerun_when_head_moves() {
     println!("cargo::rerun-if-changed=build.rs");
     let branch = git(&["symbolic-ref", "-q", "HEAD"]);

@@ -1,9 +1,10 @@
-//! `conduct`: plays matches and prints how they were played: a line a match, then the whole: time in each phase of the game, ball
-//! placements, the longest time that one robot held the ball, no-progress stops, fouls.
+//! `conduct`: plays matches and prints how they were played: a line a match, then the total: time in each
+//! phase of the game, ball placements, the longest time that one robot held the ball, no-progress stops,
+//! fouls.
 //!
 //! `cargo run --release -p arena --example conduct -- LEAGUE WORLD OPPONENT FIRST_SEED COUNT SECONDS`, as in
-//! `conduct division-b random ours 1 200 120`; ours is blue, and with `random` each match has the random world of its own seed.
-//! `conduct LEAGUE WORLD` prints that world's numbers.
+//! `conduct division-b random ours 1 200 120`; ours is blue, and with `random` each match has the random
+//! world of its own seed. `conduct LEAGUE WORLD` prints that world's numbers.
 
 use std::collections::BTreeMap;
 
@@ -64,7 +65,7 @@ fn one(config: &GameConfig) -> Result<(GameReport, Account), String> {
     Ok((report, account))
 }
 
-/// What the referee noted, and the time in each phase.
+/// Events of the referee, and the time in each phase.
 #[derive(Clone, Debug, Default)]
 struct Account {
     seen: usize,

@@ -1,5 +1,5 @@
-//! Plays penalties against our keeper and against one that stands, the same shots for both, and prints the shares of saves with
-//! Wilson's intervals.
+//! `penalties`: plays penalties against our keeper and against one that stands, the same shots for both, and
+//! prints the shares of saves with Wilson's intervals.
 //!
 //! `cargo run --release -p arena --example penalties -- LEAGUE FIRST_SEED COUNT`
 

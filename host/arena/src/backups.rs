@@ -1,4 +1,4 @@
-//! `backups`: count of backups per robot. Entries into the supporting role, as its beacons tell (paper
+//! `backups`: count of backups per robot. Entries into the supporting role, as its beacons report (paper
 //! §5.2.1, Table 2; docs/papers.md R36).
 
 use protocol::RobotId;
@@ -14,7 +14,7 @@ pub(crate) struct BackupCount {
 struct Entry {
     robot: RobotId,
     role: Role,
-    /// When it was last counted, s.
+    /// Time of the last counted entry, s.
     counted_at: Option<f32>,
     count: u32,
 }
@@ -25,7 +25,7 @@ impl BackupCount {
         Self { robots: robots.into_iter().map(entry).collect() }
     }
 
-    /// `robot` said at `time` seconds what its role is.
+    /// `robot` reported `role` at `time` seconds.
     pub(crate) fn hear(&mut self, time: f32, robot: RobotId, role: Role) {
         let Some(entry) = self.robots.iter_mut().find(|entry| entry.robot == robot) else { return };
         let enters = role == Role::Supporter && entry.role != Role::Supporter;
@@ -36,13 +36,13 @@ impl BackupCount {
         }
     }
 
-    /// How often, by robot in the order given.
+    /// Number of backups, by robot in the order given.
     pub(crate) fn counts(&self) -> Vec<u32> {
         self.robots.iter().map(|entry| entry.count).collect()
     }
 }
 
-/// Seconds between two entries that count: flicker between roles is one backing up.
+/// Least time between two counted entries, s: flicker between roles is one backing up.
 const GAP: f32 = 0.5;
 
 #[cfg(test)]

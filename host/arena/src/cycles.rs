@@ -1,4 +1,4 @@
-//! `cycles`: log of a team's retrieve–reuse cycles. Put together from overheard beacons alone (paper §4;
+//! `cycles`: log of a team's retrieve–reuse cycles. Derived from overheard beacons alone (paper §4;
 //! docs/architecture.md §5).
 
 use protocol::team::{AbortReason, Closure, CycleState, Decision, Play};
@@ -7,33 +7,33 @@ use protocol::{CycleId, RobotId};
 /// A cycle as seen from outside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CycleSeen {
-    /// Which.
+    /// Its id.
     pub id: CycleId,
-    /// Who coordinated it.
+    /// Its coordinator.
     pub coordinator: RobotId,
-    /// What was played, if a case was found.
+    /// The play, if a case was found.
     pub play: Option<Play>,
-    /// The coordinator said that no case fits.
+    /// The coordinator reported that no case fits.
     pub no_case: bool,
-    /// Seconds from kick-off: first heard of.
+    /// Seconds from kick-off at which its first beacon was received.
     pub start: f32,
-    /// When and how it ended, once it has.
+    /// Time and kind of its end, once it has ended.
     pub end: Option<(f32, CycleEnd)>,
 }
 
 /// How a cycle ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CycleEnd {
-    /// Its robots said so.
+    /// Its robots reported it closed.
     Closed(Closure),
-    /// A newer one began before anybody closed it.
+    /// A newer one started before it was closed.
     Superseded,
     /// The trial was over first.
     TrialOver,
 }
 
 impl CycleEnd {
-    /// The words of all ends that a play of a case can have.
+    /// The labels of all ends that a play of a case can have.
     pub const WORDS: [&'static str; 12] = [
         "finished",
         "ball-out-of-scope",
@@ -49,7 +49,7 @@ impl CycleEnd {
         "trial-over",
     ];
 
-    /// Its word in reports.
+    /// Its label in reports.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Closed(Closure::Finished) => "finished",
@@ -61,7 +61,7 @@ impl CycleEnd {
     }
 }
 
-/// The word for why a cycle was aborted.
+/// The label of an abort reason.
 const fn abort_word(reason: AbortReason) -> &'static str {
     match reason {
         AbortReason::BallOutOfScope => "ball-out-of-scope",
@@ -82,12 +82,12 @@ pub struct CycleLog {
     cycles: Vec<CycleSeen>,
 }
 
-/// What a beacon added to the log.
+/// Change of the log by a beacon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum News {
-    /// Nothing.
+    /// No change.
     Nothing,
-    /// A cycle began.
+    /// A cycle started.
     Began(usize),
     /// Its coordinator decided, by its place in [`CycleLog::cycles`].
     Decided(usize),
@@ -96,13 +96,13 @@ pub enum News {
 }
 
 impl CycleLog {
-    /// A robot said at `time` seconds that it knows this of its newest cycle.
+    /// A robot reported `state` of its newest cycle at `time` seconds.
     pub fn hear(&mut self, time: f32, state: &CycleState) -> News {
         let place = self.cycles.binary_search_by_key(&state.id, |cycle| cycle.id);
         let (place, began) = match place {
             Ok(place) => (place, false),
             Err(place) => {
-                // A straggler of an older cycle nobody had heard of before is over already.
+                // A late beacon of an older, unknown cycle: it is over already.
                 let end = (place < self.cycles.len()).then_some((time, CycleEnd::Superseded));
                 let CycleState { id, coordinator, .. } = *state;
                 for older in &mut self.cycles[..place] {
@@ -137,14 +137,14 @@ impl CycleLog {
         }
     }
 
-    /// The trial is over; what still ran ends with it.
+    /// Ends the trial; running cycles end with it.
     pub fn finish(&mut self, time: f32) {
         for cycle in &mut self.cycles {
             cycle.end = cycle.end.or(Some((time, CycleEnd::TrialOver)));
         }
     }
 
-    /// What is known, in the order of ids.
+    /// The known cycles, in the order of ids.
     pub fn cycles(&self) -> &[CycleSeen] {
         &self.cycles
     }

@@ -1,9 +1,9 @@
 //! `defaults`: time that a team played its default behaviour, and why (paper §5.4: "only when the costs
 //! exceeded the threshold").
 //!
-//! A spell begins with a coordinator's word that no case fits and lasts until a case is decided on. Why none fitted is judged from
-//! the carpet at the end of the tick in which that is heard: the farthest any case came through retrieval's
-//! tests (docs/case-format.md §3).
+//! A spell starts with a coordinator's decision that no case fits and lasts until a case is decided on. Why
+//! none fitted is judged from the true positions at the end of the tick in which that is received: the
+//! farthest any case came through retrieval's tests (docs/case-format.md §3).
 
 use casebase::{CaseBase, GoalEnd, Problem, Settings, Verdict, explain};
 use hil_sim::TICK_US;
@@ -17,11 +17,11 @@ use crate::report::in_seconds;
 /// A trial's default behaviour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct DefaultReport {
-    /// Seconds of it.
+    /// Its duration, s.
     pub time_s: f64,
-    /// How many times it began.
+    /// Number of spells.
     pub spells: u32,
-    /// Why, by decision; a spell has one every quarter of a second or so.
+    /// Causes, by decision; a spell has one every quarter of a second or so.
     pub causes: Causes,
 }
 
@@ -32,11 +32,11 @@ pub struct Causes {
     pub ball: u32,
     /// Too few robots for every case whose scope held the ball.
     pub robots: u32,
-    /// Somebody would have had too far to go: the paper's only cause.
+    /// A robot would have had too far to go: the paper's only cause.
     pub thr_c: u32,
-    /// An opponent stood in the ball's way.
+    /// An opponent stood in the ball's path.
     pub path: u32,
-    /// A case fitted, but could not begin: another robot held the ball, or robots saw it otherwise.
+    /// A case fitted, but could not start: another robot held the ball, or robots saw it otherwise.
     pub held: u32,
 }
 
@@ -52,12 +52,12 @@ pub(crate) struct DefaultWatch {
 }
 
 impl DefaultWatch {
-    /// A tick is over.
+    /// Counts one tick.
     pub(crate) fn tick(&mut self) {
         self.ticks += u32::from(self.active);
     }
 
-    /// The newest cycle was decided on or ended.
+    /// Takes the newest cycle when it is decided on or ended.
     pub(crate) fn hear(
         &mut self,
         cycle: &CycleSeen,
@@ -102,14 +102,15 @@ impl Causes {
         }
     }
 
-    /// All of them.
+    /// Sum over all causes.
     pub fn total(&self) -> u32 {
         let Self { ball, robots, thr_c, path, held } = *self;
         ball + robots + thr_c + path + held
     }
 }
 
-/// What a coordinator without noise sees: the ball where it will lie, the attackers by id, everybody else.
+/// What a coordinator without noise sees: the ball at its stop position, the attackers by id, all other
+/// robots.
 pub(crate) fn problem(world: &World, attackers: &[RobotId], deceleration: f32) -> Problem {
     let places = |side| {
         let walkers = world.walkers.iter().filter(move |walker| walker.side == side);
@@ -182,7 +183,7 @@ mod tests {
         let problem = Problem { ball: at(60_000, 0), ..problem_of_nobody() };
         let (base, settings) = (case_library::four_legged(), Settings::default());
         let mut watch = DefaultWatch::default();
-        // The second word about cycle 2 is its closing.
+        // The second report of cycle 2 is its closing.
         for (counter, no_case, play, ticks) in [
             (1, true, false, 5),
             (2, true, false, 2),

@@ -1,22 +1,22 @@
-//! `arena`: trials and matches of simulator and brains, their reports, text logs and pictures. Runs on the
-//! PC.
+//! `arena`: trials and matches of simulator and brains, their reports, text logs and figures. Runs on the PC.
 //!
-//! [`run`] plays one trial of Ros et al. 2009 and gives its [`TrialReport`] (docs/case-format.md §5.2).
-//! Whoever wants to see more than the report watches: a [`Watcher`] is shown every tick, as somebody at the
-//! field's edge with a radio receiver would see it; [`Story`] tells it in words, [`Recording`] keeps what
-//! [`picture()`] draws.
+//! [`run`] plays one trial of Ros et al. 2009 and returns its [`TrialReport`] (docs/case-format.md §5.2). For
+//! more than the report there is a [`Watcher`]: it gets every tick, as an observer at the field's edge with a
+//! radio receiver would see it; [`Story`] writes it as text, [`Recording`] keeps what [`picture()`] draws.
 //!
-//! [`Rehearsal`] plays single cases from their own situation, many times: does a case do what its author meant?
+//! [`Rehearsal`] plays single cases from their own situation, many times, and reports whether a case does
+//! what its author intended.
 //!
 //! [`game`] plays matches of the Small Size League, a host and its robots on each side.
 //!
-//! [`mod@matches`] plays many of them and says what they came to, as the second paper's Table 2 does.
+//! [`mod@matches`] plays many of them and reports the results, in the form of the second paper's Table 2.
 //!
 //! [`skills`] plays tries of single skills through the whole loop, in worlds of any physics.
 //!
-//! [`evaluation`] plays the paper's thousands of trials and makes its tables of them.
+//! [`evaluation`] plays the paper's thousands of trials and computes its tables.
 //!
-//! **Invariants.** Watching changes nothing; what is reported comes from the carpet and the air, never from inside a brain.
+//! **Invariants.** Watching changes nothing; reports come from the true state and the radio, never from
+//! inside a brain.
 #![forbid(unsafe_code)]
 
 mod backups;

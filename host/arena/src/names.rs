@@ -5,12 +5,12 @@ use casebase::Symmetry;
 use hil_sim::Role;
 use protocol::{CaseId, RobotId};
 
-/// Who is who on the carpet: attackers by id, then opponents, as in `hil_sim::four_legged::world::World`.
+/// Identities of the robots: attackers by id, then opponents, as in `hil_sim::four_legged::world::World`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Cast {
-    /// The robots led by brains.
+    /// Ids of the robots with brains.
     pub attackers: Vec<RobotId>,
-    /// The scripted ones.
+    /// Roles of the scripted robots.
     pub opponents: Vec<Role>,
 }
 
@@ -54,7 +54,7 @@ impl CaseNames {
     }
 }
 
-/// Which copy of the authored case a stored one is.
+/// Symmetry of a stored case.
 pub(crate) fn symmetry(case: CaseId) -> &'static str {
     Symmetry::from_bits(case.0).word()
 }

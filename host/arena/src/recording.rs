@@ -1,5 +1,5 @@
-//! `recording`: recording of a trial for its picture. Places by tick, kicks, and where gameplays began; m, s,
-//! field frame.
+//! `recording`: recording of a trial for its figure. Places by tick, kicks, and where gameplays started; m,
+//! s, field frame.
 
 use geometry::{Field, Point, Pose};
 use hil_sim::TICK_US;
@@ -14,26 +14,26 @@ use crate::trial::{Moment, Watcher};
 /// A trial's course.
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
-    /// Who is who in [`Sample::robots`].
+    /// Identities of the robots in [`Sample::robots`].
     pub cast: Cast,
     /// Every tick.
     pub samples: Vec<Sample>,
     /// Every kick, opponents' included.
     pub kicks: Vec<Kick>,
-    /// Every gameplay that began.
+    /// Every gameplay that started.
     pub starts: Vec<Start>,
     /// How it ended, once it has.
     pub report: Option<TrialReport>,
 }
 
-/// Where everything was at the end of a tick.
+/// Positions of ball and robots at the end of a tick.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
     /// Seconds from kick-off.
     pub time: f32,
     /// The ball.
     pub ball: Point<Field>,
-    /// Who held it, if somebody did.
+    /// The robot that held it, if any.
     pub holder: Option<usize>,
     /// The robots.
     pub robots: Vec<Pose<Field>>,
@@ -44,28 +44,28 @@ pub struct Sample {
 pub struct Kick {
     /// Seconds from kick-off.
     pub time: f32,
-    /// Who kicked.
+    /// The robot that kicked.
     pub robot: usize,
-    /// How.
+    /// Kind of kick.
     pub kick: LeggedKick,
-    /// From where.
+    /// Position of the ball.
     pub from: Point<Field>,
-    /// Where the ball would come to rest, undisturbed.
+    /// The ball's stop position, undisturbed.
     pub rest: Point<Field>,
 }
 
-/// The beginning of a gameplay.
+/// Start of a gameplay.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {
     /// Seconds from kick-off.
     pub time: f32,
-    /// Where the ball was.
+    /// Position of the ball.
     pub ball: Point<Field>,
     /// `region/name`.
     pub case: String,
-    /// Which copy of it.
+    /// Symmetry of the stored case.
     pub symmetry: &'static str,
-    /// Who plays, in the order of case robots.
+    /// The players, in the order of case robots.
     pub players: Vec<String>,
     /// Its place in the team's list of cycles.
     pub cycle: usize,

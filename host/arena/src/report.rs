@@ -22,19 +22,20 @@ pub struct TrialReport {
     pub approach: &'static str,
     /// `native` or `qemu`.
     pub backend: &'static str,
-    /// Where all chance came from.
+    /// Random seed.
     pub seed: u64,
     /// How it ended. Against two defenders `goal` is a ball in the penalty area (paper §5.2.2: "to goal").
     pub outcome: Outcome,
-    /// Seconds from kick-off to that.
+    /// Seconds from kick-off to its end.
     pub time_s: f64,
-    /// How often the opponents had the ball.
+    /// Number of the opponents' possessions.
     pub possession: Possession,
-    /// How often each attacker backed up.
+    /// Number of each attacker's backups.
     pub backups: Backups,
-    /// Who touched a ball last that went out: `attackers`, `defender`, `midfield` or `goalie`; null for every other outcome.
+    /// The robot that last touched a ball that went out: `attackers`, `defender`, `midfield` or `goalie`;
+    /// null for every other outcome.
     pub out_by: Option<&'static str>,
-    /// What the retrievals came to.
+    /// Results of the retrievals.
     pub cases: CaseCounts,
     /// Every retrieve–reuse cycle, in order.
     pub cycles: Vec<CycleReport>,
@@ -46,11 +47,11 @@ pub struct TrialReport {
     pub positioning: &'static str,
     /// Hash of the case base, 8 hexadecimal digits.
     pub case_base: String,
-    /// How long no case led the robots, and why; null where none ever does.
+    /// How long the attackers played without a case, and why; null for approaches without cases.
     pub default: Option<DefaultReport>,
 }
 
-/// How often each opponent had the ball (paper §5.1.4; docs/papers.md R33); 0 where it does not play.
+/// Number of each opponent's possessions (paper §5.1.4; docs/papers.md R33); 0 where it does not play.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Possession {
     /// The defender.
@@ -69,7 +70,7 @@ impl Serialize for Backups {
     }
 }
 
-/// What the retrievals came to (docs/papers.md R37).
+/// Results of the retrievals (docs/papers.md R37).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct CaseCounts {
     /// Cases for one robot.
@@ -81,7 +82,7 @@ pub struct CaseCounts {
 }
 
 impl CaseCounts {
-    /// Of these cycles.
+    /// Counts of these cycles.
     pub fn of(cycles: &[CycleSeen]) -> Self {
         let mut counts = Self::default();
         for cycle in cycles {
@@ -100,24 +101,24 @@ impl CaseCounts {
 pub struct CycleReport {
     /// `counter.proposer`.
     pub cycle: String,
-    /// Who coordinated.
+    /// Number of the coordinator.
     pub coordinator: u8,
     /// `region/name`; null where no case was found.
     pub case: Option<String>,
-    /// Which copy of it.
+    /// Symmetry of the stored case.
     pub symmetry: Option<&'static str>,
-    /// Case robot (from 1) to robot id.
+    /// Robot number of the case (from 1) with robot id.
     pub r#match: Option<BTreeMap<usize, u8>>,
-    /// Seconds from kick-off: first heard of.
+    /// Seconds from kick-off at which its first beacon was received.
     pub start_s: f64,
-    /// Seconds from kick-off: over.
+    /// Seconds from kick-off at which it was over.
     pub end_s: f64,
     /// `finished`, `no-case`, why it was aborted (`ball-out-of-scope`, …), `superseded` or `trial-over`.
     pub end: &'static str,
 }
 
 impl CycleReport {
-    /// Of a cycle of a trial that lasted until `time` seconds.
+    /// The report of a cycle of a trial that lasted until `time` seconds.
     pub(crate) fn new(cycle: &CycleSeen, names: &CaseNames, time: f32) -> Self {
         let play = cycle.play.as_ref();
         let (end_s, end) = cycle.end.map_or((time, "trial-over"), |(at, end)| (at, end.word()));

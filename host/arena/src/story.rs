@@ -1,4 +1,4 @@
-//! `story`: text log of a trial. Coordinator, case and who plays what, phases, kicks, possession, outcome; a
+//! `story`: text log of a trial. Coordinator, case and its players, phases, kicks, possession, outcome; a
 //! line each, with its time.
 
 use std::fmt::Write as _;
@@ -15,19 +15,19 @@ use crate::names::symmetry;
 use crate::report::TrialReport;
 use crate::trial::{Moment, Watcher};
 
-/// Tells a trial as it goes.
+/// Writes the log of a trial while it runs.
 #[derive(Clone, Debug, Default)]
 pub struct Story {
     lines: Vec<String>,
-    /// How far each robot had come, as last told.
+    /// Progress of each robot as last logged.
     progress: Vec<(RobotId, Progress)>,
-    /// The last decision told was that no case fits.
+    /// The last logged decision was that no case fits.
     without_case: bool,
     possessions: u32,
 }
 
 impl Story {
-    /// The lines so far that were not taken yet.
+    /// The lines since the last call.
     pub fn take_lines(&mut self) -> Vec<String> {
         std::mem::take(&mut self.lines)
     }
@@ -213,7 +213,7 @@ impl Watcher for Story {
     }
 }
 
-/// The action in place `n` of the list of the case robot in place `part`.
+/// Action `n` of the list of the case robot at index `part`.
 fn action(moment: &Moment<'_>, play: &Play, part: usize, n: usize) -> Option<Action> {
     moment.config.base.case(play.case)?.action(CaseRobot::new(part)?, n)
 }

@@ -18,40 +18,41 @@ use crate::defaults::{self, DefaultWatch};
 use crate::names::{CaseNames, Cast};
 use crate::report::{Backups, CaseCounts, CycleReport, Possession, TrialReport, in_seconds};
 
-/// Everything that decides a trial but its back end.
+/// All settings that a trial depends on except its backend.
 #[derive(Clone, Debug)]
 pub struct TrialConfig<'a> {
-    /// Where everybody stands.
+    /// Start positions.
     pub scenario: Scenario,
-    /// Where everybody stands instead, if it is no named scenario.
+    /// Start positions if it is no named scenario.
     pub layout: Option<Layout>,
-    /// Which opponents play.
+    /// The opponents.
     pub opponents: Configuration,
-    /// What leads the attackers.
+    /// Approach of the attackers.
     pub approach: Approach,
-    /// Where all chance comes from.
+    /// Random seed.
     pub seed: u64,
-    /// How robots retrieve.
+    /// Settings of retrieval.
     pub settings: Settings,
-    /// When a case's actions begin.
+    /// When a case's actions start.
     pub positioning: Positioning,
     /// Attackers, 1 to 4; the paper has 2.
     pub robots: usize,
-    /// How many of them may retrieve: those with the highest ids, so that the elector need not be one (paper §4.1).
+    /// Number of them that may retrieve: those with the highest ids, so that the elector need not be one
+    /// (paper §4.1).
     pub retrievers: usize,
-    /// How the air treats packets.
+    /// Radio settings: loss, delay, duplication, reordering and bursts.
     pub air: AirSettings,
-    /// How perception is blurred.
+    /// Noise of perception.
     pub noise: Noise,
-    /// How long robots stand still after every cycle.
+    /// Time that robots stand still after every cycle.
     pub pause_after_cycle: Duration,
-    /// What goes wrong, and when.
+    /// Scheduled faults.
     pub faults: Vec<ScheduledFault>,
-    /// How the world behaves.
+    /// Parameters of the simulated world.
     pub parameters: Parameters,
     /// The case base in every robot.
     pub base: CaseBase<'a>,
-    /// What its cases are called.
+    /// Names of its cases.
     pub names: CaseNames,
 }
 
@@ -86,7 +87,7 @@ impl<'a> TrialConfig<'a> {
         Self { base, names, ..self }
     }
 
-    /// What the simulator needs to know.
+    /// The simulator's configuration.
     pub fn simulation(&self) -> SimulationConfig {
         let ids = (1..=self.robots).filter_map(|n| RobotId::new(u8::try_from(n).ok()?));
         let brains = ids.enumerate().map(|(i, robot)| BrainConfig {
@@ -112,32 +113,32 @@ impl<'a> TrialConfig<'a> {
     }
 }
 
-/// Somebody at the edge of the field, with eyes and a radio receiver.
+/// An observer at the edge of the field that sees everything and has a radio receiver.
 pub trait Watcher {
-    /// A tick has passed.
+    /// Called after every tick.
     fn watch(&mut self, moment: &Moment<'_>);
 
-    /// The trial is over.
+    /// Called at the end of the trial.
     fn end(&mut self, _moment: &Moment<'_>, _report: &TrialReport) {}
 }
 
-/// What a watcher is shown.
+/// What a watcher gets each tick.
 pub struct Moment<'a> {
     /// The trial's configuration.
     pub config: &'a TrialConfig<'a>,
-    /// Who is who.
+    /// Identities of the robots.
     pub cast: &'a Cast,
-    /// The carpet, as it is at the end of the tick.
+    /// The true state of the field at the end of the tick.
     pub world: &'a World,
     /// The tick.
     pub tick: &'a Tick,
-    /// The referee, who counts.
+    /// The referee, with its counts.
     pub referee: &'a Referee,
-    /// What robots said in the tick, in order; packets that are no beacons of this team are left out.
+    /// Beacons of the tick, in order; packets that are no beacons of this team are left out.
     pub beacons: &'a [(RobotId, Beacon)],
     /// The cycles so far, these beacons included.
     pub cycles: &'a CycleLog,
-    /// What these beacons added to them.
+    /// Changes of the cycles by these beacons.
     pub news: &'a [News],
 }
 
@@ -157,7 +158,7 @@ pub fn run<'a>(
     Ok(game.end(verdict, watchers))
 }
 
-/// A trial under way; it ends when its caller says so.
+/// A running trial; its caller ends it.
 pub(crate) struct Game<'c, 'a> {
     config: &'c TrialConfig<'a>,
     backend: &'static str,
@@ -172,7 +173,7 @@ pub(crate) struct Game<'c, 'a> {
 }
 
 impl<'c, 'a> Game<'c, 'a> {
-    /// At kick-off.
+    /// A trial at kick-off.
     pub(crate) fn new(
         config: &'c TrialConfig<'a>,
         backend: Box<dyn Backend<'a> + 'a>,
@@ -197,7 +198,7 @@ impl<'c, 'a> Game<'c, 'a> {
         })
     }
 
-    /// A tick, shown to the watchers.
+    /// Runs one tick and passes it to the watchers.
     pub(crate) fn step(&mut self, watchers: &mut [&mut dyn Watcher]) -> Result<(), SimulationError> {
         let tick = self.simulation.step()?;
         self.beacons.clear();
@@ -220,12 +221,12 @@ impl<'c, 'a> Game<'c, 'a> {
         Ok(())
     }
 
-    /// Does the team play by a case, and if not, why?
+    /// Tracks whether the team plays by a case, and if not, why.
     fn watch_defaults(&mut self) {
         let Self { config, simulation, cast, cycles, defaults, news, .. } = self;
         for news in news.iter() {
             let (News::Decided(i) | News::Ended(i)) = *news else { continue };
-            // What is still said of an older cycle leads nobody any more.
+            // Late reports of an older cycle have no effect any more.
             if let [cycle] = &cycles.cycles()[i..] {
                 let deceleration = config.parameters.ball.deceleration;
                 let problem = defaults::problem(simulation.world(), &cast.attackers, deceleration);
@@ -235,7 +236,7 @@ impl<'c, 'a> Game<'c, 'a> {
         defaults.tick();
     }
 
-    /// The end of the last tick.
+    /// The state at the end of the last tick.
     pub(crate) fn moment(&self) -> Moment<'_> {
         Moment {
             config: self.config,
@@ -249,7 +250,7 @@ impl<'c, 'a> Game<'c, 'a> {
         }
     }
 
-    /// The trial is over: its report, told to the watchers.
+    /// Ends the trial: returns its report and passes it to the watchers.
     pub(crate) fn end(mut self, verdict: Verdict, watchers: &mut [&mut dyn Watcher]) -> TrialReport {
         self.cycles.finish(verdict.time);
         let report = self.report(verdict);
@@ -292,7 +293,7 @@ impl<'c, 'a> Game<'c, 'a> {
     }
 }
 
-/// The word of an approach in options and reports.
+/// The label of an approach in options and reports.
 pub const fn approach_word(approach: Approach) -> &'static str {
     match approach {
         Approach::Cases => "cbr",
@@ -301,7 +302,7 @@ pub const fn approach_word(approach: Approach) -> &'static str {
     }
 }
 
-/// The approach of that word.
+/// The approach with this label.
 pub fn approach_from_word(word: &str) -> Option<Approach> {
     APPROACHES.into_iter().find(|approach| approach_word(*approach) == word)
 }
@@ -309,7 +310,7 @@ pub fn approach_from_word(word: &str) -> Option<Approach> {
 /// All approaches, in the order of tables: the paper's two first.
 pub const APPROACHES: [Approach; 3] = [Approach::Cases, Approach::Reactive, Approach::Hybrid];
 
-/// The word of a positioning in options and reports.
+/// The label of a positioning in options and reports.
 pub const fn positioning_word(positioning: Positioning) -> &'static str {
     match positioning {
         Positioning::Dependent => "dependent",
@@ -317,9 +318,9 @@ pub const fn positioning_word(positioning: Positioning) -> &'static str {
     }
 }
 
-/// The attackers' team on the air.
+/// The attackers' team on the radio.
 pub const TEAM: TeamId = TeamId(1);
-/// The league trials are played in.
+/// The league of trials.
 const LEAGUE: &str = "four-legged";
 
 #[cfg(test)]

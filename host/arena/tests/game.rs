@@ -1,5 +1,5 @@
-//! `game`: tests: a match keeps its promises. Short matches of division B, watched from outside: the truth of
-//! the carpet, the referee's books, and what the hosts sent.
+//! `game`: tests: invariants of a match. Short matches of division B, watched from outside: the true state,
+//! the referee's counts, and what the hosts sent.
 
 use arena::game::{Crowd, Game, GameConfig, GameReport, Nobody, Watcher, play};
 use geometry::Point;
@@ -14,7 +14,7 @@ fn short(seed: u64, seconds: f64, watcher: &mut dyn Watcher) -> GameReport {
     play(&config, &mut NativeBackend::new(base), watcher).unwrap()
 }
 
-/// What robots and ball did that they must not, as the carpet has it.
+/// Rule breaches of robots and ball, from the true state.
 #[derive(Default)]
 struct Conduct {
     phase: Option<(Phase<Colour>, f64)>,
@@ -73,7 +73,8 @@ fn nobody_is_fast_in_stop_or_moves_in_halt_and_no_ball_is_faster_than_the_rules_
 #[test]
 fn the_ball_is_in_play_for_most_of_every_match_both_teams_have_chances_and_fouls_are_few() {
     let matches: Vec<GameReport> = (1..=8).map(|seed| short(seed, 120.0, &mut Nobody)).collect();
-    // Over 60 seeds the mean is 0.56 with a standard deviation of 0.10 (example `conduct`); a sixth is the two halves' begin.
+    // Over 60 seeds the mean is 0.56 with a standard deviation of 0.10 (example `conduct`); a sixth is the
+    // start of the two halves.
     let in_play: Vec<f32> = matches.iter().map(|report| report.ball_in_play).collect();
     let mean = in_play.iter().sum::<f32>() / in_play.len() as f32;
     assert!(mean > 0.5 && in_play.iter().all(|share| *share > 0.25), "{in_play:?}");
@@ -97,7 +98,7 @@ fn the_same_seed_gives_the_same_match_to_the_bit_and_another_seed_another() {
     assert_ne!(hash(3), hash(4));
 }
 
-/// Counts what went over the air and the wire.
+/// Counts the packets on radio and network.
 #[derive(Default)]
 struct Traffic {
     vision: u32,
@@ -129,7 +130,7 @@ fn watching_changes_nothing_and_frames_keep_their_budgets() {
     // docs/architecture.md §6.1: a command takes at most 40 B of air, a part of the world 120 B.
     assert!(traffic.longest_to_one > 0 && traffic.longest_to_one <= 40, "{} B", traffic.longest_to_one);
     assert!(traffic.longest_to_all > 0 && traffic.longest_to_all <= 120, "{} B", traffic.longest_to_all);
-    // 15 s of about 40 referee packets a second, and at least 60 pictures a second for each team.
+    // 15 s of about 40 referee packets a second, and at least 60 camera frames a second for each team.
     assert!(traffic.referee > 500 && traffic.vision > 600, "{} {}", traffic.referee, traffic.vision);
     assert!(traffic.packets > 2 * 60 * 10, "{}", traffic.packets);
 }
@@ -176,10 +177,10 @@ fn a_hand_moves_ball_and_robots_whether_the_match_runs_or_stands() {
     assert!(game.world().ball.position.distance(elsewhere) < 0.3, "{:?}", game.world().ball.position);
 }
 
-/// How far robots that stand about went, how many of them there are, and whether a robot of ours went to the ball.
+/// Displacement of robots that stand about, their number, and whether a robot of ours went to the ball.
 #[derive(Default)]
 struct StandingAbout {
-    /// Where each stood first.
+    /// Start position of each.
     places: Vec<(Who, Point<geometry::Field>)>,
     unpushed: usize,
     touched: bool,
@@ -209,7 +210,7 @@ fn a_match_among_bystanders_is_played_without_them_and_is_had_again_from_its_wor
     let mut standing = StandingAbout::default();
     let report = play_in("random:3", &mut standing);
     assert_eq!((standing.places.len(), &*report.world), (10, "random:3"));
-    // Players may run into one or two.
+    // Players may push one or two.
     assert!(standing.unpushed >= 7, "{} of 10 stand where they stood", standing.unpushed);
     assert!(standing.touched, "somebody took the kick-off");
     assert!(!report.fouls.blue.contains_key("too_many_robots"), "{:?}", report.fouls);

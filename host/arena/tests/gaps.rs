@@ -1,7 +1,9 @@
-//! `gaps`: vision and radio that fail for 40–150 ms again and again, and real silences: who stands, and who brakes in time.
+//! `gaps`: vision and radio that fail for 40–150 ms again and again, and real silences: which robots stand,
+//! and which brake in time.
 //!
-//! A robot *stands* where its true speed is below 0.05 m/s while the game runs and it has an order to move: a place farther
-//! away than 0.15 m, or an order without a place (get the ball, a case) while its governor holds it back.
+//! A robot *stands* where its true speed is below 0.05 m/s while the game runs and it has an order to move: a
+//! place farther away than 0.15 m, or an order without a place (get the ball, a case) while its governor
+//! holds it back.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -17,10 +19,10 @@ use protocol::lockstep::TickIn;
 use protocol::{Instant, Who};
 use rules::{Colour, League, Phase};
 
-/// What the governors said in the last tick, by team number and robot.
+/// The governors' rulings of the last tick, by team number and robot.
 type Rulings = Rc<RefCell<BTreeMap<(u8, u8), Ruling>>>;
 
-/// Native brains whose governors can be looked at.
+/// Native brains whose governors can be inspected.
 struct Watched {
     base: CaseBase<'static>,
     rulings: Rulings,
@@ -76,7 +78,7 @@ impl Mcu for Computer {
     }
 }
 
-/// Good and dead stretches by turns, ticks of 10 ms.
+/// Alternating intervals with and without the link, ticks of 10 ms.
 struct Gaps {
     chance: Stream,
     dead: bool,
@@ -99,8 +101,8 @@ impl Gaps {
     }
 }
 
-/// Robot-seconds in play with an order to move; those of them in which the robot stood, and in which its governor held it; and the longest
-/// time for which one robot stood.
+/// Robot-seconds in play with an order to move; those of them in which the robot stood, and in which its
+/// governor held it; and the longest time for which one robot stood.
 #[derive(Debug, Default)]
 struct Stood {
     ordered: f64,
@@ -144,7 +146,7 @@ enum Fails {
     Late,
 }
 
-/// A match in which that fails from 1 s on.
+/// A match in which `fails` fails from 1 s on.
 fn play(seed: u64, seconds: f64, fails: Fails) -> Stood {
     let mut config = GameConfig::new(League::DivisionB, seed, seconds);
     match fails {
@@ -212,7 +214,8 @@ fn look(
 #[test]
 fn with_gaps_of_40_to_150_ms_at_random_for_60_s_robots_stand_for_at_most_a_twentieth_of_the_time_in_play() {
     for fails in [Fails::Vision, Fails::Radio, Fails::Both, Fails::EachLink, Fails::Late] {
-        // How long robots have an order to move is the match's: three together have enough of it.
+        // The time in which robots have an order to move depends on the match: three together have enough of
+        // it.
         let mut all = Stood::default();
         for seed in [1, 2, 3] {
             let stood = play(seed, 60.0, fails);
@@ -220,14 +223,16 @@ fn with_gaps_of_40_to_150_ms_at_random_for_60_s_robots_stand_for_at_most_a_twent
             all.add(&stood);
         }
         assert!(all.ordered > 250.0, "{fails:?}: {all:?}");
-        // Stretches of random length may last half a second; that is a silence, after which a robot is armed again.
+        // Intervals of random length may last half a second; that is a silence, after which a robot is armed
+        // again.
         let longest = if fails == Fails::EachLink { 1.2 } else { 0.5 };
         assert!(all.share() <= 0.05 && all.longest <= longest, "{fails:?}: {all:?}");
     }
 }
 
-/// A match with gaps in vision and radio for 12 s; then `fail` is called, and the game goes on for so many ticks of 10 ms. Gives for each
-/// of them how many robots have an order and how many of them brake because their host is silent.
+/// A match with gaps in vision and radio for 12 s; then `fail` is called, and the game goes on for `ticks`
+/// ticks of 10 ms. Returns for each of them how many robots have an order and how many of them brake because
+/// their host is silent.
 fn silence(seed: u64, ticks: u32, fail: impl Fn(&mut Game<'static>, u32)) -> Vec<(usize, usize)> {
     let config = GameConfig::new(League::DivisionB, seed, 60.0);
     let (mut backend, rulings) = watched();
@@ -238,7 +243,7 @@ fn silence(seed: u64, ticks: u32, fail: impl Fn(&mut Game<'static>, u32)) -> Vec
         game.lose(if radio_gaps.next() { 1.0 } else { 0.0 });
         game.step(&mut Nobody).unwrap();
     }
-    // All is well for half a second, so that the silence begins with its first tick.
+    // No fault for half a second, so that the silence starts with its first tick.
     game.blind(false);
     game.lose(0.0);
     (0..50).for_each(|_| game.step(&mut Nobody).unwrap());
@@ -256,8 +261,8 @@ fn silence(seed: u64, ticks: u32, fail: impl Fn(&mut Game<'static>, u32)) -> Vec
 fn in_a_real_silence_of_the_radio_every_robot_brakes_before_what_it_heard_is_200_ms_old_and_goes_on_after_it()
 {
     for seed in [1, 2, 3] {
-        // After a gap the first frame counts; after half a second of silence half a second of hearing, and a telemetry packet (10 Hz) by which
-        // the host knows the robot again.
+        // After a gap the first frame counts; after half a second of silence, half a second of receiving, and
+        // a telemetry packet (10 Hz) by which the host knows the robot again.
         for (dead_ticks, again_ticks) in [(30, 2), (45, 2), (100, 65)] {
             let seen = silence(seed, dead_ticks + 70, |game, tick| {
                 game.lose(if tick < dead_ticks { 1.0 } else { 0.0 });

@@ -1,5 +1,5 @@
-//! `holding`: tests: a robot with the ball always does something with it. Situations in which robots stood
-//! with the ball, or beside it, put up in a match in play; seconds until the ball has gone on.
+//! `holding`: tests: a robot with the ball always acts on it. Situations in which robots stood with the ball,
+//! or beside it, set up in a match in play; seconds until the ball has moved on.
 
 use arena::game::{Game, GameConfig, GameReport, Nobody};
 use geometry::{Angle, Field, GoalEnd, Point, Pose, Vector};
@@ -51,7 +51,8 @@ impl Stage<'_> {
         self.game.put_ball(Ball::at(at));
     }
 
-    /// Plays on; the seconds until the ball is farther than `way` from where it lay, if that comes within `seconds`.
+    /// Plays on; the seconds until the ball is farther than `way` from where it lay, if that comes within
+    /// `seconds`.
     fn until_moved(&mut self, seconds: f64, way: f32, mut meanwhile: impl FnMut(&mut Self)) -> Option<f64> {
         let (from, begin) = (self.game.world().ball.position, self.game.time());
         while self.game.time() - begin < seconds {
@@ -78,7 +79,8 @@ const OURS: [(f32, f32, f32); 6] = [
     (0.0, -2.0, 0.0),
 ];
 
-/// An opponent that stays on the line from the ball to its goal, this far before the ball, no faster than 1.5 m/s.
+/// An opponent that stays on the line from the ball to its goal, this far before the ball, no faster than 1.5
+/// m/s.
 fn mirror(stage: &mut Stage<'_>, number: u8, off: f32) {
     let ball = stage.game.world().ball.position;
     let goal = stage.at(4.5, 0.0);

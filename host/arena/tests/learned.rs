@@ -1,4 +1,4 @@
-//! `learned`: what a host learns in a simulated world whose kickers, radio and carpet are known.
+//! `learned`: what a host learns in a simulated world whose kickers, radio and field surface are known.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ use protocol::{Instant, RobotId, TeamId};
 use rules::{Colour, League};
 use ssl::Message;
 
-/// Native brains whose kickers give so much of the speed ordered, by team and robot.
+/// Native brains whose kickers reach this share of the ordered speed, by team and robot.
 struct Kickers {
     base: CaseBase<'static>,
     gain: fn(TeamId, RobotId) -> f32,
@@ -79,7 +79,7 @@ impl Mcu for Computer {
     }
 }
 
-/// A match of so many seconds with these kickers and so many ticks of 10 ms on the air.
+/// A match of `seconds` seconds with these kickers and `delay` ticks of 10 ms of radio latency.
 fn play(seed: u64, seconds: u32, gain: fn(TeamId, RobotId) -> f32, delay: u32) -> Game<'static> {
     let mut config = GameConfig::new(League::DivisionB, seed, f64::from(seconds));
     config.air.delay = [delay, delay];
@@ -127,7 +127,7 @@ fn fifty_milliseconds_more_on_the_air_are_found_in_the_robots_latency() {
     assert!((0.03..0.07).contains(&(far - near)), "{near} {far}");
 }
 
-/// What a host learns of the friction of a carpet on which `balls` roll, seen by the simulator's cameras.
+/// The friction that a host learns on a field surface on which `balls` roll, seen by the simulator's cameras.
 fn friction(roll: f32, balls: u64) -> Option<f32> {
     let league = League::DivisionB;
     let mut parameters = Parameters::of(league).unwrap().clone();
@@ -142,7 +142,8 @@ fn friction(roll: f32, balls: u64) -> Option<f32> {
             world.step();
             cameras.watch(&world);
             while let Some(mut packet) = cameras.poll(world.now()) {
-                // Vision tells nothing of the ball: the tracker takes the usual carpet, 0.35 m/s².
+                // Vision sends nothing about the ball: the tracker assumes the usual field surface, 0.35
+                // m/s².
                 if let Some(geometry) = &mut packet.geometry {
                     geometry.models = None;
                 }

@@ -1,6 +1,5 @@
-//! `prepare`: tests: a whole team stands where it must after a PREPARE command, from wherever its robots
-//! were. Hosts, radio, brains and wheels as in a match; the judge is `rules::keep_out` on the simulator's
-//! truth.
+//! `prepare`: tests: a whole team stands where it must after a PREPARE command, from any start positions.
+//! Hosts, radio, brains and wheels as in a match; the judge is `rules::keep_out` on the simulator's truth.
 
 use arena::game::{Game, GameConfig, Nobody};
 use geometry::{Angle, Field, Point, Pose};
@@ -11,9 +10,9 @@ use rules::limits::ROBOT_RADIUS;
 use rules::state::Command;
 use rules::{Colour, Duty, League, Phase};
 
-/// What the controller gives teams to prepare, s.
+/// Time that the controller gives teams to prepare, s.
 const TIME: f64 = 10.0;
-/// Who has to move stands no longer than this, s.
+/// A robot that has to move stands no longer than this, s.
 const STANDS: f64 = 1.0;
 const STANDING: f32 = 0.03;
 
@@ -24,7 +23,7 @@ fn share(state: &mut u64) -> f32 {
     (state.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 40) as f32 / 8_388_608.0 - 1.0
 }
 
-/// All robots to random places of the carpet, apart from each other, from the ball and from goals' walls.
+/// All robots to random places of the field, apart from each other, from the ball and from goals' walls.
 fn scatter(game: &mut Game<'_>, league: League, state: &mut u64) {
     let field = league.field();
     let who: Vec<Who> = game.world().robots().iter().filter(|robot| robot.present).map(|r| r.who).collect();
@@ -45,7 +44,7 @@ fn scatter(game: &mut Game<'_>, league: League, state: &mut u64) {
     }
 }
 
-/// Where a robot is and must not be.
+/// The reason why a robot must not be where it is, if any.
 fn offence(game: &Game<'_>, league: League, who: Who) -> Option<Why> {
     let field = league.field();
     let host = game.host(who.colour);
@@ -72,10 +71,10 @@ fn offence(game: &Game<'_>, league: League, who: Who) -> Option<Why> {
     keep_out(&situation).offence(at, ROBOT_RADIUS).filter(|why| why.offends(phase))
 }
 
-/// What was wrong with one preparation.
+/// Offences at the end of one preparation.
 fn prepare(league: League, command: Command, seed: u64) -> Vec<String> {
     let mut config = GameConfig::new(league, seed, 60.0);
-    // Longer than the test looks: nothing starts because the referee has no more patience.
+    // Longer than the test: the referee does not start play by itself.
     config.referee.patience = Duration::millis(30_000);
     let mut game = Game::new(&config, &mut NativeBackend::new(case_library::division_b())).unwrap();
     let mut state = (seed + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
@@ -96,13 +95,13 @@ fn prepare(league: League, command: Command, seed: u64) -> Vec<String> {
         game.step(&mut Nobody).unwrap();
         for (who, (now, longest)) in all.iter().zip(&mut stood) {
             let stands = game.world().robot(*who).is_some_and(|robot| robot.velocity.norm() < STANDING);
-            // The picture of a robot that was lifted elsewhere settles within the first half second.
+            // The tracked state of a robot that was lifted elsewhere settles within the first half second.
             let late = game.time() - begun > 0.5;
             *now = if late && stands && offence(&game, league, *who).is_some() { *now + 0.01 } else { 0.0 };
             *longest = longest.max(*now);
         }
     }
-    // Where the referee went on it has seen everybody ready.
+    // If the referee went on, it has seen all robots ready.
     let ended = game.referee().phase() == wanted;
     let mut wrong = Vec::new();
     for (who, (_, longest)) in all.iter().zip(&stood) {

@@ -1,4 +1,5 @@
-//! `sanity`: a healthy match says nothing, and a field on which something does not fit is told within two seconds, for both divisions.
+//! `sanity`: a healthy match reports no finding, and a field on which something does not fit is reported
+//! within two seconds, for both divisions.
 
 use arena::game::{Game, GameConfig, Nobody};
 use geometry::{Angle, Point, Pose};
@@ -9,7 +10,7 @@ use rules::{Colour, League};
 
 const DIVISIONS: [League; 2] = [League::DivisionA, League::DivisionB];
 
-/// Plays for so many seconds; every 100 ms what each host finds goes to `see`, with the time in ms.
+/// Plays for this number of seconds; every 100 ms the findings of each host go to `see`, with the time in ms.
 fn play(
     config: &GameConfig,
     seconds: u32,
@@ -57,7 +58,7 @@ fn a_healthy_match_of_either_division_says_nothing_ever() {
     }
 }
 
-/// The time of the first finding that `is` it, ms, by both hosts.
+/// The time of the first finding for which `is` is true, ms, by both hosts.
 fn first(
     config: &GameConfig,
     hand: impl FnMut(&mut Game<'static>, u32),
@@ -102,7 +103,7 @@ fn teams_that_stand_at_each_others_goals_at_the_start_are_told_within_two_second
     for league in DIVISIONS {
         let config = GameConfig::new(league, 1, 12.0);
         let field = league.field();
-        // People have put both teams into the wrong halves.
+        // Both teams have been put into the wrong halves by hand.
         let hand = |game: &mut Game<'static>, ms: u32| {
             if ms == 0 {
                 let robots: Vec<_> =

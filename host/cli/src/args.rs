@@ -27,17 +27,19 @@ pub(crate) struct Cli {
 /// One verb, one file.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
-    /// A match of the Small Size League in the simulator: two teams, a referee, and what came of it.
+    /// Play a match of the Small Size League in the simulator: two teams, a referee, and a report.
     Play(PlayArgs),
     /// One trial of the paper.
     Trial(TrialArgs),
-    /// The paper's tables: thousands of trials, beside what the paper measured.
+    /// Evaluate: the paper's tables, thousands of trials, beside the paper's measurements.
     Evaluate(Box<EvaluateArgs>),
     /// The host of a team on the league's network: vision and referee in, commands to robots out.
     Control(Box<ControlArgs>),
-    /// A recorded match: what is in it, the field at a moment, and whether the hosts decide the same again.
+    /// Inspect a recorded match: its contents, the field at a moment, and whether the hosts decide the same
+    /// again.
     Replay(Box<ReplayArgs>),
-    /// A Small Size field for any team's software: vision out, the league's simulation protocol in, a referee beside it.
+    /// A Small Size field for any team's software: vision out, the league's simulation protocol in, a referee
+    /// beside it.
     Simulate(Box<SimulateArgs>),
     /// Check, list, show, retrieve and explain cases.
     Cases {
@@ -54,15 +56,15 @@ pub(crate) enum Verb {
     VirtualRobot(Box<VirtualRobotArgs>),
 }
 
-/// Whose cases, where every built-in league is meant unless a folder is named.
+/// Which libraries: every built-in league unless a directory is given.
 #[derive(Debug, Args)]
 pub(crate) struct FolderArgs {
-    /// One league's folder of case files, read now: `league.toml` and `<region>/<name>.toml`.
+    /// Directory of one league's case files, read now: `league.toml` and `<region>/<name>.toml`.
     #[arg(long, value_name = "DIR")]
     pub(crate) library: Option<PathBuf>,
 }
 
-/// Whose cases, where exactly one library is meant.
+/// Which library, where exactly one is needed.
 #[derive(Debug, Args)]
 pub(crate) struct LibraryArgs {
     #[command(flatten)]
@@ -80,21 +82,21 @@ pub(crate) struct SettingsArgs {
     assignments: Vec<(String, String)>,
 }
 
-/// What retrieval is asked with.
+/// Settings of the retrieval.
 #[derive(Debug)]
 pub(crate) struct Chosen {
     pub(crate) settings: Settings,
-    /// Name and value of every setting that is not at its default, to be recorded with the results.
+    /// Name and value of every setting that is not at its default, recorded with the results.
     pub(crate) changed: Vec<(String, String)>,
 }
 
 impl SettingsArgs {
-    /// As the command line gave them.
+    /// The assignments as given on the command line.
     pub(crate) fn given(&self) -> &[(String, String)] {
         &self.assignments
     }
 
-    /// The defaults, changed as the command line says; the later of two assignments to a name stands.
+    /// The defaults, changed as the command line orders; of two assignments to a name the later one counts.
     pub(crate) fn choose(&self) -> Result<Chosen, Failure> {
         let mut settings = Settings::default();
         for (name, value) in &self.assignments {

@@ -14,34 +14,34 @@ use hil_sim::SimulationError;
 
 use crate::output::{note, shown};
 
-/// One variant per thing the person can do something about.
+/// One variant for each failure that the operator can fix.
 #[derive(Debug)]
 pub(crate) enum Failure {
-    /// `--library` names no folder.
+    /// `--library` names no directory.
     NoFolder(PathBuf),
-    /// The case files in a folder are faulty.
+    /// The case files in a directory are faulty.
     FaultyLibrary {
-        /// The league's folder.
+        /// The league's directory.
         folder: PathBuf,
-        /// What is wrong, errors among them.
+        /// The findings, errors among them.
         findings: Vec<Finding>,
     },
-    /// `--league` names none of the built-in leagues.
+    /// `--league` names no built-in league.
     UnknownLeague(String),
-    /// A case asked for by a name or id that the library lacks.
+    /// A case requested by a name or id that the library lacks.
     UnknownCase {
-        /// What was asked for.
+        /// The name or id as given.
         asked: String,
-        /// Whose cases.
+        /// The league of the library.
         league: String,
-        /// Stored cases there are.
+        /// Number of stored cases.
         stored: usize,
-        /// A name much like it.
+        /// A similar name.
         near: Option<String>,
     },
     /// A problem to draw cannot be read.
     Problem(String),
-    /// A picture of the retrieved case was asked for, and there is none.
+    /// A figure of the retrieved case was requested, and no case fits.
     NoCaseFits,
     /// A case to be drawn under a problem that defends the other goal.
     OtherGoal(String),
@@ -49,7 +49,7 @@ pub(crate) enum Failure {
     Setting {
         /// As given.
         assignment: String,
-        /// What retrieval says to it.
+        /// The error of the retrieval.
         error: SettingError,
     },
     /// A library without a case has nothing to count.
@@ -62,32 +62,32 @@ pub(crate) enum Failure {
     Game(String),
     /// A recording could not be written.
     Recording(String),
-    /// The robots' image or its emulator cannot be had.
+    /// The robots' firmware image or its emulator is not available.
     Firmware(String),
-    /// A picture could not be written.
+    /// A figure could not be written.
     Picture {
-        /// Where to.
+        /// The output file.
         file: PathBuf,
-        /// Why.
+        /// The reason.
         words: String,
     },
     /// A Markdown file has no place for figures.
     Markdown {
-        /// Which.
+        /// The file.
         file: PathBuf,
-        /// What it lacks.
+        /// What is missing in it.
         error: report::MarkerError,
     },
     /// No authored case of that name.
     UnknownName {
-        /// What was asked for.
+        /// The name as given.
         asked: String,
-        /// Whose cases.
+        /// The league of the library.
         league: String,
     },
     /// Cases of a field that no simulator plays on.
     NoSimulator {
-        /// Whose cases.
+        /// The league of the library.
         league: String,
     },
     /// No case can be drafted from the problem.
@@ -96,18 +96,18 @@ pub(crate) enum Failure {
     Robot(String),
     /// Threads cannot be started.
     Threads(String),
-    /// An evaluation could not be played, kept or put together.
+    /// An evaluation could not be played, stored or merged.
     Evaluation(EvaluationError),
     /// The filters of an evaluation leave nothing.
     NoTrials,
-    /// A recording could not be read, or has not what was asked for.
+    /// A recording could not be read, or lacks what was requested.
     Recorded {
-        /// Which.
+        /// The file.
         file: PathBuf,
-        /// What, and how to mend it.
+        /// What is wrong, and how to fix it.
         words: String,
     },
-    /// What a verb on the league's networks cannot go on without.
+    /// A verb on the league's networks cannot continue.
     Network(String),
     /// Stdin could not be read.
     Input(io::Error),
@@ -124,7 +124,7 @@ impl Failure {
         Self::NoFolder(folder.to_owned())
     }
 
-    /// Says it on stderr. Whoever closed our stdout has read enough: that is a quiet end.
+    /// Prints it on stderr. A closed stdout is not an error: the reader has read enough.
     pub(crate) fn report(&self) -> ExitCode {
         if matches!(self, Self::Output(error) if error.kind() == io::ErrorKind::BrokenPipe) {
             return ExitCode::SUCCESS;
@@ -211,9 +211,9 @@ impl fmt::Display for Failure {
             Self::Threads(words) => write!(f, "cannot start threads: {words}; try --jobs 1"),
             Self::Recorded { file, words } => {
                 let file = shown(file);
-                // What is wrong may be told in the file's own words.
+                // The reason may quote the file's own text.
                 let words = printable(words);
-                // Some of what is said names the file already.
+                // Some reasons name the file already.
                 if words.starts_with(&file) { f.write_str(&words) } else { write!(f, "{file}: {words}") }
             }
             Self::Input(error) => write!(f, "cannot read stdin: {error}"),

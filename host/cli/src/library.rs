@@ -14,14 +14,14 @@ use crate::args::LibraryArgs;
 /// One opened library.
 #[derive(Debug)]
 pub(crate) enum Shelf {
-    /// Baked into this program; with the case base over its table, which is checked once.
+    /// Built into this program; with the case base over its table, which is checked once.
     BuiltIn(&'static League, CaseBase<'static>),
-    /// Read from a folder. It stays until the program ends, so that the case base may lie beside it.
+    /// Read from a directory. It is kept until the program ends, because the case base borrows from it.
     Folder(&'static Library, CaseBase<'static>),
 }
 
 impl Shelf {
-    /// The library the command line means.
+    /// Opens the library that the command line names.
     pub(crate) fn open(args: &LibraryArgs) -> Result<Self, Failure> {
         match &args.folder.library {
             Some(folder) => Self::read(folder),
@@ -31,7 +31,7 @@ impl Shelf {
         }
     }
 
-    /// The same with no more than that of its cases.
+    /// The same with at most those of its cases that `reduction` keeps.
     pub(crate) fn open_reduced(args: &LibraryArgs, reduction: Reduction) -> Result<Self, Failure> {
         let whole = Self::open(args)?;
         if reduction == Reduction::NONE {
@@ -54,7 +54,7 @@ impl Shelf {
         Ok(Self::Folder(library, library.base()))
     }
 
-    /// One league's folder.
+    /// One league's directory.
     pub(crate) fn read(folder: &Path) -> Result<Self, Failure> {
         if !folder.is_dir() {
             return Err(Failure::missing_folder(folder));
@@ -70,7 +70,7 @@ impl Shelf {
         Self::BuiltIn(league, league.base())
     }
 
-    /// The libraries meant where no single one needs to be named: the folder, or every built-in league.
+    /// The libraries if no single one is named: the directory, or every built-in league.
     pub(crate) fn all(folder: Option<&Path>) -> Result<Vec<Self>, Failure> {
         match folder {
             Some(folder) => Ok(vec![Self::read(folder)?]),
@@ -85,7 +85,7 @@ impl Shelf {
         }
     }
 
-    /// The same for as long as the program runs: built in, or kept until its end.
+    /// The same for the lifetime of the program: built in, or kept until its end.
     pub(crate) const fn lasting_base(&self) -> CaseBase<'static> {
         match self {
             Self::BuiltIn(_, base) | Self::Folder(_, base) => *base,
@@ -117,7 +117,7 @@ impl Shelf {
         }
     }
 
-    /// What the league calls a kind of kick.
+    /// The league's name for a kind of kick.
     pub(crate) fn kick(&self, kind: KickId) -> &str {
         let kind = usize::from(kind.0);
         match self {
@@ -126,7 +126,7 @@ impl Shelf {
         }
     }
 
-    /// What the author of a stored case meant by it.
+    /// Intent of a stored case, as its author wrote it.
     pub(crate) fn intent(&self, id: CaseId) -> Option<String> {
         let authored = authored(id);
         let source = match self {
@@ -138,7 +138,8 @@ impl Shelf {
     }
 }
 
-/// Reads one league's folder; with a bar on a terminal's stderr where there are many files, and nothing in a pipe.
+/// Reads one league's directory; with a bar on a terminal's stderr where there are many files, and nothing in
+/// a pipe.
 pub(crate) fn load(folder: &Path) -> Result<Library, Vec<Finding>> {
     let progress = ProgressBar::hidden();
     progress.set_style(ProgressStyle::with_template(BAR).unwrap_or_else(|_| ProgressStyle::default_bar()));
@@ -153,12 +154,12 @@ pub(crate) fn load(folder: &Path) -> Result<Library, Vec<Finding>> {
     library
 }
 
-/// Steps of a load from which on it takes long enough to be told of: half a thousand files.
+/// Number of load steps from which a progress bar is drawn: half a thousand files.
 const MANY: usize = 1000;
 /// Drawn on a terminal's stderr only.
 const BAR: &str = "reading the library {bar:40} {percent} %";
 
-/// Number of the case file that a stored case descends from.
+/// Number of the case file that a stored case is generated from.
 fn authored(id: CaseId) -> usize {
     usize::from(id.0) / Symmetry::ALL.len()
 }

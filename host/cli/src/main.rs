@@ -1,9 +1,8 @@
-//! `onetwo`: entry point of `onetwo`. Reads the command line, hands it to the verb's file, and turns the
-//! verb's end into an exit code: 0 done, 1 the thing asked for failed, 2 wrong usage
-//! (docs/case-format.md §5).
+//! `onetwo`: entry point of `onetwo`. Reads the command line, passes it to the verb's file, and turns the
+//! verb's result into an exit code: 0 done, 1 the command failed, 2 wrong usage (docs/case-format.md §5).
 //!
-//! One file per verb. A verb takes its arguments and returns an [`ExitCode`] or a [`Failure`] that says in words what
-//! went wrong and how to mend it; data goes to stdout, words to stderr. Runs on a PC.
+//! One file per verb. A verb takes its arguments and returns an [`ExitCode`] or a [`Failure`] with what went
+//! wrong and how to fix it; data goes to stdout, messages to stderr. Runs on a PC.
 #![forbid(unsafe_code)]
 
 mod args;

@@ -1,34 +1,34 @@
-//! `net`: sockets of the verbs. By group where an address is multicast, straight where it is one machine's.
+//! `net`: sockets of the verbs. Multicast where the address is a group, unicast where it is one machine's.
 
 use std::net::{Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
 use ssl::net::{Datagram, Interfaces, NetError, Port, Receiver, Sender};
 
-/// Speaks to an address; what fails is told once, not a thousand times a second.
+/// Sends to an address; an error is reported once, not a thousand times a second.
 #[derive(Debug)]
 pub(crate) struct Mouth {
     to: SocketAddr,
-    /// The interface to speak by; none: the system's choice.
+    /// The interface to send by; `None`: the system's choice.
     by: Option<String>,
     sender: Option<Sender>,
     troubled: bool,
-    /// Datagrams that went out.
+    /// Number of datagrams sent.
     pub(crate) sent: u64,
 }
 
 impl Mouth {
-    /// Nothing is opened before something is said.
+    /// The socket is opened with the first datagram.
     pub(crate) fn new(to: SocketAddr, by: Option<&str>) -> Self {
         Self { to, by: by.map(str::to_owned), sender: None, troubled: false, sent: 0 }
     }
 
-    /// Where it speaks to.
+    /// The address that it sends to.
     pub(crate) const fn to(&self) -> SocketAddr {
         self.to
     }
 
-    /// Speaks to another port of the same address from now on.
+    /// Sends to another port of the same address from now on.
     pub(crate) fn set_port(&mut self, port: u16) {
         if self.to.port() != port {
             self.to.set_port(port);
@@ -36,12 +36,13 @@ impl Mouth {
         }
     }
 
-    /// Sends; gives words for people where something began to fail, or goes another way than was asked for.
+    /// Sends; returns a message for the operator where sending starts to fail, recovers, or uses another
+    /// interface than requested.
     pub(crate) fn send(&mut self, bytes: &[u8]) -> Option<String> {
         let words = match self.try_send(bytes) {
             Ok(()) => return self.works(),
             Err(NetError::NoRoute { .. }) if self.by.is_none() && self.to.ip().is_multicast() => {
-                // No network at all: this machine still has itself.
+                // Without any network this machine can still be reached.
                 self.by = Some(Ipv4Addr::LOCALHOST.to_string());
                 self.sender = None;
                 match self.try_send(bytes) {
@@ -78,12 +79,12 @@ impl Mouth {
     }
 }
 
-/// Hears an address: a group beside other programs, or a port of its own.
+/// Receives from an address: a multicast group shared with other programs, or a port of its own.
 #[derive(Debug)]
 pub(crate) enum Ear {
     /// A multicast group.
     Group(Receiver),
-    /// A port that is spoken to straight.
+    /// A unicast port.
     Own(Port),
 }
 
@@ -104,7 +105,7 @@ impl Ear {
         }
     }
 
-    /// By which way it hears, in words.
+    /// How it receives, as text.
     pub(crate) fn words(&self) -> String {
         match self {
             Self::Group(receiver) => {

@@ -1,8 +1,9 @@
-//! `output`: everything that is printed, on stdout and stderr. Characters that a terminal would obey are escaped on the way, whoever
-//! chose them: a referee's program, a log file, a file's name.
+//! `output`: everything that is printed, on stdout and stderr. Control characters of a terminal are escaped,
+//! from any source: a referee's program, a log file, a file's name.
 //!
-//! Line ends and tabs pass, because they are the program's own; a foreign value that is put into a line goes through
-//! [`foreign::printable`] first, so that it cannot end the line. Nothing else in this crate prints (a test sees to it).
+//! Line ends and tabs pass, because they are the program's own; a foreign value that is put into a line goes
+//! through [`foreign::printable`] first, so that it cannot end the line. Nothing else in this crate prints (a
+//! test checks this).
 
 use std::fmt::Arguments;
 use std::io::{self, BufWriter, StdoutLock, Write};
@@ -17,19 +18,19 @@ pub(crate) fn lines() -> BufWriter<Printable<StdoutLock<'static>>> {
     BufWriter::new(Printable::new(io::stdout().lock()))
 }
 
-/// Says it on stdout, whole or not at all; a reader that closed it has read enough.
+/// Prints on stdout, whole or not at all; a reader that closed it has read enough.
 pub(crate) fn say(words: &str) -> Result<(), Failure> {
     let mut out = Printable::new(io::stdout().lock());
     out.write_all(words.as_bytes()).and_then(|()| out.flush()).map_err(Failure::Output)
 }
 
-/// Says a line on stderr. Where stderr is closed there is nobody to tell.
+/// Prints a line on stderr. If stderr is closed the line is lost.
 pub(crate) fn say_aside(words: Arguments<'_>) {
     let mut out = Printable::new(io::stderr().lock());
     let _ = writeln!(out, "{words}");
 }
 
-/// Says a line on stderr, as `eprintln!` would.
+/// Prints a line on stderr, as `eprintln!` would.
 macro_rules! note {
     ($($words:tt)*) => { $crate::output::say_aside(format_args!($($words)*)) };
 }

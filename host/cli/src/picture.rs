@@ -1,5 +1,5 @@
-//! `picture`: output of figures as SVG or PNG. An SVG as it is, or as a PNG with the same look on every
-//! machine: its letters come from the font in `fonts`, never from what is installed.
+//! `picture`: output of figures as SVG or PNG. An SVG as it is, or as a PNG that is equal on every machine:
+//! its letters come from the font in `fonts`, never from what is installed.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use resvg::usvg::{self, fontdb};
 
 use crate::Failure;
 
-/// Writes the SVG, or what it looks like when the name ends in `.png`.
+/// Writes the SVG, or its PNG when the name ends in `.png`.
 pub(crate) fn write(file: &Path, svg: &str) -> Result<(), Failure> {
     let written = if has_extension(file, "png") {
         png(svg).and_then(|bytes| std::fs::write(file, bytes).map_err(|error| error.to_string()))
@@ -20,7 +20,7 @@ pub(crate) fn write(file: &Path, svg: &str) -> Result<(), Failure> {
     written.map_err(|words| Failure::Picture { file: file.to_owned(), words })
 }
 
-/// For clap: the name of a picture, of one of these kinds.
+/// For clap: the file name of a figure, of one of these kinds.
 pub(crate) fn named(text: &str, kinds: &[&str]) -> Result<PathBuf, String> {
     let file = PathBuf::from(text);
     if kinds.iter().any(|kind| has_extension(&file, kind)) {
@@ -30,7 +30,7 @@ pub(crate) fn named(text: &str, kinds: &[&str]) -> Result<PathBuf, String> {
     Err(format!("expected a name that ends in {}", kinds.join(" or ")))
 }
 
-/// Whether the name ends so, in whatever case.
+/// Whether the name has this extension, in upper or lower case.
 pub(crate) fn has_extension(file: &Path, wanted: &str) -> bool {
     file.extension().and_then(OsStr::to_str).is_some_and(|extension| extension.eq_ignore_ascii_case(wanted))
 }
@@ -54,7 +54,7 @@ fn png(svg: &str) -> Result<Vec<u8>, String> {
 
 /// Pixels of a PNG for one of the SVG: sharp on a dense screen, and 300 dots an inch at 15 cm of a page.
 const SCALE: f32 = 2.0;
-/// A part of DejaVu Sans: what the pictures ask for first. Its licence lies beside it.
+/// A part of DejaVu Sans: the first font that the figures ask for. Its licence is stored beside it.
 const FONTS: [&[u8]; 2] =
     [include_bytes!("../fonts/DejaVuSans.ttf"), include_bytes!("../fonts/DejaVuSans-Bold.ttf")];
 const FAMILY: &str = "DejaVu Sans";
@@ -68,7 +68,7 @@ mod tests {
     fn a_case_in_every_symmetry_has_a_png_of_the_promised_size() {
         for league in case_library::LEAGUES {
             let base = league.base();
-            // Every seventeenth stored case: all symmetries come up.
+            // Every seventeenth stored case: all symmetries occur.
             for case in base.cases().step_by(17) {
                 let picture =
                     CasePicture { base, case, name: "a/b", intent: "", overlay: None, theme: Theme::Print };

@@ -1,6 +1,6 @@
 //! `onetwo play`: a whole match in the simulator, ours against ours or another team (docs/case-format.md §5).
-//! Shown on the page at the clock's pace;
-//! `--headless` as fast as the machine plays it, told line by line, or as one JSON object.
+//! Displayed on the page at the clock's pace; `--headless` as fast as the machine plays it, printed line by
+//! line, or as one JSON object.
 
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
@@ -26,11 +26,12 @@ use crate::live::{AnewWatcher, CaseOracle, End, PageArgs, Theatre, shelf_of};
 use crate::output::{self, note};
 use crate::stop::{signal, stopped_by_hand};
 
-/// What decides a match.
+/// Settings of a match.
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct PlayArgs {
-    /// Without the page: a match is told on the terminal, as fast as the machine plays it.
+    /// Without the page: events are printed on the terminal, and the match runs as fast as the machine plays
+    /// it.
     #[arg(long)]
     headless: bool,
     #[command(flatten)]
@@ -41,32 +42,33 @@ pub(crate) struct PlayArgs {
     /// Length of the match, simulated seconds.
     #[arg(long, value_name = "SECONDS", default_value_t = 600.0, value_parser = seconds)]
     duration: f64,
-    /// Where all chance comes from.
+    /// Random seed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Field, robots and rules: ssl-2013, division-b or division-a.
     #[arg(long, default_value = "division-b", value_parser = league)]
     league: League,
-    /// Which world of the family it is played in: nominal, grsim, erforce, erforce-none, sumatra, slow-dribbler, poor-vision,
-    /// weak-kickers or random:SEED (docs/fields.md).
+    /// Which world of the family it is played in: nominal, grsim, erforce, erforce-none, sumatra,
+    /// slow-dribbler, poor-vision, weak-kickers or random:SEED (docs/fields.md).
     #[arg(long, value_name = "WORLD", default_value_t)]
     world: WorldChoice,
-    /// Who plays blue: ours, reactive, marking, zone or idle.
+    /// Blue team: ours, reactive, marking, zone or idle.
     #[arg(long, value_name = "TEAM", default_value = "ours", value_parser = team)]
     blue: Team,
-    /// Who plays yellow.
+    /// Yellow team.
     #[arg(long, value_name = "TEAM", default_value = "ours", value_parser = team)]
     yellow: Team,
-    /// Robots of each team; the league's number unless told.
+    /// Robots of each team; the league's number by default.
     #[arg(long, value_parser = clap::value_parser!(u8).range(1..=11))]
     robots: Option<u8>,
-    /// What ours plays of the second paper as yellow: none, all, usual, or names such as threats,pass-ahead.
+    /// Yellow's tactics of the second paper, if it is ours: none, all, usual, or names such as
+    /// threats,pass-ahead.
     #[arg(long, value_name = "TACTICS", default_value = "usual", value_parser = Tactics::parse)]
     yellow_tactics: Tactics,
     /// The same for blue.
     #[arg(long, value_name = "TACTICS", default_value = "usual", value_parser = Tactics::parse)]
     blue_tactics: Tactics,
-    /// Keep the match as NAME.log.gz (for the league's tools) and NAME.trace (for `onetwo replay`).
+    /// Record the match as NAME.log.gz (for the league's tools) and NAME.trace (for `onetwo replay`).
     #[arg(long, value_name = "NAME")]
     record: Option<PathBuf>,
     /// Print the report as JSON, and nothing else; implies --headless.
@@ -190,7 +192,7 @@ fn on_page(
     }
 }
 
-/// Teller and recorder of a match on the page.
+/// Event printer and recorder of a match on the page.
 struct Watched {
     teller: Teller,
     recording: Option<Recorder>,
@@ -224,7 +226,8 @@ impl Watcher for Watched {
     }
 }
 
-/// The league's cases; a league without any plays by the reactive behaviour where the host leaves robots free.
+/// The league's cases; a league without any plays by the reactive behaviour where the host leaves robots
+/// free.
 pub(crate) fn cases(folder: &FolderArgs, league: League) -> Result<Option<Shelf>, Failure> {
     let shelf = shelf_of(league, folder.library.as_deref())?;
     if shelf.is_none() {
@@ -287,7 +290,7 @@ fn tell(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> io::Resul
     writeln!(out, "trace {}, to see it again: onetwo play --seed {}{words}", report.trace_hash, args.seed)
 }
 
-/// Tells the story on stdout, or how far it is on a terminal where only the report is wanted.
+/// Prints events on stdout, or the progress on a terminal where only the report is wanted.
 struct Teller {
     story: Option<GameStory>,
     bar: ProgressBar,
@@ -317,7 +320,7 @@ impl Watcher for Teller {
             story.tick(game);
             let mut out = output::lines();
             for line in story.take_lines() {
-                // A reader who has had enough ends the program with the report's own write.
+                // A closed stdout is detected when the report is written.
                 let _ = writeln!(out, "{line}");
             }
             let _ = out.flush();

@@ -1,6 +1,7 @@
 //! `setup`: the flags of every verb that plays trials of the first paper.
 //!
-//! Each is a change to the paper's team, so that `onetwo trial` plays any trial of an evaluation or of an ablation again.
+//! Each is a change to the paper's team, so that `onetwo trial` can replay any trial of an evaluation or of
+//! an ablation.
 
 use arena::evaluation::{Profile, Setup};
 use brain::Positioning;
@@ -15,19 +16,19 @@ use crate::library::Shelf;
 /// The attackers' set-up.
 #[derive(Debug, Args)]
 pub(crate) struct SetupArgs {
-    /// When a case's actions begin.
+    /// When a case's actions start.
     #[arg(long, value_enum, default_value_t = PositioningWord::Dependent)]
     positioning: PositioningWord,
-    /// How many robots may retrieve; all unless told.
+    /// Number of robots that may retrieve; all by default.
     #[arg(long, value_parser = clap::value_parser!(u8).range(1..=4))]
     retrievers: Option<u8>,
     /// Share of packets lost, 0 to 1.
     #[arg(long, default_value_t = 0.0, value_parser = share)]
     loss: f32,
-    /// Without the mirror images of cases: only authored ones are known.
+    /// Without the mirrored copies of cases: only authored ones are known.
     #[arg(long)]
     no_symmetry: bool,
-    /// Without the opponents of cases: they neither ask for them nor rank by them.
+    /// Without the opponents of cases: they are neither a condition nor a criterion of rank.
     #[arg(long)]
     no_opponents: bool,
     #[command(flatten)]
@@ -46,7 +47,7 @@ enum PositioningWord {
 }
 
 impl SetupArgs {
-    /// As the flags say, for a team of so many robots.
+    /// The setup of the flags, for a team of this number of robots.
     pub(crate) fn choose(&self, robots: usize) -> Result<Setup, Failure> {
         Ok(Setup {
             settings: self.settings.choose()?.settings,
@@ -61,19 +62,19 @@ impl SetupArgs {
         })
     }
 
-    /// The cases of that set-up; refused where they are of a field that no simulator has.
+    /// The cases of that set-up; refused if they are of a field that no simulator has.
     pub(crate) fn open(&self, setup: &Setup) -> Result<Shelf, Failure> {
         let shelf = Shelf::open_reduced(&self.library, reduction(setup))?;
         refuse_other_fields(&shelf)?;
         Ok(shelf)
     }
 
-    /// Does the image of the firmware hold the cases?
+    /// Whether the firmware contains the cases.
     pub(crate) fn is_built_in(&self) -> bool {
         self.library.folder.library.is_none() && !self.no_symmetry && !self.no_opponents
     }
 
-    /// Whose cases, in a word: a league's name, or the folder.
+    /// Name of the library: a league's name, or the directory.
     pub(crate) fn library_word(&self) -> String {
         match &self.library.folder.library {
             Some(folder) => folder.display().to_string(),
@@ -115,7 +116,7 @@ impl SetupArgs {
     }
 }
 
-/// What of a library a set-up keeps.
+/// The part of a library that a set-up keeps.
 pub(crate) const fn reduction(setup: &Setup) -> Reduction {
     Reduction { symmetry: setup.symmetry, opponents: setup.opponents }
 }
@@ -131,22 +132,22 @@ pub(crate) fn refuse_other_fields(shelf: &Shelf) -> Result<(), Failure> {
     }
 }
 
-/// The words of scenarios, as flags take them.
+/// Parses a scenario, as flags take it.
 pub(crate) fn scenario(word: &str) -> Result<hil_sim::Scenario, String> {
     hil_sim::Scenario::from_word(word).ok_or_else(|| "take 1, 2, 3, 4 or random".to_owned())
 }
 
-/// Of opponents.
+/// Parses opponents.
 pub(crate) fn opponents(word: &str) -> Result<hil_sim::Configuration, String> {
     hil_sim::Configuration::from_word(word).ok_or_else(|| "take dg or 2d".to_owned())
 }
 
-/// Of worlds.
+/// Parses a world.
 pub(crate) fn profile(word: &str) -> Result<Profile, String> {
     Profile::from_word(word).ok_or_else(|| "take simulated or robots".to_owned())
 }
 
-/// Of what leads the attackers.
+/// Parses the approach of the attackers.
 pub(crate) fn approach(word: &str) -> Result<brain::Approach, String> {
     arena::approach_from_word(word).ok_or_else(|| {
         let known: Vec<_> = arena::APPROACHES.map(arena::approach_word).into();

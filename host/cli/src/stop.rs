@@ -1,5 +1,5 @@
-//! `stop`: Ctrl-C and SIGTERM. Whoever runs for long looks now and then, and ends in order; a second time
-//! ends it at once.
+//! `stop`: Ctrl-C and SIGTERM. Long-running verbs poll the flag, and end in order; a second signal ends the
+//! program at once.
 
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -8,25 +8,27 @@ use std::sync::{Arc, LazyLock};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 
-/// What ends a program in order.
+/// The signals that end a program in order.
 const SIGNALS: [(i32, &str); 2] = [(SIGINT, "Ctrl-C (SIGINT)"), (SIGTERM, "SIGTERM")];
 
-/// The signal that came, by its number; 0 before.
+/// Number of the received signal; 0 before.
 static WHICH: LazyLock<Arc<AtomicUsize>> = LazyLock::new(Arc::default);
 
-/// The signal's name and the exit code of a program that it ended in order: 128 and its number, as shells count; none where none came.
+/// The signal's name and the exit code of a program that it ended in order: 128 and its number, as shells
+/// count; `None` without a signal.
 pub(crate) fn signal() -> Option<(&'static str, ExitCode)> {
     let came = WHICH.load(Ordering::Relaxed);
     let (signal, name) = SIGNALS.into_iter().find(|(signal, _)| *signal as usize == came)?;
     Some((name, ExitCode::from(128 + signal as u8)))
 }
 
-/// Turns true at the first Ctrl-C or SIGTERM from now on.
+/// Becomes true at the first Ctrl-C or SIGTERM from now on.
 pub(crate) fn stopped_by_hand() -> &'static AtomicBool {
     static STOPPED: LazyLock<Arc<AtomicBool>> = LazyLock::new(|| {
         let stopped = Arc::new(AtomicBool::new(false));
         for (signal, _) in SIGNALS {
-            // Where no handler can be set a signal does what it did before. The order matters: the first signal finds the flag down.
+            // If no handler can be set a signal keeps its default action. The order matters: at the first
+            // signal the flag is still false.
             let _ = flag::register_conditional_shutdown(signal, 128 + signal, stopped.clone())
                 .and_then(|_| flag::register_usize(signal, WHICH.clone(), signal as usize))
                 .and_then(|_| flag::register(signal, stopped.clone()));

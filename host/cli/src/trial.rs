@@ -1,5 +1,5 @@
-//! `onetwo trial`: one trial of the paper, told, reported or drawn (Ros et al. 2009 §5.1;
-//! docs/case-format.md §5.2).
+//! `onetwo trial`: one trial of the paper, printed as events, as a report or as a figure (Ros et al. 2009
+//! §5.1; docs/case-format.md §5.2).
 
 use std::fs;
 use std::io::Write;
@@ -20,25 +20,25 @@ use crate::live::{CaseOracle, Legged, PageArgs, stay};
 use crate::output;
 use crate::setup::{SetupArgs, opponents, profile, scenario};
 
-/// What decides a trial.
+/// Settings of a trial.
 #[derive(Debug, Args)]
 pub(crate) struct TrialArgs {
-    /// Where everybody stands: the paper's 1 to 4, or random.
+    /// Start positions: the paper's 1 to 4, or random.
     #[arg(long, default_value = "3", value_parser = scenario)]
     scenario: Scenario,
     /// Defender and goalie, or two defenders.
     #[arg(long, default_value = "dg", value_parser = opponents)]
     opponents: Configuration,
-    /// What leads the attackers.
+    /// Approach of the attackers.
     #[arg(long, value_enum, default_value_t = ApproachWord::Cbr)]
     approach: ApproachWord,
-    /// Where all chance comes from.
+    /// Random seed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Where the attackers' brains run.
     #[arg(long, value_enum, default_value_t = BackendWord::Native)]
     backend: BackendWord,
-    /// As the paper's simulator, or as its robots: noise in what they see, 5 s of standing still after every cycle.
+    /// As the paper's simulator, or as its robots: noisy perception, 5 s of standing still after every cycle.
     #[arg(long, default_value = "simulated", value_parser = profile)]
     profile: Profile,
     /// Attackers; the paper has 2.
@@ -46,7 +46,7 @@ pub(crate) struct TrialArgs {
     robots: u8,
     #[command(flatten)]
     setup: SetupArgs,
-    /// Show it on the page, every moment of it, until Ctrl-C.
+    /// Display it on the page, every moment of it, until Ctrl-C.
     #[arg(long, conflicts_with = "json")]
     watch: bool,
     #[command(flatten)]
@@ -75,7 +75,7 @@ enum ApproachWord {
 enum BackendWord {
     /// In this process.
     Native,
-    /// As the firmware image, each robot in a QEMU of its own.
+    /// As the firmware, each robot in a QEMU of its own.
     Qemu,
 }
 
@@ -113,7 +113,7 @@ pub(crate) fn run(args: &TrialArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The page that keeps the trial's course.
+/// The page that stores the trial's course.
 fn on_page(args: &TrialArgs) -> Result<Legged, Failure> {
     let setup = args.setup.choose(usize::from(args.robots))?;
     let shelf = args.setup.open(&setup)?;
@@ -123,7 +123,7 @@ fn on_page(args: &TrialArgs) -> Result<Legged, Failure> {
     Ok(Legged::new(args.page.open(title, true, Powers::None, oracle)?, base))
 }
 
-/// Plays it.
+/// Plays the trial.
 fn play(args: &TrialArgs, watchers: &mut [&mut dyn Watcher]) -> Result<TrialReport, Failure> {
     let approach = match args.approach {
         ApproachWord::Cbr => Approach::Cases,
@@ -145,7 +145,7 @@ fn play(args: &TrialArgs, watchers: &mut [&mut dyn Watcher]) -> Result<TrialRepo
     arena::run(&config, backend, watchers).map_err(Failure::Trial)
 }
 
-/// QEMU with a fresh image; a library of one's own goes into the robots' flash beside it.
+/// QEMU with freshly built firmware; the user's own library goes into the robots' flash beside it.
 fn qemu(args: &TrialArgs, shelf: &Shelf) -> Result<QemuBackend, Failure> {
     firmware_build::ensure_qemu(Install::ForUser).map_err(|error| Failure::Firmware(error.to_string()))?;
     let image = firmware_build::build_image(&firmware_build::workspace_root(), firmware_build::Body::Legged)
@@ -158,7 +158,7 @@ fn qemu(args: &TrialArgs, shelf: &Shelf) -> Result<QemuBackend, Failure> {
 }
 
 impl TrialArgs {
-    /// The command that shows the same trial again.
+    /// The command that replays the same trial.
     fn again(&self, report: &TrialReport) -> String {
         use std::fmt::Write as _;
         let mut words = format!(

@@ -1,5 +1,6 @@
-//! `onetwo virtual-robot`: one robot's brain as a process, in any simulator of the league. Not for people: `control` starts it
-//! for each robot of `--robots sim://HOST`; by hand it helps to see why one does not run.
+//! `onetwo virtual-robot`: one robot's brain as a process, in any simulator of the league. Not for direct
+//! use: `control` starts it for each robot of `--robots sim://HOST`; by hand it helps to find out why one
+//! does not run.
 
 use std::io::{self, BufRead as _};
 use std::net::{SocketAddr, ToSocketAddrs as _};
@@ -23,7 +24,7 @@ use crate::args::{FolderArgs, SettingsArgs};
 use crate::library::Shelf;
 use crate::output::note;
 
-/// Who it is and whom it speaks with.
+/// The robot's identity and its addresses.
 #[derive(Debug, Args)]
 pub(crate) struct VirtualRobotArgs {
     /// Its number, 0 to 15.
@@ -32,16 +33,17 @@ pub(crate) struct VirtualRobotArgs {
     /// Its team: blue or yellow.
     #[arg(long, value_parser = colour)]
     team: Colour,
-    /// What it plays: ssl-2013, division-b or division-a.
+    /// Its league: ssl-2013, division-b or division-a.
     #[arg(long, value_parser = league, default_value = "division-b")]
     league: League,
-    /// Who commands it, as HOST:PORT.
+    /// Its host, as HOST:PORT.
     #[arg(long, value_parser = address)]
     host: SocketAddr,
-    /// The simulator, as HOST or HOST:PORT; without a port the league's for its team, 10301 blue, 10302 yellow.
+    /// The simulator, as HOST or HOST:PORT; without a port the league's for its team, 10301 blue, 10302
+    /// yellow.
     #[arg(long, value_name = "HOST[:PORT]")]
     simulator: String,
-    /// The goal its team defends until its host says which.
+    /// The goal its team defends until its host sends it.
     #[arg(long, value_parser = goal, default_value = "yellow", value_name = "yellow|cyan")]
     defending: GoalEnd,
     /// The file of the team's key; left out: a key of zeros.
@@ -56,7 +58,7 @@ pub(crate) struct VirtualRobotArgs {
     settings: SettingsArgs,
 }
 
-/// Plays until it is stopped.
+/// Runs until it is stopped.
 pub(crate) fn run(args: &VirtualRobotArgs) -> Result<ExitCode, Failure> {
     let (key, end) = if args.with_parent {
         (key_of_parent()?, parent_gone())
@@ -66,11 +68,12 @@ pub(crate) fn run(args: &VirtualRobotArgs) -> Result<ExitCode, Failure> {
     let shelf = args.folder.library.as_deref().map(Shelf::read).transpose()?;
     let base = match &shelf {
         Some(shelf) => shelf.base(),
-        // A league without cases of its own is played without.
+        // A league without a case library is played without cases.
         None => host::cases_of(args.league),
     };
     let brain = BrainConfig {
-        // Seconds since 1970: rises with every start that is a second after the last, which `control` sees to.
+        // Seconds since 1970: rises with every start that is a second after the last, which `control`
+        // ensures.
         epoch: SystemTime::now().duration_since(UNIX_EPOCH).map_or(1, |time| time.as_secs() as u32),
         defending: args.defending,
         settings: args.settings.choose()?.settings,

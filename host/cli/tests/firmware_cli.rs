@@ -13,13 +13,13 @@ use rules::League;
 fn onetwo(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_onetwo"))
         .args(arguments)
-        // No probe-rs, wherever one is installed.
+        // Without probe-rs, even where one is installed.
         .env("PATH", "")
         .output()
         .expect("the program starts")
 }
 
-/// A folder of this test's own; gone with this value.
+/// A directory of this test's own; removed with this value.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -36,7 +36,7 @@ impl Folder {
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        // A temporary folder that stays is a pity, not an error.
+        // A temporary directory that remains is not an error.
         let _ = fs::remove_dir_all(&self.0);
     }
 }
@@ -47,7 +47,7 @@ fn the_page_that_is_written_is_the_one_a_robot_reads_and_its_owner_alone_may() {
     let (key, page) = (folder.at("key"), folder.at("robot.page"));
     fs::write(&key, "000102030405060708090a0b0c0d0e0f\n").expect("a file");
     let words = ["firmware", "provision", "--robot", "5", "--team", "2", "--key-file", &key, "--out", &page];
-    // A file that was there before, open to all, is closed to others too.
+    // An existing file that is open to all is closed to others.
     fs::write(&page, "old").expect("a file");
     let told = onetwo(&words);
     assert!(told.status.success(), "{}", String::from_utf8_lossy(&told.stderr));

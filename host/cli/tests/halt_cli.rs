@@ -1,5 +1,6 @@
-//! `halt_cli`: HALT against floods, second referees and slow lines, with the built `onetwo control` on loopback and a pseudo
-//! terminal. Measured values are printed; limits are generous, because machines that test are loaded. Times: s and ms.
+//! `halt_cli`: HALT against floods, second referees and slow lines, with the built `onetwo control` on
+//! loopback and a pseudo terminal. Measured values are printed; limits are generous, because test machines
+//! are loaded. Times: s and ms.
 #![cfg(target_os = "linux")]
 
 use std::io::{BufRead, BufReader};
@@ -26,15 +27,15 @@ use ssl::vision::{DetectionBall, DetectionFrame, DetectionRobot, WrapperPacket};
 
 /// Generous: a loaded machine is no failure.
 const PATIENCE: Duration = Duration::from_mins(1);
-/// HALT takes this long at most on a machine that is loaded; 1.2 to 9.3 s before queues were bounded.
+/// Longest latency of HALT on a loaded machine; 1.2 to 9.3 s before queues were bounded.
 const HALT_MAX: Duration = Duration::from_millis(500);
-/// Resident memory may grow by so much under a flood, bytes; 465 MB before.
+/// Resident memory may grow by at most this under a flood, bytes; 465 MB before.
 const GROWTH_MAX: u64 = 24 << 20;
 /// A gigabit network, bytes a second.
 const LINE_RATE: u64 = 125_000_000;
 const KEY: [u8; 16] = [0x5a; 16];
 
-/// `onetwo control` with its referee, vision and base station in the test's hands.
+/// `onetwo control` with its referee, vision and base station simulated by the test.
 struct Field {
     process: Child,
     lines: Receiver<String>,
@@ -78,7 +79,7 @@ impl Field {
         Self { process, lines, said: Vec::new(), vision, referee }
     }
 
-    /// Waits for a line with all of these words.
+    /// Waits for a line that contains all of `words`.
     fn says(&mut self, words: &[&str]) -> String {
         let until = Instant::now() + PATIENCE;
         loop {
@@ -138,7 +139,7 @@ impl Controller {
         this
     }
 
-    /// Gives a command, at once.
+    /// Sends a command, at once.
     fn say(&self, command: Wire) -> Instant {
         let counter = {
             let mut said = self.command.lock().expect("no panic");
@@ -172,7 +173,7 @@ fn packet(identifier: &str, command: Wire, counter: u32) -> Vec<u8> {
     packet.encode_to_vec()
 }
 
-/// A camera frame with six robots a team and so many balls.
+/// A camera frame with six robots a team and `balls` balls.
 fn camera_frame(number: u32, balls: usize) -> Vec<u8> {
     let robot = |id: u32, y: f32| DetectionRobot {
         confidence: 1.0,
@@ -211,7 +212,7 @@ fn camera(to: SocketAddr, end: &Arc<AtomicBool>) {
     });
 }
 
-/// The radio ends of six robots: they answer the host's welcomes, so that it leads them.
+/// The radio ends of six robots: they answer the host's welcomes, so that it commands them.
 struct Robots {
     links: Vec<Link>,
     began: Instant,
@@ -230,7 +231,7 @@ impl Robots {
         protocol::Instant(self.began.elapsed().as_micros() as u64)
     }
 
-    /// Takes a frame of the host: whether it says HALT, where it says anything of the phase.
+    /// Takes a frame of the host: whether its phase is HALT, if it has a phase.
     fn receive(&mut self, frame: &[u8]) -> Option<bool> {
         let now = self.now();
         for link in &mut self.links {
@@ -261,7 +262,7 @@ impl Robots {
     }
 }
 
-/// What the base station receives: whether the newest frame says HALT, and when.
+/// What the base station receives: whether the newest frame is a HALT, and when.
 fn station() -> (SocketAddr, Receiver<(Instant, bool)>) {
     let socket = socket("127.0.0.1:0");
     let (send, frames) = channel();
@@ -282,7 +283,7 @@ fn station() -> (SocketAddr, Receiver<(Instant, bool)>) {
     (address, frames)
 }
 
-/// Waits for a frame that says HALT, or one that does not, sent after `since`.
+/// Waits for a frame that is a HALT, or one that is not, sent after `since`.
 fn wait_for(frames: &Receiver<(Instant, bool)>, halt: bool, since: Instant) -> Duration {
     let until = Instant::now() + PATIENCE;
     loop {
@@ -295,7 +296,7 @@ fn wait_for(frames: &Receiver<(Instant, bool)>, halt: bool, since: Instant) -> D
     }
 }
 
-/// Sends datagrams at a gigabit until the end; how many it sent.
+/// Sends datagrams at a gigabit until the end; returns the number sent.
 fn flood(to: SocketAddr, datagrams: Vec<Vec<u8>>, end: &Arc<AtomicBool>) -> Arc<AtomicU64> {
     let (sent, end) = (Arc::new(AtomicU64::new(0)), end.clone());
     let count = sent.clone();
@@ -316,7 +317,8 @@ fn flood(to: SocketAddr, datagrams: Vec<Vec<u8>>, end: &Arc<AtomicBool>) -> Arc<
     sent
 }
 
-/// HALT under a flood of those datagrams on vision's port: median and worst of several HALTs, and what memory grew by.
+/// HALT under a flood of those datagrams on vision's port: median and worst of several HALTs, and the growth
+/// of memory.
 fn halts_under(flooded: Vec<Vec<u8>>, alarm: &str) {
     let (robots, frames) = station();
     let mut field = Field::start(&format!("udp://{robots}"), &[]);
@@ -411,7 +413,8 @@ fn finding_10_on_a_slow_line_halt_comes_before_what_is_stale_and_the_rate_is_rep
     let mut field = Field::start(&format!("serial:{}:115200", device.display()), &[]);
     let end = Arc::new(AtomicBool::new(false));
     let read = Arc::new(AtomicU64::new(0));
-    // The base station takes bytes as fast as the line brings them; for each frame: HALT or not, and bytes so far.
+    // The base station takes bytes as fast as the line delivers them; for each frame: HALT or not, and bytes
+    // so far.
     let (send, frames) = channel();
     let (count, stop) = (read.clone(), end.clone());
     thread::spawn(move || {
@@ -429,7 +432,7 @@ fn finding_10_on_a_slow_line_halt_comes_before_what_is_stale_and_the_rate_is_rep
                 continue;
             }
             let got = station.read(&mut bytes[..room]).unwrap_or(0);
-            // What the line did not use is gone.
+            // Capacity that the line did not use is lost.
             taken = if got == 0 { may } else { taken + got as u64 };
             count.fetch_add(got as u64, Ordering::Relaxed);
             for byte in &bytes[..got] {

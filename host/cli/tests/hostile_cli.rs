@@ -1,4 +1,5 @@
-//! `hostile_cli`: recordings that are cut, files that are none, text that speaks to the terminal, and signals, against the built program.
+//! `hostile_cli`: truncated recordings, files of other formats, text with terminal control characters, and
+//! signals, against the built program.
 
 #![cfg(unix)]
 
@@ -47,7 +48,7 @@ fn start(arguments: &[&str]) -> Child {
         .unwrap()
 }
 
-/// Runs to its end; a program that does not end is ended, and fails the test.
+/// Runs to its end; a program that does not end is killed, and fails the test.
 fn onetwo(arguments: &[&str]) -> Output {
     let mut child = start(arguments);
     let (mut out, mut err) = (child.stdout.take().unwrap(), child.stderr.take().unwrap());
@@ -80,7 +81,7 @@ fn json(arguments: &[&str], code: i32) -> Value {
     serde_json::from_slice(&out.stdout).expect("one JSON value on stdout and nothing else")
 }
 
-/// A recorded match of that many seconds.
+/// A recorded match of `seconds` seconds.
 fn recorded(name: &str, seconds: &str) -> PathBuf {
     let stem = scratch(name);
     let out = onetwo(&["play", "--headless", "--duration", seconds, "--record", text(&stem)]);
@@ -88,7 +89,7 @@ fn recorded(name: &str, seconds: &str) -> PathBuf {
     stem
 }
 
-/// As a killed program leaves it: what was flushed, without the end.
+/// The file that a killed program leaves: what was flushed, without the end.
 fn left(bytes: &[u8]) -> Vec<u8> {
     let mut zip = GzEncoder::new(Vec::new(), Compression::fast());
     zip.write_all(bytes).unwrap();
@@ -109,11 +110,12 @@ fn a_recording_cut_between_any_two_records_is_cut_and_never_other_decisions() {
     let mut recheck = Recheck::new(&header, TeamKey::ZERO).unwrap();
     let mut boundaries = vec![(at, None)];
     for record in reader.by_ref() {
-        // A referee's packet stands behind its sender's address.
+        // A referee's packet is preceded by its sender's address.
         let sender = if record.kind == Kind::Referee { SenderAddress::LEN } else { 0 };
         at += 14 + sender + record.bytes.len();
         boundaries.push((at, Some(record.kind)));
-        // A cut trace is checked up to its last record: what holds here holds for the trace that is cut here.
+        // A truncated trace is checked up to its last record: the result must equal that of the trace
+        // truncated here.
         recheck.feed(&record);
         assert!(recheck.results().all(|(_, difference)| difference.is_none()), "after byte {at}");
     }
@@ -138,7 +140,7 @@ fn a_recording_cut_between_any_two_records_is_cut_and_never_other_decisions() {
             reader.end()
         );
     }
-    // The program itself, after records of each kind, gzipped and not.
+    // With the program itself, after records of each kind, gzipped and not.
     let mut tried = 0;
     for kind in [Kind::Vision, Kind::Referee, Kind::Robot, Kind::Sent] {
         let of_kind: Vec<_> = boundaries.iter().filter(|(_, of)| *of == Some(kind)).collect();
@@ -156,7 +158,8 @@ fn a_recording_cut_between_any_two_records_is_cut_and_never_other_decisions() {
                 "{told}{why}"
             );
             assert!(!told.contains("other decisions"), "{told}");
-            // Without gzip's end mark only missing packets show that it was cut; whichever: no other decisions.
+            // Without gzip's end mark only missing packets reveal that it was truncated; in both cases no
+            // other decisions.
             fs::write(&file, &whole[..*at]).unwrap();
             let told = onetwo(&["replay", text(&file)]).stdout;
             assert!(
@@ -181,7 +184,7 @@ fn a_recording_cut_between_any_two_records_is_cut_and_never_other_decisions() {
     }
 }
 
-/// A match that is being recorded, some seconds in.
+/// A match that is being recorded, some seconds after its start.
 fn under_way(name: &str) -> (Child, PathBuf) {
     let stem = scratch(name);
     let log = stem.with_extension("log.gz");
@@ -231,11 +234,12 @@ fn a_match_that_is_killed_has_lost_a_second_at_most() {
     assert_eq!(report["same_decisions"], true, "{}", report["hosts"]);
     let of_trace = report["span_s"][1].as_f64().unwrap();
     let of_log = json(&["replay", text(&stem.with_extension("log.gz"))], 1)["span_s"].as_f64().unwrap();
-    // Both are flushed at the same moments of the match; either may hold more by what its buffers gave away in between.
+    // Both are flushed at the same moments of the match; either may hold more by what its buffers flushed in
+    // between.
     assert!(of_trace > 1.0 && of_log > 1.0, "{of_trace} {of_log}");
 }
 
-/// Whether text holds what a terminal would obey.
+/// The first control character that a terminal would obey.
 fn obeyed(text: &str) -> Option<char> {
     text.chars().find(|character| character.is_control() && !matches!(character, '\n' | '\t'))
 }
@@ -385,7 +389,7 @@ fn special_files_are_refused_by_what_they_are_wherever_a_file_is_read() {
             let out = onetwo(&arguments);
             let words = String::from_utf8_lossy(&[out.stdout, out.stderr].concat()).into_owned();
             assert_ne!(out.status.code(), Some(0), "{arguments:?}: {words}");
-            // Some verbs have no such flag for files: clap's own word is 2.
+            // Some verbs have no such flag for files: clap exits with 2.
             if out.status.code() == Some(1) {
                 let kind = if special.starts_with("/dev") { "this is a device" } else { "this is a pipe" };
                 assert!(words.contains(kind), "{arguments:?}: {words}");

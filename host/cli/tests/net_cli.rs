@@ -22,7 +22,7 @@ fn socket() -> UdpSocket {
     socket
 }
 
-/// A port nobody has at the moment.
+/// A port that is free at the moment.
 fn free() -> String {
     socket().local_addr().expect("an address").to_string()
 }
@@ -73,7 +73,7 @@ fn a_client_sees_its_robot_move_and_is_told_what_is_wrong() {
         }
     }
     assert!(moved > 300.0, "robot 3 moved {moved} mm along +x");
-    // What came before is answered before.
+    // Earlier datagrams are answered earlier.
     client.send_to(&order(99, 1.0), blue).expect("sent");
     let mut bytes = [0; 8192];
     let refused = (0..3000).find_map(|_| {
@@ -138,7 +138,7 @@ fn control_says_what_it_waits_for_and_goes_on_when_it_comes() {
         let line = waits.iter().find(|line| line.contains(&format!("waiting for {what}")));
         assert!(line.is_some_and(|line| line.contains(mend)), "{what}: {waits:?}");
     }
-    // 2 s are promised; a loaded machine may take longer to start a program at all.
+    // Specified are 2 s; a loaded machine may take longer to start a program at all.
     assert!(latest < Duration::from_secs(15), "{latest:?}");
     let arguments = ["simulate", "--ports", "0", "--listen", "127.0.0.1", "--duration", "60"];
     let _simulator =
@@ -161,7 +161,7 @@ fn brains_of_our_own_take_their_places_for_the_kickoff() {
     let control = ["control", "--robots", &robots, "--tracker", &to, "--duration", "60"];
     let mut control = Running::start(&[&control[..], &["--vision", &vision, "--referee", &referee]].concat());
     control.says("robots are heard");
-    // Blue begins within 1.5 m of the halfway line; the keeper has 3 m to go to its goal at −x.
+    // Blue starts within 1.5 m of the halfway line; the keeper has 3 m to go to its goal at −x.
     let (until, mut bytes) = (Instant::now() + PATIENCE, [0; 8192]);
     let mut places = Vec::new();
     while Instant::now() < until {

@@ -1,5 +1,5 @@
-//! `page_cli`: tests: the verbs serve their page and accept only permitted requests. Seen by a viewer that is
-//! no browser.
+//! `page_cli`: tests: the verbs serve their page and accept only permitted requests. Tested with a viewer
+//! that is no browser.
 
 #[path = "page_browser/program.rs"]
 mod program;
@@ -36,7 +36,7 @@ impl Viewer {
         self.0.send(Message::text(words)).unwrap();
     }
 
-    /// The first word for which that holds.
+    /// The first message for which `holds` is true.
     fn until(&mut self, holds: impl Fn(&Value) -> bool) -> Value {
         let begun = Instant::now();
         while begun.elapsed() < PATIENCE {
@@ -76,7 +76,7 @@ fn a_match_is_shown_stopped_and_begun_anew() {
     viewer.ask(r#"{"ask":"restart","seed":6}"#);
     let anew = viewer.until(|scene| scene["seed"] == 6);
     assert!(anew["t"].as_f64().unwrap() < t.max(3.0));
-    // Ways of more than two points: planned ones.
+    // Paths of more than two points: planned ones.
     viewer.until(|scene| {
         let ways = scene["robots"].as_array().unwrap().iter().map(|robot| &robot["mind"]["intent"]["path"]);
         ways.filter_map(Value::as_array).any(|way| way.len() > 3)
@@ -120,7 +120,7 @@ fn a_page_on_the_network_is_looked_at_by_all_and_asked_by_those_with_its_token()
     own.until(|scene| scene["paused"] == true);
 }
 
-/// Distance of a shape of the layer of truth from a place, m.
+/// Distance of a shape of the truth layer from a place, m.
 fn off(shape: &Value, at: [f64; 2]) -> f64 {
     let place = |i: usize| shape["at"][i].as_f64().unwrap();
     (place(0) - at[0]).hypot(place(1) - at[1])
@@ -130,14 +130,14 @@ fn off(shape: &Value, at: [f64; 2]) -> f64 {
 fn a_case_is_played_from_its_own_situation() {
     let play = played();
     let mut viewer = Viewer::of(&play);
-    // Its own side is known once the referee has spoken.
+    // Its own side is known after the first referee packet.
     viewer.until(|scene| robots(scene) == 12 && scene["t"].as_f64().unwrap() > 2.0);
     viewer.ask(r#"{"ask":"situation","name":"nowhere/nothing"}"#);
     let refused = viewer.until(|word| word.get("refused").is_some());
     assert!(refused["refused"].as_str().unwrap().contains("nowhere/nothing"), "{refused}");
     viewer.ask(r#"{"ask":"pause","on":true}"#);
     viewer.until(|scene| scene["paused"] == true);
-    // Of its file: three robots that build up from the back.
+    // From its file: three robots that build up from the back.
     let (ball, mates) = ([-3.2, 0.5], [[-3.35, 0.5], [-2.2, 1.7], [-0.9, 0.5]]);
     viewer.ask(r#"{"ask":"situation","name":"back/build-up"}"#);
     let there = viewer.until(|scene| {
@@ -197,7 +197,8 @@ fn a_simulated_field_for_others_is_shown_with_its_truth() {
     viewer.until(|scene| scene["game"]["phase"] == "halt");
     viewer.ask(r#"{"ask":"pause","on":true}"#);
     viewer.until(|scene| scene["paused"] == true);
-    // The vision's clock stands with the world's: what was under way is shown before it is asked for more.
+    // The vision's clock stands with the world's: the scene that was in progress is displayed before the next
+    // request.
     let t = viewer.until(|scene| scene["paused"] == true)["t"].as_f64().unwrap();
     viewer.ask(r#"{"ask":"step","ticks":25}"#);
     let later = viewer.until(|scene| scene["t"].as_f64().is_some_and(|now| now > t + 0.2));
@@ -228,7 +229,7 @@ fn a_recording_that_breaks_off_says_so() {
     std::fs::write(&cut, &whole[..whole.len() / 2]).unwrap();
     let replay = Program::start(&["replay", cut.to_str().unwrap(), "--watch", "--listen", "127.0.0.1:0"]);
     replay.says("the file breaks off: ");
-    // Who looks on has it among what happened.
+    // A viewer has it among the events.
     Viewer::of(&replay).until(|scene| scene["t"].as_f64().is_some_and(|t| t > 5.0));
     let begun = Instant::now();
     while !happenings(&replay).contains("the file breaks off: ") {

@@ -1,6 +1,6 @@
 //! `remote_match_cli`: tests of `onetwo simulate` under an external game controller. A scripted controller on
 //! this machine: referee packets made here, and the port for automatic referees; a client of the simulation
-//! protocol and of the vision sees what came of it.
+//! protocol and of the vision checks the effects.
 
 mod running;
 
@@ -20,7 +20,7 @@ use ssl::referee::{Command, Point, Referee, Stage, TeamInfo};
 use ssl::simulation::{SimulatorCommand, SimulatorControl, TeleportBall};
 use ssl::vision::{DetectionFrame, WrapperPacket};
 
-/// Sends what the script says about a hundred times a second, until it is dropped.
+/// Sends the packet of the script about a hundred times a second, until it is dropped.
 struct Controller {
     packet: Arc<Mutex<Option<Referee>>>,
 }
@@ -44,7 +44,7 @@ impl Controller {
         thread::spawn(move || {
             while let Some(packet) = &mut *said.lock().expect("the script") {
                 packet.packet_timestamp = 1_000_000 + began.elapsed().as_micros() as u64;
-                // Nobody may hear yet.
+                // The receiver may not be open yet.
                 let _ = socket.send_to(&packet.encode_to_vec(), &to);
                 thread::sleep(Duration::from_millis(10));
             }
@@ -77,7 +77,7 @@ fn free() -> String {
     socket().local_addr().expect("an address").to_string()
 }
 
-/// The first image for which `holds`; earlier ones are passed over.
+/// The first camera frame for which `holds` is true; earlier ones are skipped.
 fn image(socket: &UdpSocket, what: &str, holds: impl Fn(&DetectionFrame) -> bool) {
     let (until, mut bytes, mut last) = (Instant::now() + PATIENCE, [0; 8192], None);
     while Instant::now() < until {
@@ -122,7 +122,7 @@ fn the_assistant_puts_the_ball_takes_a_robot_off_and_brings_it_back() {
     let (_, line) = simulator.says("assistant  puts the ball");
     assert!(line.contains("(0.00, 0.00) m: for yellow's kick-off"), "{line}");
     image(&vision, "the ball is in the middle", |frame| ball_at(frame, 0.0, 0.0));
-    // A yellow card: nobody leaves by itself, and after 10 s one is taken off.
+    // A yellow card: no robot leaves by itself, and after 10 s one is taken off.
     controller.says(|packet| packet.blue.max_allowed_bots = Some(5));
     let (_, line) = simulator.says("assistant  takes blue");
     assert!(line.contains("too many robots for 10 s"), "{line}");

@@ -127,7 +127,7 @@ fn cut_and_foreign_files_are_told_with_their_place() {
     assert!(refused(&[&recording("grsim_divB_22s.log.gz"), "--check"]).contains("no trace"));
 }
 
-/// A trace of a host that hears a recording, as a match writes it.
+/// A trace of a host that receives a recording, as a match writes it.
 fn trace(name: &str, change: impl Fn(&mut Vec<u8>, usize)) -> String {
     let settings = HostSettings::new(Colour::Blue, League::DivisionB, 7);
     let header = RecordingHeader {
@@ -154,7 +154,7 @@ fn trace(name: &str, change: impl Fn(&mut Vec<u8>, usize)) -> String {
             _ => continue,
         };
         let at = Instant(number * 5_000);
-        // Before a packet of the referee stands who sent it.
+        // A packet of the referee is preceded by its sender.
         let sender = SenderAddress::INTERNAL.to_bytes();
         let sender = if kind == Kind::Referee { &sender[..] } else { &[] };
         writer.write(at, 0, kind, &[sender, &record.payload]).expect("memory");
@@ -250,7 +250,8 @@ fn bridged(seed: u32) -> PathBuf {
     stem.with_extension("trace")
 }
 
-/// The reasons of every order of a case's pass while a trace is decided again: the case and its robots, each once.
+/// The reasons of every order of a case's pass while a trace is decided again: the case and its robots, each
+/// once.
 fn parts_in_passes_of_cases(file: &Path) -> BTreeSet<(u16, usize)> {
     let unpacked = flate2::read::MultiGzDecoder::new(fs::File::open(file).expect("the trace"));
     let mut reader = Reader::new(unpacked).expect("a trace");
@@ -274,7 +275,7 @@ fn hosts_that_refine_passes_of_cases_decide_the_same_again() {
     for seed in 1..8 {
         let file = bridged(seed);
         let parts = parts_in_passes_of_cases(&file);
-        // Such passes are few: not every minute has one.
+        // Such passes are rare: not every minute has one.
         let Some((case, _)) = parts.first() else { continue };
         assert!(parts.iter().filter(|(of, _)| of == case).count() >= 2, "passer and receiver: {parts:?}");
         assert_eq!(json(&[&file.display().to_string(), "--check"], 0)["same_decisions"], true);

@@ -89,7 +89,7 @@ fn the_same_seed_is_the_same_trial_and_another_is_not() {
 
 #[test]
 fn a_setting_reaches_the_robots() {
-    // With no way to go, no case can be adapted: everybody plays reactively.
+    // With no distance to go, no case can be adapted: all robots play reactively.
     let report = report(&["--set", "thr_c=1", "--seed", "5"]);
     assert_eq!(report["cases"]["individual"], 0);
     assert_eq!(report["cases"]["cooperative"], 0);

@@ -1,8 +1,9 @@
 //! `virtual_robot_cli`: tests of virtual robots in processes of their own: they obey the host in a simulator
 //! that is reached by the league's protocol alone, are restarted when they end, and end with their host.
 //!
-//! The host's radio and link on one side, the sans-IO simulator with sockets on the other, the built program between.
-// Processes are asked and ended by `kill`.
+//! The host's radio and link on one side, the sans-IO simulator with sockets on the other, the built program
+//! between.
+// Processes are checked and killed by `kill`.
 #![cfg(unix)]
 
 use std::net::UdpSocket;
@@ -30,16 +31,16 @@ fn id(n: u8) -> RobotId {
     RobotId::new(n).unwrap()
 }
 
-/// Where each robot shall go, m.
+/// Where each robot is ordered to go, m.
 fn target(robot: RobotId) -> Point<Field> {
     Point::new(-2.5, f32::from(robot.number()) * 0.6 - 1.5)
 }
 
-/// The simulator behind a socket, in real time; shows its truth as a tracker would.
+/// The simulator behind a socket, in real time; publishes its truth as a tracker would.
 fn simulate(profile: Profile, socket: &UdpSocket, shown: &Mutex<World>, end: &AtomicBool) {
     let settings = ServerSettings::of(League::DivisionB, profile, 7, 0.0).unwrap();
     let mut server = Server::new(&settings);
-    // Those nobody leads are taken away; grSim's answers go on naming them.
+    // Robots without a host are removed; grSim's answers still name them.
     for who in server.world().robots().iter().map(|robot| robot.who).collect::<Vec<_>>() {
         if who.colour != US || !ROBOTS.contains(&who.id.number()) {
             server.world_mut().remove(who);
@@ -76,7 +77,7 @@ fn simulate(profile: Profile, socket: &UdpSocket, shown: &Mutex<World>, end: &At
     }
 }
 
-/// A host that tells every robot to go to its target.
+/// A host that orders every robot to go to its target.
 struct Team {
     radio: Radio,
     link: SimLink,
@@ -106,7 +107,7 @@ impl Team {
         Instant(self.start.elapsed().as_micros() as u64)
     }
 
-    /// One turn: what robots say in, a picture every 10 ms out.
+    /// One turn: receives the robots' reports, sends a snapshot every 10 ms.
     fn turn(&mut self, shown: &Mutex<World>) {
         if let Some(frame) = self.link.receive(Duration::from_millis(1)).unwrap() {
             let _refused = self.radio.handle_packet(self.now(), &frame);
@@ -132,7 +133,7 @@ impl Team {
         }
     }
 
-    /// Turns until `done`, at most so long; a busy machine needs longer than the robots.
+    /// Turns until `done`, for at most `seconds`; a busy machine needs longer than the robots.
     fn until(&mut self, shown: &Mutex<World>, seconds: u64, mut done: impl FnMut(&mut Self) -> bool) -> bool {
         let end = Clock::now() + Duration::from_secs(seconds);
         while Clock::now() < end {
@@ -171,7 +172,7 @@ fn play(profile: Profile) {
         assert!(there, "{:?}", shown.lock().unwrap());
         assert_eq!(team.radio.present(team.now()).collect::<Vec<_>>(), ROBOTS.map(id));
 
-        // One ends: it is told, started again, and welcomed anew.
+        // One is killed: it is reported, started again, and welcomed again.
         let (robot, process) = team.link.processes().next().unwrap();
         let before = team.radio.quality(robot).unwrap().lives();
         assert!(Process::new("kill").args(["-9", &process.to_string()]).status().unwrap().success());

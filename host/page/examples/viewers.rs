@@ -1,5 +1,6 @@
-//! Looks on, in many ways at once: for `cargo xtask bench page`. `viewers ADDRESS WAYS`, a letter for each viewer: `r` reads as fast as
-//! it can, `s` takes a scene a second, `d` never reads, `v` vanishes without a word. Ends with the page, and says how many were taken.
+//! `viewers`: load generator for `cargo xtask bench page`: opens many viewers of a page at once. `viewers
+//! ADDRESS WAYS`, a letter for each viewer: `r` reads as fast as it can, `s` takes a scene a second, `d`
+//! never reads, `v` disconnects without closing. Ends with the page, and prints how many were accepted.
 
 use std::net::TcpStream;
 use std::process::ExitCode;
@@ -29,7 +30,7 @@ fn main() -> ExitCode {
         }
     }
     eprintln!("{} viewers look on", viewers.len());
-    // Who never reads learns nothing of the page's end: it stays until the others are done.
+    // A viewer that never reads does not notice the page's end: it stays until the others are done.
     let (deaf, others): (Vec<_>, Vec<_>) = viewers.into_iter().partition(|(way, _)| *way == 'd');
     let threads: Vec<_> =
         others.into_iter().map(|(way, viewer)| thread::spawn(move || look(way, viewer))).collect();
@@ -39,7 +40,7 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Until the page ends, or it is gone itself; how many scenes it took.
+/// Reads until the page ends or the viewer is gone; returns the number of scenes taken.
 fn look(way: char, mut viewer: Viewer) -> u64 {
     if way == 'v' {
         thread::sleep(Duration::from_secs(1));

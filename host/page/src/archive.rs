@@ -1,5 +1,5 @@
 //! `archive`: history of scenes. Scenes are finished and encoded here, once each, off the match's own thread:
-//! the newest for viewers, whole seconds gzipped for those who look back, one sample a second for plots.
+//! the newest for viewers, whole seconds gzipped for viewers that seek back, one sample a second for plots.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -20,44 +20,44 @@ use crate::happening::Happening;
 use crate::scene::Scene;
 use crate::sketch::Sketch;
 
-/// More scenes than this wait to be finished and encoded, a third of a second of them: the next one is left out, for they are worth
-/// nothing once they are old.
+/// Scenes that may wait to be finished and encoded, a third of a second of them: further ones are left out,
+/// because old scenes are of no use.
 const WAITING_MAX: usize = 8;
-/// So many seconds are kept, an hour: some 25 kB each.
+/// Number of seconds that are kept, an hour: some 25 kB each.
 const SECONDS_MAX: usize = 3_600;
-/// Of happenings, the newest so many: a match has some thousand.
+/// Number of newest events that are kept: a match has some thousand.
 const HAPPENINGS_MAX: usize = 100_000;
 
-/// Numbers at a second, for plots.
+/// Values of one second, for plots.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Sample {
-    /// Seconds since the beginning.
+    /// Seconds since the start.
     pub t: f64,
-    /// `group/name` and value.
+    /// `group/name` of a gauge, with its value.
     pub values: BTreeMap<String, f32>,
 }
 
-/// All that is kept.
+/// The stored history.
 #[derive(Debug, Default)]
 pub(crate) struct Kept {
     seconds: BTreeMap<u32, Bytes>,
     open: Option<(u32, Vec<(f64, Utf8Bytes)>)>,
     pub(crate) happenings: Vec<Happening>,
     pub(crate) samples: Vec<Sample>,
-    /// From the first to the last scene, s.
+    /// Time of the first and the last scene, s.
     pub(crate) span: Option<(f64, f64)>,
-    /// How often it was begun anew.
+    /// Number of restarts.
     pub(crate) life: u32,
 }
 
-/// What comes to the archive.
+/// A message to the archive's thread.
 enum Mail {
     Sketch(Box<Sketch>),
     Happening(Box<Happening>),
     Clear,
 }
 
-/// The match's end of it.
+/// The match's handle of the archive.
 #[derive(Debug)]
 pub(crate) struct Archive {
     mail: Sender<Mail>,
@@ -66,7 +66,7 @@ pub(crate) struct Archive {
 }
 
 impl Archive {
-    /// Begins; every newest scene goes to `newest`.
+    /// Starts; every newest scene goes to `newest`.
     pub(crate) fn begin(newest: watch::Sender<Utf8Bytes>) -> Self {
         let (mail, inbox) = channel();
         let (waiting, kept) = (Arc::new(AtomicUsize::new(0)), Arc::new(Mutex::new(Kept::default())));
@@ -75,7 +75,7 @@ impl Archive {
         Self { mail, waiting, kept }
     }
 
-    /// Takes a scene, unless it is behind. Never waits.
+    /// Passes a scene to the archive, unless it is behind. Never waits.
     pub(crate) fn show(&self, sketch: Sketch) -> bool {
         if self.waiting.load(Ordering::Relaxed) >= WAITING_MAX {
             return false;
@@ -84,7 +84,7 @@ impl Archive {
         true
     }
 
-    /// Takes a scene in any case, and waits for that.
+    /// Passes a scene to the archive in any case, and waits for it.
     pub(crate) fn keep(&self, sketch: Sketch) {
         while self.waiting.load(Ordering::Relaxed) >= WAITING_MAX {
             thread::sleep(Duration::from_millis(1));
@@ -94,16 +94,16 @@ impl Archive {
 
     fn push(&self, sketch: Sketch) {
         self.waiting.fetch_add(1, Ordering::Relaxed);
-        // Nobody hears only while the program ends.
+        // The receiver is gone only while the program ends.
         let _ = self.mail.send(Mail::Sketch(Box::new(sketch)));
     }
 
-    /// Takes a happening.
+    /// Takes an event.
     pub(crate) fn tell(&self, happening: Happening) {
         let _ = self.mail.send(Mail::Happening(Box::new(happening)));
     }
 
-    /// Forgets everything: another match begins.
+    /// Drops everything: another match starts.
     pub(crate) fn clear(&self) {
         let _ = self.mail.send(Mail::Clear);
     }
@@ -113,7 +113,7 @@ impl Archive {
     }
 }
 
-/// Looks at what is kept; what a thread that failed left there is whole.
+/// Accesses the history; a thread that panicked left it consistent.
 pub(crate) fn look<T>(kept: &Mutex<Kept>, at: impl FnOnce(&mut Kept) -> T) -> T {
     at(&mut kept.lock().unwrap_or_else(PoisonError::into_inner))
 }
@@ -131,7 +131,7 @@ impl Worker {
             match mail {
                 Mail::Sketch(sketch) => {
                     let scene = sketch.finished();
-                    // Strings, numbers and lists of them: nothing that JSON cannot say.
+                    // Strings, numbers and lists of them: always valid JSON.
                     let text = Utf8Bytes::from(serde_json::to_string(&scene).unwrap_or_default());
                     look(&self.kept, |kept| kept.add(&scene, text.clone()));
                     self.newest.send_replace(text);
@@ -156,7 +156,7 @@ impl Kept {
         let same = matches!(&self.open, Some((open, _)) if *open == second);
         if same {
             if let Some((_, texts)) = &mut self.open {
-                // What stands still is one moment, however often it is shown.
+                // While paused, the same moment arrives repeatedly and is kept once.
                 if texts.last().is_some_and(|(t, _)| *t == scene.t) {
                     texts.pop();
                 }
@@ -190,7 +190,7 @@ impl Kept {
         open.map(|(_, texts)| gzip(texts)).or_else(|| self.seconds.get(&second).cloned())
     }
 
-    /// The last scene that was shown by `t`.
+    /// The last scene at or before `t`.
     pub(crate) fn scene_at(&self, t: f64) -> Option<Scene> {
         let mut text = String::new();
         std::io::Read::read_to_string(
@@ -219,7 +219,7 @@ fn gzip(texts: &[(f64, Utf8Bytes)]) -> Bytes {
         }
         out.write_all(b"]")
     };
-    // Memory takes everything.
+    // Writing to memory cannot fail.
     let _ = write();
     out.finish().unwrap_or_default().into()
 }

@@ -1,12 +1,11 @@
-//! `files`: the page's static files. Files that stand in the program itself: nothing is to be installed,
-//! built or found.
+//! `files`: the page's static files. They are part of the program: no installation, build or search path.
 
 /// A file of the page.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct File {
-    /// As it is asked for.
+    /// Path in the request.
     pub(crate) path: &'static str,
-    /// What browsers take it for.
+    /// Its MIME type.
     pub(crate) kind: &'static str,
     pub(crate) text: &'static str,
 }
@@ -18,7 +17,7 @@ const PICTURE: &str = "image/svg+xml";
 
 macro_rules! files {
     ($($name:literal: $kind:ident,)*) => {
-        /// All of them.
+        /// All files of the page.
         pub(crate) const FILES: &[File] = &[
             $(File { path: concat!("/", $name), kind: $kind, text: include_str!(concat!("../web/", $name)) },)*
         ];
@@ -54,7 +53,7 @@ files! {
     "dom.js": SCRIPT,
 }
 
-/// That file; `/` is the page itself.
+/// The file with this path; `/` is the page itself.
 pub(crate) fn find(path: &str) -> Option<&'static File> {
     let path = if path == "/" { "/index.html" } else { path };
     FILES.iter().find(|file| file.path == path)

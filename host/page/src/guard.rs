@@ -1,20 +1,20 @@
-//! `guard`: access control of the page. Its own viewers, and no page of somebody else's that runs in the same
-//! browser.
+//! `guard`: access control of the page. It admits its own viewers, and no foreign page in the same browser.
 //!
-//! - **DNS rebinding**: a foreign name is made to point at this machine, so that the browser takes the foreign page for ours. The
-//!   name then stands in `Host`. Only addresses and `localhost` are answered, which nobody can make point anywhere.
-//! - **Cross-origin**: a foreign page opens our WebSocket or posts to us. Browsers put the page's own origin into `Origin`; it has
-//!   to be ours to the letter. Programs that are no browsers send none.
+//! - **DNS rebinding**: a foreign name is made to point at this machine, so that the browser takes the
+//!   foreign page for ours. The name is then in `Host`. Only addresses and `localhost` are answered, which an
+//!   attacker cannot point elsewhere.
+//! - **Cross-origin**: a foreign page opens our WebSocket or posts to us. Browsers put the page's own origin
+//!   into `Origin`; it must equal ours exactly. Programs that are no browsers send none.
 
 use std::net::IpAddr;
 
 use axum::http::HeaderMap;
 use axum::http::header::{HOST, ORIGIN};
 
-/// Why somebody is not answered.
+/// Why a request is not answered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Foreign {
-    /// `Host` is none of ours.
+    /// `Host` is not an address of ours.
     Host,
     /// `Origin` is another page.
     Origin,
@@ -31,7 +31,7 @@ impl Foreign {
     }
 }
 
-/// Whether a request to the page on `port` is its own viewer's.
+/// Whether a request to the page on `port` comes from its own viewer.
 pub(crate) fn check(headers: &HeaderMap, port: u16) -> Result<(), Foreign> {
     let mut hosts = headers.get_all(HOST).iter();
     let host = hosts.next().and_then(|host| host.to_str().ok()).ok_or(Foreign::Host)?;

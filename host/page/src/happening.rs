@@ -1,22 +1,22 @@
-//! `happening`: time-line events. One entry of the time line, told once and kept.
+//! `happening`: time-line events. One entry of the time line, reported once and kept.
 
 use serde::{Deserialize, Serialize};
 
 use crate::request::Team;
 
-/// Something that happened.
+/// An event of the time line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Happening {
-    /// Seconds since the beginning.
+    /// Seconds since the start.
     pub t: f64,
-    /// What kind of thing.
+    /// Kind of event.
     pub kind: Kind,
-    /// Whose, where it is somebody's.
+    /// The team, if the event belongs to one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub team: Option<Team>,
-    /// In a few words.
+    /// A short text.
     pub words: String,
-    /// Where.
+    /// Place of the event, m, field frame.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at: Option<[f32; 2]>,
     /// The situation that was retrieved with, as `onetwo cases explain` takes it.
@@ -24,26 +24,26 @@ pub struct Happening {
     pub problem: Option<serde_json::Value>,
 }
 
-/// Kinds of happenings; the time line has a row for each.
+/// Kinds of events; the time line has a row for each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
     /// A goal.
     Goal,
-    /// The referee's command.
+    /// A command of the referee.
     Command,
-    /// A part of the match began.
+    /// A part of the match started.
     Stage,
     /// An offence.
     Foul,
-    /// Something else that the referee noted.
+    /// Another event of the referee.
     Event,
-    /// A cycle began or ended without a case.
+    /// A cycle started or ended without a case.
     Cycle,
     /// A case was chosen.
     Case,
     /// A pass or a shot.
     Kick,
-    /// Something went wrong with a robot or the radio.
+    /// A fault of a robot or the radio.
     Fault,
 }

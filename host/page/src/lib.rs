@@ -1,19 +1,21 @@
-//! `page`: the web page: what happens on the field, and why. A web page, served by the program itself (runs
-//! on the PC).
+//! `page`: the web page: what happens on the field, and why. It is served by the program itself (runs on the
+//! PC).
 //!
-//! Whoever drives a match fills a [`Scene`] some 25 times a second and hands it to [`Page::show`], which never waits; what takes long
-//! to work out is done to it later, on the page's own thread ([`Sketch`]). Viewers get the newest one over a WebSocket; the seconds
-//! that have passed are kept, so that every viewer can look back for itself. What viewers ask for comes back as [`Request`]s, which
-//! the driver takes when it has time ([`Page::next_request`]).
+//! The driver of a match fills a [`Scene`] some 25 times a second and passes it to [`Page::show`], which
+//! never waits; expensive parts are computed later, on the page's own thread ([`Sketch`]). Viewers get the
+//! newest one over a WebSocket; the seconds that have passed are kept, so that every viewer can seek back for
+//! itself. Viewers' requests come back as [`Request`]s, which the driver takes when it has time
+//! ([`Page::next_request`]).
 //!
 //! ```text
 //! match ── Sketch ─► archive: finished and encoded once ─┬─► newest ─► every viewer at its own pace
-//!   ▲                                                  └─► seconds, happenings, plots ─► HTTP, on demand
+//!   ▲                                                  └─► seconds, events, plots ─► HTTP, on demand
 //!   └──────── Request ◄── WebSocket ◄── viewers of this very page only (Origin and Host are checked)
 //! ```
-//! **Invariants.** It knows no host, no simulator and no strategy: what it draws beyond ball, robots and lines are named layers of
-//! plain shapes. A viewer that is slow, gone or many costs the match nothing; connections are counted and timed ([`Limits`]). Looking
-//! is free to all that reach the page; asking takes its [`Token`], where it has one. SI units, field frame.
+//! **Invariants.** It knows no host, no simulator and no strategy: what it draws beyond ball, robots and
+//! lines are named layers of plain shapes. Slow, lost or many viewers cost the match nothing; connections are
+//! counted and timed ([`Limits`]). Viewing is free for all that reach the page; requests need its [`Token`],
+//! where it has one. SI units, field frame.
 #![forbid(unsafe_code)]
 
 mod archive;
@@ -43,8 +45,8 @@ pub use shape::{Heat, Layer, Shape, Tone};
 pub use sketch::Sketch;
 pub use token::{NoToken, Token};
 
-/// To a thousandth: what travels needs no more than millimetres, and JSON is shorter for it.
+/// Rounded to a thousandth: millimetres are enough for the page, and JSON is shorter.
 pub fn milli(x: f32) -> f32 {
-    // Away from zero as decimals are; what is no number travels as 0.
+    // Rounds halves away from zero; what is not finite becomes 0.
     if x.is_finite() { (x * 1000.0).round() / 1000.0 } else { 0.0 }
 }

@@ -1,23 +1,26 @@
 //! `limits`: how long and how many connections a page serves, and the guards that count them.
 //!
-//! A page is reachable by whoever reaches its address. None of them may hold what the others need: descriptors, memory, or the match.
+//! Every client that reaches the page's address can open connections. None of them may exhaust what the
+//! others need: descriptors, memory, or the match.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
-/// How much of the page others can hold.
+/// Bounds on the resources that clients can hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// A connection that has not sent the whole head of a request by then is closed; one that is idle between two requests too.
+    /// A connection that has not sent the whole head of a request within this time is closed; one that is
+    /// idle between two requests too.
     pub header: Duration,
-    /// A request's body and its answer are given up after that time.
+    /// Longest time for a request's body and its answer.
     pub request: Duration,
-    /// A connection that is no viewer's socket is closed after that time, whatever it is doing: a reader that never reads.
+    /// A connection that is not a viewer's socket is closed after this time in any state: it may be
+    /// a reader that never reads.
     pub connection: Duration,
     /// Connections served at once, viewers' sockets aside. Others wait in the system's queue.
     pub connections: usize,
-    /// Viewers at once: the next is turned away.
+    /// Viewers at once: further ones are refused.
     pub viewers: usize,
 }
 
@@ -30,20 +33,21 @@ impl Default for Limits {
             request: Duration::from_secs(20),
             // A second of a match is the longest answer: 100 kB.
             connection: Duration::from_mins(1),
-            // Browsers open 6 to a host. With the viewers' it stays below a fifth of the usual 1,024 descriptors of a process.
+            // Browsers open 6 to a host. With the viewers' it stays below a fifth of the usual 1,024
+            // descriptors of a process.
             connections: 128,
-            // A team and its guests.
+            // Enough for a team and its guests.
             viewers: 64,
         }
     }
 }
 
-/// A viewer's place among those that look on, from before its connection becomes a socket until that ends.
+/// A viewer's place in the count of viewers, from before its connection becomes a socket until that ends.
 #[derive(Debug)]
 pub(crate) struct Seat(Arc<AtomicUsize>);
 
 impl Seat {
-    /// Takes one; none where `most` are taken.
+    /// Takes a place; `None` if `most` are taken.
     pub(crate) fn take(taken: &Arc<AtomicUsize>, most: usize) -> Option<Self> {
         let one_more = |n: usize| (n < most).then_some(n + 1);
         taken.fetch_update(Ordering::AcqRel, Ordering::Acquire, one_more).ok()?;

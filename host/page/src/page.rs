@@ -1,5 +1,5 @@
-//! `page`: handle of a match's page. [`Page::open`] takes the port; from then on the match shows and tells,
-//! and never waits.
+//! `page`: handle of a match's page. [`Page::open`] takes the port; from then on the match passes scenes and
+//! events, and never waits.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -20,29 +20,30 @@ use crate::server::{self, Ask, Refusals, Shared};
 use crate::sketch::Sketch;
 use crate::token::Token;
 
-/// More requests than this wait for the match: viewers are told that it is busy.
+/// Requests that may wait for the match; further ones are answered that it is busy.
 const REQUESTS_MAX: usize = 256;
 
-/// What a page is opened with.
+/// Settings of a page.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// Where it is served; port 0: any that is free.
+    /// Address that it is served on; port 0: any free port.
     pub listen: SocketAddr,
-    /// What stands in its head.
+    /// Title of the page.
     pub title: String,
-    /// It shows what was recorded: viewers begin at its beginning, not at its newest moment.
+    /// It plays a recording: viewers start at its beginning, not at its newest moment.
     pub recorded: bool,
-    /// What viewers may ask for.
+    /// What viewers may request.
     pub powers: Powers,
-    /// What a viewer has to bring to ask for anything; none: every viewer may ask.
+    /// Token that a viewer needs for requests; `None`: every viewer may send them.
     pub token: Option<Token>,
-    /// How much of it others can hold.
+    /// Bounds on the resources that clients can hold.
     pub limits: Limits,
 }
 
-/// Answers viewers' questions, beside the match and never in its way.
+/// Answers viewers' questions, on another thread than the match.
 pub trait Oracle: Send + Sync {
-    /// Why that case? A problem as `onetwo cases explain` takes it; the answer as it gives it with `--json`.
+    /// Explains why a case is retrieved: `problem` as `onetwo cases explain` takes it; the answer as it gives
+    /// it with `--json`.
     fn explain(&self, problem: &str) -> Result<String, String>;
 
     /// The situations that a simulation can be put into, by name.
@@ -51,10 +52,10 @@ pub trait Oracle: Send + Sync {
     }
 }
 
-/// Why there is no page.
+/// Why a page cannot be opened.
 #[derive(Debug)]
 pub enum PageError {
-    /// Somebody else has the port.
+    /// Another program has the port.
     Taken(SocketAddr),
     /// The address cannot be served.
     Listen(SocketAddr, io::Error),
@@ -81,12 +82,12 @@ impl fmt::Display for PageError {
 
 impl std::error::Error for PageError {}
 
-/// A page that is served as long as this lives.
+/// A page that is served until this value is dropped.
 pub struct Page {
     address: SocketAddr,
     archive: Archive,
     requests: Receiver<Ask>,
-    /// To the viewer whose request was taken last.
+    /// Channel to the viewer whose request was taken last.
     asker: RefCell<Option<Refusals>>,
     viewers: Arc<AtomicUsize>,
     told: u64,
@@ -95,7 +96,7 @@ pub struct Page {
 }
 
 impl Page {
-    /// Takes the port and serves.
+    /// Opens the port and serves.
     pub fn open(settings: Settings, oracle: Arc<dyn Oracle>) -> Result<Self, PageError> {
         let listen = settings.listen;
         let failed = |error: io::Error| match error.kind() {
@@ -132,12 +133,12 @@ impl Page {
         })
     }
 
-    /// Where it is served.
+    /// Address that it is served on.
     pub fn address(&self) -> SocketAddr {
         self.address
     }
 
-    /// Shows a moment; where the page's thread is behind it is left out. Never waits.
+    /// Passes a moment to the page; if the page's thread is behind, it is left out. Never waits.
     pub fn show(&mut self, sketch: impl Into<Sketch>) {
         let sketch = self.dated(sketch.into());
         if !self.archive.show(sketch) {
@@ -145,7 +146,7 @@ impl Page {
         }
     }
 
-    /// Keeps a moment in any case, and waits for that: for recordings.
+    /// Stores a moment in any case, and waits for it: for recordings.
     pub fn keep(&mut self, sketch: impl Into<Sketch>) {
         self.archive.keep(self.dated(sketch.into()));
     }
@@ -155,34 +156,34 @@ impl Page {
         sketch
     }
 
-    /// Tells of something that happened. Never waits.
+    /// Passes an event to the page. Never waits.
     pub fn tell(&mut self, happening: Happening) {
         self.told += 1;
         self.archive.tell(happening);
     }
 
-    /// Forgets what was: another match begins.
+    /// Drops the history: another match starts.
     pub fn clear(&mut self) {
         self.told = 0;
         self.archive.clear();
     }
 
-    /// The next thing that a viewer asks for.
+    /// The next request of a viewer.
     pub fn next_request(&self) -> Option<Request> {
         let Ask { request, asker } = self.requests.try_recv().ok()?;
         self.asker.replace(Some(asker));
         Some(request)
     }
 
-    /// Tells the viewer whose request was taken last why it is not done.
+    /// Answers the viewer whose request was taken last with the reason why it is refused.
     pub fn refuse(&self, words: impl Into<String>) {
         if let Some(asker) = &*self.asker.borrow() {
-            // A viewer that is gone, or that asks faster than it reads, is told nothing.
+            // A viewer that is gone, or that asks faster than it reads, gets no answer.
             let _ = asker.try_send(words.into());
         }
     }
 
-    /// How many look on now.
+    /// Number of viewers at the moment.
     pub fn viewers(&self) -> usize {
         self.viewers.load(Ordering::Relaxed)
     }

@@ -1,5 +1,5 @@
 //! `problem`: export of a moment. As a problem line for `onetwo cases retrieve` and `explain`, or as the
-//! beginnings of a case file. mm, field frame (docs/case-format.md §1, §5.1).
+//! draft of a case file. mm, field frame (docs/case-format.md §1, §5.1).
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::request::Team;
 use crate::scene::{Robot, Scene};
 
-/// What a moment becomes.
+/// Format of the export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Freeze {
@@ -21,11 +21,11 @@ pub enum Freeze {
 
 /// Most robots of a team in a case file (docs/case-format.md §1).
 const CASE_ROBOTS_MAX: usize = 4;
-/// Most of a team in a problem.
+/// Most robots of a team in a problem.
 const PROBLEM_ROBOTS_MAX: usize = 11;
-/// The ball's scope to begin with, mm: as in the example of docs/case-format.md §1.
+/// The ball's initial scope, mm: as in the example of docs/case-format.md §1.
 const BALL_SCOPE: &str = "[450, 250]";
-/// An opponent's, mm.
+/// An opponent's initial scope, mm.
 const OPPONENT_SCOPE: &str = "[300, 300]";
 
 #[derive(Serialize)]
@@ -36,7 +36,7 @@ struct Problem {
     opponents: Vec<[i32; 2]>,
 }
 
-/// The moment as that team's problem; none where no ball is known. Its keeper stays out: it plays no cases.
+/// The moment as that team's problem; `None` without a ball. Its keeper is left out: it plays no cases.
 pub fn problem(scene: &Scene, team: Team) -> Option<String> {
     let ball = scene.ball.as_ref()?;
     let mates = field_players(scene, team).take(PROBLEM_ROBOTS_MAX);
@@ -50,7 +50,8 @@ pub fn problem(scene: &Scene, team: Team) -> Option<String> {
     serde_json::to_string(&problem).ok()
 }
 
-/// The moment as a case file of that team: those nearest to the ball, the first of them gets it and passes to the second.
+/// The moment as a case file of that team: the robots nearest to the ball; the first of them gets it and
+/// passes to the second.
 pub fn skeleton(scene: &Scene, team: Team) -> Option<String> {
     let ball = scene.ball.as_ref()?;
     let far = |robot: &Robot| {

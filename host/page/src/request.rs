@@ -12,73 +12,73 @@ pub enum Team {
     Yellow,
 }
 
-/// What is asked; the driver does it or does not. Field frame, m, rad.
+/// A request; the driver may refuse it. Field frame, m, rad.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "ask", rename_all = "lowercase", deny_unknown_fields)]
 pub enum Request {
-    /// Our robots halt, until the program ends: the one thing that may be asked of a real field.
+    /// Halt our robots until the program ends: the only request that a real field accepts.
     Halt {},
-    /// Stand still, or go on.
+    /// Pause, or go on.
     Pause {
-        /// Stand still.
+        /// True: pause.
         on: bool,
     },
-    /// Go on by so many ticks, and stand still again.
+    /// Go on by this number of ticks, then pause again.
     Step {
-        /// 1 to 100.
+        /// Number of ticks, 1 to 100.
         ticks: u32,
     },
     /// Simulated seconds a second.
     Speed {
-        /// 0.05 to 20.
+        /// Factor of real time, 0.05 to 20.
         factor: f32,
     },
-    /// Begin anew.
+    /// Restart the match.
     Restart {
-        /// Where chance comes from; none: as before.
+        /// Random seed; `None`: as before.
         seed: Option<u64>,
     },
     /// Put ball and robots as a case's author drew them, and let the game go on from there.
     Situation {
-        /// One of those that the page was told of.
+        /// One of the names that the page received.
         name: String,
     },
-    /// Put or pull the ball there.
+    /// Put the ball there, or move it while the match runs.
     Ball {
-        /// Where to.
+        /// Target place, m.
         at: [f32; 2],
     },
-    /// Put or pull a robot there.
+    /// Put a robot there, or move it while the match runs.
     Robot {
-        /// Whose.
+        /// Its team.
         team: Team,
-        /// Which.
+        /// Its number.
         id: u8,
-        /// Where to.
+        /// Target place, m.
         at: [f32; 2],
     },
-    /// A robot's computer ends, or boots again.
+    /// Switch a robot's computer off, or boot it.
     Power {
-        /// Whose.
+        /// Its team.
         team: Team,
-        /// Which.
+        /// Its number.
         id: u8,
-        /// Boots.
+        /// True: boot.
         on: bool,
     },
-    /// The air loses this share of packets.
+    /// The radio loses this share of packets.
     Loss {
-        /// 0 to 1.
+        /// Share of packets lost, 0 to 1.
         share: f32,
     },
     /// The referee's command, by its name in the league: `HALT`, `FORCE_START`, `DIRECT_FREE_BLUE`.
     Referee {
-        /// The name.
+        /// Name of the command.
         command: String,
     },
 }
 
-/// What a driver lets viewers ask.
+/// Requests that a driver accepts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Powers {
@@ -90,14 +90,14 @@ pub enum Powers {
     Simulation,
 }
 
-/// Why something is not done.
+/// Why a request is refused.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Refused {
-    /// It is no request.
+    /// It cannot be parsed.
     Malformed(String),
-    /// Not here.
+    /// It is not accepted here.
     NotHere(Powers),
-    /// A number out of its range.
+    /// A number is out of its range.
     Range(&'static str),
 }
 
@@ -113,7 +113,7 @@ impl std::fmt::Display for Refused {
 }
 
 impl Request {
-    /// From a viewer's words, where such a thing may be asked here.
+    /// Parses a viewer's message, within what may be requested here.
     pub fn read(text: &str, powers: Powers) -> Result<Self, Refused> {
         let request: Self =
             serde_json::from_str(text).map_err(|error| Refused::Malformed(error.to_string()))?;
@@ -150,13 +150,13 @@ impl Request {
     }
 }
 
-/// Slower is standing still.
+/// Least speed; 0 is a pause.
 const SPEED_MIN: f32 = 0.05;
-/// A full match of two teams plays at no more than this on one core, whatever is asked.
+/// A full match of two teams reaches at most this speed on one core.
 const SPEED_MAX: f32 = 20.0;
-/// No case has a longer name, bytes.
+/// Longest name of a case, bytes.
 const NAME_MAX: usize = 200;
-/// No field reaches farther from its middle, m.
+/// Largest coordinate of a place, m: no field is larger.
 const FARTHEST: f32 = 20.0;
 
 #[cfg(test)]

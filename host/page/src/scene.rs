@@ -1,7 +1,7 @@
-//! `scene`: one moment as data. Plain data that JSON can say; m, m/s, rad, s, field frame.
+//! `scene`: one moment as data that JSON can represent; m, m/s, rad, s, field frame.
 //!
-//! Everything but time and field may be missing: a league's log file knows no minds, a real field no truth. The page shows what
-//! is there.
+//! Everything but time and field may be missing: a league's log file has no robot states, a real field no
+//! truth. The page displays what is there.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,100 +11,101 @@ use crate::shape::Layer;
 /// One moment.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
-    /// Seconds since the beginning.
+    /// Seconds since the start.
     pub t: f64,
     /// The lines.
     pub field: Field,
     /// The ball, where it is known.
     pub ball: Option<Ball>,
-    /// Everybody on the field, as filtered.
+    /// All robots on the field, as filtered.
     pub robots: Vec<Robot>,
-    /// What cameras saw, before any filter.
+    /// Detections of the cameras, before any filter.
     pub raw: Raw,
     /// The match so far.
     pub game: Match,
-    /// The newest cycle of each team that tells of one.
+    /// The newest cycle of each team that reports one.
     pub cycles: Vec<Cycle>,
-    /// What more can be drawn, by name.
+    /// Further overlays, by name.
     pub layers: Vec<Layer>,
-    /// Numbers that are shown and plotted.
+    /// Numbers that are displayed and plotted.
     pub gauges: Vec<Gauge>,
-    /// What is wrong now and an operator should act on, each in a sentence.
+    /// Faults that an operator should act on now, each in a sentence.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub alarms: Vec<String>,
-    /// How many happenings there were up to now.
+    /// Number of events up to now.
     pub happened: u64,
-    /// It stands still because somebody asked for it.
+    /// It is paused by a viewer.
     pub paused: bool,
-    /// Simulated seconds a second; 0 where it is not ours to say.
+    /// Simulated seconds a second; 0 where the pace is not ours to set.
     pub speed: f32,
-    /// Where chance comes from, in a simulation.
+    /// Random seed, in a simulation.
     pub seed: Option<u64>,
 }
 
 /// The lines of the field, m.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Field {
-    /// Along x.
+    /// Length along x.
     pub length: f32,
-    /// Along y.
+    /// Width along y.
     pub width: f32,
-    /// Beyond touch and goal lines.
+    /// Width of the surface beyond touch and goal lines.
     pub margin: f32,
-    /// Between the posts.
+    /// Width between the posts.
     pub goal_width: f32,
-    /// Of the net.
+    /// Depth of the net.
     pub goal_depth: f32,
-    /// Of the defence area, along x.
+    /// Depth of the defence area, along x.
     pub area_depth: f32,
-    /// Of the defence area, along y; for quarter circles the stretch between them.
+    /// Width of the defence area, along y; for quarter circles the stretch between them.
     pub area_width: f32,
-    /// The defence area is two quarter circles of this radius and a stretch between them; none: a rectangle.
+    /// The defence area is two quarter circles of this radius and a stretch between them; `None`: a
+    /// rectangle.
     pub area_radius: Option<f32>,
-    /// Of the centre circle; 0 where there is none.
+    /// Radius of the centre circle; 0 where there is none.
     pub centre_radius: f32,
-    /// Of a robot.
+    /// Radius of a robot.
     pub robot_radius: f32,
-    /// Of the ball.
+    /// Radius of the ball.
     pub ball_radius: f32,
 }
 
 /// The ball.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ball {
-    /// Where.
+    /// Position.
     pub at: [f32; 2],
-    /// Above the carpet.
+    /// Above the field surface.
     pub height: f32,
-    /// Along the carpet.
+    /// Along the field surface.
     pub velocity: [f32; 2],
     /// 0 (lost) to 1 (seen just now).
     pub confidence: f32,
-    /// Where it was, oldest first.
+    /// Past positions, oldest first.
     pub trail: Vec<[f32; 2]>,
-    /// Where it will be if nobody meets it, a tenth of a second from one to the next.
+    /// Where it will be if no robot intercepts it, a tenth of a second from one to the next.
     pub ahead: Vec<[f32; 2]>,
 }
 
 /// A robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Robot {
-    /// Whose.
+    /// Its team.
     pub team: Team,
     /// Its number.
     pub id: u8,
-    /// Where.
+    /// Position.
     pub at: [f32; 2],
-    /// Where it faces.
+    /// Heading.
     pub heading: f32,
-    /// How it moves.
+    /// Velocity.
     pub velocity: [f32; 2],
     /// 0 (lost) to 1 (seen just now).
     pub confidence: f32,
-    /// What it thinks, where its host is ours.
+    /// State of its decisions, where its host is ours.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mind: Option<Mind>,
-    /// How it is, where it tells.
+    /// Its hardware state, if it reports it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vitals: Option<Vitals>,
 }
@@ -112,67 +113,67 @@ pub struct Robot {
 /// Why a robot does what it does.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Mind {
-    /// What it is in its team: "keeper", "defender 1", "taker".
+    /// Its role in the team: "keeper", "defender 1", "taker".
     pub role: String,
-    /// What it is told: "go to (1.2, 0.4)".
+    /// Its order: "go to (1.2, 0.4)".
     pub directive: String,
-    /// What decided that.
+    /// Reason of the directive.
     pub why: String,
     /// The state of the reuse machine: "adapt", "execute", "wait end", "idle".
     pub state: String,
-    /// Which step of that state.
+    /// Current step of that state.
     pub step: String,
     /// The case it plays and the part it has in it: "centre/pass-around, robot 2".
     pub part: String,
-    /// What it does by itself while no case binds it.
+    /// Its reactive behaviour while it plays no case.
     pub reactive: String,
-    /// Where it wants to be, and how it gets there.
+    /// Target and planned path.
     pub intent: Intent,
-    /// What runs, s.
+    /// Running timers, s.
     pub timers: Vec<Timer>,
 }
 
-/// Where a robot wants to be.
+/// Target and path of a robot.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Intent {
-    /// From where it is to where it will be, a tenth of a second from one point to the next as far as its motion was planned; a
-    /// straight line from there on, and for robots whose motion is not known here.
+    /// From where it is to where it will be, a tenth of a second from one point to the next as far as its
+    /// motion was planned; a straight line from there on, and for robots whose motion is not known here.
     pub path: Vec<[f32; 2]>,
-    /// Where it wants the ball.
+    /// Target of the ball.
     pub ball_to: Option<[f32; 2]>,
 }
 
-/// Something that runs.
+/// A running timer.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Timer {
-    /// What.
+    /// Its name.
     pub name: String,
-    /// For how long, s.
+    /// Elapsed time, s.
     pub seconds: f32,
 }
 
-/// How a robot and its link are.
+/// State of a robot's hardware and its link.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Vitals {
-    /// V; none where it is not measured.
+    /// Voltage, V; `None` where it is not measured.
     pub battery: Option<f32>,
-    /// Since it was last heard, ms.
+    /// Since its last frame was received, ms.
     pub silence_ms: Option<f32>,
     /// Round trip, ms.
     pub trip_ms: Option<f32>,
-    /// Of ours that it did not hear, percent.
+    /// Of our frames that it did not receive, percent.
     pub loss_down: Option<f32>,
-    /// Of its that we did not hear, percent.
+    /// Of its frames that we did not receive, percent.
     pub loss_up: Option<f32>,
-    /// Frames heard from it a second.
+    /// Frames received from it a second.
     pub frames: Option<f32>,
     /// Frames that it refused.
     pub refused: u32,
-    /// How often it was seen to boot.
+    /// Number of boots seen.
     pub lives: u32,
     /// Since a camera last saw it, ms.
     pub unseen_ms: f32,
-    /// What is to be looked at: "tipped", "battery low", "link lost".
+    /// Faults to check: "tipped", "battery low", "link lost".
     pub faults: Vec<String>,
     /// The ball is at its dribbler.
     pub ball: bool,
@@ -180,10 +181,10 @@ pub struct Vitals {
     pub kicker: bool,
 }
 
-/// What cameras saw.
+/// Detections of the cameras.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Raw {
-    /// Balls.
+    /// Positions of balls.
     pub balls: Vec<[f32; 2]>,
     /// Robots: team, number, x, y, heading.
     pub robots: Vec<(Team, u8, f32, f32, f32)>,
@@ -192,11 +193,11 @@ pub struct Raw {
 /// The match so far.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Match {
-    /// What may be done now, in words.
+    /// What may be done now, as text.
     pub phase: String,
-    /// What follows the stop, in words; empty while nobody says.
+    /// What follows the stop, as text; empty while unknown.
     pub next: String,
-    /// The part of the match, in words.
+    /// The part of the match, as text.
     pub stage: String,
     /// Playing time left in it, s.
     pub stage_left: Option<f32>,
@@ -210,7 +211,7 @@ pub struct Match {
     pub teams: PerTeam<TeamSheet>,
 }
 
-/// Something of both teams.
+/// A value for both teams.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PerTeam<T> {
     /// Blue's.
@@ -246,50 +247,50 @@ pub struct TeamSheet {
     pub offence_ratio: Option<f32>,
     /// Own shots over the opponents'.
     pub attack_ratio: Option<f32>,
-    /// Shots, chances, passes: name and number.
+    /// Counts of shots, chances and passes, by name.
     pub counts: Vec<(String, u32)>,
 }
 
 /// A retrieve–reuse cycle of a team.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
-    /// Whose.
+    /// Its team.
     pub team: Option<Team>,
     /// Its number.
     pub number: u32,
-    /// Who coordinates it.
+    /// Number of its coordinator.
     pub coordinator: u8,
     /// "deciding", "no case", "playing", "finished", or why it was stopped.
     pub state: String,
     /// `region/name` of its case.
     pub case: String,
-    /// Which copy of it.
+    /// Symmetry of the stored case.
     pub symmetry: String,
-    /// What its author meant.
+    /// Intent of the case, as its author wrote it.
     pub meant: String,
-    /// Who plays: robot's number for case robot 1, 2, …
+    /// Players: robot's number for case robot 1, 2, …
     pub players: Vec<u8>,
-    /// Since it began, s.
+    /// Since it started, s.
     pub seconds: f32,
 }
 
-/// A number to be shown and plotted.
+/// A number to be displayed and plotted.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Gauge {
-    /// Under which heading.
+    /// Heading of its group.
     pub group: String,
-    /// What.
+    /// Its name.
     pub name: String,
-    /// How much.
+    /// Its value.
     pub value: f32,
-    /// Of what.
+    /// Its unit.
     pub unit: String,
-    /// More than this (or less, where it is negative: less than its absolute) is bad.
+    /// The value is bad above this limit; for a negative limit: below its absolute value.
     pub limit: Option<f32>,
 }
 
 impl<T> PerTeam<T> {
-    /// That team's.
+    /// The value of `team`.
     pub fn of(&self, team: Team) -> &T {
         match team {
             Team::Blue => &self.blue,
@@ -297,7 +298,7 @@ impl<T> PerTeam<T> {
         }
     }
 
-    /// That team's, to be filled.
+    /// The value of `team`, mutable.
     pub fn of_mut(&mut self, team: Team) -> &mut T {
         match team {
             Team::Blue => &mut self.blue,

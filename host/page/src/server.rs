@@ -1,8 +1,9 @@
 //! `server`: HTTP and WebSocket server on a thread of its own.
 //!
-//! A viewer's socket carries the newest scene whenever the viewer has taken the one before: it says so with a dot. So a slow viewer
-//! sees fewer scenes, none of them old, and one that is gone holds nothing up. Connections are served within
-//! [`Limits`](crate::Limits): so many at once, and none for longer than it may take.
+//! A viewer's socket carries the newest scene whenever the viewer has taken the one before: it acknowledges
+//! with a dot. So a slow viewer sees fewer scenes, none of them old, and one that is gone holds nothing up.
+//! Connections are served within [`Limits`](crate::Limits): a bounded number at once, each for a bounded
+//! time.
 
 use std::io;
 use std::net::TcpListener;
@@ -35,20 +36,20 @@ use crate::problem::{Freeze, problem, skeleton};
 use crate::request::{Request, Team};
 use crate::{files, guard};
 
-/// Scenes on their way to a viewer that has not yet taken them.
+/// Scenes sent to a viewer that it has not yet acknowledged.
 const UNTAKEN_MAX: u32 = 2;
-/// A viewer that takes nothing for so long is gone.
+/// A viewer that takes nothing for this time is gone.
 const GONE: Duration = Duration::from_secs(30);
 /// Refusals that wait for a viewer that does not read; more are dropped.
 const REFUSALS_MAX: usize = 16;
-/// Where no connection can be taken (no descriptor is left), the next attempt is after that time.
+/// If no connection can be accepted (no descriptor is left), the next attempt is after this time.
 const ACCEPT_AGAIN: Duration = Duration::from_millis(50);
-/// The longest word of a viewer, bytes: a request, a problem.
+/// The longest message of a viewer, bytes: a request, a problem.
 const WORD_MAX: usize = 16 * 1024;
-/// Happenings in one answer.
+/// Events in one answer.
 const HAPPENINGS_A_TIME: usize = 5_000;
 
-/// What every answer is made from.
+/// State shared by all request handlers.
 pub(crate) struct Shared {
     pub(crate) port: u16,
     pub(crate) settings: Settings,
@@ -59,23 +60,23 @@ pub(crate) struct Shared {
     pub(crate) viewers: Arc<AtomicUsize>,
 }
 
-/// Why something that was asked for is not done, to the viewer that asked.
+/// Channel to a viewer for the reasons why its requests are refused.
 pub(crate) type Refusals = mpsc::Sender<String>;
 
-/// What a viewer asked for, and how it is told that it is not done.
+/// A viewer's request, and the channel for the answer if it is refused.
 pub(crate) struct Ask {
     pub(crate) request: Request,
     pub(crate) asker: Refusals,
 }
 
 impl Shared {
-    /// May a viewer that brought that token ask for anything?
+    /// Whether a viewer with this token may send requests.
     fn may_ask(&self, brought: Option<&str>) -> bool {
         self.settings.token.as_ref().is_none_or(|token| brought.is_some_and(|brought| token.is(brought)))
     }
 }
 
-/// Serves on a thread of its own until `ended` says so or is dropped.
+/// Serves on a thread of its own until `ended` is signalled or dropped.
 pub(crate) fn serve(listener: TcpListener, shared: Shared, ended: oneshot::Receiver<()>) -> io::Result<()> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     thread::spawn(move || {
@@ -104,31 +105,32 @@ pub(crate) fn serve(listener: TcpListener, shared: Shared, ended: oneshot::Recei
     Ok(())
 }
 
-/// Serves connection by connection, no more at once than the limits say.
+/// Serves connection by connection, at most the limit's number at once.
 async fn accept(listener: tokio::net::TcpListener, routes: Router, limits: Limits) {
     let places = Arc::new(Semaphore::new(limits.connections));
     loop {
-        // Nothing closes the semaphore.
+        // The semaphore is never closed.
         let Ok(place) = places.clone().acquire_owned().await else { return };
         let Ok((stream, _)) = listener.accept().await else {
             sleep(ACCEPT_AGAIN).await;
             continue;
         };
-        // Scenes are small and wanted at once.
+        // Scenes are small and needed at once.
         let _ = stream.set_nodelay(true);
         let service = TowerToHyperService::new(routes.clone());
         let mut builder = http1::Builder::new();
         builder.timer(TokioTimer::new()).header_read_timeout(limits.header).half_close(false);
         let connection = builder.serve_connection(TokioIo::new(stream), service).with_upgrades();
         tokio::spawn(async move {
-            // A viewer's socket leaves its connection with the answer to its request: its time is its own (`GONE`).
+            // A viewer's socket leaves its connection with the answer to its request: it has a time limit of
+            // its own (`GONE`).
             let _ = timeout(limits.connection, connection).await;
             drop(place);
         });
     }
 }
 
-/// Turns foreign pages away, and tells browsers what this page may do.
+/// Refuses foreign pages, and sends browsers the headers that restrict this page.
 async fn guarded(State(shared): State<Arc<Shared>>, request: HttpRequest, next: Next) -> Response {
     if let Err(foreign) = guard::check(request.headers(), shared.port) {
         return (StatusCode::FORBIDDEN, foreign.words()).into_response();
@@ -142,7 +144,8 @@ async fn guarded(State(shared): State<Arc<Shared>>, request: HttpRequest, next: 
     response
 }
 
-/// Nothing from elsewhere, in nobody's frame, nothing kept by the browser: another version may be served tomorrow.
+/// Nothing from elsewhere, not in another page's frame, nothing cached by the browser: another version may be
+/// served tomorrow.
 const HEADERS: [(&str, &str); 5] = [
     (
         "content-security-policy",
@@ -240,7 +243,7 @@ async fn freeze(State(shared): State<Arc<Shared>>, body: Bytes) -> Response {
     }
 }
 
-/// The token that a viewer's address has.
+/// The token in a viewer's address.
 #[derive(Deserialize)]
 struct Brought {
     token: Option<String>,
@@ -251,7 +254,7 @@ async fn socket(
     Query(Brought { token }): Query<Brought>,
     upgrade: WebSocketUpgrade,
 ) -> Response {
-    // Taken before the answer: of those that come at once none can pass while the others are not counted yet.
+    // Taken before the answer: of simultaneous requests none can pass while the others are not counted yet.
     let Some(seat) = Seat::take(&shared.viewers, shared.settings.limits.viewers) else {
         return (StatusCode::SERVICE_UNAVAILABLE, "too many look on").into_response();
     };
@@ -263,7 +266,7 @@ async fn socket(
     })
 }
 
-/// One viewer, until it goes.
+/// Serves one viewer until it disconnects.
 async fn look_on(mut socket: WebSocket, shared: &Shared, may_ask: bool) {
     let mut news = shared.news.clone();
     news.mark_changed();
@@ -274,7 +277,7 @@ async fn look_on(mut socket: WebSocket, shared: &Shared, may_ask: bool) {
         tokio::select! {
             changed = news.changed(), if sends => {
                 let scene = news.borrow_and_update().clone();
-                // The match is over with its page: the socket closes, and viewers say so.
+                // The match is over with its page: the socket closes, and viewers display that.
                 if changed.is_err() { return; }
                 if scene.is_empty() { continue; }
                 if !sent(&mut socket, scene).await { return; }
@@ -285,7 +288,7 @@ async fn look_on(mut socket: WebSocket, shared: &Shared, may_ask: bool) {
             }
             word = timeout(GONE, socket.recv()) => match word {
                 Ok(Some(Ok(Message::Text(word)))) if word.as_str() == "." => untaken = untaken.saturating_sub(1),
-                // A viewer of something that stands still says that it is there.
+                // A viewer of a paused match reports that it is still connected.
                 Ok(Some(Ok(Message::Text(word)))) if word.is_empty() => {}
                 Ok(Some(Ok(Message::Text(word)))) => {
                     let asked = if may_ask { ask(shared, &asker, &word) } else { Err(NO_TOKEN.to_owned()) };
@@ -300,7 +303,7 @@ async fn look_on(mut socket: WebSocket, shared: &Shared, may_ask: bool) {
     }
 }
 
-/// What a viewer without the token is told.
+/// Answer to a viewer without the token.
 const NO_TOKEN: &str = "this page is open to the network: to ask for anything, open it by the address with ?token= that the program \
                         printed when it started";
 

@@ -1,5 +1,5 @@
-//! `shape`: shapes of overlays. Named layers of plain shapes: whoever fills a scene can show anything, and
-//! the page need not know what it means. m, field frame.
+//! `shape`: shapes of overlays. Named layers of plain shapes: a scene can contain any overlay, and the page
+//! need not know what it means. m, field frame.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,15 +8,15 @@ use serde::{Deserialize, Serialize};
 pub struct Layer {
     /// Its name in addresses and settings: `case-scopes`.
     pub name: String,
-    /// What people read.
+    /// The label in the page's list.
     pub label: String,
-    /// Shown unless somebody switches it off.
+    /// Visible unless the viewer switches it off.
     pub on: bool,
     /// Drawn in this order.
     pub shapes: Vec<Shape>,
 }
 
-/// What a shape means; the page has a colour for each, by day and by night.
+/// Meaning of a shape; the page has a colour for each, in light and dark mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Tone {
@@ -28,11 +28,11 @@ pub enum Tone {
     Ball,
     /// A case's.
     Case,
-    /// To be kept out of.
+    /// A keep-out region.
     Forbidden,
     /// Good.
     Good,
-    /// Neither.
+    /// Neutral.
     Plain,
 }
 
@@ -48,9 +48,9 @@ pub enum Shape {
         radii: [f32; 2],
         /// Its meaning.
         tone: Tone,
-        /// Filled, thinly; else its outline alone.
+        /// Filled transparently; else only its outline.
         fill: bool,
-        /// Told where somebody points at it.
+        /// Displayed where the viewer points at it.
         #[serde(default, skip_serializing_if = "String::is_empty")]
         note: String,
     },
@@ -60,9 +60,9 @@ pub enum Shape {
         points: Vec<[f32; 2]>,
         /// Its meaning.
         tone: Tone,
-        /// Filled, thinly.
+        /// Filled transparently.
         fill: bool,
-        /// Told where somebody points at it.
+        /// Displayed where the viewer points at it.
         #[serde(default, skip_serializing_if = "String::is_empty")]
         note: String,
     },
@@ -72,15 +72,15 @@ pub enum Shape {
         from: [f32; 2],
         /// The other end.
         to: [f32; 2],
-        /// Around it.
+        /// Radius of the capsule.
         radius: f32,
         /// Its meaning.
         tone: Tone,
-        /// Told where somebody points at it.
+        /// Displayed where the viewer points at it.
         #[serde(default, skip_serializing_if = "String::is_empty")]
         note: String,
     },
-    /// A way.
+    /// A path.
     Line {
         /// Its points.
         points: Vec<[f32; 2]>,
@@ -91,11 +91,11 @@ pub enum Shape {
         /// Dashed.
         dashed: bool,
     },
-    /// A word.
+    /// A label.
     Text {
         /// Its middle.
         at: [f32; 2],
-        /// What it says.
+        /// The label's text.
         text: String,
         /// Its meaning.
         tone: Tone,
@@ -115,8 +115,8 @@ pub struct Heat {
     pub columns: u32,
     /// Row by row, least y first, 0 (nothing, not drawn) to 255.
     pub cells: Vec<u8>,
-    /// What 255 means, a probability.
+    /// The value that 255 stands for, a probability.
     pub most: f32,
-    /// Told with the value of a place where somebody points at it: "a pass to here arrives".
+    /// Displayed with the value of a place where the viewer points at it: "a pass to here arrives".
     pub note: String,
 }

@@ -1,27 +1,28 @@
 //! `sketch`: a scene with deferred work. A sketch is a scene and what still has to be done to it: the page's
-//! own thread does that, so that planned ways, maps and beliefs cost whoever drives the match nothing.
+//! own thread does that, so that planned paths, maps and beliefs cost the match's thread nothing.
 
 use std::fmt;
 
 use crate::scene::Scene;
 
-/// Finishes a scene from what it has kept of the moment.
+/// Finishes a scene from captured state of the moment.
 type Finish = Box<dyn FnOnce(&mut Scene) + Send>;
 
 /// A scene, to be finished off the match's thread.
 pub struct Sketch {
-    /// What is known at once.
+    /// The part that is known at once.
     pub scene: Scene,
     finish: Option<Finish>,
 }
 
 impl Sketch {
-    /// A scene that `finish` completes; sketches are finished in the order in which they are shown.
+    /// A scene that `finish` completes; sketches are finished in the order in which they are passed to the
+    /// page.
     pub fn new(scene: Scene, finish: impl FnOnce(&mut Scene) + Send + 'static) -> Self {
         Self { scene, finish: Some(Box::new(finish)) }
     }
 
-    /// The whole scene.
+    /// The finished scene.
     pub fn finished(self) -> Scene {
         let Self { mut scene, finish } = self;
         if let Some(finish) = finish {

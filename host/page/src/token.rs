@@ -1,4 +1,4 @@
-//! `token`: the secret that lets a viewer ask for something where others than this machine reach the page.
+//! `token`: the secret that permits a viewer's requests where other machines can reach the page.
 
 use std::fmt;
 
@@ -8,7 +8,7 @@ use subtle::ConstantTimeEq as _;
 #[derive(Clone, PartialEq, Eq)]
 pub struct Token(String);
 
-/// The system gave no random numbers.
+/// The system returned no random numbers.
 #[derive(Debug)]
 pub struct NoToken(getrandom::Error);
 
@@ -39,12 +39,13 @@ impl Token {
         Ok(Self(bytes.iter().flat_map(|byte| [digit(byte >> 4), digit(byte & 15)]).collect()))
     }
 
-    /// As it stands in the address.
+    /// Its form in the address.
     pub fn as_str(&self) -> &str {
         &self.0
     }
 
-    /// Whether a viewer brought it. Takes the same time however many digits are right, so that none can be found alone.
+    /// Whether `brought` equals it. Takes the same time for any number of correct digits, so that they cannot
+    /// be guessed one by one.
     pub(crate) fn is(&self, brought: &str) -> bool {
         self.0.as_bytes().ct_eq(brought.as_bytes()).into()
     }

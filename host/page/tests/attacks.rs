@@ -1,6 +1,8 @@
-//! `attacks`: connections that hold on, viewers that all come at once, and requests without the token, over real sockets.
+//! `attacks`: connections that never end, viewers that all connect at once, and requests without the token,
+//! over real sockets.
 //!
-//! Times are injected ([`Limits`]); what is asserted is who is answered and who is not, never how soon.
+//! Times are injected ([`Limits`]); the assertions are about which requests are answered, never about how
+//! soon.
 
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
@@ -14,13 +16,13 @@ use tungstenite::{Message, WebSocket};
 
 type Viewer = WebSocket<MaybeTlsStream<TcpStream>>;
 
-/// Attackers of each test.
+/// Number of attackers of each test.
 const ATTACKERS: usize = 300;
-/// Longer than any test may take: what is limited so is not limited by it.
+/// Longer than any test: a limit of this length has no effect.
 const NEVER: Duration = Duration::from_hours(1);
-/// Soon, on a machine under load.
+/// A short limit for a machine under load.
 const SOON: Duration = Duration::from_millis(300);
-/// A test gives up.
+/// Time after which a test gives up.
 const PATIENCE: Duration = Duration::from_mins(1);
 
 struct Silent;
@@ -58,7 +60,7 @@ fn begin(at: SocketAddr, bytes: &str) -> TcpStream {
 fn rest(mut stream: TcpStream) -> String {
     let mut bytes = Vec::new();
     if let Err(error) = stream.read_to_end(&mut bytes) {
-        // Reset is closed too; a time-out is not.
+        // A reset counts as closed; a time-out does not.
         assert_eq!(error.kind(), std::io::ErrorKind::ConnectionReset, "the page keeps the connection");
     }
     String::from_utf8_lossy(&bytes).into_owned()
@@ -91,7 +93,7 @@ fn three_hundred_half_requests_are_closed_and_the_page_goes_on_answering() {
     let held: Vec<_> = (0..ATTACKERS).map(|n| begin(at, halves[n % halves.len()])).collect();
     assert!(get(at, "/").starts_with("HTTP/1.1 200"), "a viewer is answered while they hold on");
     for stream in held {
-        // The page may say why; it does not serve them.
+        // The page may give the reason; it does not serve them.
         assert!(!rest(stream).contains("200 OK"));
     }
 }
@@ -101,7 +103,7 @@ fn no_more_connections_are_served_at_once_than_the_limit() {
     let page = open(Limits { header: NEVER, connection: NEVER, connections: 8, ..Limits::default() }, None);
     let at = page.address();
     let mut held: Vec<_> = (0..8).map(|_| begin(at, "GET / HTTP/1.1\r\n")).collect();
-    // They are answered in the order in which they came: when the last of them is being served, all are.
+    // They are served in the order in which they connected: when the last of them is being served, all are.
     held[7].write_all(format!("Host: {at}\r\n\r\n").as_bytes()).unwrap();
     let mut answer = [0; 12];
     held[7].read_exact(&mut answer).unwrap();
@@ -124,7 +126,7 @@ fn a_body_that_never_comes_and_a_reader_that_never_reads_are_given_up() {
     let page = open(Limits { header: NEVER, connection: SOON, ..Limits::default() }, None);
     let at = page.address();
     let asks = format!("GET /main.js HTTP/1.1\r\nHost: {at}\r\n\r\n").repeat(100);
-    // A hundred answers wait for a reader: the connection is closed all the same.
+    // A hundred answers wait for a reader that never reads: the connection is closed all the same.
     let deaf = begin(at, &asks);
     thread::sleep(2 * SOON);
     let _ = rest(deaf);

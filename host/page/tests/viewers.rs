@@ -1,5 +1,5 @@
 //! `viewers`: tests: viewers get the newest scene, and only viewers get anything. Real sockets; viewers that
-//! read, that do not, that vanish, and pages of others that try.
+//! read, that do not, that disconnect, and foreign pages that try.
 
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
@@ -50,7 +50,7 @@ fn viewer(page: &Page) -> Viewer {
     viewer
 }
 
-/// The next scene's time; it is taken, so that another may come.
+/// Takes the next scene and returns its time, so that another may come.
 fn next(viewer: &mut Viewer) -> f64 {
     let Message::Text(text) = viewer.read().unwrap() else { panic!("no text") };
     viewer.send(Message::text(".")).unwrap();
@@ -65,13 +65,13 @@ fn wait_for(what: impl Fn() -> bool) {
     }
 }
 
-/// Shows a scene and waits until it is encoded.
+/// Passes a scene to the page and waits until it is encoded.
 fn shown(page: &mut Page, t: f64) {
     page.keep(scene(t));
     wait_for(|| get(page.address(), "/api/state", "").1.contains(&format!(",{t:?}]")));
 }
 
-/// An answer: status and body.
+/// Requests a path: status and body.
 fn get(at: SocketAddr, path: &str, more: &str) -> (u16, String) {
     let host = if more.contains("Host:") { String::new() } else { format!("Host: {at}\r\n") };
     ask(at, &format!("GET {path} HTTP/1.1\r\n{host}{more}Connection: close\r\n\r\n"))
@@ -129,7 +129,7 @@ fn a_viewer_that_takes_nothing_for_a_while_goes_on_with_what_is_newest_then() {
         page.keep(scene(f64::from(i)));
     }
     shown(&mut page, 777.5);
-    // Two may have been on their way; what comes after those is the newest.
+    // Two may have been sent already; the next one is the newest.
     let seen: Vec<f64> = (0..3).map(|_| next(&mut slow)).collect();
     assert!((seen[2] - 777.5).abs() < 1e-9, "{seen:?}");
 }
@@ -137,7 +137,7 @@ fn a_viewer_that_takes_nothing_for_a_while_goes_on_with_what_is_newest_then() {
 #[test]
 fn showing_never_waits_whoever_looks_on() {
     let mut page = open(Powers::None);
-    // None of them ever reads, and one is gone without a word.
+    // None of them ever reads, and one disconnects without closing.
     let deaf: Vec<Viewer> = (0..4).map(|_| viewer(&page)).collect();
     let gone = viewer(&page);
     wait_for(|| page.viewers() == 5);
@@ -148,7 +148,7 @@ fn showing_never_waits_whoever_looks_on() {
     for i in 0..20_000 {
         page.show(scene(f64::from(i)));
     }
-    // Far more was shown than anybody took: it was left out, not waited for.
+    // Far more was passed to the page than any viewer took: it was left out, not waited for.
     assert!(page.left_out() > 0, "{}", page.left_out());
     shown(&mut page, 30_000.5);
     wait_for(|| page.viewers() == 5);
@@ -164,7 +164,7 @@ fn a_sketch_is_finished_after_the_match_has_gone_on() {
     wait_for(|| page.viewers() == 1);
     let (gate, opens) = std::sync::mpsc::channel::<()>();
     page.show(Sketch::new(scene(1.5), move |scene| {
-        // Who shows it is here before it is finished: else this would wait for ever.
+        // `show` returns before the scene is finished: else this would wait for ever.
         let _ = opens.recv();
         scene.layers.push(Layer { name: "late".into(), ..Layer::default() });
     }));

@@ -16,22 +16,22 @@ use crate::plot::{Dot, Row, axis, panel};
 use crate::plot::{Figure, Key, Shape};
 use crate::{Facts, Picture, numbers, style, words};
 
-/// Everything the page of an ablation is made of.
+/// Inputs of an ablation's page.
 #[derive(Clone, Copy, Debug)]
 pub struct Ablation<'a> {
-    /// What was changed, in the order of lines.
+    /// The changes, in the order of lines.
     pub arms: &'a [Arm],
-    /// What it did, in every cell and over all.
+    /// Their effects, in every cell and over all.
     pub effects: &'a [Effect],
-    /// Everything that decided the trials.
+    /// All settings that the trials depend on.
     pub facts: &'a [Facts],
 }
 
-/// A measure's word in files, its head, its unit, its decimals, and whether it is a share.
+/// A measure's name in files, its head, its unit, its decimals, and whether it is a share.
 type Look = (&'static str, &'static str, &'static str, usize, bool);
 
 impl Ablation<'_> {
-    /// The page and its plot.
+    /// Writes the page and its plot.
     pub fn write(&self, folder: &Path) -> io::Result<Picture> {
         let plots = folder.join("plots");
         fs::create_dir_all(&plots)?;
@@ -194,18 +194,18 @@ impl Ablation<'_> {
     }
 }
 
-/// A number as it is written, and the effect that it tells of.
+/// A number as it is written, and the effect that it belongs to.
 type Said<'a> = (String, Option<&'a Effect>);
 
 /// Opponents and scenario of a cell.
 type Place<'a> = (&'static str, &'a str);
 
-/// None for an effect over all cells.
+/// `None` for an effect over all cells.
 fn place(effect: &Effect) -> Option<Place<'_>> {
     Some((words::opponents(effect.configuration?), effect.scenario?))
 }
 
-/// Newcombe's interval, as if the trials were no pairs: wider than need be.
+/// Newcombe's interval, as if the trials were not paired: wider than necessary.
 fn reach(effect: &Effect) -> Option<(f64, f64)> {
     let count = |percent: f64| Count {
         hits: (percent / 100.0 * f64::from(effect.trials)).round() as u32,
@@ -265,8 +265,8 @@ mod tests {
         let text = ablation.markdown("evaluation/");
         assert!(text.contains(&format!("| {name} | +12.0\\*\\* | +12.0\\*\\* |")), "{text}");
         assert!(text.contains("](evaluation/ablations.svg)"));
-        // 42 against 30 of 100; Wilson's are 0.32798–0.51794 and 0.21895–0.39585, so 12 less 13.287 = 100 √(0.09202² + 0.09585²)
-        // and more 12.712 = 100 √(0.09794² + 0.08105²).
+        // 42 against 30 of 100; Wilson's are 0.32798–0.51794 and 0.21895–0.39585, so 12 less 13.287 = 100
+        // √(0.09202² + 0.09585²) and more 12.712 = 100 √(0.09794² + 0.08105²).
         let (low, high) = reach(&effects[0]).unwrap();
         assert!((low + 1.287).abs() < 1e-3 && (high - 24.712).abs() < 1e-3, "{low} {high}");
     }

@@ -15,9 +15,9 @@ pub(crate) struct Column {
 /// Where its values come from.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Kind {
-    /// Something that is tested.
+    /// A measure that is tested.
     Measured(Measure),
-    /// Something that is only told.
+    /// A number without a test.
     Told(fn(&TableRow) -> Option<f64>),
 }
 
@@ -86,7 +86,7 @@ fn percent(Interval { low, high }: Interval) -> Option<Interval> {
     Some(Interval { low: 100.0 * low, high: 100.0 * high })
 }
 
-/// The columns of a table; one that nobody has a value for is left out, and timeouts where there are none.
+/// The columns of a table; one without any value is left out, and timeouts where there are none.
 pub(crate) fn columns(table: u8, rows: &[&TableRow]) -> Vec<Column> {
     let all = match table {
         1 => &TABLE_1[..],
@@ -119,7 +119,7 @@ fn used(row: &TableRow) -> Option<f64> {
     Some(row.individual? + row.cooperative?)
 }
 
-/// What the whole report is sure with.
+/// Confidence level of the whole report.
 pub(crate) const CONFIDENCE: f64 = 0.95;
 
 const GOAL: Column = Column::share("goal", Measure::Goal);

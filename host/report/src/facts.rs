@@ -1,10 +1,10 @@
-//! `facts`: provenance of an evaluation. Everything the evaluation's files say of themselves, by name and
-//! value, nothing left out.
+//! `facts`: provenance of an evaluation. All provenance in the evaluation's files, by name and value, nothing
+//! left out.
 
 use arena::evaluation::Identity;
 use serde_json::Value;
 
-/// What decided the trials, under one heading.
+/// Settings that the trials depend on, under one heading.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Facts {
     /// The heading.
@@ -14,7 +14,7 @@ pub struct Facts {
 }
 
 impl Facts {
-    /// All of an evaluation, whose trials hash to this.
+    /// All of an evaluation whose trials have this hash.
     pub fn of(identity: &Identity, csv_hash: &str) -> Vec<Self> {
         let mut first = Self { title: "Program, cases and trials".to_owned(), entries: Vec::new() };
         let mut rest = Vec::new();
@@ -39,7 +39,7 @@ impl Facts {
     }
 }
 
-/// What the number is called that tells two evaluations apart.
+/// Name of the number that distinguishes two evaluations.
 pub(crate) const HASH: &str = "csv hash of the trials";
 
 /// The parts that are long enough for a heading of their own.
@@ -60,7 +60,7 @@ fn word(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
-/// Numbers and words below each other, named by their way down.
+/// Numbers and texts below each other, named by their path.
 fn flatten(name: &str, value: &Value, entries: &mut Vec<(String, String)>) {
     let below = |key: &str| if name.is_empty() { key.to_owned() } else { format!("{name}.{key}") };
     match value {
@@ -68,7 +68,7 @@ fn flatten(name: &str, value: &Value, entries: &mut Vec<(String, String)>) {
         Value::Array(parts) if parts.iter().any(Value::is_object) => {
             for (i, part) in parts.iter().enumerate() {
                 match part {
-                    // One line an element: what stands in it belongs together.
+                    // One line for each element: its members belong together.
                     Value::Object(part) => {
                         let said: Vec<_> =
                             part.iter().map(|(key, value)| format!("{key} {}", word(value))).collect();

@@ -6,8 +6,8 @@
 //! Mapper: trials played again ─► Map ────────┼─► pictures()  the same plots and maps, one SVG each
 //!                                            └─► markdown()  docs/evaluation.md, between its markers
 //! ```
-//! Numbers come from `arena::evaluation` and are shown, never changed: what a table prints is rounded for the reader, and
-//! every interval and p stands beside its number.
+//! Numbers come from `arena::evaluation` and are printed, never changed: what a table prints is rounded for
+//! the reader, and every interval and p stands beside its number.
 #![forbid(unsafe_code)]
 
 mod ablation;
@@ -33,37 +33,37 @@ pub use facts::Facts;
 pub use map::{EDGE, Map, MapError, Mapper, Pass, PassKind};
 pub use markdown::{MarkerError, between_markers};
 
-/// Everything a report is made of.
+/// Inputs of a report.
 #[derive(Clone, Copy, Debug)]
 pub struct Report<'a> {
     /// Our rows of the paper's tables.
     pub rows: &'a [TableRow],
     /// The paper's own.
     pub paper: &'a [TableRow],
-    /// Ours against the paper's, measure by measure.
+    /// Ours compared with the paper's, measure by measure.
     pub with_paper: &'a [Comparison],
-    /// Our approaches against each other, pair by pair.
+    /// Our approaches compared with each other, pair by pair.
     pub between: &'a [Comparison],
-    /// The paper's approaches against each other.
+    /// The paper's approaches compared with each other.
     pub papers_between: &'a [Comparison],
-    /// What became of each case.
+    /// Uses and outcomes of each case.
     pub uses: &'a [CaseUse],
-    /// What the paper says in prose, and whether the numbers bear it out.
+    /// The paper's claims in prose, and whether the numbers support them.
     pub claims: &'a [Claim],
-    /// Does the pattern of its results come out?
+    /// Whether the pattern of its results is reproduced.
     pub lines: &'a [Line],
-    /// Everything that decided the trials: parameters, options, hashes, commit.
+    /// All settings that the trials depend on: parameters, options, hashes, commit.
     pub facts: &'a [Facts],
-    /// Where the ball was and who passed to whom, one a cell.
+    /// Where the ball was and the passes between robots, one a cell.
     pub maps: &'a [Map],
 }
 
-/// A picture with the name of its file, without an ending.
+/// A figure with the name of its file, without an extension.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
-    /// `table-1-outcomes`.
+    /// Such as `table-1-outcomes`.
     pub name: String,
-    /// It, as SVG.
+    /// The figure as SVG.
     pub svg: String,
 }
 
@@ -79,12 +79,13 @@ impl Report<'_> {
         plots.chain(map::sheets(self.maps)).collect()
     }
 
-    /// Tables and claims for the documentation; pictures are named relative to `pictures`, say `pictures/`.
+    /// Tables and claims for the documentation; figures are named relative to `pictures`, for example
+    /// `pictures/`.
     pub fn markdown(&self, pictures: &str) -> String {
         markdown::markdown(self, pictures)
     }
 
-    /// `report.html` and `plots/*.svg` under `folder`; gives what was drawn.
+    /// `report.html` and `plots/*.svg` under `folder`; returns the figures.
     pub fn write(&self, folder: &Path) -> io::Result<Vec<Picture>> {
         let plots = folder.join("plots");
         fs::create_dir_all(&plots)?;

@@ -1,4 +1,4 @@
-//! `markdown`: the report's part of the documentation. The tables in few columns, the claims, the pictures;
+//! `markdown`: the report's part of the documentation. The tables in few columns, the claims, the figures;
 //! between two markers of a file.
 
 use std::fmt;
@@ -10,7 +10,7 @@ use crate::facts::HASH;
 use crate::table::{Cell, LineKind, Table, tables};
 use crate::{Report, map, table, words};
 
-/// Tables, claims and pictures as Markdown.
+/// Tables, claims and figures as Markdown.
 pub(crate) fn markdown(report: &Report<'_>, pictures: &str) -> String {
     let mut text = String::new();
     let facts = || report.facts.iter().flat_map(|facts| &facts.entries);
@@ -133,7 +133,7 @@ fn lines(text: &mut String, lines: &[Line]) {
     text.push('\n');
 }
 
-/// Words that stay in their cell.
+/// Text that stays in its cell.
 fn cell(words: &str) -> String {
     words.replace('|', "\\|").replace('*', "\\*").replace('\n', " ")
 }
@@ -153,13 +153,13 @@ fn head(text: &mut String, names: &[&str], numbers: impl Iterator<Item = String>
     text.push_str("|\n");
 }
 
-/// Stars that stay stars.
+/// Asterisks escaped for Markdown.
 fn escaped(marks: &str) -> String {
     marks.replace('*', "\\*")
 }
 
-/// A file's text with everything between the markers of that name replaced: `<!-- NAME: written by `cargo xtask CHORE` -->` and
-/// `<!-- end of NAME -->`.
+/// Replaces everything between the markers of `name` in `text`: `<!-- NAME: written by `cargo xtask CHORE`
+/// -->` and `<!-- end of NAME -->`.
 pub fn between_markers(text: &str, chore: &str, name: &str, generated: &str) -> Result<String, MarkerError> {
     let (begin, end) = markers(chore, name);
     let missing = |marker: &str| MarkerError::Missing { marker: marker.to_owned() };
@@ -175,7 +175,7 @@ fn markers(chore: &str, name: &str) -> (String, String) {
 /// A file lacks a marker.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum MarkerError {
-    /// This one.
+    /// The missing marker.
     Missing {
         /// The whole line.
         marker: String,
@@ -191,7 +191,7 @@ impl fmt::Display for MarkerError {
 
 impl std::error::Error for MarkerError {}
 
-/// Maps that a document has: the scenarios that the paper describes play by play (§5.3).
+/// Maps in the documentation: the scenarios that the paper describes play by play (§5.3).
 const SHOWN: [&str; 2] = ["maps-dg-3", "maps-dg-4"];
 
 #[cfg(test)]

@@ -1,13 +1,14 @@
-//! `numbers`: number formatting. As many digits as its trials bear, a real minus, and p as people print it.
+//! `numbers`: number formatting. As many digits as its trials support, a true minus sign, and p in the usual
+//! form.
 
-/// With that many decimals; a minus is a minus, and zero has no sign.
+/// With this number of decimals; a minus sign is U+2212, and zero has no sign.
 pub(crate) fn plain(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     let zero = text.trim_start_matches('-').chars().all(|c| matches!(c, '0' | '.'));
     if zero { text.trim_start_matches('-').to_owned() } else { text.replace('-', "−") }
 }
 
-/// As it was printed: whole where it is.
+/// As the paper prints it: without decimals where it is whole.
 pub(crate) fn printed(value: f64, decimals: usize) -> String {
     if (value - value.round()).abs() < 1e-9 { plain(value, 0) } else { plain(value, decimals) }
 }

@@ -68,7 +68,7 @@ pub(crate) fn page(report: &Report<'_>) -> Markup {
 
 /// What was played, in a sentence.
 fn lead(report: &Report<'_>) -> String {
-    // Tables 2, 3 and 5 are of trials of others.
+    // Tables 2, 3 and 5 share the trials of other tables.
     let of =
         |table| report.rows.iter().filter(move |row| row.table == table).map(|row| row.trials).sum::<u32>();
     let (simulated, robots) = (of(1) + of(4), of(6));
@@ -130,7 +130,7 @@ fn judgement(judgement: &Judgement) -> Markup {
     verdict(sign, judgement.verdict.word(), &judgement.evidence)
 }
 
-/// The verdict; its numbers on demand, for they are many.
+/// The verdict; its numbers on demand, because they are many.
 fn verdict(sign: &str, word: &str, evidence: &str) -> Markup {
     let said = html! { span class={ "verdict " (word) } { (sign) " " (word) } };
     html! {

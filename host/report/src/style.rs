@@ -1,4 +1,4 @@
-//! `style`: style sheet of the report; in dark mode the same pictures change their colours by rule.
+//! `style`: style sheet of the report; in dark mode the same figures change their colours by rule.
 
 use std::fmt::Write as _;
 
@@ -7,7 +7,7 @@ use drawing::{Colors, Theme};
 use crate::map::{CHANCE, LOST, SHADES};
 use crate::plot::GRID;
 
-/// The style sheet, dark colours of pictures included.
+/// The style sheet, dark colours of figures included.
 pub(crate) fn sheet() -> String {
     let mut css = include_str!("report.css").to_owned();
     css += "@media screen and (prefers-color-scheme: dark) {\n";
@@ -15,7 +15,7 @@ pub(crate) fn sheet() -> String {
         let _ =
             writeln!(css, "svg [fill=\"{light}\"]{{fill:{dark}}}svg [stroke=\"{light}\"]{{stroke:{dark}}}");
     }
-    // A field's lines are white on a light carpet, as the paper is.
+    // A field's lines are white on a light field surface, as the paper is.
     let line = Theme::Dark.colors().line;
     let white = Theme::Light.colors().line;
     let _ = writeln!(css, ".maps svg [stroke=\"{white}\"]{{stroke:{line}}}");
@@ -23,16 +23,16 @@ pub(crate) fn sheet() -> String {
     css
 }
 
-/// A picture's colours on a light and on a dark page.
+/// A figure's colours on a light and on a dark page.
 fn pairs() -> Vec<(&'static str, &'static str)> {
     let (light, dark) = (Theme::Light.colors(), Theme::Dark.colors());
     let of = |c: &Colors| {
         [c.paper, c.carpet, c.ink, c.faint, c.ball, c.team, c.opponent, c.path, c.warning, c.yellow, c.cyan]
     };
     let mut pairs: Vec<_> = of(light).into_iter().zip(of(dark)).collect();
-    // Much is bright on a dark page.
+    // The scale is reversed: on a dark page more is brighter.
     pairs.extend(SHADES.into_iter().zip(SHADES.into_iter().rev()));
-    // Greys stay as far from the page as they are on white.
+    // Greys keep the contrast to the page that they have on white.
     pairs.extend([("#8c8c8c", "#7d8488"), ("#c4c4c4", "#4a5156")]);
     pairs.extend([(GRID, "#363c40"), (LOST, "#ff7cc0"), (CHANCE, "#79b3f2")]);
     pairs

@@ -1,7 +1,8 @@
 //! `table`: lines of the report's tables. Ours, the paper's, their difference; then one approach against
 //! another.
 //!
-//! The same model becomes HTML here and Markdown in `markdown`. A difference carries Holm's p over the scenarios of its table.
+//! The same model becomes HTML here and Markdown in `markdown`. A difference carries Holm's p over the
+//! scenarios of its table.
 
 use arena::evaluation::{Comparison, TableRow};
 use brain::Approach;
@@ -30,27 +31,27 @@ pub(crate) struct Block {
 #[derive(Debug)]
 pub(crate) struct Line {
     pub(crate) kind: LineKind,
-    /// Whose it is; of two, the first's.
+    /// Its approach; of two, the first.
     pub(crate) approach: Approach,
     pub(crate) cells: Vec<Cell>,
 }
 
-/// What a line tells.
+/// Contents of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LineKind {
-    /// Our numbers, of so many trials.
+    /// Our numbers, of this number of trials.
     Ours(u32),
-    /// The paper's, of so many.
+    /// The paper's, of this number.
     Paper(u32),
     /// Ours less the paper's.
     Difference,
-    /// Ours less our other approach's, of so many trials.
+    /// Ours less our other approach's, of these numbers of trials.
     Against(Approach, [u32; 2]),
     /// The paper's less its other approach's.
     PaperAgainst(Approach),
 }
 
-/// What stands under a column.
+/// Contents of a table's cell.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cell {
     /// The number.
@@ -59,7 +60,7 @@ pub(crate) struct Cell {
     pub(crate) marks: &'static str,
     /// Its interval, spread or p.
     pub(crate) beside: String,
-    /// Decimals it lacks beside its neighbours.
+    /// Number of decimals that it has less than its neighbours.
     lacks: usize,
 }
 
@@ -133,7 +134,7 @@ impl Source<'_> {
             let own = columns.iter().map(|column| measured(column, row, false)).collect();
             lines.push(line(LineKind::Ours(row.trials), own));
             let Some(paper) = self.paper.iter().find(|paper| paper.approach == approach) else { continue };
-            // Below ours of another size it stands already.
+            // It is already below ours with another number of trials.
             if before.replace(approach) != Some(approach) {
                 let printed = columns.iter().map(|column| measured(column, paper, true)).collect();
                 lines.push(line(LineKind::Paper(paper.trials), printed));
@@ -148,7 +149,8 @@ impl Source<'_> {
             {
                 let of = |approach| rows.iter().filter(move |row: &&TableRow| row.approach == approach);
                 for a in of(first) {
-                    // Where a table has rows of several sizes, like is held against like.
+                    // Where a table has rows of several numbers of trials, rows of equal numbers are
+                    // compared.
                     let mut others = of(second);
                     let alike = others.clone().find(|b| b.trials == a.trials);
                     let Some(b) = alike.or_else(|| others.next()) else { continue };
@@ -178,7 +180,7 @@ fn by_approach(rows: &[TableRow]) -> Vec<&TableRow> {
     approaches.into_iter().flat_map(own).collect()
 }
 
-/// Pairs of approaches that are held against each other in that table and scenario.
+/// Pairs of approaches that are compared in that table and scenario.
 pub(crate) fn pairs(comparisons: &[Comparison], table: u8, scenario: Scenario) -> Vec<(Approach, Approach)> {
     let mut pairs = Vec::new();
     for c in comparisons.iter().filter(|c| (c.table, c.scenario) == (table, scenario)) {
@@ -209,7 +211,7 @@ fn measured(column: &Column, row: &TableRow, paper: bool) -> Cell {
 /// The first row's number less the second's, with its test if there is one.
 fn less(column: &Column, first: &TableRow, second: &TableRow, comparisons: &[Comparison]) -> Cell {
     let (Some(a), Some(b)) = (column.value(first), column.value(second)) else { return Cell::default() };
-    // Counts are of their trials: only among as many can they be compared.
+    // Counts depend on the number of trials: only equal numbers can be compared.
     if column.is_count() && first.trials != second.trials {
         return Cell::default();
     }
@@ -219,7 +221,7 @@ fn less(column: &Column, first: &TableRow, second: &TableRow, comparisons: &[Com
     Cell { value, marks, beside, lacks: 0 }
 }
 
-/// The comparison of these two rows, whichever of them it begins with.
+/// The comparison of these two rows, in either order.
 fn tested<'c>(
     column: &Column,
     first: &TableRow,
@@ -246,7 +248,7 @@ impl Line {
                 }
                 @for cell in &self.cells { td {
                     (cell.value)
-                    // Digits stand below digits.
+                    // Decimals are aligned.
                     @if cell.lacks > 0 { span.pad aria-hidden="true" { "." ("0".repeat(cell.lacks)) } }
                     @if !cell.marks.is_empty() { sup { (cell.marks) } }
                     @if !cell.beside.is_empty() { small { (cell.beside) } }
@@ -265,7 +267,7 @@ impl Line {
         }
     }
 
-    /// Of how many trials it is.
+    /// Its number of trials.
     pub(crate) fn trials(&self) -> Option<String> {
         match self.kind {
             LineKind::Ours(trials) | LineKind::Paper(trials) => Some(trials.to_string()),

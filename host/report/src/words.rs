@@ -1,10 +1,10 @@
-//! `words`: labels and colours of the report. One word and one colour an approach, wherever it appears.
+//! `words`: labels and colours of the report. One label and one colour an approach, wherever it appears.
 
 use arena::approach_word;
 use brain::Approach;
 use hil_sim::{Configuration, Scenario};
 
-/// How people call an approach.
+/// Label of an approach.
 pub(crate) fn approach(approach: Approach) -> &'static str {
     match approach_word(approach) {
         "cbr" => "case-based",
@@ -12,7 +12,7 @@ pub(crate) fn approach(approach: Approach) -> &'static str {
     }
 }
 
-/// Okabe and Ito's blue, vermilion and bluish green: told apart by every eye.
+/// Okabe and Ito's blue, vermilion and bluish green: distinguishable with colour blindness.
 pub(crate) fn color(approach: Approach) -> &'static str {
     match approach_word(approach) {
         "cbr" => "#0072b2",
@@ -21,12 +21,13 @@ pub(crate) fn color(approach: Approach) -> &'static str {
     }
 }
 
-/// The same colour for the page, which turns it over to the dark one itself.
+/// The same colour for the page, which has its own dark variant of it.
 pub(crate) fn css(approach: Approach) -> String {
     format!("--approach:var(--{})", approach_word(approach))
 }
 
-/// Of two approaches the one a difference begins with: what goes beyond the paper is held against the paper's, not it against that.
+/// Of two approaches the one a difference starts with: an approach beyond the paper is compared with the
+/// paper's, not the reverse.
 pub(crate) fn oriented((first, second): (Approach, Approach)) -> (Approach, Approach) {
     if approach_word(second) == "hybrid" { (second, first) } else { (first, second) }
 }
@@ -37,12 +38,12 @@ pub(crate) fn scenario(scenario: Scenario) -> String {
     if word == title { "random starts".to_owned() } else { format!("{word} · {}", short(title)) }
 }
 
-/// What tells a scenario from its neighbours.
+/// What distinguishes a scenario from its neighbours.
 fn short(title: &str) -> &str {
     title.rsplit(", ").next().unwrap_or(title)
 }
 
-/// Whom the attackers play against.
+/// The attackers' opponents.
 pub(crate) const fn opponents(configuration: Configuration) -> &'static str {
     match configuration {
         Configuration::DefenderGoalie => "a defender and a goalie",
@@ -50,7 +51,7 @@ pub(crate) const fn opponents(configuration: Configuration) -> &'static str {
     }
 }
 
-/// What a table of the paper is of.
+/// Title of a table of the paper.
 pub(crate) const fn table(table: u8) -> &'static str {
     match table {
         1 => "Outcomes, possession and time against a defender and a goalie",
@@ -62,7 +63,7 @@ pub(crate) const fn table(table: u8) -> &'static str {
     }
 }
 
-/// How it was measured, and what to bear in mind.
+/// How it was measured, and its limitations.
 pub(crate) const fn note(table: u8) -> &'static str {
     match table {
         1 => {

@@ -1,5 +1,5 @@
-//! `report`: tests: the page shows everything that was measured, and nothing else. The paper's rows stand in
-//! for ours, a little changed.
+//! `report`: tests: the page contains everything that was measured, and nothing else. The paper's rows stand
+//! in for ours, a little changed.
 
 use arena::TrialConfig;
 use arena::evaluation::{
@@ -9,7 +9,7 @@ use brain::Approach;
 use hil_sim::{Configuration, Scenario};
 use report::{EDGE, Facts, Map, Report};
 
-/// Rows that could be ours: the paper's, some of them elsewhere.
+/// Rows that could be ours: the paper's, some of them changed.
 fn ours() -> Vec<TableRow> {
     let mut rows = paper().to_vec();
     for row in rows.iter_mut().filter(|row| row.table == 1 && row.approach == Approach::Cases) {
@@ -86,7 +86,7 @@ impl Made {
     }
 }
 
-/// What the page says, without its tags.
+/// The text of the page, without its tags.
 fn cells(html: &str) -> Vec<String> {
     html.split('<').filter_map(|part| part.split_once('>')).map(|(_, text)| text.trim().to_owned()).collect()
 }
@@ -117,7 +117,7 @@ fn the_page_has_every_table_with_its_plots() {
     // At a glance; outcomes and means of Tables 1 and 6; 2; 3; 4; 5.
     assert_eq!(tag("figure"), 1 + 2 + 1 + 1 + 1 + 1 + 2);
     assert_eq!(tag("svg"), html.matches("</svg>").count());
-    // Links lead somewhere.
+    // Every link has a target.
     for link in html.split("href=\"#").skip(1).map(|rest| rest.split('"').next().unwrap()) {
         assert!(html.contains(&format!("id=\"{link}\"")), "#{link}");
     }
@@ -182,7 +182,8 @@ fn intervals_differences_and_their_significance_are_those_of_a_hand_calculation(
     let cells = cells(block);
     // Wilson of 170 of 500: centre (0.34 + 3.8415 / 1000) / 1.0076829 = 0.34122, reach 0.04140.
     assert!(cells.contains(&"30.0–38.3".to_owned()), "{cells:?}");
-    // 51 against 45 of 500: +1.2; pooled 0.096, z = 0.006 × 2 / 0.018632 = 0.644, p = 0.52, four such scenarios: 1.
+    // 51 against 45 of 500: +1.2; pooled 0.096, z = 0.006 × 2 / 0.018632 = 0.644, p = 0.52, four such
+    // scenarios: 1.
     assert!(cells.contains(&"+1.2".to_owned()), "{cells:?}");
     // Out, the paper's 28 less 37: −9.0; z = −3.04, p = 0.0024, the greatest of four: as it is, two stars.
     assert!(cells.contains(&"−9.0".to_owned()) && cells.contains(&"p = 0.002".to_owned()), "{cells:?}");

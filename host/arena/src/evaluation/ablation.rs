@@ -1,8 +1,9 @@
 //! `ablation`: ablations: what each part of the approach is worth. Case-based attackers with one thing
 //! changed, on the seeds of the unchanged ones.
 //!
-//! Trials of equal seed begin alike and meet the same chances while they go alike, so they are compared in pairs: McNemar's exact
-//! test for shares, the paired t for means; the unpaired tests stand beside them. Over the arms, p is corrected by Holm.
+//! Trials of equal seed start alike and draw the same random numbers while they stay alike, so they are
+//! compared in pairs: McNemar's exact test for shares, the paired t for means; the unpaired tests stand
+//! beside them. Over the arms, p is corrected by Holm.
 
 use std::fmt::Write as _;
 
@@ -17,20 +18,20 @@ use super::statistics::{Count, Sample, Test, holm, mcnemar, paired, two_proporti
 use super::summary::stars;
 use super::tables::rounded;
 
-/// One thing changed.
+/// One change to the team.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Arm {
     /// Its short name.
     pub name: &'static str,
-    /// What to give `onetwo trial` and `onetwo evaluate` for the same team.
+    /// Flags that give the same team in `onetwo trial` and `onetwo evaluate`.
     pub flags: &'static str,
-    /// What is changed.
+    /// Description of the change.
     pub what: &'static str,
     #[serde(skip)]
     change: Change,
 }
 
-/// What an arm changes.
+/// Kind of change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Change {
     Nothing,
@@ -38,7 +39,7 @@ enum Change {
     Set(&'static str, &'static str),
     NoSymmetry,
     NoOpponents,
-    /// Percent.
+    /// Packet loss, percent.
     Loss(u8),
     OneRetriever,
 }
@@ -66,7 +67,7 @@ impl Arm {
         setup
     }
 
-    /// Is it the unchanged team?
+    /// Whether it is the unchanged team.
     pub fn is_default(&self) -> bool {
         self.change == Change::Nothing
     }
@@ -120,7 +121,7 @@ pub const ARMS: &[Arm] = &[
     set!("reject", "out_of_field", "reject", "no case with an adapted place outside the field"),
 ];
 
-/// What an arm changes in a measure.
+/// Effect of an arm on a measure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Effect {
     /// The arm.
@@ -129,29 +130,30 @@ pub struct Effect {
     pub configuration: Option<Configuration>,
     /// 1 to 4; null over all cells.
     pub scenario: Option<&'static str>,
-    /// `to_goal`, `out`, `timeout` (percent); `possession` (all opponents'), `time` (s), `cases`, `default_s` a trial.
+    /// `to_goal`, `out`, `timeout` (percent); `possession` (all opponents'), `time` (s), `cases`, `default_s`
+    /// a trial.
     pub measure: &'static str,
-    /// Pairs of trials.
+    /// Number of pairs of trials.
     pub trials: u32,
-    /// The unchanged team's.
+    /// Value of the unchanged team.
     pub default: f64,
-    /// The arm's.
+    /// Value of the arm.
     pub value: f64,
-    /// The arm's less the unchanged team's.
+    /// Value of the arm less that of the unchanged team.
     pub difference: f64,
     /// Of trials in pairs: McNemar's exact test, or the paired t.
     pub p_paired: Option<f64>,
-    /// As if they had nothing in common: z, or Welch's t.
+    /// As if they were independent: z, or Welch's t.
     pub p_unpaired: Option<f64>,
     /// `p_paired` corrected over the arms.
     pub p_holm: Option<f64>,
 }
 
-/// What is looked at in a trial.
+/// The quantity that is measured in a trial.
 enum Look {
-    /// Did it happen? In percent of trials.
+    /// Whether it happened; in percent of trials.
     Share(fn(&TrialRow) -> bool),
-    /// How much of it? A mean.
+    /// How much of it; a mean.
     Mean(fn(&TrialRow) -> f64),
 }
 
@@ -303,8 +305,9 @@ mod tests {
 
     #[test]
     fn trials_are_compared_in_pairs() {
-        // By hand: 10 pairs; only the default goes to goal in 6 of them, only the arm in 1, both in 2.
-        // McNemar: 2 · P(at most 1 of 7) = 2 · 8 / 128 = 0.125. Seconds: 1 more in every second pair.
+        // By manual calculation: 10 pairs; only the default goes to goal in 6 of them, only the arm in 1,
+        // both in 2. McNemar: 2 · P(at most 1 of 7) = 2 · 8 / 128 = 0.125. Seconds: 1 more in every second
+        // pair.
         let outcome = |goal| if goal { Outcome::Goal } else { Outcome::Out };
         let trial = |trial, goal, time_s| TrialRow { trial, outcome: outcome(goal), time_s, ..row() };
         let default: Vec<_> = (0..10).map(|i| trial(i, i < 8, 10.0)).collect();

@@ -1,8 +1,8 @@
 //! `comparison`: comparison of two table rows, measure by measure. Two rows measure by measure, and Holm's
 //! correction over the paper's scenarios.
 //!
-//! Shares by the two-proportion z test, means by Welch's t. A family of tests is one measure of one table over scenarios 1 to 4;
-//! the random starts stand beside it, uncorrected: they are one test.
+//! Shares by the two-proportion z test, means by Welch's t. A family of tests is one measure of one table
+//! over scenarios 1 to 4; the random starts stand beside it, uncorrected: they are one test.
 
 use brain::Approach;
 use hil_sim::Scenario;
@@ -13,18 +13,18 @@ use super::statistics::{Count, Sample, Test, holm, two_proportions, welch};
 use super::tables::{Extent, TableRow, rounded};
 use crate::trial::approach_word;
 
-/// What is compared.
+/// A measure that is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
     /// Share of goals.
     Goal,
     /// Share of near misses.
     Close,
-    /// Share of balls the goalie got.
+    /// Share of balls that the goalie caught or kicked.
     Block,
     /// Share of balls out.
     Out,
-    /// Share of trials that ran out of time.
+    /// Share of trials with a timeout.
     Timeout,
     /// Share of goals and near misses.
     ToGoal,
@@ -36,14 +36,14 @@ pub enum Measure {
     Time,
 }
 
-/// A measure of two rows.
+/// Comparison of a measure in two rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     /// The paper's table.
     pub table: u8,
-    /// Which of its trials.
+    /// Which of its trials: the paper's number, or all.
     pub sample: Extent,
-    /// Where everybody stood.
+    /// Start positions.
     pub scenario: Scenario,
     /// The first row's approach.
     pub first_approach: Approach,
@@ -116,7 +116,7 @@ impl Comparison {
 }
 
 impl Measure {
-    /// All of them.
+    /// All measures.
     pub const ALL: [Self; 9] = [
         Self::Goal,
         Self::Close,
@@ -129,7 +129,7 @@ impl Measure {
         Self::Time,
     ];
 
-    /// Its word, as the column of `tables.json` begins.
+    /// Its label, with which the column of `tables.json` starts.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Goal => "goal",
@@ -144,7 +144,7 @@ impl Measure {
         }
     }
 
-    /// The measure of that word.
+    /// The measure with this label.
     pub fn from_word(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|measure| measure.word() == word)
     }
@@ -164,7 +164,7 @@ impl Measure {
         }
     }
 
-    /// Is it a share of trials, not a mean?
+    /// Whether it is a share of trials, not a mean.
     pub const fn is_share(self) -> bool {
         !matches!(self, Self::Possession | Self::MidfieldPossession | Self::Time)
     }
@@ -189,7 +189,7 @@ impl Measure {
         Some(Sample { n: row.trials, mean: self.value(row)?, sd })
     }
 
-    /// Do they differ?
+    /// Tests whether they differ.
     pub(super) fn test(self, first: &TableRow, second: &TableRow) -> Option<Test> {
         match (self.count(first), self.count(second)) {
             (Some(a), Some(b)) => two_proportions(a, b),
@@ -198,7 +198,7 @@ impl Measure {
     }
 }
 
-/// Every measure of every row of `first` against its row of `second`.
+/// Compares every measure of every row of `first` with its row of `second`.
 pub fn compare(rows: &[TableRow], first: Approach, second: Approach) -> Vec<Comparison> {
     let pairs = rows.iter().filter(|row| row.approach == first).filter_map(|row| {
         let key = |row: &TableRow| (row.table, row.sample, row.scenario);
@@ -208,7 +208,7 @@ pub fn compare(rows: &[TableRow], first: Approach, second: Approach) -> Vec<Comp
     of_pairs(&pairs.collect::<Vec<_>>())
 }
 
-/// Every measure of every row of ours against the paper's.
+/// Compares every measure of every row of ours with the paper's.
 pub fn with_paper(ours: &[TableRow], paper: &[TableRow]) -> Vec<Comparison> {
     let key = |row: &TableRow| (row.table, row.scenario, row.approach);
     let pairs = ours.iter().filter_map(|row| Some((row, paper.iter().find(|other| key(other) == key(row))?)));
@@ -275,13 +275,14 @@ mod tests {
     fn what_the_paper_shows_stands_after_correction_where_it_is_strong() {
         let comparisons = compare(paper(), Approach::Cases, Approach::Reactive);
         let p = |scenario, measure| find(&comparisons, 1, scenario, measure).p_holm.unwrap();
-        // By hand from 0.04, 0.31, 2.2e-7 and 2.4e-9: twice the third least, the greatest as it is.
+        // By manual calculation from 0.04, 0.31, 2.2e-7 and 2.4e-9: twice the third least, the greatest as it
+        // is.
         assert!((p(Scenario::MiddleBack, Measure::ToGoal) - 0.08).abs() < 0.005);
         assert!((p(Scenario::LeftSide, Measure::ToGoal) - 0.31).abs() < 0.005);
         assert!(p(Scenario::DefenderAhead, Measure::ToGoal) < 1e-6);
         assert!(Scenario::PAPER.into_iter().all(|scenario| p(scenario, Measure::Out) < 0.01));
         assert!(Scenario::PAPER.into_iter().all(|scenario| p(scenario, Measure::Possession) < 0.01));
-        // Nobody printed how trial times spread.
+        // The paper does not print the spread of trial times.
         assert_eq!(find(&comparisons, 1, Scenario::LeftSide, Measure::Time).test, None);
         assert_eq!(find(&comparisons, 1, Scenario::LeftSide, Measure::Time).p_holm, None);
     }

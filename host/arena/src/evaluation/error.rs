@@ -9,72 +9,72 @@ use hil_sim::SimulationError;
 
 use crate::game::GameError;
 
-/// Why an evaluation stopped, or could not be put together.
+/// Why an evaluation stopped, or could not be merged.
 #[derive(Debug)]
 pub enum EvaluationError {
     /// A file could not be read or written.
     File {
-        /// Which.
+        /// The file.
         file: PathBuf,
-        /// Why.
+        /// The reason.
         error: io::Error,
     },
     /// A line of a file is not of this evaluation's trials.
     Row {
-        /// Which file.
+        /// The file.
         file: PathBuf,
         /// Its line, from 1.
         line: usize,
-        /// What is wrong with it.
+        /// The error in it.
         what: String,
     },
     /// The file is of another evaluation.
     Another {
-        /// Which.
+        /// The file.
         file: PathBuf,
-        /// In what it differs.
+        /// Names of the settings that differ.
         differences: Vec<&'static str>,
     },
     /// Another process writes to the file.
     InUse(PathBuf),
     /// Nothing to merge.
     Nothing,
-    /// The files hold a trial twice, and it did not end alike.
+    /// The files contain a trial twice, with different results.
     Unlike {
         /// Its number.
         trial: usize,
     },
-    /// Trials of the plan are in none of the files.
+    /// Trials of the plan are missing in all files.
     Missing {
-        /// How many.
+        /// Number of missing trials.
         trials: usize,
-        /// Of how many.
+        /// Number of planned trials.
         of: usize,
-        /// The first one.
+        /// Number of the first missing one.
         first: usize,
     },
     /// A trial could not be played.
     Trial {
         /// Its number.
         trial: usize,
-        /// Why.
+        /// The reason.
         error: SimulationError,
     },
     /// A match could not be played.
     Match {
         /// Its number.
         number: usize,
-        /// Why.
+        /// The reason.
         error: GameError,
     },
     /// Trials could not be written as CSV.
     Csv(csv::Error),
-    /// The caller stopped it; what was played is kept.
+    /// The caller stopped it; finished trials are kept.
     Stopped,
 }
 
 impl EvaluationError {
-    /// Of that file.
+    /// The error of this file.
     pub(super) fn file(path: &Path) -> impl Fn(io::Error) -> Self + use<> {
         let file = path.to_owned();
         move |error| Self::File { file: file.clone(), error }
@@ -87,7 +87,7 @@ impl From<csv::Error> for EvaluationError {
     }
 }
 
-/// A file's name as it can be shown.
+/// A file's name in printable form.
 fn shown(file: &Path) -> String {
     printable(&file.to_string_lossy()).into_owned()
 }

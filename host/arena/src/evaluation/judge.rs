@@ -1,9 +1,9 @@
-//! `judge`: judgement whether the pattern of the paper's results comes out. Verdicts on a list of lines, each
-//! worked out from table rows.
+//! `judge`: judgement whether the pattern of the paper's results is reproduced. Verdicts on a list of lines,
+//! each computed from table rows.
 //!
-//! Lines a to g are the pattern that any faithful simulation should show, whatever its parameters; the rest is what this project
-//! holds itself to. They are meant for thousands of trials a cell (`onetwo evaluate judge`), on starts nothing was tuned on. A
-//! missed line is a finding, not an error.
+//! Lines a to g are the pattern that any faithful simulation should reproduce, for any parameters; the
+//! others are this project's own requirements. They are intended for thousands of trials a cell (`onetwo
+//! evaluate judge`), on starts that were not used for tuning. A missed line is a finding, not an error.
 
 use brain::Approach::{self, Cases, Reactive};
 use hil_sim::Scenario::{self, DefenderAhead, DefenderClose, LeftSide, MiddleBack, Random};
@@ -21,28 +21,28 @@ use crate::trial::{APPROACHES, approach_word};
 pub struct Line {
     /// Its short name.
     pub id: &'static str,
-    /// What should be.
+    /// The expected result.
     pub line: &'static str,
-    /// Is it?
+    /// Whether it holds.
     pub verdict: Held,
     /// The numbers.
     pub evidence: String,
 }
 
-/// Does a line hold?
+/// Whether a line holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Held {
-    /// It does.
+    /// It holds.
     Held,
-    /// It does not.
+    /// It does not hold.
     Missed,
     /// Not all trials that it needs were played.
     Unmeasured,
 }
 
 impl Held {
-    /// Its word in files.
+    /// Its label in files.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Held => "held",
@@ -69,7 +69,7 @@ pub fn judge(rows: &[TableRow]) -> Vec<Line> {
     lines.collect()
 }
 
-/// Name, line, how it is found.
+/// Name, line, and the function that judges it.
 type Entry = (&'static str, &'static str, fn(Rows<'_>) -> Finding);
 
 const LINES: &[Entry] = &[
@@ -179,7 +179,7 @@ const LINES: &[Entry] = &[
     }),
 ];
 
-/// Line a: the paper's own direction, whatever the p.
+/// Line a: the paper's own direction, for any p.
 fn out(r: Rows<'_>) -> Finding {
     let found = compare(r, cells(), Measure::Out, [Cases, Reactive])?;
     Some((found.iter().all(|cell| cell.difference < 0.0), told(&found)))
@@ -215,13 +215,13 @@ fn compare(
         let (a, b) = (rows.row(table, scenario, first)?, rows.row(table, scenario, second)?);
         let (x, y) = (measure.value(a)?, measure.value(b)?);
         let name = format!("{} {scenario}", a.configuration.word());
-        // Of single trials the spread is unknown: nothing is sure then.
+        // The spread of single trials is unknown: nothing is significant then.
         let p = measure.test(a, b).map_or(1.0, |test| test.p);
         Some(Cell { name, first: x, second: y, difference: x - y, p })
     })
 }
 
-/// All of them, or nothing where one is missing.
+/// All of them, or `None` where one is missing.
 fn each<T, V>(items: impl IntoIterator<Item = T>, of: impl FnMut(T) -> Option<V>) -> Option<Vec<V>> {
     items.into_iter().map(of).collect()
 }
@@ -237,7 +237,7 @@ fn numbers(values: &[f64], decimals: usize) -> String {
     values.iter().map(|value| format!("{value:.decimals$}")).collect::<Vec<_>>().join(", ")
 }
 
-/// What the pattern calls sure.
+/// p below which a difference counts as significant.
 const SURE: f64 = 0.01;
 
 #[cfg(test)]
@@ -253,7 +253,8 @@ mod tests {
         let lines = judge(paper());
         for line in &lines {
             let expected = match line.id {
-                // 500 trials are too few for p < 0.01 in scenarios 1 and 2 against a goalie: 4 + 2 cells of 8 are left.
+                // 500 trials are too few for p < 0.01 in scenarios 1 and 2 against a goalie: 4 + 2 cells of 8
+                // are left.
                 "a" | "b" | "c" | "d" | "e" | "f" | "g" | "to-goal" | "out" | "reactive" => Held::Held,
                 // The paper has no hybrid, no random starts, and prints no time-outs for this configuration.
                 _ => Held::Unmeasured,

@@ -1,8 +1,9 @@
 //! `ledger`: crash-safe file of finished trials. Every trial is a line, appended to its shard's file when it
 //! is over.
 //!
-//! The first line says which evaluation the file is of, the second names the columns. A last line without its end was torn by the
-//! interrupt: it is cut off, and its trial played again. Lines stand in the order in which trials ended; whoever reads sorts.
+//! The first line identifies the evaluation, the second names the columns. A last line without its end was
+//! torn by the interrupt: it is cut off, and its trial played again. Lines stand in the order in which trials
+//! ended; the reader sorts.
 
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions, TryLockError};
@@ -17,19 +18,19 @@ use super::error::EvaluationError;
 use super::plan::{Cell, Plan};
 use super::row::{TrialRow, to_csv, to_line};
 
-/// A row that a ledger keeps: one of a plan's trials, when it is over.
+/// A row of such a file: one of a plan's trials, when it is over.
 pub trait Entry: Clone + PartialEq + Serialize + DeserializeOwned + Send {
-    /// Which evaluation its file is of.
+    /// The identity of the evaluation of its file.
     type Identity: Clone + Serialize + DeserializeOwned;
-    /// What its file begins with.
+    /// Mark at the start of its file.
     const MARK: &'static str;
     /// Its number in the plan, from 0.
     fn number(&self) -> usize;
-    /// Is it what that evaluation plans under its number?
+    /// Whether the row is what that evaluation plans under its number.
     fn is_planned(&self, identity: &Self::Identity) -> bool;
-    /// How many are planned.
+    /// Number of planned rows.
     fn planned(identity: &Self::Identity) -> usize;
-    /// In what two evaluations differ, for people; empty between equals.
+    /// Names of the settings in which two evaluations differ; empty between equals.
     fn differences(own: &Self::Identity, other: &Self::Identity) -> Vec<&'static str>;
 }
 
@@ -50,20 +51,21 @@ impl Entry for TrialRow {
     }
 }
 
-/// Which evaluation a file is of: whatever decides its trials. Only equals are resumed or merged.
+/// Identity of the evaluation of a file: all settings that its trials depend on. Only equals are resumed or
+/// merged.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Identity {
     /// Version and commit of the program.
     pub program: String,
-    /// Whose cases: a league's name, or a folder.
+    /// The case library: a league's name, or a directory.
     pub library: String,
     /// Hash of the case base, 8 hexadecimal digits.
     pub case_base: String,
     /// Its authored cases by name, in the order of ids.
     pub cases: Vec<String>,
-    /// Cases are mirrored.
+    /// Whether cases are mirrored.
     pub symmetry: bool,
-    /// Cases know opponents.
+    /// Whether cases contain opponents.
     pub case_opponents: bool,
     /// The named settings of retrieval, name and value.
     pub settings: BTreeMap<String, String>,
@@ -71,16 +73,16 @@ pub struct Identity {
     pub positioning: String,
     /// How many of the two robots may retrieve.
     pub retrievers: usize,
-    /// Share of packets that a receiver does not hear.
+    /// Share of packets that a receiver does not get.
     pub loss: f32,
-    /// How the world behaves.
+    /// Parameters of the simulated world.
     pub parameters: Parameters,
     /// All trials.
     pub plan: Plan,
 }
 
 impl Identity {
-    /// In what the other differs, for people; empty between equals.
+    /// Names of the settings in which the other differs; empty between equals.
     pub fn differences(&self, other: &Self) -> Vec<&'static str> {
         let Self { program, library: _, case_base, cases: _, symmetry, case_opponents, .. } = self;
         let Self { settings, positioning, retrievers, loss, parameters, plan, .. } = self;
@@ -104,16 +106,16 @@ impl Identity {
     }
 }
 
-/// What a file of trials holds.
+/// Contents of a file of trials.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kept<R: Entry = TrialRow> {
-    /// Where it lies.
+    /// Its path.
     pub file: PathBuf,
-    /// Which evaluation it is of.
+    /// The identity of its evaluation.
     pub identity: R::Identity,
     /// Its trials, in the order of the file.
     pub rows: Vec<R>,
-    /// Bytes up to the end of the last whole line.
+    /// Bytes up to the end of the last complete line.
     whole: usize,
 }
 
@@ -150,10 +152,10 @@ fn parse<R: Entry>(path: &Path, bytes: &[u8]) -> Result<Option<Kept<R>>, Evaluat
     Ok(Some(Kept { file: path.to_owned(), identity, rows, whole }))
 }
 
-/// Which column of a row holds a number that is none, or an endless one. No trial has such a measure, and one alone spoils every
-/// mean it enters.
+/// The column of a row that holds a NaN or an infinity, if any. No trial has such a measure, and a single one
+/// makes every mean that contains it invalid.
 fn not_finite<R: Entry>(columns: &csv::StringRecord, row: &R) -> Option<String> {
-    // Written again, such a number has one spelling, however it was spelt in the file: `nan`, `+inf`, `1e999`.
+    // Written again, such a number has one spelling, for any spelling in the file: `nan`, `+inf`, `1e999`.
     let line = to_line(row).ok()?;
     let mut again = csv::ReaderBuilder::new().has_headers(false).from_reader(&line[..]);
     let cells = again.records().next()?.ok()?;
@@ -162,17 +164,17 @@ fn not_finite<R: Entry>(columns: &csv::StringRecord, row: &R) -> Option<String> 
     Some(format!("{column} is {}, not a finite number", cells.get(at).unwrap_or_default()))
 }
 
-/// A file of trials that grows.
+/// A file of trials that is appended to.
 #[derive(Debug)]
 pub(super) struct Ledger {
     file: File,
     path: PathBuf,
-    /// The line with the columns' names is there; it comes with the first trial.
+    /// Whether the line with the columns' names is written; it comes with the first trial.
     headed: bool,
 }
 
 impl Ledger {
-    /// Opens or begins a file of `identity`; the trials it holds already come with it.
+    /// Opens or creates a file of `identity`; returns it with the trials that it already holds.
     pub(super) fn open<R: Entry>(
         path: &Path,
         identity: &R::Identity,
@@ -185,7 +187,7 @@ impl Ledger {
             .truncate(false)
             .open(path)
             .map_err(failed)?;
-        // Where the file system knows no locks, two processes on one shard are the user's own doing.
+        // If the file system has no locks, the user must not run two processes on one shard.
         if let Err(TryLockError::WouldBlock) = file.try_lock() {
             return Err(EvaluationError::InUse(path.to_owned()));
         }
@@ -206,7 +208,7 @@ impl Ledger {
         Ok((ledger, kept.rows))
     }
 
-    /// Keeps a trial: once this returns, killing the process does not lose it.
+    /// Stores a trial: once this returns, killing the process does not lose it.
     pub(super) fn keep<R: Entry>(&mut self, row: &R) -> Result<(), EvaluationError> {
         let line = if self.headed { to_line(row) } else { to_csv(std::slice::from_ref(row)) };
         let line = line.map_err(|error| self.unwritten(error))?;
@@ -236,7 +238,7 @@ pub(super) mod tests {
         format!("{}{}\n", TrialRow::MARK, serde_json::to_string(identity).unwrap())
     }
 
-    /// Of some evaluation.
+    /// The identity of an evaluation, for tests.
     pub(in super::super) fn identity() -> Identity {
         Identity {
             program: "test".to_owned(),
@@ -293,7 +295,7 @@ pub(super) mod tests {
             approach: planned.cell.approach,
             seed: planned.seed,
             time_s: 10.125,
-            // A hash that reads as a number beyond all numbers is a hash all the same.
+            // A hash that parses as an infinite number is still a hash.
             trace_hash: "1234567890e99999".to_owned(),
             ..super::super::row::tests::row()
         };

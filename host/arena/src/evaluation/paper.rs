@@ -10,7 +10,8 @@ use hil_sim::Scenario;
 use super::tables::TableRow;
 use crate::trial::approach_from_word;
 
-/// The paper's rows, by table and scenario. Percentages and means as printed; Table 6's from its 30 trials a row.
+/// The paper's rows, by table and scenario. Percentages and means as printed; Table 6's from its 30 trials a
+/// row.
 pub fn paper() -> &'static [TableRow] {
     &ROWS
 }

@@ -1,8 +1,9 @@
 //! `plan`: the trials of an evaluation. Cells of (profile, opponents, scenario, approach), trials numbered
 //! through, a seed each.
 //!
-//! Common random numbers: the k-th trial of every approach has the same seed, so that approaches meet the same chances. A seed
-//! is enough to play a trial again alone: `onetwo trial --scenario S --opponents O --approach A --seed N`.
+//! Common random numbers: the k-th trial of every approach has the same seed, so that approaches draw the
+//! same random numbers. A seed is enough to play a trial again alone: `onetwo trial --scenario S --opponents
+//! O --approach A --seed N`.
 
 use brain::Approach;
 use hil_sim::{Configuration, Fnv, Scenario};
@@ -18,7 +19,8 @@ use crate::trial::{APPROACHES, TrialConfig};
 pub enum Profile {
     /// The paper's simulator: noiseless perception (§5.2).
     Simulated,
-    /// As the paper's robots: noise in perception, 5 s of standing still after every cycle (§5.3; docs/papers.md R40).
+    /// As the paper's robots: noise in perception, 5 s of standing still after every cycle (§5.3;
+    /// docs/papers.md R40).
     Robots,
 }
 
@@ -26,7 +28,7 @@ impl Profile {
     /// Both.
     pub const ALL: [Self; 2] = [Self::Simulated, Self::Robots];
 
-    /// Its word in options and files.
+    /// Its label in options and files.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Simulated => "simulated",
@@ -34,12 +36,12 @@ impl Profile {
         }
     }
 
-    /// The profile of that word.
+    /// The profile with this label.
     pub fn from_word(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|profile| profile.word() == word)
     }
 
-    /// The same trial in this world.
+    /// The same trial in the world of this profile.
     pub fn apply(self, config: TrialConfig<'_>) -> TrialConfig<'_> {
         match self {
             Self::Simulated => config,
@@ -50,29 +52,29 @@ impl Profile {
     }
 }
 
-/// Trials that differ in their seed alone.
+/// Trials that differ only in their seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Cell {
     /// The world.
     pub profile: Profile,
-    /// Which opponents play.
+    /// The opponents.
     pub configuration: Configuration,
-    /// Where everybody stands.
+    /// Start positions.
     #[serde(with = "words::scenario")]
     pub scenario: Scenario,
-    /// What leads the attackers.
+    /// Approach of the attackers.
     #[serde(with = "words::approach")]
     pub approach: Approach,
-    /// How many.
+    /// Number of trials.
     pub trials: u32,
 }
 
 /// All trials of an evaluation.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Plan {
-    /// Where the seeds of trials come from.
+    /// Seed from which the trials' seeds are derived.
     pub seed: u64,
-    /// In the order of trials.
+    /// The cells, in the order of trials.
     pub cells: Vec<Cell>,
 }
 
@@ -88,19 +90,20 @@ pub struct Planned {
 }
 
 impl Plan {
-    /// The paper's trials: 500 a cell against defender and goalie, 200 against two defenders; and those of its robots, 500 a
-    /// cell, of which the first 30 are as many as the paper's.
+    /// The paper's trials: 500 a cell against defender and goalie, 200 against two defenders; and those of
+    /// its robots, 500 a cell, of which the first 30 are as many as the paper's.
     pub fn paper(seed: u64) -> Self {
         Self::of(seed, &Scenario::PAPER, [500, 200, 500])
     }
 
-    /// Enough trials to tell 3 percent of 30 from chance, random starts among them; on seeds of their own.
+    /// Enough trials to distinguish 3 percent of 30 from chance, random starts among them; on seeds of their
+    /// own.
     pub fn judge(seed: u64) -> Self {
         let scenarios: Vec<_> = Scenario::PAPER.into_iter().chain([Scenario::Random]).collect();
         Self::of(seed, &scenarios, [5000; 3])
     }
 
-    /// Case-based attackers in the paper's eight simulated cells: what changes to their team are measured on.
+    /// Case-based attackers in the paper's eight simulated cells: the reference for ablations.
     pub fn ablation(seed: u64) -> Self {
         Self::of(seed, &Scenario::PAPER, [200; 3])
             .only(|cell| cell.profile == Profile::Simulated && cell.approach == Approach::Cases)
@@ -122,7 +125,7 @@ impl Plan {
         }
     }
 
-    /// With random starts behind the other cells, as many trials as their configuration's.
+    /// With random starts after the other cells, as many trials as their configuration's.
     pub fn with_random(mut self) -> Self {
         for configuration in [Configuration::DefenderGoalie, Configuration::TwoDefenders] {
             let mut alike = self.cells.iter().filter(|cell| cell.configuration == configuration);
@@ -133,13 +136,13 @@ impl Plan {
         self
     }
 
-    /// The cells that are wanted.
+    /// Keeps only the cells for which `wanted` is true.
     pub fn only(mut self, wanted: impl Fn(&Cell) -> bool) -> Self {
         self.cells.retain(wanted);
         self
     }
 
-    /// The same cells with that many trials each.
+    /// The same cells with this number of trials each.
     pub fn with_trials(mut self, trials: u32) -> Self {
         for cell in &mut self.cells {
             cell.trials = trials;
@@ -152,12 +155,12 @@ impl Plan {
         self.cells.iter().map(|cell| cell.trials as usize).sum()
     }
 
-    /// There is nothing to play.
+    /// Whether it has no trials.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The trial of that number.
+    /// The trial with this number.
     pub fn get(&self, number: usize) -> Option<Planned> {
         let mut within = number;
         for cell in &self.cells {
@@ -175,7 +178,7 @@ impl Plan {
         (0..self.len()).filter(move |number| shard.has(*number)).filter_map(|number| self.get(number))
     }
 
-    /// Neither the approach nor the profile enters: they meet the same chances.
+    /// The seed is independent of approach and profile: they draw the same random numbers.
     fn seed_of(&self, cell: Cell, trial: u32) -> u64 {
         let mut hash = Fnv::default();
         hash.add(&self.seed.to_le_bytes());
@@ -187,7 +190,7 @@ impl Plan {
     }
 }
 
-/// A part of a plan: every n-th trial, so that all parts take about as long.
+/// A part of a plan: every n-th trial, so that all parts take about the same time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     index: usize,
@@ -195,26 +198,26 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// Everything.
+    /// The whole plan.
     pub const WHOLE: Self = Self { index: 1, of: 1 };
 
-    /// The part of that number, from 1, of so many.
+    /// The part `index`, from 1, of `of` parts.
     pub fn new(index: usize, of: usize) -> Option<Self> {
         (1..=of).contains(&index).then_some(Self { index, of })
     }
 
-    /// As people write it: `2/3`.
+    /// Parses the form `2/3`.
     pub fn from_word(word: &str) -> Option<Self> {
         let (index, of) = word.split_once('/')?;
         Self::new(index.parse().ok()?, of.parse().ok()?)
     }
 
-    /// Does the trial of that number belong to it?
+    /// Whether the trial of this number belongs to it.
     pub fn has(self, number: usize) -> bool {
         number % self.of == self.index - 1
     }
 
-    /// The part whose file has that name.
+    /// The part whose file has this name.
     pub fn from_file_name(name: &str) -> Option<Self> {
         let (index, of) = name.strip_prefix("trials-")?.strip_suffix(".csv")?.split_once("-of-")?;
         Self::new(index.parse().ok()?, of.parse().ok()?)
@@ -226,11 +229,11 @@ impl Shard {
     }
 }
 
-/// What the paper's robots played (§5.3), against defender and goalie.
+/// Scenarios of the paper's robots (§5.3), against defender and goalie.
 const PLAYED_BY_ROBOTS: [Scenario; 2] = [Scenario::DefenderAhead, Scenario::DefenderClose];
-/// How long the paper's robots stood still after every cycle (§5.3).
+/// Time that the paper's robots stood still after every cycle (§5.3).
 const PAUSE_OF_ROBOTS: Duration = Duration::millis(5000);
-/// Seeds are short enough for every reader of JSON (53 bits) and for people.
+/// Length of a seed, bits: exact for every reader of JSON (53 bits), and short to type.
 const SEED_BITS: u32 = 48;
 
 #[cfg(test)]

@@ -1,15 +1,15 @@
-//! `results`: results of an evaluation. Everything that is written into its folder, put together from the
-//! rows of its trials alone.
+//! `results`: results of an evaluation. Everything that is written into its directory, computed from the rows
+//! of its trials alone.
 //!
 //! | file | what |
 //! |---|---|
 //! | `trials.csv` | every trial, in the plan's order |
 //! | `tables.json`, `tables.csv` | the paper's tables (docs/case-format.md §5.2) |
 //! | `comparisons.json`, `comparisons.csv` | ours against the paper's, and approach against approach |
-//! | `claims.json` | what the paper says in prose, and whether our numbers and its own bear it out |
-//! | `judge.json` | whether the pattern of its results comes out |
-//! | `cases.csv` | what became of each case |
-//! | `run.json` | which evaluation it was: program, seed, numbers, cases, settings, world |
+//! | `claims.json` | the paper's claims in prose, and whether our numbers and its own support them |
+//! | `judge.json` | whether the pattern of its results is reproduced |
+//! | `cases.csv` | uses and outcomes of each case |
+//! | `run.json` | identity of the evaluation: program, seed, numbers, cases, settings, world |
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -31,21 +31,21 @@ use crate::trial::APPROACHES;
 /// An evaluation that was played to its end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Results {
-    /// Which evaluation it was.
+    /// Its identity.
     pub identity: Identity,
     /// Its trials, in the plan's order.
     pub rows: Vec<TrialRow>,
     /// The paper's tables.
     pub tables: Vec<TableRow>,
-    /// Every row against the paper's.
+    /// Every row compared with the paper's.
     pub with_paper: Vec<Comparison>,
-    /// Every approach against every later one.
+    /// Every approach compared with every later one.
     pub between_approaches: Vec<Comparison>,
-    /// What the paper says, and what the numbers say to it.
+    /// The paper's claims, and the verdicts of the numbers.
     pub claims: Vec<Claim>,
-    /// Does the pattern of the paper's results come out?
+    /// Whether the pattern of the paper's results is reproduced.
     pub lines: Vec<Line>,
-    /// What became of each case.
+    /// Uses and outcomes of each case.
     pub uses: Vec<CaseUse>,
     /// [`csv_hash`] of its trials.
     pub hash: String,
@@ -61,7 +61,7 @@ struct Run<'a> {
 }
 
 impl Results {
-    /// Of an evaluation's trials in the plan's order, as [`merge`](super::merge) gives them.
+    /// Results of an evaluation's trials in the plan's order, as [`merge`](super::merge) returns them.
     pub fn new(identity: Identity, rows: Vec<TrialRow>) -> Result<Self, EvaluationError> {
         let hash = csv_hash(&to_csv(&rows)?);
         let tables = tables(&rows);
@@ -82,7 +82,7 @@ impl Results {
         })
     }
 
-    /// Writes every file into a folder that is there.
+    /// Writes every file into an existing directory.
     pub fn write(&self, folder: &Path) -> Result<(), EvaluationError> {
         let all: Vec<_> = self.with_paper.iter().chain(&self.between_approaches).collect();
         let paper = self.with_paper.len();
@@ -108,7 +108,7 @@ impl Results {
     }
 }
 
-/// Writes the effects of an ablation into a folder that is there.
+/// Writes the effects of an ablation into an existing directory.
 pub fn write_effects(effects: &[Effect], folder: &Path) -> Result<(), EvaluationError> {
     for (name, bytes) in [("ablations.json", json(&effects)), ("ablations.csv", as_csv(effects))] {
         let file = folder.join(name);
@@ -118,14 +118,14 @@ pub fn write_effects(effects: &[Effect], folder: &Path) -> Result<(), Evaluation
     Ok(())
 }
 
-/// JSON for programs and people: a line a list's element would be too long, so it is indented.
+/// Indented JSON: one line for each element of a list would be too long to read.
 fn json(value: &impl Serialize) -> std::io::Result<Vec<u8>> {
     let mut bytes = serde_json::to_vec_pretty(value)?;
     bytes.push(b'\n');
     Ok(bytes)
 }
 
-/// A row of CSV an element, with the columns' names in the first line.
+/// A row of CSV for each element, with the columns' names in the first line.
 fn as_csv<T: Serialize>(rows: &[T]) -> std::io::Result<Vec<u8>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows {

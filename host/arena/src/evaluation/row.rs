@@ -1,6 +1,7 @@
 //! `row`: one row of `trials.csv`: which trial it was, and every measure of the paper (§5.1.4, §5.2.1, §5.4).
 //!
-//! Rows stand in the order of the plan, so that equal evaluations are equal files, however many processes played them.
+//! Rows stand in the order of the plan, so that equal evaluations are equal files, for any number of
+//! processes.
 
 use brain::Approach;
 use hil_sim::{Configuration, Fnv, Outcome, Scenario};
@@ -26,11 +27,11 @@ pub struct TrialRow {
     /// `cbr` or `reactive`.
     #[serde(with = "words::approach")]
     pub approach: Approach,
-    /// Plays it again.
+    /// Seed that replays it.
     pub seed: u64,
     /// How it ended; against two defenders `goal` is the paper's "to goal".
     pub outcome: Outcome,
-    /// Seconds from kick-off to that.
+    /// Seconds from kick-off to its end.
     pub time_s: f64,
     /// How often the defender had the ball.
     pub possession_defender: u32,
@@ -40,27 +41,27 @@ pub struct TrialRow {
     pub backups_a: u32,
     /// How often robot B did.
     pub backups_b: u32,
-    /// Who put the ball out; empty for every other outcome.
+    /// The robot that put the ball out; empty for every other outcome.
     pub out_by: Option<String>,
-    /// Cases for one robot.
+    /// Number of cases for one robot.
     pub individual: u32,
-    /// Cases for several.
+    /// Number of cases for several robots.
     pub cooperative: u32,
-    /// Retrievals without a case.
+    /// Number of retrievals without a case.
     pub none: u32,
     /// Seconds of default behaviour; empty, as the next six, where no cases are played.
     pub default_s: Option<f64>,
-    /// How many times it began.
+    /// Number of spells.
     pub default_spells: Option<u32>,
-    /// Retrievals that failed as the ball lay in no scope.
+    /// Retrievals that failed because the ball lay in no scope.
     pub no_case_ball: Option<u32>,
-    /// As there were too few robots.
+    /// Because there were too few robots.
     pub no_case_robots: Option<u32>,
-    /// As somebody had too far to go.
+    /// Because a robot had too far to go.
     pub no_case_thr_c: Option<u32>,
-    /// As an opponent stood in the way.
+    /// Because an opponent stood in the path.
     pub no_case_path: Option<u32>,
-    /// As the case could not begin.
+    /// Because the case could not start.
     pub no_case_held: Option<u32>,
     /// Equal for equal trials.
     pub trace_hash: String,
@@ -69,7 +70,7 @@ pub struct TrialRow {
 }
 
 impl TrialRow {
-    /// Of a trial that was played.
+    /// The row of a played trial.
     pub(super) fn new(planned: &Planned, report: &TrialReport) -> Self {
         let backups = |robot: usize| report.backups.0.get(robot).copied().unwrap_or_default();
         let default = report.default;
@@ -103,7 +104,7 @@ impl TrialRow {
         }
     }
 
-    /// Is it a row of this trial?
+    /// Whether it is a row of this trial.
     pub(super) fn is_of(&self, planned: &Planned) -> bool {
         let cell = &planned.cell;
         let own = (self.profile, self.configuration, self.scenario, self.approach);
@@ -139,7 +140,7 @@ pub(super) fn to_line<R: Serialize>(row: &R) -> Result<Vec<u8>, csv::Error> {
     writer.into_inner().map_err(|error| error.into_error().into())
 }
 
-/// The number that tells two evaluations apart: FNV-1a-64 of their `trials.csv`, 16 hexadecimal digits.
+/// The number that identifies an evaluation: FNV-1a-64 of its `trials.csv`, 16 hexadecimal digits.
 pub fn csv_hash(csv: &[u8]) -> String {
     let mut hash = Fnv::default();
     hash.add(csv);
@@ -150,7 +151,7 @@ pub fn csv_hash(csv: &[u8]) -> String {
 pub(super) mod tests {
     use super::*;
 
-    /// Some trial of case-based attackers.
+    /// A trial of case-based attackers, for tests.
     pub(in super::super) fn row() -> TrialRow {
         TrialRow {
             trial: 0,

@@ -1,8 +1,8 @@
-//! `runs`: parallel execution of trials. On all threads of the pool, each kept when it is over, resumed after
-//! an interrupt, merged.
+//! `runs`: parallel execution of trials. On all threads of the pool, each stored when it is over, resumed
+//! after an interrupt, merged.
 //!
-//! A trial depends on its place in the plan alone, and merged rows stand in the plan's order: the same evaluation gives the same
-//! bytes for any number of threads, shards and interrupts.
+//! A trial depends only on its place in the plan, and merged rows stand in the plan's order: the same
+//! evaluation gives the same bytes for any number of threads, shards and interrupts.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -22,34 +22,34 @@ use super::setup::Setup;
 use crate::names::CaseNames;
 use crate::trial::{TrialConfig, positioning_word, run};
 
-/// Everything that decides the trials of an evaluation.
+/// All settings that the trials of an evaluation depend on.
 #[derive(Clone, Debug)]
 pub struct Evaluation<'a> {
-    /// Which trials.
+    /// The trials.
     pub plan: Plan,
     /// The case base in every robot.
     pub base: CaseBase<'a>,
-    /// What its cases are called.
+    /// Names of its cases.
     pub names: CaseNames,
-    /// Whose cases: a league's name, or a folder.
+    /// The case library: a league's name, or a directory.
     pub library: String,
-    /// How the attackers play.
+    /// The attackers' set-up.
     pub setup: Setup,
     /// Version and commit of the program: trials of two programs are never mixed.
     pub program: String,
 }
 
-/// How far a shard has come.
+/// Progress of a shard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
-    /// Trials over, those of earlier runs included.
+    /// Finished trials, those of earlier runs included.
     pub done: usize,
     /// Trials of the shard.
     pub of: usize,
 }
 
 impl<'a> Evaluation<'a> {
-    /// What its files say they are of.
+    /// The identity that its files carry.
     pub fn identity(&self) -> Identity {
         let setup = &self.setup;
         let settings = setup.settings.describe();
@@ -76,17 +76,18 @@ impl<'a> Evaluation<'a> {
         cell.profile.apply(self.setup.apply(config)).with_library(self.base, self.names.clone())
     }
 
-    /// Plays it.
+    /// Plays the trial.
     pub fn play(&self, planned: &Planned) -> Result<TrialRow, EvaluationError> {
         let report = run(&self.config(planned), Box::new(NativeBackend::new(self.base)), &mut [])
             .map_err(|error| EvaluationError::Trial { trial: planned.number, error })?;
         Ok(TrialRow::new(planned, &report))
     }
 
-    /// Plays what `file` lacks of a shard, on all threads of the current rayon pool; its rows in the plan's order.
+    /// Plays the trials of a shard that are missing in `file`, on all threads of the current rayon pool;
+    /// returns its rows in the plan's order.
     ///
-    /// `progress` is told at the beginning and after every trial, and may stop the run: what is over is kept, and the next run of
-    /// the same shard into the same file goes on from there.
+    /// `progress` is called at the start and after every trial, and may stop the run: finished trials are
+    /// kept, and the next run of the same shard into the same file continues from there.
     pub fn play_shard(
         &self,
         shard: Shard,
@@ -101,7 +102,8 @@ impl<'a> Evaluation<'a> {
     }
 }
 
-/// Plays what `file` lacks of a shard, as [`Evaluation::play_shard`] does, each trial by its number.
+/// Plays the trials of a shard that are missing in `file`, as [`Evaluation::play_shard`] does, each by its
+/// number.
 pub(crate) fn play_open<R: Row>(
     identity: &R::Identity,
     shard: Shard,
@@ -126,7 +128,7 @@ pub(crate) fn play_open<R: Row>(
     let keeper = Mutex::new((ledger, rows, before));
     open.par_iter().try_for_each(|number| {
         let row = play(*number)?;
-        // A thread that panicked while it kept a trial stops the run anyway.
+        // A thread that panicked while it stored a trial stops the run anyway.
         let mut keeper = keeper.lock().unwrap_or_else(PoisonError::into_inner);
         let (ledger, rows, done) = &mut *keeper;
         ledger.keep(&row)?;

@@ -1,4 +1,4 @@
-//! `setup`: team configuration of an evaluation. Everything of a team that an evaluation may change: one
+//! `setup`: team configuration of an evaluation. All settings of a team that an evaluation may change: one
 //! value for all its trials.
 
 use brain::Positioning;
@@ -10,17 +10,17 @@ use crate::trial::TrialConfig;
 /// A team's set-up. The default is the paper's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setup {
-    /// How robots retrieve.
+    /// Settings of retrieval.
     pub settings: Settings,
-    /// When a case's actions begin.
+    /// When a case's actions start.
     pub positioning: Positioning,
-    /// How many of the two may retrieve (paper §4.1).
+    /// Number of the two robots that may retrieve (paper §4.1).
     pub retrievers: usize,
-    /// Share of packets that a receiver does not hear.
+    /// Share of packets that a receiver does not get.
     pub loss: f32,
-    /// Cases are mirrored (paper §2.4); without it only authored ones are known.
+    /// Whether cases are mirrored (paper §2.4); without it only authored ones are known.
     pub symmetry: bool,
-    /// Cases know opponents (paper §2.1).
+    /// Whether cases contain opponents (paper §2.1).
     pub opponents: bool,
 }
 
@@ -38,7 +38,8 @@ impl Default for Setup {
 }
 
 impl Setup {
-    /// The same trial played so; whoever opens the library sees to `symmetry` and `opponents`.
+    /// The same trial with this set-up; `symmetry` and `opponents` must be applied when the library is
+    /// opened.
     pub fn apply<'a>(&self, config: TrialConfig<'a>) -> TrialConfig<'a> {
         TrialConfig {
             settings: self.settings.clone(),
@@ -50,5 +51,5 @@ impl Setup {
     }
 }
 
-/// Attackers of every trial of an evaluation, as the paper's.
+/// Number of attackers of every trial of an evaluation, as the paper's.
 pub const ROBOTS: usize = 2;

@@ -1,15 +1,16 @@
 //! `statistics`: confidence intervals and significance tests. Intervals of shares, tests of shares and means,
 //! and many tests at once.
 //!
-//! Wilson 1927 for a share's interval, the pooled z test for two shares, Welch 1947 for two means of unequal spread, McNemar's
-//! exact test and the paired t for trials of equal seeds, Holm 1979 for a family of tests. Two-sided throughout, no continuity correction; p from `statrs`' distributions.
+//! Wilson 1927 for a share's interval, the pooled z test for two shares, Welch 1947 for two means of unequal
+//! spread, McNemar's exact test and the paired t for trials of equal seeds, Holm 1979 for a family of tests.
+//! Two-sided throughout, no continuity correction; p from `statrs`' distributions.
 
 use statrs::distribution::{Binomial, ContinuousCDF, DiscreteCDF, Normal, StudentsT};
 
-/// How many of how many.
+/// A count of hits among trials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Count {
-    /// Trials in which it was so.
+    /// Trials in which it happened.
     pub hits: u32,
     /// All trials.
     pub of: u32,
@@ -22,7 +23,7 @@ impl Count {
     }
 }
 
-/// From where to where a value may lie: a share from 0 to 1, a mean or a difference in its own unit.
+/// Ends of an interval: a share from 0 to 1, a mean or a difference in its own unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     /// Its lower end.
@@ -31,7 +32,8 @@ pub struct Interval {
     pub high: f64,
 }
 
-/// Wilson's interval with that confidence, say 0.95; `None` of no trials or where the confidence is not between 0 and 1.
+/// Wilson's interval with this confidence, for example 0.95; `None` without trials or where the confidence is
+/// not between 0 and 1.
 pub fn wilson(count: Count, confidence: f64) -> Option<Interval> {
     let share = count.share().filter(|_| confidence > 0.0 && confidence < 1.0)?;
     let n = f64::from(count.of);
@@ -43,8 +45,8 @@ pub fn wilson(count: Count, confidence: f64) -> Option<Interval> {
     Some(Interval { low: end(centre - reach), high: end(centre + reach) })
 }
 
-/// How much greater the first share is than the second, at least and at most, −1 to 1: Newcombe's score interval (1998, method
-/// 10), made of Wilson's; `None` as there.
+/// Interval of the first share less the second, −1 to 1: Newcombe's score interval (1998, method 10), made of
+/// Wilson's; `None` as there.
 pub fn newcombe(first: Count, second: Count, confidence: f64) -> Option<Interval> {
     let (a, b) = (first.share()?, second.share()?);
     let (own, other) = (wilson(first, confidence)?, wilson(second, confidence)?);
@@ -55,7 +57,8 @@ pub fn newcombe(first: Count, second: Count, confidence: f64) -> Option<Interval
     })
 }
 
-/// Student's interval of a mean; `None` where the spread is not known or the confidence is not between 0 and 1.
+/// Student's interval of a mean; `None` where the spread is not known or the confidence is not between 0 and
+/// 1.
 pub fn student(sample: Sample, confidence: f64) -> Option<Interval> {
     let sd = sample.sd.filter(|_| sample.n > 1 && confidence > 0.0 && confidence < 1.0)?;
     let student = StudentsT::new(0.0, 1.0, f64::from(sample.n - 1)).ok()?;
@@ -63,20 +66,20 @@ pub fn student(sample: Sample, confidence: f64) -> Option<Interval> {
     Some(Interval { low: sample.mean - reach, high: sample.mean + reach })
 }
 
-/// What a test says.
+/// Result of a test.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Test {
     /// z or t; above 0 where the first is the greater.
     pub statistic: f64,
-    /// The chance of a difference at least as great between equals.
+    /// Probability of a difference at least as large between equals.
     pub p: f64,
 }
 
 impl Test {
-    /// Of two that are the same and do not vary.
+    /// Result for two equal samples that do not vary.
     const EQUAL: Self = Self { statistic: 0.0, p: 1.0 };
 
-    /// Of a difference that is always the same: for sure, or none.
+    /// Result for a difference that does not vary: p is 0, or 1 for no difference.
     fn unvarying(difference: f64) -> Self {
         if difference == 0.0 {
             return Self::EQUAL;
@@ -85,7 +88,7 @@ impl Test {
     }
 }
 
-/// Do two shares differ? The pooled z test; `None` where one of them is of no trials.
+/// Tests whether two shares differ, by the pooled z test; `None` where one of them has no trials.
 pub fn two_proportions(first: Count, second: Count) -> Option<Test> {
     let (a, b) = (first.share()?, second.share()?);
     let (n, m) = (f64::from(first.of), f64::from(second.of));
@@ -98,19 +101,22 @@ pub fn two_proportions(first: Count, second: Count) -> Option<Test> {
     Some(Test { statistic: z, p: 2.0 * Normal::standard().sf(z.abs()) })
 }
 
-/// Does a share differ from a given one, 0 to 1? The z test of one share; `None` of no trials, or against 0 or 1.
+/// Tests whether a share differs from a given one, 0 to 1, by the z test of one share; `None` without trials,
+/// or against 0 or 1.
 pub fn against(count: Count, expected: f64) -> Option<Test> {
     let spread = expected * (1.0 - expected) / f64::from(count.of.max(1));
     normal(count.share()? - expected, spread)
 }
 
-/// Does a normally distributed number of that variance differ from 0? `None` where it does not vary.
+/// Tests whether a normally distributed number of this variance differs from 0; `None` where it does not
+/// vary.
 pub fn normal(value: f64, variance: f64) -> Option<Test> {
     let z = (variance > 0.0).then(|| value / variance.sqrt())?;
     Some(Test { statistic: z, p: 2.0 * Normal::standard().sf(z.abs()) })
 }
 
-/// Do two shares of the same trials differ? McNemar's exact test on the trials in which only one of the two happened.
+/// Tests whether two shares of the same trials differ: McNemar's exact test on the trials in which only one
+/// of the two happened.
 pub fn mcnemar(only_first: u32, only_second: u32) -> Option<Test> {
     let (first, second) = (f64::from(only_first), f64::from(only_second));
     let changed = u64::from(only_first) + u64::from(only_second);
@@ -121,7 +127,8 @@ pub fn mcnemar(only_first: u32, only_second: u32) -> Option<Test> {
     Some(Test { statistic: (first - second) / (first + second).sqrt(), p: (2.0 * tail).min(1.0) })
 }
 
-/// Do differences of pairs have a mean other than 0? Student's paired t; `None` where their spread is not known.
+/// Tests whether differences of pairs have a mean other than 0: Student's paired t; `None` where their spread
+/// is not known.
 pub fn paired(differences: Sample) -> Option<Test> {
     let sd = differences.sd?;
     if sd == 0.0 {
@@ -132,19 +139,19 @@ pub fn paired(differences: Sample) -> Option<Test> {
     Some(Test { statistic: t, p: 2.0 * student.sf(t.abs()) })
 }
 
-/// Numbers, by their mean and spread.
+/// Size, mean and spread of a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// How many.
+    /// Number of values.
     pub n: u32,
     /// Their mean.
     pub mean: f64,
-    /// Their standard deviation (of a sample: n − 1); `None` of fewer than two, or where nobody printed it.
+    /// Their standard deviation (of a sample: n − 1); `None` of fewer than two, or where it was not printed.
     pub sd: Option<f64>,
 }
 
 impl Sample {
-    /// Of these numbers; `None` without any.
+    /// The sample of these numbers; `None` without any.
     pub fn of(values: impl Iterator<Item = f64> + Clone) -> Option<Self> {
         let n = u32::try_from(values.clone().count()).ok().filter(|n| *n > 0)?;
         let mean = values.clone().sum::<f64>() / f64::from(n);
@@ -153,7 +160,7 @@ impl Sample {
     }
 }
 
-/// Do two means differ, whatever their spreads? `None` where a spread is not known.
+/// Tests whether two means differ, with unequal spreads; `None` where a spread is not known.
 pub fn welch(first: Sample, second: Sample) -> Option<Test> {
     let variance =
         |sample: Sample| sample.sd.filter(|_| sample.n > 1).map(|sd| sd * sd / f64::from(sample.n));
@@ -169,7 +176,7 @@ pub fn welch(first: Sample, second: Sample) -> Option<Test> {
     Some(Test { statistic: t, p: 2.0 * student.sf(t.abs()) })
 }
 
-/// Holm's step-down: what each p of a family of tests comes to, in the order given.
+/// Holm's step-down: the corrected p of each test of a family, in the order given.
 pub fn holm(family: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..family.len()).collect();
     order.sort_by(|&a, &b| family[a].total_cmp(&family[b]));
@@ -242,7 +249,7 @@ mod tests {
 
     #[test]
     fn two_shares_are_compared_by_the_pooled_z() {
-        // By hand: 15/25 against 7/25: pooled 0.44, spread 0.140399, z = 2.27922, p = 0.02265.
+        // By manual calculation: 15/25 against 7/25: pooled 0.44, spread 0.140399, z = 2.27922, p = 0.02265.
         let test = two_proportions(count(15, 25), count(7, 25)).unwrap();
         near(test.statistic, 2.27922, 1e-5);
         near(test.p, 0.02265, 1e-5);
@@ -283,8 +290,9 @@ mod tests {
 
     #[test]
     fn every_test_agrees_with_scipy_and_statsmodels() {
-        // scipy 1.17.1, statsmodels 0.15.0: proportion_confint(method="wilson"), proportions_ztest, ttest_ind_from_stats
-        // (equal_var=False), mcnemar(exact=True), ttest_1samp, proportions_ztest(value=0.5, prop_var=0.5), multipletests("holm").
+        // scipy 1.17.1, statsmodels 0.15.0: proportion_confint(method="wilson"), proportions_ztest,
+        // ttest_ind_from_stats (equal_var=False), mcnemar(exact=True), ttest_1samp,
+        // proportions_ztest(value=0.5, prop_var=0.5), multipletests("holm").
         for (hits, of, low, high) in [
             (155, 500, 0.271_038_91, 0.351_858_34),
             (11, 30, 0.218_739_21, 0.544_864_36),
@@ -343,7 +351,7 @@ mod tests {
 
     #[test]
     fn holm_steps_down_and_never_falls() {
-        // By hand: 4 × 0.005, 3 × 0.01, 2 × 0.03, 0.04 raised to 0.06.
+        // By manual calculation: 4 × 0.005, 3 × 0.01, 2 × 0.03, 0.04 raised to 0.06.
         let adjusted = holm(&[0.01, 0.04, 0.03, 0.005]);
         for (value, expected) in adjusted.into_iter().zip([0.03, 0.06, 0.06, 0.02]) {
             near(value, expected, 1e-12);

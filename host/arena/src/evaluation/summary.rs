@@ -1,8 +1,8 @@
-//! `summary`: the tables as terminal text. Ours, the paper's in brackets, and under each scenario how far the
-//! approaches lie apart.
+//! `summary`: the tables as terminal text. Ours, the paper's in brackets, and under each scenario the
+//! differences between the approaches.
 //!
-//! Stars are p after Holm's correction over the scenarios: * < 0.05, ** < 0.01, *** < 0.001. After a bracket they say that ours is
-//! not the paper's; in a line of differences, that the approaches differ.
+//! Stars are p after Holm's correction over the scenarios: * < 0.05, ** < 0.01, *** < 0.001. After a bracket
+//! they mean that ours differs from the paper's; in a line of differences, that the approaches differ.
 
 use std::fmt::Write as _;
 
@@ -36,7 +36,7 @@ impl Column {
     }
 }
 
-/// What the paper's table of that number is called, and its columns.
+/// Title and columns of the paper's table with this number.
 fn layout(table: u8) -> (&'static str, Vec<Column>) {
     let goal = || Column::share(Measure::Goal, "goal %", |row| row.goal);
     let close = || Column::share(Measure::Close, "close %", |row| row.close);
@@ -88,7 +88,7 @@ fn layout(table: u8) -> (&'static str, Vec<Column>) {
     }
 }
 
-/// Percent that the first is of both.
+/// Percent of the first in the sum.
 fn share(first: f64, second: f64) -> Option<f64> {
     (first + second > 0.0).then(|| 100.0 * first / (first + second))
 }
@@ -126,7 +126,7 @@ fn write(text: &mut String, results: &Results, table: u8, sample: Extent, rows: 
         let differences: Vec<_> = results.between_approaches.iter().filter(own).collect();
         let mut pairs: Vec<_> = differences.iter().map(|c| (c.first_approach, c.second_approach)).collect();
         pairs.dedup();
-        // Tables 2 and 3 have nothing that is compared.
+        // Tables 2 and 3 have no compared measure.
         for pair in pairs.into_iter().filter(|_| columns.iter().any(|column| column.measure.is_some())) {
             let cells = columns.iter().map(|column| {
                 let of_pair = |c: &&&Comparison| {
@@ -144,7 +144,7 @@ fn write(text: &mut String, results: &Results, table: u8, sample: Extent, rows: 
     align(text, &lines);
 }
 
-/// A line of a table; a cell is what stands to the right of its column, and what follows it.
+/// A line of a table; a cell has a part that is right-aligned in its column, and a part that follows.
 struct Line {
     names: [String; 2],
     cells: Vec<(String, String)>,
@@ -190,7 +190,7 @@ fn difference(comparison: &Comparison, decimals: usize) -> (String, String) {
     (format!("{value:+.decimals$}"), stars(comparison.p_holm).to_owned())
 }
 
-/// How sure a difference is.
+/// Stars of a p value.
 pub fn stars(p: Option<f64>) -> &'static str {
     match p {
         Some(p) if p < 0.001 => "***",

@@ -1,11 +1,12 @@
 //! `tables`: the rows of `tables.json` (docs/case-format.md §5.2): shares in percent, means per trial,
 //! seconds.
 //!
-//! A row holds everything that was measured on its trials, whichever of it the paper's table prints; `null` is what was not
-//! measured: against two defenders a trial ends at the penalty area (no goal, close, block), there is a midfield defender only
-//! there, attackers led by cases alone do not back up, and reactive ones use none. Table 5 is Table 4 without the trials that ran
-//! out of time, and gives no shares. Table 6 stands there twice where more trials than the paper's 30 were played: of the first
-//! 30, and behind all other rows of all. Standard deviations are those of a sample.
+//! A row holds everything that was measured on its trials, whichever of it the paper's table prints; `null`
+//! is what was not measured: against two defenders a trial ends at the penalty area (no goal, close, block),
+//! there is a midfield defender only there, attackers that play by cases alone do not back up, and reactive
+//! ones use none. Table 5 is Table 4 without the trials with a timeout, and gives no shares. Table 6 stands
+//! there twice where more trials than the paper's 30 were played: of the first 30, and behind all other rows
+//! of all. Standard deviations are those of a sample.
 
 use brain::Approach;
 use hil_sim::{Configuration, Outcome, Scenario};
@@ -17,18 +18,18 @@ use super::row::TrialRow;
 use super::statistics::{Interval, Sample, wilson};
 use super::words;
 
-/// Which of the trials a row is of.
+/// Which of the trials a row counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Extent {
     /// The paper's: all of them, but of Table 6 the first 30.
     Paper,
-    /// Table 6 alone: all of them, to say what 30 could not.
+    /// Table 6 alone: all of them, for what 30 do not decide.
     Large,
 }
 
 impl Extent {
-    /// Its word in files.
+    /// Its label in files.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Paper => "paper",
@@ -51,9 +52,9 @@ pub struct TableRow {
     /// `cbr` or `reactive`.
     #[serde(serialize_with = "words::approach::serialize")]
     pub approach: Approach,
-    /// How many.
+    /// Number of trials.
     pub trials: u32,
-    /// Percent; so the next five.
+    /// Goals, percent; the next five are in percent too.
     pub goal: Option<f64>,
     /// Out beside a goalpost.
     pub close: Option<f64>,
@@ -61,15 +62,15 @@ pub struct TableRow {
     pub block: Option<f64>,
     /// Out elsewhere.
     pub out: Option<f64>,
-    /// Time was up.
+    /// Ended by timeout.
     pub timeout: Option<f64>,
     /// Goal or close; against two defenders, in the penalty area.
     pub to_goal: Option<f64>,
-    /// How often the defender had the ball.
+    /// Mean number of the defender's possessions.
     pub possession_mean: Option<f64>,
     /// Its standard deviation.
     pub possession_sd: Option<f64>,
-    /// How often the midfield defender had it.
+    /// Mean number of the midfield defender's possessions.
     pub possession2_mean: Option<f64>,
     /// Its standard deviation.
     pub possession2_sd: Option<f64>,
@@ -77,9 +78,9 @@ pub struct TableRow {
     pub time_mean: Option<f64>,
     /// Their standard deviation.
     pub time_sd: Option<f64>,
-    /// How often robot A backed up, a trial.
+    /// Mean number of robot A's backups, a trial.
     pub backups_a: Option<f64>,
-    /// How often robot B did.
+    /// Mean number of robot B's backups, a trial.
     pub backups_b: Option<f64>,
     /// Cases for one robot, a trial.
     pub individual: Option<f64>,
@@ -89,25 +90,26 @@ pub struct TableRow {
     pub none: Option<f64>,
     /// Trials that attackers ended by putting the ball out.
     pub out_by_attackers: Option<u32>,
-    /// Those that opponents did.
+    /// Trials that opponents ended by putting the ball out.
     pub out_by_opponents: Option<u32>,
     /// Default behaviour, percent of all time.
     pub default_time: Option<f64>,
-    /// How many times it began, a trial.
+    /// Number of spells a trial.
     pub default_spells: Option<f64>,
     /// Why retrievals failed, a trial: the ball lay in no scope.
     pub none_ball: Option<f64>,
     /// Too few robots.
     pub none_robots: Option<f64>,
-    /// Somebody had too far to go.
+    /// A robot had too far to go.
     pub none_thr_c: Option<f64>,
-    /// An opponent stood in the way.
+    /// An opponent stood in the path.
     pub none_path: Option<f64>,
-    /// The case could not begin.
+    /// The case could not start.
     pub none_held: Option<f64>,
-    /// Seconds of the trials that came to goal: what rankings were chosen by (paper §3.4).
+    /// Mean seconds of the trials that came to goal: the criterion by which rankings were chosen (paper
+    /// §3.4).
     pub time_to_goal_mean: Option<f64>,
-    /// Cases used in them.
+    /// Mean number of cases used in them.
     pub cases_to_goal_mean: Option<f64>,
     /// Standard deviation of `backups_a`.
     pub backups_a_sd: Option<f64>,
@@ -115,7 +117,7 @@ pub struct TableRow {
     pub backups_b_sd: Option<f64>,
     /// `paper`, or `large` for Table 6 of more than the paper's 30 trials.
     pub sample: Extent,
-    /// Lower end of the 95 % interval (Wilson) of `goal`, percent; so the next five pairs.
+    /// Lower end of the 95 % interval (Wilson) of `goal`, percent; the next five pairs are alike.
     pub goal_low: Option<f64>,
     /// Upper end.
     pub goal_high: Option<f64>,
@@ -174,12 +176,12 @@ pub fn tables(rows: &[TrialRow]) -> Vec<TableRow> {
     tables
 }
 
-/// Of the intervals of shares.
+/// Confidence level of the intervals of shares.
 const CONFIDENCE: f64 = 0.95;
-/// The paper's robots played so many trials a row of Table 6 (§5.3).
+/// Trials of the paper's robots a row of Table 6 (§5.3).
 pub(super) const TRIALS_OF_ROBOTS: usize = 30;
 
-/// What tells rows of a table apart.
+/// Key of a table's row.
 type Key = (Scenario, Approach);
 
 fn belongs(table: u8, row: &TrialRow) -> bool {
@@ -193,7 +195,7 @@ fn belongs(table: u8, row: &TrialRow) -> bool {
         }
 }
 
-/// Robots that are led by cases alone do not back up (paper §5.2.1).
+/// Robots that play by cases alone do not back up (paper §5.2.1).
 fn backs_up(approach: Approach) -> bool {
     approach != Approach::Cases
 }
@@ -202,13 +204,13 @@ fn plays_cases(approach: Approach) -> bool {
     approach != Approach::Reactive
 }
 
-/// Whom the attackers of a table play against.
+/// Opponents of a table's attackers.
 fn opponents(table: u8) -> Configuration {
     if matches!(table, 4 | 5) { Configuration::TwoDefenders } else { Configuration::DefenderGoalie }
 }
 
 impl TableRow {
-    /// Nothing was measured.
+    /// A row without measurements.
     pub(super) fn empty(table: u8, scenario: Scenario, approach: Approach) -> Self {
         Self {
             table,
@@ -353,7 +355,7 @@ impl Mean {
     }
 }
 
-/// To a ten-thousandth: more than any number of trials says, and it reads well.
+/// To a ten-thousandth: finer than the resolution of any number of trials, and short to read.
 pub(super) fn rounded(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
 }

@@ -1,7 +1,8 @@
 //! `uses`: use of each case. How often it was retrieved, how its plays ended, and how the trials ended in
 //! which it was played.
 //!
-//! One line a case and kind of trial (profile, opponents, approach), cases that were never retrieved among them: `cases.csv`.
+//! One line a case and kind of trial (profile, opponents, approach), cases that were never retrieved among
+//! them: `cases.csv`.
 
 use brain::Approach;
 use hil_sim::{Configuration, Outcome};
@@ -18,17 +19,17 @@ pub struct CaseUse {
     pub profile: Profile,
     /// Their opponents.
     pub configuration: Configuration,
-    /// What led the attackers.
+    /// Approach of the attackers.
     pub approach: Approach,
     /// `region/name`.
     pub case: String,
-    /// How many times it was played.
+    /// Number of times it was played.
     pub retrieved: u32,
-    /// How these plays ended, as [`CycleEnd::WORDS`].
+    /// Counts of the ends of these plays, in the order of [`CycleEnd::WORDS`].
     pub ends: [u32; CycleEnd::WORDS.len()],
     /// Trials in which it was played.
     pub trials: u32,
-    /// How they ended, as [`Outcome`]'s words in [`OUTCOMES`].
+    /// Counts of the outcomes, in the order of [`OUTCOMES`].
     pub outcomes: [u32; OUTCOMES.len()],
 }
 
@@ -77,7 +78,7 @@ impl CaseUse {
         ends.filter(|(word, _)| **word == end).for_each(|(_, count)| *count += 1);
     }
 
-    /// Plays in which every robot did its part.
+    /// Number of plays in which every robot completed its part.
     pub const fn finished(&self) -> u32 {
         self.ends[0]
     }

@@ -7,7 +7,7 @@ use super::claims::{Claim, Judgement, Verdict};
 use super::judge::Line;
 use super::results::Results;
 
-/// Both, for people; `claims.json` has the numbers behind every claim.
+/// Both, as text; `claims.json` has the numbers behind every claim.
 pub fn verdicts(results: &Results) -> String {
     claims(&results.claims) + &lines(&results.lines)
 }
@@ -16,7 +16,7 @@ fn claims(claims: &[Claim]) -> String {
     let mut text =
         "What the paper says, by our trials and by its own tables (claims.json has the numbers)\n".to_owned();
     let has_more = claims.iter().any(|claim| claim.ours_as_paper.is_some());
-    // What as many trials as the paper's would have said, where there were more.
+    // The verdict of as many trials as the paper's, where there were more.
     let as_paper = |word: &str| if has_more { format!("{word:14}") } else { String::new() };
     let _ = writeln!(text, "  {:14}{}{:14}§", "ours", as_paper("ours, of 30"), "the paper's");
     for Claim { section, sentence, ours, ours_as_paper, paper, .. } in claims {

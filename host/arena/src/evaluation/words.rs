@@ -1,4 +1,4 @@
-//! `words`: names of scenarios and approaches in files. By their words, as on the command line.
+//! `words`: names of scenarios and approaches in files: the same as on the command line.
 
 /// `1` to `4`, or `random`.
 pub(super) mod scenario {

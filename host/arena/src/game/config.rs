@@ -15,17 +15,17 @@ use rules::{Colour, League};
 pub struct GameConfig {
     /// Field, robots, ball and rules.
     pub league: League,
-    /// Where all chance comes from.
+    /// Random seed.
     pub seed: u64,
     /// Simulated seconds.
     pub duration_s: f64,
-    /// How the referee runs it.
+    /// Settings of the referee.
     pub referee: RefereeSettings,
     /// Yellow and blue, in this order.
     pub teams: [TeamSetup; 2],
-    /// How each team's air treats packets; delays in ticks of 10 ms.
+    /// Radio settings of each team; delays in ticks of 10 ms.
     pub air: AirSettings,
-    /// Which world of the family it is played in.
+    /// The world of the family that it is played in.
     pub world: WorldChoice,
 }
 
@@ -34,20 +34,20 @@ pub struct GameConfig {
 pub struct TeamSetup {
     /// Its colour.
     pub colour: Colour,
-    /// How many robots.
+    /// Number of robots.
     pub robots: u8,
-    /// Who decides its open play.
+    /// What decides its open play.
     pub plays: Team,
-    /// What robots without a host's order let themselves be led by.
+    /// Approach of robots without an order of a host.
     pub approach: Approach,
-    /// How they retrieve.
+    /// Settings of retrieval.
     pub settings: Settings,
-    /// Which of the second paper's tactics its host plays.
+    /// Tactics of the second paper that its host plays.
     pub tactics: Tactics,
 }
 
 impl GameConfig {
-    /// Two full teams of ours, for so many simulated seconds.
+    /// Two full teams of ours, for `duration_s` simulated seconds.
     pub fn new(league: League, seed: u64, duration_s: f64) -> Self {
         let robots = match league {
             League::DivisionA => 11,
@@ -84,7 +84,7 @@ impl GameConfig {
             setup.plays = if setup.colour == Colour::Blue { blue } else { yellow };
             // A team that stands cannot place a ball, and the referee does not wait for it to.
             self.referee.team_mut(setup.colour).can_place_ball &= setup.plays != Team::Idle;
-            // People carry its robots where they block the match.
+            // Its robots are moved manually where they block the match.
             self.referee.team_mut(setup.colour).drives &= setup.plays != Team::Idle;
         }
         self
@@ -92,7 +92,7 @@ impl GameConfig {
 }
 
 impl GameConfig {
-    /// Who decides a side's open play.
+    /// What decides a side's open play.
     pub fn plays(&self, colour: Colour) -> Team {
         self.teams.iter().find(|setup| setup.colour == colour).map_or(Team::Ours, |setup| setup.plays)
     }
@@ -110,7 +110,7 @@ impl TeamSetup {
 }
 
 impl GameConfig {
-    /// With what a team's host begins.
+    /// The settings that a team's host starts with.
     pub fn host_settings(&self, colour: Colour) -> host::HostSettings {
         super::side::host_settings(self, colour)
     }

@@ -1,4 +1,4 @@
-//! `hand`: changes to a match under way: ball and robots, the referee's commands, robots' computers, the air.
+//! `hand`: changes to a running match: ball and robots, the referee's commands, robots' computers, the radio.
 //! A match without them is the same to the bit; one with them cannot be repeated from its seed.
 
 use geometry::{Field, Point, Pose, Vector};
@@ -12,12 +12,12 @@ use rules::state::Command;
 use super::{Game, GameConfig, GameError};
 
 impl<'a> Game<'a> {
-    /// What decides it.
+    /// The match's configuration.
     pub fn config(&self) -> &GameConfig {
         &self.config
     }
 
-    /// Pulls the ball there; where the match stands still it is put.
+    /// Moves the ball there; while paused it is put there.
     pub fn move_ball(&mut self, to: Point<Field>, stands: bool) {
         if stands {
             self.world.put_ball(Ball::at(to));
@@ -33,13 +33,13 @@ impl<'a> Game<'a> {
         self.world.put_ball(ball);
     }
 
-    /// The ball is there at once, at rest or rolling; robots in its way are moved aside.
+    /// Puts the ball there at once, standing or rolling; robots at its place are moved aside.
     pub fn put_ball(&mut self, ball: Ball) {
         self.world.put_ball(ball);
         self.world.make_room_for_ball();
     }
 
-    /// Pulls a robot there; where the match stands still it is put. Nothing where no such robot plays.
+    /// Moves a robot there; while paused it is put there. No effect where no such robot plays.
     pub fn move_robot(&mut self, who: Who, to: Point<Field>, stands: bool) {
         let Some(robot) = self.world.robot(who).filter(|robot| robot.present) else { return };
         let pose = Pose { position: to, heading: robot.pose.heading };
@@ -55,50 +55,51 @@ impl<'a> Game<'a> {
         self.world.put(who, pose);
     }
 
-    /// The referee is told to say that; false where it makes no sense now.
+    /// Orders the referee to send a command; false where that is not possible now.
     pub fn command(&mut self, command: Command) -> bool {
         self.referee.command_by_hand(command)
     }
 
-    /// The game is stopped and goes on with that, the ball at the valid place nearest to `place` where there is a choice. False where
-    /// it makes no sense now.
+    /// Stops the game and orders a restart, with the ball at the valid place nearest to `place` where there
+    /// is a choice. False where that is not possible now.
     pub fn restart(&mut self, next: Restart, place: Point<Field>) -> bool {
         self.referee.restart_by_hand(next, place)
     }
 
-    /// A HALT or STOP by hand ends.
+    /// Ends a HALT or STOP that was ordered manually.
     pub fn go_on(&mut self) {
         self.referee.go_on_by_hand();
     }
 
-    /// That team is shown a card.
+    /// Gives a team a card.
     pub fn card(&mut self, team: Colour, card: Card) {
         self.referee.card_by_hand(team, card);
     }
 
-    /// That team changes its keeper; false while the rules do not let it.
+    /// Changes a team's keeper; false while the rules do not permit it.
     pub fn change_keeper(&mut self, team: Colour, keeper: RobotId) -> bool {
         self.referee.set_keeper(team, keeper)
     }
 
-    /// That team wants a timeout of this length at the next stop; false where it has none left.
+    /// Requests a timeout of this length for a team at the next stop; false where it has none left.
     pub fn request_timeout(&mut self, team: Colour, length: Duration) -> bool {
         self.referee.request_timeout(team, length)
     }
 
-    /// Each team's air loses this share of packets from now on.
+    /// Each team's radio loses this share of packets from now on.
     pub fn lose(&mut self, share: f32) {
         for team in &mut self.teams {
             team.lose(share);
         }
     }
 
-    /// Whether vision's packets are lost on their way to both hosts from now on.
+    /// Whether vision's packets are lost before both hosts from now on.
     pub fn blind(&mut self, blind: bool) {
         self.blind = blind;
     }
 
-    /// A robot's computer ends, or one boots in its place with a clock at zero. False where no such robot plays.
+    /// Switches a robot's computer off, or boots one in its place with a clock at zero. False where no such
+    /// robot plays.
     pub fn power(&mut self, who: Who, on: bool, backend: &mut dyn Backend<'a>) -> Result<bool, GameError> {
         let tick = self.tick;
         self.teams[who.colour as usize].power(&self.config, who, on, tick, backend)

@@ -1,8 +1,9 @@
 //! `holds`: spells in which a robot holds the ball in play: how long, and how often it turns to and fro. From
 //! the true world. s, m, rad.
 //!
-//! A robot holds the ball while the ball is on the carpet within [`NEAR`] of its front plate. A gap of up to [`GAP`] belongs to the
-//! spell: a ball that rolls off the roller and is taken again was not let go. A spell ends with the phase.
+//! A robot holds the ball while the ball is on the field surface within [`NEAR`] of its front plate. A gap of
+//! up to [`GAP`] belongs to the spell: a ball that rolls off the roller and is taken again was not released.
+//! A spell ends with the phase.
 
 use hil_sim::small_size::{Ball, Robot};
 use protocol::Who;
@@ -14,15 +15,15 @@ use super::Game;
 /// One robot's time with the ball at its front.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Hold {
-    /// Whose.
+    /// Its team.
     pub team: &'static str,
-    /// Which robot.
+    /// Its number.
     pub robot: u8,
-    /// From this simulated second.
+    /// Start, simulated s.
     pub from_s: f32,
-    /// For so long.
+    /// Duration, s.
     pub lasted_s: f32,
-    /// How often it changed the sense in which it turns, by more than 5° each.
+    /// Number of changes of the sense in which it turns, by more than 5° each.
     pub reversals: u32,
 }
 
@@ -35,7 +36,7 @@ pub(super) struct Holds {
     over: [u32; 2],
 }
 
-/// A spell under way.
+/// A running spell.
 #[derive(Clone, Copy, Debug)]
 struct Spell {
     who: Who,
@@ -44,7 +45,7 @@ struct Spell {
     turning: Turning,
 }
 
-/// How a heading goes to and fro.
+/// Counter of a heading's changes of direction.
 #[derive(Clone, Copy, Debug)]
 struct Turning {
     heading: f32,
@@ -76,7 +77,7 @@ impl Turning {
 }
 
 impl Holds {
-    /// A tick of the match is over.
+    /// Takes a tick of the match.
     pub(super) fn look(&mut self, game: &Game<'_>) {
         let now = game.time();
         if game.referee().phase() != Phase::Run {
@@ -96,7 +97,7 @@ impl Holds {
         self.end(now);
     }
 
-    /// Closes the spells that have not gone on for [`GAP`].
+    /// Closes the spells that were interrupted for longer than [`GAP`].
     fn end(&mut self, now: f64) {
         let (open, over): (Vec<_>, Vec<_>) = self.open.iter().partition(|spell| now - spell.until <= GAP);
         self.open = open;
@@ -121,7 +122,7 @@ impl Holds {
         }
     }
 
-    /// With the spells that are under way counted as over.
+    /// The report with running spells counted as over.
     pub(super) fn closed(&self) -> Self {
         let mut all = self.clone();
         all.end(f64::INFINITY);
@@ -133,7 +134,7 @@ impl Holds {
         self.longest[team as usize]
     }
 
-    /// How many of a team's spells lasted for [`LONG`] and longer.
+    /// Number of a team's spells that lasted for [`LONG`] and longer.
     pub(super) fn over(&self, team: Colour) -> u32 {
         self.over[team as usize]
     }
@@ -154,14 +155,14 @@ fn holds(robot: &Robot, ball: &Ball) -> bool {
 
 /// The ball is at the front within this distance, m.
 const NEAR: f32 = 0.02;
-/// A spell goes on after a gap of so long, s: longer than a ball bounces off a roller, shorter than it takes to let go, back off and
-/// come again.
+/// A spell continues after a gap of at most this, s: longer than a ball bounces off a roller, shorter than it
+/// takes to release it, back off and come again.
 const GAP: f64 = 0.25;
-/// From here on a spell is long, s: what the rivals' robots reach twice in ten minutes.
+/// Duration from which a spell is long, s: the opponents' robots reach it twice in ten minutes.
 const LONG: f32 = 2.5;
-/// A turn by less than this is none, rad: 5°.
+/// A turn by less than this is not counted, rad: 5°.
 const SWING: f32 = 0.087;
-/// Ball and robots, m (rules).
+/// Radius of the ball, m (rules).
 const BALL_RADIUS: f32 = rules::limits::BALL_RADIUS;
 const BODY_HEIGHT: f32 = 0.15;
 

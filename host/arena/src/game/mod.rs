@@ -3,11 +3,11 @@
 //! the same match to the bit, on any machine.
 //!
 //! ```text
-//! world 1 ms ─► cameras ─► vision datagrams ─► host ─► radio frames ─► air ─► brains 10 ms ─► orders ─► world
+//! world 1 ms ─► cameras ─► vision datagrams ─► host ─► radio frames ─► brains 10 ms ─► orders ─► world
 //!    └► referee 10 ms ─► referee datagrams ─► host        ▲── beacons, telemetry ──┘
 //! ```
-//! [`Game`] is the match, tick by tick; [`play`] runs it to its end and gives a [`GameReport`]. What somebody wants to keep or show
-//! is told to a [`Watcher`], which changes nothing.
+//! [`Game`] is the match, tick by tick; [`play`] runs it to its end and returns a [`GameReport`]. A
+//! [`Watcher`] gets everything that may be stored or displayed, and changes nothing.
 
 mod config;
 mod hand;
@@ -43,21 +43,21 @@ pub const STEPS_A_TICK: u64 = 10;
 /// Length of a tick, µs (docs/architecture.md §2.3).
 pub const TICK_US: u64 = 10_000;
 
-/// Sees a match from outside.
+/// An observer of a match.
 pub trait Watcher {
-    /// A datagram of the cameras, as both teams get it.
+    /// A datagram of the cameras, as both teams receive it.
     fn vision(&mut self, _now: Instant, _bytes: &[u8]) {}
     /// A datagram of the referee.
     fn referee(&mut self, _now: Instant, _bytes: &[u8]) {}
-    /// Something came to a host.
+    /// An input of a host.
     fn input(&mut self, _now: Instant, _host: Colour, _input: host::Input<'_>) {}
-    /// A host sent something.
+    /// A packet sent by a host.
     fn sent(&mut self, _now: Instant, _host: Colour, _to: host::radio::To, _packet: &[u8]) {}
-    /// A tick is over.
+    /// Called after every tick.
     fn tick(&mut self, _game: &Game<'_>) {}
 }
 
-/// A match under way.
+/// A running match.
 pub struct Game<'a> {
     world: World,
     cameras: Cameras,
@@ -75,11 +75,11 @@ pub struct Game<'a> {
 /// Why a match cannot be played.
 #[derive(Debug)]
 pub enum GameError {
-    /// A robot's computer.
+    /// A robot's computer failed.
     Computer {
-        /// Whose.
+        /// The robot.
         who: Who,
-        /// What is wrong with it.
+        /// The error.
         error: McuError,
     },
     /// The league has no such matches.
@@ -98,7 +98,7 @@ impl std::fmt::Display for GameError {
 impl std::error::Error for GameError {}
 
 impl<'a> Game<'a> {
-    /// Robots on their halves, the ball in the middle, the referee before the first whistle.
+    /// Robots on their halves, the ball in the middle, the referee before its first command.
     pub fn new(config: &GameConfig, backend: &mut dyn Backend<'a>) -> Result<Self, GameError> {
         let league = config.league;
         let model = WorldModel::of(league, &config.world).ok_or_else(|| {
@@ -128,17 +128,17 @@ impl<'a> Game<'a> {
         })
     }
 
-    /// Seconds since the beginning.
+    /// Seconds since the start.
     pub fn time(&self) -> f64 {
         self.world.time()
     }
 
-    /// The time on everybody's clock.
+    /// The common time of hosts and robots.
     pub fn now(&self) -> Instant {
         Instant(u64::from(self.tick) * TICK_US)
     }
 
-    /// The truth.
+    /// The true world.
     pub fn world(&self) -> &World {
         &self.world
     }
@@ -153,17 +153,17 @@ impl<'a> Game<'a> {
         &self.teams[team as usize].host
     }
 
-    /// What happened in the last tick.
+    /// Events of the last tick.
     pub fn events(&self) -> &[Event] {
         &self.events
     }
 
-    /// Who held the ball in play, and for how long.
+    /// Which robots held the ball in play, and for how long.
     fn holds(&self) -> &Holds {
         &self.holds
     }
 
-    /// The hash of all ticks so far.
+    /// The hash over all ticks so far.
     pub fn trace(&self) -> TraceHash {
         self.trace
     }
@@ -173,12 +173,12 @@ impl<'a> Game<'a> {
         self.referee.is_over()
     }
 
-    /// Most instructions that a robot's tick has taken, where they can be counted.
+    /// Most instructions of a robot's tick, where they can be counted.
     pub fn worst_instructions(&self) -> u32 {
         self.teams.iter().map(Team::worst_instructions).max().unwrap_or(0)
     }
 
-    /// 10 ms: brains think and order, then physics moves, cameras look and the referee judges.
+    /// Runs 10 ms: brains step and order, then physics moves, cameras capture and the referee judges.
     pub fn step(&mut self, watcher: &mut dyn Watcher) -> Result<(), GameError> {
         self.advance(watcher)?;
         self.judge(watcher);
@@ -232,7 +232,7 @@ impl<'a> Game<'a> {
         }
     }
 
-    /// A packet of the referee reaches both teams.
+    /// Delivers a packet of the referee to both teams.
     pub(crate) fn announce(
         &mut self,
         now: Instant,
@@ -247,7 +247,7 @@ impl<'a> Game<'a> {
         }
     }
 
-    /// The true world, to put things into for a drill.
+    /// The true world, for placing objects in a drill.
     pub(crate) fn world_mut(&mut self) -> &mut World {
         &mut self.world
     }
@@ -258,7 +258,7 @@ impl<'a> Game<'a> {
     }
 }
 
-/// Plays a match to its end, or for so many simulated seconds.
+/// Plays a match to its end, or for its configured duration.
 pub fn play(
     config: &GameConfig,
     backend: &mut dyn Backend<'_>,
@@ -267,7 +267,7 @@ pub fn play(
     play_until(config, backend, watcher, || false)
 }
 
-/// The same, but ends at the first tick at which `stop` says so; the report is of what was played.
+/// The same, but ends at the first tick at which `stop` is true; the report is of what was played.
 pub fn play_until(
     config: &GameConfig,
     backend: &mut dyn Backend<'_>,
@@ -282,11 +282,11 @@ pub fn play_until(
     Ok(GameReport::of(config, &game))
 }
 
-/// Watches nothing.
+/// A watcher that does nothing.
 pub struct Nobody;
 impl Watcher for Nobody {}
 
-/// Our robots' numbers in a team of so many.
+/// Our robots' numbers in a team of `robots`.
 pub(crate) fn numbers(robots: u8) -> impl Iterator<Item = RobotId> {
     RobotId::all().take(usize::from(robots))
 }

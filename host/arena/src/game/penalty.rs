@@ -1,9 +1,10 @@
-//! `penalty`: how many of so many simulated penalties a keeper saves. SI, field frame.
+//! `penalty`: number of simulated penalties that a keeper saves. SI, field frame.
 //!
-//! The keeper is ours, led by its host and its brain, seen and told through cameras and radio as in a match; the shooter is a body that
-//! a script moves, so that its shots do not depend on the keeper: it waits behind the ball for a random time, turns to a random place
-//! near a random post, goes up to the ball, and the ball leaves with a random speed. The keeper of the comparison is switched off as
-//! soon as it stands on its line. Seeded: the same shots for both.
+//! The keeper is ours, controlled by its host and its brain, through cameras and radio as in a match; the
+//! shooter is a body that a script moves, so that its shots do not depend on the keeper: it waits behind the
+//! ball for a random time, turns to a random place near a random post, goes up to the ball, and the ball
+//! leaves with a random speed. The keeper of the comparison is switched off as soon as it stands on its line.
+//! Seeded: the same shots for both.
 
 use geometry::{Angle, Field, GoalEnd, Point, Pose, Vector};
 use hil_sim::NativeBackend;
@@ -17,12 +18,12 @@ use rules::{Colour, League, Phase};
 use super::{Game, GameConfig, GameError, Nobody};
 use crate::evaluation::statistics::Count;
 
-/// Who guards the goal.
+/// The keeper in the goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Keeper {
     /// Our host and brain.
     Plays,
-    /// The same body, left where it stands when the penalty begins.
+    /// The same body, left where it stands when the penalty starts.
     Stands,
 }
 
@@ -31,27 +32,27 @@ pub enum Keeper {
 pub struct Shot {
     /// From NORMAL_START to the moment at which the ball leaves, s.
     pub after: f64,
-    /// Where it crosses the goal line, m from the goal's middle.
+    /// Place where it crosses the goal line, m from the goal's middle.
     pub aim: f32,
-    /// m/s.
+    /// Ball speed, m/s.
     pub speed: f32,
-    /// For so long before the shooter goes up to the ball and turns to its aim, s.
+    /// Duration before the kick in which the shooter goes up to the ball and turns to its aim, s.
     pub run_up: f64,
 }
 
-/// What became of it.
+/// Outcome of a shot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// The whole ball crossed the line between the posts.
     Goal,
-    /// It did not.
+    /// The ball did not cross it.
     Saved,
     /// There was no shot: the referee did not start the penalty, or ended it before.
     NoShot,
 }
 
 impl Shot {
-    /// Of this seed.
+    /// The shot of this seed.
     pub fn of(league: League, seed: u64) -> Self {
         let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
         let mut share = || {
@@ -73,7 +74,7 @@ impl Shot {
     }
 }
 
-/// How many of the penalties with these seeds the keeper saves, of those that were shot.
+/// Number of penalties with these seeds that the keeper saves, and number of those that were shot.
 pub fn saves(
     league: League,
     seeds: impl IntoIterator<Item = u64>,
@@ -88,7 +89,7 @@ pub fn saves(
     Ok(count)
 }
 
-/// One penalty.
+/// Plays one penalty.
 pub fn shoot(league: League, seed: u64, keeper: Keeper) -> Result<Outcome, GameError> {
     let shot = Shot::of(league, seed);
     let mut config = GameConfig::new(league, seed, MATCH).between(Team::Idle, Team::Ours);
@@ -115,7 +116,7 @@ pub fn shoot(league: League, seed: u64, keeper: Keeper) -> Result<Outcome, GameE
         if !asked && game.time() > 1.0 {
             asked = game.command(Command::PreparePenalty(Colour::Blue));
         }
-        // The script's robots stand where they must at all times.
+        // The script's robots stand at their required places at all times.
         game.put_robot(other, behind(2.0, straight));
         let running = phase == Phase::Penalty(Colour::Blue);
         if running && begun.is_none() {
@@ -154,21 +155,21 @@ pub fn shoot(league: League, seed: u64, keeper: Keeper) -> Result<Outcome, GameE
     Ok(Outcome::NoShot)
 }
 
-/// A penalty takes no longer, simulated s.
+/// Longest penalty, simulated s.
 const MATCH: f64 = 40.0;
-/// No ball is longer on its way, s: 8 m at 4 m/s take 2.6 s.
+/// Longest flight of a ball, s: 8 m at 4 m/s take 2.6 s.
 const FLIGHT: f64 = 4.0;
 /// Shots are aimed this far inside a post, m, and up to [`CORNER`] farther.
 const POST: f32 = 0.06;
 const CORNER: f32 = 0.2;
-/// Shots' speeds, m/s.
+/// Least and greatest speed of shots, m/s.
 const SLOWEST: f32 = 4.0;
 const FASTEST: f32 = 6.3;
-/// The shooter goes up to the ball and turns to its target within so long at least and at most, s.
+/// Least and greatest time in which the shooter goes up to the ball and turns to its target, s.
 const RUN_UP: [f64; 2] = [0.1, 0.4];
-/// From where, m from centre to centre.
+/// Distance at which the shooter waits, m from centre to centre.
 const STANDS_OFF: f32 = 0.35;
-/// Where it touches the ball, m.
+/// Distance at which it touches the ball, m from centre to centre.
 const AT_BALL: f32 = ROBOT_RADIUS + BALL_RADIUS + 0.005;
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
-//! `recording`: header of a match recording. Everything both hosts heard and said; [`host::record::Recorder`]
-//! writes it (docs/architecture.md §7.4).
+//! `recording`: header of a match recording. Everything both hosts received and sent;
+//! [`host::record::Recorder`] writes it (docs/architecture.md §7.4).
 
 use host::Input;
 use host::radio::To;
@@ -29,7 +29,7 @@ impl Watcher for Recorder {
     }
 }
 
-/// The header of a match's recording, by that version and commit of the program.
+/// The header of a match's recording, with version and commit of the program.
 pub fn header(version: &str, commit: &str, config: &GameConfig) -> RecordingHeader {
     let hosts = [Colour::Yellow, Colour::Blue];
     RecordingHeader {

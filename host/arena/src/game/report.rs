@@ -1,5 +1,4 @@
-//! `report`: result of a match: docs/case-format.md §5.2's JSON of `play`, filled from the referee's
-//! accounts.
+//! `report`: result of a match: docs/case-format.md §5.2's JSON of `play`, filled from the referee's counts.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +11,7 @@ use serde::Serialize;
 use super::holds::{Hold, Holds};
 use super::{Game, GameConfig};
 
-/// A match in numbers.
+/// Result of a match.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GameReport {
     /// Goals.
@@ -23,25 +22,25 @@ pub struct GameReport {
     pub ball_in_play: f32,
     /// Offences by kind.
     pub fouls: PerTeam<BTreeMap<&'static str, u32>>,
-    /// Times at which the match stood for longer than the referee's patience.
+    /// Times at which the match was blocked for longer than the referee's patience.
     pub blocked: Vec<BlockedReport>,
     /// The longest spell in play in which one robot held the ball (see [`Hold`]).
     pub longest_hold_s: f32,
-    /// How many spells lasted for 2.5 s and longer.
+    /// Number of spells that lasted for 2.5 s and longer.
     pub holds_over_2_5s: u32,
-    /// Most turns to and fro in one of these.
+    /// Most changes of turning direction in one of these.
     pub most_reversals: u32,
     /// These spells, oldest first.
     pub long_holds: Vec<Hold>,
-    /// How often the referee stopped the match because the ball made no progress.
+    /// Number of stops because the ball made no progress.
     pub no_progress: u32,
-    /// Who decided each side's open play.
+    /// What decided each side's open play.
     pub teams: PerTeam<Team>,
-    /// What else was counted.
+    /// Further counts.
     pub metrics: PerTeam<TeamReport>,
-    /// League and seed, to play it again.
+    /// League, to play it again.
     pub league: &'static str,
-    /// See `league`.
+    /// Seed, to play it again.
     pub seed: u64,
     /// The world it was played in, as `--world` takes it.
     pub world: String,
@@ -51,20 +50,20 @@ pub struct GameReport {
     pub worst_step_instructions: u32,
 }
 
-/// The match stood.
+/// A time at which the match was blocked.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BlockedReport {
-    /// From this simulated second.
+    /// Start, simulated s.
     pub from_s: f32,
-    /// For so long.
+    /// Duration, s.
     pub lasted_s: f32,
-    /// Whose doing it was, at last; none for the ball's place.
+    /// Team that blocked it last; `None` for the ball's place.
     pub team: Option<&'static str>,
-    /// Which robot's.
+    /// Robot that blocked it last.
     pub robot: Option<u8>,
-    /// Why, as a name for programs.
+    /// The reason, as a name for programs.
     pub reason: &'static str,
-    /// Why, with its numbers.
+    /// The reason, with its numbers.
     pub words: String,
 }
 
@@ -82,7 +81,7 @@ impl BlockedReport {
     }
 }
 
-/// Something of both teams.
+/// A value for both teams.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PerTeam<T> {
     /// Blue's.
@@ -97,10 +96,10 @@ impl<T> PerTeam<T> {
     }
 }
 
-/// One team in numbers.
+/// Results of one team.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TeamReport {
-    /// Seconds that it had the ball.
+    /// Seconds of possession.
     pub possession_s: f32,
     /// Seconds in play with the ball in the opponents' half.
     pub ball_in_their_half_s: f32,
@@ -118,7 +117,7 @@ pub struct TeamReport {
     pub attack_ratio: Option<f32>,
     /// The longest spell in play in which one of its robots held the ball.
     pub longest_hold_s: f32,
-    /// How many of its spells lasted for 2.5 s and longer.
+    /// Number of its spells that lasted for 2.5 s and longer.
     pub holds_over_2_5s: u32,
     /// Passes of its restarts as its host followed them, planned free kicks, and changes of role.
     pub play: PlayTally,
@@ -144,7 +143,7 @@ impl TeamReport {
 }
 
 impl GameReport {
-    /// Of a match as it stands.
+    /// The report of a match in its current state.
     pub fn of(config: &GameConfig, game: &Game<'_>) -> Self {
         let (accounts, metrics) = (game.referee().accounts(), game.referee().metrics());
         let holds = game.holds().closed();

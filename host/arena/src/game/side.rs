@@ -1,4 +1,5 @@
-//! One side of a match: its host, its robots' computers, and the air between them. Times in ticks of 10 ms and µs.
+//! `side`: one side of a match: its host, its robots' computers, and the radio between them. Times in ticks
+//! of 10 ms and µs.
 
 use geometry::{Angle, GoalEnd, Pose};
 use hil_sim::small_size::World;
@@ -13,7 +14,7 @@ use rules::restart::kickoff_places;
 
 use super::{GameConfig, GameError, TICK_US, TeamSetup, Watcher, numbers};
 
-/// A team under way.
+/// A running team.
 pub(super) struct Team<'a> {
     pub(super) host: Host,
     colour: Colour,
@@ -21,10 +22,10 @@ pub(super) struct Team<'a> {
     players: Vec<Player<'a>>,
 }
 
-/// A robot led by a brain.
+/// A robot with a brain.
 struct Player<'a> {
     who: Who,
-    /// None while it is off.
+    /// `None` while it is off.
     computer: Option<Box<dyn Mcu + 'a>>,
     /// The tick in which it booted: its clock's zero.
     booted: u32,
@@ -33,7 +34,7 @@ struct Player<'a> {
 }
 
 impl<'a> Team<'a> {
-    /// Robots on the carpet, computers and host started.
+    /// Robots on the field, computers and host started.
     pub(super) fn new(
         config: &GameConfig,
         setup: &TeamSetup,
@@ -45,7 +46,7 @@ impl<'a> Team<'a> {
         let own = own_goal(config, colour);
         let ids: Vec<RobotId> = numbers(setup.robots).collect();
         let mut players = Vec::new();
-        // As for the other team's kick-off: nobody in the circle. The keeper comes first.
+        // As for the other team's kick-off: no robot in the circle. The keeper comes first.
         let places = kickoff_places(&config.league.field(), own, false);
         let heading = if own == GoalEnd::Positive { Angle::HALF_TURN } else { Angle::ZERO };
         for (id, position) in ids.iter().zip(places) {
@@ -66,7 +67,7 @@ impl<'a> Team<'a> {
         self.players.iter().map(|player| player.worst_instructions).max().unwrap_or(0)
     }
 
-    /// Something comes to the host; what it says goes on the air.
+    /// Feeds an input to the host; its packets are sent by radio.
     pub(super) fn tell(&mut self, tick: u32, now: Instant, input: Input<'_>, watcher: &mut dyn Watcher) {
         watcher.input(now, self.colour, input);
         self.host.handle(now, input);
@@ -80,27 +81,27 @@ impl<'a> Team<'a> {
         }
     }
 
-    /// What robots said reaches the host.
+    /// Delivers the robots' frames to the host.
     pub(super) fn hear(&mut self, tick: u32, now: Instant, watcher: &mut dyn Watcher) {
         for packet in self.air.deliver_to_host(tick) {
             self.tell(tick, now, Input::Robot(&packet), watcher);
         }
     }
 
-    /// The host's deadline, if it has come: a computer wakes up for it, it does not wait for robots' steps.
+    /// Feeds the host's deadline if it is due: a host wakes up for it and does not wait for robots' steps.
     pub(super) fn deadline(&mut self, tick: u32, now: Instant, watcher: &mut dyn Watcher) {
         if self.host.poll_timeout().is_some_and(|due| due <= now) {
             self.tell(tick, now, Input::Timeout, watcher);
         }
     }
 
-    /// Its air loses this share of packets from now on.
+    /// Its radio loses this share of packets from now on.
     pub(super) fn lose(&mut self, share: f32) {
         let settings = AirSettings { loss: share, ..self.air.settings().clone() };
         self.air.set(settings);
     }
 
-    /// A robot's computer ends, or boots into its next life; false where no such robot plays.
+    /// Switches a robot's computer off, or boots it into its next epoch; false where no such robot plays.
     pub(super) fn power(
         &mut self,
         config: &GameConfig,
@@ -127,7 +128,7 @@ impl<'a> Team<'a> {
         Ok(true)
     }
 
-    /// All its robots think at once; bodies are told, words go on the air.
+    /// Runs one step of all its robots' brains; bodies get their orders, frames go to the radio.
     pub(super) fn think(
         &mut self,
         tick: u32,
@@ -140,7 +141,7 @@ impl<'a> Team<'a> {
         for (i, player) in players.iter_mut().enumerate() {
             let who = player.who;
             let Some(sensors) = world.sensors(who) else {
-                // Off the carpet: its radio is off too.
+                // Off the field: its radio is off too.
                 air.discard(tick, who.id);
                 continue;
             };
@@ -176,7 +177,7 @@ impl<'a> Team<'a> {
     }
 }
 
-/// With what a team's host begins; robots hear each other, so it passes nothing on.
+/// The settings that a team's host starts with; robots receive each other, so it relays nothing.
 pub(super) fn host_settings(config: &GameConfig, colour: Colour) -> HostSettings {
     let usual = HostSettings::new(colour, config.league, 1);
     HostSettings {

@@ -1,12 +1,12 @@
-//! `story`: text log of a match. A line for each thing that the referee notes, and for each restart. Seconds,
-//! field frame, m.
+//! `story`: text log of a match. A line for each event of the referee, and for each restart. Seconds, field
+//! frame, m.
 
 use hil_sim::small_size::referee::{Event, What};
 use rules::{Colour, Phase};
 
 use super::{Game, Watcher};
 
-/// Tells a match as it is played.
+/// Writes the log of a match while it is played.
 #[derive(Clone, Debug, Default)]
 pub struct GameStory {
     events: usize,
@@ -48,7 +48,7 @@ impl Watcher for GameStory {
     }
 }
 
-/// An event in words: who, what, where.
+/// An event as text: robot, event, place.
 pub fn sentence(event: &Event) -> String {
     let who = match (event.by, event.robot) {
         (Some(team), Some(robot)) => format!("{} {robot}: ", team.word()),

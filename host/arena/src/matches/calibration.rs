@@ -1,4 +1,4 @@
-//! `calibration`: calibration plot of P(receive). One picture: for each tenth of P(receive), how many of the
+//! `calibration`: calibration plot of P(receive). One figure: for each tenth of P(receive), how many of the
 //! passes their receiver had, with Wilson's 95 % interval; on the diagonal both agree (Biswas et al. 2014,
 //! equation 5). px, shares from 0 to 1.
 
@@ -6,7 +6,7 @@ use drawing::{Anchor, Font, Svg, Theme};
 
 use super::passes::Passes;
 
-/// Predicted against seen, as an SVG.
+/// Predicted against observed shares, as an SVG.
 pub fn calibration_plot(passes: &Passes) -> String {
     let mut svg = Svg::default();
     let colors = Theme::Light.colors();
@@ -41,9 +41,9 @@ pub fn calibration_plot(passes: &Passes) -> String {
     svg.finish([-ROOM, -56.0], [SIDE + 20.0, SIDE + 68.0], 1.0, colors.paper, title)
 }
 
-/// Of the square, px.
+/// Side of the square, px.
 const SIDE: f64 = 320.0;
-/// For the numbers beside it, px.
+/// Space for the numbers beside it, px.
 const ROOM: f64 = 44.0;
-/// In the whole range.
+/// Tenths in the whole range.
 const TENTHS: f64 = 10.0;

@@ -1,8 +1,9 @@
 //! `effect`: effect of one part of the second paper. Our team with it against our team without, in the same
 //! matches (docs/papers.md D24).
 //!
-//! Goals by their difference a match; the paper's two ratios (Biswas et al. 2014 §6) by the mean of their logarithms, for 2 and 1/2 are
-//! as far from 1, half a shot added to each side so that a match without shots has a ratio too. Student's 95 % intervals, paired t.
+//! Goals by their difference a match; the paper's two ratios (Biswas et al. 2014 §6) by the mean of their
+//! logarithms, for 2 and 1/2 are as far from 1, half a shot added to each side so that a match without shots
+//! has a ratio too. Student's 95 % intervals, paired t.
 
 use serde::Serialize;
 
@@ -12,18 +13,18 @@ use super::plan::Plan;
 use super::row::MatchRow;
 use crate::evaluation::statistics::{Sample, paired, student};
 
-/// How far the side with the part was ahead.
+/// Advantage of the side with the part.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Change {
-    /// A difference, 0 where the part changes nothing; or a ratio, 1 where it changes nothing.
+    /// A difference, 0 without effect; or a ratio, 1 without effect.
     pub mean: f64,
-    /// Lower end of its 95 % interval; none of a single match.
+    /// Lower end of its 95 % interval; `None` of a single match.
     pub low: Option<f64>,
-    /// Upper end.
+    /// Upper end of the 95 % interval.
     pub high: Option<f64>,
-    /// The chance of as much between equals.
+    /// p: probability of an equal or larger difference between equals.
     pub p: Option<f64>,
-    /// Matches that have the number.
+    /// Number of matches that have the value.
     pub matches: u32,
 }
 
@@ -41,16 +42,16 @@ impl Change {
     }
 }
 
-/// A part's worth.
+/// Effect of a part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Effect {
     /// Its name; several with a `+` between.
     pub part: String,
-    /// Who played with it.
+    /// The team that played with it.
     pub with: Entrant,
-    /// Who played without.
+    /// The team that played without it.
     pub without: Entrant,
-    /// Matches.
+    /// Number of matches.
     pub matches: u32,
     /// Goals a match with it, less those without.
     pub goals: Option<Change>,
@@ -62,7 +63,7 @@ pub struct Effect {
     pub attack_ratio: Option<Change>,
 }
 
-/// One of each pair of the plan whose teams differ by parts that one of them has and the other lacks.
+/// One for each pair of the plan whose teams differ by parts that one of them has and the other lacks.
 pub fn effects(plan: &Plan, rows: &[MatchRow]) -> Vec<Effect> {
     let of = |own: Entrant, opponent: Entrant| {
         let (more, less) = (own.beyond(opponent), opponent.beyond(own));
@@ -93,5 +94,5 @@ pub fn effects(plan: &Plan, rows: &[MatchRow]) -> Vec<Effect> {
     plan.pairings.iter().filter_map(|pairing| of(pairing.own, pairing.opponent)).collect()
 }
 
-/// Of a shot, added to both sides (Haldane 1956).
+/// Half a shot, added to both sides (Haldane 1956).
 const HALF: f64 = 0.5;

@@ -7,23 +7,25 @@ use std::fmt;
 use host::strategy::{Tactics, Team};
 use serde::{Deserialize, Serialize};
 
-/// A team with its tactics, written as one word: `zone`, `ours`, `ours-without-second-level`, `ours-with-coerce+pass-ahead`.
+/// A team with its tactics, written as one label: `zone`, `ours`, `ours-without-second-level`,
+/// `ours-with-coerce+pass-ahead`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub struct Entrant {
-    /// Who decides its open play.
+    /// What decides its open play.
     pub team: Team,
-    /// What its host plays of the second paper.
+    /// Tactics of the second paper that its host plays.
     pub tactics: Tactics,
 }
 
 impl Entrant {
-    /// Our team as usual.
+    /// Our team with the usual tactics.
     pub fn ours() -> Self {
         Self::from(Team::Ours)
     }
 
-    /// Our team once for each part of the second paper, without it where it is usual and with it where it is not.
+    /// Our team once for each part of the second paper, without it where it is usual and with it where it is
+    /// not.
     pub fn ablations() -> Vec<Self> {
         let usual = parts(Tactics::default());
         let flipped = |part: &String| {
@@ -36,7 +38,7 @@ impl Entrant {
         parts(Tactics::ALL).iter().filter_map(flipped).collect()
     }
 
-    /// From its word.
+    /// Parses its label.
     pub fn parse(word: &str) -> Result<Self, String> {
         let wrong = || {
             let teams = Team::ALL.map(Team::word).join(", ");
@@ -59,7 +61,7 @@ impl Entrant {
             parts.extend(with.split('+').map(str::to_owned));
         }
         for part in without.into_iter().flat_map(|without| without.split('+')) {
-            // What it is without is a part, too: a slip of the pen must not pass for the usual team.
+            // The parts after `without` are checked too: a typing error must not be read as the usual team.
             with_parts(&BTreeSet::from([part.to_owned()])).map_err(|_| wrong())?;
             parts.remove(part);
         }
@@ -67,7 +69,8 @@ impl Entrant {
         Ok(Self { team: Team::Ours, tactics })
     }
 
-    /// The parts of the second paper that this one plays and the other does not; none between different teams.
+    /// The parts of the second paper that this one plays and the other does not; empty between different
+    /// teams.
     pub(super) fn beyond(self, other: Self) -> Vec<String> {
         if self.team != other.team {
             return Vec::new();
@@ -113,7 +116,7 @@ impl TryFrom<String> for Entrant {
     }
 }
 
-/// Their names, as [`Tactics::words`] has them: a part that is added there is one here.
+/// Names of the enabled parts, from [`Tactics::words`]: a part that is added there is listed here too.
 fn parts(tactics: Tactics) -> BTreeSet<String> {
     let words = tactics.words();
     words.split(',').filter(|word| *word != "none").map(str::to_owned).collect()

@@ -2,10 +2,10 @@
 //! (Biswas et al. 2014 §6): offence ratio, attack ratio, goals, with intervals beside the paper's numbers.
 //!
 //! ```text
-//! Plan ─► Matches::play_shard ─► trials-1-of-3.csv … ─► merge ─► rows ─► outcomes, effects ─► matches.json, tables in words, plots
+//! Plan ─► Matches::play_shard ─► trials-1-of-3.csv … ─► merge ─► rows ─► outcomes, effects ─► matches.json, text tables, plots
 //! ```
-//! Shards, files, resuming and merging are [`crate::evaluation`]'s: equal plans give equal bytes for any number of threads, shards
-//! and interrupts.
+//! Shards, files, resuming and merging are [`crate::evaluation`]'s: equal plans give equal bytes for any
+//! number of threads, shards and interrupts.
 
 mod calibration;
 mod effect;
@@ -40,20 +40,20 @@ pub use words::markdown;
 use crate::evaluation::{EvaluationError, Progress, Shard, play_open};
 use crate::game::{GameConfig, Nobody, play};
 
-/// Everything that decides the matches of a plan.
+/// All settings that the matches of a plan depend on.
 #[derive(Clone, Debug)]
 pub struct Matches<'a> {
-    /// Which matches.
+    /// The matches.
     pub plan: Plan,
     /// The case base in every robot.
     pub base: CaseBase<'a>,
-    /// How it is searched.
+    /// Settings of retrieval.
     pub settings: Settings,
     /// Version and commit of the program: matches of two programs are never mixed.
     pub program: String,
 }
 
-/// Which evaluation a file of matches is of.
+/// Identity of the evaluation of a file of matches.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MatchIdentity {
     /// Version and commit of the program.
@@ -67,7 +67,7 @@ pub struct MatchIdentity {
 }
 
 impl MatchIdentity {
-    /// In what the other differs, for people; empty between equals.
+    /// Names of the settings in which the other differs; empty between equals.
     pub fn differences(&self, other: &Self) -> Vec<&'static str> {
         let (own, theirs) = (&self.plan, &other.plan);
         let pairs = [
@@ -86,7 +86,7 @@ impl MatchIdentity {
 }
 
 impl Matches<'_> {
-    /// What its files say they are of.
+    /// The identity that its files carry.
     pub fn identity(&self) -> MatchIdentity {
         let settings = self.settings.describe();
         MatchIdentity {
@@ -111,7 +111,7 @@ impl Matches<'_> {
         Ok(config)
     }
 
-    /// Plays the match of that number.
+    /// Plays the match with this number.
     pub fn play(&self, number: usize) -> Result<MatchRow, EvaluationError> {
         let planned = self.plan.get(number).ok_or(EvaluationError::Nothing)?;
         let report = play(&self.config(&planned)?, &mut NativeBackend::new(self.base), &mut Nobody)
@@ -119,8 +119,8 @@ impl Matches<'_> {
         Ok(MatchRow::new(&planned, &report))
     }
 
-    /// Plays what `file` lacks of a shard, on all threads of the current rayon pool; its rows in the plan's order. As
-    /// [`crate::evaluation::Evaluation::play_shard`].
+    /// Plays the matches of a shard that are missing in `file`, on all threads of the current rayon pool;
+    /// returns its rows in the plan's order. As [`crate::evaluation::Evaluation::play_shard`].
     pub fn play_shard(
         &self,
         shard: Shard,

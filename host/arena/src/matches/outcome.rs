@@ -13,21 +13,22 @@ use super::plan::Plan;
 use super::row::{MatchRow, counted};
 use crate::evaluation::statistics::{Sample, paired, student};
 
-/// A mean over matches of what is never below 0, or a share, never above 1; its interval is cut there.
+/// Mean over matches of a number that is never below 0, or of a share, never above 1; its interval is clipped
+/// there.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Estimate {
-    /// It.
+    /// The mean.
     pub mean: f64,
-    /// Lower end of its 95 % interval; none of a single match.
+    /// Lower end of its 95 % interval; `None` of a single match.
     pub low: Option<f64>,
-    /// Upper end.
+    /// Upper end of the 95 % interval.
     pub high: Option<f64>,
-    /// Matches that have the number.
+    /// Number of matches that have the value.
     pub matches: u32,
 }
 
 impl Estimate {
-    /// Of these numbers, none of which can be more than `most`; none without any.
+    /// Estimate of these numbers, each at most `most`; `None` without numbers.
     fn of(values: impl Iterator<Item = f64> + Clone, most: f64) -> Option<Self> {
         let sample = Sample::of(values)?;
         let interval = student(sample, CONFIDENCE);
@@ -43,11 +44,11 @@ impl Estimate {
 /// All matches of two teams.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Outcome {
-    /// Whose numbers are told first.
+    /// The team whose numbers come first.
     pub own: Entrant,
-    /// Against whom.
+    /// The opponents.
     pub opponent: Entrant,
-    /// How many were played.
+    /// Number of matches played.
     pub matches: u32,
     /// Won, drawn, lost.
     pub won_drawn_lost: [u32; 3],
@@ -57,19 +58,19 @@ pub struct Outcome {
     pub goals_for: Option<Estimate>,
     /// Goals against a match.
     pub goals_against: Option<Estimate>,
-    /// The chance of such a difference of goals between equals, by the paired t; none of a single match.
+    /// p of such a difference of goals between equals, by the paired t; `None` of a single match.
     pub goals_p: Option<f64>,
     /// Offence ratio, the mean of the matches' own.
     pub offence_ratio: Option<Estimate>,
-    /// Attack ratio, the mean of those matches' in which the opponents shot.
+    /// Attack ratio, the mean over those matches in which the opponents shot.
     pub attack_ratio: Option<Estimate>,
-    /// All own shots over all of theirs: what counts the matches in which they never shot too.
+    /// All own shots over all of theirs: counts the matches in which they never shot too.
     pub attack_ratio_of_all: Option<f64>,
     /// Shots, a match, for and against.
     pub shots: [Option<Estimate>; 2],
-    /// Shots that needed a keeper, a post or went in, for and against.
+    /// Shots that a keeper had to stop, that hit a post, or went in, for and against.
     pub chances: [Option<Estimate>; 2],
-    /// Share of the ball.
+    /// Own share of possession.
     pub possession: Option<Estimate>,
     /// Passes that arrived, for and against.
     pub passes: [Option<Estimate>; 2],
@@ -77,13 +78,13 @@ pub struct Outcome {
     pub losses: [Option<Estimate>; 2],
     /// Share of the match with the ball in play.
     pub ball_in_play: Option<Estimate>,
-    /// Passes of restarts, planned free kicks and P(receive) against what was seen, own and theirs.
+    /// Passes of restarts, planned free kicks and P(receive) against observed shares, own and theirs.
     pub restarts: [Passes; 2],
     /// Offences by kind, all matches, own and theirs.
     pub fouls: [BTreeMap<String, u32>; 2],
 }
 
-/// One a pair of the plan, in its order.
+/// One for each pair of the plan, in its order.
 pub fn outcomes(plan: &Plan, rows: &[MatchRow]) -> Vec<Outcome> {
     plan.pairings
         .iter()
@@ -145,7 +146,7 @@ fn outcome(own: Entrant, opponent: Entrant, rows: &[&MatchRow]) -> Outcome {
     }
 }
 
-/// What both sides' hosts counted, over all matches.
+/// Counts of both sides' hosts, over all matches.
 fn played(rows: &[&MatchRow]) -> [PlayTally; 2] {
     let mut sums = [PlayTally::default(); 2];
     for row in rows {
@@ -156,7 +157,8 @@ fn played(rows: &[&MatchRow]) -> [PlayTally; 2] {
     sums
 }
 
-/// The passes of restarts of our team in all these matches, whatever its tactics; both sides' where it met itself.
+/// The passes of restarts of our team in all these matches, with any tactics; of both sides where it played
+/// itself.
 pub fn our_passes(rows: &[MatchRow]) -> Passes {
     let mut sum = PlayTally::default();
     for row in rows {
@@ -169,5 +171,5 @@ pub fn our_passes(rows: &[MatchRow]) -> Passes {
     Passes::of(&sum)
 }
 
-/// Of every interval.
+/// Confidence level of every interval.
 pub(super) const CONFIDENCE: f64 = 0.95;

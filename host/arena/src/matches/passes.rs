@@ -1,6 +1,6 @@
-//! `passes`: pass statistics of matches. What hosts count of their passes in a match, as a row's columns, and
-//! its sums over matches: the second paper's Table 1, passes by kind of kick, and the calibration of its
-//! equation 5. Shares with Wilson's 95 % intervals.
+//! `passes`: pass statistics of matches. The counts of passes that hosts report in a match, as a row's
+//! columns, and their sums over matches: the second paper's Table 1, passes by kind of kick, and the
+//! calibration of its equation 5. Shares with Wilson's 95 % intervals.
 
 use std::fmt::Write as _;
 
@@ -13,7 +13,7 @@ use super::outcome::CONFIDENCE;
 use super::row::counted;
 use crate::evaluation::statistics::{Count, Interval, wilson};
 
-/// How often each kick had each fate: `flat.received:3 chip.out:1`.
+/// Number of passes by kick and fate: `flat.received:3 chip.out:1`.
 pub(super) fn fates_column(passes: &PassTally) -> String {
     let mut passes = *passes;
     let mut text = String::new();
@@ -28,7 +28,8 @@ pub(super) fn fates_column(passes: &PassTally) -> String {
     text
 }
 
-/// P(receive) by tenths: `9:12:11.2:10` are 12 passes of the tenth from 0.9, with 11.2 expected to arrive and 10 that did.
+/// P(receive) by tenths: `9:12:11.2:10` are 12 passes of the tenth from 0.9, with 11.2 expected to arrive and
+/// 10 that did.
 pub(super) fn calibration_column(passes: &PassTally) -> String {
     let bins = passes.calibration.iter().enumerate().filter(|(_, bin)| bin.passes > 0);
     let words: Vec<_> = bins
@@ -37,7 +38,7 @@ pub(super) fn calibration_column(passes: &PassTally) -> String {
     words.join(" ")
 }
 
-/// What the two columns hold.
+/// Parses the two columns.
 pub(super) fn read(fates: &str, calibration: &str) -> PassTally {
     let mut passes = PassTally::default();
     for (name, n) in counted(fates) {
@@ -80,11 +81,11 @@ fn named(fates: &mut Fates) -> [(&'static str, &mut u32); 7] {
 /// A share with its interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Share {
-    /// So often it was so.
+    /// Number of hits.
     pub hits: u32,
-    /// Of so many.
+    /// Number of trials.
     pub of: u32,
-    /// 0 to 1; none of none.
+    /// 0 to 1; `None` of zero trials.
     pub share: Option<f64>,
     /// Lower end of its 95 % interval.
     pub low: Option<f64>,
@@ -93,7 +94,7 @@ pub struct Share {
 }
 
 impl Share {
-    /// Of that many.
+    /// The share of `hits` of `of` trials.
     pub fn new(hits: u32, of: u32) -> Self {
         let count = Count { hits, of };
         let interval: Option<Interval> = wilson(count, CONFIDENCE);
@@ -107,22 +108,22 @@ impl Share {
 pub struct Kicked {
     /// `flat` or `chip`.
     pub kick: &'static str,
-    /// Begun, kicked or not.
+    /// Started, kicked or not.
     pub ordered: u32,
-    /// Of those that were kicked, those that the receiver or another mate had.
+    /// Of those that were kicked, those that the receiver or another teammate received.
     pub arrived: Share,
-    /// What became of each.
+    /// Counts by fate.
     pub fates: Fates,
 }
 
 /// Passes whose P(receive) lay in one tenth.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Tenth {
-    /// 0 for 0 to 0.1, …
+    /// 0 for 0 to 0.1, 1 for 0.1 to 0.2, …
     pub tenth: usize,
     /// Their mean P(receive).
     pub predicted: f64,
-    /// Those that their receiver had.
+    /// Those that their receiver received.
     pub seen: Share,
 }
 
@@ -135,16 +136,16 @@ pub struct Passes {
     pub cap: CapTally,
     /// Those of its passes that arrived.
     pub cap_arrived: Share,
-    /// P(receive) against what was seen; tenths without passes are left out.
+    /// P(receive) against observed shares; tenths without passes are left out.
     pub calibration: Vec<Tenth>,
-    /// The mean of |predicted − seen| over the tenths, by passes; none without passes.
+    /// The mean of |predicted − seen| over the tenths, by passes; `None` without passes.
     pub calibration_error: Option<f64>,
-    /// How often a robot's role changed while the phase did not.
+    /// Number of changes of a robot's role within a phase.
     pub role_changes: u32,
 }
 
 impl Passes {
-    /// Of what all matches counted.
+    /// Sums of all matches' counts.
     pub fn of(play: &PlayTally) -> Self {
         let mut passes = play.passes;
         let kinds = kinds(&mut passes).map(|(kick, fates)| Kicked {
@@ -168,7 +169,7 @@ impl Passes {
     }
 }
 
-/// Another match's counts, too.
+/// Adds another match's counts.
 pub(super) fn add(sum: &mut PlayTally, more: &PlayTally) {
     sum.passes.add(&more.passes);
     sum.cap.attempts += more.cap.attempts;

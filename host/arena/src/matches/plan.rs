@@ -1,4 +1,4 @@
-//! `plan`: the matches of an evaluation. Each pair of teams meets equally often, with the same random seeds
+//! `plan`: the matches of an evaluation. Each pair of teams plays equally often, with the same random seeds
 //! for every pair, alternately as blue and as yellow.
 
 use hil_sim::Fnv;
@@ -11,27 +11,27 @@ use super::entrant::Entrant;
 /// Two teams.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Pairing {
-    /// Whose numbers are told first.
+    /// The team whose numbers come first.
     pub own: Entrant,
-    /// Against whom.
+    /// The opponents.
     pub opponent: Entrant,
 }
 
 /// Numbers the matches: pair by pair.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
-    /// Where all chance comes from.
+    /// Random seed.
     pub seed: u64,
-    /// Its name: field, robots and rules.
+    /// Name of the league: field, robots and rules.
     pub league: String,
-    /// The world of each match; the league's own where an older file does not say.
+    /// The world of each match; the league's own where an older file does not name one.
     #[serde(default)]
     pub world: WorldPlan,
     /// Simulated seconds of a match.
     pub duration_s: f64,
-    /// Who meets whom.
+    /// Pairs of teams.
     pub pairings: Vec<Pairing>,
-    /// How often each pair meets.
+    /// Matches a pair.
     pub matches: u32,
 }
 
@@ -40,11 +40,11 @@ pub struct Plan {
 pub struct Planned {
     /// Its number in the plan, from 0.
     pub number: usize,
-    /// Who plays.
+    /// The pair of teams.
     pub pairing: Pairing,
-    /// Does the first of the pair play blue?
+    /// Whether the first of the pair plays blue.
     pub own_is_blue: bool,
-    /// Plays it again.
+    /// Seed that replays it.
     pub seed: u64,
 }
 
@@ -75,7 +75,7 @@ impl Plan {
         self.pairings.len() * self.matches as usize
     }
 
-    /// There is nothing to play.
+    /// Whether it has no matches.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -87,7 +87,7 @@ impl Plan {
             .find(|league| league.name() == self.league)
     }
 
-    /// The match of that number.
+    /// The match with this number.
     pub fn get(&self, number: usize) -> Option<Planned> {
         let matches = self.matches as usize;
         let pairing = *self.pairings.get(number.checked_div(matches)?)?;
@@ -95,7 +95,7 @@ impl Plan {
         Some(Planned { number, pairing, own_is_blue: round.is_multiple_of(2), seed: self.seed_of(round) })
     }
 
-    /// The pair does not enter: all meet the same chances.
+    /// The seed is independent of the pair: all draw the same random numbers.
     fn seed_of(&self, round: usize) -> u64 {
         let mut hash = Fnv::default();
         hash.add(&self.seed.to_le_bytes());
@@ -105,7 +105,7 @@ impl Plan {
     }
 }
 
-/// Seeds are short enough for every reader of JSON (53 bits) and for people.
+/// Length of a seed, bits: exact for every reader of JSON (53 bits), and short to type.
 const SEED_BITS: u32 = 48;
 
 #[cfg(test)]

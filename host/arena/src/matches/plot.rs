@@ -1,4 +1,4 @@
-//! `plot`: plot of the match ratios beside the paper's. One picture: offence and attack ratio a pair, with 95
+//! `plot`: plot of the match ratios beside the paper's. One figure: offence and attack ratio a pair, with 95
 //! % intervals; the paper's range as a band. px, a ratio's axis is logarithmic, for 2 and 1/2 are as far from
 //! 1.
 
@@ -7,7 +7,7 @@ use drawing::{Anchor, Font, Svg, Theme};
 use super::outcome::{Estimate, Outcome};
 use super::paper::PAPER;
 
-/// A title, whose ratio, and the paper's range.
+/// Title, ratio, and the paper's range.
 type Panel = (&'static str, fn(&Outcome) -> Option<Estimate>, [f64; 2]);
 
 /// Both ratios of all pairs, as an SVG.
@@ -15,7 +15,7 @@ pub fn plot(outcomes: &[Outcome]) -> String {
     let mut svg = Svg::default();
     let colors = Theme::Light.colors();
     let font = |fill| Font { size: 13.0, fill, bold: false, halo: None };
-    // As wide as the longest pair's name.
+    // Width of the longest pair's name.
     let name = |outcome: &Outcome| format!("{} – {}", outcome.own, outcome.opponent);
     let longest = outcomes.iter().map(|outcome| name(outcome).chars().count()).max().unwrap_or(0);
     let names = longest as f64 * LETTER + 20.0;
@@ -60,14 +60,14 @@ fn range(values: [f64; 6]) -> [f64; 2] {
     [values.into_iter().fold(f64::INFINITY, f64::min), values.into_iter().fold(0.0, f64::max)]
 }
 
-/// Of a pair, px.
+/// Height of a pair's row, px.
 const ROW: f64 = 28.0;
-/// Of a letter of the pairs' names, px.
+/// Width of a letter of the pairs' names, px.
 const LETTER: f64 = 7.0;
-/// Of a ratio's axis, px.
+/// Length of a ratio's axis, px.
 const PANEL: f64 = 260.0;
-/// Between the two, px.
+/// Gap between the two panels, px.
 const GAP: f64 = 40.0;
-/// The axis' ends: ratios beyond are drawn at them.
+/// Ends of the axis: ratios beyond are drawn at them.
 const LEAST: f64 = 0.2;
 const MOST: f64 = 12.0;

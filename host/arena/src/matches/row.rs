@@ -1,4 +1,4 @@
-//! `row`: one row of `matches.csv`: who met whom, and every measure of both sides. s; `own` is the first of
+//! `row`: one row of `matches.csv`: the two teams, and every measure of both sides. s; `own` is the first of
 //! the pair.
 
 use std::collections::BTreeMap;
@@ -18,13 +18,13 @@ use crate::game::{GameReport, PerTeam};
 pub struct MatchRow {
     /// Its number in the plan, from 0.
     pub number: usize,
-    /// Whose numbers are told first.
+    /// The team whose numbers come first.
     pub own: Entrant,
-    /// Against whom.
+    /// The opponents.
     pub opponent: Entrant,
-    /// The first of them played blue.
+    /// Whether the first of them played blue.
     pub own_is_blue: bool,
-    /// Plays it again.
+    /// Seed that replays it.
     pub seed: u64,
     /// Goals.
     pub goals: u32,
@@ -68,7 +68,7 @@ pub struct MatchRow {
     pub cap_attempts: u32,
     /// … that arrived.
     pub cap_successes: u32,
-    /// … whose receiver had coerced somebody before.
+    /// … whose receiver had coerced an opponent before.
     pub cap_reuses: u32,
     /// … of those, that arrived.
     pub cap_reuse_successes: u32,
@@ -76,11 +76,11 @@ pub struct MatchRow {
     pub cap_attempts_against: u32,
     /// … that arrived.
     pub cap_successes_against: u32,
-    /// … whose receiver had coerced somebody before.
+    /// … whose receiver had coerced an opponent before.
     pub cap_reuses_against: u32,
     /// … of those, that arrived.
     pub cap_reuse_successes_against: u32,
-    /// How often a robot's role changed while the phase did not.
+    /// Number of changes of a robot's role within a phase.
     pub role_changes: u32,
     /// The opponents'.
     pub role_changes_against: u32,
@@ -93,7 +93,7 @@ pub struct MatchRow {
 }
 
 impl MatchRow {
-    /// Of a match that was played.
+    /// The row of a played match.
     pub(super) fn new(planned: &Planned, report: &GameReport) -> Self {
         fn sides<T>(blue_first: bool, of: &PerTeam<T>) -> (&T, &T) {
             if blue_first { (&of.blue, &of.yellow) } else { (&of.yellow, &of.blue) }
@@ -143,7 +143,8 @@ impl MatchRow {
         }
     }
 
-    /// The paper's offence ratio (§6): time of the ball in their half over that in the own; `None` where it never was in the own.
+    /// The paper's offence ratio (§6): time of the ball in their half over that in the own; `None` where it
+    /// never was in the own.
     pub fn offence_ratio(&self) -> Option<f64> {
         (self.own_half_s > 0.0).then(|| f64::from(self.their_half_s) / f64::from(self.own_half_s))
     }
@@ -153,7 +154,7 @@ impl MatchRow {
         (self.shots_against > 0).then(|| f64::from(self.shots) / f64::from(self.shots_against))
     }
 
-    /// What the two hosts counted: own, theirs.
+    /// Counts of the two hosts: own, theirs.
     pub fn play(&self) -> [PlayTally; 2] {
         let own = CapTally {
             attempts: self.cap_attempts,
@@ -181,7 +182,7 @@ impl MatchRow {
         ]
     }
 
-    /// Share of the time with a team at the ball in which it was ours.
+    /// Own share of the time in which a team had the ball.
     pub fn possession(&self) -> Option<f64> {
         let both = f64::from(self.possession_s) + f64::from(self.possession_against_s);
         (both > 0.0).then(|| f64::from(self.possession_s) / both)
@@ -213,7 +214,7 @@ fn listed(fouls: &BTreeMap<&'static str, u32>) -> String {
     words.join(" ")
 }
 
-/// How often each kind stands in such a list.
+/// Kinds with their numbers in such a list.
 pub(super) fn counted(list: &str) -> impl Iterator<Item = (&str, u32)> {
     list.split_whitespace().filter_map(|entry| {
         let (kind, n) = entry.split_once(':')?;

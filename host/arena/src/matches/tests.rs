@@ -1,4 +1,5 @@
-//! Tests: equal plans give equal files, however they were played, and the sums are right.
+//! Tests: equal plans give equal files, independent of threads, shards and interrupts, and the sums are
+//! right.
 
 use std::fs;
 use std::path::PathBuf;
@@ -11,7 +12,7 @@ use crate::evaluation::{csv_hash, merge, read, to_csv};
 
 const GO_ON: &(dyn Fn(Progress) -> ControlFlow<()> + Sync) = &|_| ControlFlow::Continue(());
 
-/// A folder of a test's own, gone when the test is.
+/// A directory of a test's own, removed at the end of the test.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -100,7 +101,7 @@ fn matches_of_different_worlds_are_of_different_evaluations_and_a_plan_keeps_its
     for matches in [nominal, grsim, random] {
         let json = serde_json::to_string(&matches.plan).unwrap();
         assert_eq!(serde_json::from_str::<Plan>(&json).unwrap(), matches.plan);
-        // A file from before there were several worlds.
+        // A file of a version with a single world.
         let older = json.replace(&format!("\"world\":\"{}\",", matches.plan.world), "");
         assert_eq!(serde_json::from_str::<Plan>(&older).unwrap().world, WorldPlan::default());
     }
@@ -187,7 +188,8 @@ fn ratios_goals_and_intervals_are_those_counted_by_hand() {
     let ours = our_passes(&rows);
     let text = markdown(std::slice::from_ref(&outcome), &[], &ours);
     assert!(text.contains("| ours | zone | 3 | 2, 1, 0 | 6 : 1 |"), "{text}");
-    // Twelve flat passes of three matches, nine arrived: Wilson's 0.4677 to 0.9111. Six planned, half of them.
+    // Twelve flat passes of three matches, nine arrived: Wilson's 0.4677 to 0.9111. Six planned, half of
+    // them.
     assert!(text.contains("| ours | zone | flat | 12 | 12 | 9 | 0.75 (0.47 to 0.91) |"), "{text}");
     assert!(text.contains("| zone | ours | chip | 3 | 3 | 3 | 1.00 (0.44 to 1.00) |"), "{text}");
     assert!(text.contains("| ours | zone | 3 | 6 | 3 | 0.50 (0.19 to 0.81) | 3 | 0 |"), "{text}");
@@ -228,7 +230,7 @@ fn a_part_is_worth_what_the_side_with_it_was_ahead() {
     assert!((effect.attack_ratio.unwrap().mean - 5.0_f64.sqrt()).abs() < 1e-9);
     // 2 and −1 once more: spread 2.1213, t = 1/3 with 1 degree, p = 0.7952.
     assert!((effect.goals.unwrap().p.unwrap() - 0.7952).abs() < 1e-4);
-    // The same told from the other side.
+    // The same from the other side.
     let turned = Plan { pairings: vec![Pairing { own: without, opponent: Entrant::ours() }], ..plan };
     let rows = [row(0, [0, 2], [100.0, 200.0], [1, 7])].map(|row| MatchRow {
         own: without,

@@ -46,7 +46,7 @@ fn worth(text: &mut String, effects: &[Effect]) {
     }
 }
 
-/// Of all matches of each team, where one meets several.
+/// Standings over all matches of each team, where one plays several opponents.
 fn standings(text: &mut String, outcomes: &[Outcome]) {
     let mut teams: Vec<(Entrant, [u32; 3], [u32; 2])> = Vec::new();
     for o in outcomes {
@@ -68,7 +68,7 @@ fn standings(text: &mut String, outcomes: &[Outcome]) {
             }
         }
     }
-    // Each against each: as many pairs as teams have.
+    // Each against each: the number of pairs is that of a round robin.
     if teams.len() < 3 || outcomes.len() != teams.len() * (teams.len() - 1) / 2 {
         return;
     }
@@ -134,7 +134,7 @@ fn play(text: &mut String, outcomes: &[Outcome]) {
     }
 }
 
-/// Each side of each pair, whose passes they are first.
+/// Each side of each pair, with its passes.
 fn sides(outcomes: &[Outcome]) -> impl Iterator<Item = (Entrant, Entrant, &Passes)> {
     outcomes.iter().flat_map(|o| [(o.own, o.opponent, &o.restarts[0]), (o.opponent, o.own, &o.restarts[1])])
 }
@@ -171,7 +171,7 @@ fn planned(text: &mut String, outcomes: &[Outcome]) {
         outcomes.iter().find(met).map_or(0, |o| o.matches)
     };
     let ours = Entrant::ours().team;
-    // Beside the paper's also where nothing was planned; else only of those who plan.
+    // Beside the paper's also where no plan was made; else only for teams that plan.
     let all = as_the_papers(outcomes);
     for (who, against, passes) in sides(outcomes) {
         if who.team != ours || !(all || who.tactics.coerce || passes.cap.attempts > 0) {
@@ -250,7 +250,7 @@ fn changed(change: Option<Change>) -> String {
 }
 
 fn within(mean: f64, low: Option<f64>, high: Option<f64>) -> String {
-    // Nothing has no sign.
+    // Zero has no sign.
     let [mean, low, high] =
         [Some(mean), low, high].map(|end| end.map(|x| if x.abs() < 0.005 { 0.0 } else { x }));
     let mean = mean.unwrap_or_default();

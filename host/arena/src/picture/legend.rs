@@ -1,11 +1,11 @@
-//! `legend`: legend of a trial's picture. The part below the field.
+//! `legend`: legend of a trial's figure. The part below the field.
 
 use super::page::{Page, Px, bold, font};
 use super::{ATTACKERS, BALL, FAINT, INK, OPPONENTS, SIDE};
 use crate::recording::{Recording, Start};
 use drawing::Anchor;
 
-/// Draws signs and list from `top` down; gives the height that the picture needs.
+/// Draws signs and list from `top` down; returns the height that the figure needs.
 pub(super) fn draw(page: &mut Page, recording: &Recording, starts: &[&Start], width: f32, top: f32) -> f32 {
     let y = top + 24.0;
     signs(page, y);

@@ -1,10 +1,10 @@
-//! `picture`: picture of a whole trial on one sheet. An SVG: field, tracks, the ball's path and who sent it,
+//! `picture`: figure of a whole trial on one sheet. An SVG: field, tracks, the ball's path and its kickers,
 //! kicks, gameplays, outcome.
 //!
-//! Attackers are circles and opponents squares, as in the paper's figures; hollow where they began, filled where they ended.
-//! The ball's path is thick where it was carried and dotted where it rolled, in the colour of whoever carried or last kicked
-//! it. Numbers stand where the ball was when a gameplay began; the list below says which. Colours are Okabe and Ito's, told
-//! apart by every eye.
+//! Attackers are circles and opponents squares, as in the paper's figures; hollow where they started, filled
+//! where they ended. The ball's path is thick where it was carried and dotted where it rolled, in the colour
+//! of the robot that carried or last kicked it. Numbers stand where the ball was when a gameplay started; the
+//! list below names them. Colours are Okabe and Ito's, distinguishable with colour blindness.
 
 mod legend;
 mod page;
@@ -20,7 +20,7 @@ use drawing::{Anchor, Font};
 
 use page::{Page, Px, SCALE, bold, font};
 
-/// The picture of a trial that has ended; an empty field for a recording of nothing.
+/// The figure of a trial that has ended; an empty field for an empty recording.
 pub fn picture(recording: &Recording) -> String {
     let mut page = Page::new(Px::new(WIDTH * 0.5, HEADER + HALF_HEIGHT));
     let starts = shown_starts(recording);
@@ -56,7 +56,7 @@ pub fn picture(recording: &Recording) -> String {
     page.finish(WIDTH, height, &title)
 }
 
-/// The gameplays that lived long enough to be seen.
+/// The gameplays that lasted long enough to be visible.
 fn shown_starts(recording: &Recording) -> Vec<&Start> {
     let lived = |start: &&Start| {
         let cycles = recording.report.as_ref().map(|report| &report.cycles);
@@ -91,7 +91,7 @@ fn header(page: &mut Page, report: &TrialReport) {
     }
 }
 
-/// Where a robot went.
+/// Draws the path of a robot.
 fn track(page: &mut Page, recording: &Recording, robot: usize) {
     let places =
         recording.samples.iter().filter_map(|sample| sample.robots.get(robot)).map(|pose| pose.position);
@@ -101,7 +101,7 @@ fn track(page: &mut Page, recording: &Recording, robot: usize) {
     page.path(&points, &style);
 }
 
-/// The ball's path in stretches of one carrier or one sender each.
+/// The ball's path in stretches of one carrier or one kicker each.
 fn ball_path(page: &mut Page, recording: &Recording) {
     let attackers = recording.cast.attackers.len();
     let mut kicks = recording.kicks.iter().peekable();
@@ -143,15 +143,15 @@ fn ball_path(page: &mut Page, recording: &Recording) {
     }
 }
 
-/// Who has the ball.
+/// Which robot controls the ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Control {
     Carried(usize),
-    /// After this robot's kick, if anybody has kicked yet.
+    /// After this robot's kick, if there was one yet.
     Rolls(Option<usize>),
 }
 
-/// An arrowhead half way along a path that is long enough for one.
+/// An arrowhead at the middle of a path that is long enough for one.
 fn arrow_on(page: &mut Page, points: &[Px], color: &str) {
     let length: f32 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
     if length < SHORTEST_ARROW {
@@ -166,7 +166,7 @@ fn arrow_on(page: &mut Page, points: &[Px], color: &str) {
     }
 }
 
-/// A robot on the picture.
+/// A robot on the figure.
 struct Actor<'a> {
     robot: usize,
     attackers: usize,
@@ -210,7 +210,7 @@ fn ball(page: &mut Page, at: Point<Field>, filled: bool) {
     page.circle(at, League::FourLegged.ball().radius * SCALE, &style);
 }
 
-/// Small times along the ball's path, where the ball has moved since the last.
+/// Small time labels along the ball's path, where the ball has moved since the last.
 fn seconds(page: &mut Page, samples: &[Sample], taken: &mut Vec<Px>) {
     let mut last: Option<Px> = None;
     let mut next = EVERY;
@@ -231,7 +231,7 @@ fn seconds(page: &mut Page, samples: &[Sample], taken: &mut Vec<Px>) {
     }
 }
 
-/// A numbered disc near `at`, tied to it.
+/// A numbered disc near `at`, connected to it.
 fn badge(page: &mut Page, number: usize, at: Px, taken: &mut Vec<Px>) {
     let spot = free_spot(at, 34.0, taken);
     page.line(at, spot, &format!(r#"stroke="{INK}" stroke-width="1""#));
@@ -239,7 +239,7 @@ fn badge(page: &mut Page, number: usize, at: Px, taken: &mut Vec<Px>) {
     taken.push(spot);
 }
 
-/// A spot `away` from `at`, or farther, clear of everything taken; upwards first.
+/// A spot at distance `away` from `at`, or farther, clear of everything taken; upwards first.
 fn free_spot(at: Px, away: f32, taken: &[Px]) -> Px {
     let mut best = (f32::MIN, at);
     for ring in 0..3 {
@@ -273,7 +273,7 @@ fn thinned(page: &Page, places: impl Iterator<Item = Point<Field>>) -> Vec<Px> {
     points
 }
 
-/// A robot's colour: the attackers' tell them apart, the opponents' are grey.
+/// A robot's colour: each attacker has its own, the opponents' are grey.
 fn color(robot: usize, attackers: usize) -> &'static str {
     match robot.checked_sub(attackers) {
         None => ATTACKERS[robot % ATTACKERS.len()],
@@ -286,27 +286,27 @@ const ATTACKERS: [&str; 4] = ["#0072B2", "#D55E00", "#009E73", "#CC79A7"];
 const OPPONENTS: [&str; 2] = ["#5f6368", "#303336"];
 const INK: &str = "#202124";
 const FAINT: &str = "#5f6368";
-/// The field's, behind letters on it.
+/// Colour of the field, behind labels on it.
 const CARPET: &str = "#e3eedd";
 /// Orange (Okabe and Ito), as the league's ball.
 const BALL: &str = "#E69F00";
-/// Width of the picture, px.
+/// Width of the figure, px.
 const WIDTH: f32 = 1000.0;
-/// White to the left and right, px.
+/// White margin to the left and right, px.
 const SIDE: f32 = 18.0;
 /// Height of the title, px.
 const HEADER: f32 = 72.0;
-/// Half the height of the carpet shown, px.
+/// Half the height of the drawn part of the field, px.
 const HALF_HEIGHT: f32 = 2.06 * SCALE;
 /// Seconds between times along the ball's path.
 const EVERY: f32 = 5.0;
-/// A gameplay superseded sooner than this left nothing to see, s.
+/// A gameplay superseded sooner than this leaves no visible path, s.
 const SHORTEST: f64 = 0.1;
-/// Path length that bears an arrowhead, px.
+/// Least path length for an arrowhead, px.
 const SHORTEST_ARROW: f32 = 40.0;
 /// Distance that keeps labels from touching, px.
 const CLEAR: f32 = 30.0;
-/// Where labels go, the best first: up, then around.
+/// Directions of labels, the best first: up, then around.
 const DIRECTIONS: [(f32, f32); 8] = [
     (0.0, -1.0),
     (0.71, -0.71),

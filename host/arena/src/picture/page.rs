@@ -25,7 +25,7 @@ impl Px {
         geometry::math::hypot(self.x - other.x, self.y - other.y)
     }
 
-    /// As the writer has it: y up.
+    /// In the writer's coordinates: y up.
     fn at(self) -> At {
         [f64::from(self.x), -f64::from(self.y)]
     }
@@ -83,7 +83,7 @@ impl Page {
         self.svg.polyline(&places, style);
     }
 
-    /// A filled arrowhead of that length whose tip is at `tip`.
+    /// A filled arrowhead of this length whose tip is at `tip`.
     pub(super) fn arrowhead(&mut self, tip: Px, (dx, dy): (f32, f32), length: f32, color: &str) {
         let norm = geometry::math::hypot(dx, dy);
         if norm > 0.0 {
@@ -103,7 +103,7 @@ impl Page {
     }
 }
 
-/// Letters of that size and colour.
+/// Letters of this size and colour.
 pub(super) const fn font(size: f64, fill: &str) -> Font<'_> {
     Font { size, fill, bold: false, halo: None }
 }

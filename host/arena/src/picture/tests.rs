@@ -1,4 +1,4 @@
-//! Tests: the picture shows what was recorded. Counted shapes and hand-made recordings.
+//! Tests: the figure agrees with the recording. Counted shapes and hand-made recordings.
 
 use hil_sim::NativeBackend;
 

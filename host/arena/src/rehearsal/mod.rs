@@ -1,11 +1,12 @@
 //! `rehearsal`: self-test of a case. It is played from its own situation, many times, by real brains that
 //! must retrieve it themselves.
 //!
-//! The robots of the case and nobody else stand near their places, the opponents on their scopes ([`situation`]). An attempt ends
-//! with the first retrieval's gameplay; then the ball is watched until it rests or is taken. m, s; every attempt attacks +x.
+//! Only the robots of the case are on the field: near their places, the opponents on their scopes
+//! ([`situation`]). An attempt ends with the first retrieval's gameplay; then the ball is watched until it
+//! stops or is taken. m, s; every attempt attacks +x.
 //!
-//! **Invariants.** An attempt depends on its seed, the case's name and the attempt's number alone: neither on other cases of the
-//! library's list nor on the number of threads.
+//! **Invariants.** An attempt depends only on its seed, the case's name and the attempt's number: neither on
+//! other cases of the library nor on the number of threads.
 
 mod score;
 mod situation;
@@ -25,10 +26,10 @@ use crate::cycles::{CycleEnd, CycleSeen};
 use crate::names::CaseNames;
 use crate::trial::{Game, TrialConfig, Watcher};
 
-/// What the opponents of a case do.
+/// Behaviour of the opponents of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Opposition {
-    /// They hold their places: bodies in the way.
+    /// They hold their places, as static obstacles.
     Standing,
     /// They play as the paper's scripted ones.
     Playing,
@@ -38,7 +39,7 @@ impl Opposition {
     /// Both kinds.
     pub const ALL: [Self; 2] = [Self::Standing, Self::Playing];
 
-    /// Its word in options and reports.
+    /// Its label in options and reports.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Standing => "standing",
@@ -46,37 +47,38 @@ impl Opposition {
         }
     }
 
-    /// The opposition of that word.
+    /// The opposition with this label.
     pub fn from_word(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|opposition| opposition.word() == word)
     }
 }
 
-/// What the first retrieval of an attempt gave.
+/// Result of the first retrieval of an attempt.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Retrieved {
-    /// The rehearsed case, in any of its symmetries.
+    /// The tested case, in any of its symmetries.
     Own,
-    /// This one.
+    /// Another case.
     Other(String),
     /// No case fitted.
     None,
-    /// No decision was heard in time.
+    /// No decision was received in time.
     Nothing,
 }
 
-/// What came of one attempt.
+/// Result of one attempt.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Attempt {
     /// The first retrieval.
     pub retrieved: Retrieved,
-    /// How the gameplay ended, where the rehearsed case was retrieved.
+    /// How the gameplay ended, where the tested case was retrieved.
     pub end: Option<CycleEnd>,
     /// Seconds from the retrieval to that end.
     pub duration: f32,
-    /// How the referee would have ended a trial until the ball lay still or was taken; `None`: it is still in play.
+    /// The outcome that the referee would have given a trial until the ball lay still or was taken; `None`:
+    /// it is still in play.
     pub outcome: Option<Outcome>,
-    /// How far the ball came towards the attacked goal meanwhile, m.
+    /// Distance that the ball came towards the attacked goal meanwhile, m.
     pub progress: f32,
 }
 
@@ -87,28 +89,29 @@ impl Attempt {
     }
 }
 
-/// What decides a rehearsal.
+/// Settings of a case self-test.
 #[derive(Clone, Debug)]
 pub struct Rehearsal<'a> {
     /// The case base in every robot.
     pub base: CaseBase<'a>,
-    /// What its cases are called.
+    /// Names of its cases.
     pub names: CaseNames,
-    /// How robots retrieve.
+    /// Settings of retrieval.
     pub settings: Settings,
     /// Attempts a case.
     pub trials: u32,
-    /// Where all chance comes from.
+    /// Random seed.
     pub seed: u64,
 }
 
 impl<'a> Rehearsal<'a> {
-    /// The stored case that stands for the authored case number `authored`: the copy that attacks +x with its sides unswapped.
+    /// The stored case that stands for the authored case number `authored`: the copy that attacks +x with its
+    /// sides unswapped.
     pub fn case(&self, authored: usize) -> Option<Case<'a>> {
         self.base.cases().find(|case| case.authored() == authored && case.defending() == GoalEnd::Negative)
     }
 
-    /// All attempts of one case, on all threads, in the order of their numbers; `done` is told of each.
+    /// All attempts of one case, on all threads, in the order of their numbers; `done` is called after each.
     pub fn play(
         &self,
         case: &Case<'a>,
@@ -123,7 +126,7 @@ impl<'a> Rehearsal<'a> {
         (0..self.trials).into_par_iter().map(attempt).collect()
     }
 
-    /// One attempt, watched.
+    /// Plays one attempt.
     pub fn attempt(
         &self,
         case: &Case<'a>,
@@ -165,14 +168,14 @@ impl<'a> Rehearsal<'a> {
             robots: case.teammates(),
             retrievers: case.teammates(),
             settings: self.settings.clone(),
-            // The referee looks at the goal line and at the goalie's hands.
+            // The referee detects goals at the goal line and catches by the goalie.
             ..TrialConfig::new(Scenario::Random, Configuration::DefenderGoalie, Approach::Cases, seed)
         }
         .with_library(self.base, self.names.clone())
     }
 }
 
-/// How far an attempt has come.
+/// Progress of an attempt.
 #[derive(Clone, Debug, Default)]
 struct Course {
     /// The first decision's place in the list of cycles.
@@ -182,7 +185,7 @@ struct Course {
 }
 
 impl Course {
-    /// Looks at the last tick; is there nothing more to see?
+    /// Evaluates the last tick; true if the attempt is over.
     fn over(&mut self, game: &Game<'_, '_>, case: &Case<'_>) -> bool {
         let moment = game.moment();
         let (now, cycles) = (moment.tick.time, moment.cycles.cycles());
@@ -218,18 +221,19 @@ impl Course {
     }
 }
 
-/// Does this cycle play `case`, in any symmetry?
+/// Whether this cycle plays `case`, in any symmetry.
 fn is_of(cycle: &CycleSeen, case: &Case<'_>) -> bool {
     cycle.play.as_ref().is_some_and(|play| usize::from(play.case.0 / 4) == case.authored())
 }
 
-/// A decision comes within this time of kick-off, s: a lease of listening, an election and a retrieval are half a second.
+/// A decision comes within this time of kick-off, s: a lease of receiving, an election and a retrieval are
+/// half a second.
 const DECIDED_WITHIN: f32 = 3.0;
-/// After the referee's word, robots may still report for so long, s: two beacons and an answer.
+/// Time for which robots may still report after the referee's verdict, s: two beacons and an answer.
 const LAST_WORDS: f32 = 0.4;
-/// No gameplay takes this long, s: its own limit is 1.5 times the expected duration and 2 s.
+/// Longest gameplay, s: its own limit is 1.5 times the expected duration and 2 s.
 const GIVEN_UP_AFTER: f32 = 120.0;
-/// The ball is watched for so long after the gameplay, s: a hard kick rolls for 3.5 s.
+/// Time for which the ball is watched after the gameplay, s: a hard kick rolls for 3.5 s.
 const WATCHED_FOR: f32 = 4.0;
 
 #[cfg(test)]

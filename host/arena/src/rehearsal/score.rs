@@ -1,5 +1,5 @@
-//! `score`: score of many attempts. Shares in percent, seconds, metres; and the table that is kept beside the
-//! cases.
+//! `score`: score of many attempts. Shares in percent, seconds, metres; and the table that is stored beside
+//! the cases.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -17,24 +17,26 @@ pub struct Score {
     pub opponents: &'static str,
     /// Attempts.
     pub trials: usize,
-    /// Attempts in which the robots retrieved this very case first.
+    /// Attempts in which the robots retrieved the tested case first.
     pub retrieved: usize,
     /// Gameplays played to their end.
     pub completed: usize,
-    /// What was retrieved instead, by name; `none` where no case fitted, `nothing` where nobody decided.
+    /// What was retrieved instead, by name; `none` where no case fitted, `nothing` where no decision was
+    /// made.
     pub instead: BTreeMap<String, usize>,
     /// How the gameplays that were not completed ended.
     pub aborted: BTreeMap<&'static str, usize>,
     /// Mean seconds of the completed gameplays; null without any.
     pub duration_s: Option<f64>,
-    /// What the completed gameplays came to: `goal`, `close`, `block`, `out`, or `play` where the ball stayed in play.
+    /// Outcomes of the completed gameplays: `goal`, `close`, `block`, `out`, or `play` where the ball stayed
+    /// in play.
     pub outcomes: BTreeMap<&'static str, usize>,
     /// Mean metres that completed gameplays brought the ball towards the attacked goal; null without any.
     pub progress_m: Option<f64>,
 }
 
 impl Score {
-    /// Of these attempts.
+    /// The score of these attempts.
     pub fn of(case: String, opponents: &'static str, attempts: &[Attempt]) -> Self {
         let completed: Vec<_> = attempts.iter().filter(|attempt| attempt.completed()).collect();
         let mean = |value: fn(&Attempt) -> f32| {
@@ -111,7 +113,7 @@ pub fn markdown(scores: &[Score]) -> String {
     table
 }
 
-/// The commonest first.
+/// The most frequent first.
 fn counts<'a>(entries: impl Iterator<Item = (&'a str, usize)>) -> String {
     let mut entries: Vec<_> = entries.collect();
     entries.sort_by(|a, b| b.1.cmp(&a.1).then(a.0.cmp(b.0)));

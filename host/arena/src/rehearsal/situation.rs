@@ -1,11 +1,15 @@
-//! `situation`: start situation drawn from a case: who stands where when an attempt begins. m, field frame.
+//! `situation`: start situation drawn from a case: the robots' places at the start of an attempt. m, field
+//! frame.
 //!
-//! - The ball lies in the scope's core, where the similarity is H (at least 0.8), every place there equally likely.
-//! - Everything else moves along with it, as adaptation does. Robots stand 0.15 m (one standard deviation) about their places and look
-//!   20° past the ball.
-//! - Opponents are drawn on their scopes as the scope weighs places: a bell with the scope's radii, cut off where the scope ends.
-//! - The role of an opponent is that of the home its scope's centre lies in; it plays from there, so draws outside the home are drawn
-//!   again. Where no role is at home (own half), it plays from a region of its own, as deep as the midfield's, about its scope.
+//! - The ball lies in the scope's core, where the similarity is H (at least 0.8), every place there equally
+//!   likely.
+//! - Everything else moves along with it, as adaptation does. Robots stand 0.15 m (one standard deviation)
+//!   about their places and face 20° past the ball.
+//! - Opponents are drawn on their scopes as the scope weighs places: a Gaussian with the scope's radii, cut
+//!   off where the scope ends.
+//! - The role of an opponent is that of the home region its scope's centre lies in; it plays from there, so
+//!   draws outside the region are drawn again. Where no role has its home (own half), it plays from a region
+//!   of its own, as deep as the midfield's, about its scope.
 
 use casebase::{Case, PointMm, Scope};
 use geometry::{Angle, Field, Point, Pose, Vector, math};
@@ -22,7 +26,7 @@ pub(super) fn draw(case: &Case<'_>, opposition: Opposition, parameters: &Paramet
     let ball =
         (0..DRAWS).map(|_| centre + in_core(&mut chance, case.ball_scope())).find(|at| field.contains(*at));
     let ball = ball.unwrap_or(centre);
-    // The whole millimetres that robots shift by.
+    // The shift of the robots in whole millimetres.
     let shift = case.shift(PointMm::from(ball));
     let place = |at: PointMm| -> Point<Field> { at.plus(shift).into() };
     let mut taken: Vec<Point<Field>> = Vec::new();
@@ -56,7 +60,7 @@ pub(super) fn draw(case: &Case<'_>, opposition: Opposition, parameters: &Paramet
     Layout { ball, attackers, opponents: opponents.collect() }
 }
 
-/// The first draw that fits and is clear of the ball and of everybody placed before.
+/// The first draw that fits and is clear of the ball and of all robots placed before.
 fn clear(
     chance: &mut Stream,
     ball: Point<Field>,
@@ -72,7 +76,7 @@ fn clear(
     (0..DRAWS).map(|_| draw(chance)).find(free)
 }
 
-/// Even in the ellipse in which the similarity is H.
+/// Uniform in the ellipse in which the similarity is H.
 fn in_core(chance: &mut Stream, scope: Scope) -> Vector<Field> {
     let radius = CORE * math::sqrt(chance.share());
     let (sin, cos) = math::sin_cos(math::TAU * chance.share());
@@ -101,7 +105,7 @@ fn role_at(at: Point<Field>, parameters: &Parameters) -> (Role, Option<Region>) 
     }
 }
 
-/// A region across the field about a place where no role is at home.
+/// A region across the field about a place where no role has its home.
 fn about(at: Point<Field>) -> Region {
     let field = League::FourLegged.field();
     let (length, width) = (field.length * 0.5, field.width * 0.5);
@@ -113,16 +117,16 @@ fn about(at: Point<Field>) -> Region {
 const CORE: f32 = 0.472_38;
 /// A scope's border: −ln 0.367 (docs/case-format.md §3).
 const BORDER: f32 = 1.002_393;
-/// How far robots stand from their places, m, one standard deviation: the tolerance of arriving
+/// Scatter of robots about their places, m, one standard deviation: the tolerance of arriving
 /// (docs/case-format.md §4).
 const SCATTER: f32 = 0.15;
-/// How far past the ball they look, degrees, one standard deviation: an estimate.
+/// Scatter of their headings about the ball, degrees, one standard deviation: an estimate.
 const LOOKS_PAST_DEG: f32 = 20.0;
-/// Nobody begins in touch with the ball, m: 0.1625 would be.
+/// Least distance of a robot from the ball at the start, m: at 0.1625 they would touch.
 const CLEAR_OF_BALL: f32 = 0.18;
-/// Nor with another robot, m: two radii and a hand.
+/// Least distance between robots at the start, m: two radii and a gap.
 const APART: f32 = 0.3;
 /// Half of the midfield's depth, m (`hil-sim/data/four-legged.toml`).
 const HALF_DEPTH: f32 = 0.75;
-/// Draws before the middle is taken.
+/// Number of draws before the middle is taken.
 const DRAWS: usize = 200;

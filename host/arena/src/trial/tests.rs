@@ -1,5 +1,5 @@
-//! Tests: trials are repeatable, reported as docs/case-format.md §5.2 says, and sensitive to a single bit.
-//! With full brains, in process.
+//! Tests: trials are repeatable, reported as docs/case-format.md §5.2 specifies, and sensitive to a single
+//! bit. With full brains, in process.
 
 use hil_sim::{Fault, NativeBackend};
 

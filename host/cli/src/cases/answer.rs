@@ -20,20 +20,20 @@ pub(crate) enum Answer<'a> {
     Nothing {
         /// Always `null`.
         case: (),
-        /// None.
+        /// Number of candidates: 0.
         candidates: u16,
         /// See [`Found::settings`].
         #[serde(skip_serializing_if = "<[_]>::is_empty", serialize_with = "as_object")]
         settings: &'a [(String, String)],
     },
-    /// The line holds no problem.
+    /// The line is not a valid problem.
     Malformed {
         /// `line 7: place: reason`.
         error: String,
     },
 }
 
-/// A retrieved case and what it asks of the robots.
+/// A retrieved case and the roles and places of the robots.
 #[derive(Debug, Serialize)]
 pub(crate) struct Found<'a> {
     case: &'a str,
@@ -82,12 +82,12 @@ impl<'a> Answer<'a> {
     }
 }
 
-/// Case robot, from 1, to the id of the robot that plays it.
+/// Robot number of the case, from 1, with the id of the robot that plays it.
 pub(super) fn roles(found: &Match) -> Vec<(u8, u8)> {
     (1..).zip(found.correspondence.iter().map(|robot| robot.number())).collect()
 }
 
-/// Robot id to where it starts from, mm.
+/// Robot id with its adapted start position, mm.
 fn adapted(case: &Case<'_>, found: &Match, ball: PointMm, settings: &Settings) -> Vec<(u8, [i32; 2])> {
     let place = |(robot, player): (CaseRobot, &RobotId)| {
         let PointMm { x, y } = adapted_position(case, robot, ball, settings);
@@ -106,12 +106,12 @@ pub(super) fn cost(found: &Match) -> f64 {
     rounded(found.cost, 1e2)
 }
 
-/// To one in `parts`.
+/// Rounded to one in `parts`.
 pub(super) fn rounded(value: f32, parts: f64) -> f64 {
     (f64::from(value) * parts).round() / parts
 }
 
-/// Pairs in their order as one JSON object; numbers become keys as JSON wants them.
+/// Pairs in their order as one JSON object; numbers become string keys, as JSON requires.
 pub(super) fn as_object<K: Serialize, V: Serialize, S: Serializer>(
     pairs: &(impl AsRef<[(K, V)]> + ?Sized),
     serializer: S,

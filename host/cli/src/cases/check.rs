@@ -19,7 +19,7 @@ use super::answer::write_line;
 use super::counted;
 use super::survey;
 
-/// What `cases check` may be told.
+/// Arguments of `cases check`.
 #[derive(Debug, Args)]
 pub(crate) struct CheckArgs {
     #[command(flatten)]
@@ -30,13 +30,13 @@ pub(crate) struct CheckArgs {
     /// One JSON list of findings instead of lines.
     #[arg(long)]
     json: bool,
-    /// How many problems are drawn, in search of cases that are never retrieved.
+    /// Number of problems that are drawn to find cases that are never retrieved.
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(..=100_000_000))]
     problems: u64,
-    /// The draw: the same seed gives the same problems.
+    /// Random seed: the same seed draws the same problems.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Say what a code of a finding means, or `all` of them, and check nothing.
+    /// Explain a code of a finding, or `all` of them, and check nothing.
     #[arg(long, value_name = "CODE", value_parser = known_code)]
     explain: Option<String>,
 }
@@ -93,7 +93,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<ExitCode, Failure> {
     Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }
 
-/// What only drawn problems tell; the same for any number of threads.
+/// Findings that only drawn problems reveal; the same for any number of threads.
 fn doubts_of_draw(library: &Library, args: &CheckArgs) -> Result<Vec<Finding>, Failure> {
     let fail = |error: casebase::SettingError| Failure::Survey(error.to_string());
     let (survey, sampler) = (library.survey().map_err(fail)?, library.sampler(args.seed));
@@ -119,7 +119,7 @@ impl Report {
         Self::new(league, crate::library::load(folder), args)
     }
 
-    /// From the texts this program carries; the build refused errors, so what is left are warnings.
+    /// From the texts in this program; the build refused errors, so only warnings are left.
     fn built_in(league: &League, args: &CheckArgs) -> Result<Self, Failure> {
         let cases: Vec<_> = league.names.iter().copied().zip(league.sources.iter().copied()).collect();
         let files = Files::from_texts(league.name, league.rules, &cases);

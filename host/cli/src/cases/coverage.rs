@@ -18,33 +18,34 @@ use crate::Failure;
 use crate::output;
 use crate::picture;
 
-/// What `cases coverage` may be told.
+/// Arguments of `cases coverage`.
 #[derive(Debug, Args)]
 pub(crate) struct CoverageArgs {
     #[command(flatten)]
     survey: SurveyArgs,
-    /// Print the N worst holes as problems, one a line, as `cases retrieve` reads them; one of each cell, worst first.
+    /// Print the N worst holes as problems, one a line, as `cases retrieve` reads them; one of each cell,
+    /// worst first.
     #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "10", conflicts_with = "json")]
     gaps: Option<usize>,
-    /// One JSON object instead of maps and tables.
+    /// Print one JSON object instead of maps and tables.
     #[arg(long)]
     json: bool,
-    /// Write the map as a picture (FILE.svg, FILE.png), or every cell as a table (FILE.csv).
+    /// Write the map as a figure (FILE.svg, FILE.png), or every cell as a table (FILE.csv).
     #[arg(long, value_name = "FILE", value_parser = picture_file)]
     out: Option<PathBuf>,
-    /// What the picture shows.
+    /// What the figure displays.
     #[arg(long, value_enum, default_value = "holes")]
     map: Map,
 }
 
-/// What is drawn over the field.
+/// Quantity that is drawn over the field.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Map {
     /// The share of problems without a candidate.
     Holes,
     /// The mean number of candidates.
     Candidates,
-    /// The entropy of the winner.
+    /// The entropy of the retrieved case.
     Entropy,
     /// All three, beside each other.
     All,
@@ -229,7 +230,7 @@ fn csv(tally: &Tally, cells: Cells) -> String {
     for (index, cell) in tally.cells.iter().enumerate() {
         let PointMm { x, y } = cells.middle(index);
         let CellTally { problems, none, candidates, .. } = cell;
-        // A string takes everything.
+        // Writing to a String cannot fail.
         let _ = writeln!(text, "{x},{y},{problems},{none},{candidates},{:.4}", cell.entropy_bits());
     }
     text

@@ -1,4 +1,5 @@
-//! Two cases side by side on one problem: what each says to every question, and which ranks first by what.
+//! `diff`: two cases side by side on one problem: the result of each retrieval test for both, and the
+//! criterion by which one ranks first.
 
 use std::io::{self, Write};
 
@@ -14,7 +15,7 @@ use crate::library::Shelf;
 pub(super) struct Difference<'a> {
     /// The one that ranks first; the only candidate, if just one is.
     first: Option<u16>,
-    /// The criterion that tells them apart, or `verdict`, or `neither`.
+    /// The criterion that separates them, or `verdict`, or `neither`.
     by: &'static str,
     /// Both, in the order they were asked for.
     cases: [Side<'a>; 2],
@@ -48,7 +49,7 @@ pub(super) fn find(shelf: &Shelf, stored: usize, asked: &str) -> Result<CaseId, 
 }
 
 impl<'a> Difference<'a> {
-    /// `told` are both cases, their verdicts and the words for them; a case under the other goal has none.
+    /// `told` are both cases with their verdicts and texts; a case for the other goal has none.
     pub(super) fn new(
         shelf: &'a Shelf,
         told: [(CaseId, Option<&Verdict>, String); 2],
@@ -91,14 +92,14 @@ impl<'a> Difference<'a> {
     }
 }
 
-/// The criterion at which two candidates part.
+/// The first criterion in which two candidates differ.
 fn separated_by(a: &Match, b: &Match, settings: &Settings) -> &'static str {
     for criterion in settings.ranking {
         match criterion {
             Criterion::Conditions if a.conditions != b.conditions => return "conditions",
             Criterion::Teammates if a.teammates != b.teammates => return "teammates",
             Criterion::IntervalCost => {
-                // Only fuzzy paths are compared by how free they are; crisp ones are all 1.
+                // Only fuzzy paths are compared by their degree; crisp ones are all 1.
                 if a.free != b.free {
                     return "free path";
                 }

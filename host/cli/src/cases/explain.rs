@@ -1,7 +1,7 @@
-//! `onetwo cases explain`: why that case and none of the others. For each problem on stdin the verdict on
-//! every case listed under the goal: the first check it fails, in the order ball, robot count, thr_c, free
-//! path, with its margin; candidates with their rank (docs/case-format.md §3.3, §5.2). Lengths in mm; robots
-//! of a case, legs and opponents are counted from 1.
+//! `onetwo cases explain`: why a case was retrieved and the others were not. For each problem on stdin the
+//! verdict on every case listed under the goal: the first check it fails, in the order ball, robot count,
+//! thr_c, free path, with its margin; candidates with their rank (docs/case-format.md §3.3, §5.2). Lengths in
+//! mm; robots of a case, legs and opponents are counted from 1.
 
 use std::collections::HashMap;
 use std::io::{self, Write, stdin};
@@ -22,7 +22,7 @@ use crate::args::{Chosen, LibraryArgs, SettingsArgs};
 use crate::library::Shelf;
 use crate::output;
 
-/// What `cases explain` may be told.
+/// Arguments of `cases explain`.
 #[derive(Debug, Args)]
 pub(crate) struct ExplainArgs {
     #[command(flatten)]
@@ -32,10 +32,11 @@ pub(crate) struct ExplainArgs {
     /// One JSON object a problem instead of a table.
     #[arg(long)]
     json: bool,
-    /// Tell of every case, not of the candidates and the nearest misses alone.
+    /// Explain every case, not only the candidates and the nearest misses.
     #[arg(long)]
     all: bool,
-    /// Say what would make each loser win, in JSON too and with --all of every case: some 100 retrievals a case.
+    /// Compute what would make each losing case win, in JSON and with --all for every case: about 100
+    /// retrievals a case.
     #[arg(long, conflicts_with = "diff")]
     what_if: bool,
     /// Only these two, side by side: ids, region/name, or region/name/symmetry.
@@ -43,7 +44,7 @@ pub(crate) struct ExplainArgs {
     diff: Option<Vec<String>>,
 }
 
-/// Cases that are no candidates, but are told: those that miss by the least.
+/// Number of cases that are explained without being candidates: those that miss by the least.
 const NEAREST: usize = 5;
 
 pub(super) fn run(args: &ExplainArgs) -> Result<ExitCode, Failure> {
@@ -67,7 +68,8 @@ pub(super) fn run(args: &ExplainArgs) -> Result<ExitCode, Failure> {
             }
             let mut explanation = Explanation::new(&shelf, &base, &problem, &chosen);
             let told = explanation.told_first(args.all);
-            // A table is for people, a few problems at a time: they are told without asking, of a handful of cases.
+            // A table is read by the operator, a few problems at a time: it has these lines by default, for a
+            // handful of cases.
             let asked = match (args.what_if, args.json) {
                 (true, _) => told.len(),
                 (false, false) => told.len().min(explanation.candidates + NEAREST),
@@ -88,7 +90,7 @@ pub(super) fn run(args: &ExplainArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The explanation of a problem as `--json` gives it; else what is wrong with the problem.
+/// The explanation of a problem in the form of `--json`; or the error in the problem.
 pub(crate) fn explained(shelf: &Shelf, chosen: &Chosen, line: &str) -> Result<String, String> {
     let problem = super::problem::parse(line).map_err(|malformed| malformed.to_string())?;
     let explanation = Explanation::new(shelf, &shelf.base(), &problem, chosen);
@@ -101,8 +103,8 @@ struct Explanation<'a> {
     winner: Option<u16>,
     candidates: usize,
     cases: Vec<Row<'a>>,
-    /// For candidates that lose and the nearest misses (with `--all`: for all): what would make them win. Only where
-    /// asked for.
+    /// For candidates that lose and the nearest misses (with `--all`: for all): what would make them win.
+    /// Only on request.
     #[serde(skip_serializing_if = "Option::is_none")]
     counterfactuals: Option<Vec<WhatIf>>,
     /// What differs from retrieval's defaults; left out where nothing does.
@@ -121,7 +123,7 @@ struct Row<'a> {
     evidence: Evidence,
 }
 
-/// What the verdict rests on.
+/// Evidence of the verdict.
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
 enum Evidence {
@@ -137,7 +139,7 @@ enum Evidence {
     Ball {
         similarity: f64,
         threshold: f32,
-        /// How much nearer to the case's ball it would have to lie.
+        /// Distance by which the ball would have to be nearer to the case's ball, mm.
         outside_mm: f64,
     },
     Robots {
@@ -188,7 +190,7 @@ impl<'a> Explanation<'a> {
         }
     }
 
-    /// Rows in the order people are told them: candidates by rank, then misses, the nearest first.
+    /// Rows in the order of the table: candidates by rank, then misses, the nearest first.
     fn told_first(&self, all: bool) -> Vec<usize> {
         let mut order: Vec<_> = (0..self.cases.len()).collect();
         let place = |at: &usize| self.cases[*at].evidence.place();
@@ -307,7 +309,7 @@ impl Evidence {
         }
     }
 
-    /// Where it comes among what people are told: candidates by rank, misses by mm, then those without a measure.
+    /// Sort key of the table: candidates by rank, misses by mm, then those without a measure.
     fn place(&self) -> (u8, f64) {
         match self {
             Self::Candidate { rank, .. } => (0, *rank as f64),

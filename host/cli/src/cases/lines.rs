@@ -1,8 +1,8 @@
 //! `lines`: reader of problem lines (docs/case-format.md §5.1).
 //!
-//! Blank lines are passed over but counted; a line that is malformed, is no UTF-8 or does not end within [`LINE_MAX`]
-//! is told as an error of that line, and the rest go on. Answers are flushed before the reading has to wait, so that a
-//! program at the other end of both pipes may ask, wait for the answer and ask again.
+//! Blank lines are skipped but counted; a line that is malformed, is no UTF-8 or does not end within
+//! [`LINE_MAX`] is reported as an error of that line, and reading goes on. Answers are flushed before reading
+//! blocks, so that a program at the other end of both pipes may ask, wait for the answer and ask again.
 
 use std::io::{self, BufRead, BufReader, Read, Write};
 
@@ -11,7 +11,7 @@ use casebase::Problem;
 use super::problem::{self, Malformed};
 use crate::Failure;
 
-/// Hands every line that is not blank to `answer`, with its number: the problem in it, or what is wrong as
+/// Passes every line that is not blank to `answer`, with its number: the problem in it, or what is wrong as
 /// `line 7: place: reason`.
 pub(crate) fn for_each_problem<W: Write>(
     input: impl Read,
@@ -36,7 +36,8 @@ pub(crate) fn for_each_problem<W: Write>(
     output.flush().map_err(Failure::Output)
 }
 
-/// The next line up to one byte more than [`LINE_MAX`], the rest of it passed over; `false` at the end of the input.
+/// The next line up to one byte more than [`LINE_MAX`], with the remainder skipped; `false` at the end of the
+/// input.
 fn read_line(input: &mut impl BufRead, line: &mut Vec<u8>) -> io::Result<bool> {
     line.clear();
     input.by_ref().take(LINE_MAX as u64 + 1).read_until(b'\n', line)?;
@@ -56,8 +57,8 @@ fn problem_in(line: &[u8]) -> Result<Problem, Malformed> {
     problem::parse(text)
 }
 
-/// Longest line, bytes: a problem of 11 + 11 robots needs 500; the rest is for blanks, and so that an endless line
-/// cannot fill the memory.
+/// Longest line, bytes: a problem of 11 + 11 robots needs 500; the remainder is for blanks. The bound keeps
+/// an endless line from filling the memory.
 pub(crate) const LINE_MAX: usize = 65_536;
 
 #[cfg(test)]
@@ -66,7 +67,7 @@ mod tests {
 
     const GOOD: &str = r#"{"ball":[1,2],"defending":"cyan","teammates":{},"opponents":[]}"#;
 
-    /// "ok" or the error, one entry a line that is answered.
+    /// "ok" or the error, one entry for each answered line.
     fn answers(input: &[u8]) -> Vec<String> {
         let mut output = Vec::new();
         for_each_problem(input, &mut output, |output, _, problem| {
@@ -111,7 +112,7 @@ mod tests {
 
     #[test]
     fn an_answer_is_out_before_the_next_question_is_awaited() {
-        /// Gives one line, then wants to see its answer before it gives the next.
+        /// Sends one line, then requires its answer before it sends the next.
         struct Dialogue<'a> {
             asked: usize,
             flushed: &'a std::cell::Cell<usize>,

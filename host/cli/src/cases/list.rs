@@ -12,7 +12,7 @@ use crate::args::FolderArgs;
 use crate::library::Shelf;
 use crate::output;
 
-/// What `cases list` may be told.
+/// Arguments of `cases list`.
 #[derive(Debug, Args)]
 pub(crate) struct ListArgs {
     #[command(flatten)]

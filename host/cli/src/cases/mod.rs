@@ -29,30 +29,31 @@ use crate::Failure;
 /// One file per verb.
 #[derive(Debug, Subcommand)]
 pub(crate) enum CasesVerb {
-    /// Is a library sound? Tells every error and warning with its file, line and mend.
+    /// Check a library: every error and warning with its file, line and fix.
     Check(check::CheckArgs),
-    /// Which cases are stored?
+    /// List the stored cases.
     List(list::ListArgs),
-    /// What does a stored case say: the situation, each robot's gameplay, the ball's path?
+    /// Print a stored case: the situation, each robot's gameplay, the ball's path.
     Show(show::ShowArgs),
-    /// What would a case for this situation look like? Writes a first draft to author from.
+    /// Draft a case for a situation: a first version of the file, to author from.
     #[command(after_help = PROBLEM_HELP)]
     New(new::NewArgs),
-    /// What may stand in a case file, or in league.toml? A JSON schema, for editors that complete and check by one.
+    /// Print a JSON schema of case files or of league.toml, for editors that complete and check by one.
     Schema(schema::SchemaArgs),
-    /// Does each case work? Plays it from its own situation, many times, against standing and playing opponents.
+    /// Play each case from its own situation, many times, against standing and playing opponents, and report
+    /// how often it works.
     Play(play::PlayArgs),
-    /// Which case fits each situation? Problems on stdin, answers on stdout, one JSON object a line.
+    /// Retrieve a case for each situation: problems on stdin, answers on stdout, one JSON object a line.
     #[command(after_help = PROBLEM_HELP)]
     Retrieve(retrieve::RetrieveArgs),
-    /// Why that case? Every case's verdict for each problem on stdin.
+    /// Explain a retrieval: every case's verdict for each problem on stdin.
     #[command(after_help = PROBLEM_HELP)]
     Explain(explain::ExplainArgs),
-    /// Where on the field is there no case? Maps and shares over drawn problems.
+    /// Measure where on the field no case fits: maps and shares over drawn problems.
     Coverage(coverage::CoverageArgs),
-    /// Which cases carry the library, which are shadowed, which could go?
+    /// Count how often each case is retrieved, which are shadowed, and which could be removed.
     Stats(stats::StatsArgs),
-    /// What does a case look like, and a problem over it? An SVG.
+    /// Draw a case, and a problem over it, as SVG.
     #[command(after_help = PROBLEM_HELP)]
     Render(render::RenderArgs),
 }

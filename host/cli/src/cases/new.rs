@@ -1,6 +1,6 @@
 //! `onetwo cases new`: draft of a case for a situation. One problem in, a case file out, to author from. It
-//! passes `cases check` and is retrieved from its problem; what it leaves out of the problem is told on
-//! stderr.
+//! passes `cases check` and is retrieved from its problem; the parts of the problem that it leaves out are
+//! reported on stderr.
 
 use std::fs::OpenOptions;
 use std::io::{self, Read, Write, stdin};
@@ -17,16 +17,16 @@ use crate::Failure;
 use crate::args::LibraryArgs;
 use crate::output::{note, say, shown};
 
-/// What `cases new` may be told.
+/// Arguments of `cases new`.
 #[derive(Debug, Args)]
 pub(crate) struct NewArgs {
     /// The situation: a file with one problem, or - for stdin.
     #[arg(long, value_name = "FILE|-")]
     from: PathBuf,
-    /// The file to write: `<region>/<name>.toml` in a league's folder; stdout unless told.
+    /// The file to write: `<region>/<name>.toml` in a league's directory; stdout by default.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Write over a file that is there.
+    /// Overwrite an existing file.
     #[arg(long, requires = "out")]
     force: bool,
     #[command(flatten)]
@@ -64,7 +64,7 @@ pub(super) fn run(args: &NewArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// `league.toml` of the league meant.
+/// `league.toml` of the selected league.
 fn rules(args: &LibraryArgs) -> Result<SourceFile, Failure> {
     if let Some(folder) = &args.folder.library {
         let path = folder.join("league.toml");
@@ -79,7 +79,7 @@ fn rules(args: &LibraryArgs) -> Result<SourceFile, Failure> {
     Ok(Files::from_texts(league.name, league.rules, &[]).rules)
 }
 
-/// The one problem of a file.
+/// Reads the one problem of a file.
 fn read(from: &Path) -> Result<Problem, Failure> {
     let most = LINE_MAX as u64;
     let (name, read) = if from == Path::new("-") {

@@ -1,8 +1,9 @@
 //! `onetwo cases play`: self-test of cases. It is played from its own situation by robots that must retrieve
 //! it themselves (four-legged simulator).
 //!
-//! The answer is a table in words for people, Markdown for the file beside the cases, or JSON: a list of scores. The same seed gives
-//! the same answer for any number of jobs. `--story` tells single attempts instead, for whoever mends a case.
+//! The answer is a text table, Markdown for the file beside the cases, or JSON: a list of scores. The same
+//! seed gives the same answer for any number of jobs. `--story` prints the events of single attempts instead,
+//! to debug a case.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -19,10 +20,10 @@ use crate::library::Shelf;
 use crate::output::{self, say};
 use crate::setup::refuse_other_fields;
 
-/// What `cases play` may be told.
+/// Arguments of `cases play`.
 #[derive(Debug, Args)]
 pub(crate) struct PlayArgs {
-    /// Cases by region/name, or whole regions; all unless told.
+    /// Cases by region/name, or whole regions; all by default.
     #[arg(value_name = "NAME")]
     names: Vec<String>,
     #[command(flatten)]
@@ -32,22 +33,22 @@ pub(crate) struct PlayArgs {
     /// Attempts a case and kind of opposition.
     #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     trials: u32,
-    /// Where all chance comes from.
+    /// Random seed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Bodies in the way, or the paper's scripted opponents; both unless told.
+    /// Opponents that stand in the path, or the paper's scripted opponents; both by default.
     #[arg(long, value_parser = opposition)]
     opponents: Option<Opposition>,
-    /// Threads; as many as there are cores unless told.
+    /// Threads; the number of cores by default.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     /// One JSON list of scores.
     #[arg(long, conflicts_with_all = ["markdown", "story"])]
     json: bool,
-    /// The table as a file for people, headed by the command that makes it again.
+    /// Print the table as a Markdown file, headed by the command that reproduces it.
     #[arg(long, conflicts_with = "story")]
     markdown: bool,
-    /// Tell what happens in each attempt, instead of a table.
+    /// Print the events of each attempt instead of a table.
     #[arg(long)]
     story: bool,
 }
@@ -83,7 +84,7 @@ pub(super) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The authored cases asked for, in the order of ids.
+/// The authored cases that are selected, in the order of ids.
 fn chosen<'a>(args: &PlayArgs, shelf: &Shelf, rehearsal: &Rehearsal<'a>) -> Result<Vec<Case<'a>>, Failure> {
     let names = shelf.names();
     let means = |asked: &str, name: &str| {
@@ -99,7 +100,7 @@ fn chosen<'a>(args: &PlayArgs, shelf: &Shelf, rehearsal: &Rehearsal<'a>) -> Resu
     Ok(cases.filter_map(|(number, _)| rehearsal.case(number)).collect())
 }
 
-/// All attempts, on the threads asked for.
+/// All attempts, on the selected number of threads.
 fn play(
     args: &PlayArgs,
     rehearsal: &Rehearsal<'_>,
@@ -109,7 +110,7 @@ fn play(
     let pool = rayon::ThreadPoolBuilder::new().num_threads(args.jobs.map_or(0, usize::from)).build();
     let pool = pool.map_err(|error| Failure::Threads(error.to_string()))?;
     let attempts = u64::from(args.trials) * (cases.len() * oppositions.len()) as u64;
-    // Drawn on stderr where that is a terminal, and nowhere else.
+    // Drawn only if stderr is a terminal.
     let bar = ProgressBar::new(attempts);
     if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}, {eta} to go") {
         bar.set_style(style);
@@ -128,7 +129,7 @@ fn play(
     Ok(scores)
 }
 
-/// Attempts in words, one after the other.
+/// Attempts as text, one after the other.
 fn tell(
     rehearsal: &Rehearsal<'_>,
     cases: &[Case<'_>],
@@ -155,7 +156,7 @@ fn tell(
 }
 
 impl PlayArgs {
-    /// What stands above the table.
+    /// Lines above the table.
     fn heading(&self, rehearsal: &Rehearsal<'_>, scores: &[Score]) -> String {
         let [trials, seed, hash] = [u64::from(self.trials), self.seed, u64::from(rehearsal.base.hash())];
         let reached = |word: &str| {
@@ -197,5 +198,5 @@ fn opposition(word: &str) -> Result<Opposition, String> {
     Opposition::from_word(word).ok_or_else(|| "take standing or playing".to_owned())
 }
 
-/// A case that is completed less often says why in its file, percent.
+/// A case that is completed less often must give the reason in its file, percent.
 const ENOUGH_PERCENT: f64 = 60.0;

@@ -1,8 +1,9 @@
 //! `problem`: parser of problem lines (docs/case-format.md §5.1, `cases retrieve`).
 //!
-//! A problem is one JSON object with exactly the keys `ball`, `defending`, `teammates` and `opponents`; integers in mm,
-//! field frame. Strict: a missing, unknown or repeated key, a repeated robot or a number that is no integer is
-//! malformed, and the error names its place, such as `teammates.3`. List places count from 1, as lines do.
+//! A problem is one JSON object with exactly the keys `ball`, `defending`, `teammates` and `opponents`;
+//! integers in mm, field frame. Strict: a missing, unknown or repeated key, a repeated robot or a number that
+//! is no integer is malformed, and the error names its place, such as `teammates.3`. List places count from
+//! 1, as lines do.
 
 use std::fmt;
 
@@ -12,7 +13,7 @@ use protocol::RobotId;
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::value::RawValue;
 
-/// The problem a line holds.
+/// Parses the problem of a line.
 pub(crate) fn parse(line: &str) -> Result<Problem, Malformed> {
     let Members(members) = serde_json::from_str(line).map_err(|error| not_an_object(&error))?;
     let (mut ball, mut defending, mut teammates, mut opponents) = (None, None, None, None);
@@ -34,10 +35,10 @@ pub(crate) fn parse(line: &str) -> Result<Problem, Malformed> {
     })
 }
 
-/// As much of a place as is shown, characters: a key of the line may be as long as the line.
+/// Longest place that is printed, characters: a key of the line may be as long as the line.
 const PLACE_LEN: usize = 60;
 
-/// Why a line holds no problem.
+/// Why a line is not a valid problem.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Malformed {
     /// Where in the line, if not all of it.
@@ -138,8 +139,8 @@ fn point(value: &RawValue, place: &str) -> Result<PointMm, Malformed> {
         .ok_or_else(|| Malformed::at(place, "expected [x, y] in mm"))
 }
 
-/// A number written as an integer. One that no `i32` holds lies further than 2,000 km away: it is taken at that
-/// distance, which decides no differently.
+/// A number written as an integer. One that does not fit an `i32` lies farther than 2,000 km away: it is
+/// clamped, which decides no differently.
 fn integer(value: &RawValue) -> Option<i32> {
     let text = value.get();
     let digits = text.strip_prefix('-').unwrap_or(text);

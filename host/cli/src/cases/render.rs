@@ -1,5 +1,4 @@
-//! `onetwo cases render`: pictures of cases. An SVG or PNG, alone or all on one page
-//! (docs/case-format.md §3).
+//! `onetwo cases render`: figures of cases. An SVG or PNG, alone or all on one page (docs/case-format.md §3).
 
 use std::io::{Read, stdin};
 use std::path::{Path, PathBuf};
@@ -18,25 +17,26 @@ use crate::library::Shelf;
 use crate::output::{say, shown};
 use crate::picture;
 
-/// What `cases render` may be told.
+/// Arguments of `cases render`.
 #[derive(Debug, Args)]
 pub(crate) struct RenderArgs {
-    /// `region/name` of a case (drawn as authored), or the id of a stored case; with --problem the retrieved one.
+    /// `region/name` of a case (drawn as authored), or the id of a stored case; with --problem the retrieved
+    /// one.
     #[arg(value_name = "NAME|ID", required_unless_present_any = ["problem", "all", "sheet"])]
     case: Option<String>,
     /// A situation to draw over the case: a file, - for stdin, or the line of JSON itself.
     #[arg(long, value_name = "FILE|-|JSON")]
     problem: Option<String>,
-    /// Where to, an .svg or a .png; the SVG on stdout if left out. With --all a folder.
+    /// Output file, an .svg or a .png; the SVG on stdout if left out. With --all a directory.
     #[arg(long, value_name = "FILE|DIR")]
     out: Option<PathBuf>,
-    /// Draw every authored case into the folder --out, as region/name.svg.
+    /// Draw every authored case into the directory --out, as region/name.svg.
     #[arg(long, requires = "out", conflicts_with_all = ["case", "problem"])]
     all: bool,
     /// Draw all authored cases small on one page, an .svg or a .png.
     #[arg(long, value_name = "FILE", value_parser = picture_file, conflicts_with_all = ["case", "problem"])]
     sheet: Option<PathBuf>,
-    /// What the picture is for.
+    /// What the figure is for.
     #[arg(long, value_enum, default_value = "light")]
     theme: ThemeWord,
     #[command(flatten)]
@@ -152,7 +152,7 @@ fn candidate(verdict: &Verdict) -> Option<&Match> {
     }
 }
 
-/// The problem that the argument holds or names.
+/// Reads the problem from the argument or from the file that it names.
 fn read(argument: &str) -> Result<Problem, Failure> {
     let text = if argument.trim_start().starts_with('{') {
         argument.to_owned()

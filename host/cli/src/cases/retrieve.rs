@@ -13,7 +13,7 @@ use crate::args::{LibraryArgs, SettingsArgs};
 use crate::library::Shelf;
 use crate::output;
 
-/// What `cases retrieve` may be told.
+/// Arguments of `cases retrieve`.
 #[derive(Debug, Args)]
 pub(crate) struct RetrieveArgs {
     #[command(flatten)]

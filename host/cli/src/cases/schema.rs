@@ -1,6 +1,6 @@
 //! `onetwo cases schema`: JSON schemas of case files and of `league.toml`. A JSON schema (draft 2020-12) from
-//! the names and ranges the reader knows, for editors. It says what a file may look like; what a plan must be
-//! is for `cases check`.
+//! the names and ranges the reader knows, for editors. It describes the form of a case file; whether a plan
+//! is valid is checked by `cases check`.
 
 use std::io::Write as _;
 use std::ops::RangeInclusive;
@@ -17,10 +17,10 @@ use super::answer::write_line;
 use crate::Failure;
 use crate::output;
 
-/// What `cases schema` may be told.
+/// Arguments of `cases schema`.
 #[derive(Debug, Args)]
 pub(crate) struct SchemaArgs {
-    /// Of league.toml instead of a case file.
+    /// Schema of league.toml instead of a case file.
     #[arg(long)]
     league_file: bool,
 }
@@ -108,7 +108,7 @@ fn kick(key: &str) -> Value {
         "aim" => json!({ "const": "goal" }),
         "offset" => integer(&keys::COORDINATES, "mm along the goal line, left > 0 seen in attack."),
         "primitive" => {
-            // An unknown word is doubtful to `cases check`, not wrong.
+            // An unknown name is a warning of `cases check`, not an error.
             let known = Primitive::ALL.map(Primitive::word).into_iter().filter(|word| !word.is_empty());
             json!({ "type": "string", "examples": known.collect::<Vec<_>>() })
         }

@@ -1,5 +1,5 @@
-//! `onetwo cases show`: the contents of a stored case (paper §2; docs/case-format.md §1–§3). Text for people;
-//! mm and degrees, the case's own coordinates.
+//! `onetwo cases show`: the contents of a stored case (paper §2; docs/case-format.md §1–§3). As text; mm and
+//! degrees, the case's own coordinates.
 
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -13,10 +13,10 @@ use crate::args::LibraryArgs;
 use crate::library::Shelf;
 use crate::output;
 
-/// What `cases show` may be told.
+/// Arguments of `cases show`.
 #[derive(Debug, Args)]
 pub(crate) struct ShowArgs {
-    /// `region/name` of a case (shown as authored), or the id of a stored case.
+    /// `region/name` of a case (printed as authored), or the id of a stored case.
     #[arg(value_name = "NAME|ID")]
     case: String,
     #[command(flatten)]
@@ -62,7 +62,7 @@ fn near(names: &[String], asked: &str) -> Option<String> {
     (best.0 >= ALIKE).then(|| best.1.clone())
 }
 
-/// Share of letters that two names have in common at least, to be taken for a slip of the pen.
+/// Least share of letters in common for two names to be taken for a typing error.
 const ALIKE: f64 = 0.6;
 
 fn write_case(output: &mut impl Write, shelf: &Shelf, case: &Case<'_>) -> io::Result<()> {

@@ -15,7 +15,7 @@ use super::survey::{SurveyArgs, Trial, class, percent};
 use crate::Failure;
 use crate::output;
 
-/// What `cases stats` may be told.
+/// Arguments of `cases stats`.
 #[derive(Debug, Args)]
 pub(crate) struct StatsArgs {
     #[command(flatten)]
@@ -225,7 +225,7 @@ impl Report<'_> {
     }
 }
 
-/// What could be tried with a case, and why.
+/// Suggested changes to a case, with their reasons.
 fn hints(case: &CaseTally, tally: &Tally) -> Vec<String> {
     let mut hints = Vec::new();
     let (candidate, wins) = (case.candidate(), case.wins);
@@ -267,13 +267,14 @@ fn object(words: &[&str], counts: &[u64]) -> Value {
         .into()
 }
 
-/// Fewer wins than one in so many times candidate: another case plays nearly all of its problems.
+/// A case with fewer wins than one in this number of candidacies is shadowed: another case wins nearly all of
+/// its problems.
 const SHADOWED: u64 = 50;
-/// Problems that make a hint: fewer may be chance.
+/// Least number of problems for a hint: fewer may be chance.
 const EVIDENCE: u64 = 20;
-/// A larger scope is worth a hint where it fills one in so many of the problems without a case.
+/// A larger scope is worth a hint where it fills at least one in this number of the problems without a case.
 const WORTH_ENLARGING: u64 = 25;
-/// Jaccard's index of coverage sets from which two cases are nearly one.
+/// Jaccard's index of coverage sets from which two cases count as near twins.
 const NEAR_TWINS: f64 = 0.8;
-/// What thinning out may lose, of a thousand problems.
+/// Problems that removing cases may lose, per thousand.
 const LOSS_MAX_PER_MILLE: u64 = 1;

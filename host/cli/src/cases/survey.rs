@@ -1,6 +1,6 @@
-//! `survey`: problems that a library is tried with. What `cases coverage` and `cases stats` have in common:
-//! drawn or recorded problems, counted in blocks on all cores. The numbers do not depend on how many there
-//! are.
+//! `survey`: problems that a library is tested with. What `cases coverage` and `cases stats` have in common:
+//! drawn or recorded problems, counted in blocks on all cores. The numbers do not depend on the number of
+//! cores.
 
 use std::io::sink;
 use std::path::{Path, PathBuf};
@@ -18,17 +18,17 @@ use crate::args::{Chosen, LibraryArgs, SettingsArgs};
 use crate::library::Shelf;
 use crate::output::shown;
 
-/// What both verbs may be told.
+/// Arguments of both verbs.
 #[derive(Debug, Args)]
 pub(crate) struct SurveyArgs {
     #[command(flatten)]
     library: LibraryArgs,
     #[command(flatten)]
     settings: SettingsArgs,
-    /// How many problems are drawn.
+    /// Number of problems that are drawn.
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = value_parser!(u64).range(1..=100_000_000))]
     problems: u64,
-    /// The draw: the same seed gives the same problems.
+    /// Random seed: the same seed draws the same problems.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Recorded problems instead of drawn ones: a file of lines as `cases retrieve` takes them.
@@ -40,7 +40,7 @@ pub(crate) struct SurveyArgs {
     /// Only the first N robots of each problem are present.
     #[arg(long, value_name = "N", value_parser = value_parser!(u8).range(1..=11))]
     teammates: Option<u8>,
-    /// How many threads work; as many as there are cores unless told. The answer is the same.
+    /// Number of threads; the number of cores by default. The answer is the same.
     #[arg(long, value_name = "J", value_parser = value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     /// Edge of a cell, mm; a cell holds the balls that are counted together.
@@ -48,7 +48,7 @@ pub(crate) struct SurveyArgs {
     cell: Option<i32>,
 }
 
-/// An opened library and the problems it is tried with.
+/// An opened library and the problems it is tested with.
 #[derive(Debug)]
 pub(crate) struct Trial<'a> {
     args: &'a SurveyArgs,
@@ -77,7 +77,7 @@ impl<'a> Trial<'a> {
         Ok(Self { args, shelf, chosen, source })
     }
 
-    /// How many problems there are before those of the other team are left out.
+    /// Number of problems before those of the other team are left out.
     pub(crate) fn len(&self) -> u64 {
         match &self.source {
             Source::Drawn(_) => self.args.problems,
@@ -85,12 +85,12 @@ impl<'a> Trial<'a> {
         }
     }
 
-    /// The seed, where problems were drawn.
+    /// The seed, if problems were drawn.
     pub(crate) fn seed(&self) -> Option<u64> {
         matches!(self.source, Source::Drawn(_)).then_some(self.args.seed)
     }
 
-    /// The problem of a number below [`Trial::len`], where it is wanted.
+    /// The problem of a number below [`Trial::len`]; `None` if it is filtered out.
     pub(crate) fn problem(&self, number: u64) -> Option<Problem> {
         let mut problem = match &self.source {
             Source::Drawn(sampler) => sampler.problem(number),
@@ -160,12 +160,12 @@ pub(crate) fn percent(part: u64, whole: u64) -> f64 {
     (1000.0 * part as f64 / whole.max(1) as f64).round() / 10.0
 }
 
-/// Region of a case's name: its folder.
+/// Region of a case's name: its directory.
 pub(crate) fn region(name: &str) -> &str {
     name.split_once('/').map_or(name, |(region, _)| region)
 }
 
-/// What the authored case is by the paper's classes: robots, and opponents in its situation.
+/// Class of the authored case in the paper: robots, and opponents in its situation.
 pub(crate) fn class(shelf: &Shelf, authored: usize) -> (&'static str, usize) {
     let id = protocol::CaseId((authored * Symmetry::ALL.len()) as u16);
     shelf.base().case(id).map_or(("individual", 0), |case| {

@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::answer::rounded;
 use crate::library::Shelf;
 
-/// What would make one case the winner, or why nothing single does.
+/// What would make one case the winner, or why no single change does.
 #[derive(Debug, Serialize)]
 pub(super) struct WhatIf {
     id: u16,

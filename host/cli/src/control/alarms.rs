@@ -1,5 +1,5 @@
-//! `alarms`: what is wrong now and an operator should act on, for terminal and page. Each is printed at once, and again every
-//! [`AGAIN`] while it lasts. Times on the host's clock.
+//! `alarms`: faults that an operator should act on now, for terminal and page. Each is printed at once, and
+//! again every [`AGAIN`] while it lasts. Times on the host's clock.
 
 use host::Host;
 use host::sanity::{Finding, Sanity};
@@ -9,50 +9,50 @@ use super::inbox::Dropped;
 
 /// An alarm that lasts is printed again after this.
 const AGAIN: Duration = Duration::millis(10_000);
-/// One that was away for so long is a new one.
+/// A robot that was missing for longer than this counts as a new one.
 const FORGOTTEN: Duration = Duration::millis(10_000);
-/// Drops and the line's lateness are shown for so long after the last.
+/// Drops and the line's lateness are displayed for this long after the last one.
 const LASTS: Duration = Duration::millis(3_000);
 
 /// Something that is wrong.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Alarm {
-    /// What it is about: words change with figures, this does not.
+    /// What the alarm is about: its text changes with the figures, this key does not.
     matter: String,
     words: String,
     /// It is printed again while it lasts.
     repeats: bool,
 }
 
-/// What is wrong, and what of it was printed when.
+/// Current faults, and when each was printed.
 #[derive(Debug, Default)]
 pub(super) struct Alarms {
     sanity: Sanity,
     printed: Vec<(String, Instant, Instant)>,
     dropped: Dropped,
-    /// What was dropped lately, and until when that is shown.
+    /// What was dropped recently, and until when that is displayed.
     drops: Vec<(&'static str, u64, Instant)>,
     slow: Option<(String, Instant)>,
     now: Vec<String>,
 }
 
 impl Alarms {
-    /// The host's loop runs: at least every 100 ms, or this computer stood still.
+    /// Records that the host's loop runs: if more than 100 ms have passed, this computer was blocked.
     pub(super) fn ran(&mut self, now: Instant) {
         self.sanity.ran(now);
     }
 
-    /// The robots' line is too slow.
+    /// Records that the robots' line is too slow.
     pub(super) fn slow(&mut self, now: Instant, words: String) {
         self.slow = Some((words, now));
     }
 
-    /// What is wrong now, for the page.
+    /// Current faults, for the page.
     pub(super) fn now(&self) -> &[String] {
         &self.now
     }
 
-    /// Looks at everything; gives the lines to print. `vision` says where vision is received.
+    /// Checks all alarms; returns the lines to print. `vision` is where vision is received.
     pub(super) fn look(
         &mut self,
         now: Instant,

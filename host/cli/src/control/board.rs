@@ -1,4 +1,4 @@
-//! The page beside a real field: shows what the host knows, and takes HALT, nothing else.
+//! `board`: the page beside a real field: displays what the host knows, and accepts HALT, nothing else.
 
 use std::time::{Duration, Instant};
 
@@ -9,17 +9,17 @@ use crate::library::Shelf;
 use crate::live::{CaseOracle, Composer, Moment, PageArgs, SCENE_EVERY_S, tick};
 use crate::output::note;
 
-/// A page and what fills it.
+/// A page and its composer.
 pub(super) struct Board {
     page: Page,
     composer: Composer,
     shown: Option<Instant>,
-    /// What an input takes, as a sliding mean.
+    /// Time an input takes, as a sliding mean.
     took: Duration,
 }
 
 impl Board {
-    /// Opens it. Without a page the robots are led all the same: what is wrong with it is said.
+    /// Opens the page. If it cannot be opened, the error is printed and the robots are controlled without it.
     pub(super) fn open(
         args: &PageArgs,
         title: String,
@@ -42,18 +42,18 @@ impl Board {
         self.composer.referee(bytes, now.0 as f64 * 1e-6, false);
     }
 
-    /// Something is wrong: a line among what happened.
+    /// Adds a fault to the page's events.
     pub(super) fn fault(&mut self, now: protocol::Instant, words: String) {
         let t = now.0 as f64 * 1e-6;
         self.page.tell(Happening { t, kind: Kind::Fault, team: None, words, at: None, problem: None });
     }
 
-    /// An input took so long.
+    /// Records how long an input took.
     pub(super) fn took(&mut self, time: Duration) {
         self.took = (self.took * 15 + time) / 16;
     }
 
-    /// Shows the moment, if it is time; true: a viewer asks for HALT.
+    /// Sends the scene to the page if it is due; true: a viewer asks for HALT.
     pub(super) fn look(&mut self, now: protocol::Instant, host: &Host, alarms: Vec<String>) -> bool {
         let every = Duration::from_secs_f64(SCENE_EVERY_S);
         if self.shown.is_none_or(|shown| shown.elapsed() >= every) {

@@ -1,7 +1,8 @@
-//! The desk: whatever comes by the channel goes to the host with the time of a monotonic clock, and what the host says goes out.
+//! `desk`: event loop of `onetwo control`: feeds what arrives on the channel to the host, with the time of a
+//! monotonic clock, and sends the host's packets.
 //!
-//! Event-driven: it waits for mail or for the host's deadline, whichever is first. Times on the host's clock, which shows 0 when
-//! the program starts.
+//! Event-driven: it waits for mail or for the host's deadline, whichever is first. Times on the host's clock,
+//! which is 0 when the program starts.
 
 use std::ffi::OsString;
 use std::io;
@@ -42,24 +43,25 @@ use crate::net::Mouth;
 use crate::output::{note, shown};
 use crate::stop::stopped_by_hand;
 
-/// Looks at what is missing, and at Ctrl-C, at least this often.
+/// Longest time between two checks for missing sources and Ctrl-C.
 const LOOK: Duration = Duration::from_millis(100);
-/// HALT is sent so long before the program ends: thirty pictures, so that a lossy radio brings one of them.
+/// HALT is sent for this time before the program ends: thirty snapshots, so that one of them arrives over a
+/// lossy radio.
 const HALTING: Duration = Duration::from_millis(300);
-/// A longer file is none of settings, bytes.
+/// A longer file is not read as a settings file, bytes.
 const LEARNED_LEN_MAX: u64 = 1 << 20;
-/// One HALT after the other.
+/// Period of HALT frames.
 const HALT_EVERY: Duration = Duration::from_millis(10);
 
-/// What is kept on the disk.
+/// Files that are written.
 pub(super) struct Keeps<'p> {
-    /// The match, as `onetwo replay` takes it.
+    /// The recording of the match, as `onetwo replay` takes it.
     pub(super) record: Option<&'p Path>,
-    /// What was learned, as lines of `team.toml`.
+    /// Learned values, as lines of `team.toml`.
     pub(super) learned: Option<&'p Path>,
 }
 
-/// Runs until somebody ends it.
+/// Runs until the operator ends it.
 pub(super) fn run(
     config: &TeamConfig,
     learns: bool,
@@ -178,8 +180,7 @@ pub(super) fn run(
     Ok(ExitCode::SUCCESS)
 }
 
-/// With what the host begins; its clock shows 0 now.
-/// What was learned goes to that file; words about it.
+/// Saves the learned values to the file `path`; returns a message for the operator.
 fn keep_learned(path: &Path, learned: &Learned) -> String {
     let write = || -> io::Result<()> {
         let before = match foreign::read_text(path, LEARNED_LEN_MAX) {
@@ -246,14 +247,14 @@ struct Counts {
 struct Desk {
     host: Host,
     began: Instant,
-    /// What is asked of the game controller.
+    /// Requests to the game controller.
     ask: Sender<Request>,
     out: Arc<Mutex<Outbox>>,
     us: Colour,
     recorder: Option<BackgroundRecorder>,
-    /// How a recording ended that ended before the match.
+    /// Error of a recording that ended before the match.
     recording: io::Result<()>,
-    /// It was reported that the trace has ended.
+    /// Whether the end of the trace was reported.
     trace_ended: bool,
     watch: Watch,
     alarms: Alarms,
@@ -270,7 +271,7 @@ impl Desk {
         protocol::Instant(self.began.elapsed().as_micros() as u64)
     }
 
-    /// Waits for mail or the host's deadline, and does what it brings.
+    /// Waits for mail or the host's deadline, and handles it.
     fn wait(&mut self, inbox: &Inbox) {
         let due = self.host.poll_timeout().map(|due| Duration::from_micros(due.since(self.now()).0));
         if let Some(mail) = inbox.take(due.unwrap_or(LOOK).min(LOOK)) {
@@ -313,7 +314,7 @@ impl Desk {
         }
     }
 
-    /// One input, then what the host says to it.
+    /// Feeds one input to the host, then handles its output.
     fn tell(&mut self, now: protocol::Instant, input: Input<'_>) -> Verdict {
         if let Some(recorder) = &mut self.recorder {
             let heard = match input {
@@ -342,7 +343,7 @@ impl Desk {
 
     fn send(&mut self, now: protocol::Instant) {
         while let Some(request) = self.host.poll_request() {
-            // Without a controller to ask there is no thread that takes it.
+            // Without a game controller no thread receives the request.
             let _ = self.ask.send(request);
         }
         let mut batch = Vec::new();
@@ -356,7 +357,7 @@ impl Desk {
         self.out.lock().unwrap_or_else(PoisonError::into_inner).push(batch, self.host.is_halting());
     }
 
-    /// The moment on the page, and HALT if somebody there asks for it.
+    /// Sends the scene to the page, and HALT if a viewer asks for it.
     fn show(&mut self) {
         let now = self.now();
         let Some(board) = &mut self.board else { return };
@@ -376,7 +377,7 @@ impl Desk {
         }
     }
 
-    /// What keeps robots and host apart goes to terminal and page.
+    /// Reports refused handshakes and frames between robots and host on terminal and page.
     fn look_at_radio(&mut self, now: protocol::Instant) {
         for words in self.radio_alarms.look(now, self.host.radio()) {
             if let Some(board) = &mut self.board {
@@ -392,7 +393,7 @@ impl Desk {
         self.words.extend(self.alarms.look(now, &self.host, inbox.dropped(), vision));
     }
 
-    /// Whether the recording keeps up, and whether the disk takes it.
+    /// Checks whether the recording keeps up and the disk accepts it.
     fn look_at_recording(&mut self) {
         let Some(recorder) = &self.recorder else { return };
         if recorder.failed() {
@@ -421,7 +422,7 @@ impl Desk {
         }
     }
 
-    /// Robots stand before nobody leads them any more.
+    /// Halts the robots before the program stops controlling them.
     fn halt(&mut self) {
         let began = Instant::now();
         while began.elapsed() < HALTING {
@@ -435,7 +436,7 @@ impl Desk {
         }
     }
 
-    /// A line for a terminal.
+    /// The status line for a terminal.
     fn status(&self) -> String {
         let (now, host) = (self.now(), &self.host);
         let seen = host.world().ours(host.settings().us).count();

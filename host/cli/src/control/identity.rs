@@ -1,6 +1,6 @@
 //! `identity`: the team's key and this start's epoch, as `onetwo control` uses them.
 //!
-//! A link to real robots refuses the key of zeros, which is public, unless `--insecure-zero-key` says that it may be.
+//! A link to real robots refuses the key of zeros, which is public, unless `--insecure-zero-key` permits it.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 

@@ -1,9 +1,10 @@
-//! `inbox`: what came from network and robots and waits for the event loop. A bounded lane for each kind; referee and robots are
-//! read before vision. Sizes in bytes, lengths in datagrams.
+//! `inbox`: what arrived from network and robots and waits for the event loop. A bounded lane for each kind;
+//! referee and robots are read before vision. Sizes in bytes, lengths in datagrams.
 //!
-//! A flood of one kind cannot delay another: the referee's newest packet waits for at most one camera frame that is being
-//! handled. When a lane is full its oldest entry goes and is counted; what is larger than such a datagram ever is does not get
-//! in. Memory is bounded by [`VISION_MAX`] × [`VISION_LEN_MAX`] and the like: 2 MB in all.
+//! A flood of one kind cannot delay another: the referee's newest packet waits for at most one camera frame
+//! that is being handled. When a lane is full its oldest entry is dropped and counted; a datagram longer than
+//! its kind can be is refused. Memory is bounded by [`VISION_MAX`] × [`VISION_LEN_MAX`] and the like: 2 MB in
+//! all.
 
 use std::collections::VecDeque;
 use std::sync::{Condvar, Mutex, PoisonError};
@@ -14,11 +15,13 @@ use protocol::link::Packet;
 
 use super::threads::Source;
 
-/// The longest datagram of vision, bytes: a camera frame of 32 robots, 100 balls and the field's geometry has 9 kB.
+/// The longest datagram of vision, bytes: a camera frame of 32 robots, 100 balls and the field's geometry has
+/// 9 kB.
 pub(super) const VISION_LEN_MAX: usize = 10_240;
-/// The longest packet of the referee, bytes: the controller sends 0.6 to 4 kB, with every game event it keeps.
+/// The longest packet of the referee, bytes: the controller sends 0.6 to 4 kB, with all game events that it
+/// stores.
 pub(super) const REFEREE_LEN_MAX: usize = 16_384;
-/// Camera frames that wait: 0.1 s of eight cameras at 80 Hz. Older ones say nothing that newer ones do not say better.
+/// Camera frames that wait: 0.1 s of eight cameras at 80 Hz. Newer frames supersede older ones.
 const VISION_MAX: usize = 64;
 /// Packets of the referee that wait: more than a second of it.
 const REFEREE_MAX: usize = 64;
@@ -26,16 +29,16 @@ const REFEREE_MAX: usize = 64;
 const ROBOTS_MAX: usize = 256;
 /// Notes for the operator that wait.
 const NOTES_MAX: usize = 256;
-/// So many referee's packets and robots' frames are handled in a row while camera frames wait: a flood of one kind shall not
-/// blind the robots altogether.
+/// Most referee packets and robot frames that are handled in a row while camera frames wait: a flood of one
+/// kind must not block vision.
 const URGENT_IN_ROW: u32 = 32;
 
-/// What comes to the event loop.
+/// An entry for the event loop.
 #[derive(Debug)]
 pub(super) enum Mail {
     /// A datagram of the vision.
     Vision(Vec<u8>),
-    /// A datagram of the referee, and who sent it.
+    /// A datagram of the referee, and its sender.
     Referee(Vec<u8>, SenderAddress),
     /// A frame of a robot.
     Robot(Packet),
@@ -45,7 +48,7 @@ pub(super) enum Mail {
     Trouble(Source, String),
     /// A line for the operator.
     Word(String),
-    /// The robots' line is too slow, and what it would need.
+    /// The robots' line is too slow, with the rate it would need.
     Slow(String),
 }
 
@@ -64,7 +67,7 @@ pub(super) struct Dropped {
     pub(super) referee_oversized: u64,
 }
 
-/// A queue that forgets its oldest.
+/// A queue that drops its oldest entry when full.
 #[derive(Debug)]
 struct Lane<T> {
     waiting: VecDeque<T>,
@@ -158,7 +161,7 @@ impl Inbox {
         Self { lanes: Mutex::new(Lanes::new()), came: Condvar::new() }
     }
 
-    /// Puts something in; never waits for the event loop.
+    /// Adds an entry; never waits for the event loop.
     pub(super) fn put(&self, mail: Mail) {
         self.lanes.lock().unwrap_or_else(PoisonError::into_inner).put(mail);
         self.came.notify_one();
@@ -170,7 +173,7 @@ impl Inbox {
         lanes.oversized[usize::from(source == Source::Referee)] += 1;
     }
 
-    /// The most urgent thing, within `wait`.
+    /// The most urgent entry, within `wait`.
     pub(super) fn take(&self, wait: Duration) -> Option<Mail> {
         let until = Instant::now() + wait;
         let mut lanes = self.lanes.lock().unwrap_or_else(PoisonError::into_inner);
@@ -224,7 +227,7 @@ mod tests {
                 matches!(lanes.take(), Some(Mail::Referee(bytes, _)) if bytes == [round as u8]),
                 "{round}"
             );
-            // Of vision the newest are left, in order.
+            // The newest vision frames are left, in order.
             let Some(Mail::Vision(bytes)) = lanes.take() else { panic!("vision waits") };
             let number = u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
             assert_eq!(number, frames - VISION_MAX as u32 + 1);

@@ -1,8 +1,9 @@
 //! `onetwo control`: the host of a team on the league's network
 //! (docs/architecture.md §3, docs/case-format.md §5).
 //!
-//! The host is a value without sockets ([`host::Host`]); here are a thread for each socket, one channel, and the loop that hands it
-//! what came and sends what it says. Nothing that is missing ends it: it says what it waits for, and goes on when that comes.
+//! The host is a value without sockets ([`host::Host`]); here are a thread for each socket, one channel, and
+//! the loop that feeds it what arrives and sends its output. Nothing that is missing ends the program: it
+//! reports what it waits for, and goes on when that arrives.
 
 mod alarms;
 mod board;
@@ -34,10 +35,11 @@ use crate::live::{PageArgs, shelf_of};
 use crate::output::shown;
 use crate::simulate::seconds;
 
-/// Who we are, and where we hear and speak. What is not told here is as the file has it, and else as the league has it.
+/// Our team, and the addresses to receive from and send to. What is not given here is taken from the file,
+/// and else from the league.
 #[derive(Debug, Args)]
 pub(crate) struct ControlArgs {
-    /// The team's settings; each can be told here instead.
+    /// The team's settings file; each setting can be overridden here.
     #[arg(long, value_name = "team.toml")]
     config: Option<PathBuf>,
     /// The team's name, as the game controller knows it.
@@ -49,71 +51,80 @@ pub(crate) struct ControlArgs {
     /// ssl-2013, division-b or division-a.
     #[arg(long)]
     league: Option<String>,
-    /// Our keeper's number, until the referee says another.
+    /// Our keeper's number, until the referee sends another.
     #[arg(long, value_name = "ID")]
     keeper: Option<u8>,
-    /// Address of the interface that hears and speaks multicast; every interface hears unless told.
+    /// Address of the interface that receives and sends multicast; by default it is received on every
+    /// interface.
     #[arg(long, value_name = "ADDRESS")]
     interface: Option<IpAddr>,
-    /// Where the robots are: `sim://HOST[:PORT]` (brains of our own in a simulator; its control port, 10300), `udp://HOST:PORT` or
-    /// `serial:DEVICE[:BAUD]`.
+    /// Where the robots are: `sim://HOST[:PORT]` (brains of our own in a simulator; its control port, 10300),
+    /// `udp://HOST:PORT` or `serial:DEVICE[:BAUD]`.
     #[arg(long, value_name = "LINK")]
     robots: Option<String>,
-    /// Which robots are started in a simulator, such as 0-5 or 1,4,7; the league's number from 0 on unless told.
+    /// Which robots are started in a simulator, such as 0-5 or 1,4,7; by default the league's number, from 0
+    /// on.
     #[arg(long, value_name = "IDS", value_parser = ids)]
     ids: Option<Ids>,
-    /// The team's key: 32 hexadecimal digits in a file, as `openssl rand -hex 16` makes them; needed for udp:// and serial:.
+    /// The team's key: 32 hexadecimal digits in a file, as `openssl rand -hex 16` makes them; needed for
+    /// udp:// and serial:.
     #[arg(long, value_name = "FILE")]
     key_file: Option<PathBuf>,
-    /// Lead real robots without a key of the team's own: anybody in radio range can then command them.
+    /// Control real robots without a key of the team's own: any sender in radio range can then command them.
     #[arg(long)]
     insecure_zero_key: bool,
-    /// Where vision is heard: 224.5.23.2:10006, and 224.5.23.2:10020 for robots in a simulator.
+    /// Address where vision is received: 224.5.23.2:10006, and 224.5.23.2:10020 for robots in a simulator.
     #[arg(long, value_name = "ADDRESS:PORT")]
     vision: Option<SocketAddr>,
-    /// Where the referee is heard: 224.5.23.1:10003.
+    /// Address where the referee is received: 224.5.23.1:10003.
     #[arg(long, value_name = "ADDRESS:PORT")]
     referee: Option<SocketAddr>,
-    /// The only referee that is obeyed: the address of its machine (192.168.1.5), its address with port, or its identifier. Others
-    /// are ignored and reported. Without it the strictest command of all of them is obeyed.
+    /// The only referee that is obeyed: the address of its machine (192.168.1.5), its address with port, or
+    /// its identifier. Others are ignored and reported. Without it the strictest command of all of them is
+    /// obeyed.
     #[arg(long, value_name = "ADDRESS|IDENTIFIER")]
     referee_source: Option<String>,
-    /// What the robots do when nothing came from the referee for 2 s: `halt`, unless told, or `go-on` by its last command (a test day on
-    /// which the game controller is ended after a command). Before its first packet they halt either way.
+    /// What the robots do when no packet came from the referee for 2 s: `halt` (the default), or `go-on` by
+    /// its last command (a test day on which the game controller is ended after a command). Before its first
+    /// packet they halt in both cases.
     #[arg(long, value_name = "halt|go-on")]
     referee_silence: Option<String>,
     /// Where our tracker's packets go: 224.5.23.2:10010.
     #[arg(long, value_name = "ADDRESS:PORT")]
     tracker: Option<SocketAddr>,
-    /// The game controller's port for teams, such as 127.0.0.1:10008; nobody is told our keeper unless this is.
+    /// The game controller's port for teams, such as 127.0.0.1:10008. If omitted, the goalkeeper is not
+    /// announced to the game controller.
     #[arg(long, value_name = "ADDRESS:PORT")]
     game_controller: Option<SocketAddr>,
     /// How much faster than ordered a robot's kicks are, such as 3=1.06; may be repeated.
     #[arg(long = "kick", value_name = "ROBOT=FACTOR", value_parser = kick)]
     kicks: Vec<Calibration>,
-    /// Keep what is learned of kickers, latencies and the ball in this file, which may be the team.toml: what it holds is read at the start
-    /// (unless --config names it already), and what is known at the end replaces the lines that an earlier run wrote.
+    /// Keep what is learned of kickers, latencies and the ball in this file, which may be the team.toml: its
+    /// contents are read at the start (unless --config names it already), and the values at the end replace
+    /// the lines that an earlier run wrote.
     #[arg(long, value_name = "FILE")]
     learned: Option<PathBuf>,
-    /// Do not play by what is learned (it is shown all the same): kicks are ordered by `--kick` and team.toml alone.
+    /// Do not play by what is learned (it is displayed all the same): kicks are ordered by `--kick` and
+    /// team.toml alone.
     #[arg(long)]
     no_learning: bool,
     #[command(flatten)]
     cases: CasesArgs,
-    /// Keep the match as NAME.log.gz (for the league's tools) and NAME.trace (for `onetwo replay`).
+    /// Record the match as NAME.log.gz (for the league's tools) and NAME.trace (for `onetwo replay`).
     #[arg(long, value_name = "NAME")]
     record: Option<PathBuf>,
-    /// Without the page.
+    /// Run without the page.
     #[arg(long)]
     headless: bool,
     #[command(flatten)]
     page: PageArgs,
-    /// End after so many seconds; else Ctrl-C ends it, and robots are halted first.
+    /// End after this number of seconds; else Ctrl-C ends it, and robots are halted first.
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     duration: Option<f64>,
 }
 
-/// Which cases robots in a simulator retrieve, and how; the page explains by them. Robots on a field have theirs in flash.
+/// Which cases robots in a simulator retrieve, and how; the page explains by them. Robots on a field have
+/// theirs in flash.
 #[derive(Debug, Args)]
 pub(crate) struct CasesArgs {
     #[command(flatten)]
@@ -140,7 +151,7 @@ pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
     desk::run(&config, !args.no_learning, &robots, cases, &keeps, args.duration, page)
 }
 
-/// The cases, read, and how a robot of ours is told of them.
+/// The case library, and the form in which our robots receive cases.
 struct Cases {
     shelf: Option<Shelf>,
     settings: casebase::Settings,
@@ -170,13 +181,13 @@ fn read(path: &Path) -> Result<TeamSettings, Failure> {
     TeamSettings::from_toml(&text).map_err(|error| said(error.to_string()))
 }
 
-/// Flags over the file over what is usual.
+/// Flags override the file, which overrides the defaults.
 fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
     let mut file = args.config.as_deref().map_or_else(|| Ok(TeamSettings::default()), read)?;
     if let Some(learned) = args.learned.as_deref().filter(|path| args.config.as_deref() != Some(*path))
         && learned.exists()
     {
-        // What the team set itself comes later, and counts.
+        // The team's own settings come later, and override.
         let TeamSettings { calibration, ball, .. } = read(learned)?;
         file.calibration = [calibration, file.calibration].concat();
         file.ball.roll = file.ball.roll.or(ball.roll);

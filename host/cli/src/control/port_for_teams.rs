@@ -1,4 +1,5 @@
-//! The game controller's port for teams: a connection that comes back, around [`TeamPort`], which knows what to say.
+//! `port_for_teams`: the game controller's port for teams: a connection that is reopened when lost, around
+//! [`TeamPort`], which holds the protocol.
 
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
@@ -16,9 +17,9 @@ use rules::Colour;
 use super::inbox::{Inbox, Mail};
 use super::threads::sleep;
 
-/// An open connection is read at most so long before the time is looked at.
+/// Longest time that reading an open connection may block before the clock is checked.
 const WAIT: Duration = Duration::from_millis(100);
-/// Somebody who does not take a connection in this time is not there.
+/// Time for a connection attempt; without an answer by then the controller counts as absent.
 const CONNECT: Duration = Duration::from_secs(1);
 
 /// Registers us, asks for our keeper, and for what the host asks by `asked`.
@@ -54,7 +55,7 @@ pub(super) fn talk(
                     stream = None;
                 }
                 let words = words(&event, address);
-                // A controller that is away is told of once.
+                // An absent controller is reported once.
                 if words.is_some() && words != last {
                     mail.put(Mail::Word(words.clone().unwrap_or_default()));
                     last = words;
@@ -75,7 +76,7 @@ fn connect(address: SocketAddr) -> Option<TcpStream> {
     Some(stream)
 }
 
-/// Sends what is to be sent and reads what came; false where the connection is gone.
+/// Sends and receives what is pending; false if the connection is gone.
 fn exchange(stream: &mut TcpStream, port: &mut TeamPort, now: protocol::Instant) -> bool {
     use std::io::ErrorKind::{Interrupted, TimedOut, WouldBlock};
     while let Some(bytes) = port.poll_transmit() {
@@ -94,7 +95,7 @@ fn exchange(stream: &mut TcpStream, port: &mut TeamPort, now: protocol::Instant)
     }
 }
 
-/// As much of a reason as is shown, characters.
+/// Longest reason that is printed, characters.
 const REASON_LEN: usize = 200;
 
 fn words(event: &Event, address: SocketAddr) -> Option<String> {

@@ -1,20 +1,20 @@
-//! `radio_alarms`: robots that refuse this host, or that it refuses, for terminal and page: at once, and again every [`AGAIN`] while it
-//! lasts. Times on the host's clock.
+//! `radio_alarms`: robots that refuse this host, or that it refuses, for terminal and page: at once, and
+//! again every [`AGAIN`] while it lasts. Times on the host's clock.
 
 use host::radio::{Radio, RadioWarning};
 use protocol::{Duration, Instant};
 
-/// What lasts is said again after this.
+/// A lasting problem is reported again after this.
 const AGAIN: Duration = Duration::millis(10_000);
 
-/// What was said when.
+/// What was reported, and when.
 #[derive(Debug, Default)]
 pub(super) struct RadioAlarms {
     said: Vec<(RadioWarning, Instant)>,
 }
 
 impl RadioAlarms {
-    /// The lines to show now.
+    /// The lines to print now.
     pub(super) fn look(&mut self, now: Instant, radio: &Radio) -> Vec<String> {
         let current: Vec<RadioWarning> = radio.warnings(now).collect();
         self.said.retain(|(warning, at)| current.contains(warning) || now.since(*at) < AGAIN);

@@ -1,5 +1,6 @@
-//! `terminal`: lines and status for the operator, printed by a thread of their own: a terminal that is stopped (Ctrl-S, a full
-//! pipe) must not stop whoever leads robots. What does not fit into [`LINES_MAX`] is dropped and counted.
+//! `terminal`: lines and status for the operator, printed by a thread of their own: a terminal that is
+//! stopped (Ctrl-S, a full pipe) must not stop the thread that controls robots. What does not fit into
+//! [`LINES_MAX`] is dropped and counted.
 
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{self, JoinHandle};
@@ -32,7 +33,7 @@ impl Terminal {
         Self { prints, thread: thread::spawn(move || print(&waiting)), dropped: 0 }
     }
 
-    /// A line that stays.
+    /// Prints a permanent line.
     pub(super) fn line(&mut self, words: String) {
         let words = match self.dropped {
             0 => words,
@@ -46,12 +47,12 @@ impl Terminal {
         }
     }
 
-    /// The line that is replaced by the next of its kind.
+    /// Prints the line that is replaced by the next of its kind.
     pub(super) fn status(&self, words: String) {
         let _ = self.prints.try_send(Print::Status(words));
     }
 
-    /// Prints what waits.
+    /// Prints the waiting lines.
     pub(super) fn close(self) {
         drop(self.prints);
         let until = Instant::now() + AT_END;

@@ -1,4 +1,5 @@
-//! A thread for each socket: it waits, and passes on what came. One that cannot be opened is tried again every second.
+//! `threads`: a thread for each socket: it waits, and passes on what arrives. A socket that cannot be opened
+//! is tried again every second.
 
 use std::net::SocketAddr;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -21,7 +22,7 @@ pub(super) enum Source {
 }
 
 impl Source {
-    /// As people call it.
+    /// Name for the operator.
     pub(super) const fn name(self) -> &'static str {
         match self {
             Self::Vision => "vision",
@@ -31,25 +32,26 @@ impl Source {
     }
 }
 
-/// A thread looks this often whether it shall end.
+/// A thread checks this often whether to end.
 const LOOK: Duration = Duration::from_millis(100);
-/// What could not be opened is tried again after this.
+/// A socket that could not be opened is tried again after this.
 const AGAIN: Duration = Duration::from_secs(1);
-/// A link that fails again and again is told of this often.
+/// A link that fails repeatedly is reported this often.
 const TROUBLE_EVERY: Duration = Duration::from_secs(10);
-/// The link's thread waits so long for robots before it looks for what is to be sent: a tenth of a picture's period.
+/// The link's thread waits at most this long for robots before it checks for frames to send: a tenth of a
+/// snapshot's period.
 const LINK_WAIT: Duration = Duration::from_millis(1);
 
-/// Whether a line keeps up is looked at this often.
+/// Whether a line keeps up is checked this often.
 const PACE_EVERY: Duration = Duration::from_secs(1);
-/// One of so many snapshots may be replaced by a newer one: threads are late now and then.
+/// One in this number of snapshots may be replaced by a newer one: threads are late now and then.
 const SPARED: u64 = 20;
-/// Rates that adapters have, bit/s.
+/// Bit rates of usual adapters, bit/s.
 const RATES: [u64; 7] = [115_200, 230_400, 460_800, 921_600, 1_000_000, 2_000_000, 3_000_000];
-/// At the end the last frames have so long to go out.
+/// Time for the last frames to be sent at the end.
 const AT_END: Duration = Duration::from_millis(200);
 
-/// Hears `address` until `end`.
+/// Receives on `address` until `end`.
 pub(super) fn hear(
     source: Source,
     address: SocketAddr,
@@ -92,7 +94,7 @@ pub(super) fn hear(
     })
 }
 
-/// A datagram as it waits; none where it is longer than any of its kind.
+/// A datagram as mail; `None` if it is longer than its kind can be.
 fn letter(source: Source, Datagram { bytes, from }: Datagram<'_>) -> Option<Mail> {
     let most = if source == Source::Vision { VISION_LEN_MAX } else { REFEREE_LEN_MAX };
     let fits = bytes.len() <= most;
@@ -102,7 +104,7 @@ fn letter(source: Source, Datagram { bytes, from }: Datagram<'_>) -> Option<Mail
     })
 }
 
-/// Carries frames to the robots and back, until `end`; then what waits goes out, HALT as a rule.
+/// Carries frames to the robots and back, until `end`; then the waiting frames are sent, usually HALT.
 pub(super) fn carry(
     mut link: Box<dyn Link>,
     frames: Arc<Mutex<Outbox>>,
@@ -149,7 +151,7 @@ fn look_at(frames: &Mutex<Outbox>) -> std::sync::MutexGuard<'_, Outbox> {
     frames.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Sends what the link takes at once.
+/// Sends as much as the link takes without blocking.
 fn send(link: &mut dyn Link, frames: &Mutex<Outbox>) -> Result<(), String> {
     let mut result = Ok(());
     loop {
@@ -168,7 +170,7 @@ fn send(link: &mut dyn Link, frames: &Mutex<Outbox>) -> Result<(), String> {
     }
 }
 
-/// Whether a line keeps up, looked at every second.
+/// Checks every second whether a line keeps up.
 struct Pace {
     since: Instant,
     before: OutCounts,
@@ -179,7 +181,7 @@ impl Pace {
         Self { since: Instant::now(), before: OutCounts::default() }
     }
 
-    /// Words where the line did not keep up in the last second, with the rate it needs.
+    /// A message if the line did not keep up in the last second, with the rate it needs.
     fn look(&mut self, link: &dyn Link, frames: &Mutex<Outbox>) -> Option<String> {
         let passed = self.since.elapsed();
         if passed < PACE_EVERY {
@@ -192,7 +194,7 @@ impl Pace {
     }
 }
 
-/// Words for a line that dropped more than [`SPARED`] of its snapshots between two counts.
+/// A message for a line that dropped more than one in [`SPARED`] of its snapshots between two counts.
 fn too_slow(line: &LineRate, before: OutCounts, counts: OutCounts, passed: Duration) -> Option<String> {
     let lost = counts.superseded - before.superseded;
     let offered = counts.snapshots - before.snapshots;

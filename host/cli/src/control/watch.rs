@@ -1,5 +1,5 @@
 //! `watch`: what the host waits for, and what the operator should do about it; each reported once when it
-//! begins, and once when it is over.
+//! starts, and once when it is over.
 
 use host::Host;
 use host::config::TeamConfig;
@@ -8,14 +8,16 @@ use protocol::{Duration, Instant};
 
 use super::threads::Source;
 
-/// A source is given this long after the start: words come within 2 s, and not before what is there had a chance.
+/// A source is given this long after the start: messages come within 2 s, and a source that is there has had
+/// time to send.
 const AT_START: Duration = Duration::millis(1_000);
-/// Camera frames that come after a longer pause are told of; that they do not come is an alarm ([`super::alarms`]).
+/// Camera frames that arrive after a longer pause are reported; their absence is an alarm
+/// ([`super::alarms`]).
 const VISION_SILENT: Duration = Duration::millis(1_000);
 /// Robots take this long to boot where they are processes of ours.
 const ROBOTS_BOOT: Duration = Duration::millis(1_500);
 
-/// Who was heard when, and what was said of it.
+/// Which source was received when, and what was reported of it.
 #[derive(Debug)]
 pub(super) struct Watch {
     vision: Waiting,
@@ -26,17 +28,17 @@ pub(super) struct Watch {
     link_advice: String,
 }
 
-/// One thing that may be missing.
+/// A source that may be missing.
 #[derive(Debug, Default)]
 struct Waiting {
     told: bool,
     ever: bool,
-    /// How it is heard, or why it cannot be.
+    /// How it is received, or why it cannot be.
     way: String,
 }
 
 impl Waiting {
-    /// Words where something begins or ends to be missing.
+    /// A message where a source becomes missing or returns.
     fn see(
         &mut self,
         missing: bool,
@@ -58,12 +60,12 @@ impl Watch {
         Self { vision, referee, robots, missing: Vec::new(), link_advice }
     }
 
-    /// A source is heard this way now.
+    /// A source is now received on `way`.
     pub(super) fn open(&mut self, source: Source, way: &str) {
         self.of(source).way = format!("heard on {way}");
     }
 
-    /// A source cannot be heard, because.
+    /// A source cannot be received, with the reason.
     pub(super) fn trouble(&mut self, source: Source, words: &str) -> String {
         words.clone_into(&mut self.of(source).way);
         format!("{}: {words}; it is tried again", source.name())
@@ -87,7 +89,7 @@ impl Watch {
         }
     }
 
-    /// What has begun or ended to be missing.
+    /// Reports which sources became missing or returned.
     pub(super) fn look(&mut self, now: Instant, host: &Host, config: &TeamConfig, words: &mut Vec<String>) {
         if now.0 < AT_START.0 {
             return;
@@ -105,7 +107,7 @@ impl Watch {
         );
         let never = matches!(silence, Silence::Never(_));
         self.missing.extend(never.then(|| waits.clone()));
-        // One that falls silent is an alarm.
+        // A source that falls silent is an alarm.
         let came = self.referee.see(
             !matches!(silence, Silence::Heard(_)),
             |_| if never { waits } else { String::new() },

@@ -1,8 +1,8 @@
 //! `onetwo evaluate ablations`: what each part of the approach is worth. One thing changed at a time, on the
 //! same seeds.
 //!
-//! Every arm's trials are kept in a file of its own, `arms/NAME.csv`: the same command goes on where it was stopped, and arms that
-//! were played elsewhere are copied there.
+//! Every arm's trials are stored in a file of its own, `arms/NAME.csv`: the same command continues where it
+//! was stopped, and arms that were played elsewhere are copied there.
 
 use std::process::ExitCode;
 
@@ -25,7 +25,7 @@ pub(super) struct AblationsArgs {
     /// Trials a cell of scenario and opponents, and arm.
     #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     trials: u32,
-    /// Where all chance comes from.
+    /// Random seed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Only these arms, by name; may be repeated. The unchanged team is always played.

@@ -1,8 +1,9 @@
-//! `onetwo evaluate judge`: whether the pattern of the paper's results comes out. Thousands of trials a cell,
-//! random starts among them.
+//! `onetwo evaluate judge`: whether the pattern of the paper's results is reproduced. Thousands of trials a
+//! cell, random starts among them.
 //!
-//! The same files and tables as `onetwo evaluate`; the verdicts are meant for these numbers. Its seed is its own, so that what was
-//! tuned while looking at the tables is judged on other chances. A missed line is a finding, and no error.
+//! The same files and tables as `onetwo evaluate`; the verdicts are intended for these numbers of trials. It
+//! has a seed of its own, so that what was tuned while looking at the tables is judged on other random
+//! numbers. A missed line is a finding, and no error.
 
 use std::process::ExitCode;
 
@@ -20,10 +21,10 @@ pub(super) struct JudgeArgs {
     /// Trials a cell of scenario, opponents and approach.
     #[arg(long, default_value_t = 5000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     trials: u32,
-    /// Where all chance comes from.
+    /// Random seed.
     #[arg(long, default_value_t = 2009)]
     seed: u64,
-    /// Every n-th trial from the i-th on, for a cluster; `evaluate merge` puts the shards together.
+    /// Every n-th trial from the i-th on, for a cluster; `evaluate merge` merges the shards.
     #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = work::shard)]
     shard: Shard,
     #[command(flatten)]

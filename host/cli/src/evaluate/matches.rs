@@ -27,14 +27,15 @@ use crate::args::{FolderArgs, SettingsArgs, VERSION};
 use crate::library::Shelf;
 use crate::play::{cases, league, seconds};
 
-/// Which matches, and where to.
+/// Which matches, and the output.
 #[derive(Debug, Args)]
 pub(super) struct MatchesArgs {
     /// Field, robots and rules: division-b, ssl-2013 (the paper's) or division-a.
     #[arg(long, default_value = "division-b", value_parser = league)]
     league: League,
-    /// The world of all matches: nominal, grsim, erforce, erforce-none, sumatra, slow-dribbler, poor-vision, weak-kickers or
-    /// random:SEED; or random: each match in the random world of its own seed (docs/fields.md).
+    /// The world of all matches: nominal, grsim, erforce, erforce-none, sumatra, slow-dribbler, poor-vision,
+    /// weak-kickers or random:SEED; or random: each match in the random world of its own seed
+    /// (docs/fields.md).
     #[arg(long, value_name = "WORLD", default_value_t)]
     world: WorldPlan,
     /// Matches of each pair of teams.
@@ -43,33 +44,34 @@ pub(super) struct MatchesArgs {
     /// Length of a match, simulated seconds.
     #[arg(long, value_name = "SECONDS", default_value_t = 600.0, value_parser = seconds)]
     duration: f64,
-    /// Where all chance comes from.
+    /// Random seed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Who plays against the opponents; as they are named there.
+    /// The team that plays against the opponents; named as they are.
     #[arg(long, value_name = "TEAM", default_value = "ours", value_parser = Entrant::parse)]
     team: Entrant,
-    /// Against whom, with commas between: reactive, marking, zone (these three unless told), idle, ours, or ours with other
-    /// tactics, such as ours-without-second-level or ours-with-coerce+pass-ahead.
+    /// Opponents, with commas between: reactive, marking, zone (these three by default), idle, ours, or ours
+    /// with other tactics, such as ours-without-second-level or ours-with-coerce+pass-ahead.
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = Entrant::parse)]
     opponents: Vec<Entrant>,
-    /// Our team with one part of the second paper more or less, for each part: what is it worth? Instead of the opponents, or
-    /// beside those that are named, or one more each in the round robin.
+    /// Measure what each part of the second paper is worth: our team with one part more or less, for each
+    /// part. Instead of the opponents, or beside those that are named, or one more each in the round robin.
     #[arg(long)]
     ablations: bool,
     /// Each team against each: ours and the opponents.
     #[arg(long)]
     round_robin: bool,
-    /// Every n-th match from the i-th on, for a cluster; `--merge` puts the shards together.
+    /// Every n-th match from the i-th on, for a cluster; `--merge` merges the shards.
     #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = work::shard, conflicts_with = "merge")]
     shard: Shard,
-    /// Plays nothing: puts the shards together that were written to this folder; may be repeated.
+    /// Play nothing: merge the shards that were written to this directory; may be repeated.
     #[arg(long, value_name = "DIR")]
     merge: Vec<PathBuf>,
-    /// Put the tables between the markers of this Markdown file, and the plots into a folder of its name beside it.
+    /// Put the tables between the markers of this Markdown file, and the plots into a directory of its name
+    /// beside it.
     #[arg(long, value_name = "FILE")]
     markdown: Option<PathBuf>,
-    /// Which markers: those of that name.
+    /// Name of the markers.
     #[arg(long, value_name = "NAME", default_value = "matches", requires = "markdown")]
     section: String,
     #[command(flatten)]
@@ -137,7 +139,7 @@ impl MatchesArgs {
         }
     }
 
-    /// Writes `matches.csv`, `matches.json` and the plots, and says the tables.
+    /// Writes `matches.csv`, `matches.json` and the plots, and prints the tables.
     fn finish(&self, made: &Made<'_>, folder: &Path) -> Result<ExitCode, Failure> {
         write(&folder.join("matches.csv"), &made.csv)?;
         write(&folder.join("matches.json"), &made.json()?)?;
@@ -159,7 +161,7 @@ impl MatchesArgs {
     }
 }
 
-/// What all matches come to.
+/// Results of all matches.
 struct Made<'a> {
     identity: &'a MatchIdentity,
     matches: usize,
@@ -201,7 +203,7 @@ impl<'a> Made<'a> {
         vec![named("ratios", plot(&self.outcomes)), named("calibration", calibration_plot(&self.passes))]
     }
 
-    /// For a document, whose pictures lie in the folder `beside`.
+    /// For a document whose figures are in the directory `beside`.
     fn text(&self, beside: &str, section: &str) -> String {
         let MatchIdentity { plan, case_base, program, .. } = self.identity;
         let cases = if case_library::league(&plan.league).is_some() {

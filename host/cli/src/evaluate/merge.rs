@@ -10,13 +10,13 @@ use super::report::{self, ReportArgs};
 use super::work;
 use crate::Failure;
 
-/// Whose trials, and where to.
+/// The shards to merge, and the output.
 #[derive(Debug, Args)]
 pub(super) struct MergeArgs {
-    /// Folders that shards were written to.
+    /// Directories that shards were written to.
     #[arg(value_name = "DIR", required = true)]
     folders: Vec<PathBuf>,
-    /// The folder that the whole is written to.
+    /// The directory that the merged result is written to.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     #[command(flatten)]
@@ -36,7 +36,7 @@ pub(super) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The files of shards in a folder, in the order of their names.
+/// The files of shards in a directory, in the order of their names.
 pub(super) fn shards<R: Entry>(folder: &Path) -> Result<Vec<Kept<R>>, EvaluationError> {
     let failed = |error| EvaluationError::File { file: folder.to_owned(), error };
     let mut files = Vec::new();

@@ -1,8 +1,9 @@
 //! `onetwo evaluate`: evaluations, by default the first paper's tables of case-based against reactive
 //! attackers (Ros et al. 2009 §5; docs/case-format.md §5).
 //!
-//! Data goes into the folder `--out`, the tables in words to stdout. Every trial is kept as soon as it is over: the same
-//! command goes on where it was stopped, and shards played elsewhere are merged into the same bytes.
+//! Data goes into the directory `--out`, the tables as text to stdout. Every trial is stored as soon as it is
+//! over: the same command continues where it was stopped, and shards played elsewhere are merged into the
+//! same bytes.
 
 mod ablations;
 mod judge;
@@ -32,15 +33,15 @@ pub(crate) struct EvaluateArgs {
 /// One verb, one file.
 #[derive(Debug, Subcommand)]
 enum EvaluateVerb {
-    /// Put the shards of an evaluation together.
+    /// Merge the shards of an evaluation.
     Merge(merge::MergeArgs),
-    /// Write the report of an evaluation that was played anew.
+    /// Write the report of a played evaluation again.
     Report(report::AgainArgs),
-    /// Say whether the pattern of the paper's results comes out, at thousands of trials a cell.
+    /// Judge whether the pattern of the paper's results is reproduced, at thousands of trials a cell.
     Judge(judge::JudgeArgs),
-    /// Say what each part of the approach is worth: one thing changed at a time.
+    /// Measure what each part of the approach is worth: one thing changed at a time.
     Ablations(ablations::AblationsArgs),
-    /// Play matches against other teams and say what they come to: the second paper's Table 2.
+    /// Play matches against other teams and print the results: the second paper's Table 2.
     Matches(Box<matches::MatchesArgs>),
     /// Try single skills in one world or a family of them: how often they succeed, and how fast.
     Skills(skills::SkillsArgs),

@@ -1,7 +1,8 @@
-//! `onetwo evaluate report`: the report of an evaluation that was played, written anew; and how every evaluation gets its own.
+//! `onetwo evaluate report`: the report of a played evaluation, written again; and how every evaluation gets
+//! its own.
 //!
-//! Numbers come from the trials that were kept. The maps' trials are played again: they are the same to the bit if this program
-//! played them, and left out, with a word on stderr, if another did.
+//! Numbers come from the stored trials. The maps' trials are played again: they are bit-identical if this
+//! program played them, and left out, with a message on stderr, if another did.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -20,7 +21,7 @@ use crate::library::Shelf;
 use crate::output::{note, say, shown};
 use crate::{picture, setup};
 
-/// What a report has.
+/// Contents of a report.
 #[derive(Debug, Args)]
 pub(super) struct ReportArgs {
     /// Trials of each cell that are played again for the report's maps; 0 for none.
@@ -31,31 +32,33 @@ pub(super) struct ReportArgs {
     png: bool,
 }
 
-/// Which evaluation is reported, and where else.
+/// The evaluation to report, and further outputs.
 #[derive(Debug, Args)]
 pub(super) struct AgainArgs {
-    /// The folder an evaluation was written to.
+    /// The directory an evaluation was written to.
     #[arg(value_name = "DIR")]
     folder: PathBuf,
     #[command(flatten)]
     report: ReportArgs,
-    /// Put the tables between the markers of this Markdown file, and the plots into a folder of its name beside it.
+    /// Put the tables between the markers of this Markdown file, and the plots into a directory of its name
+    /// beside it.
     #[arg(long, value_name = "FILE")]
     markdown: Option<PathBuf>,
 }
 
-/// What the page of an ablation has, and where else its table goes.
+/// Contents of an ablation's page, and further outputs for its table.
 #[derive(Debug, Args)]
 pub(super) struct PageArgs {
     /// The plot as PNG too, beside its SVG.
     #[arg(long)]
     png: bool,
-    /// Put the table between the markers of this Markdown file, and the plot into a folder of its name beside it.
+    /// Put the table between the markers of this Markdown file, and the plot into a directory of its name
+    /// beside it.
     #[arg(long, value_name = "FILE")]
     markdown: Option<PathBuf>,
 }
 
-/// The page of an ablation that was played.
+/// Writes the page of a played ablation.
 pub(super) fn write_ablation(ablation: &Ablation<'_>, folder: &Path, args: &PageArgs) -> Result<(), Failure> {
     let drawn = ablation.write(folder).map_err(|error| unwritten(&folder.join(PAGE), &error))?;
     if args.png {
@@ -87,7 +90,7 @@ pub(super) fn write(results: &Results, folder: &Path, args: &ReportArgs) -> Resu
     Made::new(results, args)?.write(results, folder, args)
 }
 
-/// What a report needs beside the results.
+/// Parts of a report beside the results.
 struct Made {
     facts: Vec<Facts>,
     maps: Vec<Map>,
@@ -138,7 +141,8 @@ impl Made {
 /// Longest Markdown file that is read, bytes.
 const MARKDOWN_LEN_MAX: u64 = 1 << 24;
 
-/// Figures between the markers of that chore and name in a file, and those of the pictures that they show beside it.
+/// Inserts text between the markers of that task and name in a file, and writes the figures that it refers to
+/// beside the file.
 pub(super) fn insert(
     file: &Path,
     (chore, name): (&str, &str),
@@ -165,7 +169,7 @@ fn unwritten(file: &Path, error: &std::io::Error) -> Failure {
     Failure::Picture { file: file.to_owned(), words: error.to_string() }
 }
 
-/// The maps of the first trials of each cell, if this program plays the very same ones.
+/// The maps of the first trials of each cell, if this program plays identical ones.
 fn maps(identity: &Identity, trials: u32) -> Result<Vec<Map>, Failure> {
     if trials == 0 {
         return Ok(Vec::new());
@@ -188,7 +192,7 @@ fn maps(identity: &Identity, trials: u32) -> Result<Vec<Map>, Failure> {
     Ok(Vec::new())
 }
 
-/// The attackers' set-up that an evaluation's files tell of.
+/// The attackers' set-up that is recorded in an evaluation's files.
 fn setup_of(identity: &Identity) -> Result<Setup, Failure> {
     let mut settings = Settings::default();
     for (name, value) in &identity.settings {
@@ -205,7 +209,7 @@ fn setup_of(identity: &Identity) -> Result<Setup, Failure> {
     })
 }
 
-/// A built-in league by its name, any other word is a folder.
+/// A built-in league by its name; any other argument is a directory.
 fn library(word: &str) -> LibraryArgs {
     let built_in = case_library::league(word).is_some();
     let library = (!built_in).then(|| PathBuf::from(word));

@@ -14,7 +14,7 @@ use super::work;
 use crate::Failure;
 use crate::play::league;
 
-/// Which tries, and how they are told.
+/// Which tries, and how they are printed.
 #[derive(Debug, Args)]
 pub(super) struct SkillsArgs {
     /// Field, robots, ball and rules: division-b, ssl-2013 or division-a.
@@ -29,16 +29,17 @@ pub(super) struct SkillsArgs {
     /// Tries of each skill in each world.
     #[arg(long, default_value_t = 20, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     tries: u32,
-    /// Where all chance comes from.
+    /// Random seed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Only these skills, with commas between: placement, get-ball, receive, dribble, turn-with-ball, kick, chip, save.
+    /// Only these skills, with commas between: placement, get-ball, receive, dribble, turn-with-ball, kick,
+    /// chip, save.
     #[arg(long = "skill", value_name = "LIST", value_delimiter = ',', value_parser = skill)]
     skills: Vec<Skill>,
     /// Number of the first try of each skill, to repeat one.
     #[arg(long, default_value_t = 0, value_name = "N")]
     first: u32,
-    /// Threads; as many as there are cores unless told.
+    /// Threads; the number of cores by default.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     /// Print a JSON list, a row a skill, and nothing else.
@@ -47,13 +48,13 @@ pub(super) struct SkillsArgs {
     /// List every try that failed: its start, what was wrong, and the command that repeats it.
     #[arg(long)]
     failures: bool,
-    /// Tell every try, a line for each tenth of a second.
+    /// Print every try, a line for each tenth of a second.
     #[arg(long)]
     story: bool,
     /// Put the table between the markers of this Markdown file.
     #[arg(long, value_name = "FILE")]
     markdown: Option<PathBuf>,
-    /// Which markers: those of that name.
+    /// Name of the markers.
     #[arg(long, value_name = "NAME", default_value = "skills", requires = "markdown")]
     section: String,
 }

@@ -1,4 +1,4 @@
-//! `onetwo evaluate` alone: the trials behind the paper's Tables 1 to 6, as many as the paper's unless told otherwise.
+//! `onetwo evaluate` alone: the trials behind the paper's Tables 1 to 6, by default as many as the paper's.
 
 use std::process::ExitCode;
 
@@ -15,13 +15,14 @@ use crate::setup::{SetupArgs, approach, opponents, profile, scenario};
 /// Which trials, and how they are played.
 #[derive(Debug, Args)]
 pub(super) struct TablesArgs {
-    /// Trials a cell of scenario, opponents and approach; the paper's unless told: 500, 200 against two defenders.
+    /// Trials a cell of scenario, opponents and approach; by default the paper's: 500, 200 against two
+    /// defenders.
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     trials: Option<u32>,
-    /// Where all chance comes from.
+    /// Random seed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Every n-th trial from the i-th on, for a cluster; `evaluate merge` puts the shards together.
+    /// Every n-th trial from the i-th on, for a cluster; `evaluate merge` merges the shards.
     #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = work::shard)]
     shard: Shard,
     #[command(flatten)]
@@ -38,7 +39,7 @@ pub(super) struct TablesArgs {
     /// Only this world: as the paper's simulator (Tables 1 to 5), or as its robots (Table 6).
     #[arg(long, value_parser = profile)]
     profile: Option<Profile>,
-    /// Random starts too, which nobody has seen before: a fifth family beside the paper's scenarios.
+    /// Random starts too, which no case was written for: a fifth family beside the paper's scenarios.
     #[arg(long)]
     random: bool,
     #[command(flatten)]

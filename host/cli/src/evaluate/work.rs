@@ -21,16 +21,16 @@ use crate::output;
 use crate::setup::SetupArgs;
 use crate::stop::stopped_by_hand;
 
-/// Where and how fast.
+/// Output directory and number of threads.
 #[derive(Debug, Args)]
 pub(super) struct WorkArgs {
-    /// Threads; as many as there are cores unless told.
+    /// Threads; the number of cores by default.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
-    /// The folder that everything is written to; the same command goes on there after an interrupt.
+    /// The directory that everything is written to; the same command continues there after an interrupt.
     #[arg(long, value_name = "DIR", default_value = "evaluation")]
     out: PathBuf,
-    /// Begin anew: the trials that the folder keeps are taken away.
+    /// Start again: the trials stored in the directory are removed.
     #[arg(long)]
     fresh: bool,
 }
@@ -42,7 +42,7 @@ impl WorkArgs {
         pool.build().map_err(|error| Failure::Threads(error.to_string()))
     }
 
-    /// The folder, made where it is missing; without earlier trials where that was asked for.
+    /// The directory, created if missing; without earlier trials if `fresh` is set.
     pub(super) fn folder(&self) -> Result<&Path, Failure> {
         make(&self.out)?;
         if self.fresh {
@@ -58,7 +58,7 @@ impl WorkArgs {
         Ok(&self.out)
     }
 
-    /// Takes a file of trials away, if it is there and that was asked for.
+    /// Removes a file of trials, if it exists and `fresh` is set.
     pub(super) fn freshen(&self, file: &Path) -> Result<(), Failure> {
         if self.fresh && file.exists() { forget(file) } else { Ok(()) }
     }
@@ -69,19 +69,19 @@ fn forget(file: &Path) -> Result<(), Failure> {
     gone.map_err(|error| EvaluationError::File { file: file.to_owned(), error }.into())
 }
 
-/// A folder for results.
+/// Creates a directory for results.
 pub(super) fn make(folder: &Path) -> Result<(), Failure> {
     let made = std::fs::create_dir_all(folder);
     made.map_err(|error| EvaluationError::File { file: folder.to_owned(), error }.into())
 }
 
-/// Everything that decides the trials of a plan.
+/// All settings that the trials of a plan depend on.
 pub(super) fn evaluation(plan: Plan, setup: Setup, shelf: &Shelf, library: String) -> Evaluation<'_> {
     let names = CaseNames::new(shelf.names());
     Evaluation { plan, base: shelf.base(), names, library, setup, program: VERSION.to_owned() }
 }
 
-/// Plays what `file` lacks of a shard; with `title` before the bar.
+/// Plays the trials of a shard that are missing in `file`; with `title` before the bar.
 pub(super) fn play(
     evaluation: &Evaluation<'_>,
     shard: Shard,
@@ -98,9 +98,9 @@ pub(super) fn with_bar<R: Send>(
     title: &str,
     play: impl FnOnce(&(dyn Fn(Progress) -> ControlFlow<()> + Sync)) -> Result<R, EvaluationError> + Send,
 ) -> Result<R, Failure> {
-    // The trials under way are still played and kept.
+    // The running trials are still finished and stored.
     let stopped = stopped_by_hand();
-    // Drawn on a terminal's stderr, and nowhere else.
+    // Drawn only if stderr is a terminal.
     let bar = ProgressBar::new(0);
     if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}, {eta} to go") {
         bar.set_style(style);
@@ -109,7 +109,7 @@ pub(super) fn with_bar<R: Send>(
     let told = |progress: Progress| {
         if bar.length() != Some(progress.of as u64) {
             bar.set_length(progress.of as u64);
-            // What an earlier run played says nothing of how long the rest takes.
+            // The pace of an earlier run is no measure for the remaining time.
             bar.set_position(progress.done as u64);
             bar.reset_eta();
         }
@@ -121,7 +121,7 @@ pub(super) fn with_bar<R: Send>(
     Ok(played?)
 }
 
-/// Plays a shard of a plan and, where it is the whole, writes and tells what came out.
+/// Plays a shard of a plan and, if it is the whole plan, writes and prints the results.
 pub(super) fn run(
     plan: Plan,
     shard: Shard,
@@ -150,7 +150,7 @@ pub(super) fn run(
     Ok(ExitCode::SUCCESS)
 }
 
-/// Writes everything, and says the tables, the verdicts and where they are.
+/// Writes everything, and prints the tables, the verdicts and their paths.
 pub(super) fn finish(results: &Results, folder: &Path) -> Result<(), Failure> {
     results.write(folder)?;
     let (trials, seed, hash) = (results.rows.len(), results.identity.plan.seed, &results.hash);
@@ -161,7 +161,7 @@ pub(super) fn finish(results: &Results, folder: &Path) -> Result<(), Failure> {
     ))
 }
 
-/// Says it on stdout.
+/// Prints on stdout.
 pub(super) fn say(words: &str) -> Result<(), Failure> {
     output::say(words)
 }

@@ -1,5 +1,5 @@
 //! `failsafe`: fail-safe table of a wheeled robot: reaction to each fault, and its time. The brain's
-//! governor, asked every millisecond (docs/architecture.md §6.2); wheels that obey at once.
+//! governor, evaluated every millisecond (docs/architecture.md §6.2); wheels that follow without delay.
 
 use std::fmt::Write as _;
 
@@ -9,7 +9,7 @@ use protocol::Instant;
 use protocol::robot_io::{Health, OmniKick};
 use rules::{League, Phase, Side};
 
-/// What is tried: a robot drives with 3 m/s, then one thing is wrong for three seconds.
+/// Faults that are tested: a robot drives with 3 m/s, then one fault lasts for three seconds.
 const CAUSES: [Cause; 9] = [
     Cause::Silence,
     Cause::NoCommand,
@@ -51,7 +51,7 @@ impl Cause {
     }
 }
 
-/// What became of a cause, ms after it began.
+/// The effect of a cause, ms after it started.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Outcome {
     /// The speed is limited.
@@ -88,7 +88,7 @@ Below the brain, without its governor, each with its tests:
 | no page with a key, or a damaged one | it never drives and says nothing on the air | – | `qemu_free` |
 ";
 
-/// The table for people.
+/// The table as Markdown.
 pub(super) fn table() -> String {
     let mut text = String::from(
         "| what is wrong | slower after | brakes, dribbler off, kicker discharged after | stands after | motors released after | moves again, once it is right |\n\
@@ -111,7 +111,7 @@ fn outcome(cause: Cause) -> Outcome {
         kick: OmniKick::None,
     };
     let mut found = Outcome::default();
-    // Frames come every 10 ms; the last good one before the cause begins is 0 ms old.
+    // Frames come every 10 ms; the last good one before the cause starts is 0 ms old.
     let (mut frame, mut command) = (None, None);
     for ms in 0..BEGINS + LASTS + 2_000 {
         let now = Instant(ms * 1_000);
@@ -168,9 +168,9 @@ fn outcome(cause: Cause) -> Outcome {
     found
 }
 
-/// When the cause begins, ms: the robot is armed and drives.
+/// When the cause starts, ms: the robot is armed and drives.
 const BEGINS: u64 = 1_000;
-/// For how long it lasts, ms: longer than a robot needs to stand and to release its motors.
+/// Duration of the cause, ms: longer than a robot needs to stand and to release its motors.
 const LASTS: u64 = 3_000;
 
 #[cfg(test)]
@@ -189,7 +189,8 @@ mod tests {
         assert!(found.again.is_some_and(|ms| (500..=511).contains(&ms)), "{found:?}");
     }
 
-    /// What holds of every cause: it brakes within its patience, stands, and moves again once things are right.
+    /// Checks for every cause: it brakes within `patience` ms, stands, and moves again once the cause is
+    /// over.
     fn ends_well(cause: Cause, patience: u64) -> Outcome {
         let found = outcome(cause);
         assert!(found.brakes.is_some_and(|ms| ms <= patience), "{cause:?}: {found:?}");
@@ -202,7 +203,7 @@ mod tests {
     #[test]
     fn a_host_that_forgets_a_robot_brakes_it_after_100_ms_and_moves_it_with_its_first_word() {
         let found = ends_well(Cause::NoCommand, 100);
-        // Motors hold: somebody commands the team.
+        // Motors hold: the host commands the team.
         assert_eq!((found.brakes, found.released), (Some(100), None));
         assert!(found.again.is_some_and(|ms| ms <= 10), "{found:?}");
     }
@@ -234,7 +235,7 @@ mod tests {
 
     #[test]
     fn an_empty_battery_is_given_a_second_then_the_robot_brakes_and_lets_go() {
-        // A voltage sinks for a moment when the motors pull.
+        // Voltage drops for a moment when the motors draw current.
         let found = ends_well(Cause::Battery, 1_001);
         assert_eq!(found.brakes, Some(1_001));
         assert_eq!(found.released, found.stands.map(|ms| ms + 500));

@@ -1,7 +1,7 @@
-//! `onetwo firmware flash`: writes an image to a robot. By probe-rs, a program of its own that speaks to
-//! debug probes; without it, this says what to install.
+//! `onetwo firmware flash`: writes a firmware image to a robot. By probe-rs, a separate program for debug
+//! probes; without it, the error names what to install.
 //!
-//! Nothing here has ever met a probe: that the words handed to probe-rs are right is all a machine without hardware can show.
+//! Not tested with a debug probe: without hardware, only the arguments passed to probe-rs can be checked.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -14,19 +14,19 @@ use super::{build, failed};
 use crate::Failure;
 use crate::output::note;
 
-/// What goes where.
+/// What is flashed, and where.
 #[derive(Debug, Args)]
 pub(crate) struct FlashArgs {
-    /// The image: a board's ELF file; the one for firmware/boards/stm32 unless one is named, built first.
+    /// The firmware image: a board's ELF file; by default the one for firmware/boards/stm32, built first.
     #[arg(long, value_name = "FILE", requires = "chip")]
     elf: Option<PathBuf>,
-    /// The chip, as `probe-rs chip list` names it; that board's unless one is named.
+    /// The chip, as `probe-rs chip list` names it; by default that board's.
     #[arg(long, value_name = "CHIP")]
     chip: Option<String>,
-    /// What `provision` wrote.
+    /// The page that `provision` wrote.
     #[arg(long, value_name = "FILE")]
     page: Option<PathBuf>,
-    /// Where the page belongs in the chip's flash; that board's last sector unless told.
+    /// Address of the page in the chip's flash; by default the last sector of that board.
     #[arg(long, value_name = "ADDRESS", value_parser = address, requires = "page")]
     page_address: Option<u32>,
     /// Which probe, where there are several (`probe-rs list`).
@@ -34,9 +34,9 @@ pub(crate) struct FlashArgs {
     probe: Option<String>,
 }
 
-/// Flashes image and page, whichever are given.
+/// Flashes firmware and page, if given.
 pub(super) fn run(args: &FlashArgs) -> Result<(), Failure> {
-    // Before anything is built for nobody.
+    // Checked before the firmware is built.
     let there = Command::new(PROGRAM).arg("--version").stdout(Stdio::null()).status();
     if there.is_err_and(|error| error.kind() == ErrorKind::NotFound) {
         return Err(failed(MISSING));
@@ -59,7 +59,8 @@ pub(super) fn run(args: &FlashArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The words of each call of probe-rs; the page first, so that a robot never starts its new image without its key.
+/// The arguments of each call of probe-rs; the page first, so that a robot never starts its new firmware
+/// without its key.
 fn downloads(args: &FlashArgs, image: &Path) -> Vec<Vec<String>> {
     let chip = args.chip.as_deref().unwrap_or(CHIP);
     let call = |file: &Path, more: &[&str]| {

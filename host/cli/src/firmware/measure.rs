@@ -1,7 +1,8 @@
-//! `measure`: stack depth and worst step of an image. It plays under QEMU: a walking robot's a trial of each
-//! of the paper's cells, a wheeled robot's a match of six against six (docs/architecture.md §9).
+//! `measure`: stack depth and worst step of a firmware image. It plays under QEMU: for a walking robot a
+//! trial of each of the paper's cells, for a wheeled robot a match of six against six (docs/architecture.md
+//! §9).
 //!
-//! Instructions of the guest and bytes: the same on every machine for the same image.
+//! Instructions of the guest and bytes: the same on every machine for the same firmware.
 
 use arena::game::{Game, GameConfig, Nobody};
 use arena::{TrialConfig, run};
@@ -14,20 +15,20 @@ use rules::{Colour, League};
 use super::{build, failed};
 use crate::Failure;
 
-/// What a program took at its deepest and longest.
+/// Deepest stack and longest step of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Measured {
     /// Bytes of stack.
     pub(super) stack: u32,
-    /// Instructions of the step in the middle.
+    /// Instructions of the median step.
     pub(super) median: u32,
     /// Of the worst step.
     pub(super) worst: u32,
-    /// Steps looked at.
+    /// Number of measured steps.
     pub(super) steps: usize,
 }
 
-/// Plays; `None` for an image that no simulator leads.
+/// Plays; `None` for a program that no simulator drives.
 pub(super) fn measure(program: Program, seconds: f64) -> Result<Option<Measured>, Failure> {
     let meter = Meter::default();
     match program {
@@ -72,7 +73,7 @@ fn emulated(body: Body) -> Result<std::path::PathBuf, Failure> {
     build(Program::Robot(body))
 }
 
-/// One seed, so that two runs of the same image say the same.
+/// One seed, so that two runs of the same firmware measure the same.
 const SEED: u64 = 1;
-/// Of a match (docs/architecture.md §2.3).
+/// Steps of a match (docs/architecture.md §2.3).
 const TICKS_A_SECOND: f64 = 100.0;

@@ -1,8 +1,9 @@
-//! `onetwo firmware`: work with the robots' firmware. Build it, see what it takes, run it under QEMU, flash
-//! it, and write the page that tells a robot who it is (docs/case-format.md §5).
+//! `onetwo firmware`: work with the robots' firmware. Build it, measure its resource usage, run it under
+//! QEMU, flash it, and write the page that holds a robot's identity (docs/case-format.md §5).
 //!
-//! One file per verb: [`size`] (with [`measure`], which runs images under QEMU), [`mod@run`], [`flash`], [`provision`], and [`report`],
-//! which writes docs/firmware.md ([`failsafe`] is its table). Runs on a PC.
+//! One file per verb: [`size`] (with [`measure`], which runs the firmware under QEMU), [`mod@run`],
+//! [`flash`], [`provision`], and [`report`], which writes docs/firmware.md ([`failsafe`] is its table). Runs
+//! on a PC.
 
 mod failsafe;
 mod flash;
@@ -26,34 +27,36 @@ use crate::output::say;
 /// What to do with the firmware.
 #[derive(Debug, Subcommand)]
 pub(crate) enum FirmwareVerb {
-    /// Build images and say where they are.
+    /// Build firmware images and print their paths.
     Build(ImagesArgs),
-    /// What images take: flash and RAM by crate and symbol, stack and worst step under QEMU, and shares of robots' computers.
+    /// Measure firmware: flash and RAM by crate and symbol, stack and worst step under QEMU, and shares of
+    /// robots' computers.
     Size(size::SizeArgs),
     /// Run a robot under QEMU by its own clock, its radio on a serial line; Ctrl-C ends it.
     Run(run::RunArgs),
-    /// Put an image, or the page of `provision`, into a robot's flash with probe-rs.
+    /// Put the firmware, or the page of `provision`, into a robot's flash with probe-rs.
     Flash(flash::FlashArgs),
-    /// Write the page that tells a robot its number, team and key.
+    /// Write the page with a robot's number, team and key.
     Provision(provision::ProvisionArgs),
-    /// What images take, and what robots do when something breaks, as docs/firmware.md has it.
+    /// Print the resource usage of the firmware, and what robots do when something breaks, as in
+    /// docs/firmware.md.
     Report(report::ReportArgs),
 }
 
-/// Which images.
+/// Which firmware images.
 #[derive(Debug, Args)]
 pub(crate) struct ImagesArgs {
-    /// The image; all of them unless one is named.
+    /// The firmware image; all of them by default.
     #[arg(long, value_enum)]
     image: Option<ImageWord>,
 }
 
-/// An image by its word.
+/// Name of a firmware image.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum ImageWord {
-    /// A walking robot, led tick by tick by the simulator.
+    /// A walking robot, stepped tick by tick by the simulator.
     Legged,
-    /// A robot on wheels, led likewise.
+    /// A robot on wheels, stepped by the simulator.
     Omni,
     /// A robot on wheels that runs by its own clock.
     Free,
@@ -78,7 +81,7 @@ impl ImagesArgs {
     }
 }
 
-/// Does it.
+/// Runs the verb.
 pub(crate) fn run(verb: &FirmwareVerb) -> Result<ExitCode, Failure> {
     match verb {
         FirmwareVerb::Build(args) => {
@@ -112,7 +115,7 @@ fn build(program: Program) -> Result<PathBuf, Failure> {
     build_program(&workspace_root(), program).map_err(failed)
 }
 
-/// Longest image that is read, bytes: ours have 8 MB with what debuggers want.
+/// Longest ELF file that is read, bytes: ours have 8 MB with debug information.
 const IMAGE_LEN_MAX: u64 = 1 << 28;
 
 fn sizes_of(path: &Path) -> Result<Sizes, Failure> {

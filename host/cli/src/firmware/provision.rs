@@ -1,5 +1,6 @@
-//! `onetwo firmware provision`: writes the page of 64 bytes that tells a robot its number, its team and its own keys, derived from the
-//! team's; `onetwo firmware flash --page` puts it beside the image (docs/architecture.md §6.1).
+//! `onetwo firmware provision`: writes the page of 64 bytes with a robot's number, its team and its own keys,
+//! derived from the team's; `onetwo firmware flash --page` puts it beside the firmware (docs/architecture.md
+//! §6.1).
 
 use std::fs;
 use std::io::Write as _;
@@ -14,27 +15,27 @@ use super::{at, failed};
 use crate::Failure;
 use crate::output::{note, say};
 
-/// Who the robot shall be.
+/// The robot's identity.
 #[derive(Debug, Args)]
 pub(crate) struct ProvisionArgs {
     /// Its number, 0–15.
     #[arg(long, value_name = "N")]
     robot: u8,
-    /// Its team's number on the air.
+    /// Its team's number on the radio.
     #[arg(long, value_name = "N")]
     team: u8,
-    /// What it plays.
+    /// Its league.
     #[arg(long, value_enum, default_value_t = LeagueWord::DivisionB)]
     league: LeagueWord,
     /// A file with 32 hexadecimal digits, as `openssl rand -hex 16` makes them.
     #[arg(long, value_name = "FILE")]
     key_file: PathBuf,
-    /// Where the page goes.
+    /// Output file of the page.
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 }
 
-/// A league by its word.
+/// Name of a league.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum LeagueWord {
     /// The four-legged league of 2007.
@@ -74,7 +75,7 @@ pub(super) fn run(args: &ProvisionArgs) -> Result<(), Failure> {
         keys: key.key.of_robot(robot),
     };
     let bytes: [u8; PAGE_LEN] = page(&who);
-    // The robot's own reading of it: a key of zeros is refused here already.
+    // The page is read back as by the robot: a key of zeros is refused here already.
     read(&bytes, false).map_err(failed)?;
     write_for_owner(&args.out, &bytes).map_err(|error| at(&args.out, error))?;
     say(&format!(
@@ -84,14 +85,14 @@ pub(super) fn run(args: &ProvisionArgs) -> Result<(), Failure> {
     ))
 }
 
-/// A file that its owner alone can read, for it holds a key.
+/// Writes a file that only its owner can read, because it contains a key.
 fn write_for_owner(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     let mut options = fs::OpenOptions::new();
     options.write(true).create(true).truncate(true);
     #[cfg(unix)]
     std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
     let mut file = options.open(path)?;
-    // The mode above is for new files; one that was there keeps its own until told.
+    // The mode above is for new files; an existing file keeps its own until it is set here.
     #[cfg(unix)]
     file.set_permissions(std::os::unix::fs::PermissionsExt::from_mode(0o600))?;
     file.write_all(bytes)

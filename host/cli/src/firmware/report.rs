@@ -1,5 +1,5 @@
-//! `onetwo firmware report`: the tables of docs/firmware.md. What images take, and what a robot does when
-//! something breaks; written by `firmware report --write`.
+//! `onetwo firmware report`: the tables of docs/firmware.md. Resource usage of the firmware, and what a robot
+//! does when something breaks; written by `firmware report --write`.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -14,10 +14,10 @@ use super::size::{Known, POOL_LEAST, STEP_BUDGET, Share};
 use crate::Failure;
 use crate::output::say;
 
-/// Where the report goes.
+/// Output of the report.
 #[derive(Debug, Args)]
 pub(crate) struct ReportArgs {
-    /// Into docs/firmware.md instead of onto stdout.
+    /// Write into docs/firmware.md instead of onto stdout.
     #[arg(long)]
     write: bool,
     /// Simulated seconds of the match that robots on wheels are measured in.
@@ -25,7 +25,7 @@ pub(crate) struct ReportArgs {
     seconds: f64,
 }
 
-/// Builds, plays, and writes it down.
+/// Builds, plays, and writes the report.
 pub(super) fn run(args: &ReportArgs) -> Result<(), Failure> {
     let all: Vec<_> = Program::IMAGES
         .into_iter()

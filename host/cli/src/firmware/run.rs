@@ -1,5 +1,5 @@
-//! `onetwo firmware run`: a robot without hardware. The image that runs by its own clock, in QEMU's emulated
-//! board, its radio on a serial line.
+//! `onetwo firmware run`: a robot without hardware. The firmware that runs by its own clock, in QEMU's
+//! emulated board, its radio on a serial line.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -15,17 +15,18 @@ use crate::Failure;
 /// How a robot is run.
 #[derive(Debug, Args)]
 pub(crate) struct RunArgs {
-    /// What `provision` wrote; without it nobody commands the robot.
+    /// The page that `provision` wrote; without it the robot accepts no host.
     #[arg(long, value_name = "FILE")]
     page: Option<PathBuf>,
-    /// Where its radio's line ends, in QEMU's words: `null`, `pty`, `unix:PATH,server=on`, `tcp:HOST:PORT,server=on`.
+    /// Where its radio's line ends, in QEMU's syntax: `null`, `pty`, `unix:PATH,server=on`,
+    /// `tcp:HOST:PORT,server=on`.
     #[arg(long, value_name = "LINE", default_value = "pty")]
     serial: String,
 }
 
-/// Runs it until it is ended; the robot's words are on stderr.
+/// Runs it until it is ended; the robot's log is on stderr.
 pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
-    // Before anything is built or started.
+    // Checked before anything is built or started.
     let page = args.page.as_deref().map(|file| check(file).map(|()| file)).transpose()?;
     let qemu = ensure_qemu(Install::ForUser).map_err(failed)?;
     let mut command = Command::new(qemu);
@@ -34,7 +35,7 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     if status.success() { Ok(()) } else { Err(failed(format!("QEMU ended with {status}"))) }
 }
 
-/// Longest file of a key page that is read, bytes: a sector of flash is the most that it could be.
+/// Longest file of a key page that is read, bytes: one sector of flash.
 const PAGE_FILE_LEN_MAX: u64 = 1 << 17;
 
 /// Whether a robot could read the page.
@@ -43,7 +44,7 @@ fn check(file: &Path) -> Result<(), Failure> {
     read(&bytes, false).map(|_| ()).map_err(|error| at(file, error))
 }
 
-/// What QEMU is told.
+/// Arguments of QEMU.
 fn words(image: &Path, page: Option<&Path>, serial: &str) -> Vec<String> {
     let mut words: Vec<String> =
         ["-machine", MACHINE, "-display", "none", "-monitor", "none", "-serial", serial]
@@ -52,7 +53,7 @@ fn words(image: &Path, page: Option<&Path>, serial: &str) -> Vec<String> {
     words.extend(["-semihosting-config", "enable=on,target=native", "-kernel"].map(str::to_owned));
     words.push(image.display().to_string());
     if let Some(file) = page {
-        // QEMU's options take a doubled comma for one.
+        // In QEMU's options a doubled comma stands for one.
         let path = file.to_string_lossy().replace(',', ",,");
         words.push("-device".to_owned());
         words.push(format!("loader,file={path},addr={PAGE_ADDRESS:#x},force-raw=on"));

@@ -1,5 +1,5 @@
-//! `onetwo firmware size`: resource usage of images. Flash and RAM by crate and by symbol, statics that hold
-//! RAM for good, the deepest stack and the worst step under QEMU, each against the budgets of
+//! `onetwo firmware size`: resource usage of firmware images. Flash and RAM by crate and by symbol, statics
+//! that hold RAM for good, the deepest stack and the worst step under QEMU, each against the budgets of
 //! docs/architecture.md §9 and as a share of three robots' computers.
 
 use std::fmt::Write as _;
@@ -14,26 +14,26 @@ use super::{ImagesArgs, build, failed, sizes_of};
 use crate::Failure;
 use crate::output::say;
 
-/// How sizes are shown.
+/// Output format of the sizes.
 #[derive(Debug, Args)]
 pub(crate) struct SizeArgs {
     #[command(flatten)]
     images: ImagesArgs,
-    /// How many crates and symbols to name.
+    /// Number of crates and symbols to list.
     #[arg(long, default_value_t = 20, value_name = "N")]
     largest: usize,
-    /// Look into the files alone: no QEMU, so neither stack nor worst step.
+    /// Inspect the files only: no QEMU, so neither stack nor worst step.
     #[arg(long)]
     still: bool,
     /// Simulated seconds of the match that robots on wheels are measured in.
     #[arg(long, default_value_t = 5.0, value_name = "SECONDS", conflicts_with = "still")]
     seconds: f64,
-    /// As data.
+    /// Print as JSON.
     #[arg(long)]
     json: bool,
 }
 
-/// All that is known of an image.
+/// All measurements of a firmware image.
 pub(super) struct Known {
     pub(super) program: Program,
     pub(super) sizes: Sizes,
@@ -41,7 +41,7 @@ pub(super) struct Known {
 }
 
 impl Known {
-    /// Builds it and looks; plays for so many seconds, or not at all.
+    /// Builds and inspects the program; plays for this number of seconds, or not at all.
     pub(super) fn of(program: Program, seconds: Option<f64>) -> Result<Self, Failure> {
         let sizes = sizes_of(&build(program)?)?;
         let measured = seconds.map(|seconds| measure(program, seconds)).transpose()?.flatten();
@@ -52,7 +52,7 @@ impl Known {
     pub(super) fn share(&self, chip: &Chip) -> Share {
         let share = |part: u64, all: u64| (1e4 * part as f64 / all as f64).round() / 100.0;
         let taken = self.sizes.ram + self.measured.map_or(0, |measured| u64::from(measured.stack));
-        // Where programs are loaded into RAM, the image takes RAM.
+        // On a chip without flash the program itself is loaded into RAM.
         let ram = if chip.flash.is_some() { taken } else { self.sizes.flash + taken };
         let step = self.measured.zip(self.steps_a_second());
         Share {
@@ -80,11 +80,11 @@ pub(super) struct Share {
     pub(super) flash: Option<f64>,
     /// Statics and the deepest stack.
     pub(super) ram: f64,
-    /// Of its time, were every step the worst and every instruction a cycle.
+    /// Of its time, if every step were the worst and every instruction took one cycle.
     pub(super) step: Option<f64>,
 }
 
-/// An image in `size --json`.
+/// A firmware image in `size --json`.
 #[derive(Serialize)]
 struct SizeJson<'a> {
     image: &'a str,
@@ -134,7 +134,7 @@ impl<'a> From<&'a Part> for PartJson<'a> {
     }
 }
 
-/// Says it.
+/// Prints it.
 pub(super) fn run(args: &SizeArgs) -> Result<(), Failure> {
     let seconds = (!args.still).then_some(args.seconds);
     let images: Vec<_> = args.images.programs();
@@ -208,7 +208,7 @@ fn tell(known: &Known, largest: usize, told: &mut String) {
     }
 }
 
-/// Statics that are named, bytes: below, they are flags and counters.
+/// Least size of a static that is listed, bytes: smaller ones are flags and counters.
 pub(super) const POOL_LEAST: u64 = 256;
 /// One brain step on its worst path (docs/architecture.md §9), guest instructions.
 pub(super) const STEP_BUDGET: u32 = 40_000;

@@ -1,6 +1,6 @@
-//! `beliefs`: estimated tactics of the opponents. The tactic that explains each one's places of the last half
-//! second best, by the second paper's models (Biswas et al. 2014 §4.1), with how well every tactic explains
-//! them. Field frame, m.
+//! `beliefs`: estimated tactics of the opponents. The tactic that best explains each one's positions of the
+//! last half second, by the second paper's models (Biswas et al. 2014 §4.1), and how well every tactic
+//! explains them. Field frame, m.
 
 use geometry::Point;
 use host::strategy::View;
@@ -11,12 +11,12 @@ use page::{Layer, Shape, Tone, milli};
 use protocol::RobotId;
 use rules::Colour;
 
-/// A robot of ours nearer to the ball than this has it: nobody is said to mark it, m.
+/// If a robot of ours is nearer to the ball than this, no opponent is labelled as its marker, m.
 const AT_BALL: f32 = 0.5;
-/// Around an opponent, m: wider than any robot.
+/// Radius of the ring around an opponent, m: wider than any robot.
 const RING: f32 = 0.14;
 
-/// What each team believes of the other.
+/// Beliefs of each team about the other.
 #[derive(Debug)]
 pub(super) struct Beliefs {
     of: [Detector; 2],
@@ -29,7 +29,7 @@ impl Default for Beliefs {
 }
 
 impl Beliefs {
-    /// What `us` sees now.
+    /// Takes the current view of `us`.
     pub(super) fn watch(&mut self, us: Colour, view: &View) {
         self.of[us as usize].watch(view, taker(view));
     }
@@ -52,7 +52,7 @@ fn taker(view: &View) -> Option<RobotId> {
     (far(&nearest) < AT_BALL).then_some(nearest.id)
 }
 
-/// A ring to point at, what it plays in a word, and a line to whom it marks.
+/// A ring to point at, its tactic as a label, and a line to the robot it marks.
 fn shapes(opponent: &Detected, us: Colour, view: &View, flip: Flip) -> Vec<Shape> {
     let place = |at: Point<geometry::Attack>| {
         let at = flip.to_field(at);
@@ -84,7 +84,7 @@ fn likely(opponent: &Detected, tactic: Tactic) -> f32 {
     opponent.likelihoods[tactic as usize]
 }
 
-/// Everything that is behind the word.
+/// All evidence behind the label.
 fn note(opponent: &Detected, us: Colour) -> String {
     let who = format!("{} {}", us.other().word(), opponent.opponent.number());
     let head = match (opponent.tactic, opponent.follows) {

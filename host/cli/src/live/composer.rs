@@ -1,5 +1,5 @@
-//! `composer`: composition of the page's scene from hosts and other sources; it remembers only what has to be
-//! told over time.
+//! `composer`: composition of the page's scene from hosts and other sources; it stores only what is displayed
+//! over time.
 
 use std::collections::VecDeque;
 
@@ -27,12 +27,12 @@ use super::{spaced, team};
 use crate::library::Shelf;
 use crate::replay::phase_words;
 
-/// The ball's trail reaches back so far, s.
+/// Length of the ball's trail, s.
 const TRAIL_S: f64 = 1.5;
-/// Its prediction reaches ahead so far in steps of a tenth, and ends where it rests.
+/// Number of points of the ball's prediction, one each tenth of a second; it ends at the stop position.
 const AHEAD: usize = 15;
 
-/// What cases are called, and what they mean.
+/// Names and intents of the cases.
 #[derive(Debug, Default)]
 pub(crate) struct Names {
     names: Vec<String>,
@@ -59,21 +59,21 @@ impl Names {
     }
 }
 
-/// What there is to look at.
+/// Inputs of a scene.
 pub(crate) struct Moment<'a> {
-    /// Seconds since the beginning.
+    /// Seconds since the start.
     pub(crate) t: f64,
     /// On the hosts' clock.
     pub(crate) now: Instant,
-    /// Through whose eyes the field is seen.
+    /// The host whose world is displayed.
     pub(crate) eyes: &'a Host,
-    /// Whose robots tell what they think.
+    /// The hosts whose robots' states are displayed.
     pub(crate) hosts: &'a [&'a Host],
-    /// What truly is, in a simulation.
+    /// The true state, in a simulation.
     pub(crate) truth: Option<&'a Truth>,
     /// The simulation's own referee.
     pub(crate) referee: Option<&'a InternalReferee>,
-    /// What the loop measures of itself.
+    /// Measurements of the loop itself.
     pub(crate) gauges: Vec<Gauge>,
 }
 
@@ -119,17 +119,17 @@ impl Composer {
         self.images.hear(bytes);
     }
 
-    /// A datagram of the referee; `own` where the simulation's referee is shown in the moment too.
+    /// A datagram of the referee; `own` where the simulation's referee is part of the moment too.
     pub(crate) fn referee(&mut self, bytes: &[u8], t: f64, own: bool) {
         self.news.packet(bytes, t, own, &mut self.happenings);
     }
 
-    /// What happened since the last call.
+    /// Events since the last call.
     pub(crate) fn take_happenings(&mut self) -> Vec<Happening> {
         std::mem::take(&mut self.happenings)
     }
 
-    /// The scene of a moment: what is known at once, and what the page's thread works out of a picture of it.
+    /// The scene of a moment: what is known at once, and what the page's thread computes from a snapshot.
     pub(crate) fn compose(&mut self, moment: Moment<'_>) -> Sketch {
         let Moment { t, now, eyes, .. } = moment;
         let (world, game, field) = (eyes.world(), eyes.game(), eyes.field());
@@ -263,7 +263,7 @@ impl Composer {
     }
 }
 
-/// A field in the page's words.
+/// A field in the page's format.
 pub(crate) fn field_of(field: &FieldSpec) -> Field {
     Field {
         length: milli(field.length),
@@ -335,7 +335,7 @@ fn sheet(game: &Game, referee: Option<&InternalReferee>, seen: &Possession) -> M
     out
 }
 
-/// Where everything truly is, to be held against what is believed.
+/// The true state of everything, to compare with what is believed.
 fn truth(world: &Truth) -> Layer {
     let radius = milli(ROBOT_RADIUS);
     let mut shapes: Vec<Shape> = world

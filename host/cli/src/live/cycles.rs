@@ -18,12 +18,13 @@ use super::{team, words};
 pub(super) struct TeamCycles {
     log: CycleLog,
     newest: Option<(CycleState, f64)>,
-    /// In open play a team without a fitting case tries again and again: told once until a case is played.
+    /// In open play a team without a fitting case retries again and again: reported once until a case is
+    /// played.
     told_none: bool,
 }
 
 impl TeamCycles {
-    /// Hears what robots last said; what is new goes to `into`.
+    /// Takes the newest reports of the robots; new events go to `into`.
     pub(super) fn hear(&mut self, host: &Host, t: f64, names: &Names, into: &mut Vec<Happening>) {
         for robot in RobotId::all() {
             let Some(state) = host.beacon(robot).and_then(|beacon| beacon.cycle.as_ref()) else { continue };
@@ -75,7 +76,7 @@ impl TeamCycles {
         }
     }
 
-    /// The newest cycle, to be shown.
+    /// The newest cycle, for the page.
     pub(super) fn shown(
         &self,
         us: Colour,
@@ -84,7 +85,7 @@ impl TeamCycles {
         names: &Names,
     ) -> Option<Cycle> {
         let (state, began) = self.newest.as_ref()?;
-        // What was played stays told while its end is.
+        // The case stays displayed while the end of its cycle is.
         let seen = self.log.cycles().iter().rev().find(|cycle| cycle.id == state.id);
         let play = seen.and_then(|cycle| cycle.play.as_ref());
         let case = play.and_then(|play| base?.case(play.case));
@@ -101,14 +102,15 @@ impl TeamCycles {
         })
     }
 
-    /// What is played right now, if something is.
+    /// The case that is played at the moment, if any.
     pub(super) fn played<'b>(&'b self, base: Option<&CaseBase<'b>>, names: &Names) -> Option<Played<'b>> {
         let (state, _) = self.newest.as_ref()?;
         Played::of(base?, |case| names.of(case), state.play()?)
     }
 }
 
-/// The situation that a team retrieves in, as `cases explain` takes it: robots that offer themselves, and the ball that is told.
+/// The situation that a team retrieves in, as `cases explain` takes it: robots that take part, and the ball
+/// position that is sent.
 fn problem(host: &Host, ball: casebase::PointMm) -> Value {
     let us = host.settings().us;
     let mm = |at: geometry::Point<geometry::Field>| {

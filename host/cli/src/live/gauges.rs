@@ -1,4 +1,4 @@
-//! `gauges`: health figures. Vision, radio and the program's own beat, with the limits they should keep.
+//! `gauges`: health figures. Vision, radio and the program's own tick time, with their limits.
 
 use std::time::Duration;
 
@@ -6,18 +6,18 @@ use host::Host;
 use page::{Gauge, milli};
 use protocol::{Instant, RobotId};
 
-/// A camera's image older than this misses three beats at 60 Hz, ms.
+/// A camera frame older than this misses three periods at 60 Hz, ms.
 const VISION_AGE_MS: f32 = 50.0;
-/// Fewer packets a second than one slow camera sends.
+/// Least rate of vision, packets a second: below it, less than one slow camera sends.
 const VISION_RATE: f32 = 50.0;
-/// A round trip over two of the radio's beats, ms.
+/// Longest round trip: two periods of the radio, ms.
 const TRIP_MS: f32 = 40.0;
-/// Of frames, percent.
+/// Largest loss of frames, percent.
 const LOSS: f32 = 10.0;
-/// A tick of brains lasts 10 ms: what takes longer is late, ms.
+/// Longest tick, ms: brains step every 10 ms.
 const TICK_MS: f32 = 10.0;
 
-/// Counts packets into a rate.
+/// Counts packets and computes their rate.
 #[derive(Debug, Default)]
 pub(super) struct Rate {
     since: Option<(f64, u64)>,
@@ -25,7 +25,7 @@ pub(super) struct Rate {
 }
 
 impl Rate {
-    /// Packets a second, anew each half second.
+    /// Packets a second, computed each half second.
     pub(super) fn of(&mut self, t: f64, count: u64) -> f32 {
         let (begin, before) = *self.since.get_or_insert((t, count));
         if t - begin >= 0.5 || t < begin {
@@ -47,7 +47,7 @@ pub(super) fn gauge(group: &str, name: &str, value: f32, unit: &str, limit: Opti
     }
 }
 
-/// Everything but what the loop itself measures.
+/// All gauges except those that the loop itself measures.
 pub(super) fn of_hosts(hosts: &[&Host], now: Instant, vision: f32) -> Vec<Gauge> {
     let mut out = vec![gauge("vision", "packets a second", vision, "/s", Some(-VISION_RATE))];
     if let Some(host) = hosts.first() {
@@ -89,7 +89,7 @@ pub(super) fn of_hosts(hosts: &[&Host], now: Instant, vision: f32) -> Vec<Gauge>
     out
 }
 
-/// What a host has learned of its robots and the field.
+/// Learned values of robots and field.
 fn learned(out: &mut Vec<Gauge>, host: &Host) {
     let (known, us) = (host.learned(), host.settings().us.word());
     let group = format!("learned, {us}");
@@ -107,7 +107,7 @@ fn learned(out: &mut Vec<Gauge>, host: &Host) {
     }
 }
 
-/// What a tick takes of this machine's time.
+/// Computing time of a tick.
 pub(crate) fn tick(took: Duration) -> Gauge {
     gauge("program", "a tick takes", took.as_secs_f32() * 1e3, "ms", Some(TICK_MS))
 }

@@ -9,7 +9,7 @@ use ssl::referee::Referee;
 
 use crate::replay::happening::{self, Finder};
 
-/// Finds what is new.
+/// Detects new events.
 #[derive(Debug, Default)]
 pub(super) struct News {
     finder: Finder,
@@ -18,7 +18,7 @@ pub(super) struct News {
 }
 
 impl News {
-    /// A packet of the referee. Where our own referee tells its events itself, the packet's are left out.
+    /// A packet of the referee. Where our own referee reports its events itself, the packet's are left out.
     pub(super) fn packet(&mut self, bytes: &[u8], t: f64, own: bool, into: &mut Vec<Happening>) {
         let Ok(packet) = Referee::decode(bytes) else { return };
         let mut found = Vec::new();
@@ -36,7 +36,7 @@ impl News {
                 | happening::Kind::TeamName
                 | happening::Kind::DesignatedPosition => Kind::Event,
             };
-            // A number is for the record, not for the eye.
+            // Numbers are stored in the record and left out of the label.
             let words = match found.kind {
                 happening::Kind::Goal => format!("goal, {}", found.words),
                 happening::Kind::GameEvent if !found.words.is_empty() => format!("{name} ({})", found.words),
@@ -51,7 +51,7 @@ impl News {
         }
     }
 
-    /// What the simulation's own referee noted since the last call.
+    /// Events of the simulation's own referee since the last call.
     pub(super) fn referee(&mut self, referee: &InternalReferee, t: f64, into: &mut Vec<Happening>) {
         for event in referee.events().iter().skip(self.events) {
             let kind = event.what.kind();
@@ -67,7 +67,7 @@ impl News {
         self.events = referee.events().len();
     }
 
-    /// A kick that was noticed.
+    /// A detected kick.
     pub(super) fn kick(&mut self, kick: Option<Kick>, t: f64, into: &mut Vec<Happening>) {
         let Some(kick) = kick else { return };
         let same =
@@ -91,10 +91,10 @@ impl News {
     }
 }
 
-/// The tracker fits a kick anew as it sees more of it; within this time it is the same one, µs.
+/// The tracker refits a kick as it sees more of it; within this time it is the same one, µs.
 const SAME_KICK_US: u64 = 200_000;
 
-/// A game event of the league by its name: what a team did wrong, or anything else.
+/// Kind of a game event of the league by its name: a foul, or any other event.
 pub(crate) fn foul_or_event(name: &str) -> Kind {
     let foul = [
         "BOT_",
@@ -118,7 +118,7 @@ fn whose(words: &str) -> Option<Team> {
     match (has("blue"), has("yellow")) {
         (true, false) => Some(Team::Blue),
         (false, true) => Some(Team::Yellow),
-        // "goal, yellow, blue 0 : 1 yellow" is the first one's.
+        // "goal, yellow, blue 0 : 1 yellow": the first team is the one that scored.
         (true, true) => words.split(", ").find_map(|part| match part {
             "blue" => Some(Team::Blue),
             "yellow" => Some(Team::Yellow),

@@ -1,4 +1,4 @@
-//! `layers`: overlays of cases and rules. Scopes, the ball's way, adapted positions, keep-out zones, the
+//! `layers`: overlays of cases and rules. Scopes, the ball's path, adapted positions, keep-out zones, the
 //! truth; as plain shapes in m, field frame.
 
 use casebase::{Case, CaseBase, CaseRobot};
@@ -14,7 +14,7 @@ use super::words::spaced;
 /// A keep-out zone larger than this share of the field is drawn by its border alone.
 const FILLED: f32 = 0.35;
 
-/// What a team plays.
+/// A case in play by a team.
 pub(super) struct Played<'a> {
     pub(super) case: Case<'a>,
     pub(super) name: String,
@@ -125,7 +125,7 @@ pub(super) fn of_cases(plays: &[(Colour, Played<'_>)]) -> [Layer; 3] {
     ]
 }
 
-/// Where field players of each team must not be now.
+/// Where field players of each team must not be at the moment.
 pub(super) fn keep_outs(
     field: &FieldSpec,
     phase: Phase<Colour>,
@@ -149,7 +149,7 @@ pub(super) fn keep_outs(
             ball_in_play: true,
         };
         for forbidden in &keep_out(&situation).forbidden {
-            // Both teams keep out of everybody's areas: what is there in open play says nothing.
+            // In open play both teams must keep out of the defence areas: drawing that adds no information.
             if matches!(phase, Phase::Run) && matches!(forbidden.why, Why::OwnArea | Why::OpponentArea) {
                 continue;
             }
@@ -182,11 +182,11 @@ fn region(shape: &geometry::Shape<geometry::Field>, field: &FieldSpec, note: Str
             Shape::Capsule { from: at(spine.from), to: at(spine.to), radius: milli(radius), tone, note }
         }
         geometry::Shape::Box { low, high } => {
-            // Half-planes reach far: they end at the carpet's edge.
+            // Half-planes are unbounded: they are clipped at the edge of the field surface.
             let (x, y) = (field.length * 0.5 + field.goal_line_margin, field.width * 0.5 + field.margin);
             let [x0, y0] = [low.x().clamp(-x, x), low.y().clamp(-y, y)].map(milli);
             let [x1, y1] = [high.x().clamp(-x, x), high.y().clamp(-y, y)].map(milli);
-            // Half a field, filled for each team, would hide the whole: its border says enough.
+            // Half a field, filled for each team, would hide everything: only its border is drawn.
             let fill = (x1 - x0) * (y1 - y0) < FILLED * field.length * field.width;
             Shape::Polygon { points: vec![[x0, y0], [x1, y0], [x1, y1], [x0, y1]], tone, fill, note }
         }

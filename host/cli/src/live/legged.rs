@@ -1,4 +1,5 @@
-//! A trial of the four-legged league on the page: the carpet as it is, and what the attackers say on the air.
+//! `legged`: a trial of the four-legged league on the page: the true state of the field, and the attackers'
+//! radio messages.
 
 use arena::{Moment, News, TrialReport, Watcher};
 use casebase::CaseBase;
@@ -155,7 +156,7 @@ impl Legged {
         }
     }
 
-    /// The trial's page, to stay.
+    /// The trial's page, which stays open.
     pub(crate) fn into_page(self) -> Page {
         self.page
     }

@@ -1,4 +1,4 @@
-//! `minds`: state of each robot for the page. From what its host told it last and what it said of itself.
+//! `minds`: state of each robot for the page. From the last command of its host and the robot's own reports.
 
 use std::collections::BTreeMap;
 
@@ -15,14 +15,14 @@ use super::layers::Played;
 use super::painter::Aim;
 use super::words;
 
-/// Since when robots are in their states: reuse, and what they are told.
+/// Since when robots are in their states: reuse, and what they are ordered.
 #[derive(Debug, Default)]
 pub(super) struct Clocks {
     states: BTreeMap<(bool, u8), (String, f64)>,
     roles: BTreeMap<(bool, u8), (String, f64)>,
 }
 
-/// Seconds since that was first so.
+/// Seconds since the state of `who` is `words`.
 fn since(of: &mut BTreeMap<(bool, u8), (String, f64)>, who: (bool, u8), words: &str, t: f64) -> f32 {
     let entry = of.entry(who).or_insert_with(|| (words.to_owned(), t));
     if entry.0 != words || t < entry.1 {
@@ -31,7 +31,7 @@ fn since(of: &mut BTreeMap<(bool, u8), (String, f64)>, who: (bool, u8), words: &
     (t - entry.1) as f32
 }
 
-/// The mind of a robot of that host's team, and where it is told to be.
+/// The state of a robot of that host's team, and the position it is ordered to.
 pub(super) fn mind(
     host: &Host,
     robot: &Robot,
@@ -59,7 +59,7 @@ pub(super) fn mind(
         _ => Duty::Player,
     };
     let aim = place.or(to).map(|to| Aim { who: robot.who, to, duty });
-    // A straight line until its way is planned.
+    // A straight line until its path is planned.
     let path = aim.map_or_else(Vec::new, |aim| vec![here, aim.to]);
     let who = (host.settings().us == Colour::Blue, id.number());
     let role = words::role(order.role);
@@ -87,7 +87,7 @@ pub(super) fn mind(
     Some((mind, aim))
 }
 
-/// How a robot and its link are.
+/// State of a robot and its link.
 pub(super) fn vitals(host: &Host, robot: &Robot, now: Instant) -> Option<Vitals> {
     let quality = host.quality(robot.who.id)?;
     let heard = quality.heard_at()?;
@@ -123,7 +123,7 @@ pub(super) fn vitals(host: &Host, robot: &Robot, now: Instant) -> Option<Vitals>
     })
 }
 
-/// Robots that booted again or fell silent since the last look, in words.
+/// Messages about robots that rebooted or fell silent since the last call.
 #[derive(Debug, Default)]
 pub(super) struct Faults {
     lives: BTreeMap<(bool, u8), u32>,

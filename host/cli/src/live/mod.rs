@@ -1,7 +1,7 @@
 //! `live`: feed of the page. A match, a host or a recording becomes a [`page::Scene`] some 25 times a second.
 //!
-//! [`Composer`] fills scenes from hosts, the same for `play`, `control` and `replay`; [`oracle`] answers why a case was chosen.
-//! Everything here looks on: nothing decides.
+//! [`Composer`] fills scenes from hosts, the same for `play`, `control` and `replay`; [`oracle`] answers why
+//! a case was chosen. Everything here only observes: no decision is made here.
 
 mod beliefs;
 mod composer;
@@ -45,30 +45,31 @@ pub(crate) use oracle::CaseOracle;
 pub(crate) use theatre::{AnewWatcher, End, Theatre, command_of};
 use words::spaced;
 
-/// Scenes a second: what an eye takes for motion, with the page filling in between.
+/// Period of scenes, s: smooth motion, with the page interpolating in between.
 pub(crate) const SCENE_EVERY_S: f64 = 0.04;
 
 /// Where the page is served.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct PageArgs {
-    /// Where the page is served; others than this machine see it only where an address of this machine is told.
+    /// Address of the page; it is reachable from other machines only if an address other than the loopback is
+    /// given.
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080")]
     listen: SocketAddr,
-    /// What this verb calls that, for words.
+    /// Name of the flag at this verb, for messages.
     #[arg(skip = LISTEN)]
     flag: &'static str,
 }
 
-/// Its usual name.
+/// The usual name of the flag.
 const LISTEN: &str = "--listen";
 
 impl PageArgs {
-    /// Served there, by a verb that has another name for it.
+    /// Arguments for a page at `listen`, by a verb that has another name for the flag.
     pub(crate) fn at(listen: SocketAddr, flag: &'static str) -> Self {
         Self { listen, flag }
     }
 
-    /// Opens the page and says where.
+    /// Opens the page and prints its address.
     pub(crate) fn open(
         &self,
         title: String,
@@ -97,7 +98,7 @@ impl PageArgs {
     }
 }
 
-/// Everything is shown: the page stays to be looked at, until somebody ends the program.
+/// Keeps the page open after everything was played, until the operator ends the program.
 pub(crate) fn stay(page: Page, words: &str) {
     note!("{words}; the page stays until Ctrl-C");
     while !stopped_by_hand().load(Ordering::Relaxed) {
@@ -106,7 +107,7 @@ pub(crate) fn stay(page: Page, words: &str) {
     drop(page);
 }
 
-/// The cases that come with a league, or a folder's; none where neither is there.
+/// The cases that come with a league, or those of a directory; none if neither exists.
 pub(crate) fn shelf_of(league: League, folder: Option<&std::path::Path>) -> Result<Option<Shelf>, Failure> {
     let known = case_library::league(league.name()).is_some();
     if folder.is_none() && !known {
@@ -116,7 +117,7 @@ pub(crate) fn shelf_of(league: League, folder: Option<&std::path::Path>) -> Resu
     Shelf::open(&LibraryArgs { folder, league: league.name().to_owned() }).map(Some)
 }
 
-/// A colour in the page's words.
+/// A colour in the page's format.
 pub(crate) const fn team(colour: Colour) -> Team {
     match colour {
         Colour::Blue => Team::Blue,
@@ -124,7 +125,7 @@ pub(crate) const fn team(colour: Colour) -> Team {
     }
 }
 
-/// And back.
+/// The inverse of [`team`].
 pub(crate) const fn colour(team: Team) -> Colour {
     match team {
         Team::Blue => Colour::Blue,

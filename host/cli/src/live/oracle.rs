@@ -1,5 +1,4 @@
-//! `oracle`: answers to the page's questions about cases. The page's questions are answered by the very code
-//! of `onetwo cases explain`.
+//! `oracle`: answers to the page's questions about cases, by the same code as `onetwo cases explain`.
 
 use casebase::Settings;
 
@@ -7,7 +6,7 @@ use crate::args::Chosen;
 use crate::cases;
 use crate::library::Shelf;
 
-/// A library, and how it is asked.
+/// A library, with settings of retrieval.
 pub(crate) struct CaseOracle {
     shelf: Option<Shelf>,
     chosen: Chosen,

@@ -1,6 +1,6 @@
-//! `painter`: deferred overlays. Planned ways, maps of passes, threats, what opponents are believed to play:
-//! from a picture of the moment, on the page's own thread, so that whoever drives the match pays for the
-//! picture alone. m, s, field frame.
+//! `painter`: deferred overlays. Planned paths, maps of passes, threats, the tactics that opponents are
+//! believed to play: computed from a snapshot, on the page's own thread, so that the match thread pays for
+//! the snapshot only. m, s, field frame.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -13,7 +13,7 @@ use rules::{Colour, Duty, FieldSpec, League};
 use super::tactics::Tactics;
 use super::ways::Ways;
 
-/// A robot and where it is told to be.
+/// A robot and the position it is ordered to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Aim {
     pub(super) who: Who,
@@ -21,32 +21,32 @@ pub(super) struct Aim {
     pub(super) duty: Duty,
 }
 
-/// All that painting needs of a moment.
+/// Snapshot of a moment, with all inputs of the overlays.
 #[derive(Clone, Debug)]
 pub(super) struct Picture {
-    /// Seconds since the beginning.
+    /// Seconds since the start.
     pub(super) t: f64,
     pub(super) world: World,
     pub(super) game: Game,
     pub(super) field: FieldSpec,
     pub(super) league: League,
-    /// The one team whose host is ours; none where both are, or none.
+    /// The one team whose host is ours; `None` where both are, or neither.
     pub(super) us: Option<Colour>,
     pub(super) aims: Vec<Aim>,
 }
 
-/// Paints one moment after the other; what it remembers between them is shared by its sketches.
+/// Paints one moment after the other; state between moments is shared by its sketches.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Painter {
     tactics: Arc<Mutex<Tactics>>,
 }
 
 impl Painter {
-    /// The scene as it is, to be painted when the page's thread has time.
+    /// The scene as it is, with the overlays deferred to the page's thread.
     pub(super) fn sketch(&self, scene: Scene, picture: Picture) -> Sketch {
         let tactics = self.tactics.clone();
         Sketch::new(scene, move |scene| {
-            // Whatever was remembered before somebody failed with it is as good as any.
+            // After a panic of another thread the stored state is still usable.
             let mut tactics = tactics.lock().unwrap_or_else(PoisonError::into_inner);
             paint(scene, &picture, &mut tactics);
         })

@@ -1,12 +1,12 @@
-//! `possession`: possession statistics. Counted from what is seen, where no referee of our own counts (Biswas
-//! et al. 2014 §6).
+//! `possession`: possession statistics. Counted from vision, where there is no referee of our own (Biswas et
+//! al. 2014 §6).
 
 use host::world::World;
 use rules::{Colour, Phase};
 
 /// A robot whose centre is nearer to the ball than this touches it, m: hull, ball, and 30 mm for noise.
 const TOUCH: f32 = 0.14;
-/// Between two looks no more than this counts, s: what is longer is a gap.
+/// Longest time between two samples that is counted, s: what is longer is a gap.
 const GAP_S: f64 = 0.5;
 
 /// Seconds by team: yellow, blue.
@@ -94,7 +94,7 @@ mod tests {
         assert_eq!(possession.share(Colour::Blue), Some(0.0));
         let ratio = possession.offence_ratio(Colour::Yellow).unwrap();
         assert!((ratio - 1.0 / 0.49).abs() < 1e-3, "{ratio}");
-        // A gap in the recording counts for nobody.
+        // A gap in the recording counts for neither team.
         possession.look(9.0, &world(1.0, 3.0), Phase::Run, Some(1));
         assert!((possession.offence_ratio(Colour::Yellow).unwrap() - ratio).abs() < 1e-6);
     }

@@ -1,4 +1,4 @@
-//! `raw`: unfiltered detections. The newest image of each camera, decoded only when it is to be shown.
+//! `raw`: unfiltered detections. The newest frame of each camera, decoded only when it is displayed.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -7,9 +7,10 @@ use rules::Colour;
 use ssl::Message;
 use ssl::vision::{DetectionFrame, DetectionRobot, WrapperPacket};
 
-/// So many packets hold an image of each camera: a field has at most eight.
+/// Number of newest packets that are kept: they hold a frame of each camera, of which a field has at most
+/// eight.
 const PACKETS: usize = 8;
-/// An image is older than the newest by more than this, s, and its camera sees nothing any more.
+/// A camera whose frame is older than the newest by more than this, s, is left out: it sees nothing any more.
 const OLD_S: f64 = 0.2;
 
 /// The newest packets.
@@ -23,7 +24,7 @@ pub(super) struct Images {
 impl Images {
     pub(super) fn hear(&mut self, bytes: &[u8]) {
         self.count += 1;
-        // The oldest one's room is used again.
+        // The oldest packet's buffer is used again.
         let mut room = if self.packets.len() >= PACKETS {
             self.packets.pop_front().unwrap_or_default()
         } else {

@@ -1,8 +1,9 @@
-//! `tactics`: overlays of passes and threats. The second paper's pictures of the moment, by strategy's own
-//! functions: maps of P(receive) and of P(receive) · P(goal) for the team at the ball, threats and open
-//! angles for the other, and what the one believes of the other ([`super::beliefs`]).
+//! `tactics`: overlays of passes and threats. The second paper's figures for the current moment, by
+//! strategy's own functions: maps of P(receive) and of P(receive) · P(goal) for the team in possession,
+//! threats and open angles for the other, and what the one believes of the other ([`super::beliefs`]).
 //!
-//! Worked out from a picture, on the page's thread ([`super::painter`]); maps five times a second. Field frame, m.
+//! Computed from a snapshot, on the page's thread ([`super::painter`]); maps five times a second. Field
+//! frame, m.
 
 use geometry::{Attack, Point};
 use host::strategy::pass::{Kicks, PassConstants, Scene};
@@ -17,9 +18,10 @@ use rules::{Colour, Phase};
 use super::beliefs::Beliefs;
 use super::painter::Picture;
 
-/// Maps are made anew after so long, s.
+/// Period of the maps, s.
 const EVERY_S: f64 = 0.2;
-/// Another team has the ball once its robot was the nearest for so long, s: who only passes by changes nothing.
+/// Another team has the ball once its robot was the nearest for this time, s: a robot that only passes by
+/// changes nothing.
 const TAKEN_S: f64 = 0.4;
 /// Length and width of a cell of the maps, m: three robots' widths.
 const CELL: f32 = 0.3;
@@ -28,7 +30,7 @@ const WORTHLESS: f32 = 0.001;
 /// What is worth less than this share of the best place is not drawn.
 const FAINT: f32 = 0.04;
 
-/// What is remembered from one moment to the next.
+/// State from one moment to the next.
 #[derive(Debug, Default)]
 pub(super) struct Tactics {
     kicks: Option<Kicks>,
@@ -36,16 +38,16 @@ pub(super) struct Tactics {
     beliefs: Beliefs,
     /// The moment before, s.
     last: Option<f64>,
-    /// Who has the ball, and since when somebody else is nearer to it.
+    /// The team in possession, and since when another team's robot is nearer to the ball.
     attackers: Option<Colour>,
     nearer_since: Option<f64>,
-    /// When the maps were made, and they.
+    /// When the maps were computed, s.
     made: Option<f64>,
     maps: [Vec<Shape>; 2],
 }
 
 impl Tactics {
-    /// The layers of a moment: maps, which lie under everything else, and what lies above.
+    /// The layers of a moment: maps, which are drawn under everything else, and the layers above.
     pub(super) fn layers(&mut self, picture: &Picture) -> [[Layer; 2]; 2] {
         let Picture { t, world, game, us, .. } = picture;
         // Another match, or a recording from its beginning.
@@ -64,7 +66,7 @@ impl Tactics {
             let attack = self.attackers.and_then(of);
             self.maps = attack.map_or_else(Default::default, |(view, flip)| maps(view, *flip, kicks));
         }
-        // Where everybody stands says nothing while the game is halted.
+        // While the game is halted, positions carry no information.
         let plays = !matches!(game.phase, Phase::Halt | Phase::Timeout(_));
         let mut threats = Vec::new();
         let defenders = self.attackers.map(Colour::other);
@@ -78,7 +80,8 @@ impl Tactics {
                 self.beliefs.watch(*team, view);
             }
         }
-        // A host of ours beside foreigners tells of them; between two of ours, whoever attacks tells of those who defend.
+        // Beside a foreign team our host is the observer; between two teams of ours the attacking one
+        // observes the defending one.
         let watcher = us.or(self.attackers).filter(|_| plays);
         let seen = watcher.and_then(of).map(|(view, flip)| (view, *flip));
         let [receive, value] = self.maps.clone();
@@ -115,7 +118,8 @@ impl Tactics {
     }
 }
 
-/// The field as that team's strategy sees it, with every robot that is seen; none until it is known who defends which goal.
+/// The field as that team's strategy sees it, with every visible robot; `None` until it is known which team
+/// defends which goal.
 fn view(picture: &Picture, us: Colour) -> Option<View> {
     let game = &picture.game;
     let sheet = ViewGame {
@@ -142,7 +146,8 @@ struct Rated {
     value: f32,
 }
 
-/// For each place how likely a pass by the robot nearest to the ball arrives at the mate nearest to the place, and what it is worth.
+/// For each place the probability that a pass by the robot nearest to the ball arrives at the teammate
+/// nearest to the place, and the value of that pass.
 fn maps(view: &View, flip: Flip, kicks: &Kicks) -> [Vec<Shape>; 2] {
     let Some(ball) = view.ball else { return Default::default() };
     let off = |mate: &&host::strategy::view::Robot| mate.position.distance(ball.position);
@@ -194,7 +199,7 @@ fn maps(view: &View, flip: Flip, kicks: &Kicks) -> [Vec<Shape>; 2] {
     ]
 }
 
-/// The open angle of the nearest threat, then of everybody who could have the ball next.
+/// The open angle of the nearest threat, then of every robot that could receive the ball next.
 fn threat_shapes(view: &View, flip: Flip, memory: &mut Memory) -> Vec<Shape> {
     let defence = defend(view, everybody(), memory, &Settings::default());
     let on_field = |at: Point<Attack>| {

@@ -1,4 +1,5 @@
-//! Tests: a scene shows the truth. A short match, held against the carpet and against retrieval itself.
+//! Tests: a scene agrees with the truth. A short match, compared with the simulated world and with retrieval
+//! itself.
 
 use std::collections::BTreeSet;
 
@@ -23,7 +24,7 @@ impl Watcher for Eyes {
     }
 }
 
-/// What a match left for who looks.
+/// What is collected from a match for the tests.
 #[derive(Default)]
 struct Played {
     /// Its last scene.
@@ -31,15 +32,16 @@ struct Played {
     happenings: Vec<Happening>,
     /// The most bytes that a scene took.
     most: usize,
-    /// Robots that cameras saw in its last second: one image in a hundred lacks one.
+    /// Robots that cameras saw in its last second: one camera frame in a hundred lacks one.
     seen: BTreeSet<(Team, u8)>,
-    /// Scenes with a map of passes, of how many; with somebody's keeper labelled as one, of how many with labels.
+    /// Scenes with a map of passes, and all scenes; scenes with a keeper labelled as one, and
+    /// scenes with labels.
     maps: (u32, u32),
     keepers: (u32, u32),
 }
 
 impl Played {
-    /// What the labels say of keepers, held against what their own host told them to be.
+    /// Compares the labels of keepers with the roles that their own host ordered.
     fn judge(&mut self, scene: &Scene) {
         let shapes = |name: &str| &scene.layers.iter().find(|layer| layer.name == name).unwrap().shapes;
         self.maps.0 += u32::from(!shapes("pass-receive").is_empty());
@@ -64,7 +66,7 @@ impl Played {
     }
 }
 
-/// So many seconds of a match.
+/// A match of this duration, s.
 fn played(seconds: u32) -> Played {
     let shelf = shelf_of(League::DivisionB, None).unwrap();
     let base = shelf.as_ref().unwrap().lasting_base();
@@ -93,7 +95,7 @@ fn played(seconds: u32) -> Played {
             if tick + 100 > ticks {
                 out.seen.extend(scene.raw.robots.iter().map(|robot| (robot.0, robot.1)));
             }
-            // What is known of the field has settled.
+            // By then the learned field parameters have settled.
             if tick >= 500 {
                 out.judge(&scene);
             }
@@ -125,7 +127,7 @@ fn a_match_fills_scenes_that_hold_against_the_truth() {
     assert!(scene.ball.unwrap().trail.len() > 20);
     let names: BTreeSet<_> = scene.layers.iter().map(|layer| &layer.name).collect();
     assert_eq!(names.len(), scene.layers.len(), "each layer has a name of its own");
-    // Nothing needs to be searched by a robot for the map to be there; and a keeper looks like one, whoever looks.
+    // The map does not depend on a robot's search; and a keeper is labelled as one by both hosts.
     assert_eq!(maps.0, maps.1);
     assert!(keepers.1 > 500 && keepers.0 * 10 > keepers.1 * 8, "{keepers:?}");
     // 25 of them a second have to go through any network and a browser's parser.
@@ -149,6 +151,7 @@ fn a_retrieval_that_is_told_can_be_explained_and_mostly_comes_to_the_same_case()
         told += 1;
         same += u32::from(happening.words.contains(name));
     }
-    // The coordinator retrieved by its own belief of a moment before: where two cases are near to each other it may differ.
+    // The coordinator retrieved by its own belief of a moment before: where two cases are similar it may
+    // differ.
     assert!(told >= 5 && same * 2 > told, "{same} of {told}");
 }

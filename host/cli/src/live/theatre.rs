@@ -1,8 +1,7 @@
-//! `theatre`: match runner with page and user controls. At the clock's pace, with the page beside it, and
-//! with hands on it.
+//! `theatre`: match runner with page and user controls. At the clock's pace, with the page beside it.
 //!
-//! The match itself is [`arena::game::Game`], tick by tick as without a page: looking on changes nothing. Where the machine is too
-//! slow for the speed asked for, the match goes slower and the page says so.
+//! The match itself is [`arena::game::Game`], tick by tick as without a page: observing changes nothing.
+//! Where the machine is too slow for the speed ordered, the match runs slower and the page displays that.
 
 mod situation;
 
@@ -27,13 +26,14 @@ use crate::Failure;
 use crate::library::Shelf;
 use crate::stop::stopped_by_hand;
 
-/// Farther behind the clock than this, s, and the clock is set anew: nobody wants a match that runs to catch up.
+/// If the match is farther behind the clock than this, s, the clock is reset: the match does not run faster
+/// to catch up.
 const BEHIND_MAX_S: f64 = 0.25;
-/// However fast it goes, who looks back sees a scene so often, simulated s.
+/// At every speed, simulated time between two scenes is at most this, s, for viewers that seek back.
 const SCENE_EVERY_MAX_S: f64 = 0.2;
-/// As much of a name that a viewer sent as is said back, characters.
+/// Longest part of a name sent by a viewer that is quoted in an answer, characters.
 const NAME_LEN: usize = 60;
-/// What stands still looks for requests so often.
+/// Period of polling for requests while paused.
 const IDLE: Duration = Duration::from_millis(10);
 
 /// A match and its page.
@@ -42,11 +42,11 @@ pub(crate) struct Theatre<'s> {
     shelf: Option<&'s Shelf>,
     page: Page,
     speed: f32,
-    /// It is recorded: it cannot begin anew.
+    /// It is recorded: it cannot be restarted.
     recorded: bool,
 }
 
-/// How the hands of viewers stand.
+/// State of the viewers' controls.
 struct Hands {
     paused: bool,
     steps: u32,
@@ -55,15 +55,15 @@ struct Hands {
     /// The clock, and the match at that time.
     clock: (Instant, f64),
     took: Duration,
-    /// Simulated seconds a second, as reached.
+    /// Simulated seconds per second of wall time, as reached.
     reached: f32,
 }
 
-/// How an evening ends.
+/// How a run ends.
 pub(crate) enum End {
     /// The match is over; its report.
     Over(GameReport),
-    /// Somebody ended the program.
+    /// The operator ended the program.
     ByHand(GameReport),
 }
 
@@ -78,7 +78,7 @@ impl<'s> Theatre<'s> {
         Self { config, shelf, page, speed, recorded }
     }
 
-    /// Plays until the match is over; `watch` gives the watchers of a match that begins.
+    /// Plays until the match is over; `watch` gives the watchers of a match that starts.
     pub(crate) fn play(&mut self, watcher: &mut dyn AnewWatcher) -> Result<End, Failure> {
         loop {
             let mut hands = Hands {
@@ -104,7 +104,8 @@ impl<'s> Theatre<'s> {
         }
     }
 
-    /// The page stays when the match is over, until somebody ends the program; true where another match is asked for.
+    /// Keeps the page open after the match until the operator ends the program; the seed if another match is
+    /// requested.
     pub(crate) fn linger(&mut self) -> Option<u64> {
         while !stopped_by_hand().load(Ordering::Relaxed) {
             if let Some(Request::Restart { seed }) = self.page.next_request()
@@ -117,7 +118,7 @@ impl<'s> Theatre<'s> {
         None
     }
 
-    /// Another match from that seed.
+    /// Restarts with another seed.
     pub(crate) fn anew(&mut self, seed: u64) {
         self.config.seed = seed;
         self.page.clear();
@@ -262,7 +263,8 @@ impl<'s> Theatre<'s> {
     }
 }
 
-/// Everybody as the case's author drew them, and the game goes on from there; false where that makes no sense now.
+/// Puts ball and robots as the case's author drew them, and forces a start; false where that is not possible
+/// now.
 fn situate(game: &mut Game<'_>, shelf: Option<&Shelf>, name: &str) -> bool {
     let field = game.config().league.field();
     let present: Vec<Who> =
@@ -283,7 +285,7 @@ fn situate(game: &mut Game<'_>, shelf: Option<&Shelf>, name: &str) -> bool {
 }
 
 impl Hands {
-    /// Until the clock is where the match is.
+    /// Waits until the clock reaches the match time.
     fn wait(&mut self, t: f64) {
         let (began, from) = self.clock;
         let due = (t - from) / f64::from(self.speed);
@@ -299,15 +301,15 @@ impl Hands {
     }
 }
 
-/// Who watches a match, and begins anew with it.
+/// The watcher of a match, which can be restarted with it.
 pub(crate) trait AnewWatcher {
-    /// For the match under way.
+    /// The watcher of the running match.
     fn watcher(&mut self) -> &mut dyn Watcher;
-    /// Another match begins.
+    /// Another match starts.
     fn anew(&mut self);
 }
 
-/// Takes what both teams hear.
+/// Takes the packets that both teams receive.
 struct Eyes {
     composer: Composer,
     t: f64,

@@ -1,6 +1,6 @@
 //! `ways`: planned paths of robots. As the motion of its own body plans it, step by step, around what its
-//! host sees and out of where the rules forbid it; others taken to keep their velocity. Robots do not tell
-//! their plans, so it is the host's reckoning of them. m, s, field frame.
+//! host sees and out of where the rules forbid it; other robots are assumed to keep their velocity. Robots do
+//! not send their plans, so this is the host's estimate of them. m, s, field frame.
 
 use brain::body::omni::LIMITS;
 use geometry::{Field, GoalEnd, Point};
@@ -11,16 +11,16 @@ use rules::keep_out::{Situation, keep_out};
 use rules::limits::ROBOT_RADIUS;
 use rules::{Colour, Duty, FieldSpec, Phase};
 
-/// From one point of a way to the next, s.
+/// Time from one point of a path to the next, s.
 const STEP: f32 = 0.1;
-/// Points of a way: what is farther is a straight line.
+/// Points of a path: what is farther is a straight line.
 const STEPS: usize = 15;
-/// A way ends this near its goal, m.
+/// A path ends this near its goal, m.
 const THERE: f32 = 0.03;
-/// Between bodies, and more than the rules' distances, m: as the robot's own.
+/// Least distance between bodies, and added to the rules' distances, m: as the robot's own.
 const MARGIN: f32 = 0.03;
 
-/// The ways of one team's robots in a moment.
+/// Plans the paths of one team's robots at a moment.
 pub(super) struct Ways<'a> {
     pub(super) world: &'a World,
     pub(super) phase: Phase<Colour>,
@@ -30,7 +30,7 @@ pub(super) struct Ways<'a> {
 }
 
 impl Ways<'_> {
-    /// From where the robot is to `to`.
+    /// Path from the robot's position to `to`.
     pub(super) fn to(&self, robot: &Robot, to: [f32; 2], duty: Duty) -> Vec<[f32; 2]> {
         let to = Point::<Field>::new(to[0], to[1]);
         let rules = keep_out(&Situation {
@@ -82,7 +82,7 @@ impl Ways<'_> {
     }
 }
 
-/// A disc, farther on.
+/// A disc, displaced by `by`.
 fn moved(shape: geometry::Shape<Field>, by: geometry::Vector<Field>) -> geometry::Shape<Field> {
     match shape {
         geometry::Shape::Disc { center, radius } => geometry::Shape::Disc { center: center + by, radius },

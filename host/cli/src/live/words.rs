@@ -1,4 +1,4 @@
-//! `words`: texts of roles, reasons, directives and actions. Short words; places in m, field frame.
+//! `words`: texts of roles, reasons, directives and actions. Short labels; places in m, field frame.
 
 use casebase::{Action, Case, CaseRobot};
 use host::strategy::{Flip, Role, Why};
@@ -12,7 +12,7 @@ pub(crate) fn place(at: impl Into<geometry::Point<geometry::Field>>) -> String {
     format!("({:.2}, {:.2})", at.x(), at.y())
 }
 
-/// `FirstHalfPre` as `first half pre`; what stands in brackets stays.
+/// `FirstHalfPre` as `first half pre`; text in brackets stays.
 pub(crate) fn spaced(name: &str) -> String {
     let mut out = String::new();
     let mut before = ' ';
@@ -55,7 +55,7 @@ pub(crate) fn why(why: &Why) -> String {
         | Why::OfCase { .. }
         | Why::Coerces { .. }
         | Why::Coercing { .. } => why.to_string(),
-        // What strategy learns to say next is told in its own words.
+        // Reasons without a label of their own are printed by their name.
         other => spaced(&format!("{other:?}")),
     }
 }
@@ -87,7 +87,7 @@ fn kick(order: KickOrder) -> String {
     }
 }
 
-/// Where a robot goes by its directive, and where it wants the ball.
+/// Where a robot goes by its directive, and where it sends the ball.
 pub(super) fn aims(directive: &Directive) -> (Option<[f32; 2]>, Option<[f32; 2]>) {
     let to = |point: WirePoint| {
         let point: geometry::Point<geometry::Field> = point.into();
@@ -164,7 +164,7 @@ fn abort(reason: AbortReason) -> &'static str {
     }
 }
 
-/// The frame that a host's strategy thinks in, turned for the field.
+/// The transform from the frame of a host's strategy to the field frame.
 pub(crate) fn flip(host: &host::Host) -> Flip {
     let settings = host.settings();
     Flip::defending(host.game().own_goal(settings.us).unwrap_or(settings.defending))

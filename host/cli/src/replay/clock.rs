@@ -1,28 +1,30 @@
-//! `clock`: the time in a league log file, and how often something comes in it, where the recorder's clock was set while it recorded.
-//! Times in s since the file's first message.
+//! `clock`: the time in a league log file, and how often something comes in it, where the recorder's clock
+//! was set while it recorded. Times in s since the file's first message.
 //!
-//! The clock is counted from differences between neighbours, so that a step spoils one difference and not all that come after.
+//! Time is summed from differences between neighbours, so that a step of the clock affects one difference and
+//! not all later ones.
 
 use protocol::Instant;
 use serde::Serialize;
 
-/// A message this much earlier than the one before it means that the recorder's clock was set back, ns. Less is order: recorders
-/// write what came at the same time in any order, half a millisecond apart; 20 ms is more than one image's time at 60 Hz.
+/// A message this much earlier than the one before it means that the recorder's clock was set back, ns. A
+/// smaller step is a matter of order: recorders write messages of the same time in any order, half a
+/// millisecond apart; 20 ms is more than the time of one camera frame at 60 Hz.
 const STEP_BACK_NS: i64 = 20_000_000;
-/// Nothing at all for longer than this: the recording was paused, or its clock was set forward, s. What sends in a match sends at 1 Hz
-/// or faster.
+/// If no message comes for longer than this, s, the recording was paused, or its clock was set forward.
+/// Sources of a match send at 1 Hz or faster.
 const PAUSE_S: f64 = 2.0;
 
 /// Where the recorder's clock was set, or nothing was recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct ClockStep {
-    /// When, on the counted clock.
+    /// Time of the step on the summed clock.
     pub(super) at_s: f64,
-    /// By how much; negative: set back. Positive: set forward, or nothing was recorded for so long.
+    /// By how much; negative: set back. Positive: set forward, or nothing was recorded for this time.
     pub(super) by_s: f64,
 }
 
-/// Counts a log file's time.
+/// Sums a log file's time.
 #[derive(Debug, Default)]
 pub(super) struct LogClock {
     last_ns: Option<i64>,
@@ -35,17 +37,17 @@ pub(super) struct LogClock {
     pub(super) steps_more: u64,
 }
 
-/// Steps that are listed; of more only the number is told.
+/// Number of steps that are listed; beyond it they are only counted.
 const STEPS_LISTED: usize = 20;
 
 impl LogClock {
-    /// The time of a message that the recorder dated so. Never falls.
+    /// The time of a message with the recorder's time stamp. Never falls.
     pub(super) fn read(&mut self, timestamp_ns: i64) -> Instant {
         let last = self.last_ns.replace(timestamp_ns).unwrap_or(timestamp_ns);
         let difference = timestamp_ns.saturating_sub(last);
         if difference <= -STEP_BACK_NS {
             self.step(difference);
-            // How long it really was is not known: no longer than between any two messages.
+            // The true duration is not known: it counts as no longer than between any two messages.
             self.counted_ns = self.now_ns;
         } else {
             if difference as f64 * 1e-9 > PAUSE_S {
@@ -68,7 +70,7 @@ impl LogClock {
     }
 }
 
-/// How often something comes while it comes: pauses (and steps of the clock, which look the same) are left out.
+/// Rate of a message while it comes: pauses (and steps of the clock, which look the same) are left out.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Rate {
     last_s: Option<f64>,
@@ -79,7 +81,7 @@ pub(super) struct Rate {
 }
 
 impl Rate {
-    /// It came at that time. How long it had not.
+    /// Records a message at `at_s`; returns the time since the one before.
     pub(super) fn came(&mut self, at_s: f64) -> Option<f64> {
         let Some(last) = self.last_s.replace(at_s) else {
             self.first_s = at_s;
@@ -94,10 +96,10 @@ impl Rate {
         Some(difference)
     }
 
-    /// Per second; 0 where it came but once.
+    /// Per second; 0 for a single message.
     pub(super) fn hz(&self) -> f64 {
         let whole_s = self.last_s.unwrap_or(self.first_s) - self.first_s;
-        // What comes more seldom than every pause has no usual differences.
+        // A message rarer than every pause has no usual differences.
         let (n, seconds) =
             if self.usual_s > 0.0 { (self.usual, self.usual_s) } else { (self.differences, whole_s) };
         if seconds > 0.0 { n as f64 / seconds } else { 0.0 }

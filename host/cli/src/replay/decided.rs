@@ -1,4 +1,4 @@
-//! `decided`: orders and reasons at a moment. The orders of a host that decides the same again, in words.
+//! `decided`: orders and reasons at a moment, as text: the orders of a host that decides the same again.
 
 use host::Host;
 use protocol::Who;

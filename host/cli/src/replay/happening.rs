@@ -9,21 +9,21 @@ use ssl::Message;
 use ssl::event::GameEventType;
 use ssl::referee::{Command, Referee, Stage, TeamInfo};
 
-/// Something the referee said for the first time.
+/// An event that the referee reported for the first time.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Happening {
-    /// Seconds since the file's begin.
+    /// Seconds since the start of the file.
     pub(crate) at_s: f64,
-    /// What kind of thing.
+    /// Kind of event.
     pub(crate) kind: Kind,
     /// Its name, as the league writes it.
     pub(crate) name: String,
-    /// Whose, or by whom, and with what number.
+    /// Team or player, and number.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub(crate) words: String,
 }
 
-/// Kinds of happenings.
+/// Kinds of events.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Kind {
@@ -33,18 +33,18 @@ pub(crate) enum Kind {
     GameEvent,
     /// A yellow or red card was given.
     Card,
-    /// As many robots as a team may have, where that changed.
+    /// The number of robots that a team may have changed.
     MaxBots,
-    /// A team's name, where it changed.
+    /// A team's name changed.
     TeamName,
-    /// The ball is to be placed somewhere else.
+    /// The position for ball placement changed.
     DesignatedPosition,
 }
 
-/// Game events that are told; a referee that has more is no referee.
+/// Most game events that are reported; a source with more is not a referee.
 const EVENTS_MAX: usize = 65_536;
 
-/// Finds what is new in each packet of the referee.
+/// Detects new events in each packet of the referee.
 #[derive(Debug, Default)]
 pub(crate) struct Finder {
     last: Option<Last>,
@@ -62,7 +62,7 @@ struct Last {
     teams: [Account; 2],
 }
 
-/// What is told of a team when it changes.
+/// The state of a team whose changes are reported.
 #[derive(Clone, Debug)]
 struct Account {
     score: u32,
@@ -85,7 +85,7 @@ impl Account {
 }
 
 impl Finder {
-    /// What is new in a packet that came at `at_s`.
+    /// Events in a packet that came at `at_s`.
     pub(crate) fn read(&mut self, packet: &Referee, at_s: f64, into: &mut Vec<Happening>) {
         let now = Last {
             command: packet.command,
@@ -146,7 +146,8 @@ impl Finder {
     }
 }
 
-/// Where the ball is to be placed, mm, where the command is such that the place counts (README of `ssl`, trap 3).
+/// Where the ball is to be placed, mm, where the command is such that the place counts (README of `ssl`, trap
+/// 3).
 fn place(packet: &Referee) -> Option<[i32; 2]> {
     let placing = matches!(
         Command::try_from(packet.command),
@@ -161,7 +162,7 @@ fn in_metres([x, y]: [i32; 2]) -> String {
 }
 
 impl Happening {
-    /// A line for people; whatever the referee's program named is within it.
+    /// A line for the operator; text of the referee's program is quoted in it.
     pub(super) fn tell(&self) -> String {
         let words = if self.words.is_empty() {
             String::new()
@@ -172,7 +173,7 @@ impl Happening {
     }
 }
 
-/// As much of a happening's words as is shown, characters.
+/// Longest text of an event that is printed, characters.
 const WORDS_LEN: usize = 200;
 
 /// A name as the league writes it; the number where nothing is known by it.
@@ -192,7 +193,7 @@ fn screaming(name: &str) -> String {
     out
 }
 
-/// Is a happening meant by a word? The begin of its name, whatever case and dashes.
+/// Whether a search text matches an event: the start of its name, without regard to case and dashes.
 pub(crate) fn is_meant(happening: &Happening, word: &str) -> bool {
     let plain = |text: &str| text.replace(['-', ' '], "_").to_ascii_uppercase();
     happening.name.starts_with(&plain(word))

@@ -1,6 +1,8 @@
-//! A league log file: one pass that counts, tracks, listens, and stops at a moment if one is asked for.
+//! `league_log`: replay of a league log file: one pass that counts, tracks, listens, and stops at a moment if
+//! one is asked for.
 //!
-//! The clock is counted from the recorder's, from the file's first message on ([`LogClock`]): where that is set, ours goes on.
+//! Time is summed from the recorder's clock, from the file's first message on ([`LogClock`]): where that is
+//! set, ours goes on.
 
 use std::process::ExitCode;
 
@@ -20,8 +22,8 @@ use super::{ReplayArgs, failed};
 use crate::Failure;
 use crate::output::say;
 
-/// Vision that is silent longer than this is a gap: robots are blind for three of their beats at 60 Hz, and teams
-/// complain from 0.2 s on.
+/// Vision that is silent longer than this is a gap: robots are blind after three missed periods at 60 Hz, and
+/// teams complain from 0.2 s on.
 const VISION_GAP_S: f64 = 0.2;
 /// The referee's: pauses of 1.5 s come on a loaded machine.
 const REFEREE_GAP_S: f64 = 2.0;
@@ -55,7 +57,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     say(&if args.json { json(&report)? } else { report.tell() })?;
     let nothing = report.messages.is_empty().then(|| "holds no message".to_owned());
     match report.damage.or(nothing) {
-        // What could be read is told above; whoever takes it for the whole is warned by the exit code.
+        // What could be read is printed above; the exit code reports that it is not the whole file.
         Some(words) => Err(Failure::Recorded { file: args.file.clone(), words }),
         None => Ok(ExitCode::SUCCESS),
     }
@@ -75,7 +77,7 @@ struct Pass<'a> {
     listener: Listener,
     finder: Finder,
     team: Option<Team>,
-    /// Events as asked for that have been met.
+    /// Number of requested events found so far.
     met: u32,
 }
 
@@ -110,7 +112,7 @@ impl<'a> Pass<'a> {
         })
     }
 
-    /// The next message; a moment, if this is the one.
+    /// Reads the next message; returns a moment, if this is the requested one.
     fn read(&mut self, number: u64, record: &Record) -> Option<Moment> {
         self.began_ns.get_or_insert(record.timestamp_ns);
         let later = self.clock.read(record.timestamp_ns);
@@ -150,7 +152,7 @@ impl<'a> Pass<'a> {
             }
             Some(Packet::Referee(packet)) => {
                 let ball = self.tracker.world(self.now).ball.map(|ball| ball.position);
-                // A log file does not say who sent its packets.
+                // A log file does not record the sender of its packets.
                 self.listener.hear(&packet, SenderAddress::INTERNAL, self.now, ball);
                 let before = self.report.happenings.len();
                 self.finder.read(&packet, at_s, &mut self.report.happenings);
@@ -164,7 +166,7 @@ impl<'a> Pass<'a> {
         None
     }
 
-    /// The moment of the event that was asked for, if it is among the newest.
+    /// The moment of the requested event, if it is among the newest.
     fn asked_for(&mut self, since: usize) -> Option<Moment> {
         let word = self.args.event.as_deref()?;
         for place in since..self.report.happenings.len() {
@@ -225,7 +227,7 @@ impl<'a> Pass<'a> {
         }
     }
 
-    /// What is seen now.
+    /// Records the current state of the tracker.
     fn look(&mut self) {
         let world = self.tracker.picture();
         for robot in world.robots() {
@@ -244,7 +246,7 @@ impl<'a> Pass<'a> {
         let Some(team) = &mut self.team else { return };
         while let Some(due) = team.host.poll_timeout().filter(|due| *due < self.now) {
             team.tell(due, Input::Timeout);
-            // A deadline that stands after it was met would stand for ever.
+            // A deadline that is not moved after it was met would never end.
             if team.host.poll_timeout().is_some_and(|next| next <= due) {
                 break;
             }
@@ -290,7 +292,7 @@ impl Team {
     }
 }
 
-/// No field has more.
+/// Most cameras of a field.
 const CAMERAS_MAX: usize = 64;
 /// FNV-1a-64, as the trace hash (docs/architecture.md §2.5).
 const FNV_BASIS: u64 = 0xcbf2_9ce4_8422_2325;

@@ -1,8 +1,8 @@
 //! `onetwo replay`: contents of a recorded match, the field at a moment, and whether the host decides the
 //! same again.
 //!
-//! Two kinds of files, told apart by their first bytes: the league's log files (anybody's) and traces of ours
-//! (docs/architecture.md §7.4).
+//! Two kinds of files, distinguished by their first bytes: the league's log files (of any team) and traces of
+//! ours (docs/architecture.md §7.4).
 
 mod clock;
 mod decided;
@@ -27,41 +27,41 @@ pub(crate) use moment::phase_words;
 use crate::Failure;
 use crate::live::PageArgs;
 
-/// Which file, and what of it.
+/// The file, and what to print of it.
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct ReplayArgs {
     /// A log file of the league (.log, .log.gz) or a trace of ours (.trace), gzipped or not.
     file: PathBuf,
-    /// Print what is told as JSON, and nothing else.
+    /// Print the result as JSON, and nothing else.
     #[arg(long)]
     json: bool,
-    /// Show it on the page, every moment of it, until Ctrl-C.
+    /// Display it on the page, every moment of it, until Ctrl-C.
     #[arg(long, conflicts_with_all = ["json", "at", "event", "check"])]
     watch: bool,
     #[command(flatten)]
     page: PageArgs,
-    /// Show the field and the referee so many seconds after the file's begin.
+    /// Print the field and the referee this number of seconds after the file's start.
     #[arg(long, value_name = "SECONDS", value_parser = moment_in_seconds, conflicts_with = "event")]
     at: Option<f64>,
-    /// Show the field and the referee at an event: goal, a command such as halt, stop or prepare_kickoff, a game event such as
-    /// ball_left_field, or a stage; the begin of a name will do.
+    /// Print the field and the referee at an event: goal, a command such as halt, stop or prepare_kickoff, a
+    /// game event such as ball_left_field, or a stage; the start of a name is enough.
     #[arg(long, value_name = "NAME")]
     event: Option<String>,
     /// Which of several such events, from 1.
     #[arg(long, value_name = "N", default_value_t = 1, requires = "event", value_parser = clap::value_parser!(u32).range(1..))]
     nth: u32,
-    /// Feed the host of this team with a log file's messages, and tell what it would have sent.
+    /// Feed the host of this team with a log file's messages, and print what it would have sent.
     #[arg(long, value_name = "COLOUR", value_parser = colour)]
     team: Option<Colour>,
     /// The league of that host: ssl-2013, division-b or division-a; a trace knows its own.
     #[arg(long, value_name = "NAME", default_value = "division-b", value_parser = league)]
     league: League,
-    /// Feed the hosts of a trace again and hold every packet they send to the record, byte for byte: so it is done with every
-    /// trace, and asked of anything else it is an error.
+    /// Feed the hosts of a trace again and compare every packet they send with the record, byte for byte:
+    /// this is done with every trace, and an error with any other file.
     #[arg(long)]
     check: bool,
-    /// The key of the team that recorded a trace, where it had one: 32 hexadecimal digits in a file.
+    /// The key of the team that recorded a trace, if it had one: 32 hexadecimal digits in a file.
     #[arg(long, value_name = "FILE")]
     key_file: Option<PathBuf>,
 }
@@ -106,7 +106,7 @@ fn is_gzipped(file: &Path) -> Result<bool, Failure> {
 
 fn begins(file: &Path) -> Result<Vec<u8>, Failure> {
     let mut begin = Vec::new();
-    // What cannot be gunzipped is for the reader of log files to tell.
+    // Errors of decompression are reported by the reader of log files.
     let _ = open(file)?.take(TRACE.len() as u64).read_to_end(&mut begin);
     Ok(begin)
 }

@@ -1,5 +1,5 @@
-//! `moment`: the state of a recorded match at one moment. Tracker, referee and hosts as they stood then. SI,
-//! field frame.
+//! `moment`: the state of a recorded match at one moment. Tracker, referee and hosts at that time. SI, field
+//! frame.
 
 use geometry::{Field, Point};
 use host::Host;
@@ -11,12 +11,12 @@ use serde::Serialize;
 use super::decided::Decided;
 use crate::live::words::spaced;
 
-/// A moment, for people and for JSON.
+/// A moment, as text and as JSON.
 #[derive(Debug, Serialize)]
 pub(super) struct Moment {
-    /// Seconds since the file's begin.
+    /// Seconds since the start of the file.
     at_s: f64,
-    /// What it was asked for by, if by an event.
+    /// The event that it was requested by, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     event: Option<String>,
     phase: String,
@@ -41,7 +41,7 @@ pub(super) struct Score {
 struct Ball {
     /// m.
     at: [f32; 2],
-    /// Above the carpet, m.
+    /// Above the field surface, m.
     height: f32,
     /// m/s.
     velocity: [f32; 2],
@@ -59,7 +59,7 @@ struct Robot {
     speed: f32,
     /// 0–1.
     confidence: f32,
-    /// By the host of its team, where the file has one.
+    /// Decision of the host of its team, if the file has one.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     decided: Option<Decided>,
 }
@@ -95,7 +95,7 @@ impl Moment {
         }
     }
 
-    /// A few lines for people.
+    /// A few lines of text.
     pub(super) fn tell(&self) -> String {
         let mut lines = vec![match &self.event {
             Some(event) => format!("{:.3} s: {event}", self.at_s),

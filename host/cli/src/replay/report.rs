@@ -1,5 +1,5 @@
-//! `report`: statistics of a league log file. Counts of everything, for people and for JSON. Times: s since
-//! the begin.
+//! `report`: statistics of a league log file. Counts of everything, as text and as JSON. Times: s since the
+//! start.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -25,7 +25,7 @@ pub(super) struct Report {
     pub(super) undecodable: u64,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) first_undecodable: Option<String>,
-    /// How the file ended, where it did not end as it should.
+    /// The damage, if the file did not end properly.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) damage: Option<String>,
     /// Messages that are earlier than the one before.
@@ -34,12 +34,12 @@ pub(super) struct Report {
     pub(super) clock_steps: Vec<ClockStep>,
     /// Steps beyond those that are listed.
     pub(super) clock_steps_more: u64,
-    /// Field and teams, as they were at last.
+    /// Last state of field and teams.
     #[serde(flatten)]
     pub(super) sheet: Sheet,
     pub(super) cameras: BTreeMap<u32, Camera>,
     pub(super) robots: Robots,
-    /// The fastest ball that the tracker believed, m/s.
+    /// The highest ball speed of the tracker, m/s.
     pub(super) ball_speed_max: f32,
     pub(super) score: Score,
     pub(super) happenings: Vec<Happening>,
@@ -64,7 +64,7 @@ pub(super) struct OfKind {
     pub(super) rate: Rate,
 }
 
-/// One camera's images.
+/// One camera's frames.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct Camera {
     pub(super) images: u64,
@@ -73,14 +73,14 @@ pub(super) struct Camera {
     pub(super) rate: Rate,
 }
 
-/// Shell numbers that the tracker believed.
+/// Shell numbers of the tracker's robots.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct Robots {
     pub(super) blue: BTreeSet<u8>,
     pub(super) yellow: BTreeSet<u8>,
 }
 
-/// Nothing came for long.
+/// A time without messages.
 #[derive(Debug, Serialize)]
 pub(super) struct Gap {
     pub(super) at_s: f64,
@@ -88,7 +88,7 @@ pub(super) struct Gap {
     pub(super) for_s: f64,
 }
 
-/// What became of images.
+/// Counts of camera frames by what the tracker did with them.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct Tracker {
     pub(super) images: u64,
@@ -101,7 +101,7 @@ pub(super) struct Tracker {
     pub(super) restarts: u64,
 }
 
-/// What became of the referee's packets.
+/// Counts of the referee's packets by what was done with them.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct Referee {
     pub(super) taken: u64,
@@ -113,18 +113,18 @@ pub(super) struct Referee {
     pub(super) unknown: u64,
 }
 
-/// What a host made of it.
+/// Output of a host for the log file.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct Host {
     pub(super) colour: String,
     pub(super) inputs: u64,
     pub(super) packets: u64,
     pub(super) bytes: u64,
-    /// The same over all packets: two runs can be compared by it.
+    /// Hash over all packets, to compare two runs.
     pub(super) packets_hash: String,
 }
 
-/// Gaps that are listed; of more only the number is told.
+/// Number of gaps that are listed; beyond it they are only counted.
 const GAPS_LISTED: usize = 20;
 
 impl Report {
@@ -154,7 +154,7 @@ impl Report {
         };
     }
 
-    /// For people.
+    /// As text.
     pub(super) fn tell(&self) -> String {
         let mut lines = vec![format!("{}: a league log file of {:.1} s", printable(&self.file), self.span_s)];
         for (name, messages) in &self.messages {

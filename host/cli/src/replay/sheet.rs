@@ -1,4 +1,4 @@
-//! `sheet`: what a recording says of the field and of both teams, as it was at last. Lengths in m.
+//! `sheet`: the last state of the field and of both teams in a recording. Lengths in m.
 
 use std::fmt::Write as _;
 
@@ -7,19 +7,19 @@ use serde::Serialize;
 use ssl::referee::{Referee, TeamInfo};
 use ssl::vision::WrapperPacket;
 
-/// As much of a team's name as is shown, characters.
+/// Longest part of a team's name that is printed, characters.
 const NAME_LEN: usize = 60;
 
 /// Field and teams.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub(super) struct Sheet {
-    /// By vision; none where it never sent one.
+    /// By vision; `None` if it never sent one.
     pub(super) field: Option<FieldSize>,
-    /// By the referee; none where it was never received.
+    /// By the referee; `None` if it was never received.
     pub(super) teams: Option<Teams>,
 }
 
-/// The field's measures, as vision sends them.
+/// The field's dimensions, as vision sends them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct FieldSize {
     pub(super) length: f64,
@@ -40,17 +40,17 @@ pub(super) struct Teams {
     pub(super) yellow: Team,
 }
 
-/// A team by the referee's account.
+/// A team as the referee reports it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct Team {
     pub(super) name: String,
     pub(super) goalkeeper: u32,
-    /// Ever given.
+    /// Number given in total.
     pub(super) yellow_cards: u32,
     /// Still counting down.
     pub(super) yellow_cards_active: usize,
     pub(super) red_cards: u32,
-    /// Robots it may have on the field; none where the referee does not say.
+    /// Robots it may have on the field; `None` where the referee does not send it.
     pub(super) max_bots: Option<u32>,
 }
 
@@ -74,7 +74,7 @@ impl Sheet {
         self.teams = Some(Teams { blue: Team::of(&packet.blue), yellow: Team::of(&packet.yellow) });
     }
 
-    /// For people, a line each.
+    /// As text, a line each.
     pub(super) fn tell(&self) -> Vec<String> {
         let mut lines = Vec::new();
         if let Some(field) = &self.field {

@@ -1,7 +1,8 @@
-//! A recording on the page: every moment of it, for each viewer to look through at its own pace.
+//! `show`: a recording on the page: every moment of it, for each viewer to seek through at its own pace.
 //!
-//! A trace gives back what its hosts thought: they are built from its header and decide again. A league's log file gives what was on
-//! the field and what the referee said; with `--team` a host of ours is fed with it too.
+//! A trace replays the decisions of its hosts: they are built from its header and decide again. A league's
+//! log file gives what was on the field and what the referee sent; with `--team` a host of ours is fed with
+//! it too.
 
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
@@ -24,12 +25,12 @@ use crate::live::{CaseOracle, Composer, Moment, PageArgs, SCENE_EVERY_S, shelf_o
 use crate::output::note;
 use crate::stop::stopped_by_hand;
 
-/// Shows the file until Ctrl-C.
+/// Displays the file until Ctrl-C.
 pub(super) fn run(args: &ReplayArgs, page: &PageArgs) -> Result<ExitCode, Failure> {
     if begins(&args.file)?.starts_with(TRACE) { show_trace(args, page) } else { show_log(args, page) }
 }
 
-/// The page, and what fills it.
+/// The page and its composer.
 struct Projector {
     page: Page,
     composer: Composer,
@@ -48,7 +49,7 @@ impl Projector {
         Ok(Self { page, composer, due: f64::NEG_INFINITY, broken: false })
     }
 
-    /// The moment after a message, if the last one shown is long enough ago.
+    /// Displays the moment after a message, if the last scene is long enough ago.
     fn look(&mut self, now: Instant, eyes: &Host, hosts: &[&Host]) {
         let t = now.0 as f64 * 1e-6;
         if t < self.due {
@@ -63,7 +64,7 @@ impl Projector {
         self.page.keep(sketch);
     }
 
-    /// The file breaks off: who looks through it sees where, and that it is not the match that ends.
+    /// Reports that the file is truncated, and where: it is not the end of the match.
     fn breaks_off(&mut self, now: Instant, damage: &str, eyes: &Host, hosts: &[&Host]) {
         let t = now.0 as f64 * 1e-6;
         let words = format!("the file breaks off: {damage}");
@@ -74,7 +75,7 @@ impl Projector {
         self.look(now, eyes, hosts);
     }
 
-    /// All is read: it stays to be looked at.
+    /// Keeps the page open after the whole file was read.
     fn stay(self, words: &str) -> ExitCode {
         stay(self.page, words);
         if self.broken { ExitCode::FAILURE } else { ExitCode::SUCCESS }
@@ -96,7 +97,7 @@ fn show_trace(args: &ReplayArgs, page: &PageArgs) -> Result<ExitCode, Failure> {
             return Ok(ExitCode::SUCCESS);
         }
         now = now.max(record.at);
-        // Every host hears the same: the first one's ears are enough.
+        // Every host receives the same packets: those of the first one are enough.
         match record.kind {
             Kind::Vision if record.host == 0 => projector.composer.vision(&record.bytes),
             Kind::Referee if record.host == 0 => {

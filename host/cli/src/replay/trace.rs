@@ -1,4 +1,5 @@
-//! `trace`: replay of a trace. Exit code 1 where they do not.
+//! `trace`: replay of a trace: its hosts decide again, and their packets are compared with the record. Exit
+//! code 1 where they differ.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -34,9 +35,9 @@ struct Report<'a> {
     /// On the hosts' clock.
     span_s: (f64, f64),
     records: BTreeMap<&'static str, u64>,
-    /// Records of hosts that the header does not tell of.
+    /// Records of hosts that the header does not name.
     strays: u64,
-    /// Field and teams, as they were at last.
+    /// Last state of field and teams.
     #[serde(flatten)]
     sheet: Sheet,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -64,7 +65,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     let (mut finder, mut happenings, mut sheet) = (Finder::default(), Vec::new(), Sheet::default());
     let (mut records, mut strays, mut met) = (BTreeMap::new(), 0, 0);
     let mut span: Option<(Instant, Instant)> = None;
-    // Every host hears the same referee; the one that is looked at tells of the match.
+    // Every host receives the same referee; events are taken from the host that is displayed.
     let shown =
         header.hosts.iter().position(|host| Some(&*host.colour) == args.team.map(rules::Colour::word));
     let shown = shown.unwrap_or(0);
@@ -147,15 +148,15 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     };
     say(&words)?;
     match report.damage {
-        // What could be read is told above.
+        // What could be read is printed above.
         Some(words) => Err(failed(file, &words)),
         None if report.same_decisions => Ok(ExitCode::SUCCESS),
         None => Ok(ExitCode::FAILURE),
     }
 }
 
-/// A trace that is not compressed has no end mark. Where packets to robots are missing after its last input it was cut there: the
-/// hosts' decisions are all before.
+/// A trace that is not compressed has no end mark. If packets to robots are missing after its last input, it
+/// was cut there: the hosts' decisions all come before.
 fn unfinished(file: &Path, recheck: &Recheck) -> Result<Option<String>, Failure> {
     let cut = !is_gzipped(file)? && recheck.is_unfinished();
     Ok(cut.then(|| {
@@ -163,12 +164,12 @@ fn unfinished(file: &Path, recheck: &Recheck) -> Result<Option<String>, Failure>
     }))
 }
 
-/// Every host of the recording as it is now.
+/// Every host of the recording in its current state.
 fn all(recheck: &Recheck) -> Vec<&Host> {
     (0..).map_while(|number| recheck.host(number)).collect()
 }
 
-/// The moment as `host` sees it, with what every host decides.
+/// Prints the moment as `host` sees it, with what every host decides.
 fn show(
     args: &ReplayArgs,
     host: &Host,
@@ -186,7 +187,7 @@ fn show(
     Ok(ExitCode::SUCCESS)
 }
 
-/// The key that hosts sealed with, where one did.
+/// The key that hosts sealed with, if any.
 pub(super) fn key(args: &ReplayArgs, header: &RecordingHeader) -> Result<TeamKey, Failure> {
     match &args.key_file {
         Some(file) => {
@@ -226,7 +227,7 @@ impl Report<'_> {
         if let Some(seed) = header.seed {
             let _ = write!(out, ", seed {seed}");
         }
-        // What a file says is shown as far as it can be a name.
+        // A name from the file is printed only if it is valid.
         if let Some(world) = header.world.as_ref().and_then(|world| world.parse::<WorldChoice>().ok())
             && world != WorldChoice::Nominal
         {
@@ -260,10 +261,10 @@ impl Report<'_> {
     }
 }
 
-/// As much of the recording program's version and commit as is shown, characters.
+/// Longest version and commit of the recording program that are printed, characters.
 const VERSION_LEN: usize = 60;
 
-/// What is wrong with a trace that ends so.
+/// The damage of a trace with this end.
 pub(super) fn damage_of(end: Option<&End>) -> Option<String> {
     end.filter(|end| !end.is_whole()).map(ToString::to_string)
 }

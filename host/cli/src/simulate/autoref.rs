@@ -1,5 +1,5 @@
-//! `autoref`: an automatic referee's connection to the league's game controller (TCP 10007). A thread of its own connects,
-//! registers, and reports events; what people should know comes back as lines.
+//! `autoref`: an automatic referee's connection to the league's game controller (TCP 10007). A thread of its
+//! own connects, registers, and reports events; messages for the operator come back as lines.
 
 use std::net::{SocketAddr, ToSocketAddrs};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, TrySendError, channel, sync_channel};
@@ -18,11 +18,11 @@ pub(super) const NAME: &str = "onetwo";
 const RETRY_AFTER: Duration = Duration::from_secs(2);
 /// The controller answers within its tick of 25 ms; a loaded machine was seen to pause for 1.6 s.
 const REPLY_TIME: Duration = Duration::from_secs(3);
-/// An idle connection is looked at this often, to see that it still stands.
+/// An idle connection is checked this often for being alive.
 const IDLE: Duration = Duration::from_millis(200);
 /// Events that wait for the connection; more are dropped.
 const WAITING_MAX: usize = 64;
-/// An event that waited longer is not reported: the game went on without it.
+/// An event that waited longer is not reported: the game has moved on.
 const OLD_AFTER: Duration = Duration::from_secs(1);
 
 /// Reports events to a controller.
@@ -35,12 +35,12 @@ pub(super) struct Reporter {
 }
 
 impl Reporter {
-    /// Begins to connect, and goes on until it is dropped.
+    /// Starts to connect, and retries until it is dropped.
     pub(super) fn new(to: &str) -> Self {
         let (events, incoming) = sync_channel(WAITING_MAX);
         let (outgoing, lines) = channel();
         let mut talk = Talk { to: to.to_owned(), events: incoming, lines: outgoing, trouble: None };
-        // Where no thread can be had, the closed channel says so.
+        // If no thread can be started, the closed channel reports that.
         let _ = thread::Builder::new().name("autoref".to_owned()).spawn(move || talk.run());
         Self { to: to.to_owned(), events, lines, dropped: 0 }
     }
@@ -50,7 +50,7 @@ impl Reporter {
         &self.to
     }
 
-    /// Reports an event as soon as the controller listens.
+    /// Reports an event as soon as the controller is connected.
     pub(super) fn report(&mut self, event: GameEvent) {
         match self.events.try_send((Instant::now(), event)) {
             Ok(()) => {}
@@ -58,7 +58,7 @@ impl Reporter {
         }
     }
 
-    /// The next line for people.
+    /// The next line for the operator.
     pub(super) fn next_line(&mut self) -> Option<String> {
         if let Ok(line) = self.lines.try_recv() {
             return Some(line);
@@ -69,16 +69,16 @@ impl Reporter {
     }
 }
 
-/// The thread's part.
+/// The part that runs on the thread.
 struct Talk {
     to: String,
     events: Receiver<(Instant, GameEvent)>,
     lines: Sender<String>,
-    /// What was said last about why there is no connection.
+    /// The last reported reason why there is no connection.
     trouble: Option<String>,
 }
 
-/// The program has no use for the connection any more.
+/// The program has dropped the connection.
 struct Ended;
 
 impl Talk {
@@ -97,11 +97,11 @@ impl Talk {
         }
     }
 
-    /// Until the connection fails (why), or the program ends.
+    /// Runs until the connection fails (with the reason), or the program ends.
     fn connect_and_report(&mut self) -> Result<Ended, String> {
         let mut connection =
             Connection::open(self.address()?, REPLY_TIME).map_err(|error| error.to_string())?;
-        // The controller speaks first.
+        // The controller sends first.
         reply(&mut connection)?;
         send(&mut connection, &AutoRefRegistration { identifier: NAME.to_owned(), signature: None })?;
         let answer = reply(&mut connection)?;
@@ -118,7 +118,7 @@ impl Talk {
                 Ok(event) => event,
                 Err(RecvTimeoutError::Disconnected) => return Ok(Ended),
                 Err(RecvTimeoutError::Timeout) => {
-                    // Nothing is expected; a closed connection says so here.
+                    // No message is expected; the call detects a closed connection.
                     let idle = connection.receive::<ControllerToAutoRef>(Duration::ZERO);
                     idle.map_err(|error| error.to_string())?;
                     continue;
@@ -158,19 +158,19 @@ fn reply(connection: &mut Connection) -> Result<ControllerReply, String> {
     })
 }
 
-/// Why the controller will not have it.
+/// The controller's reason for refusing.
 fn refused(reply: &ControllerReply) -> Option<String> {
     let rejected = reply.status_code == Some(StatusCode::Rejected as i32);
     rejected.then(|| reply.reason.clone().unwrap_or_else(|| "no reason given".to_owned()))
 }
 
-/// What kind of event it is, for people.
+/// Name of the kind of event, for the operator.
 fn name_of(event: &GameEvent) -> String {
     let kind = event.r#type.and_then(|kind| GameEventType::try_from(kind).ok());
     format!("{:?}", kind.unwrap_or(GameEventType::Unknown))
 }
 
-/// `HOST` or `HOST:PORT`, as it was asked for, with the league's port where none is given.
+/// `HOST` or `HOST:PORT`, as given, with the league's port where none is given.
 pub(super) fn address(text: &str) -> Result<String, String> {
     let port = addresses::AUTOREF_PORT;
     let whole = match text.rsplit_once(':') {
@@ -198,7 +198,8 @@ mod tests {
         assert!(address("").is_err() && address("host:").is_err() && address(":10007").is_err());
     }
 
-    /// A controller's side of one connection: greets, takes the registration, answers it with `code`.
+    /// A controller's side of one connection: sends its first message, takes the registration, answers it
+    /// with `code`.
     fn greet(listener: &TcpListener, code: StatusCode) -> (Connection, AutoRefRegistration) {
         let (stream, _) = listener.accept().expect("a connection");
         let mut talk = Connection::over(stream).expect("a talk");

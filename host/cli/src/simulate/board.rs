@@ -1,4 +1,5 @@
-//! The page beside a simulated field that others play on: the truth, what a tracker of ours makes of the vision, and hands on the ball.
+//! `board`: the page beside a simulated field on which other programs play: the truth, the output of our
+//! tracker for the vision, and controls for the ball.
 
 use std::time::{Duration, Instant};
 
@@ -15,27 +16,27 @@ use rules::{Colour, League};
 use crate::live::{CaseOracle, Composer, Moment, PageArgs, SCENE_EVERY_S, colour, command_of, shelf_of};
 use crate::output::note;
 
-/// As much of a name that a viewer sent as is said back, characters.
+/// Longest part of a name sent by a viewer that is quoted in an answer, characters.
 const NAME_LEN: usize = 60;
 
-/// What viewers ask of the hall.
+/// Requests of viewers to the simulator loop.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Wish {
-    /// Another pace; 0 stands still.
+    /// New speed; 0 pauses.
     pub(super) pace: Option<f32>,
-    /// So many ticks of 10 ms more, and then to stand still.
+    /// Number of further ticks of 10 ms, after which it stands still.
     pub(super) ticks: u32,
-    /// Another game, from that seed.
+    /// A restart with this seed.
     pub(super) anew: Option<u64>,
 }
 
-/// A page, what fills it, and the eyes it sees through: a host that commands nobody.
+/// A page, its composer, and the host whose world is displayed, which commands no robot.
 pub(super) struct Board {
     page: Page,
     composer: Composer,
     eyes: Host,
     shown: Option<Instant>,
-    /// The speed to go on with after a pause.
+    /// The speed after a pause.
     speed: f32,
     seed: u64,
     /// Simulated seconds.
@@ -43,7 +44,7 @@ pub(super) struct Board {
 }
 
 impl Board {
-    /// Opens it. Without a page the field is simulated all the same: what is wrong with it is said.
+    /// Opens the page. If it cannot be opened, the error is printed and the field is simulated without it.
     pub(super) fn open(args: &PageArgs, league: League, seed: u64, speed: f32) -> Option<Self> {
         let open = || {
             let oracle = CaseOracle::new(shelf_of(league, None)?, casebase::Settings::default());
@@ -75,14 +76,15 @@ impl Board {
         self.eyes.handle(now, Input::Referee(bytes, SenderAddress::INTERNAL));
     }
 
-    /// Another game begins.
+    /// Another game starts.
     pub(super) fn anew(&mut self, league: League, seed: u64) {
         self.eyes = Host::new(HostSettings::new(Colour::Blue, league, 1), protocol::Instant(0));
         (self.composer, self.shown, self.seed, self.t) = (Composer::new(None), None, seed, 0.0);
         self.page.clear();
     }
 
-    /// Shows the moment, if it is time, and does what viewers ask for; what is left is the hall's to do.
+    /// Displays the moment if it is due, and handles viewers' requests; what remains is returned for the
+    /// simulator loop.
     pub(super) fn look(
         &mut self,
         running: Duration,

@@ -1,5 +1,5 @@
-//! `commanders`: detection of two programs that command one robot of the simulator. Two teams' programs of
-//! one colour take turns then, and its robots shake between two wills. Times in the program's own.
+//! `commanders`: detection of two programs that command one robot of the simulator. Both programs' commands
+//! are then executed alternately, and the robots shake. Times in the program's own.
 
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
@@ -11,21 +11,21 @@ use ssl::simulation::RobotControl;
 
 /// Changes of the sender are counted over this time.
 const WINDOW: Duration = Duration::from_secs(1);
-/// So many in it are two programs: one that starts anew changes it once.
+/// This number of changes in the window means two programs: a program that restarts changes the sender once.
 const MANY: usize = 5;
-/// What lasts is said again after this.
+/// A lasting conflict is reported again after this.
 const AGAIN: Duration = Duration::from_secs(10);
 
-/// Who commands a robot.
+/// The sender of a robot's commands.
 #[derive(Debug)]
 struct Commanded {
     by: SocketAddr,
-    /// Who commanded it before, and when the sender changed lately.
+    /// The sender before that, and when the sender changed recently.
     before: SocketAddr,
     changes: Vec<Duration>,
 }
 
-/// Who commands which robot.
+/// Senders of the commands, by robot.
 #[derive(Debug, Default)]
 pub(super) struct Commanders {
     robots: BTreeMap<(Colour, u32), Commanded>,
@@ -33,7 +33,7 @@ pub(super) struct Commanders {
 }
 
 impl Commanders {
-    /// A datagram came on a team's port; words where another program commands the same robots.
+    /// Takes a datagram of a team's port; returns a message where another program commands the same robots.
     pub(super) fn hear(
         &mut self,
         now: Duration,
@@ -81,7 +81,7 @@ mod tests {
         RobotControl { robot_commands: vec![command] }.encode_to_vec()
     }
 
-    /// What is said in 25 s, in which robot 3 is commanded 60 times a second from these ports by turns.
+    /// The messages of 25 s in which robot 3 is commanded 60 times a second from these ports by turns.
     fn said(ports: impl Fn(u64) -> u16) -> Vec<(u128, String)> {
         let mut commanders = Commanders::default();
         let one = |n: u64| {

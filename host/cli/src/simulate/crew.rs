@@ -1,5 +1,5 @@
-//! `crew`: who serves a match that a game controller elsewhere runs: its packets are heard, an automatic referee reports to it
-//! (`--autoref`), a person does by hand what it asks for (`--assistant`).
+//! `crew`: services for a match that an external game controller runs: its packets are received, an automatic
+//! referee reports to it (`--autoref`), and the human's tasks are done (`--assistant`).
 
 use std::net::SocketAddr;
 use std::time::Duration;
@@ -16,14 +16,14 @@ use crate::net::Ear;
 
 /// A port or group that cannot be opened is tried again this often.
 const AGAIN: Duration = Duration::from_secs(1);
-/// Packets heard between two looks, at most: a flood must not stop the world.
+/// Most packets received in one step: a flood must not stop the world.
 const AT_ONCE: usize = 64;
 
-/// The controller as it is heard, and who serves it.
+/// The external controller's receiver, and the services for it.
 pub(super) struct Crew {
     from: SocketAddr,
     ear: Option<Ear>,
-    /// When the ear was last tried, running time.
+    /// When opening the receiver was last tried, running time.
     tried: Option<Duration>,
     troubled: bool,
     silent: bool,
@@ -34,7 +34,7 @@ pub(super) struct Crew {
 }
 
 impl Crew {
-    /// Hears the controller at `from`; `assistant` and `autoref` say who else serves.
+    /// Receives the controller at `from`; `assistant` and `autoref` enable the services.
     pub(super) fn new(
         from: SocketAddr,
         league: League,
@@ -54,7 +54,7 @@ impl Crew {
         })
     }
 
-    /// Another simulated game begins; the controller's own goes on.
+    /// Another simulated game starts; the controller's own goes on.
     pub(super) fn restart(&mut self) -> Result<(), NoRules> {
         self.game = RemoteMatch::new(self.league)?;
         let decides = self.assistant.is_some();
@@ -65,7 +65,7 @@ impl Crew {
         Ok(())
     }
 
-    /// For people: what it does.
+    /// Lines that describe its services, for the operator.
     pub(super) fn lines(&self) -> Vec<String> {
         let mut lines = vec![format!("referee  heard at {}", self.from)];
         if self.assistant.is_some() {
@@ -79,12 +79,12 @@ impl Crew {
         lines
     }
 
-    /// The state of the game, in a word.
+    /// The state of the game, as text.
     pub(super) fn state(&self) -> String {
         if self.silent { "no referee".to_owned() } else { crate::replay::phase_words(self.game.phase()) }
     }
 
-    /// Hears what came; packets go to `said`, lines for people to `lines`.
+    /// Receives waiting packets; they go to `said`, lines for the operator to `lines`.
     pub(super) fn listen(
         &mut self,
         world: &World,
@@ -137,7 +137,7 @@ impl Crew {
         }
     }
 
-    /// Looks at the world, reports and does; `events` are the world's since the last look.
+    /// Runs the services on the world; `events` are the world's since the last call.
     pub(super) fn look(&mut self, world: &mut World, events: &[Event], lines: &mut Vec<String>) {
         self.game.set_field(world.pitch().field);
         self.game.tick(time_of(world), world.ball.position);
@@ -159,12 +159,12 @@ impl Crew {
     }
 }
 
-/// With nobody at the controller the automatic referee decides about goals too.
+/// Without a human at the controller the automatic referee decides about goals too.
 const fn decider(assistant: bool) -> Decider {
     if assistant { Decider::AutoReferee } else { Decider::Person }
 }
 
-/// The event, for people.
+/// The event as a line for the operator.
 fn line_of(event: &hil_sim::small_size::referee::Event) -> String {
     let by = match (event.by, event.robot) {
         (Some(team), Some(robot)) => format!(" by {} {}", team_of(team), robot.number()),

@@ -1,6 +1,8 @@
-//! The hall in which the simulated field lies: the clock that drives it, the network around it, the referee beside it.
+//! `hall`: server loop of `onetwo simulate`: the clock that drives the field, the network around it, the
+//! referee beside it.
 //!
-//! One thread: every millisecond it looks at three sockets, lets the world follow the clock and sends what fell due.
+//! One thread: every millisecond it polls three sockets, advances the world to the clock and sends what is
+//! due.
 
 use std::net::SocketAddr;
 use std::process::ExitCode;
@@ -29,18 +31,18 @@ use crate::net::Mouth;
 use crate::output::note;
 use crate::stop::stopped_by_hand;
 
-/// The referee looks this often, simulated ms: what its detectors are tuned with.
+/// Period of the referee, simulated ms: its detectors are tuned for it.
 const REFEREE_EVERY: u64 = 10;
-/// The beat of the hall: as one step of the world.
+/// Period of the loop: one step of the world.
 const BEAT: Duration = Duration::from_millis(1);
-/// More skipped than this in a second is told: a twentieth of the time.
+/// If more than this is skipped in a second, it is reported: a twentieth of the time.
 const SLOW_MS: u64 = 50;
-/// A slow machine is told of this often.
+/// A slow machine is reported once in this number of seconds.
 const SLOW_EVERY: u64 = 10;
-/// A probe of the loopback waits so long.
+/// Time that a probe of the loopback waits.
 const PROBE: Duration = Duration::from_millis(100);
 
-/// Runs until somebody ends it.
+/// Runs until the operator ends it.
 pub(super) fn run(
     args: &SimulateArgs,
     settings: &ServerSettings,
@@ -167,11 +169,11 @@ pub(super) fn run(
     Ok(ExitCode::SUCCESS)
 }
 
-/// The world follows to `now`, µs; the referee looks on the way.
+/// Advances the world to `now`, µs; the referee observes it in between.
 fn advance(server: &mut Server, now: u64, whistle: &mut Referee, words: &mut Vec<String>) {
     let step = (REFEREE_EVERY as f32 * 1000.0 / server.pace().max(1.0)) as u64;
     let mut at = whistle.advanced;
-    // The simulator itself leaves out what a pause of this program was too long for.
+    // The simulator itself skips the time of a pause of this program that was too long.
     if now.saturating_sub(at) > 1_000_000 {
         at = now - 1_000_000;
     }
@@ -183,16 +185,16 @@ fn advance(server: &mut Server, now: u64, whistle: &mut Referee, words: &mut Vec
     whistle.advanced = at;
 }
 
-/// Who blows the whistle, and what is seen of it.
+/// The referee source, and what it published.
 struct Referee {
     who: Blower,
     mouth: Mouth,
     events: Vec<Event>,
-    /// The step of the world in which it last looked.
+    /// The step of the world at its last call.
     looked: u64,
-    /// How far the world has followed, µs.
+    /// Time that the world has been advanced to, µs.
     advanced: u64,
-    /// What it said since the page last heard it.
+    /// Packets it sent since the page last took them.
     said: Vec<Vec<u8>>,
 }
 
@@ -219,7 +221,8 @@ impl Referee {
         Ok(Self { who, mouth, events: Vec::new(), looked: 0, advanced: 0, said: Vec::new() })
     }
 
-    /// Another game begins, which our referee leads from its beginning; a game controller of others knows nothing of it.
+    /// Another game starts; the internal referee starts again with it, an external game controller does not
+    /// know of it.
     fn anew(&mut self, args: &SimulateArgs, unix_us: u64, seed: u64) -> Result<(), Failure> {
         match &mut self.who {
             Blower::Ours(ours) => *ours = internal(args, unix_us, seed)?,
@@ -246,7 +249,7 @@ impl Referee {
         }
     }
 
-    /// The state of the game, in a word.
+    /// The state of the game, as text.
     fn state(&self) -> String {
         match &self.who {
             Blower::Ours(ours) => crate::replay::phase_words(ours.phase()),
@@ -255,7 +258,7 @@ impl Referee {
         }
     }
 
-    /// The referee looks at the world, and what people do for it is done.
+    /// The referee observes the world, and the assistant's tasks are done.
     fn look(&mut self, world: &mut World, lines: &mut Vec<String>) {
         world.take_events(&mut self.events);
         if world.now() < self.looked + REFEREE_EVERY {
@@ -280,7 +283,7 @@ impl Referee {
         self.events.clear();
     }
 
-    /// A game controller elsewhere is heard, where one is.
+    /// Receives an external game controller, if there is one.
     fn listen(&mut self, world: &World, running: Duration, lines: &mut Vec<String>) {
         if let Blower::Elsewhere(crew) = &mut self.who {
             crew.listen(world, running, &mut self.said, lines);
@@ -296,7 +299,7 @@ fn internal(args: &SimulateArgs, unix_us: u64, seed: u64) -> Result<Box<Internal
     ours.map(Box::new).map_err(|error| Failure::Network(error.to_string()))
 }
 
-/// Our own tracker's view of the simulated vision.
+/// Our own tracker on the simulated vision.
 struct Tracked {
     tracker: Tracker,
     publisher: Publisher,
@@ -321,7 +324,7 @@ impl Tracked {
     }
 }
 
-/// By the protocol itself, as a client would; the answer is nobody's.
+/// By the protocol itself, as a client would; the answer is discarded.
 fn set_pace(server: &mut Server, speed: f32) {
     let control = SimulatorControl { simulation_speed: Some(speed), ..SimulatorControl::default() };
     let command = SimulatorCommand { control: Some(control), config: None };
@@ -330,7 +333,7 @@ fn set_pace(server: &mut Server, speed: f32) {
     while server.poll_transmit().is_some() {}
 }
 
-/// What is to be mended where programs on this machine cannot hear a group that this one speaks to.
+/// How to fix it if programs on this machine cannot receive a group that this one sends to.
 fn multicast_advice(to: SocketAddr) -> Option<String> {
     let SocketAddr::V4(group) = to else { return None };
     if !group.ip().is_multicast() {

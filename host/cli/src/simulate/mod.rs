@@ -1,8 +1,9 @@
 //! `onetwo simulate`: a Small Size field that any team's software can play on, by the league's simulation
 //! protocol (docs/architecture.md §7.3).
 //!
-//! The simulator is a value without sockets ([`hil_sim::small_size::server`]); here are its sockets, its clock, and the
-//! internal referee. It goes on where a port is taken or a network is missing, and says what to mend.
+//! The simulator is a value without sockets ([`hil_sim::small_size::server`]); here are its sockets, its
+//! clock, and the internal referee. It goes on where a port is taken or a network is missing, and reports how
+//! to fix it.
 
 mod autoref;
 mod board;
@@ -27,101 +28,106 @@ use ssl::net::addresses;
 use crate::Failure;
 use crate::replay::league;
 
-/// What is simulated, and where it hears and speaks.
+/// What is simulated, and the addresses to receive from and send to.
 #[derive(Debug, Args)]
 pub(crate) struct SimulateArgs {
     /// Field, robots and rules: ssl-2013, division-b or division-a.
     #[arg(long, value_name = "NAME", default_value = "division-b", value_parser = league)]
     league: League,
-    /// Robots of each team; the league's number unless told.
+    /// Robots of each team; the league's number by default.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=16))]
     robots: Option<u8>,
-    /// Where all chance comes from.
+    /// Random seed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Simulated seconds a second; clients change it by the protocol.
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = speed)]
     speed: f32,
-    /// Whose manners it has on the wire: its own, or those of another simulator, to try a program against.
+    /// Compatibility profile: how it behaves on the wire, as itself or as another simulator, to test a
+    /// program against.
     #[arg(long, value_enum, default_value_t = ProfileWord::Ours)]
     profile: ProfileWord,
-    /// Which world of the family is simulated: nominal, grsim, erforce, erforce-none, sumatra, slow-dribbler, poor-vision,
-    /// weak-kickers or random:SEED (docs/fields.md). A profile other than ours has cameras and noise of its own.
+    /// Which world of the family is simulated: nominal, grsim, erforce, erforce-none, sumatra, slow-dribbler,
+    /// poor-vision, weak-kickers or random:SEED (docs/fields.md). A profile other than ours has cameras and
+    /// noise of its own.
     #[arg(long, value_name = "WORLD", default_value_t)]
     world: WorldChoice,
-    /// Cameras: 1, 2 or 4; the league's or the profile's number unless told.
+    /// Cameras: 1, 2 or 4; by default the league's or the profile's number.
     #[arg(long, value_name = "N", value_parser = cameras)]
     cameras: Option<u32>,
     /// Without noise: vision sees everything as it is.
     #[arg(long)]
     ideal: bool,
-    /// Where vision goes: a multicast group, or one machine.
+    /// Destination of vision: a multicast group, or one machine.
     #[arg(long, value_name = "ADDRESS:PORT", default_value_t = addresses::VISION_SIMULATED.into())]
     vision: SocketAddr,
-    /// The control port; blue's robots are at the next one, yellow's at the one after. 0: any three that are free.
+    /// The control port; blue's robots are at the next one, yellow's at the one after. 0: any three that are
+    /// free.
     #[arg(long, value_name = "PORT", default_value_t = addresses::SIMULATOR_PORT, value_parser = clap::value_parser!(u16).range(0..=65533))]
     ports: u16,
-    /// Step the field by TCP instead of by the clock: blue's port, yellow's is the next one (the simulation protocol's
-    /// SimulationSyncRequest, each after its length). 0: any two that are free.
+    /// Step the field by TCP instead of by the clock: blue's port, yellow's is the next one (the simulation
+    /// protocol's SimulationSyncRequest, each after its length). 0: any two that are free.
     #[arg(long, value_name = "ADDRESS:PORT")]
     sync: Option<SocketAddr>,
-    /// Whose address takes control; 127.0.0.1 keeps others away.
+    /// Address that accepts control; with 127.0.0.1 other machines have no access.
     #[arg(long, value_name = "ADDRESS", default_value = "0.0.0.0")]
     listen: std::net::IpAddr,
-    /// The interface that multicast leaves by, its name or address; the system's choice unless told.
+    /// The interface that multicast leaves by, its name or address; the system's choice by default.
     #[arg(long, value_name = "NAME")]
     interface: Option<String>,
-    /// Who blows the whistle: internal, none, or the ADDRESS:PORT of a game controller's packets, to be shown beside the field.
+    /// Source of referee messages: internal, none, or the ADDRESS:PORT of a game controller's packets, to be
+    /// displayed beside the field.
     #[arg(long, value_name = "WHO", default_value = "internal", value_parser = referee)]
     referee: Whistle,
-    /// With `--referee none` or an address: do the person's part that the game controller asks for: put the ball, take robots
-    /// off, bring them back. Each deed is told in a line.
+    /// With `--referee none` or an address: do the human's tasks that the game controller asks for: put the
+    /// ball, take robots off, bring them back. Each action is reported in a line.
     #[arg(long)]
     assistant: bool,
-    /// With `--referee none` or an address: report game events to that game controller as an automatic referee; port 10007 unless
-    /// told. With --assistant it also decides about goals.
+    /// With `--referee none` or an address: report game events to that game controller as an automatic
+    /// referee; port 10007 by default. With --assistant it also decides about goals.
     #[arg(long, value_name = "HOST[:PORT]", value_parser = autoref::address)]
     autoref: Option<String>,
-    /// Where the internal referee's packets go.
+    /// Destination of the internal referee's packets.
     #[arg(long, value_name = "ADDRESS:PORT", default_value_t = addresses::REFEREE.into())]
     referee_to: SocketAddr,
-    /// Send what our own tracker makes of the vision, too: the league's address is 224.5.23.2:10010.
+    /// Send the output of our own tracker, too: the league's address is 224.5.23.2:10010.
     #[arg(long, value_name = "ADDRESS:PORT")]
     tracker: Option<SocketAddr>,
-    /// Without the page.
+    /// Run without the page.
     #[arg(long)]
     headless: bool,
-    /// Where the page is served; others than this machine see it only where an address of this machine is told.
+    /// Address of the page; it is reachable from other machines only if an address other than the loopback is
+    /// given.
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080")]
     page: SocketAddr,
-    /// End after so many seconds; else Ctrl-C ends it.
+    /// End after this number of seconds; else Ctrl-C ends it.
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     duration: Option<f64>,
 }
 
 impl SimulateArgs {
-    /// grSim's own port for commands, where the field has its manners; any free ports were asked for with 0.
+    /// grSim's own port for commands, with the profile of grSim; with 0 for the ports any free port.
     fn legacy_port(&self) -> Option<u16> {
         let number = if self.ports == 0 { 0 } else { addresses::GRSIM_PORT };
         matches!(self.profile, ProfileWord::Grsim).then_some(number)
     }
 }
 
-/// Who blows the whistle.
+/// Source of referee messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Whistle {
     Internal,
     None,
-    /// A game controller, heard here.
+    /// A game controller, received on this address.
     Heard(SocketAddr),
 }
 
 /// A profile on the command line.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum ProfileWord {
-    /// As this simulator is.
+    /// This simulator's own behaviour.
     Ours,
-    /// As grSim: four cameras at once, its own seconds, no noise.
+    /// As grSim: four cameras at once, its own time base, no noise.
     Grsim,
     /// As ER-Force's simulator: one camera, geometry with every frame, answers that get lost.
     ErForce,

@@ -1,5 +1,5 @@
-//! The ports that clients command the simulator by: the league's three, and grSim's own. One that is taken is told, and taken as
-//! soon as it is free.
+//! `ports`: the ports that clients command the simulator by: the league's three, and grSim's own. A port in
+//! use is reported, and opened as soon as it is free.
 
 use std::net::{IpAddr, SocketAddr};
 use std::time::{Duration, Instant};
@@ -10,9 +10,9 @@ use ssl::net::Port;
 
 use super::commanders::Commanders;
 
-/// A taken port is tried again this often.
+/// A port in use is tried again this often.
 const AGAIN: Duration = Duration::from_secs(1);
-/// Datagrams of one port between two steps, at most: a flood of commands must not stop the world.
+/// Most datagrams of one port between two steps: a flood of commands must not stop the world.
 const AT_ONCE: usize = 64;
 
 /// Sockets of the simulation protocol.
@@ -33,7 +33,7 @@ struct Door {
 }
 
 impl Ports {
-    /// Opens what can be opened, and gives words for the rest.
+    /// Opens the ports that are free, and adds a message for each of the others.
     pub(super) fn open(listen: IpAddr, base: u16, legacy: Option<u16>, words: &mut Vec<String>) -> Self {
         let door = |offset: u16, port| {
             let number = if base == 0 { 0 } else { base + offset };
@@ -59,7 +59,7 @@ impl Ports {
         ports
     }
 
-    /// Three free ports in a row, so that clients need to be told one number only.
+    /// Three free ports in a row, so that clients need only one number.
     fn take_any(&mut self) {
         let listen = self.doors[0].address.ip();
         for _ in 0..100 {
@@ -97,7 +97,7 @@ impl Ports {
         }
     }
 
-    /// What came goes to the simulator.
+    /// Passes received datagrams to the simulator.
     pub(super) fn listen(&mut self, server: &mut Server, words: &mut Vec<String>) {
         for door in &mut self.doors {
             let Some(socket) = &mut door.socket else { continue };
@@ -125,7 +125,7 @@ impl Ports {
         }
     }
 
-    /// An answer to whoever asked. One that cannot be sent is lost, as any datagram may be.
+    /// Answers a request. An answer that cannot be sent is lost, as any datagram may be.
     pub(super) fn answer(&self, from: server::Port, to: SocketAddr, bytes: &[u8]) {
         if let Some(socket) =
             self.doors.iter().find(|door| door.port == from).and_then(|door| door.socket.as_ref())
@@ -134,12 +134,13 @@ impl Ports {
         }
     }
 
-    /// Robots' states, in grSim's older protocol. One that cannot be sent is lost, as any datagram may be.
+    /// Sends robots' states, in grSim's older protocol. One that cannot be sent is lost, as any datagram may
+    /// be.
     pub(super) fn tell(&self, to: SocketAddr, bytes: &[u8]) {
         self.answer(server::Port::Legacy, to, bytes);
     }
 
-    /// For people: where clients speak to.
+    /// The addresses that clients send to, for the operator.
     pub(super) fn words(&self) -> String {
         let mut doors = self.doors.iter();
         let first = doors.next().map(|door| door.address.to_string());

@@ -1,5 +1,6 @@
-//! `sync`: the simulation protocol's synchronous mode, `--sync`. TCP, each message after its length as a varint, one port for each
-//! team; simulated time passes only where a client asks for a step, so that the same requests give the same answers.
+//! `sync`: the simulation protocol's synchronous mode, `--sync`. TCP, each message after its length as a
+//! varint, one port for each team; simulated time passes only where a client asks for a step, so that the
+//! same requests give the same answers.
 //!
 //! The protocol has the messages and proposes this transport; it names no port, so there is none by default.
 
@@ -15,7 +16,7 @@ use ssl::simulation::SimulationSyncRequest;
 
 /// Clients of one team's port; more are turned away.
 const CLIENTS_MAX: usize = 8;
-/// Requests of one client between two beats of the simulator, at most: Ctrl-C and the page want their turn.
+/// Most requests of one client in one period of the simulator: Ctrl-C and the page must be served too.
 const AT_ONCE: usize = 64;
 
 /// Both teams' ports.
@@ -45,7 +46,7 @@ impl SyncPorts {
         Ok(Self { doors: [door(Colour::Blue, blue)?, door(Colour::Yellow, yellow)?] })
     }
 
-    /// For people: where clients connect to.
+    /// The address that clients connect to, for the operator.
     pub(super) fn line(&self) -> String {
         let [blue, yellow] = self.doors.each_ref().map(|door| match door.listener.local_addr() {
             Ok(address) => address.to_string(),
@@ -56,7 +57,7 @@ impl SyncPorts {
         )
     }
 
-    /// Does what clients ask for; `each` gets the world after every step of it.
+    /// Handles clients' requests; `each` gets the world after every step of it.
     pub(super) fn serve(
         &mut self,
         server: &mut Server,
@@ -71,7 +72,7 @@ impl SyncPorts {
                     ));
                     continue;
                 }
-                // Some systems hand the listener's mode on.
+                // On some systems a connection inherits the listener's mode.
                 match stream.set_nonblocking(false).map_err(ssl_io).and_then(|()| Connection::over(stream)) {
                     Ok(client) => door.clients.push(client),
                     Err(error) => lines.push(format!("sync     {error}")),
@@ -93,7 +94,7 @@ fn ssl_io(error: io::Error) -> ssl::net::NetError {
     ssl::net::NetError::System { doing: "talk with", address: SocketAddr::from(([0; 4], 0)), error }
 }
 
-/// Answers what one client has asked; an error ends the connection.
+/// Answers the requests of one client; an error ends the connection.
 fn answer(
     client: &mut Connection,
     colour: Colour,
@@ -135,7 +136,7 @@ mod tests {
         }
     }
 
-    /// A client of each team takes turns for that many steps of 16 ms; everything it was answered.
+    /// A client of each team takes turns for `steps` steps of 16 ms; returns all answers.
     fn play(steps: u32) -> Vec<u8> {
         let settings =
             ServerSettings::of(League::DivisionB, Profile::Ours, 3, 0.0).expect("a league on wheels");

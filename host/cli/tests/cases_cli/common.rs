@@ -36,7 +36,7 @@ r_min = 100
 r_max = 250
 "#;
 
-/// The case file of docs/case-format.md §1, word for word.
+/// The case file of docs/case-format.md §1, verbatim.
 pub(crate) const PASS_AROUND: &str = r#"intent = "Two attackers at the centre line, a defender ahead: pass around it and shoot."
 defending = "yellow"
 ball = { at = [-600, 0], scope = [450, 250] }        # mm; scope = (τx, τy)
@@ -54,7 +54,7 @@ at = [-150, 40]
 scope = [300, 300]
 "#;
 
-/// A robot alone that shoots; applies wherever its ball is.
+/// A case with a robot alone that shoots; applies at every ball position.
 pub(crate) fn shot_at(x: i32, y: i32) -> String {
     format!(
         "intent = \"Alone near the goal: shoot.\"\ndefending = \"yellow\"\n\
@@ -64,10 +64,10 @@ pub(crate) fn shot_at(x: i32, y: i32) -> String {
     )
 }
 
-/// The problem of docs/case-format.md §5.1, word for word.
+/// The problem of docs/case-format.md §5.1, verbatim.
 pub(crate) const PROBLEM: &str = r#"{"ball":[-600,10],"defending":"yellow","teammates":{"1":[-700,0],"3":[200,800]},"opponents":[[-150,40]]}"#;
 
-/// A library folder under the build's scratch space, made anew: `league.toml` and these files.
+/// A library directory under the build's scratch space, created again: `league.toml` and these files.
 pub(crate) fn library(test: &str, files: &[(&str, &str)]) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cases-cli").join(test);
     if folder.exists() {
@@ -87,7 +87,7 @@ pub(crate) fn worked_example(test: &str) -> PathBuf {
     library(test, &[("center/pass-around.toml", PASS_AROUND)])
 }
 
-/// What a run of the program left behind.
+/// Result of a run of the program.
 pub(crate) struct Run {
     pub(crate) code: i32,
     pub(crate) stdout: String,
@@ -116,7 +116,7 @@ fn onetwo_fed(arguments: &[&str], input: &[u8]) -> Run {
     let mut stdin = child.stdin.take().unwrap();
     let output = std::thread::scope(|scope| {
         scope.spawn(move || {
-            // A program that ends without reading its input is no fault of the test.
+            // A program that ends without reading its input does not fail the test.
             let _ = stdin.write_all(input);
         });
         child.wait_with_output().unwrap()

@@ -32,7 +32,7 @@ fn every_case_under_the_goal_has_its_verdict_and_its_evidence() {
 #[test]
 fn a_missing_robot_and_a_blocked_leg_are_told_apart() {
     let alone = PROBLEM.replace(",\"3\":[200,800]", "");
-    // On the very line from (-600, 10) to (300, 910), half way: ρ = 200 mm, its edge at 200 mm · √1.002393.
+    // On the line from (-600, 10) to (300, 910), at its middle: ρ = 200 mm, its edge at 200 mm · √1.002393.
     let blocked = PROBLEM.replace("[-150,40]", "[2000,1700],[-150,460]");
     let run = cases("explain", &folder("explain-verdicts"), &["--json"], format!("{alone}\n{blocked}\n"));
     let lines = run.lines();
@@ -45,7 +45,8 @@ fn a_missing_robot_and_a_blocked_leg_are_told_apart() {
 
 #[test]
 fn candidates_are_ranked_as_retrieval_ranks_them() {
-    // Two shots whose ball scopes overlap; robot 2 stands at the second's place, so that the second costs nothing.
+    // Two shots whose ball scopes overlap; robot 2 stands at the second's place, so that the second costs
+    // nothing.
     let folder = library(
         "explain-ranks",
         &[("front/near.toml", &shot_at(1000, 300)), ("front/nearer.toml", &shot_at(1040, 300))],
@@ -54,7 +55,7 @@ fn candidates_are_ranked_as_retrieval_ranks_them() {
     let explained = cases("explain", &folder, &["--json"], problem).stdout;
     let read: serde_json::Value = serde_json::from_str(&explained).unwrap();
     let ranks: Vec<_> = read["cases"].as_array().unwrap().iter().map(|row| row["rank"].as_u64()).collect();
-    // Both are 20 mm away and cost the same: the lower id ranks first; the mirror images lie out of reach.
+    // Both are 20 mm away and cost the same: the lower id ranks first; the mirrored copies are out of scope.
     assert_eq!(ranks, [Some(1), None, Some(2), None]);
     let retrieved: serde_json::Value =
         serde_json::from_str(&cases("retrieve", &folder, &[], problem).stdout).unwrap();
@@ -138,7 +139,8 @@ fn two_cases_are_set_side_by_side() {
     let diff = |a: &str, b: &str, more: &[&str]| {
         cases("explain", &folder, &[&["--diff", a, b], more].concat(), problem)
     };
-    // Both in interval H; from (900, 300) it is 10 mm to (910, 300) for both: the nearer ball is the more similar one.
+    // Both in interval H; from (900, 300) it is 10 mm to (910, 300) for both: the nearer ball is the more
+    // similar one.
     let run = diff("front/near", "4", &["--json"]);
     let read: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
     assert_eq!((&read["first"], &read["by"]), (&4.into(), &"similarity".into()), "{}", run.stdout);

@@ -164,7 +164,7 @@ fn a_warning_fails_the_check_only_where_it_is_strict() {
 
 #[test]
 fn a_case_that_no_drawn_problem_retrieves_is_doubtful_for_any_number_of_threads() {
-    // Whatever the second is a candidate for, the first is too, with a condition more.
+    // The first is a candidate for every problem of the second, with one condition more.
     let rival = shot_at(0, 0) + "[[opponents]]\nat = [0, 1500]\nscope = [9000, 9000]\n";
     let folder = library("shadowed", &[("front/rival.toml", &rival), ("front/shot.toml", &shot_at(0, 0))]);
     let check = |jobs: &str, words: &[&str]| {

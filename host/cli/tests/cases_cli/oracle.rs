@@ -35,7 +35,7 @@ fn a_thousand_lines_are_answered_as_the_oracle_answers() {
         if agree(&ours, &theirs) {
             continue;
         }
-        // Where a decision hangs on less than a ten-thousandth, two honest answers may differ.
+        // Where a decision depends on less than a ten-thousandth, two correct answers may differ.
         let near = retrieve(&library, problem, &Rules::default()).near_tie;
         assert!(
             near.is_some(),
@@ -47,7 +47,7 @@ fn a_thousand_lines_are_answered_as_the_oracle_answers() {
     assert!(winners * 4 > PROBLEMS, "only {winners} problems have an answer");
 }
 
-/// What both verbs say of a problem.
+/// The answers of both verbs to a problem.
 #[derive(Deserialize)]
 struct Told {
     #[serde(alias = "winner")]
@@ -73,7 +73,7 @@ fn explain_agrees_with_retrieve_on_10_000_problems_of_the_built_in_and_of_a_rand
         let library = Library::read(&folder).expect("the oracle reads it");
         let mut dice = Dice::new(seed);
         let mut winners = 0;
-        // In parts, so that no more than a few MB are held at a time.
+        // In parts, so that at most a few MB are held at a time.
         for part in 0..10 {
             let lines: Vec<_> = (0..1_000).map(|_| random_problem(&mut dice, &library).to_line()).collect();
             let ask = |verb, words: &[&str]| cases(verb, &folder, words, lines.join("\n") + "\n");

@@ -5,7 +5,7 @@ use std::io::{BufRead, BufReader, Read, Write};
 
 use crate::common::{PASS_AROUND, PROBLEM, cases, command, library, onetwo, shot_at, worked_example};
 
-/// The answer of docs/case-format.md §5.1, word for word.
+/// The answer of docs/case-format.md §5.1, verbatim.
 const ANSWER: &str = r#"{"case":"center/pass-around","id":0,"symmetry":"identity","similarity":0.9984,"cost":171.02,"conditions":1,"teammates":2,"match":{"1":1,"2":3},"adapted":{"1":[-720,10],"3":[300,910]},"candidates":1}"#;
 const NOTHING: &str = r#"{"case":null,"candidates":0}"#;
 
@@ -18,9 +18,9 @@ fn the_worked_example_is_answered_word_for_word() {
 
 #[test]
 fn an_opponent_inside_a_leg_leaves_no_case() {
-    // Half way along the pass from the ball (-600, 10) to tm2's place (300, 910).
+    // At the middle of the pass from the ball (-600, 10) to tm2's place (300, 910).
     let blocked = PROBLEM.replace("[-150,40]", "[-150,460]");
-    // Before the goal, on the way of the shot from (300, 910) to (2700, 0).
+    // Before the goal, on the path of the shot from (300, 910) to (2700, 0).
     let before_goal = PROBLEM.replace("[-150,40]", "[1500,455]");
     let run = cases("retrieve", &worked_example("blocked"), &[], format!("{blocked}\n{before_goal}\n"));
     assert_eq!(run.lines(), [NOTHING, NOTHING]);
@@ -62,7 +62,7 @@ fn whole_numbers_are_rounded_as_all_others() {
     let run = cases("retrieve", &folder, &[], problem);
     assert_eq!(
         run.lines(),
-        // The case lies on the axis: its mirror image across x is its twin, and the lower id wins.
+        // The case is symmetric to the axis: its mirrored copy across x equals it, and the lower id wins.
         [
             r#"{"case":"front/shot","id":0,"symmetry":"identity","similarity":1.0,"cost":0.0,"conditions":0,"teammates":1,"match":{"1":15},"adapted":{"15":[880,0]},"candidates":2}"#
         ]
@@ -137,8 +137,8 @@ fn settings_change_the_answer_and_are_recorded_with_it() {
     let near = cases("retrieve", &folder, &["--set", "thr_c=148"], PROBLEM);
     assert_eq!(near.lines(), [r#"{"case":null,"candidates":0,"settings":{"thr_c":"148"}}"#]);
     let max = cases("retrieve", &folder, &["--set", "cost=sum", "--set=cost=max"], PROBLEM);
-    // By the largest distance the mirror image is a candidate too: with the robots swapped nobody has more than
-    // 1339 mm to go, where the least sum asks 1693 mm of one of them.
+    // By the largest distance the mirrored copy is a candidate too: with the robots swapped no robot has more
+    // than 1339 mm to go, where the least sum requires 1693 mm of one of them.
     let expected = ANSWER
         .replace("171.02", "148.66")
         .replace("\"candidates\":1", "\"candidates\":2,\"settings\":{\"cost\":\"max\"}");
@@ -228,7 +228,7 @@ fn whoever_has_read_enough_may_close_the_pipe() {
     let mut stdin = child.stdin.take().unwrap();
     drop(child.stdout.take());
     let questions = format!("{PROBLEM}\n").repeat(10_000);
-    // The program stops reading when nobody listens; then our pipe breaks too.
+    // The program stops reading when its reader is gone; then our pipe breaks too.
     let _ = stdin.write_all(questions.as_bytes());
     drop(stdin);
     let mut words = String::new();

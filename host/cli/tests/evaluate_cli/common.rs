@@ -12,7 +12,7 @@ pub(crate) fn onetwo(arguments: &[&str]) -> Command {
     command
 }
 
-/// What it says where it must not fail.
+/// The output of a run that must not fail.
 pub(crate) fn said(arguments: &[&str]) -> String {
     let out = onetwo(arguments).output().expect("the program starts");
     assert_eq!(out.status.code(), Some(0), "{arguments:?}: {}", String::from_utf8_lossy(&out.stderr));
@@ -20,7 +20,7 @@ pub(crate) fn said(arguments: &[&str]) -> String {
     String::from_utf8(out.stdout).expect("words in UTF-8")
 }
 
-/// What it says where it must not do as asked, with exit code `code`.
+/// The error of a run that must be refused, with exit code `code`.
 pub(crate) fn refused(arguments: &[&str], code: i32) -> String {
     let Output { status, stdout, stderr } = onetwo(arguments).output().expect("the program starts");
     assert_eq!(status.code(), Some(code), "{arguments:?}");
@@ -28,7 +28,7 @@ pub(crate) fn refused(arguments: &[&str], code: i32) -> String {
     String::from_utf8(stderr).expect("words in UTF-8")
 }
 
-/// An empty folder of a test's own.
+/// An empty directory of a test's own.
 pub(crate) fn scratch(name: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("evaluate-cli").join(name);
     let _ = std::fs::remove_dir_all(&folder);

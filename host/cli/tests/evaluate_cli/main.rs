@@ -129,7 +129,7 @@ fn ctrl_c_keeps_what_is_over_and_says_how_to_go_on() {
     let out = scratch("ctrl-c");
     let file = out.join("trials-1-of-1.csv");
     let arguments = [&SHORT[..], &["5", "--trials", "400", "--jobs", "1", "--out", text(&out)]].concat();
-    // Whoever started the tests in the background made them deaf to Ctrl-C, and their children with them.
+    // A test run that was started in the background ignores Ctrl-C, and so do its children.
     let deaf = onetwo(&arguments);
     let mut command = std::process::Command::new("env");
     command.arg("--default-signal=INT").arg(deaf.get_program()).args(deaf.get_args());
@@ -201,7 +201,7 @@ fn a_change_to_the_team_is_recorded_and_reaches_the_robots() {
     ] {
         let run = base(flags);
         assert_ne!(run[key], plain[key], "{flags:?}");
-        // One retriever of two, or the largest distance instead of the sum, need not show in two trials.
+        // One retriever of two, or the largest distance instead of the sum, may have no effect in two trials.
         if !matches!(key, "retrievers" | "settings") {
             assert_ne!(run["csv_hash"], plain["csv_hash"], "{flags:?}");
         }

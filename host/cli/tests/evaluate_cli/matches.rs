@@ -8,7 +8,7 @@ use super::common::{json, onetwo, refused, said, scratch, table, text};
 
 const MATCHES: [&str; 2] = ["evaluate", "matches"];
 
-/// Matches of so many seconds each.
+/// Matches of `duration` seconds each.
 fn of<'a>(duration: &'a str, more: &[&'a str]) -> Vec<&'a str> {
     [&MATCHES[..], &["--duration", duration], more].concat()
 }

@@ -1,8 +1,9 @@
 //! `page_browser`: browser tests of the page. A real Chromium on the built program: it loads, robots move,
-//! layers switch, an explanation opens, a hand drags, a recording seeks to its goal, a lost connection is
-//! shown and heals, no error on the console.
+//! layers switch, an explanation opens, a drag works, a recording seeks to its goal, a lost connection is
+//! displayed and recovers, no error on the console.
 //!
-//! `cargo xtask test --only page` installs the browser where it can and runs this; plain `cargo test` does without.
+//! `cargo xtask test --only page` installs the browser where it can and runs this; plain `cargo test` does
+//! without.
 
 mod program;
 
@@ -11,7 +12,7 @@ use std::time::Duration;
 use page_browser::{Browser, Tab};
 use program::Program;
 
-/// Nothing went wrong where a person would never look.
+/// No error on the browser's console.
 fn no_errors(tab: &mut Tab<'_>) {
     assert_eq!(tab.errors(), Vec::<String>::new());
 }
@@ -51,7 +52,7 @@ fn a_match_is_watched_asked_and_touched() {
     tab.wait("document.querySelectorAll('#tab-why .card').length === 12", 20).unwrap();
     tab.click("[data-robot=blue2]").unwrap();
     tab.wait("onetwo.store.chosen?.id === 2", 5).unwrap();
-    // Words on cards change many times a second: what a hand presses stays until it lets go.
+    // Texts on cards change many times a second: a pressed element stays until it is released.
     let pressed = "(async () => {
       const card = document.querySelector('[data-robot=blue3]');
       card.dispatchEvent(new PointerEvent('pointerdown', { bubbles: true }));
@@ -80,12 +81,12 @@ fn a_match_is_watched_asked_and_touched() {
     no_errors(&mut tab);
 }
 
-/// What maps and labels say of a place is told where somebody points at it; words do not stand upon each other.
+/// What maps and labels mean at a place is displayed where the pointer is; texts do not overlap.
 fn explained_on_the_field(tab: &mut Tab<'_>) {
     tab.eval("['pass-receive', 'believed'].forEach((name) => onetwo.setLayer(name, true))").unwrap();
     tab.wait("onetwo.layers().filter((l) => ['pass-receive', 'believed'].includes(l.name)).every((l) => l.shown && l.count > 0)", 60)
         .unwrap();
-    // The best place of the map, but for those where a robot stands: a hand there asks the robot.
+    // The best place of the map that is free of robots: over a robot the pointer selects the robot.
     let told = "(() => {
       const { layers, robots, ball } = onetwo.store.scene;
       const heat = layers.find((l) => l.name === 'pass-receive').shapes[0];
@@ -111,7 +112,7 @@ fn explained_on_the_field(tab: &mut Tab<'_>) {
     tab.eval("['pass-receive', 'believed'].forEach((name) => onetwo.setLayer(name, false))").unwrap();
 }
 
-/// Within a few tries: everything moves.
+/// Retries a few times: everything moves.
 fn onetwo_says(tab: &mut Tab<'_>, script: &str, words: &str) {
     let mut said = String::new();
     for _ in 0..40 {
@@ -124,7 +125,7 @@ fn onetwo_says(tab: &mut Tab<'_>, script: &str, words: &str) {
     panic!("{words}: not in {said}");
 }
 
-/// Stand still, step, drag the ball, begin anew.
+/// Pause, single step, drag the ball, restart.
 fn control(tab: &mut Tab<'_>) {
     tab.key("4").unwrap();
     tab.wait("!document.getElementById('tab-control').hidden", 5).unwrap();
@@ -138,7 +139,7 @@ fn control(tab: &mut Tab<'_>) {
     let spot = [0, 1].map(|i: usize| at[i].as_f64().unwrap() + stage[i].as_f64().unwrap());
     tab.click("#layers-open").unwrap();
     tab.drag(spot, [spot[0] + 120.0, spot[1] - 60.0]).unwrap();
-    // A ball that is put stands where the truth says, at once; the host sees it with the next image.
+    // A ball that is put is at once where the truth has it; the host sees it with the next camera frame.
     tab.eval("onetwo.setLayer('truth', true)").unwrap();
     tab.wait(
         &format!("(() => {{ const s = onetwo.store.latest.layers.find((l) => l.name === 'truth').shapes.at(-1).at; const p = onetwo.camera.to(s); return Math.hypot(p[0] - {} - 120, p[1] - {} + 60) < 12 }})()", at[0], at[1]),
@@ -153,13 +154,13 @@ fn control(tab: &mut Tab<'_>) {
     tab.wait("onetwo.store.latest.game.phase !== 'halt'", 10).unwrap();
 }
 
-/// Back in time while the match goes on, and to its newest moment again.
+/// Seeks back while the match goes on, and returns to its newest moment.
 fn look_back(tab: &mut Tab<'_>) {
     tab.eval("location.hash = '#t=1.00'").unwrap();
     tab.wait("!onetwo.time.live && Math.abs(onetwo.store.scene.t - 1) < 0.1", 20).unwrap();
     tab.key("l").unwrap();
     tab.wait("onetwo.time.live && onetwo.store.scene.t > 2", 10).unwrap();
-    // What is not played yet cannot be shown.
+    // What is not played yet cannot be displayed.
     tab.eval("location.hash = '#t=9999'").unwrap();
     tab.wait("onetwo.time.live && /not played yet/.test(document.getElementById('note').textContent)", 10)
         .unwrap();
@@ -181,7 +182,7 @@ fn a_recording_seeks_to_its_goal_and_to_the_moment_of_an_address() {
     .unwrap();
     assert!(number(&mut tab, "Math.abs(onetwo.store.scene.ball.at[0])") > 2.5, "the ball is in the goal");
     tab.wait("/#t=/.test(location.hash)", 5).unwrap();
-    // A moment that is none, and one after the end: told, and the last one is shown.
+    // A moment that is no number, and one after the end: reported, and the last one is displayed.
     tab.eval("location.hash = '#t=soon'").unwrap();
     tab.wait("/names no moment/.test(document.getElementById('note').textContent)", 5).unwrap();
     tab.eval("location.hash = '#t=9999'").unwrap();
@@ -191,7 +192,7 @@ fn a_recording_seeks_to_its_goal_and_to_the_moment_of_an_address() {
         5,
     )
     .unwrap();
-    // What a moment becomes is a problem that retrieval takes.
+    // A moment is exported as a problem that retrieval accepts.
     let line = tab
         .eval("fetch('/api/freeze', { method: 'POST', body: JSON.stringify({ t: 2, team: 'blue', what: 'problem' }) }).then((a) => a.text())")
         .unwrap();
@@ -205,7 +206,7 @@ fn a_lost_connection_is_shown_and_heals() {
     let words = ["play", "--duration", "600", "--seed", "3", "--listen"];
     let first = Program::start(&[&words[..], &["127.0.0.1:0"]].concat());
     let mut browser = Browser::start().unwrap();
-    // A telephone's width: everything is within it.
+    // At a telephone's width everything is within the screen.
     let mut tab = browser.open(&first.url(""), 390, 844).unwrap();
     tab.resize(390, 844, true).unwrap();
     tab.wait("window.onetwo?.store.scene", 60).unwrap();
@@ -216,7 +217,7 @@ fn a_lost_connection_is_shown_and_heals() {
     let _second = Program::start(&[&words[..], &[&address]].concat());
     tab.wait("document.getElementById('lost').hidden && document.getElementById('connection').dataset.state === 'live'", 30).unwrap();
     tab.wait("onetwo.store.scene.t > 0.5", 20).unwrap();
-    // A socket that nobody answers is told by the browser itself; anything else would be ours.
+    // A socket without an answer is reported by the browser itself; any other error would be ours.
     let told: Vec<_> = tab.errors().into_iter().filter(|error| !error.contains("ERR_CONNECTION")).collect();
     assert_eq!(told, Vec::<String>::new());
 }

@@ -1,4 +1,4 @@
-//! The built program with its page: started, found, and ended with the test.
+//! `program`: the built program with its page: started, connected, and ended with the test.
 
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, Command, Stdio};
@@ -39,7 +39,7 @@ impl Program {
             Some((address, token)) => (address.to_owned(), Some(token.to_owned())),
             None => (address, None),
         };
-        // A full pipe would hold it up.
+        // A full pipe would block it.
         let (send, later) = channel();
         thread::spawn(move || {
             for line in lines.map_while(Result::ok) {
@@ -53,13 +53,13 @@ impl Program {
         &self.address
     }
 
-    /// What its page asks of those that ask for something.
+    /// The token that its page requires for requests.
     #[allow(dead_code, reason = "one of the two tests that share this file asks without a browser")]
     pub(crate) fn token(&self) -> Option<&str> {
         self.token.as_deref()
     }
 
-    /// Waits for a line with these words on stderr.
+    /// Waits for a line on stderr that contains `words`.
     #[allow(dead_code, reason = "one of the two tests that share this file listens")]
     pub(crate) fn says(&self, words: &str) {
         while let Ok(line) = self.lines.recv_timeout(Duration::from_secs(40)) {

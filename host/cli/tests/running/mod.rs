@@ -1,4 +1,5 @@
-//! `running`: a verb of the built program while it runs, and what it says on stderr, for the tests of the command line.
+//! `running`: a verb of the built program while it runs, and its output on stderr, for the tests of the
+//! command line.
 
 use std::io::{BufRead, BufReader};
 use std::net::SocketAddr;
@@ -10,7 +11,7 @@ use std::time::{Duration, Instant};
 /// Generous: a loaded machine is no failure.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(30);
 
-/// A running verb; its words on stderr come line by line. Ended when dropped.
+/// A running verb; its stderr comes line by line. Ended when dropped.
 pub(crate) struct Running {
     pub(crate) process: Child,
     lines: Receiver<(Duration, String)>,
@@ -40,7 +41,7 @@ impl Running {
         Self { process, lines, heard: Vec::new() }
     }
 
-    /// Waits for a line with these words.
+    /// Waits for a line that contains `words`.
     pub(crate) fn says(&mut self, words: &str) -> (Duration, String) {
         let until = Instant::now() + PATIENCE;
         loop {
@@ -57,7 +58,7 @@ impl Running {
         }
     }
 
-    /// The control port that the simulator says it has.
+    /// The control port that the simulator prints.
     pub(crate) fn control_port(&mut self) -> u16 {
         let (_, line) = self.says("control  ");
         let address = line.split_whitespace().nth(1).expect("an address").trim_end_matches(',');

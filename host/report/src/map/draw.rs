@@ -32,7 +32,7 @@ pub(crate) fn html(maps: &[Map]) -> Markup {
     }
 }
 
-/// One picture a configuration: passes on the left, the ball on the right, for files.
+/// One figure a configuration: passes on the left, the ball on the right, for files.
 pub(crate) fn sheets(maps: &[Map]) -> Vec<Picture> {
     let mut pictures = Vec::new();
     for (configuration, scenario, row) in rows(maps) {
@@ -127,7 +127,7 @@ fn heat(map: &Map) -> Svg {
     svg
 }
 
-/// Which shade so many seconds a trial have; none for next to nothing.
+/// The shade for this number of seconds a trial; `None` for next to nothing.
 fn shade(seconds: f64) -> Option<usize> {
     STEPS.iter().rposition(|least| seconds >= *least)
 }
@@ -148,7 +148,7 @@ fn passes(map: &Map) -> Svg {
     for kind in [PassKind::Lost, PassKind::Chance, PassKind::Completed] {
         let own = map.passes.iter().filter(|pass| pass.kind == kind);
         let ways: Vec<_> = own.map(|pass| (millimetres(pass.from), millimetres(pass.to))).collect();
-        // Where many lie on each other it is darker.
+        // Overlapping arrows add up to a darker colour.
         arrows(&mut svg, &ways, kind, "0.4");
     }
     for outcome in [Outcome::Timeout, Outcome::Out, Outcome::Block, Outcome::Close, Outcome::Goal] {
@@ -159,7 +159,7 @@ fn passes(map: &Map) -> Svg {
     svg
 }
 
-/// Where somebody stood: attackers are circles and opponents squares, as in the paper's figures.
+/// Where a robot stood: attackers are circles and opponents squares, as in the paper's figures.
 fn kick_off(svg: &mut Svg, [x, y]: [f64; 2], attacker: bool) {
     let colors = Theme::Light.colors();
     let color = if attacker { colors.team } else { colors.opponent };
@@ -229,7 +229,7 @@ fn end(svg: &mut Svg, [x, y]: [f64; 2], outcome: Outcome) {
     }
 }
 
-/// A place on the picture: what lies farther out stands at its edge.
+/// A place on the figure: what lies farther out is drawn at its edge.
 fn shown(field: &FieldMm, [x, y]: [f64; 2]) -> [f64; 2] {
     let [right, top] = half_extent(field).map(|half| half - 50.0);
     [x.clamp(-right, right), y.clamp(-top, top)]
@@ -239,7 +239,7 @@ fn millimetres(place: Point<Field>) -> [f64; 2] {
     [f64::from(place.x()) * 1000.0, f64::from(place.y()) * 1000.0]
 }
 
-/// A map as a picture of its own.
+/// A map as a figure of its own.
 fn alone(svg: &Svg, map: &Map, title: &str) -> String {
     let [x, y] = half_extent(&map.field);
     let mut page = Svg::default();
@@ -290,7 +290,7 @@ fn entries() -> Vec<(Svg, &'static str)> {
     starts.chain(passes).chain(ends).collect()
 }
 
-/// Signs from `left`, the scale from `from`; gives where they end.
+/// Signs from `left`, the scale from `from`; returns their right end.
 fn legend(svg: &mut Svg, [left, top]: [f64; 2], [from, right]: [f64; 2], size: f64) -> f64 {
     let colors = Theme::Light.colors();
     let font = Font { size, fill: colors.ink, bold: false, halo: None };
@@ -308,7 +308,7 @@ fn legend(svg: &mut Svg, [left, top]: [f64; 2], [from, right]: [f64; 2], size: f
     down - size * 0.5
 }
 
-/// The shades with the seconds each begins at.
+/// The shades with the seconds at which each starts.
 fn scale(width: f64, size: f64) -> Svg {
     let colors = Theme::Light.colors();
     let mut svg = Svg::default();
@@ -333,10 +333,10 @@ fn scale_svg() -> String {
     svg.finish([0.0, -29.0], [340.0, 1.0], 1.0, Theme::Light.colors().paper, "seconds a trial")
 }
 
-/// From near the carpet's lightness evenly to dark: one hue, so that more is darker to every eye.
+/// From near the field surface's lightness evenly to dark: one hue, so that darker always reads as more.
 pub(crate) const SHADES: [&str; 7] =
     ["#c9d9ea", "#a5c0de", "#7fa3cf", "#5d83bc", "#4562a3", "#374382", "#2a2459"];
-/// Seconds a trial from which on a square has each shade.
+/// Seconds a trial at which each shade starts.
 const STEPS: [f64; 7] = [0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
 /// Length of an arrow's head, mm.
 const HEAD: f64 = 85.0;
@@ -344,7 +344,7 @@ const COMPLETED: &str = "#1b1b1b";
 /// Reddish purple (Okabe and Ito), darker.
 pub(crate) const LOST: &str = "#b3367d";
 pub(crate) const CHANCE: &str = "#2f6fb7";
-/// How wide a map is on a page, px.
+/// Width of a map on a page, px.
 const PAGE_PX: f64 = 560.0;
-/// How wide a sheet of two beside each other is, px.
+/// Width of a sheet of two maps beside each other, px.
 const SHEET_PX: f64 = 1100.0;

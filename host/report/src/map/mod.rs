@@ -13,47 +13,48 @@ use rayon::prelude::*;
 
 pub(crate) use draw::{CHANCE, LOST, SHADES, html, sheets};
 
-/// What a map tells that was a trial could not be played again.
+/// The error of a map whose trial could not be played again.
 pub type MapError = SimulationError;
 
 /// The ball and the passes of a cell's first trials.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
-    /// Which cell.
+    /// The cell.
     pub cell: Cell,
-    /// How many of its trials.
+    /// Number of its trials.
     pub trials: u32,
     /// The field they were played on.
     pub field: casebase::FieldMm,
-    /// Seconds of the ball in each square of [`EDGE`], row by row from the least y, each from the least x; all trials together.
+    /// Seconds of the ball in each square of [`EDGE`], row by row from the least y, each from the least x;
+    /// all trials together.
     pub seconds: Vec<f64>,
     /// The attackers' passes.
     pub passes: Vec<Pass>,
-    /// Where everybody stood at kick-off; none where each trial has its own.
+    /// Where the robots stood at kick-off; `None` where each trial has its own layout.
     pub start: Option<Layout>,
-    /// Where the ball was at the end, and what that was.
+    /// Where the ball was at the end of each trial, and the outcome.
     pub ends: Vec<(Point<Field>, Outcome)>,
 }
 
-/// A ball from one attacker meant for another, or that came to one.
+/// A ball that one attacker intended for another, or that another one received.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pass {
-    /// From here.
+    /// Start.
     pub from: Point<Field>,
-    /// To here: where it was received or lost.
+    /// End: where it was received or lost.
     pub to: Point<Field>,
-    /// What became of it.
+    /// Its result.
     pub kind: PassKind,
 }
 
-/// What became of a pass.
+/// Result of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PassKind {
-    /// Meant for a teammate, who got it.
+    /// Intended for a teammate, and received by it.
     Completed,
-    /// Meant for a teammate, and somebody else got it, or nobody.
+    /// Intended for a teammate, and received by another robot, or by none.
     Lost,
-    /// A kick ahead that a teammate got: the only passes reactive attackers have (paper §5).
+    /// A kick ahead that a teammate received: the only passes reactive attackers have (paper §5).
     Chance,
 }
 
@@ -86,7 +87,7 @@ impl Map {
         self.ends.extend(mapper.end);
     }
 
-    /// The square a place lies in; none beside the field.
+    /// The square of a place; `None` beside the field.
     fn square(&self, place: Point<Field>) -> Option<usize> {
         let along = |value: f32, side: i32, squares: usize| {
             let mm = f64::from(value) * 1000.0 + f64::from(side) * 0.5;
@@ -98,7 +99,8 @@ impl Map {
         Some(row * self.columns() + column)
     }
 
-    /// The maps of an evaluation's simulated cells: the first `trials` of each, played again on all threads of the pool.
+    /// The maps of an evaluation's simulated cells: the first `trials` of each, played again on all threads
+    /// of the pool.
     pub fn of(evaluation: &Evaluation<'_>, trials: u32) -> Result<Vec<Self>, MapError> {
         let plan = &evaluation.plan;
         let cells = plan.cells.iter().filter(|cell| cell.profile == Profile::Simulated);
@@ -142,12 +144,12 @@ pub struct Mapper {
     flying: Option<Flight>,
 }
 
-/// A ball an attacker has kicked and nobody has got yet.
+/// A ball that an attacker has kicked and no robot has received yet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Flight {
     by: usize,
     from: Point<Field>,
-    /// Meant as a pass.
+    /// Intended as a pass.
     pass: bool,
 }
 
@@ -196,7 +198,7 @@ impl Watcher for Mapper {
 
     fn end(&mut self, moment: &Moment<'_>, report: &TrialReport) {
         let ball = moment.world.ball.position;
-        // A pass that goes in or passes a post was no bad one.
+        // A pass that goes in or passes a post is not counted as lost.
         if let Some(Flight { from, pass: true, .. }) = self.flying.take()
             && !matches!(report.outcome, Outcome::Goal | Outcome::Close)
         {
@@ -210,7 +212,7 @@ fn squares(side: i32) -> usize {
     (f64::from(side.max(0)) / EDGE).ceil() as usize
 }
 
-/// Side of a square, mm: about the ball's diameter, and what a picture shows well.
+/// Side of a square, mm: about the ball's diameter, and well visible in a figure.
 pub const EDGE: f64 = 100.0;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Tests: a map shows what happened. Hand-made flights, and a trial played twice.
+//! Tests: a map agrees with what happened. Hand-made flights, and a trial played twice.
 
 use arena::TEAM;
 use arena::evaluation::{Plan, Setup};
@@ -65,7 +65,7 @@ fn a_map_holds_all_the_time_of_its_trials_and_their_ends() {
         outcomes.push(report.outcome);
     }
     let seconds: f64 = map.seconds.iter().sum();
-    // A ball on its way out is beside the field for a few ticks.
+    // A ball that is rolling out is beside the field for a few ticks.
     assert!(seconds <= time + 0.09 && seconds > time - 1.0, "{seconds} of {time}");
     assert_eq!(map.ends.iter().map(|(_, outcome)| *outcome).collect::<Vec<_>>(), outcomes);
     assert_eq!(map.trials, 2);

@@ -30,7 +30,7 @@ impl Axis {
         Self { low, high: if high > low { high } else { low + step }, step, left, right }
     }
 
-    /// Where a value is, px; beyond the ends, at the end.
+    /// Position of a value, px; beyond the ends, at the end.
     pub(crate) fn place(&self, value: f64) -> f64 {
         let share = ((value - self.low) / (self.high - self.low)).clamp(0.0, 1.0);
         self.left + share * (self.right - self.left)
@@ -56,11 +56,11 @@ impl Axis {
     }
 }
 
-/// About how many stretches an axis has.
+/// About the number of intervals of an axis.
 const TICKS: f64 = 6.0;
-/// What the axis takes below `bottom`, px.
+/// Height of the axis below `bottom`, px.
 pub(crate) const BELOW: f64 = 36.0;
-/// Lines that guide the eye and no more.
+/// Colour of grid lines, less prominent than the data.
 pub(crate) const GRID: &str = "#dadada";
 
 #[cfg(test)]

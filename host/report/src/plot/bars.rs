@@ -10,7 +10,7 @@ use super::{Entry, Figure, PANEL, Panel, Shape, entries, keys, scenarios, style}
 use crate::columns::interval;
 use crate::{Report, numbers, words};
 
-/// A measure of the bars: its word, its value, its interval.
+/// A measure of the bars: its label, its value, its interval.
 type Bar = (&'static str, fn(&TableRow) -> Option<f64>, fn(&TableRow) -> Option<Interval>);
 
 /// Outcomes of Table 1, 4 or 6.
@@ -56,7 +56,8 @@ fn figure(
 ) -> Figure {
     let scenarios = scenarios(report, table);
     let all: Vec<Entry<'_>> = scenarios.iter().flat_map(|s| entries(report, table, *s)).collect();
-    // What never happens, to us or the paper, has no bar; what is not measured has none either.
+    // An outcome that never happens, to us or the paper, has no bar; one that is not measured has none
+    // either.
     let measured = |(_, value, _): &&Bar| all.iter().any(|entry| value(entry.row).is_some_and(|v| v > 0.0));
     let bars: Vec<Bar> = bars.iter().filter(measured).copied().collect();
     let ends = all.iter().flat_map(|entry| {
@@ -115,7 +116,7 @@ fn panel(
     Panel { title, svg, height: -bottom + BELOW }
 }
 
-/// From where to where a value may lie.
+/// Error bar from `low` to `high`.
 pub(super) fn whisker(svg: &mut Svg, low: f64, high: f64, y: f64) {
     let style = format!(r#"stroke="{}" stroke-width="1.1""#, Theme::Light.colors().ink);
     svg.line([low, y], [high, y], &style);
@@ -124,11 +125,11 @@ pub(super) fn whisker(svg: &mut Svg, low: f64, high: f64, y: f64) {
     }
 }
 
-/// Where bars begin, px.
+/// Where bars start, px.
 const LEFT: f64 = 66.0;
-/// Room for the numbers behind the longest bar, px.
+/// Space for the numbers behind the longest bar, px.
 const RIGHT: f64 = 30.0;
 /// Height of a bar with the gap to the next, px.
 const BAR: f64 = 12.5;
-/// Between groups of bars, px.
+/// Gap between groups of bars, px.
 const BETWEEN: f64 = 13.0;

@@ -24,7 +24,7 @@ pub(super) fn figure(report: &Report<'_>, table: u8, measures: &[Measure]) -> Fi
     }
 }
 
-/// None where nobody measured it.
+/// `None` where it was not measured.
 fn of_measure(report: &Report<'_>, table: u8, measure: Measure) -> Option<Panel> {
     let rows = scenarios(report, table).into_iter().map(|scenario| {
         let dots = entries(report, table, scenario).into_iter().filter_map(|entry| dot(measure, entry));

@@ -41,19 +41,19 @@ pub(super) fn figure(report: &Report<'_>) -> Figure {
     let reaches = || dots().filter_map(|dot| dot.reach);
     let low = reaches().map(|(low, _)| low).fold(0.0, f64::min);
     let high = reaches().map(|(_, high)| high).fold(0.0, f64::max);
-    // Room for the numbers left of the whiskers; the panel has some on the right.
+    // Space for the numbers left of the whiskers; the panel has some on the right.
     let axis = axis(low - (high - low) * 0.14, high);
     let panels = groups.into_iter().map(|(title, rows)| panel(title, "percentage points", &rows, axis));
     let title = "What one approach has more or less than another, with 95 % intervals".to_owned();
     Figure { table: 0, name: "differences".to_owned(), title, keys, panels: panels.collect() }
 }
 
-/// The paper's pair, and what goes beyond it against the paper's own approach.
+/// The paper's pair, and approaches beyond it compared with the paper's own.
 fn effects(report: &Report<'_>, table: u8, scenario: Scenario, measure: Measure) -> Vec<(Key, Dot)> {
     let entries = entries(report, table, scenario);
     let mut effects: Vec<(Key, Dot)> = Vec::new();
     for (first, second) in pairs(report.between, table, scenario) {
-        // One difference an approach: its colour tells it.
+        // One difference an approach: identified by its colour.
         if effects.iter().any(|(_, dot)| dot.approach == first) {
             continue;
         }

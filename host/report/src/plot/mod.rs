@@ -1,7 +1,8 @@
 //! `plot`: plots and their arrangement as figures. One panel a scenario or measure; beside each other on a
 //! page, stacked on a phone, in one file for a paper.
 //!
-//! Everywhere: ours is filled, the paper's is hollow, an approach keeps its colour, whiskers are 95 % intervals.
+//! Everywhere: ours is filled, the paper's is hollow, an approach keeps its colour, whiskers are 95 %
+//! intervals.
 
 mod axis;
 mod bars;
@@ -24,7 +25,7 @@ use crate::{Picture, Report, words};
 /// A plot of several panels.
 #[derive(Debug)]
 pub(crate) struct Figure {
-    /// The table whose numbers it shows; 0 for all.
+    /// The table whose numbers it plots; 0 for all.
     pub(crate) table: u8,
     pub(crate) name: String,
     pub(crate) title: String,
@@ -40,7 +41,7 @@ pub(crate) struct Panel {
     pub(crate) height: f64,
 }
 
-/// What a sign means.
+/// Entry of the legend: meaning of a sign.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Key {
     pub(crate) word: String,
@@ -49,7 +50,7 @@ pub(crate) struct Key {
     pub(crate) shape: Shape,
 }
 
-/// What a number is drawn as.
+/// Sign that a number is drawn with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shape {
     Bar,
@@ -73,14 +74,15 @@ pub(crate) fn figures(report: &Report<'_>) -> Vec<Figure> {
     figures
 }
 
-/// A number's owner: whose approach, ours or the paper's.
+/// Approach of a number, ours or the paper's.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Entry<'a> {
     pub(crate) row: &'a TableRow,
     pub(crate) ours: bool,
 }
 
-/// The rows of a table and scenario: by approach, ours before the paper's. Of ours of several sizes the largest.
+/// The rows of a table and scenario: by approach, ours before the paper's. Of ours with several numbers of
+/// trials, the row with most.
 pub(crate) fn entries<'a>(report: &Report<'a>, table: u8, scenario: Scenario) -> Vec<Entry<'a>> {
     let own = |row: &&TableRow| (row.table, row.scenario) == (table, scenario);
     let mut entries: Vec<Entry<'a>> = Vec::new();
@@ -217,11 +219,11 @@ impl Key {
     }
 }
 
-/// How wide a panel is, px: two beside each other on a page, one on a phone with letters that can be read.
+/// Width of a panel, px: two beside each other on a page, one on a phone with readable letters.
 pub(crate) const PANEL: f64 = 440.0;
-/// What a panel's title takes, px.
+/// Height of a panel's title, px.
 const TITLE: f64 = 26.0;
-/// Between panels, px.
+/// Gap between panels, px.
 const GAP: f64 = 28.0;
-/// Around a figure, px.
+/// Margin around a figure, px.
 const EDGE: f64 = 14.0;

@@ -7,15 +7,15 @@ use super::axis::{Axis, BELOW, GRID};
 use super::{PANEL, Panel, style};
 use crate::words;
 
-/// A number with what is known of it.
+/// A number with its interval.
 #[derive(Clone, Debug)]
 pub(crate) struct Dot {
     pub(crate) approach: Approach,
     pub(crate) ours: bool,
     pub(crate) value: f64,
-    /// From where to where it may lie.
+    /// Its interval.
     pub(crate) reach: Option<(f64, f64)>,
-    /// As it is written.
+    /// Its printed form.
     pub(crate) text: String,
 }
 
@@ -48,7 +48,7 @@ pub(crate) fn panel(title: String, unit: &str, rows: &[Row], axis: Axis) -> Pane
     Panel { title, svg, height: height + BELOW }
 }
 
-/// An axis that leaves room for names on the left and numbers on the right.
+/// An axis that leaves space for names on the left and numbers on the right.
 pub(crate) fn axis(low: f64, high: f64) -> Axis {
     Axis::between(low, high, LEFT, PANEL - RIGHT)
 }
@@ -69,7 +69,7 @@ impl Dot {
         svg.circle([at, y], RADIUS, style(self.approach, self.ours));
         let fill = if self.ours { colors.ink } else { colors.faint };
         let font = Font { size: 10.5, fill, bold: self.ours, halo: Some(colors.paper) };
-        // Away from zero, whose line would cross it.
+        // Placed away from zero, whose line would cross it.
         let (x, anchor) = if self.value < 0.0 {
             (low.min(at - RADIUS) - GAP, Anchor::End)
         } else {
@@ -79,14 +79,14 @@ impl Dot {
     }
 }
 
-/// Where the axis begins, px: after the scenarios' names.
+/// Where the axis starts, px: after the scenarios' names.
 const LEFT: f64 = 140.0;
-/// Room for the numbers behind the last dot, px.
+/// Space for the numbers behind the last dot, px.
 const RIGHT: f64 = 40.0;
 /// Height of a dot with the gap to the next, px.
 const DOT: f64 = 13.0;
-/// Between scenarios, px.
+/// Gap between scenarios, px.
 const BETWEEN: f64 = 12.0;
 const RADIUS: f64 = 4.2;
-/// Between a number and what is left of it, px.
+/// Gap between a number and the sign left of it, px.
 const GAP: f64 = 4.0;

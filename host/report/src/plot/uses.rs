@@ -69,7 +69,7 @@ fn panel(cases: &[&CaseUse], never: usize) -> Option<Panel> {
     Some(Panel { title, svg, height: -bottom + BELOW })
 }
 
-/// Plays that ended in one of these ways; without any, in a way that has no colour of its own.
+/// Plays that ended with one of these; without any, with an end that has no colour of its own.
 fn ends(case: &CaseUse, words: &[&str]) -> u32 {
     let all = CycleEnd::WORDS.iter().zip(case.ends);
     let own = all.filter(|(word, _)| match words {
@@ -79,7 +79,7 @@ fn ends(case: &CaseUse, words: &[&str]) -> u32 {
     own.map(|(_, plays)| plays).sum()
 }
 
-/// Colours (Okabe and Ito, greys), words, and the ends of plays that they stand for.
+/// Colours (Okabe and Ito, greys), labels, and the ends of plays that they stand for.
 const ENDS: [(&str, &str, &[&str]); 7] = [
     ("#009e73", "finished", &["finished"]),
     ("#56b4e9", "the ball left its scope", &["ball-out-of-scope"]),
@@ -89,9 +89,9 @@ const ENDS: [(&str, &str, &[&str]); 7] = [
     ("#8c8c8c", "anything else", &[]),
     ("#c4c4c4", "the trial was over", &["trial-over"]),
 ];
-/// Where bars begin, px: after the cases' names.
+/// Where bars start, px: after the cases' names.
 const LEFT: f64 = 176.0;
-/// Room for the number of plays, px.
+/// Space for the number of plays, px.
 const RIGHT: f64 = 52.0;
 /// Height of a bar with the gap to the next, px.
 const ROW: f64 = 15.0;
@@ -111,13 +111,14 @@ mod tests {
             approach: Approach::Cases,
             case: "a/b".to_owned(),
             retrieved: 78,
-            // 1 to 12, in the order of the words.
+            // 1 to 12, in the order of `CycleEnd::WORDS`.
             ends: std::array::from_fn(|i| i as u32 + 1),
             trials: 9,
             outcomes: [0; 5],
         };
         let plays: Vec<_> = ENDS.iter().map(|(_, _, words)| ends(&case, words)).collect();
-        // Robot lost 4, ball at rest 7, timeout 8, no decision 9, unknown case 10, superseded 11 are anything else.
+        // Robot lost 4, ball at rest 7, timeout 8, no decision 9, unknown case 10, superseded 11 are anything
+        // else.
         assert_eq!(plays, [1, 2, 3, 5, 6, 4 + 7 + 8 + 9 + 10 + 11, 12]);
         assert_eq!(plays.iter().sum::<u32>(), case.retrieved);
         assert!(panel(&[&case], 3).unwrap().height > ROW);

@@ -1,4 +1,5 @@
-//! The claims of §5, each with where its numbers stand. The sentences are ours; what they say is the paper's.
+//! `list`: the claims of §5, each with the place of its numbers. The sentences are ours; their content is the
+//! paper's.
 
 use brain::Approach::{self, Cases, Reactive};
 use hil_sim::Scenario::{self, DefenderAhead, DefenderClose, LeftSide, MiddleBack};
@@ -17,7 +18,7 @@ const CBR_LESS: [Approach; 2] = [Reactive, Cases];
 const ALL: [Scenario; 4] = Scenario::PAPER;
 const FIRST_THREE: [Scenario; 3] = [MiddleBack, LeftSide, DefenderAhead];
 
-/// Is it a claim about trials with robots?
+/// Whether it is a claim about trials with robots.
 pub(super) fn is_of_robots(section: &str) -> bool {
     section.starts_with("5.3") || section == "5.4"
 }
@@ -303,7 +304,7 @@ pub(super) const CLAIMS: &[Entry] = &[
     }),
 ];
 
-/// Less than double and clearly more than as much: half way.
+/// Between equal and double, at the middle: less than double and clearly more than equal.
 const ALMOST_DOUBLE: f64 = 1.5;
-/// The paper prints no share it calls insignificant; this is ours, percent.
+/// The paper prints no share that it calls insignificant; this limit is our estimate, percent.
 const LITTLE_PERCENT: f64 = 5.0;

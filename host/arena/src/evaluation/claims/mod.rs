@@ -1,10 +1,11 @@
 //! `claims`: the paper's claims in prose, tested against numbers. Ours, and the paper's own tables (Ros et
 //! al. 2009 §5).
 //!
-//! A claim is a list of [`Point`]s, each two numbers and how they should lie. Its verdict is worked out from table rows and
-//! nothing else: *supported* where every point lies as claimed and is no chance (p < 0.05 after Holm's correction over the
-//! claim's points), *contradicted* where one lies the other way and that is no chance, else *undecided*. Where no spread was
-//! printed there is no p, and the numbers alone speak.
+//! A claim is a list of [`Point`]s, each two numbers and their expected order. Its verdict is computed from
+//! table rows and nothing else: *supported* where every point is in the claimed order and significant (p <
+//! 0.05 after Holm's correction over the claim's points), *contradicted* where one is in the opposite order
+//! and significant, else *undecided*. Where no spread was printed there is no p, and the numbers alone
+//! decide.
 
 mod list;
 mod point;
@@ -17,39 +18,39 @@ use super::tables::{Extent, TableRow};
 pub use point::{Point, Standing};
 pub(super) use point::{Rows, p_text};
 
-/// Something the paper says of its results.
+/// A claim of the paper about its results.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Claim {
     /// Its short name.
     pub id: &'static str,
-    /// Where the paper says it.
+    /// Section of the paper.
     pub section: &'static str,
-    /// What it says, in our words.
+    /// The claim, in our phrasing.
     pub sentence: &'static str,
-    /// What our trials say to it, all of them.
+    /// Verdict of all our trials.
     pub ours: Judgement,
-    /// What as many of them as the paper's say, where there were more: the first 30 of Table 6.
+    /// Verdict of as many of them as the paper's, where there were more: the first 30 of Table 6.
     pub ours_as_paper: Option<Judgement>,
-    /// What the paper's own tables say.
+    /// Verdict of the paper's own tables.
     pub paper: Judgement,
 }
 
-/// Do numbers bear it out?
+/// Whether numbers support the claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
-    /// They do.
+    /// The numbers support it.
     Supported,
-    /// They say the opposite, in one point at least.
+    /// The opposite holds, in one point at least.
     Contradicted,
-    /// They cannot tell.
+    /// The numbers do not decide it.
     Undecided,
-    /// There are none.
+    /// There are no numbers.
     Unmeasured,
 }
 
 impl Verdict {
-    /// Its word in files.
+    /// Its label in files.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Supported => "supported",
@@ -60,19 +61,19 @@ impl Verdict {
     }
 }
 
-/// What numbers say to a claim.
+/// What numbers imply for a claim.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Judgement {
-    /// In a word.
+    /// Supported, contradicted or undecided.
     pub verdict: Verdict,
-    /// The numbers, in words.
+    /// The numbers, as text.
     pub evidence: String,
     /// The numbers.
     pub points: Vec<Point>,
 }
 
 impl Judgement {
-    /// Of the points of a claim; `None` stands for one that was not measured.
+    /// Judges the points of a claim; `None` stands for one that was not measured.
     pub(super) fn new(points: Vec<Option<Point>>) -> Self {
         let all = points.len();
         let mut points: Vec<Point> = points.into_iter().flatten().collect();
@@ -129,8 +130,9 @@ mod tests {
 
     #[test]
     fn the_papers_tables_bear_out_what_independent_tests_of_them_do() {
-        // Two-proportion and Welch tests of the printed tables, computed apart (`data/derived_cbr_vs_reactive_z.csv`), and
-        // the contradictions between tables and prose that its transcription found.
+        // Two-proportion and Welch tests of the printed tables, computed apart
+        // (`data/derived_cbr_vs_reactive_z.csv`), and the contradictions between tables and prose that its
+        // transcription found.
         for (id, verdict) in [
             ("dg-to-goal", Verdict::Undecided),
             ("dg-to-goal-3-4", Verdict::Supported),

@@ -1,5 +1,5 @@
-//! `point`: pairwise comparison of two measurements with a significance test. The bricks of claims and
-//! verdicts.
+//! `point`: pairwise comparison of two measurements with a significance test. Claims and verdicts consist of
+//! these.
 
 use std::fmt;
 
@@ -15,21 +15,21 @@ use crate::trial::approach_word;
 /// Two numbers of a claim.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Point {
-    /// Of which trials.
+    /// The trials that it is about.
     pub of: String,
-    /// What the first number is.
+    /// Description of the first number.
     pub first_name: String,
-    /// It.
+    /// The first number.
     pub first: f64,
-    /// What the second is.
+    /// Description of the second number.
     pub second_name: String,
-    /// It.
+    /// The second number.
     pub second: f64,
-    /// The chance of a difference at least as great between equals; null where no spread is known.
+    /// p: probability of a difference at least as large between equals; null where no spread is known.
     pub p: Option<f64>,
     /// Corrected over the claim's points by Holm.
     pub p_holm: Option<f64>,
-    /// Does it speak for the claim?
+    /// Whether it supports the claim.
     pub stands: Standing,
     #[serde(skip)]
     wanted: Wanted,
@@ -37,30 +37,30 @@ pub struct Point {
     decimals: usize,
 }
 
-/// Does a point speak for its claim?
+/// Whether a point supports its claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Standing {
-    /// It does.
+    /// It supports the claim.
     Holds,
-    /// It says the opposite.
+    /// It supports the opposite.
     Against,
-    /// It may be chance.
+    /// The difference is not significant.
     Open,
 }
 
-/// How the numbers of a point should lie.
+/// Expected order of the numbers of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in super::super) enum Wanted {
     /// The first above the second.
     Greater,
-    /// The first not below the second: equal will do.
+    /// The first not below the second: equality is enough.
     AtLeast,
-    /// No difference to be seen.
+    /// No significant difference.
     Alike,
 }
 
-/// Chances below it are none (paper §5: Student's t at the usual level).
+/// Significance level (paper §5: Student's t at the usual level).
 const LEVEL: f64 = 0.05;
 
 impl Point {
@@ -89,17 +89,17 @@ impl Point {
         point
     }
 
-    /// With so many digits behind the point.
+    /// With this number of decimals.
     pub(in super::super) fn with_decimals(self, decimals: usize) -> Self {
         Self { decimals, ..self }
     }
 
-    /// Of these trials.
+    /// Sets the trials that it is about.
     pub(in super::super) fn of(self, of: impl Into<String>) -> Self {
         Self { of: of.into(), ..self }
     }
 
-    /// Judges it by its corrected p; that two are alike must stand before any correction.
+    /// Judges it by its corrected p; equality must hold before any correction.
     pub(super) fn stand(&mut self) {
         let sure = self.p_holm.is_none_or(|p| p < LEVEL);
         let difference = self.first - self.second;
@@ -135,7 +135,7 @@ impl fmt::Display for Point {
     }
 }
 
-/// A chance as people read it: `p 0.035`, `p < 0.001`.
+/// A p value in the usual form: `p 0.035`, `p < 0.001`.
 pub(in super::super) fn p_text(p: f64) -> String {
     if p < 0.001 { "p < 0.001".to_owned() } else { format!("p {p:.3}") }
 }
@@ -195,7 +195,8 @@ impl<'a> Rows<'a> {
         Some(point.with_decimals(decimals(measure)))
     }
 
-    /// How much greater a measure is in one approach than in another, in two cells; in the first cell it should be more.
+    /// How much greater a measure is in one approach than in another, in two cells; in the first cell it
+    /// should be more.
     pub(in super::super) fn effects(
         self,
         first: (u8, Scenario, Measure),
@@ -230,7 +231,7 @@ impl<'a> Rows<'a> {
         Some((difference, variance(a).zip(variance(b)).map(|(x, y)| x + y)))
     }
 
-    /// A mean of the first approach against so many times that of the second.
+    /// A mean of the first approach against a multiple of that of the second.
     pub(in super::super) fn times(
         self,
         (table, scenario): (u8, Scenario),
@@ -255,7 +256,8 @@ impl<'a> Rows<'a> {
         Some(Point::new(of, ("B", b.mean), ("A", a.mean), welch(b, a), Wanted::Greater))
     }
 
-    /// The cases for several robots among all used, percent. Cases of a trial count as if they were drawn apart.
+    /// The cases for several robots among all used, percent. Cases of a trial count as if they were drawn
+    /// independently.
     pub(in super::super) fn cooperative(self, scenario: Scenario, approach: Approach) -> Option<Count> {
         let row = self.row(3, scenario, approach)?;
         let trials = f64::from(row.trials);
@@ -263,7 +265,7 @@ impl<'a> Rows<'a> {
         Some(Count { hits: several.round() as u32, of: (one + several).round() as u32 })
     }
 
-    /// That share against half.
+    /// That share compared with one half.
     pub(in super::super) fn half_cooperative(self, scenario: Scenario) -> Option<Point> {
         let count = self.cooperative(scenario, Approach::Cases)?;
         let share = 100.0 * count.share()?;
@@ -300,7 +302,7 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// Digits a measure is worth.
+/// Number of decimals of a measure.
 pub(super) fn decimals(measure: Measure) -> usize {
     if measure.is_share() { 1 } else { 2 }
 }

@@ -1,4 +1,4 @@
-//! Tests: equal evaluations give equal files, however they were run.
+//! Tests: equal evaluations give equal files, independent of threads, shards and interrupts.
 
 use std::fs;
 use std::path::PathBuf;
@@ -12,7 +12,7 @@ use crate::evaluation::ledger::read;
 use crate::evaluation::plan::{Cell, Profile};
 use crate::evaluation::row::{csv_hash, to_csv};
 
-/// A folder of a test's own, gone when the test is.
+/// A directory of a test's own, removed at the end of the test.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -86,7 +86,7 @@ fn threads_shards_and_interrupts_change_no_byte() {
     let lacking = merge(files[..2].to_vec()).unwrap_err().to_string();
     assert!(lacking.starts_with("2 of 6 trials are missing, the first is 2;"), "{lacking}");
 
-    // Stopped after two trials, killed in the middle of a line, gone on.
+    // Stopped after two trials, killed in the middle of a line, continued.
     let torn = Folder::new("torn");
     let file = torn.file(Shard::WHOLE);
     let stop = |progress: Progress| {

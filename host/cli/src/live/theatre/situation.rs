@@ -1,5 +1,5 @@
 //! `situation`: start of a match in a case's situation. Ball, players and opponents as the case's author drew
-//! them, everybody else out of the way at the places of a kick-off. m, rad, field frame.
+//! them, all other robots at free places of a kick-off. m, rad, field frame.
 
 use casebase::CaseBase;
 use geometry::{Angle, Field, GoalEnd, Point, Pose};
@@ -9,16 +9,17 @@ use rules::{Colour, FieldSpec};
 
 use crate::library::Shelf;
 
-/// Nobody else is put nearer to somebody than this, m: two robots and as much room between.
+/// Least distance to other robots and to the ball at which a robot without a place in the case is put, m: two
+/// robots and as much free space between.
 const APART: f32 = 0.36;
 
-/// Who plays it.
+/// Teams and robots of the match.
 pub(super) struct Sides<'a> {
-    /// The carpet.
+    /// The field's dimensions.
     pub(super) field: &'a FieldSpec,
     /// The goal that blue defends.
     pub(super) blue_goal: GoalEnd,
-    /// Everybody on the carpet.
+    /// All robots on the field.
     pub(super) present: &'a [Who],
     /// The keepers, blue's and yellow's.
     pub(super) keepers: [RobotId; 2],
@@ -44,11 +45,11 @@ impl Sides<'_> {
 pub(super) struct Situation {
     /// Where the ball lies.
     pub(super) ball: Point<Field>,
-    /// Where everybody stands.
+    /// Poses of all robots.
     pub(super) robots: Vec<(Who, Pose<Field>)>,
 }
 
-/// The situation of the case of that name; none where there is no such case.
+/// The situation of the case of that name; `None` if there is no such case.
 pub(super) fn of_case(shelf: &Shelf, name: &str, sides: &Sides<'_>) -> Option<Situation> {
     let authored = shelf.names().iter().position(|known| known == name)?;
     place(&shelf.base(), CaseId(u16::try_from(authored * 4).ok()?), sides)
@@ -83,7 +84,7 @@ fn place(base: &CaseBase<'_>, id: CaseId, sides: &Sides<'_>) -> Option<Situation
             continue;
         }
         let places = kickoff_places(sides.field, sides.own(who.colour), false);
-        // The first of the places is the keeper's; where somebody stands there, it stands beside.
+        // The first of the places is the keeper's; if it is occupied, the keeper stands beside it.
         let beside = places[0];
         let keeps = [0.0, APART + 0.05, -APART - 0.05].map(|y| Point::new(beside.x(), beside.y() + y));
         let places = if who.id == sides.keeper(who.colour) { &keeps[..] } else { &places[1..] };
