@@ -17,7 +17,7 @@ use crate::hash::Fnv;
 pub struct TraceHash(pub(crate) Fnv);
 
 impl TraceHash {
-    /// A tick begins with the world like this.
+    /// Hashes the start of a tick with this state of the world.
     pub fn tick(&mut self, number: u32, world: &World) {
         self.0.add(&number.to_le_bytes());
         self.ball(&world.ball);
@@ -26,7 +26,7 @@ impl TraceHash {
         }
     }
 
-    /// A robot's body was given this order.
+    /// Hashes an order to a robot's body.
     pub fn order(&mut self, robot: RobotId, order: &ActuatorFrame) {
         self.0.add(&[robot.number()]);
         self.frame(order);
@@ -40,7 +40,7 @@ impl TraceHash {
         }
     }
 
-    /// A robot was handed this packet.
+    /// Hashes a packet delivered to a robot.
     pub fn packet(&mut self, receiver: RobotId, packet: &[u8]) {
         self.0.add(&[receiver.number(), packet.len() as u8]);
         self.0.add(packet);

@@ -1,18 +1,18 @@
 //! `surface`: distance and normal of a robot's hull, a wall or a board. m.
 //!
-//! The hull is a disc with a flat front: what lies beyond the chord at `front` is cut off. Distances are exact outside (so
-//! that steps as long as the distance never jump into a body) and, inside, to the nearest side.
+//! The hull is a disc with a flat front: the part beyond the chord at `front` is cut off. Distances are exact
+//! outside (so that steps as long as the distance never jump into a body) and, inside, to the nearest side.
 
 use super::parameters::BodyParameters;
 
-/// The nearest place of a body's surface.
+/// The nearest point of a body's surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Nearest {
-    /// m, negative inside.
+    /// Distance, m, negative inside.
     pub distance: f32,
-    /// Outwards, of length 1.
+    /// Outward normal, of length 1.
     pub normal: [f32; 2],
-    /// It is the flat front.
+    /// Whether it is on the flat front.
     pub front: bool,
 }
 

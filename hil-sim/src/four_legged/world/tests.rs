@@ -5,7 +5,7 @@ use protocol::robot_io::{LeggedKick, LeggedPrimitive};
 
 use super::*;
 
-/// An attacker at the origin facing +x, the ball in its grasp, and whoever else.
+/// An attacker at the origin facing +x, the ball in its grasp, and the robots `others`.
 fn world(seed: u64, others: &[Walker]) -> World {
     let mut walkers = vec![Walker::at(Side::Attackers, Pose::default())];
     walkers.extend_from_slice(others);
@@ -20,7 +20,7 @@ fn walk(world: &mut World, walk: Twist<geometry::Body>, primitive: LeggedPrimiti
     world.command(0, &ActuatorFrame::Legged { walk, primitive });
 }
 
-/// Runs for `seconds`; gives everything that happened.
+/// Runs for `seconds`; returns all events.
 fn run(world: &mut World, seconds: f32) -> Vec<WorldEvent> {
     let steps = (seconds / STEP + 0.5) as u32;
     let mut events = Vec::new();

@@ -1,5 +1,5 @@
-//! Tests: cameras show what is there, with the delay and the errors they should have. And the others'
-//! manners, by the numbers of the traps.
+//! Tests: cameras detect what is there, with the configured delay and errors. And the other simulators'
+//! compatibility profiles, by the numbers of their deviations.
 
 use std::collections::BTreeSet;
 
@@ -25,7 +25,7 @@ fn clear(world: &World) -> CameraSettings {
     }
 }
 
-/// All packets of so many steps, with the step each was due in.
+/// All packets of `steps` steps, with the step each was due in.
 fn watched(cameras: &mut Cameras, world: &mut World, steps: u32) -> Vec<(u64, WrapperPacket)> {
     let mut packets = Vec::new();
     for _ in 0..steps {
@@ -70,7 +70,7 @@ fn pictures_come_at_the_rate_numbered_by_camera_and_are_sent_after_the_delay() {
             .filter_map(|(due, p)| p.detection.as_ref().map(|d| (*due, d)))
             .filter(|(_, d)| d.camera_id == camera)
             .collect();
-        // 75 a second, of which the last 35 ms are still on their way.
+        // 75 a second, of which those of the last 35 ms are not due yet.
         assert!((146..=149).contains(&frames.len()), "{}", frames.len());
         for (k, (due, frame)) in frames.iter().enumerate() {
             assert_eq!(frame.frame_number, k as u32);
@@ -143,7 +143,7 @@ fn a_flying_ball_is_told_where_its_ray_meets_the_ground() {
     let mut cameras = Cameras::new(clear(&world), &world, 1);
     world.put_ball(Ball { height: 1.0, ..Ball::at(Point::new(3.4, 0.5)) });
     let ball = cameras.snapshot(&world)[0].balls[0];
-    // From (2.4, 0) at 5 m: 5/4 of the way out.
+    // From (2.4, 0) at 5 m: 5/4 of the distance outwards.
     assert!((ball.x - 3650.0).abs() < 0.1 && (ball.y - 625.0).abs() < 0.1, "{ball:?}");
 }
 

@@ -23,7 +23,7 @@ fn kick(speed: f32, degrees: f32) -> Order {
 fn a_gentle_robot_takes_the_ball_along_backwards_sideways_and_round() {
     for gentle in [local(-1.0, 0.0, 0.0), local(1.0, 0.0, 0.0), local(0.0, 0.6, 0.0), local(0.0, 0.0, 3.0)] {
         let mut world = with_ball();
-        // A brain speeds up by ramps: 2 m/s², 10 rad/s².
+        // A brain accelerates by ramps: 2 m/s², 10 rad/s².
         for tenth in 1..=100 {
             let share = (tenth as f32 / 50.0).min(1.0);
             let Drive::Local(twist) = gentle.drive else { continue };
@@ -39,7 +39,8 @@ fn a_jerk_loses_the_ball_and_it_neither_sticks_nor_flies_off() {
     let mut world = with_ball();
     lead(&mut world, yellow(1), dribble(local(1.0, 0.0, 0.0)), 600);
     assert!(has_ball(&world));
-    // Full brakes backwards pull less than the roller holds; three times the grip does not.
+    // Full braking while driving backwards pulls less than the roller holds; three times the traction does
+    // not.
     world.alter(yellow(1), |robot| robot.set_limits(DriveParameters { brake: 16.0, ..*robot.limits() }));
     lead(&mut world, yellow(1), dribble(local(-2.0, 0.0, 0.0)), 600);
     assert!(!has_ball(&world));

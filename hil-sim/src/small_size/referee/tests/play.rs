@@ -1,4 +1,5 @@
-//! Fouls with the ball: speed, dribbling, double touch, keeper, no progress, crashes, pushing, holding, placements.
+//! Tests of fouls with the ball: speed, dribbling, double touch, keeper, no progress, crashes, pushing,
+//! holding, placements.
 
 use super::*;
 
@@ -33,7 +34,7 @@ fn speed_counts_in_three_dimensions() {
     assert_eq!(stage.count(Kind::BallTooFast), 0);
 }
 
-/// Yellow's robot 1 takes the ball along from the centre by that far.
+/// Yellow's robot 1 dribbles the ball from the centre over that distance.
 fn dribble(metres: f32) -> Stage {
     let mut stage = in_play();
     stage.move_ball(at(-1.0, 1.0));
@@ -143,7 +144,7 @@ fn no_progress_for_ten_seconds_is_a_force_start() {
     assert_eq!(stage.referee.command(), Command::ForceStart);
 }
 
-/// Yellow's robot 1 and blue's robot 1 meet face to face with these speeds.
+/// Yellow's robot 1 and blue's robot 1 collide head-on with these speeds.
 fn crash(yellow_speed: f32, blue_speed: f32) -> Stage {
     let mut stage = in_play();
     stage.put(yellow(1), at(0.0, 1.0));

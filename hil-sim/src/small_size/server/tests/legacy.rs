@@ -52,7 +52,7 @@ fn grsims_older_protocol_drives_kicks_and_puts_things() {
     let robot = grsim.world().robot(own(2)).unwrap();
     // 10 rad/s of a wheel of 27 mm at 0.081 m from the middle or so.
     assert!(robot.turning > 2.5 && robot.velocity.norm() < 0.05, "{robot:?}");
-    // The ball into its mouth, by replacement; a chip.
+    // The ball is placed in its dribbler opening by a replacement; a chip.
     let robot_at =
         GrsimRobotReplacement { x: 1.0, y: 1.0, dir: 90.0, id: 2, yellowteam: false, turnon: None };
     let reach = f64::from(robot.body.front + 0.0215 + 0.001);
@@ -83,7 +83,7 @@ fn grsims_older_protocol_drives_kicks_and_puts_things() {
     assert!(!grsim.world().robot(own(2)).unwrap().present);
     states(&mut grsim, &replace(None));
     assert!(grsim.world().robot(own(2)).unwrap().present);
-    // Bytes of another kind, ids that are none, numbers that are none.
+    // Undecodable bytes, invalid ids, NaN.
     grsim.handle(Port::Legacy, from(), b"\xff\xff");
     let nonsense = |c: &mut GrsimRobotCommand| (c.id, c.veltangent) = (99, f32::NAN);
     states(&mut grsim, &command(nonsense));
