@@ -1,4 +1,4 @@
-//! `validate`: one-time validation of case-base bytes, so that nothing need be checked later.
+//! `validate`: one-time validation of case-base bytes, so that later accesses need no checks.
 
 use core::fmt;
 
@@ -10,22 +10,22 @@ use super::{
 use crate::Grid;
 use crate::action::{KICKS_MAX, OPPONENTS_MAX, Primitive, TEAMMATES_MAX};
 
-/// Why bytes are no case base.
+/// Why bytes are not a case base.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TableError {
-    /// They do not begin at a multiple of 4.
+    /// They do not start at a multiple of 4.
     Misaligned,
-    /// They are fewer or more than the header tells.
+    /// They are fewer or more than the header states.
     Length,
     /// They are something else, another version, or of the other byte order.
     Magic,
     /// The hash does not match: damaged.
     Hash,
-    /// The field, the radii of a pass or a kick kind make no sense.
+    /// The field, the radii of a pass or a kick kind are invalid.
     League,
-    /// A record points outside its pool, or holds a value no case can have.
+    /// A record points outside its pool, or contains a value that no case can have.
     Case {
-        /// Which authored case, from 0.
+        /// Number of the authored case, from 0.
         authored: u32,
     },
     /// The index points outside the table.
@@ -187,9 +187,9 @@ impl<'a> CaseBase<'a> {
     }
 }
 
-/// Most authored cases: their four copies are numbered by a `u16`.
+/// Maximum number of authored cases: their four copies are numbered by a `u16`.
 pub(crate) const CASES_MAX: usize = (u16::MAX as usize + 1) / 4;
-/// Longest side of a field, mm: positions relative to the ball then fit an `i16`.
+/// Maximum side of a field, mm: positions relative to the ball then fit an `i16`.
 pub(crate) const SIDE_MAX_MM: i32 = 30_000;
 
 /// Like `is_sorted`, whose cutting into chunks leaves a panic site behind.

@@ -1,7 +1,7 @@
 //! `crowd`: collisions of robots. Discs against discs, boards and goals; m, s, field frame.
 //!
-//! Overlapping robots are moved apart in proportion to their masses, and exchange momentum along the contact
-//! normal. Only pairs that could touch within the next milliseconds are checked.
+//! Overlapping robots are moved apart in proportion to their masses, and their closing speed is exchanged as
+//! an impact. Only pairs that could touch within the next milliseconds are checked.
 
 use geometry::{Field, Point, Vector};
 
