@@ -5,11 +5,11 @@ use std::fs;
 
 use crate::context::{Context, Failure, run};
 
-/// What holds when the step passes.
+/// The property checked by the step.
 pub(crate) const WHAT: &str =
     "the commands of README and docs/commands.md run, README's first one among them";
 
-/// Runs every `cargo run` of the pages' shell blocks; the chores beside them are this very program.
+/// Runs every `cargo run` of the pages' shell blocks; the xtask commands beside them are this program.
 pub(crate) fn check(context: &Context) -> Result<(), Failure> {
     for page in PAGES {
         let file = context.root().join(page);

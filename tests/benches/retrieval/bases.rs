@@ -10,7 +10,7 @@ use match_tests::oracle::problem::Problem as Drawn;
 use match_tests::random_library::{Dice, RandomLibrary, random_problem};
 use protocol::RobotId;
 
-/// A case base, and the same library as problems are drawn from.
+/// A case base, and the library from which its problems are drawn.
 pub(crate) struct Base {
     pub(crate) library: Library,
     oracle: Oracle,

@@ -45,7 +45,7 @@ fn defined(text: &str) -> impl Iterator<Item = String> {
     })
 }
 
-/// Terms that stand twice or name nothing.
+/// Terms that occur twice or name nothing.
 pub(crate) fn faults(source: &Source, names: &Names) -> Vec<Finding> {
     let mut seen = BTreeSet::new();
     let mut findings = Vec::new();
