@@ -84,8 +84,8 @@ pub(crate) fn nearest(robots: &[(RobotId, [f32; 2])], places: &[[i16; 2]], limit
     Some(Nearest { players: Players { ids, cost }, distinct })
 }
 
-/// The cheapest correspondence; `None` where there are fewer robots than parts, or where the settings constrain the
-/// search to the limit of travel and nothing fits.
+/// The cheapest correspondence; `None` where there are fewer robots than parts, or where the settings
+/// constrain the search to the limit of travel and nothing fits.
 pub(crate) fn assign(distances: &Distances, settings: &Settings) -> Option<Assignment> {
     let limit = match settings.correspondence {
         CorrespondenceRule::MinThenTest => f32::INFINITY,
@@ -305,8 +305,8 @@ mod tests {
 
     #[test]
     fn in_the_papers_trapezoid_the_sum_keeps_the_paths_apart_and_the_maximum_crosses_them() {
-        // Fig. 6: robots 1 and 2, places A and B; c = d(1, A) is short, b = d(2, B) the long side, both diagonals
-        // shorter than b.
+        // Fig. 6: robots 1 and 2, places A and B; c = d(1, A) is short, b = d(2, B) the long side, both
+        // diagonals shorter than b.
         let (robot1, robot2) = ([0.0, 0.0], [-400.0, 300.0]);
         let (a, b) = ([100.0, 0.0], [500.0, 300.0]);
         let d = |p: [f32; 2], q: [f32; 2]| ((p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2)).sqrt();

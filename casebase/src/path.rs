@@ -138,8 +138,8 @@ impl Tube {
     }
 }
 
-/// Products of the leg's vector with that to a point (`along`: scalar, `cross`: z of the vector product), mm², and the
-/// leg's radius abreast of the point, mm.
+/// Products of the leg's vector with that to a point (`along`: scalar, `cross`: z of the vector product),
+/// mm², and the leg's radius abreast of the point, mm.
 struct Products {
     along: f32,
     cross: f32,

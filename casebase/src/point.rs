@@ -1,6 +1,7 @@
 //! `point`: points on the field, and depth inside an elliptic scope (Ros et al. 2009, §2.1, §2.3).
 //!
-//! Whole millimetres in the field frame, as the paper has them. Differences saturate, so that no input overflows.
+//! Whole millimetres in the field frame, as the paper has them. Differences saturate, so that no input
+//! overflows.
 
 use geometry::{Field, Point};
 use protocol::quantized::{self, WirePoint};

@@ -1,7 +1,7 @@
 //! `rank`: ranking of candidates (Ros et al. 2009, §3.4; docs/case-format.md §3).
 //!
-//! More conditions, then more teammates, then the higher similarity interval, then the lower cost; ties go to the
-//! higher similarity, then to the lower id. The order of the three criteria is a setting.
+//! More conditions, then more teammates, then the higher similarity interval, then the lower cost; ties go to
+//! the higher similarity, then to the lower id. The order of the three criteria is a setting.
 
 use core::cmp::Ordering;
 

@@ -1,4 +1,5 @@
-//! `evaluation`: `cargo xtask evaluation`: figures of `docs/evaluation.md`, and of the tables of matches and skills.
+//! `evaluation`: `cargo xtask evaluation`: figures of `docs/evaluation.md`, and of the tables of matches and
+//! skills.
 
 use crate::context::{Context, Failure, run};
 

@@ -1,5 +1,5 @@
-//! `readme`: check of the documented commands. Those of README and docs/commands.md that run the program are run, in
-//! order, as they stand there.
+//! `readme`: check of the documented commands. Those of README and docs/commands.md that run the program are
+//! run, in order, as they stand there.
 
 use std::fs;
 

@@ -93,8 +93,8 @@ impl Move {
     }
 }
 
-/// The smallest single move that makes `id` the retrieved case; `None` where the base has no such case under the
-/// problem's goal.
+/// The smallest single move that makes `id` the retrieved case; `None` where the base has no such case under
+/// the problem's goal.
 pub fn counterfactual(
     base: &CaseBase<'_>,
     problem: &Problem,

@@ -17,8 +17,8 @@ pub(crate) struct Index {
     pub(crate) cases: Vec<u16>,
 }
 
-/// The index of cases in the order of their ids, over the finest grid within the budget of a table whose other parts
-/// take `others` bytes.
+/// The index of cases in the order of their ids, over the finest grid within the budget of a table whose
+/// other parts take `others` bytes.
 pub(crate) fn build(field: FieldMm, cases: &[Authored], others: usize) -> Index {
     let stored = 4 * cases.len();
     let budget = (TABLE_BYTES * stored).saturating_sub(others).max(INDEX_BYTES * stored);

@@ -168,7 +168,8 @@ fn clamped_positions_lead_the_ball_elsewhere() {
         [[teammates]]\nat = [0, 0]\ngameplay = [\"get_ball\", { pass_ball = 2 }]\n\
         [[teammates]]\nat = [0, 1800]\ngameplay = [{ receive_ball = 1 }]\n";
     let library = library(&[("a/a", text)]);
-    // With the ball at (0, 300) the pass ends at (0, 2100), clamped at (0, 1800): an opponent beyond is not abreast.
+    // With the ball at (0, 300) the pass ends at (0, 2100), clamped at (0, 1800): an opponent beyond is not
+    // abreast.
     let beyond = problem((0, 300), &[(1, (0, 300)), (2, (0, 1800))], &[(50, 1900)]);
     assert_eq!(ask(&library, &beyond, &Settings::default()).candidates, 0);
     assert_eq!(ask(&library, &beyond, &settings(&[("out_of_field", "clamp")])).candidates, 1);

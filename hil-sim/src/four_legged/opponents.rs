@@ -135,7 +135,8 @@ fn walk_to(
     Twist { linear, angular: (GAZE_GAIN * turn).clamp(-p.turn, p.turn) }
 }
 
-/// Turning rate for an error of 1 rad, 1/s: three time constants in 0.75 s, well damped at 4 rad/s² and steps of 40 ms.
+/// Turning rate for an error of 1 rad, 1/s: three time constants in 0.75 s, well damped at 4 rad/s² and steps
+/// of 40 ms.
 const GAZE_GAIN: f32 = 4.0;
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! `referee`: outcome and possession of a trial. Ros et al. 2009 §5.1.4, docs/papers.md R32–R35.
 //!
-//! A trial ends when the ball has crossed a line with all of itself, when the goalie touches it (defender and goalie), when
-//! it enters the attacked penalty area (two defenders; the paper calls that "to goal", the outcome here is `goal`), or
-//! when time is up. m, s, field frame; the attacked goal is at +x.
+//! A trial ends when the ball has crossed a line with all of itself, when the goalie touches it (defender and
+//! goalie), when it enters the attacked penalty area (two defenders; the paper calls that "to goal", the
+//! outcome here is `goal`), or when time is up. m, s, field frame; the attacked goal is at +x.
 
 use geometry::{Field, GoalEnd, Point};
 use rules::{FieldSpec, League};

@@ -182,7 +182,8 @@ mod tests {
         let (mut ball, of) = (Ball::at(Point::default()), carpet());
         ball.velocity = Vector::new(6.0, 0.0);
         let steps = run_until_rest(&mut ball, &of);
-        // v²(1−c²)/2a + c²v²/2r with c = 5/7, a = 3.9, r = 0.35: 2.2606 + 26.2391 m; v(1−c)/a + cv/r = 0.4396 + 12.2449 s.
+        // v²(1−c²)/2a + c²v²/2r with c = 5/7, a = 3.9, r = 0.35: 2.2606 + 26.2391 m; v(1−c)/a + cv/r = 0.4396
+        // + 12.2449 s.
         assert!((ball.position.x() - 28.499_7).abs() < 5e-3, "{:?}", ball.position);
         assert!(steps.abs_diff(12_684) <= 2, "{steps}");
         assert_eq!(ball.position.y(), 0.0);
@@ -217,7 +218,8 @@ mod tests {
             ball.advance(&of, STEP);
             top = top.max(ball.height);
         }
-        // 2·3·3/9.81 = 1.8349 m; 3²/(2·9.81) = 0.4587 m; then 0.75 along and 0.5 up. One step flies on after landing.
+        // 2·3·3/9.81 = 1.8349 m; 3²/(2·9.81) = 0.4587 m; then 0.75 along and 0.5 up. One step flies on after
+        // landing.
         assert!((ball.position.x() - 1.834_86).abs() < 3e-3, "{:?}", ball.position);
         assert!((top - 0.458_7).abs() < 1e-4, "{top}");
         assert!((ball.velocity.x() - 2.25).abs() < 1e-5 && (ball.climb - 1.5).abs() < 0.01, "{ball:?}");
@@ -236,7 +238,8 @@ mod tests {
         ball.velocity = Vector::new(-2.0, 1.0);
         let hit = Impact { restitution: 0.5, friction: 0.1, spin: 0.0, share: 1.0 };
         let change = ball.bounce(Vector::new(1.0, 0.0), Vector::default(), hit);
-        // Along the normal −2 becomes 1; friction 0.1 · 3 would take 0.3, but 2/7 of 1 m/s is all there is to take.
+        // Along the normal −2 becomes 1; friction 0.1 · 3 would take 0.3, but 2/7 of 1 m/s is all there is to
+        // take.
         assert!((change - Vector::new(3.0, -2.0 / 7.0)).norm() < 1e-6);
         assert_eq!(ball.bounce(Vector::new(1.0, 0.0), Vector::default(), hit), Vector::default());
         // A surface that moves along pushes the ball.

@@ -35,7 +35,8 @@ pub enum Event {
         at: Point<Field>,
         /// Their velocities before it, in that order, m/s.
         velocities: [Vector<Field>; 2],
-        /// Difference of the velocities, projected on the line between their centres, m/s: what the rules call crash speed.
+        /// Difference of the velocities, projected on the line between their centres, m/s: what the rules
+        /// call crash speed.
         closing: f32,
     },
     /// The ball hit a goal's post, bar, wall or net.

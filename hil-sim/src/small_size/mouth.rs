@@ -156,9 +156,11 @@ fn pull(
     robot.to_field([x.max(-pull), y.clamp(-side, side)])
 }
 
-/// Change of a solid sphere's spin (as the velocity at which it would roll) over that of its velocity, by a push at its surface: m r² / I.
+/// Change of a solid sphere's spin (as the velocity at which it would roll) over that of its velocity, by a
+/// push at its surface: m r² / I.
 const SOLID_SPHERE: f32 = 2.5;
-/// Steps in which a kicked ball is past the roller: 1.5 m/s, the slowest kick, for a reach of 12 mm and a ball's radius.
+/// Steps in which a kicked ball is past the roller: 1.5 m/s, the slowest kick, for a reach of 12 mm and a
+/// ball's radius.
 const LEAVES: u64 = 22;
 /// Maximum height at which the plunger touches a ball, m.
 const KICKABLE_HEIGHT: f32 = 0.02;
@@ -169,5 +171,6 @@ const DRIBBLE_HEIGHT: f32 = 0.03;
 const SEPARATE: f32 = 0.02;
 /// Distance beyond contact, m, from which the dribbler opening is not checked.
 const NEAR: f32 = 0.1;
-/// Share of its motion along the front that a kicked ball keeps: the plunger's face holds most of it by friction; estimate.
+/// Share of its motion along the front that a kicked ball keeps: the plunger's face holds most of it by
+/// friction; estimate.
 const ASIDE_KEPT: f32 = 0.5;

@@ -11,7 +11,8 @@ pub enum Drive {
     /// Brake and stand.
     #[default]
     Brake,
-    /// Rim speeds, m/s: front right, back right, back left, front left; positive turns the robot counter-clockwise.
+    /// Rim speeds, m/s: front right, back right, back left, front left; positive turns the robot
+    /// counter-clockwise.
     Rims([f32; 4]),
     /// A velocity in the robot's own frame.
     Local(Twist<Body>),

@@ -78,8 +78,8 @@ fn translated(problem: &Drawn) -> Problem {
     }
 }
 
-/// Authored cases of the smallest base: stored in four copies they come nearest to the 34 a team would have without
-/// symmetry.
+/// Authored cases of the smallest base: stored in four copies they come nearest to the 34 a team would have
+/// without symmetry.
 const PART: usize = 9;
 /// Of the random libraries.
 const SEED: u64 = 8;

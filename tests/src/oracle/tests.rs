@@ -157,8 +157,9 @@ gameplay = [{ turn = { heading_deg = 90 } }]
 
 #[test]
 fn the_sum_is_minimised_first_and_a_robot_too_far_then_rejects() {
-    // On one line: tm1 at 0, tm2 at 100 (adapted). Robots at 1450 (id 2) and 1700 (id 5): both maps cost 3050; the
-    // smaller list [2, 5] wins and sends robot 5 over 1600 mm, though [5, 2] would send it over 1700.
+    // On one line: tm1 at 0, tm2 at 100 (adapted). Robots at 1450 (id 2) and 1700 (id 5): both maps cost
+    // 3050; the smaller list [2, 5] wins and sends robot 5 over 1600 mm, though [5, 2] would send it over
+    // 1700.
     let library = library(&[(
         "center/pair",
         r#"

@@ -82,7 +82,8 @@ impl Honest {
         if !seen_by(packet, self.me).is_some_and(|seen| sayings.all.contains(&seen)) {
             return None;
         }
-        // version, team, sender, epoch, counter, payload, tag; the host's number is 17 where an audience and its tags follow.
+        // version, team, sender, epoch, counter, payload, tag; the host's number is 17 where an audience and
+        // its tags follow.
         let several = packet[2] == 17;
         let sender = if several { 16 } else { usize::from(packet[2]) };
         let number =

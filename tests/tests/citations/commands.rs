@@ -1,5 +1,5 @@
-//! `commands`: commands in documents and comments: verbs and flags of `onetwo`, of `cargo xtask`, and cargo's own
-//! with their packages, tests and examples.
+//! `commands`: commands in documents and comments: verbs and flags of `onetwo`, of `cargo xtask`, and cargo's
+//! own with their packages, tests and examples.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

@@ -30,8 +30,8 @@ impl Area {
     pub const ALL: [Self; 6] =
         [Self::Back, Self::Center, Self::Front, Self::Side, Self::FrontSide, Self::Corner];
 
-    /// The area of a ball at `ball` (field frame) for a team that defends `defending`; outside the lines, that of the
-    /// nearest part of the field.
+    /// The area of a ball at `ball` (field frame) for a team that defends `defending`; outside the lines,
+    /// that of the nearest part of the field.
     pub fn of(field: FieldMm, ball: PointMm, defending: GoalEnd) -> Self {
         let x = f64::from(defending.attack_sign()) * f64::from(ball.x) / (f64::from(field.length) / 2.0);
         let y = f64::from(ball.y).abs() / (f64::from(field.width) / 2.0);

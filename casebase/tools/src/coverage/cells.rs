@@ -62,8 +62,8 @@ impl Cells {
         self.len() == 0
     }
 
-    /// The cell of a ball (field frame), row after row from −y, from −x within a row; the nearest one for a ball
-    /// outside.
+    /// The cell of a ball (field frame), row after row from −y, from −x within a row; the nearest one for a
+    /// ball outside.
     pub fn cell(&self, ball: PointMm, defending: GoalEnd) -> usize {
         let sign = i64::from(defending.attack_sign());
         let step = |at: i32, count: usize| {

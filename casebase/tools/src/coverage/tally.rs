@@ -156,7 +156,8 @@ impl CaseTally {
 }
 
 impl CellTally {
-    /// Entropy of the winner, bits: 0 where one case always wins, 1 where two share evenly; 0 without a winner.
+    /// Entropy of the winner, bits: 0 where one case always wins, 1 where two share evenly; 0 without a
+    /// winner.
     pub fn entropy_bits(&self) -> f64 {
         entropy_bits(self.wins.values().copied())
     }

@@ -39,7 +39,8 @@ pub enum Scale<'a> {
         /// Unit behind each number in the legend: `" %"`, `" cases"`.
         unit: &'a str,
     },
-    /// Categories: the value is a number in this list of at most [`CATEGORIES_MAX`], rounded; others are unknown.
+    /// Categories: the value is a number in this list of at most [`CATEGORIES_MAX`], rounded; others are
+    /// unknown.
     Categorical {
         /// Their names in the legend.
         names: &'a [&'a str],

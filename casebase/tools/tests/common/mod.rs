@@ -143,8 +143,8 @@ impl Dice {
             "intent = \"drawn\"\ndefending = \"{defending}\"\nball = {{ at = [{}, {}], scope = [{sx}, {sy}] }}\n",
             ball.0, ball.1
         );
-        // The ball goes from robot to robot by passes; some dribble, some walk before they receive, the last may kick
-        // and chase.
+        // The ball goes from robot to robot by passes; some dribble, some walk before they receive, the last
+        // may kick and chase.
         for robot in 1..=robots {
             let at = self.near(ball, 1200);
             let mut plan = Vec::new();

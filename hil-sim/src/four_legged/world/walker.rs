@@ -144,7 +144,8 @@ mod tests {
     #[test]
     fn full_speed_takes_speed_over_acceleration() {
         let walker = walker(twist(9.0, 0.0, 0.0));
-        // 0.3 m/s at 0.6 m/s²: half a second, and ½·0.6·0.5² = 0.075 m (a step of 10 ms early or late is 3 mm).
+        // 0.3 m/s at 0.6 m/s²: half a second, and ½·0.6·0.5² = 0.075 m (a step of 10 ms early or late is 3
+        // mm).
         assert!((after(walker, 25, false).twist.linear.x() - 0.15).abs() < 1e-5);
         let at_full_speed = after(walker, 50, false);
         assert!((at_full_speed.twist.linear.x() - 0.3).abs() < 1e-5);

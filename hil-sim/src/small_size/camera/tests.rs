@@ -118,7 +118,8 @@ fn a_ball_behind_a_robot_is_hidden_and_one_before_its_front_is_seen() {
     let mut world = world(League::DivisionB);
     let noise = NoiseParameters { hidden_ball: 0.3, ..NoiseParameters::NONE };
     let mut cameras = Cameras::new(CameraSettings { noise, ..clear(&world) }, &world, 1);
-    // The camera of the right half hangs at x = 2.4; the robot stands further out and throws its shadow outwards.
+    // The camera of the right half hangs at x = 2.4; the robot stands further out and throws its shadow
+    // outwards.
     let who = Who::blue(RobotId::new(9).unwrap());
     world.put(who, Pose::from_mm_deg(4200.0, 0.0, 0.0));
     let mut seen = |x: f32, height: f32| {

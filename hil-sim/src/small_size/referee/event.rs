@@ -159,7 +159,8 @@ kinds! {
         /// Position where it exceeded the limit, m.
         end: Point<Field>,
     } = "bot_dribbled_ball_too_far",
-    /// A robot within 0.2 m of the opponents' defence area in stop or at a free kick; the place is the robot's.
+    /// A robot within 0.2 m of the opponents' defence area in stop or at a free kick; the place is the
+    /// robot's.
     AttackerTooClose {
         /// Distance from the area, m.
         distance: f32,

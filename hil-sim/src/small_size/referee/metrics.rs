@@ -44,8 +44,8 @@ pub struct TeamMetrics {
     pub possession_s: f32,
     /// Seconds in play with the ball in the opponents' half.
     pub ball_in_their_half_s: f32,
-    /// Shots: the ball left one of its robots faster than 1.5 m/s, from the opponents' half, on a line that crosses their
-    /// goal line between the posts or within a goal's width beside them.
+    /// Shots: the ball left one of its robots faster than 1.5 m/s, from the opponents' half, on a line that
+    /// crosses their goal line between the posts or within a goal's width beside them.
     pub shots: u32,
     /// Scoring chances: shots on a line between the posts, fast enough to get there if no robot stops them.
     pub chances: u32,
@@ -60,7 +60,8 @@ pub struct TeamMetrics {
 pub struct Metrics {
     /// Simulated seconds without breaks and after-match.
     pub match_s: f32,
-    /// Seconds in which the ball was in play (rules: from 0.05 m after a restart, or a force start, to the next stop).
+    /// Seconds in which the ball was in play (rules: from 0.05 m after a restart, or a force start, to the
+    /// next stop).
     pub in_play_s: f32,
     /// Seconds in which a team may play the ball: in play, or before an awaited kick.
     pub running_s: f32,

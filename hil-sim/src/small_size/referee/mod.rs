@@ -290,7 +290,8 @@ impl InternalReferee {
         granted
     }
 
-    /// That team changes its keeper; false while the ball is in play in its own half (rules: choosing keeper id).
+    /// That team changes its keeper; false while the ball is in play in its own half (rules: choosing keeper
+    /// id).
     pub fn set_keeper(&mut self, team: Colour, keeper: protocol::RobotId) -> bool {
         let own_half = self.ball.position.x() * self.own_end(team).sign() as f32 >= 0.0;
         let allowed = !(scene::is_running(self.phase()) && own_half);

@@ -57,8 +57,8 @@ pub struct RefereeSettings {
     pub max_robots: Option<u8>,
     /// Whether to judge what the rules leave to the human referee as well: pushing and holding.
     pub judge_manual_fouls: bool,
-    /// Send `designated_position` whenever a place is known, in every command, as the real game controller does
-    /// (contrary to its own documentation), instead of in ball placement only.
+    /// Send `designated_position` whenever a place is known, in every command, as the real game controller
+    /// does (contrary to its own documentation), instead of in ball placement only.
     pub position_always: bool,
     /// Announce a goal by one packet with the old commands `GOAL_*`, as the real game controller does.
     pub legacy_goal_command: bool,
@@ -81,7 +81,8 @@ pub struct RefereeSettings {
 }
 
 impl RefereeSettings {
-    /// A match of that league by the rules: 2 × 300 s of playing time, blue defends +x, yellow kicks off, cards.
+    /// A match of that league by the rules: 2 × 300 s of playing time, blue defends +x, yellow kicks off,
+    /// cards.
     pub fn new(league: League) -> Self {
         let team = |name: &str| TeamSettings {
             name: name.into(),

@@ -289,7 +289,8 @@ fn ball_of(models: &GeometryModels, mut ball: BallParameters) -> Result<BallPara
 /// Decodes a custom setting as the message it claims to be.
 fn custom_of<T: Message + Default>(custom: &Any, name: &str) -> Result<T, Refusal> {
     let url = custom.type_url.clone().unwrap_or_default();
-    // `type.googleapis.com/package.Name`; ER-Force puts one of its messages into a package and the other into none.
+    // `type.googleapis.com/package.Name`; ER-Force puts one of its messages into a package and the other into
+    // none.
     if url.rsplit(['/', '.']).next() != Some(name) {
         return Err(Refusal::UnknownCustom(url));
     }

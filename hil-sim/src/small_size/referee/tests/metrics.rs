@@ -43,7 +43,8 @@ fn a_shot_goes_towards_the_goal_and_a_chance_between_the_posts() {
     assert_eq!(count(shot(at(2.0, 0.0), 4.0, 0.7)), (1, 1));
     assert_eq!(count(shot(at(2.0, 0.0), 4.0, 0.9)), (1, 0));
     assert_eq!(count(shot(at(2.0, 0.0), 4.0, 2.5)), (0, 0));
-    // Away from the goal; from the own half; too slow for a shot; too slow to get there: 1.5²/(2 · 0.35) = 3.2 m.
+    // Away from the goal; from the own half; too slow for a shot; too slow to get there: 1.5²/(2 · 0.35) =
+    // 3.2 m.
     assert_eq!(count(shot(at(2.0, 0.0), -4.0, 0.0)), (0, 0));
     assert_eq!(count(shot(at(-1.0, 0.0), 4.0, 0.0)), (0, 0));
     assert_eq!(count(shot(at(2.0, 0.0), 1.4, 0.0)), (0, 0));
@@ -63,7 +64,8 @@ fn a_pass_arrives_at_a_mate_half_a_metre_away_and_a_loss_at_an_opponent() {
         stage.step();
     }
     let metrics = stage.referee.metrics();
-    // Blue's loss; yellow's 1 to 2 (1 m: a pass), 2 to 1 (0.2 m: none); yellow's loss; blue's 1 to 2 (a pass).
+    // Blue's loss; yellow's 1 to 2 (1 m: a pass), 2 to 1 (0.2 m: none); yellow's loss; blue's 1 to 2 (a
+    // pass).
     assert_eq!((metrics.yellow.passes, metrics.yellow.losses), (1, 2));
     assert_eq!((metrics.blue.passes, metrics.blue.losses), (1, 1));
 }

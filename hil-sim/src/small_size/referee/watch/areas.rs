@@ -56,7 +56,8 @@ impl Areas {
     }
 }
 
-/// The team's robot that is nearest to the opponents' area, where it is too near and the team's grace is over.
+/// The team's robot that is nearest to the opponents' area, where it is too near and the team's grace is
+/// over.
 fn too_close(scene: &Scene<'_>, team: Colour, told: &mut Option<Instant>) -> Option<Event> {
     let grace_began = told.map_or(scene.game.since, |told| told.max(scene.game.since));
     if scene.now.since(grace_began).as_secs_f32() <= limits::GRACE {

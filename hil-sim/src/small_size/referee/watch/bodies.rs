@@ -158,7 +158,8 @@ const STRAIGHT: f32 = 0.764_842;
 const PUSH_PAUSE: f32 = 0.2;
 /// Maximum distance from the ball, m, of robots around it: an opponent of 0.18 m fits behind them only.
 const AROUND_BALL: f32 = 0.18;
-/// The widest gap between two neighbours, seen from the ball, through which no opponent reaches it, rad (150°).
+/// The widest gap between two neighbours, seen from the ball, through which no opponent reaches it, rad
+/// (150°).
 const GAP: f32 = 2.617_994;
 /// Maximum time a ball may be enclosed, s: as the rules' other graces.
 const HOLD_TIME: f32 = limits::GRACE;

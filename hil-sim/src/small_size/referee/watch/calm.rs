@@ -95,7 +95,8 @@ impl Calm {
         told.then(|| scene.by(nearest.who, nearest.pose.position, what))
     }
 
-    /// A robot of the team that does not place, too near the line from ball to target for longer than the grace.
+    /// A robot of the team that does not place, too near the line from ball to target for longer than the
+    /// grace.
     fn placement(&mut self, scene: &Scene<'_>, team: Colour) -> Option<Event> {
         let target = scene.game.target?;
         let mut first = None;
