@@ -85,7 +85,7 @@ pub(crate) fn nearest(robots: &[(RobotId, [f32; 2])], places: &[[i16; 2]], limit
 }
 
 /// The cheapest correspondence; `None` where there are fewer robots than parts, or where the settings
-/// constrain the search to the limit of travel and nothing fits.
+/// constrain the search to the travel limit and no correspondence is within it.
 pub(crate) fn assign(distances: &Distances, settings: &Settings) -> Option<Assignment> {
     let limit = match settings.correspondence {
         CorrespondenceRule::MinThenTest => f32::INFINITY,

@@ -36,7 +36,7 @@ pub enum Verdict {
         /// Robots of the problem.
         present: usize,
     },
-    /// An adapted position lies outside the field, and the settings reject that.
+    /// An adapted position lies outside the field, and the settings reject such cases.
     OutOfField {
         /// The case robot.
         robot: CaseRobot,

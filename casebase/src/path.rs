@@ -170,7 +170,7 @@ pub struct Blocked {
     pub inside_mm: f32,
 }
 
-/// The first leg with an opponent inside, for a ball at `ball`.
+/// The first leg that contains an opponent, for a ball at `ball`.
 pub fn blocked_leg(
     case: &Case<'_>,
     base: &CaseBase<'_>,

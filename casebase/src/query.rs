@@ -164,7 +164,7 @@ impl Query<'_> {
             for (place, to) in case.positions().unwrap_or(&[]).iter().zip(&mut column) {
                 *to = distance(*at, self.place(case, *place));
             }
-            // There is room for every teammate a problem can have.
+            // The capacity is that of a problem's teammates: every push fits.
             let _ = distances.columns.push((*id, column));
         }
         distances

@@ -88,7 +88,7 @@ fn script(world: &mut World, step: u32, restless: bool) {
         let (ahead, heading) = if colour == Colour::Blue { (1.0, 0.0) } else { (-1.0, geometry::math::PI) };
         for (id, n) in RobotId::all().zip(0..11_u32) {
             let who = Who { colour, id };
-            // The two take turns, so that neither blocks the other for long.
+            // The two robots alternate, so that neither blocks the other for long.
             let turn_to_play = (step / 2_000).is_multiple_of(2) == (colour == Colour::Blue);
             let order = if n == 0 && (turn_to_play || restless) {
                 let Some(robot) = world.robot(who) else { continue };

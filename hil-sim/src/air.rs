@@ -346,7 +346,7 @@ mod tests {
         let came: std::collections::BTreeSet<u32> = heard.iter().map(|(_, number)| *number).collect();
         let lost = f64::from(n) - came.len() as f64;
         let stretches = (1..n).filter(|i| came.contains(&(i - 1)) && !came.contains(i)).count() as f64;
-        // 1,500 stretches of 8 ± 8: 0.2 of their mean, and 2 % of the share; four of each.
+        // 1,500 dead periods of 8 ± 8: 0.2 of their mean, and 2 % of the share; four of each.
         assert!((lost / f64::from(n) - 0.3).abs() < 0.03, "{lost}");
         assert!((lost / stretches - 8.0).abs() < 0.9, "{}", lost / stretches);
     }

@@ -203,7 +203,7 @@ impl Drop for Qemu {
     }
 }
 
-/// The board's message, if the frame is one of its.
+/// The board's message, if the frame contains one.
 fn message_in(frame: &[u8]) -> Option<FromRobot<'_>> {
     let rest = frame.get(ADDRESSES_LEN..)?.strip_prefix(&ETHERTYPE.to_be_bytes())?;
     let (length, payload) = rest.split_first_chunk()?;
@@ -238,7 +238,7 @@ fn boxed(pipe: impl Read + 'static) -> Box<dyn Read> {
     Box::new(pipe)
 }
 
-/// A program's file: the path itself, or the first in PATH.
+/// A program's file: the path itself, or the first match in PATH.
 fn find(program: &Path) -> Option<PathBuf> {
     if program.components().count() > 1 {
         return program.is_file().then(|| program.to_path_buf());
@@ -267,7 +267,7 @@ impl LibraryFile {
         Ok(file)
     }
 
-    /// QEMU's device that puts it there; commas of a path are doubled.
+    /// The argument of QEMU's loader device for that file; commas of a path are doubled.
     fn loader(&self) -> OsString {
         let path = self.0.to_string_lossy().replace(',', ",,");
         format!("loader,file={path},addr={:#x},force-raw=on", slot::ADDRESS).into()
@@ -289,7 +289,7 @@ struct Patience {
 }
 
 impl Default for Patience {
-    /// A start takes 50 ms and a tick less than 1 ms; a machine may well be 100 times busier than that.
+    /// A start takes 50 ms and a tick less than 1 ms; a busy machine may be 100 times slower.
     fn default() -> Self {
         Self { boot: Duration::from_secs(30), tick: Duration::from_secs(10) }
     }

@@ -54,7 +54,7 @@ impl fmt::Display for Finding {
 }
 
 impl Source {
-    /// Reads a file; a test can do nothing else when it is not there.
+    /// Reads a file; panics where it does not exist.
     pub fn read(path: &Path) -> Self {
         let bytes = fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         let relative = path.strip_prefix(root()).unwrap_or(path);

@@ -232,7 +232,7 @@ fn frames_that_come_ever_later_stop_a_driving_robot_within_200_ms_of_age() {
             assert_eq!(game.now, start + n * stretch * TICK_MS);
             let age = game.now - sent;
             oldest = oldest.max(age);
-            // From 200 ms on it brakes at 5 m/s²; a step may pass before.
+            // From 200 ms on it brakes at 5 m/s²; one step may pass before.
             let braked = (age.saturating_sub(200 + 2 * TICK_MS)) as f32 * 1e-3 / (stretch as f32 - 1.0)
                 * stretch as f32;
             let most = (driving - 5.0 * braked).max(0.0);

@@ -217,7 +217,7 @@ fn a_pass_is_shot_at_the_goal_at_first_touch() {
     let mut carpet = carpet((0.0, 0.0), &[(2, 2.5, 0.0, 0.0)]);
     carpet.tell(2, Duty::Player, Directive::Receive { at: at(2.5, 0.0), then: Some(at(4.5, 0.0)) });
     carpet.during(1.0, |_| {});
-    // From the front left: the goal lies 45° to the right of where it comes from.
+    // From the front left: the goal lies 45° to the right of the ball's origin.
     carpet.roll((4.0, 1.5), (-2.1, -2.1));
     let took = carpet.until(3.0, |c| c.ball().x() > 4.5 && c.ball().y().abs() < 0.5);
     assert!(took.is_some(), "ball at {:?}, {:?}", carpet.ball(), carpet.kicks());
@@ -412,7 +412,7 @@ fn the_hosts_proposal_is_played_while_it_is_fresh_and_only_if_it_can_be() {
 fn a_robot_tells_the_host_ten_times_a_second_how_it_is_and_that_it_lost_the_link() {
     let mut carpet = carpet((0.0, 2.5), &[(1, -1.0, 0.0, 0.0)]);
     let one = RobotId::new(1).unwrap();
-    // The kicker was discharged until the link was good, and takes half a second.
+    // The kicker was discharged until the link was good, and charging takes half a second.
     carpet.during(0.6, |_| {});
     carpet.during(1.0, |c| {
         let (at, telemetry) = c.telemetry[&one];

@@ -170,7 +170,7 @@ fn silent() -> std::io::Error {
     std::io::Error::other("valgrind tells nothing; is it installed?")
 }
 
-/// A browser, installed first where that can be done.
+/// Finds a browser, installed first where that is possible.
 fn ensure_browser() -> Result<(), Failure> {
     let there = |name: &str| {
         let mut question = Command::new(name);

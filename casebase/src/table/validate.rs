@@ -48,7 +48,7 @@ impl fmt::Display for TableError {
 impl core::error::Error for TableError {}
 
 impl<'a> CaseBase<'a> {
-    /// Cuts the table into its sections; all lengths are checked, no content.
+    /// Splits the table into its sections; all lengths are checked, no content.
     pub(super) fn split(bytes: &'a [u8]) -> Result<Self, TableError> {
         if !(bytes.as_ptr() as usize).is_multiple_of(align_of::<u32>()) {
             return Err(TableError::Misaligned);
@@ -108,7 +108,7 @@ impl<'a> CaseBase<'a> {
         sides && self.header.pass.iter().all(|radius| *radius > 0) && kicks
     }
 
-    /// One of the four copies: records within their pools, values a case can have.
+    /// Whether one of the four copies is valid: records within their pools, values a case can have.
     fn copy_is_sound(&self, authored: usize, group: &Group, copy: u16) -> bool {
         let Some(gate) = self.gates.get(4 * authored + usize::from(copy)) else {
             return false;
@@ -192,7 +192,7 @@ pub(crate) const CASES_MAX: usize = (u16::MAX as usize + 1) / 4;
 /// Maximum side of a field, mm: positions relative to the ball then fit an `i16`.
 pub(crate) const SIDE_MAX_MM: i32 = 30_000;
 
-/// Like `is_sorted`, whose cutting into chunks leaves a panic site behind.
+/// Like `is_sorted`, whose division into chunks leaves a panic site in the binary.
 fn never_falls<T: PartialOrd>(list: &[T]) -> bool {
     list.iter().zip(list.iter().skip(1)).all(|(before, after)| before <= after)
 }

@@ -92,7 +92,7 @@ fn what_no_single_move_mends_is_told_with_its_reason() {
     let found = counterfactual(&base, &alone, &settings, CaseId(0));
     let reason = Obstacle::Robots { needed: 2, present: 1 };
     assert_eq!(found, Some(Counterfactual::NoSingleMove(reason)));
-    // Two robots too far away each: one move brings one of them only.
+    // Two robots too far away each: one move brings only one of them within the limit.
     let far = problem((-600, 0), &[(1, (2600, -1700)), (2, (2600, -1800))], &[]);
     let found = counterfactual(&base, &far, &settings, CaseId(0));
     assert!(matches!(found, Some(Counterfactual::NoSingleMove(Obstacle::Several { .. }))), "{found:?}");

@@ -23,7 +23,7 @@ fn scan(base: &CaseBase<'_>, problem: &Problem, settings: &Settings) -> Vec<Matc
     candidates
 }
 
-/// Settings that change what is a candidate or how it ranks.
+/// Settings that change the candidates or their ranking.
 fn variants() -> Vec<Settings> {
     let assignments: [&[(&str, &str)]; 10] = [
         &[],

@@ -90,7 +90,8 @@ impl Opponent {
         } else {
             LeggedPrimitive::None
         };
-        // At its home's border where the ball is outside, at the ball where it is inside: the same point.
+        // At its home's border where the ball is outside, at the ball where it is inside: the same
+        // expression.
         let walk = walk_to(pose, home.nearest(ball), ball, parameters);
         world.command(self.robot, &ActuatorFrame::Legged { walk, primitive });
     }
@@ -118,7 +119,7 @@ impl Region {
     }
 }
 
-/// The velocity that brings a body to `target` without overshooting, its face towards `gaze`.
+/// The velocity that brings a body to `target` without overshooting, heading towards `gaze`.
 fn walk_to(
     pose: Pose<Field>,
     target: Point<Field>,
@@ -128,7 +129,7 @@ fn walk_to(
     let p = &parameters.walk;
     let way = pose.vector_to_body(target - pose.position);
     let distance = way.norm();
-    // Half of what the legs can brake, so that the order of the next step is never too late.
+    // Half of the maximum deceleration of the legs, so that the order of the next step is never too late.
     let speed = math::sqrt(p.acceleration * distance).min(p.forward);
     let linear = way.unit().map_or(Vector::default(), |direction| direction * speed);
     let turn = pose.turn_to(gaze).radians();
@@ -196,7 +197,7 @@ mod tests {
 
     #[test]
     fn a_clearance_takes_a_grab_and_a_kick() {
-        // In its grasp from the start: 0.5 s of closing the legs and 0.4 s of kicking, at steps of 40 ms.
+        // In its grasp from the start: 0.5 s of closing the legs and 0.4 s of kicking, in steps of 40 ms.
         let kicked = |seed, seconds| {
             let mut game = game(Role::Defender, (1400.0, 0.0), (1.25, 0.0));
             game.world = World::new(

@@ -116,8 +116,8 @@ impl fmt::Display for Scenario {
     }
 }
 
-/// Ball anywhere between the own third and the defenders' line, A behind it, the others around, the opponents
-/// at home.
+/// The ball anywhere between the own third and the defenders' line, A behind it, the others around, the
+/// opponents at home.
 fn random(configuration: Configuration, parameters: &Parameters, seed: u64) -> Layout {
     let mut chance = Stream::new(seed, "scenario");
     let ball = Point::new(chance.between(-2.0, 1.2), chance.between(-1.4, 1.4));

@@ -1,10 +1,10 @@
-//! `trace`: trace hash of a trial. A hash of everything that matters, tick by tick, as docs/architecture.md
-//! §2.5 lists it.
+//! `trace`: trace hash of a trial. A hash of all state and all messages, tick by tick, as
+//! docs/architecture.md §2.5 lists them.
 //!
-//! Per tick, in order: the tick's number (u32); the ball's place and velocity; every robot's pose and
+//! Per tick, in order: the tick's number (u32); the ball's position and velocity; every robot's pose and
 //! velocity in its own frame, attackers by id and then opponents in their order (f32 bits); every order to a
-//! body (robot id, postcard bytes); every packet handed over, in delivery order (receiver id, length, bytes).
-//! All little endian. The simulator takes it, so native and QEMU runs are hashed by the same code.
+//! body (robot id, postcard bytes); every packet delivered, in delivery order (receiver id, length, bytes).
+//! All little endian. The simulator computes it, so native and QEMU runs are hashed by the same code.
 
 use protocol::RobotId;
 use protocol::robot_io::ActuatorFrame;

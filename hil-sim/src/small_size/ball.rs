@@ -204,7 +204,7 @@ mod tests {
         ball.velocity = Vector::new(1.0, 0.0);
         ball.spin = Vector::new(-4.0, 0.0);
         run_until_rest(&mut ball, &carpet());
-        // It rolls with 5/7 · 1 + 2/7 · (−4) = −3/7 m/s in the end.
+        // In the end it rolls with 5/7 · 1 + 2/7 · (−4) = −3/7 m/s.
         assert!(ball.position.x() < 0.0, "{:?}", ball.position);
     }
 
@@ -238,8 +238,7 @@ mod tests {
         ball.velocity = Vector::new(-2.0, 1.0);
         let hit = Impact { restitution: 0.5, friction: 0.1, spin: 0.0, share: 1.0 };
         let change = ball.bounce(Vector::new(1.0, 0.0), Vector::default(), hit);
-        // Along the normal −2 becomes 1; friction 0.1 · 3 would take 0.3, but 2/7 of 1 m/s is all there is to
-        // take.
+        // Along the normal −2 becomes 1; friction 0.1 · 3 would take 0.3, but 2/7 of 1 m/s is the maximum.
         assert!((change - Vector::new(3.0, -2.0 / 7.0)).norm() < 1e-6);
         assert_eq!(ball.bounce(Vector::new(1.0, 0.0), Vector::default(), hit), Vector::default());
         // A surface that moves along pushes the ball.

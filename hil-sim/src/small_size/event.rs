@@ -33,7 +33,7 @@ pub enum Event {
         robots: [Who; 2],
         /// Point between them, m.
         at: Point<Field>,
-        /// Their velocities before it, in that order, m/s.
+        /// Their velocities before it, in the order of `robots`, m/s.
         velocities: [Vector<Field>; 2],
         /// Difference of the velocities, projected on the line between their centres, m/s: what the rules
         /// call crash speed.

@@ -149,7 +149,7 @@ fn pull(
     // Towards the robot only: impacts on the front are handled elsewhere.
     let x = (wanted[0] - moves[0]).min(0.0);
     let y = wanted[1] - moves[1];
-    // A roller whose rim is not much faster than the ball pulls less.
+    // A roller whose rim is only slightly faster than the ball pulls less.
     let left = if of.fade > 0.0 { (1.0 - of.fade * ball.velocity.norm()).max(0.0) } else { 1.0 };
     let strength = robot.order.dribbler * robot.traits.pull * left * STEP;
     let (pull, side) = (of.pull * strength, of.side * strength);

@@ -42,11 +42,11 @@ numbers! {
         roll: TINY, 10.0;
         /// m/s².
         gravity: 0.1, 100.0;
-        /// Share of the speed along the ground that the first landing leaves.
+        /// Share of the speed along the ground that is kept at the first landing.
         hop_along: 0.0, 1.0;
         /// The same, later landings.
         hop_along_later: 0.0, 1.0;
-        /// Share of the vertical speed that a landing gives back.
+        /// Share of the vertical speed that is kept at a landing.
         hop_up: 0.0, 0.95;
         /// Minimum height of a hop, m.
         hop_end: TINY, 0.1;
@@ -129,7 +129,7 @@ numbers! {
         side: 0.0, 1000.0;
         /// 1/s, how quickly a gap closes.
         draw: 0.0, 500.0;
-        /// 1/s, how quickly the ball comes to the middle.
+        /// Rate at which the ball moves to the middle, 1/s.
         center: 0.0, 500.0;
         /// rpm at full strength.
         full_rpm: 1.0, 1e6;
@@ -329,7 +329,7 @@ impl CameraParameters {
     }
 }
 
-/// `value` if it lies between the bounds, else an error that names it.
+/// `value` if it lies between the bounds, else an error with its name.
 pub(super) fn within(name: &'static str, value: f32, low: f32, high: f32) -> Result<(), ParameterError> {
     if (low..=high).contains(&value) { Ok(()) } else { Err(ParameterError::Range { name, value, low, high }) }
 }

@@ -48,7 +48,7 @@ pub struct Quirks {
     pub geometry: GeometryStyle,
     /// Cameras take their frames one after another instead of all at once.
     pub staggered: bool,
-    /// Geometry has the numbers that newer packets have, true camera poses and pixels.
+    /// Geometry packets contain the fields of newer versions, true camera poses and pixels.
     pub full_geometry: bool,
     /// Lines are drawn this far inside the field's edge, m, and goals are drawn too.
     pub drawn_goals: bool,

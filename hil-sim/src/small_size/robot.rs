@@ -329,7 +329,7 @@ impl Robot {
         self.odometer.along[0] += x;
         self.odometer.along[1] += y;
         self.odometer.turned += turning;
-        // |x| + |y| is near enough to the speed for a battery.
+        // |x| + |y| approximates the speed accurately enough for the battery.
         self.used += STEP * (battery.idle + battery.drive * (x.abs() + y.abs()));
     }
 

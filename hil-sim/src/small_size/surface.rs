@@ -16,7 +16,7 @@ pub(super) struct Nearest {
     pub front: bool,
 }
 
-/// From a robot's hull to a point in its own frame.
+/// The nearest point of a robot's hull to a point in the robot's own frame.
 pub(super) fn hull(body: &BodyParameters, half_front: f32, [x, y]: [f32; 2]) -> Nearest {
     let ahead = x - body.front;
     let squared = x * x + y * y;
@@ -48,7 +48,7 @@ pub(super) struct Slab {
 }
 
 impl Slab {
-    /// From the box to a point of the field.
+    /// The nearest point of the box to a point of the field.
     pub(super) fn nearest(&self, [x, y]: [f32; 2]) -> Nearest {
         let (dx, dy) = (x - x.clamp(self.x[0], self.x[1]), y - y.clamp(self.y[0], self.y[1]));
         let squared = dx * dx + dy * dy;
@@ -76,7 +76,7 @@ mod tests {
     use crate::rng::Stream;
     use crate::small_size::Parameters;
 
-    /// By brute force: the nearest of many points of the outline.
+    /// Reference by brute force: the nearest of many points of the outline.
     fn outline(body: &BodyParameters, half_front: f32) -> Vec<[f32; 2]> {
         let chord = (0..=1000).map(|i| [body.front, half_front * (i as f32 / 500.0 - 1.0)]);
         let arc = (0..=6000).map(|i| geometry::math::sin_cos(i as f32 / 6000.0 * geometry::math::TAU));

@@ -19,7 +19,7 @@ pub(super) struct Wheels {
 }
 
 impl Wheels {
-    /// `None` where the wheels leave a direction in which they cannot drive.
+    /// `None` where the wheels cannot drive in every direction.
     pub(super) fn new(body: &BodyParameters) -> Option<Self> {
         let rows = body.wheels_deg.map(|degrees| {
             let (s, c) = Angle::degrees(degrees).sin_cos();

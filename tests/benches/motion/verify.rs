@@ -17,7 +17,7 @@ fn free_alone(limits: FreeLimits, share: f32) -> FreeLimits {
     FreeLimits { speed: speed * share, acceleration: acceleration * share, braking: braking * share }
 }
 
-/// An axis with a share of the push: the same equation, with a smaller limit and a smaller final speed.
+/// An axis with a share of the thrust: the same equation, with a smaller limit and a smaller final speed.
 fn drag_alone(limits: DragLimits, share: f32) -> DragLimits {
     DragLimits { speed: limits.speed * share, acceleration: limits.acceleration * share }
 }
@@ -84,5 +84,5 @@ fn task_excess<L: CalcMotion>(task: &Task, limits: &L, alone: impl Fn(f32) -> L)
 
 const ZOOMS: usize = 4;
 const POINTS: u32 = 40;
-/// Below this an axis alone would have less than the least limit that counts as one.
+/// Minimum angle: below it an axis would have less than the minimum limit.
 const ANGLE_MIN: f32 = 1e-3;

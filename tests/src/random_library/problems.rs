@@ -43,7 +43,7 @@ pub fn random_problem(dice: &mut Dice, library: &Library) -> Problem {
     for _ in 0..extra {
         teammates.push(if dice.chance(0.5) { near(dice, ball, 900.0) } else { anywhere(dice) });
     }
-    // Two robots in one place make exact ties, which the ids decide.
+    // Two robots at one position give exact ties, which the ids decide.
     if dice.chance(0.1) && teammates.len() < 11 {
         teammates.extend(teammates.first().copied());
     }

@@ -30,7 +30,7 @@ pub enum Fault {
     Partition,
     /// Robots' computers crash and reboot.
     Reboot,
-    /// Robots' clocks run 100 ppm fast or slow and have been running for long.
+    /// Robots' clocks run 100 ppm fast or slow, and started long ago.
     Skew,
     /// A second host sends with the team's key.
     SecondHost,

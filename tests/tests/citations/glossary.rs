@@ -69,7 +69,7 @@ pub(crate) fn faults(source: &Source, names: &Names) -> Vec<Finding> {
     findings
 }
 
-/// Paths such as `casebase::Case` whose crate is ours and whose last name it does not define.
+/// Paths such as `casebase::Case` whose crate is ours and does not define their last name.
 pub(crate) fn unknown(source: &Source, names: &Names) -> Vec<Finding> {
     let spans = Quoted::of(source).spans.into_iter();
     let is_path = |span: &String| {

@@ -23,7 +23,7 @@ impl Lookup for Files {
     }
 }
 
-/// Links of a document that lead to no file, or to no heading of it.
+/// Links of a document that lead to no file, or to no heading of their file.
 pub(crate) fn dangling(source: &Source, files: &dyn Lookup) -> Vec<Finding> {
     let mut findings = Vec::new();
     for (number, line) in (1..).zip(source.text.lines()) {

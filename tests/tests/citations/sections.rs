@@ -140,7 +140,7 @@ pub(crate) fn outside(source: &Source) -> Vec<Finding> {
     findings
 }
 
-/// Written in parts, so that this file does not find itself.
+/// Written in parts, so that the check does not find this file.
 const OUTSIDE: [&str; 4] = [
     concat!("DES", "IGN"),
     concat!("papers-check", "list"),
@@ -180,7 +180,7 @@ fn is_path(c: char) -> bool {
     c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.' | '/')
 }
 
-/// Stands for the end of a line within a comment.
+/// Marks the end of a line within a comment.
 const NEWLINE: char = '\u{1}';
 
 #[cfg(test)]

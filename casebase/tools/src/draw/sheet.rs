@@ -1,4 +1,4 @@
-//! `sheet`: one page with every case of a library, small, grouped by region.
+//! `sheet`: one page with a small figure of every case of a library, grouped by region.
 
 use drawing::{Anchor, Font, Svg, Theme, half_extent};
 

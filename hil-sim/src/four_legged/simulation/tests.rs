@@ -280,7 +280,7 @@ fn every_number_of_the_file_is_used() {
     };
     let untouched = play(Parameters::four_legged());
     for wanted in &paths {
-        // The smallest change first; a threshold may need a larger one before anything crosses it.
+        // The smallest change first; a larger one may be needed before a threshold is crossed.
         let differs = [0.9, 0.6, 0.1].into_iter().any(|factor| {
             let mut changed = file.clone();
             leaves(&mut changed, "", &mut |path, number| {

@@ -1,4 +1,4 @@
-//! Tests of the physics. Against hand calculations and counted frequencies.
+//! Tests of the physics, against hand calculations and counted frequencies.
 
 use geometry::{Pose, Twist, Vector};
 use protocol::robot_io::{LeggedKick, LeggedPrimitive};

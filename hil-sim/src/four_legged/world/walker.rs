@@ -1,4 +1,5 @@
-//! `walker`: motion of a walking robot. It follows the wanted velocity as fast as its legs allow; m, s, rad.
+//! `walker`: motion of a walking robot. It follows the ordered velocity as fast as its legs permit; m, s,
+//! rad.
 
 use geometry::{Angle, Body, Field, Point, Pose, Twist, Vector};
 use protocol::robot_io::{LeggedKick, LeggedPrimitive};

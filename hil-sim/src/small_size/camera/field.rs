@@ -1,7 +1,7 @@
 //! `field`: geometry packets. Lines, arc, numbers, cameras and the ball's model; mm, as SSL-Vision sends
 //! them.
 //!
-//! Names and directions are SSL-Vision's; grSim draws its lines inside the edge and the goals too.
+//! Names and directions are SSL-Vision's; grSim draws its lines inside the edge, and also the goals.
 
 use ssl::vision::{
     BallModelChipFixedLoss, BallModelStraightTwoPhase, FieldCircularArc, FieldLineSegment, FieldShapeType,

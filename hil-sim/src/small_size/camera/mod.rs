@@ -134,7 +134,7 @@ impl Cameras {
         self.views.iter_mut().map(|view| view.look(world, &settings, time)).collect()
     }
 
-    /// The description of the field; of one camera alone, or of all.
+    /// The geometry packet, with one camera alone or with all.
     pub fn geometry(&self, world: &World, camera: Option<usize>) -> GeometryData {
         let views = match camera {
             Some(i) => &self.views[i..=i],

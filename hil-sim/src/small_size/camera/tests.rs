@@ -118,8 +118,8 @@ fn a_ball_behind_a_robot_is_hidden_and_one_before_its_front_is_seen() {
     let mut world = world(League::DivisionB);
     let noise = NoiseParameters { hidden_ball: 0.3, ..NoiseParameters::NONE };
     let mut cameras = Cameras::new(CameraSettings { noise, ..clear(&world) }, &world, 1);
-    // The camera of the right half hangs at x = 2.4; the robot stands further out and throws its shadow
-    // outwards.
+    // The camera of the right half is at x = 2.4; the robot stands further out and occludes the area outside
+    // it.
     let who = Who::blue(RobotId::new(9).unwrap());
     world.put(who, Pose::from_mm_deg(4200.0, 0.0, 0.0));
     let mut seen = |x: f32, height: f32| {
@@ -165,7 +165,7 @@ fn pixels_and_calibration_lead_back_to_the_field() {
             assert!((c.principal_point_y + c.focal_length * y / z - ball.pixel_y).abs() < 0.01);
             assert!((0.0..2448.0).contains(&ball.pixel_x) && (0.0..2048.0).contains(&ball.pixel_y));
         }
-        // The derived place is where the camera sees itself: −Rᵀt.
+        // The derived position is the camera's own: −Rᵀt.
         assert_eq!((c.derived_camera_world_tx, c.derived_camera_world_ty), (Some(-c.tx), Some(c.ty)));
     }
 }

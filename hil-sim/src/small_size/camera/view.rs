@@ -54,7 +54,7 @@ impl View {
         let period = (1e6 / camera.rate) as u64;
         let mut views = Vec::new();
         for id in 0..columns * rows {
-            // As grSim counts them: the positive quarter first, then clockwise.
+            // In grSim's order: the positive quarter first, then clockwise.
             let (column, row) = match (columns * rows, id) {
                 (4, 0) => (1, 1),
                 (4, 1) => (1, 0),

@@ -38,7 +38,7 @@ pub struct Shot {
     pub robots: u32,
 }
 
-/// Why a ball in the goal is no goal (rules: scoring goals).
+/// Why a ball in the goal does not count (rules: scoring goals).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Invalid {
     /// The scoring team had more robots than allowed.
@@ -159,8 +159,8 @@ kinds! {
         /// Position where it exceeded the limit, m.
         end: Point<Field>,
     } = "bot_dribbled_ball_too_far",
-    /// A robot within 0.2 m of the opponents' defence area in stop or at a free kick; the place is the
-    /// robot's.
+    /// A robot within 0.2 m of the opponents' defence area in stop or at a free kick; the event's position is
+    /// the robot's.
     AttackerTooClose {
         /// Distance from the area, m.
         distance: f32,
@@ -189,7 +189,7 @@ kinds! {
     } = "bot_too_fast_in_stop",
     /// A robot stood too near the line from ball to target in a placement of the other team.
     InterferedPlacement = "bot_interfered_placement",
-    /// Two robots of different teams ran into each other; the faster one is at fault.
+    /// Two robots of different teams collided; the faster one is at fault.
     CrashUnique {
         /// The other robot's shell number.
         victim: RobotId,
@@ -200,7 +200,7 @@ kinds! {
         /// Angle between the difference of the velocities and the line between the two, rad.
         angle: f32,
     } = "bot_crash_unique",
-    /// Two robots of different teams ran into each other; both are at fault.
+    /// Two robots of different teams collided; both are at fault.
     CrashDrawn {
         /// Yellow's robot.
         yellow: RobotId,
@@ -287,7 +287,7 @@ pub enum Restart {
     Kickoff(Colour),
     /// From the penalty mark.
     Penalty(Colour),
-    /// From the place of the event, or the nearest valid one.
+    /// From the position of the event, or the nearest valid one.
     FreeKick(Colour),
     /// For both.
     ForceStart,

@@ -68,9 +68,9 @@ impl InternalReferee {
                 matches!(self.phase(), Phase::BallPlacement(_))
             }
             Kind::PenaltyFailed => matches!(self.phase(), Phase::Penalty(_)),
-            // Decided while the game is halted for the ball in the goal, or by a foul in a penalty.
+            // Decided while the game is halted for the ball in the goal, or after a foul in a penalty.
             Kind::Goal | Kind::InvalidGoal => true,
-            // In stop too; the ball flies over the wall after it left the field.
+            // Valid during a stop too; the ball flies over the wall after it left the field.
             Kind::AttackerTooClose | Kind::BoundaryCrossing => true,
             Kind::PossibleGoal => is_running(self.phase()),
             _ => !kind.stops_the_game() || is_running(self.phase()),

@@ -213,7 +213,7 @@ impl InternalReferee {
             let ends = [GoalEnd::Negative, GoalEnd::Positive];
             ends.map(|end| self.field.distance_to_area(end, p)).into_iter().fold(f32::INFINITY, f32::min)
         };
-        // On the field of 2013, which the controller does not know, marks and spots lie nearer than that.
+        // On the field of 2013, which the controller does not support, marks and spots lie nearer than that.
         let least = limits::PLACEMENT_SKIP_AREA_DISTANCE;
         let distance = from_area(ball);
         if distance < least && from_area(target) >= least {

@@ -185,8 +185,8 @@ impl InternalReferee {
 const ACTION_OVER_MAX: i64 = 1_800_000_000;
 /// Attempts of each team in a shoot-out before it may be decided.
 const ATTEMPTS: u32 = 5;
-/// Attempts of each team after which a simulated shoot-out is given up as drawn; the rules have no end.
+/// Attempts of each team after which a simulated shoot-out ends as a draw; the rules have no limit.
 const ATTEMPTS_MAX: u32 = 20;
-/// Time-outs of a team in overtime, and their time in all, s.
+/// Number of time-outs of a team in overtime, and their total time, s.
 const OVERTIME_TIMEOUTS: u32 = 2;
 const OVERTIME_TIMEOUT_TIME: f32 = 150.0;

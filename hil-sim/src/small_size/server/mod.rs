@@ -109,7 +109,7 @@ pub enum Destination {
         /// The destination address.
         to: SocketAddr,
     },
-    /// To the machine that commanded last, at grSim's port for robots' states.
+    /// To the machine that sent the last command, at grSim's port for robots' states.
     Status(SocketAddr),
 }
 
@@ -259,7 +259,8 @@ impl Server {
             self.reply(port, from, answer.encode_to_vec());
             return;
         }
-        // ER-Force's simulator sends errors and feedback apart, and neither where there is none.
+        // ER-Force's simulator sends errors and feedback in separate packets, and none where there is nothing
+        // to send.
         let RobotControlResponse { errors, feedback } = answer;
         if !errors.is_empty() {
             let errors = RobotControlResponse { errors, feedback: Vec::new() };

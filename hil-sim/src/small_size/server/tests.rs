@@ -43,7 +43,7 @@ fn sent(server: &mut Server) -> (Vec<WrapperPacket>, Vec<Vec<u8>>) {
     (vision, answers)
 }
 
-/// The codes that a message to 10300 is answered with.
+/// The codes in the answer to a message to 10300.
 fn steer(server: &mut Server, command: &SimulatorCommand) -> Vec<String> {
     sent(server);
     server.handle(Port::Simulator, from(), &command.encode_to_vec());
@@ -250,7 +250,7 @@ fn a_ball_is_pulled_and_held_until_it_is_let_go() {
     steps(&mut server, 3_000);
     let place = |server: &Server| server.world().ball.position;
     assert!(place(&server).distance(Point::new(0.0, 2.0)) < 0.01, "{:?}", place(&server));
-    // A robot that drives through it does not take it along.
+    // A robot that drives through it does not push it away.
     server.world_mut().put(own(0), geometry::Pose::from_mm_deg(-300.0, 2000.0, 0.0));
     for _ in 0..200 {
         lead(&mut server, Colour::Blue, &[ahead(0, 0.5)]);

@@ -89,7 +89,7 @@ fn a_chip_flies_over_a_robot_and_a_flat_kick_does_not() {
     let from = Point::new(-0.6, 0.0);
     assert!(!crossed(Ball::rolling(from, Vector::new(4.0, 0.0))));
     assert!(crossed(Ball { velocity: Vector::new(3.0, 0.0), climb: 3.0, ..Ball::at(from) }));
-    // Too low over it: 0.6 m take 0.2 s at 3 m/s, where a climb of 1.2 m/s is down to 0.044 m.
+    // Too low: 0.6 m take 0.2 s at 3 m/s, after which a climb of 1.2 m/s gives a height of only 0.044 m.
     assert!(!crossed(Ball { velocity: Vector::new(3.0, 0.0), climb: 1.2, ..Ball::at(from) }));
 }
 

@@ -114,7 +114,7 @@ fn a_crash_is_told_once_with_the_projected_difference_of_speeds() {
     }
     let [Event::Crash { robots, closing, velocities, .. }] = crashes[..] else { panic!("{crashes:?}") };
     assert_eq!(robots, [yellow(1), blue(1)]);
-    // Half a diameter aside the line between them lies 30° off their course: 3 m/s · cos 30°.
+    // With an offset of half a diameter the line between them is at 30° to their course: 3 m/s · cos 30°.
     assert!((closing - 2.598).abs() < 0.02, "{closing}");
     assert!((velocities[0].x() - 2.0).abs() < 0.05, "{velocities:?}");
 }

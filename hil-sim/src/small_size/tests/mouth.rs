@@ -129,7 +129,7 @@ fn a_ball_kicked_out_of_the_turning_dribbler_slides_first_like_any_other() {
         world.ball.position.x()
     };
     let (still, turning) = (comes_to(kick(2.0, 0.0)), comes_to(dribble(kick(2.0, 0.0))));
-    // 2 m/s slide to 5/7 of that: (4 - 2.041)/7.8 + 2.041/0.7 = 3.17 m; one that rolled at once would come
+    // 2 m/s slide to 5/7 of that: (4 - 2.041)/7.8 + 2.041/0.7 = 3.17 m; a ball that rolled at once would come
     // 5.7 m.
     assert!((still - 0.0945 - 3.17).abs() < 0.05, "{still}");
     assert!((still - turning).abs() < 0.15, "{still} {turning}");

@@ -1,5 +1,5 @@
-//! Tests: assistant and automatic referee do what an external game controller needs. Packets made by hand,
-//! the simulator's own world.
+//! Tests: assistant and automatic referee fulfil the requirements of an external game controller. Packets
+//! made by hand, the simulator's own world.
 
 use geometry::{Angle, Pose, Vector};
 use protocol::Who;
@@ -11,7 +11,7 @@ use super::super::people::WorldOrder;
 use super::*;
 use crate::small_size::{Ball, Parameters, World};
 
-/// Yellow's goal is at −x; division B; the controller's packets come with every look, 10 ms apart.
+/// Yellow's goal is at −x; division B; a packet of the controller comes with every observation, 10 ms apart.
 struct Hall {
     world: World,
     game: RemoteMatch,

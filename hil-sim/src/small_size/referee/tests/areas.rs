@@ -1,5 +1,5 @@
-//! Defence areas: blue's reaches from x = 3.5 to 4.5 m and 1 m to either side; robots have a radius of 0.09
-//! m.
+//! Tests of defence areas: blue's reaches from x = 3.5 to 4.5 m and 1 m to either side; robots have a radius
+//! of 0.09 m.
 
 use super::*;
 

@@ -202,7 +202,7 @@ fn every_event_is_told_by_the_leagues_type_with_its_evidence_but_our_own_three()
         assert_eq!(told.as_ref().map_or(0, |told| told.r#type.unwrap()), number, "{kind:?}");
         let Some(told) = told else { continue };
         assert_eq!(told.created_timestamp, Some(1_009));
-        // The league's name of the type, in small letters, is ours.
+        // The league's name of the type, in lower case, is ours.
         let name = format!("{:?}", GameEventType::try_from(number).unwrap()).to_lowercase();
         assert_eq!(name, kind.word().replace('_', ""), "{kind:?}");
         // The event is the one that the type names: both have the same name.

@@ -123,7 +123,7 @@ fn er_force_tells_errors_alone_and_by_its_own_codes() {
     let answer = sent(&mut erforce).1.remove(0);
     let answer = SimulatorResponse::decode(&answer[..]).unwrap();
     assert_eq!(answer.errors[0].code.as_deref(), Some("UNREADABLE"));
-    // Robots: errors and feedback come apart; velocities in the robot's own frame alone.
+    // Robots: errors and feedback come in separate packets; velocities in the robot's own frame alone.
     let wheels = ssl::simulation::MoveWheelVelocity {
         front_right: 1.0,
         back_right: 1.0,
