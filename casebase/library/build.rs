@@ -1,6 +1,6 @@
 //! Build script: checks the built-in libraries and encodes their tables. `cases/<league>/` → one blob each.
 //!
-//! A faulty library fails the build with its findings; doubts are shown as warnings of the build.
+//! A faulty library fails the build with its findings; doubts are reported as warnings of the build.
 #![forbid(unsafe_code)]
 
 use std::fmt::Write as _;
@@ -35,7 +35,7 @@ fn main() {
     fs::write(out.join("leagues.rs"), code).expect("the output folder is writable");
 }
 
-/// A league's library and the text of its `league.toml`, or the end of the build.
+/// A league's library and the text of its `league.toml`; a failure ends the build.
 fn read(folder: &Path) -> (Library, String) {
     let library = case_tools::load(folder).unwrap_or_else(|findings| {
         for finding in &findings {

@@ -1,6 +1,6 @@
 //! `action`: actions of a case's robots, and kick kinds (Ros et al. 2009, §2.2; docs/case-format.md §1, §4).
 //!
-//! Points are the case's own coordinates, mm; whoever plays the case adapts them with `Case::shift`.
+//! Points are the case's own coordinates, mm; a caller that plays the case adapts them with `Case::shift`.
 
 use core::fmt;
 
@@ -8,14 +8,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::PointMm;
 
-/// Most robots in a case.
+/// Maximum number of robots in a case.
 pub const TEAMMATES_MAX: usize = protocol::team::CASE_ROBOTS_MAX;
-/// Most opponents (scopes) in a case.
+/// Maximum number of opponents (scopes) in a case.
 pub const OPPONENTS_MAX: usize = 4;
-/// Most kick kinds in a league.
+/// Maximum number of kick kinds in a league.
 pub const KICKS_MAX: usize = 255;
 
-/// One of the robots of a case; counted from 0 inside, told from 1 (`tm1` … `tm4`).
+/// One of the robots of a case; counted from 0 internally, written from 1 (`tm1` … `tm4`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct CaseRobot(u8);
@@ -34,7 +34,7 @@ impl CaseRobot {
         (self.0 & 3) as usize
     }
 
-    /// From 1, as files and people count.
+    /// From 1, as in case files and reports.
     pub const fn number(self) -> u8 {
         self.index() as u8 + 1
     }
@@ -56,10 +56,10 @@ impl fmt::Display for CaseRobot {
 #[serde(transparent)]
 pub struct KickId(pub u8);
 
-/// What one robot does next.
+/// One step of a robot's gameplay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
-    /// Hold the place until the next action may start.
+    /// Stay in place until the next action may start.
     Wait,
     /// Walk to a point.
     GoToPoint(PointMm),
@@ -78,12 +78,12 @@ pub enum Action {
 }
 
 impl Action {
-    /// Does the ball play a part in it? (docs/case-format.md §3.1: "ball action")
+    /// Whether the ball is involved (docs/case-format.md §3.1: "ball action").
     pub const fn concerns_ball(self) -> bool {
         !matches!(self, Self::Wait | Self::GoToPoint(_) | Self::Turn(_))
     }
 
-    /// The word of the case files.
+    /// Its key in case files.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Wait => "wait",
@@ -98,7 +98,7 @@ impl Action {
     }
 }
 
-/// What a `turn` turns to.
+/// Target of a `turn`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TurnTarget {
     /// A heading relative to the direction of attack, whole degrees, left > 0.
@@ -107,10 +107,10 @@ pub enum TurnTarget {
     Face(PointMm),
 }
 
-/// A kick kind: where it sends the ball, how far the ball scatters and what the body does for it.
+/// A kick kind: its aim, its scatter and the body's kick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Kick {
-    /// Where the ball goes.
+    /// The aim.
     pub aim: KickAim,
     /// Radius of its trajectory at the foot, mm.
     pub r_min: i32,
@@ -120,14 +120,14 @@ pub struct Kick {
     pub primitive: Primitive,
 }
 
-/// Where a kick sends the ball.
+/// Aim of a kick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KickAim {
     /// Along a heading relative to the direction of attack.
     Heading {
         /// Whole degrees, left > 0.
         degrees: i32,
-        /// How far the ball rolls, mm.
+        /// Rolling distance of the ball, mm.
         length_mm: i32,
     },
     /// To a point of the attacked goal line.
@@ -137,7 +137,7 @@ pub enum KickAim {
     },
 }
 
-/// The kick a body is asked for; the league's file names it.
+/// The body's kick primitive; the league's file names it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Primitive {
     /// The body chooses.
@@ -160,7 +160,7 @@ impl Primitive {
     pub const ALL: [Self; 6] =
         [Self::Unspecified, Self::ForwardSoft, Self::ForwardHard, Self::Left, Self::Right, Self::Pass];
 
-    /// The word of the league's file; nothing for [`Primitive::Unspecified`].
+    /// Its key in the league's file; empty for [`Primitive::Unspecified`].
     pub const fn word(self) -> &'static str {
         match self {
             Self::Unspecified => "",
@@ -172,7 +172,7 @@ impl Primitive {
         }
     }
 
-    /// From the word of the league's file.
+    /// The primitive of that key in the league's file.
     pub fn from_word(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|primitive| *primitive != Self::Unspecified && primitive.word() == word)
     }
@@ -194,7 +194,7 @@ pub struct FieldMm {
     pub length: i32,
     /// Along y, between the touch lines.
     pub width: i32,
-    /// Carpet outside the lines.
+    /// Field surface outside the lines.
     pub margin: i32,
     /// Between the posts.
     pub goal_width: i32,

@@ -10,7 +10,7 @@ use crate::table::{CaseBase, Gate, Group, Opponent, RawAction, RawLeg, part};
 use crate::walk::{HandOver, Script, walk};
 use crate::{GoalEnd, PointMm, Scope, Symmetry};
 
-/// A stored case: case = (P, A, K). Copy it freely: it is only references.
+/// A stored case: case = (P, A, K). Cheap to copy: it contains only references.
 #[derive(Clone, Copy, Debug)]
 pub struct Case<'a> {
     base: CaseBase<'a>,
@@ -37,7 +37,7 @@ impl<'a> Case<'a> {
         self.id.0 as usize / 4
     }
 
-    /// How it came out of the authored one.
+    /// The symmetry by which it was derived from the authored one.
     pub const fn symmetry(&self) -> Symmetry {
         Symmetry::from_bits(self.id.0)
     }
@@ -68,17 +68,17 @@ impl<'a> Case<'a> {
         CaseRobot::first(self.teammates())
     }
 
-    /// Where the robot stands in the case; the ball's place for a robot the case does not have.
+    /// Position of the robot in the case; the ball's position for a robot that the case does not have.
     pub fn position(&self, robot: CaseRobot) -> PointMm {
         self.ball().plus(self.relative_position(robot))
     }
 
-    /// B_p − B_c: what the case is moved by for a ball at `ball`.
+    /// B_p − B_c: displacement of the case for a ball at `ball`.
     pub const fn shift(&self, ball: PointMm) -> PointMm {
         ball.minus(self.ball())
     }
 
-    /// Where the robot should stand for a ball at `ball`; never clamped.
+    /// Adapted position of the robot for a ball at `ball`; never clamped.
     pub fn adapted(&self, robot: CaseRobot, ball: PointMm) -> PointMm {
         ball.plus(self.relative_position(robot))
     }
@@ -105,7 +105,7 @@ impl<'a> Case<'a> {
         CaseRobot::new(usize::from(self.group.getter)).unwrap_or(CaseRobot::FIRST)
     }
 
-    /// Does the ball lie in the ball's scope, at the paper's threshold?
+    /// Whether the ball lies in the ball's scope, at the paper's threshold.
     pub fn ball_in_scope(&self, ball: PointMm) -> bool {
         self.ball_exponent(ball) < SCOPE_EXPONENT
     }
@@ -115,12 +115,13 @@ impl<'a> Case<'a> {
         self.relative_legs(ball).map(move |leg| leg.at(ball))
     }
 
-    /// The other end of a hand-over in the walk of the gameplays: `pass_ball` and the `receive_ball` that answers it
-    /// lead to each other; a later `get_ball` leads to the kick that hands the ball to it.
+    /// The other end of a hand-over in the plan simulation: `pass_ball` and the `receive_ball` that answers
+    /// it lead to each other; a later `get_ball` leads to the kick that hands the ball to it.
     pub fn partner_of(&self, robot: CaseRobot, action: usize) -> Option<(CaseRobot, usize)> {
         let mut partner = None;
         let here = (robot, action);
-        // A stored case walked without an error when it was built; what came before one would still be right.
+        // A stored case was simulated without an error when it was built; steps before an error would still
+        // be right.
         let _ = walk(self, &self.base, |step| {
             if let Some(HandOver { from, to, by_pass }) = step.hand_over() {
                 if to == here {

@@ -1,8 +1,8 @@
 //! `cells`: 32-bit occupancy mask around the ball; rejects empty opponent scopes cheaply.
 //!
-//! The plane around the ball is cut into squares, which repeat every 8 along x and every 4 along y, so that 32 bits
-//! name them all. Where the squares an opponent scope reaches into and those that hold opponents have none in common,
-//! the scope is empty; where they have, it must be looked at.
+//! The plane around the ball is cut into squares, which repeat every 8 along x and every 4 along y, so that
+//! 32 bits name them all. Where the squares that an opponent scope overlaps and those that contain opponents
+//! have none in common, the scope is empty; otherwise it must be tested.
 
 use crate::settings::SCOPE_EXPONENT;
 use crate::{PointMm, Scope};
@@ -13,9 +13,9 @@ pub(crate) fn cell_of(from_ball: PointMm) -> u32 {
     cell(from_ball.x >> EDGE_BITS, from_ball.y >> EDGE_BITS)
 }
 
-/// The squares into which a scope around `centre` reaches at the paper's threshold, as bits.
+/// The squares that a scope around `centre` overlaps at the paper's threshold, as bits.
 pub fn cells_of(centre: PointMm, scope: Scope) -> u32 {
-    // Past the border of a scope by more than the rounding of single precision.
+    // Beyond the border of a scope by more than the rounding error of single precision.
     let reach = |radius: i32| (f64::from(radius) * (f64::from(SCOPE_EXPONENT) * 1.001)) as i32 + 1;
     let squares =
         |at: i32, radius: i32| (at - reach(radius)) >> EDGE_BITS..=(at + reach(radius)) >> EDGE_BITS;
@@ -40,7 +40,7 @@ fn cell(column: i32, row: i32) -> u32 {
     1 << ((column & 7) | (row & 3) << 3)
 }
 
-/// Squares of 2^9 = 512 mm, about the radius of a scope: they spare more than those of 1024 mm.
+/// Squares of 2^9 = 512 mm, about the radius of a scope: they reject more scopes than squares of 1024 mm.
 const EDGE_BITS: u32 = 9;
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! `correspondence`: assignment of case robots to present robots: the cheapest injective map (paper §3.2).
 //!
-//! Exact and bounded: present robots are taken one after the other, and for every set of parts the cheapest way to
-//! fill it so far is kept: 16 sets, at most 11 robots, at most 352 steps for 4 parts. Distances are summed as whole
-//! 1/256 mm, so that equal sums are equal in any order of adding; a tie goes to the lexicographically smallest list
-//! of robot ids in the order of the parts, which is the smallest number when an id is a digit of base 16.
+//! Exact and bounded: present robots are added one after the other, and for every set of parts the cheapest
+//! assignment so far is kept: 16 sets, at most 11 robots, at most 352 steps for 4 parts. Distances are summed
+//! as whole 1/256 mm, so that equal sums are equal in any order of adding; a tie goes to the
+//! lexicographically smallest list of robot ids in the order of the parts, which is the smallest number when
+//! an id is a digit of base 16.
 
 use geometry::math;
 use heapless::Vec;
@@ -23,33 +24,33 @@ pub(crate) struct Distances {
     pub(crate) parts: usize,
 }
 
-/// A correspondence and what it costs.
+/// A correspondence and its cost.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Players {
-    /// Who plays each part.
+    /// The player of each part.
     pub(crate) ids: Correspondence,
     /// Sum or maximum of the distances, mm.
     pub(crate) cost: f32,
 }
 
-/// A correspondence with its longest way.
+/// A correspondence with its longest distance.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Assignment {
     pub(crate) players: Players,
-    /// The part with the longest way.
+    /// The part with the longest distance.
     pub(crate) farthest: usize,
-    /// How long that is, mm.
+    /// That distance, mm.
     pub(crate) distance: f32,
 }
 
-/// The nearest robot to each part: they cost at most what the cheapest correspondence costs.
+/// The nearest robot to each part: together they cost at most as much as the cheapest correspondence.
 pub(crate) struct Nearest {
     pub(crate) players: Players,
-    /// Nobody is nearest to two parts, and nobody else is just as near: it is the cheapest correspondence.
+    /// No robot is nearest to two parts, and none is tied with another: it is the cheapest correspondence.
     pub(crate) distinct: bool,
 }
 
-/// The nearest robot to each place; `None` where nobody can reach one of them within `limit` mm: then every
+/// The nearest robot to each place; `None` where no robot can reach one of them within `limit` mm: then every
 /// correspondence exceeds it.
 #[inline(always)]
 pub(crate) fn nearest(robots: &[(RobotId, [f32; 2])], places: &[[i16; 2]], limit: f32) -> Option<Nearest> {
@@ -83,8 +84,8 @@ pub(crate) fn nearest(robots: &[(RobotId, [f32; 2])], places: &[[i16; 2]], limit
     Some(Nearest { players: Players { ids, cost }, distinct })
 }
 
-/// The cheapest correspondence; `None` where there are fewer robots than parts, or where the settings constrain the
-/// search to the limit of travel and nothing fits.
+/// The cheapest correspondence; `None` where there are fewer robots than parts, or where the settings
+/// constrain the search to the travel limit and no correspondence is within it.
 pub(crate) fn assign(distances: &Distances, settings: &Settings) -> Option<Assignment> {
     let limit = match settings.correspondence {
         CorrespondenceRule::MinThenTest => f32::INFINITY,
@@ -122,10 +123,10 @@ pub(crate) fn assign_within(distances: &Distances, rule: CostRule, limit: f32) -
     Some(assignment)
 }
 
-/// The packed ids of the least sum.
+/// The packed ids of the minimum sum.
 fn least_sum(distances: &Distances, limit: f32) -> Option<u16> {
     let full = full_set(distances)?;
-    // For every set of parts: the least sum so far and the ids that make it, the sum above the ids.
+    // For every set of parts: the minimum sum so far and its ids, the sum above the ids.
     let mut best = [NEVER; SETS];
     best[0] = 0;
     for (player, column) in &distances.columns {
@@ -149,7 +150,7 @@ fn least_sum(distances: &Distances, limit: f32) -> Option<u16> {
     (least < NEVER).then_some(least as u16)
 }
 
-/// The least possible maximum.
+/// The minimum possible maximum.
 fn least_maximum(distances: &Distances, limit: f32) -> Option<u32> {
     let full = full_set(distances)?;
     let mut best = [u32::MAX; SETS];
@@ -213,11 +214,12 @@ fn digit(packed: u16, part: usize) -> u8 {
     ((packed >> (12 - 4 * (part & 3))) & 15) as u8
 }
 
-/// Above the 1/256 mm within which distances count as equal, and above the rounding of those that can matter.
+/// Difference of distances, mm, that is above the 1/256 mm within which distances count as equal, and above
+/// the rounding error of distances that can matter.
 const TOLD_APART_MM: f32 = 0.02;
-/// Above every sum, and five of it still fit.
+/// Above every sum; five times this value still fits.
 const NEVER: u64 = 1 << 60;
-/// Sets of parts.
+/// Number of sets of parts.
 const SETS: usize = 1 << TEAMMATES_MAX;
 
 #[cfg(test)]
@@ -240,7 +242,7 @@ mod tests {
         assignment.players.ids.iter().map(|id| id.number()).collect()
     }
 
-    /// Every injective map in lexicographic order of ids: the truth the quick way is held against.
+    /// Every injective map in lexicographic order of ids: the reference for the fast method.
     fn enumerate(distances: &Distances, rule: CostRule, limit: f32) -> Option<(u64, List<u8>)> {
         fn go(
             d: &Distances,
@@ -303,8 +305,8 @@ mod tests {
 
     #[test]
     fn in_the_papers_trapezoid_the_sum_keeps_the_paths_apart_and_the_maximum_crosses_them() {
-        // Fig. 6: robots 1 and 2, places A and B; c = d(1, A) is short, b = d(2, B) the long side, both diagonals
-        // shorter than b.
+        // Fig. 6: robots 1 and 2, places A and B; c = d(1, A) is short, b = d(2, B) the long side, both
+        // diagonals shorter than b.
         let (robot1, robot2) = ([0.0, 0.0], [-400.0, 300.0]);
         let (a, b) = ([100.0, 0.0], [500.0, 300.0]);
         let d = |p: [f32; 2], q: [f32; 2]| ((p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2)).sqrt();
@@ -317,7 +319,7 @@ mod tests {
 
     #[test]
     fn a_limit_during_the_search_finds_what_a_test_after_it_rejects() {
-        // The cheapest map sends robot 2 over 1600 mm; within 1500 mm the dearer one fits.
+        // The cheapest map sends robot 2 over 1600 mm; within 1500 mm the more expensive one fits.
         let matrix = distances(&[&[0.0, 1400.0], &[1450.0, 1600.0]], &[1, 2]);
         let mut settings = Settings::default();
         let free = assign(&matrix, &settings).unwrap();

@@ -1,8 +1,9 @@
 //! `explain`: reason why each case is a candidate or not (docs/case-format.md §3.3: the first failure with
 //! its margin).
 //!
-//! Every case listed under the problem's goal is looked at, lowest id first, in the fixed order ball, robot count,
-//! field (where the settings ask), travel, free path. No index and no short cut: tests hold retrieval against this.
+//! Every case listed under the problem's goal is tested, lowest id first, in the fixed order ball, robot
+//! count, field (where the settings require it), travel, free path. No index and no short cut: tests compare
+//! retrieval with it.
 
 use geometry::math;
 use protocol::{CaseId, RobotId};
@@ -18,14 +19,14 @@ use crate::settings::Settings;
 use crate::stored::Stored;
 use crate::table::CaseBase;
 
-/// What became of a case.
+/// Result of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
     /// The ball lies outside the ball's scope.
     Ball {
         /// sim_B, at most the threshold.
         similarity: f32,
-        /// How much is missing to the threshold.
+        /// Difference to the threshold.
         margin: f32,
     },
     /// There are fewer robots than the case needs.
@@ -35,23 +36,24 @@ pub enum Verdict {
         /// Robots of the problem.
         present: usize,
     },
-    /// An adapted position lies outside the field, and the settings reject that.
+    /// An adapted position lies outside the field, and the settings reject such cases.
     OutOfField {
-        /// Whose.
+        /// The case robot.
         robot: CaseRobot,
     },
-    /// A robot of the cheapest correspondence has too far to go; the one with the longest way is told.
+    /// A robot of the cheapest correspondence exceeds the travel limit; the one with the longest distance is
+    /// reported.
     TooFar {
         /// Its part.
         robot: CaseRobot,
-        /// Who would play it.
+        /// The player of that part.
         player: RobotId,
-        /// Its way, mm.
+        /// Its distance, mm.
         distance: f32,
-        /// How much of it is too much, mm.
+        /// Distance above the limit, mm.
         margin: f32,
     },
-    /// An opponent stands in the ball's way.
+    /// An opponent stands in the ball's path.
     Path {
         /// Number of the leg, from 0.
         index: usize,
@@ -59,15 +61,15 @@ pub enum Verdict {
         leg: Leg,
         /// Number of the opponent in the problem, from 0.
         opponent: usize,
-        /// How deep it stands inside the leg, mm.
+        /// Depth of the opponent inside the leg, mm.
         inside_mm: f32,
     },
-    /// It could be played.
+    /// The case is a candidate.
     Candidate(Match),
 }
 
 impl Verdict {
-    /// The word for it in answers.
+    /// Its label in answers.
     pub const fn word(&self) -> &'static str {
         match self {
             Self::Ball { .. } => "ball",
@@ -80,7 +82,7 @@ impl Verdict {
     }
 }
 
-/// Shows the verdict on every case listed under the problem's goal, lowest id first.
+/// Passes the verdict on every case listed under the problem's goal to a callback, lowest id first.
 pub fn explain(
     base: &CaseBase<'_>,
     problem: &Problem,
@@ -111,7 +113,7 @@ fn judge(base: &CaseBase<'_>, query: &Query<'_>, case: &Case<'_>, stored: &Store
     let distances = query.distances(stored);
     let assigned = assign(&distances, settings).filter(|found| found.distance <= settings.travel_max_mm);
     let Some(assignment) = assigned else {
-        // A constrained search that finds nothing tells of the cheapest correspondence without the constraint.
+        // A constrained search without a result reports the cheapest correspondence without the constraint.
         let cheapest = assign_within(&distances, settings.cost, f32::INFINITY);
         let too_far = cheapest.and_then(|cheapest| {
             Some(Verdict::TooFar {

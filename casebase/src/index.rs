@@ -1,11 +1,11 @@
 //! `index`: index of the cases that can have the ball in their scope. A grid over the ball's position
 //! (docs/case-format.md §3).
 //!
-//! The grid covers the half of the field where y ≥ 0. Each of its cells lists the cases defending the negative goal whose
-//! ball scope (at the paper's threshold) reaches into it; cells at the border reach to infinity. What is near a ball
-//! elsewhere, or under the other goal, is found by looking up the mirrored ball, because mirroring a case flips bits of
-//! its id. Lists are sorted by number of opponents, then of teammates, both falling: what can fulfil most conditions
-//! comes first.
+//! The grid covers the half of the field where y ≥ 0. Each of its cells lists the cases defending the
+//! negative goal whose ball scope (at the paper's threshold) overlaps it; cells at the border extend to
+//! infinity. Cases near a ball elsewhere, or under the other goal, are found by looking up the mirrored ball,
+//! because mirroring a case flips bits of its id. Lists are sorted by number of opponents, then of teammates,
+//! both falling: cases that can fulfil most conditions come first.
 
 use crate::settings::SCOPE_EXPONENT;
 use crate::symmetry::Symmetry;
@@ -14,7 +14,7 @@ use crate::{FieldMm, PointMm};
 use geometry::GoalEnd;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// The shape of the grid.
+/// Shape of the grid.
 #[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(C)]
 pub struct Grid {
@@ -26,7 +26,7 @@ pub struct Grid {
     pub cell_mm: f32,
     /// Its inverse, 1/mm.
     pub cells_per_mm: f32,
-    /// The corner of the first cell, mm: where the middle line meets the field's end at −x.
+    /// The corner of the first cell, mm: the intersection of the middle line and the field's end at −x.
     pub corner: [f32; 2],
 }
 
@@ -38,10 +38,11 @@ impl Grid {
         Self { columns, rows, cell_mm, cells_per_mm: 1.0 / cell_mm, corner }
     }
 
-    /// The number of the cell that holds `ball`, row after row. On the border of two cells it may be either.
+    /// The number of the cell that contains `ball`, row after row. On the border of two cells it may be
+    /// either.
     #[inline]
     pub(crate) fn cell(&self, ball: [f32; 2]) -> usize {
-        // What lies below the corner is cut off at 0 by the conversion.
+        // Coordinates below the corner are cut off at 0 by the conversion.
         let step = |axis: usize, count: u16| {
             let cells = (ball[axis] - self.corner[axis]) * self.cells_per_mm;
             (cells as usize).min(usize::from(count).wrapping_sub(1))
@@ -51,7 +52,7 @@ impl Grid {
 }
 
 impl CaseBase<'_> {
-    /// Names every case under `goal` whose ball scope may hold `ball`: ids, with the bits to flip in them.
+    /// Every case under `goal` whose ball scope may contain `ball`: ids, with the bits to flip in them.
     #[inline]
     pub(crate) fn near(&self, [x, y]: [f32; 2], goal: GoalEnd) -> (&[u16], usize) {
         let (x, other_goal) = match goal {
@@ -65,7 +66,7 @@ impl CaseBase<'_> {
         (list.unwrap_or(&[]), usize::from(other_goal.bits() | other_side.bits()))
     }
 
-    /// Is the index made for scopes that end at this exponent?
+    /// Whether the index was built for scopes that end at this exponent.
     #[inline]
     pub(crate) fn index_serves(limit: f32) -> bool {
         limit <= SCOPE_EXPONENT

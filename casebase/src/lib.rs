@@ -1,14 +1,15 @@
 //! `casebase`: case representation and retrieval: which gameplay fits a situation, which robot plays which
 //! part, and whether the ball's path is free (Ros et al. 2009, §2–§3).
 //!
-//! A case is (P, A, K): a situation, what each robot does in it, and how far it generalises. A [`CaseBase`] is a
-//! flat table in flash; [`retrieve()`] finds the case for a [`Problem`]; [`explain()`] says why, for every case. The
-//! four symmetric copies of an authored case are stored in full, so that a robot never flips anything.
+//! A case is (P, A, K): a situation, what each robot does in it, and how far it generalises. A [`CaseBase`]
+//! is a flat table in flash; [`retrieve()`] finds the case for a [`Problem`]; [`explain()`] gives the reason
+//! for every case. The four symmetric copies of an authored case are stored in full, so that a robot never
+//! mirrors anything.
 //!
 //! Whole millimetres, field frame (+x along the length, +y to the left of +x), as in the paper.
 //!
-//! **Invariants.** No I/O, no clock, no allocation; no bytes of a table, no problem and no setting can panic. It
-//! knows nothing of files (`case-tools` does) and of radio. Runs on robots and on the host alike.
+//! **Invariants.** No I/O, no clock, no allocation; no bytes of a table, no problem and no setting can panic.
+//! It does not depend on files (`case-tools` does) or on radio. Runs on robots and on the host alike.
 #![forbid(unsafe_code)]
 #![no_std]
 

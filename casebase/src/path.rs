@@ -1,9 +1,9 @@
 //! `path`: the free-path test: a ball path as the case describes it must be clear of opponents (Ros et al.
 //! 2009, §3.3.1).
 //!
-//! The ball runs through a sequence of legs; each is a fuzzy set that widens from r_min at the foot to r_max at the
-//! end: μ = exp(−(v/ρ)²), u along and v across the leg, 0 ≤ u ≤ l. One opponent above the threshold in any of them,
-//! and the case is not applicable now. Lengths in mm, axes of the field.
+//! The ball runs through a sequence of legs; each is a fuzzy set that widens from r_min at the foot to r_max
+//! at the end: μ = exp(−(v/ρ)²), u along and v across the leg, 0 ≤ u ≤ l. With one opponent above the
+//! threshold in any leg the case is not applicable now. Lengths in mm, axes of the field.
 
 use geometry::{Field, Point, math};
 use serde::{Deserialize, Serialize};
@@ -17,26 +17,26 @@ use crate::table::{self, CaseBase, RawLeg};
 use crate::walk::{Script, Spot, Step, walk};
 use crate::{GoalEnd, PointMm};
 
-/// One stretch of the ball's way, mm, field frame.
+/// One straight part of the ball's path, mm, field frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Leg {
     /// Where the ball is kicked.
     pub from: [f32; 2],
-    /// Where it comes to rest.
+    /// Where the ball stops.
     pub to: [f32; 2],
     /// Radius at `from`.
     pub r_min: f32,
     /// Radius at `to`.
     pub r_max: f32,
-    /// Who kicks.
+    /// The kicking robot.
     pub robot: CaseRobot,
-    /// Which of the kicker's actions that is, from 0.
+    /// Number of that action in the kicker's gameplay, from 0.
     pub action: usize,
-    /// By what.
+    /// Pass or kick.
     pub kind: LegKind,
 }
 
-/// What sends the ball along a leg.
+/// The action that sends the ball along a leg.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LegKind {
     /// A pass to this robot.
@@ -51,13 +51,13 @@ impl Leg {
         in_metres(self.from)
     }
 
-    /// Where it comes to rest, m.
+    /// Where the ball stops, m.
     pub fn end(&self) -> Point<Field> {
         in_metres(self.to)
     }
 
-    /// How far `point` lies along the leg and across it (left > 0), and the leg's radius there; `None` where it is
-    /// not abreast of the leg. A leg of length 0 has nothing abreast.
+    /// Distance of `point` along the leg and across it (left > 0), and the leg's radius there; `None` where
+    /// it is not abreast of the leg. No point is abreast of a leg of length 0.
     pub fn abreast(&self, point: [f32; 2]) -> Option<Abreast> {
         let tube = self.tube();
         let Products { along, cross, radius } = tube.products(point)?;
@@ -65,13 +65,14 @@ impl Leg {
         Some(Abreast { along: along / length, across: cross / length, radius })
     }
 
-    /// How deep an opponent stands inside the leg, mm from its edge at the settings' threshold; `None` outside.
+    /// Depth of an opponent inside the leg, mm from its edge at the settings' threshold; `None` outside.
     pub fn blocked_by(&self, opponent: PointMm, settings: &Settings) -> Option<f32> {
         let point = opponent.to_f32();
         let exponent = self.tube().exponent(point).filter(|exponent| is_blocking(*exponent, settings))?;
         let abreast = self.abreast(point)?;
         let edge = abreast.radius * math::sqrt(settings.limit());
-        // With its own threshold a fuzzy path may be blocked by less than the crisp trapezoid: then it is 0 deep.
+        // With its own threshold a fuzzy path may be blocked by less than the crisp trapezoid: then the depth
+        // is 0.
         Some(if exponent < settings.limit() { (edge - abreast.across.abs()).max(0.0) } else { 0.0 })
     }
 
@@ -80,7 +81,7 @@ impl Leg {
     }
 }
 
-/// The fuzzy set around a leg, without its story: what retrieval looks at.
+/// The fuzzy set around a leg, without its robot, action and kind: the part that retrieval uses.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tube {
     from: [f32; 2],
@@ -99,7 +100,7 @@ impl Tube {
         Self { from, to, r_min, r_max, axis, squared: axis[0] * axis[0] + axis[1] * axis[1] }
     }
 
-    /// From the table, relative to a ball at `ball`; `rest` is where the leg before left the ball.
+    /// From the table, relative to a ball at `ball`; `rest` is the end of the leg before.
     #[inline]
     pub(crate) fn decode(case: &Stored<'_, '_>, raw: &RawLeg, rest: [f32; 2], ball: [f32; 2]) -> Self {
         let from = match raw.carried_to {
@@ -110,7 +111,7 @@ impl Tube {
         Self::new(from, to, raw.radii)
     }
 
-    /// Where the ball comes to rest.
+    /// Where the ball stops.
     #[inline]
     pub(crate) fn to(&self) -> [f32; 2] {
         self.to
@@ -123,7 +124,7 @@ impl Tube {
         Some(cross * cross / (self.squared * radius * radius))
     }
 
-    /// What a point abreast of the leg is judged by, without a square root.
+    /// The products that decide about a point abreast of the leg, without a square root.
     #[inline]
     fn products(&self, point: [f32; 2]) -> Option<Products> {
         let Self { axis, squared, r_min, r_max, .. } = *self;
@@ -137,15 +138,15 @@ impl Tube {
     }
 }
 
-/// Products of the leg's vector with that to a point (`along`: scalar, `cross`: z of the vector product), mm², and the
-/// leg's radius abreast of the point, mm.
+/// Products of the leg's vector with that to a point (`along`: scalar, `cross`: z of the vector product),
+/// mm², and the leg's radius abreast of the point, mm.
 struct Products {
     along: f32,
     cross: f32,
     radius: f32,
 }
 
-/// Where a point lies that is abreast of a leg, mm.
+/// Position of a point that is abreast of a leg, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Abreast {
     /// u, from the foot.
@@ -156,7 +157,7 @@ pub struct Abreast {
     pub radius: f32,
 }
 
-/// What stands in the way.
+/// A blocked leg and the opponent in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blocked {
     /// The leg, field frame.
@@ -165,11 +166,11 @@ pub struct Blocked {
     pub index: usize,
     /// The opponent's number in the list.
     pub opponent: usize,
-    /// How deep the opponent stands inside the leg, mm.
+    /// Depth of the opponent inside the leg, mm.
     pub inside_mm: f32,
 }
 
-/// The first leg with an opponent inside, for a ball at `ball`.
+/// The first leg that contains an opponent, for a ball at `ball`.
 pub fn blocked_leg(
     case: &Case<'_>,
     base: &CaseBase<'_>,
@@ -195,8 +196,8 @@ pub fn blocked_leg(
     found
 }
 
-/// The least exponent of any opponent in any leg, `None` where nobody is abreast of one; any blocking one where the
-/// path is blocked. Opponents relative to the ball.
+/// The minimum exponent of any opponent in any leg, `None` where no opponent is abreast of one; that of any
+/// blocking opponent where the path is blocked. Opponents relative to the ball.
 #[inline]
 pub(crate) fn least_exponent(
     stored: &Stored<'_, '_>,
@@ -232,7 +233,8 @@ pub(crate) fn least_exponent(
     least
 }
 
-/// Does any opponent stand in a leg, the legs taken as stored and each free or not? Opponents relative to the ball.
+/// Whether an opponent stands in a leg, with legs as stored and the crisp test. Opponents relative to the
+/// ball.
 #[inline(always)]
 pub(crate) fn is_crisply_blocked(
     case: &Stored<'_, '_>,
@@ -254,7 +256,7 @@ pub(crate) fn is_crisply_blocked(
     false
 }
 
-/// Does an opponent with this exponent in a leg block it?
+/// Whether an opponent with this exponent in a leg blocks it.
 #[inline]
 pub(crate) fn is_blocking(exponent: f32, settings: &Settings) -> bool {
     match settings.free_path {
@@ -268,12 +270,13 @@ pub(crate) fn freedom(least_exponent: Option<f32>) -> f32 {
     least_exponent.map_or(1.0, |exponent| 1.0 - math::exp(-exponent))
 }
 
-/// From the paper's unit to the robots'.
+/// Conversion of mm to m.
 fn in_metres([x, y]: [f32; 2]) -> Point<Field> {
     Point::new(x * 0.001, y * 0.001)
 }
 
-/// Every leg of the ball path in turn: as stored, or walked anew where adapted positions are clamped to the field.
+/// Every leg of the ball path in turn: as stored, or simulated again where adapted positions are clamped to
+/// the field.
 fn each_leg(
     case: &Case<'_>,
     base: &CaseBase<'_>,
@@ -284,7 +287,7 @@ fn each_leg(
     if settings.out_of_field != OutOfField::Clamp {
         return case.relative_legs(ball).for_each(sink);
     }
-    // A stored case walked without an error when it was built, and clamping moves places only.
+    // A stored case was simulated without an error when it was built, and clamping moves positions only.
     let _ = walk(&Clamped { case, base, ball }, base, |step| {
         if let Step::Leg { robot, action, from, to, radii, kind, .. } = step {
             let relative = |spot: Spot| if spot.on_field { minus(spot.at, ball.to_f32()) } else { spot.at };
@@ -302,12 +305,12 @@ fn each_leg(
     });
 }
 
-/// A leg relative to the ball's first place.
+/// A leg relative to the ball's start position.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RelativeLeg(Leg);
 
 impl RelativeLeg {
-    /// From the table: a stored leg's tube with its story.
+    /// From the table: a stored leg with its robot, action and kind.
     pub(crate) fn decode(case: &Case<'_>, raw: &RawLeg, tube: Tube) -> Option<Self> {
         let robot = CaseRobot::new(usize::from(raw.robot))?;
         let action = usize::from(raw.action);
@@ -320,7 +323,7 @@ impl RelativeLeg {
         Some(Self(Leg { from, to, r_min, r_max, robot, action, kind }))
     }
 
-    /// On the field, for a ball that begins at `ball`.
+    /// In the field frame, for a ball that starts at `ball`.
     pub(crate) fn at(&self, ball: PointMm) -> Leg {
         let [x, y] = ball.to_f32();
         let moved = |point: [f32; 2]| [point[0] + x, point[1] + y];
@@ -359,8 +362,8 @@ impl Script for Clamped<'_, '_> {
     }
 }
 
-/// How many of the scopes of a case's opponents, moved by `moved`, hold nobody, opponents relative to the ball; `None`
-/// once they are more than `most`. `cells` are the squares that hold opponents.
+/// Number of a case's opponent scopes, moved by `moved`, that contain no opponent, opponents relative to the
+/// ball; `None` once they are more than `most`. `cells` are the squares that contain opponents.
 #[inline(always)]
 pub(crate) fn empty_scopes(
     scopes: &[table::Opponent],

@@ -1,12 +1,13 @@
 //! `point`: points on the field, and depth inside an elliptic scope (Ros et al. 2009, §2.1, §2.3).
 //!
-//! Whole millimetres in the field frame, as the paper has them. Differences saturate, so that no input overflows.
+//! Whole millimetres in the field frame, as the paper has them. Differences saturate, so that no input
+//! overflows.
 
 use geometry::{Field, Point};
 use protocol::quantized::{self, WirePoint};
 use serde::{Deserialize, Serialize};
 
-/// A place on the field, mm, field frame.
+/// A position on the field, mm, field frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize)]
 #[serde(from = "(i32, i32)", into = "(i32, i32)")]
 pub struct PointMm {
@@ -66,7 +67,7 @@ impl From<WirePoint> for PointMm {
     }
 }
 impl From<PointMm> for WirePoint {
-    /// A place farther than 32 m off saturates.
+    /// A position farther than 32 m away saturates.
     fn from(point: PointMm) -> Self {
         Self { x: quantized::saturate(point.x), y: quantized::saturate(point.y) }
     }

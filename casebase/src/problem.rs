@@ -7,19 +7,19 @@ use serde::{Deserialize, Serialize};
 
 use crate::{GoalEnd, PointMm};
 
-/// Most teammates in a problem: the largest league's team.
+/// Maximum number of teammates in a problem: the largest league's team.
 pub const PROBLEM_TEAMMATES_MAX: usize = 11;
-/// Most opponents in a problem.
+/// Maximum number of opponents in a problem.
 pub const PROBLEM_OPPONENTS_MAX: usize = 11;
 
-/// The situation now. Coordinates may be any `i32`, on the field or not.
+/// The present situation. Coordinates may be any `i32`, on the field or not.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Problem {
     /// B.
     pub ball: PointMm,
     /// G, the goal we defend.
     pub defending: GoalEnd,
-    /// Tm: who can play, in any order, each id once.
+    /// Tm: the robots that can play, in any order, each id once.
     pub teammates: Vec<(RobotId, PointMm), PROBLEM_TEAMMATES_MAX>,
     /// Opp.
     pub opponents: Vec<PointMm, PROBLEM_OPPONENTS_MAX>,

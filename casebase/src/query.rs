@@ -1,7 +1,7 @@
 //! `query`: tests of one stored case against one problem. The checks of docs/case-format.md §3 one by one,
 //! everything relative to the ball, mm.
 //!
-//! Retrieval and explanation put the same questions, in their own order.
+//! Retrieval and explanation use the same tests, each in its own order.
 
 use geometry::math;
 use heapless::Vec;
@@ -19,30 +19,30 @@ use crate::stored::Stored;
 use crate::table::{Gate, Opponent};
 use crate::{CaseRobot, PointMm};
 
-/// A problem made ready: everything relative to the ball.
+/// A prepared problem: everything relative to the ball.
 pub(crate) struct Query<'p> {
     pub(crate) problem: &'p Problem,
     pub(crate) settings: &'p Settings,
     pub(crate) door: Door,
     teammates: &'p [(RobotId, [f32; 2])],
     opponents: &'p [[f32; 2]],
-    /// The squares around the ball that hold opponents.
+    /// The squares around the ball that contain opponents.
     cells: u32,
 }
 
-/// What of a problem the gate of a case is asked about.
+/// The part of a problem that is tested against a case's record header.
 #[derive(Clone, Copy)]
 pub(crate) struct Door {
-    /// Where the ball lies, mm, field frame.
+    /// Position of the ball, mm, field frame.
     pub(crate) ball: [f32; 2],
-    /// The exponent at which scopes end.
+    /// The exponent at the end of scopes.
     pub(crate) limit: f32,
-    /// Number of robots that are there.
+    /// Number of robots present.
     robots: usize,
 }
 
 impl Door {
-    /// The ball's exponent in the case's scope, where it lies inside and there are robots enough.
+    /// The ball's exponent in the case's scope, where it lies inside and there are enough robots.
     #[inline]
     pub(crate) fn exponent(&self, gate: &Gate) -> Option<f32> {
         if usize::from(gate.teammates) > self.robots {
@@ -54,7 +54,7 @@ impl Door {
 }
 
 impl Query<'_> {
-    /// Does the work with a problem made ready.
+    /// Prepares a problem and calls `work` with it.
     #[inline(always)]
     pub(crate) fn with<R>(problem: &Problem, settings: &Settings, work: impl FnOnce(&Query<'_>) -> R) -> R {
         let ball = problem.ball;
@@ -78,7 +78,7 @@ impl Query<'_> {
         work(&Query { problem, settings, door, teammates: &teammates, opponents: &opponents, cells })
     }
 
-    /// How many of the case's opponent scopes are occupied.
+    /// Number of the case's opponent scopes that contain an opponent.
     pub(crate) fn conditions(&self, case: &Stored<'_, '_>) -> u8 {
         let moved_by = match self.settings.scopes {
             ScopeRule::Translated => PointMm::new(0, 0),
@@ -90,19 +90,20 @@ impl Query<'_> {
         case.gate.opponents.saturating_sub(empty.unwrap_or(0) as u8)
     }
 
-    /// How many are not, where scopes move along with the ball; `None` once they are more than `most`.
+    /// Number of those that contain none, where scopes move with the ball; `None` once they are more than
+    /// `most`.
     #[inline(always)]
     pub(crate) fn empty_scopes(&self, scopes: &[Opponent], most: u32) -> Option<u32> {
         empty_scopes(scopes, [0.0; 2], self.opponents, self.cells, self.door.limit, most)
     }
 
-    /// Does an opponent stand in a leg as it is stored?
+    /// Whether an opponent stands in a leg as it is stored.
     #[inline(always)]
     pub(crate) fn is_crisply_blocked(&self, case: &Stored<'_, '_>) -> bool {
         is_crisply_blocked(case, self.door.ball, self.opponents, self.door.limit)
     }
 
-    /// How free the ball's path is; `None` where it is blocked.
+    /// Freedom of the ball's path; `None` where it is blocked.
     pub(crate) fn freedom(&self, case: &Stored<'_, '_>) -> Option<f32> {
         if self.settings.free_path == FreePathRule::Crisp && self.settings.out_of_field != OutOfField::Clamp {
             return (!self.is_crisply_blocked(case)).then_some(1.0);
@@ -117,7 +118,7 @@ impl Query<'_> {
         })
     }
 
-    /// A robot whose adapted position lies outside the field, where that matters.
+    /// A robot whose adapted position lies outside the field, where the settings reject that.
     pub(crate) fn robot_outside(&self, case: &Stored<'_, '_>) -> Option<CaseRobot> {
         if self.settings.out_of_field != OutOfField::Reject {
             return None;
@@ -127,13 +128,13 @@ impl Query<'_> {
         case.positions()?.iter().position(outside).and_then(CaseRobot::new)
     }
 
-    /// Who is nearest to each part as it is stored; `None` where nobody is near enough to one.
+    /// The nearest robot to each part as it is stored; `None` where no robot is near enough to one.
     #[inline(always)]
     pub(crate) fn nearest(&self, case: &Stored<'_, '_>) -> Option<Nearest> {
         nearest(self.teammates, case.positions()?, self.settings.travel_max_mm)
     }
 
-    /// The cheapest correspondence, where nobody in it has too far to go.
+    /// The cheapest correspondence, where no robot in it exceeds the travel limit.
     pub(crate) fn cheapest(&self, case: &Stored<'_, '_>) -> Option<Players> {
         let Settings { cost, correspondence, out_of_field, .. } = self.settings;
         let plain = *cost == CostRule::Sum
@@ -142,7 +143,7 @@ impl Query<'_> {
         if plain { self.least_sum(case, self.nearest(case)?) } else { self.search(case) }
     }
 
-    /// The same by the sum, with parts as they are stored: mostly, those who are nearest.
+    /// The same by the sum, with parts as they are stored: in most cases, the nearest robots.
     #[inline]
     pub(crate) fn least_sum(&self, case: &Stored<'_, '_>, nearest: Nearest) -> Option<Players> {
         if nearest.distinct { Some(nearest.players) } else { self.search(case) }
@@ -154,7 +155,7 @@ impl Query<'_> {
         (found.distance <= self.settings.travel_max_mm).then_some(found.players)
     }
 
-    /// How far every present robot is from every adapted position.
+    /// The distance of every present robot to every adapted position.
     pub(crate) fn distances(&self, case: &Stored<'_, '_>) -> Distances {
         let parts = usize::from(case.teammates());
         let mut distances = Distances { columns: Vec::new(), parts };
@@ -163,20 +164,20 @@ impl Query<'_> {
             for (place, to) in case.positions().unwrap_or(&[]).iter().zip(&mut column) {
                 *to = distance(*at, self.place(case, *place));
             }
-            // There is room for every teammate a problem can have.
+            // The capacity is that of a problem's teammates: every push fits.
             let _ = distances.columns.push((*id, column));
         }
         distances
     }
 
-    /// What a candidate is ranked by.
+    /// The ranking key of a candidate.
     pub(crate) fn found(&self, case: &Stored<'_, '_>, exponent: f32, free: f32, players: Players) -> Found {
         let (conditions, teammates) = (self.conditions(case), case.teammates());
         let Players { ids, cost } = players;
         Found { key: Key { conditions, teammates, free, exponent, cost, case: case.id.0 }, players: ids }
     }
 
-    /// Where a robot that stands at `at` in the case is to stand, both relative to the ball.
+    /// Adapted position of a robot that stands at `at` in the case, both relative to the ball.
     #[inline]
     fn place(&self, case: &Stored<'_, '_>, at: [i16; 2]) -> [f32; 2] {
         if self.settings.out_of_field == OutOfField::Clamp {
@@ -187,14 +188,14 @@ impl Query<'_> {
     }
 }
 
-/// A candidate: what it is ranked by, and who plays whom.
+/// A candidate: its ranking key, and its correspondence.
 pub(crate) struct Found {
     pub(crate) key: Key,
     pub(crate) players: Correspondence,
 }
 
 impl Found {
-    /// With its similarity, the one exponential of a retrieval.
+    /// With its similarity, the only exponential of a retrieval.
     pub(crate) fn into_match(self) -> Match {
         let Key { conditions, teammates, free, exponent, cost, case } = self.key;
         Match {
@@ -215,8 +216,8 @@ fn distance(from: [f32; 2], to: [f32; 2]) -> f32 {
     math::hypot(from[0] - to[0], from[1] - to[1])
 }
 
-/// Where a robot of the case should stand for a ball at `ball`, as the settings have it: adapted, and clamped to the
-/// field only where they say so.
+/// Position of a robot of the case for a ball at `ball`, by the settings: adapted, and clamped to the field
+/// only where they require it.
 pub fn adapted_position(case: &Case<'_>, robot: CaseRobot, ball: PointMm, settings: &Settings) -> PointMm {
     let adapted = case.adapted(robot, ball);
     match settings.out_of_field {

@@ -1,7 +1,7 @@
 //! `rank`: ranking of candidates (Ros et al. 2009, §3.4; docs/case-format.md §3).
 //!
-//! More conditions, then more teammates, then the higher similarity interval, then the lower cost; ties go to the
-//! higher similarity, then to the lower id. The order of the three criteria is a setting.
+//! More conditions, then more teammates, then the higher similarity interval, then the lower cost; ties go to
+//! the higher similarity, then to the lower id. The order of the three criteria is a setting.
 
 use core::cmp::Ordering;
 
@@ -12,28 +12,28 @@ use serde::{Deserialize, Serialize};
 use crate::action::TEAMMATES_MAX;
 use crate::settings::{Criterion, FreePathRule, Settings};
 
-/// Who plays whom: case robot i is played by entry i.
+/// The players: case robot i is played by entry i.
 pub type Correspondence = Vec<RobotId, TEAMMATES_MAX>;
 
-/// A candidate with all it is ranked by.
+/// A candidate with all its ranking criteria.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Match {
     /// The stored case.
     pub case: CaseId,
     /// sim_B, above the threshold.
     pub similarity: f32,
-    /// −ln sim_B: what the similarity is compared by.
+    /// −ln sim_B: similarities are compared by it.
     pub exponent: f32,
     /// Adaptation cost, mm.
     pub cost: f32,
-    /// 1 − max μ over legs and opponents: 1 where nobody is abreast of any leg. Computed only where paths are fuzzy,
-    /// else 1.
+    /// 1 − max μ over legs and opponents: 1 where no opponent is abreast of any leg. Computed only where
+    /// paths are fuzzy, else 1.
     pub free: f32,
-    /// Opponent scopes that hold an opponent.
+    /// Number of opponent scopes that contain an opponent.
     pub conditions: u8,
-    /// Robots of the case.
+    /// Number of robots of the case.
     pub teammates: u8,
-    /// Who plays whom.
+    /// The players.
     pub correspondence: Correspondence,
 }
 
@@ -42,7 +42,7 @@ pub fn rank_order(a: &Match, b: &Match, settings: &Settings) -> Ordering {
     key_order(&Key::of(a), &Key::of(b), settings)
 }
 
-/// What a candidate is ranked by, without its correspondence.
+/// The ranking criteria of a candidate, without its correspondence.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Key {
     pub(crate) conditions: u8,

@@ -1,8 +1,9 @@
 //! `retrieve`: case retrieval (Ros et al. 2009, §3, Algorithms 1 and 2; docs/case-format.md §3).
 //!
-//! A case is a candidate if the ball lies in its ball scope, the robots are near enough to their adapted positions
-//! and the ball's path is free; candidates are ranked by [`rank_order`](crate::rank_order). Cheap checks come
-//! first, and none is made that cannot change the answer, which is the one of the plain order.
+//! A case is a candidate if the ball lies in its ball scope, the robots are near enough to their adapted
+//! positions and the ball's path is free; candidates are ranked by [`rank_order`](crate::rank_order). Cheap
+//! checks come first, and checks that cannot change the answer are skipped; the answer equals that of the
+//! plain order.
 
 use core::ops::ControlFlow;
 
@@ -17,7 +18,7 @@ use crate::settings::{
 use crate::stored::Stored;
 use crate::table::{CaseBase, Gate};
 
-/// What a retrieval found.
+/// Result of a retrieval.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Retrieval {
     /// The case that ranks first.
@@ -43,8 +44,8 @@ pub fn retrieve(base: &CaseBase<'_>, problem: &Problem, settings: &Settings) -> 
     })
 }
 
-/// Shows every case under the problem's goal that may hold the ball in its scope. Without the index (another threshold
-/// than it was made for) that is every case.
+/// Passes every case under the problem's goal whose scope may contain the ball to a callback. Without the
+/// index (with another threshold than it was built for) that is every case.
 #[inline]
 fn each_near<'q, 'a>(base: &'q CaseBase<'a>, query: &Query<'_>, visit: impl FnMut(Stored<'q, 'a>)) {
     let goal = query.problem.defending;
@@ -58,7 +59,7 @@ fn each_near<'q, 'a>(base: &'q CaseBase<'a>, query: &Query<'_>, visit: impl FnMu
     }
 }
 
-/// Is the case a candidate, and how does it rank?
+/// The case as a candidate with its ranking key; `None` where it is none.
 fn candidate(query: &Query<'_>, case: &Stored<'_, '_>) -> Option<Found> {
     let exponent = query.door.exponent(case.gate)?;
     if query.robot_outside(case).is_some() {
@@ -69,7 +70,7 @@ fn candidate(query: &Query<'_>, case: &Stored<'_, '_>) -> Option<Found> {
     Some(query.found(case, exponent, free, players))
 }
 
-/// The best case alone, without counting the candidates: cases that cannot win are not looked into.
+/// The best case alone, without counting the candidates: cases that cannot win are skipped.
 #[inline(never)]
 pub fn retrieve_best(base: &CaseBase<'_>, problem: &Problem, settings: &Settings) -> Option<Match> {
     if !are_the_papers(settings) {
@@ -94,7 +95,8 @@ pub fn retrieve_best(base: &CaseBase<'_>, problem: &Problem, settings: &Settings
     })
 }
 
-/// Are these the choices of the paper, for which bounds hold and the quick way is written? Numbers may be others.
+/// Whether these are the choices of the paper, for which the bounds hold and the fast path is written.
+/// Numbers may differ.
 #[inline]
 fn are_the_papers(settings: &Settings) -> bool {
     let Settings { ranking: [first, second, third], .. } = *settings;
@@ -109,7 +111,7 @@ fn are_the_papers(settings: &Settings) -> bool {
         scopes as u8,
         free_path as u8,
     ];
-    // One number is compared quicker than eight choices.
+    // One number is compared faster than eight choices.
     u64::from_le_bytes(choices) == u64::from_le_bytes(PAPER)
 }
 
@@ -125,13 +127,13 @@ const PAPER: [u8; 8] = [
     FreePathRule::Crisp as u8,
 ];
 
-/// Conditions (from bit 10), then teammates (from bit 2), then three less the interval: what a candidate is ranked by
+/// Conditions (from bit 10), then teammates (from bit 2), then three minus the interval: the ranking criteria
 /// before cost, in one number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Class(u32);
 
 impl Class {
-    /// The best a case could come to, wherever the ball lies.
+    /// Upper bound of a case's class, for any position of the ball.
     #[inline]
     fn promise(gate: &Gate) -> Self {
         Self(u32::from(u16::from_le_bytes([gate.teammates, gate.opponents])) << 2 | 3)
@@ -140,11 +142,11 @@ impl Class {
     /// The same with the ball in the interval of that exponent.
     #[inline]
     fn in_interval_of(self, exponent: f32) -> Self {
-        // Three less the interval, in the two lowest bits.
+        // Three minus the interval, in the two lowest bits.
         Self(self.0 ^ u32::from(interval(exponent) & 3))
     }
 
-    /// The same with so many of its scopes empty.
+    /// The same with `conditions` of its scopes empty.
     #[inline]
     fn without(self, conditions: u32) -> Self {
         Self(self.0.wrapping_sub(conditions << 10))
@@ -155,14 +157,14 @@ impl Class {
         (self.0 >> 10) as u8
     }
 
-    /// How many conditions it could lose without falling behind `other`, which is no better.
+    /// Number of conditions it could lose without falling behind `other`, which is no better.
     #[inline]
     fn conditions_above(self, other: Self) -> u32 {
         self.0.wrapping_sub(other.0) >> 10
     }
 }
 
-/// Cases with the ball in their scope, on their way to becoming the best candidate.
+/// State of the search for the best candidate among cases with the ball in their scope.
 struct Race<'q, 'a> {
     base: &'q CaseBase<'a>,
     query: &'q Query<'q>,
@@ -172,11 +174,11 @@ struct Race<'q, 'a> {
 }
 
 impl<'a> Race<'_, 'a> {
-    /// Looks at a case that could come to the class of the best candidate. Breaks where neither it nor any that promises
-    /// no more can.
+    /// Tests a case whose bound reaches the class of the best candidate. Breaks where neither it nor any case
+    /// with no higher bound can.
     #[inline(always)]
     fn enter(&mut self, case: CaseId, gate: &'a Gate, exponent: f32) -> ControlFlow<()> {
-        // Lists fall in the order of promises.
+        // Lists are sorted by falling bound.
         let promise = Class::promise(gate);
         if promise < self.class {
             return ControlFlow::Break(());
@@ -191,7 +193,8 @@ impl<'a> Race<'_, 'a> {
         ControlFlow::Continue(())
     }
 
-    /// A case of a class no less than the best candidate's: takes its place if it is a better candidate.
+    /// Tests a case whose class is at least the best candidate's, and replaces that candidate if this one is
+    /// better.
     #[inline(never)]
     fn look_at(&mut self, id: CaseId, gate: &'a Gate, exponent: f32, class: Class) {
         let Self { base, query, .. } = *self;

@@ -1,56 +1,56 @@
 //! `settings`: the named settings of retrieval (docs/case-format.md §3.2), one for each reading of the paper,
 //! each declared once.
 //!
-//! `--set name=value` reaches [`Settings::set`]; [`Settings::describe`] is what gets recorded with every result.
+//! `--set name=value` reaches [`Settings::set`]; [`Settings::describe`] is recorded with every result.
 
 use core::fmt::{self, Write as _};
 
 use geometry::math;
 use serde::{Deserialize, Serialize};
 
-/// Where a scope or a trajectory ends, as a value of its Gaussian: about e⁻¹, the ellipse with radii τx, τy; the
+/// Value of its Gaussian at which a scope or a trajectory ends: about e⁻¹, the ellipse with radii τx, τy; the
 /// paper's literal (Ros et al. 2009, §3.1).
 pub const SCOPE_THRESHOLD: f32 = 0.367;
 /// −ln [`SCOPE_THRESHOLD`]: exponents below it are inside.
 pub const SCOPE_EXPONENT: f32 = 1.002_393_4;
-/// thr_c, mm: how far a robot may have to travel to its adapted position (Ros et al. 2009, §3.2).
+/// thr_c: maximum distance from a robot to its adapted position, mm (Ros et al. 2009, §3.2).
 pub const TRAVEL_MAX_MM: f32 = 1500.0;
-/// The freedom a fuzzy path needs at least: 1 − [`SCOPE_THRESHOLD`], which lets the same cases through as `crisp`.
+/// Minimum freedom of a fuzzy path: 1 − [`SCOPE_THRESHOLD`], which accepts the same cases as `crisp`.
 pub const FREE_MIN: f32 = 1.0 - SCOPE_THRESHOLD;
 
-/// Every choice retrieval leaves open.
+/// The options of retrieval.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
-    /// `correspondence`: when thr_c speaks.
+    /// `correspondence`: when thr_c applies.
     pub correspondence: CorrespondenceRule,
-    /// `cost`: what a correspondence costs.
+    /// `cost`: cost of a correspondence.
     pub cost: CostRule,
-    /// `ranking`: which criterion comes first.
+    /// `ranking`: order of the criteria.
     pub ranking: [Criterion; 3],
-    /// `out_of_field`: what becomes of an adapted position outside the lines.
+    /// `out_of_field`: treatment of an adapted position outside the lines.
     pub out_of_field: OutOfField,
-    /// `scopes`: do the opponents' scopes move along with the ball?
+    /// `scopes`: whether the opponents' scopes move with the ball.
     pub scopes: ScopeRule,
-    /// `free_path`: is a path free or not, or to a degree?
+    /// `free_path`: whether a path is free or not, or free to a degree.
     pub free_path: FreePathRule,
     /// `thr_c`, mm.
     pub travel_max_mm: f32,
     /// `thr`: thr_b, thr_opp and thr_t.
     pub threshold: f32,
-    /// `free_min`: least freedom of a fuzzy path.
+    /// `free_min`: minimum freedom of a fuzzy path.
     pub free_min: f32,
 }
 
-/// When the limit of travel speaks.
+/// When the travel limit applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum CorrespondenceRule {
     /// The cheapest correspondence is found, then tested (Algorithm 1 as printed).
     MinThenTest,
-    /// Only correspondences within the limit are sought (the text of §3.2).
+    /// Only correspondences within the limit are searched (the text of §3.2).
     Constrained,
 }
 
-/// What a correspondence costs.
+/// Cost of a correspondence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum CostRule {
     /// The sum of the distances: the paper's choice, no crossing paths.
@@ -70,33 +70,33 @@ pub enum Criterion {
     IntervalCost,
 }
 
-/// What becomes of an adapted position outside the lines.
+/// Treatment of an adapted position outside the lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum OutOfField {
     /// It stays where it is.
     Keep,
     /// It moves to the nearest point of the field; costs and legs follow.
     Clamp,
-    /// The case is no candidate.
+    /// The case is not a candidate.
     Reject,
 }
 
-/// Where the opponents' scopes lie.
+/// Position of the opponents' scopes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ScopeRule {
-    /// Moved with the ball, as the paper's text and Fig. 2b have it.
+    /// Moved with the ball, as in the paper's text and Fig. 2b.
     Translated,
-    /// Where the case has them, as the paper's formula has it.
+    /// At the case's own positions, as in the paper's formula.
     Absolute,
 }
 
-/// How free a path must be.
+/// Required freedom of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FreePathRule {
     /// No opponent above the threshold in any leg.
     Crisp,
-    /// Free to the degree 1 − max μ: a candidate needs `free_min`, and among cases equal so far the freer comes
-    /// before interval and cost.
+    /// Free to the degree 1 − max μ: a candidate needs `free_min`, and among cases equal so far the freer
+    /// ranks before interval and cost.
     Fuzzy,
 }
 
@@ -117,7 +117,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Sets one choice by its name; the settings stay as they were where it fails.
+    /// Sets one option by its name; on an error the settings stay unchanged.
     pub fn set(&mut self, name: &str, value: &str) -> Result<(), SettingError> {
         let setting =
             SETTINGS.iter().find(|setting| setting.name == name).ok_or(SettingError::UnknownName)?;
@@ -145,16 +145,16 @@ impl Settings {
 /// A setting's value as text.
 pub type SettingValue = heapless::String<64>;
 
-/// Why a setting was not taken.
+/// Why a setting was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SettingError {
     /// No setting has this name.
     UnknownName,
-    /// The setting does not take this value.
+    /// The setting does not accept this value.
     BadValue {
         /// The setting.
         name: &'static str,
-        /// What it takes.
+        /// The accepted values.
         expected: &'static str,
     },
 }
@@ -176,7 +176,7 @@ impl fmt::Display for SettingError {
 }
 impl core::error::Error for SettingError {}
 
-/// A setting's name, what it takes, and how it is written and read.
+/// A setting's name, its accepted values, and how it is written and read.
 struct Setting {
     name: &'static str,
     expected: &'static str,
@@ -184,7 +184,7 @@ struct Setting {
     get: fn(&Settings, &mut SettingValue) -> fmt::Result,
 }
 
-/// The words of a choice with two or three values.
+/// The labels of an option with two or three values.
 trait Words: Copy + PartialEq + 'static {
     const WORDS: &'static [(&'static str, Self)];
 

@@ -1,6 +1,7 @@
-//! `stored`: record addresses of one stored case. What retrieval looks at: by reference, nothing copied.
+//! `stored`: record addresses of one stored case. Used by retrieval: by reference, nothing copied.
 //!
-//! [`Case`](crate::Case) is the view for everybody else; it carries its base with it and decodes what it is asked for.
+//! [`Case`](crate::Case) is the view for all other callers; it contains a reference to its base and decodes
+//! on request.
 
 use protocol::CaseId;
 
@@ -25,7 +26,7 @@ impl<'q, 'a> Stored<'q, 'a> {
         Some(Self { base, id, gate })
     }
 
-    /// The same case as everybody sees it.
+    /// The same case as [`Case`].
     pub(crate) fn case(&self) -> Option<Case<'a>> {
         Case::new(*self.base, self.id)
     }
@@ -49,7 +50,7 @@ impl<'q, 'a> Stored<'q, 'a> {
         self.gate.teammates
     }
 
-    /// Where the robots stand relative to the case's ball, mm.
+    /// Positions of the robots relative to the case's ball, mm.
     #[inline]
     pub(crate) fn positions(&self) -> Option<&'a [[i16; 2]]> {
         self.gate.positions(self.base.places)
@@ -61,13 +62,13 @@ impl<'q, 'a> Stored<'q, 'a> {
         self.gate.opponents(self.base.places)
     }
 
-    /// The legs; each begins where the one before ends.
+    /// The legs; each starts where the one before ends.
     #[inline]
     pub(crate) fn legs(&self) -> Option<&'a [RawLeg]> {
         self.gate.legs(self.base.places)
     }
 
-    /// A point of the case by its number, mm, relative to the case's ball. Few legs ask for one.
+    /// A point of the case by its number, mm, relative to the case's ball. Used by few legs.
     #[inline(never)]
     pub(crate) fn carried_to(&self, index: u8) -> [f32; 2] {
         self.case().map_or([0.0; 2], |case| case.point(index).minus(case.ball()).to_f32())

@@ -1,7 +1,7 @@
 //! `symmetry`: the symmetric copies of a case (Ros et al. 2009, §2.4; docs/case-format.md §2).
 //!
-//! Positions and points mirror, scopes and radii keep. Headings and offsets of kicks are told relative to the
-//! direction of attack: a single reflection negates them, the double one (a turn by 180°) keeps them.
+//! Positions and points are mirrored, scopes and radii are kept. Headings and offsets of kicks are relative
+//! to the direction of attack: a single reflection negates them, the double one (a turn by 180°) keeps them.
 
 use core::fmt;
 
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::PointMm;
 
-/// How a stored case came out of the authored one; the number is the case id modulo 4.
+/// The symmetry of a stored case; the number is the case id modulo 4.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Symmetry {
     /// As authored.
@@ -42,7 +42,7 @@ impl Symmetry {
         self as u16
     }
 
-    /// The word files and answers have for it.
+    /// Its label in files and answers.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Identity => "identity",
@@ -52,7 +52,7 @@ impl Symmetry {
         }
     }
 
-    /// A point or position under it.
+    /// The image of a point or position.
     pub const fn point(self, point: PointMm) -> PointMm {
         let flipped = PointMm { x: point.x.saturating_neg(), y: point.y.saturating_neg() };
         match self {
@@ -63,7 +63,7 @@ impl Symmetry {
         }
     }
 
-    /// The goal defended in it.
+    /// The goal defended after it.
     pub const fn goal(self, goal: GoalEnd) -> GoalEnd {
         match self {
             Self::Identity | Self::AcrossX => goal,
@@ -71,7 +71,7 @@ impl Symmetry {
         }
     }
 
-    /// Does left become right? True for the single reflections.
+    /// Whether left becomes right: true for the single reflections.
     pub const fn swaps_sides(self) -> bool {
         matches!(self, Self::AcrossX | Self::AcrossY)
     }

@@ -1,8 +1,9 @@
-//! `small_size_cost`: instruction count of a simulated second. Eleven against eleven by a fixed script, with
-//! as much around it as asked for.
+//! `small_size_cost`: instruction count of a simulated second of an eleven-against-eleven match by a fixed
+//! script, with the parts of the simulator named by the first argument.
 //!
-//! `cargo run --release -p hil-sim --example small_size_cost -- physics|cameras|packets|restless SECONDS` plays division A and
-//! prints what came of it; `cargo xtask bench simulator` counts its instructions.
+//! `cargo run --release -p hil-sim --example small_size_cost -- physics|cameras|packets|restless SECONDS`
+//! plays division A and
+//! prints counts of the result; `cargo xtask bench simulator` counts its instructions.
 
 use std::process::ExitCode;
 
@@ -49,7 +50,7 @@ fn main() -> ExitCode {
             packets += 1;
             if part >= PACKETS {
                 datagram.clear();
-                // A vector grows as it must: nothing to fail.
+                // A `Vec` grows on demand: encoding into it cannot fail.
                 let _ = packet.encode(&mut datagram);
                 bytes += datagram.len();
             }
@@ -75,8 +76,9 @@ fn line_up(world: &mut World) {
     }
 }
 
-/// One of each team goes for the ball and kicks it ahead, the others run in squares: nobody stands. A ball that
-/// is out comes back to the middle. The restless speed up and turn all the time, and fight for the ball.
+/// One robot of each team drives to the ball and kicks it ahead, the others drive in squares, so that every
+/// robot moves. A ball that left the field is put back in the middle. With `restless`, all robots change
+/// speed and heading all the time and fight for the ball.
 fn script(world: &mut World, step: u32, restless: bool) {
     let ball = world.ball.position;
     if ball.x().abs() > 6.0 || ball.y().abs() > 4.5 {
@@ -86,7 +88,7 @@ fn script(world: &mut World, step: u32, restless: bool) {
         let (ahead, heading) = if colour == Colour::Blue { (1.0, 0.0) } else { (-1.0, geometry::math::PI) };
         for (id, n) in RobotId::all().zip(0..11_u32) {
             let who = Who { colour, id };
-            // The two take turns, so that neither blocks the other for long.
+            // The two robots alternate, so that neither blocks the other for long.
             let turn_to_play = (step / 2_000).is_multiple_of(2) == (colour == Colour::Blue);
             let order = if n == 0 && (turn_to_play || restless) {
                 let Some(robot) = world.robot(who) else { continue };
@@ -110,9 +112,9 @@ fn script(world: &mut World, step: u32, restless: bool) {
     }
 }
 
-/// m/s of those who run in squares.
+/// Speed of the robots that drive in squares, m/s.
 const SPEED: f32 = 0.6;
-/// What is counted: each with all before it; the last is the whole with another script.
+/// What is measured: each entry includes all entries before it; the last is the whole with another script.
 const PARTS: [&str; 4] = ["physics", "cameras", "packets", "restless"];
 const PACKETS: usize = 2;
 const RESTLESS: usize = 3;

@@ -1,10 +1,12 @@
 //! `air`: simulated radio channel. A broadcast radio in steps of a tick: loss, delay, duplication,
 //! reordering, partition.
 //!
-//! Every fate is drawn per receiver from the air's own stream; packets that come in the same tick keep the order they were sent
-//! in unless reordering says otherwise. What does not fit into a tick ([`AIR_IN_MAX`], [`AIR_IN_BYTES_MAX`]) waits for the next.
+//! Loss, delay and copies are drawn per receiver from the channel's own random stream; packets that are due
+//! in the same tick keep the order in which they were sent, unless reordering changes it. Packets that do not
+//! fit into a tick ([`AIR_IN_MAX`], [`AIR_IN_BYTES_MAX`]) wait for the next.
 //!
-//! A team may have its host on the air: it hears every robot, speaks to all or to one, and its packets share the fate of others'.
+//! A team may have its host on this channel: it receives every robot's packets, sends to all robots or to
+//! one, and its packets are lost and delayed like all others.
 
 use protocol::RobotId;
 use protocol::frame::Sender;
@@ -13,60 +15,62 @@ use protocol::lockstep::{AIR_IN_BYTES_MAX, AIR_IN_MAX};
 
 use crate::rng::Stream;
 
-/// How the air treats packets.
+/// Loss, delay, duplication and reach of the channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AirSettings {
-    /// Probability that a receiver does not hear a packet.
+    /// Probability that a receiver does not receive a packet.
     pub loss: f32,
-    /// Fewest and most ticks of 40 ms on the way; at least 1: nobody hears in the tick of sending.
+    /// Minimum and maximum delay, in ticks of 40 ms; at least 1: no packet is received in the tick in which
+    /// it is sent.
     pub delay: [u32; 2],
-    /// Probability that a receiver hears a packet twice, the copy with a delay of its own.
+    /// Probability that a receiver receives a packet twice; the copy has its own delay.
     pub duplication: f32,
-    /// Probability that a packet changes places with the one sent before it to the same receiver, if that is still on its way.
+    /// Probability that a packet changes places with the one sent before it to the same receiver, if that is
+    /// not delivered yet.
     pub reordering: f32,
-    /// Which part of the field a robot's radio reaches, by id; packets pass within a part only.
+    /// Partition of a robot's radio, by id; packets pass within a partition only.
     pub groups: [u8; RobotId::COUNT],
-    /// The part that the host's radio reaches.
+    /// Partition of the host's radio.
     pub host_group: u8,
-    /// Links that lose more or less than `loss`.
+    /// Links whose loss probability differs from `loss`.
     pub links: Vec<LinkLoss>,
-    /// Stretches in which a link carries nothing at all, beside `loss`.
+    /// Periods in which a link carries no packet at all, in addition to `loss`.
     pub bursts: Option<Bursts>,
 }
 
-/// Loss that comes in stretches (Gilbert 1960, Elliott 1963): each direction between two stations is by turns good and dead,
-/// and both stretches are of exponential length. `loss` holds while it is good.
+/// Loss in bursts (Gilbert 1960, Elliott 1963): each direction between two radios alternates between good and
+/// dead, both with exponentially distributed lengths. `loss` applies while it is good.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bursts {
-    /// Share of the time in which it is dead, 0 to below 1.
+    /// Share of the time in which a link is dead, 0 to below 1.
     pub share: f32,
-    /// Mean length of a dead stretch, ticks; at least 1.
+    /// Mean length of a dead period, ticks; at least 1.
     pub ticks: f32,
 }
 
 impl Bursts {
-    /// The state of a link a tick later.
+    /// The state of a link one tick later.
     fn next(self, dead: bool, chance: &mut Stream) -> bool {
         let ends = 1.0 / self.ticks.max(1.0);
-        // Balance: as many stretches begin as end.
+        // In equilibrium, equally many dead periods start and end.
         let begins = ends * self.share / (1.0 - self.share).max(f32::MIN_POSITIVE);
         if dead { !chance.chance(ends) } else { chance.chance(begins) }
     }
 }
 
-/// One direction between two stations.
+/// Loss of one direction between two radios.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinkLoss {
-    /// Who speaks.
+    /// The sender.
     pub from: Sender,
-    /// Who may hear it.
+    /// The receiver.
     pub to: Sender,
-    /// Probability that it does not.
+    /// Probability that the receiver does not receive a packet.
     pub loss: f32,
 }
 
 impl Default for AirSettings {
-    /// Every packet is heard one tick later.
+    /// Every packet is received one tick after it was sent.
     fn default() -> Self {
         Self {
             loss: 0.0,
@@ -82,7 +86,7 @@ impl Default for AirSettings {
 }
 
 impl AirSettings {
-    /// The default with this loss.
+    /// The default with this probability of loss.
     pub fn with_loss(loss: f32) -> Self {
         Self { loss, ..Self::default() }
     }
@@ -100,29 +104,29 @@ impl AirSettings {
     }
 }
 
-/// What became of packets so far, per receiver and packet.
+/// Counts of all packets so far, one per receiver and packet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AirCounts {
-    /// Sent to a receiver in reach.
+    /// Packets sent to a receiver in reach.
     pub sent: u64,
-    /// Lost on the way, or out of reach.
+    /// Packets lost, or sent out of reach.
     pub lost: u64,
-    /// Doubled.
+    /// Packets duplicated.
     pub doubled: u64,
-    /// Handed over.
+    /// Packets delivered.
     pub delivered: u64,
 }
 
-/// The air between the robots of a team, and their host where there is one.
+/// The radio channel between the robots of a team, and their host where there is one.
 #[derive(Clone, Debug)]
 pub struct Air {
     settings: AirSettings,
     chance: Stream,
-    /// Packets on their way, by receiver, sorted by `(due, order)`.
+    /// Packets not delivered yet, by receiver, sorted by `(due, order)`.
     inbound: Vec<(Sender, Vec<InFlight>)>,
     order: u64,
     counts: AirCounts,
-    /// Which links are dead, by speaker and listener, and until which tick that is worked out.
+    /// Which links are dead, by sender and receiver, and the tick up to which that is computed.
     dead: Vec<[bool; Sender::COUNT]>,
     dead_in: u32,
     stretches: Stream,
@@ -131,13 +135,13 @@ pub struct Air {
 #[derive(Clone, Debug)]
 struct InFlight {
     due: u32,
-    /// Rises with every packet.
+    /// Sequence number of the next packet.
     order: u64,
     packet: Packet,
 }
 
 impl Air {
-    /// Silent air between `robots`.
+    /// A channel between `robots`, without packets.
     pub fn new(settings: AirSettings, seed: u64, robots: &[RobotId]) -> Self {
         let mut receivers = robots.to_vec();
         receivers.sort_unstable();
@@ -153,34 +157,34 @@ impl Air {
         }
     }
 
-    /// Silent air between `robots` and their host.
+    /// A channel between `robots` and their host, without packets.
     pub fn with_host(settings: AirSettings, seed: u64, robots: &[RobotId]) -> Self {
         let mut air = Self::new(settings, seed, robots);
         air.inbound.push((Sender::Host, Vec::new()));
         air
     }
 
-    /// How it treats packets from now on; those on their way keep their fate.
+    /// Settings for packets sent from now on; packets already sent keep their drawn delay.
     pub fn set(&mut self, settings: AirSettings) {
         self.settings = settings;
     }
 
-    /// How it treats packets now.
+    /// The present settings.
     pub fn settings(&self) -> &AirSettings {
         &self.settings
     }
 
-    /// What became of packets so far.
+    /// Counts of all packets so far.
     pub fn counts(&self) -> AirCounts {
         self.counts
     }
 
-    /// A robot speaks in tick `now`; the others, and the host, hear it later, or not.
+    /// Robot `from` sends in tick `now`; the others, and the host, receive it later or lose it.
     pub fn send(&mut self, now: u32, from: RobotId, packet: &Packet) {
         self.spread(now, Sender::Robot(from), None, packet);
     }
 
-    /// The host speaks in tick `now`, to all robots or to one.
+    /// The host sends in tick `now`, to all robots or to one.
     pub fn send_from_host(&mut self, now: u32, to: Option<RobotId>, packet: &Packet) {
         self.spread(now, Sender::Host, to.map(Sender::Robot), packet);
     }
@@ -211,7 +215,8 @@ impl Air {
         }
     }
 
-    /// Which links are dead in tick `now`: all of them go on tick by tick, whoever speaks.
+    /// Computes which links are dead in tick `now`: all of them advance every tick, whether they are used or
+    /// not.
     fn work_out_bursts(&mut self, now: u32) {
         let Some(bursts) = self.settings.bursts else {
             self.dead_in = now;
@@ -225,7 +230,7 @@ impl Air {
         }
     }
 
-    /// What robot `to` hears in tick `now`, in order.
+    /// The packets robot `to` receives in tick `now`, in order.
     pub fn deliver(&mut self, now: u32, to: RobotId) -> heapless::Vec<Packet, AIR_IN_MAX> {
         let Some(queue) = self.queue(Sender::Robot(to)) else { return heapless::Vec::new() };
         let mut bytes = 0;
@@ -239,7 +244,7 @@ impl Air {
         packets
     }
 
-    /// What the host hears in tick `now`, in order: all of it.
+    /// All packets the host receives in tick `now`, in order.
     pub fn deliver_to_host(&mut self, now: u32) -> Vec<Packet> {
         let Some(queue) = self.queue(Sender::Host) else { return Vec::new() };
         let due = queue.iter().take_while(|packet| packet.due <= now).count();
@@ -248,7 +253,7 @@ impl Air {
         packets
     }
 
-    /// A robot's radio is off: what is due for it by `now` is lost.
+    /// A robot's radio is off: packets due for it by `now` are lost.
     pub fn discard(&mut self, now: u32, to: RobotId) {
         if let Some(queue) = self.queue(Sender::Robot(to)) {
             let before = queue.len();
@@ -263,7 +268,7 @@ impl Air {
     }
 }
 
-/// The newcomer takes the place of the youngest packet on its way, which takes the newcomer's.
+/// The new packet takes the place of the last queued packet, which takes the new one's.
 fn overtake(queue: &mut Vec<InFlight>, newcomer: &mut InFlight) {
     let youngest = queue.iter().enumerate().max_by_key(|(_, packet)| packet.order).map(|(i, _)| i);
     if let Some(i) = youngest {
@@ -295,7 +300,7 @@ mod tests {
         Packet::from_slice(&n.to_le_bytes()).unwrap()
     }
 
-    /// Robot 1 sends `n` numbered packets, one a tick; gives what robot 2 heard, with its ticks.
+    /// Robot 1 sends `n` numbered packets, one per tick; returns what robot 2 received, with the ticks.
     fn heard(settings: AirSettings, n: u32) -> (Vec<(u32, u32)>, AirCounts) {
         let mut air = air(settings);
         let mut heard = Vec::new();
@@ -341,7 +346,7 @@ mod tests {
         let came: std::collections::BTreeSet<u32> = heard.iter().map(|(_, number)| *number).collect();
         let lost = f64::from(n) - came.len() as f64;
         let stretches = (1..n).filter(|i| came.contains(&(i - 1)) && !came.contains(i)).count() as f64;
-        // 1,500 stretches of 8 ± 8: 0.2 of their mean, and 2 % of the share; four of each.
+        // 1,500 dead periods of 8 ± 8: 0.2 of their mean, and 2 % of the share; four of each.
         assert!((lost / f64::from(n) - 0.3).abs() < 0.03, "{lost}");
         assert!((lost / stretches - 8.0).abs() < 0.9, "{}", lost / stretches);
     }
@@ -427,7 +432,8 @@ mod tests {
             air.send_from_host(tick, None, &packet(tick));
             air.send(tick, id(2), &packet(tick));
         }
-        // Robot 1 hears two senders, robot 2 nobody, the host one; √(n·0.3·0.7) = 41 and 29, four of each.
+        // Robot 1 receives from two senders, robot 2 from none, the host from one; √(n·0.3·0.7) = 41 and 29,
+        // four of each.
         assert!(heard[0].abs_diff(5_600) < 4 * 41 && heard[2].abs_diff(2_800) < 4 * 29, "{heard:?}");
         assert_eq!(heard[1], 0);
         air.discard(4_500, id(1));

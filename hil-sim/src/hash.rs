@@ -1,4 +1,4 @@
-//! `hash`: FNV-1a hash. FNV-1a, 64 bits: the hash docs/architecture.md §2.5 names for traces.
+//! `hash`: FNV-1a hash, 64 bits: the hash that docs/architecture.md §2.5 names for traces.
 
 use core::fmt;
 
@@ -13,14 +13,14 @@ impl Default for Fnv {
 }
 
 impl Fnv {
-    /// Takes `bytes` in.
+    /// Adds `bytes`.
     pub fn add(&mut self, bytes: &[u8]) {
         for &byte in bytes {
             self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
         }
     }
 
-    /// Takes the bits of a number in, little endian.
+    /// Adds the bits of a number, little endian.
     pub fn add_f32(&mut self, value: f32) {
         self.add(&value.to_bits().to_le_bytes());
     }

@@ -1,15 +1,17 @@
-//! `hil_sim`: simulator of field, radio and microcontrollers. A deterministic simulator
-//! (docs/architecture.md §7). Runs on the PC.
+//! `hil_sim`: simulator of field, radio and microcontrollers. A deterministic simulator (docs/architecture.md
+//! §7). Runs on the PC.
 //!
 //! ```text
 //! scenario ─► world (ball, walkers) ─► senses ─► Mcu: native, or the image under QEMU ─► orders ─► world
 //!                 │                                  ▲ │
 //!                 └► opponents, referee, trace       air ─ packets with loss, delay, copies, partition
 //! ```
-//! [`Simulation`] ties them together: a tick of 40 ms for brains and air, four steps of 10 ms for physics. Same configuration,
-//! same bits: no clock, one stream of chance per subsystem, fixed order of every loop, `geometry::math` only.
+//! [`Simulation`] connects them: a tick of 40 ms for brains and radio, four steps of 10 ms for physics. Equal
+//! configurations give equal bits: no clock, one random stream per subsystem, fixed order of every loop,
+//! `geometry::math` only.
 //!
-//! **Invariants.** It never links `host`; robots learn of the truth through [`four_legged::sensors`] alone; no I/O but the back end's.
+//! **Invariants.** It never links `host`; robots measure the true state through [`four_legged::sensors`]
+//! alone; only the back end does I/O.
 #![forbid(unsafe_code)]
 
 mod air;

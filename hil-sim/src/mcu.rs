@@ -1,8 +1,9 @@
-//! `mcu`: interface of a robot's computer in the simulator. Something that answers a tick
-//! (docs/architecture.md §7.2): natively, or as an image under QEMU.
+//! `mcu`: interface of a robot's computer in the simulator. It answers a tick (docs/architecture.md §7.2):
+//! natively, or as a firmware image under QEMU.
 //!
-//! A tick is split into [`Mcu::post`] and [`Mcu::collect`], so that all robots of a team can think at the same time where they
-//! are processes. A crash is a dropped `Mcu`; a return is a new one with a larger epoch, whose clock starts at zero.
+//! A tick is split into [`Mcu::post`] and [`Mcu::collect`], so that all robots of a team can compute at the
+//! same time where they are processes. A crash is a dropped `Mcu`; a reboot is a new one with a larger epoch,
+//! whose clock starts at zero.
 
 use std::fmt;
 
@@ -11,70 +12,70 @@ use protocol::link::Packet;
 use protocol::lockstep::{AIR_OUT_MAX, TickIn};
 use protocol::robot_io::ActuatorFrame;
 
-/// A robot's computer, set up and running.
+/// A booted robot's computer.
 pub trait Mcu {
-    /// Gives it a tick. The robot's own clock is in the tick; nothing else moves its time.
+    /// Sends it a tick. The robot's own clock is in the tick; nothing else advances its time.
     fn post(&mut self, tick: &TickIn<'_>) -> Result<(), McuError>;
 
     /// Its answer to the tick posted last.
     fn collect(&mut self) -> Result<Reply, McuError>;
 
-    /// Both at once.
+    /// Posts a tick and collects the answer.
     fn exchange(&mut self, tick: &TickIn<'_>) -> Result<Reply, McuError> {
         self.post(tick)?;
         self.collect()
     }
 }
 
-/// What starts robots' computers.
+/// Boots robots' computers.
 pub trait Backend<'a> {
-    /// Its word in options and reports.
+    /// Its label in options and reports.
     fn name(&self) -> &'static str;
 
-    /// A computer that begins the life `config` describes; its clock stands at zero.
+    /// Boots a computer in the epoch of `config`; its clock is at zero.
     fn boot(&mut self, config: &BrainConfig) -> Result<Box<dyn Mcu + 'a>, McuError>;
 }
 
 /// The answer to a tick.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reply {
-    /// What the body shall do; `None` when nothing new was said.
+    /// The order to the body; `None` where the computer sent no new one.
     pub actuators: Option<ActuatorFrame>,
     /// Packets to send, in order.
     pub packets: heapless::Vec<Packet, AIR_OUT_MAX>,
     /// Guest instructions of the tick, where they can be counted; else 0.
     pub instructions: u32,
-    /// Bytes of its stack that were ever used, where that can be seen; else 0.
+    /// Maximum stack use so far, bytes, where it can be measured; else 0.
     pub stack: u32,
 }
 
-/// Why a robot's computer cannot be used (any more).
+/// Why a robot's computer cannot be used.
 #[derive(Debug)]
 pub enum McuError {
-    /// Something the back end needs is not on this machine.
+    /// A program or file that the back end needs is missing on this machine.
     Missing {
-        /// What.
+        /// The program or file.
         what: String,
-        /// What to do about it.
+        /// How to get it.
         mend: String,
     },
-    /// It could not be started.
+    /// The process could not be started.
     Start(std::io::Error),
-    /// Talking to it failed.
+    /// Communication with the process failed.
     Io(std::io::Error),
     /// It did not answer in time.
     Silent {
-        /// What it was asked.
+        /// The request.
         asked: &'static str,
-        /// How long it was waited for, ms.
+        /// How long the simulator waited, ms.
         waited_ms: u64,
     },
-    /// It ended by itself.
+    /// The process ended by itself.
     Ended {
-        /// How, and what it last said.
+        /// Its exit status and its last output.
         how: String,
     },
-    /// Its answer is none.
+    /// Its answer cannot be decoded.
     Malformed {
         /// What is wrong with it.
         what: String,

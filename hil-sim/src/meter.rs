@@ -1,6 +1,6 @@
-//! `meter`: measurement of the robots' computers. A back end around another that keeps each step's
-//! instructions and the deepest stack (docs/architecture.md §9), and one that gives a team computers of its
-//! own kind.
+//! `meter`: measurement of the robots' computers. A back end that wraps another and keeps each step's
+//! instruction count and the maximum stack use (docs/architecture.md §9), and one that gives a team another
+//! back end than the others.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -11,7 +11,7 @@ use protocol::lockstep::TickIn;
 
 use crate::mcu::{Backend, Mcu, McuError, Reply};
 
-/// What all computers of a back end took together; zeros where nothing can be counted.
+/// Measurements of all computers of a back end; zeros where they cannot be measured.
 #[derive(Clone, Debug, Default)]
 pub struct Meter(Rc<RefCell<Taken>>);
 
@@ -22,12 +22,12 @@ struct Taken {
 }
 
 impl Meter {
-    /// How many steps there were.
+    /// Number of steps.
     pub fn steps(&self) -> usize {
         self.0.borrow().steps.len()
     }
 
-    /// The step in the middle and the worst one, instructions.
+    /// The median and the worst step, instructions.
     pub fn median_and_worst(&self) -> (u32, u32) {
         let mut taken = self.0.borrow_mut();
         taken.steps.sort_unstable();
@@ -35,12 +35,12 @@ impl Meter {
         (at(taken.steps.len() / 2), at(taken.steps.len().saturating_sub(1)))
     }
 
-    /// The deepest use of a stack, bytes.
+    /// Maximum stack use, bytes.
     pub fn stack(&self) -> u32 {
         self.0.borrow().stack
     }
 
-    /// Takes an answer into account.
+    /// Adds an answer.
     pub fn note(&self, reply: &Reply) {
         let mut taken = self.0.borrow_mut();
         taken.steps.push(reply.instructions);
@@ -56,7 +56,7 @@ pub struct Metered<B> {
 }
 
 impl<B> Metered<B> {
-    /// With what its computers take added to that meter.
+    /// Wraps `backend`; its computers' measurements are added to `meter`.
     pub fn new(backend: B, meter: &Meter) -> Self {
         Self { backend, meter: meter.clone() }
     }
@@ -89,7 +89,7 @@ impl Mcu for MeteredMcu<'_> {
     }
 }
 
-/// One team's computers of one kind, everybody else's of another.
+/// One back end for one team's computers, another for all others.
 #[derive(Debug)]
 pub struct ByTeam<A, B> {
     /// The team.

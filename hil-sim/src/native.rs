@@ -1,6 +1,6 @@
 //! `native`: a brain that runs in the simulator's process. The same [`Station`] as on a board, driven in the
 //! same order (docs/architecture.md §7.2): deadlines due by the tick's time, each at its own time; then the
-//! tick's packets; then its senses; every word sent as it is said.
+//! tick's packets; then its sensor frame; every message is sent as soon as it is produced.
 
 use brain::{BrainConfig, Station};
 use casebase::CaseBase;
@@ -40,7 +40,7 @@ struct Native<'a> {
 }
 
 impl Native<'_> {
-    /// Sends what the station has to say; as on a board, what does not fit into the tick is dropped.
+    /// Sends the station's messages; as on a board, those that do not fit into the tick are dropped.
     fn drain(&mut self, now: Instant) {
         while let Some(packet) = self.station.poll_packet(now) {
             let _dropped = self.reply.packets.push(packet);

@@ -1,9 +1,10 @@
-//! `qemu`: a brain that runs as the firmware image in a QEMU of its own, one frame a tick
+//! `qemu`: a brain that runs as the firmware image in a QEMU process of its own, one frame a tick
 //! (docs/architecture.md §7.2).
 //!
-//! The simulator holds one end of a pair of datagram sockets, the emulator has the other as its standard input and
-//! connects it to the board's Ethernet controller: no ports, no files. The image's clock is in the ticks, so a slow
-//! machine changes nothing; `-icount` makes the emulator count instructions, which each answer reports. Unix only.
+//! The simulator holds one end of a pair of datagram sockets, the emulator has the other as its standard
+//! input and connects it to the board's Ethernet controller: no ports, no files. The firmware image's clock
+//! is in the ticks, so a slow machine changes nothing; `-icount` makes the emulator count instructions, which
+//! each answer reports. Unix only.
 
 use std::ffi::OsString;
 use std::io::{ErrorKind, Read, Write};
@@ -22,7 +23,7 @@ use protocol::slot;
 
 use crate::mcu::{Backend, Mcu, McuError, Reply};
 
-/// Robots' computers as processes, all with one image.
+/// Robots' computers as processes, all with one firmware image.
 #[derive(Debug)]
 pub struct QemuBackend {
     program: PathBuf,
@@ -32,7 +33,7 @@ pub struct QemuBackend {
 }
 
 impl QemuBackend {
-    /// With the image at this path and the case base that is built into it.
+    /// With the firmware image at this path and the case base that is built into it.
     pub fn new(image: impl Into<PathBuf>) -> Self {
         Self { program: PROGRAM.into(), image: image.into(), library: None, patience: Patience::default() }
     }
@@ -43,7 +44,7 @@ impl QemuBackend {
         Ok(self)
     }
 
-    /// What there must be on this machine.
+    /// Checks that the needed programs and files are on this machine.
     fn check(&self) -> Result<(), McuError> {
         if !self.image.is_file() {
             let what = format!("the firmware image {}", self.image.display());
@@ -57,8 +58,9 @@ impl QemuBackend {
     }
 
     fn command(&self) -> Command {
-        // Where the simulator is killed, its emulators shall go with it: the kernel sees to that on Linux. It takes the
-        // thread that started one for its parent, so a robot must not outlive the thread that booted it.
+        // Where the simulator is killed, its emulators must be killed too: on Linux the kernel does that. It
+        // takes the thread that started a process for its parent, so a robot must not outlive the thread that
+        // booted it.
         let mut command = if find(Path::new("setpriv")).is_some() {
             let mut guarded = Command::new("setpriv");
             guarded.args(["--pdeathsig", "KILL"]).arg(&self.program);
@@ -88,11 +90,11 @@ impl<'a> Backend<'a> for QemuBackend {
     }
 }
 
-/// One robot's computer. Ends with this value.
+/// One robot's computer. The process is killed when this value is dropped.
 struct Qemu {
     child: Child,
     socket: UnixDatagram,
-    /// The tick posted last.
+    /// Number of the tick posted last.
     seq: u32,
     patience: Patience,
     frame: Box<[u8; FRAME_LEN_MAX]>,
@@ -141,7 +143,7 @@ impl Qemu {
         }
     }
 
-    /// The next message from the board; `asked` says what it answers.
+    /// The next message from the board; `asked` names the request it answers.
     fn receive(&mut self, asked: &'static str, patience: Duration) -> Result<FromRobot<'_>, McuError> {
         let started = Instant::now();
         let len = loop {
@@ -151,7 +153,7 @@ impl Qemu {
                 Err(error) if error.kind() == ErrorKind::Interrupted => continue,
                 Err(error) => return Err(self.ended().unwrap_or(McuError::Io(error))),
             }
-            // The pair stays silent when the other end is gone, so ask for the process itself.
+            // The socket pair stays silent when the other end is closed, so check the process itself.
             if let Some(end) = self.ended() {
                 return Err(end);
             }
@@ -170,7 +172,7 @@ impl Qemu {
         for pipe in
             [self.child.stderr.take().map(boxed), self.child.stdout.take().map(boxed)].into_iter().flatten()
         {
-            // What cannot be read is not there; the status is told anyway.
+            // An unreadable pipe counts as empty; the exit status is reported anyway.
             let _ = pipe.take(SAID_LEN_MAX).read_to_string(&mut said);
         }
         let hint = if said.contains("dgram") { " (QEMU 7.2 or newer is needed)" } else { "" };
@@ -195,13 +197,13 @@ impl Mcu for Qemu {
 
 impl Drop for Qemu {
     fn drop(&mut self) {
-        // It may have ended by itself; either way nothing is left to do about it.
+        // It may have ended by itself; either way nothing remains to be done.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-/// The board's message, if the frame is one of its.
+/// The board's message, if the frame contains one.
 fn message_in(frame: &[u8]) -> Option<FromRobot<'_>> {
     let rest = frame.get(ADDRESSES_LEN..)?.strip_prefix(&ETHERTYPE.to_be_bytes())?;
     let (length, payload) = rest.split_first_chunk()?;
@@ -236,7 +238,7 @@ fn boxed(pipe: impl Read + 'static) -> Box<dyn Read> {
     Box::new(pipe)
 }
 
-/// A program's file: the path itself, or the first in PATH.
+/// A program's file: the path itself, or the first match in PATH.
 fn find(program: &Path) -> Option<PathBuf> {
     if program.components().count() > 1 {
         return program.is_file().then(|| program.to_path_buf());
@@ -245,7 +247,8 @@ fn find(program: &Path) -> Option<PathBuf> {
     env::split_paths(&path).map(|folder| folder.join(program)).find(|file| file.is_file())
 }
 
-/// What goes into the slot of the board's flash: a file of its own for each back end, gone with it.
+/// What goes into the library slot of the board's flash: a temporary file of its own for each back end,
+/// deleted with it.
 #[derive(Debug)]
 struct LibraryFile(PathBuf);
 
@@ -264,7 +267,7 @@ impl LibraryFile {
         Ok(file)
     }
 
-    /// QEMU's device that puts it there; commas of a path are doubled.
+    /// The argument of QEMU's loader device for that file; commas of a path are doubled.
     fn loader(&self) -> OsString {
         let path = self.0.to_string_lossy().replace(',', ",,");
         format!("loader,file={path},addr={:#x},force-raw=on", slot::ADDRESS).into()
@@ -273,12 +276,12 @@ impl LibraryFile {
 
 impl Drop for LibraryFile {
     fn drop(&mut self) {
-        // A temporary file that stays is a pity, not an error.
+        // A temporary file that stays is no error.
         let _ = fs::remove_file(&self.0);
     }
 }
 
-/// How long a robot's computer may take.
+/// Timeouts of a robot's computer.
 #[derive(Clone, Copy, Debug)]
 struct Patience {
     boot: Duration,
@@ -286,16 +289,16 @@ struct Patience {
 }
 
 impl Default for Patience {
-    /// A start takes 50 ms and a tick less than 1 ms; a machine may well be 100 times busier than that.
+    /// A start takes 50 ms and a tick less than 1 ms; a busy machine may be 100 times slower.
     fn default() -> Self {
         Self { boot: Duration::from_secs(30), tick: Duration::from_secs(10) }
     }
 }
 
-/// How often the process is looked after while nothing comes.
+/// How often the process is checked while no message comes.
 const LOOK_ROUND: Duration = Duration::from_millis(50);
 const PROGRAM: &str = "qemu-system-arm";
-/// Machine, counting of instructions (64 ns of virtual time each), its panic's way out, and the network on descriptor 0.
+/// Machine, instruction count (64 ns of virtual time each), exit on panic, and the network on descriptor 0.
 const MACHINE_ARGS: [&str; 16] = [
     "-machine",
     "mps2-an386",
@@ -314,17 +317,17 @@ const MACHINE_ARGS: [&str; 16] = [
     "-net",
     "nic,netdev=air",
 ];
-/// Of an emulator's last words.
+/// Maximum length of the output kept of an ended emulator, bytes.
 const SAID_LEN_MAX: u64 = 4_096;
 
-/// Destination (everybody), source (a locally administered address), type.
+/// Destination (broadcast), source (a locally administered address), type.
 const HEADER: [u8; 14] = {
     let [high, low] = ETHERTYPE.to_be_bytes();
     [0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x02, 0, 0, 0, 0, 0x02, high, low]
 };
 const ADDRESSES_LEN: usize = 12;
 const LENGTH_LEN: usize = 2;
-/// Ethernet's shortest frame, without the checksum.
+/// Ethernet's minimum frame length, bytes, without the checksum.
 const FRAME_LEN_MIN: usize = 60;
 const FRAME_LEN_MAX: usize = HEADER.len() + LENGTH_LEN + MESSAGE_LEN_MAX;
 
@@ -351,7 +354,7 @@ mod tests {
         let mut frame = vec![0xff; 12];
         frame.extend([0x88, 0xb5, payload.len() as u8, (payload.len() >> 8) as u8]);
         frame.extend(&*payload);
-        // What a controller pads with is no part of the message.
+        // Padding bytes of a controller are not part of the message.
         frame.resize(frame.len().max(60), 0xee);
         board.send(&frame).unwrap();
     }
@@ -458,7 +461,7 @@ mod tests {
             text.contains("no/such/image is missing") && text.contains("onetwo firmware build"),
             "{text}"
         );
-        // Any file is an image for as long as nobody looks into it.
+        // Any file is accepted as a firmware image until its content is read.
         backend.image = env::current_exe().unwrap();
         backend.program = "no-such-emulator".into();
         let text = error(&mut backend);

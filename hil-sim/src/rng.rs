@@ -1,8 +1,8 @@
-//! `rng`: seeded random streams. One seeded stream per subsystem, so that a draw more in one moves nothing in
-//! another.
+//! `rng`: seeded random streams. One seeded stream per subsystem, so that an additional draw in one changes
+//! nothing in another.
 //!
-//! The generator is xoshiro128++ (a published stream, the same everywhere); what is made of its bits goes through
-//! `geometry::math` (docs/architecture.md §2.4).
+//! The generator is xoshiro128++ (a published stream, the same everywhere); values derived from its bits are
+//! computed by `geometry::math` (docs/architecture.md §2.4).
 
 use geometry::math;
 use rand_core::{RngCore, SeedableRng};
@@ -10,7 +10,7 @@ use rand_xoshiro::Xoshiro128PlusPlus;
 
 use crate::hash::Fnv;
 
-/// A stream of chance.
+/// A random stream.
 #[derive(Clone, Debug)]
 pub struct Stream(Xoshiro128PlusPlus);
 
@@ -22,22 +22,22 @@ impl Stream {
         Self(Xoshiro128PlusPlus::seed_from_u64(seed ^ hash.value()))
     }
 
-    /// Even in [0, 1), in steps of 2⁻²⁴.
+    /// Uniform in [0, 1), in steps of 2⁻²⁴.
     pub fn share(&mut self) -> f32 {
         (self.0.next_u32() >> 8) as f32 * (1.0 / 16_777_216.0)
     }
 
-    /// Even in [low, high).
+    /// Uniform in [low, high).
     pub fn between(&mut self, low: f32, high: f32) -> f32 {
         low + (high - low) * self.share()
     }
 
-    /// True with probability `p`; draws nothing where there is nothing to decide.
+    /// True with probability `p`; draws nothing where `p` leaves no choice.
     pub fn chance(&mut self, p: f32) -> bool {
         p > 0.0 && (p >= 1.0 || self.share() < p)
     }
 
-    /// Even in `low..=high`.
+    /// Uniform in `low..=high`.
     pub fn whole(&mut self, low: u32, high: u32) -> u32 {
         if low >= high {
             return low;
@@ -51,7 +51,7 @@ impl Stream {
         radius * math::sin_cos(math::TAU * self.share()).1
     }
 
-    /// Two of them, independent, for the price of one.
+    /// Two independent normal values, at the cost of one.
     pub fn normals(&mut self) -> (f32, f32) {
         let radius = math::sqrt(-2.0 * math::ln(1.0 - self.share()));
         let (sin, cos) = math::sin_cos(math::TAU * self.share());
@@ -70,7 +70,7 @@ impl Stream {
     }
 }
 
-/// Draws before a truncated normal gives up: at ±2 the chance to need more is 5 % to this power.
+/// Maximum number of draws of a truncated normal: at ±2 the probability of needing more is 5 % to this power.
 const REDRAWS: usize = 16;
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
 //! `faults`: cost of packet loss for a team. `cargo xtask faults [--seeds N] [--write]` prints the table;
-//! with `--write` it becomes `docs/faults.md` and its picture.
+//! with `--write` it becomes `docs/faults.md` and its figure.
 
 use std::path::Path;
 use std::process::ExitCode;

@@ -1,6 +1,7 @@
-//! `hil`: speed of six images in QEMU. `cargo xtask bench hil [--seconds N] [--seed N]`
+//! `hil`: speed of six firmware images in QEMU. `cargo xtask bench hil [--seconds N] [--seed N]`
 //!
-//! Both matches run in one process, tick by tick in turn, so that whatever slows the machine slows both; hashes are compared.
+//! Both matches run in one process, alternating tick by tick, so that a slow machine slows both equally;
+//! hashes are compared.
 
 use std::process::ExitCode;
 

@@ -1,5 +1,5 @@
 //! `hostile`: fuzzing of readers and brains. `cargo run --release -p match-tests --example hostile -- --count
-//! 10000000 [--seed N] [--jobs J]`: a panic is told with what repeats it.
+//! 10000000 [--seed N] [--jobs J]`: a panic is reported with the command that repeats it.
 
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use match_tests::hostile::{corpus, run};
 
-/// Byte strings of one seed.
+/// Number of byte strings per seed.
 const BATCH: u64 = 50_000;
 
 fn main() -> ExitCode {

@@ -1,9 +1,10 @@
-//! `swarm`: plays many runs drawn from seeds and holds them to what is promised.
-//! `cargo xtask swarm [--plan faults|referee] --seeds 10000 [--first N] [--jobs J] [--record STEM]`
+//! `swarm`: plays many runs drawn from seeds and checks the promised properties. `cargo xtask swarm [--plan
+//! faults|referee] --seeds 10000 [--first N] [--jobs J] [--record STEM]`
 //!
-//! `faults`: a team with faults of radio, clocks and sensors. `referee`: matches of 60 s with cards, keeper changes, restarts and
-//! halts. Prints what the runs came to; a run that breaks a promise is told with the line that repeats it, and the exit code is 1.
-//! `--record` plays the match of `--first` alone and records it, for `onetwo replay STEM.trace`.
+//! `faults`: a team with faults of radio, clocks and sensors. `referee`: matches of 60 s with cards, keeper
+//! changes, restarts and halts. Prints the results of the runs; a run with a violated property is reported
+//! with the line that repeats it, and the exit code is 1. `--record` plays the match of `--first` alone and
+//! records it, for `onetwo replay STEM.trace`.
 
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
@@ -33,7 +34,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// What is asked for.
+/// The command line's arguments.
 struct Arguments {
     plan: Which,
     runs: Runs,
@@ -70,7 +71,7 @@ enum Which {
     Referee,
 }
 
-/// Matches under the referee's plan; each that broke a promise is told at once.
+/// Matches of the referee's plan; each violation is reported at once.
 fn referee(runs: Runs) -> ExitCode {
     let begin = Instant::now();
     let ended = watch_matches(runs, |done, (plan, outcome)| {
@@ -161,5 +162,5 @@ fn arguments(mut words: impl Iterator<Item = String>) -> Option<Arguments> {
     Some(Arguments { plan, runs, record })
 }
 
-/// Of many that fail the first are told.
+/// Maximum number of failed runs that are reported.
 const SHOWN: usize = 20;

@@ -1,4 +1,5 @@
-//! `bad_line`: simulated bad serial line. It drops some, changes bits and doubles others, seeded.
+//! `bad_line`: simulated faulty serial line. It drops some bytes, changes bits of others and duplicates
+//! others, seeded.
 
 use hil_sim::Stream;
 
@@ -6,35 +7,35 @@ use hil_sim::Stream;
 #[derive(Debug)]
 pub struct BadLine {
     chance: Stream,
-    /// How bad it is from now on.
+    /// Error rates from now on.
     pub trouble: Trouble,
 }
 
-/// How bad a line is: of a thousand bytes so many suffer it.
+/// Error rates of a line, per thousand bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Trouble {
-    /// Lost.
+    /// Dropped.
     pub dropped: f32,
     /// Changed in one bit.
     pub changed: f32,
-    /// Come out twice.
+    /// Duplicated.
     pub doubled: f32,
 }
 
 impl Trouble {
-    /// As many of each.
+    /// The same rate for each.
     pub fn of_each(of_thousand: f32) -> Self {
         Self { dropped: of_thousand, changed: of_thousand, doubled: of_thousand }
     }
 }
 
 impl BadLine {
-    /// A good one until told otherwise.
+    /// A line without errors.
     pub fn new(seed: u64, name: &str) -> Self {
         Self { chance: Stream::new(seed, name), trouble: Trouble::default() }
     }
 
-    /// What comes out for a byte: nothing, one or two.
+    /// The bytes that come out for one byte: none, one or two.
     pub fn carry(&mut self, byte: u8) -> impl Iterator<Item = u8> + use<> {
         let Trouble { dropped, changed, doubled } = self.trouble;
         let [dropped, changed, doubled] =

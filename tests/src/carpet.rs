@@ -1,7 +1,8 @@
 //! `carpet`: test bench: brains on wheels in the simulator, commanded by the test.
 //!
-//! Every brain is led by pictures made of the true state, rounded as the wire rounds, 75 a second, and by the command that
-//! the test set. SI units, field frame; a step is 10 ms. No camera, no noise of pictures, no radio: these have tests of their own.
+//! Every brain gets snapshots of the true state, rounded as in the wire format, 75 a second, and the command
+//! that the test set. SI units, field frame; a step is 10 ms. No camera, no noise of snapshots, no radio:
+//! these have tests of their own.
 
 use std::collections::BTreeMap;
 
@@ -19,29 +20,29 @@ use protocol::team::{Beacon, Closure, CycleState, Decision, Progress, Role, Stat
 use protocol::{CycleId, Duration, Instant, RobotId, TeamId, Who};
 use rules::{Colour, League, Phase, Side};
 
-/// A field with our robots under brains, theirs standing where the test puts them.
+/// A field with our robots under brains, and opponents where the test places them.
 pub struct Carpet<'a> {
-    /// The truth.
+    /// The true state.
     pub world: World,
-    /// The phase of the game, in our words.
+    /// The phase of the game, from our side.
     pub phase: Phase<Side>,
-    /// Where the ball is to be placed.
+    /// Target position of a ball placement.
     pub placement: Option<Point<Field>>,
-    /// What each of ours is told.
+    /// The command of each of our robots.
     pub commands: BTreeMap<RobotId, (Duty, Directive)>,
     /// Our brains.
     pub brains: BTreeMap<RobotId, Brain<'a>>,
-    /// What happened, with the time, s.
+    /// Events, with the time, s.
     pub events: Vec<(f64, Event)>,
     /// The newest order of each of ours.
     pub orders: BTreeMap<RobotId, ActuatorFrame>,
-    /// How cycles ended, as somebody said.
+    /// Ends of cycles, as reported by any robot.
     pub ends: Vec<(CycleId, Closure)>,
-    /// What ours told the host of themselves last, and when.
+    /// The last telemetry of each of our robots, with its time.
     pub telemetry: BTreeMap<RobotId, (Instant, Telemetry)>,
-    /// The host says nothing.
+    /// Whether the host sends nothing.
     pub silent: bool,
-    /// So many mates that do not play say something in each step.
+    /// Number of teammates that do not play but send a beacon in each step.
     pub chatter: u8,
     steps: u64,
     picture: u8,
@@ -49,7 +50,7 @@ pub struct Carpet<'a> {
 }
 
 impl<'a> Carpet<'a> {
-    /// Ours (blue) at these poses (x, y in m, degrees), and a ball at rest.
+    /// Our robots (blue) at these poses (x, y in m, degrees), and a resting ball.
     pub fn new(league: League, base: CaseBase<'a>, ball: (f32, f32), ours: &[(u8, f32, f32, f32)]) -> Self {
         let parameters = Parameters::of(league).expect("a Small Size league");
         let mut world = World::new(league, parameters, 1);
@@ -79,18 +80,18 @@ impl<'a> Carpet<'a> {
         }
     }
 
-    /// One of theirs, standing.
+    /// Places a standing opponent.
     pub fn opponent(&mut self, number: u8, x: f32, y: f32, degrees: f32) {
         let id = RobotId::new(number).expect("an id");
         self.world.put(Who { colour: Colour::Yellow, id }, pose(x, y, degrees));
     }
 
-    /// The ball rolls.
+    /// Makes the ball roll.
     pub fn roll(&mut self, at: (f32, f32), velocity: (f32, f32)) {
         self.world.put_ball(Ball::rolling(Point::new(at.0, at.1), Vector::new(velocity.0, velocity.1)));
     }
 
-    /// Robot `number` is told this.
+    /// Sets the command of robot `number`.
     pub fn tell(&mut self, number: u8, duty: Duty, directive: Directive) {
         self.commands.insert(RobotId::new(number).expect("an id"), (duty, directive));
     }
@@ -100,13 +101,13 @@ impl<'a> Carpet<'a> {
         Instant(self.steps * 10_000)
     }
 
-    /// One of ours, as it truly is.
+    /// The true state of one of our robots.
     pub fn ours(&self, number: u8) -> &Robot {
         let id = RobotId::new(number).expect("an id");
         self.world.robot(Who { colour: Colour::Blue, id }).expect("a robot of ours")
     }
 
-    /// The ball, as it truly is.
+    /// The true position of the ball.
     pub fn ball(&self) -> Point<Field> {
         self.world.ball.position
     }
@@ -116,7 +117,7 @@ impl<'a> Carpet<'a> {
         &self.brains[&RobotId::new(number).expect("an id")]
     }
 
-    /// Steps until `done`, at most for `seconds`; how long it took, s.
+    /// Steps until `done`, at most for `seconds`; returns the duration, s.
     pub fn until(&mut self, seconds: f32, mut done: impl FnMut(&Self) -> bool) -> Option<f32> {
         let start = self.steps;
         while (self.steps - start) as f32 * 0.01 < seconds {
@@ -128,7 +129,7 @@ impl<'a> Carpet<'a> {
         None
     }
 
-    /// Steps for `seconds`, looking at every step.
+    /// Steps for `seconds`, calling `look` in every step.
     pub fn during(&mut self, seconds: f32, mut look: impl FnMut(&Self)) {
         self.until(seconds, |carpet| {
             look(carpet);
@@ -136,7 +137,7 @@ impl<'a> Carpet<'a> {
         });
     }
 
-    /// Every kick of ours so far: who, and how fast the ball left, m/s.
+    /// Every kick of ours so far: the robot, and the ball's speed after it, m/s.
     pub fn kicks(&self) -> Vec<(RobotId, f32, Vector<Field>)> {
         let kick = |(_, event): &(f64, Event)| match *event {
             Event::Kicked { robot, speed, velocity, .. } if robot.colour == Colour::Blue => {
@@ -147,12 +148,12 @@ impl<'a> Carpet<'a> {
         self.events.iter().filter_map(kick).collect()
     }
 
-    /// What ours said in the last step.
+    /// Messages of our robots in the last step.
     pub fn said(&self) -> &[(RobotId, TeamMessage)] {
         &self.air
     }
 
-    /// 10 ms of everything.
+    /// One step of 10 ms of everything.
     pub fn step(&mut self) {
         self.steps += 1;
         let now = self.now();
@@ -184,7 +185,7 @@ impl<'a> Carpet<'a> {
                     TeamMessage::Telemetry(telemetry) => {
                         self.telemetry.insert(id, (now, *telemetry));
                     }
-                    // The link's, not the brain's: here is no link.
+                    // Handled by the link, not by the brain: there is no link here.
                     TeamMessage::Greeting(_) => {}
                 }
                 self.air.push((id, message));
@@ -203,7 +204,7 @@ impl<'a> Carpet<'a> {
         self.events.extend(events.into_iter().map(|event| (time, event)));
     }
 
-    /// A picture to all, a command to each.
+    /// Sends a snapshot to all robots, and a command to each.
     fn show(&mut self, now: Instant) {
         self.picture = self.picture.wrapping_add(1);
         let ball = &self.world.ball;
@@ -248,7 +249,7 @@ impl<'a> Carpet<'a> {
     }
 }
 
-/// What somebody says that is there and does nothing.
+/// Beacon of a robot that is present but does not play.
 const IDLE: Beacon = Beacon {
     pose: WirePose { at: WirePoint { x: 0, y: 0 }, heading: 0 },
     ball: None,

@@ -1,5 +1,6 @@
-//! One match twice: once with six robots of ours as firmware images under QEMU, once with native brains; both against six native
-//! ones, tick by tick in one run, so that hashes and wall time can be compared.
+//! One match twice: once with six robots of ours as firmware images under QEMU, once with native brains; both
+//! against six native ones, alternating tick by tick in one run, so that hashes and wall time can be
+//! compared.
 
 use std::fmt;
 use std::path::Path;
@@ -10,39 +11,39 @@ use hil_sim::{ByTeam, McuError, Meter, Metered, NativeBackend, QemuBackend};
 use protocol::TeamId;
 use rules::{Colour, League};
 
-/// Which of the two matches.
+/// Selects one of the two matches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// All brains native.
     Native = 0,
-    /// Ours in images.
+    /// Ours in firmware images.
     Emulated = 1,
 }
 
-/// Both matches; in the second, blue robots are images, yellow ones native.
+/// Both matches; in the second, blue robots are firmware images, yellow ones native.
 pub struct Pair {
     games: Vec<Game<'static>>,
     meter: Meter,
     ticks: u32,
 }
 
-/// What the two came to.
+/// Results of the two.
 #[derive(Clone, Debug)]
 pub struct Told {
     /// Ticks of 10 ms played.
     pub ticks: u32,
-    /// The hash of each, as far as it went.
+    /// The hash of each at its end.
     pub hashes: [String; 2],
     /// Wall time of each.
     pub took: [Duration; 2],
-    /// The worst step of an image, guest instructions.
+    /// The worst step of a firmware image, guest instructions.
     pub worst_instructions: u32,
-    /// The deepest stack of an image, bytes.
+    /// The maximum stack use of a firmware image, bytes.
     pub worst_stack: u32,
 }
 
 impl Told {
-    /// How many times faster than real time a side played.
+    /// Speed of a side relative to real time.
     pub fn speed(&self, side: Side) -> f64 {
         f64::from(self.ticks) * 0.01 / self.took[side as usize].as_secs_f64().max(1e-9)
     }

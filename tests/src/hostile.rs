@@ -1,7 +1,8 @@
-//! `hostile`: random bytes for every reader. Seeded bytes for the very targets that `cargo fuzz` has
+//! `hostile`: random bytes for every reader. Seeded bytes for the same targets as `cargo fuzz`
 //! (`protocol/fuzz`), and for brains.
 //!
-//! Most are true messages of the corpus with a few breaks, so that readers come far; the rest is noise. A run is its seed.
+//! Most are valid messages of the corpus with a few changes, so that readers decode most of them; the others
+//! are noise. A run is determined by its seed.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -19,10 +20,10 @@ use rules::League;
 #[path = "../../protocol/fuzz/src/lib.rs"]
 pub mod targets;
 
-/// True messages by target.
+/// Valid messages by target.
 pub type Corpus = Vec<(targets::Target, Vec<Vec<u8>>)>;
 
-/// What is committed, in the order of names.
+/// The committed corpus, in the order of names.
 pub fn corpus() -> io::Result<Corpus> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../protocol/fuzz/corpus");
     let of = |target: targets::Target| {
@@ -35,7 +36,7 @@ pub fn corpus() -> io::Result<Corpus> {
     targets::TARGETS.into_iter().map(of).collect()
 }
 
-/// A target that panicked, and the bytes that did it.
+/// A target that panicked, and the bytes that caused it.
 #[derive(Clone, Debug)]
 pub struct Panicked {
     /// Its name.
@@ -44,7 +45,7 @@ pub struct Panicked {
     pub bytes: Vec<u8>,
 }
 
-/// `count` byte strings, spread over all targets; the first that brings one down.
+/// `count` byte strings, spread over all targets; the first that causes a panic.
 pub fn run(corpus: &Corpus, seed: u64, count: u64) -> Result<(), Panicked> {
     let mut chance = Stream::new(seed, "hostile bytes");
     let mut minds = Minds::new();
@@ -86,7 +87,8 @@ fn drawn(seeds: &[Vec<u8>], chance: &mut Stream) -> Vec<u8> {
     bytes
 }
 
-/// Brains that are told whatever can be read: somebody with the key may still talk nonsense.
+/// Brains that receive all messages that can be decoded: a sender with the key may still send invalid
+/// content.
 struct Minds {
     brain: Brain<'static>,
     now: Instant,
@@ -138,5 +140,5 @@ impl Minds {
     }
 }
 
-/// A brain hears so many words in a step, as in a match.
+/// Number of messages that a brain receives in a step, as in a match.
 const MESSAGES_A_STEP: u32 = 4;

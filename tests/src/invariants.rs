@@ -1,45 +1,46 @@
-//! `invariants`: coordination invariants of a team. The coordination invariants of
-//! docs/architecture.md §5.4, watched from outside the brain.
+//! `invariants`: coordination invariants of a team. The coordination invariants of docs/architecture.md §5.4,
+//! checked from outside the brain.
 //!
-//! The watcher sees only what an eavesdropper with the key sees: which beacon each robot sent and heard, and when
-//! robots died, came back, and the air was cut or healed. What a robot does with its body in a step is judged by the
-//! beacon of the same step, which the brain sends after it has decided.
+//! The watcher sees only what an eavesdropper with the key sees: which beacon each robot sent and received,
+//! and when robots crashed, came back, and the radio was partitioned or healed. The motion of a robot's body
+//! in a step is judged by the beacon of the same step, which the brain sends after it has decided.
 
 use std::collections::BTreeMap;
 
 use protocol::team::{Beacon, CycleState, Decision, Play, Progress, Status};
 use protocol::{CycleId, Duration, Instant, RobotId};
 
-/// Something seen from outside.
+/// An observation from outside.
 #[derive(Clone, Debug)]
 pub enum Seen {
     /// A robot sent this beacon.
     Sent(RobotId, Beacon),
-    /// A robot heard this beacon of another.
+    /// A robot received this beacon of another.
     Heard(RobotId, RobotId, Beacon),
-    /// A robot died.
+    /// A robot crashed.
     Crashed(RobotId),
     /// A robot boots.
     Booted(RobotId),
 }
 
-/// A broken promise.
+/// A violated invariant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Violation {
-    /// When.
+    /// Time.
     pub at: Instant,
-    /// What, in a sentence.
+    /// Description, one sentence.
     pub what: String,
 }
 
-/// What is promised depends on the air.
+/// State of the radio, on which the invariants depend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Air {
-    /// Nothing is lost: gameplays never overlap longer than [`LEAVE_WITHIN`].
+    /// No loss: gameplays never overlap longer than [`LEAVE_WITHIN`].
     Lossless,
-    /// Packets are lost: overlaps are counted, robots leave the old gameplay when they hear of the new one.
+    /// Packets are lost: overlaps are counted, robots leave the old gameplay when they receive the new one.
     Lossy,
-    /// Anything may happen to packets: as lossy air, and no new cycle is owed to a fault until everything has healed.
+    /// Any fault of packets: as with loss, and no new cycle is required after a fault until everything has
+    /// healed.
     Hostile,
 }
 
@@ -51,11 +52,11 @@ pub struct Watcher {
     contents: BTreeMap<CycleId, Content>,
     overlap_since: Option<Instant>,
     pending: Option<Pending>,
-    /// Times at which two gameplays ran at once.
+    /// Number of times that two gameplays ran at once.
     pub overlaps: u32,
-    /// Cycles seen.
+    /// Number of cycles.
     pub cycles: u32,
-    /// Gameplays seen.
+    /// Number of gameplays.
     pub gameplays: u32,
     /// The longest time from a fault to the next cycle.
     pub slowest_recovery: Duration,
@@ -65,11 +66,11 @@ pub struct Watcher {
 #[derive(Clone, Debug, Default)]
 struct Watched {
     beacon: Option<Beacon>,
-    /// The newest cycle it has heard of, and since when.
+    /// The newest cycle it has received, and since when.
     told: Option<(CycleState, Instant)>,
 }
 
-/// What all the beacons of a cycle say together.
+/// The content of all beacons of a cycle together.
 #[derive(Clone, Debug)]
 struct Content {
     coordinator: RobotId,
@@ -77,24 +78,24 @@ struct Content {
     closed: bool,
 }
 
-/// A fault that obliges the team to start a new cycle.
+/// A fault after which the team must start a new cycle.
 #[derive(Clone, Copy, Debug)]
 struct Pending {
     lost: RobotId,
-    /// The fault; where packets are lost, the first beacon that anybody heard after it.
+    /// Time of the fault; where packets are lost, of the first beacon that any robot received after it.
     since: Instant,
     heard_since: bool,
     newer_than: CycleId,
 }
 
-/// A robot of an older gameplay leaves it within this time of hearing of a newer cycle
-/// (docs/architecture.md §5.4).
+/// A robot of an older gameplay leaves it within this time of receiving a newer cycle (docs/architecture.md
+/// §5.4).
 pub const LEAVE_WITHIN: Duration = Duration::millis(150);
 /// A new cycle comes within this time of a fault (docs/architecture.md §5.4).
 pub const RECOVER_WITHIN: Duration = Duration::millis(1000);
 
 impl Watcher {
-    /// Watches from the start.
+    /// A watcher before the first observation.
     pub fn new(air: Air) -> Self {
         Self {
             air,
@@ -110,17 +111,17 @@ impl Watcher {
         }
     }
 
-    /// Every broken promise so far.
+    /// Every violation so far.
     pub fn violations(&self) -> &[Violation] {
         &self.violations
     }
 
-    /// The newest cycle of every robot that lives; `None` for one that knows of none.
+    /// The newest cycle of every running robot; `None` for one that knows of none.
     pub fn newest_by_robot(&self) -> Vec<Option<CycleId>> {
         self.robots.values().map(|w| w.beacon.as_ref()?.cycle.as_ref().map(|c| c.id)).collect()
     }
 
-    /// Takes in what was seen at `now`, in order.
+    /// Takes an observation at `now`; to be called in order.
     pub fn see(&mut self, now: Instant, seen: &Seen) {
         match seen {
             Seen::Booted(id) => {
@@ -132,11 +133,11 @@ impl Watcher {
         }
     }
 
-    /// To be called after everything of one moment was seen.
+    /// To be called after all observations of one moment.
     pub fn end_of_step(&mut self, now: Instant) {
         let running: Vec<CycleId> = self.robots.iter().filter_map(|(id, w)| active_in(*id, w)).collect();
-        // Told of a newer cycle, or of the end of this one: out, from the step on in which it was told. A robot may have
-        // spoken in this step before it heard; what its body does is decided last.
+        // A robot that received a newer cycle, or the end of this one, must have left it from that step on.
+        // It may have sent in this step before it received; its motion is decided last.
         let stubborn: Vec<String> = self
             .robots
             .iter()
@@ -164,7 +165,7 @@ impl Watcher {
         let Some(pending) = &mut self.pending else { return };
         let retrieves = |w: &Watched| w.beacon.as_ref().is_some_and(|b| b.status.has(Status::RETRIEVER));
         if !self.robots.values().any(retrieves) {
-            // Nobody is left who could be named coordinator: the team's time starts when somebody comes back.
+            // No robot is left that could be named coordinator: the team's time starts when one comes back.
             pending.since = now;
         }
         let pending = *pending;
@@ -181,7 +182,7 @@ impl Watcher {
     fn crashed(&mut self, now: Instant, id: RobotId) {
         let newest = self.newest();
         self.robots.remove(&id);
-        // Whoever is left must start anew, unless a gameplay goes on that the lost robot has no part in.
+        // The remaining robots must start a new cycle, unless a gameplay goes on without the lost robot.
         let goes_on = self.plays_on_without(id);
         let owed = self.air != Air::Hostile && !goes_on && !self.robots.is_empty();
         if let (Some(newer_than), true) = (newest, owed) {
@@ -189,7 +190,8 @@ impl Watcher {
         }
     }
 
-    /// A gameplay runs in the newest cycle, and the lost robot neither plays in it nor coordinates it.
+    /// Whether a gameplay runs in the newest cycle, and the lost robot neither plays in it nor coordinates
+    /// it.
     fn plays_on_without(&self, lost: RobotId) -> bool {
         self.newest().and_then(|newest| self.contents.get(&newest)).is_some_and(|content| {
             let play = content.play.as_ref().filter(|_| !content.closed);
@@ -224,7 +226,7 @@ impl Watcher {
         }
     }
 
-    /// One cycle, one coordinator, one gameplay.
+    /// Checks that a cycle has one coordinator and one gameplay.
     fn agree(&mut self, now: Instant, cycle: &CycleState) {
         let new = !self.contents.contains_key(&cycle.id);
         let entry = self.contents.entry(cycle.id).or_insert(Content {
@@ -264,7 +266,7 @@ impl Watcher {
     }
 }
 
-/// The cycle whose gameplay this robot's body is at.
+/// The cycle whose gameplay this robot's body executes.
 fn active_in(id: RobotId, watched: &Watched) -> Option<CycleId> {
     let beacon = watched.beacon.as_ref()?;
     let cycle = beacon.cycle.as_ref()?;

@@ -1,4 +1,4 @@
-//! What tests that cross crates share. Runs on the developer's machine only.
+//! Shared code of tests that span several crates. Runs on the developer's machine only.
 #![forbid(unsafe_code)]
 
 pub mod bad_line;

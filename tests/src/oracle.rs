@@ -1,11 +1,10 @@
 //! `oracle`: independent, naive retrieval by docs/case-format.md §3.
 //!
 //! docs/case-format.md §3 (paper §3) in `f64`, case after case, every injection tried, nothing indexed.
-//! **Invariant:** it uses no crate of the project, so that it can be wrong only on its own account. Field
-//! frame, mm.
+//! **Invariant:** it uses no crate of the project, so that both cannot share an error. Field frame, mm.
 //!
-//! Two honest implementations may differ where a number falls on a threshold: every decision that hangs on a relative
-//! difference below [`NEAR`] is noted in the answer.
+//! Two correct implementations may differ where a number falls on a threshold: every decision that depends on
+//! a relative difference below [`NEAR`] is noted in the answer.
 
 pub mod library;
 pub mod problem;
@@ -23,7 +22,7 @@ use walk::Leg;
 /// The answer to a problem by docs/case-format.md §3.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
-    /// The case to play; `None` when nothing fits.
+    /// The case to play; `None` when no case passes.
     pub winner: Option<Candidate>,
     /// Cases that pass filters 1–4.
     pub candidates: usize,
@@ -31,16 +30,16 @@ pub struct Answer {
     pub near_tie: Option<&'static str>,
 }
 
-/// A case that passes the filters, with all that its rank depends on.
+/// A case that passes the filters, with all its ranking criteria.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
     /// Stored id.
     pub id: usize,
-    /// Of the ball.
+    /// Similarity of the ball.
     pub similarity: f64,
-    /// Sum of the ways to the adapted positions (or the longest of them), mm.
+    /// Sum of the distances to the adapted positions (or the longest of them), mm.
     pub cost: f64,
-    /// Opponent scopes that are occupied.
+    /// Number of opponent scopes that contain an opponent.
     pub conditions: usize,
     /// Robot id of tm1, tm2, …
     pub correspondence: Vec<u8>,
@@ -48,21 +47,21 @@ pub struct Candidate {
     pub adapted: Vec<Point>,
 }
 
-/// The settings of docs/case-format.md §3.2 that change which answer is right, as far as that section
-/// says how.
+/// The settings of docs/case-format.md §3.2 that change the correct answer, as far as that section specifies
+/// how.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rules {
-    /// Furthest way to an adapted position, mm (`thr_c`; paper, Algorithm 1).
+    /// Maximum distance to an adapted position, mm (`thr_c`; paper, Algorithm 1).
     pub furthest: f64,
-    /// Where a membership ends (`thr`; paper §3.1).
+    /// Threshold of a membership (`thr`; paper §3.1).
     pub membership: f64,
-    /// Only correspondences within `thr_c` are looked at (`correspondence = constrained`).
+    /// Only correspondences within `thr_c` are searched (`correspondence = constrained`).
     pub constrained: bool,
     /// Opponent scopes stay where the case has them (`scopes = absolute`).
     pub scopes_absolute: bool,
-    /// The cost is the longest way, not the sum (`cost = max`).
+    /// The cost is the longest distance, not the sum (`cost = max`).
     pub longest: bool,
-    /// What counts first (`ranking`).
+    /// Order of the criteria (`ranking`).
     pub ranking: [Criterion; 3],
 }
 
@@ -98,7 +97,7 @@ impl Rules {
 }
 
 /// One line's answer as `onetwo cases retrieve` prints it (docs/case-format.md §5.1), line counted from 1;
-/// `None` for a blank line. Numbers are not rounded, and an error's wording is the oracle's own.
+/// `None` for a blank line. Numbers are not rounded, and an error's text is the oracle's own.
 pub fn answer_line(library: &Library, number: usize, line: &str) -> Option<Value> {
     if line.trim().is_empty() {
         return None;
@@ -154,7 +153,7 @@ fn candidate(
     if legs.iter().any(blocked) {
         return None;
     }
-    // After the free path, which is cheaper; which of the two rejects a case is not asked.
+    // After the free path, which is cheaper; which of the two rejects a case is irrelevant.
     let adapted: Vec<Point> = case.robots.iter().map(|robot| shifted(robot.at)).collect();
     let (correspondence, cost) = correspondence(&adapted, &problem.teammates, rules, close)?;
     let occupied = |&&(centre, radii): &&(Point, Radii)| {
@@ -174,7 +173,7 @@ fn candidate(
     })
 }
 
-/// The injection of least cost, unless one of its robots has too far to go.
+/// The injection of minimum cost, unless one of its robots exceeds the travel limit.
 fn correspondence(
     adapted: &[Point],
     present: &[(u8, Point)],
@@ -187,7 +186,7 @@ fn correspondence(
     let reachable = |ways: &Vec<f64>| ways.iter().all(|&way| !close.less("thr_c", rules.furthest, way));
     let mut best: Option<(Vec<usize>, f64)> = None;
     let mut second = f64::INFINITY;
-    // In ascending order, so that among equals the lexicographically smallest list of ids stays.
+    // In ascending order, so that of equal costs the lexicographically smallest list of ids is kept.
     injections(adapted.len(), present.len(), &mut Vec::new(), &mut |chosen| {
         let ways = chosen.iter().zip(&ways).map(|(&robot, ways)| ways[robot]);
         let cost = if rules.longest { ways.fold(0.0, f64::max) } else { ways.sum() };
@@ -209,7 +208,7 @@ fn correspondence(
     reachable(&all(&chosen)).then(|| (chosen.iter().map(|&robot| present[robot].0).collect(), cost))
 }
 
-/// Calls `visit` with every way to choose `places` different robots among `present`, lexicographically.
+/// Calls `visit` with every injection of `places` places into `present` robots, lexicographically.
 fn injections(places: usize, present: usize, chosen: &mut Vec<usize>, visit: &mut impl FnMut(&[usize])) {
     if chosen.len() == places {
         visit(chosen);
@@ -224,7 +223,7 @@ fn injections(places: usize, present: usize, chosen: &mut Vec<usize>, visit: &mu
     }
 }
 
-/// Is an opponent within the fuzzy trapezoid of a leg?
+/// Whether an opponent is within the fuzzy trapezoid of a leg.
 fn inside(leg: &Leg, opponent: Point, rules: &Rules, close: &Close) -> bool {
     let (dx, dy) = (leg.to.0 - leg.from.0, leg.to.1 - leg.from.1);
     let length = dx.hypot(dy);
@@ -278,7 +277,7 @@ fn distance(a: Point, b: Point) -> f64 {
 /// Relative difference of sums of the same numbers in another order: those are equal.
 const ROUNDING: f64 = 1e-13;
 
-/// Relative difference below which two honest implementations may decide differently.
+/// Relative difference below which two correct implementations may decide differently.
 pub const NEAR: f64 = 1e-4;
 
 /// Remembers the first comparison that was nearly a tie.

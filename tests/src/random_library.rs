@@ -1,9 +1,9 @@
-//! `random_library`: random valid libraries. Seeded random ones, as the TOML files a person would have.
+//! `random_library`: random valid libraries. Seeded, as TOML files like those of an author.
 //!
-//! Everything docs/case-format.md §1 allows occurs: 1–4 teammates, 0–4 opponents, every action, kicks by
+//! Everything docs/case-format.md §1 permits occurs: 1–4 teammates, 0–4 opponents, every action, kicks by
 //! heading and at the goal with their partners, plans of several legs, a later `get_ball` after a kick,
-//! either goal, points outside the field, region names that sort otherwise as strings than as folders. Mm,
-//! whole degrees, field frame.
+//! either goal, points outside the field, region names whose order as strings differs from that as
+//! directories. Mm, whole degrees, field frame.
 
 mod dice;
 mod problems;
@@ -19,7 +19,7 @@ pub use problems::random_problem;
 
 use crate::oracle::library::Library;
 
-/// A league's folder before it is written.
+/// A league's directory before it is written.
 #[derive(Clone, Debug)]
 pub struct RandomLibrary {
     /// The text of `league.toml`.
@@ -39,7 +39,7 @@ impl RandomLibrary {
             let name = format!("{}/{}-{}", dice.pick(&REGIONS), dice.pick(&NAMES), dice.between(0, 999));
             let case = random_case(&mut dice, &league);
             let alone = BTreeMap::from([(name.clone(), case.clone())]);
-            // A plan that another robot's earlier `get_ball` breaks is drawn again.
+            // A plan that another robot's earlier `get_ball` makes unplayable is drawn again.
             if Library::from_texts(&text, &alone).is_ok() {
                 cases.insert(name, case);
             }
@@ -47,7 +47,7 @@ impl RandomLibrary {
         Self { league: text, cases }
     }
 
-    /// Writes the folder `dir` anew.
+    /// Deletes and rewrites the directory `dir`.
     pub fn write(&self, dir: &Path) -> io::Result<()> {
         if dir.exists() {
             fs::remove_dir_all(dir)?;
@@ -65,11 +65,11 @@ impl RandomLibrary {
     }
 }
 
-/// As strings with a `/` behind them they sort otherwise than as folder names: `-` comes before `/`.
+/// With a `/` appended their order as strings differs from that as directory names: `-` comes before `/`.
 const REGIONS: [&str; 6] = ["front", "front-side", "front2", "Back", "center", "corner"];
 const NAMES: [&str; 4] = ["pass", "shot", "Run", "pass-on"];
 
-/// What a case needs to know of its league.
+/// The part of its league that a case uses.
 struct League {
     length: i64,
     width: i64,
@@ -140,7 +140,7 @@ fn tube(dice: &mut Dice) -> String {
 
 fn random_case(dice: &mut Dice, league: &League) -> String {
     let (half_x, half_y) = (league.length / 2, league.width / 2);
-    // About a third of the cases lie in one place, so that several are candidates at once.
+    // About a third of the cases lie at one place, so that several are candidates at once.
     let crowded = dice.chance(0.35);
     let reach = if crowded { 6 } else { 1 };
     let ball = (dice.between(-half_x, half_x) / reach, dice.between(-half_y, half_y) / reach);
@@ -174,7 +174,7 @@ fn scope(dice: &mut Dice) -> String {
     format!("[{}, {}]", dice.between(50, 1000), dice.between(50, 1000))
 }
 
-/// One list of actions a robot, such that the ball finds its way.
+/// One list of actions per robot, such that the plan can be played.
 fn random_plan(dice: &mut Dice, league: &League, robots: usize) -> Vec<Vec<String>> {
     let mut plan: Vec<Vec<String>> = vec![Vec::new(); robots];
     let mut holder = dice.between(0, robots as i64 - 1) as usize;
@@ -218,7 +218,7 @@ fn random_plan(dice: &mut Dice, league: &League, robots: usize) -> Vec<Vec<Strin
     plan
 }
 
-/// Perhaps something that needs no ball.
+/// Adds, with some probability, an action without the ball.
 fn idle(dice: &mut Dice, league: &League, list: &mut Vec<String>) {
     match dice.between(0, 9) {
         0 => list.push("\"wait\"".to_owned()),

@@ -1,4 +1,4 @@
-//! `sweep`: cost of packet loss for a team: finished gameplays, robots that stop for want of their host, and
+//! `sweep`: cost of packet loss for a team: finished gameplays, robots that stop for lack of their host, and
 //! the time to a new cycle, from no loss to half of all packets, independent and in bursts.
 
 use std::fmt::Write as _;
@@ -9,20 +9,20 @@ use hil_sim::{AirSettings, Bursts};
 use crate::swarm::plan::{Plan, Squad};
 use crate::swarm::{Found, Tally, play};
 
-/// How packets are lost.
+/// Distribution of packet loss.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Each by itself.
+    /// Each packet independently.
     Independent,
-    /// In stretches of [`BURST_MS`] on the mean, link by link.
+    /// In bursts of [`BURST_MS`] on average, per link.
     Bursty,
 }
 
 impl Kind {
-    /// Both.
+    /// Both kinds.
     pub const ALL: [Self; 2] = [Self::Independent, Self::Bursty];
 
-    /// For a table.
+    /// Its label in the table.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Independent => "independent",
@@ -43,34 +43,34 @@ impl Kind {
     }
 }
 
-/// A row of the table: what one kind and share of loss came to.
+/// A row of the table: the results of one kind and share of loss.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
-    /// Who played.
+    /// The robots.
     pub squad: Squad,
-    /// How packets were lost.
+    /// The kind of loss.
     pub kind: Kind,
-    /// How many, percent.
+    /// The share of lost packets, percent.
     pub percent: u32,
-    /// What came of it.
+    /// The results.
     pub tally: Tally,
-    /// Robot-seconds under loss, about: runs of two to four robots.
+    /// Robot-seconds under loss, approximately: runs of two to four robots.
     pub seconds: f64,
 }
 
 impl Row {
-    /// Share of the gameplays that ended and were finished, percent.
+    /// Share of the ended gameplays that were finished, percent.
     pub fn finished(&self) -> Option<f64> {
         let all = self.tally.finished + self.tally.stopped;
         (all > 0).then(|| 100.0 * f64::from(self.tally.finished) / f64::from(all))
     }
 
-    /// Stops for want of a host, in a robot's minute; only wheels have one.
+    /// Stops for lack of a host, per robot and minute; only robots on wheels have one.
     pub fn false_stops(&self) -> Option<f64> {
         (self.squad == Squad::Wheels).then(|| 60.0 * f64::from(self.tally.false_stops) / self.seconds)
     }
 
-    /// Share of the time for which a robot stood so, percent.
+    /// Share of the time for which a robot stood for that reason, percent.
     pub fn stood(&self) -> Option<f64> {
         (self.squad == Squad::Wheels).then(|| 0.1 * self.tally.stood_ms as f64 / self.seconds)
     }
@@ -81,7 +81,7 @@ impl Row {
     }
 }
 
-/// So many runs for every row, in order. A promise that is broken ends the sweep.
+/// All rows in order, with `seeds` runs each. A violation ends the sweep.
 pub fn sweep(seeds: u64) -> Result<Vec<Row>, (u64, Found)> {
     let mut rows = Vec::new();
     for squad in [Squad::Legged, Squad::Wheels] {
@@ -196,7 +196,8 @@ pub fn picture(rows: &[Row]) -> String {
     svg.finish([0.0, 0.0], [1_000.0, 350.0], 1.0, colors.paper, "What loss costs a team")
 }
 
-/// An axis up to `most` at least: round steps (1, 2, 2.5 or 5 times a power of ten), five or fewer, and how many.
+/// An axis up to `most` at least: round steps (1, 2, 2.5 or 5 times a power of ten), five or fewer, and their
+/// number.
 fn round_steps(most: f64) -> (f64, u32) {
     let power = 10_f64.powf((most / 5.0).log10().floor());
     let steps = [1.0, 2.0, 2.5, 5.0].map(|factor| factor * power);
@@ -204,7 +205,7 @@ fn round_steps(most: f64) -> (f64, u32) {
     (step, (most / step).ceil() as u32)
 }
 
-/// Dark enough for white paper, and told apart by those who see no red.
+/// Dark enough for white paper, and distinguishable without red.
 const LINES: [(Squad, Kind, &str, &str); 4] = [
     (Squad::Legged, Kind::Independent, "#0072b2", "none"),
     (Squad::Legged, Kind::Bursty, "#0072b2", "6 4"),
@@ -215,7 +216,8 @@ const LINES: [(Squad, Kind, &str, &str); 4] = [
 pub const PERCENT: [u32; 7] = [0, 5, 10, 20, 30, 40, 50];
 /// How long a run is under loss, ms: a few gameplays.
 const RUN_MS: u32 = 15_000;
-/// Mean length of a dead stretch, ms: a body in the way for a moment, and as long as a robot waits for its host.
+/// Mean length of a dead period, ms: a body that blocks the radio for a moment, and as long as a robot waits
+/// for its host.
 pub const BURST_MS: f32 = 100.0;
 
 #[cfg(test)]

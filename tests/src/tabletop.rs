@@ -1,7 +1,8 @@
-//! `tabletop`: ideal test world for brains. Bodies that obey at once, grabs that succeed, kicks that hit, air
-//! that carries every beacon to the next step: whatever then fails was made to fail by the test.
+//! `tabletop`: ideal test world for brains. Bodies that obey at once, grabs that succeed, kicks without
+//! scatter, radio that delivers every beacon in the next step: every failure is caused by the test.
 //!
-//! SI units, field frame; a step is 40 ms. The simulator proper has physics and chance; here a test places everything.
+//! SI units, field frame; a step is 40 ms. The simulator itself has physics and randomness; here a test
+//! places everything.
 
 use brain::{Brain, BrainConfig};
 use casebase::CaseBase;
@@ -10,43 +11,43 @@ use protocol::robot_io::{ActuatorFrame, BallSight, Health, LeggedKick, LeggedPri
 use protocol::team::{Beacon, Closure, CycleState, Decision, TeamMessage};
 use protocol::{CycleId, Duration, Instant, RobotId};
 
-/// Robots and a ball on a table.
+/// Robots and a ball in the ideal world.
 pub struct Tabletop<'a> {
     /// Steps taken.
     pub steps: u64,
     /// The robots, in rising order of their ids.
     pub robots: Vec<Robot<'a>>,
-    /// Where the ball lies or rolls.
+    /// Position of the ball, m.
     pub ball: Point<Field>,
-    /// How it rolls.
+    /// Its velocity, m/s.
     pub velocity: Vector<Field>,
-    /// Opponents stand where the test puts them.
+    /// Opponents, where the test places them.
     pub opponents: Vec<Point<Field>>,
-    /// Every kick so far: who, how, where to.
+    /// Every kick so far: the robot, the kick and its displacement.
     pub kicks: Vec<(RobotId, LeggedKick, Vector<Field>)>,
-    /// How cycles ended, as somebody said.
+    /// Ends of cycles, as reported by any robot.
     pub ends: Vec<(CycleId, Closure)>,
     air: Vec<(RobotId, TeamMessage)>,
 }
 
-/// One of ours.
+/// One of our robots.
 pub struct Robot<'a> {
-    /// Who.
+    /// Its id.
     pub id: RobotId,
     /// Its brain.
     pub brain: Brain<'a>,
-    /// Where it is.
+    /// Its position and heading.
     pub pose: Pose<Field>,
-    /// It has the ball.
+    /// Whether it has the ball.
     pub holds: bool,
-    /// Its newest word.
+    /// Its newest beacon.
     pub beacon: Option<Beacon>,
-    /// Switched off: it neither moves nor speaks.
+    /// Switched off: it neither moves nor sends.
     pub dead: bool,
 }
 
 impl<'a> Tabletop<'a> {
-    /// With these robots at rest, booting now.
+    /// With these robots resting, booting now.
     pub fn new(base: CaseBase<'a>, ball: (f32, f32), robots: &[(BrainConfig, Pose<Field>)]) -> Self {
         let robots = robots.iter().map(|(config, pose)| Robot {
             id: config.robot,
@@ -124,7 +125,7 @@ impl<'a> Tabletop<'a> {
         self.ball += self.velocity * DT;
     }
 
-    /// Steps until `done`, at most for `seconds`; whether it came.
+    /// Steps until `done`, at most for `seconds`; whether it was reached.
     pub fn until(&mut self, seconds: f32, mut done: impl FnMut(&mut Self) -> bool) -> bool {
         let last = self.steps + (seconds / DT) as u64;
         while self.steps < last {
@@ -160,11 +161,11 @@ impl<'a> Tabletop<'a> {
     }
 }
 
-/// A brain's step.
+/// Period of a brain's step.
 pub const STEP: Duration = Duration::millis(40);
-/// The same, s.
+/// Period of a brain's step, s.
 const DT: f32 = 0.04;
-/// The league's ball on carpet, m/s².
+/// Deceleration of the league's ball on the field surface, m/s².
 const DECELERATION: f32 = 0.35;
-/// A held ball is this far ahead of the body's centre, m.
+/// Distance of a held ball ahead of the body's centre, m.
 const HOLD_AHEAD: f32 = 0.13;

@@ -1,4 +1,4 @@
-//! `workspace`: the repository's files. Its files and lines for the tests that read the project itself.
+//! `workspace`: the repository's files and their lines, for tests that read the project itself.
 
 mod manifest;
 
@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 pub use manifest::{Manifest, members};
 
-/// Where the workspace lies.
+/// Path of the workspace.
 pub fn root() -> PathBuf {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     here.parent().unwrap_or(here).to_path_buf()
@@ -19,7 +19,7 @@ pub fn rust_sources() -> Vec<Source> {
     files(&|path| path.extension().is_some_and(|extension| extension == "rs"))
 }
 
-/// Every file a person writes.
+/// Every file that is written by hand.
 pub fn text_sources() -> Vec<Source> {
     files(&|path| {
         let extension = path.extension().and_then(|extension| extension.to_str());
@@ -31,11 +31,11 @@ pub fn text_sources() -> Vec<Source> {
 pub struct Source {
     /// From the workspace's root, with `/`.
     pub path: String,
-    /// All of it.
+    /// Its text.
     pub text: String,
 }
 
-/// What is wrong in a file, and what to do about it.
+/// A fault in a file, with its fix.
 #[derive(Debug)]
 pub struct Finding {
     /// The file, from the workspace's root.
@@ -54,7 +54,7 @@ impl fmt::Display for Finding {
 }
 
 impl Source {
-    /// Reads a file; a test can do nothing else when it is not there.
+    /// Reads a file; panics where it does not exist.
     pub fn read(path: &Path) -> Self {
         let bytes = fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         let relative = path.strip_prefix(root()).unwrap_or(path);
@@ -62,9 +62,9 @@ impl Source {
         Self { path: words.join("/"), text: String::from_utf8_lossy(&bytes).into_owned() }
     }
 
-    /// It is code of one of the crates in these folders, and not a file of tests.
+    /// Whether it is code of one of the crates in these directories, and not a file of tests.
     pub fn is_under(&self, folders: &[String]) -> bool {
-        // A crate nested in another one's folder is not meant: only what stands in `src` is.
+        // A crate nested in another one's directory is excluded: only files in `src` count.
         folders.iter().any(|folder| self.path.starts_with(&format!("{folder}/src/")))
             && !self.path.ends_with("/tests.rs")
     }
@@ -107,7 +107,7 @@ impl Source {
     }
 }
 
-/// The pattern stands in the line as a word of its own, not as the tail of a longer name.
+/// Whether the pattern occurs in the line as a name of its own, not as the tail of a longer name.
 fn names(line: &str, pattern: &str) -> bool {
     let starts_word = pattern.starts_with(|first: char| first.is_alphanumeric());
     let is_tail = |at: usize| line[..at].ends_with(|before: char| before.is_alphanumeric() || before == '_');
@@ -117,7 +117,7 @@ fn names(line: &str, pattern: &str) -> bool {
 fn files(wanted: &dyn Fn(&Path) -> bool) -> Vec<Source> {
     let mut paths = Vec::new();
     walk(&root(), wanted, &mut paths);
-    // The order of a folder's entries differs from machine to machine.
+    // The order of a directory's entries differs from machine to machine.
     paths.sort();
     paths.iter().map(|path| Source::read(path)).collect()
 }
@@ -128,7 +128,7 @@ fn walk(folder: &Path, wanted: &dyn Fn(&Path) -> bool, paths: &mut Vec<PathBuf>)
     {
         let path = entry.path();
         if path.is_dir() {
-            // Cargo marks what it builds; git's own folder and results are no sources either.
+            // Cargo marks what it builds; git's own directory and results are no sources either.
             let built = path.join("CACHEDIR.TAG").exists() || path.ends_with(".git");
             if !built && !NO_SOURCES.iter().any(|name| root().join(name) == path) {
                 walk(&path, wanted, paths);
@@ -139,7 +139,7 @@ fn walk(folder: &Path, wanted: &dyn Fn(&Path) -> bool, paths: &mut Vec<PathBuf>)
     }
 }
 
-/// What a person writes and reads; everything else is data or made by a program.
+/// Extensions of files that are written by hand; everything else is data or generated.
 const TEXT: [&str; 6] = ["rs", "toml", "md", "sh", "svg", "txt"];
-/// What git does not keep.
+/// Directories that git ignores.
 const NO_SOURCES: [&str; 2] = ["target", "out"];

@@ -1,9 +1,10 @@
-//! `coordination`: tests: a team keeps its promises when packets are lost and robots die
-//! (docs/architecture.md §5.4, watched from outside).
+//! `coordination`: tests: a team's invariants hold when packets are lost and robots crash
+//! (docs/architecture.md §5.4, checked from outside).
 //!
-//! Every seed is a trial of its own on the simulator's carpet: its team size, its retrievers, its scenario and its faults are drawn
-//! from the seed. A failure prints the seed; `ONETWO_SEED=N cargo test -p match-tests --test coordination` repeats it alone, and
-//! `ONETWO_SEEDS=6000 cargo test --release -p match-tests --test coordination -- --nocapture` is a longer watch.
+//! Every seed is a trial of its own in the four-legged simulator: its team size, its retrievers, its scenario
+//! and its faults are drawn from the seed. A failure prints the seed; `ONETWO_SEED=N cargo test -p
+//! match-tests --test coordination` repeats it alone, and `ONETWO_SEEDS=6000 cargo test --release -p
+//! match-tests --test coordination -- --nocapture` is a longer run.
 
 use brain::BrainConfig;
 use hil_sim::{
@@ -16,9 +17,9 @@ use protocol::link::overhear;
 use protocol::team::TeamMessage;
 use protocol::{CycleId, Instant, RobotId, TeamId};
 
-/// Whose air it is.
+/// The team of the trials.
 const TEAM: TeamId = TeamId(0);
-/// Seeds of a test, unless told otherwise.
+/// Default number of seeds of a test.
 const SEEDS: u64 = 200;
 /// Ticks of a trial: 12 s.
 const TICKS: u32 = 300;
@@ -103,8 +104,8 @@ fn halves_of_a_partition_are_one_team_again_within_a_second_of_healing() {
     });
 }
 
-/// At a time drawn from the seed a robot dies, for up to three seconds. A third of the seeds each: any robot, the lowest id
-/// (the elector), the coordinator of that very moment.
+/// At a time drawn from the seed a robot crashes, for up to three seconds. A third of the seeds each: any
+/// robot, the lowest id (the elector), the coordinator of that moment.
 fn crash_and_return(team: &Team) -> Vec<ScheduledFault> {
     let mut chance = Stream::new(team.seed, "crash");
     let at = chance.whole(30, 200);
@@ -220,7 +221,7 @@ fn report(watcher: &Watcher) -> Result<Tally, String> {
     })
 }
 
-/// One tick of the trial, shown to the watcher.
+/// One tick of the trial, observed by the watcher.
 fn step(team: &Team, simulation: &mut Simulation<'_>, watcher: &mut Watcher) {
     let tick = simulation.step().expect("native computers do not fail");
     let now = Instant(u64::from(tick.number) * TICK_US);
@@ -253,7 +254,7 @@ fn step(team: &Team, simulation: &mut Simulation<'_>, watcher: &mut Watcher) {
     watcher.end_of_step(now);
 }
 
-/// Who coordinates the newest cycle at that tick, found by running the same trial up to it.
+/// The coordinator of the newest cycle at that tick, found by running the same trial up to it.
 fn coordinator_at(team: &Team, tick: u32) -> Option<RobotId> {
     let mut simulation = team.simulation(AirSettings::default(), vec![]);
     let mut newest: Option<(CycleId, RobotId)> = None;

@@ -1,7 +1,8 @@
-//! `division_b_library`: tests of division B's built-in library with the oracle. Its plans are read, not played.
+//! `division_b_library`: tests of division B's built-in library with the oracle. Its plans are read, not
+//! played.
 //!
-//! Rules it must keep (ssl-rules, 2026): nobody of ours touches the ball in their defence area (1 m deep, 2 m wide), and a ball is
-//! dribbled for less than a metre.
+//! Rules it must keep (ssl-rules, 2026): no robot of ours touches the ball in their defence area (1 m deep, 2
+//! m wide), and a ball is dribbled for less than a metre.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -10,11 +11,11 @@ use match_tests::oracle::library::{Action, Library, Point};
 use match_tests::oracle::problem::Problem;
 use match_tests::oracle::{Rules, retrieve};
 
-/// Cases the league begins with, at least.
+/// Minimum number of cases of the league's library.
 const AUTHORED_MIN: usize = 16;
 /// Regions of the paper.
 const REGIONS: [&str; 6] = ["back", "center", "corner", "front", "front-side", "side"];
-/// The longest dribble, mm.
+/// Maximum length of a dribble, mm.
 const DRIBBLE_MAX: f64 = 1000.0;
 
 fn folder() -> PathBuf {

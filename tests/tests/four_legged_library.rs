@@ -2,8 +2,8 @@
 //!
 //! Each case must be the answer to its own situation (docs/case-format.md §1.2 warns of a case beaten there),
 //! nearly every problem must have a candidate (paper §5: "most of the time, at least one case will be
-//! retrieved"), no case may be there for nothing, none may win everywhere, and every region and class of the
-//! paper (§5.1.1) must be there. Problems are drawn as the paper's scenarios place robots
+//! retrieved"), every case must be retrieved for some problem, none may win everywhere, and every region and
+//! class of the paper (§5.1.1) must occur. Problems are drawn as the paper's scenarios place robots
 //! (`case_tools::Sampler`, with the line-ups of `league.toml`).
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -13,11 +13,11 @@ use match_tests::oracle::library::{Goal, Library, Point};
 use match_tests::oracle::problem::Problem;
 use match_tests::oracle::{Rules, retrieve};
 
-/// Authored cases, as many as the paper's robots know.
+/// Number of authored cases, as in the paper.
 const AUTHORED: usize = 34;
 /// Regions of the paper.
 const REGIONS: [&str; 6] = ["back", "center", "corner", "front", "front-side", "side"];
-/// Problems drawn.
+/// Number of problems drawn.
 const PROBLEMS: u64 = 6000;
 
 fn folder() -> PathBuf {

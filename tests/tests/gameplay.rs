@@ -1,7 +1,7 @@
 //! `gameplay`: tests: robots play a case as the paper describes it, and leave it for the paper's reasons (Ros
 //! et al. 2009 §4.2; docs/case-format.md §4, docs/architecture.md §5).
 //!
-//! Brains on a table where nothing goes wrong by itself; the library is the worked example of
+//! Brains in an ideal world where failures come from the tests alone; the library is the worked example of
 //! docs/case-format.md §1 alone.
 
 use brain::{BrainConfig, Positioning};
@@ -44,7 +44,7 @@ fn a_pass_is_played_from_its_election_to_its_end() {
     assert!(table.until(0.2, done), "the passer has done its part and waits for the end");
     assert!(table.until(10.0, |t| t.kicks.len() == 2), "the receiver shoots");
     assert_eq!(table.kicks[1].0.number(), 3);
-    // Of a first life every 64th number is its own.
+    // Cycle counters of epoch 1 are 1 modulo 64: 65 follows 1.
     let ended = |t: &mut Tabletop| closure(t) == Some(Closure::Finished);
     assert!(table.until(0.2, ended), "the coordinator closes the cycle when all have finished");
     assert!(table.until(0.4, |t| cycle(t, 3).is_some_and(|c| c.id.counter == 65)), "and the next begins");
@@ -101,7 +101,7 @@ fn a_gameplay_that_cannot_go_on_times_out() {
     let library = library();
     let mut table = table(&library, &[1, 3], Positioning::Dependent);
     assert!(table.until(1.0, |t| play(t, 1).is_some()));
-    // The getter's legs are tied; everything else stays as it should be.
+    // The getter cannot move; everything else is unchanged.
     let place = Pose::from_mm_deg(-1100.0, 0.0, 0.0);
     let timeout = |t: &mut Tabletop| {
         t.robot(1).pose = place;
@@ -153,7 +153,8 @@ fn a_robot_without_the_coordinators_case_base_is_not_asked_to_play() {
     assert_eq!(play(&mut table, 1).unwrap(), [1, 5], "robot 5 is farther away, but knows the case");
 }
 
-/// Lets a gameplay begin, does the harm while its robots adapt, and tells for which reason the cycle ends.
+/// Lets a gameplay start, applies `harm` while its robots adapt, and returns the reason for which the cycle
+/// ends.
 fn aborted_after(harm: impl FnOnce(&mut Tabletop<'_>)) -> AbortReason {
     let library = library();
     let mut table = table(&library, &[1, 3], Positioning::Dependent);
@@ -206,7 +207,7 @@ fn play(table: &mut Tabletop<'_>, robot: u8) -> Option<Vec<u8>> {
     Some(cycle.play()?.robots.iter().map(|id| id.number()).collect())
 }
 
-/// How the newest cycle that ended did so.
+/// The end of the newest cycle that ended.
 fn closure(table: &Tabletop<'_>) -> Option<Closure> {
     table.ends.last().map(|(_, end)| *end)
 }

@@ -27,7 +27,7 @@ fn every_target_has_true_messages_to_begin_with_and_every_worked_example_is_one_
             text.split_whitespace().filter_map(|word| u8::from_str_radix(word, 16).ok()).collect();
         assert!(all.contains(&&bytes), "{name} is not in protocol/fuzz/corpus");
     }
-    // The targets take what is true.
+    // The targets accept valid messages.
     for ((_, target), seeds) in &corpus {
         for bytes in seeds {
             target(bytes);

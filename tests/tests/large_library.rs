@@ -1,6 +1,6 @@
 //! `large_library`: tests of a library of 2,500 files.
 //!
-//! `explain` looks at every case without index or short cut: it is the plain scan.
+//! `explain` tests every case without index or short cut: it is the plain scan.
 
 use case_library::LEAGUES;
 use casebase::{
@@ -24,7 +24,7 @@ fn problem(dice: &mut Dice, base: &CaseBase<'_>) -> Problem {
     Problem { ball, defending: case.defending(), teammates, opponents }
 }
 
-/// Same winner and same count; how many problems had a winner.
+/// Checks for the same winner and count; returns the number of problems with a winner.
 fn agree(base: &CaseBase<'_>, seed: u64, problems: usize) -> usize {
     let settings = Settings::default();
     let mut dice = Dice::new(seed);

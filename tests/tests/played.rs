@@ -1,4 +1,5 @@
-//! `played`: tests: the table of played cases is true. Re-plays some of it, and looks for every case.
+//! `played`: tests: the table of played cases is correct. Repeats a part of it, and searches it for every
+//! case.
 
 use std::path::Path;
 

@@ -1,8 +1,9 @@
 //! `qemu_equals_native`: tests: firmware image and native brain play the same trial, bit for bit
 //! (docs/architecture.md §2.5, §7.2).
 //!
-//! Each robot runs in a QEMU of its own; trace hashes are taken by the simulator, so by the same code for both. Needs QEMU
-//! and a compiler for the target (feature `qemu`); `cargo xtask test --only qemu` sees to both.
+//! Each robot runs in a QEMU of its own; trace hashes are computed by the simulator, so by the same code for
+//! both. Needs QEMU and a compiler for the target (feature `qemu`); `cargo xtask test --only qemu` provides
+//! both.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -16,7 +17,7 @@ use hil_sim::{
 };
 use protocol::{RobotId, TeamId};
 
-/// Of each scenario and configuration of the paper.
+/// Number of seeds of each scenario and configuration of the paper.
 const SEEDS: u64 = 5;
 const STEP_BUDGET: u32 = firmware_build::inspect::STEP_BUDGET;
 /// Bytes of stack, painted (docs/architecture.md §9).
@@ -75,7 +76,7 @@ fn a_library_that_is_none_is_refused() {
     assert!(matches!(backend.boot(&config), Err(McuError::Unusable)));
 }
 
-/// Plays a trial on both back ends; gives the hash they have in common.
+/// Plays a trial on both back ends; returns their common hash.
 fn both<'a>(config: &TrialConfig<'a>, qemu: QemuBackend, meter: &mut Meter) -> String {
     let play = |backend: Box<dyn Backend<'a> + 'a>| -> TrialReport {
         let name = backend.name();
@@ -90,7 +91,7 @@ fn both<'a>(config: &TrialConfig<'a>, qemu: QemuBackend, meter: &mut Meter) -> S
     native.trace_hash
 }
 
-/// What the emulated trials took.
+/// Instructions and stack use of the emulated trials.
 #[derive(Debug, Default)]
 struct Meter {
     trials: u64,
@@ -99,7 +100,8 @@ struct Meter {
 }
 
 impl Meter {
-    /// The worst step and the deepest stack are within their budgets; tells them, and the median step.
+    /// Checks that the worst step and the maximum stack use are within their budgets; prints them, and the
+    /// median step.
     fn check(&self) {
         let ((median, worst), stack) = (self.taken.median_and_worst(), self.taken.stack());
         let (trials, gameplays, count) = (self.trials, self.gameplays, self.taken.steps());
@@ -118,13 +120,13 @@ fn paper() -> impl Iterator<Item = (Scenario, Configuration)> {
     Scenario::PAPER.into_iter().flat_map(both)
 }
 
-/// The image, built where it is missing or old.
+/// The firmware image, built where it is missing or old.
 static IMAGE: LazyLock<PathBuf> = LazyLock::new(|| {
     let root = firmware_build::workspace_root();
     firmware_build::build_image(&root, firmware_build::Body::Legged).unwrap_or_else(|error| panic!("{error}"))
 });
 
-/// A folder with some files of the built-in library; gone with this value.
+/// A directory with some files of the built-in library; deleted on drop.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -142,7 +144,7 @@ impl Folder {
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        // A temporary folder that stays is a pity, not an error.
+        // A temporary directory that stays is no error.
         let _ = fs::remove_dir_all(&self.0);
     }
 }

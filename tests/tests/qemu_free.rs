@@ -1,9 +1,9 @@
 //! `qemu_free`: tests: a robot that runs by its own clock obeys its team's host and no other sender, stops
-//! when the host is gone, and comes back from a panic and from a task that hangs (docs/architecture.md §6.2).
+//! when the host is silent, and recovers from a panic and from a task that hangs (docs/architecture.md §6.2).
 //!
-//! The image `onetwo-mps2-free` under QEMU in real time, its radio a serial line on the emulator's standard streams. Times are
-//! generous: what is waited for must come, how soon depends on the machine. Needs QEMU and a compiler for the target (feature
-//! `qemu`).
+//! The firmware image `onetwo-mps2-free` under QEMU in real time, its radio a serial line on the emulator's
+//! standard streams. Timeouts are generous: awaited events must come, how soon depends on the machine. Needs
+//! QEMU and a compiler for the target (feature `qemu`).
 
 use std::fs;
 use std::io::{Read, Write};
@@ -28,17 +28,18 @@ use protocol::team::TeamMessage;
 use protocol::{RobotId, TeamId};
 use rules::Phase;
 
-/// Robot 3, team 1, division B, with its keys of the team's key 01 02 … 10; keys and check were computed by a SipHash of another hand.
+/// Robot 3, team 1, division B, with its keys of the team's key 01 02 … 10; keys and check were computed by
+/// an independent SipHash.
 const PAGE: [u8; 48] = [
     0x31, 0x2d, 0x32, 0x4b, 0x02, 0x03, 0x01, 0x02, 0x19, 0x9a, 0x5b, 0xca, 0xd2, 0xdd, 0xb8, 0x46, 0x2d,
     0xdc, 0x44, 0x2e, 0xe0, 0xfb, 0x84, 0x03, 0x51, 0xf0, 0x45, 0xa1, 0x95, 0x8e, 0xca, 0x8a, 0x2f, 0xa5,
     0xeb, 0xd1, 0xfe, 0x16, 0x94, 0x65, 0xe0, 0xa0, 0x65, 0x85, 0x83, 0xbe, 0x29, 0xcd,
 ];
 const TEAM: TeamId = TeamId(1);
-/// For anything that must come in the end, on a machine however busy.
+/// Timeout of an awaited event, on a machine however busy.
 const PATIENCE: Duration = Duration::from_mins(1);
-/// The host says 90 B so often. The emulator takes every byte of its line by itself: at 5 ms on a busy machine bytes wait in the pipe for
-/// longer than the 200 ms after which a robot refuses them.
+/// Interval at which the host sends 90 B. The emulator takes every byte of its line separately: at 5 ms on a
+/// busy machine bytes wait in the pipe for longer than the 200 ms after which a robot refuses them.
 const SPEAKS_EVERY: Duration = Duration::from_millis(20);
 
 #[test]
@@ -49,7 +50,8 @@ fn a_robot_obeys_its_own_host_while_it_speaks_and_nobody_elses() {
     assert!(robot.until(&mut ours, false, lost), "before the host speaks");
     assert!(robot.until(&mut ours, true, |told| !lost(told)), "the host speaks");
     assert!(robot.until(&mut ours, false, lost), "the host falls silent");
-    // Another key: its words change nothing in a second and a half, in which half a second would do.
+    // Another key: its frames have no effect in a second and a half, while half a second of genuine ones
+    // would.
     let mut theirs = HostLink::new(TEAM, TeamKey([9; 16]), 8);
     let began = Instant::now();
     while began.elapsed() < Duration::from_millis(1_500) {
@@ -67,14 +69,15 @@ fn a_serial_line_that_corrupts_bytes_makes_a_robot_brake_at_worst_and_it_obeys_a
     robot.hears_itself_say("ready");
     let mut link = HostLink::new(TEAM, key(), 7);
     assert!(robot.until(&mut link, true, |told| !lost(told)), "the line is good");
-    // Of frames of some forty bytes three in four still come through; others are told apart by their tag.
+    // Of frames of some forty bytes three in four are still received intact; the others are rejected by their
+    // tag.
     robot.trouble(Trouble::of_each(2.0));
     let refuses = |told: &Telemetry| told.refused.iter().any(|count| *count > 0);
     assert!(
         robot.until(&mut link, true, |told| refuses(told) && !lost(told)),
         "it is commanded in spite of it"
     );
-    // Hardly one in a thousand comes down; what it says is still heard.
+    // Hardly one in a thousand reaches the robot; its own frames are still received.
     robot.down.trouble = Trouble::of_each(60.0);
     assert!(robot.until(&mut link, true, lost), "a line of nonsense must not drive it");
     robot.trouble(Trouble::default());
@@ -100,11 +103,12 @@ fn a_panic_takes_the_current_off_tells_its_place_and_starts_anew_in_a_new_life()
     robot.hears_itself_say("awake after a panic at");
     let mut link = HostLink::new(TEAM, key(), 7);
     let began = Instant::now();
-    // A robot is believed once it names this host's epoch: it must have been welcomed.
+    // A robot is accepted once it names this host's epoch: it must have received a welcome.
     while link.life(id()).is_none_or(|life| life < 2) && began.elapsed() < PATIENCE {
         robot.until(&mut link, true, |_| true);
     }
-    // On a machine too busy for real time the watchdog may have bitten since: later lives count on.
+    // On a machine too busy for real time the watchdog may have reset the robot since: later epochs count
+    // too.
     assert!(link.life(id()) >= Some(2), "the second life has an epoch of its own: {:?}", link.life(id()));
 }
 
@@ -123,7 +127,7 @@ fn a_robot_under_a_host_keeps_its_stack_within_the_budget() {
     let mut link = HostLink::new(TEAM, key(), 7);
     assert!(robot.until(&mut link, false, |_| true), "it tells of its life");
     assert!(robot.until(&mut link, true, |told| !lost(told)), "it obeys");
-    // What it said before it was commanded does not count.
+    // Output before it was commanded does not count.
     robot.said.clear();
     robot.hears_itself_say("stack ");
     // The end of this line, not of one before it.
@@ -134,7 +138,7 @@ fn a_robot_under_a_host_keeps_its_stack_within_the_budget() {
     assert!(told.is_some_and(|bytes| (1..=STACK_BUDGET).contains(&bytes)), "{told:?}");
 }
 
-/// The image in an emulator.
+/// The firmware image in an emulator.
 struct Robot {
     child: Child,
     said: String,
@@ -142,11 +146,11 @@ struct Robot {
     heard: Receiver<Vec<u8>>,
     lines: Lines,
     began: Instant,
-    /// When its host spoke last.
+    /// Time at which its host last sent.
     spoke: Instant,
     last: Option<Telemetry>,
     page: PathBuf,
-    /// What its line makes of bytes, either way.
+    /// Faults of its line, in either direction.
     down: BadLine,
     up: BadLine,
 }
@@ -186,12 +190,12 @@ impl Robot {
         }
     }
 
-    /// Its line is as bad as that from now on, both ways.
+    /// Sets the error rates of its line in both directions.
     fn trouble(&mut self, trouble: Trouble) {
         (self.down.trouble, self.up.trouble) = (trouble, trouble);
     }
 
-    /// Waits for words on the console.
+    /// Waits for a text on the console.
     fn hears_itself_say(&mut self, words: &str) {
         let began = Instant::now();
         while !self.said.contains(words) {
@@ -207,7 +211,7 @@ impl Robot {
         protocol::Instant(self.began.elapsed().as_micros() as u64)
     }
 
-    /// A welcome and a command of that host.
+    /// Sends a welcome and a command of that host.
     fn say(&mut self, link: &mut HostLink, welcome: Option<Welcome>) {
         let command = Command {
             to: id(),
@@ -228,7 +232,7 @@ impl Robot {
         stdin.flush().expect("it listens");
     }
 
-    /// Goes on, with the host speaking or not, until telemetry of a condition like that comes.
+    /// Runs, with the host sending or silent, until telemetry that fulfils the condition arrives.
     fn until(&mut self, link: &mut HostLink, speaking: bool, like: impl Fn(&Telemetry) -> bool) -> bool {
         let began = Instant::now();
         while began.elapsed() < PATIENCE {
@@ -259,14 +263,14 @@ impl Robot {
 
 impl Drop for Robot {
     fn drop(&mut self) {
-        // It may have ended by itself; either way nothing is left to do about it.
+        // It may have ended by itself; either way nothing remains to be done.
         let _ = self.child.kill();
         let _ = self.child.wait();
         let _ = fs::remove_file(&self.page);
     }
 }
 
-/// What comes out of a pipe, piece by piece.
+/// The output of a pipe, piece by piece.
 fn pumped(mut pipe: impl Read + Send + 'static) -> Receiver<Vec<u8>> {
     let (sender, receiver) = channel();
     thread::spawn(move || {
@@ -298,7 +302,7 @@ fn damaged() -> [u8; 48] {
     page
 }
 
-/// The image, built where it is missing or old.
+/// The firmware image, built where it is missing or old.
 static IMAGE: LazyLock<PathBuf> = LazyLock::new(|| {
     build_program(&workspace_root(), Program::Free).unwrap_or_else(|error| panic!("{error}"))
 });

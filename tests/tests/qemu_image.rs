@@ -1,6 +1,6 @@
 //! `qemu_image`: tests of the firmware image and of the emulator.
 //!
-//! Needs QEMU and a compiler for the target (feature `qemu`); `cargo xtask test --only qemu` sees to both.
+//! Needs QEMU and a compiler for the target (feature `qemu`); `cargo xtask test --only qemu` provides both.
 
 use std::fs;
 use std::process::{Command, Stdio};
@@ -54,5 +54,5 @@ fn the_robots_mathematics_has_the_bits_of_the_pc() {
     assert!(status.success(), "{} ended with {status}: the hash differs from the PC's", image.display());
 }
 
-/// The hash takes a second or so; a machine ten times slower is still given its time.
+/// The hash takes a second or so; a machine ten times slower still has enough time.
 const PATIENCE: Duration = Duration::from_mins(1);

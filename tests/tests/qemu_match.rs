@@ -1,16 +1,17 @@
 //! `qemu_match`: tests: six firmware images play the same match as six native brains. Host, radio, cameras
-//! and referee around them are the very same; the match's hash is compared after every tick
-//! (docs/architecture.md §2.5, §7.2).
+//! and referee around them are the same; the match's hash is compared after every tick (docs/architecture.md
+//! §2.5, §7.2).
 //!
-//! `ONETWO_MATCH_SECONDS=60 cargo test --release -p match-tests --features qemu --test qemu_match` plays longer. Needs QEMU and a
-//! compiler for the target (feature `qemu`).
+//! `ONETWO_MATCH_SECONDS=60 cargo test --release -p match-tests --features qemu --test qemu_match` plays
+//! longer. Needs QEMU and a compiler for the target (feature `qemu`).
 
 use firmware_build::inspect::{STACK_BUDGET, STEP_BUDGET};
 use match_tests::hil::Pair;
 
-/// Guest instructions that no step may take in longer matches: of 60 s, the worst of twelve robots' 72,000 steps took 42,551 (docs/firmware.md).
+/// Maximum guest instructions of a step in longer matches: of 60 s, the worst of twelve robots' 72,000 steps
+/// took 42,551 (docs/firmware.md).
 const WORST_OF_LONG: u32 = 45_000;
-/// Simulated seconds, unless told otherwise: kick-off and the first duels.
+/// Default length in simulated seconds: kick-off and the first duels.
 const SECONDS: f64 = 4.0;
 
 #[test]

@@ -1,7 +1,8 @@
-//! `qemu_radio`: tests: radio frames stay within their budget on the robot's processor
-//! (docs/architecture.md §9).
+//! `qemu_radio`: tests: radio frames stay within their budget on the robot's processor (docs/architecture.md
+//! §9).
 //!
-//! `cargo xtask bench radio` prints the same counts. Needs QEMU and a compiler for the target (feature `qemu`).
+//! `cargo xtask bench radio` prints the same counts. Needs QEMU and a compiler for the target (feature
+//! `qemu`).
 
 #[path = "../benches/radio/counts.rs"]
 mod counts;

@@ -1,9 +1,8 @@
 //! `qemu_retrieval`: tests: retrieval on the robot's processor equals the PC's, within its budget
 //! (docs/architecture.md §9).
 //!
-//! The built-in library on problems that robots retrieved for; `cargo xtask bench retrieval` has all bases and problems,
-//! and holds them to the budgets.
-//! Needs QEMU and a compiler for the target (feature `qemu`).
+//! The built-in library on problems that robots retrieved for; `cargo xtask bench retrieval` has all bases
+//! and problems, and checks their budgets. Needs QEMU and a compiler for the target (feature `qemu`).
 
 #[path = "../benches/retrieval/figures.rs"]
 #[allow(dead_code, reason = "the bench prints what is not judged")]

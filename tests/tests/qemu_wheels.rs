@@ -1,8 +1,9 @@
 //! `qemu_wheels`: tests: the firmware image drives wheels as the native brain does, within its step budget
 //! (docs/architecture.md §2.4, §9).
 //!
-//! Three robots of ours, each once native and once in a QEMU of its own, hear the same packets of a host and of each other and
-//! see the same world; six opponents drive about. Needs QEMU and a compiler for the target (feature `qemu`).
+//! Three robots of ours, each once native and once in a QEMU of its own, receive the same packets of a host
+//! and of each other and see the same world; six opponents drive about. Needs QEMU and a compiler for the
+//! target (feature `qemu`).
 
 use std::path::PathBuf;
 use std::sync::LazyLock;
@@ -25,9 +26,9 @@ use protocol::{Instant, RobotId, TeamId, Who};
 use rules::{Colour, League, Phase, Side};
 
 const STEP_BUDGET: u32 = firmware_build::inspect::STEP_BUDGET;
-/// Bytes of stack, painted.
+/// Budget of the stack, measured by painting, bytes.
 const STACK_BUDGET: u32 = firmware_build::inspect::STACK_BUDGET;
-/// Of each of the parts below.
+/// Duration of each of the parts below, s.
 const SECONDS: u64 = 6;
 
 #[test]
@@ -66,7 +67,7 @@ fn wheels_under_qemu_equal_native_ones_and_no_step_takes_more_than_its_budget() 
     assert!((1..=STEP_BUDGET).contains(&worst), "the worst step took {worst} instructions");
 }
 
-/// Phases, and what the three are told in them.
+/// Phases, and the directives of the three robots in them.
 fn parts() -> Vec<(Phase<Side>, [Directive; 3])> {
     let at = |x, y| WirePoint { x, y };
     let go = |x, y| Directive::GoTo { pose: WirePose { at: at(x, y), heading: 0 } };
@@ -94,7 +95,7 @@ fn parts() -> Vec<(Phase<Side>, [Directive; 3])> {
     ]
 }
 
-/// The truth, the host and the air.
+/// The true state, the host and the radio channel.
 struct Table {
     world: World,
     link: HostLink,
@@ -167,7 +168,7 @@ impl Table {
             if let Some(order) = a.actuators {
                 self.world.command(ours(*robot), &order);
             }
-            // The host passes on what is for mates.
+            // The host relays messages for teammates.
             for packet in a.packets {
                 let opened = self.link.open(now, &packet);
                 if let Ok(Opened::Believed(_, TeamMessage::Beacon(_) | TeamMessage::Greeting(_))) = opened {
@@ -186,7 +187,7 @@ impl Table {
         }
     }
 
-    /// The picture, sealed.
+    /// The snapshot, sealed.
     fn parts(&mut self, now: Instant, phase: Phase<Side>) -> Vec<Packet> {
         let ball = &self.world.ball;
         let ball = WireBall {
@@ -233,7 +234,7 @@ fn theirs(number: u8) -> Who {
     Who { colour: Colour::Yellow, id: id(number) }
 }
 
-/// The image, built where it is missing or old.
+/// The firmware image, built where it is missing or old.
 static IMAGE: LazyLock<PathBuf> = LazyLock::new(|| {
     let root = firmware_build::workspace_root();
     firmware_build::build_image(&root, firmware_build::Body::Omni).unwrap_or_else(|error| panic!("{error}"))

@@ -1,6 +1,6 @@
-//! A robot on wheels under a host whose radio is delayed, lossy, withheld, recorded or forged: it moves only on commands of its host that
-//! are at most 200 ms old. The host's radio and a robot's station in virtual time, ticks of 10 ms
-//! (docs/architecture.md §6.2).
+//! A robot on wheels under a host whose radio is delayed, lossy, withheld, recorded or forged: it moves only
+//! on commands of its host that are at most 200 ms old. The host's radio and a robot's station in virtual
+//! time, ticks of 10 ms (docs/architecture.md §6.2).
 
 use std::collections::VecDeque;
 
@@ -33,7 +33,7 @@ fn radio(epoch: u32) -> Radio {
     Radio::new(RadioSettings { key: KEY, relay: Relay::ToEach, ..RadioSettings::new(TEAM, epoch) })
 }
 
-/// One way through the air: packets with the time in which they come out.
+/// One direction of the radio link: packets with the time at which they are due.
 struct Way {
     chance: Stream,
     packets: VecDeque<(u64, Packet)>,
@@ -61,11 +61,11 @@ impl Way {
     }
 }
 
-/// A robot whose wheels do at once what they are told, and its clock.
+/// A robot whose wheels reach ordered speeds at once, and its clock.
 struct Body {
     station: Station<'static>,
     speed: f32,
-    /// Its clock: starts that long after the host's, and runs so many parts in a million faster.
+    /// Its clock: starts that long after the host's, and runs faster by this rate in parts per million.
     behind_ms: u64,
     drift_ppm: f64,
 }
@@ -120,7 +120,7 @@ impl Body {
     }
 }
 
-/// Drive to a place that is never reached.
+/// A command to drive to a position that is never reached.
 fn offer(radio: &mut Radio, now: u64) -> Vec<Packet> {
     let mut world = World::empty(ms(now), BallModels::default());
     world.put(Robot {
@@ -142,7 +142,7 @@ fn fetch(radio: &mut Radio) -> Vec<Packet> {
     std::iter::from_fn(|| radio.poll_packet()).map(|(_, packet)| packet).collect()
 }
 
-/// A radio, a robot and the air between them.
+/// A radio, a robot and the radio channel between them.
 struct Match {
     radio: Radio,
     body: Body,
@@ -157,7 +157,7 @@ impl Match {
         Self { radio: radio(70), body, down: way("down"), up: way("up"), now: 0 }
     }
 
-    /// 10 ms in which the host speaks, or not.
+    /// 10 ms in which the host sends, or not.
     fn step(&mut self, host_lives: bool) {
         self.now += TICK_MS;
         if host_lives {
@@ -184,7 +184,8 @@ impl Match {
 fn withheld_frames_of_a_dead_host_neither_start_nor_keep_a_robot() {
     let mut game = Match::new(Body::new(5), (3, 3), 0.0);
     game.drive();
-    // The air is jammed: 500 snapshots and their commands are kept from the robot; then the host is dead.
+    // The radio is jammed: 500 snapshots and their commands are withheld from the robot; then the host is
+    // silent for ever.
     let mut withheld = Vec::new();
     for _ in 0..500 {
         game.now += TICK_MS;
@@ -210,7 +211,8 @@ fn withheld_frames_of_a_dead_host_neither_start_nor_keep_a_robot() {
 
 #[test]
 fn frames_that_come_ever_later_stop_a_driving_robot_within_200_ms_of_age() {
-    // The attacker delivers in slow motion: each frame comes, and without a gap, but a little later than the last.
+    // The attacker delivers in slow motion: every frame arrives, without a gap, but each a little later than
+    // the last.
     for stretch in [2, 3, 5] {
         let mut game = Match::new(Body::new(5), (3, 3), 0.0);
         game.drive();
@@ -230,7 +232,7 @@ fn frames_that_come_ever_later_stop_a_driving_robot_within_200_ms_of_age() {
             assert_eq!(game.now, start + n * stretch * TICK_MS);
             let age = game.now - sent;
             oldest = oldest.max(age);
-            // From 200 ms on it brakes at 5 m/s²; a step may pass before.
+            // From 200 ms on it brakes at 5 m/s²; one step may pass before.
             let braked = (age.saturating_sub(200 + 2 * TICK_MS)) as f32 * 1e-3 / (stretch as f32 - 1.0)
                 * stretch as f32;
             let most = (driving - 5.0 * braked).max(0.0);
@@ -310,7 +312,7 @@ fn a_host_with_an_earlier_epoch_is_told_within_two_seconds_which_robot_refuses_i
     assert_eq!(warning, RadioWarning::LaterHost(id(), 70));
     assert!(after <= 2_000, "{after} ms");
     assert_eq!((game.radio.present(ms(game.now)).count(), game.body.speed), (0, 0.0));
-    // One more than the last: the robot follows, and nothing is wrong any more.
+    // Its epoch is one more than the last: the robot follows it, and the fault is over.
     game.radio = radio(71);
     (0..300).for_each(|_| game.step(true));
     assert_eq!(game.radio.warnings(ms(game.now)).collect::<Vec<_>>(), []);
@@ -334,7 +336,8 @@ fn the_keys_of_a_stolen_robot_move_no_other_robot_and_keep_none_moving() {
     let genuine = offer(&mut game.radio, game.now + TICK_MS);
     let stolen: Vec<RobotKeys> =
         RobotId::all().filter(|other| *other != id()).map(|n| KEY.of_robot(n)).collect();
-    // The host dies; the thief sends what it heard with newer counters under every key it may have.
+    // The host stops; the attacker sends its recordings with newer counters under every key that the stolen
+    // robot has.
     let mut forged = 0;
     let driving = game.body.speed;
     for n in 0..300_u32 {
@@ -366,7 +369,7 @@ fn a_robot_that_comes_back_is_led_again_and_its_old_frames_are_not_believed() {
         game.now += TICK_MS;
         recorded.extend(game.body.step(game.now, &[]));
     }
-    // It boots; its recordings are played to a host that has started since.
+    // It boots; its recordings are replayed to a host that has started since.
     game.body = Body::with(6, 9_999, 50.0);
     game.radio = radio(71);
     for packet in &recorded {

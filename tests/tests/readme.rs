@@ -1,4 +1,4 @@
-//! `readme`: tests: README's commands are those that are checked, and the table of crates names every one.
+//! `readme`: tests: README's commands are those that are run, and the table of crates names every one.
 
 use match_tests::workspace::{Source, members, root};
 

@@ -1,8 +1,9 @@
 //! `retrieval_oracle`: tests: retrieval agrees with the oracle.
 //!
-//! Random libraries and the built-in one, 1,000 problems and more each, `case-tools` + `casebase` on one side and
-//! `match_tests::oracle` on the other, both from the same TOML files. Where a decision hangs on less than 1e-4 of its
-//! number, two honest answers may differ; such problems are counted and must be few. Lengths in mm, field frame.
+//! Random libraries and the built-in one, 1,000 problems and more each, `case-tools` + `casebase` on one side
+//! and `match_tests::oracle` on the other, both from the same TOML files. Where a decision depends on a
+//! relative difference below 1e-4, two correct answers may differ; such problems are counted and must be few.
+//! Lengths in mm, field frame.
 
 use std::path::{Path, PathBuf};
 
@@ -13,10 +14,10 @@ use match_tests::oracle::{Answer, Criterion, NEAR, Rules, retrieve};
 use match_tests::random_library::{Dice, RandomLibrary, random_problem};
 use protocol::ids::RobotId;
 
-/// Problems put to each library.
+/// Number of problems per library.
 const PROBLEMS: usize = 1500;
 
-/// Of the problems, at most this share may end in answers that differ by a near-tie.
+/// Maximum share of the problems whose answers may differ by a near-tie.
 const EXCUSED_MAX: f64 = 0.01;
 
 #[test]
@@ -115,7 +116,7 @@ impl Trial {
         Self { seed, oracle, table }
     }
 
-    /// Asks both sides; returns how many answers differ from those under default rules.
+    /// Compares both sides; returns the number of answers that differ from those under default rules.
     fn compare(&self, settings: &Settings, rules: &Rules) -> usize {
         let base = self.table.base();
         let mut dice = Dice::new(self.seed ^ 0x5eed);
@@ -154,7 +155,7 @@ impl Trial {
     }
 }
 
-/// What the two answers disagree on.
+/// The difference between the two answers.
 fn agree(expected: &Answer, got: &Retrieval) -> Result<(), String> {
     let same = |what: &str, expected: usize, got: usize| {
         if expected == got { Ok(()) } else { Err(format!("{what}: {expected} expected, got {got}")) }

@@ -1,6 +1,7 @@
 //! `retrieval_scan`: tests: retrieval agrees with a scan of the same table, bit for bit.
 //!
-//! A share of what `cargo xtask bench retrieval --verify` does, over the same bases: 36 to 10,000 stored cases.
+//! A part of the problems of `cargo xtask bench retrieval --verify`, over the same bases: 36 to 10,000 stored
+//! cases.
 
 #[path = "../benches/retrieval/bases.rs"]
 mod bases;

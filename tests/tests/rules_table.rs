@@ -1,8 +1,9 @@
-//! `rules_table`: holds `docs/rules.md` to the tree: one row for every rule, and every `file: item` it names exists.
+//! `rules_table`: tests: `docs/rules.md` agrees with the repository: one row for every rule, and every `file:
+//! item` it names exists.
 
 use match_tests::workspace::root;
 
-/// The rules that need a row, by the words its first column begins with.
+/// The rules that need a row, by the start of its first column.
 const RULES: [&str; 35] = [
     "field",
     "surface",
@@ -49,7 +50,7 @@ fn rows() -> Vec<Vec<String>> {
     table.take_while(|line| line.matches(" | ").count() == 5).map(cells).collect()
 }
 
-/// The names in back quotes that point into the tree: file and item.
+/// The names in backquotes that point into the repository: file and item.
 fn pointers(cell: &str) -> Vec<(String, String)> {
     let quoted = cell.split('`').skip(1).step_by(2);
     quoted.filter_map(|name| name.split_once(": ")).map(|(file, item)| (file.into(), item.into())).collect()

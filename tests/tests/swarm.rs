@@ -1,5 +1,5 @@
-//! `swarm`: samples of the runs that `cargo xtask swarm` plays by the thousand. A hundred runs of a team under faults drawn at random,
-//! and two matches under the referee's plan.
+//! `swarm`: samples of the runs that `cargo xtask swarm` plays by the thousand. A hundred runs of a team
+//! under faults drawn at random, and two matches under the referee's plan.
 
 use arena::game::Nobody;
 use match_tests::swarm::matches::{self, LENGTH, Plan};
@@ -13,7 +13,7 @@ fn a_hundred_runs_with_faults_of_their_own_keep_every_promise() {
     let told: Vec<String> = broken.iter().map(|(seed, found)| words(*seed, found)).collect();
     assert!(told.is_empty(), "\n{}", told.join("\n"));
     assert_eq!(u64::from(tally.runs), SEEDS);
-    // The runs are no empty ones: teams play, forgers forge, robots brake.
+    // The runs are not trivial: teams play, forged packets are sent, robots brake.
     assert!(u64::from(tally.gameplays) > SEEDS && tally.unbelievable > 10_000, "{tally:?}");
     assert!(tally.brakings > 10_000 && tally.slowest_ms > 0, "{tally:?}");
 }
@@ -32,7 +32,7 @@ fn matches_with_cards_restarts_and_halts_keep_every_promise() {
         let plan = Plan::drawn(seed, LENGTH);
         let outcome = matches::play(&plan, &mut Nobody);
         assert!(outcome.found.is_empty(), "\n{}", matches::words(&plan, &outcome));
-        // The match was no empty one.
+        // The match is not trivial.
         assert!(outcome.acts > 1 && outcome.begun[1] > 0, "{outcome:?}");
     }
 }

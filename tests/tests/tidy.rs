@@ -1,8 +1,9 @@
-//! `tidy`: style tests of the source. What a reviewer would say again and again, a test says once.
+//! `tidy`: style tests of the source, in place of repeated remarks of reviewers.
 //!
-//! Walks the repository from this crate's folder upwards. Every finding names file and line, what is wrong and the mend.
-//! The rules are docs/architecture.md §1.2, §2.4: shared crates give the same bits everywhere, allocate
-//! nothing and do no I/O; who depends on whom has one direction; and nothing half-done stays behind.
+//! Reads the repository from this crate's directory upwards. Every finding names file and line, the fault and
+//! the fix. The rules are docs/architecture.md §1.2, §2.4: shared crates give the same bits everywhere,
+//! allocate nothing and do no I/O; dependencies between crates have one direction; and nothing unfinished is
+//! left behind.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -161,7 +162,7 @@ fn dependencies_point_one_way() {
     let crates: BTreeMap<String, Manifest> = members().into_iter().map(|m| (m.name.clone(), m)).collect();
     let mut findings = upward(&crates);
     for (from, to, mend) in NEVER_LINKED {
-        // A crate that is not there links nothing.
+        // A crate that does not exist links nothing.
         if crates.contains_key(from) && reachable(&crates, from).contains(to) {
             findings.push(format!("{from} links {to}; {mend}"));
         }
@@ -206,7 +207,7 @@ fn inexact_floats(source: &Source) -> Vec<Finding> {
     source.code_with(&calls, "call `geometry::math`: std's answer differs from the robot's")
 }
 
-/// Dependencies on a crate that stands higher, or at the same height.
+/// Dependencies on a crate of a higher or the same level.
 fn upward(crates: &BTreeMap<String, Manifest>) -> Vec<String> {
     let height = |name: &str| LOWEST_FIRST.iter().position(|known| *known == name);
     let mut findings = Vec::new();
@@ -228,7 +229,7 @@ fn upward(crates: &BTreeMap<String, Manifest>) -> Vec<String> {
     findings
 }
 
-/// Everything that ends up in the same program.
+/// Everything that is linked into the same program.
 fn reachable<'a>(crates: &'a BTreeMap<String, Manifest>, from: &'a str) -> BTreeSet<&'a str> {
     let mut seen = BTreeSet::new();
     let mut open: Vec<&str> = vec![from];
@@ -275,17 +276,17 @@ fn board_folders() -> Vec<String> {
 
 // What we agreed on
 
-/// A file opens within these lines, so that a lint or a shebang may stand first.
+/// A file's first comment starts within these lines, so that a lint or a shebang may come first.
 const OPENING_LINES: usize = 3;
 const LINES_MAX: usize = 500;
 
-/// What a robot carries.
+/// Crates on a robot.
 const NO_STD: [&str; 8] =
     ["geometry", "protocol", "rules", "motion", "casebase", "case-library", "brain", "runtime"];
 /// Crates whose numbers enter a trace hash.
 const SAME_BITS: [&str; 9] =
     ["geometry", "protocol", "rules", "motion", "casebase", "case-library", "brain", "runtime", "hil-sim"];
-/// Crates from outside that compute and nothing else: no files, sockets, clocks or threads.
+/// External crates that only compute: no files, sockets, clocks or threads.
 const PURE: [&str; 10] = [
     "nalgebra",
     "libm",
@@ -332,7 +333,7 @@ const LOWEST_FIRST: [&str; 30] = [
     "xtask",
     "fuzz",
 ];
-/// Who never ends up in whose program, however many crates lie between.
+/// Pairs of crates of which one is never linked into the other's program, over any number of crates between.
 const NEVER_LINKED: [(&str, &str, &str); 4] = [
     ("host", "brain", "they know each other through `protocol` only"),
     ("hil-sim", "host", "the simulator plays with anybody's host"),
@@ -340,7 +341,7 @@ const NEVER_LINKED: [(&str, &str, &str); 4] = [
     ("runtime", "case-library", "the board picks the library"),
 ];
 
-/// Methods of `std` that no two platforms need to answer alike.
+/// Methods of `std` that may differ between platforms.
 const FLOAT_METHODS: [&str; 26] = [
     "sqrt", "cbrt", "hypot", "powi", "powf", "exp", "exp2", "exp_m1", "ln", "ln_1p", "log2", "log10", "sin",
     "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "floor", "ceil", "round",

@@ -1,6 +1,6 @@
-//! `uart`: tests: a serial line that drops, delays, doubles and corrupts bytes never makes a robot dangerous,
-//! and the robot plays again when the line is good. The host's radio and a robot's station with COBS between
-//! them, over an adversary of single bytes (docs/architecture.md §6.1).
+//! `uart`: tests: a serial line that drops, delays, duplicates and corrupts bytes never makes a robot
+//! dangerous, and the robot plays again when the line is good. The host's radio and a robot's station with
+//! COBS between them, over an adversary of single bytes (docs/architecture.md §6.1).
 
 use std::collections::VecDeque;
 
@@ -25,12 +25,12 @@ const TEAM: TeamId = TeamId(1);
 /// A tick, ms.
 const TICK: u32 = 10;
 
-/// One direction of the line: bytes with the tick in which they come out.
+/// One direction of the line: bytes with the tick in which they are due.
 struct Uart {
     line: BadLine,
     delay: Stream,
     bytes: VecDeque<(u32, u8)>,
-    /// Bytes come out so many ticks late at most; none overtakes another.
+    /// Maximum delay of a byte, ticks; none overtakes another.
     late: u32,
 }
 
@@ -54,7 +54,7 @@ impl Uart {
     }
 }
 
-/// What a run came to.
+/// Results of a run.
 #[derive(Debug, Default)]
 struct Told {
     frames: u32,
@@ -82,7 +82,7 @@ fn run(seed: u64, bad: Trouble, late: u32) -> Told {
             (uart.line.trouble, uart.late) = if trouble { (bad, late) } else { (Trouble::default(), 0) };
         }
         for packet in up.receive(tick, &mut hosts_lines) {
-            // What is broken is refused.
+            // Corrupted packets are refused.
             let _ = radio.handle_packet(now, &packet);
         }
         let to = Command {
@@ -90,7 +90,7 @@ fn run(seed: u64, bad: Trouble, late: u32) -> Told {
             defending: GoalEnd::Negative,
             phase: Phase::Run,
             duty: Duty::Player,
-            // Never there: it drives on.
+            // Never reached: it drives on.
             directive: Directive::GoTo { pose: WirePose { at: WirePoint { x: 3_000, y: 0 }, heading: 0 } },
         };
         let situation = Situation { us: Colour::Blue, phase: Phase::Run, placement: None };
@@ -136,7 +136,7 @@ fn run(seed: u64, bad: Trouble, late: u32) -> Told {
             told.drove += u32::from(wheels.iter().any(|rim| rim.abs() > 0.1));
         }
     }
-    // Heard again for half a second it is armed, and before the trouble it was.
+    // After receiving for half a second it is armed, as it was before the trouble.
     let armed = |from: u32, to: u32| {
         kicks.iter().filter(|(ms, _)| (from..to).contains(ms)).all(|(_, kick)| *kick != OmniKick::Discharge)
     };
@@ -145,7 +145,7 @@ fn run(seed: u64, bad: Trouble, late: u32) -> Told {
     told
 }
 
-/// It stands in the middle; nobody else is there.
+/// It stands in the middle; no other robot is there.
 fn field(now: Instant, id: RobotId) -> World {
     let mut world = World::empty(now, BallModels::default());
     world.put(Robot {
@@ -162,7 +162,7 @@ fn field(now: Instant, id: RobotId) -> World {
 #[test]
 fn a_line_that_drops_doubles_and_corrupts_a_byte_in_a_hundred_slows_a_robot_and_never_makes_it_dangerous() {
     for seed in 0..8 {
-        // Each for itself, then all together.
+        // Each fault alone, then all together.
         let good = Trouble::default();
         for bad in [
             Trouble { dropped: 10.0, ..good },

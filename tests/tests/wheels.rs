@@ -1,5 +1,5 @@
 //! `wheels`: tests of wheeled robots in the simulator's physics. Every skill from order to outcome, and the
-//! law.
+//! rules.
 
 use brain::governor::Ruling;
 use casebase::CaseBase;
@@ -44,7 +44,7 @@ fn three_metres_across_the_field_take_less_than_2_2_s_and_end_within_a_centimetr
             && robot.velocity.norm() < 0.05
             && (robot.pose.heading - Angle::degrees(135.0)).abs() < 0.05
     };
-    // From rest to rest with 3 and 3.5 m/s²: √(2·3·(1/3 + 1/3.5)) = 1.93 s.
+    // From standstill to standstill with 3 and 3.5 m/s²: √(2·3·(1/3 + 1/3.5)) = 1.93 s.
     let took = carpet.until(4.0, there).expect("arrives");
     assert!(took < 2.2, "{took}");
     carpet.during(1.0, |carpet| assert!(there(carpet), "stays"));
@@ -53,7 +53,7 @@ fn three_metres_across_the_field_take_less_than_2_2_s_and_end_within_a_centimetr
 #[test]
 fn a_robot_that_hears_much_in_a_step_stays_on_its_way_and_plans_in_the_next() {
     let robot = RobotId::new(1).unwrap();
-    // Whether its order of that step is another because it is told to go back, the mates speaking or not.
+    // Whether its order of that step changes when it is ordered back, with or without messages of teammates.
     let turns = |chatter: &[u8]| {
         let [on, back] = [go_to(1.0, 1.236, 135.0), go_to(-1.0, -1.0, 0.0)].map(|second| {
             let mut carpet = carpet((0.0, 2.5), &[(1, -1.0, -1.0, 0.0)]);
@@ -80,7 +80,7 @@ fn on_an_air_that_is_always_full_a_robot_arrives_an_eighth_of_a_second_later_at_
         carpet.tell(1, Duty::Player, go_to(1.0, 1.236, 135.0));
         carpet.until(4.0, |c| c.ours(1).pose.position.distance(goal) < 0.01).expect("arrives")
     });
-    // The first ten steps it stays where it is, as it did; then every second plans.
+    // In the first ten steps it keeps standing; after that every second step plans.
     assert!(full < quiet + 0.125, "{full} s instead of {quiet}");
 }
 
@@ -217,7 +217,7 @@ fn a_pass_is_shot_at_the_goal_at_first_touch() {
     let mut carpet = carpet((0.0, 0.0), &[(2, 2.5, 0.0, 0.0)]);
     carpet.tell(2, Duty::Player, Directive::Receive { at: at(2.5, 0.0), then: Some(at(4.5, 0.0)) });
     carpet.during(1.0, |_| {});
-    // From the front left: the goal lies 45° to the right of where it comes from.
+    // From the front left: the goal lies 45° to the right of the ball's origin.
     carpet.roll((4.0, 1.5), (-2.1, -2.1));
     let took = carpet.until(3.0, |c| c.ball().x() > 4.5 && c.ball().y().abs() < 0.5);
     assert!(took.is_some(), "ball at {:?}, {:?}", carpet.ball(), carpet.kicks());
@@ -379,7 +379,7 @@ fn the_hosts_proposal_is_played_while_it_is_fresh_and_only_if_it_can_be() {
     let robots = |ids: &[u8]| ids.iter().map(|n| RobotId::new(*n).unwrap()).collect();
     let problem = (-0.2, 0.1);
     let places = [(1, -0.8, 0.1, 0.0), (2, 0.3, 1.1, 0.0), (3, -0.2, -1.2, 0.0)];
-    // Any case towards +x for two robots, played the other way round than retrieval would.
+    // Any case towards +x for two robots, with the correspondence that retrieval would not choose.
     let case = (0..base.len() as u16)
         .map(protocol::CaseId)
         .find(|id| {
@@ -397,7 +397,7 @@ fn the_hosts_proposal_is_played_while_it_is_fresh_and_only_if_it_can_be() {
         c.brain(1).cycle().play().is_some_and(|play| play.case == case && play.robots == robots(ids))
     };
     assert!(carpet.until(2.0, |c| proposed(c, &[3, 1])).is_some());
-    // Robot 7 is not there: what the robots retrieve themselves is played.
+    // Robot 7 is absent: the robots play the case that they retrieve themselves.
     let mut alone = self::carpet(problem, &places);
     for robot in [1, 2, 3] {
         alone.tell(robot, Duty::Player, Directive::Gameplay { hint: hint(&[7, 1]) });
@@ -412,7 +412,7 @@ fn the_hosts_proposal_is_played_while_it_is_fresh_and_only_if_it_can_be() {
 fn a_robot_tells_the_host_ten_times_a_second_how_it_is_and_that_it_lost_the_link() {
     let mut carpet = carpet((0.0, 2.5), &[(1, -1.0, 0.0, 0.0)]);
     let one = RobotId::new(1).unwrap();
-    // The kicker was discharged until the link was good, and takes half a second.
+    // The kicker was discharged until the link was good, and charging takes half a second.
     carpet.during(0.6, |_| {});
     carpet.during(1.0, |c| {
         let (at, telemetry) = c.telemetry[&one];

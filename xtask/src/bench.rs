@@ -1,18 +1,18 @@
-//! `bench`: the commands `cargo xtask bench …`. Starts a bench or an example of the crate `match-tests`, with what
-//! it needs installed first.
+//! `bench`: the commands `cargo xtask bench …`. Starts a bench or an example of the crate `match-tests`,
+//! after installing what it needs.
 
 use firmware_build::Install;
 
 use crate::context::{Context, Failure, run};
 
-/// `words` are the bench's own: it knows them and says so where it does not.
+/// Starts a bench; `words` are its own arguments, which it checks itself.
 pub(crate) fn start(context: &Context, name: &str, words: &[String]) -> Result<(), Failure> {
     firmware_build::ensure_qemu(Install::SystemWide).map_err(Failure::Qemu)?;
     context.ensure_target()?;
     run(context.cargo(&format!("bench --package match-tests --bench {name} --")).args(words))
 }
 
-/// Likewise an example, which needs no more than this machine.
+/// Likewise for an example, which needs nothing to be installed.
 pub(crate) fn start_example(context: &Context, name: &str, words: &[String]) -> Result<(), Failure> {
     run(context.cargo(&format!("run --release --package match-tests --example {name} --")).args(words))
 }

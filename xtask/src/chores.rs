@@ -1,27 +1,28 @@
-//! `chores`: table of xtask commands. One row a chore: its words, what it does, and who does it.
+//! `chores`: table of xtask commands. One row per command: its name, its arguments, its effect, and its
+//! function.
 
 use crate::context::{Context, Failure};
 use crate::{
     bench, cost, emulate, evaluation, game_cost, page, pictures, simulator_cost, strategy_cost, trial_cost,
 };
 
-/// Something that is done now and then.
+/// An xtask command other than `test`.
 #[derive(Debug)]
 pub(crate) struct Chore {
-    /// What a person types.
+    /// Its name on the command line.
     pub(crate) name: &'static str,
-    /// The words it takes after that, as the usage shows them; none where it takes none.
+    /// The arguments after the name, as the usage prints them; empty where it takes none.
     pub(crate) takes: &'static str,
-    /// What it does, for the usage.
+    /// Its effect, for the usage.
     pub(crate) what: &'static str,
-    /// Does it; the words are those after its name.
+    /// Runs it; the arguments are those after its name.
     pub(crate) run: fn(&Context, &[String]) -> Result<(), Failure>,
-    /// Whether it judges its words itself, because another program knows them.
+    /// Whether another program checks its arguments.
     free: bool,
 }
 
 impl Chore {
-    /// The chore that these words ask for, and the words that are left for it.
+    /// The command named by these arguments, and its remaining arguments.
     pub(crate) fn asked(words: &[String]) -> Result<(&'static Self, Vec<String>), String> {
         let named = |chore: &&Self| {
             let name = chore.name.split(' ');
@@ -49,7 +50,7 @@ impl Chore {
     }
 }
 
-/// The usage of all chores.
+/// The usage of all commands.
 pub(crate) fn usage() -> String {
     let line = |chore: &Chore| {
         let head = format!("{} {}", chore.name, chore.takes);
@@ -58,7 +59,7 @@ pub(crate) fn usage() -> String {
     CHORES.iter().map(line).collect()
 }
 
-/// Whether `--write` is among the words.
+/// Whether `--write` is among the arguments.
 fn writes(words: &[String]) -> bool {
     words.iter().any(|word| word == "--write")
 }
@@ -72,7 +73,7 @@ const fn chore(
     Chore { name, takes, what, run, free: false }
 }
 
-/// One whose words another program knows.
+/// A command whose arguments another program checks.
 const fn handed_on(
     name: &'static str,
     takes: &'static str,

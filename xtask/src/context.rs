@@ -1,5 +1,5 @@
-//! `context`: shared context of the steps. The workspace, the tools found so far, and how a command is run
-//! and judged.
+//! `context`: shared context of the steps. The workspace, the tools found so far, and functions that run a
+//! command and check its result.
 
 use std::cell::OnceCell;
 use std::env;
@@ -10,7 +10,7 @@ use std::process::{Command, ExitStatus, Stdio};
 
 use firmware_build::{BuildError, Install, QemuError, TargetError, ThumbToolchain};
 
-/// The workspace and its tools. A tool is looked for once, when the first step needs it.
+/// The workspace and its tools. A tool is searched for once, when the first step needs it.
 pub(crate) struct Context {
     root: PathBuf,
     target: OnceCell<Result<ThumbToolchain, TargetError>>,
@@ -32,7 +32,7 @@ impl Context {
         command
     }
 
-    /// `cargo` for the robot's processor; the first word of the line is the verb.
+    /// `cargo` for the robot's processor; the first argument of the line is the verb.
     pub(crate) fn cargo_thumb(&self, line: &str) -> Result<Command, Failure> {
         let (verb, rest) = line.split_once(' ').unwrap_or((line, ""));
         let mut command = self.ensure_target()?.cargo(&self.root, verb);
@@ -58,13 +58,13 @@ impl Context {
         }
         let mut add = Command::new("rustup");
         add.current_dir(&self.root).args(["component", "add", component]);
-        // Whether it helped is seen in the answer to the same question again.
+        // The next check shows whether it helped.
         let _ = run(&mut add);
         if is_there() { Ok(()) } else { Err(Failure::Component(component)) }
     }
 }
 
-/// Runs a command to its end, its words going where ours go.
+/// Runs a command to its end, with this program's standard output and error.
 pub(crate) fn run(command: &mut Command) -> Result<(), Failure> {
     let line = line_of(command);
     println!("xtask: {line}");
@@ -78,23 +78,23 @@ pub(crate) fn run(command: &mut Command) -> Result<(), Failure> {
 /// Why a step failed.
 #[derive(Debug)]
 pub(crate) enum Failure {
-    /// A command ended badly; its own words stand above.
+    /// A command failed; its own output is printed above.
     Command { line: String, status: ExitStatus },
     /// A command could not be started.
     Start { line: String, error: std::io::Error },
     /// A part of the toolchain is missing.
     Component(&'static str),
-    /// Nothing compiles for the robot's processor.
+    /// No compiler for the robot's processor.
     Target(TargetError),
-    /// There is no emulator.
+    /// No emulator.
     Qemu(QemuError),
-    /// There is no browser to try the page with.
+    /// No browser for tests of the page.
     Browser,
-    /// The firmware image cannot be made.
+    /// The firmware image cannot be built.
     Image(BuildError),
-    /// An image is too large, or may panic where it must not.
+    /// A firmware image is too large, or contains a panic that is not permitted.
     Firmware(Vec<String>),
-    /// Something costs more than docs/architecture.md §9 allows.
+    /// A budget of docs/architecture.md §9 is exceeded.
     Budget(String),
     /// The same trial gave different traces, or none.
     Determinism(Vec<String>),
@@ -127,7 +127,7 @@ impl fmt::Display for Failure {
     }
 }
 
-/// The command as a person would type it: cargo by its name, not by where it lies.
+/// The command as typed on a command line: cargo by its name, not by its path.
 pub(crate) fn line_of(command: &Command) -> String {
     let program = Path::new(command.get_program());
     let program = program.file_stem().unwrap_or(program.as_os_str());

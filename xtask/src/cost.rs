@@ -1,5 +1,5 @@
 //! `cost`: instruction counts of the host side. Programs under callgrind, which counts instructions: the same
-//! on any machine of one kind, however busy it is. [`write()`] gathers every such figure in docs/budgets.md.
+//! on any machine of one kind, however busy it is. [`write()`] collects all these figures in docs/budgets.md.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -9,13 +9,13 @@ use std::process::{Command, Stdio};
 use crate::context::{Context, Failure, line_of, run};
 use crate::{game_cost, simulator_cost, strategy_cost, trial_cost};
 
-/// A figure and what it may be.
+/// A figure and its budget.
 pub(crate) struct Row {
-    /// What is counted.
+    /// Description of the counted operation.
     pub(crate) what: String,
     /// Millions of instructions.
     pub(crate) millions: f64,
-    /// Budget in millions, where docs/architecture.md §9 names one.
+    /// Budget in millions, where docs/architecture.md §9 contains one.
     pub(crate) most: Option<f64>,
 }
 
@@ -39,12 +39,12 @@ pub(crate) fn table(rows: &[Row]) -> String {
     text
 }
 
-/// To the single instruction where it is little.
+/// With all digits where it is small.
 fn digits(millions: f64) -> String {
     if millions < 0.1 { format!("{millions:.6}") } else { format!("{millions:.2}") }
 }
 
-/// Prints the rows; fails where one breaks its budget.
+/// Prints the rows; fails where one exceeds its budget.
 pub(crate) fn judge(rows: &[Row]) -> Result<(), Failure> {
     for row in rows {
         let most = row.most.map_or_else(String::new, |most| format!(", of at most {} M", digits(most)));
@@ -61,7 +61,7 @@ pub(crate) fn release(context: &Context, build: &str, name: &str) -> Result<Path
     Ok(folder.join(format!("{name}{}", std::env::consts::EXE_SUFFIX)))
 }
 
-/// Instructions of a whole run, and what it printed.
+/// Instructions of a whole run, and its output.
 pub(crate) fn counted<'a>(
     program: &Path,
     words: impl IntoIterator<Item = &'a str>,
@@ -117,7 +117,7 @@ Counted in guest instructions under QEMU, each table written by its own command:
 worst step, the median retrieval and the image's size are held by `cargo xtask test`.
 ";
 
-/// The text with what stands between the marks replaced; unchanged where a mark is missing.
+/// The text with the part between the marks replaced; unchanged where a mark is missing.
 pub(crate) fn between(text: &str, (begin, end): (&str, &str), table: &str) -> String {
     let parts = text.split_once(begin).and_then(|(before, rest)| Some((before, rest.split_once(end)?.1)));
     match parts {

@@ -1,15 +1,17 @@
-//! `deny`: licences, sources and known faults of every dependency, by cargo-deny and the rules in `deny.toml`.
+//! `deny`: licences, sources and known faults of every dependency, by cargo-deny and the rules in
+//! `deny.toml`.
 //!
-//! cargo-deny is installed from crates.io where it is missing: 3.7 minutes of one core, once, into the target folder, which CI keeps.
-//! Known faults (RustSec's advisories) need a database from the network. Where it cannot be had the step says that they were not
-//! checked, and passes: licences and sources do not depend on it.
+//! cargo-deny is installed from crates.io where it is missing: 3.7 minutes of one core, once, into the target
+//! directory, which CI keeps. Known faults (RustSec's advisories) need a database from the network. Where it
+//! is unavailable the step reports that they were not checked, and passes: licences and sources do not depend
+//! on it.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use crate::context::{Context, Failure, run};
 
-/// What holds when the step passes.
+/// The property checked by the step.
 pub(crate) const WHAT: &str =
     "every dependency's licence and source is allowed, and no fault of it is known where that can be asked";
 
@@ -25,7 +27,7 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
         command
     };
     run(&mut deny("--locked --all-features check licenses bans sources"))?;
-    // Asked for alone, so that a database that cannot be had is told from a fault that is found.
+    // Fetched by a separate command, so that an unavailable database is distinguished from a found fault.
     if run(&mut deny("--locked fetch db")).is_err() {
         println!("{NOT_CHECKED}");
         return Ok(());
@@ -37,7 +39,7 @@ const NOT_CHECKED: &str = "\
 xtask: ADVISORIES WERE NOT CHECKED: RustSec's database cannot be fetched (see above), so known faults of the dependencies are not
 xtask: ruled out by this run; repeat `cargo xtask test --only deny` where the network leads to it";
 
-/// cargo-deny: the one of the user, else ours, installed where it is missing.
+/// cargo-deny: the user's installation, else ours, installed where it is missing.
 fn ensure(context: &Context) -> Result<PathBuf, Failure> {
     let name = format!("cargo-deny{}", std::env::consts::EXE_SUFFIX);
     let ours = tools(context);
@@ -51,7 +53,7 @@ fn ensure(context: &Context) -> Result<PathBuf, Failure> {
     Ok(own)
 }
 
-/// Where tools are installed: with what is built, so that `cargo clean` removes them.
+/// Where tools are installed: below the target directory, so that `cargo clean` removes them.
 fn tools(context: &Context) -> PathBuf {
     let target =
         std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| context.root().join("target"), PathBuf::from);

@@ -1,9 +1,9 @@
 //! `determinism`: determinism check: the same seed gives the same bits in debug and release, on the PC and on
 //! the robot's processor.
 //!
-//! docs/architecture.md §2.5: a trial's trace hash runs over every pose, actuator frame and air packet, and
-//! is taken by the same code whatever the robots run on. So three hashes that agree say that three builds
-//! played the same trial.
+//! docs/architecture.md §2.5: a trial's trace hash covers every pose, actuator frame and radio packet, and is
+//! computed by the same code for all back ends. So three equal hashes show that three builds played the same
+//! trial.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -19,9 +19,9 @@ pub(crate) const WHAT: &str = "the same trials have the same trace in debug, rel
 
 pub(crate) fn run(context: &Context) -> Result<(), Failure> {
     firmware_build::ensure_qemu(Install::SystemWide).map_err(Failure::Qemu)?;
-    // `onetwo` builds the image by itself; that must find a compiler for the target.
+    // `onetwo` builds the firmware image by itself; that needs a compiler for the target.
     context.ensure_target()?;
-    // Built as `cargo run` builds them, so that both are the programs a person runs.
+    // Built as by `cargo run`, so that both are the programs that users run.
     context::run(&mut context.cargo("build --bin onetwo"))?;
     context::run(&mut context.cargo("build --release --bin onetwo"))?;
     let built = |folder: &str| {
@@ -43,17 +43,18 @@ pub(crate) fn run(context: &Context) -> Result<(), Failure> {
             None => differing.push(format!("{trial}: {}", told(&players, &played))),
         }
     }
-    // A hash that never changes would agree with itself for ever.
+    // A hash that never changes would always agree.
     if differing.is_empty() && hashes.len() < trials().count() {
         differing.push(format!("{} different trials have only {} hashes", trials().count(), hashes.len()));
     }
     if differing.is_empty() { Ok(()) } else { Err(Failure::Determinism(differing)) }
 }
 
-/// What each player made of a trial.
+/// Each player's result of a trial.
 type Played = [Result<String, String>; 3];
 
-/// Plays every trial with every player, as many trials at once as there are cores: images in lockstep run one at a time.
+/// Plays every trial with every player, as many trials at once as there are cores: firmware images in
+/// lockstep run one at a time.
 fn play(root: &Path, players: &[Player; 3]) -> Vec<(Trial, Played)> {
     let trials: Vec<Trial> = trials().collect();
     let next = AtomicUsize::new(0);
@@ -153,7 +154,7 @@ fn trace_hash_in(report: &str) -> Option<&str> {
     (hash.len() == 16 && hash.bytes().all(|digit| digit.is_ascii_hexdigit())).then_some(hash)
 }
 
-/// Seeds per scenario and kind of opponents: 3 × 4 × 2 = 24 trials, above the 20 that are promised.
+/// Seeds per scenario and kind of opponents: 3 × 4 × 2 = 24 trials, above the 20 that are required.
 const SEEDS: u64 = 3;
 /// The paper's scenarios (Ros et al. 2009, §5.1.1).
 const SCENARIOS: u8 = 4;

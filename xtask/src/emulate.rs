@@ -1,6 +1,6 @@
-//! `emulate`: cargo runner for the robot's processor. In QEMU; an image of tests test by test, each in an
-//! emulator of its own, with the words of Rust's own test runner (`.cargo/config.toml` names this as the
-//! target's runner).
+//! `emulate`: cargo runner for the robot's processor, in QEMU. An image with tests is run test by test, each
+//! in an emulator of its own, with the arguments of Rust's own test runner (`.cargo/config.toml` names this
+//! as the target's runner).
 
 use std::fs;
 use std::path::Path;
@@ -11,13 +11,13 @@ use firmware_build::{Install, MACHINE, ensure_qemu};
 
 use crate::context::{Context, Failure, line_of, run};
 
-/// The tests that run on the robot's processor; words choose among them.
+/// The tests that run on the robot's processor; arguments select among them.
 pub(crate) fn on_target(context: &Context, words: &[String]) -> Result<(), Failure> {
     let mut command = context.cargo_thumb("test --profile firmware --package on-target")?;
     run(command.arg("--").args(words))
 }
 
-/// Runs what the first word names.
+/// Runs the program that the first argument names.
 pub(crate) fn emulate(words: &[String]) -> Result<(), Failure> {
     let Some((image, words)) = words.split_first() else {
         return Err(Failure::Firmware(vec!["emulate needs an image".into()]));
@@ -41,7 +41,7 @@ pub(crate) fn emulate(words: &[String]) -> Result<(), Failure> {
 }
 
 fn run_tests(qemu: &Path, image: &Path, tests: &[OnTarget], words: &[String]) -> Result<(), Failure> {
-    // Options of Rust's own runner (`--nocapture`) choose no test.
+    // Options of Rust's own runner (`--nocapture`) select no test.
     let chosen: Vec<&OnTarget> = tests.iter().filter(|test| is_chosen(&test.name, words)).collect();
     println!("\nrunning {} tests", chosen.len());
     let mut failures = Vec::new();
@@ -74,7 +74,7 @@ fn run_tests(qemu: &Path, image: &Path, tests: &[OnTarget], words: &[String]) ->
     if failures.is_empty() { Ok(()) } else { Err(Failure::Firmware(failures)) }
 }
 
-/// Whether a word names it, or none is given.
+/// Whether an argument names it, or none is given.
 fn is_chosen(name: &str, words: &[String]) -> bool {
     let mut words = words.iter().filter(|word| !word.starts_with('-')).peekable();
     words.peek().is_none() || words.any(|word| name.contains(word.as_str()))

@@ -1,9 +1,11 @@
-//! `evaluation`: `cargo xtask evaluation`: figures of `docs/evaluation.md`, and of the tables of matches and skills.
+//! `evaluation`: `cargo xtask evaluation`: figures of `docs/evaluation.md`, and of the tables of matches and
+//! skills.
 
 use crate::context::{Context, Failure, run};
 
-/// Plays our team against each other team, each against each, our team without or with each part of the second paper, and the paper's
-/// own league, and writes `docs/matches.md`. What was played is kept: the same command goes on after an interrupt.
+/// Plays our team against each other team, each against each, our team without or with each part of the
+/// second paper, and the paper's own league, and writes `docs/matches.md`. Played matches are kept: the same
+/// command continues after an interrupt.
 pub(crate) fn write_matches(context: &Context, fresh: bool) -> Result<(), Failure> {
     for (section, words) in MATCHES {
         let line = format!(
@@ -15,7 +17,8 @@ pub(crate) fn write_matches(context: &Context, fresh: bool) -> Result<(), Failur
     Ok(())
 }
 
-/// Sections of `docs/matches.md`, and what is played for each: 40 matches tell a goal a match from chance, 10 the order of teams.
+/// Sections of `docs/matches.md`, and what is played for each: 40 matches distinguish a goal a match from
+/// chance, 10 the order of teams.
 const MATCHES: [(&str, &str); 5] = [
     ("opponents", "--matches 40"),
     ("round-robin", "--round-robin --matches 10"),
@@ -24,7 +27,8 @@ const MATCHES: [(&str, &str); 5] = [
     ("ssl-2013", "--league ssl-2013 --matches 10"),
 ];
 
-/// Tries single skills in the league's own world and in random ones, and writes the tables of `docs/skills.md`.
+/// Tests single skills in the league's own world and in random ones, and writes the tables of
+/// `docs/skills.md`.
 pub(crate) fn write_skills(context: &Context) -> Result<(), Failure> {
     for (section, words) in [("nominal", "--tries 50"), ("random", "--world random --worlds 60 --tries 5")] {
         let line = format!("evaluate skills {words} --markdown docs/skills.md --section {section}");
@@ -33,10 +37,10 @@ pub(crate) fn write_skills(context: &Context) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Plays the paper's evaluation and the ablations, and puts tables and plots into the documentation; what is not committed, the
-/// reports with everything in them, stays under `out`.
+/// Plays the paper's evaluation and the ablations, and writes tables and plots into the documentation; the
+/// complete reports, which are not committed, stay under `out`.
 pub(crate) fn write(context: &Context) -> Result<(), Failure> {
-    // Afresh: trials of a program that was changed since, but not committed, would be taken for its own.
+    // `--fresh`: trials of an earlier uncommitted version of the program would count as its own.
     for line in [
         "evaluate --fresh --maps 0 --out out/evaluation",
         "evaluate report out/evaluation --markdown docs/evaluation.md",

@@ -1,8 +1,9 @@
 //! `game_cost`: instruction counts of a host with eleven robots and of a match of two teams. Both under
 //! callgrind (docs/architecture.md §9).
 //!
-//! The host is fed with a recorded match of division A; each packet of vision with all that follows it until the next is counted for
-//! itself, by a dump of callgrind's. A match is counted over so many seconds and over twice as many.
+//! The host's input is a recorded match of division A; each packet of vision, with all inputs until the next
+//! one, is counted separately by a callgrind dump. A match is counted over [`SECONDS`] and over twice as many
+//! seconds.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -11,7 +12,7 @@ use std::{fs, io};
 use crate::context::{Context, Failure, line_of, run};
 use crate::cost::{Row, counted, judge, release};
 
-/// Instructions, held to the budgets.
+/// Counts instructions, and checks the budgets.
 pub(crate) fn run_bench(context: &Context) -> Result<(), Failure> {
     judge(&rows(context)?)
 }
@@ -46,7 +47,7 @@ pub(crate) fn rows(context: &Context) -> Result<Vec<Row>, Failure> {
     ])
 }
 
-/// What each packet cost, rising.
+/// Instructions of each packet, rising.
 fn each_round(feeder: &Path, folder: &Path) -> Result<Vec<f64>, Failure> {
     let mut command = Command::new("valgrind");
     command.arg("--tool=callgrind").arg(format!("--callgrind-out-file={}", folder.join("round").display()));
@@ -81,7 +82,7 @@ fn total(dump: &str) -> Option<f64> {
 
 /// Simulated seconds of either match.
 const SECONDS: u32 = 20;
-/// What is counted call by call.
+/// The function that is counted call by call.
 const ROUND: &str = "host_cost::count_this_round";
 
 #[cfg(test)]

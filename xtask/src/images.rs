@@ -1,6 +1,7 @@
-//! `images`: size and panic check of the robots' images (docs/architecture.md §9).
+//! `images`: size and panic check of the robots' firmware images (docs/architecture.md §9).
 //!
-//! One image per body, the one that runs by its own clock, and the one for a real robot's board; the list of places that may panic is `firmware/panics.allow`, for all images together.
+//! One image per body, the one that runs by its own clock, and the one for a real robot's board; the list of
+//! places that may panic is `firmware/panics.allow`, for all images together.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -12,9 +13,9 @@ use crate::context::{Context, Failure};
 
 pub(crate) const WHAT: &str = "the robots' images link, keep to their budgets, have no doubles, and panic only where firmware/panics.allow says";
 
-/// Builds all images and judges them.
+/// Builds all firmware images and checks them.
 pub(crate) fn check(context: &Context) -> Result<(), Failure> {
-    // First in the more generous way: `build_image` itself installs nothing system-wide.
+    // Installed first here: `build_image` itself installs nothing system-wide.
     context.ensure_target()?;
     let mut sites = BTreeMap::new();
     let mut faults = Vec::new();

@@ -1,7 +1,7 @@
 //! `xtask`: entry point of `cargo xtask`. `cargo xtask test`, on a laptop and in CI alike.
 //!
-//! It installs what is missing or says what to install, runs every step whatever failed before, and tells all
-//! failures last, each with the command that repeats it.
+//! It installs missing tools or prints how to install them, runs every step even after failures, and reports
+//! all failures last, each with the command that repeats it.
 #![forbid(unsafe_code)]
 
 mod bench;
@@ -73,12 +73,12 @@ fn test(steps: &[&'static Step]) -> ExitCode {
     }
 }
 
-/// What was asked for.
+/// The parsed command line.
 #[derive(Debug)]
 enum Request {
     Test(Vec<&'static Step>),
     List,
-    /// With the words that are its own.
+    /// A command with its own arguments.
     Chore(&'static Chore, Vec<String>),
     Help,
 }
@@ -125,7 +125,7 @@ mod tests {
         Request::from_words(&line.split_whitespace().map(String::from).collect::<Vec<_>>())
     }
 
-    /// The chore that a line asks for, and its words.
+    /// The command that a line names, and its arguments.
     fn chore(line: &str) -> Option<(&'static str, Vec<String>)> {
         match ask(line) {
             Ok(Request::Chore(chore, words)) => Some((chore.name, words)),

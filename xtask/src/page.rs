@@ -10,10 +10,10 @@ use std::{env, fs, thread};
 use crate::context::{Context, Failure, run};
 use crate::cost::between;
 
-/// What holds when the step passes.
+/// The property checked by the step.
 pub(crate) const WHAT: &str = "the page works in a real browser";
 
-/// Where systems have it; as in the crate that drives it.
+/// Names of the browser on various systems; as in the crate that drives it.
 const NAMES: [&str; 5] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome"];
 
 /// The tests in the browser, one after the other: each has a match and a browser of its own.
@@ -23,7 +23,7 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
         .cargo("test --package onetwo --features browser --test page_browser -- --test-threads 1"))
 }
 
-/// Takes the documentation's pictures anew.
+/// Takes the documentation's screenshots again.
 pub(crate) fn pictures(context: &Context) -> Result<(), Failure> {
     ensure_browser()?;
     tour(context, "pictures docs/page")
@@ -35,7 +35,8 @@ fn tour(context: &Context, words: &str) -> Result<(), Failure> {
     run(tour.arg(program).args(words.split_whitespace()))
 }
 
-/// What the tour says of frames: how often an empty frame's cost a full one's is, and after a colon the times of this machine.
+/// Output of the tour about frames: the ratio of a full frame's cost to an empty one's, and after a colon the
+/// times of this machine.
 fn frames(context: &Context, program: &Path) -> Result<String, Failure> {
     let mut tour = context.cargo("run --release --package page-browser --example tour --");
     tour.arg(program).arg("frames").stderr(Stdio::inherit());
@@ -45,14 +46,15 @@ fn frames(context: &Context, program: &Path) -> Result<String, Failure> {
     if out.status.success() && !said.is_empty() { Ok(said) } else { Err(failed(io::Error::other(said))) }
 }
 
-/// The program itself.
+/// The path of the built program.
 fn built(context: &Context) -> Result<PathBuf, Failure> {
     run(&mut context.cargo("build --release --package onetwo"))?;
     let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| context.root().join("target"), PathBuf::from);
     Ok(target.join("release/onetwo"))
 }
 
-/// What a frame costs the page's script, and what viewers cost the match; with `write` both go into host/page/README.md.
+/// Cost of a frame in the page's script, and of viewers for the match; with `write` both are written into
+/// host/page/README.md.
 pub(crate) fn bench(context: &Context, write: bool) -> Result<(), Failure> {
     ensure_browser()?;
     let program = built(context)?;
@@ -76,7 +78,7 @@ pub(crate) fn bench(context: &Context, write: bool) -> Result<(), Failure> {
         let file = context.root().join("host/page/README.md");
         let start = |error| Failure::Start { line: file.display().to_string(), error };
         let text = fs::read_to_string(&file).map_err(start)?;
-        // Times are this machine's: the ratio alone is kept.
+        // Times are this machine's: only the ratio is kept.
         let ratio = frame.split(':').next().unwrap_or(&frame);
         let list = format!("\n- {ratio};\n- {viewers}.\n\n");
         fs::write(&file, between(&text, MARKS, &list)).map_err(start)?;
@@ -95,27 +97,27 @@ pub(crate) fn bench(context: &Context, write: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Around the figures in the page's README.
+/// Marks around the figures in the page's README.
 const MARKS: (&str, &str) = ("<!-- page figures -->", "<!-- end of page figures -->");
 /// Simulated seconds that are counted.
 const SECONDS: u32 = 4;
 /// Ticks of brains and hosts in each.
 const TICKS_A_SECOND: u32 = 100;
-/// How much two runs may differ: sleeping, and when the clock is looked at.
+/// Permitted difference of two runs: sleeping, and times at which the clock is read.
 const SLACK: f64 = 0.005;
-/// Five viewers as the example of the same name takes them.
+/// Five viewers, in the notation of the example of the same name.
 const READING: &str = "rrrrr";
 const SLOW: &str = "sdsdv";
 
-/// A match that was looked at.
+/// Counts of a match with viewers.
 struct Counted {
-    /// Of its own thread.
+    /// Instructions of the match's own thread.
     instructions: u64,
-    /// Scenes that viewers took.
+    /// Number of scenes sent to viewers.
     taken: u64,
 }
 
-/// A match under callgrind with viewers of these ways.
+/// A match under callgrind with viewers of these kinds.
 fn count(program: &Path, ways: &str) -> Result<Counted, Failure> {
     let folder = program.with_file_name(format!("page-{ways}"));
     let _ = fs::remove_dir_all(&folder);
@@ -168,7 +170,7 @@ fn silent() -> std::io::Error {
     std::io::Error::other("valgrind tells nothing; is it installed?")
 }
 
-/// A browser, installed first where that can be done.
+/// Finds a browser, installed first where that is possible.
 fn ensure_browser() -> Result<(), Failure> {
     let there = |name: &str| {
         let mut question = Command::new(name);
@@ -179,7 +181,7 @@ fn ensure_browser() -> Result<(), Failure> {
     if found() {
         return Ok(());
     }
-    // Whether it helped is seen in the answer to the same question again.
+    // The next check shows whether it helped.
     let _ = run(Command::new("apt-get").args(["install", "-y", "chromium"]));
     if found() { Ok(()) } else { Err(Failure::Browser) }
 }

@@ -1,9 +1,8 @@
-//! `cargo xtask pictures`: the pictures in the documentation. From here: `cargo xtask pictures` draws them
-//! anew.
+//! `cargo xtask pictures`: draws the figures in the documentation again.
 
 use crate::context::{Context, Failure, run};
 
-/// Draws every picture.
+/// Draws every figure.
 pub(crate) fn draw(context: &Context) -> Result<(), Failure> {
     PICTURES.iter().try_for_each(|line| run(&mut context.cargo(&format!("run --release -- {line}"))))?;
     run(&mut context.cargo("run --release -p host --example strategy_pictures -- docs/strategy"))?;
@@ -11,7 +10,7 @@ pub(crate) fn draw(context: &Context) -> Result<(), Failure> {
     run(context.cargo(line).arg(PROBLEM))
 }
 
-/// What the program is asked for each.
+/// The program's arguments for each figure.
 const PICTURES: [&str; 5] = [
     // One of the third of all trials that end in a goal.
     "trial --seed 65 --svg docs/trial.svg",

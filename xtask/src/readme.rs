@@ -1,15 +1,15 @@
-//! `readme`: check of the documented commands. Those of README and docs/commands.md that run the program are run, in
-//! order, as they stand there.
+//! `readme`: check of the documented commands: those of README and docs/commands.md that run the program are
+//! run, in the given order.
 
 use std::fs;
 
 use crate::context::{Context, Failure, run};
 
-/// What holds when the step passes.
+/// The property checked by the step.
 pub(crate) const WHAT: &str =
     "the commands of README and docs/commands.md run, README's first one among them";
 
-/// Runs every `cargo run` of the pages' shell blocks; the chores beside them are this very program.
+/// Runs every `cargo run` of the pages' shell blocks; the xtask commands beside them are this program.
 pub(crate) fn check(context: &Context) -> Result<(), Failure> {
     for page in PAGES {
         let file = context.root().join(page);
@@ -25,7 +25,7 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
 /// Pages whose commands are run; tests/tests/readme.rs reads the same.
 const PAGES: [&str; 2] = ["README.md", "docs/commands.md"];
 
-/// What follows `cargo ` in the lines of README's shell blocks that run the program.
+/// The arguments after `cargo ` of the lines in README's shell blocks that run the program.
 fn commands(readme: &str) -> Vec<&str> {
     let shell = readme.split("```").filter_map(|block| block.strip_prefix("sh\n"));
     shell

@@ -1,14 +1,15 @@
 //! `simulator_cost`: instruction count of a simulated second of eleven against eleven. The simulator under
 //! callgrind (docs/architecture.md §9).
 //!
-//! So many seconds and twice as many: the difference is free of everything that happens once.
+//! Counted over [`SECONDS`] and over twice as many seconds: the difference excludes everything that happens
+//! once.
 
 use std::fs;
 
 use crate::context::{Context, Failure};
 use crate::cost::{Row, between, counted, judge, release, table};
 
-/// Instructions a simulated second; with `write` the table goes into hil-sim/README.md.
+/// Instructions per simulated second; with `write` the table is written into hil-sim/README.md.
 pub(crate) fn run_bench(context: &Context, write: bool) -> Result<(), Failure> {
     let rows = rows(context)?;
     if write {
@@ -36,9 +37,9 @@ fn with_table(text: &str, table: &str) -> String {
     between(text, (BEGIN, END), table)
 }
 
-/// So many and twice as many.
+/// Simulated seconds of the shorter run; the longer one has twice as many.
 const SECONDS: u32 = 16;
-/// The program's words, what they mean, and what docs/architecture.md §9 allows, instructions a simulated
+/// The program's argument, its meaning, and the budget of docs/architecture.md §9, instructions per simulated
 /// second.
 const PARTS: [(&str, &str, Option<f64>); 4] = [
     ("physics", "physics of 11 + 11 scripted robots and the ball, with the trace hash", None),

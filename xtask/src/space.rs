@@ -1,11 +1,13 @@
-//! `space`: disk-space check. Said before it begins, rather than by the compiler after a quarter of an hour.
+//! `space`: disk-space check, before the run starts, rather than by a compiler error after a quarter of an
+//! hour.
 
 use std::path::Path;
 use std::process::Command;
 
-/// What to say where little is free; nothing where enough is, or where nobody knows.
+/// A warning where little space is free; `None` where enough is, or where it cannot be determined.
 pub(crate) fn warning(root: &Path) -> Option<String> {
-    // xtask itself lies in `target/debug`; documentation is there once a run has come half of its way.
+    // xtask itself lies in `target/debug`; documentation exists once a run has completed about half of its
+    // steps.
     let built = root.join("target/doc").is_dir() || std::env::var_os("CARGO_TARGET_DIR").is_some();
     let told = Command::new("df").arg("-Pk").arg(root).output().ok()?;
     let free = free_kib(&String::from_utf8_lossy(&told.stdout))? / 1024;
@@ -17,7 +19,7 @@ pub(crate) fn warning(root: &Path) -> Option<String> {
     })
 }
 
-/// The fourth word of the second line that POSIX's `df -Pk` prints.
+/// The fourth column of the second line that POSIX's `df -Pk` prints.
 fn free_kib(told: &str) -> Option<u64> {
     told.lines().nth(1)?.split_whitespace().nth(3)?.parse().ok()
 }

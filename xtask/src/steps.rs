@@ -1,7 +1,7 @@
 //! `steps`: the steps of a run, in their order.
 //!
-//! Quick answers first. Steps share what they build: the linter and the documentation check metadata, the tests are a
-//! debug build, QEMU and the trials a release build, the robot's crates and the image a build for
+//! Fast steps first. Steps share their builds: the linter and the documentation check metadata, the tests are
+//! a debug build, QEMU and the trials a release build, the robot's crates and the firmware image a build for
 //! the target.
 
 use firmware_build::Install;
@@ -9,12 +9,12 @@ use firmware_build::Install;
 use crate::context::{Context, Failure, run};
 use crate::{deny, determinism, emulate, images, page, readme};
 
-/// One thing that is checked.
+/// One checked property.
 #[derive(Debug)]
 pub(crate) struct Step {
-    /// As `--only` takes it.
+    /// Its name for `--only`.
     pub(crate) name: &'static str,
-    /// What holds when it passes.
+    /// The property that holds when it passes.
     pub(crate) what: &'static str,
     pub(crate) run: fn(&Context) -> Result<(), Failure>,
 }
@@ -54,12 +54,12 @@ fn clippy(context: &Context) -> Result<(), Failure> {
 }
 
 fn test(context: &Context) -> Result<(), Failure> {
-    // All failures, not only those of the first crate that has one.
+    // Reports all failures, not only those of the first crate that has one.
     run(&mut context.cargo("test --workspace --no-fail-fast"))
 }
 
 fn doc(context: &Context) -> Result<(), Failure> {
-    // A board is empty on the PC, and its links would lead nowhere: `doc-thumb` has it.
+    // A board is empty on the PC, and its links would be broken: `doc-thumb` documents it.
     let boards: String = BOARDS.iter().flat_map(|name| [" --exclude ", name]).collect();
     let line = format!("doc --workspace --no-deps{boards}");
     run(context.cargo(&line).env("RUSTDOCFLAGS", "-D warnings"))
@@ -72,7 +72,7 @@ fn doc_thumb(context: &Context) -> Result<(), Failure> {
 
 fn thumb(context: &Context) -> Result<(), Failure> {
     run(&mut context.cargo_thumb(&format!("build{FIRMWARE}{}", packages(&ON_ROBOT)))?)?;
-    // A real board's programs for trying its parts, which must link too.
+    // A real board's programs for testing its parts, which must link too.
     run(&mut context.cargo_thumb(&format!("build{FIRMWARE} --package board-stm32 --examples"))?)
 }
 
@@ -97,9 +97,10 @@ fn packages(names: &[&str]) -> String {
     names.iter().flat_map(|name| [" --package ", name]).collect()
 }
 
-/// The image's profile for whatever is compiled for the target, so that macros and build scripts are built once.
+/// The firmware image's profile for all builds for the target, so that macros and build scripts are built
+/// once.
 const FIRMWARE: &str = " --profile firmware";
-/// What a robot carries, lowest first; tests/tests/tidy.rs holds the same crates to `no_std`.
+/// Crates on a robot, lowest first; tests/tests/tidy.rs holds the same crates to `no_std`.
 const ON_ROBOT: [&str; 8] =
     ["geometry", "protocol", "rules", "motion", "casebase", "case-library", "brain", "runtime"];
 /// Programs for the robot's processor.

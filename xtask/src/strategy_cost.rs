@@ -1,12 +1,13 @@
 //! `strategy_cost`: instruction counts of strategy decisions. Its example `strategy_cost` under callgrind,
 //! which counts instructions (docs/architecture.md §9).
 //!
-//! So many of a kind and twice as many: the difference is free of everything that happens once.
+//! Each kind is counted for a number of decisions and for twice as many: the difference excludes everything
+//! that happens once.
 
 use crate::context::{Context, Failure};
 use crate::cost::{Row, counted, judge, release};
 
-/// Instructions of one decision of each kind, held to the budgets.
+/// Instructions of one decision of each kind, checked against the budgets.
 pub(crate) fn run_bench(context: &Context) -> Result<(), Failure> {
     judge(&rows(context)?)
 }
@@ -24,15 +25,16 @@ pub(crate) fn rows(context: &Context) -> Result<Vec<Row>, Failure> {
 
 /// docs/architecture.md §9: one pass location evaluated.
 const PASS_LOCATION: f64 = 2_000.0;
-/// So many places and twice as many; a multiple of the 200 places of a search, on all 64 scenes.
+/// Number of places in the shorter run, twice as many in the longer; a multiple of the 200 places of a
+/// search, on all 64 scenes.
 const PLACES: u32 = 12_800;
-/// So many ticks of the defence: eight of each of the 64 scenes.
+/// Number of ticks of the defence: eight of each of the 64 scenes.
 const TICKS: u32 = 512;
-/// So many plans: each of the 64 scenes once.
+/// Number of plans: each of the 64 scenes once.
 const PLANS: u32 = 64;
 
 struct Part {
-    /// The program's word.
+    /// The program's argument.
     word: &'static str,
     what: &'static str,
     count: u32,

@@ -1,7 +1,7 @@
 //! `trial_cost`: instruction count of a simulated second of a trial. Trials of the paper with full brains
 //! under callgrind, which counts instructions (docs/architecture.md §9).
 //!
-//! The same trials once and twice as many: the difference is free of everything that happens once.
+//! The same trials once and twice as many: the difference excludes everything that happens once.
 
 use std::path::Path;
 use std::{fs, io};
@@ -30,7 +30,7 @@ pub(crate) fn rows(context: &Context) -> Result<Vec<Row>, Failure> {
     Ok(rows)
 }
 
-/// What trials came to.
+/// Results of trials.
 struct Played {
     instructions: f64,
     seconds: f64,
@@ -43,7 +43,7 @@ fn played(
     approach: &str,
     trials: u32,
 ) -> Result<Played, Failure> {
-    // What an earlier run kept would not be played again.
+    // Results kept by an earlier run would not be played again.
     let _ = fs::remove_dir_all(folder);
     let line = format!(
         "evaluate --jobs 1 --maps 0 --profile simulated --scenario 3 --opponents {opponents} --approach {approach} \
@@ -67,7 +67,7 @@ fn seconds(rows: &str) -> Option<f64> {
 
 /// docs/architecture.md §9, instructions a simulated second.
 const BUDGET: f64 = 3e6;
-/// So many and twice as many: minutes of simulated time.
+/// Number of trials in the shorter run, twice as many in the longer: minutes of simulated time.
 const TRIALS: u32 = 10;
 
 #[cfg(test)]

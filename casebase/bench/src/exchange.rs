@@ -1,35 +1,35 @@
 //! `exchange`: exchange of problems and answers with the measured board.
 //!
-//! Table and problems lie in memory the image leaves free, each behind `length 4 LE | count 4 LE`; problems are in the
-//! wire's own encoding (postcard). An answer is a line of numbers on the console.
+//! Table and problems lie in memory that the firmware image does not use, each behind `length 4 LE | count 4
+//! LE`; problems are in the wire format's encoding (postcard). An answer is a line of numbers on the console.
 
 use core::fmt;
 use core::str::FromStr;
 
 use casebase::{Match, Problem, Retrieval};
 
-/// Where the table lies: the first half of the board's 16 MiB of slow memory, which the image does not use. The flash slot
-/// for libraries is too small for the largest that is measured.
+/// Address of the table: the first half of the board's 16 MiB of slow memory, which the firmware image does
+/// not use. The flash slot for libraries is too small for the largest one that is measured.
 pub const TABLE_ADDRESS: usize = 0x2100_0000;
-/// Where the problems lie: the second half.
+/// Address of the problems: the second half.
 pub const PROBLEMS_ADDRESS: usize = 0x2180_0000;
-/// Most bytes of either, header included.
+/// Maximum length of either, bytes, header included.
 pub const LEN_MAX: usize = 0x0080_0000;
-/// Bytes before the table and before the first problem.
+/// Length of the header before the table and before the first problem, bytes.
 pub const HEADER_LEN: usize = 8;
 
-/// What stands before a table (`count` 1), or before `count` problems, of `length` bytes.
+/// The header of a table (`count` 1), or of `count` problems, of `length` bytes.
 pub fn header(length: usize, count: usize) -> [u8; HEADER_LEN] {
     let ([a, b, c, d], [e, f, g, h]) = ((length as u32).to_le_bytes(), (count as u32).to_le_bytes());
     [a, b, c, d, e, f, g, h]
 }
 
-/// One problem's bytes, at the beginning of `buffer`; `None` where it is too short (512 bytes are enough).
+/// One problem's bytes, at the start of `buffer`; `None` where it is too short (512 bytes are enough).
 pub fn encode<'b>(problem: &Problem, buffer: &'b mut [u8]) -> Option<&'b [u8]> {
     postcard::to_slice(problem, buffer).ok().map(|bytes| &*bytes)
 }
 
-/// The problems that lie in `memory`, up to the first that cannot be read.
+/// The problems in `memory`, up to the first that cannot be decoded.
 pub fn problems(memory: &[u8]) -> impl Iterator<Item = Problem> + '_ {
     let mut rest = behind_header(memory);
     (0..word(memory, 4)).map_while(move |_| {
@@ -39,7 +39,7 @@ pub fn problems(memory: &[u8]) -> impl Iterator<Item = Problem> + '_ {
     })
 }
 
-/// The bytes behind the header, as many as it tells; none where there are fewer.
+/// The bytes behind the header, as many as its length field states; none where there are fewer.
 pub fn behind_header(memory: &[u8]) -> &[u8] {
     memory.get(HEADER_LEN..HEADER_LEN.saturating_add(word(memory, 0))).unwrap_or(&[])
 }
@@ -48,34 +48,34 @@ fn word(memory: &[u8], at: usize) -> usize {
     memory.get(at..at + 4).and_then(|bytes| bytes.try_into().ok()).map_or(0, u32::from_le_bytes) as usize
 }
 
-/// What one problem came to on the board.
+/// The board's results for one problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Answer {
-    /// What `retrieve_best` found.
+    /// The winner of `retrieve_best`.
     pub best: Found,
-    /// What `retrieve` found.
+    /// The winner of `retrieve`.
     pub counted: Found,
     /// Number of candidates.
     pub candidates: u32,
-    /// What the plain scan found.
+    /// The winner of the plain scan.
     pub scanned: Found,
     /// Instructions of `retrieve_best`, `retrieve` and the plain scan.
     pub instructions: [u32; 3],
 }
 
-/// A retrieval's winner in bits that can be compared.
+/// A retrieval's winner as bits that can be compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Found {
     /// The case, from 1; 0 for none.
     pub case: u32,
     /// Bits of its cost, exponent and similarity.
     pub bits: [u32; 3],
-    /// Its conditions, and the players, 5 bits each.
+    /// The number of conditions, and the players, 5 bits each.
     pub players: u32,
 }
 
 impl Found {
-    /// The best of a retrieval.
+    /// The winner of a retrieval.
     pub fn of(best: Option<&Match>) -> Self {
         let Some(best) = best else { return Self::default() };
         let players = best.correspondence.iter();
@@ -98,7 +98,7 @@ impl Found {
 }
 
 impl Answer {
-    /// From what the three ways found.
+    /// From the results of the three retrieval methods.
     pub fn new(
         best: Option<&Match>,
         counted: &Retrieval,
@@ -114,7 +114,7 @@ impl Answer {
         }
     }
 
-    /// Do the three ways agree?
+    /// Whether the three methods agree.
     pub fn agrees(&self) -> bool {
         self.best == self.scanned && self.counted == self.scanned
     }

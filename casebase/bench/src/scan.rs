@@ -1,7 +1,7 @@
-//! `scan`: reference retrieval that scans every case. The plain reading of docs/case-format.md §3 with its
-//! default settings.
+//! `scan`: reference retrieval that scans every case: a direct implementation of docs/case-format.md §3 with
+//! its default settings.
 //!
-//! Nothing is shared with the retrieval that is measured but the records and the ranking: no index, no bound, and the
+//! It shares only the records and the ranking with the measured retrieval: no index, no bound, and the
 //! correspondence by enumeration. Lengths in mm.
 
 use casebase::{
@@ -64,7 +64,7 @@ fn candidate(
     })
 }
 
-/// Who plays whom, and at what cost.
+/// The players of all parts, and their cost.
 struct Players {
     ids: Correspondence,
     cost: f32,
@@ -105,7 +105,7 @@ impl<'s> Search<'s> {
         Some(players)
     }
 
-    /// Goes on from a partial map; the first of equal sums stays, which is the lexicographically smallest.
+    /// Extends a partial map; of equal sums the first is kept, which is the lexicographically smallest.
     fn choose(&mut self, chosen: &mut heapless::Vec<usize, 4>, sum: u64) {
         if self.best.as_ref().is_some_and(|(least, _)| sum >= *least) {
             return;

@@ -12,7 +12,7 @@ pub fn half_extent(field: &FieldMm) -> [f64; 2] {
     [room(field.length), room(field.width)]
 }
 
-/// Carpet, then lines and goals.
+/// Field surface, then lines and goals.
 pub fn draw(svg: &mut Svg, field: &FieldMm, colors: &Colors) {
     let [x, y] = half_extent(field);
     let Colors { carpet, .. } = colors;
@@ -20,7 +20,7 @@ pub fn draw(svg: &mut Svg, field: &FieldMm, colors: &Colors) {
     lines(svg, field, colors, colors.line);
 }
 
-/// Lines and goals alone, over what is there.
+/// Lines and goals alone, over existing elements.
 pub fn lines(svg: &mut Svg, field: &FieldMm, colors: &Colors, line: &str) {
     let [x, y] = [f64::from(field.length) * 0.5, f64::from(field.width) * 0.5];
     let style = format!(r#"fill="none" stroke="{line}" stroke-width="{LINE}""#);
@@ -37,7 +37,7 @@ pub fn lines(svg: &mut Svg, field: &FieldMm, colors: &Colors, line: &str) {
 
 /// Width of the field's lines, mm: the four-legged league's 25 mm.
 const LINE: f64 = 25.0;
-/// How deep a goal is drawn, mm: it is a sign, `league.toml` does not tell it.
+/// Drawn depth of a goal, mm: a symbol, since `league.toml` does not contain it.
 const GOAL_DEPTH: f64 = 180.0;
-/// Carpet around the lines at least, mm: so that goals have room.
+/// Minimum field surface drawn around the lines, mm: room for the goals.
 const ROOM: i32 = 260;

@@ -1,8 +1,9 @@
-//! `drawing`: the project's drawing library. The one writer of SVG, the one palette and the one field that
-//! every picture is made of. Runs on the PC.
+//! `drawing`: the project's drawing library. The only SVG writer, palette and field of all figures. Runs on
+//! the PC.
 //!
-//! Cases and coverage (`case-tools`), trials (`arena`) and the evaluation's plots and maps (`report`) are drawn with it. Places
-//! are told with y up, as on the field and in a chart; [`Svg::finish`] says how large the unit is on a screen.
+//! Cases and coverage (`case-tools`), trials (`arena`) and the evaluation's plots and maps (`report`) are
+//! drawn with it. Coordinates have y up, as on the field and in a chart; [`Svg::finish`] sets the size of the
+//! unit on a screen.
 #![forbid(unsafe_code)]
 
 mod field;

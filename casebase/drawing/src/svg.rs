@@ -1,10 +1,11 @@
-//! `svg`: SVG elements appended to a growing string; the one place where y is flipped.
+//! `svg`: SVG elements appended to a growing string; the only code that flips y.
 //!
-//! Pictures of the field are told in mm with y up, text beside the field included; charts in px. The viewBox is in the same unit.
+//! Figures of the field have coordinates in mm with y up, text beside the field included; charts in px. The
+//! viewBox is in the same unit.
 
 use std::fmt::{Display, Write as _};
 
-/// A place: mm or px, +y up.
+/// A point: mm or px, +y up.
 pub type At = [f64; 2];
 
 /// An SVG under construction.
@@ -13,10 +14,10 @@ pub struct Svg {
     body: String,
 }
 
-/// Where a text's anchor is.
+/// Position of a text's anchor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// At its beginning.
+    /// At its start.
     Start,
     /// At its middle.
     Middle,
@@ -24,7 +25,7 @@ pub enum Anchor {
     End,
 }
 
-/// How a text looks.
+/// Style of a text.
 #[derive(Clone, Copy, Debug)]
 pub struct Font<'a> {
     /// Height.
@@ -65,14 +66,15 @@ impl Svg {
         ));
     }
 
-    /// Straight stretches through these places, not closed; nothing for fewer than two.
+    /// Straight segments through these points, not closed; nothing for fewer than two.
     pub fn polyline(&mut self, places: &[At], style: impl Display) {
         if places.len() > 1 {
             self.element(format_args!(r#"<polyline points="{}" fill="none" {style}/>"#, points(places)));
         }
     }
 
-    /// An arrow whose head, that long but no longer than the arrow, has its tip at `to`; nothing without a length.
+    /// An arrow whose head, of length `head` but no longer than the arrow, has its tip at `to`; nothing
+    /// without a length.
     pub fn arrow(&mut self, from: At, to: At, head: f64, color: &str, line: impl Display) {
         let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
         let length = dx.hypot(dy);
@@ -94,7 +96,7 @@ impl Svg {
         self.polygon(&corners, format_args!(r#"fill="{color}""#));
     }
 
-    /// A closed figure.
+    /// A closed polygon.
     pub fn polygon(&mut self, corners: &[At], style: impl Display) {
         self.element(format_args!(r#"<polygon points="{}" {style}/>"#, points(corners)));
     }
@@ -131,13 +133,13 @@ impl Svg {
         self.element(format_args!("<g {style}>\n{body}</g>"));
     }
 
-    /// `inner` over what is there, as opaque as that.
+    /// `inner` over existing elements, with that opacity.
     pub fn group_with(&mut self, inner: &Self, opacity: &str) {
         let body = &inner.body;
         self.element(format_args!("<g opacity=\"{opacity}\">\n{body}</g>"));
     }
 
-    /// The whole picture: what lies between the two corners, `px_per_unit` large on a screen.
+    /// The whole figure: the rectangle between the two corners, with `px_per_unit` as its scale on a screen.
     pub fn finish(
         self,
         [left, bottom]: At,
@@ -170,7 +172,7 @@ impl Svg {
         )
     }
 
-    /// One element of which there is no other way to say it; the caller escapes what comes from outside.
+    /// One element without a function of its own; the caller escapes text from outside.
     pub fn element(&mut self, element: impl Display) {
         let _ = writeln!(self.body, "{element}");
     }
@@ -185,18 +187,19 @@ fn points(places: &[At]) -> String {
     points
 }
 
-/// Text from outside cannot break the picture: XML's signs are escaped, what XML forbids is left out.
+/// Escapes XML's special characters and leaves out those that XML forbids, so that text from outside cannot
+/// break the figure.
 fn escaped(text: &str) -> String {
     let allowed = text.chars().filter(|c| !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}'));
     allowed.collect::<String>().replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// About how wide a text is, in the unit of its size: the mean advance of a wide sans-serif.
+/// Approximate width of a text, in the unit of its size: the mean advance of a wide sans-serif.
 pub fn width(text: &str, size: f64) -> f64 {
     text.chars().count() as f64 * size * 0.57
 }
 
-/// `text` in lines of at most that room.
+/// `text` in lines of at most that width.
 pub fn wrapped(text: &str, size: f64, room: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {

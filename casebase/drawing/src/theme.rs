@@ -1,14 +1,15 @@
-//! `theme`: the colour palettes. Okabe and Ito's, told apart by every eye, on three kinds of paper.
+//! `theme`: the colour palettes. Okabe and Ito's colours, distinguishable by colour-blind readers, on three
+//! backgrounds.
 
-/// What the picture is for.
+/// Purpose of the figure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Theme {
-    /// A screen with a light page: a green carpet.
+    /// A screen with a light page: a green field surface.
     #[default]
     Light,
     /// A screen with a dark page.
     Dark,
-    /// Paper: no carpet, black lines.
+    /// Paper: no field surface, black lines.
     Print,
 }
 
@@ -23,7 +24,7 @@ pub struct Colors {
     pub line: &'static str,
     /// Text.
     pub ink: &'static str,
-    /// Text that may be overlooked.
+    /// Secondary text.
     pub faint: &'static str,
     /// The ball.
     pub ball: &'static str,
@@ -31,15 +32,15 @@ pub struct Colors {
     pub team: &'static str,
     /// The opponents.
     pub opponent: &'static str,
-    /// The ball's way.
+    /// The ball's path.
     pub path: &'static str,
-    /// What is wrong.
+    /// Faults.
     pub warning: &'static str,
     /// The goal at −x, as the paper names it.
     pub yellow: &'static str,
     /// The goal at +x.
     pub cyan: &'static str,
-    /// Where a heat map knows nothing.
+    /// Cells of a heat map without a value.
     pub unknown: &'static str,
 }
 

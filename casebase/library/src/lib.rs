@@ -1,10 +1,10 @@
-//! `case_library`: the built-in case libraries. The files under `cases/<league>/`, checked and laid out when
-//! this was built.
+//! `case_library`: the built-in case libraries. The files under `cases/<league>/`, checked and encoded at
+//! build time.
 //!
-//! Runs on robots and on the host. A robot links the table alone ([`four_legged`]); names and texts ([`LEAGUES`])
-//! are for people, and only programs that ask for them carry them.
+//! Runs on robots and on the host. A robot links the table alone ([`four_legged`]); names and texts
+//! ([`LEAGUES`]) are for output to users, and only programs that use them link them.
 //!
-//! **Invariants.** No I/O, no allocation, no decode step: a table is read where it lies.
+//! **Invariants.** No I/O, no allocation, no decode step: a table is read in place.
 #![forbid(unsafe_code)]
 #![no_std]
 
@@ -14,21 +14,21 @@ include!(concat!(env!("OUT_DIR"), "/leagues.rs"));
 
 /// The cases of the four-legged league of 2007, the first paper's world.
 ///
-/// The table was checked when it was built; one that was damaged in flash gives the empty base, whose hash differs
-/// from every teammate's, and the robots play their default behaviour.
+/// The table was checked at build time; one that was damaged in flash gives the empty base, whose hash
+/// differs from every teammate's, and the robots play their default behaviour.
 pub fn four_legged() -> CaseBase<'static> {
     CaseBase::from_bytes(&FOUR_LEGGED_TABLE.0).unwrap_or_default()
 }
 
-/// The cases of division B of the Small Size League; as [`four_legged`].
+/// The cases of division B of the Small Size League; as for [`four_legged`].
 pub fn division_b() -> CaseBase<'static> {
     CaseBase::from_bytes(&DIVISION_B_TABLE.0).unwrap_or_default()
 }
 
-/// A built-in league. Lists go by authored case, in the order of ids.
+/// A built-in league. Lists have one entry per authored case, in the order of ids.
 #[derive(Clone, Copy, Debug)]
 pub struct League {
-    /// Its name: that of its folder.
+    /// Its name: that of its directory.
     pub name: &'static str,
     /// The table, at a multiple of 4 bytes.
     pub table: &'static [u8],
@@ -49,12 +49,12 @@ impl League {
     }
 }
 
-/// The league of that name, if cases come with it.
+/// The league of that name, if it has built-in cases.
 pub fn league(name: &str) -> Option<&'static League> {
     LEAGUES.iter().find(|league| league.name == name)
 }
 
-/// Bytes at a multiple of 4, as a case base must begin.
+/// Bytes at a multiple of 4, as required for the start of a case base.
 #[repr(C, align(4))]
 struct Aligned<B: ?Sized>(B);
 
@@ -82,7 +82,7 @@ mod tests {
 
     #[test]
     fn cases_of_three_robots_take_a_sixth_more() {
-        // Division B's have up to three robots and longer plans: docs/architecture.md §9 speaks of the 136 of
+        // Division B's have up to three robots and longer plans: docs/architecture.md §9 is about the 136 of
         // the four-legged league.
         for league in LEAGUES.iter().filter(|league| !league.names.is_empty()) {
             let bytes = league.base().bytes_per_case();

@@ -1,12 +1,12 @@
-//! `gate`: record headers: where the records that retrieval reads lie. Each stored case has a [`Gate`], and
-//! behind it, in one run of the table's places, its opponents, its legs and its robots' positions. Lengths in
-//! mm.
+//! `gate`: record headers: positions of the records that retrieval reads. Each stored case has a [`Gate`],
+//! and behind it, in one run of the table's places, its opponents, its legs and its robots' positions.
+//! Lengths in mm.
 
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 use crate::point::gauss_exponent;
 
-/// Where the ball must lie for a stored case, how many records it has and where they begin.
+/// Record header of a stored case: its ball scope, the numbers of its records and the start of its records.
 #[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(C)]
 pub struct Gate {
@@ -14,13 +14,13 @@ pub struct Gate {
     pub ball: [f32; 2],
     /// 1/τx, 1/τy, 1/mm.
     pub inverse_scope: [f32; 2],
-    /// The word of the places its records begin with.
+    /// Index of the 32-bit unit of the places at which its records start.
     pub places_at: u32,
-    /// Robots.
+    /// Number of robots.
     pub teammates: u8,
-    /// Opponents.
+    /// Number of opponents.
     pub opponents: u8,
-    /// Legs.
+    /// Number of legs.
     pub legs: u8,
     /// Zero.
     pub reserved: u8,
@@ -30,7 +30,7 @@ pub struct Gate {
 #[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(C)]
 pub struct Opponent {
-    /// The squares around the ball it reaches into: [`cells_of`](crate::cells_of).
+    /// The squares around the ball that it overlaps: [`cells_of`](crate::cells_of).
     pub cells: u32,
     /// Relative to the case's ball, mm.
     pub at: [i16; 2],
@@ -38,8 +38,8 @@ pub struct Opponent {
     pub inverse_scope: [f32; 2],
 }
 
-/// A leg of the ball path. It begins where the ball lies: at the ball's first place or the end of the leg before,
-/// unless it was carried on since.
+/// A leg of the ball path. It starts where the ball lies: at the ball's start position or the end of the leg
+/// before, unless it was carried since.
 #[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(C)]
 pub struct RawLeg {
@@ -47,11 +47,11 @@ pub struct RawLeg {
     pub to: [f32; 2],
     /// r_min and r_max, mm.
     pub radii: [f32; 2],
-    /// The robot that kicks.
+    /// The kicking robot.
     pub robot: u8,
-    /// Which of its actions that is.
+    /// Number of that action in its gameplay.
     pub action: u8,
-    /// [`RawLeg::NOT_CARRIED`], or the case's point the ball was dribbled to before.
+    /// [`RawLeg::NOT_CARRIED`], or the case's point to which the ball was dribbled before.
     pub carried_to: u8,
     /// [`RawLeg::TO_FIELD`] or 0.
     pub flags: u8,
@@ -72,19 +72,20 @@ impl Gate {
         gauss_exponent(ball[0] - self.ball[0], ball[1] - self.ball[1], inverse_x, inverse_y)
     }
 
-    /// The case's opponents among the table's places; `None` where those end before (a validated table's never do).
+    /// The case's opponents among the table's places; `None` where those end before (never in a validated
+    /// table).
     #[inline]
     pub(crate) fn opponents<'a>(&self, places: &'a [u32]) -> Option<&'a [Opponent]> {
         records(places, self.places_at as usize, self.opponents)
     }
 
-    /// Its legs; each begins where the one before ends.
+    /// Its legs; each starts where the one before ends.
     #[inline]
     pub(crate) fn legs<'a>(&self, places: &'a [u32]) -> Option<&'a [RawLeg]> {
         records(places, self.legs_at(), self.legs)
     }
 
-    /// Where its robots stand, relative to the case's ball.
+    /// Positions of its robots relative to the case's ball.
     #[inline]
     pub(crate) fn positions<'a>(&self, places: &'a [u32]) -> Option<&'a [[i16; 2]]> {
         let at = self.legs_at().wrapping_add(usize::from(self.legs) * (size_of::<RawLeg>() / WORD));
@@ -97,7 +98,7 @@ impl Gate {
     }
 }
 
-/// The `count` records that begin with word `at`.
+/// The `count` records that start at index `at`.
 #[inline]
 fn records<T: FromBytes + Immutable + KnownLayout>(places: &[u32], at: usize, count: u8) -> Option<&[T]> {
     let count = usize::from(count);
@@ -105,5 +106,5 @@ fn records<T: FromBytes + Immutable + KnownLayout>(places: &[u32], at: usize, co
     <[T]>::ref_from_bytes_with_elems(words.as_bytes(), count).ok()
 }
 
-/// Bytes of a word of the places.
+/// Size of a unit of the places, bytes.
 const WORD: usize = size_of::<u32>();

@@ -1,11 +1,12 @@
 //! `table`: the flat case-base table as it lies in flash. One flat table of fixed records, read in place,
 //! without a decode step.
 //!
-//! Sections follow the [`Header`] in the order of [`CaseBase`]'s fields, those of the widest alignment first, native
-//! byte order. The four symmetric copies of an authored case are stored in full, one after the other; what retrieval
-//! looks at hangs on each copy's [`Gate`], what its players need on their common [`Group`]. Positions and opponents are
-//! stored relative to the case's ball, legs computed to their ends: nothing is derived twice at run time. The index
-//! is a grid over the ball's position for cases that defend the negative goal; a mirrored look-up serves the rest.
+//! Sections follow the [`Header`] in the order of [`CaseBase`]'s fields, those of the widest alignment first,
+//! native byte order. The four symmetric copies of an authored case are stored in full, one after the other;
+//! records used by retrieval belong to each copy's [`Gate`], those used by its players to their common
+//! [`Group`]. Positions and opponents are stored relative to the case's ball, legs computed to their ends:
+//! nothing is derived twice at run time. The index is a grid over the ball's position for cases that defend
+//! the negative goal; a mirrored look-up serves the others.
 //!
 //! [`CaseBase::from_bytes`] checks everything once, so that no later access can panic or leave the table.
 
@@ -22,7 +23,7 @@ use crate::action::{FieldMm, Kick, KickAim, KickId, Pass, Primitive, TEAMMATES_M
 use crate::case::Case;
 use crate::index::Grid;
 
-/// A case base over a borrowed table. Copy it freely: it is only references.
+/// A case base over a borrowed table. Cheap to copy: it contains only references.
 #[derive(Clone, Copy, Debug)]
 pub struct CaseBase<'a> {
     bytes: &'a [u8],
@@ -38,14 +39,14 @@ pub struct CaseBase<'a> {
 }
 
 impl<'a> CaseBase<'a> {
-    /// Reads a table in place and checks all of it; `bytes` must begin at a multiple of 4.
+    /// Reads a table in place and checks all of it; `bytes` must start at a multiple of 4.
     pub fn from_bytes(bytes: &'a [u8]) -> Result<Self, TableError> {
         let base = Self::split(bytes)?;
         base.validate()?;
         Ok(base)
     }
 
-    /// Names the content: two bases with the same hash hold the same cases.
+    /// Hash of the content: two bases with the same hash contain the same cases.
     pub const fn hash(&self) -> u32 {
         self.header.hash
     }
@@ -55,7 +56,7 @@ impl<'a> CaseBase<'a> {
         self.gates.len()
     }
 
-    /// No case at all?
+    /// Whether there is no case.
     pub const fn is_empty(&self) -> bool {
         self.gates.is_empty()
     }
@@ -98,7 +99,7 @@ impl<'a> CaseBase<'a> {
         self.bytes
     }
 
-    /// Bytes of the table for each stored case, index included.
+    /// Mean bytes of the table per stored case, index included.
     pub fn bytes_per_case(&self) -> f32 {
         if self.is_empty() { 0.0 } else { self.bytes.len() as f32 / self.len() as f32 }
     }
@@ -124,16 +125,16 @@ impl Default for CaseBase<'_> {
 
 /// "o12c" and the version of the layout.
 pub const MAGIC: [u32; 2] = [u32::from_ne_bytes(*b"o12c"), 3];
-/// Most cells of the index along one axis.
+/// Maximum number of cells of the index along one axis.
 pub const GRID_MAX: u16 = 256;
 
-/// What a table begins with.
+/// The start of a table.
 #[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(C)]
 pub struct Header {
     /// [`MAGIC`]; read with the wrong byte order it is another number.
     pub magic: [u32; 2],
-    /// FNV-1a-32 over everything behind this word.
+    /// FNV-1a-32 over everything behind this field.
     pub hash: u32,
     /// Length, width, margin, goal width, penalty depth, penalty width, mm.
     pub field: [i32; 6],
@@ -145,7 +146,7 @@ pub struct Header {
     pub points: u32,
     /// Number of kick kinds.
     pub kicks: u32,
-    /// Number of words of the places: opponents, legs and positions of the stored cases.
+    /// Number of 32-bit units of the places: opponents, legs and positions of the stored cases.
     pub places: u32,
     /// Number of case numbers in the cells of the index.
     pub cell_cases: u32,
@@ -155,7 +156,8 @@ pub struct Header {
     pub grid: Grid,
 }
 
-/// What the four copies of an authored case share: copy k begins at `start + k · count` among points and actions.
+/// Data shared by the four copies of an authored case: copy k starts at `start + k · count` among points and
+/// actions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(C)]
 pub struct Group {
@@ -165,23 +167,23 @@ pub struct Group {
     pub actions_at: u32,
     /// Points of actions.
     pub points: u8,
-    /// Where each robot's list of actions ends, counted from the copy's first action.
+    /// End of each robot's list of actions, counted from the copy's first action.
     pub list_ends: [u8; TEAMMATES_MAX],
     /// 0 where the authored case defends the negative goal, 1 the positive.
     pub defending: u8,
-    /// The robot that begins with `get_ball`.
+    /// The robot whose first action is `get_ball`.
     pub getter: u8,
     /// Zero.
     pub reserved: u8,
 }
 
-/// One action: its kind and what it points to.
+/// One action: its kind and its argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(C)]
 pub struct RawAction {
     /// One of [`RawAction`]'s constants.
     pub kind: u8,
-    /// A robot (from 0), a kick kind, or one of the case's points; 0 where nothing is pointed to.
+    /// A robot (from 0), a kick kind, or one of the case's points; 0 for actions without an argument.
     pub argument: u8,
 }
 
@@ -247,7 +249,8 @@ pub fn content_hash(behind_hash: &[u8]) -> u32 {
 /// Bytes before those that are hashed.
 pub const HASHED_FROM: usize = 12;
 
-/// The `count` records of copy `copy` in a pool; nothing where the pool ends before (a validated table's never does).
+/// The `count` records of copy `copy` in a pool; nothing where the pool ends before (never in a validated
+/// table).
 #[inline]
 pub(crate) fn part<T>(pool: &[T], start: u32, count: u8, copy: u16) -> &[T] {
     let count = usize::from(count);

@@ -1,4 +1,4 @@
-//! `validate`: one-time validation of case-base bytes, so that nothing need be checked later.
+//! `validate`: one-time validation of case-base bytes, so that later accesses need no checks.
 
 use core::fmt;
 
@@ -10,22 +10,22 @@ use super::{
 use crate::Grid;
 use crate::action::{KICKS_MAX, OPPONENTS_MAX, Primitive, TEAMMATES_MAX};
 
-/// Why bytes are no case base.
+/// Why bytes are not a case base.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TableError {
-    /// They do not begin at a multiple of 4.
+    /// They do not start at a multiple of 4.
     Misaligned,
-    /// They are fewer or more than the header tells.
+    /// They are fewer or more than the header states.
     Length,
     /// They are something else, another version, or of the other byte order.
     Magic,
     /// The hash does not match: damaged.
     Hash,
-    /// The field, the radii of a pass or a kick kind make no sense.
+    /// The field, the radii of a pass or a kick kind are invalid.
     League,
-    /// A record points outside its pool, or holds a value no case can have.
+    /// A record points outside its pool, or contains a value that no case can have.
     Case {
-        /// Which authored case, from 0.
+        /// Number of the authored case, from 0.
         authored: u32,
     },
     /// The index points outside the table.
@@ -48,7 +48,7 @@ impl fmt::Display for TableError {
 impl core::error::Error for TableError {}
 
 impl<'a> CaseBase<'a> {
-    /// Cuts the table into its sections; all lengths are checked, no content.
+    /// Splits the table into its sections; all lengths are checked, no content.
     pub(super) fn split(bytes: &'a [u8]) -> Result<Self, TableError> {
         if !(bytes.as_ptr() as usize).is_multiple_of(align_of::<u32>()) {
             return Err(TableError::Misaligned);
@@ -108,7 +108,7 @@ impl<'a> CaseBase<'a> {
         sides && self.header.pass.iter().all(|radius| *radius > 0) && kicks
     }
 
-    /// One of the four copies: records within their pools, values a case can have.
+    /// Whether one of the four copies is valid: records within their pools, values a case can have.
     fn copy_is_sound(&self, authored: usize, group: &Group, copy: u16) -> bool {
         let Some(gate) = self.gates.get(4 * authored + usize::from(copy)) else {
             return false;
@@ -187,12 +187,12 @@ impl<'a> CaseBase<'a> {
     }
 }
 
-/// Most authored cases: their four copies are numbered by a `u16`.
+/// Maximum number of authored cases: their four copies are numbered by a `u16`.
 pub(crate) const CASES_MAX: usize = (u16::MAX as usize + 1) / 4;
-/// Longest side of a field, mm: positions relative to the ball then fit an `i16`.
+/// Maximum side of a field, mm: positions relative to the ball then fit an `i16`.
 pub(crate) const SIDE_MAX_MM: i32 = 30_000;
 
-/// Like `is_sorted`, whose cutting into chunks leaves a panic site behind.
+/// Like `is_sorted`, whose division into chunks leaves a panic site in the binary.
 fn never_falls<T: PartialOrd>(list: &[T]) -> bool {
     list.iter().zip(list.iter().skip(1)).all(|(before, after)| before <= after)
 }

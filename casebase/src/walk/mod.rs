@@ -1,10 +1,10 @@
 //! `walk`: simulation of a case's plan: the ball's path when its gameplays are played as written
 //! (docs/case-format.md §3.1; paper §3.3.1).
 //!
-//! The gameplays are walked symbolically: who holds the ball, where each robot has got to, which legs the ball
-//! runs. The same walk checks a case when a library is built, computes the legs that are stored with it, and tells
-//! the robots at run time which actions hand the ball over. Places are relative to the ball's first place, mm,
-//! axes of the field; the attacked goal is a fixed point of the field.
+//! The gameplays are simulated symbolically: which robot holds the ball, where each robot is, which legs the
+//! ball runs. The same simulation checks a case when a library is built, computes the legs that are stored
+//! with it, and gives the robots at run time the actions that hand the ball over. Positions are relative to
+//! the ball's start position, mm, axes of the field; the attacked goal is a fixed point of the field.
 
 use core::fmt;
 
@@ -15,21 +15,21 @@ use crate::path::LegKind;
 use crate::table::CaseBase;
 use crate::{GoalEnd, PointMm};
 
-/// A case to be walked, in its own coordinates.
+/// A case to be simulated, in its own coordinates.
 pub trait Script {
     /// Number of robots, 1 to 4.
     fn teammates(&self) -> usize;
     /// The goal defended: headings are relative to the direction of attack.
     fn defending(&self) -> GoalEnd;
-    /// The ball's first place.
+    /// The ball's start position.
     fn ball(&self) -> PointMm;
-    /// A robot's first place.
+    /// A robot's start position.
     fn position(&self, robot: CaseRobot) -> PointMm;
     /// A robot's action, `None` behind the last.
     fn action(&self, robot: CaseRobot, index: usize) -> Option<Action>;
 }
 
-/// What the league says about balls that are kicked.
+/// The league's parameters of kicked balls.
 pub trait Kicks {
     /// A kick kind.
     fn kick(&self, id: KickId) -> Option<Kick>;
@@ -51,7 +51,7 @@ impl Kicks for CaseBase<'_> {
     }
 }
 
-/// Walks the gameplays and shows every step to `sink`, in the order of play.
+/// Simulates the gameplays and passes every step to `sink`, in the order of play.
 pub fn walk(script: &impl Script, kicks: &impl Kicks, sink: impl FnMut(Step)) -> Result<(), WalkError> {
     let getter = CaseRobot::first(script.teammates())
         .find(|robot| script.action(*robot, 0) == Some(Action::GetBall))
@@ -69,12 +69,12 @@ pub fn walk(script: &impl Script, kicks: &impl Kicks, sink: impl FnMut(Step)) ->
     walker.leftovers()
 }
 
-/// A place the walk knows, mm.
+/// A position in the simulation, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spot {
     /// x and y, axes of the field.
     pub at: [f32; 2],
-    /// A fixed point of the field; else relative to the ball's first place.
+    /// Whether it is a fixed point of the field; else it is relative to the ball's start position.
     pub on_field: bool,
 }
 
@@ -84,33 +84,33 @@ impl Spot {
     }
 }
 
-/// Something the ball does.
+/// An event of the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
     /// It runs along a leg.
     Leg {
-        /// Who kicks it.
+        /// The kicking robot.
         robot: CaseRobot,
-        /// Which of the kicker's actions that is.
+        /// Number of that action in the kicker's gameplay.
         action: usize,
-        /// Where it lies.
+        /// Its start.
         from: Spot,
-        /// Where it comes to rest.
+        /// Where it stops.
         to: Spot,
         /// r_min and r_max, mm.
         radii: [i32; 2],
-        /// By a pass or a kick.
+        /// Pass or kick.
         kind: LegKind,
         /// The `dribble_to` that carried it to `from` after the leg before.
         carried_by: Option<(CaseRobot, usize)>,
     },
-    /// It changes hands.
+    /// The ball goes from one robot to another.
     HandOver(HandOver),
-    /// Nobody's kick ever hands it to this `get_ball`.
+    /// No kick ever hands the ball to this `get_ball`.
     NeverReached {
-        /// Who waits for it.
+        /// The waiting robot.
         robot: CaseRobot,
-        /// The `get_ball`.
+        /// Number of the `get_ball`.
         action: usize,
     },
 }
@@ -122,7 +122,7 @@ impl Step {
     }
 }
 
-/// The ball changes hands: who gives and who takes, each with the number of the action.
+/// A hand-over of the ball: giving and receiving robot, each with the number of the action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HandOver {
     /// The `pass_ball` or `kick`.
@@ -133,16 +133,16 @@ pub struct HandOver {
     pub by_pass: bool,
 }
 
-/// Why gameplays cannot be walked; the robot and its action (from 0) tell where.
+/// Why gameplays cannot be simulated, with the robot and its action (from 0).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WalkError {
-    /// No robot begins with `get_ball`.
+    /// No robot's first action is `get_ball`.
     NoGetter,
     /// A robot without the ball should dribble, pass or kick it.
     NotHolding(CaseRobot, usize),
     /// The robot that is passed to never comes to receive this pass.
     PassUnanswered(CaseRobot, usize),
-    /// The pass a robot waits for is never played.
+    /// The pass for which a robot waits is never played.
     ReceiveUnanswered(CaseRobot, usize),
     /// The league has no such kick kind.
     UnknownKick(CaseRobot, usize),
@@ -164,7 +164,7 @@ impl fmt::Display for WalkError {
 }
 impl core::error::Error for WalkError {}
 
-/// The state of a walk: how far each robot has come in its list, where it is, and where the ball is.
+/// The state of a simulation: each robot's progress in its list and position, and the ball's position.
 struct Walker<'s, S, K, F> {
     script: &'s S,
     kicks: &'s K,
@@ -176,7 +176,8 @@ struct Walker<'s, S, K, F> {
 }
 
 impl<S: Script, K: Kicks, F: FnMut(Step)> Walker<'_, S, K, F> {
-    /// Plays the holder's actions until the ball leaves it; gives the next holder, `None` where there is none.
+    /// Plays the holder's actions until the ball leaves it; returns the next holder, `None` where there is
+    /// none.
     fn play(&mut self, robot: CaseRobot) -> Result<Option<CaseRobot>, WalkError> {
         let mine = robot.index();
         while let Some(action) = self.script.action(robot, self.next[mine]) {
@@ -204,7 +205,7 @@ impl<S: Script, K: Kicks, F: FnMut(Step)> Walker<'_, S, K, F> {
         Ok(None)
     }
 
-    /// The receiver walks to the `receive_ball` that answers this pass; the ball runs to it.
+    /// The receiver advances to the `receive_ball` that answers this pass; the ball runs to it.
     fn pass(&mut self, robot: CaseRobot, index: usize, receiver: CaseRobot) -> Result<CaseRobot, WalkError> {
         let theirs = receiver.index();
         if receiver == robot || theirs >= self.script.teammates() {
@@ -227,7 +228,7 @@ impl<S: Script, K: Kicks, F: FnMut(Step)> Walker<'_, S, K, F> {
         Ok(receiver)
     }
 
-    /// The lowest-numbered robot whose next ball action is `get_ball`, walked to it.
+    /// The lowest-numbered robot whose next ball action is `get_ball`, advanced to that action.
     fn chaser(&mut self, from: (CaseRobot, usize)) -> Option<CaseRobot> {
         let chases = |robot: &CaseRobot| {
             let rest = self.next[robot.index()]..;
@@ -241,7 +242,7 @@ impl<S: Script, K: Kicks, F: FnMut(Step)> Walker<'_, S, K, F> {
         Some(robot)
     }
 
-    /// Lets a robot without the ball walk up to its next ball action, which is given.
+    /// Advances a robot without the ball to its next ball action, and returns it.
     fn walk_on(&mut self, robot: CaseRobot) -> Option<Action> {
         let mine = robot.index();
         loop {
@@ -263,7 +264,7 @@ impl<S: Script, K: Kicks, F: FnMut(Step)> Walker<'_, S, K, F> {
         self.ball = to;
     }
 
-    /// Where a kick from the ball's place leaves it.
+    /// Where a kick from the ball's position ends.
     fn kick_end(&self, aim: KickAim) -> Spot {
         let sign = self.script.defending().attack_sign();
         match aim {
@@ -280,7 +281,7 @@ impl<S: Script, K: Kicks, F: FnMut(Step)> Walker<'_, S, K, F> {
         }
     }
 
-    /// What is left when the ball comes to its last rest: nobody may need it any more.
+    /// Checks the remaining actions when the ball has stopped for the last time: none may need it.
     fn leftovers(&mut self) -> Result<(), WalkError> {
         for robot in CaseRobot::first(self.script.teammates()) {
             let first = self.next[robot.index()];
@@ -308,7 +309,7 @@ impl<S: Script, K: Kicks, F: FnMut(Step)> Walker<'_, S, K, F> {
 fn unit_of_degrees(degrees: i32) -> [f32; 2] {
     let turn = degrees.rem_euclid(360);
     let (quarter, rest) = (turn / 90, turn % 90);
-    // From 45° on the complement is taken, so that mirrored headings use the same two numbers.
+    // From 45° on the complement is used, so that mirrored headings use the same two numbers.
     let small = |d: i32| math::sin_cos(d as f32 * (math::PI / 180.0));
     let (sin, cos) = match rest {
         45 => (core::f32::consts::FRAC_1_SQRT_2, core::f32::consts::FRAC_1_SQRT_2),

@@ -71,7 +71,7 @@ fn point(x: i32, y: i32) -> PointMm {
     PointMm::new(x, y)
 }
 
-/// Where a robot stands and what it does.
+/// A robot's position and actions.
 type Part<'a> = ((i32, i32), &'a [Action]);
 
 fn written(robots: &[Part<'_>]) -> Written {

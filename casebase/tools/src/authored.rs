@@ -15,7 +15,7 @@ use crate::finding::{Finding, Severity};
 use crate::keys::{self, COORDINATES};
 use crate::league::League;
 
-/// A case as somebody wrote it. Spans are places in its file.
+/// A case as its author wrote it. Spans are byte ranges in its file.
 #[derive(Clone, Debug)]
 pub(crate) struct Authored {
     pub(crate) intent: String,
@@ -32,7 +32,7 @@ pub(crate) struct Authored {
 pub(crate) struct Teammate {
     pub(crate) at: PointMm,
     pub(crate) at_span: Range<usize>,
-    /// Where its table begins.
+    /// Byte range of its table.
     pub(crate) span: Range<usize>,
     pub(crate) gameplay: Vec<(Action, Range<usize>)>,
 }
@@ -46,7 +46,7 @@ pub(crate) struct Opponent {
 }
 
 impl Authored {
-    /// Reads a case file; without the league, kick kinds are taken on trust (the library is refused anyway).
+    /// Reads a case file; without the league, kick kinds are not checked (the library is refused anyway).
     pub(crate) fn read(file: &SourceFile, league: Option<&League>) -> (Option<Self>, Vec<Finding>) {
         let mut reader = Reader::new(file);
         let case = reader.parse().and_then(|root| read_case(&mut reader, &Table::root(&root), league));
@@ -54,7 +54,7 @@ impl Authored {
         (case.filter(|_| !faulty), reader.findings)
     }
 
-    /// Seen in one of the four symmetries.
+    /// The case in one of the four symmetries.
     pub(crate) fn mirrored<'c>(&'c self, symmetry: Symmetry, league: &'c League) -> Mirrored<'c> {
         Mirrored { case: self, symmetry, league }
     }
@@ -175,7 +175,7 @@ fn read_teammates(
         return None;
     }
     let count = list.len();
-    // Every robot is read before one fault gives up the case, so that all faults are told.
+    // Every robot is read before one fault rejects the case, so that all faults are reported.
     let read: Vec<_> = list
         .into_iter()
         .zip(CaseRobot::first(count))
@@ -212,7 +212,7 @@ fn read_teammate(
     Some(Teammate { at, at_span, span: table.span(), gameplay })
 }
 
-/// Whose action is read, among how many, in which league.
+/// The robot whose action is read, the number of robots, and the league.
 struct Cast<'l> {
     robot: CaseRobot,
     count: usize,
@@ -280,7 +280,7 @@ fn read_robot(
     name: &str,
     cast: &Cast<'_>,
 ) -> Option<CaseRobot> {
-    // Any whole number is read, so that a wrong one is told to be no robot of this case.
+    // Any whole number is read, so that a wrong one is reported as no robot of this case.
     let number = reader.whole(value, name, &(i32::MIN..=i32::MAX))?;
     let robot = CaseRobot::first(cast.count).find(|robot| i32::from(robot.number()) == number);
     let message = match robot {
@@ -327,7 +327,7 @@ fn read_opponents(reader: &mut Reader<'_>, root: &Table<'_, '_>) -> Option<Vec<O
     read.into_iter().collect()
 }
 
-/// Most actions of all robots of a case: the table counts them in a byte.
+/// Maximum number of actions of all robots of a case: the table counts them in a byte.
 const ACTIONS_MAX: usize = 255;
 const ACTION_MEND: &str = "write \"wait\", \"get_ball\" or one of { go_to_point = [x, y] }, { turn = … }, \
     { dribble_to = [x, y] }, { pass_ball = N }, { receive_ball = N }, { kick = \"KIND\" }";

@@ -1,5 +1,4 @@
-//! `check`: errors that make a case unplayable. What refuses a library beyond its spelling
-//! (docs/case-format.md §1.2).
+//! `check`: errors that make a case unplayable, beyond the syntax of its file (docs/case-format.md §1.2).
 
 use casebase::walk::{Script, WalkError, walk};
 use casebase::{Action, CaseRobot, Symmetry};
@@ -10,7 +9,7 @@ use crate::files::SourceFile;
 use crate::finding::{Finding, Severity};
 use crate::league::League;
 
-/// Every error of a case that reads well.
+/// Every error of a case that was read without a fault.
 pub(crate) fn errors(file: &SourceFile, case: &Authored, league: &League) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut error = |code, span: &std::ops::Range<usize>, message: String, mend: &str| {

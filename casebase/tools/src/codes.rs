@@ -1,8 +1,8 @@
-//! `codes`: the table of finding codes and their meanings. One table, from which `cases check --explain` is
-//! told.
+//! `codes`: the table of finding codes and their meanings. One table, also the source of `cases check
+//! --explain`.
 //!
-//! Errors are those docs/case-format.md §1.2 lists; everything else doubtful is a warning and never stops
-//! retrieval.
+//! Errors are those that docs/case-format.md §1.2 lists; everything else doubtful is a warning and never
+//! stops retrieval.
 
 use crate::finding::Severity;
 
@@ -11,9 +11,9 @@ use crate::finding::Severity;
 pub struct CodeEntry {
     /// Its code, as findings print it.
     pub code: &'static str,
-    /// Does it refuse the library?
+    /// Whether the library is refused.
     pub severity: Severity,
-    /// What it means and how it is mended.
+    /// Its meaning and its fix.
     pub meaning: &'static str,
 }
 

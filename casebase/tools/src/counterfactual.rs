@@ -1,39 +1,39 @@
-//! `counterfactual`: the smallest move of one thing on the field that would make a case the retrieved one
+//! `counterfactual`: the smallest move of one object on the field that would make a case the retrieved one
 //! (docs/case-format.md §3.3, `explain`).
 //!
-//! Moves tried: the ball towards the case's ball; each robot to each adapted position; each opponent into the case's
-//! scopes, out of its legs, out of the winner's scopes and into the winner's legs. On each line the shortest way is
-//! found by halving, in whole mm, and every answer was retrieved again on the changed problem: it is sure that the
-//! move serves, not that no other line has a shorter one.
+//! Moves tried: the ball towards the case's ball; each robot to each adapted position; each opponent into the
+//! case's scopes, out of its legs, out of the winner's scopes and into the winner's legs. On each line the
+//! shortest distance is found by bisection, in whole mm, and every answer was retrieved again on the changed
+//! problem: the move is proven to work, but a shorter one on another line may exist.
 
 use casebase::{Case, CaseBase, Criterion, Leg, Match, PointMm, Problem, ScopeRule, Settings, retrieve_best};
 use protocol::{CaseId, RobotId};
 
-/// What would make a case win.
+/// What would make a case the retrieved one.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Counterfactual {
     /// It is the retrieved case.
     Winner,
-    /// This move makes it so.
+    /// This move.
     Move(Move),
-    /// No single move that was tried does.
+    /// No single move that was tried.
     NoSingleMove(Obstacle),
 }
 
-/// One thing, elsewhere.
+/// One moved object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Move {
-    /// What is moved.
+    /// The moved object.
     pub entity: Entity,
-    /// From where, mm, field frame.
+    /// Its old position, mm, field frame.
     pub from: PointMm,
-    /// Where to, mm, field frame.
+    /// Its new position, mm, field frame.
     pub to: PointMm,
-    /// How far, mm.
+    /// Distance, mm.
     pub distance_mm: f32,
 }
 
-/// What can be moved.
+/// Objects that can be moved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Entity {
     /// The ball; all adapted positions move with it.
@@ -44,7 +44,7 @@ pub enum Entity {
     Opponent(usize),
 }
 
-/// Why no single move serves.
+/// Why no single move works.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Obstacle {
     /// Fewer robots are present than the case needs.
@@ -58,14 +58,14 @@ pub enum Obstacle {
     Conditions {
         /// The winner.
         winner: CaseId,
-        /// How many it fulfils.
+        /// Number of conditions it fulfils.
         fulfilled: u8,
-        /// How many the case has.
+        /// Maximum number of conditions of the case.
         most: u8,
     },
-    /// More than one thing stands against it.
+    /// No single move removes all obstacles.
     Several {
-        /// Moves that were tried.
+        /// Number of moves tried.
         tried: usize,
     },
 }
@@ -93,8 +93,8 @@ impl Move {
     }
 }
 
-/// The smallest single move that makes `id` the retrieved case; `None` where the base has no such case under the
-/// problem's goal.
+/// The smallest single move that makes `id` the retrieved case; `None` where the base has no such case under
+/// the problem's goal.
 pub fn counterfactual(
     base: &CaseBase<'_>,
     problem: &Problem,
@@ -140,7 +140,8 @@ struct Search<'s, 'b> {
 }
 
 impl Search<'_, '_> {
-    /// Towards the case's ball. What lies between is looked at in steps: legs and opponents come and go on the way.
+    /// Moves the ball towards the case's ball. Points between are tested in steps: opponents enter and leave
+    /// legs along the path.
     fn ball(&mut self, case: &Case<'_>) {
         let from = self.problem.ball;
         for step in 1..=BALL_STEPS {
@@ -190,7 +191,8 @@ impl Search<'_, '_> {
         case.opponents().map(move |(at, scope)| (at.plus(shift), scope))
     }
 
-    /// Does the move to `target` serve? Then the shortest part of it that does is kept if it is the shortest of all.
+    /// Whether the move to `target` works. Then the shortest part of it that works is kept if it is the
+    /// shortest of all.
     fn shorten(&mut self, entity: Entity, from: PointMm, target: PointMm) -> bool {
         self.tried += 1;
         if !self.serves(entity, from, target) {
@@ -198,7 +200,7 @@ impl Search<'_, '_> {
         }
         let (mut low, mut high) = (0.0, 1.0);
         let mut found = target;
-        // Halving a way of 10 m to 1 mm.
+        // Bisects a distance of 10 m to 1 mm.
         for _ in 0..14 {
             let middle = 0.5 * (low + high);
             let to = between(from, target, middle);
@@ -221,7 +223,7 @@ impl Search<'_, '_> {
     }
 }
 
-/// Both places beside a leg that an opponent abreast of it may leave to.
+/// The positions on both sides of a leg to which an opponent abreast of it may leave.
 fn beside(leg: &Leg, opponent: PointMm) -> Vec<PointMm> {
     let Some((foot, normal)) = foot(leg, opponent) else { return Vec::new() };
     let Some(abreast) = leg.abreast(opponent.to_f32()) else { return Vec::new() };
@@ -230,7 +232,7 @@ fn beside(leg: &Leg, opponent: PointMm) -> Vec<PointMm> {
     vec![at(1.0), at(-1.0)]
 }
 
-/// The place on a leg nearest to an opponent abreast of it.
+/// The position on a leg nearest to an opponent abreast of it.
 fn onto(leg: &Leg, opponent: PointMm) -> Option<PointMm> {
     foot(leg, opponent).map(|(foot, _)| whole(foot))
 }
@@ -244,7 +246,8 @@ fn foot(leg: &Leg, opponent: PointMm) -> Option<([f32; 2], [f32; 2])> {
     Some(([leg.from[0] + along * unit[0], leg.from[1] + along * unit[1]], [-unit[1], unit[0]]))
 }
 
-/// From `centre` through `from`, `reach` away; the four ways of the axes from the centre itself.
+/// The point from `centre` through `from` at distance `reach`; from the centre itself, those in the four
+/// directions of the axes.
 fn away(from: PointMm, centre: PointMm, reach: i32) -> Vec<PointMm> {
     let [dx, dy] = from.minus(centre).to_f32();
     let length = dx.hypot(dy);
@@ -274,8 +277,8 @@ fn distance(from: PointMm, to: PointMm) -> f32 {
     dx.hypot(dy)
 }
 
-/// Into how many steps the ball's way is cut: a case's scopes are a good part of the field wide, so an eighth of the
-/// way finds what opens on it.
+/// Number of steps along the ball's path: a case's scopes are a good part of the field wide, so an eighth of
+/// the path finds what changes on it.
 const BALL_STEPS: u32 = 8;
-/// Beyond an edge, so that rounding to whole mm does not fall back over it, mm.
+/// Distance beyond an edge, so that rounding to whole mm does not fall back over it, mm.
 const ROOM_MM: i32 = 5;

@@ -1,4 +1,4 @@
-//! `document`: TOML reader whose errors name the line. A table with spans, asked key by key.
+//! `document`: TOML reader whose errors name the line. A table with spans, read key by key.
 
 use std::ops::{Range, RangeInclusive};
 
@@ -11,16 +11,16 @@ use crate::files::SourceFile;
 use crate::finding::{Finding, Severity};
 use crate::keys::COORDINATES;
 
-/// A file being read: where complaints go.
+/// A file being read, with its findings.
 pub(crate) struct Reader<'f> {
     pub(crate) file: &'f SourceFile,
     pub(crate) findings: Vec<Finding>,
 }
 
-/// A value with its place in the file.
+/// A value with its span in the file.
 pub(crate) type Value<'t, 'i> = &'t Spanned<DeValue<'i>>;
 
-/// A table being read: its keys, what it is called in complaints, and where it stands.
+/// A table being read: its keys, its name in error messages, and its span.
 pub(crate) struct Table<'t, 'i> {
     keys: &'t DeTable<'i>,
     name: String,
@@ -32,7 +32,7 @@ impl<'f> Reader<'f> {
         Self { file, findings: Vec::new() }
     }
 
-    /// The file's text as TOML; a complaint and `None` where it is none.
+    /// The file's text as TOML; an error and `None` where it is invalid.
     pub(crate) fn parse(&mut self) -> Option<Spanned<DeTable<'f>>> {
         match DeTable::parse(&self.file.text) {
             Ok(root) => Some(root),
@@ -71,7 +71,7 @@ impl<'f> Reader<'f> {
         self.findings.push(self.file.finding(Severity::Warning, code, line, message, mend));
     }
 
-    /// A complaint about a value's type.
+    /// An error about a value's type.
     fn wrong_type(&mut self, value: Value<'_, '_>, name: &str, expected: &str) {
         let message = format!("{name} is {}", described(value.get_ref()));
         self.error(code::WRONG_TYPE, value.span(), message, format!("give {expected}"));
@@ -147,22 +147,22 @@ impl<'t, 'i> Table<'t, 'i> {
         Self { keys: root.get_ref(), name: String::new(), span: 0..0 }
     }
 
-    /// Where the table stands.
+    /// The span of the table.
     pub(crate) fn span(&self) -> Range<usize> {
         self.span.clone()
     }
 
-    /// The full name of a key, for complaints.
+    /// The full name of a key, for error messages.
     pub(crate) fn name_of(&self, key: &str) -> String {
         if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
     }
 
-    /// The value of a key that may be left out.
+    /// The value of an optional key.
     pub(crate) fn optional(&self, key: &str) -> Option<Value<'t, 'i>> {
         self.keys.get(key)
     }
 
-    /// The value of a key that must be there.
+    /// The value of a required key.
     pub(crate) fn required(&self, reader: &mut Reader<'_>, key: &str) -> Option<Value<'t, 'i>> {
         let value = self.optional(key);
         if value.is_none() {
@@ -172,7 +172,7 @@ impl<'t, 'i> Table<'t, 'i> {
         value
     }
 
-    /// A whole number that must be there.
+    /// A required whole number.
     pub(crate) fn whole(
         &self,
         reader: &mut Reader<'_>,
@@ -183,13 +183,13 @@ impl<'t, 'i> Table<'t, 'i> {
         reader.whole(value, &self.name_of(key), allowed)
     }
 
-    /// A point that must be there, with its place in the file.
+    /// A required point, with its span in the file.
     pub(crate) fn point(&self, reader: &mut Reader<'_>, key: &str) -> Option<(PointMm, Range<usize>)> {
         let value = self.required(reader, key)?;
         Some((reader.point(value, &self.name_of(key))?, value.span()))
     }
 
-    /// Complains about every key that is not among `known`.
+    /// Reports every key that is not among `known`.
     pub(crate) fn refuse_others(&self, reader: &mut Reader<'_>, known: &[&str]) {
         for key in self.keys.keys().filter(|key| !known.contains(&key.get_ref().as_ref())) {
             let message = format!("unknown key {}", self.name_of(key.get_ref()));
@@ -202,7 +202,7 @@ impl<'t, 'i> Table<'t, 'i> {
         }
     }
 
-    /// Every key with its place and its value, in the order of the file.
+    /// Every key with its span and its value, in the order of the file.
     pub(crate) fn entries(&self) -> Vec<(&'t str, Range<usize>, Value<'t, 'i>)> {
         let mut entries: Vec<_> =
             self.keys.iter().map(|(key, value)| (key.get_ref().as_ref(), key.span(), value)).collect();

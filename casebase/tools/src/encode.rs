@@ -1,7 +1,8 @@
-//! `encode`: encoder from authored cases to the flat table that robots carry. Mirrored four ways, walked,
+//! `encode`: encoder from authored cases to the flat table that robots carry. Mirrored four ways, simulated,
 //! indexed, laid out.
 //!
-//! The code that will read the table computes what is stored in it: `casebase`'s symmetry, walk and records.
+//! The code that will read the table computes its content: `casebase`'s symmetry, plan simulation and
+//! records.
 
 use casebase::table::{
     Gate, Group, HASHED_FROM, Header, MAGIC, Opponent, RawAction, RawKick, RawLeg, content_hash,
@@ -14,7 +15,7 @@ use crate::authored::{Authored, Mirrored};
 use crate::grid;
 use crate::league::League;
 
-/// A table that begins at a multiple of 4, as a case base must.
+/// A table that starts at a multiple of 4, as required of a case base.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Table {
     words: Vec<u32>,
@@ -22,7 +23,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// From bytes that may lie anywhere.
+    /// From bytes of any alignment.
     pub fn aligned(bytes: &[u8]) -> Self {
         let mut words = vec![0_u32; bytes.len().div_ceil(4)];
         words.as_mut_bytes()[..bytes.len()].copy_from_slice(bytes);
@@ -35,7 +36,8 @@ impl Table {
     }
 }
 
-/// The table of cases that passed every check, in the order of their ids; without symmetry, mirror images are there and never found.
+/// The table of cases that passed every check, in the order of their ids; without symmetry, mirrored copies
+/// are stored but never found.
 pub(crate) fn encode(league: &League, cases: &[Authored], symmetry: bool) -> Table {
     let mut pools = Pools::default();
     for case in cases {
@@ -85,7 +87,7 @@ pub(crate) fn encode(league: &League, cases: &[Authored], symmetry: bool) -> Tab
     Table::aligned(&[header.as_bytes(), &body].concat())
 }
 
-/// A scope of a millimetre farther out than any ball: fields are at most 30 m long.
+/// A scope of a millimetre, farther away than any ball: fields are at most 30 m long.
 const NOWHERE: ([f32; 2], [f32; 2]) = ([32_767.0; 2], [1.0; 2]);
 
 /// The growing sections of the table.
@@ -99,7 +101,7 @@ struct Pools {
 }
 
 impl Pools {
-    /// How many they are so far.
+    /// Their length so far, bytes.
     fn bytes(&self) -> usize {
         let Self { groups, gates, points, places, actions } = self;
         [groups.as_bytes(), gates.as_bytes(), points.as_bytes(), places.as_bytes(), actions.as_bytes()]
@@ -150,7 +152,7 @@ impl Pools {
             })
             .collect();
         let first_point = self.points.len();
-        // Which point each action with a point has, by robot and place in its list.
+        // The point of each action that has one, by robot and index in its list.
         let mut point_of = Vec::new();
         for robot in robots {
             for index in 0.. {
@@ -187,14 +189,14 @@ impl Pools {
             legs: legs.len() as u8,
             reserved: 0,
         });
-        // The order in which `Gate` finds them again.
+        // The order in which `Gate` reads them.
         for records in [opponents.as_bytes(), legs.as_bytes(), positions.as_bytes()] {
             let (words, _) = records.as_chunks();
             self.places.extend(words.iter().map(|word| u32::from_ne_bytes(*word)));
         }
     }
 
-    /// An action; `next_point` is the number its point gets where it has one.
+    /// An action; `next_point` is the number of its point, where it has one.
     fn add_action(&mut self, action: Action, next_point: u8) -> RawAction {
         let (kind, argument, point) = match action {
             Action::Wait => (RawAction::WAIT, 0, None),
@@ -216,7 +218,7 @@ impl Pools {
     }
 }
 
-/// A place within a field of at most 30 m, which the checks have made sure of.
+/// A position within a field of at most 30 m, which the checks have ensured.
 fn narrow(point: PointMm) -> [i16; 2] {
     [point.x as i16, point.y as i16]
 }

@@ -11,11 +11,11 @@ use crate::library::Place;
 /// A file of a library, read.
 #[derive(Clone, Debug)]
 pub struct SourceFile {
-    /// Where it lies, as findings name it.
+    /// Its path, as in findings.
     pub path: PathBuf,
-    /// Its place in the library, with `/`, without `.toml`.
+    /// Its path in the library, with `/`, without `.toml`.
     pub name: String,
-    /// What it says.
+    /// Its text.
     pub text: String,
 }
 
@@ -46,7 +46,7 @@ impl SourceFile {
 /// The files of one league.
 #[derive(Clone, Debug)]
 pub struct Files {
-    /// The league's name: that of its folder.
+    /// The league's name: that of its directory.
     pub league: String,
     /// `league.toml`.
     pub rules: SourceFile,
@@ -55,7 +55,7 @@ pub struct Files {
 }
 
 impl Files {
-    /// Reads a league's folder.
+    /// Reads a league's directory.
     pub fn read(folder: &Path) -> Result<Self, Vec<Finding>> {
         let mut found = Found::default();
         found.enter(folder, "", 0);
@@ -92,7 +92,7 @@ impl Files {
     }
 }
 
-/// What has been found so far; `league.toml` among the cases.
+/// Results so far; `league.toml` among the cases.
 #[derive(Default)]
 struct Found {
     cases: Vec<SourceFile>,
@@ -101,7 +101,7 @@ struct Found {
 }
 
 impl Found {
-    /// A folder, `depth` folders below the library's; `prefix` is its place with a `/` at the end.
+    /// Reads a directory, `depth` levels below the library's; `prefix` is its path with a `/` at the end.
     fn enter(&mut self, folder: &Path, prefix: &str, depth: usize) {
         let entries = match fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>) {
             Ok(entries) => entries,
@@ -155,7 +155,7 @@ impl Found {
 
 /// The league's own file, without `.toml`.
 const LEAGUE: &str = "league";
-/// Longest file of a library that is read, bytes: the longest case of ours has 3 kB.
+/// Maximum length of a library file, bytes: the longest case of ours has 3 kB.
 pub const CASE_FILE_LEN_MAX: u64 = 1 << 20;
-/// How deep misplaced files are looked for; also what ends a circle of links.
+/// Maximum depth at which misplaced files are searched; also ends a cycle of links.
 const DEPTH_MAX: usize = 8;

@@ -5,15 +5,15 @@ use std::path::PathBuf;
 
 use foreign::{excerpt, printable};
 
-/// As much of what is wrong as is shown, characters: it may repeat what stands in the file.
+/// Maximum length of a message, characters: it may quote the file.
 const MESSAGE_LEN: usize = 1000;
 
-/// Something to mend in a file.
+/// A fault or doubt about a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
-    /// What kind of finding, for looking up.
+    /// Code of its kind, for look-up.
     pub code: &'static str,
-    /// Does it refuse the library?
+    /// Whether the library is refused.
     pub severity: Severity,
     /// The file.
     pub file: PathBuf,
@@ -21,16 +21,16 @@ pub struct Finding {
     pub line: u32,
     /// What is wrong.
     pub message: String,
-    /// What to do about it.
+    /// How to fix it.
     pub mend: String,
 }
 
-/// How bad a finding is.
+/// Severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     /// The library is refused.
     Error,
-    /// Doubtful; the library serves.
+    /// Doubtful; the library can be used.
     Warning,
 }
 
@@ -47,7 +47,7 @@ impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { code, severity, file, line, message, mend } = self;
         let file = file.to_string_lossy();
-        // Files are named and filled by others: a finding stays one line, and shows what it is about.
+        // File names and contents are untrusted: a finding stays one line, and quotes its subject.
         let (file, message, mend) = (printable(&file), excerpt(message, MESSAGE_LEN), printable(mend));
         write!(f, "{file}:{line}: {severity}[{code}]: {message}; {mend}")
     }

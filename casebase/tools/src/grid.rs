@@ -1,7 +1,7 @@
 //! `grid`: cell lists of the index (docs/case-format.md §3: an index over the ball's position).
 //!
-//! See `casebase::Grid`: the two copies of each authored case that defend the negative goal; a cell lists them where the
-//! ball scope reaches into the cell. The cells are as small as the table's budget of bytes allows.
+//! See `casebase::Grid`: the two copies of each authored case that defend the negative goal; a cell lists
+//! them where the ball scope overlaps it. The cells are as small as the table's budget of bytes permits.
 
 use casebase::settings::SCOPE_EXPONENT;
 use casebase::{FieldMm, GoalEnd, Grid, PointMm, Symmetry};
@@ -11,14 +11,14 @@ use crate::authored::Authored;
 /// A built index.
 pub(crate) struct Index {
     pub(crate) grid: Grid,
-    /// Where the list of each cell begins in `cases`, and where the last ends.
+    /// Start of the list of each cell in `cases`, and the end of the last.
     pub(crate) starts: Vec<u32>,
     /// Ids of stored cases.
     pub(crate) cases: Vec<u16>,
 }
 
-/// The index of cases in the order of their ids, over the finest grid within the budget of a table whose other parts
-/// take `others` bytes.
+/// The index of cases in the order of their ids, over the finest grid within the budget of a table whose
+/// other parts take `others` bytes.
 pub(crate) fn build(field: FieldMm, cases: &[Authored], others: usize) -> Index {
     let stored = 4 * cases.len();
     let budget = (TABLE_BYTES * stored).saturating_sub(others).max(INDEX_BYTES * stored);
@@ -33,7 +33,7 @@ pub(crate) fn build(field: FieldMm, cases: &[Authored], others: usize) -> Index 
             break;
         }
     }
-    // The coarsest grid of all, should even that be over the budget.
+    // The coarsest grid, should even that be over the budget.
     index.unwrap_or_else(|| over(Grid::over(field, 1, 1, field.length), cases))
 }
 
@@ -70,7 +70,8 @@ fn over(grid: Grid, cases: &[Authored]) -> Index {
     Index { grid, starts, cases: listed }
 }
 
-/// Does the ball scope reach into the cell? Cells at the border go on to infinity, but not over the middle line.
+/// Whether the ball scope overlaps the cell. Cells at the border extend to infinity, but not over the middle
+/// line.
 fn reaches(case: &Authored, ball: PointMm, grid: &Grid, column: u16, row: u16) -> bool {
     let edge = |corner: f32, cells: u16| f64::from(corner) + f64::from(cells) * f64::from(grid.cell_mm);
     let gap = |at: i32, low: f64, high: f64| (low - f64::from(at)).max(f64::from(at) - high).max(0.0);
@@ -83,14 +84,14 @@ fn reaches(case: &Authored, ball: PointMm, grid: &Grid, column: u16, row: u16) -
     dx * dx + dy * dy <= f64::from(SCOPE_EXPONENT) * ROUNDING
 }
 
-/// What a stored case may cost in all, bytes (docs/architecture.md §9): what the rest leaves of it is the
-/// index's.
+/// Budget of a stored case, bytes (docs/architecture.md §9): the index may use what the other records leave
+/// of it.
 const TABLE_BYTES: usize = 96;
-/// What the index may cost where the rest leaves less, bytes a stored case.
+/// Minimum budget of the index, bytes a stored case, where the other records leave less.
 const INDEX_BYTES: usize = 12;
-/// Edges of cells that are tried, finest first, mm. Finer than 150 mm lists hardly get shorter: scopes are larger.
+/// Edges of cells that are tried, finest first, mm. Below 150 mm lists hardly get shorter: scopes are larger.
 const CELLS_MM: [i32; 10] = [150, 200, 250, 300, 350, 400, 600, 900, 1500, 3000];
-/// Most cells along an axis.
+/// Maximum number of cells along an axis.
 const CELLS_MAX: u16 = casebase::table::GRID_MAX;
-/// Room for the rounding of the single-precision gate.
+/// Tolerance for rounding errors of the single-precision record header.
 const ROUNDING: f64 = 1.0001;

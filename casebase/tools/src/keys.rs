@@ -5,11 +5,11 @@ use std::ops::RangeInclusive;
 
 /// A case file.
 pub const CASE: &[&str] = &["intent", "defending", "ball", "teammates", "opponents"];
-/// `ball` of a case, and each of its opponents: a place and a scope.
+/// `ball` of a case, and each of its opponents: a position and a scope.
 pub const SCOPED: &[&str] = &["at", "scope"];
 /// A robot of a case.
 pub const TEAMMATE: &[&str] = &["at", "gameplay"];
-/// Actions that are a word alone.
+/// Actions without an argument, written as a string.
 pub const WORDS: &[&str] = &["wait", "get_ball"];
 /// Actions that are a table of one key.
 pub const ACTIONS: &[&str] = &["go_to_point", "turn", "dribble_to", "pass_ball", "receive_ball", "kick"];
@@ -31,16 +31,17 @@ pub const KICK_AHEAD: &[&str] = &["heading_deg", "length", "r_min", "r_max", "pr
 pub const PROBLEMS: &[&str] = &["teammates", "opponents"];
 /// A rectangle of `[problems]`.
 pub const RECTANGLE: &[&str] = &["x", "y"];
-/// What may be left out, wherever it stands.
+/// Optional keys, in any table.
 pub const OPTIONAL: &[&str] = &["opponents", "margin", "offset", "primitive", "kicks", "problems"];
 
-/// Coordinates and radii in files, mm: a kilometre either way, so that no sum of a few of them overflows.
+/// Coordinates and radii in files, mm: a kilometre in either direction, so that no sum of a few of them
+/// overflows.
 pub const COORDINATES: RangeInclusive<i32> = -1_000_000..=1_000_000;
-/// What must be above 0, mm.
+/// Values that must be above 0, mm.
 pub const POSITIVE: RangeInclusive<i32> = 1..=1_000_000;
-/// Sides of a field, mm: what the table's positions can hold.
+/// Sides of a field, mm: the range of the table's positions.
 pub const SIDES: RangeInclusive<i32> = 1..=30_000;
 /// Dimensions within a field, mm.
 pub const INNER: RangeInclusive<i32> = 0..=30_000;
-/// Headings of kicks: several turns either way.
+/// Headings of kicks: several turns in either direction.
 pub const DEGREES: RangeInclusive<i32> = -3600..=3600;

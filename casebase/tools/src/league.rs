@@ -21,14 +21,14 @@ pub struct League {
     pub pass: Pass,
     /// Kick kinds by name, in the order of their names: this order is their [`KickId`]s.
     pub kicks: Vec<(String, Kick)>,
-    /// Who stands where in drawn problems, where the file says it.
+    /// Areas of the robots in drawn problems, where the file contains them.
     pub lineup: Option<Lineup>,
-    /// The kind a single reflection plays instead of each.
+    /// The kind that replaces each under a single reflection.
     partners: Vec<KickId>,
 }
 
 impl League {
-    /// Reads `league.toml`. Findings come along; without the league they are errors.
+    /// Reads `league.toml`, with its findings; without the league they are errors.
     pub(crate) fn read(file: &SourceFile) -> (Option<Self>, Vec<Finding>) {
         let mut reader = Reader::new(file);
         let league = reader.parse().and_then(|root| read_league(&mut reader, &Table::root(&root)));
@@ -41,7 +41,7 @@ impl League {
         self.kicks.iter().position(|(known, _)| known == name).map(|at| KickId(at as u8))
     }
 
-    /// The kind that a single reflection plays instead.
+    /// The kind that replaces it under a single reflection.
     pub(crate) fn partner(&self, id: KickId) -> KickId {
         self.partners[usize::from(id.0)]
     }
@@ -160,7 +160,7 @@ fn read_primitive(reader: &mut Reader<'_>, name: &str, value: Value<'_, '_>) -> 
     primitive
 }
 
-/// Does a mirror image of `kick` play `other`?
+/// Whether `other` is a mirror image of `kick`.
 fn are_partners(kick: Kick, other: Kick) -> bool {
     let opposite = match (kick.aim, other.aim) {
         (
@@ -172,7 +172,7 @@ fn are_partners(kick: Kick, other: Kick) -> bool {
         }
         _ => false,
     };
-    // A kind that is its own mirror image stays itself, however many others look like it.
+    // A kind that is its own mirror image is its own partner, however many others equal it.
     let own_image = match kick.aim {
         KickAim::Heading { degrees, .. } => (2 * degrees).rem_euclid(360) == 0,
         KickAim::Goal { offset_mm } => offset_mm == 0,

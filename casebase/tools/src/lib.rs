@@ -1,11 +1,11 @@
 //! `case_tools`: tools that turn case files into tables and check them. Runs on the host, at build and run
 //! time.
 //!
-//! [`load`] reads one league's folder: files → [`League`] and authored cases → checks → the four symmetric copies →
-//! table and index ([`Table`]) → warnings. Every [`Finding`] has a code, file, line and mend
+//! [`load`] reads one league's directory: files → [`League`] and authored cases → checks → the four symmetric
+//! copies → table and index ([`Table`]) → warnings. Every [`Finding`] has a code, file, line and hint
 //! (docs/case-format.md §1.2).
 //!
-//! **Invariant.** What is stored was computed by the crate that will read it, `casebase`.
+//! **Invariant.** All stored values were computed by the crate that will read them, `casebase`.
 #![forbid(unsafe_code)]
 
 mod authored;

@@ -17,26 +17,27 @@ use crate::lineup::Lineup;
 use crate::sample::Sampler;
 use crate::warnings::warnings;
 
-/// One league's cases, checked, mirrored and laid out. Lists go by authored case, in the order of ids.
+/// One league's cases, checked, mirrored and encoded. Lists have one entry per authored case, in the order of
+/// ids.
 #[derive(Clone, Debug)]
 pub struct Library {
-    /// The league's name: that of its folder.
+    /// The league's name: that of its directory.
     pub league: String,
-    /// What robots carry.
+    /// The table for robots.
     pub table: Table,
     /// `region/name` of every authored case.
     pub names: Vec<String>,
-    /// What each case is for, in its author's words.
+    /// The intent of each case, in its author's text.
     pub intents: Vec<String>,
     /// The text of each case file.
     pub sources: Vec<String>,
-    /// Where each case says where its ball lies.
+    /// File and line of each case's ball position.
     pub balls: Vec<Place>,
     /// The names of the kick kinds, by [`casebase::KickId`].
     pub kicks: Vec<String>,
-    /// Who stands where in the problems it is tried with.
+    /// Areas of the robots in the problems drawn for it.
     pub lineup: Lineup,
-    /// What is doubtful.
+    /// Warnings.
     pub findings: Vec<Finding>,
 }
 
@@ -49,20 +50,21 @@ pub struct Place {
     pub line: u32,
 }
 
-/// Reads one league's folder; the findings, with at least one error among them, where it is refused.
+/// Reads one league's directory; returns the findings, with at least one error among them, where it is
+/// refused.
 pub fn load(folder: &Path) -> Result<Library, Vec<Finding>> {
     load_telling(folder, |_, _| {})
 }
 
-/// The same; `tell` learns how many steps are done, of how many: two a case file.
+/// The same; `tell` is called with the number of completed steps and the total: two a case file.
 pub fn load_telling(folder: &Path, tell: impl FnMut(usize, usize)) -> Result<Library, Vec<Finding>> {
     build_telling(&Files::read(folder)?, Reduction::NONE, tell)
 }
 
-/// What of its cases a library keeps: less, to see what it is worth.
+/// Which parts of its cases a library keeps: for measuring the value of each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reduction {
-    /// Mirror images (paper §2.4); without them only authored cases are ever found, under their own ids.
+    /// Mirrored copies (paper §2.4); without them only authored cases are ever found, under their own ids.
     pub symmetry: bool,
     /// Opponents and their scopes (paper §2.1).
     pub opponents: bool,
@@ -73,7 +75,8 @@ impl Reduction {
     pub const NONE: Self = Self { symmetry: true, opponents: true };
 }
 
-/// The library of files that were read, with no more than that of its cases; nobody doubts what is left.
+/// The library of files that were read, with these parts of its cases alone; without warnings about the
+/// reduced cases.
 pub fn build_reduced(files: &Files, reduction: Reduction) -> Result<Library, Vec<Finding>> {
     build_telling(files, reduction, |_, _| {})
 }
@@ -138,17 +141,18 @@ fn build_telling(
 impl Library {
     /// The case base over the table.
     pub fn base(&self) -> CaseBase<'_> {
-        // The table was laid out by this crate; its reader refusing it is a defect here, and every test would see it.
+        // The table was encoded by this crate; a refusal by its reader is a defect here, and every test would
+        // detect it.
         self.read()
             .unwrap_or_else(|error| panic!("the table built from {} cannot be read: {error}", self.league))
     }
 
-    /// The problems of `seed` that this library is tried with.
+    /// The problems of `seed` that are drawn for this library.
     pub fn sampler(&self, seed: u64) -> Sampler {
         Sampler::new(self.lineup.clone(), self.base().field(), seed)
     }
 
-    /// Takes more findings in, in the order of files and lines.
+    /// Adds findings, in the order of files and lines.
     pub fn note(&mut self, more: Vec<Finding>) {
         self.findings = in_order([std::mem::take(&mut self.findings), more].concat());
     }
@@ -163,5 +167,5 @@ fn in_order(mut findings: Vec<Finding>) -> Vec<Finding> {
     findings
 }
 
-/// Most authored cases of a league: the ids of their copies have 16 bits.
+/// Maximum number of authored cases of a league: the ids of their copies have 16 bits.
 const CASES_MAX: usize = (u16::MAX as usize + 1) / 4;

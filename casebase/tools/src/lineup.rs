@@ -1,6 +1,6 @@
 //! `lineup`: line-ups around a ball for drawn problems. mm, seen in attack towards +x.
 //!
-//! `league.toml` may say it; where it does not, a line-up is guessed from the field and the size of the cases:
+//! `league.toml` may contain it; otherwise a line-up is guessed from the field and the size of the cases:
 //!
 //! ```toml
 //! [problems]
@@ -14,10 +14,10 @@ use crate::codes::code;
 use crate::document::{Reader, Table, Value};
 use crate::keys;
 
-/// Where the robots of a drawn problem may stand.
+/// Areas of the robots of a drawn problem.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lineup {
-    /// One area per teammate, relative to the ball; the first is the one who plays the ball.
+    /// One area per teammate, relative to the ball; the first is that of the robot at the ball.
     pub teammates: Vec<Rectangle>,
     /// Line-ups of opponents, each with the homes of its robots, on the field.
     pub opponents: Vec<Vec<Rectangle>>,
@@ -45,8 +45,8 @@ impl Rectangle {
 }
 
 impl Lineup {
-    /// For a league that says nothing: as many teammates as the largest case has, one of them behind the ball; as many
-    /// opponents, a goalie among them; or the same without a goalie, pushed up to the middle.
+    /// Default line-up of a league: as many teammates as the largest case has, one of them behind the ball;
+    /// as many opponents, a goalie among them; or the same without a goalie, pushed up to the middle.
     pub fn guess(field: FieldMm, largest_case: usize) -> Self {
         let robots = largest_case.clamp(2, PROBLEM_TEAMMATES_MAX);
         let [length, width] = [field.length, field.width];
@@ -66,7 +66,7 @@ impl Lineup {
         Self { teammates, opponents: vec![deep, high] }
     }
 
-    /// What `[problems]` says; `None` with findings where it cannot be used.
+    /// The line-up of `[problems]`; `None` with findings where it cannot be used.
     pub(crate) fn read(reader: &mut Reader<'_>, value: Value<'_, '_>) -> Option<Self> {
         let table = reader.table(value, "problems")?;
         table.refuse_others(reader, keys::PROBLEMS);
@@ -92,7 +92,7 @@ impl Lineup {
 }
 
 impl Rectangle {
-    /// With its ends in rising order, whatever the field's dimensions were.
+    /// With its ends in rising order, for all dimensions of the field.
     fn in_order(self) -> Self {
         let ordered = |[a, b]: [i32; 2]| [a.min(b), a.max(b)];
         Self { x: ordered(self.x), y: ordered(self.y) }

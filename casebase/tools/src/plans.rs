@@ -1,6 +1,7 @@
 //! `plans`: checks of a case's joint plan. Warnings; none stops retrieval (docs/case-format.md §1.2).
 //!
-//! Everything is judged in the case's own situation: ball and robots where the file puts them. mm, field frame.
+//! Everything is tested in the case's own situation: ball and robots at the file's positions. mm, field
+//! frame.
 
 use std::ops::Range;
 
@@ -12,7 +13,7 @@ use crate::codes::code;
 use crate::league::League;
 use crate::warnings::Notes;
 
-/// Warns of robots in one place, of legs that cannot be meant, and of a ball that goes nowhere.
+/// Warns of robots at one position, of legs that are probably unintended, and of a ball that is never played.
 pub(crate) fn doubts(notes: &mut Notes<'_>, case: &Authored, stored: &Case<'_>, league: &League) {
     same_spot(notes, case);
     for (index, leg) in stored.legs(case.ball).enumerate() {
@@ -66,10 +67,11 @@ fn leg_doubts(notes: &mut Notes<'_>, leg: &Leg, span: &Range<usize>, league: &Le
     }
 }
 
-/// Teammates on the first leg, before anybody has moved, who are neither its kicker nor ever take the ball.
+/// Teammates on the first leg, before any robot has moved, which are neither its kicker nor ever receive the
+/// ball.
 fn mates_on(notes: &mut Notes<'_>, case: &Authored, leg: &Leg, league: &League) {
     let mut takers = vec![leg.robot];
-    // The case passed the same walk among the checks.
+    // The case passed the same simulation among the checks.
     let _ = walk(&case.mirrored(Symmetry::Identity, league), league, |step| {
         takers.extend(step.hand_over().map(|hand_over| hand_over.to.0));
     });
@@ -84,7 +86,8 @@ fn mates_on(notes: &mut Notes<'_>, case: &Authored, leg: &Leg, league: &League) 
     }
 }
 
-/// Who goes for the ball should do something with it; a pass received may end a gameplay, the next case begins with it.
+/// A robot that gets the ball should play it on; a pass received may end a gameplay, since the next case
+/// starts with it.
 fn idle_ball(notes: &mut Notes<'_>, case: &Authored) {
     for (robot, mate) in CaseRobot::first(case.teammates.len()).zip(&case.teammates) {
         let last = mate.gameplay.iter().rev().find(|(action, _)| *action != Action::Wait);
@@ -95,6 +98,6 @@ fn idle_ball(notes: &mut Notes<'_>, case: &Authored) {
     }
 }
 
-/// Nearer than this two bodies overlap, mm. Both an AIBO and a robot of the SSL are 180 mm wide; the slack is for an
-/// opponent that presses at the ball.
+/// Distance below which two bodies overlap, mm. Both an AIBO and a robot of the SSL are 180 mm wide; the
+/// slack is for an opponent that presses at the ball.
 const ROOM_MM: f32 = 100.0;

@@ -1,11 +1,12 @@
-//! `sample`: seeded draws of problems. Seeded draws of situations as they come up in play. mm, field frame.
+//! `sample`: seeded draws of problems: situations as they occur in play. mm, field frame.
 //!
-//! The ball lies anywhere on the field. Robots stand as in the paper's scenarios (Ros et al. 2009, §5.1.2–§5.1.3): the
-//! first teammate behind the ball, the others around it; each opponent in its home region, half of them where the
-//! paper's opponents wait (the point of the region nearest to the ball; with the ball in the region, in front of it as
-//! in scenarios 3 and 4), half anywhere in it. Nobody stands in another. Half of the problems attack the other way.
+//! The ball lies anywhere on the field. Robots stand as in the paper's scenarios (Ros et al. 2009,
+//! §5.1.2–§5.1.3): the first teammate behind the ball, the others around it; each opponent in its home
+//! region, half of them where the paper's opponents wait (the point of the region nearest to the ball; with
+//! the ball in the region, in front of it as in scenarios 3 and 4), half anywhere in it. No two robots
+//! overlap. Half of the problems attack in the other direction.
 //!
-//! The n-th problem of a seed is always the same, whoever draws the others.
+//! The n-th problem of a seed is always the same, independent of which others are drawn.
 
 use casebase::{FieldMm, GoalEnd, PointMm, Problem, Symmetry};
 use protocol::RobotId;
@@ -47,7 +48,7 @@ impl Sampler {
         Rectangle { x: [-x, x], y: [-y, y] }
     }
 
-    /// Mirrored at random in both axes, so that no side is preferred by the way things are drawn.
+    /// Mirrored at random in both axes, so that the draw prefers no side.
     fn around(&self, ball: PointMm, chance: &mut Chance) -> Problem {
         let defending = [GoalEnd::Negative, GoalEnd::Positive][usize::from(chance.coin())];
         let symmetry = symmetry_for(defending, chance.coin());
@@ -94,7 +95,8 @@ impl Sampler {
         problem
     }
 
-    /// From the ball to an opponent that stands between it and the goal it guards, give or take the stray.
+    /// Displacement from the ball to an opponent that stands between it and the goal it guards, with random
+    /// deviation.
     fn in_front(&self, ball: PointMm, chance: &mut Chance) -> PointMm {
         let goal = PointMm::new(self.field.length / 2, 0).minus(ball).to_f32();
         let distance = chance.between(IN_FRONT[0], IN_FRONT[1]) as f32;
@@ -105,7 +107,7 @@ impl Sampler {
     }
 }
 
-/// The first draw that stands clear of the ball and of everybody; in a crowd the last one tried.
+/// The first draw that is clear of the ball and of all other robots; after [`ATTEMPTS`] draws the last one.
 fn place(taken: &[PointMm], ball: PointMm, from_ball: i64, mut draw: impl FnMut() -> PointMm) -> PointMm {
     let apart = |a: PointMm, b: PointMm, distance: i64| {
         let (dx, dy) = (i64::from(a.x - b.x), i64::from(a.y - b.y));
@@ -140,19 +142,19 @@ fn mirrored(problem: &Problem, symmetry: Symmetry) -> Problem {
     }
 }
 
-/// Chance for one problem.
+/// Random stream of one problem.
 struct Chance(Xoshiro128PlusPlus);
 
 impl Chance {
-    /// The generator spreads its seed itself; the number is spread first (by the golden ratio's multiples), so that
-    /// neighbouring problems of neighbouring seeds do not coincide.
+    /// The generator mixes its seed itself; the number is mixed first (by multiples of the golden ratio), so
+    /// that neighbouring problems of neighbouring seeds do not coincide.
     fn new(seed: u64, number: u64) -> Self {
         Self(Xoshiro128PlusPlus::seed_from_u64(
             seed ^ number.wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(32),
         ))
     }
 
-    /// Even in `0..count`; 0 where that is empty.
+    /// Uniform in `0..count`; 0 where that is empty.
     fn below(&mut self, count: u32) -> u32 {
         ((u64::from(self.0.next_u32()) * u64::from(count)) >> 32) as u32
     }
@@ -161,7 +163,7 @@ impl Chance {
         self.below(2) == 1
     }
 
-    /// Even in `low..=high`.
+    /// Uniform in `low..=high`.
     fn between(&mut self, low: i32, high: i32) -> i32 {
         low + self.below(high.abs_diff(low) + 1) as i32
     }
@@ -172,18 +174,21 @@ impl Chance {
     }
 }
 
-/// Between the centres of two robots, mm: two bodies of the four-legged league (radius 120) and a little.
+/// Minimum distance between the centres of two robots, mm: two bodies of the four-legged league (radius 120)
+/// and a margin.
 const BODIES: i64 = 250;
-/// Between a teammate's centre and the ball, mm: it has not got the ball yet.
+/// Minimum distance between a teammate's centre and the ball, mm: it does not have the ball yet.
 const NEAR_BALL_TEAMMATE: i64 = 170;
-/// Between an opponent's centre and the ball, mm: nearer it has the ball, and there is no case to play. The closest of the
-/// paper's scenarios (4) has 300.
+/// Minimum distance between an opponent's centre and the ball, mm: a nearer one has the ball, and there is no
+/// case to play. The closest of the paper's scenarios (4) has 300.
 const NEAR_BALL_OPPONENT: i64 = 300;
-/// How far ahead of the ball an opponent stands whose home the ball is in, mm: scenarios 4 (300) to 3 (550).
+/// Distance in front of the ball, mm, of an opponent whose home contains the ball: scenarios 4 (300) to 3
+/// (550).
 const IN_FRONT: [i32; 2] = [300, 550];
-/// How far off an opponent is from where it means to wait, mm each way: what it walks in a third of a second.
+/// Deviation of an opponent from its waiting position, mm in each direction: what it walks in a third of a
+/// second.
 const STRAY: i32 = 100;
-/// Draws before a crowd is left as it is.
+/// Maximum number of draws for a position without overlap.
 const ATTEMPTS: u32 = 30;
 
 #[cfg(test)]

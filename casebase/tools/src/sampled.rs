@@ -1,5 +1,5 @@
 //! `sampled`: cases that no drawn problem retrieves, and what is retrieved instead. Warnings
-//! (docs/case-format.md §1.2), told from a tally of problems; the build of the built-in libraries draws none.
+//! (docs/case-format.md §1.2), from counters over problems; the build of the built-in libraries draws none.
 
 use casebase::{SettingError, Settings};
 
@@ -9,8 +9,8 @@ use crate::finding::{Finding, Severity};
 use crate::library::Library;
 
 impl Library {
-    /// Asks the library about problems, with retrieval's defaults and the field as one cell: what
-    /// [`never_retrieved`] needs.
+    /// Counts problems over the library, with retrieval's defaults and the field as one cell: the input of
+    /// [`never_retrieved`].
     pub fn survey(&self) -> Result<Survey<'_>, SettingError> {
         let base = self.base();
         let field = base.field();
@@ -19,8 +19,8 @@ impl Library {
     }
 }
 
-/// Warns of every authored case that none of the tally's problems retrieved. Twins are passed over: why they are never
-/// retrieved has been told.
+/// Warns of every authored case that none of the counted problems retrieved. Twins are skipped: their own
+/// warning gives the reason.
 pub fn never_retrieved(library: &Library, tally: &Tally) -> Vec<Finding> {
     if tally.problems == 0 {
         return Vec::new();
@@ -44,7 +44,7 @@ pub fn never_retrieved(library: &Library, tally: &Tally) -> Vec<Finding> {
         .collect()
 }
 
-/// What stood in its way in `drawn` problems, and what to do about it.
+/// The obstacle in most of the `drawn` problems, and its fix.
 fn reason(library: &Library, case: &CaseTally, drawn: u64) -> (String, &'static str) {
     // The lowest id of those that beat it equally often.
     let beaten_by = case.beaten_by.iter().max_by_key(|(winner, count)| (**count, u16::MAX - **winner));
@@ -85,5 +85,5 @@ fn reason(library: &Library, case: &CaseTally, drawn: u64) -> (String, &'static 
     (why, mend)
 }
 
-/// The place of "ball" in [`VERDICTS`].
+/// The index of "ball" in [`VERDICTS`].
 const BALL: usize = 0;

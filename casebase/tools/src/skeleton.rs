@@ -1,8 +1,8 @@
 //! `skeleton`: draft of a case file for a given situation. A file to author from; mm, field frame.
 //!
-//! Robots and opponents stand where the problem has them; the robot nearest to the ball gets it. What it then does is
-//! the first plan that the checks pass, best without a doubt, and whose case is retrieved from the problem itself: a
-//! kick of the league whose way is free, else a dribble.
+//! Robots and opponents stand at the problem's positions; the robot nearest to the ball gets it. Its further
+//! actions are the first plan that the checks pass, preferably without a warning, and whose case is retrieved
+//! from the problem itself: a kick of the league whose path is free, else a dribble.
 
 use std::fmt::Write as _;
 
@@ -16,20 +16,21 @@ use crate::finding::Finding;
 use crate::league::League;
 use crate::library::build;
 
-/// A case file to author from.
+/// A drafted case file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Skeleton {
-    /// The file.
+    /// The text of the file.
     pub text: String,
-    /// What differs from the problem: who was left out, and who was moved inside the field. Sentences, also in the file.
+    /// Differences from the problem: robots that were left out, and robots that were moved inside the field.
+    /// Sentences, also in the file.
     pub notes: Vec<String>,
-    /// What `cases check` has to say of it.
+    /// The findings of `cases check` on it.
     pub findings: Vec<Finding>,
-    /// Is it retrieved from the problem, as the only case?
+    /// Whether it is retrieved from the problem, as the only case.
     pub retrieved: bool,
 }
 
-/// Why there is none.
+/// Why there is no draft.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SkeletonError {
     /// The problem has no robot of ours, and a case needs one.
@@ -50,12 +51,12 @@ pub fn skeleton(rules: &SourceFile, problem: &Problem) -> Result<Skeleton, Skele
         plans(&league, &scene).iter().map(|plan| tried(rules, problem, &scene, plan)).collect();
     let usable = |made: &&Skeleton| made.retrieved;
     let best = made.iter().filter(usable).find(|made| made.findings.is_empty());
-    // The dribble comes last and stands whatever else is wrong.
+    // The dribble comes last and is kept whatever its findings are.
     let best = best.or_else(|| made.iter().find(usable)).or(made.last());
     best.cloned().ok_or(SkeletonError::NoTeammate)
 }
 
-/// What a case can take of a problem: those nearest to the ball, inside the field.
+/// The part of a problem that a case can contain: the robots nearest to the ball, inside the field.
 struct Scene {
     defending: GoalEnd,
     ball: PointMm,
@@ -146,7 +147,8 @@ impl Scene {
     }
 }
 
-/// What the robot at the ball might do, the likeliest first: in the attacking half at the goal, else straight ahead.
+/// Possible plans of the robot at the ball, the likeliest first: in the attacking half at the goal, else
+/// straight ahead.
 fn plans(league: &League, scene: &Scene) -> Vec<String> {
     let attacks = scene.defending.attack_sign() * scene.ball.x > 0;
     let mut kicks: Vec<_> = league.kicks.iter().collect();
@@ -169,7 +171,7 @@ fn tried(rules: &SourceFile, problem: &Problem, scene: &Scene, plan: &str) -> Sk
     let (findings, retrieved) = match build(&Files::from_texts("new", &rules.text, &[("draft/new", &text)])) {
         Ok(library) => {
             let best = retrieve_best(&library.base(), problem, &Settings::default());
-            // Doubts about the league are not the draft's.
+            // Warnings about the league do not concern the draft.
             let of_case = |finding: &Finding| finding.file.ends_with("draft/new.toml");
             (library.findings.iter().filter(|finding| of_case(finding)).cloned().collect(), best.is_some())
         }
@@ -202,7 +204,8 @@ impl Share {
     }
 }
 
-/// 450 × 300 mm on the four-legged field, as the built-in cases have it on average; within what lint calls large.
+/// 450 × 300 mm on the four-legged field, the average of the built-in cases; below the size that the checks
+/// call large.
 const BALL_SCOPE_X: Share = Share { part: 12, least_mm: 10, most_mm: 900 };
 const BALL_SCOPE_Y: Share = Share { part: 18, least_mm: 10, most_mm: 700 };
 /// 300 mm on the four-legged field: the example of docs/case-format.md §1.

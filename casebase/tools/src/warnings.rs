@@ -18,7 +18,7 @@ use crate::finding::{Finding, Severity};
 use crate::league::League;
 use crate::plans;
 
-/// Every warning about cases that passed all checks; `tell` learns after how many cases it is.
+/// Every warning about cases that passed all checks; `tell` is called with the number of cases done.
 pub(crate) fn warnings(
     files: &Files,
     cases: &[Authored],
@@ -57,7 +57,7 @@ pub(crate) fn warnings(
     findings
 }
 
-/// Where the warnings about one file go.
+/// Collects the warnings about one file.
 pub(crate) struct Notes<'n> {
     file: &'n SourceFile,
     findings: &'n mut Vec<Finding>,
@@ -76,7 +76,7 @@ impl Notes<'_> {
     }
 }
 
-/// What the file is called, and what it says it is for.
+/// Checks the file's name and its intent.
 fn names(notes: &mut Notes<'_>, case: &Authored) {
     if case.intent.trim().is_empty() {
         notes.add(code::NO_INTENT, &(0..0), "the intent is blank", "say in a sentence what the case is for");
@@ -102,7 +102,7 @@ fn big_scopes(notes: &mut Notes<'_>, case: &Authored) {
     }
 }
 
-/// What the lists of actions tell by themselves.
+/// Checks the lists of actions alone.
 fn gameplays(notes: &mut Notes<'_>, case: &Authored, league: &League) {
     for (robot, teammate) in CaseRobot::first(case.teammates.len()).zip(&case.teammates) {
         if teammate.gameplay.iter().all(|(action, _)| *action == Action::Wait) {
@@ -134,7 +134,7 @@ fn gameplays(notes: &mut Notes<'_>, case: &Authored, league: &League) {
             }
         }
     }
-    // The case passed the same walk among the checks.
+    // The case passed the same simulation among the checks.
     let _ = walk(&case.mirrored(Symmetry::Identity, league), league, |step| {
         if let Step::NeverReached { robot, action } = step {
             let (_, span) = &case.teammates[robot.index()].gameplay[action];
@@ -144,7 +144,7 @@ fn gameplays(notes: &mut Notes<'_>, case: &Authored, league: &League) {
     });
 }
 
-/// Warns of scopes whose centre blocks the case's own path; is it free for all of them?
+/// Warns of scopes whose centre blocks the case's own path; returns whether it is free of all of them.
 fn scopes_in_path(notes: &mut Notes<'_>, case: &Authored, stored: &Case<'_>, base: &CaseBase<'_>) -> bool {
     let mut free = true;
     for (i, opponent) in case.opponents.iter().enumerate() {
@@ -167,7 +167,7 @@ fn scopes_in_path(notes: &mut Notes<'_>, case: &Authored, stored: &Case<'_>, bas
     free
 }
 
-/// Warns where another case is retrieved in the very situation this one describes.
+/// Warns where another case is retrieved in the situation that this one describes.
 fn beaten(notes: &mut Notes<'_>, files: &Files, stored: &Case<'_>, base: &CaseBase<'_>) {
     let players = RobotId::all().skip(1).zip(stored.robots()).map(|(id, robot)| (id, stored.position(robot)));
     let problem = Problem {
@@ -185,8 +185,8 @@ fn beaten(notes: &mut Notes<'_>, files: &Files, stored: &Case<'_>, base: &CaseBa
     }
 }
 
-/// Authored cases that retrieval cannot tell from an earlier one, whatever the problem: in some symmetry all it looks
-/// at is equal. Each with the earlier one.
+/// Authored cases that retrieval cannot distinguish from an earlier one, for any problem: in some symmetry
+/// all data it uses is equal. Each with the earlier one.
 fn twins(base: &CaseBase<'_>) -> HashMap<usize, usize> {
     let mut first: HashMap<Seen, usize> = HashMap::new();
     let mut twins = HashMap::new();
@@ -199,7 +199,7 @@ fn twins(base: &CaseBase<'_>) -> HashMap<usize, usize> {
     twins
 }
 
-/// All that retrieval looks at, in an order of its own.
+/// All data that retrieval uses, in a canonical order.
 type Seen = (bool, PointMm, Scope, Vec<PointMm>, Vec<(PointMm, (i32, i32))>, Vec<[u32; 6]>);
 
 fn seen(case: &Case<'_>) -> Seen {
@@ -207,9 +207,10 @@ fn seen(case: &Case<'_>) -> Seen {
     positions.sort_unstable();
     let mut opponents: Vec<_> = case.opponents().map(|(at, scope)| (at, (scope.x, scope.y))).collect();
     opponents.sort_unstable();
-    // −0 and 0 are the same place.
+    // −0 and 0 are the same position.
     let bits = |[x, y]: [f32; 2]| [(x + 0.0).to_bits(), (y + 0.0).to_bits()];
-    // Two balls tell a leg that moves with the ball from one that ends at a point of the field.
+    // Two positions of the ball distinguish a leg that moves with the ball from one that ends at a point of
+    // the field.
     let elsewhere = case.ball().plus(PointMm::new(100, 100));
     let mut legs: Vec<_> = [case.ball(), elsewhere]
         .into_iter()
@@ -224,5 +225,5 @@ fn seen(case: &Case<'_>) -> Seen {
     (positive, case.ball(), case.ball_scope(), positions, opponents, legs)
 }
 
-/// Above this a scope is more than a situation, mm.
+/// Size above which a scope covers more than one situation, mm.
 const BIG_SCOPE: Scope = Scope { x: 900, y: 700 };

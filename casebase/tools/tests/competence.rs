@@ -1,4 +1,4 @@
-//! `competence`: tests: survey counts agree with cases really deleted and problems really retrieved.
+//! `competence`: tests: survey counts agree with cases actually deleted and problems actually retrieved.
 
 use case_tools::coverage::{Cells, Survey, Tally};
 use case_tools::{Files, Library, build};
@@ -17,7 +17,7 @@ fn case(ball: [i32; 2], scope: [i32; 2], opponents: &str) -> String {
     )
 }
 
-/// Wide, inside the wide one, beside it, and one that likes an opponent ahead.
+/// A wide case, one inside it, one beside it, and one with an opponent scope ahead.
 fn texts() -> Vec<(&'static str, String)> {
     vec![
         ("back/wide", case([-1500, 0], [800, 700], "")),
@@ -123,5 +123,5 @@ fn a_problem_just_outside_a_scope_is_told_as_one_that_a_larger_scope_would_fill(
     }
 }
 
-/// Enough for every kind of answer to come up often.
+/// Enough for every kind of answer to occur often.
 const PROBLEMS: u64 = 4000;

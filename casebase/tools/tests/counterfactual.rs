@@ -19,7 +19,7 @@ fn every_move_told_makes_the_case_win_in_thousands_of_problems() {
         for _ in 0..250 {
             let problem = dice.problem(&base);
             let winner = retrieve_best(&base, &problem, &settings).map(|found| found.case);
-            // One at random, and whichever passes the ball gate.
+            // One case at random, and all that pass the test of the ball.
             let mut ids = vec![CaseId(dice.below(base.len() as u64) as u16)];
             explain(&base, &problem, &settings, |id, verdict| {
                 ids.extend((!matches!(verdict, Verdict::Ball { .. })).then_some(id));
@@ -53,7 +53,8 @@ fn every_move_told_makes_the_case_win_in_thousands_of_problems() {
     assert!(moves > 2000 && kinds.iter().all(|count| *count > 300), "{asked} {moves} {kinds:?}");
 }
 
-/// Both cases cost what robot 1 has to walk; `b` is 300 mm farther. By hand: b's place is (300, 0), a's (0, 0).
+/// Both cases cost the distance robot 1 has to walk; `b` is 300 mm farther. By hand: b's place is (300, 0),
+/// a's (0, 0).
 #[test]
 fn the_robot_s_way_is_the_one_found_by_hand() {
     let a = single("[0, 0]", "[900, 700]", ", { kick = \"forward\" }");
@@ -91,10 +92,10 @@ fn what_no_single_move_mends_is_told_with_its_reason() {
     let found = counterfactual(&base, &alone, &settings, CaseId(0));
     let reason = Obstacle::Robots { needed: 2, present: 1 };
     assert_eq!(found, Some(Counterfactual::NoSingleMove(reason)));
-    // Two robots too far away each: one move brings one of them only.
+    // Two robots too far away each: one move brings only one of them within the limit.
     let far = problem((-600, 0), &[(1, (2600, -1700)), (2, (2600, -1800))], &[]);
     let found = counterfactual(&base, &far, &settings, CaseId(0));
     assert!(matches!(found, Some(Counterfactual::NoSingleMove(Obstacle::Several { .. }))), "{found:?}");
-    // Under the other goal it is not looked at.
+    // Under the other goal it is not tested.
     assert_eq!(counterfactual(&base, &far, &settings, CaseId(2)), None);
 }

@@ -104,7 +104,7 @@ fn places_and_scopes() {
     expect_error("at = [-150, 40]", "at = [-150, -1801]", code::OUTSIDE_FIELD, 14);
     expect_error("scope = [450, 250]", "scope = [0, 250]", code::BAD_SCOPE, 3);
     expect_error("scope = [300, 300]", "scope = [300, -1]", code::BAD_SCOPE, 15);
-    // On the line is inside; far outside is only doubtful for a point of an action.
+    // A point on the line is inside; far outside is only doubtful for a point of an action.
     let on_line = PASS_AROUND.replace("at = [300, 900]", "at = [300, 1800]");
     assert_eq!(findings(LEAGUE, &[("a/a", &on_line)]), (vec![], false));
 }
@@ -178,12 +178,13 @@ fn twins_and_beaten_cases_are_doubtful() {
         [[teammates]]\nat = [300, -900]\ngameplay = [{ receive_ball = 1 }, { kick = \"goal\" }]\n\
         [[opponents]]\nat = [-150, -40]\nscope = [300, 300]\n";
     assert_eq!(findings(LEAGUE, &[("center/a", PASS_AROUND), ("center/b", mirrored)]).0, [(code::TWIN, 1)]);
-    // One robot alone at the same place: never retrieved before the pass where both could be... it has fewer robots,
-    // but in its own situation there is only one. Beaten is who has the same robots and the lower similarity.
+    // Two cases with one robot each. A case is beaten in its own situation by one with the same robots and a
+    // higher rank there; here neither is.
     let near = single("[0, 0]", "[400, 400]", ", { kick = \"forward\" }");
     let wide = single("[100, 0]", "[800, 600]", ", { kick = \"goal\" }")
         .replace("[[teammates]]\nat = [100, 0]", "[[teammates]]\nat = [90, 0]");
-    // In the situation of `wide` (ball at [100, 0], robot at [90, 0]) `near` costs 10 mm; `wide` costs nothing.
+    // In the situation of `wide` (ball at [100, 0], robot at [90, 0]) `near` costs 10 mm; `wide` costs
+    // nothing.
     assert_eq!(findings(LEAGUE, &[("a/near", &near), ("a/wide", &wide)]), (vec![], false));
     let scoped = wide.clone() + "[[opponents]]\nat = [100, 900]\nscope = [300, 300]\n";
     let third = near.clone()

@@ -1,8 +1,9 @@
-//! `mistakes`: tests: each kind of mistake is reported with code, file, line and a hint that helps. One test
-//! a kind (docs/case-format.md §1.2).
+//! `mistakes`: tests: each kind of mistake is reported with code, file, line and a useful hint. One test a
+//! kind (docs/case-format.md §1.2).
 //!
-//! A sound library of two files; each test makes exactly one mistake in one of them. Every code of the table that
-//! a text alone can raise has a test here; those that need a folder or thousands of actions are in `findings.rs`.
+//! A valid library of two files; each test makes exactly one mistake in one of them. Every code of the table
+//! that a text alone can cause has a test here; those that need a directory or thousands of actions are in
+//! `findings.rs`.
 
 mod common;
 
@@ -38,7 +39,7 @@ fn replaced(text: &str, old: &str, new: &str) -> String {
     text.replacen(old, new, 1)
 }
 
-/// One test a kind: in the case or the league, `old => new`, the code, the line and words of the mend.
+/// One test a kind: in the case or the league, `old => new`, the code, the line and a part of the hint.
 macro_rules! mistakes {
     ($($name:ident $place:ident $old:literal => $new:literal, $code:ident $line:literal $mend:literal;)*) => {
         $(
@@ -123,7 +124,7 @@ const OTHERS: &[(&str, &str)] = &[
     ("too many kicks", code::TOO_MANY_KICKS),
 ];
 
-/// In `findings.rs`: a folder, a case or a second case is needed. The last one in `sampled.rs`.
+/// In `findings.rs`: a directory, a case or a second case is needed. The last one in `sampled.rs`.
 const ELSEWHERE: &[&str] = &[
     code::UNREADABLE,
     code::MISPLACED,
@@ -213,7 +214,7 @@ fn what_editors_of_other_systems_leave_behind_is_no_mistake() {
         let library = build(&Files::from_texts("test", LEAGUE, &[("center/a", &text)]));
         assert_eq!(library.map(|library| library.findings), Ok(vec![]));
     }
-    // Lines are counted alike.
+    // Lines are counted equally with either line ending.
     let windows = replaced(PASS_AROUND, "[300, 300]", "[300, 0]").replace('\n', "\r\n");
     let finding = only(LEAGUE, &[("center/a", &windows)]);
     told(&finding, "test/center/a.toml", 15, code::BAD_SCOPE, "above 0");

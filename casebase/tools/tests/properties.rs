@@ -1,5 +1,5 @@
-//! `properties`: property tests over random libraries and problems. Index against scan, symmetry, bytes that
-//! lie.
+//! `properties`: property tests over random libraries and problems. Index against scan, symmetry, corrupted
+//! bytes.
 
 mod common;
 
@@ -23,7 +23,7 @@ fn scan(base: &CaseBase<'_>, problem: &Problem, settings: &Settings) -> Vec<Matc
     candidates
 }
 
-/// Settings that change what is a candidate or how it ranks.
+/// Settings that change the candidates or their ranking.
 fn variants() -> Vec<Settings> {
     let assignments: [&[(&str, &str)]; 10] = [
         &[],
@@ -71,7 +71,7 @@ fn the_index_answers_as_a_plain_scan_does() {
             with_several += usize::from(truth.len() > 1);
         }
     }
-    // The draw must be worth something: most problems have candidates, many have several.
+    // The draw must be meaningful: most problems have candidates, many have several.
     assert!(
         with_candidates * 2 > problems && with_several * 5 > problems,
         "{with_candidates}, {with_several} of {problems}"
@@ -103,7 +103,7 @@ fn a_ball_anywhere_finds_every_case_whose_scope_holds_it() {
     }
 }
 
-/// The problem seen in a mirror.
+/// The mirrored problem.
 fn mirrored(problem: &Problem, symmetry: Symmetry) -> Problem {
     Problem {
         ball: symmetry.point(problem.ball),
@@ -166,7 +166,7 @@ fn the_copies_of_a_case_are_mirror_images_of_it() {
     }
 }
 
-/// Touches everything a table offers; the problem's ball is put where a case of this table has it.
+/// Calls every accessor of a table; the problem's ball is placed where a case of this table has it.
 fn exercise(base: &CaseBase<'_>, problem: &Problem, dice: &mut Dice) {
     for case in base.cases() {
         for robot in case.robots() {
@@ -200,7 +200,7 @@ fn no_byte_of_a_table_can_make_it_panic() {
         if dice.below(8) == 0 {
             bytes.truncate(dice.below(bytes.len() as u64) as usize);
         }
-        // A forger would mend the hash.
+        // A forged table would have a correct hash.
         if bytes.len() > HASHED_FROM {
             let hash = content_hash(&bytes[HASHED_FROM..]);
             bytes[HASHED_FROM - 4..HASHED_FROM].copy_from_slice(&hash.to_ne_bytes());
@@ -217,7 +217,7 @@ fn no_byte_of_a_table_can_make_it_panic() {
             Err(_) => refused += 1,
         }
     }
-    // Both ways are tried: harmless changes pass, harmful ones do not.
+    // Both outcomes occur: harmless changes pass, harmful ones do not.
     assert!(accepted > 1000 && refused > 1000, "{accepted} accepted, {refused} refused");
 }
 

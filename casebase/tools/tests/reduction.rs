@@ -1,4 +1,4 @@
-//! `reduction`: tests: libraries without mirror images or without opponents.
+//! `reduction`: tests of libraries without mirrored copies or without opponents.
 
 use std::cmp::Ordering;
 use std::path::Path;

@@ -1,5 +1,5 @@
-//! `retrieval`: tests: retrieval decides as the paper and docs/case-format.md §3 say. Situations worked out
-//! by hand.
+//! `retrieval`: tests: retrieval decides as the paper and docs/case-format.md §3 specify. Situations worked
+//! out by hand.
 
 mod common;
 
@@ -52,7 +52,7 @@ fn an_opponent_in_a_leg_leaves_nothing() {
 fn a_point_exactly_on_the_ellipse_passes_and_one_beyond_the_literal_does_not() {
     let library = library(&[("a/a", &single("[0, 0]", "[1000, 500]", ""))]);
     let at = |x, y| winner(&library, &problem((x, y), &[(1, (x, y))], &[]));
-    // exp(−1) = 0.36788 > 0.367: the literal lets the ellipse pass, up to 1.001196 τ.
+    // exp(−1) = 0.36788 > 0.367: the literal accepts the ellipse, up to 1.001196 τ.
     assert_eq!(at(1000, 0), Some(0));
     assert_eq!(at(1001, 0), Some(0));
     assert_eq!(at(1002, 0), None);
@@ -168,7 +168,8 @@ fn clamped_positions_lead_the_ball_elsewhere() {
         [[teammates]]\nat = [0, 0]\ngameplay = [\"get_ball\", { pass_ball = 2 }]\n\
         [[teammates]]\nat = [0, 1800]\ngameplay = [{ receive_ball = 1 }]\n";
     let library = library(&[("a/a", text)]);
-    // With the ball at (0, 300) the pass ends at (0, 2100), clamped at (0, 1800): an opponent beyond is not abreast.
+    // With the ball at (0, 300) the pass ends at (0, 2100), clamped at (0, 1800): an opponent beyond is not
+    // abreast.
     let beyond = problem((0, 300), &[(1, (0, 300)), (2, (0, 1800))], &[(50, 1900)]);
     assert_eq!(ask(&library, &beyond, &Settings::default()).candidates, 0);
     assert_eq!(ask(&library, &beyond, &settings(&[("out_of_field", "clamp")])).candidates, 1);
@@ -190,12 +191,12 @@ fn a_fuzzy_path_prefers_the_freer_case_before_interval_and_cost() {
         ("a/forward", &single("[0, 0]", "[400, 400]", ", { kick = \"forward\" }")),
         ("a/left", &single("[10, 0]", "[400, 400]", ", { kick = \"left\" }")),
     ]);
-    // Beside the way ahead, not in it: the case ahead is the more similar, the one to the left the freer.
+    // Beside the path ahead, not in it: the case ahead is the more similar, the one to the left the freer.
     let beside = problem((0, 0), &[(1, (0, 0))], &[(500, -250)]);
     assert_eq!(winner(&library, &beside), Some(0));
     let fuzzy = ask(&library, &beside, &settings(&[("free_path", "fuzzy")])).best.unwrap();
     assert_eq!((fuzzy.case, fuzzy.free), (CaseId(4), 1.0));
-    // Nothing is free enough for a threshold of 1 but a path with nobody abreast.
+    // With a threshold of 1 only a path with no opponent abreast is free enough.
     let strict = settings(&[("free_path", "fuzzy"), ("free_min", "1")]);
     assert_eq!(ask(&library, &beside, &strict).candidates, 1);
 }

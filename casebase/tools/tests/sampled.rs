@@ -15,15 +15,15 @@ fn findings(library: &Library) -> Vec<Finding> {
     never_retrieved(library, &survey.over((0..DRAWN).map(|number| (number, sampler.problem(number)))))
 }
 
-/// A robot alone behind a ball in the middle of the field; `rest` follows.
+/// One robot behind a ball in the middle of the field; `rest` is appended.
 fn shot(scope: &str, rest: &str) -> String {
     single("[0, 0]", scope, ", { kick = \"forward\" }") + rest
 }
 
 #[test]
 fn a_case_that_another_always_beats_is_told_with_that_other() {
-    // Same place, same plan, but `rival` has its robot where it stands and a scope as large: what `shadowed` is a
-    // candidate for, `rival` is a candidate for with one condition or two more, or by its lower id with the same.
+    // Same position, but `rival` dribbles and has an opponent scope over the whole field: where `shadowed` is
+    // a candidate, `rival` is one with one condition or two more, or by its lower id with the same.
     let everywhere = "[[opponents]]\nat = [0, 0]\nscope = [9000, 9000]\n";
     let rival = shot("[800, 600]", everywhere).replace("kick = \"forward\"", "dribble_to = [9, 0]");
     let shadowed = shot("[800, 600]", "");
@@ -57,7 +57,7 @@ fn a_case_that_another_always_beats_is_told_with_that_other() {
 
 #[test]
 fn a_case_that_is_retrieved_now_and_then_is_not_told() {
-    // Its scope reaches farther than the rival's: the balls there are its own.
+    // Its scope is larger than the rival's: the balls there are its own.
     let everywhere = "[[opponents]]\nat = [0, 0]\nscope = [9000, 9000]\n";
     let rival = shot("[600, 600]", everywhere).replace("kick = \"forward\"", "dribble_to = [9, 0]");
     let library = library(&[("a/rival", &rival), ("a/wide", &shot("[800, 600]", ""))]);

@@ -1,4 +1,5 @@
-//! `fault`: faults injected into a trial. Crashes, returns, worse air, and a flipped bit; by tick number.
+//! `fault`: faults injected into a trial, by tick number: crashes, reboots, other radio settings, and a
+//! flipped bit.
 
 use geometry::{Twist, Vector};
 use protocol::RobotId;
@@ -6,29 +7,30 @@ use protocol::robot_io::ActuatorFrame;
 
 use crate::air::AirSettings;
 
-/// Something that goes wrong (or right again) at the beginning of a tick.
+/// A fault, or its end, at the start of a tick.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScheduledFault {
-    /// The tick.
+    /// Number of the tick.
     pub tick: u32,
-    /// What happens.
+    /// The fault.
     pub fault: Fault,
 }
 
-/// What can happen.
+/// Kinds of faults.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fault {
-    /// A robot's computer stops; its body stands, and lets the ball go.
+    /// A robot's computer stops; its body stands, and releases the ball.
     Crash(RobotId),
-    /// A robot's computer starts a new life; nothing happens where it runs.
+    /// A robot's computer boots with a new epoch; no effect on a computer that runs.
     Return(RobotId),
-    /// The air changes.
+    /// The radio settings change.
     Air(AirSettings),
-    /// One bit of a robot's next order flips: bit `bit & 31` of the wanted speed ahead (or of the first wheel's).
+    /// One bit of a robot's next order flips: bit `bit & 31` of the ordered forward speed (or of the first
+    /// wheel's speed).
     FlipOrderBit {
-        /// Whose order.
+        /// The robot whose order is changed.
         robot: RobotId,
-        /// Which bit; 0 is the least significant of the mantissa.
+        /// Number of the bit; 0 is the least significant of the mantissa.
         bit: u8,
     },
 }
@@ -45,7 +47,7 @@ pub(crate) fn flipped(order: ActuatorFrame, bit: u8) -> ActuatorFrame {
             let [a, b, c] = others;
             ActuatorFrame::Omni { wheels: [flip(first), a, b, c], dribbler, kick }
         }
-        // No number, no bit.
+        // An order without numbers has no bit to flip.
         ActuatorFrame::Released => order,
     }
 }

@@ -1,5 +1,5 @@
-//! `four_legged`: trials of walking robots: world, sensors, opponents, referee and main loop. mm in files, SI in code, field frame;
-//! Ros et al. 2009 §5.
+//! `four_legged`: trials of walking robots: world, sensors, opponents, referee and main loop. mm in files, SI
+//! in code, field frame; Ros et al. 2009 §5.
 
 pub(crate) mod fault;
 pub(crate) mod opponents;

@@ -1,10 +1,10 @@
-//! `opponents`: opponents of the first paper. Ros et al. 2009 §5.1.2: each has a home region that it never
-//! leaves; a ball inside it is gone for and cleared, else the robot stands at the region's border nearest the
-//! ball and faces it; a ball in its grasp there is cleared as well. m, s, field frame.
+//! `opponents`: scripted opponents of paper 1. Ros et al. 2009 §5.1.2: each has a home region that it never
+//! leaves; it walks to a ball inside that region and clears it, else it stands at the region's border nearest
+//! the ball and faces it; a ball in its grasp there is cleared as well. m, s, field frame.
 //!
-//! They have the attackers' bodies, nothing more and nothing less: they walk, grab (which may fail) and then kick at once
-//! in whichever of the body's three directions (ahead, left, right) points most upfield. They see the truth, as the
-//! paper's simulator lets them.
+//! They have the attackers' bodies and abilities: they walk, grab (which may fail) and then kick at once in
+//! whichever of the body's three directions (ahead, left, right) points most upfield. They see the true
+//! state, as in the paper's simulator.
 
 use geometry::{Angle, Body, Field, Point, Pose, Twist, Vector, math};
 use protocol::robot_io::{ActuatorFrame, LeggedKick, LeggedPrimitive};
@@ -13,7 +13,7 @@ use serde::Deserialize;
 use crate::four_legged::parameters::{Parameters, Region};
 use crate::four_legged::world::World;
 
-/// What an opponent is there for.
+/// Role of an opponent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Role {
@@ -26,7 +26,7 @@ pub enum Role {
 }
 
 impl Role {
-    /// Its word in reports.
+    /// Its label in reports.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Defender => "defender",
@@ -35,7 +35,7 @@ impl Role {
         }
     }
 
-    /// Its home.
+    /// Its home region.
     pub fn home(self, parameters: &Parameters) -> Region {
         match self {
             Self::Defender => parameters.opponent.defender,
@@ -45,7 +45,7 @@ impl Role {
     }
 }
 
-/// What a scripted opponent does with its time.
+/// Behaviour of a scripted opponent.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Conduct {
     /// It plays from its role's home.
@@ -53,23 +53,23 @@ pub enum Conduct {
     AtHome,
     /// It plays from this region instead.
     Within(Region),
-    /// It holds its place: a body in the way that clears nothing.
+    /// It stays where it is: an obstacle that clears no ball.
     Standing,
 }
 
 /// A scripted opponent.
 #[derive(Clone, Debug)]
 pub struct Opponent {
-    /// What it is there for.
+    /// Its role.
     pub role: Role,
-    /// Its place in [`World::walkers`].
+    /// Its index in [`World::walkers`].
     robot: usize,
-    /// Where it plays; `None` where it only stands.
+    /// Region where it plays; `None` where it only stands.
     home: Option<Region>,
 }
 
 impl Opponent {
-    /// In its home, or where its conduct wants it.
+    /// An opponent in its home region, or in the region its conduct names.
     pub fn new(role: Role, conduct: Conduct, robot: usize, parameters: &Parameters) -> Self {
         let home = match conduct {
             Conduct::AtHome => Some(role.home(parameters)),
@@ -79,7 +79,7 @@ impl Opponent {
         Self { role, robot, home }
     }
 
-    /// Decides and orders its body, at every step of control.
+    /// Decides and orders its body, in every control step.
     pub fn act(&self, world: &mut World, parameters: &Parameters) {
         let Some(home) = self.home else { return };
         let (ball, pose) = (world.ball.position, world.walkers[self.robot].pose);
@@ -90,7 +90,8 @@ impl Opponent {
         } else {
             LeggedPrimitive::None
         };
-        // At its home's border where the ball is outside, at the ball where it is inside: the same point.
+        // At its home's border where the ball is outside, at the ball where it is inside: the same
+        // expression.
         let walk = walk_to(pose, home.nearest(ball), ball, parameters);
         world.command(self.robot, &ActuatorFrame::Legged { walk, primitive });
     }
@@ -118,7 +119,7 @@ impl Region {
     }
 }
 
-/// The velocity that brings a body to `target` without overshooting, its face towards `gaze`.
+/// The velocity that brings a body to `target` without overshooting, heading towards `gaze`.
 fn walk_to(
     pose: Pose<Field>,
     target: Point<Field>,
@@ -128,14 +129,15 @@ fn walk_to(
     let p = &parameters.walk;
     let way = pose.vector_to_body(target - pose.position);
     let distance = way.norm();
-    // Half of what the legs can brake, so that the order of the next step is never too late.
+    // Half of the maximum deceleration of the legs, so that the order of the next step is never too late.
     let speed = math::sqrt(p.acceleration * distance).min(p.forward);
     let linear = way.unit().map_or(Vector::default(), |direction| direction * speed);
     let turn = pose.turn_to(gaze).radians();
     Twist { linear, angular: (GAZE_GAIN * turn).clamp(-p.turn, p.turn) }
 }
 
-/// Turning rate for an error of 1 rad, 1/s: three time constants in 0.75 s, well damped at 4 rad/s² and steps of 40 ms.
+/// Turning rate for an error of 1 rad, 1/s: three time constants in 0.75 s, well damped at 4 rad/s² and steps
+/// of 40 ms.
 const GAZE_GAIN: f32 = 4.0;
 
 #[cfg(test)]
@@ -195,7 +197,7 @@ mod tests {
 
     #[test]
     fn a_clearance_takes_a_grab_and_a_kick() {
-        // In its grasp from the start: 0.5 s of closing the legs and 0.4 s of kicking, at steps of 40 ms.
+        // In its grasp from the start: 0.5 s of closing the legs and 0.4 s of kicking, in steps of 40 ms.
         let kicked = |seed, seconds| {
             let mut game = game(Role::Defender, (1400.0, 0.0), (1.25, 0.0));
             game.world = World::new(

@@ -1,20 +1,21 @@
 //! `parameters`: parameters of the four-legged simulator. The league's numbers, read from one file, checked,
 //! with their sources beside them.
 //!
-//! `hil-sim/data/four-legged.toml` is that file; SI units, degrees where a name says so. Nothing else in this crate types a
-//! physical number in. Dimensions of field, robots and ball are crate `rules`', and only the ball's deceleration stands in
-//! both: brains believe `rules`, the world obeys the file, and a test says whether they agree.
+//! `hil-sim/data/four-legged.toml` is that file; SI units, degrees where a name ends in `_deg`. No other code
+//! of this crate contains physical constants. Dimensions of field, robots and ball are crate `rules`'; only
+//! the ball's deceleration stands in both: brains use the value of `rules`, the simulated world the file's,
+//! and a test checks that they agree.
 
 use std::fmt;
 use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
 
-/// The numbers of one league.
+/// The parameters of one league.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Parameters {
-    /// The ball on the carpet.
+    /// The ball on the field surface.
     pub ball: BallParameters,
     /// Walking freely.
     pub walk: WalkParameters,
@@ -32,11 +33,11 @@ pub struct Parameters {
     pub noise: Noise,
 }
 
-/// The ball on the carpet.
+/// The ball on the field surface.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct BallParameters {
-    /// m/s², constant until rest.
+    /// m/s², constant until it stops.
     pub deceleration: f32,
     /// Share of the closing speed that comes back from a robot.
     pub bounce: f32,
@@ -82,7 +83,7 @@ pub struct GrabParameters {
     pub speed_limit: f32,
     /// Probability that a grab whose legs closed upon the ball keeps it.
     pub success: f32,
-    /// Probability that such a grab takes a ball out of another robot's grip, as a share of `success`.
+    /// Probability that such a grab takes a ball out of another robot's legs, as a share of `success`.
     pub contest: f32,
     /// m, centre to centre while held.
     pub hold_distance: f32,
@@ -144,7 +145,7 @@ pub struct Region {
 pub struct RefereeParameters {
     /// m beside a goalpost that still count as close.
     pub close: f32,
-    /// s without contact before a touch counts anew.
+    /// s without contact before a touch counts as a new possession.
     pub possession_gap: f32,
     /// s, against defender and goalie.
     pub time_limit_dg: f32,
@@ -162,20 +163,20 @@ pub struct Noise {
     pub heading_deg: f32,
     /// Of the ball's position, as a share of its distance.
     pub ball_share: f32,
-    /// Of the ball's position, m, whatever the distance.
+    /// Of the ball's position, m, at any distance.
     pub ball_floor: f32,
     /// Of an opponent's position, m.
     pub opponent: f32,
 }
 
 impl Noise {
-    /// The paper's simulator: everything is seen where it is.
+    /// As in the paper's simulator: everything is seen where it is.
     pub const NONE: Self =
         Self { pose: 0.0, heading_deg: 0.0, ball_share: 0.0, ball_floor: 0.0, opponent: 0.0 };
 }
 
 impl Parameters {
-    /// The four-legged league's.
+    /// The parameters of the four-legged league.
     pub fn four_legged() -> &'static Self {
         &FOUR_LEGGED
     }
@@ -186,7 +187,7 @@ impl Parameters {
         read.check().map(|()| read)
     }
 
-    /// Every number within what the physics can bear.
+    /// Checks every number against the limits of the physics.
     fn check(&self) -> Result<(), ParameterError> {
         let Self { ball, walk, carry, grab, kick, opponent, referee, noise } = self;
         let positive = [
@@ -264,15 +265,15 @@ impl Parameters {
 pub enum ParameterError {
     /// Not TOML, or a key unknown, missing or of a wrong type.
     Syntax(String),
-    /// A number the physics cannot bear.
+    /// A number outside the limits of the physics.
     Range {
-        /// Which.
+        /// Name of the number, as in the file.
         name: &'static str,
-        /// What it is.
+        /// Its value.
         value: f32,
-        /// The least it may be.
+        /// Its minimum.
         low: f32,
-        /// The most it may be.
+        /// Its maximum.
         high: f32,
     },
 }
@@ -290,10 +291,10 @@ impl fmt::Display for ParameterError {
 
 impl std::error::Error for ParameterError {}
 
-/// The file, part of the program so that a binary alone can play.
+/// The file, embedded in the program so that the binary needs no file to run.
 pub const FOUR_LEGGED_TOML: &str = include_str!("../../data/four-legged.toml");
 
-/// No length, speed or time of this world is larger: a bound against nonsense, in the unit of each number.
+/// Upper bound of every length, speed and time, in the unit of each number: rejects nonsense.
 const LARGEST: f32 = 10_000.0;
 
 static FOUR_LEGGED: LazyLock<Parameters> = LazyLock::new(|| {

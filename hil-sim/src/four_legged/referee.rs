@@ -1,8 +1,8 @@
 //! `referee`: outcome and possession of a trial. Ros et al. 2009 §5.1.4, docs/papers.md R32–R35.
 //!
-//! A trial ends when the ball has crossed a line with all of itself, when the goalie touches it (defender and goalie), when
-//! it enters the attacked penalty area (two defenders; the paper calls that "to goal", the outcome here is `goal`), or
-//! when time is up. m, s, field frame; the attacked goal is at +x.
+//! A trial ends when the ball has crossed a line with all of itself, when the goalie touches it (defender and
+//! goalie), when it enters the attacked penalty area (two defenders; the paper calls that "to goal", the
+//! outcome here is `goal`), or when time is up. m, s, field frame; the attacked goal is at +x.
 
 use geometry::{Field, GoalEnd, Point};
 use rules::{FieldSpec, League};
@@ -24,7 +24,7 @@ pub enum Configuration {
 }
 
 impl Configuration {
-    /// Its word in options and reports.
+    /// Its label in options and reports.
     pub const fn word(self) -> &'static str {
         match self {
             Self::DefenderGoalie => "dg",
@@ -32,7 +32,7 @@ impl Configuration {
         }
     }
 
-    /// The configuration of that word.
+    /// The configuration with that label.
     pub fn from_word(word: &str) -> Option<Self> {
         [Self::DefenderGoalie, Self::TwoDefenders].into_iter().find(|c| c.word() == word)
     }
@@ -55,7 +55,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// Its word in reports.
+    /// Its label in reports.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Goal => "goal",
@@ -67,7 +67,7 @@ impl Outcome {
     }
 }
 
-/// The referee's last word.
+/// The referee's final result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Verdict {
     /// How the trial ended.
@@ -76,17 +76,17 @@ pub struct Verdict {
     pub time: f32,
 }
 
-/// Who touched the ball last.
+/// The party that touched the ball last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Party {
-    /// One of the robots led by brains.
+    /// One of the robots controlled by brains.
     Attackers,
-    /// A scripted one.
+    /// A scripted opponent.
     Opponent(Role),
 }
 
 impl Party {
-    /// Its word in reports.
+    /// Its label in reports.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Attackers => "attackers",
@@ -95,14 +95,14 @@ impl Party {
     }
 }
 
-/// Watches a trial.
+/// Observes a trial and decides its outcome.
 #[derive(Clone, Debug)]
 pub struct Referee {
     configuration: Configuration,
     parameters: RefereeParameters,
     field: FieldSpec,
     ball_radius: f32,
-    /// The opponents' roles by their place behind the attackers.
+    /// The opponents' roles, in the order of the walkers after the attackers.
     roles: Vec<Role>,
     contacts: Vec<Contact>,
     last: Option<Party>,
@@ -110,17 +110,17 @@ pub struct Referee {
     verdict: Option<Verdict>,
 }
 
-/// An opponent's dealings with the ball.
+/// An opponent's contacts with the ball.
 #[derive(Clone, Copy, Debug, Default)]
 struct Contact {
     /// When it last touched the ball, s.
     at: Option<f32>,
-    /// How many times it had it (docs/papers.md R33).
+    /// Number of its possessions (docs/papers.md R33).
     possessions: u32,
 }
 
 impl Referee {
-    /// Before kick-off; `roles` of the opponents in their order, `ball` where it lies.
+    /// Before kick-off; `roles` of the opponents in their order, `ball` at its start position.
     pub fn new(
         configuration: Configuration,
         parameters: &RefereeParameters,
@@ -141,7 +141,8 @@ impl Referee {
         }
     }
 
-    /// Looks at the world after a step that ended at `time` seconds. The first verdict stands, and so does every count.
+    /// Examines the world after a step that ended at `time` seconds. The first verdict and all counts are
+    /// kept.
     pub fn observe(&mut self, time: f32, world: &World, events: &[WorldEvent]) {
         if self.verdict.is_some() {
             return;
@@ -174,12 +175,12 @@ impl Referee {
         self.verdict.map(|verdict| verdict.outcome)
     }
 
-    /// Who touched the ball last.
+    /// The party that touched the ball last.
     pub fn last_touch(&self) -> Option<Party> {
         self.last
     }
 
-    /// How many times the opponent of that role had the ball.
+    /// Number of possessions of the opponent of that role.
     pub fn possessions(&self, role: Role) -> u32 {
         self.roles.iter().zip(&self.contacts).filter(|(r, _)| **r == role).map(|(_, c)| c.possessions).sum()
     }
@@ -191,7 +192,7 @@ impl Referee {
             return;
         };
         let contact = &mut self.contacts[i];
-        // A scrum around the ball is one possession, though its bodies touch in turns.
+        // A scrum around the ball is one possession, though its bodies touch alternately.
         let gap = self.parameters.possession_gap;
         contact.possessions += u32::from(contact.at.is_none_or(|at| time - at >= gap));
         contact.at = Some(time);
@@ -264,7 +265,7 @@ mod tests {
     }
 
     impl Match {
-        /// The ball is now here.
+        /// Moves the ball to a position and returns the outcome.
         fn ball(&mut self, time: f32, x: f32, y: f32) -> Option<Outcome> {
             self.world.ball = Ball::at(Point::new(x, y));
             self.referee.observe(time, &self.world, &[]);
@@ -276,7 +277,7 @@ mod tests {
         }
     }
 
-    /// The outcome of a ball that goes from one place to another between two looks.
+    /// The outcome of a ball that moves from one position to another between two observations.
     fn between(from: (f32, f32), to: (f32, f32)) -> Option<Outcome> {
         let mut game = kick_off(Configuration::DefenderGoalie);
         game.ball(0.0, from.0, from.1);
@@ -296,7 +297,7 @@ mod tests {
 
     #[test]
     fn a_slanted_shot_is_judged_where_it_crosses_the_line() {
-        // The whole ball is over at x = 2.7425: a quarter of the way from 2.7325 to 2.7725, at y = 0.39.
+        // The whole ball is over at x = 2.7425: a quarter of the distance from 2.7325 to 2.7725, at y = 0.39.
         assert_eq!(between((2.7325, 0.38), (2.7725, 0.42)), Some(Outcome::Goal));
         assert_eq!(between((2.7325, 0.40), (2.7725, 0.44)), Some(Outcome::Close));
     }

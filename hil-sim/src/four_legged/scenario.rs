@@ -1,7 +1,8 @@
-//! `scenario`: start positions of a trial. The paper's four scenarios as data files (§5.1.3, docs/papers.md R31),
-//! and random ones.
+//! `scenario`: start positions of a trial. The paper's four scenarios as data files (§5.1.3, docs/papers.md
+//! R31), and random ones.
 //!
-//! The paper gives no coordinates: `hil-sim/data/scenarios/*.toml` say what was estimated from its text and figures.
+//! The paper gives no coordinates: `hil-sim/data/scenarios/*.toml` note which numbers were estimated from its
+//! text and figures.
 
 use std::fmt;
 use std::sync::LazyLock;
@@ -30,30 +31,30 @@ pub enum Scenario {
     Random,
 }
 
-/// Who stands where at kick-off.
+/// Positions at kick-off.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
-    /// The ball, at rest.
+    /// Position of the resting ball, m.
     pub ball: Point<Field>,
-    /// The robots led by brains: A, B, and as many more as a team may have.
+    /// The robots controlled by brains: A, B, and the others of the team.
     pub attackers: Vec<Pose<Field>>,
-    /// The scripted ones.
+    /// The scripted opponents.
     pub opponents: Vec<Placed>,
 }
 
 /// A scripted opponent at kick-off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
-    /// What it is there for.
+    /// Its role.
     pub role: Role,
-    /// What it does.
+    /// Its behaviour.
     pub conduct: Conduct,
-    /// Where it stands.
+    /// Its position and heading.
     pub pose: Pose<Field>,
 }
 
 impl Placed {
-    /// One that plays from its home, facing the ball.
+    /// An opponent that plays from its home region, facing the ball.
     pub fn at_home(role: Role, position: Point<Field>, ball: Point<Field>) -> Self {
         let pose = Pose { position, heading: position.direction_to(ball) };
         Self { role, conduct: Conduct::AtHome, pose }
@@ -64,7 +65,7 @@ impl Scenario {
     /// The paper's four.
     pub const PAPER: [Self; 4] = [Self::MiddleBack, Self::LeftSide, Self::DefenderAhead, Self::DefenderClose];
 
-    /// Its word in options and reports: `1` to `4` or `random`.
+    /// Its label in options and reports: `1` to `4` or `random`.
     pub const fn word(self) -> &'static str {
         match self {
             Self::MiddleBack => "1",
@@ -75,17 +76,17 @@ impl Scenario {
         }
     }
 
-    /// The scenario of that word.
+    /// The scenario with that label.
     pub fn from_word(word: &str) -> Option<Self> {
         Self::PAPER.into_iter().chain([Self::Random]).find(|scenario| scenario.word() == word)
     }
 
-    /// What it looks like, in a few words.
+    /// A short description of it.
     pub fn title(self) -> &'static str {
         self.file().map_or("random", |file| &file.title)
     }
 
-    /// Who stands where; `seed` matters for [`Scenario::Random`] alone.
+    /// The start positions; `seed` is used by [`Scenario::Random`] alone.
     pub fn layout(self, configuration: Configuration, parameters: &Parameters, seed: u64) -> Layout {
         let Some(file) = self.file() else { return random(configuration, parameters, seed) };
         let ball = in_metres(file.ball);
@@ -115,7 +116,8 @@ impl fmt::Display for Scenario {
     }
 }
 
-/// Ball anywhere between the own third and the defenders' line, A behind it, the others around, the opponents at home.
+/// The ball anywhere between the own third and the defenders' line, A behind it, the others around, the
+/// opponents at home.
 fn random(configuration: Configuration, parameters: &Parameters, seed: u64) -> Layout {
     let mut chance = Stream::new(seed, "scenario");
     let ball = Point::new(chance.between(-2.0, 1.2), chance.between(-1.4, 1.4));
@@ -128,7 +130,8 @@ fn random(configuration: Configuration, parameters: &Parameters, seed: u64) -> L
                 return at;
             }
         }
-        // Never in a region of a square metre with seven others on the field; a crowd is pushed apart at once.
+        // Never in a region of a square metre with seven others on the field; overlapping robots are pushed
+        // apart at once.
         Point::new(x[0], y[0])
     };
     let field = League::FourLegged.field();
@@ -151,7 +154,7 @@ fn random(configuration: Configuration, parameters: &Parameters, seed: u64) -> L
 }
 
 fn in_metres([x, y]: [i16; 2]) -> Point<Field> {
-    // Divided, not multiplied: 650 mm shall be the very 0.65 m that a region's border is.
+    // Divided, not multiplied: 650 mm must give exactly the 0.65 m of a region's border.
     Point::new(f32::from(x) / 1000.0, f32::from(y) / 1000.0)
 }
 
@@ -187,11 +190,11 @@ struct OpponentFile {
     at: [i16; 2],
 }
 
-/// Attackers a scenario has places for: a four-legged team.
+/// Maximum number of attackers of a scenario: a four-legged team.
 pub const TEAM: usize = protocol::team::CASE_ROBOTS_MAX;
-/// Metres between any two things placed at random: two robots' radii and a hand.
+/// Minimum distance between any two things placed at random, m: two robots' radii and a margin.
 const APART: f32 = 0.35;
-/// Draws before a random place is given up.
+/// Maximum number of draws for a random position.
 const PLACING_ATTEMPTS: usize = 100;
 
 static FILES: LazyLock<[ScenarioFile; 4]> = LazyLock::new(|| {

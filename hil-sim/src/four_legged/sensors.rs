@@ -1,7 +1,7 @@
-//! `sensors`: perception of a walking robot. Everything as it is by default; with a noise profile, blurred
+//! `sensors`: perception of a walking robot. Exact by default; with a noise profile, with Gaussian errors
 //! (docs/papers.md R39, R40).
 //!
-//! This is where noise enters, and only here (docs/architecture.md §3.2). m, rad, field frame.
+//! Measurement noise is added here and only here (docs/architecture.md §3.2). m, rad, field frame.
 
 use geometry::{Angle, Field, Point, Pose, Twist, Vector};
 use protocol::Duration;
@@ -11,22 +11,22 @@ use crate::four_legged::parameters::Noise;
 use crate::four_legged::world::World;
 use crate::rng::Stream;
 
-/// One robot's senses.
+/// The sensors of one robot.
 #[derive(Clone, Debug)]
 pub struct Senses {
     noise: Noise,
     chance: Stream,
-    /// Where the robot truly was when it last looked.
+    /// The robot's true pose at its last measurement.
     before: Option<Pose<Field>>,
 }
 
 impl Senses {
-    /// The senses of the robot in place `robot` of the world's list, blurred by `noise`.
+    /// The sensors of the robot with index `robot` in the world's list, with errors of `noise`.
     pub fn new(noise: Noise, seed: u64, robot: usize) -> Self {
         Self { noise, chance: Stream::new(seed, &format!("senses {robot}")), before: None }
     }
 
-    /// What the robot perceives, `dt` seconds after it last did.
+    /// The sensor frame of the robot, `dt` seconds after its last one.
     pub fn look(&mut self, world: &World, robot: usize, dt: f32) -> SensorFrame {
         let walker = &world.walkers[robot];
         let before = self.before.replace(walker.pose).unwrap_or(walker.pose);
@@ -69,7 +69,8 @@ impl Senses {
     }
 }
 
-/// Noiseless sight still claims a millimetre, m: what the wire resolves, and no brain divides by zero.
+/// Minimum standard deviation of a noiseless measurement, m: the resolution of the wire format; it keeps
+/// brains from dividing by zero.
 const SIGMA_FLOOR: f32 = 0.001;
 
 #[cfg(test)]

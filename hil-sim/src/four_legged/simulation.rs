@@ -1,10 +1,11 @@
-//! `simulation`: main loop of a trial. Tick by tick: faults, senses, computers, air, opponents, physics,
+//! `simulation`: main loop of a trial. Tick by tick: faults, sensors, computers, radio, opponents, physics,
 //! referee (docs/architecture.md §2.3, §7.1).
 //!
-//! In tick n at n · 40 ms: what is scheduled happens; every robot that runs is handed its senses and its packets, all robots
-//! think (in parallel where they are processes), their answers are taken in the order of ids; packets go into the air and are heard in
-//! a later tick; the opponents decide; then physics moves for four steps of 10 ms, the referee looking at each. Each
-//! robot's clock starts with its life, so no two need to agree.
+//! In tick n at n · 40 ms: scheduled faults are applied; every running robot gets its sensor frame and its
+//! packets, all robots compute (in parallel where they are processes), their answers are taken in the order
+//! of ids; packets are sent and received in a later tick; the opponents decide; then the physics advances by
+//! four steps of 10 ms, the referee examining each. Each robot's clock starts at its boot, so no two need to
+//! agree.
 
 use std::fmt;
 
@@ -25,28 +26,28 @@ use crate::four_legged::trace::TraceHash;
 use crate::four_legged::world::{STEP, Side, Walker, World, WorldEvent};
 use crate::mcu::{Backend, Mcu, McuError};
 
-/// Everything that decides how a trial runs; equal configurations run equally.
+/// Everything that determines a trial; equal configurations give equal runs.
 #[derive(Clone, Debug)]
 pub struct SimulationConfig {
-    /// Where all chance comes from.
+    /// Seed of all random streams.
     pub seed: u64,
-    /// Who stands where.
+    /// Start positions.
     pub layout: Layout,
-    /// Which opponents play; decides what ends the trial.
+    /// The configuration of opponents; it decides what ends the trial.
     pub configuration: Configuration,
-    /// The attackers' brains: the first plays from the layout's first place, and so on.
+    /// The attackers' brains: the first plays from the layout's first position, and so on.
     pub brains: Vec<BrainConfig>,
-    /// How the air treats packets.
+    /// Settings of the radio channel.
     pub air: AirSettings,
-    /// How perception is blurred.
+    /// Errors of perception.
     pub noise: Noise,
-    /// How the world behaves.
+    /// Parameters of the physics.
     pub parameters: Parameters,
-    /// What goes wrong, and when.
+    /// Scheduled faults.
     pub faults: Vec<ScheduledFault>,
 }
 
-/// A trial under way.
+/// A running trial.
 pub struct Simulation<'a> {
     backend: Box<dyn Backend<'a> + 'a>,
     robots: Vec<Robot<'a>>,
@@ -62,56 +63,56 @@ pub struct Simulation<'a> {
     worst_instructions: u32,
 }
 
-/// A robot led by a brain; its place in the list is that in the world.
+/// A robot controlled by a brain; its index in this list is its index in the world.
 struct Robot<'a> {
     config: BrainConfig,
     computer: Option<Box<dyn Mcu + 'a>>,
-    /// The tick in which its present life began.
+    /// The tick in which its present epoch started.
     born: u32,
     senses: Senses,
-    /// The bit to flip in its next order.
+    /// Number of the bit to flip in its next order.
     flip: Option<u8>,
 }
 
-/// What happened in a tick.
+/// Inputs, outputs and events of a tick.
 #[derive(Clone, Debug, Default)]
 pub struct Tick {
     /// Its number.
     pub number: u32,
-    /// Seconds from kick-off to its beginning.
+    /// Seconds from kick-off to its start.
     pub time: f32,
-    /// What was scheduled for it.
+    /// Faults applied in it.
     pub faults: Vec<Fault>,
-    /// What robots heard, in delivery order.
+    /// Packets received by robots, in delivery order.
     pub heard: Vec<Heard>,
-    /// What bodies were told, by id.
+    /// Orders to bodies, by id.
     pub orders: Vec<(RobotId, ActuatorFrame)>,
-    /// What robots said, in order.
+    /// Packets sent by robots, in order.
     pub sent: Vec<Sent>,
-    /// What happened on the carpet, with the seconds from kick-off.
+    /// Events of the physics, with the seconds from kick-off.
     pub events: Vec<(f32, WorldEvent)>,
 }
 
-/// A packet that a robot said.
+/// A packet sent by a robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sent {
-    /// Who.
+    /// The sender.
     pub from: RobotId,
     /// The bytes.
     pub packet: Packet,
 }
 
-/// A packet that a robot was handed.
+/// A packet delivered to a robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Heard {
-    /// Who.
+    /// The receiver.
     pub to: RobotId,
     /// The bytes.
     pub packet: Packet,
 }
 
 impl<'a> Simulation<'a> {
-    /// At kick-off, all computers started.
+    /// A trial at kick-off, with all computers started.
     pub fn new(
         config: SimulationConfig,
         mut backend: Box<dyn Backend<'a> + 'a>,
@@ -141,7 +142,7 @@ impl<'a> Simulation<'a> {
             robots.push(Robot { config, computer: Some(computer), born: 0, senses, flip: None });
         }
         let mut faults = faults;
-        // Stable: what is scheduled for one tick happens in the order it was given.
+        // Stable sort: faults of one tick are applied in the given order.
         faults.sort_by_key(|fault| fault.tick);
         Ok(Self {
             backend,
@@ -159,7 +160,8 @@ impl<'a> Simulation<'a> {
         })
     }
 
-    /// Runs a tick; gives what happened. The referee's verdict does not stop the world: that is the caller's business.
+    /// Runs a tick and returns what happened. The referee's verdict does not stop the simulation; the caller
+    /// decides when to stop.
     pub fn step(&mut self) -> Result<&Tick, SimulationError> {
         let number = self.next;
         self.next += 1;
@@ -182,12 +184,12 @@ impl<'a> Simulation<'a> {
         &self.tick
     }
 
-    /// The truth, as it is now: at the end of the last tick.
+    /// The true state, as it is now: at the end of the last tick.
     pub fn world(&self) -> &World {
         &self.world
     }
 
-    /// The referee, who knows how the trial stands.
+    /// The referee, with counts and outcome of the trial.
     pub fn referee(&self) -> &Referee {
         &self.referee
     }
@@ -202,12 +204,12 @@ impl<'a> Simulation<'a> {
         self.trace
     }
 
-    /// The air, to look at.
+    /// The radio channel.
     pub fn air(&self) -> &Air {
         &self.air
     }
 
-    /// Most instructions that any robot's tick has taken, where they can be counted; else 0.
+    /// Maximum instruction count of any robot's tick, where it can be counted; else 0.
     pub fn worst_instructions(&self) -> u32 {
         self.worst_instructions
     }
@@ -222,7 +224,7 @@ impl<'a> Simulation<'a> {
         self.opponents.iter().map(|opponent| opponent.role)
     }
 
-    /// What is scheduled for this tick.
+    /// Applies the faults scheduled for this tick.
     fn happen(&mut self, number: u32) -> Result<(), SimulationError> {
         let due = self.faults.partition_point(|fault| fault.tick <= number);
         for ScheduledFault { fault, .. } in self.faults.drain(..due).collect::<Vec<_>>() {
@@ -253,11 +255,11 @@ impl<'a> Simulation<'a> {
         Ok(())
     }
 
-    /// Every computer gets its tick, then gives its answer.
+    /// Sends every computer its tick, then collects its answer.
     fn think(&mut self, number: u32) -> Result<(), SimulationError> {
         for (i, robot) in self.robots.iter_mut().enumerate() {
             let id = robot.config.robot;
-            // Looked at even without a computer, so that odometry spans one tick when it returns.
+            // Measured even without a computer, so that odometry spans one tick after a reboot.
             let sensors = robot.senses.look(&self.world, i, TICK);
             let Some(computer) = &mut robot.computer else {
                 self.air.discard(number, id);
@@ -293,7 +295,7 @@ impl<'a> Simulation<'a> {
         Ok(())
     }
 
-    /// Four steps of physics, each looked at by the referee.
+    /// Four steps of physics, each examined by the referee.
     fn play(&mut self, number: u32) {
         let mut events = Vec::new();
         for step in 1..=STEPS_PER_TICK {
@@ -306,23 +308,23 @@ impl<'a> Simulation<'a> {
     }
 }
 
-/// Why a trial cannot start or go on.
+/// Why a trial cannot start or continue.
 #[derive(Debug)]
 pub enum SimulationError {
-    /// The layout has fewer places than there are brains.
+    /// The layout has fewer positions than there are brains.
     TooManyRobots {
-        /// Brains.
+        /// Number of brains.
         wanted: usize,
-        /// Places.
+        /// Number of positions.
         places: usize,
     },
-    /// Brains come in rising order of their ids, each once; this one does not.
+    /// Brains must be given in rising order of their ids, each once; this id is out of order.
     IdsNotRising(RobotId),
     /// A robot's computer failed.
     Computer {
-        /// Whose.
+        /// Its robot.
         robot: RobotId,
-        /// How.
+        /// The failure.
         error: McuError,
     },
 }
@@ -355,18 +357,18 @@ fn start<'a>(
     backend.boot(config).map_err(|error| SimulationError::Computer { robot: config.robot, error })
 }
 
-/// Seconds from kick-off to a step of a tick, from whole milliseconds.
+/// Seconds from kick-off to a physics step of a tick, computed from whole milliseconds.
 fn seconds(tick: u32, step: u32) -> f32 {
     (tick * TICK_MS + step * (TICK_MS / STEPS_PER_TICK)) as f32 * 0.001
 }
 
-/// A brain's tick, ms (docs/architecture.md §2.3: four-legged, every 40 ms).
+/// Period of a brain's tick, ms (docs/architecture.md §2.3: four-legged, every 40 ms).
 const TICK_MS: u32 = 40;
-/// The same in µs.
+/// Period of a brain's tick, µs.
 pub const TICK_US: u64 = TICK_MS as u64 * 1000;
-/// The same in s.
+/// Period of a brain's tick, s.
 const TICK: f32 = 0.04;
-/// Steps of physics in a tick.
+/// Physics steps per tick.
 const STEPS_PER_TICK: u32 = 4;
 const _: () = assert!(TICK == STEPS_PER_TICK as f32 * STEP && TICK_MS.is_multiple_of(STEPS_PER_TICK));
 

@@ -1,10 +1,10 @@
-//! `trace`: trace hash of a trial. A hash of everything that matters, tick by tick, as
-//! docs/architecture.md §2.5 lists it.
+//! `trace`: trace hash of a trial. A hash of all state and all messages, tick by tick, as
+//! docs/architecture.md §2.5 lists them.
 //!
-//! Per tick, in order: the tick's number (u32); the ball's place and velocity; every robot's pose and velocity in its own frame,
-//! attackers by id and then opponents in their order (f32 bits); every order to a body (robot id, postcard bytes); every packet
-//! handed over, in delivery order (receiver id, length, bytes). All little endian. The simulator takes it, so native and QEMU
-//! runs are hashed by the same code.
+//! Per tick, in order: the tick's number (u32); the ball's position and velocity; every robot's pose and
+//! velocity in its own frame, attackers by id and then opponents in their order (f32 bits); every order to a
+//! body (robot id, postcard bytes); every packet delivered, in delivery order (receiver id, length, bytes).
+//! All little endian. The simulator computes it, so native and QEMU runs are hashed by the same code.
 
 use protocol::RobotId;
 use protocol::robot_io::ActuatorFrame;
@@ -17,7 +17,7 @@ use crate::hash::Fnv;
 pub struct TraceHash(pub(crate) Fnv);
 
 impl TraceHash {
-    /// A tick begins with the world like this.
+    /// Hashes the start of a tick with this state of the world.
     pub fn tick(&mut self, number: u32, world: &World) {
         self.0.add(&number.to_le_bytes());
         self.ball(&world.ball);
@@ -26,7 +26,7 @@ impl TraceHash {
         }
     }
 
-    /// A robot's body was given this order.
+    /// Hashes an order to a robot's body.
     pub fn order(&mut self, robot: RobotId, order: &ActuatorFrame) {
         self.0.add(&[robot.number()]);
         self.frame(order);
@@ -40,7 +40,7 @@ impl TraceHash {
         }
     }
 
-    /// A robot was handed this packet.
+    /// Hashes a packet delivered to a robot.
     pub fn packet(&mut self, receiver: RobotId, packet: &[u8]) {
         self.0.add(&[receiver.number(), packet.len() as u8]);
         self.0.add(packet);

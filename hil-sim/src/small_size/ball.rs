@@ -1,9 +1,10 @@
 //! `ball`: motion of a free ball. It slides, rolls, flies and hops; m, s, field frame, heights above the
-//! carpet.
+//! field surface.
 //!
-//! A solid sphere: while it slips, the carpet slows it by `slide` and turns it until it rolls (a ball kicked without spin then
-//! has 5/7 of its speed); rolling it loses `roll` a second. A hop keeps fixed shares of its speeds. Each step is exact for
-//! motion along a line. Written apart from `motion`'s model on purpose: a wrong belief must show as a missed pass.
+//! A solid sphere: while it slips, the surface slows it by `slide` and turns it until it rolls (a ball kicked
+//! without spin then has 5/7 of its speed); rolling, it loses `roll` a second. A hop keeps fixed shares of
+//! its speeds. Each step is exact for motion along a line. Written independently of `motion`'s model on
+//! purpose: an error of that model must become visible as a missed pass.
 
 use geometry::{Field, Point, Vector, math};
 
@@ -14,25 +15,25 @@ use super::parameters::BallParameters;
 pub struct Ball {
     /// Its centre, m.
     pub position: Point<Field>,
-    /// Its lowest point above the carpet, m.
+    /// Its lowest point above the field surface, m.
     pub height: f32,
-    /// Along the carpet, m/s.
+    /// Velocity along the field surface, m/s.
     pub velocity: Vector<Field>,
-    /// Upwards, m/s.
+    /// Upward velocity, m/s.
     pub climb: f32,
     /// The velocity at which its spin would roll, m/s.
     pub spin: Vector<Field>,
-    /// Landings since it was last on the ground.
+    /// Number of landings since it last lay on the ground.
     pub hops: u32,
 }
 
 impl Ball {
-    /// At rest on the carpet.
+    /// Resting on the field surface.
     pub fn at(position: Point<Field>) -> Self {
         Self { position, ..Self::default() }
     }
 
-    /// Rolling on the carpet.
+    /// Rolling on the field surface.
     pub fn rolling(position: Point<Field>, velocity: Vector<Field>) -> Self {
         Self { position, velocity, spin: velocity, ..Self::default() }
     }
@@ -42,12 +43,12 @@ impl Ball {
         math::sqrt(self.velocity.dot(self.velocity) + self.climb * self.climb)
     }
 
-    /// It has left the carpet.
+    /// Whether it is above the field surface.
     pub fn in_the_air(&self) -> bool {
         self.height > 0.0 || self.climb > 0.0
     }
 
-    /// Nothing happens for `dt` seconds.
+    /// Moves freely for `dt` seconds.
     pub(super) fn advance(&mut self, of: &BallParameters, dt: f32) {
         if self.in_the_air() {
             self.fly(of, dt);
@@ -110,7 +111,8 @@ impl Ball {
         self.spin = self.velocity;
     }
 
-    /// It meets a surface that moves with `surface`, whose outside is at `normal`; gives the change of its velocity.
+    /// Bounces on a surface that moves with `surface`, whose outward normal is `normal`; returns the change
+    /// of its velocity.
     pub(super) fn bounce(
         &mut self,
         normal: Vector<Field>,
@@ -137,7 +139,7 @@ impl Ball {
     }
 }
 
-/// How an impact is.
+/// Parameters of an impact.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Impact {
     /// Share of the closing speed that comes back.
@@ -146,13 +148,13 @@ pub(super) struct Impact {
     pub friction: f32,
     /// Share of its roll along the normal that the ball keeps.
     pub spin: f32,
-    /// Share of the impact that the ball takes: 1 against walls, less against what gives way.
+    /// Share of the impact that the ball takes: 1 against walls, less against movable bodies.
     pub share: f32,
 }
 
-/// m/s: what meets more slowly stays together; else a ball that is pushed would hum.
+/// Closing speed, m/s, below which bodies stay together; else a pushed ball would oscillate.
 const SOFT: f32 = 0.03;
-/// A millisecond holds no more: the lowest hop lasts 90 times as long.
+/// Maximum number of hops in a millisecond: the lowest hop lasts 90 times as long.
 const HOPS_PER_STEP: usize = 2;
 
 #[cfg(test)]
@@ -180,7 +182,8 @@ mod tests {
         let (mut ball, of) = (Ball::at(Point::default()), carpet());
         ball.velocity = Vector::new(6.0, 0.0);
         let steps = run_until_rest(&mut ball, &of);
-        // v²(1−c²)/2a + c²v²/2r with c = 5/7, a = 3.9, r = 0.35: 2.2606 + 26.2391 m; v(1−c)/a + cv/r = 0.4396 + 12.2449 s.
+        // v²(1−c²)/2a + c²v²/2r with c = 5/7, a = 3.9, r = 0.35: 2.2606 + 26.2391 m; v(1−c)/a + cv/r = 0.4396
+        // + 12.2449 s.
         assert!((ball.position.x() - 28.499_7).abs() < 5e-3, "{:?}", ball.position);
         assert!(steps.abs_diff(12_684) <= 2, "{steps}");
         assert_eq!(ball.position.y(), 0.0);
@@ -201,7 +204,7 @@ mod tests {
         ball.velocity = Vector::new(1.0, 0.0);
         ball.spin = Vector::new(-4.0, 0.0);
         run_until_rest(&mut ball, &carpet());
-        // It rolls with 5/7 · 1 + 2/7 · (−4) = −3/7 m/s in the end.
+        // In the end it rolls with 5/7 · 1 + 2/7 · (−4) = −3/7 m/s.
         assert!(ball.position.x() < 0.0, "{:?}", ball.position);
     }
 
@@ -215,7 +218,8 @@ mod tests {
             ball.advance(&of, STEP);
             top = top.max(ball.height);
         }
-        // 2·3·3/9.81 = 1.8349 m; 3²/(2·9.81) = 0.4587 m; then 0.75 along and 0.5 up. One step flies on after landing.
+        // 2·3·3/9.81 = 1.8349 m; 3²/(2·9.81) = 0.4587 m; then 0.75 along and 0.5 up. One step flies on after
+        // landing.
         assert!((ball.position.x() - 1.834_86).abs() < 3e-3, "{:?}", ball.position);
         assert!((top - 0.458_7).abs() < 1e-4, "{top}");
         assert!((ball.velocity.x() - 2.25).abs() < 1e-5 && (ball.climb - 1.5).abs() < 0.01, "{ball:?}");
@@ -234,10 +238,10 @@ mod tests {
         ball.velocity = Vector::new(-2.0, 1.0);
         let hit = Impact { restitution: 0.5, friction: 0.1, spin: 0.0, share: 1.0 };
         let change = ball.bounce(Vector::new(1.0, 0.0), Vector::default(), hit);
-        // Along the normal −2 becomes 1; friction 0.1 · 3 would take 0.3, but 2/7 of 1 m/s is all there is to take.
+        // Along the normal −2 becomes 1; friction 0.1 · 3 would take 0.3, but 2/7 of 1 m/s is the maximum.
         assert!((change - Vector::new(3.0, -2.0 / 7.0)).norm() < 1e-6);
         assert_eq!(ball.bounce(Vector::new(1.0, 0.0), Vector::default(), hit), Vector::default());
-        // A surface that comes along pushes.
+        // A surface that moves along pushes the ball.
         ball.velocity = Vector::default();
         ball.bounce(Vector::new(1.0, 0.0), Vector::new(2.0, 0.0), hit);
         assert!((ball.velocity.x() - 3.0).abs() < 1e-6);

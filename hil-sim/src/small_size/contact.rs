@@ -1,8 +1,8 @@
-//! `contact`: collisions of the ball. Hulls, goals and boards; m, s, field frame.
+//! `contact`: collisions of the ball with hulls, goals and boards; m, s, field frame.
 //!
-//! The ball's way in a step is swept: it goes ahead by its distance from the nearest surface until it touches one, so that no
-//! speed tunnels. What still overlaps in the end is pushed apart: the ball out of robots, and robots off a ball that has
-//! nowhere to go.
+//! The ball's path in a step is swept: it advances by its distance from the nearest surface until it touches
+//! one, so that it tunnels at no speed. Overlaps that remain are resolved: the ball is pushed out of robots,
+//! and robots off a ball that cannot move.
 
 use geometry::{Field, Point, Vector};
 
@@ -11,7 +11,7 @@ use super::event::Event;
 use super::surface::{Nearest, hull};
 use super::{STEP, World};
 
-/// What the ball may meet.
+/// What the ball may collide with.
 #[derive(Clone, Copy, Debug)]
 enum Obstacle {
     Robot(usize),
@@ -19,7 +19,7 @@ enum Obstacle {
 }
 
 impl World {
-    /// The ball moves for a step, bouncing on what is in its way.
+    /// Moves the ball for a step, with bounces on obstacles.
     pub(super) fn move_ball(&mut self) {
         let before = self.ball;
         self.ball.advance(&self.parameters.ball, STEP);
@@ -37,7 +37,7 @@ impl World {
                     break;
                 };
                 self.ball.position += way * share;
-                // Robots have already gone their whole step: the ball meets them there.
+                // Robots have already moved for the whole step: the ball collides with them there.
                 left *= 1.0 - share;
                 self.hit(obstacle, nearest);
                 way = self.ball.velocity * (STEP * left);
@@ -56,7 +56,7 @@ impl World {
         }
     }
 
-    /// Places of the robots that the ball could touch in this step.
+    /// Indices of the robots that the ball could touch in this step.
     fn robots_near_ball(&self, before: &Ball) -> heapless::Vec<usize, NEAR_MAX> {
         let mut near = heapless::Vec::new();
         if before.height.min(self.ball.height) > self.highest_robot {
@@ -75,7 +75,7 @@ impl World {
         near
     }
 
-    /// The nearest surface of an obstacle to a place of the ball; the normal is the field's.
+    /// The nearest surface of an obstacle to a ball position; the normal is in the field frame.
     fn nearest(&self, obstacle: Obstacle, at: Point<Field>) -> Nearest {
         match obstacle {
             Obstacle::Robot(i) => {
@@ -93,7 +93,7 @@ impl World {
         }
     }
 
-    /// The first thing the ball meets on its `way`, and after which share of it.
+    /// The first obstacle on the ball's displacement `way`, and the share of `way` before the contact.
     fn first_hit(
         &self,
         near: &[usize],
@@ -112,7 +112,8 @@ impl World {
             if self.ball.height >= height {
                 continue;
             }
-            // A robot has gone its step already; seen from it, the ball comes from further ahead of its way.
+            // A robot has already moved for this step; relative to it, the ball starts further back on its
+            // path.
             let (start, relative) = match obstacle {
                 Obstacle::Robot(i) => {
                     let gone = self.robots[i].velocity * (STEP * left);
@@ -128,7 +129,7 @@ impl World {
         first
     }
 
-    /// After which share of `way` from `start` the ball touches this obstacle, moving towards it.
+    /// The share of `way` from `start` after which the ball touches this obstacle, moving towards it.
     fn sweep(
         &self,
         obstacle: Obstacle,
@@ -156,7 +157,7 @@ impl World {
         None
     }
 
-    /// The ball meets something.
+    /// Applies the impact of the ball on an obstacle.
     fn hit(&mut self, obstacle: Obstacle, nearest: Nearest) {
         let normal = Vector::new(nearest.normal[0], nearest.normal[1]);
         let of = self.parameters.bounce;
@@ -190,7 +191,7 @@ impl World {
         }
     }
 
-    /// What overlaps the ball in the end: the ball gives way, and where it cannot, the robots do.
+    /// Resolves the remaining overlaps: the ball is moved, and where it cannot move, the robots are.
     fn push_ball_out(&mut self, near: &[usize], at_goal: bool) {
         let radius = self.parameters.ball.radius;
         let walls = if at_goal { self.goal_walls.len() } else { 0 };
@@ -234,7 +235,7 @@ impl World {
         }
     }
 
-    /// A ball that comes down upon a robot hops off it.
+    /// A ball that lands on a robot hops off it.
     fn land_on_robots(&mut self, before: &Ball, near: &[usize]) {
         for &i in near {
             let top = self.robots[i].body.height;
@@ -245,7 +246,7 @@ impl World {
             if nearest.distance < 0.0 {
                 self.ball.height = top;
                 self.ball.climb = self.ball.climb.abs() * self.parameters.ball.hop_up;
-                // It never comes to rest up there: at least the speed of falling from a hop's end pushes it on.
+                // It never stops on top: it gets at least the speed of falling from a hop's end.
                 let normal = Vector::new(nearest.normal[0], nearest.normal[1]);
                 self.ball.velocity += normal * SLIP_OFF;
                 self.touch(i);
@@ -253,7 +254,7 @@ impl World {
         }
     }
 
-    /// The ball flies above the goals' walls.
+    /// Whether the ball flies above the goals' walls.
     fn over_the_goal(&self, ball: &Ball) -> bool {
         ball.height >= self.pitch.field.goal_height
     }
@@ -273,21 +274,21 @@ impl World {
         let (was, is) = (before.position.x().abs(), ball.position.x().abs());
         let speed = ball.speed();
         if was + radius <= line && is + radius > line {
-            // From the field against the bar.
+            // Against the bar from the field.
             let out = if ball.position.x() > 0.0 { -1.0 } else { 1.0 };
             ball.position = Point::new(-out * (line - radius), ball.position.y());
             ball.velocity =
                 Vector::new(out * ball.velocity.x().abs() * self.parameters.bounce.wall, ball.velocity.y());
             self.events.push(Event::GoalHit { at: self.ball.position, speed });
         } else if is > line && is < line + self.pitch.field.goal_depth && ball.climb > 0.0 {
-            // From inside against the roof.
+            // Against the roof from inside.
             ball.climb = -ball.climb * self.parameters.bounce.net;
             ball.height = bar - 2.0 * radius;
             self.events.push(Event::GoalHit { at: self.ball.position, speed });
         }
     }
 
-    /// Boards round the carpet; beyond them, where only flying balls come, the hall ends.
+    /// Boards round the field surface, and the walls of the room beyond them, which only flying balls reach.
     fn stay_in_boards(&mut self, before: &Ball) {
         let [x, y] = self.pitch.corner();
         let radius = self.parameters.ball.radius;
@@ -300,7 +301,7 @@ impl World {
         }
         let over = self.ball.height >= self.pitch.around.wall_height;
         let (x, y) = if over || outside { (x + HALL, y + HALL) } else { (x, y) };
-        // The hall's end is far enough for what came over a board to stay there.
+        // The walls of the room are far enough away that a ball that passed a board stays outside.
         let bounce = if outside { self.parameters.bounce.net } else { self.parameters.bounce.wall };
         for (normal, beyond) in [
             (Vector::new(-1.0, 0.0), p.x() + radius - x),
@@ -318,7 +319,7 @@ impl World {
         }
     }
 
-    /// Ball and robot touch in this step.
+    /// Records a contact of ball and robot in this step.
     pub(super) fn touch(&mut self, i: usize) {
         let (now, at) = (self.step, self.ball.position);
         let robot = &mut self.robots[i];
@@ -335,24 +336,25 @@ impl World {
     }
 }
 
-/// Bounces of the ball in a millisecond: wedged between two bodies it has as many as anybody grants; off one and the next
-/// it has two.
+/// Maximum number of bounces of the ball in a millisecond: wedged between two bodies it would have
+/// arbitrarily many; off one body and the next it has two.
 const BOUNCES_PER_STEP: usize = 2;
-/// Steps of a sweep; each ends at a surface or beyond the way.
+/// Maximum iterations of a sweep; each ends at a surface or at the end of the path.
 const SWEEP_STEPS: usize = 24;
-/// How often what overlaps the ball is pushed apart.
+/// Iterations of pushing overlaps apart.
 const PUSHES: usize = 2;
-/// A ball deeper in a robot than this, m, could not give way, so the robot does; less is what a push's rounding leaves.
+/// Overlap of ball and robot, m, above which the robot is moved, since the ball could not; smaller overlaps
+/// are rounding errors of a push.
 const WEDGED: f32 = 1e-5;
-/// m: nearer is touching.
+/// Distance that counts as contact, m.
 pub(super) const TOUCH: f32 = 2e-5;
-/// m that a robot goes in a step, at most, with a reserve.
+/// Maximum distance a robot moves in a step, m, with a reserve.
 const ROBOT_STEP: f32 = 0.012;
-/// m/s: the fastest ball.
+/// Maximum speed of the ball, m/s.
 const SPEED_MAX: f32 = super::parameters::BALL_SPEED_MAX;
-/// Robots round a ball: more than fit.
+/// Maximum number of robots near a ball: more than fit.
 const NEAR_MAX: usize = 8;
-/// m/s at which a ball that fell on a robot leaves it.
+/// Speed at which a ball that fell on a robot leaves it, m/s.
 const SLIP_OFF: f32 = 0.3;
-/// m of hall beyond the boards.
+/// Distance from the boards to the walls of the room, m.
 const HALL: f32 = 2.0;

@@ -1,7 +1,7 @@
 //! `crowd`: collisions of robots. Discs against discs, boards and goals; m, s, field frame.
 //!
-//! Where two overlap they are moved apart by their masses, and what they closed in with is exchanged. Only pairs that could
-//! meet within the next milliseconds are looked at.
+//! Overlapping robots are moved apart in proportion to their masses, and their closing speed is exchanged as
+//! an impact. Only pairs that could touch within the next milliseconds are checked.
 
 use geometry::{Field, Point, Vector};
 
@@ -42,7 +42,7 @@ impl World {
         }
     }
 
-    /// Who could touch whom, the ball, a board or a goal before the next look.
+    /// Finds the robots that could touch one another, the ball, a board or a goal before the next search.
     pub(super) fn look_around(&mut self) {
         if self.step >= self.pairs_until {
             self.find_pairs();
@@ -68,7 +68,7 @@ impl World {
         }
     }
 
-    /// Pairs of robots that could touch before the next look at them.
+    /// Pairs of robots that could touch before the next search for pairs.
     fn find_pairs(&mut self) {
         self.pairs.clear();
         self.pairs_until = self.step + PAIRS_STEPS;
@@ -127,7 +127,7 @@ impl World {
     }
 }
 
-/// A robot is moved by `by`, and loses its speed against it.
+/// Moves a robot by `by`, and removes its speed in the opposite direction.
 fn push_out(robot: &mut Robot, by: Vector<Field>, bounce: f32) {
     robot.pose.position += by;
     if let Some(normal) = by.unit() {
@@ -138,13 +138,14 @@ fn push_out(robot: &mut Robot, by: Vector<Field>, bounce: f32) {
     }
 }
 
-/// Steps between looks for robots that are near each other.
+/// Steps between searches for pairs of near robots.
 const PAIRS_STEPS: u64 = 24;
-/// m that others push a robot in that time beyond what its own limits allow.
+/// Distance, m, that others push a robot in that time beyond its own limits.
 const PUSHED: f32 = 0.05;
-/// Steps between looks for robots near the ball, a board or a goal.
+/// Steps between searches for robots near the ball, a board or a goal.
 const NEAR_STEPS: u64 = 8;
-/// m between hull and ball that both can close in that time and be in a mouth: 8 ms at 20 and 10 m/s, and a mouth's depth.
+/// Maximum distance between hull and ball, m, that both can close in that time and then be in the dribbler
+/// opening: 8 ms at 20 and 10 m/s, and the opening's depth.
 const BALL_REACH: f32 = 0.24 + 0.1;
-/// m between hull and board that a robot can close in that time: 8 ms at 10 m/s.
+/// Distance between hull and board, m, that a robot can close in that time: 8 ms at 10 m/s.
 const EDGE: f32 = 0.08;

@@ -4,55 +4,56 @@ use geometry::{Field, Point, Vector};
 
 use protocol::Who;
 
-/// What happened in a step.
+/// Events of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
-    /// Ball and robot came to touch, after at least [`super::TOUCH_GAP_STEPS`] apart.
+    /// Contact of ball and robot, after at least [`super::TOUCH_GAP_STEPS`] apart.
     Touched {
-        /// Who.
+        /// The robot.
         robot: Who,
-        /// The ball was here.
+        /// The ball's position, m.
         at: Point<Field>,
     },
     /// A kicker moved the ball.
     Kicked {
-        /// Whose.
+        /// The robot.
         robot: Who,
-        /// From here.
+        /// The ball's position, m.
         at: Point<Field>,
-        /// The ball's velocity along the carpet after it, m/s.
+        /// The ball's velocity along the field surface after it, m/s.
         velocity: Vector<Field>,
         /// The ball's speed in 3-D after it, m/s.
         speed: f32,
-        /// It left the carpet.
+        /// Whether the ball left the field surface.
         chip: bool,
     },
-    /// Two robots came to touch.
+    /// Contact of two robots.
     Crash {
-        /// Both, sorted.
+        /// Both robots, sorted.
         robots: [Who; 2],
-        /// Between them.
+        /// Point between them, m.
         at: Point<Field>,
-        /// Their velocities before it, in that order, m/s.
+        /// Their velocities before it, in the order of `robots`, m/s.
         velocities: [Vector<Field>; 2],
-        /// Difference of the velocities, projected on the line between their centres, m/s: what the rules call crash speed.
+        /// Difference of the velocities, projected on the line between their centres, m/s: what the rules
+        /// call crash speed.
         closing: f32,
     },
     /// The ball hit a goal's post, bar, wall or net.
     GoalHit {
-        /// Here.
+        /// The ball's position, m.
         at: Point<Field>,
-        /// So fast, m/s.
+        /// The ball's speed, m/s.
         speed: f32,
     },
-    /// The ball hit a board round the carpet.
+    /// The ball hit a board round the field surface.
     BoardHit {
-        /// Here.
+        /// The ball's position, m.
         at: Point<Field>,
     },
-    /// A flying ball came down.
+    /// A flying ball landed.
     Landed {
-        /// Here.
+        /// The ball's position, m.
         at: Point<Field>,
     },
 }

@@ -1,12 +1,13 @@
 //! `small_size`: physics of the Small Size League. Robots on wheels and a golf ball in three dimensions, 1 ms
 //! a step (docs/architecture.md §2.3, §7.1).
 //!
-//! A step of the [`World`]: wheels drive (`robot`), bodies part (`crowd`), kickers and dribblers act (`mouth`), the ball
-//! moves (`ball`) and bounces (`contact`), light barriers look. What happened comes out as [`Event`]s. SI units, field
-//! frame; heights are those of the ball's lowest point above the carpet.
+//! A step of the [`World`]: wheels drive (`robot`), bodies are pushed apart (`crowd`), kickers and dribblers
+//! act (`mouth`), the ball moves (`ball`) and bounces (`contact`), break-beam sensors measure. What happened
+//! is returned as [`Event`]s. SI units, field frame; heights are those of the ball's lowest point above the
+//! field surface.
 //!
-//! **Invariants.** No clock and no unseeded chance; robots are kept in order of colour and number, so who was put down first
-//! decides nothing; `geometry::math` only; nothing of `motion`'s models.
+//! **Invariants.** No clock and no unseeded randomness; robots are kept in order of colour and number, so the
+//! order in which they were placed has no effect; `geometry::math` only; no use of `motion`'s models.
 
 mod ball;
 pub mod camera;
@@ -47,13 +48,13 @@ use senses::Senses;
 use surface::Slab;
 use worlds::{Latency, LinkModel, RobotSpread, WorldModel};
 
-/// The true state of everything on the carpet.
+/// The true state of ball and robots.
 #[derive(Clone, Debug)]
 pub struct World {
     /// The ball.
     pub ball: Ball,
     robots: Vec<Robot>,
-    /// Where each slot's robot stands in that list.
+    /// Index of each slot's robot in that list.
     places: [Option<u8>; SLOTS],
     senses: Vec<Senses>,
     step: u64,
@@ -66,33 +67,33 @@ pub struct World {
     events: Vec<Event>,
     last_touch: Option<(Who, u64)>,
     ball_drag: Option<BallDrag>,
-    /// Of each pair of slots the step after the one in which they last touched; 0: never.
+    /// For each pair of slots, the step after the one in which they last touched; 0: never.
     crashes: Vec<u64>,
     pairs: Vec<(u8, u8)>,
     pairs_until: u64,
     near_until: u64,
-    /// Robots that the ball could meet before the next look, and robots that could meet a board or goal.
+    /// Robots that the ball could touch before the next search, and robots that could touch a board or goal.
     near_ball: Vec<u8>,
     near_edge: Vec<u8>,
-    /// Where the ball was after the last step: it may have been moved by hand since.
+    /// Position of the ball after the last step: it may have been moved manually since.
     ball_was: Point<Field>,
     goal_walls: [Slab; 3],
-    /// m from the middle along x: nearer no goal is in anybody's way.
+    /// Distance from the middle along x, m, below which no robot or ball can touch a goal.
     goal_zone: f32,
-    /// m.
+    /// Height of the highest robot, m.
     highest_robot: f32,
 }
 
-/// The ball is pulled.
+/// A force pulls the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct BallDrag {
     to: Point<Field>,
-    /// The step in which it ends; `None`: it lasts until it is ended.
+    /// The step in which it ends; `None`: it lasts until it is released.
     until: Option<u64>,
 }
 
 impl World {
-    /// A ball in the middle and nobody there; chance comes from `seed`.
+    /// A ball in the middle and no robots; random streams come from `seed`.
     pub fn new(league: League, parameters: &Parameters, seed: u64) -> Self {
         let pitch = Pitch { field: league.field(), around: parameters.field };
         let mut world = Self {
@@ -125,13 +126,14 @@ impl World {
         world
     }
 
-    /// The same in a world of the family: robots differ, and what brains order comes late. Bystanders come when they are told to.
+    /// The same with a random world model: robots differ, and brains' orders arrive late. Bystanders are
+    /// added by a separate call.
     pub fn of_model(league: League, model: &WorldModel, seed: u64) -> Self {
         let world = Self::new(league, &model.parameters, seed);
         Self { spread: model.robots, latency: Latency::new(&model.link, seed), ..world }
     }
 
-    /// Another field under the same robots and ball.
+    /// Another field for the same robots and ball.
     pub fn set_pitch(&mut self, pitch: Pitch) {
         self.pitch = pitch;
         self.goal_walls = pitch.goal_walls();
@@ -139,12 +141,12 @@ impl World {
         self.look_again();
     }
 
-    /// What was near what may have changed.
+    /// Searches again for near robots, after a change.
     fn look_again(&mut self) {
         (self.pairs_until, self.near_until) = (0, 0);
     }
 
-    /// Puts a robot there, at rest; it is made where it has never been.
+    /// Places a resting robot; it is created where it was never placed before.
     pub fn put(&mut self, who: Who, pose: Pose<Field>) -> &mut Robot {
         let place = match self.place_of(who) {
             Ok(place) => place,
@@ -169,7 +171,7 @@ impl World {
         robot
     }
 
-    /// Takes a robot off the carpet; it keeps its body and its battery.
+    /// Takes a robot off the field; it keeps its body and its battery.
     pub fn remove(&mut self, who: Who) {
         if let Ok(place) = self.place_of(who) {
             let robot = &mut self.robots[place];
@@ -190,18 +192,18 @@ impl World {
         }
     }
 
-    /// Another ball or carpet from the next step on; to be checked before.
+    /// Other parameters of ball and field surface from the next step on; the caller has checked them.
     pub(crate) fn set_ball_parameters(&mut self, ball: BallParameters) {
         self.parameters.ball = ball;
     }
 
-    /// Puts the ball somewhere, moving or not; nobody pulls it any longer.
+    /// Places the ball, resting or moving; any pull on it ends.
     pub fn put_ball(&mut self, ball: Ball) {
         self.ball = ball;
         self.ball_drag = None;
     }
 
-    /// Moves robots off the ball, by the shortest way.
+    /// Moves robots off the ball, by the shortest displacement.
     pub fn make_room_for_ball(&mut self) {
         let (ball, radius) = (self.ball.position, self.parameters.ball.radius);
         for robot in self.robots.iter_mut().filter(|robot| robot.present) {
@@ -215,38 +217,39 @@ impl World {
         self.look_again();
     }
 
-    /// A hand pulls the ball there along the carpet, through what gives way, for [`DRAG_STEPS`] at most.
+    /// Pulls the ball along the field surface to a position, pushing movable bodies aside, for at most
+    /// [`DRAG_STEPS`].
     pub fn drag_ball(&mut self, to: Point<Field>) {
         self.ball_drag = Some(BallDrag { to, until: Some(self.step + DRAG_STEPS) });
     }
 
-    /// A force pulls the ball there along the carpet, and holds it there until [`World::let_go_ball`].
+    /// Pulls the ball along the field surface to a position, and holds it there until [`World::let_go_ball`].
     pub fn pull_ball(&mut self, to: Point<Field>) {
         self.ball_drag = Some(BallDrag { to, until: None });
     }
 
-    /// Where the ball is pulled to now.
+    /// The position to which the ball is pulled now.
     pub fn ball_pulled_to(&self) -> Option<Point<Field>> {
         self.ball_drag.map(|drag| drag.to)
     }
 
-    /// Nothing pulls the ball any longer.
+    /// Ends the pull on the ball.
     pub fn let_go_ball(&mut self) {
         self.ball_drag = None;
     }
 
-    /// A hand pulls a robot there, for [`DRAG_STEPS`] at most.
+    /// Pulls a robot to a position, for at most [`DRAG_STEPS`].
     pub fn drag_robot(&mut self, who: Who, to: Point<Field>, heading: Option<Angle>) {
         let until = Some(self.step + DRAG_STEPS);
         self.drag(who, Some(robot::Drag { to, heading, until }));
     }
 
-    /// A force pulls a robot there, and holds it there until [`World::let_go_robot`].
+    /// Pulls a robot to a position, and holds it there until [`World::let_go_robot`].
     pub fn pull_robot(&mut self, who: Who, to: Point<Field>, heading: Option<Angle>) {
         self.drag(who, Some(robot::Drag { to, heading, until: None }));
     }
 
-    /// Nothing pulls that robot any longer.
+    /// Ends the pull on that robot.
     pub fn let_go_robot(&mut self, who: Who) {
         self.drag(who, None);
     }
@@ -257,7 +260,7 @@ impl World {
         }
     }
 
-    /// What a robot's brain wants of its body, after the world's latency; false where no such robot is.
+    /// Gives a robot's body its brain's order, after the world's latency; false where there is no such robot.
     pub fn command(&mut self, who: Who, frame: &ActuatorFrame) -> bool {
         let order = Order::from_actuators(frame, &self.parameters);
         if self.latency.is_none() {
@@ -267,7 +270,7 @@ impl World {
         self.robot(who).is_some_and(|robot| robot.present)
     }
 
-    /// What a robot shall do; false where no such robot is.
+    /// Gives a robot an order; false where there is no such robot.
     pub fn order(&mut self, who: Who, order: Order) -> bool {
         let now = self.step;
         self.place_of(who).is_ok_and(|place| {
@@ -276,14 +279,14 @@ impl World {
         })
     }
 
-    /// A robot lies on its side, or stands again.
+    /// Lays a robot on its side, or sets it upright.
     pub fn tip(&mut self, who: Who, tipped: bool) {
         if let Ok(place) = self.place_of(who) {
             self.robots[place].tipped = tipped;
         }
     }
 
-    /// 1 ms passes.
+    /// Advances by 1 ms.
     pub fn step(&mut self) {
         while let Some((who, order)) = self.latency.arrived(self.step) {
             self.order(who, order);
@@ -321,7 +324,7 @@ impl World {
         self.ball = Ball::rolling(self.ball.position, velocity);
     }
 
-    /// What robot `who` perceives now of itself; `None` where no such robot is.
+    /// The sensor frame of robot `who`; `None` where there is no such robot.
     pub fn sensors(&mut self, who: Who) -> Option<protocol::robot_io::SensorFrame> {
         let place = self.place_of(who).ok()?;
         let (now, battery) = (self.step, self.parameters.battery);
@@ -329,22 +332,22 @@ impl World {
         robot.present.then(|| self.senses[place].look(robot, now, &battery))
     }
 
-    /// What happened since the last call, in order, to the end of `into`.
+    /// Appends the events since the last call, in order, to `into`.
     pub fn take_events(&mut self, into: &mut Vec<Event>) {
         into.append(&mut self.events);
     }
 
-    /// All robots that ever were there, by colour and number.
+    /// All robots that were ever placed, by colour and number.
     pub fn robots(&self) -> &[Robot] {
         &self.robots
     }
 
-    /// That robot, present or not.
+    /// That robot, on the field or not.
     pub fn robot(&self, who: Who) -> Option<&Robot> {
         self.place_of(who).ok().map(|place| &self.robots[place])
     }
 
-    /// Steps so far; one is 1 ms.
+    /// Number of steps so far; one is 1 ms.
     pub fn now(&self) -> u64 {
         self.step
     }
@@ -354,17 +357,17 @@ impl World {
         self.step as f64 * 0.001
     }
 
-    /// Who touched the ball last, and in which step.
+    /// The robot that touched the ball last, and in which step.
     pub fn last_touch(&self) -> Option<(Who, u64)> {
         self.last_touch
     }
 
-    /// How it behaves.
+    /// The parameters of the physics.
     pub fn parameters(&self) -> &Parameters {
         &self.parameters
     }
 
-    /// What stands around.
+    /// The field and what stands around it.
     pub fn pitch(&self) -> &Pitch {
         &self.pitch
     }
@@ -379,21 +382,21 @@ impl World {
 
 /// Seconds in a step of physics (docs/architecture.md §2.3: Small Size, every 1 ms).
 pub const STEP: f32 = 0.001;
-/// Robots of both colours that there can be.
+/// Maximum number of robots, both colours together.
 pub const SLOTS: usize = 2 * RobotId::COUNT;
-/// Steps apart after which robot and ball, or two robots, touch anew.
+/// Minimum number of steps without contact before robot and ball, or two robots, count as touching again.
 pub const TOUCH_GAP_STEPS: u64 = 50;
-/// Steps that a hand pulls at most: it says where again long before.
+/// Maximum duration of one manual pull, steps: the user interface repeats the target long before.
 pub const DRAG_STEPS: u64 = 500;
-/// m before the goal line where goals begin to be in the way: a robot's radius and a step.
+/// Distance from the goal line, m, where contacts with goals are checked: a robot's radius and a step.
 const GOAL_ZONE: f32 = 0.15;
-/// m between a ball and robots that were moved off it.
+/// Gap between a ball and robots that were moved off it, m.
 const ROOM: f32 = 0.001;
-/// m: a ball that is pulled has arrived.
+/// Distance, m, at which a pulled ball has arrived.
 const ARRIVED: f32 = 0.002;
-/// 1/s: how quickly somebody who pulls the ball closes the gap.
+/// Rate at which a pull closes the gap, 1/s.
 const DRAG_RATE: f32 = 10.0;
-/// m/s: and no faster.
+/// Maximum speed of a pull, m/s.
 const DRAG_SPEED: f32 = 3.0;
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! `mouth`: dribbler, kicker and break-beam sensor. m, s, field frame.
 //!
-//! The dribbler pulls the ball towards the front and the middle of its roller, no harder than `pull` and `side`: a robot that
-//! jerks away loses it, one that is gentle keeps it, and no force pushes it away. A kick leaves along the robot's heading with
-//! the ordered speed in 3-D, whatever the ball did before but for what it did along the front.
+//! The dribbler pulls the ball towards the front and the middle of its roller, with at most `pull` and
+//! `side`: a robot that accelerates away hard loses it, one that accelerates gently keeps it, and no force
+//! pushes it away. A kick leaves along the robot's heading with the ordered speed in 3-D, independent of the
+//! ball's previous motion except for the part along the front.
 
 use geometry::{Angle, Vector, math};
 
@@ -12,7 +13,7 @@ use super::robot::Robot;
 use super::{Ball, STEP, World};
 
 impl World {
-    /// Kickers that are armed, charged and have the ball.
+    /// Fires kickers that are armed, charged and have the ball.
     pub(super) fn kick(&mut self) {
         let of = self.parameters.kick;
         for k in 0..self.near_ball.len() {
@@ -32,7 +33,7 @@ impl World {
             let (up, along) = math::sin_cos(kick.angle.clamp(0.0, math::FRAC_PI_2));
             let ahead = robot.to_field([1.0, 0.0]);
             let direction = ahead.rotated(Angle::degrees(askew));
-            // What the ball does along the front it keeps: a kick on the move goes askew.
+            // The ball keeps part of its motion along the front: a kick on the move goes askew.
             let left = robot.to_field([0.0, 1.0]);
             let aside = left.dot(self.ball.velocity).clamp(-speed, speed) * ASIDE_KEPT;
             let flat = direction * (speed * along) + left * aside;
@@ -55,7 +56,7 @@ impl World {
         }
     }
 
-    /// Dribblers pull the ball.
+    /// Pulls the ball by dribblers.
     pub(super) fn dribble(&mut self) {
         if self.ball.height > DRIBBLE_HEIGHT {
             return;
@@ -64,7 +65,8 @@ impl World {
             let i = usize::from(self.near_ball[k]);
             let robot = &self.robots[i];
             let turns = robot.order.dribbler > 0.0 && !robot.tipped;
-            // A ball that has just been kicked is not caught again on its way out, however hard the roller of this world pulls.
+            // A ball that has just been kicked is not caught again while it leaves, whatever the roller's
+            // pull in this world.
             let leaves = robot.kicked.is_some_and(|(at, _)| self.step - at < LEAVES);
             if !turns || leaves || !robot.is_led(self.step) {
                 continue;
@@ -75,8 +77,9 @@ impl World {
             }
             let pull = pull(robot, &self.ball, [gap, aside], &self.parameters.dribbler);
             self.ball.velocity += pull;
-            // Held, the roller turns the ball as it pleases: leaving, it neither runs away nor comes back by its spin. But the same
-            // grip turns it: a kicked ball that is through the mouth in 5 ms begins sliding, as any kicked ball does.
+            // A held ball is turned by the roller: on leaving, it neither runs away nor comes back by its
+            // spin. But the same friction turns it: a kicked ball that passes the opening in 5 ms starts
+            // sliding, as any kicked ball does.
             let turn = SOLID_SPHERE * self.parameters.dribbler.pull * STEP;
             self.ball.spin += (self.ball.velocity - self.ball.spin).clamped(turn);
             let mass = self.parameters.ball.mass / self.robots[i].body.mass;
@@ -86,7 +89,7 @@ impl World {
         }
     }
 
-    /// Light barriers look, and a ball that has left a robot ends its dribbling.
+    /// Break-beam sensors measure, and a ball that has left a robot ends its dribbling.
     pub(super) fn look_into_mouths(&mut self) {
         let (now, apart) = (self.step, self.parameters.ball.radius + SEPARATE);
         for k in 0..self.near_ball.len() {
@@ -118,7 +121,8 @@ impl World {
         self.ball.height <= height && self.place_in_mouth(robot).is_some_and(|[gap, _]| gap <= reach)
     }
 
-    /// How far the ball is from the front, and how far to the left of its middle, if it is before the roller.
+    /// The ball's distance from the front, and its offset to the left of the front's middle, if it is in
+    /// front of the roller.
     fn place_in_mouth(&self, robot: &Robot) -> Option<[f32; 2]> {
         let away = self.ball.position - robot.pose.position;
         let near = robot.body.radius + self.parameters.ball.radius + NEAR;
@@ -127,13 +131,13 @@ impl World {
         }
         let [ahead, aside] = robot.to_body(away);
         let gap = ahead - robot.body.front - self.parameters.ball.radius;
-        // A ball that has come to lie half within the front is no ball in the mouth.
+        // A ball that lies half within the front is not in the dribbler opening.
         let before = aside.abs() <= robot.body.mouth && gap > -self.parameters.ball.radius;
         before.then_some([gap, aside])
     }
 }
 
-/// What the roller does to the ball's velocity in a step.
+/// The change of the ball's velocity by the roller in a step.
 fn pull(
     robot: &Robot,
     ball: &Ball,
@@ -142,27 +146,31 @@ fn pull(
 ) -> Vector<geometry::Field> {
     let moves = robot.to_body(ball.velocity - robot.velocity_at(ball.position));
     let wanted = [-gap.max(0.0) * of.draw, -aside * of.center];
-    // Towards the robot only: what comes in is the front's business.
+    // Towards the robot only: impacts on the front are handled elsewhere.
     let x = (wanted[0] - moves[0]).min(0.0);
     let y = wanted[1] - moves[1];
-    // A roller whose rim is not much faster than the ball pulls less.
+    // A roller whose rim is only slightly faster than the ball pulls less.
     let left = if of.fade > 0.0 { (1.0 - of.fade * ball.velocity.norm()).max(0.0) } else { 1.0 };
     let strength = robot.order.dribbler * robot.traits.pull * left * STEP;
     let (pull, side) = (of.pull * strength, of.side * strength);
     robot.to_field([x.max(-pull), y.clamp(-side, side)])
 }
 
-/// Change of a solid sphere's spin (as the velocity at which it would roll) over that of its velocity, by a push at its surface: m r² / I.
+/// Change of a solid sphere's spin (as the velocity at which it would roll) over that of its velocity, by a
+/// push at its surface: m r² / I.
 const SOLID_SPHERE: f32 = 2.5;
-/// Steps in which a kicked ball is past the roller: 1.5 m/s, the slowest kick, for a reach of 12 mm and a ball's radius.
+/// Steps in which a kicked ball is past the roller: 1.5 m/s, the slowest kick, for a reach of 12 mm and a
+/// ball's radius.
 const LEAVES: u64 = 22;
-/// m: the plunger meets a ball no higher.
+/// Maximum height at which the plunger touches a ball, m.
 const KICKABLE_HEIGHT: f32 = 0.02;
-/// m: the roller and the light barrier meet a ball no higher.
+/// Maximum height at which the roller and the break-beam sensor reach a ball, m.
 const DRIBBLE_HEIGHT: f32 = 0.03;
-/// m between hull and ball that everybody sees (rules: dribbling ends at visible separation); our reading of "visible".
+/// Visible separation of hull and ball, m (rules: dribbling ends at visible separation); our reading of
+/// "visible".
 const SEPARATE: f32 = 0.02;
-/// m beyond touching where a mouth need not be looked into.
+/// Distance beyond contact, m, from which the dribbler opening is not checked.
 const NEAR: f32 = 0.1;
-/// Share of its motion along the front that a kicked ball keeps: the plunger's face holds most of it by friction; estimate.
+/// Share of its motion along the front that a kicked ball keeps: the plunger's face holds most of it by
+/// friction; estimate.
 const ASIDE_KEPT: f32 = 0.5;

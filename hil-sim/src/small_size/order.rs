@@ -5,13 +5,14 @@ use protocol::robot_io::{ActuatorFrame, OmniKick};
 
 use super::parameters::Parameters;
 
-/// What a robot's wheels shall do.
+/// Order to a robot's wheels.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum Drive {
     /// Brake and stand.
     #[default]
     Brake,
-    /// Rim speeds, m/s: front right, back right, back left, front left; positive turns the robot counter-clockwise.
+    /// Rim speeds, m/s: front right, back right, back left, front left; positive turns the robot
+    /// counter-clockwise.
     Rims([f32; 4]),
     /// A velocity in the robot's own frame.
     Local(Twist<Body>),
@@ -19,31 +20,31 @@ pub enum Drive {
     Global(Twist<Field>),
 }
 
-/// A kick that leaves as soon as the ball lies in the mouth and the kicker is charged.
+/// A kick that fires as soon as the ball lies in the dribbler opening and the kicker is charged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kick {
     /// Speed of the ball in 3-D, m/s.
     pub speed: f32,
-    /// Upwards from the carpet, rad; 0 is a flat kick.
+    /// Elevation above the field surface, rad; 0 is a flat kick.
     pub angle: f32,
 }
 
-/// What a robot was told last.
+/// The last order to a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Order {
-    /// Wheels.
+    /// Order to the wheels.
     pub drive: Drive,
-    /// Kicker.
+    /// Order to the kicker.
     pub kick: Option<Kick>,
     /// Share of the dribbler's full strength, 0–1.
     pub dribbler: f32,
-    /// Empty the kicker's store: it charges anew afterwards.
+    /// Discharge the kicker's capacitor; it recharges afterwards.
     pub discharge: bool,
 }
 
 impl Order {
-    /// What a brain wants; a robot on wheels has nothing to do for legs. Released wheels are modelled as standing ones: they
-    /// are released only where the robot stands.
+    /// The order in a brain's actuator frame; a robot on wheels ignores orders for legs. Released wheels are
+    /// modelled as braked ones: they are released only where the robot stands.
     pub fn from_actuators(frame: &ActuatorFrame, parameters: &Parameters) -> Self {
         if *frame == ActuatorFrame::Released {
             return Self { discharge: true, ..Self::default() };
@@ -60,7 +61,7 @@ impl Order {
         Self { drive: Drive::Rims(*wheels), kick, dribbler: *dribbler, discharge }
     }
 
-    /// The same without numbers that are none: they mean "nothing".
+    /// The same with NaN removed: it counts as no order.
     pub(super) fn sane(mut self) -> Self {
         let finite = match self.drive {
             Drive::Brake => true,

@@ -1,8 +1,8 @@
 //! `parameters`: parameters of the Small Size simulator. A league's numbers, read from one file, checked,
 //! with their sources beside them.
 //!
-//! `hil-sim/data/{ssl-2013,division-b,division-a}.toml` are those files; SI units, degrees where a name says so. Fields are
-//! crate `rules`'; nothing else in this module's physics types a physical number in.
+//! `hil-sim/data/{ssl-2013,division-b,division-a}.toml` are those files; SI units, degrees where a name ends
+//! in `_deg`. Fields are crate `rules`'; no other code of this module's physics contains physical constants.
 
 use std::sync::LazyLock;
 
@@ -20,7 +20,7 @@ macro_rules! numbers {
         pub struct $name { $($(#[$doc])* pub $field: f32,)* }
 
         impl $name {
-            /// Every number within what the physics can bear.
+            /// Checks every number against the limits of the physics.
             pub fn check(&self) -> Result<(), ParameterError> {
                 $(within(concat!($file, ".", stringify!($field)), self.$field, $low, $high)?;)*
                 Ok(())
@@ -30,7 +30,7 @@ macro_rules! numbers {
 }
 
 numbers! {
-    /// The ball on the carpet and in the air.
+    /// The ball on the field surface and in the air.
     BallParameters in "ball" {
         /// m.
         radius: 0.005, 0.2;
@@ -42,18 +42,18 @@ numbers! {
         roll: TINY, 10.0;
         /// m/s².
         gravity: 0.1, 100.0;
-        /// Share of the speed along the ground that the first landing leaves.
+        /// Share of the speed along the ground that is kept at the first landing.
         hop_along: 0.0, 1.0;
         /// The same, later landings.
         hop_along_later: 0.0, 1.0;
-        /// Share of the vertical speed that a landing gives back.
+        /// Share of the vertical speed that is kept at a landing.
         hop_up: 0.0, 0.95;
-        /// m: a lower hop is none.
+        /// Minimum height of a hop, m.
         hop_end: TINY, 0.1;
     }
-    /// What stands around, besides the lengths of crate `rules`.
+    /// Boards and goals, besides the lengths of crate `rules`.
     FieldParameters in "field" {
-        /// m, height of the boards round the carpet; a ball above flies over.
+        /// Height of the boards round the field surface, m; a ball above flies over.
         wall_height: 0.0, 100.0;
         /// m, thickness of the goals' bars; their upper edge is the goal's.
         bar: 0.0, 0.05;
@@ -117,23 +117,23 @@ numbers! {
         /// m between ball and front.
         reach: 0.0, 0.1;
     }
-    /// The roller in the robot's mouth.
+    /// The dribbler's roller.
     DribblerParameters in "dribbler" {
         /// m between ball and front where it still touches.
         reach: 0.0, 0.1;
         /// m/s² towards the robot, at full speed.
         pull: 0.0, 1000.0;
-        /// Share of the pull lost for each m/s that the ball moves over the carpet.
+        /// Share of the pull lost for each m/s that the ball moves over the field surface.
         fade: 0.0, 10.0;
         /// m/s² along the roller.
         side: 0.0, 1000.0;
         /// 1/s, how quickly a gap closes.
         draw: 0.0, 500.0;
-        /// 1/s, how quickly the ball comes to the middle.
+        /// Rate at which the ball moves to the middle, 1/s.
         center: 0.0, 500.0;
         /// rpm at full strength.
         full_rpm: 1.0, 1e6;
-        /// m between ball and front where the light barrier still sees it.
+        /// m between ball and front where the break-beam sensor still detects it.
         barrier: 0.0, 0.1;
     }
     /// The battery.
@@ -151,7 +151,7 @@ numbers! {
         /// J a kick.
         kick: 0.0, 1e4;
     }
-    /// What cameras and robots get wrong.
+    /// Errors of cameras and sensors.
     NoiseParameters in "noise" {
         /// m, a ball's place.
         ball: 0.0, 1.0;
@@ -165,7 +165,7 @@ numbers! {
         missing_robot: 0.0, 1.0;
         /// Probability that it sees a ball where none is.
         ghost_ball: 0.0, 1.0;
-        /// A ball of which less than this share shows is not seen.
+        /// A ball with a smaller visible share is not detected.
         hidden_ball: 0.0, 1.0;
         /// Share of the measured speed.
         odometry: 0.0, 1.0;
@@ -175,7 +175,7 @@ numbers! {
 }
 
 impl NoiseParameters {
-    /// Everything is measured as it is, even a ball behind a robot.
+    /// Exact measurements, even of a ball behind a robot.
     pub const NONE: Self = Self {
         ball: 0.0,
         robot: 0.0,
@@ -199,11 +199,11 @@ pub struct BodyParameters {
     pub height: f32,
     /// m, centre to the flat front.
     pub front: f32,
-    /// m to either side of the middle of the front: where the roller holds.
+    /// m to either side of the middle of the front: the width of the dribbler opening.
     pub mouth: f32,
     /// kg.
     pub mass: f32,
-    /// Where the wheels stand, counter-clockwise from ahead: front right, back right, back left, front left.
+    /// Angles of the wheels, counter-clockwise from ahead: front right, back right, back left, front left.
     pub wheels_deg: [f32; 4],
     /// m, centre to wheel.
     pub wheel_distance: f32,
@@ -217,19 +217,19 @@ pub struct CameraParameters {
     pub count: u32,
     /// Frames a second.
     pub rate: f32,
-    /// m above the carpet.
+    /// m above the field surface.
     pub height: f32,
     /// m that neighbours both see.
     pub overlap: f32,
-    /// s from image to packet.
+    /// s from the camera frame to its packet.
     pub delay: f32,
-    /// s of it that `t_sent` − `t_capture` tells.
+    /// s of it that `t_sent` − `t_capture` reports.
     pub processing: f32,
-    /// s between packets that describe the field.
+    /// s between geometry packets.
     pub geometry_every: f32,
 }
 
-/// The numbers of one league.
+/// The parameters of one league.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Parameters {
@@ -237,7 +237,7 @@ pub struct Parameters {
     pub robots: u8,
     /// The ball.
     pub ball: BallParameters,
-    /// What stands around.
+    /// Boards and goals.
     pub field: FieldParameters,
     /// Impacts.
     pub bounce: BounceParameters,
@@ -253,12 +253,12 @@ pub struct Parameters {
     pub battery: BatteryParameters,
     /// The cameras.
     pub camera: CameraParameters,
-    /// What is measured wrongly.
+    /// Errors of measurements.
     pub noise: NoiseParameters,
 }
 
 impl Parameters {
-    /// A league's; `None` where no robots on wheels play.
+    /// A league's parameters; `None` for leagues without wheeled robots.
     pub fn of(league: League) -> Option<&'static Self> {
         match league {
             League::FourLegged => None,
@@ -274,7 +274,7 @@ impl Parameters {
         read.check().map(|()| read)
     }
 
-    /// Every number within what the physics can bear.
+    /// Checks every number against the limits of the physics.
     pub fn check(&self) -> Result<(), ParameterError> {
         self.ball.check()?;
         self.field.check()?;
@@ -291,7 +291,8 @@ impl Parameters {
 }
 
 impl BodyParameters {
-    /// A body that the physics can bear; the simulation protocol's specifications pass here too.
+    /// Checks a body against the limits of the physics; specifications of the simulation protocol are checked
+    /// here too.
     pub fn check(&self) -> Result<(), ParameterError> {
         within("robot.radius", self.radius, 0.02, 1.0)?;
         within("robot.height", self.height, 0.01, 1.0)?;
@@ -328,16 +329,16 @@ impl CameraParameters {
     }
 }
 
-/// `value` if it lies between the bounds, else an error that names it.
+/// `value` if it lies between the bounds, else an error with its name.
 pub(super) fn within(name: &'static str, value: f32, low: f32, high: f32) -> Result<(), ParameterError> {
     if (low..=high).contains(&value) { Ok(()) } else { Err(ParameterError::Range { name, value, low, high }) }
 }
 
-/// Nothing divides by less.
+/// Minimum divisor.
 const TINY: f32 = 1e-4;
-/// No robot is faster, m/s: steps of 1 ms stay small against bodies.
+/// Maximum speed of a robot, m/s: steps of 1 ms stay small against bodies.
 const SPEED_MAX: f32 = 10.0;
-/// No ball is faster, m/s.
+/// Maximum speed of a ball, m/s.
 pub(super) const BALL_SPEED_MAX: f32 = 20.0;
 
 static SSL_2013: LazyLock<Parameters> = LazyLock::new(|| built_in(include_str!("../../data/ssl-2013.toml")));

@@ -5,22 +5,22 @@ use rules::FieldSpec;
 use super::parameters::FieldParameters;
 use super::surface::Slab;
 
-/// The field as bodies meet it.
+/// The field with the obstacles on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pitch {
-    /// Lines, goals, margins.
+    /// Lines, goals and margins.
     pub field: FieldSpec,
-    /// What crate `rules` does not know.
+    /// Boards and bars, which crate `rules` does not contain.
     pub around: FieldParameters,
 }
 
 impl Pitch {
-    /// The carpet's corner in the positive quarter, at the boards.
+    /// The corner of the field surface in the positive quarter, at the boards, m.
     pub fn corner(&self) -> [f32; 2] {
         [self.field.length * 0.5 + self.field.goal_line_margin, self.field.width * 0.5 + self.field.margin]
     }
 
-    /// The walls of the goal at +x; the other is its mirror image: two sides and the back.
+    /// The walls of the goal at +x, two sides and the back; the other goal is its mirror image.
     pub(super) fn goal_walls(&self) -> [Slab; 3] {
         let (line, half, wall) = (self.field.length * 0.5, self.field.goal_width * 0.5, self.field.goal_wall);
         let back = line + self.field.goal_depth;

@@ -1,15 +1,16 @@
-//! `quirks`: compatibility profiles. Its own, or those in which the league's other simulators differ on the
-//! wire.
+//! `quirks`: compatibility profiles: this simulator's own behaviour on the wire, or that of the league's
+//! other simulators.
 //!
-//! So that a host can be tried against what it will meet: clocks, cameras, geometry, which settings are taken and how robots
-//! are answered, as they were seen when grSim and ER-Force's simulator ran. Physics stay ours but for the ball's wire model.
+//! For tests of a host against what it will receive there: clocks, cameras, geometry, which settings are
+//! accepted and how robots are answered, as observed on running grSim and ER-Force's simulator. The physics
+//! stays ours except for the ball model on the wire.
 
 use super::parameters::{BallParameters, CameraParameters, NoiseParameters};
 
-/// A simulator to be like.
+/// The imitated simulator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Profile {
-    /// This one.
+    /// This simulator.
     #[default]
     Ours,
     /// grSim.
@@ -18,93 +19,93 @@ pub enum Profile {
     ErForce,
 }
 
-/// What `t_capture` and `t_sent` count from.
+/// Origin of `t_capture` and `t_sent`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Clock {
     /// Seconds of the simulation, from 0.
     Simulation,
-    /// Unix time, which was this when the simulation began, s.
+    /// Unix time; the value is that time at the simulation's start, s.
     Unix(f64),
 }
 
-/// When the field is described.
+/// When geometry packets are sent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum GeometryStyle {
-    /// In packets of its own with all cameras, every so many seconds.
+    /// In separate packets with all cameras, with this period, s.
     Own(f32),
     /// With every frame, all cameras.
     EveryFrame,
-    /// With one camera's frame out of so many, that camera alone.
+    /// With every n-th frame of a camera, that camera alone.
     OneCamera(u32),
 }
 
-/// How a simulator behaves on the wire.
+/// Behaviour of a simulator on the wire.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quirks {
-    /// Whose these are.
+    /// The profile.
     pub profile: Profile,
-    /// When the field is described.
+    /// When geometry packets are sent.
     pub geometry: GeometryStyle,
-    /// Cameras take their pictures one after another instead of all at once.
+    /// Cameras take their frames one after another instead of all at once.
     pub staggered: bool,
-    /// Geometry has the numbers that newer packets have, true camera poses and pixels.
+    /// Geometry packets contain the fields of newer versions, true camera poses and pixels.
     pub full_geometry: bool,
     /// Lines are drawn this far inside the field's edge, m, and goals are drawn too.
     pub drawn_goals: bool,
-    /// The ball's model told on the wire, if it is not the physics' own.
+    /// The ball model on the wire, if it is not that of the physics.
     pub told_ball: Option<ToldBall>,
-    /// Whose state a robots' answer tells.
+    /// Which robots' states an answer contains.
     pub feedback: Feedback,
     /// A control message is answered even where nothing was refused.
     pub answers_control: bool,
     /// Probability that a robot's answer is left out.
     pub answer_loss: f32,
-    /// A command without a dribbler's speed stops the dribbler; else it goes on as before.
+    /// A command without a dribbler speed stops the dribbler; else it keeps its speed.
     pub dribbler_resets: bool,
-    /// A dribbler's speed is not looked at: above 0 it turns.
+    /// The value of a dribbler speed is ignored: above 0 it turns at full speed.
     pub dribbler_switches: bool,
-    /// Robots obey velocities in their own frame alone.
+    /// Robots accept velocities in their own frame alone.
     pub local_velocity_only: bool,
-    /// A command without a velocity leaves the robot moving as it did; else it brakes.
+    /// A command without a velocity leaves the robot's motion unchanged; else it brakes.
     pub keeps_moving: bool,
-    /// Nothing but robots' specifications may be set.
+    /// Only robots' specifications can be set.
     pub only_specs: bool,
-    /// `teleport_safely` and `roll` are understood.
+    /// `teleport_safely` and `roll` are supported.
     pub safe_teleport: bool,
-    /// A teleport may leave out one coordinate of two, a robot's specification what is to stay.
+    /// A teleport may leave out one coordinate of two, and a robot's specification the values that stay.
     pub partial: bool,
-    /// A robot may be put far outside the hall: it is parked.
+    /// A robot may be placed far outside the walls: it is parked.
     pub parks: bool,
-    /// Vision tells the ball's height, and its place as it is instead of where a camera would see it.
+    /// Vision reports the ball's height, and its true position instead of the one a camera would see.
     pub ball_height: bool,
 }
 
-/// Whose state a robots' answer tells.
+/// Which robots' states an answer contains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feedback {
-    /// Every robot's of the team that is on the field.
+    /// Those of all robots of the team on the field.
     Present,
-    /// Every robot's that was commanded in the message, also of those that were taken away.
+    /// Those of all robots commanded in the message, also of removed ones.
     Commanded,
-    /// The same, but robots that were taken away say nothing, and a message without any is not sent.
+    /// The same without removed robots; a message without any state is not sent.
     CommandedPresent,
 }
 
-/// A ball model as geometry packets tell it.
+/// A ball model as in geometry packets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToldBall {
-    /// m/s², < 0.
+    /// Sliding acceleration, m/s², < 0.
     pub slide: f64,
-    /// m/s², < 0.
+    /// Rolling acceleration, m/s², < 0.
     pub roll: f64,
-    /// Share of the kick's speed from which on it rolls.
+    /// Share of the kick's speed below which the ball rolls.
     pub switch: f64,
-    /// Landing: along the ground, first and later, and up.
+    /// Shares of speed kept on landing: along the ground at the first and at later landings, and upwards.
     pub hops: [f64; 3],
 }
 
 impl ToldBall {
-    /// The physics' own.
+    /// The model of the physics.
     pub fn of(ball: &BallParameters) -> Self {
         Self {
             slide: -f64::from(ball.slide),
@@ -116,7 +117,7 @@ impl ToldBall {
 }
 
 impl Profile {
-    /// How it behaves.
+    /// The behaviour of the profile.
     pub fn quirks(self, camera: &CameraParameters) -> Quirks {
         let ours = Quirks {
             profile: Self::Ours,
@@ -178,7 +179,8 @@ impl Profile {
         }
     }
 
-    /// Its cameras: grSim has four and tells their time as its own, without delay; ER-Force's has one.
+    /// The profile's cameras: grSim has four, on its own clock and without delay; ER-Force's simulator has
+    /// one.
     pub fn cameras(self, ours: CameraParameters) -> CameraParameters {
         match self {
             Self::Ours => ours,
@@ -187,12 +189,12 @@ impl Profile {
         }
     }
 
-    /// Its noise: grSim starts without any.
+    /// The profile's noise: grSim starts without any.
     pub fn noise(self, ours: NoiseParameters) -> NoiseParameters {
         if self == Self::Grsim { NoiseParameters::NONE } else { ours }
     }
 
-    /// Its clock: grSim's own, everybody else's Unix time.
+    /// The profile's clock: grSim's own, Unix time for all others.
     pub fn clock(self, unix_now: f64) -> Clock {
         if self == Self::Grsim { Clock::Simulation } else { Clock::Unix(unix_now) }
     }

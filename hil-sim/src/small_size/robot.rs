@@ -1,8 +1,8 @@
-//! `robot`: motion of a wheeled robot. Orders, motors, grip, limits, battery; m, s, rad, field frame.
+//! `robot`: motion of a wheeled robot. Orders, motors, traction, limits, battery; m, s, rad, field frame.
 //!
-//! Each wheel's rim follows its wanted speed as its motor allows; the body follows what the rims mean together as grip allows,
-//! stronger ahead than to the side, stronger braking than speeding up. An order lasts `order_lasts`; without one the robot
-//! brakes, its dribbler stops and its kicker is at rest.
+//! Each wheel's rim follows its ordered speed as its motor permits; the body follows the motion of the rims
+//! together as traction permits, stronger ahead than to the side, stronger braking than accelerating. An
+//! order lasts `order_lasts`; without one the robot brakes, its dribbler stops and its kicker is off.
 
 use geometry::{Field, Point, Pose, Twist, Vector, math};
 use protocol::Who;
@@ -13,48 +13,48 @@ use super::parameters::{BatteryParameters, BodyParameters, DriveParameters, Para
 use super::wheels::Wheels;
 use super::worlds::Traits;
 
-/// A robot, as it truly is.
+/// The true state of a robot.
 #[derive(Clone, Debug)]
 pub struct Robot {
-    /// Which.
+    /// Its team and number.
     pub who: Who,
-    /// It stands on the carpet; else nothing of it is there.
+    /// Whether it is on the field surface; else it has no effect on the world.
     pub present: bool,
-    /// Where it is and faces.
+    /// Its position and heading.
     pub pose: Pose<Field>,
     /// m/s.
     pub velocity: Vector<Field>,
     /// rad/s, counter-clockwise.
     pub turning: f32,
-    /// It lies on its side: nothing drives.
+    /// Whether it lies on its side: nothing drives.
     pub tipped: bool,
-    /// The light barrier in its mouth sees the ball.
+    /// Whether the break-beam sensor in its dribbler opening detects the ball.
     pub ball_contact: bool,
-    /// Ball and hull touch now.
+    /// Whether ball and hull are in contact.
     pub touching: bool,
-    /// Where the ball was when it was last separate from this robot and came to it, while it has not left.
+    /// Position of the ball when this robot's present dribbling started, while it lasts.
     pub dribbling_from: Option<Point<Field>>,
     /// Its body; the simulation protocol may give each robot its own.
     pub body: BodyParameters,
     limits: DriveParameters,
     /// m/s, its strongest flat and chip kick.
     pub kick_limits: [f32; 2],
-    /// Nobody commands it and no referee counts it: it stands about.
+    /// A bystander: no computer commands it and no referee counts it.
     pub bystander: bool,
-    /// What it differs in from others of its make.
+    /// Its differences from the nominal robot.
     pub(super) traits: Traits,
-    /// Share of the wheels' motion that reaches the carpet.
+    /// Share of the wheels' motion that reaches the field surface.
     grips: f32,
     pub(super) half_front: f32,
     pub(super) facing: [f32; 2],
     pub(super) order: Order,
-    /// The step in which the order has run out.
+    /// The step in which the order expires.
     pub(super) ordered_until: u64,
-    /// What the order means, where that does not hang on the heading.
+    /// Rim speeds of the order, where they do not depend on the heading.
     wanted: Wanted,
-    /// The rims have reached it.
+    /// Whether the rims have reached them.
     settled: bool,
-    /// It goes straight on with this velocity as long as nothing changes.
+    /// It drives straight on with this velocity as long as nothing changes.
     cruise: Option<Vector<Field>>,
     pub(super) charged_at: u64,
     /// The step of its last kick, and whether that was a chip.
@@ -62,40 +62,40 @@ pub struct Robot {
     pub(super) touched_at: Option<u64>,
     pub(super) dragged: Option<Drag>,
     pub(super) odometer: Odometer,
-    /// Steps to 1 m/s ahead and to the side: speeding up, and braking.
+    /// Steps to 1 m/s ahead and to the side: accelerating, and braking.
     grip: [[f32; 2]; 2],
     wheels: Wheels,
     rims: [f32; 4],
     used: f32,
 }
 
-/// The robot is pulled, through whatever stands in the way.
+/// The robot is pulled, pushing movable bodies aside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Drag {
     pub to: Point<Field>,
     pub heading: Option<geometry::Angle>,
-    /// The step in which it ends; `None`: it lasts until it is ended.
+    /// The step in which it ends; `None`: it lasts until it is released.
     pub until: Option<u64>,
 }
 
-/// Rim speeds, and the motion of the body that they mean.
+/// Ordered rim speeds, and the motion of the body that they give.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Wanted {
     rims: [f32; 4],
     motion: [f32; 3],
 }
 
-/// What wheels and gyroscope have measured since they were last asked.
+/// Measurements of wheels and gyroscope since the last sensor frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Odometer {
     pub along: [f32; 2],
     pub turned: f32,
-    /// The step in which they were last asked.
+    /// The step of the last sensor frame.
     pub asked: u64,
 }
 
 impl Robot {
-    /// At rest there, charged, with a full battery.
+    /// Resting there, charged, with a full battery.
     pub fn new(who: Who, pose: Pose<Field>, parameters: &Parameters) -> Self {
         let body = parameters.robot;
         let mut robot = Self {
@@ -137,7 +137,7 @@ impl Robot {
         robot
     }
 
-    /// Another body, from the next step on; one that [`BodyParameters::check`] refuses changes nothing.
+    /// Replaces the body, from the next step on; one that [`BodyParameters::check`] refuses changes nothing.
     pub fn set_body(&mut self, body: BodyParameters) {
         if let Some(wheels) = Wheels::new(&body) {
             self.wheels = wheels;
@@ -147,14 +147,14 @@ impl Robot {
         }
     }
 
-    /// Other limits, from the next step on.
+    /// Replaces the limits, from the next step on.
     pub fn set_limits(&mut self, limits: DriveParameters) {
         let steps = |acceleration: f32| 1.0 / (acceleration * STEP);
         self.grip = [[steps(limits.forward), steps(limits.side)], [steps(limits.brake); 2]];
         self.limits = limits;
     }
 
-    /// What it differs in from now on; its limits, as they are, take their shares.
+    /// Sets its differences from the nominal robot; its present limits are scaled by them.
     pub(super) fn set_traits(&mut self, traits: Traits) {
         let of = self.limits;
         let [acceleration, speed] = [traits.acceleration, traits.speed];
@@ -170,7 +170,7 @@ impl Robot {
         (self.traits, self.grips) = (traits, 1.0 - traits.slip);
     }
 
-    /// What it differs in from others of its make.
+    /// Its differences from the nominal robot.
     pub fn traits(&self) -> &Traits {
         &self.traits
     }
@@ -180,7 +180,7 @@ impl Robot {
         &self.limits
     }
 
-    /// Stands there at once, at rest, and what it did has ended.
+    /// Places it there at once, resting, with no order.
     pub fn place(&mut self, pose: Pose<Field>) {
         self.pose = pose;
         self.velocity = Vector::default();
@@ -192,7 +192,7 @@ impl Robot {
         self.face();
     }
 
-    /// Moves like this at once, its wheels with it.
+    /// Gives it this motion at once, wheels included.
     pub fn push(&mut self, velocity: Vector<Field>, turning: f32) {
         self.velocity = velocity;
         self.turning = turning;
@@ -216,12 +216,12 @@ impl Robot {
         };
     }
 
-    /// It has heard an order lately.
+    /// Whether its order has not expired.
     pub fn is_led(&self, now: u64) -> bool {
         now < self.ordered_until
     }
 
-    /// What it was told last.
+    /// Its last order.
     pub fn order(&self) -> &Order {
         &self.order
     }
@@ -231,7 +231,7 @@ impl Robot {
         of.full - (of.full - of.empty) * (self.used / of.energy).min(1.0)
     }
 
-    /// The kicker has what it needs for a kick.
+    /// Whether the kicker is charged for a kick.
     pub fn charged(&self, now: u64) -> bool {
         now >= self.charged_at
     }
@@ -241,13 +241,13 @@ impl Robot {
         self.kicked
     }
 
-    /// It kicked at step `now`.
+    /// Records a kick at step `now`.
     pub(super) fn discharge(&mut self, now: u64, recharge: f32, energy: f32) {
         self.charged_at = now + (recharge / STEP) as u64;
         self.used += energy;
     }
 
-    /// The ball is nowhere near.
+    /// The ball is far away: ends contact and dribbling.
     pub(super) fn leave_ball(&mut self) {
         self.ball_contact = false;
         self.touching = false;
@@ -268,14 +268,14 @@ impl Robot {
         Vector::new(c * x - s * y, s * x + c * y)
     }
 
-    /// How fast the point of its body that is at `point` moves.
+    /// Velocity of the body's point at `point`, m/s.
     #[inline]
     pub(super) fn velocity_at(&self, point: Point<Field>) -> Vector<Field> {
         let arm = point - self.pose.position;
         self.velocity + Vector::new(-arm.y(), arm.x()) * self.turning
     }
 
-    /// Wheels and body for one step.
+    /// Advances wheels and body by one step.
     pub(super) fn drive(&mut self, now: u64, battery: &BatteryParameters) {
         let settled = self.settled && self.is_led(now) && !self.tipped && self.dragged.is_none();
         if settled && self.cruise == Some(self.velocity) {
@@ -283,7 +283,7 @@ impl Robot {
             self.measure(self.wanted.motion, battery);
             return;
         }
-        // Wheels that slip turn on as they were told and tell so: the body falls behind.
+        // Wheels that slip turn on as ordered and their encoders report that: the body falls behind.
         let rolled = if settled { self.wanted.motion } else { self.turn_wheels(now) };
         let meant = rolled.map(|part| part * self.grips);
         let of = &self.limits;
@@ -306,7 +306,7 @@ impl Robot {
         }
         let (to_x, to_y) = (c * new_x - s * new_y, s * new_x + c * new_y);
         self.velocity = Vector::new(to_x, to_y);
-        // Straight on as it goes: the next step will change nothing, unless somebody pushes it or tells it otherwise.
+        // Straight on: the next step will change nothing, unless it is pushed or gets another order.
         let steady = vx == to_x && vy == to_y && self.turning == 0.0 && meant[2] == 0.0 && settled;
         self.cruise = steady.then_some(self.velocity);
         let p = self.pose.position;
@@ -323,17 +323,17 @@ impl Robot {
         }
     }
 
-    /// What wheels, gyroscope and battery make of a step.
+    /// Measurements of wheels, gyroscope and battery in a step.
     #[inline]
     fn measure(&mut self, [x, y, turning]: [f32; 3], battery: &BatteryParameters) {
         self.odometer.along[0] += x;
         self.odometer.along[1] += y;
         self.odometer.turned += turning;
-        // |x| + |y| is near enough to the speed for a battery.
+        // |x| + |y| approximates the speed accurately enough for the battery.
         self.used += STEP * (battery.idle + battery.drive * (x.abs() + y.abs()));
     }
 
-    /// Rims follow what is wanted as motors can; gives the motion of the body that they then mean.
+    /// Rims follow their ordered speeds as motors permit; returns the motion of the body that they give.
     #[inline(never)]
     fn turn_wheels(&mut self, now: u64) -> [f32; 3] {
         self.settled = false;
@@ -345,23 +345,23 @@ impl Robot {
             largest = larger(largest, (wanted - rim).abs());
             fastest = larger(fastest, rim.abs());
         }
-        // Most steps: every motor could do this even if it were the fastest and speeding up.
+        // Most steps: every motor could do this even if it were the fastest and accelerating.
         if largest <= full * (1.0 - fastest * top) {
             self.rims = rims;
-            // Not while something else than the order wants it.
+            // Not while the speeds come from something else than the order.
             self.settled = rims == self.wanted.rims && !matches!(self.order.drive, Drive::Global(_));
             return motion;
         }
         for (rim, wanted) in self.rims.iter_mut().zip(rims) {
             let change = wanted - *rim;
-            // Speeding up, a motor's strength falls with its speed; braking it does not.
+            // Accelerating, a motor's strength falls with its speed; braking it does not.
             let spent = if change * *rim > 0.0 { rim.abs() * top } else { 0.0 };
             *rim += bounded(change, full * if spent < 1.0 { 1.0 - spent } else { 0.0 });
         }
         self.wheels.motion(self.rims)
     }
 
-    /// What motors shall do now.
+    /// Rim speeds ordered now.
     #[inline]
     fn wanted(&self, now: u64) -> Wanted {
         if self.dragged.is_some() {
@@ -377,7 +377,7 @@ impl Robot {
         self.wanted
     }
 
-    /// Somebody pulls it.
+    /// Rim speeds while it is pulled manually.
     fn wanted_by_hand(&self) -> Wanted {
         let Some(drag) = self.dragged else { return Wanted::default() };
         let pull = (drag.to - self.pose.position) * DRAG_RATE;
@@ -391,7 +391,7 @@ impl Robot {
         Wanted { rims: self.wheels.rims(motion), motion }
     }
 
-    /// The heading has turned a little: sine and cosine follow by their series, and exactly every so often.
+    /// After a small turn of the heading, sine and cosine follow by their series, and exactly at intervals.
     #[inline]
     fn follow(&mut self, turn: f32, now: u64) {
         if now.is_multiple_of(EXACT_EVERY) {
@@ -399,7 +399,7 @@ impl Robot {
             return;
         }
         let [c, s] = self.facing;
-        // At most 15 mrad: what the series leaves out is below 6e-7 a step.
+        // At most 15 mrad: the error of the series is below 6e-7 a step.
         let shrink = 1.0 - 0.5 * turn * turn;
         self.facing = [c * shrink - s * turn, s * shrink + c * turn];
     }
@@ -410,20 +410,20 @@ impl Robot {
     }
 }
 
-/// `value`, but no further from 0 than `most`.
+/// `value`, limited to ±`most`.
 #[inline]
 fn bounded(value: f32, most: f32) -> f32 {
     let value = if value > most { most } else { value };
     if value < -most { -most } else { value }
 }
 
-/// Without regard to NaN, which no order holds.
+/// The larger one; NaN is not handled, since no order contains it.
 #[inline]
 fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
-/// Steps between exact sines: in them a robot's front is off by 10 µrad at most.
+/// Steps between exact sines: meanwhile a robot's front is off by 10 µrad at most.
 const EXACT_EVERY: u64 = 16;
-/// 1/s: how quickly somebody who pulls a robot closes the gap.
+/// Rate at which a manual pull on a robot closes the gap, 1/s.
 const DRAG_RATE: f32 = 5.0;

@@ -1,7 +1,7 @@
-//! `senses`: sensors of a wheeled robot. Wheels and gyroscope with noise, light barrier, battery
+//! `senses`: sensors of a wheeled robot. Wheels and gyroscope with noise, break-beam sensor, battery
 //! (docs/architecture.md §3.2).
 //!
-//! Where it is it learns from its host alone: no pose, no ball seen, no opponents.
+//! Its position comes from its host alone: no pose, no ball seen, no opponents.
 
 use geometry::{Twist, Vector};
 use protocol::robot_io::{Health, SensorFrame};
@@ -12,7 +12,7 @@ use super::robot::{Odometer, Robot};
 use crate::rng::Stream;
 use protocol::Who;
 
-/// One robot's senses.
+/// The sensors of one robot.
 #[derive(Clone, Debug)]
 pub(super) struct Senses {
     noise: NoiseParameters,
@@ -24,7 +24,7 @@ impl Senses {
         Self { noise, chance: Stream::new(seed, &format!("small size senses {}", who.slot())) }
     }
 
-    /// What the robot measures now; speeds are means since it last looked.
+    /// The sensor frame of the robot; speeds are means since the last one.
     pub(super) fn look(&mut self, robot: &mut Robot, now: u64, battery: &BatteryParameters) -> SensorFrame {
         let anew = Odometer { asked: now, ..Odometer::default() };
         let odometer = std::mem::replace(&mut robot.odometer, anew);
@@ -43,7 +43,7 @@ impl Senses {
                 angular: odometer.turned * mean + drift,
             },
             health: Health {
-                // Volts are told in hundredths, as converters give them.
+                // Voltage in hundredths, the resolution of analogue-digital converters.
                 battery: Some(geometry::math::round_to_i32(robot.volts(battery) * 100.0) as f32 * 0.01),
                 tipped: robot.tipped,
                 kicker_ready: robot.charged(now),
@@ -56,5 +56,5 @@ impl Senses {
     }
 }
 
-/// Steps are as long as the odometer believes.
+/// The odometer assumes this step length.
 const _: () = assert!(STEP == 0.001);

@@ -1,22 +1,22 @@
 //! `surface`: distance and normal of a robot's hull, a wall or a board. m.
 //!
-//! The hull is a disc with a flat front: what lies beyond the chord at `front` is cut off. Distances are exact outside (so
-//! that steps as long as the distance never jump into a body) and, inside, to the nearest side.
+//! The hull is a disc with a flat front: the part beyond the chord at `front` is cut off. Distances are exact
+//! outside (so that steps as long as the distance never jump into a body) and, inside, to the nearest side.
 
 use super::parameters::BodyParameters;
 
-/// The nearest place of a body's surface.
+/// The nearest point of a body's surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Nearest {
-    /// m, negative inside.
+    /// Distance, m, negative inside.
     pub distance: f32,
-    /// Outwards, of length 1.
+    /// Outward normal, of length 1.
     pub normal: [f32; 2],
-    /// It is the flat front.
+    /// Whether it is on the flat front.
     pub front: bool,
 }
 
-/// From a robot's hull to a point in its own frame.
+/// The nearest point of a robot's hull to a point in the robot's own frame.
 pub(super) fn hull(body: &BodyParameters, half_front: f32, [x, y]: [f32; 2]) -> Nearest {
     let ahead = x - body.front;
     let squared = x * x + y * y;
@@ -48,7 +48,7 @@ pub(super) struct Slab {
 }
 
 impl Slab {
-    /// From the box to a point of the field.
+    /// The nearest point of the box to a point of the field.
     pub(super) fn nearest(&self, [x, y]: [f32; 2]) -> Nearest {
         let (dx, dy) = (x - x.clamp(self.x[0], self.x[1]), y - y.clamp(self.y[0], self.y[1]));
         let squared = dx * dx + dy * dy;
@@ -76,7 +76,7 @@ mod tests {
     use crate::rng::Stream;
     use crate::small_size::Parameters;
 
-    /// By brute force: the nearest of many points of the outline.
+    /// Reference by brute force: the nearest of many points of the outline.
     fn outline(body: &BodyParameters, half_front: f32) -> Vec<[f32; 2]> {
         let chord = (0..=1000).map(|i| [body.front, half_front * (i as f32 / 500.0 - 1.0)]);
         let arc = (0..=6000).map(|i| geometry::math::sin_cos(i as f32 / 6000.0 * geometry::math::TAU));

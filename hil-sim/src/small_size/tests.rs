@@ -1,5 +1,5 @@
-//! Tests: robots and ball obey hand calculations. Drives, impacts, dribbler, kicks; and the same seed the
-//! same world.
+//! Tests: robots and ball agree with hand calculations: drives, impacts, dribbler, kicks; and equal seeds
+//! give equal worlds.
 
 mod ball;
 mod drive;
@@ -28,7 +28,7 @@ fn exact() -> Parameters {
     parameters
 }
 
-/// Division B without chance, the ball far from the middle.
+/// Division B without randomness, the ball far from the middle.
 fn world() -> World {
     let mut world = World::new(League::DivisionB, &exact(), 1);
     world.put_ball(Ball::at(Point::new(0.0, 2.5)));
@@ -77,13 +77,13 @@ fn dribble(order: Order) -> Order {
     Order { dribbler: 1.0, ..order }
 }
 
-/// Where the ball lies at the front of a robot with that pose.
+/// Position of the ball at the front of a robot with that pose.
 fn mouth(world: &World, pose: Pose<Field>) -> Point<Field> {
     let of = world.parameters();
     pose.to_field(Point::new(of.robot.front + of.ball.radius + 0.0001, 0.0))
 }
 
-/// Eleven a side that chase around by a fixed scheme, kicking and dribbling.
+/// Eleven robots a side that drive around by a fixed script, kicking and dribbling.
 fn busy(seed: u64, order_of_putting: impl Iterator<Item = u8>) -> World {
     let league = League::DivisionA;
     let mut world = World::new(league, Parameters::of(league).unwrap(), seed);
@@ -155,7 +155,7 @@ fn in_a_crowd_nobody_stays_in_anybody_and_kicks_and_crashes_are_told() {
         for (i, one) in robots.iter().enumerate() {
             for other in &robots[i + 1..] {
                 let gap = one.pose.position.distance(other.pose.position) - 0.18;
-                // In a heap of 22 a millimetre or two of give remains.
+                // Between 22 robots in contact an overlap of a millimetre or two remains.
                 assert!(gap > -0.004, "{:?} and {:?}: {gap}", one.who, other.who);
             }
             let [x, y] = world.pitch().corner();

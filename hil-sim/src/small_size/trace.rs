@@ -1,9 +1,9 @@
 //! `trace`: trace hash of a match. The hash of docs/architecture.md §2.5 over a Small Size world, tick by
 //! tick.
 //!
-//! Per tick of 10 ms, in order: the tick's number (u32); the ball's place, height, velocity and climb; of every robot
-//! present its slot (a byte), pose and velocity, turning; every order to a body (slot, postcard bytes); every packet handed
-//! over (receiver's slot, length, bytes). f32 bits, all little endian.
+//! Per tick of 10 ms, in order: the tick's number (u32); the ball's position, height, velocity and climb; of
+//! every robot present its slot (a byte), pose and velocity, turning; every order to a body (slot, postcard
+//! bytes); every packet delivered (receiver's slot, length, bytes). f32 bits, all little endian.
 
 use protocol::robot_io::ActuatorFrame;
 
@@ -12,7 +12,7 @@ use crate::four_legged::trace::TraceHash;
 use protocol::Who;
 
 impl TraceHash {
-    /// A tick begins with the Small Size world like this.
+    /// Hashes the start of a tick with this state of the Small Size world.
     pub fn small_size_tick(&mut self, number: u32, world: &World) {
         self.0.add(&number.to_le_bytes());
         let ball = &world.ball;
@@ -29,13 +29,13 @@ impl TraceHash {
         }
     }
 
-    /// A robot's body was given this order.
+    /// Hashes an order to a robot's body.
     pub fn small_size_order(&mut self, who: Who, order: &ActuatorFrame) {
         self.0.add(&[who.slot() as u8]);
         self.frame(order);
     }
 
-    /// A robot was handed this packet.
+    /// Hashes a packet delivered to a robot.
     pub fn small_size_packet(&mut self, who: Who, packet: &[u8]) {
         self.0.add(&[who.slot() as u8, packet.len() as u8]);
         self.0.add(packet);

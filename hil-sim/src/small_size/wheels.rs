@@ -1,7 +1,8 @@
 //! `wheels`: kinematics of four wheels. m/s at the rim, rad/s, body frame.
 //!
-//! A wheel at the angle α drives along its tangent: its rim runs at −sin α · v_x + cos α · v_y + R · ω. Four rims and three
-//! ways to move: the body follows the least squares. Written apart from `motion`'s kinematics, which robots believe.
+//! A wheel at the angle α drives along its tangent: its rim runs at −sin α · v_x + cos α · v_y + R · ω. Four
+//! rims and three degrees of freedom: the body follows the least squares. Written independently of `motion`'s
+//! kinematics, which robots use.
 
 use geometry::Angle;
 
@@ -12,18 +13,19 @@ use super::parameters::BodyParameters;
 pub(super) struct Wheels {
     /// For v_x, v_y, ω of 1 each: the rim speeds of the four wheels.
     rims: [[f32; 4]; 3],
-    /// For a rim speed of 1 of each wheel: v_x, v_y, ω, and nothing, so that four numbers go through one instruction.
+    /// For a rim speed of 1 of each wheel: v_x, v_y, ω, and 0, so that four numbers go through one
+    /// instruction.
     motions: [[f32; 4]; 4],
 }
 
 impl Wheels {
-    /// `None` where the wheels leave a direction in which they cannot drive.
+    /// `None` where the wheels cannot drive in every direction.
     pub(super) fn new(body: &BodyParameters) -> Option<Self> {
         let rows = body.wheels_deg.map(|degrees| {
             let (s, c) = Angle::degrees(degrees).sin_cos();
             [-s, c, body.wheel_distance]
         });
-        // Gauss–Jordan on (JᵀJ | Jᵀ); at most six wheels' worth of numbers, once a body.
+        // Gauss–Jordan on (JᵀJ | Jᵀ); once per body.
         let mut system = [[0.0_f32; 7]; 3];
         for (i, line) in system.iter_mut().enumerate() {
             for (j, cell) in line.iter_mut().enumerate() {
@@ -36,7 +38,7 @@ impl Wheels {
             });
             system.swap(pivot, largest);
             let value = system[pivot][pivot];
-            // 1e-5 of a wheel at 10 mm: rounding of what is singular stays far below.
+            // 1e-5 of a wheel at 10 mm: rounding errors of a singular matrix stay far below.
             if value.abs() < 1e-5 * body.wheel_distance {
                 return None;
             }
@@ -56,7 +58,7 @@ impl Wheels {
         })
     }
 
-    /// Rim speeds that move the body like this.
+    /// Rim speeds that give the body this motion.
     #[inline]
     pub(super) fn rims(&self, [x, y, turn]: [f32; 3]) -> [f32; 4] {
         let mut rims = [0.0; 4];
@@ -66,7 +68,7 @@ impl Wheels {
         rims
     }
 
-    /// How the body would move at these rim speeds.
+    /// Motion of the body at these rim speeds.
     #[inline]
     pub(super) fn motion(&self, [p, q, r, s]: [f32; 4]) -> [f32; 3] {
         let [a, b, c, d] = &self.motions;

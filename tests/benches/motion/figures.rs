@@ -5,7 +5,7 @@ use std::fs;
 
 use motion_bench::{Counted, TASKS, Work};
 
-/// Counts of one work over all tasks.
+/// Counts of one workload over all tasks.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Figure {
     pub(crate) work: Work,
@@ -13,11 +13,11 @@ pub(crate) struct Figure {
     pub(crate) mean: u32,
     pub(crate) p99: u32,
     pub(crate) worst: u32,
-    /// Mean on this machine; none where not counted.
+    /// Mean on this machine; `None` where not counted.
     pub(crate) host: Option<u64>,
 }
 
-/// All of them.
+/// The figures of all workloads.
 #[derive(Clone, Debug)]
 pub(crate) struct Figures(pub(crate) Vec<Figure>);
 
@@ -34,7 +34,7 @@ impl Figures {
         Self(Work::ALL.into_iter().enumerate().map(figure).collect())
     }
 
-    /// The budgets that are broken.
+    /// The budgets that are exceeded.
     pub(crate) fn broken(&self) -> Vec<String> {
         let mut broken = Vec::new();
         for Figure { work, mean, worst, host, .. } in &self.0 {
@@ -71,7 +71,7 @@ impl Figures {
     }
 }
 
-/// Most instructions.
+/// Maximum instructions.
 struct Limits {
     mean: u64,
     worst: u64,
@@ -85,7 +85,7 @@ fn limits(work: Work) -> Limits {
         // docs/architecture.md §9.
         Work::FreeTime | Work::FreePlan => limits(1_500, 1_500, 2_500),
         Work::DragTime | Work::DragPlan => limits(NONE, NONE, 6_000),
-        // What was reached, with room: so that it does not grow unseen.
+        // Measured values with a margin: so that an increase is noticed.
         Work::FreeState => limits(250, 300, NONE),
         Work::Soonest | Work::Safest => limits(17_000, 120_000, NONE),
         Work::Avoid | Work::AvoidMoving => limits(12_000, 28_000, NONE),
@@ -110,7 +110,7 @@ fn what(work: Work) -> &'static str {
     }
 }
 
-/// Puts the table between its marks.
+/// Writes the table between its marks.
 #[allow(dead_code, reason = "the test writes nothing")]
 pub(crate) fn write(table: &str) -> Result<(), String> {
     let file = firmware_build::workspace_root().join("firmware/motion/README.md");

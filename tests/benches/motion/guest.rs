@@ -1,4 +1,4 @@
-//! `guest`: motion benchmark on the robot's processor. The bench's image under QEMU, which counts
+//! `guest`: motion benchmark on the robot's processor. The bench's firmware image under QEMU, which counts
 //! instructions.
 
 use std::process::{Command, Stdio};
@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 use firmware_build::{Install, MACHINE, Program, build_program, ensure_qemu, workspace_root};
 use motion_bench::{Counted, SEED, TASKS, Tasks};
 
-/// Counts for every task, in order; what was found is what this machine finds, bit for bit.
+/// Counts for every task, in order; checked: the results equal this machine's, bit for bit.
 pub(crate) fn counted() -> Result<Vec<Counted>, String> {
     let qemu = ensure_qemu(Install::ForUser).map_err(|error| error.to_string())?;
     let image = build_program(&workspace_root(), Program::MotionBench).map_err(|error| error.to_string())?;

@@ -1,6 +1,6 @@
-//! `host`: motion benchmark on this machine. This very program under callgrind, which counts instructions.
+//! `host`: motion benchmark on this machine. This program itself under callgrind, which counts instructions.
 //!
-//! It does all tasks once and then twice; the difference is free of everything that happens once.
+//! It does all tasks once and then twice; the difference excludes everything that happens once.
 
 use std::env;
 use std::hint::black_box;
@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 
 use motion_bench::{SEED, TASKS, Task, Tasks, Work};
 
-/// Instructions a task, on average.
+/// Mean instructions per task.
 pub(crate) fn instructions(work: Work) -> Result<u64, String> {
     Ok(counted(work, 2)?.saturating_sub(counted(work, 1)?) / TASKS as u64)
 }
@@ -27,7 +27,7 @@ fn counted(work: Work, rounds: u32) -> Result<u64, String> {
     count.filter(|_| output.status.success()).ok_or_else(|| format!("callgrind counted nothing: {said}"))
 }
 
-/// What callgrind looks at: all tasks, `rounds` times.
+/// The workload under callgrind: all tasks, `rounds` times.
 pub(crate) fn work(word: &str, rounds: &str) -> Result<(), String> {
     let work = Work::ALL.into_iter().find(|work| work.word() == word).ok_or("no such work")?;
     let rounds: u32 = rounds.parse().map_err(|_| "rounds")?;

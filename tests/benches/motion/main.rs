@@ -1,7 +1,7 @@
 //! `motion`: motion benchmark (docs/architecture.md §9). `cargo xtask bench motion` starts it.
 //!
-//! Instructions on the robot's processor (QEMU) and on this machine (callgrind), on tasks of a seed; with `--verify` 10^6
-//! tasks held to the best of all shares. Exit code 1 where a budget is broken.
+//! Instructions on the robot's processor (QEMU) and on this machine (callgrind), on tasks of a seed; with
+//! `--verify` 10^6 tasks are compared with the best of all shares. Exit code 1 where a budget is exceeded.
 
 mod figures;
 mod guest;
@@ -36,7 +36,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Counts, prints, judges.
+/// Counts, prints, and checks the budgets.
 fn report(write: bool, here: bool) -> Result<(), String> {
     let counted = guest::counted()?;
     let mut means = [None; Work::ALL.len()];
@@ -61,5 +61,5 @@ usage: cargo xtask bench motion [--write | --guest | --verify]
   --guest   the robot's processor alone, without callgrind
   --verify  hold 10^6 times to the best of all shares between the axes";
 
-/// Tasks, without drag and with.
+/// Number of tasks, without drag and with.
 const VERIFIED: usize = 1_000_000;

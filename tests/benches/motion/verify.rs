@@ -4,7 +4,7 @@ use geometry::{Field, Point, Vector, math};
 use motion::trajectory::{CalcMotion, DragLimits, FreeLimits};
 use motion_bench::{Task, Tasks};
 
-/// Holds so many times to the best of all shares, without drag and with, on as many threads as there are.
+/// Compares `tasks` tasks with the best of all shares, without drag and with, on all processor cores.
 pub(crate) fn run(tasks: usize) -> Result<(), String> {
     let free = FreeLimits::default();
     let drag = DragLimits::default();
@@ -17,7 +17,7 @@ fn free_alone(limits: FreeLimits, share: f32) -> FreeLimits {
     FreeLimits { speed: speed * share, acceleration: acceleration * share, braking: braking * share }
 }
 
-/// An axis with a share of the push: the same equation, with a smaller limit and a smaller final speed.
+/// An axis with a share of the thrust: the same equation, with a smaller limit and a smaller final speed.
 fn drag_alone(limits: DragLimits, share: f32) -> DragLimits {
     DragLimits { speed: limits.speed * share, acceleration: limits.acceleration * share }
 }
@@ -52,7 +52,7 @@ fn told(what: &str, tasks: usize, excess: impl Fn(&Task) -> Option<f32> + Sync) 
     if unsolved == 0 { Ok(()) } else { Err(format!("{what}: {unsolved} unsolved")) }
 }
 
-/// By which share the time is longer than the best; none where it is no time.
+/// Relative excess of the time over the best; `None` where there is no valid time.
 fn task_excess<L: CalcMotion>(task: &Task, limits: &L, alone: impl Fn(f32) -> L) -> Option<f32> {
     let (offset, velocity) = (task.to - task.from, task.velocity);
     let origin = Point::<Field>::new(0.0, 0.0);
@@ -63,7 +63,7 @@ fn task_excess<L: CalcMotion>(task: &Task, limits: &L, alone: impl Fn(f32) -> L)
         let (s, c) = math::sin_cos(angle);
         axis(offset.x(), velocity.x(), c).max(axis(offset.y(), velocity.y(), s))
     };
-    // All angles coarsely, then finer and finer around the best.
+    // All angles coarsely, then with increasing resolution around the best.
     let (mut middle, mut span) = (0.5 * math::FRAC_PI_2, 0.5 * math::FRAC_PI_2);
     let mut best = f32::INFINITY;
     for _ in 0..ZOOMS {
@@ -84,5 +84,5 @@ fn task_excess<L: CalcMotion>(task: &Task, limits: &L, alone: impl Fn(f32) -> L)
 
 const ZOOMS: usize = 4;
 const POINTS: u32 = 40;
-/// Below this an axis alone would have less than the least limit that counts as one.
+/// Minimum angle: below it an axis would have less than the minimum limit.
 const ANGLE_MIN: f32 = 1e-3;

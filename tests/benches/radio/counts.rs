@@ -1,5 +1,5 @@
-//! `counts`: figures of the radio benchmark, and their budgets. The image's counts, held to this machine's
-//! answers.
+//! `counts`: figures of the radio benchmark, and their budgets. The firmware image's counts; its answers are
+//! compared with this machine's.
 
 use std::fmt::Write as _;
 use std::process::{Command, Stdio};
@@ -7,17 +7,17 @@ use std::process::{Command, Stdio};
 use firmware_build::{Install, MACHINE, Program, build_program, ensure_qemu, workspace_root};
 use radio_bench::{Bench, ROUNDS, Work};
 
-/// One work over all rounds.
+/// One workload over all rounds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Count {
     pub(crate) work: Work,
-    /// Of the frame.
+    /// Length of the frame.
     pub(crate) bytes: u32,
-    /// Guest instructions, the dearest round.
+    /// Guest instructions of the most expensive round.
     pub(crate) worst: u32,
 }
 
-/// Counts of every work; what the radio gave there is what it gives here.
+/// Counts of every workload; checked: the radio's results in the image equal those here.
 pub(crate) fn counted() -> Result<Vec<Count>, String> {
     let qemu = ensure_qemu(Install::ForUser).map_err(|error| error.to_string())?;
     let image = build_program(&workspace_root(), Program::RadioBench).map_err(|error| error.to_string())?;
@@ -57,18 +57,18 @@ fn numbers(line: &str) -> Option<[u32; 3]> {
     numbers.try_into().ok()
 }
 
-/// Most guest instructions for a frame of so many bytes.
+/// Maximum guest instructions for a frame of `bytes` bytes.
 fn limit(bytes: u32) -> Option<u32> {
     match bytes {
         0..=32 => Some(1_300),
         33..=64 => Some(2_400),
-        // Worlds come to a robot a few hundred times a second; docs/architecture.md §9 names no budget for
+        // Worlds arrive at a robot a few hundred times a second; docs/architecture.md §9 names no budget for
         // them.
         _ => None,
     }
 }
 
-/// The budgets that are broken.
+/// The budgets that are exceeded.
 pub(crate) fn broken(counts: &[Count]) -> Vec<String> {
     let over = counts.iter().filter_map(|Count { work, bytes, worst }| {
         let limit = limit(*bytes).filter(|limit| worst > limit)?;

@@ -1,6 +1,6 @@
 //! `radio`: radio benchmark (docs/architecture.md §9). `cargo xtask bench radio` starts it.
 //!
-//! The bench's image under QEMU, which counts instructions. Exit code 1 where a budget is broken.
+//! The bench's firmware image under QEMU, which counts instructions. Exit code 1 where a budget is exceeded.
 
 mod counts;
 
@@ -29,7 +29,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Counts, prints, judges.
+/// Counts, prints, and checks the budgets.
 fn report(write: bool) -> Result<(), String> {
     let counts = counts::counted()?;
     let table = counts::table(&counts);
@@ -41,7 +41,7 @@ fn report(write: bool) -> Result<(), String> {
     if broken.is_empty() { Ok(()) } else { Err(broken.join("\n")) }
 }
 
-/// Puts the table between its marks.
+/// Writes the table between its marks.
 fn put(table: &str) -> Result<(), String> {
     let file = firmware_build::workspace_root().join("protocol/README.md");
     let text = fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;

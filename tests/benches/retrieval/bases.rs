@@ -10,7 +10,7 @@ use match_tests::oracle::problem::Problem as Drawn;
 use match_tests::random_library::{Dice, RandomLibrary, random_problem};
 use protocol::RobotId;
 
-/// A case base, and the same library as problems are drawn from.
+/// A case base, and the library from which its problems are drawn.
 pub(crate) struct Base {
     pub(crate) library: Library,
     oracle: Oracle,
@@ -78,8 +78,8 @@ fn translated(problem: &Drawn) -> Problem {
     }
 }
 
-/// Authored cases of the smallest base: stored in four copies they come nearest to the 34 a team would have without
-/// symmetry.
+/// Authored cases of the smallest base: stored in four copies they come nearest to the 34 a team would have
+/// without symmetry.
 const PART: usize = 9;
 /// Of the random libraries.
 const SEED: u64 = 8;

@@ -1,7 +1,7 @@
-//! `callgrind`: retrieval benchmark on this machine. This very program under callgrind, which counts
+//! `callgrind`: retrieval benchmark on this machine. This program itself under callgrind, which counts
 //! instructions.
 //!
-//! It runs over all problems once and then twice; the difference is free of everything that happens once.
+//! It runs over all problems once and then twice; the difference excludes everything that happens once.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -12,10 +12,10 @@ use retrieval_bench::{problems, scan};
 
 use crate::guest::{Folder, in_memory, write};
 
-/// What is counted, by its word.
+/// Labels of the measured methods.
 pub(crate) const WAYS: [&str; 3] = ["best", "counted", "scan"];
 
-/// Instructions a problem, on average, of each of [`WAYS`].
+/// Mean instructions per problem, of each of [`WAYS`].
 pub(crate) fn instructions(table: &[u8], problems: &[Problem]) -> Result<[u64; 3], String> {
     let folder = Folder::new()?;
     write(&folder.0.join("table"), table)?;
@@ -44,7 +44,7 @@ fn counted(folder: &Path, way: &str, rounds: u32) -> Result<u64, String> {
     count.filter(|_| output.status.success()).ok_or_else(|| format!("callgrind counted nothing: {said}"))
 }
 
-/// What callgrind looks at: all problems in `folder`, `rounds` times.
+/// The workload under callgrind: all problems in `folder`, `rounds` times.
 pub(crate) fn work(folder: &Path, way: &str, rounds: u32) -> Result<(), String> {
     let read = |name: &str| {
         let file = folder.join(name);

@@ -10,7 +10,7 @@ pub(crate) struct Figures {
     pub(crate) set: &'static str,
     pub(crate) problems: usize,
     pub(crate) bytes_per_case: f32,
-    /// Cases whose scope holds the ball: mean and most.
+    /// Number of cases whose scope contains the ball: mean and maximum.
     pub(crate) gated: [f64; 2],
     /// Guest instructions of `retrieve_best`, `retrieve` and the scan.
     pub(crate) guest: [Spread; 3],
@@ -64,17 +64,18 @@ impl Figures {
         }
     }
 
-    /// Instructions a retrieval may take on average: so much, and so much for each case inside the ball gate.
+    /// Budget of the mean instructions of a retrieval: a constant, plus an amount for each case that passes
+    /// the test of the ball.
     pub(crate) fn mean_allowed(&self) -> f64 {
         f64::from(FIXED) + f64::from(PER_GATED) * self.gated[0]
     }
 
-    /// How many times more a scan takes.
+    /// Ratio of the scan's instructions to the retrieval's.
     pub(crate) fn ratio(&self) -> f64 {
         self.guest[2].mean / self.guest[0].mean
     }
 
-    /// The budgets that are broken.
+    /// The budgets that are exceeded.
     pub(crate) fn broken(&self) -> Vec<String> {
         let Self { stored, set, guest: [best, ..], .. } = self;
         let mut broken = Vec::new();
@@ -88,7 +89,7 @@ impl Figures {
             within("median", f64::from(best.median), MEDIAN);
             within("worst", f64::from(best.worst), WORST);
         }
-        // The same problems: random ones are told, not held (casebase/README.md).
+        // The same problems: random ones are reported, without a budget (casebase/README.md).
         if *stored >= LARGE && *set == PLAYED {
             within("mean", best.mean, self.mean_allowed());
         }
@@ -102,7 +103,7 @@ impl Figures {
     }
 }
 
-/// How many cases under the goal hold the ball in their scope.
+/// Number of cases under the goal whose scope contains the ball.
 fn inside_the_gate(base: &CaseBase<'_>, problem: &Problem) -> usize {
     let inside =
         |case: &casebase::Case<'_>| case.defending() == problem.defending && case.ball_in_scope(problem.ball);

@@ -1,4 +1,4 @@
-//! `guest`: retrieval benchmark on the robot's processor. The bench's image under QEMU, which counts
+//! `guest`: retrieval benchmark on the robot's processor. The bench's firmware image under QEMU, which counts
 //! instructions.
 
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use casebase::{CaseBase, Problem, Settings, retrieve, retrieve_best};
 use firmware_build::{Install, MACHINE, Program, build_program, ensure_qemu, workspace_root};
 use retrieval_bench::{Answer, LEN_MAX, PROBLEMS_ADDRESS, TABLE_ADDRESS, encode, header, scan};
 
-/// The emulator and the image.
+/// The emulator and the firmware image.
 pub(crate) struct Board {
     qemu: PathBuf,
     image: PathBuf,
@@ -57,7 +57,7 @@ impl Board {
     }
 }
 
-/// The board's answers are those of this machine, bit for bit.
+/// Checks that the board's answers equal this machine's, bit for bit.
 pub(crate) fn agrees(base: &CaseBase<'_>, problems: &[Problem], answers: &[Answer]) -> Result<(), String> {
     let settings = Settings::default();
     for (problem, answer) in problems.iter().zip(answers) {
@@ -75,7 +75,7 @@ pub(crate) fn agrees(base: &CaseBase<'_>, problems: &[Problem], answers: &[Answe
     Ok(())
 }
 
-/// The problems as the image finds them in memory.
+/// The problems in the encoding that the firmware image reads from memory.
 pub(crate) fn in_memory(problems: &[Problem]) -> Vec<u8> {
     let mut bytes = Vec::new();
     for problem in problems {
@@ -93,7 +93,7 @@ pub(crate) fn write(file: &Path, bytes: &[u8]) -> Result<(), String> {
     fs::write(file, bytes).map_err(|error| format!("cannot write {}: {error}", file.display()))
 }
 
-/// A folder that goes when it is not needed any more.
+/// A temporary directory that is deleted on drop.
 pub(crate) struct Folder(pub(crate) PathBuf);
 
 impl Folder {
@@ -106,7 +106,7 @@ impl Folder {
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        // A temporary folder that stays is a pity, not an error.
+        // A temporary directory that stays is no error.
         let _ = fs::remove_dir_all(&self.0);
     }
 }

@@ -1,7 +1,8 @@
 //! `retrieval`: retrieval benchmark (docs/architecture.md §9). `cargo xtask bench retrieval` starts it.
 //!
-//! Bases of 36 to 10,000 stored cases; random problems and those that robots retrieved for in 200 trials; instructions
-//! on the robot's processor (QEMU) and on this machine (callgrind). Exit code 1 where a budget is broken.
+//! Bases of 36 to 10,000 stored cases; random problems and those that robots retrieved for in 200 trials;
+//! instructions on the robot's processor (QEMU) and on this machine (callgrind). Exit code 1 where a budget
+//! is exceeded.
 
 mod bases;
 mod callgrind;
@@ -45,7 +46,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Counts, prints, judges.
+/// Counts, prints, and checks the budgets.
 fn report(write: bool, host: bool) -> Result<(), String> {
     let board = Board::new()?;
     let played = played::problems(TRIALS);
@@ -84,16 +85,17 @@ usage: cargo xtask bench retrieval [--write | --guest | --verify]
   --guest   the robot's processor alone, without callgrind
   --verify  answer 10^6 random problems as a plain scan does";
 
-/// Trials whose problems are recorded (docs/architecture.md §9).
+/// Number of trials whose problems are recorded (docs/architecture.md §9).
 const TRIALS: usize = 200;
-/// Random problems a base.
+/// Number of random problems per base.
 const RANDOM: usize = 1_000;
-/// Cases from which on the scan takes its time, and about how many problems of a set it then gets.
+/// Number of cases from which on the scan is slow, and the approximate number of problems of a set that are
+/// then used.
 const LARGE: usize = 10_000;
 const LARGE_PROBLEMS: usize = 1_500;
-/// Problems of a set that callgrind, fifty times slower than the machine, looks at.
+/// Number of problems of a set under callgrind, which is fifty times slower than the machine.
 const HOST_PROBLEMS: usize = 200;
-/// Random problems a base that are answered both ways: 10^6 in all.
+/// Number of random problems per base that are answered by both methods: 10^6 in all.
 const VERIFIED: [usize; 4] = [300_000, 400_000, 250_000, 50_000];
-/// Of the random problems.
+/// Seed of the random problems.
 const SEED: u64 = 34;

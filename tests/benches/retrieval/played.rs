@@ -1,7 +1,7 @@
-//! `played`: problems that robots really retrieve for. Those of whole trials, recorded as their coordinators
-//! decided.
+//! `played`: problems for which robots retrieve in play. Those of whole trials, recorded as their
+//! coordinators decided.
 //!
-//! Nothing is kept in a file: trials are seeded and quick, so the problems are those of the library and brain of today.
+//! No file keeps them: trials are seeded and fast, so the problems are those of today's library and brain.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -31,7 +31,7 @@ pub(crate) fn problems(trials: usize) -> Vec<Problem> {
     problems
 }
 
-/// Robots' computers in this process, whose decisions are written down.
+/// Robots' computers in this process, whose decisions are recorded.
 struct Recorder<'a> {
     base: CaseBase<'a>,
     problems: Rc<RefCell<Vec<Problem>>>,
@@ -52,13 +52,13 @@ impl<'a> Backend<'a> for Recorder<'a> {
 struct Robot<'a> {
     station: Station<'a>,
     reply: Reply,
-    /// The cycle it decided last.
+    /// The last cycle it decided.
     decided: Option<CycleId>,
     problems: Rc<RefCell<Vec<Problem>>>,
 }
 
 impl Robot<'_> {
-    /// After every event, before anything else is believed: has it just decided? Then its words go out.
+    /// Called after every event, before the next one: checks for a new decision, and sends the messages.
     fn after(&mut self, now: Instant) {
         self.record(now);
         while let Some(packet) = self.station.poll_packet(now) {

@@ -39,7 +39,7 @@ pub(crate) fn row(figures: &Figures) -> String {
     )
 }
 
-/// Puts the table between its marks.
+/// Writes the table between its marks.
 pub(crate) fn write(table: &str) -> Result<(), String> {
     let file = firmware_build::workspace_root().join("casebase/README.md");
     let text = fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;
@@ -50,7 +50,7 @@ pub(crate) fn write(table: &str) -> Result<(), String> {
     fs::write(&file, text).map_err(|error| format!("{}: {error}", file.display()))
 }
 
-/// A number with its thousands apart.
+/// A number with separated thousands.
 fn n(number: u32) -> String {
     let digits = number.to_string();
     let mut text = String::new();

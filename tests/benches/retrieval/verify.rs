@@ -5,7 +5,8 @@ use retrieval_bench::scan;
 
 use crate::bases::Base;
 
-/// Answers so many random problems of each base, both ways, on as many threads as there are.
+/// Answers random problems of each base by both methods, on all processor cores; `problems` is their number
+/// per base.
 pub(crate) fn run(problems: [usize; 4]) -> Result<(), String> {
     let bases = Base::all();
     let (mut sum, mut answered, mut several) = (0, 0, 0);
@@ -33,7 +34,8 @@ pub(crate) fn run(problems: [usize; 4]) -> Result<(), String> {
     Ok(())
 }
 
-/// How many problems had candidates, and several; an error tells the first that was answered otherwise.
+/// Number of problems with candidates, and with several; an error reports the first that was answered
+/// differently.
 fn differences(base: &Base, seed: u64, count: usize) -> Result<[usize; 2], String> {
     let table = base.library.base();
     let settings = Settings::default();

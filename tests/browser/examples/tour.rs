@@ -1,5 +1,5 @@
-//! Walks through the page in a real browser: `tour PROGRAM pictures FOLDER` takes the documentation's pictures, `tour PROGRAM frames`
-//! tells what a frame costs the page's script, full and empty, in the same run.
+//! Drives the page in a real browser: `tour PROGRAM pictures FOLDER` takes the documentation's screenshots,
+//! `tour PROGRAM frames` reports the cost of a frame in the page's script, full and empty, in the same run.
 
 use std::io::{BufRead, BufReader};
 use std::path::Path;
@@ -30,7 +30,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// The program with its page.
+/// The program and its page.
 struct Shown {
     child: Child,
     address: String,
@@ -73,7 +73,7 @@ impl Drop for Shown {
     }
 }
 
-/// The match that the pictures are of: its seed, and how long it is played before, s.
+/// The match of the screenshots: its seed, and how long it is played before, s.
 const SEED: &str = "1";
 const PLAYED_S: u32 = 90;
 
@@ -84,7 +84,7 @@ fn pictures(program: &str, folder: &Path) -> Told<()> {
     let mut tab = browser.open(&shown.url("?theme=dark&tab=why"), 1440, 900)?;
     tab.wait(&format!("window.onetwo?.store.latest?.t > {PLAYED_S}"), 240)?;
     tab.eval("fetch('/api/state')")?;
-    // A moment in which a case is executed and something moves: the middle of the first such play.
+    // A moment in which a case is executed and robots move: the middle of the first such play.
     tab.wait("onetwo.store.happenings.some((h) => h.kind === 'case')", 60)?;
     let at = tab.eval(BUSY)?.as_f64().unwrap_or(30.0);
     let here = |tab: &mut Tab<'_>, at: f64| -> Told<()> {
@@ -97,7 +97,7 @@ fn pictures(program: &str, folder: &Path) -> Told<()> {
     take(&mut tab, &folder.join("field.png"))?;
     tab.click("#layers-open")?;
     tab.wait("document.querySelector('[data-layer=truth]')", 10)?;
-    // The list lies over the left half: what happens is turned to the right.
+    // The list lies over the left half: the page is turned so that play is on the right.
     if tab.eval("onetwo.store.scene.ball.at[0] < 0")?.as_bool() == Some(true) {
         tab.key("f")?;
     }
@@ -123,14 +123,14 @@ fn pictures(program: &str, folder: &Path) -> Told<()> {
     take(&mut tab, &folder.join("phone.png"))
 }
 
-/// The time of a play in the shown match that was not over at once: a third of its way.
+/// The time of a play in the match that was not over at once: a third of its duration.
 const BUSY: &str = "(async () => {
   const all = onetwo.store.happenings;
   const plays = all.filter((h) => h.kind === 'case').map((h) => {
     const end = all.find((e) => e.kind === 'cycle' && e.team === h.team && e.t > h.t);
     return [h.t, end ? end.t - h.t : 0];
   });
-  // Not so long that the game was stopped in between.
+  // Short enough that the game was not stopped during it.
   const long = plays.filter(([t, s]) => t > 8 && s < 4).sort((a, b) => b[1] - a[1])[0] ?? plays[0];
   return long[0] + long[1] * 0.4;
 })()";
@@ -167,7 +167,8 @@ fn frames(program: &str) -> Told<()> {
     Ok(())
 }
 
-/// The scene as it is, every layer on. Eleven a side have no cases: each team gets one of the second level's size.
+/// The present scene, with every layer on. Eleven a side have no cases: each team gets one of the second
+/// level's size.
 const FILL: &str = "() => {
   const scene = structuredClone(onetwo.store.latest);
   const named = (name) => scene.layers.find((l) => l.name === name).shapes;
@@ -182,7 +183,7 @@ const FILL: &str = "() => {
   onetwo.full = scene;
 }";
 
-/// Play runs with all that is known of it: maps, threats, beliefs, ways.
+/// Play runs with all layers shown: maps, threats, beliefs, paths.
 const BUSY_FRAME: &str = "(() => {
   const scene = window.onetwo?.store.latest;
   const full = (name) => scene.layers.find((l) => l.name === name)?.shapes.length > 3;

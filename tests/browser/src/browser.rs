@@ -15,21 +15,21 @@ use tungstenite::{Message, WebSocket};
 
 use crate::Tab;
 
-/// An answer is waited for so long: a loaded machine takes seconds to start a page.
+/// Timeout of an answer: a loaded machine takes seconds to start a page.
 const PATIENCE: Duration = Duration::from_mins(1);
-/// The socket is looked at so often.
+/// Interval at which the socket is polled.
 const LOOK: Duration = Duration::from_millis(50);
-/// Names under which systems have it.
+/// Names of the program on various systems.
 const NAMES: [&str; 5] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome"];
 
 /// Why there is no browser, or no answer.
 #[derive(Debug)]
 pub enum BrowserError {
-    /// None is installed.
+    /// No browser is installed.
     Missing,
     /// It does not start, or ended.
     Start(String),
-    /// It said something else than an answer.
+    /// It sent something other than an answer.
     Answer(String),
 }
 
@@ -65,12 +65,12 @@ pub struct Browser {
     socket: WebSocket<MaybeTlsStream<TcpStream>>,
     asked: u64,
     answers: HashMap<u64, Value>,
-    /// What pages told unasked: session, method, parameters.
+    /// Events that pages sent without a request: session, method, parameters.
     pub(crate) events: Vec<(String, String, Value)>,
 }
 
 impl Browser {
-    /// Starts one with a profile of its own that is thrown away.
+    /// Starts one with a temporary profile.
     pub fn start() -> Result<Self, BrowserError> {
         let start = |error: &dyn fmt::Display| BrowserError::Start(error.to_string());
         let clock = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
@@ -79,7 +79,7 @@ impl Browser {
         let mut child = Command::new(find()?)
             .args([
                 "--headless=new",
-                // Containers lend no namespaces to sandboxes; nothing but our own page is ever opened here.
+                // Containers provide no namespaces for sandboxes; only our own page is ever opened here.
                 "--no-sandbox",
                 "--remote-debugging-port=0",
                 "--no-first-run",
@@ -110,7 +110,7 @@ impl Browser {
                 }
                 said.push(line);
             }
-            // A full pipe would hold it up.
+            // A full pipe would block it.
             std::thread::spawn(move || lines.for_each(drop));
         }
         let Some(address) = address else {
@@ -136,7 +136,7 @@ impl Browser {
         Tab::new(self, session, url, width, height)
     }
 
-    /// Asks, and waits for the answer.
+    /// Sends a request, and waits for the answer.
     pub(crate) fn ask(
         &mut self,
         session: Option<&str>,
@@ -165,7 +165,7 @@ impl Browser {
         Err(BrowserError::Answer(format!("{method}: no answer within a minute")))
     }
 
-    /// Takes what came, or waits a moment for it.
+    /// Takes received messages, or waits a moment for them.
     pub(crate) fn listen(&mut self) -> Result<(), BrowserError> {
         match self.socket.read() {
             Ok(Message::Text(text)) => {

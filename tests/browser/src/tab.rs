@@ -1,5 +1,5 @@
-//! `tab`: operations on a page. Ask its script, click, press keys, wait until something is so, take a
-//! picture, hear its errors.
+//! `tab`: operations on a page. Evaluate script, click, press keys, wait for a condition, take a screenshot,
+//! collect its errors.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -40,7 +40,7 @@ impl<'b> Tab<'b> {
         self.ask("Page.navigate", &json!({ "url": url })).map(drop)
     }
 
-    /// Another size, CSS pixels; as a telephone has it, or as a screen.
+    /// Changes its size, CSS pixels; as a telephone or as a screen.
     pub fn resize(&mut self, width: u32, height: u32, telephone: bool) -> Result<(), BrowserError> {
         let scale = if telephone { 2 } else { 1 };
         let what =
@@ -48,7 +48,7 @@ impl<'b> Tab<'b> {
         self.ask("Emulation.setDeviceMetricsOverride", &what).map(drop)
     }
 
-    /// What a piece of script comes to.
+    /// The value of a piece of script.
     pub fn eval(&mut self, script: &str) -> Result<Value, BrowserError> {
         let what = json!({ "expression": script, "returnByValue": true, "awaitPromise": true });
         let answer = self.ask("Runtime.evaluate", &what)?;
@@ -62,7 +62,7 @@ impl<'b> Tab<'b> {
     pub fn wait(&mut self, script: &str, seconds: u64) -> Result<(), BrowserError> {
         let begun = Instant::now();
         loop {
-            // A page that is not there yet throws: that is no answer either.
+            // A page that is not loaded yet throws: that counts as false.
             let last = self.eval(&format!("Boolean({script})"));
             if matches!(last, Ok(Value::Bool(true))) {
                 return Ok(());
@@ -86,7 +86,7 @@ impl<'b> Tab<'b> {
         self.mouse("mouseReleased", &at[0], &at[1], 1)
     }
 
-    /// Pulls from one place to another, CSS pixels.
+    /// Drags from one point to another, CSS pixels.
     pub fn drag(&mut self, from: [f64; 2], to: [f64; 2]) -> Result<(), BrowserError> {
         self.mouse("mousePressed", &json!(from[0]), &json!(from[1]), 1)?;
         for step in 1..=8 {
@@ -113,7 +113,7 @@ impl<'b> Tab<'b> {
         Ok(())
     }
 
-    /// Writes a PNG of what is seen.
+    /// Writes a PNG screenshot.
     pub fn picture(&mut self, file: &Path) -> Result<(), BrowserError> {
         let answer = self.ask("Page.captureScreenshot", &json!({ "format": "png" }))?;
         let bytes = decode(answer["data"].as_str().unwrap_or_default());
@@ -121,7 +121,7 @@ impl<'b> Tab<'b> {
             .map_err(|error| BrowserError::Answer(format!("{}: {error}", file.display())))
     }
 
-    /// Errors that the page has told on its console so far: exceptions, `console.error`, what could not be loaded.
+    /// Errors that the page has written to its console so far: exceptions, `console.error`, failed loads.
     pub fn errors(&mut self) -> Vec<String> {
         let mine = self.browser.events.iter().filter(|(session, ..)| *session == self.session);
         let told = |(_, method, what): &(String, String, Value)| match method.as_str() {
@@ -134,7 +134,7 @@ impl<'b> Tab<'b> {
     }
 }
 
-/// Base64, as the protocol has pictures.
+/// Decodes Base64, the protocol's encoding of screenshots.
 fn decode(text: &str) -> Vec<u8> {
     let value = |letter: u8| match letter {
         b'A'..=b'Z' => Some(letter - b'A'),

@@ -1,9 +1,9 @@
 //! `library`: naive reader of case files.
 //!
 //! docs/case-format.md §1, §2 with the `toml` crate's generic values and nothing else of the project: every
-//! stored case is spelled out (the authored one and its three mirror images), kicks resolved into aim and
-//! radii. Field frame, mm, whole degrees. It trusts the library to be valid: what it cannot read is an error,
-//! but it is no lint.
+//! stored case is computed in full (the authored one and its three mirrored copies), kicks resolved into aim
+//! and radii. Field frame, mm, whole degrees. It assumes that the library is valid: what it cannot read is an
+//! error, but it checks nothing else.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -36,7 +36,7 @@ pub struct Case {
     pub symmetry: &'static str,
     /// The goal the case is listed under.
     pub defending: Goal,
-    /// Where the ball lies.
+    /// Position of the ball.
     pub ball: Point,
     /// The ball's scope.
     pub scope: Radii,
@@ -49,16 +49,16 @@ pub struct Case {
 /// One robot of a case.
 #[derive(Clone, Debug)]
 pub struct Robot {
-    /// Where it stands.
+    /// Its position.
     pub at: Point,
-    /// What it does, in order.
+    /// Its actions, in order.
     pub gameplay: Vec<Action>,
 }
 
 /// One action of a gameplay; robots are counted from 0 here.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
-    /// `wait` and `turn`: nothing that moves ball or robot.
+    /// `wait` and `turn`: no motion of ball or robot.
     Stay,
     /// `go_to_point`.
     GoTo(Point),
@@ -77,13 +77,13 @@ pub enum Action {
 /// A kick, as this stored case makes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kick {
-    /// Where to.
+    /// Its aim.
     pub aim: Aim,
-    /// How wide.
+    /// Its radii.
     pub tube: Tube,
 }
 
-/// Where a kick goes.
+/// Aim of a kick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Aim {
     /// Along a heading (degrees, left > 0, 0 = direction of attack) for `length` mm.
@@ -145,7 +145,7 @@ impl Goal {
         }
     }
 
-    /// The word of files and problems.
+    /// The goal of that label in files and problems.
     pub fn from_word(word: &str) -> Option<Self> {
         match word {
             "yellow" => Some(Self::Yellow),
@@ -154,7 +154,7 @@ impl Goal {
         }
     }
 
-    /// The word of files and problems.
+    /// Its label in files and problems.
     pub fn word(self) -> &'static str {
         match self {
             Self::Yellow => "yellow",
@@ -171,10 +171,10 @@ impl Goal {
     }
 }
 
-/// A library this reader cannot make sense of.
+/// A library that this reader cannot read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unreadable {
-    /// The file, or the folder.
+    /// The file or directory.
     pub file: PathBuf,
     /// What is wrong.
     pub reason: String,
@@ -189,7 +189,7 @@ impl fmt::Display for Unreadable {
 impl std::error::Error for Unreadable {}
 
 impl Library {
-    /// Reads one league's folder: `league.toml` and `<region>/<name>.toml`.
+    /// Reads one league's directory: `league.toml` and `<region>/<name>.toml`.
     pub fn read(dir: &Path) -> Result<Self, Unreadable> {
         let failed = |path: &Path, error: std::io::Error| Unreadable {
             file: path.to_path_buf(),
@@ -235,7 +235,7 @@ impl Library {
     }
 }
 
-/// Id order of the four descriptions of a case, with the signs of x and y.
+/// The four symmetries of a case in id order, with the signs of x and y.
 const SYMMETRIES: [(&str, i64, i64); 4] =
     [("identity", 1, 1), ("across-x", 1, -1), ("across-y", -1, 1), ("both", -1, -1)];
 

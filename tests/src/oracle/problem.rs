@@ -14,7 +14,7 @@ use super::library::{Case, Goal, Point};
 /// A situation to find a case for.
 #[derive(Clone, Debug)]
 pub struct Problem {
-    /// Where the ball lies.
+    /// Position of the ball.
     pub ball: Point,
     /// The goal we defend.
     pub defending: Goal,
@@ -24,7 +24,7 @@ pub struct Problem {
     pub opponents: Vec<Point>,
 }
 
-/// Most robots of either team in a line.
+/// Maximum number of robots of either team in a line.
 const ROBOTS_MAX: usize = 11;
 
 impl Problem {
@@ -39,7 +39,7 @@ impl Problem {
         }
     }
 
-    /// The line that asks this, robots and opponents in the order they are listed.
+    /// The line for this problem, robots and opponents in the order they are listed.
     pub fn to_line(&self) -> String {
         let pair = |p: &Point| format!("[{},{}]", p.x, p.y);
         let robots: Vec<String> =
@@ -128,7 +128,7 @@ fn point(place: &str, value: &Node) -> Result<Point, String> {
     }
 }
 
-/// A JSON object with its keys as they stand, so that a key given twice is seen.
+/// A JSON object with its keys in their order, so that a duplicate key is detected.
 struct Pairs(Vec<(String, Node)>);
 
 /// A value; only objects need their keys kept.

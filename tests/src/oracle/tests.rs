@@ -115,7 +115,7 @@ gameplay = ["get_ball", {{ dribble_to = [1200, 600] }}, {{ kick = "{kind}" }}]
         walk::legs(&library, case, case.ball).expect("playable")[0].to
     };
     let close = |a: (f64, f64), b: (f64, f64)| (a.0 - b.0).hypot(a.1 - b.1) < 1e-9;
-    // A kick to the left from (1200, 600): +y when attacking +x; its mirror images are images of its end.
+    // A kick to the left from (1200, 600): +y when attacking +x; its end is mirrored in the copies.
     for (id, at) in
         [(0, (1200.0, 1600.0)), (1, (1200.0, -1600.0)), (2, (-1200.0, 1600.0)), (3, (-1200.0, -1600.0))]
     {
@@ -157,8 +157,9 @@ gameplay = [{ turn = { heading_deg = 90 } }]
 
 #[test]
 fn the_sum_is_minimised_first_and_a_robot_too_far_then_rejects() {
-    // On one line: tm1 at 0, tm2 at 100 (adapted). Robots at 1450 (id 2) and 1700 (id 5): both maps cost 3050; the
-    // smaller list [2, 5] wins and sends robot 5 over 1600 mm, though [5, 2] would send it over 1700.
+    // On one line: tm1 at 0, tm2 at 100 (adapted). Robots at 1450 (id 2) and 1700 (id 5): both maps cost
+    // 3050; the smaller list [2, 5] wins and sends robot 5 over 1600 mm, though [5, 2] would send it over
+    // 1700.
     let library = library(&[(
         "center/pair",
         r#"
@@ -181,7 +182,7 @@ gameplay = ["wait"]
     assert_eq!(ask(&library, &line(1700)), json!({"case": null, "candidates": 0}));
     let answer = ask(&library, &line(1600));
     assert_eq!(answer["match"], json!({"1": 2, "2": 5}), "1500 mm is not too far: {answer}");
-    // The mirror image across x lies upon the case: the lower id wins.
+    // The mirrored copy across x equals the case: the lower id wins.
     assert_eq!((answer["id"].as_u64(), answer["candidates"].as_u64()), (Some(0), Some(2)));
 }
 
@@ -210,6 +211,6 @@ fn more_conditions_beat_more_teammates_beat_similarity() {
     let condition = ("c/condition", case(450, 500, 1, true));
     assert_eq!(winner(&[near.clone(), pair.clone()]), "b/pair");
     assert_eq!(winner(&[near.clone(), pair, condition]), "c/condition");
-    // exp(−0.36) = 0.70 < 0.8: the nearer interval wins though its way is as long.
+    // exp(−0.36) = 0.70 < 0.8: the nearer interval wins though its distance is as long.
     assert_eq!(winner(&[("a/far", case(300, 500, 1, false)), ("b/near", near.1)]), "b/near");
 }

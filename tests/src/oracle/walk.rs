@@ -1,6 +1,6 @@
 //! `walk`: naive plan simulation: the ball's path through a case.
 //!
-//! The symbolic walk of docs/case-format.md §3.1 (paper §3.3.1), played one ball action after the
+//! The symbolic simulation of docs/case-format.md §3.1 (paper §3.3.1), played one ball action after the
 //! other. Field frame, mm.
 
 use super::library::{Action, Aim, Case, Kick, Library, Point, Tube};
@@ -8,15 +8,16 @@ use super::library::{Action, Aim, Case, Kick, Library, Point, Tube};
 /// One leg of the ball path; its ends are not rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Leg {
-    /// Where the ball leaves, mm.
+    /// Its start, mm.
     pub from: (f64, f64),
-    /// Where it is meant to arrive, mm.
+    /// Its intended end, mm.
     pub to: (f64, f64),
     /// Radii at either end.
     pub tube: Tube,
 }
 
-/// The legs of `case` with its ball moved to `ball`; an error where the gameplays cannot be played to their end.
+/// The legs of `case` with its ball moved to `ball`; an error where the gameplays cannot be played to their
+/// end.
 pub fn legs(library: &Library, case: &Case, ball: Point) -> Result<Vec<Leg>, String> {
     let shift = Point { x: ball.x - case.ball.x, y: ball.y - case.ball.y };
     let shifted = |p: Point| ((p.x + shift.x) as f64, (p.y + shift.y) as f64);
@@ -76,7 +77,7 @@ pub fn legs(library: &Library, case: &Case, ball: Point) -> Result<Vec<Leg>, Str
     }
 }
 
-/// Where the kick leaves the ball.
+/// End of the kick.
 fn kicked(library: &Library, case: &Case, kick: Kick, from: (f64, f64)) -> (f64, f64) {
     let attack = case.defending.attack() as f64;
     match kick.aim {
@@ -89,7 +90,7 @@ fn kicked(library: &Library, case: &Case, kick: Kick, from: (f64, f64)) -> (f64,
     }
 }
 
-/// A robot on its way through its gameplay.
+/// A robot during its gameplay.
 struct Walker<'c> {
     place: (f64, f64),
     /// Actions not yet executed.
@@ -103,7 +104,7 @@ impl Walker<'_> {
         self.rest = &self.rest[1..];
     }
 
-    /// Executes everything before the next ball action, and looks at that.
+    /// Executes everything before the next ball action, and returns that one.
     fn next_ball_action(&mut self, shifted: &impl Fn(Point) -> (f64, f64)) -> Option<Action> {
         while let [action @ (Action::Stay | Action::GoTo(_)), rest @ ..] = self.rest {
             if let Action::GoTo(point) = action {

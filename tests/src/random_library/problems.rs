@@ -1,5 +1,4 @@
-//! `problems`: random problems near a library's cases. Those near its cases, a good share of them with
-//! several candidates.
+//! `problems`: random problems near a library's cases, a good share of them with several candidates.
 //!
 //! Field frame, mm.
 
@@ -7,7 +6,7 @@ use super::Dice;
 use crate::oracle::library::{Goal, Library, Point};
 use crate::oracle::problem::Problem;
 
-/// A random problem near one of the library's stored cases; now and then anywhere, or beyond all reason.
+/// A random problem near one of the library's stored cases; sometimes anywhere, or at extreme coordinates.
 pub fn random_problem(dice: &mut Dice, library: &Library) -> Problem {
     let case = dice.pick(&library.cases).clone();
     let defending = if dice.chance(0.95) { case.defending } else { *dice.pick(&[Goal::Yellow, Goal::Cyan]) };
@@ -44,7 +43,7 @@ pub fn random_problem(dice: &mut Dice, library: &Library) -> Problem {
     for _ in 0..extra {
         teammates.push(if dice.chance(0.5) { near(dice, ball, 900.0) } else { anywhere(dice) });
     }
-    // Two robots in one place make exact ties, which the ids decide.
+    // Two robots at one position give exact ties, which the ids decide.
     if dice.chance(0.1) && teammates.len() < 11 {
         teammates.extend(teammates.first().copied());
     }
@@ -61,7 +60,7 @@ pub fn random_problem(dice: &mut Dice, library: &Library) -> Problem {
     Problem { ball, defending, teammates: with_any_ids(dice, teammates), opponents }
 }
 
-/// Coordinates that a 32-bit integer just holds.
+/// Coordinates at the limits of a 32-bit integer.
 fn far(dice: &mut Dice) -> i64 {
     *dice.pick(&[i64::from(i32::MIN), i64::from(i32::MAX), -1_000_000, 40_000, 0])
 }

@@ -1,4 +1,5 @@
-//! `adversary`: attacker on the radio. Flipped bits, recordings, other teams, guesses.
+//! `adversary`: attacker on the radio. Flipped bits, replayed recordings, packets of other teams, guessed
+//! keys.
 
 use geometry::GoalEnd;
 use hil_sim::Stream;
@@ -15,7 +16,7 @@ use rules::Phase;
 use super::honest::Sayings;
 use super::plan::{FIRST_LIFE, Plan, TEAM};
 
-/// Whoever tampers with one robot's radio.
+/// An attacker on one robot's radio.
 #[derive(Debug)]
 pub struct Adversary {
     chance: Stream,
@@ -26,13 +27,14 @@ pub struct Adversary {
 }
 
 impl Adversary {
-    /// Of that robot in the run of that plan.
+    /// The attacker on that robot in the run of that plan.
     pub fn new(plan: &Plan, me: RobotId) -> Self {
         let chance = Stream::new(plan.seed, &format!("swarm adversary {me}"));
         Self { chance, me, flips: plan.flips, replays: plan.replays, foreign: plan.foreign }
     }
 
-    /// What the robot hears in a tick in which `packets` reach it; all the team ever said is known to the adversary.
+    /// What the robot receives in a tick in which `packets` reach it; the adversary knows all packets the
+    /// team ever sent.
     pub fn tamper(&mut self, packets: Vec<Packet>, sayings: &Sayings) -> Vec<Packet> {
         let mut heard = Vec::new();
         for mut packet in packets {
@@ -52,7 +54,7 @@ impl Adversary {
             let packet = self.foreign_packet();
             self.insert(&mut heard, packet);
         }
-        // A tick hands over no more than this; what is too much is lost in the noise.
+        // A tick delivers no more than this; further packets are lost.
         let mut bytes = 0;
         heard.truncate(AIR_IN_MAX);
         heard.retain(|packet| {
@@ -67,7 +69,7 @@ impl Adversary {
         heard.insert(place, packet);
     }
 
-    /// Of another team, or of one who has not the key, or noise.
+    /// A packet of another team, of a sender without the key, or noise.
     fn foreign_packet(&mut self) -> Packet {
         let chance = &mut self.chance;
         let key = Key(std::array::from_fn(|_| chance.whole(0, 255) as u8));
@@ -92,7 +94,7 @@ impl Adversary {
     }
 }
 
-/// What the team said in an earlier match, in earlier lives: with the team's own key.
+/// Packets that the team sent in an earlier match, in earlier epochs: with the team's own key.
 pub fn earlier_match(plan: &Plan) -> Vec<Packet> {
     let mut chance = Stream::new(plan.seed, "swarm earlier match");
     let (mut recorded, now) = (Vec::new(), Instant(0));
@@ -111,7 +113,7 @@ pub fn earlier_match(plan: &Plan) -> Vec<Packet> {
     recorded
 }
 
-/// To the corner at full speed.
+/// Drive to the corner at full speed.
 fn go_away(to: RobotId) -> HostMessage {
     let pose = WirePose { at: WirePoint { x: 4_000, y: 2_500 }, heading: 0 };
     HostMessage::Command(Command {
@@ -123,7 +125,7 @@ fn go_away(to: RobotId) -> HostMessage {
     })
 }
 
-/// Present, at the ball, and far ahead in cycles.
+/// A beacon of a robot at the ball, far ahead in cycles.
 fn boast(robot: RobotId, chance: &mut Stream) -> Beacon {
     let at = WirePoint { x: 100, y: 100 };
     let id = CycleId { counter: chance.whole(0, 2_000), proposer: robot };

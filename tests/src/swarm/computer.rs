@@ -1,5 +1,5 @@
-//! A robot's computer in the swarm: the very station of a board, with an adversary at its antenna, mad sensors and a clock of
-//! its own.
+//! A robot's computer in the swarm: the same station as on a board, with an adversary on its radio, faulty
+//! sensors and a clock of its own.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -17,18 +17,18 @@ use super::adversary::Adversary;
 use super::honest::Sayings;
 use super::plan::{Fault, Madness, Plan, Span};
 
-/// What swarm and computers know together.
+/// State shared by swarm and computers.
 #[derive(Debug, Default)]
 pub struct Shared {
-    /// All the team has said.
+    /// All packets the team has sent.
     pub sayings: Sayings,
-    /// What robots were handed in this tick, tampered with, in order.
+    /// Packets delivered to robots in this tick, after the adversary, in order.
     pub handed: Vec<(RobotId, Packet)>,
-    /// What their sensors said in this tick.
+    /// Sensor frames of this tick.
     pub sensed: Vec<(RobotId, SensorFrame)>,
 }
 
-/// Starts the computers of a run.
+/// Boots the computers of a run.
 pub struct Barracks<'a> {
     plan: Rc<Plan>,
     base: CaseBase<'a>,
@@ -73,9 +73,9 @@ impl<'a> Backend<'a> for Barracks<'a> {
 /// A robot's clock against the simulator's.
 #[derive(Clone, Copy, Debug)]
 struct Clock {
-    /// What it shows at the start, µs.
+    /// Its value at the start, µs.
     start: u64,
-    /// How much faster it runs, parts per million.
+    /// Excess of its rate, parts per million.
     ppm: i64,
 }
 
@@ -86,7 +86,7 @@ impl Clock {
         }
         let mut chance = Stream::new(plan.seed ^ u64::from(life), &format!("swarm clock {robot}"));
         let ppm = i64::from(chance.whole(0, 2)) * 100 - 100;
-        // From a start, just before 32 bits of µs are over, or after a month.
+        // From zero, just before 32 bits of µs overflow, or after a month.
         let start = [0, (1 << 32) - 4_000_000, 30 * 86_400_000_000][chance.whole(0, 2) as usize];
         Self { start, ppm }
     }
@@ -104,7 +104,7 @@ struct Computer<'a> {
     tick_ms: u32,
     trouble: Span,
     adversary: Adversary,
-    /// With what the sensors said when it began.
+    /// With the sensor frame at its start.
     madness: Vec<(Span, Madness, Option<SensorFrame>)>,
     shared: Rc<RefCell<Shared>>,
     reply: Reply,
@@ -175,7 +175,7 @@ impl Mcu for Computer<'_> {
     }
 }
 
-/// Numbers that are none, where their bit is set: odometry, battery, pose, ball.
+/// Replaces numbers by NaN where their bit is set: odometry, battery, pose, ball.
 fn spoil(sensors: &mut SensorFrame, which: u8) {
     if which & 1 != 0 {
         sensors.odometry = Twist { linear: Vector::new(f32::NAN, f32::INFINITY), angular: f32::NEG_INFINITY };

@@ -1,15 +1,16 @@
 //! `guard`: safety monitor of a wheeled robot: its actuator orders against what it received and sensed, seen
 //! from outside the brain (docs/architecture.md §6.2).
 //!
-//! The guard knows the packets a robot was handed, what an [`Honest`] listener believes of them, its sensors and its
-//! orders. Limits are the published ones; where a clock that runs 100 ppm off and ticks of 10 ms blur them, the robot has one tick more.
+//! The guard knows the packets delivered to a robot, which of them an [`Honest`] receiver accepts, its sensor
+//! frames and its orders. Limits are the published ones; where a clock that runs 100 ppm off and ticks of 10
+//! ms blur them, the robot has one tick more.
 //!
 //! | when | then |
 //! |---|---|
-//! | always | numbers, rims within 5 m/s, dribbler 0–1, kicks within 6.3 m/s and only where the phase allows one |
-//! | no frame, or no command, for 100 ms; HALT or time-out told; odometry no number; tipped; spinning; battery low for 1 s | brakes: not faster than before, stands within a second; dribbler off, kicker discharged |
+//! | always | finite numbers, rims within 5 m/s, dribbler 0–1, kicks within 6.3 m/s and only where the phase permits one |
+//! | no frame, or no command, for 100 ms; HALT or time-out received; odometry NaN; tipped; spinning; battery low for 1 s | brakes: not faster than before, stands within a second; dribbler off, kicker discharged |
 //! | a silence of half a second, or a boot, less than half a second ago | brakes |
-//! | no frame for 50 ms | the limit shrinks to nothing at 100 ms |
+//! | no frame for 50 ms | the limit shrinks to zero at 100 ms |
 //! | STOP for 2 s | 1.5 m/s |
 
 use std::fmt;
@@ -22,15 +23,15 @@ use rules::{Phase, Side};
 
 use super::honest::{Believed, Honest};
 
-/// One life of a robot on wheels, watched.
+/// Monitors one boot epoch of a wheeled robot.
 #[derive(Debug)]
 pub struct Guard {
     me: RobotId,
-    /// What it may believe.
+    /// The messages that it may accept.
     pub honest: Honest,
     born: u32,
     kinematics: Omni,
-    /// Moments, ms: the last frame, the last command, since when frames have come without a long silence.
+    /// Times, ms: the last frame, the last command, since when frames have come without a long silence.
     frame: Option<u32>,
     command: Option<u32>,
     good_since: Option<u32>,
@@ -39,7 +40,7 @@ pub struct Guard {
     stop_since: Option<u32>,
     low_since: Option<u32>,
     braking_since: Option<u32>,
-    /// The speed and the turning ordered last.
+    /// The last ordered speed and turning rate.
     last: (f32, f32),
 }
 
@@ -48,38 +49,38 @@ pub struct Guard {
 pub enum Duty {
     /// The host has been silent.
     Silence,
-    /// Not heard for half a second since a long silence or a boot.
+    /// Frames have not come for half a second since a long silence or a boot.
     NotArmed,
-    /// The host has had nothing to say to it.
+    /// The host has sent no command to it.
     NoCommand,
     /// HALT or a time-out.
     Halt,
-    /// A measure that is no number.
+    /// A measurement is NaN.
     NotANumber,
     /// On its side.
     Tipped,
-    /// Turning madly.
+    /// Turning too fast.
     Spinning,
     /// The battery is empty.
     Battery,
 }
 
-/// What a robot did that it must not.
+/// A forbidden order of a robot.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Danger {
-    /// An order that no robot may get.
+    /// An order outside every robot's limits.
     Absurd(ActuatorFrame),
     /// It did not brake though it had to.
     Unbraked(Duty, ActuatorFrame),
-    /// It grew faster while it had to brake: speed and turning before and now.
+    /// It accelerated while it had to brake: speed and turning before and now.
     Faster(Duty, [f32; 4]),
-    /// It had to brake for a second and still moves so fast.
+    /// It had to brake for a second and still moves at this speed.
     Endless(Duty, f32),
-    /// The host has missed a few frames: so long a silence, ms, and so fast.
+    /// The host has missed a few frames: the silence, ms, and the speed.
     Hesitant(u32, f32),
-    /// So fast in STOP.
+    /// The speed in STOP.
     Stop(f32),
-    /// A kick that the phase does not allow.
+    /// A kick that the phase does not permit.
     Kick(Option<Phase<Side>>),
 }
 
@@ -121,12 +122,12 @@ impl Guard {
         }
     }
 
-    /// Whether it has heard its host for long enough to move since the last long silence.
+    /// Whether it has received its host for long enough to move since the last long silence.
     pub fn is_armed(&self) -> bool {
         self.armed
     }
 
-    /// It may believe this at that moment.
+    /// Takes a message that it may accept at that moment.
     pub fn hear(&mut self, ms: u32, believed: &Believed) {
         let Believed::Host(message) = believed else { return };
         let phase = match message {
@@ -136,7 +137,7 @@ impl Guard {
                 Some(command.phase)
             }
             HostMessage::Command(_) => return,
-            // It tells nothing of the game, but that the host lives.
+            // It contains no game state, but shows that the host runs.
             HostMessage::Welcome(_) => self.phase,
         };
         if phase != Some(Phase::Stop) {
@@ -151,11 +152,11 @@ impl Guard {
         self.frame = Some(ms);
     }
 
-    /// Its order in the step that began at that moment, after all it heard in it.
+    /// Checks its order in the step that started at that moment, after all messages received in it.
     pub fn judge(&mut self, ms: u32, sensors: &SensorFrame, order: &ActuatorFrame) -> Result<(), Danger> {
         let (wheels, dribbler, kick) = match *order {
             ActuatorFrame::Omni { wheels, dribbler, kick } => (wheels, dribbler, kick),
-            // Only a robot that stands, by its own measure, may let go of its motors.
+            // Only a robot that stands, by its own measurement, may release its motors.
             ActuatorFrame::Released if sensors.odometry.linear.norm() < LETS_GO => {
                 ([0.0; 4], 0.0, OmniKick::Discharge)
             }
@@ -182,7 +183,7 @@ impl Guard {
         let silence = self.frame.map_or(0, |last| ms - last).saturating_sub(SLACK);
         if silence > GAP {
             let left = SILENCE.saturating_sub(silence) as f32 / (SILENCE - GAP) as f32;
-            // No limit asks for more than the carpet gives.
+            // No limit requires more than the field surface's traction.
             let most = (left * SPEED_MAX).max(before.0 - BRAKE * 0.01 * 0.9);
             if speed > most + BLUR {
                 return Err(Danger::Hesitant(silence, speed));
@@ -223,7 +224,7 @@ impl Guard {
         Ok(())
     }
 
-    /// Why it must brake now, as far as can be seen from outside.
+    /// The reason for which it must brake now, as far as visible from outside.
     fn duty(&mut self, ms: u32, sensors: &SensorFrame) -> Option<Duty> {
         let silent = |last: Option<u32>| last.is_none_or(|last| ms - last >= SILENCE + SLACK);
         if self.frame.is_none_or(|last| ms - last >= LONG_SILENCE + SLACK) {
@@ -249,33 +250,33 @@ impl Guard {
     }
 }
 
-/// A tick of a brain on wheels, ms.
+/// Tolerance: a tick of a brain on wheels, ms.
 const SLACK: u32 = 10;
 /// ms (docs/architecture.md §6.2): limits shrink; brake; disarmed; armed again.
 const GAP: u32 = 50;
 const SILENCE: u32 = 100;
 const LONG_SILENCE: u32 = 500;
 const ARM_AFTER: u32 = 500;
-/// Slower than this a robot stands, m/s.
+/// Speed below which a robot stands, m/s.
 const LETS_GO: f32 = 0.1;
-/// ms: from 4 m/s at 5 m/s² it takes 0.8 s, from 20 rad/s at 40 rad/s² 0.5 s.
+/// Maximum braking time, ms: from 4 m/s at 5 m/s² it takes 0.8 s, from 20 rad/s at 40 rad/s² 0.5 s.
 const STANDS_WITHIN: u32 = 1_000;
-/// m/s and m/s²: as fast as any robot is, and what its wheels hold.
+/// m/s and m/s²: maximum speed of a robot, and the braking limit of its wheels.
 const SPEED_MAX: f32 = 4.0;
 const BRAKE: f32 = 5.0;
-/// m/s: what a rim runs at most, and rounding.
+/// Maximum speed of a rim, m/s, with rounding.
 const RIM_MAX: f32 = 5.001;
-/// m/s: the rules' 6.5 less a kicker's scatter.
+/// m/s: the rules' 6.5 minus a kicker's scatter.
 const KICK_MAX: f32 = 6.3;
-/// m/s and ms: the rules' STOP and their grace.
+/// m/s and ms: the rules' limit in STOP and their grace.
 const STOP_SPEED: f32 = 1.5;
 const STOP_GRACE: u32 = 2_000;
-/// rad/s.
+/// Turning rate above which a robot spins, rad/s.
 const SPINNING: f32 = 30.0;
-/// V, and for so many ms.
+/// V, and ms of low voltage.
 const BATTERY_LOW: f32 = 14.0;
 const LOW_FOR: u32 = 1_000;
-/// m/s or rad/s: rounding of the way from twist to rims and back.
+/// m/s or rad/s: rounding error of the conversion from twist to rims and back.
 const BLUR: f32 = 0.01;
 
 #[cfg(test)]
@@ -308,13 +309,13 @@ mod tests {
         }
     }
 
-    /// Straight on with that speed.
+    /// An order to drive straight on with that speed.
     fn order(speed: f32, kick: OmniKick) -> ActuatorFrame {
         let twist = Twist { linear: geometry::Vector::new(speed, 0.0), angular: 0.0 };
         ActuatorFrame::Omni { wheels: Omni::default().rims(twist), dribbler: 0.0, kick }
     }
 
-    /// Heard every 10 ms for a second, driving.
+    /// A robot that received its host every 10 ms for a second, driving.
     fn driving() -> Guard {
         let mut guard = Guard::new(RobotId::new(1).unwrap(), 5, 0);
         for ms in (0..1_000).step_by(10) {

@@ -1,10 +1,11 @@
-//! `honest`: reference for the packets that a robot may accept. The rules of `protocol/SPEC.md` once more,
-//! apart from the code that keeps them.
+//! `honest`: reference for the packets that a robot may accept. A second implementation of the rules of
+//! `protocol/SPEC.md`, independent of the code under test.
 //!
-//! How old a frame of the host is, is not judged: a robot that refuses one as stale brakes, which it may always do.
+//! The age of a host frame is not judged: a robot that refuses one as stale brakes, which is always
+//! permitted.
 //!
-//! Nobody here computes a tag: a packet is genuine if somebody of the team said it, byte for byte, in this match or in an
-//! earlier one; the swarm saw them say it.
+//! No tag is computed here: a packet is genuine if a member of the team sent it, byte for byte, in this match
+//! or in an earlier one; the swarm recorded all sent packets.
 
 use std::collections::BTreeSet;
 
@@ -13,17 +14,18 @@ use protocol::host::{HostMessage, Welcome};
 use protocol::link::Packet;
 use protocol::team::TeamMessage;
 
-/// Everything that the team ever said.
+/// Everything that the team ever sent.
 #[derive(Debug, Default)]
 pub struct Sayings {
-    /// A frame to several robots as each of its readers sees it: what its tag covers, and its own tag.
+    /// A frame to several robots as each of its receivers sees it: the bytes covered by its tag, and its own
+    /// tag.
     all: BTreeSet<Vec<u8>>,
-    /// The same in the order it was said.
+    /// The same in the order of sending.
     pub in_order: Vec<Packet>,
 }
 
 impl Sayings {
-    /// Somebody of the team said this.
+    /// Adds a packet sent by a member of the team.
     pub fn add(&mut self, packet: &Packet) {
         let readers = RobotId::all().filter_map(|reader| seen_by(packet, reader));
         let mut news = false;
@@ -36,8 +38,8 @@ impl Sayings {
     }
 }
 
-/// What a reader sees of a packet: all of it, or of a frame to several robots (sender 17) what is covered and its own three bytes;
-/// nothing if it is not among them.
+/// The part of a packet that a receiver sees: all of it, or of a frame to several robots (sender 17) the
+/// covered bytes and its own three bytes of tag; `None` if it is not among the receivers.
 fn seen_by(packet: &[u8], reader: RobotId) -> Option<Vec<u8>> {
     if packet.get(2) != Some(&17) {
         return Some(packet.to_vec());
@@ -50,37 +52,38 @@ fn seen_by(packet: &[u8], reader: RobotId) -> Option<Vec<u8>> {
     addressed.then(|| [&packet[..covered], &packet[own..own + 3]].concat())
 }
 
-/// What may be believed of a packet.
+/// An accepted message.
 #[allow(clippy::large_enum_variant, reason = "one value at a time")]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Believed {
-    /// The host says this.
+    /// A message of the host.
     Host(HostMessage),
-    /// A mate says this.
+    /// A message of a teammate.
     Mate(RobotId, TeamMessage),
 }
 
-/// A life of a robot, as a listener.
+/// A boot epoch of a robot, as a receiver.
 #[derive(Clone, Debug)]
 pub struct Honest {
     me: RobotId,
     life: u32,
-    /// Epoch and counter of the newest packet believed, by sender; 16 is the host.
+    /// Epoch and counter of the newest accepted packet, by sender; 16 is the host.
     newest: [Option<(u32, u32)>; 17],
 }
 
 impl Honest {
-    /// Nothing heard yet in this life.
+    /// A receiver that has received nothing in this epoch.
     pub fn new(me: RobotId, life: u32) -> Self {
         Self { me, life, newest: [None; 17] }
     }
 
-    /// The robot hears this; what it may believe of it.
+    /// Takes a received packet; returns its message if it may be accepted.
     pub fn hear(&mut self, packet: &Packet, sayings: &Sayings) -> Option<Believed> {
         if !seen_by(packet, self.me).is_some_and(|seen| sayings.all.contains(&seen)) {
             return None;
         }
-        // version, team, sender, epoch, counter, payload, tag; the host's number is 17 where an audience and its tags follow.
+        // version, team, sender, epoch, counter, payload, tag; the host's number is 17 where an audience and
+        // its tags follow.
         let several = packet[2] == 17;
         let sender = if several { 16 } else { usize::from(packet[2]) };
         let number =
@@ -99,7 +102,7 @@ impl Honest {
         if sender < 16 {
             let message: TeamMessage = postcard::from_bytes(payload).ok()?;
             if matches!(message, TeamMessage::Telemetry(_)) {
-                // Under a key that teammates have not.
+                // Sealed with a key that teammates do not have.
                 return None;
             }
             let names_me = match &message {

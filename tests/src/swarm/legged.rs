@@ -1,4 +1,4 @@
-//! A run of walking robots by themselves: the trials' simulator with the swarm's computers in it.
+//! A run of walking robots without a host: the trials' simulator with the swarm's computers in it.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -95,7 +95,7 @@ fn simulation(plan: &Rc<Plan>, shared: &Rc<RefCell<Shared>>) -> Simulation<'stat
     Simulation::new(config, backend).expect("the simulation starts")
 }
 
-/// Numbers, and no faster than legs are ordered to be.
+/// Finite numbers within the limits of walking orders.
 fn is_sane(order: &ActuatorFrame) -> bool {
     let ActuatorFrame::Legged { walk, .. } = order else { return false };
     walk.linear.is_finite()
@@ -104,9 +104,9 @@ fn is_sane(order: &ActuatorFrame) -> bool {
         && walk.angular.abs() < TURN_MAX
 }
 
-/// A brain's tick, ms.
+/// Period of a brain's tick, ms.
 const TICK_MS: u32 = super::plan::Squad::Legged.tick_ms();
-/// m/s: twice what an AIBO walks.
+/// m/s: twice the walking speed of an AIBO.
 const WALK_MAX: f32 = 0.8;
-/// rad/s: twice what it turns.
+/// rad/s: twice its turning rate.
 const TURN_MAX: f32 = 5.0;

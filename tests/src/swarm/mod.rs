@@ -1,10 +1,11 @@
 //! `swarm`: swarm test: a team stays safe under many faults at once, and plays again afterwards. A swarm of
 //! runs, each with faults of its own (docs/architecture.md §5.4, §6.2).
 //!
-//! A seed is a run: [`plan`] draws who plays and what goes wrong, `legged` and `wheels` play it with native brains,
-//! [`adversary`] tampers with radios and [`computer`] with sensors and clocks. What is promised is watched from outside:
-//! [`crate::invariants`] for the team's cycles, [`guard`] for each robot's body, by what an [`honest`] listener may
-//! believe. `cargo xtask swarm --seeds 10000` runs many; one that fails prints the line that repeats it.
+//! A seed is a run: [`plan`] draws robots and faults, `legged` and `wheels` play it with native brains,
+//! [`adversary`] tampers with radios and [`computer`] with sensors and clocks. The promised properties are
+//! checked from outside: [`crate::invariants`] for the team's cycles, [`guard`] for each robot's body, by the
+//! messages that an [`honest`] receiver may accept. `cargo xtask swarm --seeds 10000` runs many; one that
+//! fails prints the line that repeats it.
 
 pub mod adversary;
 pub mod computer;
@@ -25,41 +26,41 @@ use protocol::RobotId;
 
 pub use runs::{Runs, watch, watch_matches, words};
 
-/// What came of a run in which every promise was kept.
+/// Results of a run without violations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
-    /// Runs.
+    /// Number of runs.
     pub runs: u32,
-    /// Cycles seen.
+    /// Number of cycles.
     pub cycles: u32,
-    /// Gameplays among them.
+    /// Number of gameplays among them.
     pub gameplays: u32,
-    /// Times at which two gameplays ran at once.
+    /// Number of times that two gameplays ran at once.
     pub overlaps: u32,
-    /// Packets handed to robots.
+    /// Number of packets delivered to robots.
     pub packets: u64,
-    /// Packets among them that an honest listener does not believe.
+    /// Number of those that an honest receiver does not accept.
     pub unbelievable: u64,
-    /// Steps in which a robot on wheels had to brake and did.
+    /// Number of steps in which a robot on wheels had to brake and did.
     pub brakings: u64,
-    /// Gameplays that all their robots finished, and that somebody stopped.
+    /// Number of gameplays that all their robots finished.
     pub finished: u32,
-    /// See there.
+    /// Number of gameplays that a robot stopped.
     pub stopped: u32,
-    /// Times at which a robot on wheels that was armed stopped for want of its host, and all time it stood for that, ms.
+    /// Number of times that an armed robot on wheels stopped for lack of its host.
     pub false_stops: u32,
-    /// See there.
+    /// Total time of those stops, ms.
     pub stood_ms: u64,
-    /// Times from the end of a gameplay to a newer cycle that all robots know: how many, and their sum, ms.
+    /// Number of intervals from the end of a gameplay to a newer cycle that all robots know.
     pub gaps: u32,
-    /// See there.
+    /// Their sum, ms.
     pub gaps_ms: u64,
     /// The longest time from healing to a team that plays, ms.
     pub slowest_ms: u32,
 }
 
 impl Tally {
-    /// Both together.
+    /// The sum of both.
     #[must_use]
     pub fn with(self, other: Self) -> Self {
         Self {
@@ -81,27 +82,27 @@ impl Tally {
     }
 }
 
-/// A broken promise.
+/// A violated property.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Broken {
-    /// A robot's body.
+    /// By a robot's body.
     Body(RobotId, guard::Danger),
-    /// The team's cycles.
+    /// By the team's cycles.
     Team(String),
-    /// Somebody who does not play was made coordinator or got a part, as that robot says.
+    /// A robot that does not play was made coordinator or got a part, according to the other robot.
     Ghost(RobotId, RobotId),
-    /// A second after healing the team does not play: what is known of it.
+    /// A second after healing the team does not play: its known state.
     Dead(String),
     /// A second after healing that robot still brakes.
     Lame(RobotId),
 }
 
-/// A broken promise, and when, ms.
+/// A violated property, with its time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
-    /// When.
+    /// Time, ms.
     pub ms: u32,
-    /// What.
+    /// The violation.
     pub broken: Broken,
 }
 

@@ -1,7 +1,9 @@
-//! `plan`: faults of a swarm run. Which faults are on, how bad, for whom, and from when to when.
+//! `plan`: faults of a swarm run: which faults are on, their strength, for which robots, and from when to
+//! when.
 //!
-//! Everything is drawn from the seed, faults independently of each other, so that a few thousand seeds meet most pairs and
-//! triples of them. A run is calm first, then everything that is on rages, then all of it heals at one moment. Times in ms.
+//! Everything is drawn from the seed, faults independently of each other, so that a few thousand seeds
+//! contain most pairs and triples of them. A run has a fault-free phase, a phase with all selected faults,
+//! and a recovery phase, which starts for all faults at one moment. Times in ms.
 
 use std::fmt;
 
@@ -11,43 +13,44 @@ use protocol::frame::TeamKey;
 use protocol::{RobotId, TeamId};
 use rules::League;
 
-/// Something that can be on.
+/// A kind of fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Fault {
-    /// Packets are lost, each by itself, up to half of them.
+    /// Packets are lost independently, up to half of them.
     Loss,
-    /// Packets are lost in stretches.
+    /// Packets are lost in bursts.
     Bursts,
-    /// Packets come twice, up to half of them.
+    /// Packets are duplicated, up to half of them.
     Duplication,
     /// Packets overtake each other.
     Reordering,
-    /// Packets are on their way for long.
+    /// Packets have a long delay.
     Delay,
-    /// The team falls into two parts that do not hear each other.
+    /// The team is partitioned into two parts that do not receive each other.
     Partition,
-    /// Robots' computers stop and start anew.
+    /// Robots' computers crash and reboot.
     Reboot,
-    /// Robots' clocks run 100 ppm fast or slow and have been running for long.
+    /// Robots' clocks run 100 ppm fast or slow, and started long ago.
     Skew,
-    /// A second host speaks with the team's key.
+    /// A second host sends with the team's key.
     SecondHost,
-    /// What was said before is said again: in this life of the receiver, in an earlier one, and in an earlier match.
+    /// Earlier packets are sent again: from this epoch of the receiver, from an earlier one, and from an
+    /// earlier match.
     Replays,
-    /// Other teams are on the air, and somebody who guesses keys.
+    /// Other teams are on the radio, and a sender who guesses keys.
     Foreign,
     /// Bits of packets flip.
     FlippedBits,
-    /// A sensor says the same thing for ever.
+    /// A sensor repeats the same values.
     Stuck,
-    /// A sensor says numbers that are none.
+    /// A sensor reports NaN.
     NotANumber,
     /// A robot lies on its side, spins, or has an empty battery.
     Body,
 }
 
 impl Fault {
-    /// All there are.
+    /// All faults.
     pub const ALL: [Self; 15] = [
         Self::Loss,
         Self::Bursts,
@@ -67,17 +70,17 @@ impl Fault {
     ];
 }
 
-/// What stands on the field.
+/// The robots of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Squad {
-    /// Walking robots by themselves.
+    /// Walking robots without a host.
     Legged,
     /// Robots on wheels with a host.
     Wheels,
 }
 
 impl Squad {
-    /// A brain's tick, ms (docs/architecture.md §2.3).
+    /// Period of a brain's tick, ms (docs/architecture.md §2.3).
     pub const fn tick_ms(self) -> u32 {
         match self {
             Self::Legged => 40,
@@ -86,7 +89,7 @@ impl Squad {
     }
 }
 
-/// A stretch of a run.
+/// A time span of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Span {
     /// From this moment, ms.
@@ -102,55 +105,55 @@ impl Span {
     }
 }
 
-/// What a mad sensor says.
+/// Fault of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Madness {
-    /// What it said when it began.
+    /// The frame at its start is repeated.
     Stuck,
-    /// The numbers whose bits are set are none: odometry, battery, pose, ball.
+    /// The numbers whose bits are set are NaN: odometry, battery, pose, ball.
     NotANumber(u8),
     /// It lies on its side.
     Tipped,
-    /// It turns that fast, rad/s.
+    /// It turns at this rate, rad/s.
     Spins(f32),
-    /// So many V.
+    /// Its battery has this voltage, V.
     Battery(f32),
-    /// The light barrier says that.
+    /// Its break-beam sensor reports this.
     Contact(bool),
 }
 
 /// A run.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Where it comes from.
+    /// Its seed.
     pub seed: u64,
-    /// Who plays.
+    /// The robots.
     pub squad: Squad,
-    /// What is on.
+    /// The selected faults.
     pub on: Vec<Fault>,
-    /// The team's robots, lowest number first, in their first life of the run.
+    /// The team's robots, lowest number first, in their first epoch of the run.
     pub brains: Vec<BrainConfig>,
     /// The team's key.
     pub key: TeamKey,
-    /// While everything that is on rages.
+    /// The phase with all selected faults.
     pub trouble: Span,
     /// The run's end.
     pub end: u32,
-    /// How the air is in between.
+    /// The radio settings during that phase.
     pub air: AirSettings,
-    /// When the team is in two parts, and who is in the second one; bit 16 is the host.
+    /// When the team is partitioned, and the members of the second part; bit 16 is the host.
     pub partition: Option<(Span, u32)>,
-    /// Whose computers stop, and when they start anew.
+    /// Robots whose computers crash, from the crash to the reboot.
     pub reboots: Vec<(RobotId, Span)>,
-    /// Whose sensors are mad, when and how.
+    /// Robots whose sensors are faulty, when and how.
     pub madness: Vec<(RobotId, Span, Madness)>,
-    /// When a second host speaks, and whether its life is the later one.
+    /// When a second host sends, and whether its epoch is the later one.
     pub second_host: Option<(Span, bool)>,
-    /// Probability that a robot hears something old in a tick.
+    /// Probability that a robot receives a replayed packet in a tick.
     pub replays: f32,
-    /// Probability that it hears something foreign.
+    /// Probability that it receives a foreign packet.
     pub foreign: f32,
-    /// Probability that a packet's bits flip on the way to one robot.
+    /// Probability that a packet's bits flip on the path to one robot.
     pub flips: f32,
 }
 
@@ -182,7 +185,7 @@ impl Plan {
         let mut reboots: Vec<(RobotId, Span)> = Vec::new();
         for _ in 0..if has(Fault::Reboot) { chance.whole(1, 4) } else { 0 } {
             let (robot, span) = (some(&mut chance), within(&mut chance, 2_000));
-            // One at a time and robot: what is off cannot be switched off.
+            // One at a time per robot: a computer that is off cannot be switched off.
             let apart = |other: &(RobotId, Span)| {
                 other.0 != robot || span.to + 200 < other.1.from || other.1.to + 200 < span.from
             };
@@ -222,7 +225,7 @@ impl Plan {
         }
     }
 
-    /// A run in which nothing is wrong but the air, for so many ms.
+    /// A run of `ms` milliseconds whose only faults are those of the radio.
     pub fn with_air(seed: u64, squad: Squad, ms: u32, air: AirSettings) -> Self {
         let mut chance = Stream::new(seed, "swarm plan");
         let trouble = Span { from: 2_000, to: 2_000 + ms };
@@ -250,7 +253,7 @@ impl Plan {
         self.brains.iter().map(|brain| brain.robot)
     }
 
-    /// How the air is at that moment.
+    /// The radio settings at that moment.
     pub fn air_at(&self, ms: u32) -> AirSettings {
         if !self.trouble.has(ms) {
             return AirSettings::default();
@@ -263,7 +266,7 @@ impl Plan {
         air
     }
 
-    /// Moments at which the air changes, in order.
+    /// Moments at which the radio settings change, in order.
     pub fn air_changes(&self) -> Vec<u32> {
         let mut all = vec![self.trouble.from, self.trouble.to];
         all.extend(self.partition.iter().flat_map(|(span, _)| [span.from, span.to]));
@@ -274,7 +277,7 @@ impl Plan {
 }
 
 impl fmt::Display for Plan {
-    /// Who plays, what is on and when.
+    /// The robots, the faults and their times.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let robots: Vec<String> = self.ids().map(|id| id.to_string()).collect();
         write!(f, "{:?} {}: ", self.squad, robots.join(" "))?;
@@ -293,7 +296,7 @@ fn team(seed: u64, squad: Squad, chance: &mut Stream) -> Vec<BrainConfig> {
             Squad::Legged => BrainConfig::new(id, TEAM),
             Squad::Wheels => BrainConfig::hosted(id, TEAM, League::DivisionB),
         };
-        // Lives before this one were recorded.
+        // Epochs before this one were recorded.
         let epoch = FIRST_LIFE + (seed % 3) as u32;
         BrainConfig { epoch, retriever: lone.is_none_or(|lone| lone == i), ..base }
     };
@@ -315,7 +318,7 @@ fn air(on: &[Fault], squad: Squad, chance: &mut Stream) -> AirSettings {
     }
     if has(Fault::Reordering) {
         air.reordering = chance.between(0.0, 0.5);
-        // What is heard in the next tick anyway has nobody to overtake.
+        // A packet that is received in the next tick anyway cannot overtake another.
         air.delay = [1, 2];
     }
     if has(Fault::Delay) {
@@ -335,13 +338,13 @@ fn mad(fault: Fault, chance: &mut Stream) -> Madness {
     }
 }
 
-/// Whose air it is.
+/// The team of the run.
 pub const TEAM: TeamId = TeamId(1);
-/// Lives before this one were recorded, and the recordings are played.
+/// Epochs before this one were recorded, and the recordings are replayed.
 pub const FIRST_LIFE: u32 = 5;
-/// Each fault is on in so many of the runs: five of fifteen in a usual one.
+/// Share of the runs in which each fault is on: five of fifteen in a typical one.
 const ON: f32 = 0.35;
-/// How long the team is watched after everything has healed, ms.
+/// Time for which the team is checked after everything has healed, ms.
 const AFTERWARDS: u32 = 3_000;
 
 #[cfg(test)]

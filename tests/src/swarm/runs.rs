@@ -8,19 +8,19 @@ use arena::game::Nobody;
 use super::matches::{self, LENGTH, Outcome, Plan};
 use super::{Found, Tally, plan, run};
 
-/// Which runs.
+/// Selection of runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Runs {
     /// The first seed.
     pub first: u64,
-    /// How many.
+    /// Their number.
     pub seeds: u64,
-    /// On so many threads.
+    /// Number of threads.
     pub jobs: usize,
 }
 
-/// Plays them all; what came of those that kept every promise, and those that broke one, by seed. `look` is told how many
-/// are done.
+/// Plays them all; returns the results of those without violations, and the violations of the others, by
+/// seed. `look` is called with the number done.
 pub fn watch(runs: Runs, look: impl Fn(u64) + Sync) -> (Tally, Vec<(u64, Found)>) {
     let mut tally = Tally::default();
     let mut broken = Vec::new();
@@ -33,7 +33,7 @@ pub fn watch(runs: Runs, look: impl Fn(u64) + Sync) -> (Tally, Vec<(u64, Found)>
     (tally, broken)
 }
 
-/// Plays all matches, ordered by seed; `look` is told how many are done, and what came of the last one.
+/// Plays all matches, ordered by seed; `look` is called with the number done and the results of the last one.
 pub fn watch_matches(runs: Runs, look: impl Fn(u64, &(Plan, Outcome)) + Sync) -> Vec<(Plan, Outcome)> {
     let play = |seed| {
         let plan = Plan::drawn(seed, LENGTH);
@@ -69,7 +69,7 @@ fn each<T: Send>(runs: Runs, play: impl Fn(u64) -> T + Sync, look: impl Fn(u64, 
     all
 }
 
-/// The lines that tell of a broken promise, the last of which repeats it.
+/// The lines that report a violation; the last one repeats it.
 pub fn words(seed: u64, found: &Found) -> String {
     let plan = plan::Plan::drawn(seed);
     format!("seed {seed}: {found}\n  {plan}\n  repeat: cargo xtask swarm --first {seed} --seeds 1")

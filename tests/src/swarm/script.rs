@@ -1,5 +1,5 @@
-//! A host whose strategy is a script: which phase the game is in and what each robot shall do, drawn ahead; the radio is the
-//! host's own.
+//! A host whose strategy is a script: the phase of the game and each robot's directive, drawn in advance; the
+//! radio is the host's own.
 
 use geometry::{GoalEnd, Point};
 use hil_sim::Stream;
@@ -14,7 +14,7 @@ use rules::{Colour, Phase, Side};
 
 use super::plan::{Plan, Span};
 
-/// What a host says when: the part that is on, or else `Gameplay` in a running game.
+/// A host's messages by time: the part of the present span, or else `Gameplay` in a running game.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Script {
     parts: Vec<(Span, Phase<Side>, [Directive; 4])>,
@@ -26,12 +26,12 @@ impl Script {
         Self::default()
     }
 
-    /// Of the run of that plan: anything during the trouble, calm before and after.
+    /// The script of that plan: random parts during the trouble, a running game before and after.
     pub(super) fn drawn(plan: &Plan) -> Self {
         Self::within(plan.trouble, &mut Stream::new(plan.seed, "swarm script"))
     }
 
-    /// Of its second host.
+    /// The script of its second host.
     pub(super) fn drawn_for_second(plan: &Plan) -> Self {
         Self::within(plan.trouble, &mut Stream::new(plan.seed, "swarm second script"))
     }
@@ -70,15 +70,15 @@ impl Headquarters {
         Self { radio: Radio::new(settings), us, defending, script }
     }
 
-    /// Robots' packets, and another host's, came to it.
+    /// Takes packets of robots and of another host.
     pub(super) fn hear(&mut self, now: Instant, packets: &[Packet]) {
         for packet in packets {
-            // What it does not believe it counts.
+            // Refused packets are counted by the radio.
             let _ = self.radio.handle_packet(now, packet);
         }
     }
 
-    /// It sees the field and says what the script has for this moment.
+    /// Gives the radio the field and the script's command of this moment.
     pub(super) fn lead(&mut self, now: Instant, ms: u32, plan: &Plan, ids: &[RobotId], truth: &World) {
         let phase = self.script.at(ms, 0).0;
         let commands: Vec<Command> = (ids.iter().enumerate())
@@ -96,7 +96,7 @@ impl Headquarters {
         self.radio.offer(now, &seen(now, truth), situation, &commands);
     }
 
-    /// What goes on the air.
+    /// Sends the queued packets.
     pub(super) fn speak(&mut self, mut say: impl FnMut(Option<RobotId>, &Packet)) {
         while let Some((to, packet)) = self.radio.poll_packet() {
             match to {
@@ -107,7 +107,7 @@ impl Headquarters {
     }
 }
 
-/// The truth as a host's picture of it.
+/// The true state as a host's world model.
 fn seen(now: Instant, truth: &World) -> host::world::World {
     let mut world = host::world::World::empty(now, BallModels::default());
     let ball = &truth.ball;

@@ -9,19 +9,19 @@ use super::plan::{Plan, TEAM};
 use super::{Broken, Found, Tally};
 use crate::invariants::{Air, Seen, Watcher};
 
-/// Watches a team's words.
+/// Checks a team's messages.
 pub(super) struct TeamWatch {
     watcher: Watcher,
     ids: Vec<RobotId>,
     healed: u32,
-    /// Since when the team owes a new cycle.
+    /// Since when the team must start a new cycle.
     owed_since: u32,
     /// The newest cycle when everything healed.
     at_healing: Option<CycleId>,
-    /// When all knew one cycle that goes on.
+    /// Time at which all knew one cycle that goes on.
     united: Option<u32>,
     beacons: Vec<Option<Beacon>>,
-    /// Gameplays that ended, and that nobody knows a newer cycle of yet.
+    /// The last gameplay that ended, while no robot knows a newer cycle.
     ended: Option<(CycleId, u32)>,
     /// The newest cycle whose end was counted.
     counted: Option<CycleId>,
@@ -62,7 +62,7 @@ impl TeamWatch {
         self.watcher.see(instant(ms), &Seen::Booted(id));
     }
 
-    /// A robot was handed a packet, and may believe this of it.
+    /// A packet was delivered to a robot, which may accept this message of it.
     pub(super) fn heard(&mut self, ms: u32, to: RobotId, believed: Option<&Believed>) {
         self.tally.packets += 1;
         self.tally.unbelievable += u64::from(believed.is_none());
@@ -71,7 +71,7 @@ impl TeamWatch {
         }
     }
 
-    /// A robot said this.
+    /// A robot sent this packet.
     pub(super) fn said(&mut self, ms: u32, plan: &Plan, packet: &Packet) {
         let Ok((from, TeamMessage::Beacon(beacon))) = overhear(packet, TEAM, &plan.key.of_team()) else {
             return;
@@ -110,18 +110,18 @@ impl TeamWatch {
         self.tally.brakings += steps;
     }
 
-    /// A robot that was armed has lost its host; or stands for that for another tick, ms.
+    /// An armed robot has lost its host; or stands for that reason for another tick, ms.
     pub(super) fn stood(&mut self, begins: bool, ms: u32) {
         self.tally.false_stops += u32::from(begins);
         self.tally.stood_ms += u64::from(ms);
     }
 
-    /// The first thing that is wrong counts.
+    /// Records a violation; the first one is kept.
     pub(super) fn find(&mut self, ms: u32, broken: Broken) {
         self.found.get_or_insert(Found { ms, broken });
     }
 
-    /// Everything of this moment was seen; the first promise that was broken so far.
+    /// To be called after all observations of this moment; returns the first violation so far.
     pub(super) fn end_of_step(&mut self, ms: u32) -> Result<(), Found> {
         self.watcher.end_of_step(instant(ms));
         if let Some(violation) = self.watcher.violations().first() {
@@ -137,7 +137,8 @@ impl TeamWatch {
             }
         }
         if ms <= self.healed + LAST_TICK || !self.has_retriever() {
-            // Where nobody is left who could be named coordinator, the team's time starts when somebody comes back.
+            // Where no robot is left that could be named coordinator, the team's time starts when one comes
+            // back.
             self.owed_since = ms;
         }
         if ms <= self.healed + LAST_TICK {
@@ -152,22 +153,22 @@ impl TeamWatch {
         self.found.clone().map_or(Ok(()), Err)
     }
 
-    /// What came of it all.
+    /// The results of the run.
     pub(super) fn tally(&self) -> Tally {
         let Watcher { cycles, gameplays, overlaps, .. } = self.watcher;
         Tally { cycles, gameplays, overlaps, ..self.tally }
     }
 
-    /// Somebody present may retrieve, and could be named coordinator.
+    /// Whether a robot is present that may retrieve and could be named coordinator.
     fn has_retriever(&self) -> bool {
         let both = Status::AVAILABLE.with(Status::RETRIEVER);
-        // Who has not spoken yet in this life listens still.
+        // A robot that has not sent yet in this epoch is still listening.
         self.beacons.iter().flatten().any(|beacon| beacon.status.has(both))
             || self.beacons.iter().any(Option::is_none)
             || self.beacons.iter().flatten().any(|beacon| beacon.cycle.is_none())
     }
 
-    /// All know the same cycle, and it is a new one or a gameplay that goes on.
+    /// Whether all know the same cycle, and it is a new one or a gameplay that goes on.
     fn plays(&self) -> bool {
         let newest = self.watcher.newest_by_robot();
         let Some(Some(id)) = newest.first() else { return false };
@@ -196,7 +197,7 @@ fn instant(ms: u32) -> Instant {
     Instant(u64::from(ms) * 1000)
 }
 
-/// What the plan has for a moment happens in the next tick, ms: 40 at most.
+/// Events of the plan take effect in the next tick, ms: 40 at most.
 const LAST_TICK: u32 = 40;
 /// A new cycle comes within this time of healing, ms (docs/architecture.md §5.4).
 const RECOVER_WITHIN: u32 = 1_000;

@@ -1,5 +1,5 @@
-//! A run of robots on wheels with a host: the Small Size world, the host's own radio with a script for a strategy, the swarm's
-//! computers, and a guard for each of them.
+//! A run of robots on wheels with a host: the Small Size world, the host's own radio with a script for a
+//! strategy, the swarm's computers, and a guard for each of them.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -28,11 +28,11 @@ struct Player<'a> {
     computer: Option<Box<dyn Mcu + 'a>>,
     born: u32,
     guard: Guard,
-    /// It stood in the last step.
+    /// Whether it stood in the last step.
     stood: bool,
 }
 
-/// A run under way.
+/// A running run.
 struct Run<'a> {
     plan: Rc<Plan>,
     shared: Rc<RefCell<Shared>>,
@@ -40,7 +40,7 @@ struct Run<'a> {
     world: World,
     air: Air,
     players: Vec<Player<'a>>,
-    /// Those that speak.
+    /// The sending hosts.
     hosts: Vec<Headquarters>,
     watch: TeamWatch,
 }
@@ -106,7 +106,7 @@ impl Run<'_> {
         self.watch.end_of_step(ms)
     }
 
-    /// What the plan has for this moment.
+    /// Applies the plan's events of this moment.
     fn happen(&mut self, ms: u32) {
         let plan = self.plan.clone();
         if plan.air_changes().into_iter().any(|change| round_up(change) == ms) {
@@ -139,12 +139,13 @@ impl Run<'_> {
             }
         }
         if round_up(plan.trouble.to) == ms && plan.second_host.is_some_and(|(_, later)| later) {
-            // The robots have turned to the second host; who is left starts anew to be believed.
+            // The robots follow the second host; the remaining one restarts with a newer epoch to be
+            // accepted.
             self.hosts = vec![headquarters(&plan, FIRST_LIFE + 30, Script::calm())];
         }
     }
 
-    /// Hosts hear and speak.
+    /// Hosts receive and send.
     fn lead(&mut self, number: u32, ms: u32) {
         let now = Instant(u64::from(ms) * 1000);
         let heard = self.air.deliver_to_host(number);
@@ -153,7 +154,7 @@ impl Run<'_> {
             host.hear(now, &heard);
             let shared = &mut *self.shared.borrow_mut();
             let air = &mut self.air;
-            // Cameras see 75 pictures a second.
+            // Cameras take 75 frames a second.
             if !number.is_multiple_of(4) {
                 host.lead(now, ms, &self.plan, &ids, &self.world);
             }
@@ -164,7 +165,7 @@ impl Run<'_> {
         }
     }
 
-    /// Robots hear, think, order and speak.
+    /// Robots receive, decide, order and send.
     fn think(&mut self, number: u32, ms: u32) {
         let Self { plan, shared, world, air, players, watch, .. } = self;
         for player in players {
@@ -200,7 +201,7 @@ impl Run<'_> {
                 Ok(()) => watch.braked(u64::from(stands)),
                 Err(danger) => watch.find(ms, Broken::Body(id, danger)),
             }
-            // In a plan without anything but loss it stands for nothing but silence.
+            // In a plan with loss as its only fault it stands for no other reason than silence.
             if ms >= plan.trouble.from {
                 watch.stood(armed && stands && !player.stood, if stands { TICK_MS } else { 0 });
             }
@@ -227,7 +228,7 @@ fn round_up(ms: u32) -> u32 {
     ms.div_ceil(TICK_MS) * TICK_MS
 }
 
-/// A brain's tick, ms.
+/// Period of a brain's tick, ms.
 const TICK_MS: u32 = super::plan::Squad::Wheels.tick_ms();
-/// ms: what was late on its way, a welcome, half a second of good link.
+/// ms: delayed packets, a welcome, half a second of good link.
 const ARMED_AFTER: u32 = 1_000;

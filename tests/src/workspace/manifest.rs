@@ -12,20 +12,20 @@ pub fn members() -> Vec<Manifest> {
     members.iter().filter_map(|folder| folder.as_str()).map(Manifest::read).collect()
 }
 
-/// A crate of the workspace, and what it depends on, developers' dependencies apart.
+/// A crate of the workspace, and its dependencies, except dev-dependencies.
 pub struct Manifest {
     /// From the workspace's root.
     pub folder: String,
-    /// As others depend on it.
+    /// Its name as a dependency.
     pub name: String,
     /// Crates that end up in the same program.
     pub linked: BTreeSet<String>,
-    /// Those, and what the build script uses.
+    /// Those, and the dependencies of the build script.
     pub all: BTreeSet<String>,
 }
 
 impl Manifest {
-    /// Of the crate in this folder.
+    /// The manifest of the crate in this directory.
     pub fn read(folder: &str) -> Self {
         Self::from_text(folder, &Source::read(&root().join(folder).join("Cargo.toml")).text)
     }

@@ -1,5 +1,5 @@
-//! `commands`: commands in documents and comments: verbs and flags of `onetwo`, of `cargo xtask`, and cargo's own
-//! with their packages, tests and examples.
+//! `commands`: commands in documents and comments: verbs and flags of `onetwo`, of `cargo xtask`, and cargo's
+//! own with their packages, tests and examples.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -9,24 +9,24 @@ use match_tests::workspace::{Finding, Source, members, root, rust_sources};
 use crate::prose::Quoted;
 use crate::sections::page;
 
-/// What can be asked for.
+/// The commands that exist.
 pub(crate) struct Known {
     /// Verbs of the program, each with the verbs below it.
     verbs: BTreeMap<String, BTreeSet<String>>,
-    /// The program's sources, where its flags are.
+    /// The program's sources, which contain its flags.
     program: String,
     /// Steps of `cargo xtask test`.
     steps: BTreeSet<String>,
-    /// The other commands of xtask, by all their words.
+    /// The other commands of xtask, with all their words.
     chores: Vec<String>,
-    /// Where those have their flags.
+    /// The source that contains their flags.
     xtask: String,
-    /// Folders of packages.
+    /// Directories of packages.
     packages: BTreeMap<String, String>,
 }
 
 impl Known {
-    /// As sources and folders have it today.
+    /// Reads them from the present sources and directories.
     pub(crate) fn read() -> Self {
         let below = |path: &str, name: &str| variants(&page(path).text, name);
         let mut verbs: BTreeMap<_, _> =
@@ -51,7 +51,7 @@ impl Known {
         }
     }
 
-    /// Commands that nobody can give.
+    /// Commands that do not exist.
     pub(crate) fn unknown(&self, source: &Source) -> Vec<Finding> {
         let Quoted { spans, fenced } = Quoted::of(source);
         let commands = spans.iter().chain(&fenced);
@@ -62,14 +62,14 @@ impl Known {
         faults.collect()
     }
 
-    /// What is wrong with a command; `None` for one that can be given, and for what is none.
+    /// What is wrong with a command; `None` for a valid one, and for text that is no command.
     fn fault(&self, command: &str) -> Option<String> {
         let ends = |word: &&str| !matches!(*word, "|" | ">" | "<" | "&&" | ";" | "#" | "\\" | "…");
         let words: Vec<_> =
             command.split_whitespace().skip_while(|word| *word == "$").take_while(ends).collect();
         match words.as_slice() {
             ["onetwo", rest @ ..] => self.of_program(rest),
-            // A command that goes on with `…` names several.
+            // A command that continues with `…` names several.
             ["cargo", "xtask", rest @ ..] if command.contains('…') && self.begins(&rest.join(" ")) => None,
             ["cargo", "xtask", rest @ ..] => self.of_xtask(rest),
             ["cargo", "run" | "test", rest @ ..] => {
@@ -159,7 +159,7 @@ fn unknown_flag(words: &[&str], known: impl Fn(&str) -> bool) -> Option<String> 
     names.find(|flag| !known(flag)).map(|flag| format!("no flag `--{flag}`"))
 }
 
-/// The variants of an enum, as words of the command line.
+/// The variants of an enum, as they are written on the command line.
 fn variants(text: &str, name: &str) -> BTreeSet<String> {
     let body = text.split_once(&format!("enum {name} {{")).map_or("", |(_, body)| body);
     let body = body.split("\n}").next().unwrap_or_default();
@@ -181,7 +181,7 @@ fn kebab(name: &str) -> String {
     word
 }
 
-/// The first string after each place where `begin` stands.
+/// The first string after each occurrence of `begin`.
 fn after<'a>(text: &'a str, begin: &'a str) -> impl Iterator<Item = String> + 'a {
     text.split(begin).skip(1).filter_map(|rest| {
         let string = rest.trim_start().strip_prefix('"')?;

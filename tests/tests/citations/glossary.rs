@@ -45,7 +45,7 @@ fn defined(text: &str) -> impl Iterator<Item = String> {
     })
 }
 
-/// Terms that stand twice or name nothing.
+/// Terms that occur twice or name nothing.
 pub(crate) fn faults(source: &Source, names: &Names) -> Vec<Finding> {
     let mut seen = BTreeSet::new();
     let mut findings = Vec::new();
@@ -69,7 +69,7 @@ pub(crate) fn faults(source: &Source, names: &Names) -> Vec<Finding> {
     findings
 }
 
-/// Paths such as `casebase::Case` whose crate is ours and whose last name it does not define.
+/// Paths such as `casebase::Case` whose crate is ours and does not define their last name.
 pub(crate) fn unknown(source: &Source, names: &Names) -> Vec<Finding> {
     let spans = Quoted::of(source).spans.into_iter();
     let is_path = |span: &String| {

@@ -7,9 +7,9 @@ use match_tests::workspace::{Finding, Source, root};
 use crate::is_document;
 use crate::prose::Quoted;
 
-/// The repository's files; a test puts others in their place.
+/// The repository's files; a test replaces them.
 pub(crate) trait Lookup {
-    /// The text of a file, empty for a folder or a picture; `None` where there is nothing.
+    /// The text of a file, empty for a directory or an image file; `None` where there is nothing.
     fn text(&self, path: &Path) -> Option<String>;
 }
 
@@ -23,7 +23,7 @@ impl Lookup for Files {
     }
 }
 
-/// Links of a document that lead to no file, or to no heading of it.
+/// Links of a document that lead to no file, or to no heading of their file.
 pub(crate) fn dangling(source: &Source, files: &dyn Lookup) -> Vec<Finding> {
     let mut findings = Vec::new();
     for (number, line) in (1..).zip(source.text.lines()) {
@@ -48,7 +48,7 @@ pub(crate) fn dangling(source: &Source, files: &dyn Lookup) -> Vec<Finding> {
     findings
 }
 
-/// The names that GitHub gives to headings: small letters, `-` for a space, no signs.
+/// The names that GitHub gives to headings: lower case, `-` for a space, no punctuation.
 fn anchors(text: &str) -> impl Iterator<Item = String> {
     let headings = text.lines().filter(|line| line.starts_with('#'));
     headings.map(|line| {
@@ -72,8 +72,8 @@ fn clean(path: &Path) -> PathBuf {
     clean
 }
 
-/// Files named in code quotes, as `path` or `path: item`, that are not there or lack the item. From the root, or from the
-/// folder of the file that names them.
+/// Files named in code quotes, as `path` or `path: item`, that do not exist or lack the item. From the root,
+/// or from the directory of the file that names them.
 pub(crate) fn missing_files(source: &Source, files: &dyn Lookup) -> Vec<Finding> {
     let mut findings = Vec::new();
     for (number, quoted) in Quoted::of(source).spans {
@@ -94,7 +94,8 @@ pub(crate) fn missing_files(source: &Source, files: &dyn Lookup) -> Vec<Finding>
     findings
 }
 
-/// A path from the root, in a document also from its own folder, written out: no pattern, no place to be filled in.
+/// Whether it is a path from the root, in a document also from its own directory, written in full: no
+/// pattern, no placeholder.
 fn names_a_file(path: &str, in_document: bool) -> bool {
     let first = path.split('/').next().unwrap_or_default();
     path.contains('/')
@@ -103,7 +104,7 @@ fn names_a_file(path: &str, in_document: bool) -> bool {
         && path.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.' | '/'))
 }
 
-/// Opens with a title, a blank line, and words.
+/// Opens with a title, a blank line, and text.
 pub(crate) fn opens_with_a_summary(text: &str) -> bool {
     let mut lines = text.lines();
     let title = lines.next().is_some_and(|line| line.starts_with("# "));
@@ -112,11 +113,11 @@ pub(crate) fn opens_with_a_summary(text: &str) -> bool {
     title && blank && words
 }
 
-/// The repository's folders that files are named from.
+/// The repository's top directories, as starts of file paths.
 const TOP: [&str; 10] =
     ["casebase", "docs", "firmware", "hil-sim", "host", "protocol", "tests", "xtask", ".ci", ".github"];
 
-/// A crate's folders that its README names files from.
+/// A crate's directories, as starts of file paths in its README.
 const OWN: [&str; 9] = ["bench", "benches", "data", "drawing", "examples", "library", "src", "tools", "web"];
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
-//! `citations`: tests: what comments and documents cite is in the repository. Sections, marks of the papers, links,
-//! files, commands, tests and the glossary's names.
+//! `citations`: tests: everything that comments and documents cite is in the repository. Sections, marks of
+//! the papers, links, files, commands, tests and the glossary's names.
 //!
-//! A citation is text, so nothing else notices when its target moves. Every finding names file and line.
+//! A citation is text, so no other check notices when its target moves. Every finding names file and line.
 
 mod commands;
 mod glossary;
@@ -87,7 +87,7 @@ fn the_version_to_cite_is_the_workspaces() {
     assert_eq!(version("CITATION.cff", "version: "), version("Cargo.toml", "version = "));
 }
 
-/// What people read: Markdown files, without the forms that a new issue is filled into.
+/// Markdown files, without the issue templates.
 fn documents() -> Vec<Source> {
     text_sources()
         .into_iter()

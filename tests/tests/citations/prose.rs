@@ -1,8 +1,8 @@
-//! `prose`: code quoted in documents and comments, with the line it begins on.
+//! `prose`: code quoted in documents and comments, with the line it starts on.
 
 use match_tests::workspace::Source;
 
-/// Quoted code, which may go over the ends of lines, and the lines of fenced blocks.
+/// Quoted code, which may span lines, and the lines of fenced blocks.
 pub(crate) struct Quoted {
     /// Between backquotes, in the order of the text.
     pub(crate) spans: Vec<(usize, String)>,
@@ -11,7 +11,7 @@ pub(crate) struct Quoted {
 }
 
 impl Quoted {
-    /// Of a document, or of the comments of a source; nothing of other files.
+    /// The code quoted in a document, or in the comments of a source; nothing of other files.
     pub(crate) fn of(source: &Source) -> Self {
         let extension = source.path.rsplit('.').next().unwrap_or_default();
         let mut quoted = Self { spans: Vec::new(), fenced: Vec::new() };
@@ -29,7 +29,7 @@ impl Quoted {
             } else if in_fence {
                 quoted.fenced.push((number, words.to_owned()));
             } else {
-                // A paragraph, a row of a table and an item of a list each end what was open.
+                // A paragraph, a row of a table and an item of a list each end an open quote.
                 let fresh = words.trim().is_empty() || words.trim_start().starts_with(['|', '-', '#']);
                 if !alone || fresh {
                     quoted.take(&mut block, begins);
@@ -59,7 +59,7 @@ impl Quoted {
     }
 }
 
-/// Where a run of exactly so many backquotes begins.
+/// Start of the next run of exactly `run` backquotes.
 fn closing(text: &str, run: usize) -> Option<usize> {
     let mut at = 0;
     while let Some(found) = text[at..].find('`') {
@@ -73,7 +73,7 @@ fn closing(text: &str, run: usize) -> Option<usize> {
     None
 }
 
-/// A line's words for people, and whether there is nothing else in the line.
+/// A line's comment text, and whether there is nothing else in the line.
 fn comment<'a>(extension: &str, line: &'a str) -> Option<(&'a str, bool)> {
     let sign = match extension {
         "md" => return Some((line, true)),

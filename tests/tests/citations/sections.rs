@@ -21,7 +21,7 @@ impl Sections {
         Self(pages.map(|page| (page.path, numbered(&page.text))).collect())
     }
 
-    /// Citations of sections that are not there.
+    /// Citations of sections that do not exist.
     pub(crate) fn dangling(&self, source: &Source) -> Vec<Finding> {
         let text = joined(source);
         let mut findings = Vec::new();
@@ -32,7 +32,7 @@ impl Sections {
                 .rfind(|c: char| !is_path(c))
                 .map_or(0, |before| before + text[before..].chars().next().map_or(1, char::len_utf8));
             let name = &text[start..at + 3];
-            // Pages cite their neighbours without the folder.
+            // Pages cite their neighbours without the directory.
             let page = if name.contains('/') { name.to_owned() } else { format!("docs/{name}") };
             // `[page](page) §1` is one citation, not two.
             if text[..start].ends_with("](") {
@@ -65,7 +65,7 @@ fn numbered(text: &str) -> BTreeSet<String> {
 
 /// The sections listed after a page's name: ` §3.1, §4 and §5–§7`; `None` where none is cited.
 fn cited_list(after: &str) -> Option<Vec<String>> {
-    // The rest of a link or of code around the name.
+    // The remainder of a link or of code around the name.
     let mut rest = after.trim_start_matches(['`', ')']);
     if let Some(link) = rest.strip_prefix("](") {
         rest = link.split_once(')')?.1;
@@ -94,7 +94,7 @@ impl Marks {
         Self(marks.filter(|word| is_mark(word)).map(str::to_owned).collect())
     }
 
-    /// Marks in comments that the page does not have.
+    /// Marks in comments that do not exist on the page.
     pub(crate) fn dangling(&self, source: &Source) -> Vec<Finding> {
         let mut findings = Vec::new();
         for (number, line) in (1..).zip(source.text.lines()) {
@@ -115,7 +115,7 @@ fn is_mark(word: &str) -> bool {
     })
 }
 
-/// Citations of what no clone has.
+/// Citations of files outside the repository.
 pub(crate) fn outside(source: &Source) -> Vec<Finding> {
     let fix = "cite a section of docs, or say it here";
     let mut findings = Vec::new();
@@ -140,7 +140,7 @@ pub(crate) fn outside(source: &Source) -> Vec<Finding> {
     findings
 }
 
-/// Written in parts, so that this file does not find itself.
+/// Written in parts, so that the check does not find this file.
 const OUTSIDE: [&str; 4] = [
     concat!("DES", "IGN"),
     concat!("papers-check", "list"),
@@ -154,7 +154,7 @@ pub(crate) fn page(path: &str) -> Source {
     Source::read(&root().join(path))
 }
 
-/// The text with comment lines run together, so that a citation may break at a line's end.
+/// The text with comment lines joined, so that a citation may break at a line's end.
 fn joined(source: &Source) -> String {
     let mut text = String::with_capacity(source.text.len());
     for line in source.text.lines() {
@@ -171,7 +171,7 @@ fn joined(source: &Source) -> String {
     text
 }
 
-/// Counts from 1; [`joined`] begins with a line's end unless a comment opens the file.
+/// Line number, from 1; the text of [`joined`] starts with a line's end unless a comment opens the file.
 fn line_of(text: &str, at: usize) -> usize {
     text[..at].matches(['\n', NEWLINE]).count().max(1)
 }
@@ -180,7 +180,7 @@ fn is_path(c: char) -> bool {
     c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.' | '/')
 }
 
-/// Stands for the end of a line within a comment.
+/// Marks the end of a line within a comment.
 const NEWLINE: char = '\u{1}';
 
 #[cfg(test)]

@@ -1,17 +1,19 @@
-//! `competence`: how much each case contributes to a library (Smyth & Keane 1995; Smyth & McKenna 2001, on
-//! sampled problems).
+//! `competence`: contribution of each case to a library (Smyth & Keane 1995; Smyth & McKenna 2001, on sampled
+//! problems).
 //!
-//! A case's *coverage set* are the problems it is a candidate for, a problem's *reachability set* the cases that are
-//! candidates for it (authored cases: a file goes with its four copies). With C(x) for the coverage set of x:
+//! A case's *coverage set* are the problems it is a candidate for, a problem's *reachability set* the cases
+//! that are candidates for it (authored cases: a file counts with its four copies). With C(x) for the
+//! coverage set of x:
 //!
 //! - **pivotal**: some problem is reached by x alone; deleting x loses it.
 //! - **auxiliary**: not pivotal, and C(x) lies within C(y), and is smaller, for one other case y.
-//! - **support**: neither, and C(y) lies within C(x) for one other case y that covers anything: they back each other up.
-//! - **spanning**: none of these: x lies across cases that cover its problems only together.
+//! - **support**: neither, and C(y) lies within C(x) for one other case y that covers anything: they back
+//!   each other up.
+//! - **spanning**: none of these: C(x) overlaps cases that cover its problems only together.
 //! - **idle**: C(x) is empty.
 //!
-//! *Competence groups* are the connected components of cases that share a problem. All of it is about the problems that
-//! were sampled: with more of them a case can only become more important.
+//! *Competence groups* are the connected components of cases that share a problem. All results are about the
+//! sampled problems: with more of them a case can only become more important.
 
 mod twins;
 
@@ -19,14 +21,14 @@ use crate::coverage::Tally;
 
 pub use twins::{Shared, shared};
 
-/// What a case is to the library's coverage.
+/// Role of a case in the library's coverage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Role {
-    /// Alone for some problem.
+    /// The only candidate for some problem.
     Pivotal,
     /// Covers its problems as others do together.
     Spanning,
-    /// Backs another case up.
+    /// Covers the problems of another case.
     Support,
     /// Within another case's coverage.
     Auxiliary,
@@ -38,7 +40,7 @@ impl Role {
     /// All of them, the most important first.
     pub const ALL: [Self; 5] = [Self::Pivotal, Self::Spanning, Self::Support, Self::Auxiliary, Self::Idle];
 
-    /// Its word.
+    /// Its label.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Pivotal => "pivotal",
@@ -82,7 +84,8 @@ pub fn roles(tally: &Tally, shared: &[Shared]) -> Vec<Role> {
     roles
 }
 
-/// The competence groups, largest coverage first: their cases in rising order, and how many problems they cover.
+/// The competence groups, largest coverage first: their cases in rising order, and the number of problems
+/// they cover.
 pub fn groups(tally: &Tally) -> Vec<(Vec<u16>, u64)> {
     let mut parent: Vec<usize> = (0..tally.cases.len()).collect();
     for cases in tally.reaches.keys() {
@@ -106,19 +109,19 @@ pub fn groups(tally: &Tally) -> Vec<(Vec<u16>, u64)> {
     groups
 }
 
-/// One step of taking cases out one after another.
+/// One step of deleting cases one after another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Deletion {
-    /// The case taken out.
+    /// The deleted case.
     pub case: u16,
-    /// Problems this step leaves without any candidate.
+    /// Number of problems that this step leaves without any candidate.
     pub lost: u64,
-    /// With those of the steps before.
+    /// The same, summed with the steps before.
     pub lost_so_far: u64,
 }
 
-/// Takes out, again and again, the case whose loss is least (ties: the one that covers fewest, then the highest number)
-/// while at most `loss_max` problems are lost in all.
+/// Deletes, again and again, the case with the smallest loss (ties: the one that covers fewest, then the
+/// highest number) while at most `loss_max` problems are lost in total.
 pub fn thin_out(tally: &Tally, loss_max: u64) -> Vec<Deletion> {
     let mut left: Vec<bool> = vec![true; tally.cases.len()];
     let mut deletions: Vec<Deletion> = Vec::new();
@@ -156,7 +159,7 @@ mod tests {
     use super::*;
     use crate::coverage::{CaseTally, Reach};
 
-    /// A tally of problems with these reachability sets.
+    /// Counts of problems with these reachability sets.
     fn tally(cases: usize, reaches: &[(&[u16], u64)]) -> Tally {
         let mut tally = Tally::new(cases, 0);
         for (first, (cases, problems)) in (0..).zip(reaches) {
@@ -172,7 +175,8 @@ mod tests {
 
     #[test]
     fn roles_are_those_a_hand_finds() {
-        // 0 alone covers 4; 1's problems are all 0's; 2 and 3 cover the same; 4 lies across 0 and 2; 5 covers nothing.
+        // 0 alone covers 4; 1's problems are all 0's; 2 and 3 cover the same; 4 overlaps 0 and 2; 5 covers
+        // nothing.
         let tally =
             tally(6, &[(&[0], 4), (&[0, 1], 3), (&[2, 3], 5), (&[0, 4], 1), (&[2, 3, 4], 2), (&[], 9)]);
         let roles = roles(&tally, &shared(&tally));
@@ -188,7 +192,7 @@ mod tests {
 
     #[test]
     fn thinning_counts_what_is_lost_after_the_deletions_before() {
-        // 0 and 1 back each other up: the first of them costs nothing, the second all they covered.
+        // 0 and 1 back each other up: deleting the first of them loses nothing, the second all they covered.
         let tally = tally(3, &[(&[0, 1], 5), (&[2], 3), (&[0, 2], 1)]);
         let step = |case, lost, lost_so_far| Deletion { case, lost, lost_so_far };
         assert_eq!(thin_out(&tally, 0), [step(1, 0, 0)]);

@@ -1,5 +1,5 @@
-//! `twins`: pairs of cases that answer the same problems. Pairs that share problems, and how alike their
-//! coverage sets are.
+//! `twins`: pairs of cases that answer the same problems: their shared problems, and the similarity of their
+//! coverage sets.
 
 use std::collections::BTreeMap;
 
@@ -10,9 +10,9 @@ use crate::coverage::Tally;
 pub struct Shared {
     /// The two, in rising order.
     pub cases: [u16; 2],
-    /// Problems both are candidates in.
+    /// Number of problems both are candidates in.
     pub problems: u64,
-    /// Problems at least one of them is a candidate in.
+    /// Number of problems at least one of them is a candidate in.
     pub either: u64,
 }
 

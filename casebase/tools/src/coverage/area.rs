@@ -1,21 +1,21 @@
-//! `area`: the strategic area of the field in which the ball lies. The six words of the paper's case base
+//! `area`: the strategic area of the field in which the ball lies. The six names of the paper's case base
 //! (Ros et al. 2009, §5.1.1), which gives no borders: these are ours. Attack frame: +x towards the goal
 //! attacked.
 //!
-//! Along x, from the own goal line (−1) to the opponents' (+1); across, from the middle (0) to a touch line (1):
-//! the outer 40 % of each half (|y| > 0.6) are `corner` beyond |x| > 0.8, `front-side` where x > 1/3, else `side`; the
-//! middle is `back` where x < −1/3, `front` where x > 1/3, else `center`.
+//! Along x, from the own goal line (−1) to the opponents' (+1); across, from the middle (0) to a touch line
+//! (1): the outer 40 % of each half (|y| > 0.6) are `corner` beyond |x| > 0.8, `front-side` where x > 1/3,
+//! else `side`; the middle is `back` where x < −1/3, `front` where x > 1/3, else `center`.
 
 use casebase::{FieldMm, GoalEnd, PointMm};
 
 /// A strategic area.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Area {
-    /// Before the own goal.
+    /// In front of the own goal.
     Back,
     /// Around the centre.
     Center,
-    /// Before the opponents' goal.
+    /// In front of the opponents' goal.
     Front,
     /// Along a touch line, up to the opponents' third.
     Side,
@@ -30,8 +30,8 @@ impl Area {
     pub const ALL: [Self; 6] =
         [Self::Back, Self::Center, Self::Front, Self::Side, Self::FrontSide, Self::Corner];
 
-    /// The area of a ball at `ball` (field frame) for a team that defends `defending`; outside the lines, that of the
-    /// nearest part of the field.
+    /// The area of a ball at `ball` (field frame) for a team that defends `defending`; outside the lines,
+    /// that of the nearest part of the field.
     pub fn of(field: FieldMm, ball: PointMm, defending: GoalEnd) -> Self {
         let x = f64::from(defending.attack_sign()) * f64::from(ball.x) / (f64::from(field.length) / 2.0);
         let y = f64::from(ball.y).abs() / (f64::from(field.width) / 2.0);
@@ -49,7 +49,7 @@ impl Area {
         }
     }
 
-    /// Its word, that of the case files' folders.
+    /// Its label, that of the case files' directories.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Back => "back",
@@ -62,10 +62,10 @@ impl Area {
     }
 }
 
-/// Where the strips along the touch lines begin, share of half the width: 0.72 m of 1.8 m, twice what a legged robot
-/// needs to turn around the ball.
+/// Start of the strips along the touch lines, share of half the width: 0.72 m of 1.8 m, twice what a legged
+/// robot needs to turn around the ball.
 const OUTER: f64 = 0.6;
-/// Where corners begin, share of half the length: 0.54 m deep, as the penalty area of 2007.
+/// Start of the corners, share of half the length: 0.54 m deep, as the penalty area of 2007.
 const CORNER: f64 = 0.8;
 /// Thirds of the field, share of half the length.
 const THIRD: f64 = 1.0 / 3.0;

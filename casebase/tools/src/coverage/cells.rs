@@ -6,7 +6,7 @@ use std::fmt;
 
 use casebase::{FieldMm, GoalEnd, PointMm};
 
-/// A grid over the field. The field's middle is the grid's; the outermost cells may reach over the lines.
+/// A grid over the field. The field's middle is the grid's; the outermost cells may extend beyond the lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cells {
     /// Cells along x.
@@ -17,20 +17,20 @@ pub struct Cells {
     pub edge_mm: i32,
 }
 
-/// Why there is no such grid.
+/// Why a grid cannot be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CellsError {
     /// Cells have no size.
     NoSize,
     /// More cells than [`Cells::MAX`].
     TooMany {
-        /// How many.
+        /// Number of cells.
         cells: u64,
     },
 }
 
 impl Cells {
-    /// Most cells of a grid.
+    /// Maximum number of cells of a grid.
     pub const MAX: u64 = 40_000;
 
     /// Cells of this edge over a field.
@@ -47,7 +47,7 @@ impl Cells {
         Ok(Self { columns: columns as usize, rows: rows as usize, edge_mm })
     }
 
-    /// Cells of an edge that suits the field: 18 along its length, to whole 50 mm.
+    /// A suitable edge for the field: 18 cells along its length, to whole 50 mm.
     pub fn suitable_edge_mm(field: FieldMm) -> i32 {
         (field.length / 18 / 50 * 50).max(50)
     }
@@ -62,8 +62,8 @@ impl Cells {
         self.len() == 0
     }
 
-    /// The cell of a ball (field frame), row after row from −y, from −x within a row; the nearest one for a ball
-    /// outside.
+    /// The cell of a ball (field frame), row after row from −y, from −x within a row; the nearest one for a
+    /// ball outside.
     pub fn cell(&self, ball: PointMm, defending: GoalEnd) -> usize {
         let sign = i64::from(defending.attack_sign());
         let step = |at: i32, count: usize| {

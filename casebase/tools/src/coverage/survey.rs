@@ -1,5 +1,5 @@
-//! `survey`: answers of a library to many problems. Every case is judged in every problem, as `cases explain`
-//! does.
+//! `survey`: verdicts of a library on many problems. Every case is tested in every problem, as in `cases
+//! explain`.
 
 use casebase::{CaseBase, Match, Problem, SettingError, Settings, Verdict, explain, rank_order};
 
@@ -7,13 +7,13 @@ use super::area::Area;
 use super::cells::Cells;
 use super::tally::{COST_BIN_MM, COST_BINS, RINGS, Reach, Tally, VERDICTS};
 
-/// A library, what it is asked with, and the grid that is counted over.
+/// A library, its retrieval settings, and the grid of the counters.
 #[derive(Clone, Debug)]
 pub struct Survey<'a> {
     base: CaseBase<'a>,
     settings: Settings,
-    /// With scopes a fifth larger; opponents' ways widen too, so whoever passes these checks would pass with the
-    /// ball's scope alone enlarged.
+    /// With scopes a fifth larger; opponents' paths widen too, so a case that passes these checks would pass
+    /// with the ball's scope alone enlarged.
     wider: Settings,
     cells: Cells,
 }
@@ -38,12 +38,12 @@ impl<'a> Survey<'a> {
         self.base
     }
 
-    /// Nothing counted yet.
+    /// Counters at zero.
     pub fn empty(&self) -> Tally {
         Tally::new(self.base.len() / COPIES, self.cells.len())
     }
 
-    /// The tally of numbered problems.
+    /// The counters of numbered problems.
     pub fn over(&self, problems: impl IntoIterator<Item = (u64, Problem)>) -> Tally {
         let mut tally = self.empty();
         for (number, problem) in problems {
@@ -53,7 +53,7 @@ impl<'a> Survey<'a> {
     }
 
     fn count(&self, tally: &mut Tally, number: u64, problem: &Problem) {
-        // Of each authored case: how far its better copy came, and that copy's interval.
+        // For each authored case: the last check that its better copy reached, and that copy's interval.
         let mut reached = vec![(0_usize, RINGS.len()); tally.cases.len()];
         let mut best: Option<Match> = None;
         let mut candidates = 0;
@@ -129,21 +129,21 @@ impl<'a> Survey<'a> {
     }
 }
 
-/// How far a copy came: a place in [`VERDICTS`].
+/// The last check that a copy reached: an index of [`VERDICTS`].
 fn step_of(verdict: &Verdict) -> usize {
     VERDICTS.iter().position(|word| *word == verdict.word()).unwrap_or(0)
 }
 
-/// The similarity interval: a place in [`RINGS`].
+/// The similarity interval: an index of [`RINGS`].
 fn ring(found: &Match) -> usize {
     INTERVALS.iter().filter(|end| found.similarity < **end).count()
 }
 
-/// Stored copies of an authored case.
+/// Number of stored copies of an authored case.
 const COPIES: usize = casebase::Symmetry::ALL.len();
-/// The place of "candidate" in [`VERDICTS`].
+/// The index of "candidate" in [`VERDICTS`].
 const CANDIDATE: usize = VERDICTS.len() - 1;
 /// The ends of H, h and l (Ros et al. 2009, §3.4).
 const INTERVALS: [f32; 3] = [0.8, 0.6, 0.4];
-/// How much larger radii are tried for a hole.
+/// Factor of the enlarged radii that are tried for a hole.
 const WIDER: f64 = 1.2;

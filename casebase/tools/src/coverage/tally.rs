@@ -1,26 +1,27 @@
-//! `tally`: counters over many problems. Whole numbers only, so that tallies merge exactly, in any order.
+//! `tally`: counters over many problems. Whole numbers only, so that they merge exactly, in any order.
 
 use std::collections::BTreeMap;
 
 use super::area::Area;
 
-/// How far a case came in a problem, in the order of retrieval's checks; the better of its two copies counts.
+/// Last check that a case reached in a problem, in the order of retrieval's checks; the better of its two
+/// copies counts.
 pub const VERDICTS: [&str; 6] = ["ball", "robots", "out_of_field", "thr_c", "path", "candidate"];
 /// The similarity intervals, best first.
 pub const RINGS: [&str; 4] = ["H", "h", "l", "L"];
 /// Width of a bin of the histogram of costs, mm.
 pub const COST_BIN_MM: f32 = 250.0;
-/// Bins of costs; the last goes on to infinity (four robots with 1500 mm each make 6000 mm).
+/// Number of bins of costs; the last extends to infinity (four robots with 1500 mm each make 6000 mm).
 pub const COST_BINS: usize = 25;
 
 /// Counts over some problems.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
-    /// Problems asked.
+    /// Number of problems.
     pub problems: u64,
-    /// Problems without a candidate.
+    /// Number of problems without a candidate.
     pub none: u64,
-    /// Stored candidates, over all problems.
+    /// Number of stored candidates, over all problems.
     pub candidates: u64,
     /// By authored case.
     pub cases: Vec<CaseTally>,
@@ -32,41 +33,42 @@ pub struct Tally {
     pub rings: [u64; RINGS.len()],
     /// Winners by cost, in bins of [`COST_BIN_MM`].
     pub costs: [u64; COST_BINS],
-    /// Problems without a candidate by how far the best case came ([`VERDICTS`]).
+    /// Problems without a candidate, by the last check that the best case reached ([`VERDICTS`]).
     pub furthest: [u64; VERDICTS.len()],
     /// Problems by their reachability set: the authored cases that are candidates, in rising order.
     pub reaches: BTreeMap<Vec<u16>, Reach>,
 }
 
-/// What befell one authored case.
+/// Counters of one authored case.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct CaseTally {
-    /// Problems by how far it came ([`VERDICTS`]).
+    /// Problems by the last check it reached ([`VERDICTS`]).
     pub verdicts: [u64; VERDICTS.len()],
-    /// Problems it won.
+    /// Number of problems it won.
     pub wins: u64,
-    /// Problems in which it is the only authored candidate: what is lost when its file is deleted.
+    /// Number of problems in which it is the only authored candidate: they are lost when its file is deleted.
     pub sole: u64,
     /// Of these, by the ball's [`Area`].
     pub sole_in: [u64; Area::ALL.len()],
-    /// Who won where it was a candidate and did not win.
+    /// Winners of the problems in which it was a candidate and did not win.
     pub beaten_by: BTreeMap<u16, u64>,
     /// Times candidate by the interval of its best copy ([`RINGS`]).
     pub rings: [u64; RINGS.len()],
     /// Times winner by interval.
     pub rings_won: [u64; RINGS.len()],
-    /// Problems without any candidate for which it would be one, were its ball scope a fifth larger.
+    /// Number of problems without any candidate for which it would be one if its ball scope were a fifth
+    /// larger.
     pub would_fill: u64,
 }
 
-/// What befell the balls of one cell.
+/// Counters of the balls of one cell.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct CellTally {
-    /// Problems with the ball there.
+    /// Number of problems with the ball there.
     pub problems: u64,
     /// Of these, without a candidate.
     pub none: u64,
-    /// Stored candidates.
+    /// Number of stored candidates.
     pub candidates: u64,
     /// Wins by authored case.
     pub wins: BTreeMap<u16, u64>,
@@ -74,26 +76,26 @@ pub struct CellTally {
     pub first_hole: Option<u64>,
 }
 
-/// Problems of one strategic area.
+/// Counters of one strategic area.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AreaTally {
-    /// Problems with the ball there.
+    /// Number of problems with the ball there.
     pub problems: u64,
     /// Of these, without a candidate.
     pub none: u64,
 }
 
-/// Problems that the same cases reach.
+/// Problems with the same candidates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reach {
-    /// How many.
+    /// Number of problems.
     pub problems: u64,
     /// The number of the first.
     pub first: u64,
 }
 
 impl Tally {
-    /// Nothing counted yet.
+    /// Counters at zero.
     pub fn new(cases: usize, cells: usize) -> Self {
         Self {
             cases: vec![CaseTally::default(); cases],
@@ -102,7 +104,7 @@ impl Tally {
         }
     }
 
-    /// Both together; of the same library and grid.
+    /// The sum of both; they must be of the same library and grid.
     #[must_use]
     pub fn merge(mut self, other: Self) -> Self {
         self.problems += other.problems;
@@ -129,14 +131,14 @@ impl Tally {
         self
     }
 
-    /// Problems with a winner.
+    /// Number of problems with a winner.
     pub const fn won(&self) -> u64 {
         self.problems - self.none
     }
 }
 
 impl CaseTally {
-    /// Times candidate: the size of its coverage set.
+    /// Number of problems in which it is a candidate: the size of its coverage set.
     pub const fn candidate(&self) -> u64 {
         self.verdicts[VERDICTS.len() - 1]
     }
@@ -154,7 +156,8 @@ impl CaseTally {
 }
 
 impl CellTally {
-    /// Entropy of the winner, bits: 0 where one case always wins, 1 where two share evenly; 0 without a winner.
+    /// Entropy of the winner, bits: 0 where one case always wins, 1 where two share evenly; 0 without a
+    /// winner.
     pub fn entropy_bits(&self) -> f64 {
         entropy_bits(self.wins.values().copied())
     }

@@ -1,6 +1,7 @@
-//! `case`: picture of one case, optionally with a problem: scopes, ball path, robots, and who goes where.
+//! `case`: figure of one case, optionally with a problem: scopes, ball path, robots, and the correspondence.
 //!
-//! Over a problem everything is adapted, moved by `B_p` − `B_c`, except the ball's scope: that is where the case has it.
+//! Over a problem everything is adapted, moved by `B_p` − `B_c`, except the ball's scope: that stays where
+//! the case has it.
 
 use casebase::{
     Action, Case, CaseBase, CaseRobot, GoalEnd, Leg, PointMm, Problem, Scope, ScopeRule, Settings, Verdict,
@@ -15,15 +16,15 @@ use super::words;
 /// A case to be drawn.
 #[derive(Clone, Debug)]
 pub struct CasePicture<'a> {
-    /// Whose field it is.
+    /// The case base with its field.
     pub base: CaseBase<'a>,
     /// The case.
     pub case: Case<'a>,
     /// `region/name`.
     pub name: &'a str,
-    /// What it is for, in its author's words.
+    /// Its purpose, in its author's text.
     pub intent: &'a str,
-    /// The situation it is held against, if any.
+    /// The problem to draw over it, if any.
     pub overlay: Option<Overlay<'a>>,
     /// The colours.
     pub theme: Theme,
@@ -32,24 +33,25 @@ pub struct CasePicture<'a> {
 /// A problem over a case.
 #[derive(Clone, Copy, Debug)]
 pub struct Overlay<'a> {
-    /// The situation.
+    /// The problem.
     pub problem: &'a Problem,
-    /// What retrieval was asked with.
+    /// The settings of the retrieval.
     pub settings: &'a Settings,
-    /// What [`casebase::explain()`] says of the case.
+    /// The verdict of [`casebase::explain()`] on the case.
     pub verdict: &'a Verdict,
-    /// The case's place among the candidates, from 1, and how many there are; none where it is no candidate.
+    /// The case's rank among the candidates, from 1, and their number; `None` where it is not a candidate.
     pub rank: Option<(usize, usize)>,
 }
 
-/// The picture as an SVG of about 900 px, in mm.
+/// The figure as an SVG of about 900 px, in mm.
 pub fn case_picture(picture: &CasePicture<'_>) -> String {
     let half = half_extent(&picture.base.field());
     let mut pen = scene(picture, 1.0);
     caption(&mut pen, picture, half)
 }
 
-/// The field with the case, signs as much larger as `zoom` says; without heading, caption and letters on a small one.
+/// The field with the case, symbols enlarged by `zoom`; without heading and caption, and without letters on a
+/// small one.
 pub(super) fn small(picture: &CasePicture<'_>, zoom: f64) -> Svg {
     scene(picture, zoom).svg
 }
@@ -81,7 +83,7 @@ fn scene<'p>(picture: &'p CasePicture<'p>, zoom: f64) -> Pen {
     pen
 }
 
-/// A case for a ball at one place.
+/// A case for one position of the ball.
 struct Scene<'p, 'a> {
     picture: &'p CasePicture<'a>,
     settings: &'p Settings,
@@ -107,7 +109,7 @@ impl Scene<'_, '_> {
         }
     }
 
-    /// Where signs will lie: numbers of legs, names and letters keep clear of them.
+    /// Positions of symbols: numbers of legs, names and letters do not overlap them.
     fn reserve(&self, pen: &mut Pen) {
         let unit = pen.unit;
         pen.labels.keep_free(at(self.ball), unit * 0.8);
@@ -125,8 +127,8 @@ impl Scene<'_, '_> {
         }
     }
 
-    /// The letters of the intervals: on the first ray where none lies on a sign or on another, else each where it can;
-    /// a letter for which there is no room is left out.
+    /// The letters of the intervals: on the first ray where none overlaps a symbol or another letter, else
+    /// each where it can; a letter without room is left out.
     fn ring_names(&self, pen: &mut Pen, labels: &mut Labels) {
         let case = &self.picture.case;
         let (center, scope) = (at(case.ball()), case.ball_scope());
@@ -135,7 +137,7 @@ impl Scene<'_, '_> {
         let border = f64::from(self.settings.limit()).sqrt();
         let rings = INTERVALS.map(|(similarity, _)| f64::sqrt(-f64::ln(similarity)));
         let letters = INTERVALS.map(|(_, letter)| letter).into_iter().chain(["L"]);
-        // Middles of the bands; the outermost is thinner than a letter, its name stands outside.
+        // Middles of the bands; the outermost is thinner than a letter, its name is placed outside.
         let shares = [0.5 * rings[0], f64::midpoint(rings[0], rings[1]), f64::midpoint(rings[1], rings[2])];
         let place = |degrees: i32, band: usize| -> At {
             let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
@@ -161,7 +163,7 @@ impl Scene<'_, '_> {
         }
     }
 
-    /// By how much the opponents' scopes move with the ball.
+    /// Displacement of the opponents' scopes with the ball.
     fn scopes_moved(&self) -> PointMm {
         match self.settings.scopes {
             ScopeRule::Translated => self.picture.case.shift(self.ball),
@@ -240,7 +242,8 @@ impl Scene<'_, '_> {
         }
     }
 
-    /// Where a robot meets the ball: at the end of the leg that brings it, or where it lies at first.
+    /// Position where a robot reaches the ball: at the end of the leg that brings it, or at the ball's start
+    /// position.
     fn met(&self, robot: CaseRobot, action: usize) -> At {
         let case = &self.picture.case;
         let from = case.partner_of(robot, action);
@@ -258,7 +261,7 @@ impl Scene<'_, '_> {
         }
     }
 
-    /// The real robots and opponents, and who goes where.
+    /// The robots and opponents of the problem, and the correspondence.
     fn situation(&self, pen: &mut Pen, overlay: &Overlay<'_>) {
         let Overlay { problem, verdict, .. } = overlay;
         let place =
@@ -300,7 +303,7 @@ impl Scene<'_, '_> {
     }
 }
 
-/// Draws the signs of this kind of picture; `unit` is a hundredth of its width, mm.
+/// Draws the symbols of these figures; `unit` is a hundredth of the figure's width, mm.
 struct Pen {
     svg: Svg,
     labels: Labels,
@@ -364,7 +367,7 @@ fn caption(pen: &mut Pen, picture: &CasePicture<'_>, [x, y]: [f64; 2]) -> String
     std::mem::take(&mut pen.svg).finish(lower, upper, px_per_mm, colors.paper, picture.name)
 }
 
-/// The corners of a leg as retrieval sees it: as wide as where μ falls to the threshold; none without a length.
+/// The corners of a leg as in retrieval: as wide as where μ falls to the threshold; `None` without a length.
 fn trapezoid(leg: &Leg, limit: f64) -> Option<[At; 4]> {
     let (from, to) = (leg.from.map(f64::from), leg.to.map(f64::from));
     let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
@@ -393,9 +396,9 @@ fn at(point: PointMm) -> At {
 
 /// Where a similarity interval ends, and its letter (docs/case-format.md §3).
 const INTERVALS: [(f64, &str); 3] = [(0.8, "H"), (0.6, "h"), (0.4, "l")];
-/// Where the letters of the intervals may stand around the ball, degrees, what reads best first.
+/// Angles of the letters of the intervals around the ball, degrees, in order of preference.
 const RAYS: [i32; 16] = [-35, 35, -145, 145, 0, 180, -18, 18, -162, 162, -55, 55, -125, 125, -90, 90];
-/// Where the number of a leg may stand on it, as shares of its length.
+/// Positions of the number of a leg on it, as shares of its length.
 const ALONG: [f64; 7] = [0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74];
 const LEGEND: &str = "Circles: teammates, dashed where the case wants them. Squares: opponents, in their scopes. Orange: the ball and \
      its scope, rings at similarity 0.8 (H within), 0.6 (h), 0.4 (l) and its border (L). Trapezoids: legs of the ball, in order. Dashed arrows: \

@@ -1,5 +1,4 @@
-//! `heat`: heat map of the field as SVG. A grid of values over the field with its legend and caption, as an
-//! SVG.
+//! `heat`: heat map of the field as SVG. A grid of values over the field with its legend and caption.
 
 use casebase::{FieldMm, PointMm};
 use drawing::{Anchor, At, Colors, Font, Svg, Theme, draw_field, field_lines, half_extent, width, wrapped};
@@ -9,53 +8,54 @@ use drawing::{Anchor, At, Colors, Font, Svg, Theme, draw_field, field_lines, hal
 pub struct HeatMap<'a> {
     /// One line above the field.
     pub title: &'a str,
-    /// What is shown, below the field; wrapped to its width.
+    /// Caption below the field; wrapped to its width.
     pub caption: &'a str,
     /// The field.
     pub field: FieldMm,
-    /// Two opposite corners of what the grid covers: least x and y, greatest x and y; mm, field frame.
+    /// Two opposite corners of the grid: minimum x and y, maximum x and y; mm, field frame.
     pub area: [PointMm; 2],
     /// Cells along x.
     pub columns: usize,
     /// Cells along y.
     pub rows: usize,
-    /// One value a cell, row by row from the least y, each from the least x: `values[row * columns + column]`. A
-    /// value that is `None`, not finite or missing is drawn as unknown.
+    /// One value a cell, row by row from the minimum y, each from the minimum x: `values[row * columns +
+    /// column]`. A value that is `None`, not finite or missing is drawn as unknown.
     pub values: &'a [Option<f64>],
-    /// What the values are.
+    /// Scale of the values.
     pub scale: Scale<'a>,
     /// The colours of page and lines.
     pub theme: Theme,
 }
 
-/// What the values of a heat map are.
+/// Scale of the values of a heat map.
 #[derive(Clone, Copy, Debug)]
 pub enum Scale<'a> {
-    /// Numbers; what lies beyond an end is drawn in that end's colour.
+    /// Numbers; values beyond an end are drawn in that end's colour.
     Continuous {
         /// The value of the darkest colour.
         low: f64,
         /// The value of the brightest one.
         high: f64,
-        /// What is behind each number in the legend: `" %"`, `" cases"`.
+        /// Unit behind each number in the legend: `" %"`, `" cases"`.
         unit: &'a str,
     },
-    /// Categories: the value is a number in this list of at most [`CATEGORIES_MAX`], rounded; others are unknown.
+    /// Categories: the value is a number in this list of at most [`CATEGORIES_MAX`], rounded; others are
+    /// unknown.
     Categorical {
         /// Their names in the legend.
         names: &'a [&'a str],
     },
 }
 
-/// How many categories can be told apart.
+/// Maximum number of distinguishable categories.
 pub const CATEGORIES_MAX: usize = 8;
 
-/// The picture as an SVG, in mm with a width of about 900 px.
+/// The figure as an SVG, in mm with a width of about 900 px.
 pub fn heat_map(map: &HeatMap<'_>) -> String {
     heat_maps(std::slice::from_ref(map))
 }
 
-/// Maps beside each other in one picture, each about 900 px wide, on the paper of the first.
+/// Maps beside each other in one figure, each about 900 px wide, on the paper of the first.
 pub fn heat_maps(maps: &[HeatMap<'_>]) -> String {
     let mut page = Svg::default();
     let (mut across, mut low, mut high, mut px_per_mm) = (0.0, 0.0_f64, 0.0_f64, 0.1);
@@ -108,7 +108,7 @@ fn cells(svg: &mut Svg, map: &HeatMap<'_>, colors: &Colors) {
             let value = map.values.get(row * map.columns + column).copied().flatten();
             let fill = value.and_then(|value| color(value, map.scale)).unwrap_or(colors.unknown.to_owned());
             let corner = [low[0] + step[0] * column as f64, low[1] + step[1] * row as f64];
-            // Neighbours share an edge: without its own stroke a viewer shows the carpet between them.
+            // Neighbours share an edge: without its own stroke a viewer shows the background between them.
             let style = format_args!(
                 r#"fill="{fill}" stroke="{fill}" stroke-width="4" shape-rendering="crispEdges""#
             )
@@ -147,7 +147,7 @@ fn shade(share: f64) -> String {
     format!("#{:02x}{:02x}{:02x}", mix(0), mix(1), mix(2))
 }
 
-/// The scale as a bar with five numbers; gives where it ends.
+/// The scale as a bar with five numbers; returns its end.
 fn bar(
     svg: &mut Svg,
     colors: &Colors,
@@ -181,7 +181,7 @@ fn bar(
     y - height - unit * 2.2
 }
 
-/// The categories, each behind its colour; gives where they end.
+/// The categories, each behind its colour; returns their end.
 fn list(svg: &mut Svg, colors: &Colors, names: &[&str], [x, y]: [f64; 2], half: f64, unit: f64) -> f64 {
     let font = Font { size: unit * 1.7, fill: colors.ink, bold: false, halo: None };
     let (mut across, mut down) = (x, y);
@@ -198,7 +198,7 @@ fn list(svg: &mut Svg, colors: &Colors, names: &[&str], [x, y]: [f64; 2], half: 
     down - unit * 2.0
 }
 
-/// As few decimals as tell the quarters of `span` apart.
+/// The fewest decimals that distinguish the quarters of `span`.
 fn number(value: f64, span: f64) -> String {
     let decimals = if span.abs() >= 20.0 {
         0
@@ -211,15 +211,17 @@ fn number(value: f64, span: f64) -> String {
     if decimals == 0 { text } else { text.trim_end_matches('0').trim_end_matches('.').to_owned() }
 }
 
-/// From dark blue to yellow, evenly brighter, also in grey and for the colour-blind: five colours of viridis (CC0).
+/// From dark blue to yellow, evenly brighter, also in grey and for colour-blind readers: five colours of
+/// viridis (CC0).
 const SHADES: [[u8; 3]; 5] =
     [[0x44, 0x01, 0x54], [0x3b, 0x52, 0x8b], [0x21, 0x91, 0x8c], [0x5e, 0xc9, 0x62], [0xfd, 0xe7, 0x25]];
-/// Okabe and Ito's, the faint ones first.
+/// Okabe and Ito's, the pale ones first.
 const CATEGORIES: [&str; CATEGORIES_MAX] =
     ["#56b4e9", "#e69f00", "#009e73", "#f0e442", "#0072b2", "#d55e00", "#cc79a7", "#7a7a7a"];
-/// How opaque the black lines over the cells are: the scale's darkest colours must not hide them, nor they a cell.
+/// Opacity of the black lines over the cells: the scale's darkest colours must not hide them, nor they a
+/// cell.
 const LINES_OPACITY: &str = "0.6";
-/// How wide a map is on a screen, px.
+/// Width of a map on a screen, px.
 const PANEL_PX: f64 = 900.0;
 /// Stripes of the legend's bar.
 const STEPS: usize = 64;
@@ -276,7 +278,7 @@ mod tests {
         assert_eq!(color(-5.0, scale).as_deref(), Some("#440154"));
         assert_eq!(color(90.0, scale).as_deref(), Some("#fde725"));
         assert_eq!(color(f64::NAN, scale), None);
-        // A quarter of the way lies on viridis' second colour; an eighth half way to it.
+        // A quarter of the scale is viridis' second colour; an eighth is half way to it.
         assert_eq!(color(12.5, scale).as_deref(), Some("#3b528b"));
         assert_eq!(color(11.25, scale).as_deref(), Some("#402a70"));
     }

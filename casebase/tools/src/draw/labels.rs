@@ -1,9 +1,9 @@
-//! `labels`: label placement without overlaps. Signs are told first, then each name takes the first free
-//! side.
+//! `labels`: label placement without overlaps. Symbols are registered first, then each name takes the first
+//! free side.
 
 use drawing::{Anchor, At, Font, Svg, width};
 
-/// Names waiting for their places, and what is taken already. mm.
+/// Names to be placed, and occupied areas. mm.
 #[derive(Debug, Default)]
 pub(super) struct Labels {
     taken: Vec<[At; 2]>,
@@ -13,24 +13,24 @@ pub(super) struct Labels {
 #[derive(Debug)]
 struct Label {
     at: At,
-    /// From the sign's middle to its edge.
+    /// From the symbol's middle to its edge.
     reach: f64,
     text: String,
     fill: &'static str,
 }
 
 impl Labels {
-    /// A sign of this half width that no name may cover.
+    /// Registers a symbol of this half width that no name may cover.
     pub(super) fn keep_free(&mut self, [x, y]: At, half: f64) {
         self.taken.push([[x - half, y - half], [x + half, y + half]]);
     }
 
-    /// A name for what is at `at`.
+    /// Registers a name for the symbol at `at`.
     pub(super) fn name(&mut self, at: At, reach: f64, text: impl Into<String>, fill: &'static str) {
         self.waiting.push(Label { at, reach, text: text.into(), fill });
     }
 
-    /// The first of these places where a sign of this half width covers nothing told so far.
+    /// The first of these positions where a symbol of this half width covers nothing registered so far.
     pub(super) fn free(&self, places: impl IntoIterator<Item = At>, half: f64) -> Option<At> {
         places.into_iter().find(|[x, y]| {
             let place = [[x - half, y - half], [x + half, y + half]];
@@ -38,7 +38,7 @@ impl Labels {
         })
     }
 
-    /// Writes all names, first come, first served; where every side is taken, above.
+    /// Writes all names, in the order of registration; where every side is occupied, above.
     pub(super) fn write(&mut self, svg: &mut Svg, size: f64, halo: &str) {
         for label in std::mem::take(&mut self.waiting) {
             let places = places(&label, size);
@@ -81,7 +81,7 @@ mod tests {
     fn two_names_of_one_place_do_not_lie_on_each_other() {
         let label = Label { at: [0.0, 0.0], reach: 10.0, text: "tm1".to_owned(), fill: "" };
         let places = places(&label, 10.0);
-        // Above, the text's middle is 10 + 0.6 × 10 mm from the sign's.
+        // Above, the text's middle is 10 + 0.6 × 10 mm from the symbol's.
         assert!((f64::midpoint(places[0][0][1], places[0][1][1]) - 16.0).abs() < 1e-9);
         let mut labels = Labels::default();
         labels.name([0.0, 0.0], 10.0, "tm1", "");
@@ -90,7 +90,7 @@ mod tests {
         labels.write(&mut svg, 10.0, "");
         let body = svg.finish([0.0; 2], [1.0; 2], 1.0, "", "");
         assert_eq!(labels.free([[0.0, 16.0], [0.0, 40.0]], 4.0), Some([0.0, 40.0]));
-        // The second goes below: baselines at 16 − 5 + 1.5 and −16 − 5 + 1.5 mm, told with y down.
+        // The second goes below: baselines at 16 − 5 + 1.5 and −16 − 5 + 1.5 mm, written with y down.
         assert!(body.contains(r#"y="-12.5""#) && body.contains(r#"y="19.5""#), "{body}");
     }
 }

@@ -1,4 +1,4 @@
-//! `draw`: pictures of a case base. Pictures as SVG text, in mm of the field.
+//! `draw`: figures of a case base as SVG text, in mm of the field.
 
 mod case;
 mod heat;

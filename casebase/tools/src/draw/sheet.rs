@@ -1,11 +1,11 @@
-//! `sheet`: one page with every case of a library, small, grouped by region.
+//! `sheet`: one page with a small figure of every case of a library, grouped by region.
 
 use drawing::{Anchor, Font, Svg, Theme, half_extent};
 
 use super::case::{CasePicture, small};
 
-/// The cases as small pictures on one page, in the order given; a change of region begins a row. Scopes and signs are as
-/// in [`case_picture`](super::case_picture), without letters, intents and captions.
+/// The cases as small figures on one page, in the order given; a change of region starts a row. Scopes and
+/// symbols are as in [`case_picture`](super::case_picture), without letters, intents and captions.
 pub fn sheet(title: &str, pictures: &[CasePicture<'_>]) -> String {
     let mut page = Svg::default();
     let colors = pictures.first().map_or(Theme::default(), |picture| picture.theme).colors();
@@ -44,11 +44,12 @@ pub fn sheet(title: &str, pictures: &[CasePicture<'_>]) -> String {
     page.finish(lower, [right + edge, text * 1.6 + edge], PANEL_PX / (2.0 * x), colors.paper, title)
 }
 
-/// Pictures in a row.
+/// Figures in a row.
 const COLUMNS: u32 = 8;
-/// How much larger signs are than on a picture of its own: so that they can be told at a quarter of its size.
+/// Enlargement of symbols over those of a single figure: so that they are recognisable at a quarter of its
+/// size.
 const ZOOM: f64 = 1.7;
-/// How wide one is on a screen, px.
+/// Width of one on a screen, px.
 const PANEL_PX: f64 = 220.0;
 const LEGEND: &str = "Orange: the ball, and where it may lie. Blue: robots. Grey: opponents in their scopes. \
      Green: the path of the ball, leg by leg. Dashed arrows: ways of robots.";

@@ -1,4 +1,4 @@
-//! `words`: a verdict as one sentence. For captions; mm.
+//! `words`: a verdict as one sentence for captions; mm.
 
 use casebase::Verdict;
 

@@ -1,4 +1,4 @@
-//! `common`: test helpers: libraries and problems. Written out, or from a small seeded stream.
+//! `common`: test helpers: libraries and problems, written out or from a small seeded stream.
 #![allow(dead_code, reason = "every test file takes the part it needs")]
 
 use std::fmt::Write as _;
@@ -74,7 +74,7 @@ at = [-150, 40]
 scope = [300, 300]
 "#;
 
-/// A library from memory; its faults end the test.
+/// A library from memory; a finding ends the test.
 pub(crate) fn library(cases: &[(&str, &str)]) -> Library {
     build(&Files::from_texts("test", LEAGUE, cases)).unwrap_or_else(|findings| {
         let words: Vec<_> = findings.iter().map(ToString::to_string).collect();
@@ -82,7 +82,7 @@ pub(crate) fn library(cases: &[(&str, &str)]) -> Library {
     })
 }
 
-/// One robot that gets the ball and does what `rest` says, at the ball's place.
+/// One robot at the ball's position that gets the ball and then does `rest`.
 pub(crate) fn single(ball: &str, scope: &str, rest: &str) -> String {
     format!(
         "intent = \"one\"\ndefending = \"yellow\"\nball = {{ at = {ball}, scope = {scope} }}\n\
@@ -143,8 +143,8 @@ impl Dice {
             "intent = \"drawn\"\ndefending = \"{defending}\"\nball = {{ at = [{}, {}], scope = [{sx}, {sy}] }}\n",
             ball.0, ball.1
         );
-        // The ball goes from robot to robot by passes; some dribble, some walk before they receive, the last may kick
-        // and chase.
+        // The ball goes from robot to robot by passes; some dribble, some walk before they receive, the last
+        // may kick and chase.
         for robot in 1..=robots {
             let at = self.near(ball, 1200);
             let mut plan = Vec::new();

@@ -1,4 +1,4 @@
-//! Tests: a trial runs as its configuration says. With scripted computers in place of brains.
+//! Tests: a trial runs as its configuration states. With scripted computers in place of brains.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -12,7 +12,7 @@ use crate::four_legged::parameters::FOUR_LEGGED_TOML;
 use crate::four_legged::scenario::Scenario;
 use crate::mcu::Reply;
 
-/// What a scripted computer was given, as far as the tests ask.
+/// Inputs of a scripted computer that the tests check.
 #[derive(Clone, Debug, PartialEq)]
 struct Given {
     robot: u8,
@@ -24,7 +24,7 @@ struct Given {
 
 type Log = Rc<RefCell<Vec<Given>>>;
 
-/// Computers that go for the ball, grab it and kick it in every way a body has, and say who they are.
+/// Computers that walk to the ball, grab it, kick it in each direction a body supports, and report their ids.
 #[derive(Default)]
 struct Scripts(Log);
 
@@ -122,7 +122,7 @@ fn simple(seed: u64) -> SimulationConfig {
     config(Scenario::DefenderAhead, Configuration::DefenderGoalie, seed, 2)
 }
 
-/// Runs for `ticks`; gives the simulation and what its computers were given.
+/// Runs for `ticks`; returns the simulation and the inputs of its computers.
 fn run(config: SimulationConfig, ticks: u32) -> (Simulation<'static>, Vec<Given>) {
     let log = Log::default();
     let mut simulation = Simulation::new(config, Box::new(Scripts(log.clone()))).unwrap();
@@ -184,7 +184,7 @@ fn a_crashed_robot_is_given_nothing_and_returns_with_a_new_life_and_a_new_clock(
 fn the_air_can_change_during_a_trial() {
     let faults = vec![ScheduledFault { tick: 5, fault: Fault::Air(AirSettings::with_loss(1.0)) }];
     let (_, given) = run(SimulationConfig { faults, ..simple(1) }, 20);
-    // Said in tick 4, heard in 5; said in 5 and lost.
+    // Sent in tick 4, received in 5; sent in 5 and lost.
     assert!(given.iter().all(|g| g.air.is_empty() == (g.seq == 0 || g.seq > 5)));
 }
 
@@ -210,7 +210,7 @@ fn defenders_never_enter_the_penalty_area() {
                 let first = simulation.attackers().count();
                 for (i, role) in simulation.opponents().enumerate().filter(|(_, r)| *r != Role::Goalie) {
                     let place = simulation.world().walkers[first + i].pose.position;
-                    // A shove can move a robot a little before its legs answer.
+                    // A shove can move a robot a little before its legs react.
                     let deeper = geometry::Point::new(place.x() - 0.1, place.y());
                     assert!(
                         !field.in_penalty_area(geometry::GoalEnd::Positive, deeper),
@@ -245,7 +245,7 @@ fn every_number_of_the_file_is_used() {
     let file: toml::Value = toml::from_str(FOUR_LEGGED_TOML).unwrap();
     let mut paths = Vec::new();
     leaves(&mut file.clone(), "", &mut |path, _| paths.push(path.to_owned()));
-    // The referee's numbers do not move the world: its own tests hold them.
+    // The referee's numbers do not change the physics: its own tests check them.
     paths.retain(|path| !path.starts_with(".referee"));
     let (dg, two) = (Configuration::DefenderGoalie, Configuration::TwoDefenders);
     let high = Layout { ball: Point::new(1.9, 1.7), ..simple(0).layout };
@@ -280,7 +280,7 @@ fn every_number_of_the_file_is_used() {
     };
     let untouched = play(Parameters::four_legged());
     for wanted in &paths {
-        // The smallest change first; a threshold may need a larger one before anything crosses it.
+        // The smallest change first; a larger one may be needed before a threshold is crossed.
         let differs = [0.9, 0.6, 0.1].into_iter().any(|factor| {
             let mut changed = file.clone();
             leaves(&mut changed, "", &mut |path, number| {

@@ -1,7 +1,8 @@
-//! `ball`: motion of a free ball. Constant deceleration until rest, and a net that catches; m, s, field
-//! frame.
+//! `ball`: motion of a free ball. Constant deceleration until it stops, and a goal net that stops it; m, s,
+//! field frame.
 //!
-//! Written apart from `motion`'s model on purpose: a wrong belief of the robots must show as a missed pass.
+//! Written independently of `motion`'s model on purpose: an error of the robots' model must become visible as
+//! a missed pass.
 
 use geometry::{Field, Point, Vector, math};
 use rules::FieldSpec;
@@ -16,12 +17,12 @@ pub struct Ball {
 }
 
 impl Ball {
-    /// At rest.
+    /// A resting ball.
     pub fn at(position: Point<Field>) -> Self {
         Self { position, velocity: Vector::default() }
     }
 
-    /// Rolls for `dt` seconds, exactly: the last step ends where v²/2a says.
+    /// Rolls for `dt` seconds, exactly: the last step ends at the stopping distance v²/2a.
     pub fn roll(&mut self, deceleration: f32, dt: f32) {
         let speed = self.velocity.norm();
         if speed <= 0.0 {
@@ -33,19 +34,19 @@ impl Ball {
         self.velocity = if time < dt { Vector::default() } else { direction * (speed - deceleration * dt) };
     }
 
-    /// Where it would come to rest, undisturbed.
+    /// Its stop position if nothing touches it.
     pub fn rest(&self, deceleration: f32) -> Point<Field> {
         self.position + self.velocity * (self.velocity.norm() / (2.0 * deceleration))
     }
 
-    /// Sends it off so that it comes to rest after `distance`, undisturbed.
+    /// Gives it the velocity with which it stops after `displacement`, if nothing touches it.
     pub fn send(&mut self, deceleration: f32, displacement: Vector<Field>) {
         let distance = displacement.norm();
         let speed = math::sqrt(2.0 * deceleration * distance);
         self.velocity = displacement.unit().unwrap_or_default() * speed;
     }
 
-    /// Behind a goal line and between the posts, back and sides of the goal stop it.
+    /// Behind a goal line and between the posts, the back and sides of the goal stop the ball.
     pub fn stay_in_net(&mut self, field: &FieldSpec, radius: f32) {
         let (x, y) = (self.position.x(), self.position.y());
         let line = field.length * 0.5;

@@ -1,12 +1,13 @@
 //! `contact`: collisions. Robots are pushed apart; a robot pushes the ball, and between its front legs the
-//! ball lies deeper and does not bounce. Discs, m, field frame.
+//! ball lies deeper and does not bounce. All are discs; m, field frame.
 
 use geometry::{Field, Vector};
 
 use super::{World, WorldEvent};
 
 impl World {
-    /// Moves overlapping robots apart, half the overlap each; a few rounds settle a crowd.
+    /// Moves overlapping robots apart, half the overlap each; a few iterations settle several robots in
+    /// contact.
     pub(super) fn push_robots_apart(&mut self) {
         let apart = 2.0 * self.robot_radius;
         for _ in 0..ROUNDS {
@@ -31,7 +32,7 @@ impl World {
         }
     }
 
-    /// Lets every robot that the free ball runs into, or that runs into it, push it.
+    /// Every robot in contact with the free ball pushes it.
     pub(super) fn collide_with_ball(&mut self) {
         for robot in 0..self.walkers.len() {
             let offset = self.ball.position - self.walkers[robot].pose.position;
@@ -48,7 +49,7 @@ impl World {
         }
     }
 
-    /// The free ball at `offset` from the robot's centre leaves its body, if it is inside.
+    /// Moves the free ball at `offset` from the robot's centre out of its body, if it is inside.
     fn push_ball(&mut self, robot: usize, offset: Vector<Field>) {
         let walker = &self.walkers[robot];
         let (distance, angle) = walker.bearing(self.ball.position);
@@ -72,7 +73,7 @@ impl World {
         self.events.push(WorldEvent::Touched { robot });
     }
 
-    /// Whether the ball lies where the robot's front legs could close upon it, slow enough.
+    /// Whether the ball lies where the robot's front legs could close upon it, and is slow enough.
     pub(crate) fn in_grasp(&self, robot: usize) -> bool {
         let (grab, walker) = (&self.parameters.grab, &self.walkers[robot]);
         let (distance, angle) = walker.bearing(self.ball.position);
@@ -81,5 +82,6 @@ impl World {
     }
 }
 
-/// Rounds of pushing apart in a step: four settle a row of four robots to a fraction of a millimetre a step.
+/// Iterations of pushing apart in a step: four settle a row of four robots to a fraction of a millimetre a
+/// step.
 const ROUNDS: usize = 4;

@@ -1,11 +1,12 @@
 //! `world`: physics of the four-legged league. Ball and walking robots in steps of 10 ms; m, s, rad, field
 //! frame (docs/architecture.md §7.1).
 //!
-//! A step: primitives progress (`primitives`), robots walk (`walker`) and are pushed apart, the ball rolls (`ball`) or is
-//! carried, and what touches it pushes it (`contact`). What happened comes out as [`WorldEvent`]s. Robots are named
-//! by their place in [`World::walkers`]: attackers by id, then opponents.
+//! A step: primitives progress (`primitives`), robots walk (`walker`) and are pushed apart, the ball rolls
+//! (`ball`) or is carried, and bodies in contact push it (`contact`). What happened is returned as
+//! [`WorldEvent`]s. Robots are named by their index in [`World::walkers`]: attackers by id, then opponents.
 //!
-//! **Invariants.** No clock and no unseeded chance; the order of every loop is fixed; `geometry::math` only.
+//! **Invariants.** No clock and no unseeded randomness; the order of every loop is fixed; `geometry::math`
+//! only.
 
 mod ball;
 mod contact;
@@ -22,16 +23,16 @@ use rules::{FieldSpec, League};
 use crate::four_legged::parameters::Parameters;
 use crate::rng::Stream;
 
-/// The true state of everything on the carpet.
+/// The true state of ball and robots.
 #[derive(Clone, Debug)]
 pub struct World {
     /// The ball.
     pub ball: Ball,
     /// The robots.
     pub walkers: Vec<Walker>,
-    /// Who has the ball between the legs, if somebody has.
+    /// The robot that has the ball between its legs, if any.
     hold: Option<Hold>,
-    /// Who just kicked the ball and does not collide with it until it is clear of the body.
+    /// The robot that just kicked the ball and does not collide with it until it is clear of the body.
     leaving: Option<usize>,
     parameters: Parameters,
     field: FieldSpec,
@@ -46,55 +47,55 @@ pub struct World {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Hold {
     robot: usize,
-    /// The grab has ended and succeeded; before, the legs are closing.
+    /// True when the grab has ended and succeeded; false while the legs are closing.
     firm: bool,
 }
 
-/// What happened in a step, by robots' places in [`World::walkers`].
+/// Events of a step; robots are indices in [`World::walkers`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WorldEvent {
-    /// A robot's body is in contact with the ball (comes again every step that it is).
+    /// A robot's body is in contact with the ball (repeated in every step of the contact).
     Touched {
-        /// Who.
+        /// The robot.
         robot: usize,
     },
     /// A grab succeeded.
     Grabbed {
-        /// Who.
+        /// The robot.
         robot: usize,
     },
     /// A grab ended without the ball.
     GrabFailed {
-        /// Who.
+        /// The robot.
         robot: usize,
     },
     /// The ball was kicked.
     Kicked {
-        /// Who.
+        /// The robot.
         robot: usize,
-        /// How.
+        /// The kind of kick.
         kick: LeggedKick,
-        /// From here.
+        /// Position of the ball at the kick.
         from: Point<Field>,
-        /// It would come to rest here, undisturbed.
+        /// The ball's stop position if nothing touches it.
         rest: Point<Field>,
     },
-    /// A kick began without the ball in the robot's grip: nothing moved.
+    /// A kick started without the ball held by the robot: nothing moved.
     KickedNothing {
-        /// Who.
+        /// The robot.
         robot: usize,
     },
-    /// A grab took the ball out of another robot's grip.
+    /// A grab took the ball out of another robot's legs.
     Stolen {
-        /// Who took it.
+        /// The robot that took it.
         by: usize,
-        /// Who had it.
+        /// The robot that had it.
         from: usize,
     },
 }
 
 impl World {
-    /// A four-legged field with a ball at rest; chance comes from `seed`.
+    /// A four-legged field with a resting ball; random streams come from `seed`.
     pub fn new(parameters: &Parameters, seed: u64, ball: Point<Field>, walkers: Vec<Walker>) -> Self {
         let league = League::FourLegged;
         Self {
@@ -112,7 +113,7 @@ impl World {
         }
     }
 
-    /// What a robot's brain wants of its body; a body without wheels ignores orders for wheels.
+    /// Gives a robot's body its brain's order; a body without wheels ignores orders for wheels.
     pub fn command(&mut self, robot: usize, order: &ActuatorFrame) {
         let (Some(walker), ActuatorFrame::Legged { walk, primitive }) = (self.walkers.get_mut(robot), order)
         else {
@@ -121,7 +122,7 @@ impl World {
         walker.order(*walk, *primitive, self.parameters.grab.duration, self.parameters.kick.duration);
     }
 
-    /// A robot's computer stopped: it stands, its legs open, and what it was doing ends.
+    /// A robot's computer stopped: the body stands, its legs open, and its primitive ends.
     pub fn let_go(&mut self, robot: usize) {
         if let Some(walker) = self.walkers.get_mut(robot) {
             walker.wanted = geometry::Twist::default();
@@ -133,7 +134,7 @@ impl World {
         }
     }
 
-    /// 10 ms pass.
+    /// Advances by 10 ms.
     pub fn step(&mut self) {
         for robot in 0..self.walkers.len() {
             self.progress(robot);
@@ -155,17 +156,18 @@ impl World {
         }
     }
 
-    /// What happened since the last call, in order, to the end of `into`.
+    /// Appends the events since the last call, in order, to `into`.
     pub fn take_events(&mut self, into: &mut Vec<WorldEvent>) {
         into.append(&mut self.events);
     }
 
-    /// Who holds the ball in a grip that a grab has made firm.
+    /// The robot that holds the ball after a successful grab.
     pub fn holder(&self) -> Option<usize> {
         self.hold.filter(|hold| hold.firm).map(|hold| hold.robot)
     }
 
-    /// The ball lies at the holder's legs and moves with it; who of the other team reaches it, touches it.
+    /// The ball lies at the holder's legs and moves with it; a robot of the other team that reaches it,
+    /// touches it.
     fn carry_ball(&mut self) {
         let Some(Hold { robot, .. }) = self.hold else { return };
         let walker = &self.walkers[robot];
@@ -180,7 +182,7 @@ impl World {
     }
 }
 
-/// Seconds in a step of physics (docs/architecture.md §2.3: four-legged, every 10 ms).
+/// Seconds in a physics step (docs/architecture.md §2.3: four-legged, every 10 ms).
 pub const STEP: f32 = 0.01;
 
 #[cfg(test)]

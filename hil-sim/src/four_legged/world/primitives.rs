@@ -1,5 +1,5 @@
-//! `primitives`: grabs and kicks. They take their time, grabs fail, kicks scatter (Ros et al. 2009 §5.2); m,
-//! s, rad.
+//! `primitives`: grabs and kicks. They take time, grabs fail, kicks scatter (Ros et al. 2009 §5.2); m, s,
+//! rad.
 
 use geometry::{Angle, Vector, math};
 use protocol::robot_io::LeggedKick;
@@ -7,7 +7,7 @@ use protocol::robot_io::LeggedKick;
 use super::{Hold, PrimitiveKind, STEP, World, WorldEvent};
 
 impl World {
-    /// A step of the robot's primitive, if one is under way.
+    /// A step of the robot's current primitive, if any.
     pub(super) fn progress(&mut self, robot: usize) {
         let Some(mut action) = self.walkers[robot].action else { return };
         action.left -= STEP;
@@ -39,7 +39,7 @@ impl World {
         [heading, heading + side, heading - side]
     }
 
-    /// The legs have closed: upon the ball or not, and did they keep it?
+    /// Ends a grab: decides whether the legs closed upon the ball, and whether they keep it.
     fn end_grab(&mut self, robot: usize) {
         match self.hold {
             Some(hold) if hold.robot == robot && hold.firm => {}
@@ -61,7 +61,7 @@ impl World {
         }
     }
 
-    /// The legs have closed upon a ball in another robot's legs.
+    /// The legs have closed upon a ball between another robot's legs.
     fn fight(&mut self, robot: usize, from: usize) {
         let grab = &self.parameters.grab;
         let odds = grab.success * grab.contest;
@@ -83,7 +83,7 @@ impl World {
             LeggedKick::ForwardHard => (heading, p.forward_hard),
             LeggedKick::Left => (heading + side, p.side),
             LeggedKick::Right => (heading - side, p.side),
-            // `max` first: a distance that is no number becomes the shortest pass.
+            // `max` first: a NaN distance becomes the shortest pass.
             LeggedKick::Pass(distance) => (heading, distance.max(p.pass_min).min(p.pass_max)),
         };
         let stretch = 1.0 + p.distance_sd * self.kicks.normal_within(p.scatter_limit);

@@ -1,11 +1,11 @@
-//! Tests of the physics. Against hand calculations and counted frequencies.
+//! Tests of the physics, against hand calculations and counted frequencies.
 
 use geometry::{Pose, Twist, Vector};
 use protocol::robot_io::{LeggedKick, LeggedPrimitive};
 
 use super::*;
 
-/// An attacker at the origin facing +x, the ball in its grasp, and whoever else.
+/// An attacker at the origin facing +x, the ball in its grasp, and the robots `others`.
 fn world(seed: u64, others: &[Walker]) -> World {
     let mut walkers = vec![Walker::at(Side::Attackers, Pose::default())];
     walkers.extend_from_slice(others);
@@ -20,7 +20,7 @@ fn walk(world: &mut World, walk: Twist<geometry::Body>, primitive: LeggedPrimiti
     world.command(0, &ActuatorFrame::Legged { walk, primitive });
 }
 
-/// Runs for `seconds`; gives everything that happened.
+/// Runs for `seconds`; returns all events.
 fn run(world: &mut World, seconds: f32) -> Vec<WorldEvent> {
     let steps = (seconds / STEP + 0.5) as u32;
     let mut events = Vec::new();
@@ -105,7 +105,8 @@ fn kicks_roll_as_far_and_as_wide_as_the_file_says() {
     let n = rests.len() as f32;
     let mean = rests.iter().map(|r| r.norm()).sum::<f32>() / n;
     let angle_sd = math_sd(rests.iter().map(|r| r.angle().to_degrees()));
-    // A normal cut at ±2 keeps its mean and 0.88 of its deviation; standard error of the mean 0.57/20 = 0.028.
+    // A normal cut at ±2 keeps its mean and 0.88 of its deviation; standard error of the mean 0.57/20 =
+    // 0.028.
     assert!((mean - 2.15).abs() < 0.11, "mean {mean}");
     assert!((angle_sd - 8.8).abs() < 1.3, "deviation {angle_sd}");
 }
@@ -185,7 +186,8 @@ fn a_ball_bounces_off_a_side_and_stops_between_the_legs() {
         assert!(touched);
         world.ball
     };
-    // Hits the left side from 0.2 m: √(1 − 0.7·0.0375) = 0.987 m/s there, 30 % of it back: 0.296²/0.7 = 0.125 m.
+    // Hits the left side from 0.2 m: √(1 − 0.7·0.0375) = 0.987 m/s there, 30 % of it back: 0.296²/0.7 = 0.125
+    // m.
     let side = shot((0.0, 0.2), (0.0, -1.0));
     assert!((side.position.y() - (0.1625 + 0.125)).abs() < 0.006, "{side:?}");
     let front = shot((0.3, 0.0), (-0.5, 0.0));

@@ -1,4 +1,5 @@
-//! `walker`: motion of a walking robot. It follows the wanted velocity as fast as its legs allow; m, s, rad.
+//! `walker`: motion of a walking robot. It follows the ordered velocity as fast as its legs permit; m, s,
+//! rad.
 
 use geometry::{Angle, Body, Field, Point, Pose, Twist, Vector};
 use protocol::robot_io::{LeggedKick, LeggedPrimitive};
@@ -6,10 +7,10 @@ use rules::FieldSpec;
 
 use crate::four_legged::parameters::{CarryParameters, WalkParameters};
 
-/// Which team a robot belongs to.
+/// The team of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// Plays towards +x, led by brains.
+    /// Plays towards +x, controlled by brains.
     Attackers,
     /// Guards the goal at +x, scripted.
     Opponents,
@@ -18,24 +19,24 @@ pub enum Side {
 /// A robot's true state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Walker {
-    /// Whose it is.
+    /// Its team.
     pub side: Side,
-    /// Where it stands.
+    /// Its position and heading.
     pub pose: Pose<Field>,
-    /// How it moves, in its own frame.
+    /// Its velocity, in its own frame.
     pub twist: Twist<Body>,
-    /// How it was told to move.
+    /// Its ordered velocity.
     pub wanted: Twist<Body>,
-    /// The primitive under way.
+    /// Its current primitive.
     pub action: Option<Primitive>,
 }
 
-/// A primitive under way.
+/// A running primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Primitive {
-    /// Which.
+    /// Its kind.
     pub what: PrimitiveKind,
-    /// Seconds until it ends (a grab) or meets the ball (a kick).
+    /// Seconds until it ends (a grab) or touches the ball (a kick).
     pub left: f32,
 }
 
@@ -49,12 +50,12 @@ pub enum PrimitiveKind {
 }
 
 impl Walker {
-    /// Standing still.
+    /// A standing robot.
     pub fn at(side: Side, pose: Pose<Field>) -> Self {
         Self { side, pose, twist: Twist::default(), wanted: Twist::default(), action: None }
     }
 
-    /// Takes an order: where to walk, and a primitive unless one is under way. Numbers that are none count as 0.
+    /// Takes an order: walking velocity, and a primitive unless one is running. NaN counts as 0.
     pub fn order(&mut self, walk: Twist<Body>, primitive: LeggedPrimitive, grab_lasts: f32, kick_lasts: f32) {
         let linear = if walk.linear.is_finite() { walk.linear } else { Vector::default() };
         let angular = if walk.angular.is_finite() { walk.angular } else { 0.0 };
@@ -70,7 +71,7 @@ impl Walker {
         }
     }
 
-    /// Walks for `dt` seconds; stands while a primitive is under way.
+    /// Walks for `dt` seconds; stands while a primitive is running.
     pub fn walk(&mut self, limits: &WalkParameters, carry: Option<&CarryParameters>, dt: f32) {
         let target =
             if self.action.is_some() { Twist::default() } else { limited(self.wanted, limits, carry) };
@@ -82,7 +83,7 @@ impl Walker {
         self.pose.heading = Angle::new(self.pose.heading.radians() + self.twist.angular * dt);
     }
 
-    /// Nobody leaves the carpet.
+    /// Keeps the robot within the field surface.
     pub fn stay_on_carpet(&mut self, field: &FieldSpec, radius: f32) {
         self.pose.position = field.clamp(self.pose.position, radius - field.margin);
     }
@@ -104,7 +105,7 @@ impl Walker {
     }
 }
 
-/// The wanted velocity within what legs can do: an ellipse of speeds, shorter behind than ahead.
+/// The ordered velocity within what legs can do: an ellipse of speeds, shorter behind than ahead.
 fn limited(wanted: Twist<Body>, limits: &WalkParameters, carry: Option<&CarryParameters>) -> Twist<Body> {
     let ahead = if wanted.linear.x() >= 0.0 { limits.forward } else { limits.sideways };
     let (ahead, aside, turn) = match carry {
@@ -144,7 +145,8 @@ mod tests {
     #[test]
     fn full_speed_takes_speed_over_acceleration() {
         let walker = walker(twist(9.0, 0.0, 0.0));
-        // 0.3 m/s at 0.6 m/s²: half a second, and ½·0.6·0.5² = 0.075 m (a step of 10 ms early or late is 3 mm).
+        // 0.3 m/s at 0.6 m/s²: half a second, and ½·0.6·0.5² = 0.075 m (a step of 10 ms early or late is 3
+        // mm).
         assert!((after(walker, 25, false).twist.linear.x() - 0.15).abs() < 1e-5);
         let at_full_speed = after(walker, 50, false);
         assert!((at_full_speed.twist.linear.x() - 0.3).abs() < 1e-5);

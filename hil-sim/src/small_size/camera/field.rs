@@ -1,7 +1,7 @@
 //! `field`: geometry packets. Lines, arc, numbers, cameras and the ball's model; mm, as SSL-Vision sends
 //! them.
 //!
-//! Names and directions are SSL-Vision's; grSim draws its lines inside the edge and the goals too.
+//! Names and directions are SSL-Vision's; grSim draws its lines inside the edge, and also the goals.
 
 use ssl::vision::{
     BallModelChipFixedLoss, BallModelStraightTwoPhase, FieldCircularArc, FieldLineSegment, FieldShapeType,
@@ -12,7 +12,7 @@ use super::view::View;
 use crate::small_size::World;
 use crate::small_size::quirks::{Quirks, ToldBall};
 
-/// The description of `world`'s field with these cameras.
+/// The geometry packet of `world`'s field with these cameras.
 pub(super) fn geometry(world: &World, quirks: &Quirks, views: &[View]) -> GeometryData {
     let field = &world.pitch().field;
     let told = quirks.told_ball.unwrap_or_else(|| ToldBall::of(&world.parameters().ball));
@@ -100,7 +100,7 @@ fn lines(world: &World, quirks: &Quirks) -> Vec<FieldLineSegment> {
             lines.push(goal_line("Depth", [back, -goal], [back, goal]));
         }
     }
-    // SSL-Vision's names; grSim names all four the other way round.
+    // SSL-Vision's names; grSim swaps the names of all four lines.
     let first = if quirks.drawn_goals { -half } else { half };
     lines.extend([
         line(

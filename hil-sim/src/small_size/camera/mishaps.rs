@@ -1,5 +1,5 @@
-//! `mishaps`: faults of camera frames in a world of the family: gaps, swapped ids, jitter. Times in steps of
-//! 1 ms.
+//! `mishaps`: faults of camera frames of the random world models: gaps, swapped ids, jitter. Times in steps
+//! of 1 ms.
 
 use geometry::math;
 use protocol::Who;
@@ -10,21 +10,21 @@ use crate::rng::Stream;
 use crate::small_size::World;
 use crate::small_size::worlds::VisionModel;
 
-/// What befalls the frames of all cameras of one field.
+/// Faults of the frames of all cameras of one field.
 #[derive(Clone, Debug)]
 pub(super) struct Mishaps {
     of: VisionModel,
     gaps: Stream,
     swaps: Stream,
     jitter: Stream,
-    /// The next gap, or the one that is: from, to.
+    /// The next or current gap: from, to.
     gap: [u64; 2],
     next_swap: u64,
     swap: Option<Swap>,
     last_due: u64,
 }
 
-/// Two robots of one team are seen with each other's number.
+/// Two robots of one team are detected with each other's number.
 #[derive(Clone, Copy, Debug)]
 struct Swap {
     robots: [Who; 2],
@@ -58,7 +58,7 @@ impl Mishaps {
         self.gap = [from, from + u64::from(self.gaps.whole(least, most))];
     }
 
-    /// It is step `now`.
+    /// Advances to step `now`.
     pub(super) fn go_on(&mut self, now: u64, world: &World, rate: f32) {
         if now >= self.gap[1] {
             self.draw_gap(self.gap[1]);
@@ -81,17 +81,17 @@ impl Mishaps {
         let here: Vec<Who> = here.map(|robot| robot.who).collect();
         let last = u32::try_from(here.len()).ok()?.checked_sub(1)?;
         let [one, other] = [self.swaps.whole(0, last), self.swaps.whole(0, last.checked_sub(1)?)];
-        // Another one than the first, all alike.
+        // A robot other than the first, uniformly drawn.
         let other = if other >= one { other + 1 } else { other };
         Some([*here.get(one as usize)?, *here.get(other as usize)?])
     }
 
-    /// A frame taken now does not arrive.
+    /// Whether a frame taken now does not arrive.
     pub(super) fn in_gap(&self, now: u64) -> bool {
         (self.gap[0]..self.gap[1]).contains(&now)
     }
 
-    /// Numbers as they are seen now.
+    /// Swaps the numbers as they are detected now.
     pub(super) fn swap_ids(&self, frame: &mut DetectionFrame) {
         let Some(Swap { robots: [one, other], .. }) = self.swap else { return };
         let team = match one.colour {
@@ -108,7 +108,7 @@ impl Mishaps {
         }
     }
 
-    /// When a frame arrives that would arrive at `due`: later, but never before one that was sent earlier.
+    /// Arrival time of a frame due at `due`: later, but never before a frame that was sent earlier.
     pub(super) fn delayed(&mut self, due: u64) -> u64 {
         if self.of.jitter_ms == 0 {
             return due;
@@ -119,7 +119,7 @@ impl Mishaps {
     }
 }
 
-/// Steps to the next event of those that come every so many seconds on average.
+/// Steps to the next event; `mean_s` is the mean interval.
 fn waiting(chance: &mut Stream, mean_s: f32) -> u64 {
     1 + (-mean_s * math::ln(1.0 - chance.share()) * 1000.0) as u64
 }

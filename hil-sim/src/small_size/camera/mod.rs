@@ -1,8 +1,9 @@
 //! `camera`: cameras and their vision packets, with a frame rate, delay and noise of their own, in
 //! SSL-Vision's format.
 //!
-//! Each camera takes its pictures by itself, numbers them by itself and errs by its own stream of chance; a packet waits its
-//! delay and is then due. Times on the wire are exact milliseconds of the simulation, on the clock that was asked for.
+//! Each camera takes and numbers its frames independently and has its own random stream of errors; a packet
+//! is due after its delay. Times on the wire are exact milliseconds of the simulation, on the configured
+//! clock.
 
 mod field;
 mod mishaps;
@@ -19,16 +20,16 @@ use super::worlds::VisionModel;
 use mishaps::Mishaps;
 use view::View;
 
-/// Everything that decides what cameras send.
+/// Everything that determines what cameras send.
 #[derive(Clone, Copy, Debug)]
 pub struct CameraSettings {
-    /// How many, how fast, how late.
+    /// Number, frame rate and delay.
     pub camera: CameraParameters,
-    /// How wrong.
+    /// Errors of detections.
     pub noise: NoiseParameters,
-    /// Which time they tell.
+    /// The clock of their time stamps.
     pub clock: Clock,
-    /// Whose manners they have.
+    /// The compatibility profile.
     pub quirks: Quirks,
 }
 
@@ -37,7 +38,7 @@ pub struct CameraSettings {
 pub struct Cameras {
     settings: CameraSettings,
     views: Vec<View>,
-    /// By the step they are due in.
+    /// Packets not sent yet, by the step they are due in.
     sent: VecDeque<(u64, WrapperPacket)>,
     next_geometry: u64,
     mishaps: Mishaps,
@@ -45,7 +46,7 @@ pub struct Cameras {
 }
 
 impl Cameras {
-    /// Cameras over `world`'s field; chance comes from `seed`.
+    /// Cameras over `world`'s field; random streams come from `seed`.
     pub fn new(settings: CameraSettings, world: &World, seed: u64) -> Self {
         let mut cameras = Self {
             settings,
@@ -59,7 +60,7 @@ impl Cameras {
         cameras
     }
 
-    /// As `profile` has it, in `world`'s league.
+    /// Cameras with the settings of `profile`, in `world`'s league.
     pub fn of(profile: Profile, unix_now: f64, world: &World, seed: u64) -> Self {
         let ours = world.parameters();
         let camera = profile.cameras(ours.camera);
@@ -68,7 +69,7 @@ impl Cameras {
         Self::new(CameraSettings { camera, noise, clock: profile.clock(unix_now), quirks }, world, seed)
     }
 
-    /// The same with what befalls frames in a world of the family.
+    /// The same with the frame faults of a random world model.
     pub fn of_model(profile: Profile, unix_now: f64, world: &World, vision: VisionModel, seed: u64) -> Self {
         let mishaps = Mishaps::new(vision, seed);
         Self { mishaps, ..Self::of(profile, unix_now, world, seed) }
@@ -79,20 +80,20 @@ impl Cameras {
         &self.settings
     }
 
-    /// Other noise, delay or losses from the next picture on; the number and rate of cameras stay.
+    /// Other noise, delay or losses from the next camera frame on; number and rate of cameras stay.
     pub fn set_realism(&mut self, camera: CameraParameters, noise: NoiseParameters) {
         let CameraParameters { count, rate, height, .. } = self.settings.camera;
         self.settings.camera = CameraParameters { count, rate, height, ..camera };
         self.settings.noise = noise;
     }
 
-    /// Hangs the cameras anew over a field that has changed.
+    /// Places the cameras again over a changed field.
     pub fn hang(&mut self, world: &World) {
         self.views = View::hang(&self.settings, world, self.seed);
         self.next_geometry = world.now();
     }
 
-    /// Looks at the world as it is after a step; to be called after every step.
+    /// Takes the frames due after a step; to be called after every step.
     pub fn watch(&mut self, world: &World) {
         let now = world.now();
         if let GeometryStyle::Own(every) = self.settings.quirks.geometry
@@ -126,14 +127,14 @@ impl Cameras {
         due.then(|| self.sent.pop_front())?.map(|(_, packet)| packet)
     }
 
-    /// All frames that would be taken of the world as it is, at once and without delay: for those who step the simulation.
+    /// All frames of the present world, at once and without delay: for a caller that steps the simulation.
     pub fn snapshot(&mut self, world: &World) -> Vec<DetectionFrame> {
         let time = self.time(world.now());
         let settings = self.settings;
         self.views.iter_mut().map(|view| view.look(world, &settings, time)).collect()
     }
 
-    /// The description of the field; of one camera alone, or of all.
+    /// The geometry packet, with one camera alone or with all.
     pub fn geometry(&self, world: &World, camera: Option<usize>) -> GeometryData {
         let views = match camera {
             Some(i) => &self.views[i..=i],
@@ -160,9 +161,9 @@ impl Cameras {
         }
     }
 
-    /// Into the queue, behind what is due before or with it.
+    /// Inserts into the queue, behind packets due earlier or at the same time.
     fn send(&mut self, due: u64, mut packet: WrapperPacket) {
-        // The league's list has no number for us; the others leave the field out.
+        // The league's list has no number for our simulator; the others leave the field out.
         packet.source = (self.settings.quirks.profile == Profile::Ours).then_some(Source::Other as i32);
         let place = self.sent.partition_point(|(other, _)| *other <= due);
         self.sent.insert(place, (due, packet));

@@ -1,5 +1,5 @@
-//! Tests: cameras show what is there, with the delay and the errors they should have. And the others'
-//! manners, by the numbers of the traps.
+//! Tests: cameras detect what is there, with the configured delay and errors. And the other simulators'
+//! compatibility profiles, by the numbers of their deviations.
 
 use std::collections::BTreeSet;
 
@@ -25,7 +25,7 @@ fn clear(world: &World) -> CameraSettings {
     }
 }
 
-/// All packets of so many steps, with the step each was due in.
+/// All packets of `steps` steps, with the step each was due in.
 fn watched(cameras: &mut Cameras, world: &mut World, steps: u32) -> Vec<(u64, WrapperPacket)> {
     let mut packets = Vec::new();
     for _ in 0..steps {
@@ -70,7 +70,7 @@ fn pictures_come_at_the_rate_numbered_by_camera_and_are_sent_after_the_delay() {
             .filter_map(|(due, p)| p.detection.as_ref().map(|d| (*due, d)))
             .filter(|(_, d)| d.camera_id == camera)
             .collect();
-        // 75 a second, of which the last 35 ms are still on their way.
+        // 75 a second, of which those of the last 35 ms are not due yet.
         assert!((146..=149).contains(&frames.len()), "{}", frames.len());
         for (k, (due, frame)) in frames.iter().enumerate() {
             assert_eq!(frame.frame_number, k as u32);
@@ -118,7 +118,8 @@ fn a_ball_behind_a_robot_is_hidden_and_one_before_its_front_is_seen() {
     let mut world = world(League::DivisionB);
     let noise = NoiseParameters { hidden_ball: 0.3, ..NoiseParameters::NONE };
     let mut cameras = Cameras::new(CameraSettings { noise, ..clear(&world) }, &world, 1);
-    // The camera of the right half hangs at x = 2.4; the robot stands further out and throws its shadow outwards.
+    // The camera of the right half is at x = 2.4; the robot stands further out and occludes the area outside
+    // it.
     let who = Who::blue(RobotId::new(9).unwrap());
     world.put(who, Pose::from_mm_deg(4200.0, 0.0, 0.0));
     let mut seen = |x: f32, height: f32| {
@@ -143,7 +144,7 @@ fn a_flying_ball_is_told_where_its_ray_meets_the_ground() {
     let mut cameras = Cameras::new(clear(&world), &world, 1);
     world.put_ball(Ball { height: 1.0, ..Ball::at(Point::new(3.4, 0.5)) });
     let ball = cameras.snapshot(&world)[0].balls[0];
-    // From (2.4, 0) at 5 m: 5/4 of the way out.
+    // From (2.4, 0) at 5 m: 5/4 of the distance outwards.
     assert!((ball.x - 3650.0).abs() < 0.1 && (ball.y - 625.0).abs() < 0.1, "{ball:?}");
 }
 
@@ -164,7 +165,7 @@ fn pixels_and_calibration_lead_back_to_the_field() {
             assert!((c.principal_point_y + c.focal_length * y / z - ball.pixel_y).abs() < 0.01);
             assert!((0.0..2448.0).contains(&ball.pixel_x) && (0.0..2048.0).contains(&ball.pixel_y));
         }
-        // The derived place is where the camera sees itself: −Rᵀt.
+        // The derived position is the camera's own: −Rᵀt.
         assert_eq!((c.derived_camera_world_tx, c.derived_camera_world_ty), (Some(-c.tx), Some(c.ty)));
     }
 }

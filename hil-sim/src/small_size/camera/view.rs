@@ -1,9 +1,10 @@
-//! `view`: detections of one camera. Robots and balls in its rectangle of the field, blurred, missed, hidden;
-//! mm and rad on the wire.
+//! `view`: detections of one camera. Robots and balls in its rectangle of the field, with noise, misses and
+//! occlusion; mm and rad on the wire.
 //!
-//! The camera looks straight down. A ball above the carpet is told where the line from the camera through it meets the ground,
-//! as vision, which knows no heights, does (but where manners tell heights); a robot's cover height is known and its place is told as it is. A robot hides the
-//! ball where it stands in that line.
+//! The camera looks straight down. A ball above the field surface is reported where the line from the camera
+//! through it reaches the ground, as vision without heights does (unless the compatibility profile reports
+//! heights); a robot's cover height is known and its true position is reported. A robot hides the ball where
+//! it stands in that line.
 
 use geometry::{Field, Point, Vector, math};
 use ssl::vision::{DetectionBall, DetectionFrame, DetectionRobot, GeometryCameraCalibration};
@@ -19,18 +20,18 @@ use rules::Colour;
 #[derive(Clone, Debug)]
 pub(super) struct View {
     id: u32,
-    /// Where it hangs, m.
+    /// Its position, m.
     at: Point<Field>,
     height: f32,
-    /// What it sees: the corners with least and largest x and y, m.
+    /// The rectangle it sees: corners with minimum and maximum x and y, m.
     low: Point<Field>,
     high: Point<Field>,
     /// Pixels a metre at one metre's distance.
     focal: f32,
     frame: u32,
-    /// Pictures taken; the next is due a whole number of periods after the first.
+    /// Number of frames taken; the next is due a whole number of periods after the first.
     taken: u64,
-    /// Steps, in thousandths.
+    /// Frame period, in thousandths of a step.
     period: u64,
     phase: u64,
     first: u64,
@@ -40,7 +41,7 @@ pub(super) struct View {
 }
 
 impl View {
-    /// The cameras that settings ask for, over the carpet of `world`.
+    /// The cameras of these settings, over the field surface of `world`.
     pub(super) fn hang(settings: &CameraSettings, world: &World, seed: u64) -> Vec<Self> {
         let camera = &settings.camera;
         let (columns, rows) = match camera.count {
@@ -53,7 +54,7 @@ impl View {
         let period = (1e6 / camera.rate) as u64;
         let mut views = Vec::new();
         for id in 0..columns * rows {
-            // As grSim counts them: the positive quarter first, then clockwise.
+            // In grSim's order: the positive quarter first, then clockwise.
             let (column, row) = match (columns * rows, id) {
                 (4, 0) => (1, 1),
                 (4, 1) => (1, 0),
@@ -63,7 +64,8 @@ impl View {
                 _ => (0, 0),
             };
             let (left, bottom) = (column as f32 * across - x, row as f32 * along - y);
-            // Half the overlap beyond each inner edge; beyond the outer ones there is nothing but a ball that flew away.
+            // Half the overlap beyond each inner edge; beyond the outer ones there is only a ball that flew
+            // away.
             let beyond = |inner: bool| if inner { camera.overlap * 0.5 } else { OUTSIDE };
             let low = Point::new(left - beyond(column > 0), bottom - beyond(row > 0));
             let high = Point::new(
@@ -92,12 +94,12 @@ impl View {
         views
     }
 
-    /// The step in which the next picture is taken.
+    /// The step in which the next frame is taken.
     pub(super) fn due(&self) -> u64 {
         self.first + (self.phase + self.taken * self.period) / 1000
     }
 
-    /// Takes a picture at `time`.
+    /// Takes a frame at `time`.
     pub(super) fn look(&mut self, world: &World, settings: &CameraSettings, time: f64) -> DetectionFrame {
         self.taken += 1;
         let mut frame = DetectionFrame {
@@ -171,14 +173,14 @@ impl View {
             area: (settings.quirks.profile != Profile::Grsim).then_some(area as u32),
             x: p.x() * 1000.0,
             y: p.y() * 1000.0,
-            // Of its centre.
+            // Height of its centre.
             z: told_height.then_some((ball.height + radius) * 1000.0),
             pixel_x,
             pixel_y,
         })
     }
 
-    /// Something orange that is no ball.
+    /// A false ball detection.
     fn ghost(&mut self, settings: &CameraSettings) -> DetectionBall {
         let x = self.chance.between(self.low.x(), self.high.x());
         let y = self.chance.between(self.low.y(), self.high.y());
@@ -187,7 +189,7 @@ impl View {
         DetectionBall { confidence, area: Some(12), x: x * 1000.0, y: y * 1000.0, z: None, pixel_x, pixel_y }
     }
 
-    /// Where the ball seems to lie.
+    /// The apparent position of the ball on the ground.
     fn apparent(&self, ball: &Ball) -> Point<Field> {
         if ball.height <= 0.0 {
             return ball.position;
@@ -196,7 +198,7 @@ impl View {
         self.at + (ball.position - self.at) * (self.height / below)
     }
 
-    /// Which share of the ball no robot hides, 0–1.
+    /// The share of the ball that no robot hides, 0–1.
     fn shows(&self, ball: &Ball, radius: f32, robots: &[Robot]) -> f32 {
         let away = self.at - ball.position;
         let mut least: f32 = 1.0;
@@ -207,14 +209,14 @@ impl View {
             if offset.dot(offset) > near * near || !robot.present || ball.height >= top {
                 continue;
             }
-            // The line to the camera is below the robot's top for this share of its way.
+            // The line to the camera is below the robot's top for this share of its length.
             let share = ((top - ball.height) / (self.height - ball.height).max(0.1)).min(1.0);
             let line = away * share;
             let squared = line.dot(line);
             let along = if squared > 0.0 { (offset.dot(line) / squared).clamp(0.0, 1.0) } else { 0.0 };
             let passes = (offset - line * along).norm();
             let ahead = robot.to_body(ball.position - robot.pose.position)[0];
-            // Before its flat front the ball is clear of the disc that stands for the robot here.
+            // In front of its flat front the ball is outside the disc that stands for the robot here.
             let edge =
                 if along == 0.0 && ahead > robot.body.front { robot.body.front } else { robot.body.radius };
             least = least.min(((passes - edge + radius) / (2.0 * radius)).clamp(0.0, 1.0));
@@ -230,7 +232,7 @@ impl View {
         point + Vector::new(x * sigma, y * sigma)
     }
 
-    /// Normal with deviation 1; every other one is there already.
+    /// Normal with deviation 1; every second value is already computed.
     fn deviation(&mut self) -> f32 {
         self.spare.take().unwrap_or_else(|| {
             let (one, other) = self.chance.normals();
@@ -251,7 +253,7 @@ impl View {
         }
     }
 
-    /// How the camera hangs, as geometry packets tell it.
+    /// The camera's pose, as geometry packets contain it.
     pub(super) fn calibration(&self, full: bool) -> GeometryCameraCalibration {
         let [x, y, z] = [self.at.x(), self.at.y(), self.height].map(|m| m * 1000.0);
         let told = GeometryCameraCalibration {
@@ -297,9 +299,10 @@ impl View {
     }
 }
 
-/// Columns and rows of an image: a usual 5 MP camera.
+/// Columns and rows of a camera frame: a usual 5 MP camera.
 const IMAGE: [u32; 2] = [2448, 2048];
-/// m beyond the carpet that outer cameras see: as far as the hall goes.
+/// m beyond the field surface that outer cameras see: up to the walls of the room.
 const OUTSIDE: f32 = 2.0;
-/// m that a robot's shadow, seen from a camera at the far end of its view, reaches: 0.15 m high, 45° aslant.
+/// m that a robot's occlusion reaches, seen from a camera at the far end of its view: 0.15 m high, 45°
+/// oblique.
 const SHADOW: f32 = 0.2;

@@ -8,7 +8,7 @@ use super::event::Event;
 use super::micros;
 use super::settings::TeamSettings;
 
-/// One team's account.
+/// State of one team in the match.
 #[derive(Clone, Debug)]
 pub struct Account {
     /// Its name on the wire.
@@ -25,20 +25,20 @@ pub struct Account {
     pub yellow_cards_given: u32,
     /// Red cards.
     pub red_cards: u32,
-    /// Does it place the ball at all?
+    /// Whether it is able to place the ball.
     pub can_place_ball: bool,
-    /// Failed placements, less the successful ones.
+    /// Number of failed placements minus successful ones.
     pub placement_failures: u32,
-    /// It failed too often to place again in this half.
+    /// Whether it failed too often to place again in this half.
     pub placement_barred: bool,
-    /// Time-outs it may still take.
+    /// Number of time-outs left.
     pub timeouts: u32,
-    /// Time it has for them, µs.
+    /// Time left for time-outs, µs.
     pub timeout_left: i64,
     pub(super) timeout_wanted: Option<i64>,
-    /// When the last yellow card was given.
+    /// Time of the last yellow card.
     pub(super) carded: Option<Instant>,
-    /// Robots that were taken off for cards, in this order.
+    /// Robots taken off for cards, in this order.
     pub(super) taken_off: Vec<RobotId>,
     /// Its last robot that committed a foul.
     pub(super) last_offender: Option<RobotId>,
@@ -71,17 +71,17 @@ impl Account {
         self.fouls.len() as u32
     }
 
-    /// Robots it may have now.
+    /// Number of robots it may have now.
     pub fn allowed(&self, most: u32) -> u32 {
         most.saturating_sub(self.yellow_cards.len() as u32 + self.red_cards)
     }
 
-    /// May it place the ball now?
+    /// Whether it may place the ball now.
     pub fn places(&self) -> bool {
         self.can_place_ball && !self.placement_barred
     }
 
-    /// A yellow card for that playing time; false where it must be a red one.
+    /// Gives a yellow card for that playing time; false where it must be a red one.
     pub(super) fn show_yellow(&mut self, now: Instant, playing_us: i64) -> bool {
         if self.yellow_cards.len() as u32 >= limits::YELLOW_CARDS_MAX {
             return false;
@@ -97,7 +97,7 @@ impl Account {
         self.carded = Some(now);
     }
 
-    /// Playing time passes for its cards.
+    /// Counts down its cards by playing time `us`.
     pub(super) fn play(&mut self, us: i64) {
         for left in &mut self.yellow_cards {
             *left -= us;
@@ -119,13 +119,13 @@ impl Account {
         self.placement_barred = false;
     }
 
-    /// The last foul after which the game went on.
+    /// The last foul that did not stop the game.
     pub(super) fn last_non_stopping_foul(&self) -> Option<&Event> {
         self.fouls.iter().rev().find(|foul| foul.what.kind().is_non_stopping_foul())
     }
 }
 
-/// Both teams' accounts.
+/// State of both teams.
 #[derive(Clone, Debug)]
 pub struct Accounts {
     /// Yellow's.
@@ -154,7 +154,7 @@ impl Accounts {
         [&mut self.yellow, &mut self.blue]
     }
 
-    /// Is that robot its team's keeper?
+    /// Whether that robot is its team's keeper.
     pub fn is_keeper(&self, who: Who) -> bool {
         self.of(who.colour).keeper == who.id
     }

@@ -1,7 +1,9 @@
-//! `blocked`: says that the match stands, since when and why, and what people at the field do about it. s, field frame.
+//! `blocked`: detects that the match cannot continue, since when and why, and gives the manual acts that
+//! resolve it. s, field frame.
 //!
-//! The game controller waits for ever. What people may do under the rules is little: stop a preparation whose ball is gone and put the
-//! ball down by hand, and in a halt take out robots that a team has too many, or carry those of a team whose robots do not drive.
+//! The game controller waits for ever. The rules allow few manual acts: stop a preparation whose ball is
+//! displaced and place the ball by hand, and in a halt take out a team's surplus robots, or move those of a
+//! team whose robots do not drive.
 
 use geometry::{GoalEnd, Point, Pose};
 use protocol::{Duration, Instant, Who};
@@ -16,30 +18,30 @@ use super::people::WorldOrder;
 use super::ready::{Obstacle, Reason};
 use super::scene::COLOURS;
 
-/// The match stood although time enough had passed.
+/// A match that could not continue although enough time had passed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blocked {
-    /// Since when something keeps it from going on.
+    /// Since when an obstacle prevents it.
     pub since: Instant,
-    /// How long it has stood, or stood in all.
+    /// Duration so far, or in total.
     pub lasted: Duration,
-    /// In which phase.
+    /// The phase.
     pub phase: Phase<Colour>,
-    /// What keeps it, or kept it last.
+    /// The present or last obstacle.
     pub obstacle: Obstacle,
 }
 
-/// What is known of a wait.
+/// State of a wait.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Waiting {
     /// Since when there is an obstacle.
     since: Option<Instant>,
-    /// It has lasted too long, and was said.
+    /// Whether it exceeded the patience and was reported.
     said: bool,
 }
 
 impl InternalReferee {
-    /// What has kept the match from going on for longer than `patience`, if anything does now.
+    /// What has prevented the match from continuing for longer than `patience`, if it still does.
     pub fn blocked(&self) -> Option<&Blocked> {
         self.metrics.blocks.last().filter(|_| self.waiting.said)
     }
@@ -48,8 +50,8 @@ impl InternalReferee {
         self.waiting = Waiting::default();
     }
 
-    /// Goes on with `command` when nothing has been in the way for `preparation`; waits, however long it takes, while something
-    /// is.
+    /// Continues with `command` when there has been no obstacle for `preparation`; waits without a time limit
+    /// while there is one.
     pub(super) fn go_on_when_clear(
         &mut self,
         robots: &[RobotSeen],
@@ -83,7 +85,7 @@ impl InternalReferee {
             self.judge(&Event { at: self.now, by: team, robot, place, what: What::Blocked { reason } });
         }
         if self.phase() != Phase::Stop && first.reason.is_balls() {
-            // The game is stopped by hand, so that a person can put the ball down again.
+            // The game is stopped manually, so that the ball can be placed by hand.
             self.give(Command::Stop);
         } else if self.people_can_help(obstacles) {
             self.people.called = true;
@@ -91,7 +93,7 @@ impl InternalReferee {
         }
     }
 
-    /// The referee halts the game for what robot handlers may do then.
+    /// Whether a halt would let robot handlers resolve the obstacles.
     fn people_can_help(&self, obstacles: &[Obstacle]) -> bool {
         obstacles.iter().any(|obstacle| match (obstacle.reason, obstacle.team) {
             (Reason::TooManyRobots { .. }, _) => true,
@@ -100,7 +102,8 @@ impl InternalReferee {
         })
     }
 
-    /// In a halt for it, once robots must stand: surplus robots are taken out, those that do not drive are carried.
+    /// In a halt for that purpose, once robots must stand: takes out surplus robots and moves those that do
+    /// not drive.
     pub(super) fn help(&mut self, robots: &[RobotSeen]) {
         let age = self.now.since(Instant(self.state.since())).as_secs_f32();
         if !self.people.called || self.phase() != Phase::Halt || age < limits::GRACE {
@@ -123,14 +126,14 @@ impl InternalReferee {
         self.carry(robots, &self.blamed(robots));
     }
 
-    /// Robots of teams that do not drive which are in the way of what comes next.
+    /// Robots of teams that do not drive which are obstacles to the next restart.
     fn blamed(&self, robots: &[RobotSeen]) -> Vec<Who> {
         let all = self.obstacles_to_come(robots);
         let stand = |who: &Who| !self.settings.team(who.colour).drives;
         all.iter().filter_map(Obstacle::who).filter(stand).collect()
     }
 
-    /// Of the stop to come and of the preparation after it.
+    /// Obstacles in the coming stop and in the preparation after it.
     fn obstacles_to_come(&self, robots: &[RobotSeen]) -> Vec<Obstacle> {
         let next = self.next.unwrap_or(Restart::ForceStart);
         let mut all = self.obstacles_in_stop(robots, next, self.placement.unwrap_or(self.ball.position));
@@ -142,14 +145,14 @@ impl InternalReferee {
         all
     }
 
-    /// Between the halves robots that do not drive are carried to their own half.
+    /// Between the halves, robots that do not drive are moved by hand to their own half.
     pub(super) fn carry_over(&mut self, robots: &[RobotSeen]) {
         let stand = robots.iter().map(|robot| robot.who);
         let stand = stand.filter(|who| !self.settings.team(who.colour).drives).collect::<Vec<_>>();
         self.carry(robots, &stand);
     }
 
-    /// Carries these robots to places where they are not in the way of what comes next.
+    /// Moves these robots to positions where they are no obstacle to the next restart.
     fn carry(&mut self, robots: &[RobotSeen], whom: &[Who]) {
         let mut robots = robots.to_vec();
         for who in whom {
@@ -176,11 +179,11 @@ impl InternalReferee {
         }
     }
 
-    /// On the goal line, where a penalty's keeper has to be.
+    /// Position on the goal line where a penalty's keeper has to be.
     fn keeper_place(&self, who: Who) -> Option<Point<geometry::Field>> {
         self.accounts.is_keeper(who).then(|| self.field.goal_center(self.own_end(who.colour)))
     }
 }
 
-/// Robots are set down at least this far apart, centre to centre, m: two diameters.
+/// Minimum distance between robots placed by hand, centre to centre, m: two diameters.
 const CARRIED_APART: f32 = 4.0 * limits::ROBOT_RADIUS;

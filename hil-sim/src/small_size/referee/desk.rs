@@ -1,5 +1,5 @@
-//! `desk`: what a person at the referee's desk does. Commands and cards out of turn; the game follows as if an event had asked for
-//! them. Field frame, m.
+//! `desk`: manual control of the referee: commands and cards out of turn; the game continues as if an event
+//! had caused them. Field frame, m.
 
 use geometry::{Field, Point};
 use protocol::Duration;
@@ -10,18 +10,19 @@ use rules::{Colour, Phase};
 use super::InternalReferee;
 use super::event::{Restart, What};
 
-/// A card shown by hand.
+/// A card given manually.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Card {
-    /// For this playing time; the rules say 120 s.
+    /// For this playing time; 120 s by the rules.
     Yellow(Duration),
-    /// For the rest of the match.
+    /// Until the end of the match.
     Red,
 }
 
 impl InternalReferee {
-    /// A command by hand; false where it makes no sense now. HALT and STOP last until the next one by hand; a kick-off, free kick
-    /// or penalty is reached by a stop, with the ball where the rules want it.
+    /// A manual command; false where it makes no sense now. HALT and STOP last until the next manual one; a
+    /// kick-off, free kick or penalty is reached through a stop, with the ball at the position that the rules
+    /// require.
     pub fn command_by_hand(&mut self, command: Command) -> bool {
         if !self.begun || self.is_over() {
             return false;
@@ -57,8 +58,8 @@ impl InternalReferee {
         self.restart_by_hand(restart, self.ball.position)
     }
 
-    /// The game is stopped and goes on with that, once the ball lies where the rules want it: a free kick's or force start's at the
-    /// valid place nearest to `place`. False where it makes no sense now.
+    /// Stops the game and continues with that restart, once the ball lies where the rules require: a free
+    /// kick's or force start's at the valid position nearest to `place`. False where it makes no sense now.
     pub fn restart_by_hand(&mut self, next: Restart, place: Point<Field>) -> bool {
         if !self.begun || self.is_over() || self.stage.is_break() || !place.is_finite() {
             return false;
@@ -76,12 +77,12 @@ impl InternalReferee {
         true
     }
 
-    /// A HALT or STOP by hand ends: the game follows its own course from there.
+    /// Ends a manual HALT or STOP: the game continues from there.
     pub fn go_on_by_hand(&mut self) {
         self.held = false;
     }
 
-    /// That team is shown a card.
+    /// Gives that team a card.
     pub fn card_by_hand(&mut self, team: Colour, card: Card) {
         let now = self.now;
         let account = self.accounts.of_mut(team);
@@ -95,7 +96,7 @@ impl InternalReferee {
         }
     }
 
-    /// A new stoppage: what led to the last one, and placements in it, are past.
+    /// Starts a new stoppage: the cause of the last one, and placements in it, are discarded.
     fn stop_by_hand(&mut self) {
         self.held = false;
         self.recent.clear();

@@ -8,40 +8,40 @@ use rules::Colour;
 
 use super::ready::Reason;
 
-/// Something the referee noticed or decided.
+/// An observation or decision of the referee.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
-    /// When, µs of the simulation.
+    /// Time, µs of the simulation.
     pub at: Instant,
-    /// Whose doing it was; `None` where nobody's or both teams'.
+    /// The team that caused it; `None` where no team or both did.
     pub by: Option<Colour>,
-    /// The robot that did it.
+    /// The robot that caused it.
     pub robot: Option<RobotId>,
-    /// Where it happened.
+    /// Position, m.
     pub place: Point<Field>,
-    /// What, with its evidence.
+    /// The event with its evidence.
     pub what: What,
 }
 
 /// A ball in a goal; [`Event::by`] is the team that scores.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shot {
-    /// Who touched the ball last, of either team.
+    /// The robot that touched the ball last, of either team.
     pub kicker: Option<Who>,
-    /// Where the ball was then.
+    /// Position of the ball at that touch, m.
     pub from: Point<Field>,
-    /// How high it was at most since the scoring team's last touch, m.
+    /// Maximum height of the ball since the scoring team's last touch, m.
     pub max_height: f32,
-    /// When the scoring team touched it last.
+    /// Time of the scoring team's last touch.
     pub last_touch: Option<Instant>,
-    /// Robots the scoring team had on the field.
+    /// Number of robots that the scoring team had on the field.
     pub robots: u32,
 }
 
-/// Why a ball in the goal is no goal (rules: scoring goals).
+/// Why a ball in the goal does not count (rules: scoring goals).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Invalid {
-    /// The scoring team had more robots than it may.
+    /// The scoring team had more robots than allowed.
     TooManyRobots,
     /// The ball was above 0.15 m after the scoring team's last touch.
     TooHigh,
@@ -49,12 +49,12 @@ pub enum Invalid {
     RecentFoul(Kind),
 }
 
-/// Why a penalty brought no goal (rules: penalty kick).
+/// Why a penalty gave no goal (rules: penalty kick).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PenaltyEnd {
     /// The ball crossed a line elsewhere.
     Out,
-    /// The keeper turned it by 90° or more.
+    /// The keeper deflected it by 90° or more.
     Saved,
     /// The ball moved away from the goal.
     MovedBack,
@@ -65,7 +65,7 @@ pub enum PenaltyEnd {
 }
 
 impl PenaltyEnd {
-    /// In words, for the wire.
+    /// As text, for the wire.
     pub fn words(self) -> String {
         match self {
             Self::Out => "ball left the field".into(),
@@ -79,26 +79,26 @@ impl PenaltyEnd {
 
 macro_rules! kinds {
     ($($(#[$doc:meta])* $kind:ident $({ $($(#[$fdoc:meta])* $field:ident: $type:ty),+ $(,)? })? = $word:literal),+ $(,)?) => {
-        /// What happened, with its evidence.
+        /// A game event, with its evidence.
         #[derive(Clone, Debug, PartialEq)]
         pub enum What { $($(#[$doc])* $kind $({ $($(#[$fdoc])* $field: $type),+ })?),+ }
 
-        /// What happened, without the evidence: to count by.
+        /// The kind of an event, without the evidence: for counting.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Kind { $($(#[$doc])* $kind),+ }
 
         impl Kind {
-            /// All of them.
+            /// All kinds.
             pub const ALL: &'static [Self] = &[$(Self::$kind),+];
 
-            /// The league's name of it in small letters, as reports have it; ours where the league has none.
+            /// The league's name of it in lower case, as in reports; ours where the league has none.
             pub const fn word(self) -> &'static str {
                 match self { $(Self::$kind => $word),+ }
             }
         }
 
         impl What {
-            /// Which kind it is.
+            /// Its kind.
             pub const fn kind(&self) -> Kind {
                 match self { $(Self::$kind { .. } => Kind::$kind),+ }
             }
@@ -107,88 +107,89 @@ macro_rules! kinds {
 }
 
 kinds! {
-    /// The ball crossed a touch line with all of itself.
+    /// The whole ball crossed a touch line.
     LeftTouchLine = "ball_left_field_touch_line",
     /// The ball crossed a goal line outside the goal.
     LeftGoalLine = "ball_left_field_goal_line",
-    /// The same, from the own half and untouched by anybody else (division B).
+    /// The same, kicked from the own half and touched by no other robot (division B).
     AimlessKick {
-        /// Where it was kicked.
+        /// Position of the kick, m.
         from: Point<Field>,
     } = "aimless_kick",
     /// The ball is in a goal; not judged yet.
     PossibleGoal {
-        /// How it came there.
+        /// The shot.
         shot: Shot,
     } = "possible_goal",
-    /// It counts.
+    /// The goal counts.
     Goal {
-        /// How it came there; `None` where it is awarded for a foul in a penalty.
+        /// The shot; `None` where the goal is awarded for a foul in a penalty.
         shot: Option<Shot>,
     } = "goal",
-    /// It does not count.
+    /// The goal does not count.
     InvalidGoal {
-        /// How it came there.
+        /// The shot.
         shot: Shot,
-        /// Why.
+        /// The reason.
         reason: Invalid,
     } = "invalid_goal",
     /// The ball stayed where it was.
     NoProgress {
-        /// How long, s.
+        /// Duration, s.
         duration: f32,
     } = "no_progress_in_game",
-    /// The taker of a kick-off or free kick touched the ball again.
+    /// The kicker of a kick-off or free kick touched the ball again.
     DoubleTouch = "attacker_double_touched_ball",
-    /// The ball stayed in a defence area; by its owner.
+    /// The ball stayed in a defence area, held by the keeper of its team.
     KeeperHeldBall {
-        /// How long, s.
+        /// Duration, s.
         duration: f32,
     } = "keeper_held_ball",
-    /// The ball was kicked over the wall around the carpet; the place is where it was kicked.
+    /// The ball was kicked over the wall around the field surface; the place is that of the kick.
     BoundaryCrossing = "boundary_crossing",
     /// A ball over the speed limit.
     BallTooFast {
-        /// In space, m/s.
+        /// Speed in 3-D, m/s.
         speed: f32,
-        /// Did it fly?
+        /// Whether it flew.
         chipped: bool,
     } = "bot_kicked_ball_too_fast",
-    /// Dribbled further than allowed; the place is where the contact began.
+    /// Dribbled farther than allowed; the place is the start of the contact.
     DribbledTooFar {
-        /// Where it was over the limit.
+        /// Position where it exceeded the limit, m.
         end: Point<Field>,
     } = "bot_dribbled_ball_too_far",
-    /// A robot within 0.2 m of the opponents' defence area in stop or at a free kick; the place is the robot's.
+    /// A robot within 0.2 m of the opponents' defence area in stop or at a free kick; the event's position is
+    /// the robot's.
     AttackerTooClose {
-        /// From the area, m.
+        /// Distance from the area, m.
         distance: f32,
-        /// Where the ball was.
+        /// Position of the ball, m.
         ball: Point<Field>,
     } = "attacker_too_close_to_defense_area",
     /// A robot partly in the opponents' defence area touched the ball.
     AttackerTouchedBall {
-        /// How deep it was in, m.
+        /// Depth within the area, m.
         depth: f32,
     } = "attacker_touched_ball_in_defense_area",
     /// A robot other than the keeper touched the ball when entirely in its own defence area.
     DefenderInArea {
-        /// How deep it was in, m.
+        /// Depth within the area, m.
         depth: f32,
     } = "defender_in_defense_area",
     /// A robot within 0.5 m of the ball at the opponents' kick-off or free kick.
     DefenderTooClose {
-        /// From the ball, m.
+        /// Distance from the ball, m.
         distance: f32,
     } = "defender_too_close_to_kick_point",
-    /// A robot faster than 1.5 m/s in stop.
+    /// A robot faster than 1.5 m/s during a stop.
     TooFastInStop {
-        /// m/s.
+        /// Its speed, m/s.
         speed: f32,
     } = "bot_too_fast_in_stop",
     /// A robot stood too near the line from ball to target in a placement of the other team.
     InterferedPlacement = "bot_interfered_placement",
-    /// Two robots of different teams ran into each other; the faster one is at fault.
+    /// Two robots of different teams collided; the faster one is at fault.
     CrashUnique {
         /// The other robot's shell number.
         victim: RobotId,
@@ -196,10 +197,10 @@ kinds! {
         crash_speed: f32,
         /// Difference of the two speeds, m/s.
         speed_difference: f32,
-        /// Between the difference of the velocities and the line between the two, rad.
+        /// Angle between the difference of the velocities and the line between the two, rad.
         angle: f32,
     } = "bot_crash_unique",
-    /// Two robots of different teams ran into each other; both are at fault.
+    /// Two robots of different teams collided; both are at fault.
     CrashDrawn {
         /// Yellow's robot.
         yellow: RobotId,
@@ -209,90 +210,91 @@ kinds! {
         crash_speed: f32,
         /// Difference of the two speeds, m/s.
         speed_difference: f32,
-        /// Between the difference of the velocities and the line between the two, rad.
+        /// Angle between the difference of the velocities and the line between the two, rad.
         angle: f32,
     } = "bot_crash_drawn",
     /// A robot pushed an opponent.
     Pushed {
         /// The other robot's shell number.
         victim: RobotId,
-        /// How far, m.
+        /// Distance, m.
         distance: f32,
     } = "bot_pushed_bot",
-    /// A team's robots closed in the ball.
+    /// A team's robots enclosed the ball.
     HeldBall {
-        /// How long, s.
+        /// Duration, s.
         duration: f32,
     } = "bot_held_ball_deliberately",
-    /// More robots than allowed, for longer than a team has to take one off.
+    /// More robots than allowed, for longer than the time for taking one off.
     TooManyRobots {
-        /// How many it may have.
+        /// Allowed number.
         allowed: u32,
-        /// How many it had.
+        /// Actual number.
         on_field: u32,
-        /// Where the ball was.
+        /// Position of the ball, m.
         ball: Point<Field>,
     } = "too_many_robots",
-    /// A penalty brought no goal.
+    /// A penalty gave no goal.
     PenaltyFailed {
-        /// Why.
+        /// The reason.
         reason: PenaltyEnd,
     } = "penalty_kick_failed",
-    /// The ball is where it should be.
+    /// The ball is at its target.
     PlacementSucceeded {
-        /// s.
+        /// Duration, s.
         took: f32,
-        /// Ball to target, m.
+        /// Distance from ball to target, m.
         precision: f32,
-        /// From where it was to the target, m.
+        /// Distance from its start position to the target, m.
         distance: f32,
     } = "placement_succeeded",
-    /// It is not, and time is up.
+    /// The ball is not at its target, and time is up.
     PlacementFailed {
-        /// Ball to target, m.
+        /// Distance from ball to target, m.
         remaining: f32,
         /// The placing team's nearest robot to the target, m; negative without one.
         nearest: f32,
     } = "placement_failed",
     /// Every third foul: a yellow card.
     MultipleFouls {
-        /// The three.
+        /// The three fouls.
         caused_by: Vec<Event>,
     } = "multiple_fouls",
     /// A third active yellow card: it turns red.
     MultipleCards = "multiple_cards",
-    /// A robot moved more than 2 s after a halt (ours: the league's automatic referees do not look).
+    /// A robot moved more than 2 s after a halt (ours: the league's automatic referees do not check it).
     MovedInHalt {
-        /// m/s.
+        /// Its speed, m/s.
         speed: f32,
     } = "bot_moved_in_halt",
-    /// The match has stood for longer than the referee's patience (ours: the league's game controller waits in silence).
+    /// The match has stood for longer than the referee's patience (ours: the league's game controller waits
+    /// without a message).
     Blocked {
-        /// What keeps it.
+        /// The obstacle.
         reason: Reason,
     } = "blocked",
     /// A robot within 0.5 m of the ball in stop after 2 s (ours: the rules leave it to the human referee).
     TooCloseInStop {
-        /// From the ball, m.
+        /// Distance from the ball, m.
         distance: f32,
     } = "bot_too_close_to_ball_in_stop",
 }
 
-/// What the game goes on with.
+/// How the game continues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Restart {
     /// From the centre.
     Kickoff(Colour),
     /// From the penalty mark.
     Penalty(Colour),
-    /// From the place of the event, or the nearest valid one.
+    /// From the position of the event, or the nearest valid one.
     FreeKick(Colour),
     /// For both.
     ForceStart,
 }
 
 impl Restart {
-    /// Whose it is.
+    /// The team that takes it; `None` for a force start.
     pub const fn team(self) -> Option<Colour> {
         match self {
             Self::Kickoff(team) | Self::Penalty(team) | Self::FreeKick(team) => Some(team),
@@ -300,15 +302,15 @@ impl Restart {
         }
     }
 
-    /// The ball lies on a mark that people put it on.
+    /// Whether the ball is placed on a mark by hand.
     pub const fn is_set_by_hand(self) -> bool {
         matches!(self, Self::Kickoff(_) | Self::Penalty(_))
     }
 }
 
 impl Kind {
-    /// Does it raise the foul counter, and is so counted towards a yellow card? ([`Kind::InterferedPlacement`] only the
-    /// first time in a placement.)
+    /// Whether it raises the foul counter, which leads to yellow cards. ([`Kind::InterferedPlacement`] only
+    /// the first time in a placement.)
     pub const fn is_foul(self) -> bool {
         matches!(
             self,
@@ -324,12 +326,12 @@ impl Kind {
         ) || self.is_non_stopping_foul()
     }
 
-    /// A foul after which the game goes on.
+    /// Whether it is a foul that does not stop the game.
     pub const fn is_non_stopping_foul(self) -> bool {
         matches!(self, Self::AttackerTouchedBall | Self::BallTooFast | Self::CrashUnique | Self::CrashDrawn)
     }
 
-    /// Something a team did wrong, sanctioned or not: what reports count as fouls.
+    /// Whether it is an offence of a team, sanctioned or not: what reports count as fouls.
     pub const fn is_offence(self) -> bool {
         self.is_foul()
             || matches!(
@@ -342,7 +344,7 @@ impl Kind {
             )
     }
 
-    /// Does it stop a running game?
+    /// Whether it stops a running game.
     pub const fn stops_the_game(self) -> bool {
         matches!(
             self,
@@ -367,13 +369,14 @@ impl Kind {
         )
     }
 
-    /// In a penalty: a goal where the defenders do it, no goal where the shooting team does.
+    /// Whether it decides a penalty: a goal where the defenders commit it, no goal where the shooting team
+    /// does.
     pub const fn decides_a_penalty(self) -> bool {
         self.is_non_stopping_foul()
             || matches!(self, Self::BoundaryCrossing | Self::DribbledTooFar | Self::Pushed)
     }
 
-    /// How the game goes on after it; `None` where it changes nothing.
+    /// How the game continues after it; `None` where it changes nothing.
     pub const fn restart(self, by: Option<Colour>) -> Option<Restart> {
         match (self, by) {
             (Self::NoProgress | Self::TooManyRobots, _) => Some(Restart::ForceStart),
@@ -398,7 +401,7 @@ impl Kind {
         }
     }
 
-    /// Did the ball leave the field by it?
+    /// Whether the ball left the field by it.
     pub const fn is_ball_out(self) -> bool {
         matches!(self, Self::LeftTouchLine | Self::LeftGoalLine | Self::AimlessKick | Self::PossibleGoal)
     }

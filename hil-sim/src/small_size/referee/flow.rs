@@ -1,4 +1,5 @@
-//! `flow`: how the game goes on. What the game controller and its operators do in each phase, and the longest time of each that has one.
+//! `flow`: course of the game. What the game controller and its operators do in each phase, and the time
+//! limit of each phase that has one.
 //!
 //! Rules 2026, referee commands; m, m/s, field frame.
 
@@ -13,9 +14,9 @@ use super::event::{Kind, PenaltyEnd, Restart, What};
 use super::observation::RobotSeen;
 use super::ready::{Obstacle, Reason};
 
-/// Who brings the ball to its place.
+/// Who brings the ball to its position.
 enum Placer {
-    /// It lies well enough.
+    /// It lies near enough.
     Nobody,
     Team(Colour),
     Person,
@@ -92,7 +93,7 @@ impl InternalReferee {
             let reason = Reason::BallNotPut { distance };
             obstacles.insert(0, Obstacle { team: None, robot: None, reason });
         }
-        // A team that placed the ball for its own free kick takes it at once.
+        // A team that placed the ball for its own free kick kicks at once.
         let placed = self
             .recent
             .iter()
@@ -160,7 +161,7 @@ impl InternalReferee {
             };
             return self.judge(&self.event(Some(team), what));
         }
-        // People help where robots cannot.
+        // The ball is placed by hand where robots cannot do it.
         let interfered = self.recent.iter().filter(|event| event.what.kind() == Kind::InterferedPlacement);
         let stuck = !self.is_reachable(ball) && self.ball.speed() <= limits::BALL_STILL;
         if stuck || interfered.count() > INTERFERENCES_MAX {
@@ -176,7 +177,8 @@ impl InternalReferee {
     }
 }
 
-/// Robots can get at the ball: it is neither in or behind a goal nor in a corner of the carpet (rules: ball placement).
+/// Whether robots can reach the ball: it is neither in or behind a goal nor in a corner of the field surface
+/// (rules: ball placement).
 pub(super) fn is_reachable(field: &FieldSpec, ball: Point<Field>) -> bool {
     let (x, y) = (ball.x().abs(), ball.y().abs());
     let goal = field.goal_width * 0.5 + field.goal_wall + limits::ROBOT_RADIUS;
@@ -186,11 +188,13 @@ pub(super) fn is_reachable(field: &FieldSpec, ball: Point<Field>) -> bool {
     !behind && !corner && from_wall.0 > 0.0 && from_wall.1 > 0.0
 }
 
-/// A stop lasts at least this long, so that nobody misses it: two packets.
+/// Minimum duration of a stop, so that every receiver sees it: two packets.
 const HEARD: Duration = Duration::millis(50);
-/// A ball that nobody has seen for so long in play is looked for by people: as long as the rules' graces.
+/// Time without detection after which a ball in play is searched for and placed by hand: as long as the
+/// rules' graces.
 const BALL_LOST: Duration = Duration::millis(2_000);
-/// Interferences with one placement after which people place the ball (rules: the referee is encouraged to).
+/// Number of interferences with one placement after which the ball is placed by hand (rules: the referee is
+/// encouraged to).
 const INTERFERENCES_MAX: usize = 3;
-/// A ball this near to two walls is in a corner, m: a robot's diameter.
+/// Distance from two walls, m, below which a ball is in a corner: a robot's diameter.
 const CORNER: f32 = 2.0 * limits::ROBOT_RADIUS;

@@ -1,5 +1,5 @@
-//! `judge`: consequences of an event. Fouls and cards, goals, what the game goes on with and from where
-//! (rules: offenses, sanctions, scoring goals; appendix "game events").
+//! `judge`: consequences of an event. Fouls and cards, goals, the next restart and its position (rules:
+//! offenses, sanctions, scoring goals; appendix "game events").
 
 use rules::legality::{NoGoal, no_goal};
 use rules::state::Command;
@@ -10,10 +10,10 @@ use super::scene::is_running;
 use super::{InternalReferee, micros, spots};
 
 impl InternalReferee {
-    /// Takes note of an event and does what the rules say.
+    /// Records an event and applies the rules to it.
     pub(super) fn judge(&mut self, event: &Event) {
         let (kind, by) = (event.what.kind(), event.by);
-        // What was seen in the same moment as something that stopped the game already: not in play any more.
+        // An event at the same moment as one that already stopped the game is no longer in play.
         if !self.is_in_time(kind) {
             return;
         }
@@ -60,16 +60,17 @@ impl InternalReferee {
         }
     }
 
-    /// Events of play belong to play, those of placements to placements.
+    /// Whether the event belongs to the present phase: events of play to play, those of placements to
+    /// placements.
     fn is_in_time(&self, kind: Kind) -> bool {
         match kind {
             Kind::PlacementSucceeded | Kind::PlacementFailed => {
                 matches!(self.phase(), Phase::BallPlacement(_))
             }
             Kind::PenaltyFailed => matches!(self.phase(), Phase::Penalty(_)),
-            // Decided while the game is halted for the ball in the goal, or by a foul in a penalty.
+            // Decided while the game is halted for the ball in the goal, or after a foul in a penalty.
             Kind::Goal | Kind::InvalidGoal => true,
-            // In stop too; the ball flies over the wall after it left the field.
+            // Valid during a stop too; the ball flies over the wall after it left the field.
             Kind::AttackerTooClose | Kind::BoundaryCrossing => true,
             Kind::PossibleGoal => is_running(self.phase()),
             _ => !kind.stops_the_game() || is_running(self.phase()),
@@ -127,7 +128,8 @@ impl InternalReferee {
         }
     }
 
-    /// The game is halted until it is decided, as the game controller does; the decision is ours and immediate.
+    /// Halts the game until the goal is decided, as the game controller does; the decision is ours and
+    /// immediate.
     fn possible_goal(&mut self, event: &Event, shot: Shot) {
         let Some(scorer) = event.by else { return };
         let in_penalty = matches!(self.phase(), Phase::Penalty(_));
@@ -167,7 +169,7 @@ impl InternalReferee {
         if !self.limits.placement_duty || !self.recent.iter().any(|event| event.what.kind().is_ball_out()) {
             return;
         }
-        // Division A: who cannot place a ball that went out does not get it.
+        // Division A: a team that cannot place a ball that left the field does not get it.
         if !succeeded {
             self.next = Some(Restart::FreeKick(team.other()));
         } else if self.next == Some(Restart::FreeKick(team.other()))
@@ -177,7 +179,8 @@ impl InternalReferee {
         }
     }
 
-    /// A foul in a penalty: of the shooting team, no goal; of the others, a goal. One of both is the shooting team's.
+    /// A foul in a penalty: of the shooting team, no goal; of the others, a goal. Fouls of both count as the
+    /// shooting team's.
     fn decide_penalty(&mut self, shooting: Colour, event: &Event) {
         let kind = event.what.kind();
         if event.by == Some(shooting.other()) {
@@ -193,12 +196,12 @@ impl InternalReferee {
         }
     }
 
-    /// An event of a team at the ball, now.
+    /// An event of a team at the ball's position, now.
     pub(super) fn event(&self, by: Option<Colour>, what: What) -> Event {
         Event { at: self.now, by, robot: None, place: self.ball.position, what }
     }
 
-    /// Robots a team may have, with the time it has to take one off after a card.
+    /// Number of robots a team may have, including the time to take one off after a card.
     pub(super) fn allowed_now(&self, team: Colour) -> u32 {
         self.accounts.of(team).allowed(self.most_robots())
     }
@@ -207,7 +210,7 @@ impl InternalReferee {
         self.settings.max_robots.map_or(self.limits.robots, u32::from)
     }
 
-    /// Time for placement, kick or penalty after this command, µs; as the game controller has it.
+    /// Time limit of placement, kick or penalty after this command, µs; as in the game controller.
     pub(super) fn time_for(&self, command: Command) -> i64 {
         micros(match command {
             Command::BallPlacement(_) => limits::PLACEMENT_TIME,

@@ -1,4 +1,4 @@
-//! `look`: the referee's view of the simulated world, and the manual acts that it asks for.
+//! `look`: the referee's observations of the simulated world, and the manual acts that it requests.
 
 use protocol::{Instant, Who};
 
@@ -8,7 +8,7 @@ use super::people::WorldOrder;
 use crate::small_size::{Ball, Event, World};
 
 impl InternalReferee {
-    /// Looks at the world, every 10 ms or so; `events` are the world's since the last look. Carry out
+    /// Observes the world, about every 10 ms; `events` are the world's since the last call. Apply
     /// [`Self::poll_order`] afterwards.
     pub fn look(&mut self, world: &World, events: &[Event]) {
         let sight = Sight::of(world, events, self.begun.then_some(self.now));
@@ -16,7 +16,7 @@ impl InternalReferee {
     }
 }
 
-/// What an observation borrows, as the world has it.
+/// Data that an observation borrows.
 pub(super) struct Sight {
     pub(super) time: Instant,
     pub(super) ball: BallSeen,
@@ -26,7 +26,7 @@ pub(super) struct Sight {
 }
 
 impl Sight {
-    /// The world now, with its events since the last look, which was at `before`.
+    /// The world now, with its events since the last observation, which was at `before`.
     pub(super) fn of(world: &World, events: &[Event], before: Option<Instant>) -> Self {
         let before = before.map(|at| at.0 / STEP_US);
         let since = |step: u64| before.is_some_and(|before| step > before);
@@ -72,7 +72,7 @@ fn stands_about(world: &World, who: Who) -> bool {
 }
 
 impl WorldOrder {
-    /// Does it.
+    /// Applies the manual act to the world.
     pub fn carry_out(self, world: &mut World) {
         match self {
             Self::PutBall(place) => {
@@ -87,5 +87,5 @@ impl WorldOrder {
     }
 }
 
-/// A step of the world, µs.
+/// Duration of a step of the world, µs.
 const STEP_US: u64 = 1000;

@@ -1,9 +1,9 @@
-//! `metrics`: match statistics. What the match report needs, counted as it is played: time in play, whose
-//! half, shots, chances, passes, fouls by kind.
+//! `metrics`: match statistics. Counted during play for the match report: time in play, time in each half,
+//! shots, scoring chances, passes, fouls by kind.
 //!
-//! Biswas et al. 2014 §6: the *offence ratio* is the time of the ball in the opponents' half over that in one's own; the *attack
-//! ratio* is one's attempts to shoot at the goal over the opponents'. Both are shares of the two teams' numbers here.
-//! s, m, m/s, field frame.
+//! Biswas et al. 2014 §6: the *offence ratio* is the time of the ball in the opponents' half over that in
+//! one's own; the *attack ratio* is one's attempts to shoot at the goal over the opponents'. Both are ratios
+//! of the two teams' numbers here. s, m, m/s, field frame.
 
 use std::collections::BTreeMap;
 
@@ -17,17 +17,17 @@ use super::observation::BallSeen;
 use super::scene::is_running;
 use protocol::Who;
 
-/// How often each kind happened, by team.
+/// Number of offences of each kind, by team.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FoulCounts(BTreeMap<(Colour, Kind), u32>);
 
 impl FoulCounts {
-    /// How often that team did that.
+    /// Number of offences of that kind by that team.
     pub fn of(&self, team: Colour, kind: Kind) -> u32 {
         self.0.get(&(team, kind)).copied().unwrap_or(0)
     }
 
-    /// Every kind that team committed at least once, and how often.
+    /// Every kind that team committed at least once, with its count.
     pub fn team(&self, team: Colour) -> impl Iterator<Item = (Kind, u32)> + '_ {
         self.0.iter().filter(move |((who, _), _)| *who == team).map(|((_, kind), count)| (*kind, *count))
     }
@@ -37,32 +37,33 @@ impl FoulCounts {
     }
 }
 
-/// One team's part.
+/// Statistics of one team.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TeamMetrics {
-    /// Seconds in play after its touch, until another team's.
+    /// Seconds in play from its touch to another team's.
     pub possession_s: f32,
     /// Seconds in play with the ball in the opponents' half.
     pub ball_in_their_half_s: f32,
-    /// Shots: the ball left one of its robots faster than 1.5 m/s, from the opponents' half, on a line that crosses their
-    /// goal line between the posts or within a goal's width beside them.
+    /// Shots: the ball left one of its robots faster than 1.5 m/s, from the opponents' half, on a line that
+    /// crosses their goal line between the posts or within a goal's width beside them.
     pub shots: u32,
-    /// Chances: shots on a line between the posts, fast enough to get there if nobody stops them.
+    /// Scoring chances: shots on a line between the posts, fast enough to get there if no robot stops them.
     pub chances: u32,
     /// Passes that arrived: touches of two of its robots one after the other, the ball at least 0.5 m apart.
     pub passes: u32,
-    /// Balls it lost: the next touch was the opponents'.
+    /// Number of balls lost: the next touch was the opponents'.
     pub losses: u32,
 }
 
-/// What was counted.
+/// Statistics of a match.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Metrics {
     /// Simulated seconds without breaks and after-match.
     pub match_s: f32,
-    /// Seconds in which the ball was in play (rules: from 0.05 m after a restart, or a force start, to the next stop).
+    /// Seconds in which the ball was in play (rules: from 0.05 m after a restart, or a force start, to the
+    /// next stop).
     pub in_play_s: f32,
-    /// Seconds in which somebody might play the ball: in play, or a kick waited for.
+    /// Seconds in which a team may play the ball: in play, or before an awaited kick.
     pub running_s: f32,
     /// Yellow's part.
     pub yellow: TeamMetrics,
@@ -70,29 +71,29 @@ pub struct Metrics {
     pub blue: TeamMetrics,
     /// Offences by kind, sanctioned or not.
     pub offences: FoulCounts,
-    /// Times at which the match stood for longer than the referee's patience, oldest first.
+    /// Periods in which the match stood for longer than the referee's patience, oldest first.
     pub blocks: Vec<Blocked>,
-    /// Robots that people took off the field.
+    /// Number of robots taken off the field by hand.
     pub taken_off: u32,
     last: Option<Leg>,
 }
 
-/// The ball after a touch.
+/// The ball's path after a touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Leg {
     who: Who,
     from: Point<Field>,
-    /// It was counted as a shot already.
+    /// Whether it was already counted as a shot.
     shot: bool,
 }
 
 impl Metrics {
-    /// Share of the match in which the ball was in play.
+    /// Share of the match time in which the ball was in play.
     pub fn ball_in_play(&self) -> f32 {
         if self.match_s > 0.0 { self.in_play_s / self.match_s } else { 0.0 }
     }
 
-    /// Seconds in which the match was blocked, from when something kept it from going on.
+    /// Seconds in which the match was blocked, from the first obstacle on.
     pub fn blocked_s(&self) -> f32 {
         self.blocks.iter().map(|block| block.lasted.as_secs_f32()).sum()
     }
@@ -141,7 +142,7 @@ impl Metrics {
 }
 
 impl InternalReferee {
-    /// Counts the moment; `touch` is the last touch before it.
+    /// Counts one observation; `touch` is the last touch before it.
     pub(super) fn count_moment(
         &mut self,
         ball: BallSeen,
@@ -174,7 +175,7 @@ impl InternalReferee {
         let leg = self.metrics.last.get_or_insert(Leg { who, from, shot: false });
         if leg.who == who {
             if touching {
-                // Still at the robot; near to where it touched it before it may be the same kick.
+                // Still at the robot; near to the position of the previous touch it may be the same kick.
                 leg.shot &= leg.from.distance(from) < SEPARATE;
                 leg.from = from;
             } else {
@@ -183,7 +184,8 @@ impl InternalReferee {
             }
             return;
         }
-        // In a duel the ball changes hands in every moment; it has changed hands when it is away.
+        // In a duel the touching robot alternates in every step; a change of possession counts when the ball
+        // is away.
         let (leg, now) = (*leg, if touching { from } else { ball.position });
         if leg.from.distance(now) < SEPARATE {
             return;
@@ -225,9 +227,10 @@ impl InternalReferee {
     }
 }
 
-/// A ball slower than this is no shot, m/s: it rolls less than 3.2 m.
+/// Minimum speed of a shot, m/s: a slower ball rolls less than 3.2 m.
 const SHOT_SPEED: f32 = 1.5;
-/// A ball this far from the last touch has left the robot, m: half a robot's diameter, beyond what a dribbler bounces.
+/// Distance from the last touch, m, at which the ball has left the robot: half a robot's diameter, more than
+/// a dribbler's bounces.
 const SEPARATE: f32 = 0.1;
-/// Touches nearer together are no pass, m.
+/// Minimum distance between two touches of a pass, m.
 const PASS_LENGTH: f32 = 0.5;

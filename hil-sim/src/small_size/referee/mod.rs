@@ -2,20 +2,22 @@
 //! one value, without sockets (rules 2026, chapters on referee commands, offenses, game structure and
 //! sanctions).
 //!
-//! [`InternalReferee::observe`] takes the true state of the world every 1 to 20 ms; [`InternalReferee::poll_packet`] gives
-//! what the league's game controller would send, [`InternalReferee::poll_order`] what people at the field would do:
-//! put the ball down, take robots off. The same observations give the same match: no clock, one seeded stream for the draw.
+//! [`InternalReferee::observe`] takes the true state of the world every 1 to 20 ms;
+//! [`InternalReferee::poll_packet`] gives what the league's game controller would send,
+//! [`InternalReferee::poll_order`] the manual acts at the field: place the ball, take robots off. The same
+//! observations give the same match: no clock, one seeded stream for the draw.
 //!
 //! ```text
 //! observation ─► watch (one file a question) ─► events ─► judge: fouls, cards, goals, what follows, from where
 //!                                                           │
 //! clock, stages ─► flow: halt, stop, placement, restarts ◄──┘ ─► commands ─► rules::GameState ─► packets
 //! ```
-//! The game goes on under the conditions of the league's game controller ([`Reason`]) and under no others: while a robot or the
-//! ball is where it must not be the match stands, and says so ([`InternalReferee::blocked`]). Placement, kicks and penalties have
-//! their longest times (30 s, then the other team, then a person; 5 or 10 s; 10 s). What people do is little and said by
-//! [`WorldOrder`]: they put the ball where the rules leave it to a person, or where nothing but the ball blocks the match, and
-//! take out robots in a substitution area or in a halt for it.
+//! The game continues under the conditions of the league's game controller ([`Reason`]) and no others: while
+//! a robot or the ball is where it must not be, the match stands, and the referee reports it
+//! ([`InternalReferee::blocked`]). Placement, kicks and penalties have time limits (30 s, then the other
+//! team, then by hand; 5 or 10 s; 10 s). Manual acts are few and given as [`WorldOrder`]: the ball is placed
+//! by hand where the rules require it, or where only the ball blocks the match, and robots are taken out in a
+//! substitution area or in a halt for that purpose.
 
 mod account;
 mod blocked;
@@ -61,7 +63,7 @@ use people::People;
 use scene::{GameView, Scene};
 use watch::Watch;
 
-/// The four-legged league is refereed by `hil_sim::Referee`, by other rules.
+/// The four-legged league has another referee, `hil_sim::Referee`, with other rules.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NoRules(pub League);
 
@@ -77,7 +79,7 @@ impl core::fmt::Display for NoRules {
 
 impl core::error::Error for NoRules {}
 
-/// Runs a match.
+/// Referees a match.
 #[derive(Clone, Debug)]
 pub struct InternalReferee {
     settings: RefereeSettings,
@@ -85,9 +87,9 @@ pub struct InternalReferee {
     limits: Limits,
     state: GameState,
     stage: Stage,
-    /// µs; negative when it ran over.
+    /// µs; negative when the stage ran over.
     stage_left: i64,
-    /// When simulated time ends the match.
+    /// Time at which a match in simulated time ends.
     ends_at: Option<Instant>,
     shoot_out: stages::ShootOut,
     command: Command,
@@ -95,13 +97,13 @@ pub struct InternalReferee {
     command_at: Instant,
     /// Time left for placement, kick or penalty, µs.
     action_left: i64,
-    /// What follows the stop.
+    /// The restart after the stop.
     next: Option<Restart>,
-    /// Where the ball is to lie then.
+    /// Target position of the ball for that restart.
     placement: Option<Point<Field>>,
-    /// Which team places where none is in favour.
+    /// The drawn placing team where neither is in favour.
     drawn: Option<Colour>,
-    /// Since the ball was last allowed to move.
+    /// Events since the ball was last allowed to move.
     recent: Vec<Event>,
     accounts: Accounts,
     blue_on_positive: bool,
@@ -115,13 +117,13 @@ pub struct InternalReferee {
     ball: BallSeen,
     ball_seen_at: Instant,
     ball_at_command: Point<Field>,
-    /// Since when nothing speaks against going on.
+    /// Since when there is no obstacle to continuing.
     ready_since: Option<Instant>,
     waiting: blocked::Waiting,
     packets: VecDeque<ssl::referee::Referee>,
     next_packet: Instant,
     off_graph: u32,
-    /// Somebody stopped it by hand: nothing goes on until somebody says so.
+    /// Stopped manually: nothing continues until a manual command.
     held: bool,
 }
 
@@ -169,7 +171,7 @@ impl InternalReferee {
         })
     }
 
-    /// The world as it is now; decides what follows from it.
+    /// Takes the present state of the world and decides what follows from it.
     pub fn observe(&mut self, seen: &Observation<'_>) {
         if self.begun && seen.time < self.now {
             return;
@@ -213,37 +215,37 @@ impl InternalReferee {
         self.send_when_due();
     }
 
-    /// What may be done now.
+    /// The present phase.
     pub fn phase(&self) -> Phase<Colour> {
         self.state.phase()
     }
 
-    /// The part of the match.
+    /// The present stage of the match.
     pub fn stage(&self) -> Stage {
         self.stage
     }
 
-    /// The command that stands.
+    /// The current command.
     pub fn command(&self) -> Command {
         self.command
     }
 
-    /// Is the match over?
+    /// Whether the match is over.
     pub fn is_over(&self) -> bool {
         self.stage == Stage::PostGame
     }
 
-    /// Goals, fouls, cards and the rest of each team.
+    /// Goals, fouls, cards and further state of each team.
     pub fn accounts(&self) -> &Accounts {
         &self.accounts
     }
 
-    /// Where the ball is to lie for the next restart.
+    /// Target position of the ball for the next restart.
     pub fn placement(&self) -> Option<Point<Field>> {
         self.placement
     }
 
-    /// What follows the stop.
+    /// The restart after the stop.
     pub fn next(&self) -> Option<Restart> {
         self.next
     }
@@ -253,17 +255,17 @@ impl InternalReferee {
         scene::own_end(self.blue_on_positive, team)
     }
 
-    /// Everything that happened so far, oldest first.
+    /// All events so far, oldest first.
     pub fn events(&self) -> &[Event] {
         &self.log
     }
 
-    /// What the match report needs.
+    /// Statistics for the match report.
     pub fn metrics(&self) -> &Metrics {
         &self.metrics
     }
 
-    /// Commands that did not follow the league's state graph; 0 unless something is wrong here.
+    /// Number of commands that did not follow the league's state graph; 0 unless this referee has a bug.
     pub fn off_graph(&self) -> u32 {
         self.off_graph
     }
@@ -273,12 +275,12 @@ impl InternalReferee {
         self.packets.pop_front()
     }
 
-    /// What people at the field do next.
+    /// The next manual act at the field.
     pub fn poll_order(&mut self) -> Option<WorldOrder> {
         self.people.orders.pop_front()
     }
 
-    /// That team wants a time-out of this length at the next stop; false where it has none left.
+    /// That team requests a time-out of this length at the next stop; false where it has none left.
     pub fn request_timeout(&mut self, team: Colour, length: protocol::Duration) -> bool {
         let account = self.accounts.of_mut(team);
         let granted = account.timeouts > 0 && account.timeout_left > 0 && self.stage != Stage::ShootOut;
@@ -288,7 +290,8 @@ impl InternalReferee {
         granted
     }
 
-    /// That team changes its keeper; false while the ball is in play in its own half (rules: choosing keeper id).
+    /// That team changes its keeper; false while the ball is in play in its own half (rules: choosing keeper
+    /// id).
     pub fn set_keeper(&mut self, team: Colour, keeper: protocol::RobotId) -> bool {
         let own_half = self.ball.position.x() * self.own_end(team).sign() as f32 >= 0.0;
         let allowed = !(scene::is_running(self.phase()) && own_half);
@@ -314,7 +317,7 @@ impl InternalReferee {
         }
     }
 
-    /// Gives a command.
+    /// Issues a command.
     fn give(&mut self, command: Command) {
         let heard = self.state.hear(command, self.now.0, Some(self.ball.position));
         if !matches!(heard, Heard::Followed | Heard::Repeated) {

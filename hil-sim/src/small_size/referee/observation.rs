@@ -1,17 +1,17 @@
-//! `observation`: what the referee observes. The true state of the world at one moment, as the simulator's
-//! glue fills it in.
+//! `observation`: input of the referee. The true state of the world at one moment, filled in by the
+//! simulator.
 //!
 //! m, m/s, rad, field frame; times in µs since the simulation's start.
 
 use geometry::{Field, Point, Pose, Vector};
 use protocol::{Instant, Who};
 
-/// The ball.
+/// The observed ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallSeen {
-    /// Over this point of the ground, m.
+    /// Its position projected on the ground, m.
     pub position: Point<Field>,
-    /// Its lowest point above the carpet, m: 0 while it rolls.
+    /// Height of its lowest point above the field surface, m: 0 while it rolls.
     pub height: f32,
     /// Along the ground, m/s.
     pub velocity: Vector<Field>,
@@ -20,12 +20,12 @@ pub struct BallSeen {
 }
 
 impl BallSeen {
-    /// At rest on the ground.
+    /// Resting on the ground.
     pub fn at(position: Point<Field>) -> Self {
         Self { position, height: 0.0, velocity: Vector::default(), climb: 0.0 }
     }
 
-    /// Its speed in space, m/s.
+    /// Its speed in 3-D, m/s.
     pub fn speed(&self) -> f32 {
         geometry::math::sqrt(self.velocity.dot(self.velocity) + self.climb * self.climb)
     }
@@ -38,23 +38,23 @@ impl BallSeen {
     }
 }
 
-/// A robot that is on the carpet.
+/// A robot on the field surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RobotSeen {
-    /// Which one.
+    /// The robot's team and number.
     pub who: Who,
-    /// Where it is.
+    /// Its pose.
     pub pose: Pose<Field>,
     /// m/s.
     pub velocity: Vector<Field>,
-    /// It touched the ball at some time since the last observation.
+    /// Whether it touched the ball since the last observation.
     pub touches_ball: bool,
 }
 
-/// Two robots ran into each other since the last observation.
+/// Two robots collided since the last observation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CrashSeen {
-    /// Which two.
+    /// The two robots.
     pub between: [Who; 2],
     /// Their velocities just before, in the same order, m/s.
     pub velocities: [Vector<Field>; 2],
@@ -65,12 +65,12 @@ pub struct CrashSeen {
 pub struct Observation<'a> {
     /// µs since the simulation's start; must not go back (an earlier one is ignored).
     pub time: Instant,
-    /// `None` while there is no ball on the carpet.
+    /// `None` while there is no ball on the field surface.
     pub ball: Option<BallSeen>,
-    /// The ball's greatest speed in space since the last observation, m/s, where a kick's is known better than from its
-    /// speed now; else 0.
+    /// The ball's maximum 3-D speed since the last observation, m/s, where a kick's speed is known more
+    /// exactly than from the ball's present speed; else 0.
     pub fastest: f32,
-    /// Robots on the carpet, in any order; a robot with a number that is not finite is ignored.
+    /// Robots on the field surface, in any order; a robot with a number that is not finite is ignored.
     pub robots: &'a [RobotSeen],
     /// Collisions of robots since the last observation.
     pub crashes: &'a [CrashSeen],

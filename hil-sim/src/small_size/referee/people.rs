@@ -1,5 +1,5 @@
-//! `people`: what people at the field do. They put the ball down where no robot can or may, and take robots off for cards where
-//! the rules let them: in a substitution area, or in a halt.
+//! `people`: manual acts at the field. The ball is placed by hand where no robot can or may, and robots are
+//! taken off for cards where the rules permit: in a substitution area, or in a halt.
 //!
 //! m, field frame.
 
@@ -14,30 +14,30 @@ use super::observation::RobotSeen;
 use super::scene::{COLOURS, is_running};
 use super::{InternalReferee, micros};
 
-/// Something a person does to the world, to be carried out at once.
+/// A manual act, to be carried out at once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WorldOrder {
-    /// Put the ball down here, at rest.
+    /// Place the resting ball here.
     PutBall(Point<Field>),
-    /// Take this robot off the carpet: it is in a substitution area, or the game is halted for it.
+    /// Take this robot off the field: it is in a substitution area, or the game is halted for it.
     RemoveRobot(Who),
-    /// Set this robot of a team that does not drive down there, in a halt.
+    /// Place this robot of a team that does not drive there, in a halt.
     CarryRobot(Who, Pose<Field>),
-    /// A card is over: put this robot back, beside the touch line of its own half.
+    /// A card has expired: place this robot beside the touch line of its own half.
     ReturnRobot(Who, Pose<Field>),
 }
 
-/// What people have been asked to do.
+/// Requested manual acts.
 #[derive(Clone, Debug, Default)]
 pub(super) struct People {
     pub(super) orders: VecDeque<WorldOrder>,
-    /// When the ball was put down last in this stop.
+    /// Time of the last manual placement in this stop.
     put_at: Option<Instant>,
     /// Playing time for which each team has had too many robots, in the order of [`COLOURS`], µs.
     crowded: [u64; 2],
-    /// The game is halted for what people do then.
+    /// Whether the game is halted for a manual act.
     pub(super) called: bool,
-    /// When a robot of each team was last taken off or put back.
+    /// Time at which a robot of each team was last taken off or returned.
     changed: [Option<Instant>; 2],
 }
 
@@ -48,12 +48,12 @@ impl People {
 }
 
 impl InternalReferee {
-    /// Has a person put the ball down in this stop?
+    /// Whether the ball was placed by hand in this stop.
     pub(super) fn put_by_hand(&self) -> bool {
         self.people.put_at.is_some()
     }
 
-    /// Puts the ball down once there is time and room; true while it has still to be done.
+    /// Places the ball once there is time and room; true while that is still to be done.
     pub(super) fn put_ball(&mut self, robots: &[RobotSeen], target: Point<Field>) -> bool {
         let near = self.ball.position.distance(target) <= limits::PLACEMENT_TOLERANCE;
         if near && self.ball.speed() <= limits::BALL_STILL {
@@ -71,7 +71,7 @@ impl InternalReferee {
         true
     }
 
-    /// Sees to it that no team plays with more robots than it may, and gives back those whose time is over.
+    /// Takes off surplus robots of a team, and returns those whose cards have expired.
     pub(super) fn keep_numbers(&mut self, robots: &[RobotSeen], passed_us: u64) {
         for (index, team) in COLOURS.into_iter().enumerate() {
             let ours = || robots.iter().filter(|robot| robot.who.colour == team);
@@ -94,7 +94,8 @@ impl InternalReferee {
                 }
                 continue;
             }
-            // Who has left the field for it is taken off while the others play on (rules: sanctions, substitution).
+            // A robot that has left the field for it is taken off during play (rules: sanctions,
+            // substitution).
             let has_left = ours().find(|robot| self.may_be_taken(robot.pose.position)).map(|robot| robot.who);
             let open = !matches!(self.phase(), Phase::Halt | Phase::Timeout(_));
             if let Some(who) = has_left.filter(|_| open && !just_changed) {
@@ -108,7 +109,8 @@ impl InternalReferee {
             let crowded = &mut self.people.crowded[index];
             *crowded += passed_us;
             if *crowded as i64 >= micros(limits::CARD_REMOVAL_TIME) {
-                // Once more after the controller's two seconds where it plays on with them all the same.
+                // Again after the controller's two seconds, where it continues although there are still too
+                // many.
                 *crowded -= CHANGE_TIME;
                 let ball = self.ball.position;
                 let what = What::TooManyRobots { allowed, on_field, ball };
@@ -123,7 +125,7 @@ impl InternalReferee {
         self.accounts.of_mut(who.colour).taken_off.push(who.id);
     }
 
-    /// How many robots of a team count: those outside its goal substitution area.
+    /// Number of a team's robots that count: those outside its goal substitution area.
     pub(super) fn on_field(&self, robots: &[RobotSeen], team: Colour) -> u32 {
         let own = self.own_end(team);
         let counts =
@@ -131,14 +133,15 @@ impl InternalReferee {
         robots.iter().filter(counts).count() as u32
     }
 
-    /// In the centre substitution area, beside the touch line, and the ball is not near.
+    /// In the centre substitution area, beside the touch line, with the ball not near.
     fn may_be_taken(&self, place: Point<Field>) -> bool {
         place.x().abs() <= limits::SUBSTITUTION_REACH
             && place.y().abs() > self.field.width * 0.5
             && place.distance(self.ball.position) >= limits::SUBSTITUTION_BALL_DISTANCE
     }
 
-    /// The last offender; else the robot farthest from the ball. The keeper only where there is no other.
+    /// The last offender; else the robot farthest from the ball. The keeper only where there is no other
+    /// robot.
     pub(super) fn whom_to_take(
         &self,
         team: Colour,
@@ -170,7 +173,8 @@ impl InternalReferee {
     }
 }
 
-/// Room a person needs to put the ball down, m from a robot's side: a hand's breadth.
+/// Minimum distance from a robot's side, m, for placing the ball by hand: a hand's breadth.
 const ROOM: f32 = 0.1;
-/// Time in which a robot is taken off or put back, µs: two seconds, the game controller's tolerance in counting robots.
+/// Time for taking off or returning a robot, µs: two seconds, the game controller's tolerance in counting
+/// robots.
 const CHANGE_TIME: u64 = 2_000_000;

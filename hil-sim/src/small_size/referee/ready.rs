@@ -1,8 +1,10 @@
-//! `ready`: what keeps the game from going on, by the conditions of the league's game controller. m, m/s, field frame.
+//! `ready`: obstacles to continuing the game, by the conditions of the league's game controller. m, m/s,
+//! field frame.
 //!
-//! The conditions are those of `findIssuesForContinuation` (RoboCup-SSL/ssl-game-controller, `internal/app/engine`,
-//! `process_continue_next_command.go`), with its tolerances: the controller gives no command while one of them is not met, however
-//! long that takes. The centre circle at a kick-off is the rules' alone, which the controller leaves to the human referee.
+//! The conditions are those of `findIssuesForContinuation` (RoboCup-SSL/ssl-game-controller,
+//! `internal/app/engine`, `process_continue_next_command.go`), with its tolerances: the controller issues no
+//! command while one of them is not met, however long that takes. The centre circle at a kick-off is in the
+//! rules alone; the controller leaves it to the human referee.
 
 use std::fmt;
 
@@ -14,14 +16,14 @@ use super::InternalReferee;
 use super::event::Restart;
 use super::observation::RobotSeen;
 
-/// Why the game cannot go on; distances in m.
+/// Why the game cannot continue; distances in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reason {
-    /// The team has more robots than it may outside its goal substitution area.
+    /// The team has more robots than allowed outside its goal substitution area.
     TooManyRobots {
-        /// How many it may have.
+        /// Allowed number.
         allowed: u32,
-        /// How many it has.
+        /// Actual number.
         on_field: u32,
     },
     /// The robot is too near to the ball.
@@ -29,9 +31,9 @@ pub enum Reason {
         /// From its nearest side to the ball's centre.
         distance: f32,
     },
-    /// The ball is far from where the game goes on.
+    /// The ball is far from the position of the restart.
     BallOffPlace {
-        /// From the place.
+        /// From that position.
         distance: f32,
     },
     /// The ball is outside the lines.
@@ -46,17 +48,17 @@ pub enum Reason {
         /// m/s.
         speed: f32,
     },
-    /// The ball has to be put down by a person, who has not done it.
+    /// The ball has to be placed by hand, and was not.
     BallNotPut {
-        /// From the place.
+        /// From its target position.
         distance: f32,
     },
     /// The robot is not entirely in its own half at a kick-off.
     OtherHalf {
-        /// How far its centre is in its own half; negative in the other.
+        /// Distance of its centre within its own half; negative in the other.
         inside: f32,
     },
-    /// The robot is in the centre circle at a kick-off and not the only one of the team that takes it.
+    /// The robot is in the centre circle at a kick-off and is not the only one of the kicking team.
     CentreCircle {
         /// From the centre.
         distance: f32,
@@ -78,7 +80,7 @@ pub enum Reason {
 }
 
 impl Reason {
-    /// Without its numbers.
+    /// Its label, without the numbers.
     pub const fn word(self) -> &'static str {
         match self {
             Self::TooManyRobots { .. } => "too_many_robots",
@@ -96,7 +98,8 @@ impl Reason {
         }
     }
 
-    /// Nothing is wrong but the ball's place: the human referee may put it down by hand at any time (rules: ball placement).
+    /// Only the ball's position is wrong: the human referee may place it by hand at any time (rules: ball
+    /// placement).
     pub const fn is_balls(self) -> bool {
         matches!(
             self,
@@ -132,14 +135,14 @@ impl fmt::Display for Reason {
     }
 }
 
-/// Something that keeps the game from going on.
+/// A condition that prevents the game from continuing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Obstacle {
-    /// Whose doing it is; `None` for the ball's place.
+    /// The team that caused it; `None` for the ball's position.
     pub team: Option<Colour>,
-    /// Which robot.
+    /// The robot.
     pub robot: Option<RobotId>,
-    /// Why.
+    /// The reason.
     pub reason: Reason,
 }
 
@@ -152,7 +155,7 @@ impl Obstacle {
         Self { team: Some(who.colour), robot: Some(who.id), reason }
     }
 
-    /// The robot to blame.
+    /// The robot that caused it.
     pub fn who(&self) -> Option<Who> {
         Some(Who { colour: self.team?, id: self.robot? })
     }
@@ -174,7 +177,7 @@ impl InternalReferee {
         self.field.counts(self.own_end(robot.who.colour), robot.pose.position)
     }
 
-    /// What keeps this stop from ending with `next`; empty where nothing does.
+    /// What prevents this stop from ending with `next`; empty where nothing does.
     pub(super) fn obstacles_in_stop(
         &self,
         robots: &[RobotSeen],
@@ -190,7 +193,8 @@ impl InternalReferee {
                 found.push(Obstacle { team: Some(team), robot: None, reason });
             }
         }
-        // The team that goes on with a free kick may be at the ball already, so that it can do so after its placement.
+        // The team that continues with a free kick may be at the ball already, so that it can place the ball
+        // and then kick.
         let must_keep_away = |robot: &&RobotSeen| match next {
             Restart::FreeKick(team) => robot.who.colour != team,
             _ => true,
@@ -209,7 +213,7 @@ impl InternalReferee {
             let ends = [GoalEnd::Negative, GoalEnd::Positive];
             ends.map(|end| self.field.distance_to_area(end, p)).into_iter().fold(f32::INFINITY, f32::min)
         };
-        // On the field of 2013, which the controller does not know, marks and spots lie nearer than that.
+        // On the field of 2013, which the controller does not support, marks and spots lie nearer than that.
         let least = limits::PLACEMENT_SKIP_AREA_DISTANCE;
         let distance = from_area(ball);
         if distance < least && from_area(target) >= least {
@@ -224,7 +228,7 @@ impl InternalReferee {
         found
     }
 
-    /// What keeps that team's kick-off from its NORMAL_START.
+    /// What prevents that team's kick-off from getting its NORMAL_START.
     pub(super) fn obstacles_at_kickoff(&self, robots: &[RobotSeen], team: Colour) -> Vec<Obstacle> {
         let centre = Point::new(0.0, 0.0);
         let radius = self.field.center_radius;
@@ -252,7 +256,7 @@ impl InternalReferee {
         found
     }
 
-    /// What keeps that team's penalty from its NORMAL_START.
+    /// What prevents that team's penalty from getting its NORMAL_START.
     pub(super) fn obstacles_at_penalty(&self, robots: &[RobotSeen], team: Colour) -> Vec<Obstacle> {
         let keeper = Who { colour: team.other(), id: self.accounts.of(team.other()).keeper };
         let goal = self.own_end(team.other());
@@ -288,7 +292,7 @@ impl InternalReferee {
         found
     }
 
-    /// The robot at the ball is the kicker; those that come after it are one too many.
+    /// The nearest robot to the ball is the kicker; every further one is one too many.
     fn nearest_first<'r>(&self, robots: &'r [RobotSeen]) -> Vec<&'r RobotSeen> {
         let distance = |robot: &RobotSeen| robot.pose.position.distance(self.ball.position);
         let mut robots: Vec<&RobotSeen> = robots.iter().collect();
@@ -296,7 +300,7 @@ impl InternalReferee {
         robots
     }
 
-    /// What keeps the phase from its next command; nothing in phases that do not wait.
+    /// What prevents the next command of this phase; empty in phases that do not wait.
     pub(super) fn obstacles(&self, robots: &[RobotSeen]) -> Vec<Obstacle> {
         match self.phase() {
             Phase::Stop => {
@@ -310,7 +314,7 @@ impl InternalReferee {
     }
 }
 
-/// What the game controller tolerates in distances to the ball, m (`distanceThreshold`).
+/// Tolerance of the game controller in distances to the ball, m (`distanceThreshold`).
 const DISTANCE_TOLERANCE: f32 = 0.05;
-/// A ball slower than this lies still for the game controller, m/s (`ballSteadyThreshold`).
+/// Speed below which the ball counts as lying still for the game controller, m/s (`ballSteadyThreshold`).
 const BALL_STEADY: f32 = 0.2;

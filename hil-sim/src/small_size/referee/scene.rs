@@ -1,4 +1,4 @@
-//! `scene`: input of the rule monitors. One clean moment of the world, with what the game makes of it.
+//! `scene`: input of the rule monitors. One checked observation of the world, with the game state.
 //!
 //! m, m/s, s, field frame.
 
@@ -13,29 +13,29 @@ use super::observation::{BallSeen, CrashSeen, RobotSeen};
 /// Both colours, in the order of the wire.
 pub(super) const COLOURS: [Colour; 2] = [Colour::Yellow, Colour::Blue];
 
-/// One moment.
+/// One observation.
 pub(super) struct Scene<'a> {
     pub(super) now: Instant,
     pub(super) ball: BallSeen,
-    /// Its greatest speed since the last moment, m/s.
+    /// The ball's maximum speed since the last observation, m/s.
     pub(super) fastest: f32,
     pub(super) robots: &'a [RobotSeen],
     pub(super) crashes: &'a [CrashSeen],
     pub(super) game: &'a GameView<'a>,
 }
 
-/// What holds in the game at that moment.
+/// The game state at that moment.
 pub(super) struct GameView<'a> {
     pub(super) phase: Phase<Colour>,
-    /// Teams rest, and may do as they like.
+    /// Break: no rule applies to the teams.
     pub(super) is_break: bool,
-    /// The half has not begun: robots are on their way to their ends.
+    /// The half has not started: robots are driving to their ends.
     pub(super) before_half: bool,
-    /// When the phase began.
+    /// Start time of the phase.
     pub(super) since: Instant,
-    /// Where the ball was when the last command was given.
+    /// Position of the ball at the last command, m.
     pub(super) ball_at_command: Point<Field>,
-    /// Where it is to be placed.
+    /// Target position of a placement, m.
     pub(super) target: Option<Point<Field>>,
     pub(super) field: &'a FieldSpec,
     pub(super) limits: &'a Limits,
@@ -50,12 +50,12 @@ impl GameView<'_> {
         own_end(self.blue_on_positive, team)
     }
 
-    /// Seconds since the phase began.
+    /// Seconds since the start of the phase.
     pub(super) fn age(&self, now: Instant) -> f32 {
         now.since(self.since).as_secs_f32()
     }
 
-    /// Is somebody allowed to play the ball?
+    /// Whether a team may play the ball.
     pub(super) fn is_running(&self) -> bool {
         is_running(self.phase)
     }
@@ -66,7 +66,7 @@ pub(super) fn own_end(blue_on_positive: bool, team: Colour) -> GoalEnd {
     if (team == Colour::Blue) == blue_on_positive { GoalEnd::Positive } else { GoalEnd::Negative }
 }
 
-/// Is somebody allowed to play the ball? The match clock runs then.
+/// Whether a team may play the ball. The match clock runs then.
 pub(super) fn is_running(phase: Phase<Colour>) -> bool {
     matches!(phase, Phase::Run | Phase::FreeKick(_) | Phase::Kickoff(_) | Phase::Penalty(_))
 }
@@ -76,7 +76,7 @@ impl Scene<'_> {
         self.robots.iter().find(|robot| robot.who == who)
     }
 
-    /// From that robot's nearest side to the ball's centre, m (the rules' distance to the ball).
+    /// Distance from that robot's nearest side to the ball's centre, m (the rules' distance to the ball).
     pub(super) fn distance_to_ball(&self, robot: &RobotSeen) -> f32 {
         robot.pose.position.distance(self.ball.position) - limits::ROBOT_RADIUS
     }
@@ -86,7 +86,7 @@ impl Scene<'_> {
         Event { at: self.now, by: Some(who.colour), robot: Some(who.id), place, what }
     }
 
-    /// An event of a team, or of nobody.
+    /// An event of a team, or of neither.
     pub(super) fn of(&self, team: Option<Colour>, place: Point<Field>, what: What) -> Event {
         Event { at: self.now, by: team, robot: None, place, what }
     }

@@ -1,83 +1,88 @@
-//! `settings`: settings of a match. Everything about it that the rules leave to the organisers or to people.
+//! `settings`: settings of a match. Everything that the rules leave to the organisers or to manual acts.
 
 use protocol::{Duration, RobotId};
 use rules::{Colour, League};
 
-/// What runs down in a half.
+/// Which time counts down in a half.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MatchClock {
-    /// Playing time, as the rules have it: it stands still in halt, stop, placement and preparation. Per half; the rules
-    /// say 300 s.
+    /// Playing time, as in the rules: it stands still in halt, stop, placement and preparation. Per half; 300
+    /// s by the rules.
     Playing {
         /// Length of each half.
         half: Duration,
     },
-    /// Simulated time, so that a match has the length that was asked for: the first half ends half-way, the match when
-    /// this much simulated time is over, whatever was played.
+    /// Simulated time, so that a match has the configured length: the first half ends half-way, the match
+    /// when this much simulated time is over, however much was played.
     Simulated {
         /// From the first observation to the end.
         total: Duration,
     },
 }
 
-/// One team's part of the settings.
+/// Settings of one team.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TeamSettings {
     /// Its name on the wire.
     pub name: String,
     /// Its keeper's shell number.
     pub keeper: RobotId,
-    /// Can it place the ball? (Division B may do without, division A must not.)
+    /// Whether it can place the ball. (Optional in division B, required in division A.)
     pub can_place_ball: bool,
-    /// Do its robots drive? Where not, people carry those that block the match, and all of them at half-time.
+    /// Whether its robots drive. Where not, those that block the match are moved by hand, and all of them at
+    /// half-time.
     pub drives: bool,
 }
 
-/// How the internal referee runs a match.
+/// Settings of the internal referee.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RefereeSettings {
-    /// Field, ball, robots and the rules that differ between divisions.
+    /// League: field, ball, robots and the rules that differ between divisions.
     pub league: League,
-    /// What runs down in a half.
+    /// Which time counts down in a half.
     pub clock: MatchClock,
-    /// Pause between the halves, in simulated time. The rules say 300 s for people; programs need none, so 3 s.
+    /// Pause between the halves, in simulated time. 300 s by the rules, for human teams; programs need none,
+    /// so 3 s.
     pub half_time: Duration,
-    /// A draw is no possible outcome: overtime of half a half each, then a shoot-out. Their time is added to the match,
-    /// to `MatchClock::Simulated` too.
+    /// Whether a draw is no possible result: overtime of half a half each, then a shoot-out. Their time is
+    /// added to the match, to `MatchClock::Simulated` too.
     pub knockout: bool,
-    /// Is blue's goal at +x in the first half? They change at half-time.
+    /// Whether blue's goal is at +x in the first half. The teams change ends at half-time.
     pub blue_on_positive_half: bool,
-    /// Who kicks off first; the other does in the second half.
+    /// The team that kicks off first; the other does in the second half.
     pub first_kickoff: Colour,
-    /// Are yellow cards given for every third foul? Where not, fouls are only counted.
+    /// Whether yellow cards are given for every third foul. Where not, fouls are only counted.
     pub cards: bool,
-    /// Most robots a team may have without cards; `None` for the division's number.
+    /// Maximum number of robots of a team without cards; `None` for the division's number.
     pub max_robots: Option<u8>,
-    /// Judge what the rules leave to the human referee as well: pushing and holding.
+    /// Whether to judge what the rules leave to the human referee as well: pushing and holding.
     pub judge_manual_fouls: bool,
-    /// Send `designated_position` whenever a place is known, in every command, as the real game controller does
-    /// (contrary to its own documentation), instead of in ball placement only.
+    /// Send `designated_position` whenever a place is known, in every command, as the real game controller
+    /// does (contrary to its own documentation), instead of in ball placement only.
     pub position_always: bool,
     /// Announce a goal by one packet with the old commands `GOAL_*`, as the real game controller does.
     pub legacy_goal_command: bool,
-    /// Added to simulated time to make the packets' timestamps, µs: 0, or Unix time at the simulation's start.
+    /// Added to simulated time to give the packets' timestamps, µs: 0, or Unix time at the simulation's
+    /// start.
     pub epoch_us: u64,
-    /// Time a person needs to put the ball down, and robots get to prepare before a restart: 2 s, the game
-    /// controller's "preparation time before resume".
+    /// Delay before the ball is placed by hand, and time that robots get to prepare before a restart: 2 s,
+    /// the game controller's "preparation time before resume".
     pub person_delay: Duration,
-    /// How long something may keep the game from going on before the match is said to be blocked: 10 s, as long as the game
-    /// controller gives after a halt. The game waits for longer, as the game controller does.
+    /// Time that an obstacle may prevent the game from continuing before the match is reported as blocked: 10
+    /// s, as long as the game controller gives after a halt. The game keeps waiting after it, as with the
+    /// game controller.
     pub patience: Duration,
-    /// How long a halt lasts once it is given: 3 s, so that a robot still moving after the rules' grace of 2 s is seen.
+    /// Minimum duration of a halt: 3 s, so that a robot still moving after the rules' grace of 2 s is seen.
     pub halt: Duration,
-    /// Yellow's part.
+    /// Settings of yellow.
     pub yellow: TeamSettings,
-    /// Blue's part.
+    /// Settings of blue.
     pub blue: TeamSettings,
 }
 
 impl RefereeSettings {
-    /// A match of that league by the rules: 2 × 300 s of playing time, blue defends +x, yellow kicks off, cards.
+    /// A match of that league by the rules: 2 × 300 s of playing time, blue defends +x, yellow kicks off,
+    /// cards.
     pub fn new(league: League) -> Self {
         let team = |name: &str| TeamSettings {
             name: name.into(),
@@ -106,7 +111,7 @@ impl RefereeSettings {
         }
     }
 
-    /// One team's part.
+    /// Settings of one team.
     pub fn team_mut(&mut self, colour: Colour) -> &mut TeamSettings {
         match colour {
             Colour::Yellow => &mut self.yellow,
@@ -114,7 +119,7 @@ impl RefereeSettings {
         }
     }
 
-    /// One team's part.
+    /// Settings of one team.
     pub fn team(&self, colour: Colour) -> &TeamSettings {
         match colour {
             Colour::Yellow => &self.yellow,
@@ -123,7 +128,7 @@ impl RefereeSettings {
     }
 }
 
-/// The keeper unless somebody says otherwise: shell number 0, as most teams have it.
+/// Default shell number of the keeper: 0, as with most teams.
 const KEEPER: RobotId = match RobotId::new(0) {
     Some(id) => id,
     None => unreachable!(),

@@ -1,4 +1,4 @@
-//! `spots`: restart positions. `rules::restart`, asked for every kind of event. m, field frame.
+//! `spots`: restart positions by `rules::restart`, for every kind of event. m, field frame.
 
 use geometry::{Field, GoalEnd, Point};
 use rules::Colour;
@@ -9,7 +9,7 @@ use super::event::{Event, Shot, What};
 use super::{InternalReferee, Kind};
 
 impl InternalReferee {
-    /// Where the ball goes after this event; `None` where it changes nothing.
+    /// Position of the ball after this event; `None` where it changes nothing.
     pub(super) fn spot_after(&self, event: &Event) -> Option<Point<Field>> {
         let free_kick = |place| Some(nearest_free_kick_spot(&self.field, &self.limits, place));
         match &event.what {
@@ -25,7 +25,7 @@ impl InternalReferee {
                 Some(self.after_line(Line::Goal(end_at(event.place)), event.place, touched))
             }
             What::PenaltyFailed { .. } => {
-                // A goal kick of the defenders, wherever the ball was when it failed.
+                // A goal kick of the defenders, wherever the ball was when the penalty failed.
                 let end = self.own_end(event.by?.other());
                 let place = Point::new(self.field.goal_line(end), event.place.y());
                 Some(self.after_line(Line::Goal(end), place, event.by))
@@ -52,7 +52,7 @@ impl InternalReferee {
 
     fn after_line(&self, line: Line, at: Point<Field>, touched: Option<Colour>) -> Point<Field> {
         let crossing = Crossing { line, at };
-        // Nobody known to have touched it: as if the attackers had.
+        // No known touch: as if the attackers had touched it.
         let own = match (touched, line) {
             (Some(team), _) => self.own_end(team),
             (None, Line::Goal(end) | Line::Mouth(end)) => end.opposite(),
@@ -63,12 +63,12 @@ impl InternalReferee {
     }
 }
 
-/// Who sent the ball into the goal that did not count.
+/// The team that sent the ball into the goal that did not count.
 pub(super) fn kicking_team(shot: &Shot, scorer: Option<Colour>) -> Option<Colour> {
     shot.kicker.map(|kicker| kicker.colour).or(scorer)
 }
 
-/// Whose ball it is after an event that a team is to blame for, where that is not simply the other team.
+/// The team that gets the ball after an event that a team caused, where that is not simply the other team.
 pub(super) fn blamed(event: &Event) -> Option<Colour> {
     match &event.what {
         What::InvalidGoal { shot, .. } => kicking_team(shot, event.by),
@@ -76,7 +76,7 @@ pub(super) fn blamed(event: &Event) -> Option<Colour> {
     }
 }
 
-/// What the event leads to when nobody is to blame: a ball out that nobody touched belongs to nobody.
+/// Whether the event leads to a restart of neither team: a ball that left the field without any touch.
 pub(super) fn is_nobodys(kind: Kind, by: Option<Colour>) -> bool {
     by.is_none() && kind.is_ball_out()
 }

@@ -8,7 +8,7 @@ use rules::{Colour, Phase, limits};
 use super::settings::MatchClock;
 use super::{InternalReferee, Restart, micros, scene::is_running};
 
-/// A shoot-out's account.
+/// State of a shoot-out.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ShootOut {
     next: Colour,
@@ -29,7 +29,7 @@ impl InternalReferee {
         self.enter_stage(Stage::FirstHalfPre);
     }
 
-    /// `us` have passed.
+    /// Advances the match clocks by `us`.
     pub(super) fn pass_time(&mut self, us: u64) {
         let us = us as i64;
         let running = is_running(self.phase());
@@ -53,7 +53,7 @@ impl InternalReferee {
         }
     }
 
-    /// Goes on to the next part where this one is over; true if it did.
+    /// Enters the next stage where this one is over; true if it did.
     pub(super) fn end_stage(&mut self) -> bool {
         let scores = [self.accounts.yellow.score, self.accounts.blue.score];
         let (most, least) = (scores[0].max(scores[1]), scores[0].min(scores[1]));
@@ -73,7 +73,7 @@ impl InternalReferee {
         if self.stage_left > 0 || self.stage == Stage::PostGame {
             return false;
         }
-        // Additional time for a penalty; not beyond the simulated time that was asked for.
+        // Additional time for a penalty; not beyond the configured simulated time.
         let penalty = matches!(self.next, Some(Restart::Penalty(_)))
             || matches!(self.phase(), Phase::Penalty(_) | Phase::PreparePenalty(_));
         if penalty && matches!(self.settings.clock, MatchClock::Playing { .. }) && !self.stage.is_break() {
@@ -181,12 +181,12 @@ impl InternalReferee {
     }
 }
 
-/// How far a time may run over before it stands still, µs: half an hour, the game controller's bound.
+/// Maximum overrun of a time limit, µs: half an hour, the game controller's bound.
 const ACTION_OVER_MAX: i64 = 1_800_000_000;
 /// Attempts of each team in a shoot-out before it may be decided.
 const ATTEMPTS: u32 = 5;
-/// Attempts of each team after which a simulated shoot-out is given up as drawn; the rules have no end.
+/// Attempts of each team after which a simulated shoot-out ends as a draw; the rules have no limit.
 const ATTEMPTS_MAX: u32 = 20;
-/// Time-outs of a team in overtime, and their time in all, s.
+/// Number of time-outs of a team in overtime, and their total time, s.
 const OVERTIME_TIMEOUTS: u32 = 2;
 const OVERTIME_TIMEOUT_TIME: f32 = 150.0;

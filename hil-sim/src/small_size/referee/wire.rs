@@ -1,5 +1,5 @@
-//! `wire`: referee packets. The league's referee packet with all that is known, about 40 times a second and
-//! at every command. Times in µs, `designated_position` in mm, events in m; as the real one has it.
+//! `wire`: referee packets. The league's referee packet with all known fields, about 40 times a second and at
+//! every command. Times in µs, `designated_position` in mm, events in m; as from the real game controller.
 
 use protocol::{Duration, Instant};
 use rules::state::{Command, Stage};
@@ -63,8 +63,8 @@ impl InternalReferee {
         self.next_packet = self.now + PERIOD;
     }
 
-    /// One packet with the old command for a goal, as the real one sends; the command that stands follows with the same
-    /// count.
+    /// One packet with the obsolete command for a goal, as the real game controller sends; the current
+    /// command follows with the same count.
     pub(super) fn announce_goal(&mut self, team: Colour) {
         if !self.settings.legacy_goal_command {
             return;
@@ -154,7 +154,7 @@ fn unsigned(us: i64) -> u32 {
     u32::try_from(us.max(0)).unwrap_or(u32::MAX)
 }
 
-/// The game controller's tick.
+/// Period of the game controller's packets.
 const PERIOD: Duration = Duration::millis(25);
-/// Packets kept for a caller who does not ask for them: a quarter of a second and some commands.
+/// Maximum number of packets kept for a caller that does not poll: a quarter of a second and some commands.
 const PACKETS_MAX: usize = 32;

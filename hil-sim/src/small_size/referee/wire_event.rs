@@ -1,6 +1,6 @@
 //! `wire_event`: game events on the wire. Our events as its `GameEvent`s, with all evidence; m, m/s, s, rad.
 //!
-//! Ours alone (moved in halt, too close in stop) are not told to anybody: the league has no message for them.
+//! Our own kinds (moved in halt, too close in stop) are not sent: the league has no message for them.
 
 use geometry::{Field, Point};
 use protocol::{Instant, RobotId};
@@ -13,7 +13,7 @@ use ssl::event::GameEventType as Type;
 use super::event::{Event, Invalid, Shot, What};
 
 impl Event {
-    /// The league's message for it; `None` for what the league has none for. `epoch_us` is added to times, µs.
+    /// The league's message for it; `None` where the league has none. `epoch_us` is added to times, µs.
     pub fn to_wire(&self, epoch_us: u64) -> Option<wire::GameEvent> {
         let (r#type, event) = self.sent(epoch_us)?;
         let stamp = |at: Instant| epoch_us.saturating_add(at.0);
@@ -136,7 +136,7 @@ impl Event {
         })
     }
 
-    /// What one robot did to others or where it was.
+    /// Fouls of one robot: acts against other robots, or a forbidden position.
     fn robots_foul(&self) -> Option<(Type, Sent)> {
         let by_team = team(self.by);
         let by_bot = self.robot.map(number);
@@ -246,5 +246,5 @@ fn point(place: Point<Field>) -> Vector2 {
     Vector2 { x: place.x(), y: place.y() }
 }
 
-/// Who saw it.
+/// Name of the reporting automatic referee.
 const ORIGIN: &str = "onetwo";

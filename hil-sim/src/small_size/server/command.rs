@@ -11,7 +11,7 @@ use crate::small_size::quirks::Feedback;
 use crate::small_size::{Drive, Kick, Order};
 
 impl Server {
-    /// Robots of a team are commanded; gives what comes back.
+    /// Gives a team's robots their commands; returns the answer.
     pub(super) fn lead(&mut self, colour: Colour, control: &RobotControl) -> RobotControlResponse {
         let mut refused = Vec::new();
         let mut commanded = [false; RobotId::COUNT];
@@ -69,7 +69,7 @@ impl Server {
         self.send_order(who, Order { drive, kick, dribbler, discharge: false });
     }
 
-    /// An order goes on its way, or is lost on it.
+    /// Sends an order to a robot with the link's delay, or loses it.
     pub(super) fn send_order(&mut self, who: Who, order: Order) {
         if self.chance.chance(self.radio.command_loss) {
             self.counts.lost += 1;
@@ -78,7 +78,7 @@ impl Server {
         }
     }
 
-    /// What the team's robots tell of themselves, after a message that commanded these.
+    /// States of the team's robots, after a message that commanded these.
     pub(super) fn feedback(
         &mut self,
         colour: Colour,

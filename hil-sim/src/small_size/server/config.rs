@@ -1,8 +1,8 @@
 //! `config`: run-time configuration of the simulator. Robots' bodies, the field, noise and losses, vision's
 //! port.
 //!
-//! A setting is checked as a whole before anything changes; a refused one leaves everything as it was. Units on the wire: mm
-//! in geometry, SI elsewhere, ns for delays.
+//! A setting is checked as a whole before anything changes; a refused one changes nothing. Units on the wire:
+//! mm in geometry, SI elsewhere, ns for delays.
 
 use rules::FieldSpec;
 use ssl::Message;
@@ -23,7 +23,7 @@ impl Server {
             }
         }
         if only_specs {
-            // One error for all of them, as grSim has it.
+            // One error for all of them, as in grSim.
             let others = [
                 (config.geometry.is_some(), "geometry"),
                 (config.realism_config.is_some(), "realism_config"),
@@ -184,7 +184,7 @@ impl Server {
     }
 }
 
-/// What a specification lacks for a simulator that takes whole ones alone.
+/// What a specification lacks for a simulator that requires complete ones.
 fn lack(specs: &RobotSpecs) -> Option<&'static str> {
     let limits = specs.limits.unwrap_or_default();
     let custom = specs
@@ -213,7 +213,7 @@ fn set(place: &mut f32, value: Option<f32>) {
     }
 }
 
-/// What the specification says of a robot, upon what it is.
+/// Applies the specification to a robot.
 fn shape(robot: &mut Robot, specs: &RobotSpecs) {
     let BodyParameters { radius, height, mass, front, .. } = &mut robot.body;
     set(radius, specs.radius);
@@ -232,7 +232,7 @@ fn shape(robot: &mut Robot, specs: &RobotSpecs) {
         set(forward, asked.acc_speedup_absolute_max);
         set(side, asked.acc_speedup_absolute_max);
         set(brake, asked.acc_brake_absolute_max);
-        // One limit of turning serves both ways here: the weaker of the two.
+        // There is one limit of turning here for both directions: the weaker of the two.
         let turns = [asked.acc_speedup_angular_max, asked.acc_brake_angular_max];
         set(turn, turns.into_iter().flatten().reduce(f32::min));
         set(speed, asked.vel_absolute_max);
@@ -241,7 +241,7 @@ fn shape(robot: &mut Robot, specs: &RobotSpecs) {
     }
 }
 
-/// The field as geometry packets describe it, upon what it is.
+/// Applies the field of a geometry packet to the present one.
 fn field_of(told: &GeometryFieldSize, before: FieldSpec) -> FieldSpec {
     // Divided, not multiplied by 0.001: 180 mm are the 0.18 m that the league's files have.
     let m = |mm: i32| mm as f32 / 1000.0;
@@ -268,10 +268,10 @@ fn field_of(told: &GeometryFieldSize, before: FieldSpec) -> FieldSpec {
     }
 }
 
-/// The ball as geometry packets describe it, upon what it is.
+/// Applies the ball model of a geometry packet to the present one.
 fn ball_of(models: &GeometryModels, mut ball: BallParameters) -> Result<BallParameters, String> {
     if let Some(flat) = models.straight_two_phase {
-        // grSim's 0.7 and ER-Force's 0.69 are meant to be this; a NaN is in no range.
+        // grSim's 0.7 and ER-Force's 0.69 approximate this value; a NaN is in no range.
         if !(0.684..0.744).contains(&flat.k_switch) {
             return Err(format!("k_switch {} is not that of a solid ball, 5/7", flat.k_switch));
         }
@@ -286,19 +286,20 @@ fn ball_of(models: &GeometryModels, mut ball: BallParameters) -> Result<BallPara
     Ok(ball)
 }
 
-/// A custom setting as the message it is said to be.
+/// Decodes a custom setting as the message it claims to be.
 fn custom_of<T: Message + Default>(custom: &Any, name: &str) -> Result<T, Refusal> {
     let url = custom.type_url.clone().unwrap_or_default();
-    // `type.googleapis.com/package.Name`; ER-Force puts one of its messages into a package and the other into none.
+    // `type.googleapis.com/package.Name`; ER-Force puts one of its messages into a package and the other into
+    // none.
     if url.rsplit(['/', '.']).next() != Some(name) {
         return Err(Refusal::UnknownCustom(url));
     }
     T::decode(custom.value.as_deref().unwrap_or_default()).map_err(|_| Refusal::BrokenCustom(url))
 }
 
-/// A solid ball rolls from this share of a kick's speed on.
+/// Share of a kick's speed below which a solid ball rolls.
 const SOLID: f64 = 5.0 / 7.0;
-/// And a model that says so on the wire may have rounded it.
+/// Tolerance for a rounded share on the wire.
 const SWITCH_TOLERANCE: f64 = 1e-3;
-/// s: a command that comes later is none.
+/// Maximum delay of commands, s: larger values are refused.
 const COMMAND_DELAY_MAX: f32 = 1.0;

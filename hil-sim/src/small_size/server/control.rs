@@ -1,6 +1,6 @@
 //! `control`: simulator control. Teleports and the simulation's speed, port 10300; m, m/s, rad.
 //!
-//! What a message leaves out stays as it is.
+//! Fields that a message leaves out stay unchanged.
 
 use geometry::{Angle, Point, Pose, Vector};
 use protocol::{RobotId, Who};
@@ -12,10 +12,10 @@ use super::{Refusal, SPEED_MAX, Server};
 use crate::small_size::Ball;
 
 impl Server {
-    /// Does what a command of port 10300 asks for; gives what could not be done.
+    /// Carries out a command of port 10300; returns what could not be done.
     pub(super) fn steer(&mut self, command: &SimulatorCommand) -> Vec<Refusal> {
         let mut refused = Vec::new();
-        // Settings first: what is moved is moved on the field that was asked for.
+        // Settings first: teleports refer to the new field.
         if let Some(config) = &command.config {
             self.configure(config, &mut refused);
         }
@@ -31,7 +31,7 @@ impl Server {
                 refused.push(refusal);
             }
         }
-        // After the robots: a ball asks them to make room where they stand then.
+        // After the robots: a ball moves robots off its position where they stand then.
         if let Some(teleport) = &control.teleport_ball {
             self.teleport_ball(teleport, refused);
         }
@@ -85,7 +85,7 @@ impl Server {
                 refused.push(Refusal::TooFast { what, asked, most: BALL_SPEED_MAX });
             }
         }
-        // A simulator that cannot do these says so even where they are false.
+        // A simulator that does not support these reports it even where they are false.
         if !quirks.safe_teleport {
             refused.extend(asked.teleport_safely.map(|_| Refusal::MannersSafely));
             refused.extend(asked.roll.map(|_| Refusal::MannersRoll));
@@ -98,7 +98,7 @@ impl Server {
             (false, true) => Vector::default(),
             (false, false) => before.spin,
         };
-        // A message that says nothing ends a pull and moves nothing.
+        // A message without values ends a pull and moves nothing.
         if moved || placed || roll || asked.vz.is_some() {
             self.world.put_ball(Ball { position: to, height, velocity, climb, spin, hops: 0 });
         }
@@ -142,7 +142,8 @@ impl Server {
             if !quirks.parks {
                 return Err(Refusal::OutsideHall("teleport_robot"));
             }
-            // So far away nothing sees it and nothing meets it: it is off the carpet until it is put on it again.
+            // So far away no camera sees it and nothing touches it: it is off the field surface until it is
+            // placed there again.
             if known.is_some() {
                 self.world.remove(who);
                 self.parked.insert(who);
@@ -161,7 +162,7 @@ impl Server {
         if !placed && !moves {
             return Ok(());
         }
-        // A robot put somewhere stands there, as the protocol's defaults of 0 say, unless it is told to move.
+        // A teleported robot stands, as the protocol's defaults of 0 state, unless it gets a velocity.
         let wanted = Vector::new(asked.v_x.unwrap_or(0.0), asked.v_y.unwrap_or(0.0));
         let turning = asked.v_angular.unwrap_or(0.0);
         let robot = self.world.put(who, to);
@@ -184,7 +185,7 @@ impl Server {
     }
 }
 
-/// What a simulator that takes whole coordinates alone refuses of a ball's teleport.
+/// Errors of a ball's teleport in a simulator that requires both coordinates.
 fn partial_ball(asked: &TeleportBall) -> Option<Refusal> {
     let place = [asked.x.is_some(), asked.y.is_some()];
     if asked.teleport_safely.unwrap_or(false) && place != [true, true] {
@@ -201,7 +202,8 @@ fn partial_ball(asked: &TeleportBall) -> Option<Refusal> {
     force.then_some(Refusal::VelocityForce("teleport_ball"))
 }
 
-/// The same of a robot's teleport; `present`: it is on the field, `known`: it was there once, or was specified.
+/// The same for a robot's teleport; `present`: it is on the field, `known`: it was there once, or was
+/// specified.
 fn whole_robot(asked: &TeleportRobot, present: bool, known: bool) -> Result<(), Refusal> {
     let id = asked.id.id.unwrap_or_default();
     if !present && !known {
@@ -220,7 +222,7 @@ fn whole_robot(asked: &TeleportRobot, present: bool, known: bool) -> Result<(), 
     if by_force && moves { Err(Refusal::VelocityForce("teleport_robot")) } else { Ok(()) }
 }
 
-/// A robot as the protocol names it.
+/// The robot of a protocol id.
 pub(super) fn who(id: &ssl::common::RobotId) -> Result<Who, Refusal> {
     let number = id.id.ok_or(Refusal::NoSuchId(None))?;
     let number = u8::try_from(number).ok().and_then(RobotId::new).ok_or(Refusal::NoSuchId(id.id))?;
@@ -231,9 +233,9 @@ pub(super) fn who(id: &ssl::common::RobotId) -> Result<Who, Refusal> {
     }
 }
 
-/// m of hall beyond the boards.
+/// Distance from the boards to the walls of the room, m.
 const HALL: f32 = 2.0;
-/// m.
+/// Height of the room, m.
 const HALL_HEIGHT: f32 = 20.0;
-/// m/s: no ball is put down faster.
+/// Maximum speed of a teleported ball, m/s.
 const BALL_SPEED_MAX: f32 = 20.0;

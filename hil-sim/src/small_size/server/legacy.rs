@@ -1,7 +1,8 @@
-//! `legacy`: grSim's older protocol, port 20011, as that simulator takes it; m, m/s, rad/s, degrees for a replaced robot's heading.
+//! `legacy`: grSim's older protocol, port 20011, as that simulator implements it; m, m/s, rad/s, degrees for
+//! a replaced robot's heading.
 //!
-//! Robots' states go to the sender's machine, ports 30011 (blue) and 30012 (yellow), after each message and only for robots whose
-//! state has changed since.
+//! Robots' states go to the sender's machine, ports 30011 (blue) and 30012 (yellow), after each message and
+//! only for robots whose state has changed since.
 
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
@@ -18,11 +19,11 @@ use ssl::simulation::{
 use super::{Destination, Server, Transmit};
 use crate::small_size::{Drive, Kick, Order};
 
-/// What was last told of each robot.
+/// The last reported state of each robot.
 pub(super) type Told = BTreeMap<Who, RobotStatus>;
 
 impl Server {
-    /// A datagram came to port 20011. It is never answered with an error: the protocol has none.
+    /// A datagram for port 20011. It is never answered with an error: the protocol has none.
     pub(super) fn legacy(&mut self, from: SocketAddr, bytes: &[u8]) {
         let Ok(packet) = GrsimPacket::decode(bytes) else {
             self.counts.undecodable += 1;
@@ -60,7 +61,7 @@ impl Server {
             _ => [0.0; 4],
         };
         let drive = if command.wheelsspeed {
-            // Numbered counter-clockwise from the front left; what is left out stays.
+            // Numbered counter-clockwise from the front left; omitted wheels keep their speed.
             let wheels = [command.wheel4, command.wheel3, command.wheel2, command.wheel1];
             let mut rims = before;
             for (rim, wheel) in rims.iter_mut().zip(wheels) {
@@ -81,7 +82,7 @@ impl Server {
         self.send_order(who, Order { drive, kick, dribbler, discharge: false });
     }
 
-    /// Things are put somewhere else, by the same way as the league's protocol does it.
+    /// Teleports, with the same code as the league's protocol.
     fn replace(&mut self, replacement: &GrsimReplacement) {
         let mut unsaid = Vec::new();
         for robot in &replacement.robots {
@@ -103,7 +104,7 @@ impl Server {
             let teleport = TeleportBall {
                 x: number(ball.x),
                 y: number(ball.y),
-                // It is always put on the carpet.
+                // It is always placed on the field surface.
                 z: Some(0.0),
                 vx: number(ball.vx),
                 vy: number(ball.vy),
@@ -115,7 +116,7 @@ impl Server {
         self.counts.refused += unsaid.len() as u64;
     }
 
-    /// The robots of the team whose state is another than was last told.
+    /// The robots of the team whose state differs from the last reported one.
     fn changes(&mut self, colour: Colour) -> Vec<RobotStatus> {
         let now = self.world.now();
         let mut changed = Vec::new();
@@ -141,9 +142,9 @@ const fn colour_of(yellow: bool) -> Colour {
     if yellow { Colour::Yellow } else { Colour::Blue }
 }
 
-/// m: the wheels of grSim's first robot; wheels are commanded by their rate of turn there.
+/// Radius of the wheels of grSim's first robot, m; wheels are commanded by their angular rate there.
 const WHEEL_RADIUS: f32 = 0.027;
-/// m/s: below this there is no kick.
+/// Minimum speed of a kick, m/s.
 const KICK_LEAST: f32 = 0.0001;
-/// Steps for which a kick is told: ten of grSim's at 60 Hz.
+/// Steps for which a kick is reported: ten of grSim's at 60 Hz.
 const KICK_SHOWS: u64 = 167;

@@ -3,12 +3,13 @@
 //! | port | takes | answers |
 //! |---|---|---|
 //! | 10300 | `SimulatorCommand` | `SimulatorResponse` with what could not be done |
-//! | 10301 blue, 10302 yellow | `RobotControl` | `RobotControlResponse`: the same, and each robot's light barrier |
-//! | 20011, manners of grSim alone | `grSim_Packet` | `Robots_Status` to 30011 (blue) and 30012 (yellow): what changed |
+//! | 10301 blue, 10302 yellow | `RobotControl` | `RobotControlResponse`: the same, and each robot's break-beam sensor |
+//! | 20011, grSim's profile alone | `grSim_Packet` | `Robots_Status` to 30011 (blue) and 30012 (yellow): what changed |
 //! | vision, multicast | – | `SSL_WrapperPacket` |
 //!
-//! No socket and no clock here: whoever has them calls [`Server::handle`] with what came, [`Server::advance`] with the time,
-//! and sends what [`Server::poll_transmit`] gives. Commands take effect in the step after they came.
+//! No socket and no clock here: the caller calls [`Server::handle`] with received datagrams,
+//! [`Server::advance`] with the time, and sends what [`Server::poll_transmit`] gives. Commands take effect in
+//! the step after they arrived.
 
 mod command;
 mod config;
@@ -36,27 +37,27 @@ use crate::rng::Stream;
 
 pub use refusal::Refusal;
 
-/// How a server starts.
+/// Start settings of a server.
 #[derive(Clone, Debug)]
 pub struct ServerSettings {
-    /// Which field.
+    /// The league.
     pub league: League,
-    /// How everything behaves.
+    /// The world model.
     pub model: WorldModel,
-    /// Whose manners it has.
+    /// The compatibility profile.
     pub profile: Profile,
-    /// Robots of each team at the start.
+    /// Number of robots of each team at the start.
     pub robots: u8,
-    /// Where all chance comes from.
+    /// Seed of all random streams.
     pub seed: u64,
-    /// Unix time now, s; for manners that tell it.
+    /// Unix time now, s; for profiles that send it.
     pub unix_now: f64,
-    /// Where vision goes.
+    /// Destination port of vision.
     pub vision_port: u16,
 }
 
 impl ServerSettings {
-    /// A league as its file has it; `None` where no robots on wheels play.
+    /// The settings of a league's file; `None` for leagues without wheeled robots.
     pub fn of(league: League, profile: Profile, seed: u64, unix_now: f64) -> Option<Self> {
         let model = WorldModel::of(league, &WorldChoice::Nominal)?;
         let robots = model.parameters.robots;
@@ -76,7 +77,7 @@ pub enum Port {
 }
 
 impl Port {
-    /// Its number.
+    /// Its port number.
     pub const fn number(self) -> u16 {
         match self {
             Self::Simulator => 10300,
@@ -90,46 +91,46 @@ impl Port {
 /// A datagram to be sent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transmit {
-    /// Where to.
+    /// The destination.
     pub to: Destination,
-    /// What.
+    /// The payload.
     pub bytes: Vec<u8>,
 }
 
-/// Where a datagram goes.
+/// Destination of a datagram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Destination {
     /// The vision group, at this port.
     Vision(u16),
-    /// Back to who asked, from the port it was asked at.
+    /// Back to the sender of the request, from the port that received it.
     Reply {
-        /// From here.
+        /// The source port.
         from: Port,
-        /// To there.
+        /// The destination address.
         to: SocketAddr,
     },
-    /// To the machine that commanded last, at grSim's port for robots' states.
+    /// To the machine that sent the last command, at grSim's port for robots' states.
     Status(SocketAddr),
 }
 
-/// What came and what became of it.
+/// Counts of received datagrams and their results.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Messages understood at 10300.
     pub simulator: u64,
     /// Messages understood at 10301 and 10302.
     pub control: u64,
-    /// Datagrams that were none of their port's messages.
+    /// Datagrams that could not be decoded as a message of their port.
     pub undecodable: u64,
-    /// Refusals told.
+    /// Refusals reported.
     pub refused: u64,
     /// Robots' commands lost on purpose (realism).
     pub lost: u64,
-    /// Milliseconds not simulated because the caller came too late.
+    /// Milliseconds not simulated because the caller called too late.
     pub skipped: u64,
 }
 
-/// A simulator that speaks the league's protocol.
+/// A simulator with the league's protocol.
 #[derive(Clone, Debug)]
 pub struct Server {
     world: World,
@@ -142,22 +143,22 @@ pub struct Server {
     last: Option<Instant>,
     /// Simulated µs not yet stepped.
     owed: f32,
-    /// Orders on their way, by the step they take effect in.
+    /// Orders not yet in effect, by the step they take effect in.
     coming: VecDeque<(u64, Who, Order)>,
-    /// Robots that were put far outside the hall: off the carpet, but not taken away.
+    /// Robots that were placed far outside the walls: off the field surface, but not removed.
     parked: BTreeSet<Who>,
-    /// Robots' states as they were last told in grSim's older protocol.
+    /// Robots' last reported states in grSim's older protocol.
     told: legacy::Told,
     out: VecDeque<Transmit>,
     counts: Counts,
 }
 
-/// What happens to robots' commands and answers on the way.
+/// Loss and delay of robots' commands and answers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct RadioRealism {
     command_loss: f32,
     answer_loss: f32,
-    /// Steps.
+    /// Delay, steps.
     delay: u64,
 }
 
@@ -168,7 +169,8 @@ impl Server {
         let field = settings.league.field();
         for n in 0..settings.robots.min(RobotId::COUNT as u8) {
             let Some(id) = RobotId::new(n) else { continue };
-            // Columns of four, 0.4 m apart, beginning a metre from the halfway line (or half way into a small field).
+            // Columns of four, 0.4 m apart, starting a metre from the halfway line (or half way into a small
+            // field).
             let depth = (field.length * 0.25).min(1.0) + f32::from(n / 4) * SPACING;
             let aside = (f32::from(n % 4) - 1.5) * SPACING;
             world.put(Who::blue(id), Pose::from_mm_deg(-depth * 1000.0, aside * 1000.0, 0.0));
@@ -197,32 +199,32 @@ impl Server {
         }
     }
 
-    /// The truth.
+    /// The true state.
     pub fn world(&self) -> &World {
         &self.world
     }
 
-    /// The truth, for a referee's hand.
+    /// The true state, mutable, for a referee's manual acts.
     pub fn world_mut(&mut self) -> &mut World {
         &mut self.world
     }
 
-    /// What came and what became of it.
+    /// Counts of received datagrams and their results.
     pub fn counts(&self) -> Counts {
         self.counts
     }
 
-    /// Simulated seconds a second; 0 stands still.
+    /// Simulated seconds per second; 0 stands still.
     pub fn pace(&self) -> f32 {
         self.pace
     }
 
-    /// Whose manners it has.
+    /// The compatibility profile.
     pub fn profile(&self) -> Profile {
         self.profile
     }
 
-    /// A datagram came to `port`.
+    /// Handles a datagram that arrived at `port`.
     pub fn handle(&mut self, port: Port, from: SocketAddr, bytes: &[u8]) {
         match port {
             Port::Simulator => {
@@ -257,7 +259,8 @@ impl Server {
             self.reply(port, from, answer.encode_to_vec());
             return;
         }
-        // ER-Force's simulator sends errors and feedback apart, and neither where there is none.
+        // ER-Force's simulator sends errors and feedback in separate packets, and none where there is nothing
+        // to send.
         let RobotControlResponse { errors, feedback } = answer;
         if !errors.is_empty() {
             let errors = RobotControlResponse { errors, feedback: Vec::new() };
@@ -273,7 +276,7 @@ impl Server {
         self.out.push_back(Transmit { to: Destination::Reply { from, to }, bytes });
     }
 
-    /// Time has come to `now`: the world follows at its pace, and vision packets fall due.
+    /// Advances the time to `now`: the world follows at its pace, and vision packets fall due.
     pub fn advance(&mut self, now: Instant) {
         let before = *self.last.get_or_insert(now);
         self.last = Some(now);
@@ -287,7 +290,7 @@ impl Server {
         }
     }
 
-    /// One step of physics and what follows from it, whatever time it is.
+    /// One step of physics and its consequences, independent of the time.
     pub fn step(&mut self) {
         let now = self.world.now();
         while let Some((_, who, order)) = self.coming.pop_front_if(|(due, ..)| *due <= now) {
@@ -301,7 +304,7 @@ impl Server {
         }
     }
 
-    /// When [`Server::advance`] has something to do next; `None` while the world stands still.
+    /// When [`Server::advance`] has to be called next; `None` while the world stands still.
     pub fn poll_timeout(&self) -> Option<Instant> {
         let last = self.last.unwrap_or_default();
         (self.pace > 0.0).then(|| Instant(last.0 + ((STEP_US - self.owed) / self.pace).max(0.0) as u64 + 1))
@@ -312,8 +315,8 @@ impl Server {
         self.out.pop_front()
     }
 
-    /// The protocol's synchronous mode: does what is asked, simulates `sim_step` seconds (none: no time passes), gives what
-    /// cameras then see. After every step `each` gets the world, for a referee.
+    /// The protocol's synchronous mode: carries out the request, simulates `sim_step` seconds (none: no time
+    /// passes), and returns what cameras then see. After every step `each` gets the world, for a referee.
     pub fn synchronous(
         &mut self,
         colour: Colour,
@@ -362,17 +365,17 @@ impl Server {
     }
 }
 
-/// The fastest simulation speed: beyond, no machine follows.
+/// Maximum simulation speed: no machine is faster.
 pub const SPEED_MAX: f32 = 1000.0;
-/// s: the longest synchronous step.
+/// Maximum synchronous step, s.
 pub const SYNC_MAX: f32 = 10.0;
-/// Where simulators send vision by default, so as not to disturb a tournament's 10006.
+/// Default port of simulated vision, so as not to disturb a tournament's 10006.
 pub const VISION_PORT: u16 = 10020;
-/// µs in a step.
+/// Duration of a step, µs.
 const STEP_US: f32 = 1000.0;
-/// Simulated µs that are caught up at once after a pause of the caller; what is beyond is skipped.
+/// Simulated µs that are simulated at once after a pause of the caller; the remainder is skipped.
 const CATCH_UP: f32 = 250_000.0;
-/// m between robots at the start.
+/// Distance between robots at the start, m.
 const SPACING: f32 = 0.4;
 
 #[cfg(test)]

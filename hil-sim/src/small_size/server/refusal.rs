@@ -1,8 +1,9 @@
-//! `refusal`: error codes of the simulator, and how to fix them. Every error code of this simulator, one
-//! variant each.
+//! `refusal`: error codes of the simulator, with their fixes. Every error code of this simulator, one variant
+//! each.
 //!
-//! The protocol leaves codes to each simulator: ours are `ONETWO_…`. Under another's manners the codes are theirs, and what they
-//! have none for is not told, as they do not tell it. The messages are ours.
+//! The protocol leaves codes to each simulator: ours are `ONETWO_…`. In another simulator's profile the codes
+//! are that one's, and errors for which it has no code are not reported, as it does not report them. The
+//! messages are ours.
 
 use std::fmt;
 
@@ -11,7 +12,7 @@ use ssl::simulation::SimulatorError;
 use crate::four_legged::parameters::ParameterError;
 use crate::small_size::quirks::Profile;
 
-/// Why something was not done. Whatever else the message asked for was.
+/// Why a part of a message was refused. All other parts of the message were carried out.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Refusal {
     /// The datagram is no message of this port.
@@ -20,47 +21,47 @@ pub enum Refusal {
     NoSuchId(Option<u32>),
     /// A robot's team is missing or neither yellow nor blue.
     NoTeam,
-    /// Nobody of that number stands on the field.
+    /// No robot of that number is on the field.
     UnknownRobot(u32),
-    /// Two commands for one robot in one message; the later one holds.
+    /// Two commands for one robot in one message; the later one takes effect.
     Twice(u32),
-    /// A command that does not say how to move; the robot brakes.
+    /// A command without a motion; the robot brakes.
     MissingMove(u32),
-    /// A `move_command` that says nothing; the robot goes on as it did.
+    /// An empty `move_command`; the robot keeps its motion.
     EmptyMove(u32),
-    /// A robot's velocity in a form that the simulator does not take; it brakes.
+    /// A robot's velocity in a form that the simulator does not accept; it brakes.
     VelocityForm(u32),
-    /// A number that is none; what it belongs to was left out.
+    /// A NaN or infinite number; its setting was left out.
     NotANumber(&'static str),
-    /// A kick beyond the robot's strength; it will kick as hard as it can.
+    /// A kick faster than the robot's maximum; it will kick at its maximum.
     KickTooFast {
-        /// Who.
+        /// Number of the robot.
         id: u32,
-        /// m/s, asked for.
+        /// Requested speed, m/s.
         asked: f32,
-        /// m/s, possible.
+        /// Maximum speed, m/s.
         most: f32,
     },
     /// A kick's speed below zero; no kick.
     KickBackwards(u32),
     /// A kick's angle outside 0–90°; no kick.
     KickAngle {
-        /// Who.
+        /// Number of the robot.
         id: u32,
-        /// Degrees.
+        /// Requested angle, degrees.
         asked: f32,
     },
-    /// A dribbler's speed below zero; it stands.
+    /// A dribbler's speed below zero; the dribbler stops.
     DribblerBackwards(u32),
-    /// A place beyond the hall's walls.
+    /// A position outside the walls of the room.
     OutsideHall(&'static str),
-    /// Something was put down faster than it can be; it got the greatest speed there is.
+    /// A teleport with a speed above the maximum; it got the maximum speed.
     TooFast {
-        /// What.
+        /// Name of the object.
         what: &'static str,
-        /// m/s or rad/s, asked for.
+        /// Requested speed, m/s or rad/s.
         asked: f32,
-        /// m/s or rad/s, possible.
+        /// Maximum speed, m/s or rad/s.
         most: f32,
     },
     /// One coordinate of two is missing; nothing was moved.
@@ -69,44 +70,45 @@ pub enum Refusal {
     PartialSafely,
     /// A velocity with a pull by force; nothing was moved.
     VelocityForce(&'static str),
-    /// A robot that is to be put on the field has never been specified.
+    /// A robot that is to be placed on the field has never been specified.
     Unspecified(u32),
-    /// A robot that is to be put on the field has no place given.
+    /// A robot that is to be placed on the field has no position given.
     NoPlace(u32),
-    /// A robot's specification lacks something that this simulator needs.
+    /// A robot's specification lacks a value that this simulator needs.
     SpecsLack(&'static str),
     /// A simulation speed that is negative or beyond [`super::SPEED_MAX`].
     Pace(f32),
-    /// A robot's specification that no robot can have.
+    /// A robot's specification outside the limits of the physics.
     Specs(ParameterError),
-    /// A field that no field can be.
+    /// A field with impossible dimensions.
     Geometry(rules::FieldFault),
-    /// A ball that no ball can be, or one that is not solid.
+    /// An impossible ball model, or one that is not of a solid ball.
     BallModel(String),
-    /// The share of a kick's speed from which on the ball rolls is not a solid ball's; the rest of the model holds.
+    /// The share of a kick's speed below which the ball rolls is not a solid ball's; the other parameters
+    /// take effect.
     BallSwitch(f64),
     /// Noise, delays or losses out of their range.
     Realism(ParameterError),
-    /// A custom setting of a type that is not known here.
+    /// A custom setting of an unknown type.
     UnknownCustom(String),
-    /// A custom setting of a known type with bytes that are not of it.
+    /// A custom setting of a known type whose bytes cannot be decoded.
     BrokenCustom(String),
-    /// A setting that exists in the protocol but not here; it was left out.
+    /// A setting that exists in the protocol but is not supported here; it was left out.
     Unsupported(&'static str),
     /// Not a port.
     VisionPort(u32),
-    /// A step that is no time, or longer than [`super::SYNC_MAX`].
+    /// A step that is not a positive duration, or is longer than [`super::SYNC_MAX`].
     SyncStep(f32),
-    /// The manners in force know no such setting.
+    /// The active profile has no such setting.
     MannersConfig(&'static str),
-    /// The manners in force know no safe teleport.
+    /// The active profile has no safe teleport.
     MannersSafely,
-    /// The manners in force cannot make a ball roll.
+    /// The active profile cannot make a ball roll.
     MannersRoll,
 }
 
 impl Refusal {
-    /// The code for programs, without the simulator's prefix.
+    /// The machine-readable code, without the simulator's prefix.
     pub fn code(&self) -> &'static str {
         match self {
             Self::Undecodable => "UNDECODABLE",
@@ -147,7 +149,7 @@ impl Refusal {
         }
     }
 
-    /// The whole code as a simulator of these manners tells it; `None` where it says nothing.
+    /// The complete code in that profile; `None` where it reports nothing.
     pub fn code_of(&self, profile: Profile) -> Option<String> {
         match profile {
             Profile::Ours => Some(format!("ONETWO_{}", self.code())),
@@ -177,7 +179,7 @@ impl Refusal {
         }
     }
 
-    /// As the protocol sends it, where it is told.
+    /// The error message of the protocol, where it is reported.
     pub fn told(&self, profile: Profile) -> Option<SimulatorError> {
         Some(SimulatorError { code: Some(self.code_of(profile)?), message: Some(self.to_string()) })
     }

@@ -1,5 +1,5 @@
-//! Tests: the server follows the league's simulation protocol and answers what it cannot do. Bytes in, bytes
-//! out.
+//! Tests: the server follows the league's simulation protocol and answers requests that it cannot carry out.
+//! Bytes in, bytes out.
 
 mod codes;
 mod legacy;
@@ -30,7 +30,7 @@ fn server() -> Server {
     server_like(Profile::Ours)
 }
 
-/// What is sent, vision apart from the answers.
+/// All transmitted packets: vision, and answers.
 fn sent(server: &mut Server) -> (Vec<WrapperPacket>, Vec<Vec<u8>>) {
     let (mut vision, mut answers) = (Vec::new(), Vec::new());
     while let Some(Transmit { to, bytes }) = server.poll_transmit() {
@@ -43,7 +43,7 @@ fn sent(server: &mut Server) -> (Vec<WrapperPacket>, Vec<Vec<u8>>) {
     (vision, answers)
 }
 
-/// The codes that a message to 10300 is answered with.
+/// The codes in the answer to a message to 10300.
 fn steer(server: &mut Server, command: &SimulatorCommand) -> Vec<String> {
     sent(server);
     server.handle(Port::Simulator, from(), &command.encode_to_vec());
@@ -100,7 +100,7 @@ fn a_commanded_robot_drives_and_the_answer_names_who_is_there() {
         steps(&mut server, 10);
     }
     let after = server.world().robot(own(2)).unwrap().pose.position;
-    // ½·1²/4.5 m are lost in speeding up to 1 m/s for half a second.
+    // ½·1²/4.5 m are lost in accelerating to 1 m/s for half a second.
     assert!((after.x() - before.x() - 0.389).abs() < 0.01, "{before:?} {after:?}");
     assert_eq!(server.counts().control, 50);
 }
@@ -222,7 +222,7 @@ fn robots_leave_come_and_are_pulled() {
     steps(&mut server, 2_000);
     let place = |server: &Server| server.world().robot(own(15)).unwrap().pose.position;
     assert!((place(&server).x() + 3.0).abs() < 0.02, "one message is enough: {:?}", place(&server));
-    // It stays pulled, whatever it is told to do ...
+    // It stays pulled, whatever its orders are ...
     for _ in 0..100 {
         lead(&mut server, Colour::Blue, &[ahead(15, 1.0)]);
         steps(&mut server, 10);
@@ -250,14 +250,14 @@ fn a_ball_is_pulled_and_held_until_it_is_let_go() {
     steps(&mut server, 3_000);
     let place = |server: &Server| server.world().ball.position;
     assert!(place(&server).distance(Point::new(0.0, 2.0)) < 0.01, "{:?}", place(&server));
-    // A robot that drives through it does not take it along.
+    // A robot that drives through it does not push it away.
     server.world_mut().put(own(0), geometry::Pose::from_mm_deg(-300.0, 2000.0, 0.0));
     for _ in 0..200 {
         lead(&mut server, Colour::Blue, &[ahead(0, 0.5)]);
         steps(&mut server, 10);
     }
     assert!(place(&server).distance(Point::new(0.0, 2.0)) < 0.15, "{:?}", place(&server));
-    // One coordinate alone: the other stays as it was asked for.
+    // One coordinate alone: the other keeps its requested value.
     assert!(ball(&mut server, by_force(Some(1.0), None)).is_empty());
     steps(&mut server, 3_000);
     assert!(place(&server).distance(Point::new(1.0, 2.0)) < 0.15, "{:?}", place(&server));

@@ -70,7 +70,8 @@ fn a_ball_bounces_off_the_back_of_a_robot_with_the_hulls_share() {
         world.step();
         fastest = fastest.max(-world.ball.velocity.x());
     }
-    // It hits with √(4 − 2·3.9·0.0885) = 1.820 m/s; 0.4 and 2.5/(2.5 + 0.046) of (1 + e): 1.4·0.98193 − 1 = 0.3747 of it.
+    // It hits with √(4 − 2·3.9·0.0885) = 1.820 m/s; 0.4 and 2.5/(2.5 + 0.046) of (1 + e): 1.4·0.98193 − 1 =
+    // 0.3747 of it.
     assert!((fastest - 1.820 * 0.374_7).abs() < 0.01, "{fastest}");
     let robot = world.robot(yellow(1)).unwrap();
     assert!(robot.pose.position.x() > 0.0, "the robot took the rest, and brakes: {:?}", robot.pose);
@@ -88,7 +89,7 @@ fn a_chip_flies_over_a_robot_and_a_flat_kick_does_not() {
     let from = Point::new(-0.6, 0.0);
     assert!(!crossed(Ball::rolling(from, Vector::new(4.0, 0.0))));
     assert!(crossed(Ball { velocity: Vector::new(3.0, 0.0), climb: 3.0, ..Ball::at(from) }));
-    // Too low over it: 0.6 m take 0.2 s at 3 m/s, where a climb of 1.2 m/s is down to 0.044 m.
+    // Too low: 0.6 m take 0.2 s at 3 m/s, after which a climb of 1.2 m/s gives a height of only 0.044 m.
     assert!(!crossed(Ball { velocity: Vector::new(3.0, 0.0), climb: 1.2, ..Ball::at(from) }));
 }
 

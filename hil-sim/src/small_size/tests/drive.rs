@@ -11,8 +11,8 @@ fn two_metres_from_rest_take_what_acceleration_and_top_speed_say() {
         lead(&mut world, yellow(1), local(3.0, 0.0, 0.0), 10);
         steps += 10;
     }
-    // 4.5 m/s² to 3 m/s: 1 m in 0.667 s; 1 m more at 3 m/s: 0.333 s. Exactly 1 s for a body that grips at once; motors are
-    // stronger than grip, so no more than two steps of asking are lost.
+    // 4.5 m/s² to 3 m/s: 1 m in 0.667 s; 1 m more at 3 m/s: 0.333 s. Exactly 1 s for a body with immediate
+    // traction; motors are stronger than traction, so no more than two control steps are lost.
     assert!((1_000..=1_020).contains(&steps), "{steps}");
 }
 
@@ -114,7 +114,7 @@ fn a_crash_is_told_once_with_the_projected_difference_of_speeds() {
     }
     let [Event::Crash { robots, closing, velocities, .. }] = crashes[..] else { panic!("{crashes:?}") };
     assert_eq!(robots, [yellow(1), blue(1)]);
-    // Half a diameter aside the line between them lies 30° off their course: 3 m/s · cos 30°.
+    // With an offset of half a diameter the line between them is at 30° to their course: 3 m/s · cos 30°.
     assert!((closing - 2.598).abs() < 0.02, "{closing}");
     assert!((velocities[0].x() - 2.0).abs() < 0.05, "{velocities:?}");
 }
@@ -122,7 +122,7 @@ fn a_crash_is_told_once_with_the_projected_difference_of_speeds() {
 #[test]
 fn two_free_robots_keep_their_momentum_in_a_collision() {
     let mut parameters = exact();
-    // No grip: nothing but the impact changes their speeds.
+    // No traction: only the impact changes their speeds.
     (parameters.drive.forward, parameters.drive.side, parameters.drive.brake) = (0.1, 0.1, 0.1);
     let mut world = World::new(League::DivisionB, &parameters, 1);
     world.put_ball(Ball::at(Point::new(0.0, 2.5)));

@@ -23,7 +23,7 @@ fn kick(speed: f32, degrees: f32) -> Order {
 fn a_gentle_robot_takes_the_ball_along_backwards_sideways_and_round() {
     for gentle in [local(-1.0, 0.0, 0.0), local(1.0, 0.0, 0.0), local(0.0, 0.6, 0.0), local(0.0, 0.0, 3.0)] {
         let mut world = with_ball();
-        // A brain speeds up by ramps: 2 m/s², 10 rad/s².
+        // A brain accelerates by ramps: 2 m/s², 10 rad/s².
         for tenth in 1..=100 {
             let share = (tenth as f32 / 50.0).min(1.0);
             let Drive::Local(twist) = gentle.drive else { continue };
@@ -39,7 +39,8 @@ fn a_jerk_loses_the_ball_and_it_neither_sticks_nor_flies_off() {
     let mut world = with_ball();
     lead(&mut world, yellow(1), dribble(local(1.0, 0.0, 0.0)), 600);
     assert!(has_ball(&world));
-    // Full brakes backwards pull less than the roller holds; three times the grip does not.
+    // Full braking while driving backwards pulls less than the roller holds; three times the traction does
+    // not.
     world.alter(yellow(1), |robot| robot.set_limits(DriveParameters { brake: 16.0, ..*robot.limits() }));
     lead(&mut world, yellow(1), dribble(local(-2.0, 0.0, 0.0)), 600);
     assert!(!has_ball(&world));
@@ -128,7 +129,8 @@ fn a_ball_kicked_out_of_the_turning_dribbler_slides_first_like_any_other() {
         world.ball.position.x()
     };
     let (still, turning) = (comes_to(kick(2.0, 0.0)), comes_to(dribble(kick(2.0, 0.0))));
-    // 2 m/s slide to 5/7 of that: (4 - 2.041)/7.8 + 2.041/0.7 = 3.17 m; one that rolled at once would come 5.7 m.
+    // 2 m/s slide to 5/7 of that: (4 - 2.041)/7.8 + 2.041/0.7 = 3.17 m; a ball that rolled at once would come
+    // 5.7 m.
     assert!((still - 0.0945 - 3.17).abs() < 0.05, "{still}");
     assert!((still - turning).abs() < 0.15, "{still} {turning}");
 }

@@ -1,9 +1,10 @@
-//! `bystanders`: robots that stand about: seen by every camera, obstacles to ball and robots, commanded by no
-//! computer and counted by no referee.
+//! `bystanders`: robots that stand on or beside the field: seen by every camera, obstacles to ball and
+//! robots, commanded by no computer and counted by no referee.
 //!
-//! They are robots of both teams by turns with the highest numbers that are free, as are left standing on simulators and
-//! fields alike. Where they stand is drawn once: outside the lines, or on the field where no rule puts ball or robots down. A real
-//! referee would have them carried off, as he would count them; here he looks through them, so that the match goes on.
+//! They are robots of both teams alternately with the highest free numbers, as are left standing on
+//! simulators and fields alike. Their positions are drawn once: outside the lines, or on the field where no
+//! rule places ball or robots. A real referee would count them and have them removed; this referee ignores
+//! them, so that the match goes on.
 
 use geometry::{Angle, Field, Point, Pose};
 use protocol::{RobotId, Who};
@@ -13,7 +14,8 @@ use crate::rng::Stream;
 use crate::small_size::World;
 
 impl World {
-    /// Puts down so many, or as many as ids are left and room is found; to be called when the players stand.
+    /// Places `count` bystanders, or as many as there are free ids and free positions; to be called when the
+    /// players stand.
     pub fn add_bystanders(&mut self, count: u8) {
         let mut chance = Stream::new(self.seed, "bystanders");
         let mut left = [Colour::Blue, Colour::Yellow].map(|colour| {
@@ -63,13 +65,15 @@ impl World {
 
 /// Share of those that stand on the field, not beside it; estimate.
 const ON_FIELD: f32 = 0.4;
-/// m to the lines and areas: the nearest places where balls are put down are 0.2 m from them, and two robots fit between.
+/// Minimum distance to the lines and areas, m: the nearest positions where balls are placed are 0.2 m from
+/// them, and two robots fit between.
 const CLEAR_OF_LINES: f32 = 0.7;
-/// m to the ball, the circle and the goals: more than a robot's width, so that a robot that plays there gets round.
+/// Minimum distance to the ball, the circle and the goals, m: more than a robot's width, so that a robot that
+/// plays there can pass.
 const CLEAR: f32 = 0.3;
-/// m between a bystander beside the field and the line.
+/// Distance between a bystander beside the field and the line, m.
 const BESIDE: f32 = 0.02;
-/// m between bystanders and other robots: a robot fits through.
+/// Minimum distance between bystanders and other robots, m: a robot fits through.
 const APART: f32 = 0.25;
-/// Draws of a place; a field without room has none.
+/// Maximum number of draws of a position; a field without room has none.
 const DRAWS: usize = 400;

@@ -5,16 +5,16 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-/// Which world is played in: `nominal`, a named profile, or `random:SEED`.
+/// The choice of a world: `nominal`, a named profile, or `random:SEED`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum WorldChoice {
-    /// The league's own file, as it is.
+    /// The league's own file, unchanged.
     #[default]
     Nominal,
     /// A named profile.
     Named(NamedWorld),
-    /// Every number drawn from its distribution.
+    /// Every number drawn from its distribution, with this seed.
     Random(u64),
 }
 
@@ -38,7 +38,7 @@ pub enum NamedWorld {
 }
 
 impl NamedWorld {
-    /// All of them.
+    /// All named profiles.
     pub const ALL: [Self; 7] = [
         Self::Grsim,
         Self::Erforce,
@@ -64,7 +64,7 @@ impl NamedWorld {
 }
 
 impl WorldChoice {
-    /// Every name that can be chosen, but for `random:SEED`.
+    /// Every name that can be chosen, except `random:SEED`.
     pub fn names() -> impl Iterator<Item = &'static str> {
         [NOMINAL].into_iter().chain(NamedWorld::ALL.into_iter().map(NamedWorld::word))
     }
@@ -96,11 +96,11 @@ impl FromStr for WorldChoice {
     }
 }
 
-/// Which world each match of many is played in.
+/// The world of each match of a series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum WorldPlan {
-    /// All in this one.
+    /// All matches in this one.
     Same(WorldChoice),
     /// Each in the random world of its own seed; written `random`.
     RandomPerMatch,
@@ -174,12 +174,12 @@ impl From<WorldPlan> for String {
     }
 }
 
-/// No world has that name.
+/// The text names no world.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownWorld {
-    /// What was asked for.
+    /// The requested name.
     pub word: String,
-    /// `random` alone would have been a name too.
+    /// Whether `random` alone would have been a name too.
     plan: bool,
 }
 
@@ -200,7 +200,7 @@ impl std::error::Error for UnknownWorld {}
 
 /// The league's own file.
 const NOMINAL: &str = "nominal";
-/// Before a seed, or alone in a plan.
+/// Prefix of a seed, or alone in a plan.
 const RANDOM: &str = "random";
 
 #[cfg(test)]

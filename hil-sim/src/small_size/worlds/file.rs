@@ -1,9 +1,9 @@
 //! `file`: named profiles: what a file of `hil-sim/data/worlds` changes in a league's parameters, checked;
 //! each number with its source there.
 //!
-//! Tables `ball`, `field`, `bounce`, `robot`, `drive`, `kick`, `dribbler`, `battery`, `camera` and `noise` hold keys of the league's
-//! file; `spread`, `link` and `vision` those of [`RobotSpread`], [`LinkModel`] and [`VisionModel`]; `bystanders` is a number.
-//! What a file leaves out stays as the league has it.
+//! Tables `ball`, `field`, `bounce`, `robot`, `drive`, `kick`, `dribbler`, `battery`, `camera` and `noise`
+//! hold keys of the league's file; `spread`, `link` and `vision` those of [`RobotSpread`], [`LinkModel`] and
+//! [`VisionModel`]; `bystanders` is a number. Keys that a file leaves out keep the league's value.
 
 use std::fmt;
 
@@ -16,7 +16,7 @@ use crate::small_size::Parameters;
 use crate::small_size::parameters::within;
 
 impl NamedWorld {
-    /// Its file.
+    /// The text of its file.
     pub const fn text(self) -> &'static str {
         match self {
             Self::Grsim => include_str!("../../../data/worlds/grsim.toml"),
@@ -30,7 +30,7 @@ impl NamedWorld {
     }
 }
 
-/// What stands in a file beside the league's tables; not given: nothing differs.
+/// Tables of a file besides the league's; not given: no difference.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 struct Beside {
@@ -41,7 +41,7 @@ struct Beside {
 }
 
 impl WorldModel {
-    /// `league` as the file `name` with this text changes it.
+    /// `league` with the changes of the file `name` with this text.
     pub fn from_toml(name: &str, text: &str, league: &Parameters) -> Result<Self, WorldError> {
         let wrong = |error| WorldError { file: name.to_owned(), error };
         let syntax = |e: &dyn fmt::Display| wrong(ParameterError::Syntax(e.to_string()));
@@ -67,7 +67,7 @@ impl WorldModel {
         Ok(model)
     }
 
-    /// Every number within what the physics can bear.
+    /// Checks every number against the limits of the physics.
     pub fn check(&self) -> Result<(), ParameterError> {
         self.parameters.check()?;
         let Self { robots: of, link, vision, .. } = self;
@@ -97,9 +97,9 @@ impl WorldModel {
 /// Why a profile cannot be used.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorldError {
-    /// Which file.
+    /// Name of the file.
     pub file: String,
-    /// What is wrong in it.
+    /// The error in it.
     pub error: ParameterError,
 }
 

@@ -1,5 +1,5 @@
-//! `latency`: orders on their way from a robot's computer to its wheels: each takes effect some ms later, in
-//! the order given.
+//! `latency`: delay of orders from a robot's computer to its wheels: each takes effect some ms later, in the
+//! given order.
 
 use std::collections::VecDeque;
 
@@ -9,13 +9,13 @@ use super::LinkModel;
 use crate::rng::Stream;
 use crate::small_size::{Order, SLOTS};
 
-/// The orders under way in a world.
+/// The delayed orders of a world.
 #[derive(Clone, Debug)]
 pub(in crate::small_size) struct Latency {
     steps: u64,
     jitter: u32,
     chance: Stream,
-    /// By the step they were due in; those of one robot in the order they were given.
+    /// By the step they are due in; those of one robot in the order they were given.
     coming: VecDeque<(u64, Who, Order)>,
     /// The step in which each slot's last order is due.
     last: [u64; SLOTS],
@@ -37,7 +37,7 @@ impl Latency {
         self.steps == 0 && self.jitter == 0
     }
 
-    /// An order is given after step `now`.
+    /// Delays an order given after step `now`.
     pub(in crate::small_size) fn send(&mut self, now: u64, who: Who, order: Order) {
         let drawn = now + self.steps + u64::from(self.chance.whole(0, self.jitter));
         let due = drawn.max(self.last[who.slot()]);
@@ -46,7 +46,7 @@ impl Latency {
         self.coming.insert(place, (due, who, order));
     }
 
-    /// The next order that has arrived by the end of step `now`.
+    /// The next order that is due by the end of step `now`.
     pub(in crate::small_size) fn arrived(&mut self, now: u64) -> Option<(Who, Order)> {
         let due = self.coming.front().is_some_and(|(due, ..)| *due <= now);
         due.then(|| self.coming.pop_front())?.map(|(_, who, order)| (who, order))

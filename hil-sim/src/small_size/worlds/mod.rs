@@ -1,10 +1,11 @@
 //! `worlds`: the family of worlds: physics, robots, links and cameras as distributions, so that no skill is
-//! tried at one point alone.
+//! tested with one set of parameters alone.
 //!
-//! A [`WorldModel`] is one world: the league's [`Parameters`](super::Parameters), changed, and what they do not tell: what robots of a team differ
-//! in ([`RobotSpread`]), orders on their way to the wheels ([`LinkModel`]), frames that come late, not at all or with robots'
-//! ids swapped ([`VisionModel`]), and robots without a computer ([`WorldModel::bystanders`]). A [`WorldChoice`] names one:
-//! `nominal` is the league's own file, a named profile changes it by `hil-sim/data/worlds/NAME.toml`, and `random:SEED` draws
+//! A [`WorldModel`] is one world: the league's [`Parameters`](super::Parameters), changed, and what they do
+//! not contain: differences between robots of a team ([`RobotSpread`]), delay of orders to the wheels
+//! ([`LinkModel`]), frames that come late, not at all or with robots' ids swapped ([`VisionModel`]), and
+//! robots without a computer ([`WorldModel::bystanders`]). A [`WorldChoice`] names one: `nominal` is the
+//! league's own file, a named profile changes it by `hil-sim/data/worlds/NAME.toml`, and `random:SEED` draws
 //! every number from its distribution. SI units; times of links and frames in ms.
 
 mod bystanders;

@@ -1,4 +1,4 @@
-//! `model`: one world of the family: what it consists of, and the league's own.
+//! `model`: one world of the family: its components, and the league's own values.
 
 use protocol::Who;
 use rules::League;
@@ -9,24 +9,25 @@ use crate::air::AirSettings;
 use crate::rng::Stream;
 use crate::small_size::Parameters;
 
-/// A world of the family: physics, what robots differ in, command link, vision, bystanders.
+/// A world of the family: physics, differences between robots, command link, vision, bystanders.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorldModel {
-    /// As [`WorldChoice`] writes it.
+    /// Its name, as [`WorldChoice`] writes it.
     pub name: String,
     /// Ball, field, robots, cameras.
     pub parameters: Parameters,
-    /// What robots differ in.
+    /// Differences between robots.
     pub robots: RobotSpread,
-    /// From a robot's computer to its wheels, and packets to and from the host.
+    /// Link from a robot's computer to its wheels, and packets to and from the host.
     pub link: LinkModel,
-    /// What befalls frames on their way.
+    /// Faults of camera frames.
     pub vision: VisionModel,
-    /// Robots of both teams together that stand about without a computer.
+    /// Number of bystanders of both teams together, without a computer.
     pub bystanders: u8,
 }
 
-/// What robots differ in: each draws its own number, evenly from the first to the second, for as long as the world lasts.
+/// Differences between robots: each draws its own number, uniformly from the first to the second, once per
+/// world.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RobotSpread {
@@ -40,40 +41,43 @@ pub struct RobotSpread {
     pub speed: [f32; 2],
     /// Share of the world's dribbler pull.
     pub pull: [f32; 2],
-    /// Share of the wheels' motion that does not reach the carpet.
+    /// Share of the wheels' motion that does not reach the field surface.
     pub slip: [f32; 2],
 }
 
-/// Orders on their way to the wheels, and packets on the air.
+/// Delay of orders to the wheels, and loss of packets.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct LinkModel {
-    /// ms from a robot's computer to its wheels, kicker and dribbler; whole.
+    /// Latency from a robot's computer to its wheels, kicker and dribbler, ms; whole.
     pub latency_ms: u32,
-    /// ms more, drawn for each order evenly from 0 to this; orders keep their order.
+    /// Additional latency, ms, drawn for each order uniformly from 0 to this; orders keep their order.
     pub jitter_ms: u32,
-    /// Probability that a packet on the team's air is lost for a receiver.
+    /// Probability that a packet on the team's radio channel is lost for a receiver.
     pub loss: f32,
 }
 
-/// What befalls frames on their way from the cameras, besides rate, delay and noise of [`Parameters`].
+/// Faults of frames between the cameras and the host, besides rate, delay and noise of [`Parameters`].
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct VisionModel {
-    /// ms more than the cameras' delay, drawn for each frame evenly from 0 to this; frames keep their order.
+    /// Delay in addition to the cameras', ms, drawn for each frame uniformly from 0 to this; frames keep
+    /// their order.
     pub jitter_ms: u32,
-    /// s from the end of a gap to the next, on average (exponential); 0: no gaps.
+    /// Mean time from the end of a gap to the next, s (exponential); 0: no gaps.
     pub gap_every_s: f32,
-    /// ms that a gap lasts, evenly from the first to the second: all frames taken in it are lost, of all cameras.
+    /// Duration of a gap, ms, uniformly from the first to the second: all frames taken in it are lost, of all
+    /// cameras.
     pub gap_ms: [u32; 2],
-    /// s from swap to swap, on average (exponential); 0: none.
+    /// Mean time from swap to swap, s (exponential); 0: none.
     pub swap_every_s: f32,
-    /// Frames of each camera that two robots of one team are seen with each other's id, evenly from the first to the second.
+    /// Number of frames of each camera in which two robots of one team have each other's id, uniformly from
+    /// the first to the second.
     pub swap_frames: [u32; 2],
 }
 
 impl WorldModel {
-    /// That world in that league; `None` where no robots on wheels play.
+    /// That world in that league; `None` for leagues without wheeled robots.
     pub fn of(league: League, choice: &WorldChoice) -> Option<Self> {
         let parameters = Parameters::of(league)?;
         let model = match choice {
@@ -86,7 +90,7 @@ impl WorldModel {
         Some(Self { name: choice.to_string(), ..model })
     }
 
-    /// These physics, with robots that are all alike, orders that take effect at once, and every frame on time.
+    /// These physics, with equal robots, orders that take effect at once, and every frame on time.
     pub fn nominal(parameters: Parameters) -> Self {
         Self {
             name: WorldChoice::Nominal.to_string(),
@@ -100,7 +104,7 @@ impl WorldModel {
 }
 
 impl RobotSpread {
-    /// All robots are as the world's parameters say.
+    /// All robots have the world's parameters.
     pub const NONE: Self = Self {
         kick_gain: [1.0; 2],
         chip_ratio: [1.0; 2],
@@ -115,7 +119,7 @@ impl LinkModel {
     /// Orders take effect at once and no packet is lost.
     pub const IDEAL: Self = Self { latency_ms: 0, jitter_ms: 0, loss: 0.0 };
 
-    /// A team's air with this link's losses beside its own.
+    /// A team's radio settings with this link's losses added.
     pub fn over(&self, air: &AirSettings) -> AirSettings {
         if self.loss <= 0.0 {
             return air.clone();
@@ -125,12 +129,12 @@ impl LinkModel {
 }
 
 impl VisionModel {
-    /// Every frame comes on time, with the right ids.
+    /// Every frame arrives on time, with the right ids.
     pub const IDEAL: Self =
         Self { jitter_ms: 0, gap_every_s: 0.0, gap_ms: [0; 2], swap_every_s: 0.0, swap_frames: [0; 2] };
 }
 
-/// What one robot differs in from others of its make.
+/// Differences of one robot from the nominal one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Traits {
     /// Share of the ordered speed with which a kick leaves.
@@ -143,12 +147,12 @@ pub struct Traits {
     pub speed: f32,
     /// Share of the world's dribbler pull.
     pub pull: f32,
-    /// Share of the wheels' motion that does not reach the carpet.
+    /// Share of the wheels' motion that does not reach the field surface.
     pub slip: f32,
 }
 
 impl Traits {
-    /// As the world's parameters say.
+    /// No difference from the world's parameters.
     pub const NONE: Self =
         Self { kick_gain: 1.0, chip_ratio: 1.0, acceleration: 1.0, speed: 1.0, pull: 1.0, slip: 0.0 };
 }

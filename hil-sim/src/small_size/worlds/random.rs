@@ -1,27 +1,29 @@
-//! `random:SEED`: every number of the family drawn from its own distribution, independently of all others; the table of [`DRAWS`].
+//! `random:SEED`: every number of the family drawn from its own distribution, independently of all others;
+//! the table of [`DRAWS`].
 //!
-//! The bounds are required ranges of the project or the ends of what teams and simulators publish (`docs/fields.md` has the table and the
-//! sources). Each quantity has a stream of chance of its own, so that one more of them changes nothing else.
+//! The bounds are required ranges of the project or the limits of what teams and simulators publish
+//! (`docs/fields.md` has the table and the sources). Each quantity has a random stream of its own, so that an
+//! additional one changes nothing else.
 
 use super::WorldModel;
 use crate::rng::Stream;
 use crate::small_size::Parameters;
 
-/// How a quantity is distributed between its bounds.
+/// Distribution of a quantity between its bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Law {
-    /// Evenly.
+    /// Uniform.
     Even,
-    /// Evenly in its logarithm: as often from 1 to 2 as from 2 to 4.
+    /// Uniform in its logarithm: equally likely from 1 to 2 as from 2 to 4.
     Log,
-    /// Half of all worlds have none of it, the others evenly.
+    /// 0 in half of all worlds, uniform in the others.
     Half,
-    /// Two draws, sorted: the robots of the world lie evenly between them.
+    /// Two draws, sorted: the robots of the world are distributed uniformly between them.
     Pair,
 }
 
 impl Law {
-    /// In the table of `docs/fields.md`.
+    /// Its label in the table of `docs/fields.md`.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Even => "even",
@@ -36,11 +38,11 @@ impl Law {
 pub struct Quantity {
     /// Its key in a profile.
     pub name: &'static str,
-    /// Least and most.
+    /// Minimum and maximum.
     pub bounds: [f32; 2],
-    /// How it is distributed.
+    /// Its distribution.
     pub law: Law,
-    /// Both numbers of a pair; else twice the same.
+    /// Sets both numbers of a pair; else the same number twice.
     set: fn(&mut WorldModel, [f32; 2]),
 }
 
@@ -55,7 +57,7 @@ macro_rules! quantity {
     };
 }
 
-/// One of [`super::RobotSpread`].
+/// A quantity of [`super::RobotSpread`].
 macro_rules! pair {
     ($name:literal $low:literal $high:literal, $field:ident) => {
         Quantity {
@@ -67,7 +69,7 @@ macro_rules! pair {
     };
 }
 
-/// Every quantity that a random world draws; what is not here is the league's.
+/// Every quantity that a random world draws; all others have the league's value.
 pub const DRAWS: &[Quantity] = &[
     quantity!(Even "ball.mass" 0.040 0.047, ball.mass),
     quantity!(Log "ball.slide" 2.5 14.0, ball.slide),
@@ -116,7 +118,7 @@ pub const DRAWS: &[Quantity] = &[
         name: "camera.delay",
         bounds: [0.010, 0.050],
         law: Law::Even,
-        // What of it the packet tells stays as it is, as far as it fits.
+        // The delay reported in the packet stays as it is, as far as it fits.
         set: |model, [value, _]| {
             let of = &mut model.parameters.camera;
             (of.delay, of.processing) = (value, of.processing.min(value));
@@ -185,15 +187,15 @@ pub const DRAWS: &[Quantity] = &[
 const NO_DRIBBLER: f32 = 0.05;
 /// Share of the worlds whose dribblers never lose the ball, as in two of the league's simulators; estimate.
 const PERFECT_DRIBBLER: f32 = 0.15;
-/// m/s²: the ball follows the robot within a step whatever it does.
+/// m/s²: the ball follows the robot within a step, however it moves.
 pub const PERFECT_PULL: f32 = 1000.0;
-/// ms that gaps last: a required range.
+/// Duration of gaps, ms: a required range.
 pub const GAP_MS: [u32; 2] = [40, 150];
-/// Frames that numbers are swapped; estimate.
+/// Number of frames with swapped numbers; estimate.
 const SWAP_FRAMES: [u32; 2] = [1, 5];
 
 impl WorldModel {
-    /// The world of this seed among those of a league.
+    /// The world of this seed in a league.
     pub(super) fn random(league: &Parameters, seed: u64) -> Self {
         let mut model = Self::nominal(league.clone());
         for quantity in DRAWS {
@@ -211,7 +213,7 @@ impl Quantity {
         match self.law {
             Law::Even => [chance.between(low, high); 2],
             Law::Log => {
-                // Within the bounds whatever is rounded.
+                // Within the bounds in spite of rounding.
                 let share = chance.share();
                 let log = geometry::math::ln(low) * (1.0 - share) + geometry::math::ln(high) * share;
                 [geometry::math::exp(log).clamp(low, high); 2]

@@ -1,4 +1,4 @@
-//! Tests: the physics shows what a world of the family says. One sentence a quantity, by hand calculations.
+//! Tests: the physics behaves as a world of the family states. One test per quantity, by hand calculations.
 
 mod family;
 mod robots;
@@ -16,7 +16,7 @@ fn yellow(id: u8) -> Who {
     Who::yellow(RobotId::new(id).unwrap())
 }
 
-/// Division B without chance, changed.
+/// Division B without randomness, changed.
 fn model(change: impl FnOnce(&mut WorldModel)) -> WorldModel {
     let mut model = WorldModel::of(League::DivisionB, &WorldChoice::Nominal).unwrap();
     model.parameters.noise = NoiseParameters::NONE;
@@ -58,7 +58,7 @@ fn lead(world: &mut World, order: Order, steps: u32) -> Vec<Event> {
     events
 }
 
-/// The robot speeds up evenly to that velocity of its own frame, its dribbler turning.
+/// The robot accelerates uniformly to that velocity of its own frame, its dribbler turning.
 fn pull(world: &mut World, to: [f32; 2], acceleration: f32) {
     let most = geometry::math::hypot(to[0], to[1]);
     let ticks = (most / acceleration * 100.0) as u32;
@@ -108,7 +108,7 @@ fn a_dribbler_of_half_a_metre_a_second_squared_loses_a_ball_pulled_at_three_and_
 #[test]
 fn a_weak_roller_keeps_a_ball_that_is_pulled_gently() {
     let mut world = with_ball(|model| model.parameters.dribbler.pull = 1.0);
-    // The carpet takes 0.35 of it, and each hop off the front what the ball rolled.
+    // The field surface takes 0.35 of it, and each hop off the front removes the ball's roll.
     pull(&mut world, [-0.4, 0.0], 0.4);
     assert!(has_ball(&world), "{:?}", world.ball);
 }
@@ -123,7 +123,8 @@ fn a_roller_that_fades_keeps_a_slow_ball_and_loses_a_fast_one() {
         lead(&mut world, dribbling(local(-speed, 0.0, 0.0)), 300);
         has_ball(&world)
     };
-    // At 2.2 m/s 3 · (1 − 0.88) = 0.36 m/s² are left, of which the carpet takes 0.35: half a m/s² more is too much.
+    // At 2.2 m/s 3 · (1 − 0.88) = 0.36 m/s² are left, of which the field surface takes 0.35: half a m/s² more
+    // is too much.
     assert!(fading(1.0) && !fading(2.2));
 }
 
@@ -181,7 +182,7 @@ fn the_front_gives_back_its_share_of_a_ball_and_the_turning_roller_its_own() {
         }
         fastest
     };
-    // It meets the front at 1.96 m/s; robot and ball share the impact as 2.5 kg and 46 g do.
+    // It hits the front at 1.96 m/s; robot and ball share the impact as 2.5 kg and 46 g do.
     let (still, turning) = (comes_back(0.0), comes_back(1.0));
     assert!((still - 0.6 * 1.96).abs() < 0.06, "{still}");
     assert!((turning - 0.2 * 1.96).abs() < 0.06, "{turning}");

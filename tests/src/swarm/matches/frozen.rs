@@ -1,4 +1,4 @@
-//! `frozen`: which robots have to move and do not. s, m, field frame.
+//! `frozen`: detects robots that have to move and do not. s, m, field frame.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -8,35 +8,35 @@ use protocol::Who;
 /// Why a robot has to move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Must {
-    /// It is where it must not be.
+    /// It is at a forbidden position.
     Leave,
     /// The referee waits for it.
     MakeWay,
-    /// Its host sends it so far, m.
+    /// Its host sends it to a position at this distance, m.
     GoTo(f32),
-    /// It has to play the ball, this far away, m.
+    /// It has to play the ball, at this distance, m.
     Play(f32),
 }
 
 /// A robot that has to move and has not for [`LONGEST`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frozen {
-    /// Which.
+    /// The robot.
     pub who: Who,
-    /// Why it has to.
+    /// The reason.
     pub must: Must,
-    /// Where it stands.
+    /// Its position, m.
     pub at: Point<Field>,
 }
 
-/// So long no robot stands that has to move, s (required bound).
+/// Maximum time that a robot that has to move may stand, s (required bound).
 pub const LONGEST: f32 = 5.0;
-/// A robot that stays this near to where it was has not moved, m: less than half its radius.
+/// Distance within which a robot has not moved, m: less than half its radius.
 const STILL: f32 = 0.04;
-/// Places are kept this often, s.
+/// Interval between recorded positions, s.
 const EVERY: f32 = 0.1;
 
-/// Watches all robots.
+/// Monitors all robots.
 #[derive(Clone, Debug, Default)]
 pub struct Stands {
     tracks: BTreeMap<Who, Track>,
@@ -44,12 +44,13 @@ pub struct Stands {
 
 #[derive(Clone, Debug, Default)]
 struct Track {
-    /// Places while it had to move, oldest first.
+    /// Positions while it had to move, oldest first.
     places: VecDeque<(f32, Point<Field>)>,
 }
 
 impl Stands {
-    /// A moment: where the robots are, and which have to move. What has just become too long; each robot once a stand.
+    /// Takes one moment: positions of the robots, and which have to move. Returns new violations; each robot
+    /// once per stand.
     pub fn look(&mut self, time: f32, robots: &[(Who, Point<Field>, Option<Must>)]) -> Vec<Frozen> {
         let mut found = Vec::new();
         self.tracks.retain(|who, _| robots.iter().any(|robot| robot.0 == *who));

@@ -1,7 +1,7 @@
-//! `keep_out`: how long each robot is where it must not be, by the true places. ms, m, field frame.
+//! `keep_out`: how long each robot is at a forbidden position, by the true positions. ms, m, field frame.
 //!
-//! Regions are those of `rules::keep_out`. Which robot a team has chosen for its kick is not known here: one robot a team may be where
-//! only the kicker may be, and every further one breaks the rule.
+//! Regions are those of `rules::keep_out`. Which robot a team has chosen for its kick is not known here: one
+//! robot per team may be where only the kicker may be, and every further one violates the rule.
 
 use std::collections::BTreeMap;
 
@@ -10,16 +10,16 @@ use protocol::Who;
 use rules::keep_out::{Forbidden, Situation, Why, keep_out};
 use rules::{Colour, Duty, FieldSpec, Phase, Side, limits};
 
-/// What may be before being in a region counts.
+/// Grace before being in a region counts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Grace {
-    /// So many s after the last change: of phase, keeper, or the ball's place by hand.
+    /// This time, s, after the last change: of phase, keeper, or the ball's position by hand.
     AfterChange(f32),
-    /// So many s in the region at a time.
+    /// This time, s, in the region without interruption.
     AtATime(f32),
 }
 
-/// The rules' grace for that region in that phase; `None` where to be there is no offence.
+/// The rules' grace for that region in that phase; `None` where being there is no offence.
 pub fn grace(why: Why, phase: Phase<Side>) -> Option<Grace> {
     if !why.offends(phase) {
         return None;
@@ -27,32 +27,36 @@ pub fn grace(why: Why, phase: Phase<Side>) -> Option<Grace> {
     Some(match (why, phase) {
         // Offenses, ball placement interference: "for more than 2 seconds".
         (Why::Stadium, _) => Grace::AtATime(limits::GRACE),
-        // Preparations are for taking one's place: the controller's time for them.
+        // Preparations are for taking positions: the controller's time for them.
         (Why::OtherHalf | Why::CentreCircle | Why::BallDistance, Phase::PrepareKickoff(_))
         | (Why::BehindBall | Why::KeeperLine, Phase::PreparePenalty(_)) => {
             Grace::AfterChange(limits::PREPARE_TIME)
         }
         // Offenses, attacker too close to defence area; referee commands, stop: 2 s to slow down and leave.
         (Why::OpponentArea, _) | (Why::BallDistance, Phase::Stop) => Grace::AfterChange(limits::GRACE),
-        // To be in the own area is no offence before the ball is touched: the time out of it at the speed of STOP, ours.
+        // Being in the own area is no offence before the ball is touched: the time to leave it at the speed
+        // of STOP, ours.
         (Why::OwnArea, _) => Grace::AfterChange(LEAVE_OWN_AREA),
         _ => Grace::AfterChange(0.0),
     })
 }
 
-/// The way out of division A's area at 1.5 m/s, 1.8 m and the robot's radius, from rest, and as much again around teammates, s.
+/// Time to leave division A's area at 1.5 m/s, 1.8 m and the robot's radius, from standstill, and as much
+/// again around teammates, s.
 const LEAVE_OWN_AREA: f32 = 4.0;
-/// What no robot may stay beyond its grace, s (required bound).
+/// Maximum time of any robot beyond its grace, s (required bound).
 pub const BOUND: f32 = 0.5;
-/// Robots nearer than that to a region's border are not in it, m: a camera's noise on a robot that touches the border.
+/// Distance from a region's border within which robots are not in it, m: a camera's noise on a robot that
+/// touches the border.
 const TOLERANCE: f32 = 0.005;
-/// A ball that rolls freely and faster than this cannot be got away from at once (referee commands, stop, note), m/s.
+/// Speed of a freely rolling ball above which robots cannot leave it at once (referee commands, stop, note),
+/// m/s.
 const BALL_QUICK: f32 = 0.5;
 
-/// The match as the check needs it.
+/// The state of the match that the check uses.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment<'a> {
-    /// s since the beginning.
+    /// s since the start.
     pub time: f32,
     /// The field.
     pub field: &'a FieldSpec,
@@ -62,31 +66,31 @@ pub struct Moment<'a> {
     pub ball: Point<Field>,
     /// m/s.
     pub ball_speed: f32,
-    /// Where it is to be placed.
+    /// Target position of its placement, m.
     pub placement: Option<Point<Field>>,
-    /// It has left its place since NORMAL_START.
+    /// Whether it has left its position since NORMAL_START.
     pub in_play: bool,
     /// The keepers.
     pub keepers: [Who; 2],
     /// Yellow's and blue's own goals.
     pub own: [GoalEnd; 2],
-    /// When phase, keeper or the ball's place by hand changed last, s.
+    /// Time of the last change of phase, keeper or the ball's position by hand, s.
     pub changed: f32,
 }
 
 /// A robot in a region.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Within {
-    /// Who.
+    /// The robot.
     pub who: Who,
-    /// Which region.
+    /// The region.
     pub why: Why,
-    /// How deep, m.
+    /// Depth within it, m.
     pub depth: f32,
 }
 
 impl Moment<'_> {
-    /// No robot has the ball: it rolls as it was sent.
+    /// Whether no robot has the ball: it rolls freely.
     fn ball_is_free(&self, robots: &[(Who, Point<Field>)]) -> bool {
         robots.iter().all(|(_, at)| at.distance(self.ball) > limits::ROBOT_RADIUS + 2.0 * limits::BALL_RADIUS)
     }
@@ -111,11 +115,12 @@ impl Moment<'_> {
         regions.iter().filter(offends).map(|r| Within { who, why: r.why, depth: depth(r) }).collect()
     }
 
-    /// Every robot that is where it must not be.
+    /// Every robot at a forbidden position.
     pub fn offenders(&self, robots: &[(Who, Point<Field>)]) -> Vec<Within> {
         let mut all = Vec::new();
         for team in [Colour::Yellow, Colour::Blue] {
-            // The robot that may be the kicker: the nearest to the ball of those that only the kicker's duty excuses.
+            // The robot that may be the kicker: the nearest to the ball of those that only the kicker's role
+            // excuses.
             let mut excused: Option<(f32, Vec<Within>)> = None;
             for &(who, at) in robots.iter().filter(|(who, _)| who.colour == team) {
                 let duty = if self.keepers.contains(&who) { Duty::Keeper } else { Duty::Player };
@@ -141,24 +146,24 @@ impl Moment<'_> {
     }
 }
 
-/// A keep-out that was broken.
+/// A violated keep-out area.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Broken {
-    /// Who, where and how deep at most.
+    /// The robot, the region and the maximum depth.
     pub within: Within,
-    /// How long beyond the grace, s.
+    /// Time beyond the grace, s.
     pub beyond: f32,
 }
 
-/// Watches all robots.
+/// Monitors all robots.
 #[derive(Clone, Debug, Default)]
 pub struct KeepOuts {
-    /// Since when each robot is in each region, s, how deep at most, and whether it was said.
+    /// Since when each robot is in each region, s, the maximum depth, and whether it was reported.
     since: BTreeMap<(Who, u8), (f32, f32, bool)>,
 }
 
 impl KeepOuts {
-    /// A moment, 10 ms after the last one; what has just become too long.
+    /// Takes one moment, 10 ms after the last one; returns new violations.
     pub fn look(&mut self, moment: &Moment<'_>, robots: &[(Who, Point<Field>)]) -> Vec<Broken> {
         let within = moment.offenders(robots);
         self.since.retain(|key, _| within.iter().any(|one| (one.who, one.why as u8) == *key));

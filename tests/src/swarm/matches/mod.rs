@@ -1,9 +1,11 @@
-//! `matches`: whole matches of two teams of ours, with people who show cards, change keepers, halt, stop, restart, and carry the ball,
-//! held to what the rules ask and the project promises. docs/architecture.md §5.4; s, m, field frame.
+//! `matches`: whole matches of two teams of ours, with manual acts that give cards, change keepers, halt,
+//! stop, restart, and move the ball, checked against the rules and the project's promised properties.
+//! docs/architecture.md §5.4; s, m, field frame.
 //!
-//! A seed is a match: [`plan`] draws what people do, `run` plays it with both hosts, all brains, cameras, radio and the simulator's
-//! own referee in one process, and checks every 10 ms from outside: [`keep_out`], [`frozen`], halts and stops, and that the match goes
-//! on. `cargo xtask swarm --plan referee --seeds 1000` plays many; one that fails prints the line that repeats it.
+//! A seed is a match: [`plan`] draws the manual acts, `run` plays it with both hosts, all brains, cameras,
+//! radio and the simulator's own referee in one process, and checks every 10 ms from outside: [`keep_out`],
+//! [`frozen`], halts and stops, and that the match goes on. `cargo xtask swarm --plan referee --seeds 1000`
+//! plays many; one that fails prints the line that repeats it.
 
 pub mod frozen;
 pub mod keep_out;
@@ -24,25 +26,25 @@ pub use run::{BLOCKED_LONGEST, config, play};
 /// Length of a match, ms.
 pub const LENGTH: u32 = 60_000;
 
-/// A broken promise.
+/// A violated property.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Broken {
-    /// A robot stayed where it must not be.
+    /// A robot stayed at a forbidden position.
     KeepOut(keep_out::Broken),
-    /// A robot stands that has to move; with what its host wants of it.
+    /// A robot stands that has to move; with its host's order.
     Frozen(Frozen, String),
     /// A robot moves in HALT after 2 s.
     MovedInHalt(Who, f32),
     /// A robot is faster than 1.5 m/s in STOP after 2 s.
     FastInStop(Who, f32),
-    /// The match stands: what the referee says.
+    /// The match stands: the obstacle that the referee reports.
     Blocked(hil_sim::small_size::referee::Obstacle),
-    /// It could not be played at all.
+    /// It could not be played to its end.
     Ended(String),
 }
 
 impl Broken {
-    /// What it is, to count by.
+    /// Its kind, for counting.
     pub fn kind(&self, phase: Phase<Colour>) -> String {
         match self {
             Self::KeepOut(broken) => format!("keep-out {:?} in {}", broken.within.why, bare(phase)),
@@ -70,19 +72,19 @@ fn bare(phase: Phase<Colour>) -> String {
     words.split('(').next().unwrap_or_default().to_owned()
 }
 
-/// A broken promise, when, and in which phase.
+/// A violated property, with time and phase.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
-    /// When, ms.
+    /// Time, ms.
     pub ms: u32,
-    /// In which phase.
+    /// The phase.
     pub phase: Phase<Colour>,
-    /// What.
+    /// The violation.
     pub broken: Broken,
 }
 
 impl Found {
-    /// What it is, to count by.
+    /// Its kind, for counting.
     pub fn kind(&self) -> String {
         self.broken.kind(self.phase)
     }
@@ -111,33 +113,34 @@ impl fmt::Display for Found {
     }
 }
 
-/// What came of a match.
+/// Results of a match.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outcome {
-    /// Every broken promise, oldest first.
+    /// Every violation, oldest first.
     pub found: Vec<Found>,
-    /// Seconds in which somebody might play the ball.
+    /// Seconds in which a team might play the ball.
     pub running_s: f32,
     /// Seconds in which the match stood for longer than the referee's patience.
     pub blocked_s: f32,
-    /// Things that people did which made sense then.
+    /// Number of manual acts that were valid at their time.
     pub acts: u32,
-    /// Robots that people took off the field.
+    /// Number of robots taken off the field by hand.
     pub taken_off: u32,
-    /// Penalties, kick-offs and free kicks that began, and placements that succeeded and failed.
+    /// Numbers of penalties, kick-offs and free kicks that started, and of placements that succeeded and
+    /// failed.
     pub begun: [u32; 5],
     /// The match's hash.
     pub trace: String,
 }
 
-/// What came of many.
+/// Results of many matches.
 #[derive(Clone, Debug, Default)]
 pub struct Sum {
-    /// Matches.
+    /// Number of matches.
     pub matches: u32,
-    /// Matches in which each kind of promise was broken.
+    /// Number of matches with each kind of violation.
     pub kinds: BTreeMap<String, u32>,
-    /// All other numbers together.
+    /// The sum of all other numbers.
     pub all: Outcome,
 }
 
@@ -161,7 +164,7 @@ impl Sum {
     }
 }
 
-/// The lines that tell of a match with broken promises, the last of which repeats it.
+/// The lines that report a match with violations; the last one repeats it.
 pub fn words(plan: &Plan, outcome: &Outcome) -> String {
     let mut lines = String::new();
     for found in &outcome.found {

@@ -1,5 +1,5 @@
-//! `plan`: what people do to a match of this seed. Cards, keeper changes, restarts, halts, timeouts, and balls carried elsewhere, drawn
-//! from the seed alone. ms since the match's beginning, field frame, m.
+//! `plan`: manual acts in the match of a seed. Cards, keeper changes, restarts, halts, timeouts, and moved
+//! balls, drawn from the seed alone. ms since the match's start, field frame, m.
 
 use std::fmt;
 
@@ -8,10 +8,10 @@ use hil_sim::Stream;
 use protocol::RobotId;
 use rules::{Colour, League};
 
-/// Something that people do.
+/// A manual act.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Act {
-    /// A yellow card for so many ms of playing time.
+    /// A yellow card for this playing time, ms.
     Yellow(Colour, u32),
     /// A red card.
     Red(Colour),
@@ -21,7 +21,7 @@ pub enum Act {
     Penalty(Colour),
     /// A kick-off for that team.
     Kickoff(Colour),
-    /// A free kick for that team from the valid place nearest to this one.
+    /// A free kick for that team from the valid position nearest to this one.
     FreeKick(Colour, Point<Field>),
     /// A force start there, likewise.
     ForceStart(Point<Field>),
@@ -29,11 +29,11 @@ pub enum Act {
     Halt,
     /// STOP until [`Act::GoOn`].
     Stop,
-    /// The game follows its own course again.
+    /// The game continues by itself.
     GoOn,
-    /// That team asks for a timeout of so many ms.
+    /// That team requests a timeout of this length, ms.
     Timeout(Colour, u32),
-    /// The ball lies there at once.
+    /// The ball is placed there at once.
     Ball(Point<Field>),
     /// The ball is at once there and rolls, m/s.
     Roll(Point<Field>, Vector<Field>),
@@ -66,20 +66,20 @@ impl fmt::Display for Act {
 /// A match.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// Where it comes from.
+    /// Its seed.
     pub seed: u64,
     /// Division A or B.
     pub league: League,
     /// Whether the teams change ends in the middle of it.
     pub half_time: bool,
-    /// How long it is, ms.
+    /// Its length, ms.
     pub length: u32,
-    /// What people do and when, in order.
+    /// The manual acts with their times, in order.
     pub acts: Vec<(u32, Act)>,
 }
 
 impl Plan {
-    /// The match of that seed, of so many ms.
+    /// The match of that seed, of this length in ms.
     pub fn drawn(seed: u64, length: u32) -> Self {
         let mut chance = Stream::new(seed, "swarm referee plan");
         let league = if seed.is_multiple_of(2) { League::DivisionB } else { League::DivisionA };
@@ -141,7 +141,7 @@ fn on_field(league: League, chance: &mut Stream) -> Point<Field> {
     Point::new(chance.between(-x, x), chance.between(-y, y))
 }
 
-/// On the carpet within the walls, and in a tenth of the cases up to half a metre beyond them.
+/// On the field surface within the walls, and in a tenth of the cases up to half a metre beyond them.
 fn anywhere(league: League, chance: &mut Stream) -> Point<Field> {
     let field = league.field();
     let beyond = if chance.chance(0.1) { 0.5 } else { 0.0 };

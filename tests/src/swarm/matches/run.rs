@@ -1,4 +1,4 @@
-//! `run`: plays a match of a plan and looks at it every 10 ms. s, m, field frame.
+//! `run`: plays a match of a plan and checks it every 10 ms. s, m, field frame.
 
 use std::fmt::Write as _;
 
@@ -17,17 +17,18 @@ use super::keep_out::{KeepOuts, Moment};
 use super::plan::{Act, Plan};
 use super::{Broken, Found, Outcome};
 
-/// So long the match may stand, s: division A is 12 m long, and 1.5 m/s the speed of STOP; twice that with a way around others.
+/// Maximum time that the match may stand, s: division A is 12 m long, and 1.5 m/s the speed of STOP; twice
+/// that with a detour around others.
 pub const BLOCKED_LONGEST: f32 = 20.0;
-/// A robot that is sent farther than this has to move, m (required bound).
+/// Distance to its target above which a robot has to move, m (required bound).
 const SENT: f32 = 0.1;
-/// A robot faster than this moves, m/s, in HALT for longer than [`PUSHED`].
+/// Speed above which a robot moves, m/s, in HALT for longer than [`PUSHED`].
 const STANDS: f32 = 0.05;
-/// A robot that others push rolls out within this time, s.
+/// Time in which a robot that others push rolls out, s.
 const PUSHED: f32 = 0.1;
-/// A thing that moves farther than this within 10 ms was carried, m: 10 m/s.
+/// Distance within 10 ms above which an object was moved by hand, m: 10 m/s.
 const CARRIED: f32 = 0.1;
-/// Findings of a match that are kept.
+/// Maximum number of findings kept per match.
 const MOST: usize = 40;
 
 /// The match's settings.
@@ -74,7 +75,7 @@ fn ended(words: String) -> Outcome {
     Outcome { found: vec![found], ..Outcome::default() }
 }
 
-/// Whether it made sense now.
+/// Carries out a manual act; whether it was valid now.
 fn perform(game: &mut Game<'_>, act: Act) -> bool {
     let origin = Point::new(0.0, 0.0);
     match act {
@@ -89,7 +90,8 @@ fn perform(game: &mut Game<'_>, act: Act) -> bool {
         Act::Keeper(team, robot) => {
             let who = Who { colour: team, id: robot };
             let here = game.world().robot(who).is_some_and(|robot| robot.present);
-            // A keeper may be changed while the ball is out of play or in the opponents' half (choosing keeper id): not in a penalty.
+            // A keeper may be changed while the ball is out of play or in the opponents' half (choosing
+            // keeper id): not in a penalty.
             let penalty = matches!(game.referee().phase(), Phase::Penalty(_));
             here && !penalty && game.change_keeper(team, robot)
         }
@@ -115,18 +117,18 @@ fn perform(game: &mut Game<'_>, act: Act) -> bool {
     }
 }
 
-/// What is known of the match so far.
+/// State of the checks.
 struct Watch {
     outcome: Outcome,
     field: FieldSpec,
     phase: Phase<Colour>,
     phase_since: f32,
     keepers: [Who; 2],
-    /// When phase, keeper or the ball's place by hand changed last, s.
+    /// Time of the last change of phase, keeper or the ball's position by hand, s.
     changed: f32,
     ball_carried: bool,
     ball: Point<Field>,
-    /// Where the ball was when the phase began.
+    /// Position of the ball at the start of the phase.
     ball_then: Point<Field>,
     keep_outs: KeepOuts,
     stands: Stands,
@@ -191,7 +193,7 @@ impl Watch {
         let present = || world.robots().iter().filter(|robot| robot.present);
         let robots: Vec<(Who, Point<Field>)> =
             present().map(|robot| (robot.who, robot.pose.position)).collect();
-        // A robot that people carried is where they put it.
+        // A robot that was placed by hand is where it was placed.
         let carried = robots.iter().any(|(who, at)| {
             self.places.insert(*who, *at).is_some_and(|before| before.distance(*at) > CARRIED)
         });
@@ -233,7 +235,7 @@ impl Watch {
         self.look_at_blocks(time, game);
     }
 
-    /// Why that robot has to move, if it has to.
+    /// The reason for which that robot has to move, if any.
     fn must(
         &self,
         game: &Game<'_>,
@@ -333,7 +335,7 @@ impl Watch {
     }
 }
 
-/// What a robot's host wants of it, and who stands next to it.
+/// The order of a robot's host, and the robot nearest to it.
 fn wanted(game: &Game<'_>, own: [GoalEnd; 2], who: Who) -> String {
     let order = game.host(who.colour).orders().iter().find(|order| order.robot == who.id);
     let flip = Flip::defending(own[who.colour as usize]);

@@ -1,7 +1,7 @@
-//! `assistant`: what people at a field do for a game controller elsewhere: put the ball down where no robot can or may, take robots
-//! off and bring them back. m, m/s, field frame; times of the simulation, µs.
+//! `assistant`: manual acts at a field whose game controller runs elsewhere: place the ball where no robot
+//! can or may, take robots off and return them. m, m/s, field frame; times of the simulation, µs.
 //!
-//! Rules 2026, chapters on ball placement, robot substitution and cards. Each deed has its reason with it.
+//! Rules 2026, chapters on ball placement, robot substitution and cards. Each act has its reason with it.
 
 use core::fmt;
 
@@ -18,43 +18,44 @@ use super::super::scene::COLOURS;
 use super::{RemoteMatch, places};
 use crate::small_size::{Robot, World};
 
-/// Why a person does something.
+/// Reason of a manual act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Why {
-    /// The ball is set by hand for this kick-off or penalty.
+    /// The ball is placed by hand for this kick-off or penalty.
     SetByHand(Restart),
     /// No team may place the ball, or both have failed.
     NoTeamPlaces,
-    /// Robots cannot get at the ball: it is in or behind a goal, in a corner of the carpet, or outside the walls.
+    /// Robots cannot reach the ball: it is in or behind a goal, in a corner of the field surface, or outside
+    /// the walls.
     OutOfReach,
-    /// The ball lies in a place from which the controller does not go on, and nothing else happens.
+    /// The ball lies at a position from which the controller does not continue, and nothing else happens.
     NothingHappens,
-    /// The team has more robots than it may, and this one has left the field for it.
+    /// The team has more robots than allowed, and this one has left the field for it.
     HasLeft,
-    /// The team has more robots than it may, for longer than it has to take one off.
+    /// The team has more robots than allowed, for longer than the time for taking one off.
     TooMany,
     /// The game is halted for the team to substitute a robot.
     Substituted,
-    /// The team may have one more robot again.
+    /// The team may have one robot more again.
     MayComeBack,
 }
 
-/// One thing that a person does.
+/// A manual act with its reason.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deed {
-    /// What.
+    /// The act.
     pub order: WorldOrder,
-    /// Why.
+    /// The reason.
     pub why: Why,
 }
 
-/// The person at the field.
+/// Decides the manual acts at the field.
 #[derive(Clone, Debug, Default)]
 pub struct Assistant {
     commands: u64,
     /// What is wrong with the ball, and since when.
     ball: Option<(Why, Instant)>,
-    /// How often it was put down since the last command, and when last.
+    /// Number of manual placements since the last command, and the time of the last.
     puts: u32,
     put_at: Option<Instant>,
     /// Both teams, in the order of [`COLOURS`].
@@ -63,18 +64,18 @@ pub struct Assistant {
 
 #[derive(Clone, Debug, Default)]
 struct Team {
-    /// Since when there are too many on the field.
+    /// Since when there are too many robots on the field.
     crowded: Option<Instant>,
-    /// When a robot was taken off or put in.
+    /// Time at which a robot was last taken off or returned.
     changed: Option<Instant>,
-    /// Robots that were taken off, in this order.
+    /// Robots taken off, in this order.
     off: Vec<Who>,
-    /// A robot was taken off in this substitution.
+    /// Whether a robot was taken off in this substitution.
     substituted: bool,
 }
 
 impl Assistant {
-    /// What is to be done now, in this order; to be asked every 10 ms or so. Carry the orders out.
+    /// The acts due now, in this order; to be called about every 10 ms. The caller carries out the orders.
     pub fn look(&mut self, game: &RemoteMatch, world: &World) -> Vec<Deed> {
         let now = game.now;
         if game.is_silent(now) {
@@ -162,7 +163,7 @@ impl Team {
             self.off.push(who);
             return Some(Deed { order: WorldOrder::RemoveRobot(who), why });
         }
-        // Robots that came back by another hand are not ours to bring.
+        // Robots that were returned otherwise are no longer in this list.
         self.off.retain(|who| world.robot(*who).is_some_and(|robot| !robot.present));
         if here >= allowed {
             return None;
@@ -177,7 +178,7 @@ impl Team {
     }
 }
 
-/// Where the ball is to be put now by hand, if it is.
+/// The position where the ball has to be placed by hand now, if any.
 fn wanted(game: &RemoteMatch, world: &World) -> Option<(Why, Point<Field>)> {
     let (ball, speed) = (world.ball.position, world.ball.velocity.norm());
     let still = speed <= limits::BALL_STILL && world.ball.height <= 0.0;
@@ -186,7 +187,7 @@ fn wanted(game: &RemoteMatch, world: &World) -> Option<(Why, Point<Field>)> {
             let lost = still && !is_reachable(&game.field, ball);
             return lost.then(|| (Why::OutOfReach, places::within_reach(&game.field, ball)));
         }
-        // Robots stand around it now: only a ball from which the controller does not start is touched.
+        // Robots stand around it now: only a ball from which the controller does not start is moved.
         Phase::PrepareKickoff(team) => Some((Restart::Kickoff(team), game.field.center_radius)),
         Phase::PreparePenalty(team) => Some((Restart::Penalty(team), limits::PLACEMENT_TOLERANCE)),
         _ => None,
@@ -199,7 +200,7 @@ fn wanted(game: &RemoteMatch, world: &World) -> Option<(Why, Point<Field>)> {
     if !stopped && game.phase() != Phase::Halt || game.stage().is_break() {
         return None;
     }
-    // Whoever decides about a goal wants to see where the ball lies.
+    // The ball stays where it lies until the goal is decided, as evidence.
     let open = game.has_event(GameEventType::PossibleGoal) && !game.has_event(GameEventType::Goal);
     let spot = || stopped.then(|| nearest_free_kick_spot(&game.field, &game.limits, ball));
     let target = game.target().or_else(spot).filter(|_| !open || stopped)?;
@@ -213,7 +214,8 @@ fn wanted(game: &RemoteMatch, world: &World) -> Option<(Why, Point<Field>)> {
     }
 }
 
-/// One that lies on its side; else the robot farthest from the ball. The keeper only where there is no other.
+/// A robot that lies on its side; else the one farthest from the ball. The keeper only where there is no
+/// other robot.
 fn whom_to_take<'a>(
     game: &RemoteMatch,
     ours: impl Iterator<Item = &'a Robot>,
@@ -271,18 +273,18 @@ impl fmt::Display for Deed {
     }
 }
 
-/// A person needs this long to see that something is to be done and to do it, estimated: the internal referee's is the same.
+/// Delay before a manual act, estimated: the internal referee's is the same.
 const PERSON_DELAY: Duration = Duration::millis(2_000);
-/// Then waits so long for robots to make room, and for a game that does not go on by itself: the controller's time for
-/// preparation.
+/// Further wait for robots to make room, and for a game that does not continue by itself: the controller's
+/// time for preparation.
 const PATIENCE: Duration = Duration::millis(10_000);
-/// Time in which a robot is taken off or put in: the controller's tolerance in counting robots.
+/// Time for taking off or returning a robot: the controller's tolerance in counting robots.
 const CHANGE_TIME: Duration = Duration::millis(2_000);
-/// Room a person needs to put the ball down, m from a robot's side: a hand's breadth.
+/// Minimum distance from a robot's side, m, for placing the ball by hand: a hand's breadth.
 const ROOM: f32 = 0.1;
-/// A ball set by hand lies this near to its mark, m: a third of what the controller tolerates.
+/// Maximum distance of a ball placed by hand from its mark, m: a third of what the controller tolerates.
 const SET_BY_HAND: f32 = 0.05;
-/// The ball is put down so often after one command; then something else is wrong.
+/// Maximum number of manual placements after one command; more would hide another fault.
 const PUTS_MAX: u32 = 5;
-/// A robot slower than this waits to be taken off, m/s: it may still turn, or be pushed a little.
+/// Speed below which a robot is ready to be taken off, m/s: it may still turn, or be pushed a little.
 const STANDING: f32 = 0.2;

@@ -1,9 +1,10 @@
-//! `autoref`: the game events that an automatic referee reports to a game controller elsewhere, seen in the true state of the
-//! world by the watchers of the internal referee. m, m/s, field frame; times of the simulation, µs.
+//! `autoref`: the game events that an automatic referee reports to a game controller elsewhere, found in the
+//! true state of the world by the monitors of the internal referee. m, m/s, field frame; times of the
+//! simulation, µs.
 //!
-//! What the controller finds by itself is not reported: no progress, a ball kept in a defence area, too many robots, time that is
-//! up. After an event that stops the game nothing of play is reported until the controller has stopped it: it waits 1 s for other
-//! automatic referees.
+//! Events that the controller finds by itself are not reported: no progress, a ball kept in a defence area,
+//! too many robots, time-outs of a phase. After an event that stops the game, no event of play is reported
+//! until the controller has stopped it: it waits 1 s for other automatic referees.
 
 use protocol::{Duration, Instant};
 use rules::legality::no_goal;
@@ -17,13 +18,14 @@ use super::super::watch::Watch;
 use super::RemoteMatch;
 use crate::small_size::{Event as WorldEvent, World};
 
-/// Who decides what automatic referees leave to people: whether a ball in the goal is a goal, and how play goes on after a ball out
-/// that no robot touched.
+/// Who takes the decisions that automatic referees leave open: whether a ball in the goal is a goal, and how
+/// play continues after a ball left the field that no robot touched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Decider {
-    /// A person at the controller: POSSIBLE_GOAL is reported, and the controller halts the game for the decision.
+    /// The operator of the controller: POSSIBLE_GOAL is reported, and the controller halts the game for the
+    /// decision.
     Person,
-    /// This automatic referee: the decision is reported, and the game goes on.
+    /// This automatic referee: the decision is reported, and the game continues.
     AutoReferee,
 }
 
@@ -34,22 +36,23 @@ pub struct AutoReferee {
     watch: Watch,
     looked: Option<Instant>,
     commands: u64,
-    /// When an event that stops the game was reported that the controller has not acted on.
+    /// Time at which an event that stops the game was reported, while the controller has not reacted.
     stopping: Option<Instant>,
-    /// A success of this placement was reported.
+    /// Whether a success of this placement was reported.
     placed: bool,
-    /// The last foul of each team after which the game went on, in the order of [`COLOURS`].
+    /// The last foul of each team that did not stop the game, in the order of [`COLOURS`].
     fouls: [Option<(Kind, Instant)>; 2],
 }
 
 impl AutoReferee {
-    /// One that has seen nothing yet.
+    /// An automatic referee before its first observation.
     pub fn new(decider: Decider) -> Self {
         let watch = Watch::default();
         Self { decider, watch, looked: None, commands: 0, stopping: None, placed: false, fouls: [None; 2] }
     }
 
-    /// Looks at the world, every 10 ms or so; `events` are the world's since the last look. Gives what is to be reported.
+    /// Observes the world, about every 10 ms; `events` are the world's since the last call. Returns the
+    /// events to report.
     pub fn look(&mut self, game: &RemoteMatch, world: &World, events: &[WorldEvent]) -> Vec<Event> {
         let sight = Sight::of(world, events, self.looked);
         let now = sight.time;
@@ -81,14 +84,15 @@ impl AutoReferee {
         seen.into_iter().flat_map(|event| self.report(game, event)).collect()
     }
 
-    /// The event as it is reported: none, one, or two where it takes both to say where play goes on.
+    /// The events to report for this one: none, one, or two where it takes both to determine the restart.
     fn report(&mut self, game: &RemoteMatch, event: Event) -> Vec<Event> {
         let phase = game.phase();
         let kind = event.what.kind();
         if is_the_controllers(&event.what) || !is_in_time(kind, phase) {
             return Vec::new();
         }
-        // Of what happens between the report and the stop only a ball over the wall counts: it was kicked in play.
+        // Of the events between the report and the stop only a ball over the wall counts: it was kicked in
+        // play.
         if self.stopping.is_some() && kind != Kind::BoundaryCrossing {
             return Vec::new();
         }
@@ -101,7 +105,7 @@ impl AutoReferee {
         }
         let events = match event.what {
             What::PossibleGoal { shot } => self.goal(game, shot, event),
-            // The controller knows no restart for it, and goes on by a force start where nothing moves.
+            // The controller knows no restart for it, and continues by a force start where nothing moves.
             What::LeftTouchLine | What::LeftGoalLine
                 if event.by.is_none() && self.decider == Decider::AutoReferee =>
             {
@@ -118,7 +122,7 @@ impl AutoReferee {
         events
     }
 
-    /// A ball in a goal, as whoever decides needs it.
+    /// A ball in a goal, as required by [`Decider`].
     fn goal(&self, game: &RemoteMatch, shot: Shot, event: Event) -> Vec<Event> {
         let Some(scorer) = event.by else { return vec![event] };
         if self.decider == Decider::Person {
@@ -128,7 +132,8 @@ impl AutoReferee {
         match invalid.filter(|_| !matches!(game.phase(), Phase::Penalty(_))) {
             None => vec![Event { what: What::Goal { shot: Some(shot) }, ..event }],
             Some(reason) => {
-                // The controller takes the place of the restart from a ball over the goal line, and none from a goal that is none.
+                // The controller takes the position of the restart from a ball over the goal line, and none
+                // from an invalid goal.
                 let kicker = shot.kicker;
                 let out = Event {
                     by: kicker.map_or(Some(scorer), |kicker| Some(kicker.colour)),
@@ -153,7 +158,8 @@ impl AutoReferee {
         })
     }
 
-    /// The ball lies where the placing team was to bring it: the controller takes this from automatic referees alone.
+    /// The ball lies where the placing team had to bring it: the controller takes this from automatic
+    /// referees alone.
     fn placement(&mut self, game: &RemoteMatch, scene: &Scene<'_>) -> Option<Event> {
         let Phase::BallPlacement(team) = game.phase() else { return None };
         let target = scene.game.target.filter(|_| !self.placed)?;
@@ -177,7 +183,7 @@ impl AutoReferee {
     }
 }
 
-/// The controller finds these by itself.
+/// Whether the controller finds this event by itself.
 fn is_the_controllers(what: &What) -> bool {
     matches!(
         what,
@@ -189,7 +195,7 @@ fn is_the_controllers(what: &What) -> bool {
     )
 }
 
-/// Events of play belong to play, those of placements to placements.
+/// Whether the event belongs to the phase: events of play to play, those of placements to placements.
 fn is_in_time(kind: Kind, phase: Phase<Colour>) -> bool {
     match kind {
         Kind::PlacementSucceeded => matches!(phase, Phase::BallPlacement(_)),
@@ -200,6 +206,6 @@ fn is_in_time(kind: Kind, phase: Phase<Colour>) -> bool {
     }
 }
 
-/// The controller has decided about a report within this: it waits 1 s for other automatic referees; twice that and a network's
-/// pauses.
+/// Time after which the controller has decided about a report: it waits 1 s for other automatic referees;
+/// twice that plus network delays.
 const DECISION: Duration = Duration::millis(2_500);

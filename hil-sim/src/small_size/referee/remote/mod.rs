@@ -1,8 +1,9 @@
-//! `remote`: a match that a game controller elsewhere runs, followed by its packets. m, field frame; times of the simulation, µs.
+//! `remote`: a match run by a game controller elsewhere, followed by its packets. m, field frame; times of
+//! the simulation, µs.
 //!
-//! [`RemoteMatch`] is what the packets tell; [`AutoReferee`] sees what an automatic referee reports to such a controller, and
-//! [`Assistant`] does by hand what it asks people at the field for. None has a socket: the caller brings packets and takes
-//! events and deeds.
+//! [`RemoteMatch`] is the state from the packets; [`AutoReferee`] finds the events that an automatic referee
+//! reports to such a controller, and [`Assistant`] carries out the manual acts that it requests. None has a
+//! socket: the caller brings packets and takes events and acts.
 
 mod assistant;
 mod autoref;
@@ -26,7 +27,7 @@ use super::scene::{self, COLOURS, GameView};
 use super::settings::TeamSettings;
 use super::{NoRules, wire};
 
-/// A match as a game controller's packets tell it.
+/// A match as a game controller's packets describe it.
 #[derive(Clone, Debug)]
 pub struct RemoteMatch {
     field: FieldSpec,
@@ -39,12 +40,12 @@ pub struct RemoteMatch {
     now: Instant,
     accounts: Accounts,
     ball_at_command: Point<Field>,
-    /// Commands so far.
+    /// Number of commands so far.
     commands: u64,
 }
 
 impl RemoteMatch {
-    /// Nothing heard yet. Not for the four-legged league.
+    /// Before the first packet. Not for the four-legged league.
     pub fn new(league: League) -> Result<Self, NoRules> {
         let limits = league.limits().ok_or(NoRules(league))?;
         let account = || {
@@ -70,8 +71,8 @@ impl RemoteMatch {
         })
     }
 
-    /// A packet that came at `now`, with the ball here; true where it brings a new command. A packet of another sender than
-    /// the one that is followed is left out until that one has been silent for [`SILENCE`].
+    /// A packet received at `now`, with the ball here; true where it brings a new command. A packet of
+    /// another sender than the followed one is ignored until that one has been silent for [`SILENCE`].
     pub fn hear(&mut self, packet: packet::Referee, now: Instant, ball: Point<Field>) -> bool {
         let before = self.newest.as_ref();
         if before.is_some_and(|before| before.source_identifier != packet.source_identifier)
@@ -90,7 +91,7 @@ impl RemoteMatch {
         }
         let counted = |other: &packet::Referee| (other.command, other.command_counter);
         let new = before.is_none_or(|before| counted(before) != counted(&packet));
-        // A goal's packet says so with a command of old and means nothing else by it.
+        // A goal's packet carries an obsolete command, which has no other effect.
         let command = command_of(packet.command);
         if let (true, Some(command)) = (new, command) {
             let age = match packet.command_timestamp {
@@ -106,28 +107,28 @@ impl RemoteMatch {
         new && command.is_some()
     }
 
-    /// Time has come to `now`, and the ball is here.
+    /// Advances the time to `now`, with the ball here.
     pub fn tick(&mut self, now: Instant, ball: Point<Field>) {
         self.now = now;
         self.state.tick(now.0, Some(ball), &self.limits);
     }
 
-    /// Another field.
+    /// Replaces the field.
     pub fn set_field(&mut self, field: FieldSpec) {
         self.field = field;
     }
 
-    /// What may be done now.
+    /// The present phase.
     pub fn phase(&self) -> Phase<Colour> {
         self.state.phase()
     }
 
-    /// The part of the match.
+    /// The present stage of the match.
     pub fn stage(&self) -> Stage {
         self.stage
     }
 
-    /// Nothing was heard for [`SILENCE`], or ever.
+    /// Whether nothing was received for [`SILENCE`], or ever.
     pub fn is_silent(&self, now: Instant) -> bool {
         self.newest.is_none() || now.since(self.heard) > SILENCE
     }
@@ -149,7 +150,7 @@ impl RemoteMatch {
         })
     }
 
-    /// What follows the stop.
+    /// The restart after the stop.
     pub fn next(&self) -> Option<Restart> {
         match command_of(self.newest.as_ref()?.next_command?)? {
             Command::PrepareKickoff(team) => Some(Restart::Kickoff(team)),
@@ -160,13 +161,13 @@ impl RemoteMatch {
         }
     }
 
-    /// Where the ball is to lie for what follows: where the controller says, which may be elsewhere than on the mark (a foul in
-    /// the stop before a kick-off moves it); else on the mark.
+    /// Target position of the ball for the restart: the controller's, which may differ from the mark (a foul
+    /// in the stop before a kick-off moves it); else the mark.
     pub fn target(&self) -> Option<Point<Field>> {
         self.designated().or_else(|| self.mark(self.next()?))
     }
 
-    /// The mark that the ball is set on for that restart.
+    /// The mark for that restart.
     fn mark(&self, restart: Restart) -> Option<Point<Field>> {
         match restart {
             Restart::Kickoff(_) => Some(Point::new(0.0, 0.0)),
@@ -178,21 +179,21 @@ impl RemoteMatch {
     fn designated(&self) -> Option<Point<Field>> {
         let told = self.newest.as_ref()?.designated_position?;
         let place = Point::new(told.x * 0.001, told.y * 0.001);
-        // Nothing is put where no carpet is, whatever a packet says.
+        // A position outside the field surface is refused, whatever the packet contains.
         (place.is_finite() && self.field.carpet().contains(place)).then_some(place)
     }
 
-    /// Robots that team may have on the field now; `None` until the controller says.
+    /// Number of robots that team may have on the field now; `None` until the controller has sent it.
     pub fn allowed(&self, team: Colour) -> Option<u32> {
         self.team(team)?.max_allowed_bots
     }
 
-    /// That team may exchange a robot now: the match is halted for it.
+    /// Whether that team may exchange a robot now: the match is halted for it.
     pub fn substitutes(&self, team: Colour) -> bool {
         self.team(team).and_then(|info| info.bot_substitution_allowed).unwrap_or(false)
     }
 
-    /// The team that the controller would let place the ball now; `None`: a person does.
+    /// The team that the controller would let place the ball now; `None`: placed by hand.
     fn placing_team(&self) -> Option<Colour> {
         let may = |team: &Colour| {
             let Some(info) = self.team(*team) else { return false };
@@ -206,7 +207,7 @@ impl RemoteMatch {
         }
     }
 
-    /// Whose placement failed in this stoppage, one item each.
+    /// The teams whose placement failed in this stoppage, one item each.
     fn failed_placements(&self) -> impl Iterator<Item = Option<Colour>> + '_ {
         self.events().iter().filter_map(|event| match &event.event {
             Some(Told::PlacementFailed(failed)) => Some(colour_of(failed.by_team)),
@@ -248,7 +249,8 @@ fn colour_of(team: i32) -> Option<Colour> {
     }
 }
 
-/// The command with that number on the wire; none for those of old (goals, indirect free kicks) and numbers that mean nothing.
+/// The command with that number on the wire; none for obsolete ones (goals, indirect free kicks) and unknown
+/// numbers.
 fn command_of(number: i32) -> Option<Command> {
     let of_teams = COLOURS.into_iter().flat_map(|team| {
         [
@@ -263,9 +265,9 @@ fn command_of(number: i32) -> Option<Command> {
     plain.into_iter().chain(of_teams).find(|command| wire::command(*command) as i32 == number)
 }
 
-/// A controller that has sent nothing for so long is not followed any more: it sends every 25 ms.
+/// Silence after which a controller is not followed any more: it sends every 25 ms.
 pub const SILENCE: Duration = Duration::millis(3_000);
-/// The keeper's shell number until the controller names one.
+/// The keeper's shell number until the controller sends one.
 const KEEPER: RobotId = match RobotId::new(0) {
     Some(id) => id,
     None => unreachable!(),

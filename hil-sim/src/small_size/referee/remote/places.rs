@@ -1,16 +1,17 @@
-//! `places`: where robots may be taken off and put in, and where robots cannot get at the ball. m, field frame.
+//! `places`: where robots may be taken off and returned, and where robots cannot reach the ball. m, field
+//! frame.
 
 use geometry::{Field, GoalEnd, Point, Pose};
 use rules::{FieldSpec, limits};
 
-/// In the centre substitution area, with its centre off the field: the rules let a robot be taken that is only partly in, but one
-/// that plays beside the touch line has not left.
+/// In the centre substitution area, with its centre off the field: the rules permit taking a robot that is
+/// only partly in, but one that plays beside the touch line has not left.
 pub(super) fn beside_halfway_line(field: &FieldSpec, place: Point<Field>) -> bool {
     place.x().abs() <= limits::SUBSTITUTION_REACH && place.y().abs() > field.width * 0.5
 }
 
-/// Where a robot of the team that owns `own` is put in: beside the touch line of its half, near the halfway line, where no
-/// robot stands and the ball is far enough away. `None` while there is no such place.
+/// Where a robot of the team that owns `own` is returned: beside the touch line of its half, near the halfway
+/// line, where no robot stands and the ball is far enough away. `None` while there is no such position.
 pub(super) fn way_in(
     field: &FieldSpec,
     own: GoalEnd,
@@ -28,12 +29,12 @@ pub(super) fn way_in(
     Some(Pose { position: place, heading: place.direction_to(Point::new(place.x(), 0.0)) })
 }
 
-/// The place inside the field, nearest to a ball that robots cannot reach, from which they can.
+/// The position inside the field, nearest to a ball that robots cannot reach, from which they can reach it.
 pub(super) fn within_reach(field: &FieldSpec, ball: Point<Field>) -> Point<Field> {
     field.clamp(ball, INTO_THE_FIELD)
 }
 
-/// Room for a hand, m.
+/// A hand's breadth, m.
 const HAND: f32 = 0.1;
-/// How far inside the lines a ball is put that is brought back, m: where a throw-in is taken.
+/// Distance inside the lines at which a ball is brought back, m: where a throw-in is taken.
 const INTO_THE_FIELD: f32 = 0.2;

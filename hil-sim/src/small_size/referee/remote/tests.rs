@@ -1,5 +1,5 @@
-//! Tests: assistant and automatic referee do what an external game controller needs. Packets made by hand,
-//! the simulator's own world.
+//! Tests: assistant and automatic referee fulfil the requirements of an external game controller. Packets
+//! made by hand, the simulator's own world.
 
 use geometry::{Angle, Pose, Vector};
 use protocol::Who;
@@ -11,7 +11,7 @@ use super::super::people::WorldOrder;
 use super::*;
 use crate::small_size::{Ball, Parameters, World};
 
-/// Yellow's goal is at −x; division B; the controller's packets come with every look, 10 ms apart.
+/// Yellow's goal is at −x; division B; a packet of the controller comes with every observation, 10 ms apart.
 struct Hall {
     world: World,
     game: RemoteMatch,
@@ -192,7 +192,7 @@ fn where_the_controller_wants_the_ball_decides_and_the_mark_when_it_prepares() {
     hall.ball(at(0.3, 0.0), Vector::default());
     hall.run(10.0);
     assert_eq!(hall.deeds.len(), 2, "in the circle the controller starts");
-    // No place at all: a lawful one near the ball.
+    // No position at all: a rule-compliant one near the ball.
     let mut lost = Hall::new(Decider::Person);
     lost.ball(at(4.6, 0.0), Vector::default());
     lost.packet.next_command = Some(Wire::DirectFreeBlue as i32);
@@ -240,7 +240,7 @@ fn a_stop_from_which_nothing_goes_on_is_ended_by_hand_at_last() {
 
 #[test]
 fn a_ball_that_robots_cannot_reach_is_brought_back_to_the_team_that_places() {
-    // Behind the goal, in the goal, and in the corner of the carpet.
+    // Behind the goal, in the goal, and in the corner of the field surface.
     for (x, y) in [(4.75, 0.2), (4.6, 0.0), (4.7, 3.2)] {
         let mut hall = hall();
         hall.next(Wire::DirectFreeBlue, at(3.5, 2.8));
@@ -307,7 +307,7 @@ fn in_stop_a_surplus_robot_is_taken_off_after_the_controllers_patience() {
     hall.run(0.5);
     assert_eq!((hall.reasons(), hall.here(Colour::Yellow)), (vec![Why::TooMany], 5));
     assert!(hall.world.robot(who(Colour::Yellow, 0)).unwrap().present, "not the keeper");
-    // A second card: another one goes, one after the other.
+    // A second card: robots are taken off one after the other.
     hall.packet.yellow.max_allowed_bots = Some(3);
     hall.run(16.0);
     assert_eq!(hall.here(Colour::Yellow), 3);
@@ -431,7 +431,7 @@ fn what_the_controller_finds_by_itself_is_not_reported() {
     let mut hall = hall();
     hall.command(Wire::ForceStart);
     hall.packet.blue.max_allowed_bots = Some(1);
-    // In a defence area, at rest, for longer than any limit.
+    // Resting in a defence area, for longer than any limit.
     hall.ball(at(4.0, 0.0), Vector::default());
     hall.run(30.0);
     assert_eq!(hall.kinds(), []);

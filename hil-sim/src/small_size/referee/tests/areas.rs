@@ -1,4 +1,5 @@
-//! Defence areas: blue's reaches from x = 3.5 to 4.5 m and 1 m to either side; robots have a radius of 0.09 m.
+//! Tests of defence areas: blue's reaches from x = 3.5 to 4.5 m and 1 m to either side; robots have a radius
+//! of 0.09 m.
 
 use super::*;
 
@@ -67,7 +68,7 @@ fn the_keeper_changes_while_the_ball_is_in_the_other_half_only() {
     assert_eq!(stage.count(Kind::DefenderInArea), 0);
 }
 
-/// Stop after a throw-in of yellow's at (1, 2.8), where nobody is asked to place.
+/// Stop after a throw-in of yellow's at (1, 2.8), where no team is asked to place the ball.
 fn stopped() -> Stage {
     let mut stage = in_play();
     stage.move_ball(at(1.0, 2.9));
@@ -110,7 +111,7 @@ fn the_second_such_foul_in_a_stop_halts_the_game() {
     let mut stage = stopped();
     stage.put(yellow(2), at(3.2, 0.5));
     stage.put(yellow(2), at(3.3, 0.0));
-    // Who stands at the ball keeps the game from going on.
+    // A robot at the ball prevents the game from continuing.
     stage.put(blue(1), at(1.0, 2.6));
     stage.put(yellow(1), at(1.0, 2.55));
     stage.run(4.1);
@@ -159,7 +160,7 @@ fn every_third_foul_is_a_yellow_card_and_the_offender_goes_off() {
     stage.run(0.2);
     stage.only(Kind::TooManyRobots);
     assert_eq!(stage.referee.next(), Some(Restart::ForceStart));
-    // It may leave by itself; where it does not the game is halted for people, who take it off once robots stand.
+    // It may leave by itself; where it does not, the game is halted to take it off by hand once robots stand.
     stage.run(9.0);
     assert_eq!((stage.phase(), stage.orders.len()), (Phase::Stop, 0));
     stage.until(Phase::Halt, 2.0);

@@ -1,4 +1,4 @@
-//! Halt, stop, restarts and placements: who moves, who is too fast, who is too near.
+//! Tests of halt, stop, restarts and placements: robots that move, are too fast, or are too near.
 
 use super::*;
 
@@ -17,7 +17,7 @@ fn who_moves_two_seconds_after_halt_is_told_once() {
     assert_eq!(stage.referee.accounts().blue.foul_count(), 0);
 }
 
-/// Stop before the first kick-off, which somebody in the way at the ball keeps from going on.
+/// Stop before the first kick-off, which a robot near the ball prevents from continuing.
 fn stopped() -> Stage {
     let mut stage = stage();
     stage.until(Phase::Stop, 4.0);

@@ -1,4 +1,4 @@
-//! Commands by hand. Every step of the stage asserts that the league's state graph is kept.
+//! Tests of manual commands. Every step of the stage asserts that the league's state graph is kept.
 
 use rules::state::Command;
 

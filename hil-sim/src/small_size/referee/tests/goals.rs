@@ -1,8 +1,9 @@
-//! Goals, and balls that leave: which counts, whose ball it is, from where. Field of 9 × 6 m, the defence areas 2 × 1 m.
+//! Tests of goals and balls that leave the field: which goal counts, which team gets the ball, and where.
+//! Field of 9 × 6 m, the defence areas 2 × 1 m.
 
 use super::*;
 
-/// The last touch was that robot's; the ball rolls from `from` with that velocity until the game stands still.
+/// That robot touches last; the ball rolls from `from` with that velocity until the game stops.
 fn shoot(who: Who, from: Point<Field>, x: f32, y: f32) -> Stage {
     let mut stage = in_play();
     stage.put(blue(0), at(4.45, 0.8));

@@ -1,4 +1,4 @@
-//! Numbers for the match report, against counts made by hand.
+//! Tests of the match statistics, against counts made by hand.
 
 use super::*;
 
@@ -17,14 +17,14 @@ fn time_is_told_apart_by_what_the_ball_does() {
     assert!((metrics.match_s - before - 12.01).abs() < 0.02);
     assert!((metrics.running_s - 12.01).abs() < 0.02, "{metrics:?}");
     assert!((metrics.in_play_s - 8.0).abs() < 0.02);
-    // Yellow defends −x: 6 s in blue's half, 2 s in yellow's; nobody touched the ball.
+    // Yellow defends −x: 6 s in blue's half, 2 s in yellow's; no robot touched the ball.
     assert!((metrics.yellow.ball_in_their_half_s - 6.0).abs() < 0.03);
     assert!((metrics.offence_ratio(Colour::Yellow).unwrap() - 3.0).abs() < 0.05);
     assert!((metrics.ball_in_play() - metrics.in_play_s / metrics.match_s).abs() < 1e-6);
     assert_eq!((metrics.yellow.possession_s, metrics.attack_ratio(Colour::Yellow)), (0.0, None));
 }
 
-/// Yellow's robot 2 sends the ball off from there, like this, and nobody stops it for half a second.
+/// Yellow's robot 2 kicks the ball from there with this velocity, and no robot stops it for half a second.
 fn shot(from: Point<Field>, x: f32, y: f32) -> TeamMetrics {
     let mut stage = in_play();
     stage.move_ball(from);
@@ -37,12 +37,14 @@ fn shot(from: Point<Field>, x: f32, y: f32) -> TeamMetrics {
 #[test]
 fn a_shot_goes_towards_the_goal_and_a_chance_between_the_posts() {
     let count = |team: TeamMetrics| (team.shots, team.chances);
-    // From (2, 0) the posts at (4.5, ±0.5) lie at ±0.2 of the way forward, one goal's width beside them at ±0.6.
+    // From (2, 0) the posts at (4.5, ±0.5) lie at ±0.2 of the forward distance, one goal's width beside them
+    // at ±0.6.
     assert_eq!(count(shot(at(2.0, 0.0), 4.0, 0.0)), (1, 1));
     assert_eq!(count(shot(at(2.0, 0.0), 4.0, 0.7)), (1, 1));
     assert_eq!(count(shot(at(2.0, 0.0), 4.0, 0.9)), (1, 0));
     assert_eq!(count(shot(at(2.0, 0.0), 4.0, 2.5)), (0, 0));
-    // Away from the goal; from the own half; too slow for a shot; too slow to get there: 1.5²/(2 · 0.35) = 3.2 m.
+    // Away from the goal; from the own half; too slow for a shot; too slow to get there: 1.5²/(2 · 0.35) =
+    // 3.2 m.
     assert_eq!(count(shot(at(2.0, 0.0), -4.0, 0.0)), (0, 0));
     assert_eq!(count(shot(at(-1.0, 0.0), 4.0, 0.0)), (0, 0));
     assert_eq!(count(shot(at(2.0, 0.0), 1.4, 0.0)), (0, 0));
@@ -62,7 +64,8 @@ fn a_pass_arrives_at_a_mate_half_a_metre_away_and_a_loss_at_an_opponent() {
         stage.step();
     }
     let metrics = stage.referee.metrics();
-    // Blue's loss; yellow's 1 to 2 (1 m: a pass), 2 to 1 (0.2 m: none); yellow's loss; blue's 1 to 2 (a pass).
+    // Blue's loss; yellow's 1 to 2 (1 m: a pass), 2 to 1 (0.2 m: none); yellow's loss; blue's 1 to 2 (a
+    // pass).
     assert_eq!((metrics.yellow.passes, metrics.yellow.losses), (1, 2));
     assert_eq!((metrics.blue.passes, metrics.blue.losses), (1, 1));
 }

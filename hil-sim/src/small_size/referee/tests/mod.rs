@@ -1,7 +1,7 @@
-//! Tests: the referee does what the rules say. Scripted observations against truth made by hand.
+//! Tests: the referee follows the rules. Scripted observations against expected results made by hand.
 //!
-//! The stage: division B, blue's goal at +x in the first half, yellow kicks off; robots stand where they offend nobody
-//! unless a test moves them; the ball keeps its velocity. Steps of 10 ms.
+//! The stage: division B, blue's goal at +x in the first half, yellow kicks off; robots stand where they
+//! commit no offence unless a test moves them; the ball keeps its velocity. Steps of 10 ms.
 
 mod areas;
 mod calm;
@@ -30,12 +30,12 @@ struct Stage {
     crashes: Vec<CrashSeen>,
     now: Instant,
     step: Duration,
-    /// Does somebody carry out what people are asked to do?
+    /// Whether the requested manual acts are carried out.
     obeyed: bool,
-    /// Robots that the referee waits for go where they have to be, at once.
+    /// Whether robots that the referee waits for move at once to where they have to be.
     obedient: bool,
     orders: Vec<WorldOrder>,
-    /// A game state that knows the packets alone.
+    /// A game state that is updated by the packets alone.
     heard: GameState,
     counter: Option<u32>,
     action_left: i64,
@@ -64,7 +64,8 @@ fn settings() -> RefereeSettings {
     RefereeSettings::new(League::DivisionB)
 }
 
-/// Before the first observation; keepers in their goals, two more of each team at the sides of their own half.
+/// Before the first observation; keepers in their goals, two more robots of each team at the sides of their
+/// own half.
 fn stage_with(settings: RefereeSettings) -> Stage {
     let mut stage = Stage {
         referee: InternalReferee::new(settings, 1).unwrap(),
@@ -98,7 +99,7 @@ fn stage() -> Stage {
     stage_with(settings())
 }
 
-/// The first half runs, the ball lies at the centre, nobody touched it.
+/// The first half runs, the ball lies at the centre, no robot touched it.
 fn in_play() -> Stage {
     let mut stage = stage();
     stage.until(Phase::Kickoff(Colour::Yellow), 30.0);
@@ -194,7 +195,7 @@ impl Stage {
         );
     }
 
-    /// Every robot that the referee waits for goes to a lawful place of its own.
+    /// Moves every robot that the referee waits for to a rule-compliant position of its own.
     fn make_way(&mut self) {
         if let Some(Obstacle { team: Some(team), reason: Reason::NoKeeper, .. }) =
             self.referee.blocked().map(|blocked| blocked.obstacle)
@@ -227,7 +228,7 @@ impl Stage {
         }
     }
 
-    /// What keeps the match from going on, where it has been said.
+    /// What prevents the match from continuing, where it was reported.
     fn reason(&self) -> Option<Reason> {
         self.referee.blocked().map(|blocked| blocked.obstacle.reason)
     }
@@ -253,7 +254,7 @@ impl Stage {
                 use rules::state::Heard;
                 assert!(matches!(heard, Heard::Followed | Heard::Repeated), "{heard:?} for {command:?}");
             }
-            // More time than before: the taker was disturbed and has its time again.
+            // More time than before: the kicker was disturbed and has its time again.
             let action_left = packet.current_action_time_remaining.unwrap();
             if !new
                 && action_left > self.action_left

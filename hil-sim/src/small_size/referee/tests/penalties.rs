@@ -1,8 +1,8 @@
-//! Penalties: yellow shoots at the goal at +4.5 m from the mark at (−1.5, 0); 10 s.
+//! Tests of penalties: yellow shoots at the goal at +4.5 m from the mark at (−1.5, 0); 10 s.
 
 use super::*;
 
-/// The penalty is prepared and everything right.
+/// The penalty is prepared and all conditions are met.
 fn penalty_prepared() -> Stage {
     let mut stage = in_play();
     assert!(stage.referee.restart_by_hand(Restart::Penalty(Colour::Yellow), at(0.0, 0.0)));

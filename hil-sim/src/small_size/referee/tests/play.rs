@@ -1,4 +1,5 @@
-//! Fouls with the ball: speed, dribbling, double touch, keeper, no progress, crashes, pushing, holding, placements.
+//! Tests of fouls with the ball: speed, dribbling, double touch, keeper, no progress, crashes, pushing,
+//! holding, placements.
 
 use super::*;
 
@@ -33,7 +34,7 @@ fn speed_counts_in_three_dimensions() {
     assert_eq!(stage.count(Kind::BallTooFast), 0);
 }
 
-/// Yellow's robot 1 takes the ball along from the centre by that far.
+/// Yellow's robot 1 dribbles the ball from the centre over that distance.
 fn dribble(metres: f32) -> Stage {
     let mut stage = in_play();
     stage.move_ball(at(-1.0, 1.0));
@@ -143,7 +144,7 @@ fn no_progress_for_ten_seconds_is_a_force_start() {
     assert_eq!(stage.referee.command(), Command::ForceStart);
 }
 
-/// Yellow's robot 1 and blue's robot 1 meet face to face with these speeds.
+/// Yellow's robot 1 and blue's robot 1 collide head-on with these speeds.
 fn crash(yellow_speed: f32, blue_speed: f32) -> Stage {
     let mut stage = in_play();
     stage.put(yellow(1), at(0.0, 1.0));
@@ -177,7 +178,7 @@ fn a_glancing_crash_counts_along_the_line_between_the_robots_only() {
     let mut stage = in_play();
     stage.put(yellow(1), at(0.0, 1.0));
     stage.put(blue(1), at(0.0, 1.18));
-    // 3 m/s past each other, nothing towards each other.
+    // 3 m/s relative to each other, passing side by side: no closing speed.
     let velocities = [Vector::new(1.5, 0.0), Vector::new(-1.5, 0.0)];
     stage.crashes.push(CrashSeen { between: [yellow(1), blue(1)], velocities });
     stage.step();
@@ -200,7 +201,7 @@ fn who_drives_an_opponent_before_it_for_20_cm_pushes() {
     };
     assert_eq!(push(0.19), 0);
     assert_eq!(push(0.1), 1);
-    // From where the ball was, the centre of this stage, not from where the robots are.
+    // From the position of the ball, the centre in this test, not of the robots.
     assert!(close(stage.referee.placement().unwrap(), at(0.3, 0.0)));
     let event = stage.only(Kind::Pushed);
     assert_eq!((event.by, event.robot), (Some(Colour::Yellow), Some(id(1))));
@@ -370,7 +371,7 @@ fn the_team_that_places_for_a_force_start_is_drawn() {
     for seed in 0..16 {
         let mut stage = in_play();
         stage.referee.chance = crate::rng::Stream::new(seed, "small-size-referee");
-        // Half a metre from blue's area: too near for a free kick and to be left lying.
+        // Half a metre from blue's area: too near for a free kick, so the ball has to be moved.
         stage.move_ball(at(4.0, 1.5));
         stage.until(Phase::Stop, 11.0);
         assert_eq!(stage.referee.next(), Some(Restart::ForceStart));

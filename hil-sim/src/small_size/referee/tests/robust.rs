@@ -1,10 +1,10 @@
-//! `robust`: teams that stand, teams that are not there, worlds that make no sense. The match goes on or says why not, and nothing
-//! panics.
+//! `robust`: tests with teams that stand still, absent teams, and inconsistent worlds. The match continues or
+//! reports why not, and nothing panics.
 
 use super::*;
 use crate::rng::Stream;
 
-/// A match of 300 simulated seconds is over in time, and was played for a part of them.
+/// A match of 300 simulated seconds ends in time, and was played for a part of them.
 fn plays_to_the_end(stage: Stage) -> Stage {
     let stage = ends_in_time(stage);
     let metrics = stage.referee.metrics();
@@ -30,7 +30,7 @@ fn ends_in_time_with(mut stage: Stage, settings: RefereeSettings) -> Stage {
 #[test]
 fn robots_that_never_move_but_to_make_way_do_not_hold_up_the_match() {
     let mut standing = stage();
-    // They stand where they offend nobody, but in the wrong half after half-time.
+    // They stand where they commit no offence, but in the wrong half after half-time.
     standing.obedient = true;
     let stage = plays_to_the_end(standing);
     assert!(stage.count(Kind::NoProgress) > 3);
@@ -88,7 +88,7 @@ fn a_ball_that_has_to_be_put_down_holds_the_match_up_until_a_person_does_it() {
     let mut stage = ends_in_time(stage);
     assert_eq!(stage.referee.metrics().running_s, 0.0);
     assert_eq!(stage.referee.metrics().blocks[0].obstacle.reason.word(), "ball_not_put");
-    // As often as it takes: the first order was lost.
+    // Repeated until it succeeds: the first order was lost.
     stage.orders.clear();
     stage.obeyed = true;
     stage.now = Instant(0);
@@ -123,7 +123,7 @@ fn wild(seed: u64) -> Stage {
     stage
 }
 
-/// What a fuzzer does to the world in a step.
+/// Random changes of the world in a step, as by a fuzzer.
 fn disturb(stage: &mut Stage, chance: &mut Stream) {
     match chance.whole(0, 400) {
         0 => stage.kick(chance.between(-8.0, 8.0), chance.between(-8.0, 8.0)),
@@ -143,7 +143,7 @@ fn disturb(stage: &mut Stage, chance: &mut Stream) {
         }
         7 => stage.robots.iter_mut().for_each(|robot| robot.touches_ball = false),
         8 => {
-            // Robots that people put in again and again would hold up a match that has to be decided.
+            // Robots returned by hand again and again would delay a match that has to be decided.
             let most = if stage.referee.settings.knockout { 5 } else { 15 };
             let who = Who {
                 id: id(chance.whole(0, most) as u8),
@@ -160,7 +160,7 @@ fn disturb(stage: &mut Stage, chance: &mut Stream) {
             let _ = stage.referee.request_timeout(Colour::Blue, Duration::millis(500));
         }
         11 => {
-            // What is not a number is not there.
+            // A robot with a NaN counts as absent.
             let index = chance.whole(0, stage.robots.len().max(1) as u32 - 1) as usize;
             if let Some(robot) = stage.robots.get_mut(index) {
                 robot.pose.position = at(f32::NAN, f32::INFINITY);
@@ -176,13 +176,13 @@ fn disturb(stage: &mut Stage, chance: &mut Stream) {
 
 #[test]
 fn a_wild_world_ends_in_time_and_never_leaves_the_state_graph() {
-    // `Stage::step` compares with a listener after every step and asserts the graph.
+    // `Stage::step` compares with an independent game state after every step and asserts the graph.
     for seed in 0..12 {
         let mut stage = wild(seed);
         let clock = MatchClock::Simulated { total: Duration::millis(200_000) };
         let knockout = seed % 4 == 3;
         let mut settings = RefereeSettings { clock, knockout, cards: !knockout, ..settings() };
-        // These robots place no ball: in the long matches people do it at once.
+        // These robots place no ball: in the long matches it is placed by hand at once.
         (settings.yellow.can_place_ball, settings.blue.can_place_ball) = (!knockout, !knockout);
         stage.referee = InternalReferee::new(settings, seed).unwrap();
         let mut chance = Stream::new(seed, "disturbances");

@@ -1,4 +1,4 @@
-//! Halt, stop, kick-off, halves, time-outs, shoot-out: how a match runs.
+//! Tests of the course of a match: halt, stop, kick-off, halves, time-outs, shoot-out.
 
 use super::*;
 
@@ -17,7 +17,7 @@ fn a_match_begins_with_halt_stop_and_the_first_teams_kick_off() {
 fn a_kick_off_begins_when_all_robots_are_in_their_halves_and_no_sooner() {
     let mut stage = stage();
     stage.until(Phase::PrepareKickoff(Colour::Yellow), 10.0);
-    // The controller wants all of the robot in its half, the kicker too: 0.09 m.
+    // The controller requires all of the robot in its half, the kicker too: 0.09 m.
     for (who, outside, inside) in
         [(blue(1), at(0.08, 2.0), at(0.095, 2.0)), (yellow(1), at(0.2, 0.0), at(-0.1, 0.2))]
     {
@@ -41,7 +41,7 @@ fn a_kick_off_waits_for_a_ball_in_the_centre_circle() {
     stage.run(5.0);
     stage.move_ball(at(0.0, 0.4));
     stage.until(Phase::Kickoff(Colour::Yellow), 2.1);
-    // One that does not come back is put there again, after a stop.
+    // A robot that does not come back is placed there again, after a stop.
     let mut stage = super::stage();
     stage.until(Phase::PrepareKickoff(Colour::Yellow), 10.0);
     stage.move_ball(at(0.0, 0.6));
@@ -186,7 +186,7 @@ fn a_drawn_knockout_match_goes_on_to_overtime_and_a_shoot_out() {
         assert!(stage.seconds() < 3_000.0, "{parts:?}");
     }
     assert_eq!(parts, Part::ALL);
-    // Nobody shot: given up after 20 attempts each.
+    // No team shot: ended after 20 attempts each.
     let failed = stage.count(Kind::PenaltyFailed);
     assert_eq!(failed, 40);
 }

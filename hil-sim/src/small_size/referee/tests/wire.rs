@@ -1,10 +1,10 @@
-//! What goes out: packets as the game controller sends them.
+//! Tests of the packets: as the game controller sends them.
 
 use super::*;
 use ssl::event::GameEventType;
 use ssl::referee as sent;
 
-/// The command of a packet; `None` for the old announcements of goals.
+/// The command of a packet; `None` for the obsolete announcements of goals.
 pub(super) fn from_wire(number: i32) -> Option<Command> {
     use Colour::{Blue, Yellow};
     Some(match sent::Command::try_from(number).unwrap() {
@@ -45,7 +45,7 @@ fn about_forty_packets_a_second_and_one_more_for_each_command() {
 fn timestamps_begin_at_the_epoch() {
     let epoch_us = 1_700_000_000_000_000;
     let mut stage = stage_with(RefereeSettings { epoch_us, ..settings() });
-    // The independent listener counts in the same clock.
+    // The independent game state uses the same clock.
     stage.referee.observe(&Observation {
         time: Instant(20_000),
         ball: None,
@@ -202,10 +202,10 @@ fn every_event_is_told_by_the_leagues_type_with_its_evidence_but_our_own_three()
         assert_eq!(told.as_ref().map_or(0, |told| told.r#type.unwrap()), number, "{kind:?}");
         let Some(told) = told else { continue };
         assert_eq!(told.created_timestamp, Some(1_009));
-        // The league's name of the type, in small letters, is ours.
+        // The league's name of the type, in lower case, is ours.
         let name = format!("{:?}", GameEventType::try_from(number).unwrap()).to_lowercase();
         assert_eq!(name, kind.word().replace('_', ""), "{kind:?}");
-        // The event is the one that the type names: both are called alike.
+        // The event is the one that the type names: both have the same name.
         let event = format!("{:?}", told.event.unwrap());
         let event = event.split('(').next().unwrap().to_lowercase();
         assert_eq!(event, name);

@@ -1,4 +1,4 @@
-//! The referee before the simulator's world: a kick-off and a shot, seen with the simulator's own events.
+//! Tests of the referee with the simulator's world: a kick-off and a shot, with the simulator's own events.
 
 use super::*;
 use crate::small_size::{Ball, Drive, Kick, Order, Parameters, World};
@@ -47,7 +47,7 @@ impl Match {
     }
 }
 
-/// Yellow's robot 1 kicks off with that speed, from before the ball.
+/// Yellow's robot 1 kicks off with that speed, from behind the ball.
 fn kick_off(speed: f32) -> Match {
     let mut game = Match::new(0.0);
     game.until(Phase::PrepareKickoff(Colour::Yellow), 20.0, Order::default());
@@ -68,7 +68,7 @@ fn a_kick_off_into_the_open_goal_counts_and_is_no_double_touch() {
     assert_eq!(game.referee.accounts().yellow.score, 1);
     let kinds: Vec<Kind> = game.referee.events().iter().map(|event| event.what.kind()).collect();
     assert_eq!(kinds, [Kind::PossibleGoal, Kind::Goal]);
-    // The kicker stands where the ball has to lie.
+    // The kicker stands at the target position of the ball.
     game.world.put(yellow(1), Pose { position: at(-1.5, 0.0), heading: Angle::ZERO });
     game.until(Phase::PrepareKickoff(Colour::Blue), 20.0, Order::default());
     assert_eq!(game.world.ball.position, at(0.0, 0.0));
@@ -84,8 +84,8 @@ fn the_speed_of_a_kick_is_the_simulators_own() {
     assert_eq!(kinds, [Kind::BallTooFast]);
 }
 
-/// A rough team: in play the robot nearest to the ball drives through it towards the goal and kicks, the others stay
-/// home; else everybody goes home slowly, and stands still in a halt.
+/// A rough team: in play the robot nearest to the ball drives through it towards the goal and kicks, the
+/// others stay at home; else all robots drive home slowly, and stand still in a halt.
 fn rough(game: &Match, who: Who, home: Point<Field>) -> Order {
     let Some(robot) = game.world.robot(who) else { return Order::default() };
     let (place, ball) = (robot.pose.position, game.world.ball.position);
@@ -120,7 +120,7 @@ fn rough(game: &Match, who: Who, home: Point<Field>) -> Order {
 fn a_rough_match_in_the_simulator_is_played_and_robots_that_obey_halt_and_stop_are_not_accused() {
     let mut game = Match::new(0.0);
     let clock = MatchClock::Simulated { total: Duration::millis(120_000) };
-    // People place the ball: these robots cannot.
+    // The ball is placed by hand: these robots cannot place it.
     let mut settings = RefereeSettings { clock, ..settings() };
     (settings.yellow.can_place_ball, settings.blue.can_place_ball) = (false, false);
     game.referee = InternalReferee::new(settings, 1).unwrap();

@@ -11,12 +11,12 @@ use super::super::observation::RobotSeen;
 use super::super::scene::{COLOURS, Scene};
 use super::Episodes;
 
-/// Watches the defence areas.
+/// Monitors the defence areas.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Areas {
     attackers: Episodes<Who>,
     defenders: Episodes<Who>,
-    /// When each team last committed the foul of being too close, in the order of [`COLOURS`].
+    /// Time of each team's last foul of being too close, in the order of [`COLOURS`].
     too_close: [Option<Instant>; 2],
 }
 
@@ -27,7 +27,7 @@ impl Areas {
     }
 
     pub(super) fn look(&mut self, scene: &Scene<'_>, events: &mut Vec<Event>) {
-        // Teams that change ends walk through each other's areas; on a real field people carry their robots over.
+        // Teams that change ends drive through each other's areas; on a real field their robots are carried.
         if matches!(scene.game.phase, Phase::Stop | Phase::FreeKick(_)) && !scene.game.before_half {
             for (team, told) in COLOURS.into_iter().zip(&mut self.too_close) {
                 events.extend(too_close(scene, team, told));
@@ -56,7 +56,8 @@ impl Areas {
     }
 }
 
-/// The team's robot that is nearest to the opponents' area, where it is too near and the team's grace is over.
+/// The team's robot that is nearest to the opponents' area, where it is too near and the team's grace is
+/// over.
 fn too_close(scene: &Scene<'_>, team: Colour, told: &mut Option<Instant>) -> Option<Event> {
     let grace_began = told.map_or(scene.game.since, |told| told.max(scene.game.since));
     if scene.now.since(grace_began).as_secs_f32() <= limits::GRACE {
@@ -77,7 +78,7 @@ fn too_close(scene: &Scene<'_>, team: Colour, told: &mut Option<Instant>) -> Opt
     })
 }
 
-/// How far that robot's nearest side is within the area, m: negative outside.
+/// Depth of that robot's nearest side within the area, m: negative outside.
 fn depth_in(field: &FieldSpec, end: GoalEnd, position: Point<Field>) -> f32 {
     limits::ROBOT_RADIUS - field.distance_to_area(end, position)
 }

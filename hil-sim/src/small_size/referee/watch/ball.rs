@@ -11,27 +11,27 @@ use super::super::event::{Event, What};
 use super::super::scene::{COLOURS, Scene};
 use super::{Episodes, Touches};
 
-/// Watches the ball.
+/// Monitors the ball.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BallWatch {
     too_fast: Episodes<Who>,
     dribbled: Episodes<(Who, [u32; 2])>,
     taker: Taker,
-    /// In whose defence area the ball is, and since when.
+    /// The team whose defence area holds the ball, and since when.
     held: Option<(Colour, Instant)>,
     /// Where the ball stays, and since when.
     rests: Option<(Point<Field>, Instant)>,
 }
 
-/// Who took the kick-off or free kick.
+/// The kicker of the kick-off or free kick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum Taker {
-    /// Nobody may be caught: no such restart, or another robot has touched the ball since.
+    /// No double touch is possible: no such restart, or another robot has touched the ball since.
     #[default]
     None,
-    /// Nobody has touched the ball yet.
+    /// No robot has touched the ball yet.
     Awaited,
-    /// This robot, and nobody after it.
+    /// This robot touched it, and no other after it.
     Is(Who),
 }
 
@@ -126,7 +126,7 @@ impl BallWatch {
     fn no_progress(&mut self, scene: &Scene<'_>) -> Option<Event> {
         let place = scene.ball.position;
         let (rest, since) = self.rests.unwrap_or((place, scene.now));
-        // A taker has its own time before this one begins.
+        // The kicker has its own time limit before this one starts.
         if scene.game.phase != Phase::Run || rest.distance(place) > NO_PROGRESS_DISTANCE {
             self.rests = Some((place, scene.now));
             return None;
@@ -140,7 +140,7 @@ impl BallWatch {
     }
 }
 
-/// A kick at exactly the limit is lawful, whatever the simulator's rounding makes of it, m/s.
+/// Rounding tolerance, m/s: a kick ordered at exactly the limit is legal.
 const ROUNDING: f32 = 0.01;
-/// A ball that stays within this of a place makes no progress, m: the game controller's tolerance.
+/// Radius within which the ball makes no progress, m: the game controller's tolerance.
 const NO_PROGRESS_DISTANCE: f32 = 0.1;

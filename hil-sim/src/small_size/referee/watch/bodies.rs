@@ -1,6 +1,7 @@
 //! `bodies`: contact offences: crashing, pushing, ball holding. Rules: crashing, pushing, ball holding.
 //!
-//! m, m/s, s, field frame. What the rules leave to the human referee's eye has numbers of ours here, estimated.
+//! m, m/s, s, field frame. What the rules leave to the human referee's judgement has thresholds of ours here,
+//! estimated.
 
 use std::collections::BTreeMap;
 
@@ -14,13 +15,13 @@ use super::super::observation::{CrashSeen, RobotSeen};
 use super::super::scene::{COLOURS, Scene};
 use super::Episodes;
 
-/// Watches robots against robots.
+/// Monitors contacts of robots.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bodies {
     crashes: Episodes<[Who; 2]>,
-    /// How far the first has pushed the second, and when it last did.
+    /// Distance that the first has pushed the second, and the time of the last push.
     pushes: BTreeMap<[Who; 2], Push>,
-    /// Since when a team closes in the ball, in the order of [`COLOURS`].
+    /// Since when a team encloses the ball, in the order of [`COLOURS`].
     closed: [Option<Instant>; 2],
     before: Option<Instant>,
 }
@@ -85,7 +86,7 @@ impl Bodies {
         })
     }
 
-    /// Both in contact, and both on the way from the first to the second.
+    /// Whether both are in contact, and both move in the direction from the first to the second.
     fn push(&mut self, scene: &Scene<'_>, from: &RobotSeen, to: &RobotSeen, dt: f32) -> Option<Event> {
         let pair = [from.who, to.who];
         let between = to.pose.position - from.pose.position;
@@ -113,7 +114,7 @@ impl Bodies {
     }
 }
 
-/// A team's robots stand around the ball so that no opponent fits between them.
+/// A team's robots enclose the ball so that no opponent fits between them.
 fn holding(scene: &Scene<'_>, team: Colour, since: &mut Option<Instant>) -> Option<Event> {
     let around = scene
         .robots
@@ -144,19 +145,21 @@ fn angle_between(a: Vector<geometry::Field>, b: Vector<geometry::Field>) -> f32 
     Angle::new(math::atan2(b.cross(a), b.dot(a))).radians()
 }
 
-/// Hulls nearer than this are in contact, m: as the automatic referee of the TIGERs has it.
+/// Distance between hulls, m, below which they are in contact: as in the automatic referee of the TIGERs.
 const CONTACT: f32 = 0.01;
-/// A robot that moves is faster than this, m/s: what a blocked wheel still makes is slower.
+/// Minimum speed of a moving robot, m/s: a robot with blocked wheels is slower.
 const MOVING: f32 = 0.2;
-/// Pushed so far is a foul, m: as the automatic referee of the TIGERs had it while it judged pushing.
+/// Pushed distance that is a foul, m: as in the automatic referee of the TIGERs while it judged pushing.
 const PUSH_DISTANCE: f32 = 0.2;
-/// Pushed away is who moves within 0.7 rad of the line between the two (same source): the cosine of it.
+/// Cosine of 0.7 rad: a robot is pushed if its motion is within this angle of the line between the two (same
+/// source).
 const STRAIGHT: f32 = 0.764_842;
 /// Pauses up to this do not end a push, s.
 const PUSH_PAUSE: f32 = 0.2;
-/// Robots within this of the ball are around it, m: an opponent of 0.18 m fits behind them only.
+/// Maximum distance from the ball, m, of robots around it: an opponent of 0.18 m fits behind them only.
 const AROUND_BALL: f32 = 0.18;
-/// The widest gap between two neighbours, seen from the ball, through which no opponent reaches it, rad (150°).
+/// The widest gap between two neighbours, seen from the ball, through which no opponent reaches it, rad
+/// (150°).
 const GAP: f32 = 2.617_994;
-/// How long a ball may be closed in, s: as the rules' other graces.
+/// Maximum time a ball may be enclosed, s: as the rules' other graces.
 const HOLD_TIME: f32 = limits::GRACE;

@@ -13,14 +13,14 @@ use super::super::observation::RobotSeen;
 use super::super::scene::Scene;
 use super::Episodes;
 
-/// Watches who is where while the ball is out of play.
+/// Monitors positions and speeds while the ball is out of play.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Calm {
-    /// Robots already told in this halt or stop, for each of its offences.
+    /// Robots already reported in this halt or stop, for each of its offences.
     moved: BTreeSet<Who>,
     fast: BTreeSet<Who>,
     near: BTreeSet<Who>,
-    /// Since when each robot is where it must not be.
+    /// Since when each robot is at a forbidden position.
     near_since: BTreeMap<Who, Instant>,
     /// Of several robots of a team within 2 s only the first counts.
     fast_teams: Episodes<Colour>,
@@ -85,7 +85,7 @@ impl Calm {
         }
     }
 
-    /// The nearest robot of the team that must keep away while the other takes its kick.
+    /// The nearest robot of the team that must keep its distance while the other kicks.
     fn kick_point(&mut self, scene: &Scene<'_>, team: Colour) -> Option<Event> {
         let nearest = nearest(scene, team)?;
         let distance = scene.distance_to_ball(nearest);
@@ -95,7 +95,8 @@ impl Calm {
         told.then(|| scene.by(nearest.who, nearest.pose.position, what))
     }
 
-    /// A robot of the team that does not place, too near the line from ball to target for longer than the grace.
+    /// A robot of the team that does not place, too near the line from ball to target for longer than the
+    /// grace.
     fn placement(&mut self, scene: &Scene<'_>, team: Colour) -> Option<Event> {
         let target = scene.game.target?;
         let mut first = None;
@@ -111,7 +112,7 @@ impl Calm {
             .map(|robot| scene.by(robot.who, robot.pose.position, What::InterferedPlacement))
     }
 
-    /// Whether that robot has been where it must not be for longer than the grace.
+    /// Whether that robot has been at a forbidden position for longer than the grace.
     fn stays(&mut self, scene: &Scene<'_>, robot: &RobotSeen, within: bool) -> bool {
         if !within {
             self.near_since.remove(&robot.who);
@@ -128,5 +129,6 @@ fn nearest<'a>(scene: &'a Scene<'_>, team: Colour) -> Option<&'a RobotSeen> {
     robots.min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }
 
-/// A robot slower than this stands, m/s: less than a camera's noise makes of one that does, estimated.
+/// Speed below which a robot stands, m/s: below the apparent speed of a standing robot by a camera's noise,
+/// estimated.
 const STANDING: f32 = 0.05;

@@ -1,12 +1,12 @@
-//! `episodes`: separation of offences in time. An offence is told when it begins and, as long as it goes on,
-//! again after the rules' 2 s; one that pauses shorter than 0.2 s is still the same.
+//! `episodes`: separation of offences in time. An offence is reported when it starts and, as long as it
+//! lasts, again after the rules' 2 s; one that pauses shorter than 0.2 s is still the same.
 
 use std::collections::BTreeMap;
 
 use protocol::{Duration, Instant};
 use rules::limits;
 
-/// Offences that go on, by who commits them.
+/// Current offences, by the robot or team that commits them.
 #[derive(Clone, Debug)]
 pub(super) struct Episodes<K>(BTreeMap<K, Episode>);
 
@@ -23,7 +23,7 @@ impl<K> Default for Episodes<K> {
 }
 
 impl<K: Ord> Episodes<K> {
-    /// Whether what holds now is to be told.
+    /// Whether the present offence has to be reported.
     pub(super) fn tell(&mut self, who: K, holds: bool, now: Instant) -> bool {
         let Some(episode) = self.0.get_mut(&who) else {
             if holds {
@@ -50,8 +50,8 @@ impl<K: Ord> Episodes<K> {
     }
 }
 
-/// A robot that bounces off the ball or a line for so long has not stopped what it does: two frames of a camera and
-/// some, estimated.
+/// Maximum pause within one offence, such as when a robot bounces off the ball or a line: more than two
+/// frames of a camera, estimated.
 const PAUSE: Duration = Duration::millis(200);
 
 #[cfg(test)]

@@ -13,11 +13,11 @@ use super::super::observation::RobotSeen;
 use super::super::scene::Scene;
 use super::Touches;
 
-/// Watches the lines.
+/// Monitors the lines.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Lines {
     before: Option<Point<Field>>,
-    /// The kick that sent the ball out: it may still fly over the wall.
+    /// The kick that sent the ball out: the ball may still fly over the wall.
     sent_out: Option<(Event, Instant)>,
 }
 
@@ -30,7 +30,7 @@ impl Lines {
             return;
         }
         self.sent_out = None;
-        // One that was outside when play began, because nobody fetched it, has not left.
+        // A ball that was outside when play started, because it was not brought back, has not left.
         if legality::ball_is_out(scene.game.field, before) {
             return;
         }
@@ -43,7 +43,7 @@ impl Lines {
         events.push(event);
     }
 
-    /// The ball that left flies on over the wall before anybody touches it.
+    /// The ball that left flies on over the wall before any robot touches it.
     fn over_the_wall(&mut self, scene: &Scene<'_>) -> Option<Event> {
         let (event, at) = self.sent_out.take()?;
         let touched = scene.robots.iter().any(|robot| robot.touches_ball);
@@ -105,5 +105,6 @@ fn shot(scene: &Scene<'_>, touches: &Touches, scorer: Colour) -> Shot {
     }
 }
 
-/// How long a ball that left may take to fly over the wall, s: a chip at 6.5 m/s is in the air for less than 1 s.
+/// Maximum time in which a ball that left may fly over the wall, s: a chip at 6.5 m/s is in the air for less
+/// than 1 s.
 const FLIGHT: f32 = 2.0;

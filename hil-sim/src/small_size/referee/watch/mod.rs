@@ -1,4 +1,4 @@
-//! `watch`: monitors of an automatic referee. One watcher a question, one event an offence.
+//! `watch`: monitors of an automatic referee. One monitor per rule, one event per offence.
 //!
 //! Rules 2026, chapters on offenses, ball leaves the field and scoring goals. m, m/s, s, field frame.
 
@@ -25,7 +25,7 @@ use penalty::PenaltyWatch;
 use protocol::Who;
 use touches::Touches;
 
-/// All watchers.
+/// All monitors.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Watch {
     touches: Touches,
@@ -38,7 +38,7 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// Adds what happened since the last moment.
+    /// Adds the events since the last observation.
     pub(super) fn look(&mut self, scene: &Scene<'_>, events: &mut Vec<Event>) {
         self.touches.look(scene);
         self.penalty.look(scene, &self.touches, events);
@@ -49,7 +49,7 @@ impl Watch {
         self.bodies.look(scene, events);
     }
 
-    /// A command was given: what a restart or stop is watched for begins anew.
+    /// A command was issued: monitors of a restart or stop are reset.
     pub(super) fn command_given(&mut self) {
         self.ball.command_given();
         self.areas.command_given();
@@ -57,12 +57,12 @@ impl Watch {
         self.penalty.command_given();
     }
 
-    /// Who touched the ball last, and where the ball was then.
+    /// The robot that touched the ball last, and the ball's position then.
     pub(super) fn last_touch(&self) -> Option<(Who, Point<Field>)> {
         self.touches.last().map(|touch| (touch.who, touch.ball))
     }
 
-    /// The ball was put somewhere by hand: who had it does not matter any more.
+    /// The ball was placed by hand: earlier touches no longer count.
     pub(super) fn ball_was_put_down(&mut self) {
         self.touches = Touches::default();
         self.lines = Lines::default();

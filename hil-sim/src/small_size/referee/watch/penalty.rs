@@ -1,6 +1,6 @@
 //! `penalty`: failed penalties. Rules: penalty kick.
 //!
-//! m, m/s, field frame. Goals, lines and time are other watchers' matter.
+//! m, m/s, field frame. Goals, lines and time are checked by other monitors.
 
 use geometry::{Field, Vector};
 use rules::{Colour, Phase, legality, limits};
@@ -10,10 +10,10 @@ use super::super::scene::Scene;
 use super::Touches;
 use protocol::Who;
 
-/// Watches a penalty.
+/// Monitors a penalty.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PenaltyWatch {
-    /// How far the ball came towards the goal, m.
+    /// Maximum advance of the ball towards the goal, m.
     farthest: Option<f32>,
     /// Its velocity before the keeper touched it.
     incoming: Option<Vector<Field>>,
@@ -51,7 +51,7 @@ impl PenaltyWatch {
         let way = scene.ball.position.x() * goal;
         let farthest = self.farthest.map_or(way, |farthest| farthest.max(way));
         self.farthest = Some(farthest);
-        // As far as the ball may move before it is in play.
+        // Within the distance that the ball may move before it is in play.
         (farthest - way > limits::IN_PLAY_DISTANCE).then_some(PenaltyEnd::MovedBack)
     }
 }

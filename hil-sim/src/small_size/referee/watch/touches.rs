@@ -1,4 +1,4 @@
-//! `touches`: ball contacts. Contacts begin with a touch and end with a separation that can be seen.
+//! `touches`: ball contacts. Contacts start with a touch and end with a visible separation.
 //!
 //! m, field frame.
 
@@ -15,25 +15,25 @@ use super::super::scene::{COLOURS, Scene};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch {
     pub(super) who: Who,
-    /// Where the ball was when the contact was last seen.
+    /// Position of the ball when the contact was last seen.
     pub(super) ball: Point<Field>,
 }
 
-/// A contact that lasts.
+/// A lasting contact.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contact {
-    /// Where the ball was when it began.
+    /// Position of the ball when it started.
     pub(super) start: Point<Field>,
 }
 
-/// Who deals with the ball.
+/// Contacts of all robots with the ball.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Touches {
     last: Option<Touch>,
     contacts: BTreeMap<Who, Contact>,
-    /// Greatest height since each team's last touch, in the order of [`COLOURS`], m.
+    /// Maximum height since each team's last touch, in the order of [`COLOURS`], m.
     heights: [f32; 2],
-    /// Each team's last touch.
+    /// Time of each team's last touch.
     times: [Option<Instant>; 2],
 }
 
@@ -47,7 +47,7 @@ impl Touches {
             if is_close(scene, robot) {
                 self.contacts.entry(robot.who).or_insert(Contact { start: ball.position });
             }
-            // A new toucher before one that still touches, the nearer one of two.
+            // A new toucher takes precedence over one that still touches; of two, the nearer one.
             let distance = robot.pose.position.distance(ball.position);
             if next.is_none_or(|(was_new, least, _)| (new, -distance) > (was_new, -least)) {
                 next = Some((new, distance, robot.who));
@@ -77,18 +77,18 @@ impl Touches {
         self.contacts.contains_key(&who)
     }
 
-    /// How high the ball was at most since that team's last touch, m.
+    /// Maximum height of the ball since that team's last touch, m.
     pub(super) fn height_since(&self, team: Colour) -> f32 {
         self.heights[index(team)]
     }
 
-    /// When that team touched the ball last.
+    /// Time of that team's last touch.
     pub(super) fn last_of(&self, team: Colour) -> Option<Instant> {
         self.times[index(team)]
     }
 }
 
-/// No separation can be seen between that robot and the ball.
+/// Whether there is no visible separation between that robot and the ball.
 fn is_close(scene: &Scene<'_>, robot: &RobotSeen) -> bool {
     scene.distance_to_ball(robot) - limits::BALL_RADIUS <= SEPARATION
         && scene.ball.height <= limits::ROBOT_HEIGHT
@@ -98,6 +98,6 @@ fn index(team: Colour) -> usize {
     usize::from(team == COLOURS[1])
 }
 
-/// A gap between hull and ball that a camera sees, m: about the ball's radius, estimated. (The mouth of a robot lies some
-/// 17 mm inside its hull, so that a ball at the dribbler is 17 mm "within".)
+/// Gap between hull and ball that a camera sees, m: about the ball's radius, estimated. (The dribbler opening
+/// lies some 17 mm inside a robot's hull, so that a ball at the dribbler is 17 mm "within".)
 const SEPARATION: f32 = 0.02;

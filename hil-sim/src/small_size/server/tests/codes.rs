@@ -1,4 +1,4 @@
-//! `codes`: tests: every error code is returned for the message that deserves it.
+//! `codes`: tests: every error code is returned for the message that causes it.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! `legacy`: the tests of grSim's older protocol, port 20011.
+//! `legacy`: tests of grSim's older protocol, port 20011.
 
 use ssl::simulation::{
     GrsimBallReplacement, GrsimCommands, GrsimPacket, GrsimReplacement, GrsimRobotCommand,
@@ -7,7 +7,7 @@ use ssl::simulation::{
 
 use super::*;
 
-/// The states that a message of grSim's older protocol brings back, by the port they go to.
+/// The states in the answer to a message of grSim's older protocol, by the port they go to.
 fn states(server: &mut Server, packet: &GrsimPacket) -> Vec<(u16, RobotsStatus)> {
     while server.poll_transmit().is_some() {}
     server.handle(Port::Legacy, from(), &packet.encode_to_vec());
@@ -40,7 +40,7 @@ fn grsims_older_protocol_drives_kicks_and_puts_things() {
         (after.x() - before.x() - 0.389).abs() < 0.01,
         "as by the league's protocol: {before:?} {after:?}"
     );
-    // Wheels turn counter-clockwise together: it turns on the spot.
+    // All wheels turn counter-clockwise: the robot turns on the spot.
     for _ in 0..50 {
         let wheels = |c: &mut GrsimRobotCommand| {
             c.wheelsspeed = true;
@@ -50,9 +50,9 @@ fn grsims_older_protocol_drives_kicks_and_puts_things() {
         steps(&mut grsim, 10);
     }
     let robot = grsim.world().robot(own(2)).unwrap();
-    // 10 rad/s of a wheel of 27 mm at 0.081 m from the middle or so.
+    // 10 rad/s of a wheel of 27 mm, about 0.081 m from the middle.
     assert!(robot.turning > 2.5 && robot.velocity.norm() < 0.05, "{robot:?}");
-    // The ball into its mouth, by replacement; a chip.
+    // The ball is placed in its dribbler opening by a replacement; a chip.
     let robot_at =
         GrsimRobotReplacement { x: 1.0, y: 1.0, dir: 90.0, id: 2, yellowteam: false, turnon: None };
     let reach = f64::from(robot.body.front + 0.0215 + 0.001);
@@ -83,7 +83,7 @@ fn grsims_older_protocol_drives_kicks_and_puts_things() {
     assert!(!grsim.world().robot(own(2)).unwrap().present);
     states(&mut grsim, &replace(None));
     assert!(grsim.world().robot(own(2)).unwrap().present);
-    // Bytes of another kind, ids that are none, numbers that are none.
+    // Undecodable bytes, invalid ids, NaN.
     grsim.handle(Port::Legacy, from(), b"\xff\xff");
     let nonsense = |c: &mut GrsimRobotCommand| (c.id, c.veltangent) = (99, f32::NAN);
     states(&mut grsim, &command(nonsense));

@@ -1,4 +1,5 @@
-//! `manners`: tests: the compatibility profiles of the league's other simulators. The traps by their numbers.
+//! `manners`: tests of the compatibility profiles of the league's other simulators, with the numbers of their
+//! deviations.
 
 use super::*;
 
@@ -16,7 +17,7 @@ fn trap_01_and_02_vision_is_as_the_other_simulators_send_it() {
     assert!(packets.iter().all(|packet| packet.detection.as_ref().unwrap().t_capture > 1.7e9));
 }
 
-/// What a message to a team's port is answered with, datagram by datagram.
+/// The answers to a message to a team's port, datagram by datagram.
 fn answers(server: &mut Server, commands: &[RobotCommand]) -> Vec<RobotControlResponse> {
     sent(server);
     let control = RobotControl { robot_commands: commands.to_vec() };
@@ -25,7 +26,7 @@ fn answers(server: &mut Server, commands: &[RobotCommand]) -> Vec<RobotControlRe
     answers.iter().map(|bytes| RobotControlResponse::decode(&bytes[..]).unwrap()).collect()
 }
 
-/// The codes of what a message to the simulator's port is answered with; `None`: it is not answered.
+/// The codes in the answer to a message to the simulator's port; `None`: it is not answered.
 fn codes(server: &mut Server, command: &SimulatorCommand) -> Option<Vec<String>> {
     sent(server);
     server.handle(Port::Simulator, from(), &command.encode_to_vec());
@@ -64,7 +65,7 @@ fn trap_09_a_tenth_of_er_forces_answers_is_lost() {
     let all: Vec<_> = (0..6).map(|id| ahead(id, 0.0)).collect();
     let told: usize =
         (0..500).flat_map(|_| answers(&mut erforce, &all)).map(|told| told.feedback.len()).sum();
-    // 3,000 chances of 0.9: deviation 16.
+    // 3,000 draws of 0.9: deviation 16.
     assert!(told.abs_diff(2_700) < 66, "{told}");
 }
 
@@ -108,7 +109,7 @@ fn er_force_tells_errors_alone_and_by_its_own_codes() {
         (robot(TeleportRobot { id: blue(12), present: Some(true), ..stand }), Some("CREATE_UNSPEC_ROBOT")),
         (robot(TeleportRobot { present: Some(false), ..stand }), None),
         (robot(TeleportRobot { present: Some(true), ..stand }), Some("CREATE_NOPOS_ROBOT")),
-        // Nobody of that number is there: it says nothing of it.
+        // No robot of that number is there: it reports nothing.
         (robot(TeleportRobot { id: blue(9), x: Some(1.0), y: Some(1.0), ..stand }), None),
         (SimulatorCommand::default(), None),
     ];
@@ -122,7 +123,7 @@ fn er_force_tells_errors_alone_and_by_its_own_codes() {
     let answer = sent(&mut erforce).1.remove(0);
     let answer = SimulatorResponse::decode(&answer[..]).unwrap();
     assert_eq!(answer.errors[0].code.as_deref(), Some("UNREADABLE"));
-    // Robots: errors and feedback come apart; velocities in the robot's own frame alone.
+    // Robots: errors and feedback come in separate packets; velocities in the robot's own frame alone.
     let wheels = ssl::simulation::MoveWheelVelocity {
         front_right: 1.0,
         back_right: 1.0,
@@ -281,7 +282,7 @@ fn grsims_vision_has_the_balls_height_and_its_place_as_it_is() {
     assert!((ball.x - 1000.0).abs() < 1.0 && (ball.y - 1000.0).abs() < 1.0, "{ball:?}");
     let other = seen(Profile::Ours);
     assert!(other.z.is_none() && (other.x - 1000.0).abs() > 10.0, "{other:?}");
-    // On the carpet: the height of its centre.
+    // On the field surface: the height of its centre.
     let mut grsim = server_like(Profile::Grsim);
     steps(&mut grsim, 30);
     let frames: Vec<_> = sent(&mut grsim).0.into_iter().filter_map(|packet| packet.detection).collect();
@@ -300,7 +301,7 @@ fn grsim_takes_robots_that_are_parked_off_the_field() {
     assert_eq!(ids(&answers(&mut grsim, &[ahead(4, 1.0)])[0]), [4], "it is parked, not gone");
     assert!(put(&mut grsim, 1.5).is_empty(), "and comes back without being told that it is present");
     assert!(grsim.world().robot(own(4)).unwrap().present);
-    // Just outside the lines it stands on the carpet.
+    // Just outside the lines it stands on the field surface.
     assert!(put(&mut grsim, 4.7).is_empty());
     assert!(grsim.world().robot(own(4)).unwrap().present);
     assert_eq!(put(&mut server(), 100.0), ["ONETWO_OUTSIDE_HALL"]);

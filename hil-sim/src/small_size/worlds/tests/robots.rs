@@ -1,4 +1,4 @@
-//! What robots differ in, orders that come late, and robots that stand about.
+//! Tests of differences between robots, delayed orders, and bystanders.
 
 use super::*;
 use crate::small_size::camera::Cameras;
@@ -78,7 +78,7 @@ fn wheels_that_slip_a_tenth_tell_one_metre_a_second_and_go_nine_tenths() {
     assert!((told.norm() - 1.0).abs() < 0.02 && (true_speed - 0.9).abs() < 1e-3, "{told:?} {true_speed}");
 }
 
-/// The step after which the robot moves first, commanded from the first step on.
+/// The step after which the robot first moves, commanded from the first step on.
 fn first_motion(link: LinkModel) -> u64 {
     let mut world = with_ball(|model| model.link = link);
     for step in 0..500 {

@@ -9,12 +9,12 @@ use crate::small_size::camera::Cameras;
 use crate::small_size::quirks::Profile;
 use crate::small_size::tests::six_a_side;
 
-/// Six a side, the ball, one camera over all.
+/// Six robots a side, the ball, one camera over all.
 fn lined_up(model: &WorldModel) -> World {
     six_a_side(World::of_model(League::DivisionB, model, 1))
 }
 
-/// All frames of so many seconds, with the step each came in.
+/// All frames of `seconds` seconds, with the step each arrived in.
 fn watched(change: impl FnOnce(&mut WorldModel), seconds: u32) -> Vec<(u64, DetectionFrame)> {
     let model = model(|model| {
         model.parameters.camera.count = 1;
@@ -50,10 +50,11 @@ fn as_many_frames_come_as_the_rate_says() {
 fn a_gap_of_a_hundred_ms_leaves_a_hundred_ms_without_frames() {
     let frames = watched(|model| (model.vision.gap_every_s, model.vision.gap_ms) = (1.0, [100, 100]), 60);
     let gaps: Vec<u64> = waits(&frames).into_iter().filter(|wait| *wait > 10).collect();
-    // Pictures are 10 ms apart: ten are missing, so the next comes 110 ms after the last. Two gaps may follow each other closely.
+    // Frames are 10 ms apart: ten are missing, so the next comes 110 ms after the last. Two gaps may follow
+    // each other closely.
     assert!(gaps.iter().filter(|gap| **gap == 110).count() * 10 >= gaps.len() * 8, "{gaps:?}");
     assert!((35..=75).contains(&gaps.len()), "one a second and a tenth on average: {}", gaps.len());
-    // The camera counts on, so that a listener can tell what it missed.
+    // The camera's frame numbers continue, so that a receiver can detect what it missed.
     let jumps = frames.windows(2).filter(|pair| pair[1].1.frame_number > pair[0].1.frame_number + 1);
     assert_eq!(jumps.count(), gaps.len());
 }
@@ -70,7 +71,7 @@ fn gaps_last_from_their_least_to_their_most() {
 fn jitter_delays_up_to_its_bound_and_frames_keep_their_order() {
     let frames = watched(|model| model.vision.jitter_ms = 15, 20);
     assert!(frames.windows(2).all(|pair| pair[0].1.frame_number < pair[1].1.frame_number));
-    // Ours are 35 ms late without it.
+    // Our frames are 35 ms late without it.
     let late: Vec<u64> =
         frames.iter().map(|(now, frame)| now - (frame.t_capture * 1e3 + 0.5) as u64).collect();
     assert_eq!((late.iter().min(), late.iter().max()), (Some(&35), Some(&50)));
