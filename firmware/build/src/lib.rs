@@ -13,7 +13,6 @@
 //! done that takes time is told on stderr.
 #![forbid(unsafe_code)]
 
-mod debian;
 mod image;
 pub mod inspect;
 pub mod on_target;
@@ -25,12 +24,12 @@ use std::path::{Path, PathBuf};
 
 pub use image::{Body, BuildError, Program, build_image, build_program, target_dir};
 pub use qemu::{MACHINE, QEMU, QemuError, ensure_qemu};
-pub use target::{Attempt, TargetError, ThumbToolchain, ensure_target};
+pub use target::{TargetError, ThumbToolchain, ensure_target};
 
 /// How far may we go to get a tool that is missing?
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Install {
-    /// Into the user's own folders only: rustup's targets, a cache. What a program may do unasked.
+    /// Into the user's own folders only: rustup's targets. What a program may do unasked.
     ForUser,
     /// System packages as well, where we are root. For the test command, which promises to install what it needs.
     SystemWide,
