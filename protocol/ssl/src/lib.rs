@@ -13,8 +13,7 @@
 //! | [`tracker`] | [`tracker::TrackerWrapperPacket`] | UDP 224.5.23.2:10010 |
 //! | [`simulation`] | [`simulation::SimulatorCommand`], [`simulation::RobotControl`] | UDP, 10300; 10301 blue, 10302 yellow |
 //! | [`simulation`] | [`simulation::GrsimPacket`], [`simulation::RobotsStatus`] | UDP, grSim's own: 20011; 30011 blue, 30012 yellow |
-//! | [`controller`] | [`controller::TeamToController`] and its kin | TCP 10007–10011, length-delimited |
-//! | [`radio`] | [`radio::RadioProtocolWrapper`] | a proposal of 2015 |
+//! | [`controller`] | [`controller::TeamToController`] and its kin | TCP 10007, 10008, length-delimited |
 //!
 //! [`net`] has the sockets, [`stream`] the framing on TCP, [`log`] the files matches are kept in.
 //!
@@ -46,7 +45,6 @@ pub mod controller;
 pub mod event;
 pub mod log;
 pub mod net;
-pub mod radio;
 pub mod referee;
 pub mod simulation;
 pub mod stream;

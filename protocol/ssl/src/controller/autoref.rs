@@ -1,13 +1,10 @@
-//! `autoref`: messages between automatic referee and game controller. Port 10007; under somebody's clock port
-//! 10013.
+//! `autoref`: messages between automatic referee and game controller. Port
+//! 10007.
 
 use prost::Message;
 
 use super::{ControllerReply, Signature};
 use crate::event::GameEvent;
-use crate::referee::Referee;
-use crate::tracker::TrackerWrapperPacket;
-use crate::vision::{DetectionFrame, GeometryData};
 
 /// An automatic referee's first message.
 #[derive(Clone, PartialEq, Message)]
@@ -37,29 +34,4 @@ pub struct ControllerToAutoRef {
     /// The answer to its last message.
     #[prost(message, optional, tag = "1")]
     pub controller_reply: Option<ControllerReply>,
-}
-
-/// One step of an automatic referee whose clock the sender drives.
-#[derive(Clone, PartialEq, Message)]
-pub struct AutoRefCiInput {
-    /// What the referee says.
-    #[prost(message, optional, tag = "1")]
-    pub referee_message: Option<Referee>,
-    /// What a tracker believes.
-    #[prost(message, optional, tag = "2")]
-    pub tracker_wrapper_packet: Option<TrackerWrapperPacket>,
-    /// What cameras saw.
-    #[prost(message, repeated, tag = "3")]
-    pub detection: Vec<DetectionFrame>,
-    /// The field.
-    #[prost(message, optional, tag = "4")]
-    pub geometry: Option<GeometryData>,
-}
-
-/// What the step brought.
-#[derive(Clone, PartialEq, Message)]
-pub struct AutoRefCiOutput {
-    /// What its own tracker believes.
-    #[prost(message, optional, tag = "1")]
-    pub tracker_wrapper_packet: Option<TrackerWrapperPacket>,
 }

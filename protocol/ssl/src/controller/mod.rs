@@ -3,22 +3,13 @@
 //!
 //! Teams: port 10008. It sends a [`ControllerReply`] with `next_token`; unsigned clients leave `signature` out.
 
-mod api;
 mod autoref;
-mod remote;
 
 use prost::{Enumeration, Message, Oneof};
 
 use crate::common::Team;
 
-pub use api::{CiInput, CiOutput, Input, Output, Protocol, ProtocolEntry};
-pub use autoref::{
-    AutoRefCiInput, AutoRefCiOutput, AutoRefRegistration, AutoRefToController, ControllerToAutoRef,
-};
-pub use remote::{
-    ControllerToRemoteControl, RemoteControlMessage, RemoteControlRegistration, RemoteControlRequest,
-    RemoteControlRequestType, RemoteControlTeamState, RemoteControlToController,
-};
+pub use autoref::{AutoRefRegistration, AutoRefToController, ControllerToAutoRef};
 
 /// The controller's answer to whatever was sent.
 #[derive(Clone, PartialEq, Message)]
