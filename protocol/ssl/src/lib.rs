@@ -1,6 +1,6 @@
 //! `ssl`: the Small Size League's messages, sockets and log files. Runs on the PC.
 //!
-//! One module a protobuf package, as hand-written `prost` structs: no protoc, no build script. Names are the league's
+//! One module a protobuf package, as `prost` structs written by hand: no protoc, no build script. Names are the league's
 //! without `SSL_`; a field is a plain value where the league requires it, an `Option` where it does not. Enums are kept
 //! as the number on the wire, so that unknown ones survive; the accessor of the field's name reads an unknown number as
 //! the enum's first value, `Enum::try_from(number)` tells it apart.
@@ -39,6 +39,9 @@
 //! **Units differ**: vision speaks of mm, everything else of m; the referee of µs, vision and trackers of s. Each module
 //! and each field says its own. The README has the traps of the league's programs and which test holds each.
 #![forbid(unsafe_code)]
+
+#[macro_use]
+mod messages;
 
 pub mod common;
 pub mod controller;

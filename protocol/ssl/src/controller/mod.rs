@@ -11,21 +11,19 @@ use crate::common::Team;
 
 pub use autoref::{AutoRefRegistration, AutoRefToController, ControllerToAutoRef};
 
-/// The controller's answer to whatever was sent.
-#[derive(Clone, PartialEq, Message)]
-pub struct ControllerReply {
-    /// Accepted or not, [`StatusCode`].
-    #[prost(enumeration = "StatusCode", optional, tag = "1")]
-    pub status_code: Option<i32>,
-    /// Why not.
-    #[prost(string, optional, tag = "2")]
-    pub reason: Option<String>,
-    /// What the next signature must be over.
-    #[prost(string, optional, tag = "3")]
-    pub next_token: Option<String>,
-    /// Was the signature checked? [`Verification`].
-    #[prost(enumeration = "Verification", optional, tag = "4")]
-    pub verification: Option<i32>,
+messages! {
+    /// The controller's answer to whatever was sent.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct ControllerReply {
+        /// Accepted or not, [`StatusCode`].
+        status_code: Option<i32> [enumeration = "StatusCode", optional] = 1;
+        /// Why not.
+        reason: Option<String> [string, optional] = 2;
+        /// What the next signature must be over.
+        next_token: Option<String> [string, optional] = 3;
+        /// Was the signature checked? [`Verification`].
+        verification: Option<i32> [enumeration = "Verification", optional] = 4;
+    }
 }
 
 /// Accepted or not.
@@ -48,29 +46,26 @@ pub enum Verification {
     Unverified = 2,
 }
 
-/// Proof of who sends.
-#[derive(Clone, PartialEq, Message)]
-pub struct Signature {
-    /// The controller's last `next_token`.
-    #[prost(string, required, tag = "1")]
-    pub token: String,
-    /// Signature over the message with this field empty: RSA, PKCS #1 v1.5, SHA-256.
-    #[prost(bytes = "vec", required, tag = "2")]
-    pub pkcs1v15: Vec<u8>,
-}
+messages! {
+    /// Proof of who sends.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct Signature {
+        /// The controller's last `next_token`.
+        token: String [string, required] = 1;
+        /// Signature over the message with this field empty: RSA, PKCS #1 v1.5, SHA-256.
+        pkcs1v15: Vec<u8> [bytes = "vec", required] = 2;
+    }
 
-/// A team's first message.
-#[derive(Clone, PartialEq, Message)]
-pub struct TeamRegistration {
-    /// Must be the name the controller shows.
-    #[prost(string, required, tag = "1")]
-    pub team_name: String,
-    /// Proof, where the controller has the team's key.
-    #[prost(message, optional, tag = "2")]
-    pub signature: Option<Signature>,
-    /// Which side, where both teams have one name, [`Team`].
-    #[prost(enumeration = "Team", optional, tag = "3")]
-    pub team: Option<i32>,
+    /// A team's first message.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct TeamRegistration {
+        /// Must be the name the controller shows.
+        team_name: String [string, required] = 1;
+        /// Proof, where the controller has the team's key.
+        signature: Option<Signature> [message, optional] = 2;
+        /// Which side, where both teams have one name, [`Team`].
+        team: Option<i32> [enumeration = "Team", optional] = 3;
+    }
 }
 
 /// A team's wish; with `msg` absent it does nothing.
@@ -101,12 +96,13 @@ pub enum TeamRequest {
     Ping(bool),
 }
 
-/// What a team hears.
-#[derive(Clone, PartialEq, Message)]
-pub struct ControllerToTeam {
-    /// The answer to its last message.
-    #[prost(message, optional, tag = "1")]
-    pub controller_reply: Option<ControllerReply>,
+messages! {
+    /// What a team hears.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct ControllerToTeam {
+        /// The answer to its last message.
+        controller_reply: Option<ControllerReply> [message, optional] = 1;
+    }
 }
 
 /// Stop or go on after a foul against us.
