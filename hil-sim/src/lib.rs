@@ -35,7 +35,7 @@ pub use fault::{Fault, ScheduledFault};
 pub use hash::Fnv;
 pub use mcu::{Backend, Mcu, McuError, Reply};
 pub use meter::{ByTeam, Meter, Metered};
-pub use native::NativeBackend;
+pub use native::{NativeBackend, NativeMcu};
 pub use opponents::{Conduct, Opponent, Role};
 pub use parameters::{FOUR_LEGGED_TOML, Noise, ParameterError, Parameters, Region};
 pub use qemu::QemuBackend;
