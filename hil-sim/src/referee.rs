@@ -130,7 +130,7 @@ impl Referee {
         let league = League::FourLegged;
         Self {
             configuration,
-            parameters: parameters.clone(),
+            parameters: *parameters,
             field: league.field(),
             ball_radius: league.ball().radius,
             contacts: vec![Contact::default(); roles.len()],

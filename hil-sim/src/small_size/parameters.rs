@@ -9,25 +9,7 @@ use std::sync::LazyLock;
 use rules::League;
 use serde::{Deserialize, Serialize};
 
-use crate::parameters::ParameterError;
-
-/// Declares structs whose every field is a number within bounds, and their check.
-macro_rules! numbers {
-    ($($(#[$about:meta])* $name:ident in $file:literal { $($(#[$doc:meta])* $field:ident: $low:expr, $high:expr;)* })*) => { $(
-        $(#[$about])*
-        #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
-        #[serde(deny_unknown_fields)]
-        pub struct $name { $($(#[$doc])* pub $field: f32,)* }
-
-        impl $name {
-            /// Every number within what the physics can bear.
-            pub fn check(&self) -> Result<(), ParameterError> {
-                $(within(concat!($file, ".", stringify!($field)), self.$field, $low, $high)?;)*
-                Ok(())
-            }
-        }
-    )* };
-}
+use crate::parameters::{ParameterError, numbers, within};
 
 numbers! {
     /// The ball on the carpet and in the air.
@@ -326,11 +308,6 @@ impl CameraParameters {
         within("camera.processing", self.processing, 0.0, self.delay)?;
         within("camera.geometry_every", self.geometry_every, 0.01, 1e6)
     }
-}
-
-/// `value` if it lies between the bounds, else an error that names it.
-pub(super) fn within(name: &'static str, value: f32, low: f32, high: f32) -> Result<(), ParameterError> {
-    if (low..=high).contains(&value) { Ok(()) } else { Err(ParameterError::Range { name, value, low, high }) }
 }
 
 /// Nothing divides by less.

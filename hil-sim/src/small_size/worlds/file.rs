@@ -12,8 +12,8 @@ use toml::{Table, Value};
 
 use super::{LinkModel, NamedWorld, RobotSpread, VisionModel, WorldModel};
 use crate::parameters::ParameterError;
+use crate::parameters::within;
 use crate::small_size::Parameters;
-use crate::small_size::parameters::within;
 
 impl NamedWorld {
     /// Its file.
