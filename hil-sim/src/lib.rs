@@ -28,6 +28,7 @@ pub mod sensors;
 mod simulation;
 pub mod small_size;
 mod trace;
+mod words;
 pub mod world;
 
 pub use air::{Air, AirCounts, AirSettings, Bursts, LinkLoss};

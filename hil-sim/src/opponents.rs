@@ -13,28 +13,21 @@ use serde::Deserialize;
 use crate::parameters::{Parameters, Region};
 use crate::world::World;
 
-/// What an opponent is there for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Role {
-    /// Between midfield and penalty area.
-    Defender,
-    /// Around the centre line.
-    Midfield,
-    /// In the penalty area.
-    Goalie,
+crate::words! {
+    /// What an opponent is there for.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Role {
+        /// Between midfield and penalty area.
+        Defender = "defender",
+        /// Around the centre line.
+        Midfield = "midfield",
+        /// In the penalty area.
+        Goalie = "goalie",
+    }
 }
 
 impl Role {
-    /// Its word in reports.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Defender => "defender",
-            Self::Midfield => "midfield",
-            Self::Goalie => "goalie",
-        }
-    }
-
     /// Its home.
     pub fn home(self, parameters: &Parameters) -> Region {
         match self {

@@ -34,29 +34,19 @@ pub struct Claim {
     pub paper: Judgement,
 }
 
-/// Do numbers bear it out?
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Verdict {
-    /// They do.
-    Supported,
-    /// They say the opposite, in one point at least.
-    Contradicted,
-    /// They cannot tell.
-    Undecided,
-    /// There are none.
-    Unmeasured,
-}
-
-impl Verdict {
-    /// Its word in files.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Supported => "supported",
-            Self::Contradicted => "contradicted",
-            Self::Undecided => "undecided",
-            Self::Unmeasured => "unmeasured",
-        }
+hil_sim::words! {
+    /// Do numbers bear it out?
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Verdict {
+        /// They do.
+        Supported = "supported",
+        /// They say the opposite, in one point at least.
+        Contradicted = "contradicted",
+        /// They cannot tell.
+        Undecided = "undecided",
+        /// There are none.
+        Unmeasured = "unmeasured",
     }
 }
 
