@@ -148,11 +148,6 @@ impl World {
         }
         later
     }
-
-    /// Where the ball comes to rest if nobody meets it.
-    pub fn ball_rest(&self) -> Option<Point<Field>> {
-        self.ball.map(|ball| ball.rest(&self.models))
-    }
 }
 
 impl Ball {
@@ -169,11 +164,6 @@ impl Ball {
             seen,
             kicked: None,
         }
-    }
-
-    /// Whether it is off the ground by more than a robot's kicker can ignore.
-    pub fn flies(&self) -> bool {
-        self.height > FLIES_ABOVE
     }
 
     /// Its way along the ground from here; for a ball in the air, from here as if it were down.
@@ -259,8 +249,6 @@ impl Robot {
 /// A robot is not taken to go straight on for longer, s: at 3 m/s² it changes its speed by 0.75 m/s in that time, and no
 /// delay that is worth compensating is longer (capture to motion is 45–65 ms in the league).
 pub const STRAIGHT_MAX: f32 = 0.25;
-/// A ball whose lower edge is higher is in flight, m: a kicker's plate is some 20 mm high, noise of a fitted height some 10.
-const FLIES_ABOVE: f32 = 0.03;
 /// m/s².
 pub(crate) const GRAVITY: f32 = 9.81;
 
