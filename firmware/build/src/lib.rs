@@ -7,12 +7,14 @@
 //! * [`ensure_qemu`]: where is the emulator?
 //! * [`build_image`]: give me the image, fresh.
 //!
-//! [`inspect`] looks into an image: sizes, budgets, places that can panic. [`on_target`] runs an image of tests.
+//! [`inspect`] looks into an image: sizes, budgets, places that can panic. [`on_target`] runs an image of tests, [`count`]
+//! counts instructions.
 //!
 //! A missing tool is fetched where that is allowed ([`Install`]), or the error tells what to install. Whatever is
 //! done that takes time is told on stderr.
 #![forbid(unsafe_code)]
 
+pub mod count;
 mod image;
 pub mod inspect;
 pub mod on_target;
