@@ -23,6 +23,7 @@ mod native;
 mod qemu;
 mod rng;
 pub mod small_size;
+mod words;
 
 pub use air::{Air, AirCounts, AirSettings, Bursts, LinkLoss};
 pub use four_legged::fault::{Fault, ScheduledFault};
@@ -37,6 +38,6 @@ pub use four_legged::trace::TraceHash;
 pub use hash::Fnv;
 pub use mcu::{Backend, Mcu, McuError, Reply};
 pub use meter::{ByTeam, Meter, Metered};
-pub use native::NativeBackend;
+pub use native::{NativeBackend, NativeMcu};
 pub use qemu::QemuBackend;
 pub use rng::Stream;

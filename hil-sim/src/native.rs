@@ -28,40 +28,56 @@ impl<'a> Backend<'a> for NativeBackend<'a> {
     }
 
     fn boot(&mut self, config: &BrainConfig) -> Result<Box<dyn Mcu + 'a>, McuError> {
-        let station = Station::new(Instant(0), config, self.base);
-        Ok(Box::new(Native { station, reply: Reply::default() }))
+        Ok(Box::new(NativeMcu::new(config, self.base)))
     }
 }
 
-/// One robot's computer.
-struct Native<'a> {
+/// One robot's computer in this process, whose station can be looked at.
+pub struct NativeMcu<'a> {
     station: Station<'a>,
     reply: Reply,
 }
 
-impl Native<'_> {
-    /// Sends the station's messages; as on a board, those that do not fit into the tick are dropped.
-    fn drain(&mut self, now: Instant) {
+impl<'a> NativeMcu<'a> {
+    /// A robot that boots now.
+    pub fn new(config: &BrainConfig, base: CaseBase<'a>) -> Self {
+        Self { station: Station::new(Instant(0), config, base), reply: Reply::default() }
+    }
+
+    /// Its brain and radio.
+    pub fn station(&self) -> &Station<'a> {
+        &self.station
+    }
+
+    /// As [`Mcu::post`]; `seen` is shown the station after every event and after every packet it sent.
+    pub fn post_seen(&mut self, tick: &TickIn<'_>, mut seen: impl FnMut(&Station<'a>, Instant)) {
+        self.reply = Reply::default();
+        while let Some(due) = self.station.poll_timeout().filter(|due| *due <= tick.now) {
+            self.station.handle_timeout(due);
+            self.drain(due, &mut seen);
+        }
+        for packet in &tick.air {
+            self.station.handle_packet(tick.now, packet);
+            self.drain(tick.now, &mut seen);
+        }
+        self.station.handle_sensors(tick.now, &tick.sensors);
+        self.drain(tick.now, &mut seen);
+        self.reply.actuators = self.station.poll_actuators(tick.now);
+    }
+
+    /// Sends what the station has to say; as on a board, what does not fit into the tick is dropped.
+    fn drain(&mut self, now: Instant, seen: &mut impl FnMut(&Station<'a>, Instant)) {
+        seen(&self.station, now);
         while let Some(packet) = self.station.poll_packet(now) {
             let _dropped = self.reply.packets.push(packet);
+            seen(&self.station, now);
         }
     }
 }
 
-impl Mcu for Native<'_> {
+impl Mcu for NativeMcu<'_> {
     fn post(&mut self, tick: &TickIn<'_>) -> Result<(), McuError> {
-        self.reply = Reply::default();
-        while let Some(due) = self.station.poll_timeout().filter(|due| *due <= tick.now) {
-            self.station.handle_timeout(due);
-            self.drain(due);
-        }
-        for packet in &tick.air {
-            self.station.handle_packet(tick.now, packet);
-            self.drain(tick.now);
-        }
-        self.station.handle_sensors(tick.now, &tick.sensors);
-        self.drain(tick.now);
-        self.reply.actuators = self.station.poll_actuators(tick.now);
+        self.post_seen(tick, |_, _| ());
         Ok(())
     }
 

@@ -149,11 +149,6 @@ impl World {
         }
         later
     }
-
-    /// The ball's stop position if no robot intercepts it.
-    pub fn ball_rest(&self) -> Option<Point<Field>> {
-        self.ball.map(|ball| ball.rest(&self.models))
-    }
 }
 
 impl Ball {
@@ -172,12 +167,7 @@ impl Ball {
         }
     }
 
-    /// Whether it is off the ground by more than a robot's kicker tolerates.
-    pub fn flies(&self) -> bool {
-        self.height > FLIES_ABOVE
-    }
-
-    /// Its path along the ground from here; for a ball in the air, from here as if it were on the ground.
+    /// Its way along the ground from here; for a ball in the air, from here as if it were down.
     pub fn path(&self, models: &BallModels) -> BallPath<Field> {
         models.ground.moving(self.position, self.velocity, self.rolls_below)
     }
@@ -261,10 +251,7 @@ impl Robot {
 /// in that time, and no delay that is worth compensating is longer (capture to motion is 45–65 ms in the
 /// league).
 pub const STRAIGHT_MAX: f32 = 0.25;
-/// Height of a ball's lower edge above which it is in flight, m: a kicker's plate is some 20 mm high, noise
-/// of a fitted height some 10.
-const FLIES_ABOVE: f32 = 0.03;
-/// Gravity, m/s².
+/// m/s².
 pub(crate) const GRAVITY: f32 = 9.81;
 
 /// The index of a team in an array of two.

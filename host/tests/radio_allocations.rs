@@ -1,7 +1,6 @@
 //! The radio does not allocate after the first second of a match (docs/architecture.md §9).
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+mod allocations;
 
 use geometry::{Angle, Field, GoalEnd, Point, Pose, Vector};
 use host::radio::{Radio, RadioSettings, Relay, Situation};
@@ -13,30 +12,6 @@ use protocol::quantized::WirePose;
 use protocol::team::{Beacon, Progress, Role, Status, TeamMessage};
 use protocol::{Instant, RobotId, TeamId, Who};
 use rules::{Colour, Phase};
-
-struct Counting;
-
-thread_local! {
-    // Per thread, so that the test harness's own do not count.
-    static COUNT: Cell<u64> = const { Cell::new(0) };
-}
-
-// SAFETY: every call goes to the system's allocator as it came.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNT.with(|count| count.set(count.get() + 1));
-        // SAFETY: the caller keeps alloc's contract.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: the caller keeps dealloc's contract.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 #[test]
 fn eleven_robots_at_a_hundred_pictures_a_second_need_no_heap() {
@@ -88,9 +63,9 @@ fn eleven_robots_at_a_hundred_pictures_a_second_need_no_heap() {
         }
     };
     second(&mut radio, 0);
-    let before = COUNT.with(Cell::get);
+    let before = allocations::count();
     (1..10).for_each(|number| second(&mut radio, number));
-    let during = COUNT.with(Cell::get) - before;
+    let during = allocations::count() - before;
     assert!(sent > 10 * 100 * 15 && heard > 10 * 100 * 10, "{sent} sent, {heard} heard");
     assert_eq!(radio.dropped(), 0);
     assert_eq!(during, 0, "allocations in nine seconds");

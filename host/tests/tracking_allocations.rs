@@ -1,38 +1,14 @@
 //! `tracking_allocations`: test: tracking does not allocate after the first seconds of a match
 //! (docs/architecture.md §9).
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+mod allocations;
+
 use std::path::Path;
 
 use host::tracking::{Publisher, Tracker};
 use protocol::Instant;
 use ssl::log::Packet;
 use ssl::vision::WrapperPacket;
-
-struct Counting;
-
-thread_local! {
-    // Per thread, so that the test harness's own do not count.
-    static COUNT: Cell<u64> = const { Cell::new(0) };
-}
-
-// SAFETY: every call goes to the system's allocator as it came.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNT.with(|count| count.set(count.get() + 1));
-        // SAFETY: the caller keeps alloc's contract.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: the caller keeps dealloc's contract.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 fn packets(name: &str) -> Vec<(Instant, WrapperPacket)> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../protocol/ssl/tests/data").join(name);
@@ -54,14 +30,14 @@ fn images_pictures_and_tracker_packets_need_no_heap() {
         let mut before = 0;
         for (i, (arrived, packet)) in packets.iter().enumerate() {
             if i == steady {
-                before = COUNT.with(Cell::get);
+                before = allocations::count();
             }
             tracker.handle(packet, *arrived);
             let world = tracker.world(*arrived);
             assert!(i < steady || world.robots().count() > 0);
             assert!(publisher.publish(&tracker).is_some());
         }
-        let taken = COUNT.with(Cell::get) - before;
+        let taken = allocations::count() - before;
         assert_eq!(taken, 0, "{name}: {taken} allocations in {} packets", packets.len() - steady);
         assert!(before > 0, "the counter counts");
     }

@@ -2,9 +2,7 @@
 //! function.
 
 use crate::context::{Context, Failure};
-use crate::{
-    bench, cost, emulate, evaluation, game_cost, page, pictures, simulator_cost, strategy_cost, trial_cost,
-};
+use crate::{bench, cost, emulate, evaluation, example_cost, game_cost, page, pictures, trial_cost};
 
 /// An xtask command other than `test`.
 #[derive(Debug)]
@@ -181,21 +179,27 @@ static CHORES: [Chore; 19] = [
         "bench trial",
         "",
         "count the instructions of a simulated second of the paper's trials and hold them to the budget",
-        |context, _| trial_cost::run_bench(context),
+        |context, _| cost::judge(&trial_cost::rows(context)?),
     ),
     chore(
         "bench game",
         "",
         "likewise of a host with eleven robots, per packet of vision, and of a match of two whole teams",
-        |context, _| game_cost::run_bench(context),
+        |context, _| cost::judge(&game_cost::rows(context)?),
     ),
     chore("bench strategy", "", "likewise of one decision of strategy's, of each kind", |context, _| {
-        strategy_cost::run_bench(context)
+        cost::judge(&example_cost::STRATEGY.rows(context)?)
     }),
     chore(
         "bench simulator",
         "[--write]",
         "likewise of a second of eleven against eleven on wheels; --write puts the table into hil-sim/README.md",
-        |context, words| simulator_cost::run_bench(context, writes(words)),
+        |context, words| {
+            let rows = example_cost::SIMULATOR.rows(context)?;
+            if writes(words) {
+                cost::write_between("hil-sim/README.md", "simulator table", &cost::table(&rows))?;
+            }
+            cost::judge(&rows)
+        },
     ),
 ];

@@ -8,7 +8,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 
-use firmware_build::{BuildError, Install, QemuError, TargetError, ThumbToolchain};
+use firmware_build::{BuildError, QemuError, TargetError, ThumbToolchain};
 
 /// The workspace and its tools. A tool is searched for once, when the first step needs it.
 pub(crate) struct Context {
@@ -42,7 +42,7 @@ impl Context {
 
     /// The compiler for the robot's processor, installed first where it is missing.
     pub(crate) fn ensure_target(&self) -> Result<&ThumbToolchain, Failure> {
-        let look = || firmware_build::ensure_target(&self.root, Install::SystemWide);
+        let look = || firmware_build::ensure_target(&self.root);
         self.target.get_or_init(look).as_ref().map_err(|error| Failure::Target(error.clone()))
     }
 

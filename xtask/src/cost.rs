@@ -2,12 +2,13 @@
 //! on any machine of one kind, however busy it is. [`write()`] collects all these figures in docs/budgets.md.
 
 use std::fmt::Write as _;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::{fs, io};
 
 use crate::context::{Context, Failure, line_of, run};
-use crate::{game_cost, simulator_cost, strategy_cost, trial_cost};
+use crate::example_cost::{SIMULATOR, STRATEGY};
+use crate::{game_cost, trial_cost};
 
 /// A figure and its budget.
 pub(crate) struct Row {
@@ -84,9 +85,9 @@ pub(crate) fn counted<'a>(
 /// Counts everything and writes docs/budgets.md.
 pub(crate) fn write(context: &Context) -> Result<(), Failure> {
     let parts = [
-        ("The simulator: a second of eleven against eleven", "simulator", simulator_cost::rows(context)?),
+        ("The simulator: a second of eleven against eleven", "simulator", SIMULATOR.rows(context)?),
         ("A trial of the first paper: a simulated second", "trial", trial_cost::rows(context)?),
-        ("Strategy: one decision", "strategy", strategy_cost::rows(context)?),
+        ("Strategy: one decision", "strategy", STRATEGY.rows(context)?),
         ("Matches: the host, and two whole teams", "game", game_cost::rows(context)?),
     ];
     let mut text = String::from(HEAD);
@@ -117,13 +118,10 @@ Counted in guest instructions under QEMU, each table written by its own command:
 worst step, the median retrieval and the image's size are held by `cargo xtask test`.
 ";
 
-/// The text with the part between the marks replaced; unchanged where a mark is missing.
-pub(crate) fn between(text: &str, (begin, end): (&str, &str), table: &str) -> String {
-    let parts = text.split_once(begin).and_then(|(before, rest)| Some((before, rest.split_once(end)?.1)));
-    match parts {
-        Some((before, after)) => format!("{before}{begin}\n{table}{end}{after}"),
-        None => text.into(),
-    }
+/// Puts the text between the marks of that name in a file of the workspace.
+pub(crate) fn write_between(file: &str, name: &str, table: &str) -> Result<(), Failure> {
+    firmware_build::count::write_between(file, name, table)
+        .map_err(|why| Failure::Start { line: file.to_owned(), error: io::Error::other(why) })
 }
 
 #[cfg(test)]

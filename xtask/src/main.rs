@@ -12,16 +12,15 @@ mod deny;
 mod determinism;
 mod emulate;
 mod evaluation;
+mod example_cost;
 mod game_cost;
 mod images;
 mod page;
 mod pictures;
 mod readme;
 mod report;
-mod simulator_cost;
 mod space;
 mod steps;
-mod strategy_cost;
 mod trial_cost;
 
 use std::env;

@@ -8,7 +8,7 @@ use std::time::Duration;
 use std::{env, fs, thread};
 
 use crate::context::{Context, Failure, run};
-use crate::cost::between;
+use crate::cost::write_between;
 
 /// The property checked by the step.
 pub(crate) const WHAT: &str = "the page works in a real browser";
@@ -75,13 +75,10 @@ pub(crate) fn bench(context: &Context, write: bool) -> Result<(), Failure> {
     );
     println!("{viewers}");
     if write {
-        let file = context.root().join("host/page/README.md");
-        let start = |error| Failure::Start { line: file.display().to_string(), error };
-        let text = fs::read_to_string(&file).map_err(start)?;
-        // Times are this machine's: only the ratio is kept.
+        // Times are this machine's: the ratio alone is kept.
         let ratio = frame.split(':').next().unwrap_or(&frame);
         let list = format!("\n- {ratio};\n- {viewers}.\n\n");
-        fs::write(&file, between(&text, MARKS, &list)).map_err(start)?;
+        write_between("host/page/README.md", "page figures", &list)?;
     }
     for (ways, with) in [(READING, &watched), (SLOW, &slow)] {
         if with.taken == 0 {
@@ -97,8 +94,6 @@ pub(crate) fn bench(context: &Context, write: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Marks around the figures in the page's README.
-const MARKS: (&str, &str) = ("<!-- page figures -->", "<!-- end of page figures -->");
 /// Simulated seconds that are counted.
 const SECONDS: u32 = 4;
 /// Ticks of brains and hosts in each.

@@ -7,14 +7,9 @@ use std::path::Path;
 use std::{fs, io};
 
 use crate::context::{Context, Failure};
-use crate::cost::{Row, counted, judge, release};
+use crate::cost::{Row, counted, release};
 
 /// Instructions a simulated second, of every approach against both kinds of opponents.
-pub(crate) fn run_bench(context: &Context) -> Result<(), Failure> {
-    judge(&rows(context)?)
-}
-
-/// The figures.
 pub(crate) fn rows(context: &Context) -> Result<Vec<Row>, Failure> {
     let program = release(context, "--bin onetwo", "onetwo")?;
     let folder = firmware_build::target_dir(context.root()).join("bench-trial");

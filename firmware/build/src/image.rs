@@ -11,7 +11,7 @@ use std::process::{Command, ExitStatus, Stdio};
 use crate::inspect::Budget;
 use crate::process::{line_of, output_of};
 use crate::target::cargo_program;
-use crate::{Install, TARGET, TargetError, ensure_target};
+use crate::{TARGET, TargetError, ensure_target};
 
 /// The firmware of a robot with that body for [`MACHINE`](crate::MACHINE), built first where it is missing or
 /// older than its sources.
@@ -31,7 +31,7 @@ fn build_into(target_dir: &Path, root: &Path, program: Program) -> Result<PathBu
     if let Some(why) = cannot_build(root) {
         return if image.is_file() { Ok(image) } else { Err(BuildError::NothingToBuild { why, image }) };
     }
-    let toolchain = ensure_target(root, Install::ForUser).map_err(BuildError::Target)?;
+    let toolchain = ensure_target(root).map_err(BuildError::Target)?;
     let mut build = toolchain.cargo(root, "build");
     build
         .args(["--package", program.package(), "--bin", program.name(), "--profile", PROFILE, "--target-dir"])

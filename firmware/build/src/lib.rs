@@ -7,14 +7,14 @@
 //! * [`ensure_qemu`]: finds the emulator.
 //! * [`build_image`]: returns the firmware, freshly built.
 //!
-//! [`inspect`] looks into a build: sizes, budgets, places that can panic. [`on_target`] runs a build of
-//! tests.
+//! [`inspect`] looks into an image: sizes, budgets, places that can panic. [`on_target`] runs an image of tests, [`count`]
+//! counts instructions.
 //!
 //! A missing tool is fetched where that is allowed ([`Install`]), or the error names what to install. Slow
 //! operations are reported on stderr.
 #![forbid(unsafe_code)]
 
-mod debian;
+pub mod count;
 mod image;
 pub mod inspect;
 pub mod on_target;
@@ -26,12 +26,12 @@ use std::path::{Path, PathBuf};
 
 pub use image::{Body, BuildError, Program, build_image, build_program, target_dir};
 pub use qemu::{MACHINE, QEMU, QemuError, ensure_qemu};
-pub use target::{Attempt, TargetError, ThumbToolchain, ensure_target};
+pub use target::{TargetError, ThumbToolchain, ensure_target};
 
 /// Which places a missing tool may be installed to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Install {
-    /// Into the user's own directories only: rustup's targets, a cache. What a program may do unasked.
+    /// Into the user's own folders only: rustup's targets. What a program may do unasked.
     ForUser,
     /// System packages as well, where we are root. For the test command, which promises to install what it
     /// needs.

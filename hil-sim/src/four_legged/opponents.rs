@@ -13,29 +13,22 @@ use serde::Deserialize;
 use crate::four_legged::parameters::{Parameters, Region};
 use crate::four_legged::world::World;
 
-/// Role of an opponent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Role {
-    /// Between midfield and penalty area.
-    Defender,
-    /// Around the centre line.
-    Midfield,
-    /// In the penalty area.
-    Goalie,
+crate::words! {
+    /// What an opponent is there for.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Role {
+        /// Between midfield and penalty area.
+        Defender = "defender",
+        /// Around the centre line.
+        Midfield = "midfield",
+        /// In the penalty area.
+        Goalie = "goalie",
+    }
 }
 
 impl Role {
-    /// Its label in reports.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Defender => "defender",
-            Self::Midfield => "midfield",
-            Self::Goalie => "goalie",
-        }
-    }
-
-    /// Its home region.
+    /// Its home.
     pub fn home(self, parameters: &Parameters) -> Region {
         match self {
             Self::Defender => parameters.opponent.defender,

@@ -11,7 +11,26 @@ use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
 
-/// The parameters of one league.
+/// Declares structs whose every field is a number within bounds, and their check.
+macro_rules! numbers {
+    ($($(#[$about:meta])* $name:ident in $file:literal { $($(#[$doc:meta])* $field:ident: $low:expr, $high:expr;)* })*) => { $(
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+        #[serde(deny_unknown_fields)]
+        pub struct $name { $($(#[$doc])* pub $field: f32,)* }
+
+        impl $name {
+            /// Every number within what the physics can bear.
+            pub fn check(&self) -> Result<(), ParameterError> {
+                $(within(concat!($file, ".", stringify!($field)), self.$field, $low, $high)?;)*
+                Ok(())
+            }
+        }
+    )* };
+}
+pub(crate) use numbers;
+
+/// The numbers of one league.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Parameters {
@@ -33,88 +52,101 @@ pub struct Parameters {
     pub noise: Noise,
 }
 
-/// The ball on the field surface.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub struct BallParameters {
-    /// m/s², constant until it stops.
-    pub deceleration: f32,
-    /// Share of the closing speed that comes back from a robot.
-    pub bounce: f32,
-}
-
-/// Limits of walking.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub struct WalkParameters {
-    /// m/s ahead.
-    pub forward: f32,
-    /// m/s to the sides and backwards.
-    pub sideways: f32,
-    /// rad/s.
-    pub turn: f32,
-    /// m/s².
-    pub acceleration: f32,
-    /// rad/s².
-    pub turn_acceleration: f32,
-}
-
-/// Limits of walking with the ball.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub struct CarryParameters {
-    /// m/s in any direction.
-    pub speed: f32,
-    /// rad/s.
-    pub turn: f32,
-}
-
-/// The grab.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub struct GrabParameters {
-    /// s.
-    pub duration: f32,
-    /// m, centre to centre.
-    pub reach: f32,
-    /// rad to either side.
-    pub half_angle: f32,
-    /// m/s between ball and body.
-    pub speed_limit: f32,
-    /// Probability that a grab whose legs closed upon the ball keeps it.
-    pub success: f32,
-    /// Probability that such a grab takes a ball out of another robot's legs, as a share of `success`.
-    pub contest: f32,
-    /// m, centre to centre while held.
-    pub hold_distance: f32,
-    /// m that the ball rolls away from a failed grab.
-    pub fumble: f32,
-}
-
-/// The kicks.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub struct KickParameters {
-    /// s from order to ball contact.
-    pub duration: f32,
-    /// Standard deviation of the distance, as a share of it.
-    pub distance_sd: f32,
-    /// Standard deviation of the direction.
-    pub angle_sd_deg: f32,
-    /// Where both are cut, in standard deviations.
-    pub scatter_limit: f32,
-    /// m.
-    pub forward_soft: f32,
-    /// m.
-    pub forward_hard: f32,
-    /// m.
-    pub side: f32,
-    /// To the left of ahead; the right kick mirrors it.
-    pub side_angle_deg: f32,
-    /// m, the weakest pass.
-    pub pass_min: f32,
-    /// m, the strongest pass.
-    pub pass_max: f32,
+numbers! {
+    /// The ball on the carpet.
+    BallParameters in "ball" {
+        /// m/s², constant until rest.
+        deceleration: POSITIVE, LARGEST;
+        /// Share of the closing speed that comes back from a robot.
+        bounce: 0.0, 1.0;
+    }
+    /// Limits of walking.
+    WalkParameters in "walk" {
+        /// m/s ahead.
+        forward: POSITIVE, LARGEST;
+        /// m/s to the sides and backwards.
+        sideways: POSITIVE, LARGEST;
+        /// rad/s.
+        turn: POSITIVE, LARGEST;
+        /// m/s².
+        acceleration: POSITIVE, LARGEST;
+        /// rad/s².
+        turn_acceleration: POSITIVE, LARGEST;
+    }
+    /// Limits of walking with the ball.
+    CarryParameters in "carry" {
+        /// m/s in any direction.
+        speed: POSITIVE, LARGEST;
+        /// rad/s.
+        turn: POSITIVE, LARGEST;
+    }
+    /// The grab.
+    GrabParameters in "grab" {
+        /// s.
+        duration: POSITIVE, LARGEST;
+        /// m, centre to centre.
+        reach: POSITIVE, LARGEST;
+        /// rad to either side.
+        half_angle: POSITIVE, LARGEST;
+        /// m/s between ball and body.
+        speed_limit: POSITIVE, LARGEST;
+        /// Probability that a grab whose legs closed upon the ball keeps it.
+        success: 0.0, 1.0;
+        /// Probability that such a grab takes a ball out of another robot's grip, as a share of `success`.
+        contest: 0.0, 1.0;
+        /// m, centre to centre while held.
+        hold_distance: POSITIVE, LARGEST;
+        /// m that the ball rolls away from a failed grab.
+        fumble: 0.0, LARGEST;
+    }
+    /// The kicks.
+    KickParameters in "kick" {
+        /// s from order to ball contact.
+        duration: POSITIVE, LARGEST;
+        /// Standard deviation of the distance, as a share of it.
+        distance_sd: 0.0, LARGEST;
+        /// Standard deviation of the direction.
+        angle_sd_deg: 0.0, LARGEST;
+        /// Where both are cut, in standard deviations.
+        scatter_limit: POSITIVE, LARGEST;
+        /// m.
+        forward_soft: POSITIVE, LARGEST;
+        /// m.
+        forward_hard: POSITIVE, LARGEST;
+        /// m.
+        side: POSITIVE, LARGEST;
+        /// To the left of ahead; the right kick mirrors it.
+        side_angle_deg: 0.0, LARGEST;
+        /// m, the weakest pass.
+        pass_min: POSITIVE, LARGEST;
+        /// m, the strongest pass.
+        pass_max: POSITIVE, LARGEST;
+    }
+    /// When a trial ends and what counts.
+    RefereeParameters in "referee" {
+        /// m beside a goalpost that still count as close.
+        close: 0.0, LARGEST;
+        /// s without contact before a touch counts anew.
+        possession_gap: 0.0, LARGEST;
+        /// s, against defender and goalie.
+        time_limit_dg: POSITIVE, LARGEST;
+        /// s, against two defenders.
+        time_limit_2d: POSITIVE, LARGEST;
+    }
+    /// Standard deviations of what robots perceive.
+    #[derive(Default)]
+    Noise in "noise" {
+        /// Of the own position, m.
+        pose: 0.0, LARGEST;
+        /// Of the own heading.
+        heading_deg: 0.0, LARGEST;
+        /// Of the ball's position, as a share of its distance.
+        ball_share: 0.0, LARGEST;
+        /// Of the ball's position, m, whatever the distance.
+        ball_floor: 0.0, LARGEST;
+        /// Of an opponent's position, m.
+        opponent: 0.0, LARGEST;
+    }
 }
 
 /// Where the scripted opponents play.
@@ -139,36 +171,6 @@ pub struct Region {
     pub y: [f32; 2],
 }
 
-/// When a trial ends and what counts.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub struct RefereeParameters {
-    /// m beside a goalpost that still count as close.
-    pub close: f32,
-    /// s without contact before a touch counts as a new possession.
-    pub possession_gap: f32,
-    /// s, against defender and goalie.
-    pub time_limit_dg: f32,
-    /// s, against two defenders.
-    pub time_limit_2d: f32,
-}
-
-/// Standard deviations of what robots perceive.
-#[derive(Clone, Copy, Debug, PartialEq, Default, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub struct Noise {
-    /// Of the own position, m.
-    pub pose: f32,
-    /// Of the own heading.
-    pub heading_deg: f32,
-    /// Of the ball's position, as a share of its distance.
-    pub ball_share: f32,
-    /// Of the ball's position, m, at any distance.
-    pub ball_floor: f32,
-    /// Of an opponent's position, m.
-    pub opponent: f32,
-}
-
 impl Noise {
     /// As in the paper's simulator: everything is seen where it is.
     pub const NONE: Self =
@@ -190,61 +192,17 @@ impl Parameters {
     /// Checks every number against the limits of the physics.
     fn check(&self) -> Result<(), ParameterError> {
         let Self { ball, walk, carry, grab, kick, opponent, referee, noise } = self;
-        let positive = [
-            ("ball.deceleration", ball.deceleration),
-            ("walk.forward", walk.forward),
-            ("walk.sideways", walk.sideways),
-            ("walk.turn", walk.turn),
-            ("walk.acceleration", walk.acceleration),
-            ("walk.turn_acceleration", walk.turn_acceleration),
-            ("carry.speed", carry.speed),
-            ("carry.turn", carry.turn),
-            ("grab.duration", grab.duration),
-            ("grab.reach", grab.reach),
-            ("grab.half_angle", grab.half_angle),
-            ("grab.speed_limit", grab.speed_limit),
-            ("grab.hold_distance", grab.hold_distance),
-            ("kick.duration", kick.duration),
-            ("kick.scatter_limit", kick.scatter_limit),
-            ("kick.forward_soft", kick.forward_soft),
-            ("kick.forward_hard", kick.forward_hard),
-            ("kick.side", kick.side),
-            ("kick.pass_min", kick.pass_min),
-            ("referee.time_limit_dg", referee.time_limit_dg),
-            ("referee.time_limit_2d", referee.time_limit_2d),
-        ];
-        let not_negative = [
-            ("grab.fumble", grab.fumble),
-            ("kick.angle_sd_deg", kick.angle_sd_deg),
-            ("kick.side_angle_deg", kick.side_angle_deg),
-            ("referee.close", referee.close),
-            ("referee.possession_gap", referee.possession_gap),
-            ("noise.pose", noise.pose),
-            ("noise.heading_deg", noise.heading_deg),
-            ("noise.ball_share", noise.ball_share),
-            ("noise.ball_floor", noise.ball_floor),
-            ("noise.opponent", noise.opponent),
-        ];
-        let range = |name, value: f32, low: f32, high: f32| {
-            if (low..=high).contains(&value) {
-                Ok(())
-            } else {
-                Err(ParameterError::Range { name, value, low, high })
-            }
-        };
-        for (name, value) in positive {
-            range(name, value, f32::MIN_POSITIVE, LARGEST)?;
-        }
-        for (name, value) in not_negative {
-            range(name, value, 0.0, LARGEST)?;
-        }
-        range("ball.bounce", ball.bounce, 0.0, 1.0)?;
-        range("grab.success", grab.success, 0.0, 1.0)?;
-        range("grab.contest", grab.contest, 0.0, 1.0)?;
-        range("grab.hold_distance", grab.hold_distance, 0.0, grab.reach)?;
+        ball.check()?;
+        walk.check()?;
+        carry.check()?;
+        grab.check()?;
+        kick.check()?;
+        referee.check()?;
+        noise.check()?;
+        within("grab.hold_distance", grab.hold_distance, 0.0, grab.reach)?;
         // Beyond this a kick of −limit standard deviations would roll backwards.
-        range("kick.distance_sd", kick.distance_sd, 0.0, 1.0 / kick.scatter_limit)?;
-        range("kick.pass_max", kick.pass_max, kick.pass_min, LARGEST)?;
+        within("kick.distance_sd", kick.distance_sd, 0.0, 1.0 / kick.scatter_limit)?;
+        within("kick.pass_max", kick.pass_max, kick.pass_min, LARGEST)?;
         let corners = [
             ("opponent.defender", opponent.defender),
             ("opponent.midfield", opponent.midfield),
@@ -252,8 +210,8 @@ impl Parameters {
         ];
         for (name, region) in corners {
             for [from, to] in [region.x, region.y] {
-                range(name, from, -LARGEST, LARGEST)?;
-                range(name, to, from, LARGEST)?;
+                within(name, from, -LARGEST, LARGEST)?;
+                within(name, to, from, LARGEST)?;
             }
         }
         Ok(())
@@ -291,10 +249,17 @@ impl fmt::Display for ParameterError {
 
 impl std::error::Error for ParameterError {}
 
-/// The file, embedded in the program so that the binary needs no file to run.
+/// `value` if it lies between the bounds, else an error that names it.
+pub(crate) fn within(name: &'static str, value: f32, low: f32, high: f32) -> Result<(), ParameterError> {
+    if (low..=high).contains(&value) { Ok(()) } else { Err(ParameterError::Range { name, value, low, high }) }
+}
+
+/// The file, part of the program so that a binary alone can play.
 pub const FOUR_LEGGED_TOML: &str = include_str!("../../data/four-legged.toml");
 
-/// Upper bound of every length, speed and time, in the unit of each number: rejects nonsense.
+/// What the physics divides by is more than nothing.
+const POSITIVE: f32 = f32::MIN_POSITIVE;
+/// No length, speed or time of this world is larger: a bound against nonsense, in the unit of each number.
 const LARGEST: f32 = 10_000.0;
 
 static FOUR_LEGGED: LazyLock<Parameters> = LazyLock::new(|| {

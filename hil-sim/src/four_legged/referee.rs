@@ -12,58 +12,34 @@ use crate::four_legged::opponents::Role;
 use crate::four_legged::parameters::RefereeParameters;
 use crate::four_legged::world::{Side, World, WorldEvent};
 
-/// Which opponents play (paper §5.1.2, Fig. 11).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Configuration {
-    /// Defender and goalie.
-    #[serde(rename = "dg")]
-    DefenderGoalie,
-    /// Midfield defender and defender.
-    #[serde(rename = "2d")]
-    TwoDefenders,
-}
-
-impl Configuration {
-    /// Its label in options and reports.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::DefenderGoalie => "dg",
-            Self::TwoDefenders => "2d",
-        }
-    }
-
-    /// The configuration with that label.
-    pub fn from_word(word: &str) -> Option<Self> {
-        [Self::DefenderGoalie, Self::TwoDefenders].into_iter().find(|c| c.word() == word)
+crate::words! {
+    /// Which opponents play (paper §5.1.2, Fig. 11).
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum Configuration {
+        /// Defender and goalie.
+        #[serde(rename = "dg")]
+        DefenderGoalie = "dg",
+        /// Midfield defender and defender.
+        #[serde(rename = "2d")]
+        TwoDefenders = "2d",
     }
 }
 
-/// How a trial ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Outcome {
-    /// In the attacked goal; against two defenders: in the attacked penalty area.
-    Goal,
-    /// Out over the attacked goal line, near a goalpost.
-    Close,
-    /// The goalie stopped or kicked the ball.
-    Block,
-    /// Out anywhere else, the own goal included.
-    Out,
-    /// Time was up.
-    Timeout,
-}
-
-impl Outcome {
-    /// Its label in reports.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Goal => "goal",
-            Self::Close => "close",
-            Self::Block => "block",
-            Self::Out => "out",
-            Self::Timeout => "timeout",
-        }
+crate::words! {
+    /// How a trial ended.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Outcome {
+        /// In the attacked goal; against two defenders: in the attacked penalty area.
+        Goal = "goal",
+        /// Out over the attacked goal line, near a goalpost.
+        Close = "close",
+        /// The goalie stopped or kicked the ball.
+        Block = "block",
+        /// Out anywhere else, the own goal included.
+        Out = "out",
+        /// Time was up.
+        Timeout = "timeout",
     }
 }
 
@@ -130,7 +106,7 @@ impl Referee {
         let league = League::FourLegged;
         Self {
             configuration,
-            parameters: parameters.clone(),
+            parameters: *parameters,
             field: league.field(),
             ball_radius: league.ball().radius,
             contacts: vec![Contact::default(); roles.len()],

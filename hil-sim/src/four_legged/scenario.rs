@@ -16,19 +16,21 @@ use crate::four_legged::parameters::Parameters;
 use crate::four_legged::referee::Configuration;
 use crate::rng::Stream;
 
-/// A scenario's name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scenario {
-    /// 1: ball and attackers in the middle-back.
-    MiddleBack,
-    /// 2: ball and attackers on the left side.
-    LeftSide,
-    /// 3: middle-front, a defender ahead but farther than 40 cm.
-    DefenderAhead,
-    /// 4: middle-front, a defender within 40 cm.
-    DefenderClose,
-    /// Drawn from the trial's seed.
-    Random,
+crate::words! {
+    /// A scenario's name.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Scenario {
+        /// 1: ball and attackers in the middle-back.
+        MiddleBack = "1",
+        /// 2: ball and attackers on the left side.
+        LeftSide = "2",
+        /// 3: middle-front, a defender ahead but farther than 40 cm.
+        DefenderAhead = "3",
+        /// 4: middle-front, a defender within 40 cm.
+        DefenderClose = "4",
+        /// Drawn from the trial's seed.
+        Random = "random",
+    }
 }
 
 /// Positions at kick-off.
@@ -65,23 +67,7 @@ impl Scenario {
     /// The paper's four.
     pub const PAPER: [Self; 4] = [Self::MiddleBack, Self::LeftSide, Self::DefenderAhead, Self::DefenderClose];
 
-    /// Its label in options and reports: `1` to `4` or `random`.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::MiddleBack => "1",
-            Self::LeftSide => "2",
-            Self::DefenderAhead => "3",
-            Self::DefenderClose => "4",
-            Self::Random => "random",
-        }
-    }
-
-    /// The scenario with that label.
-    pub fn from_word(word: &str) -> Option<Self> {
-        Self::PAPER.into_iter().chain([Self::Random]).find(|scenario| scenario.word() == word)
-    }
-
-    /// A short description of it.
+    /// What it looks like, in a few words.
     pub fn title(self) -> &'static str {
         self.file().map_or("random", |file| &file.title)
     }

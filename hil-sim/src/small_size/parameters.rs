@@ -9,25 +9,7 @@ use std::sync::LazyLock;
 use rules::League;
 use serde::{Deserialize, Serialize};
 
-use crate::four_legged::parameters::ParameterError;
-
-/// Declares structs whose every field is a number within bounds, and their check.
-macro_rules! numbers {
-    ($($(#[$about:meta])* $name:ident in $file:literal { $($(#[$doc:meta])* $field:ident: $low:expr, $high:expr;)* })*) => { $(
-        $(#[$about])*
-        #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
-        #[serde(deny_unknown_fields)]
-        pub struct $name { $($(#[$doc])* pub $field: f32,)* }
-
-        impl $name {
-            /// Checks every number against the limits of the physics.
-            pub fn check(&self) -> Result<(), ParameterError> {
-                $(within(concat!($file, ".", stringify!($field)), self.$field, $low, $high)?;)*
-                Ok(())
-            }
-        }
-    )* };
-}
+use crate::four_legged::parameters::{ParameterError, numbers, within};
 
 numbers! {
     /// The ball on the field surface and in the air.
@@ -329,12 +311,7 @@ impl CameraParameters {
     }
 }
 
-/// `value` if it lies between the bounds, else an error with its name.
-pub(super) fn within(name: &'static str, value: f32, low: f32, high: f32) -> Result<(), ParameterError> {
-    if (low..=high).contains(&value) { Ok(()) } else { Err(ParameterError::Range { name, value, low, high }) }
-}
-
-/// Minimum divisor.
+/// Nothing divides by less.
 const TINY: f32 = 1e-4;
 /// Maximum speed of a robot, m/s: steps of 1 ms stay small against bodies.
 const SPEED_MAX: f32 = 10.0;

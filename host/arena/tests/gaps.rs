@@ -10,13 +10,13 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use arena::game::{Game, GameConfig, Nobody};
+use brain::BrainConfig;
 use brain::governor::{Ruling, Why};
-use brain::{BrainConfig, Station};
 use casebase::CaseBase;
-use hil_sim::{Backend, Bursts, Mcu, McuError, Reply, Stream};
+use hil_sim::{Backend, Bursts, Mcu, McuError, NativeMcu, Reply, Stream};
 use host::strategy::{Flip, Task};
+use protocol::Who;
 use protocol::lockstep::TickIn;
-use protocol::{Instant, Who};
 use rules::{Colour, League, Phase};
 
 /// The governors' rulings of the last tick, by team number and robot.
@@ -29,10 +29,9 @@ struct Watched {
 }
 
 struct Computer {
-    station: Station<'static>,
+    native: NativeMcu<'static>,
     who: (u8, u8),
     rulings: Rulings,
-    reply: Reply,
 }
 
 impl Backend<'static> for Watched {
@@ -42,39 +41,20 @@ impl Backend<'static> for Watched {
 
     fn boot(&mut self, config: &BrainConfig) -> Result<Box<dyn Mcu + 'static>, McuError> {
         let who = (config.team.0, config.robot.number());
-        let station = Station::new(Instant(0), config, self.base);
-        Ok(Box::new(Computer { station, who, rulings: self.rulings.clone(), reply: Reply::default() }))
-    }
-}
-
-impl Computer {
-    fn drain(&mut self, now: Instant) {
-        while let Some(packet) = self.station.poll_packet(now) {
-            let _dropped = self.reply.packets.push(packet);
-        }
+        let native = NativeMcu::new(config, self.base);
+        Ok(Box::new(Computer { native, who, rulings: self.rulings.clone() }))
     }
 }
 
 impl Mcu for Computer {
     fn post(&mut self, tick: &TickIn<'_>) -> Result<(), McuError> {
-        self.reply = Reply::default();
-        while let Some(due) = self.station.poll_timeout().filter(|due| *due <= tick.now) {
-            self.station.handle_timeout(due);
-            self.drain(due);
-        }
-        for packet in &tick.air {
-            self.station.handle_packet(tick.now, packet);
-            self.drain(tick.now);
-        }
-        self.station.handle_sensors(tick.now, &tick.sensors);
-        self.drain(tick.now);
-        self.reply.actuators = self.station.poll_actuators(tick.now);
-        self.rulings.borrow_mut().insert(self.who, self.station.brain().ruling());
+        self.native.post(tick)?;
+        self.rulings.borrow_mut().insert(self.who, self.native.station().brain().ruling());
         Ok(())
     }
 
     fn collect(&mut self) -> Result<Reply, McuError> {
-        Ok(std::mem::take(&mut self.reply))
+        self.native.collect()
     }
 }
 

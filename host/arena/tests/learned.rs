@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 
 use arena::game::{Game, GameConfig, Nobody};
-use brain::{BrainConfig, Station};
+use brain::BrainConfig;
 use casebase::CaseBase;
 use geometry::{Point, Vector};
 use hil_sim::small_size::camera::Cameras;
 use hil_sim::small_size::quirks::Profile;
 use hil_sim::small_size::{Ball, Parameters, World};
-use hil_sim::{Backend, Mcu, McuError, Reply};
+use hil_sim::{Backend, Mcu, McuError, NativeMcu, Reply};
 use host::{Host, HostSettings, Input};
 use protocol::lockstep::TickIn;
 use protocol::robot_io::{ActuatorFrame, OmniKick};
@@ -24,9 +24,8 @@ struct Kickers {
 }
 
 struct Computer {
-    station: Station<'static>,
+    native: NativeMcu<'static>,
     gain: f32,
-    reply: Reply,
 }
 
 impl Backend<'static> for Kickers {
@@ -36,46 +35,21 @@ impl Backend<'static> for Kickers {
 
     fn boot(&mut self, config: &BrainConfig) -> Result<Box<dyn Mcu + 'static>, McuError> {
         let gain = (self.gain)(config.team, config.robot);
-        Ok(Box::new(Computer {
-            station: Station::new(Instant(0), config, self.base),
-            gain,
-            reply: Reply::default(),
-        }))
-    }
-}
-
-impl Computer {
-    fn drain(&mut self, now: Instant) {
-        while let Some(packet) = self.station.poll_packet(now) {
-            let _dropped = self.reply.packets.push(packet);
-        }
+        Ok(Box::new(Computer { native: NativeMcu::new(config, self.base), gain }))
     }
 }
 
 impl Mcu for Computer {
     fn post(&mut self, tick: &TickIn<'_>) -> Result<(), McuError> {
-        self.reply = Reply::default();
-        while let Some(due) = self.station.poll_timeout().filter(|due| *due <= tick.now) {
-            self.station.handle_timeout(due);
-            self.drain(due);
-        }
-        for packet in &tick.air {
-            self.station.handle_packet(tick.now, packet);
-            self.drain(tick.now);
-        }
-        self.station.handle_sensors(tick.now, &tick.sensors);
-        self.drain(tick.now);
-        self.reply.actuators = self.station.poll_actuators(tick.now).map(|frame| match frame {
-            ActuatorFrame::Omni { wheels, dribbler, kick: OmniKick::Flat(speed) } => {
-                ActuatorFrame::Omni { wheels, dribbler, kick: OmniKick::Flat(speed * self.gain) }
-            }
-            other => other,
-        });
-        Ok(())
+        self.native.post(tick)
     }
 
     fn collect(&mut self) -> Result<Reply, McuError> {
-        Ok(std::mem::take(&mut self.reply))
+        let mut reply = self.native.collect()?;
+        if let Some(ActuatorFrame::Omni { kick: OmniKick::Flat(speed), .. }) = &mut reply.actuators {
+            *speed *= self.gain;
+        }
+        Ok(reply)
     }
 }
 

@@ -7,7 +7,7 @@ use std::net::{SocketAddr, UdpSocket};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use running::{PATIENCE, Running};
+use running::{PATIENCE, Running, free, socket};
 
 use ssl::Message;
 use ssl::simulation::{
@@ -15,17 +15,6 @@ use ssl::simulation::{
 };
 use ssl::tracker::{TeamColor, TrackerWrapperPacket};
 use ssl::vision::WrapperPacket;
-
-fn socket() -> UdpSocket {
-    let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
-    socket.set_read_timeout(Some(PATIENCE)).expect("a time-out");
-    socket
-}
-
-/// A port that is free at the moment.
-fn free() -> String {
-    socket().local_addr().expect("an address").to_string()
-}
 
 fn image(socket: &UdpSocket) -> ssl::vision::DetectionFrame {
     let mut bytes = [0; 8192];

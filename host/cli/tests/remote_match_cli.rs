@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use running::{PATIENCE, Running};
+use running::{PATIENCE, Running, free, socket};
 use ssl::Message;
 use ssl::controller::{
     AutoRefRegistration, AutoRefToController, ControllerReply, ControllerToAutoRef, StatusCode,
@@ -66,18 +66,7 @@ impl Drop for Controller {
     }
 }
 
-fn socket() -> UdpSocket {
-    let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
-    socket.set_read_timeout(Some(PATIENCE)).expect("a time-out");
-    socket
-}
-
-/// A port that is free at the moment.
-fn free() -> String {
-    socket().local_addr().expect("an address").to_string()
-}
-
-/// The first camera frame for which `holds` is true; earlier ones are skipped.
+/// The first image for which `holds`; earlier ones are passed over.
 fn image(socket: &UdpSocket, what: &str, holds: impl Fn(&DetectionFrame) -> bool) {
     let (until, mut bytes, mut last) = (Instant::now() + PATIENCE, [0; 8192], None);
     while Instant::now() < until {

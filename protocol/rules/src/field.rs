@@ -3,7 +3,7 @@
 //! Distances are measured between the lines' centres (rules 2026, playing environment), so a line's outer
 //! edge lies half a line's width further out.
 
-use geometry::{Field, GoalEnd, Point, Segment, Shape, math};
+use geometry::{Field, GoalEnd, Point, Shape, math};
 use heapless::Vec;
 
 use crate::limits::ROBOT_RADIUS;
@@ -128,12 +128,6 @@ impl FieldSpec {
     /// Middle of the goal opening at that end.
     pub fn goal_center(&self, goal: GoalEnd) -> Point<Field> {
         Point::new(self.goal_line(goal), 0.0)
-    }
-
-    /// The goal opening at that end, from its post at −y to its post at +y.
-    pub fn goal_mouth(&self, goal: GoalEnd) -> Segment<Field> {
-        let (x, y) = (self.goal_line(goal), self.goal_width * 0.5);
-        Segment::new(Point::new(x, -y), Point::new(x, y))
     }
 
     /// On the field or on its lines.

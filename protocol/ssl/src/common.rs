@@ -26,60 +26,51 @@ pub enum Division {
     B = 2,
 }
 
-/// A point or velocity in the field frame, m or m/s.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct Vector2 {
-    /// Along the field's length, m (m/s).
-    #[prost(float, required, tag = "1")]
-    pub x: f32,
-    /// Coordinate to the left of +x, m (m/s).
-    #[prost(float, required, tag = "2")]
-    pub y: f32,
-}
+messages! {
+    /// A point or velocity in the field frame, m or m/s.
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct Vector2 {
+        /// Along the field's length, m (m/s).
+        x: f32 [float, required] = 1;
+        /// To the left of +x, m (m/s).
+        y: f32 [float, required] = 2;
+    }
 
-/// A point or velocity in the field frame, m or m/s.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct Vector3 {
-    /// Along the field's length, m (m/s).
-    #[prost(float, required, tag = "1")]
-    pub x: f32,
-    /// Coordinate to the left of +x, m (m/s).
-    #[prost(float, required, tag = "2")]
-    pub y: f32,
-    /// Up from the ground, m (m/s).
-    #[prost(float, required, tag = "3")]
-    pub z: f32,
-}
+    /// A point or velocity in the field frame, m or m/s.
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct Vector3 {
+        /// Along the field's length, m (m/s).
+        x: f32 [float, required] = 1;
+        /// To the left of +x, m (m/s).
+        y: f32 [float, required] = 2;
+        /// Up from the ground, m (m/s).
+        z: f32 [float, required] = 3;
+    }
 
-/// A robot by shell number and team, as the game controller and the simulation protocol name it.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct RobotId {
-    /// Shell number, 0–15.
-    #[prost(uint32, optional, tag = "1")]
-    pub id: Option<u32>,
-    /// Team of the robot, [`Team`].
-    #[prost(enumeration = "Team", optional, tag = "2")]
-    pub team: Option<i32>,
-}
+    /// A robot by shell number and team, as the game controller and the simulation protocol name it.
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct RobotId {
+        /// Shell number, 0–15.
+        id: Option<u32> [uint32, optional] = 1;
+        /// Its team, [`Team`].
+        team: Option<i32> [enumeration = "Team", optional] = 2;
+    }
 
-/// `google.protobuf.Any`: a message whose type the sender names.
-#[derive(Clone, PartialEq, Message)]
-pub struct Any {
-    /// Type of `value`, `type.googleapis.com/` and the full name of the message.
-    #[prost(string, optional, tag = "1")]
-    pub type_url: Option<String>,
-    /// The message, encoded.
-    #[prost(bytes = "vec", optional, tag = "2")]
-    pub value: Option<Vec<u8>>,
-}
+    /// `google.protobuf.Any`: a message whose type the sender names.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct Any {
+        /// Type of `value`, `type.googleapis.com/` and the full name of the message.
+        type_url: Option<String> [string, optional] = 1;
+        /// The message, encoded.
+        value: Option<Vec<u8>> [bytes = "vec", optional] = 2;
+    }
 
-/// `google.protobuf.Duration`.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct Duration {
-    /// Whole seconds.
-    #[prost(int64, optional, tag = "1")]
-    pub seconds: Option<i64>,
-    /// Remaining nanoseconds, of the same sign.
-    #[prost(int32, optional, tag = "2")]
-    pub nanos: Option<i32>,
+    /// `google.protobuf.Duration`.
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct Duration {
+        /// Whole seconds.
+        seconds: Option<i64> [int64, optional] = 1;
+        /// The rest, ns, of the same sign.
+        nanos: Option<i32> [int32, optional] = 2;
+    }
 }

@@ -1,9 +1,9 @@
 //! `ssl`: the Small Size League's messages, sockets and log files. Runs on the PC.
 //!
-//! One module a protobuf package, as hand-written `prost` structs: no protoc, no build script. Names are the
-//! league's without `SSL_`; a field is a plain value where the league requires it, an `Option` where it does
-//! not. Enums are kept as the number on the wire, so that unknown ones survive; the accessor of the field's
-//! name reads an unknown number as the enum's first value, `Enum::try_from(number)` distinguishes it.
+//! One module a protobuf package, as `prost` structs written by hand: no protoc, no build script. Names are the league's
+//! without `SSL_`; a field is a plain value where the league requires it, an `Option` where it does not. Enums are kept
+//! as the number on the wire, so that unknown ones survive; the accessor of the field's name reads an unknown number as
+//! the enum's first value, `Enum::try_from(number)` tells it apart.
 //!
 //! | module | message on the wire | address |
 //! |---|---|---|
@@ -13,8 +13,7 @@
 //! | [`tracker`] | [`tracker::TrackerWrapperPacket`] | UDP 224.5.23.2:10010 |
 //! | [`simulation`] | [`simulation::SimulatorCommand`], [`simulation::RobotControl`] | UDP, 10300; 10301 blue, 10302 yellow |
 //! | [`simulation`] | [`simulation::GrsimPacket`], [`simulation::RobotsStatus`] | UDP, grSim's own: 20011; 30011 blue, 30012 yellow |
-//! | [`controller`] | [`controller::TeamToController`] and related ones | TCP 10007–10011, length-delimited |
-//! | [`radio`] | [`radio::RadioProtocolWrapper`] | a proposal of 2015 |
+//! | [`controller`] | [`controller::TeamToController`] and its kin | TCP 10007, 10008, length-delimited |
 //!
 //! [`net`] has the sockets, [`stream`] the framing on TCP, [`log`] the log files of matches.
 //!
@@ -41,12 +40,14 @@
 //! each field states its own. The README lists the traps of the league's programs and which test holds each.
 #![forbid(unsafe_code)]
 
+#[macro_use]
+mod messages;
+
 pub mod common;
 pub mod controller;
 pub mod event;
 pub mod log;
 pub mod net;
-pub mod radio;
 pub mod referee;
 pub mod simulation;
 pub mod stream;

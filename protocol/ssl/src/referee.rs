@@ -7,144 +7,106 @@ use prost::{Enumeration, Message};
 
 use crate::event::GameEvent;
 
-/// The state of the match, repeated whether it changed or not.
-#[derive(Clone, PartialEq, Message)]
-pub struct Referee {
-    /// When this packet was sent, µs, Unix time.
-    #[prost(uint64, required, tag = "1")]
-    pub packet_timestamp: u64,
-    /// Part of the match, [`Stage`].
-    #[prost(enumeration = "Stage", required, tag = "2")]
-    pub stage: i32,
-    /// Playing time left in the stage, µs; negative when it ran over.
-    #[prost(sint64, optional, tag = "3")]
-    pub stage_time_left: Option<i64>,
-    /// Command in force, [`Command`].
-    #[prost(enumeration = "Command", required, tag = "4")]
-    pub command: i32,
-    /// Rises with each command; the same command may come again with a new count (README, trap 4).
-    #[prost(uint32, required, tag = "5")]
-    pub command_counter: u32,
-    /// When the command was given, µs, Unix time.
-    #[prost(uint64, required, tag = "6")]
-    pub command_timestamp: u64,
-    /// The yellow team.
-    #[prost(message, required, tag = "7")]
-    pub yellow: TeamInfo,
-    /// The blue team.
-    #[prost(message, required, tag = "8")]
-    pub blue: TeamInfo,
-    /// Target of a ball placement, mm. Only valid in ball placement (README, trap 3).
-    #[prost(message, optional, tag = "9")]
-    pub designated_position: Option<Point>,
-    /// True: blue's own goal is at +x.
-    #[prost(bool, optional, tag = "10")]
-    pub blue_team_on_positive_half: Option<bool>,
-    /// Command that will follow the current stop, [`Command`].
-    #[prost(enumeration = "Command", optional, tag = "12")]
-    pub next_command: Option<i32>,
-    /// Time left for placement, free kick, kickoff or penalty, µs; negative when it ran over.
-    #[prost(int64, optional, tag = "15")]
-    pub current_action_time_remaining: Option<i64>,
-    /// Events decided since the last command that let the ball move.
-    #[prost(message, repeated, tag = "16")]
-    pub game_events: Vec<GameEvent>,
-    /// Events that automatic referees proposed and that are not decided yet.
-    #[prost(message, repeated, tag = "17")]
-    pub game_event_proposals: Vec<GameEventProposalGroup>,
-    /// Identifier of the sending program, the same through a session.
-    #[prost(string, optional, tag = "18")]
-    pub source_identifier: Option<String>,
-    /// Kind of match, [`MatchType`].
-    #[prost(enumeration = "MatchType", optional, tag = "19")]
-    pub match_type: Option<i32>,
-    /// What the controller waits for, as text.
-    #[prost(string, optional, tag = "20")]
-    pub status_message: Option<String>,
-}
+messages! {
+    /// The state of the match, repeated whether it changed or not.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct Referee {
+        /// When this packet was sent, µs, Unix time.
+        packet_timestamp: u64 [uint64, required] = 1;
+        /// Part of the match, [`Stage`].
+        stage: i32 [enumeration = "Stage", required] = 2;
+        /// Playing time left in the stage, µs; negative when it ran over.
+        stage_time_left: Option<i64> [sint64, optional] = 3;
+        /// What holds now, [`Command`].
+        command: i32 [enumeration = "Command", required] = 4;
+        /// Rises with each command; the same command may come again with a new count (README, trap 4).
+        command_counter: u32 [uint32, required] = 5;
+        /// When the command was given, µs, Unix time.
+        command_timestamp: u64 [uint64, required] = 6;
+        /// The yellow team.
+        yellow: TeamInfo [message, required] = 7;
+        /// The blue team.
+        blue: TeamInfo [message, required] = 8;
+        /// Where the ball is to be placed, mm. Only to be read in ball placement (README, trap 3).
+        designated_position: Option<Point> [message, optional] = 9;
+        /// True: blue's own goal is at +x.
+        blue_team_on_positive_half: Option<bool> [bool, optional] = 10;
+        /// What will follow the current stop, [`Command`].
+        next_command: Option<i32> [enumeration = "Command", optional] = 12;
+        /// Time left for placement, free kick, kickoff or penalty, µs; negative when it ran over.
+        current_action_time_remaining: Option<i64> [int64, optional] = 15;
+        /// What was decided since the last command that let the ball move.
+        game_events: Vec<GameEvent> [message, repeated] = 16;
+        /// What automatic referees proposed and nobody decided yet.
+        game_event_proposals: Vec<GameEventProposalGroup> [message, repeated] = 17;
+        /// Which program sends, the same through a session.
+        source_identifier: Option<String> [string, optional] = 18;
+        /// What kind of match, [`MatchType`].
+        match_type: Option<i32> [enumeration = "MatchType", optional] = 19;
+        /// What the controller waits for, in words.
+        status_message: Option<String> [string, optional] = 20;
+    }
 
-/// State of one team.
-#[derive(Clone, PartialEq, Message)]
-pub struct TeamInfo {
-    /// The team's name; empty while unknown.
-    #[prost(string, required, tag = "1")]
-    pub name: String,
-    /// Number of goals.
-    #[prost(uint32, required, tag = "2")]
-    pub score: u32,
-    /// Number of red cards.
-    #[prost(uint32, required, tag = "3")]
-    pub red_cards: u32,
-    /// Time left of each active yellow card, µs.
-    #[prost(uint32, repeated, tag = "4")]
-    pub yellow_card_times: Vec<u32>,
-    /// Yellow cards ever given.
-    #[prost(uint32, required, tag = "5")]
-    pub yellow_cards: u32,
-    /// Number of time-outs left.
-    #[prost(uint32, required, tag = "6")]
-    pub timeouts: u32,
-    /// Time left for time-outs, µs.
-    #[prost(uint32, required, tag = "7")]
-    pub timeout_time: u32,
-    /// Shell number of the keeper.
-    #[prost(uint32, required, tag = "8")]
-    pub goalkeeper: u32,
-    /// Number of fouls that count towards a yellow card.
-    #[prost(uint32, optional, tag = "9")]
-    pub foul_counter: Option<u32>,
-    /// Number of failed placements in a row.
-    #[prost(uint32, optional, tag = "10")]
-    pub ball_placement_failures: Option<u32>,
-    /// Whether the team can place the ball.
-    #[prost(bool, optional, tag = "12")]
-    pub can_place_ball: Option<bool>,
-    /// Number of robots it may have on the field now.
-    #[prost(uint32, optional, tag = "13")]
-    pub max_allowed_bots: Option<u32>,
-    /// It requested to substitute a robot at the next opportunity.
-    #[prost(bool, optional, tag = "14")]
-    pub bot_substitution_intent: Option<bool>,
-    /// Whether it failed so often that it may no longer place the ball.
-    #[prost(bool, optional, tag = "15")]
-    pub ball_placement_failures_reached: Option<bool>,
-    /// Whether it may substitute now.
-    #[prost(bool, optional, tag = "16")]
-    pub bot_substitution_allowed: Option<bool>,
-    /// Substitutions left in this half.
-    #[prost(uint32, optional, tag = "17")]
-    pub bot_substitutions_left: Option<u32>,
-    /// Time left of the running substitution, µs.
-    #[prost(uint32, optional, tag = "18")]
-    pub bot_substitution_time_left: Option<u32>,
-    /// Shade of its robots' hulls, [`HullColor`].
-    #[prost(enumeration = "HullColor", optional, tag = "19")]
-    pub hull_color: Option<i32>,
-}
+    /// One team's account.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct TeamInfo {
+        /// The team's name; empty while unknown.
+        name: String [string, required] = 1;
+        /// Goals.
+        score: u32 [uint32, required] = 2;
+        /// Red cards.
+        red_cards: u32 [uint32, required] = 3;
+        /// Time left of each active yellow card, µs.
+        yellow_card_times: Vec<u32> [uint32, repeated] = 4;
+        /// Yellow cards ever given.
+        yellow_cards: u32 [uint32, required] = 5;
+        /// Time-outs left.
+        timeouts: u32 [uint32, required] = 6;
+        /// Time left for time-outs, µs.
+        timeout_time: u32 [uint32, required] = 7;
+        /// Shell number of the keeper.
+        goalkeeper: u32 [uint32, required] = 8;
+        /// Fouls that count towards a yellow card.
+        foul_counter: Option<u32> [uint32, optional] = 9;
+        /// Failed placements in a row.
+        ball_placement_failures: Option<u32> [uint32, optional] = 10;
+        /// Can the team place the ball?
+        can_place_ball: Option<bool> [bool, optional] = 12;
+        /// Robots it may have on the field now.
+        max_allowed_bots: Option<u32> [uint32, optional] = 13;
+        /// It asked to substitute a robot at the next chance.
+        bot_substitution_intent: Option<bool> [bool, optional] = 14;
+        /// It failed so often that it no longer may place the ball.
+        ball_placement_failures_reached: Option<bool> [bool, optional] = 15;
+        /// It may substitute now.
+        bot_substitution_allowed: Option<bool> [bool, optional] = 16;
+        /// Substitutions left in this half.
+        bot_substitutions_left: Option<u32> [uint32, optional] = 17;
+        /// Time left of the running substitution, µs.
+        bot_substitution_time_left: Option<u32> [uint32, optional] = 18;
+        /// Shade of its robots' hulls, [`HullColor`].
+        hull_color: Option<i32> [enumeration = "HullColor", optional] = 19;
+    }
 
-/// A point on the ground in **mm**, field frame.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct Point {
-    /// Along the field's length, mm.
-    #[prost(float, required, tag = "1")]
-    pub x: f32,
-    /// Coordinate to the left of +x, mm.
-    #[prost(float, required, tag = "2")]
-    pub y: f32,
-}
+    /// A point on the ground in **mm**, field frame.
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct Point {
+        /// Along the field's length, mm.
+        x: f32 [float, required] = 1;
+        /// To the left of +x, mm.
+        y: f32 [float, required] = 2;
+    }
 
-/// The same event as reported by several automatic referees.
-#[derive(Clone, PartialEq, Message)]
-pub struct GameEventProposalGroup {
-    /// Events as reported by each referee.
-    #[prost(message, repeated, tag = "1")]
-    pub game_events: Vec<GameEvent>,
-    /// Whether it was accepted; absent while open.
-    #[prost(bool, optional, tag = "2")]
-    pub accepted: Option<bool>,
-    /// Id of the group.
-    #[prost(string, optional, tag = "3")]
-    pub id: Option<String>,
+    /// The same event as several automatic referees saw it.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct GameEventProposalGroup {
+        /// Each one's account.
+        game_events: Vec<GameEvent> [message, repeated] = 1;
+        /// Was it accepted? Absent while open.
+        accepted: Option<bool> [bool, optional] = 2;
+        /// Which group.
+        id: Option<String> [string, optional] = 3;
+    }
 }
 
 /// Parts of a match.

@@ -7,11 +7,8 @@ use prost::Message;
 
 use crate::wire::VARINT_MAX;
 
-/// Most bytes of a message on TCP that are accepted, length excluded. The largest one needed, a [`CiInput`]
-/// with a tracker's frame and the geometry, has about 5 kB; a decoded message may need a hundred times its
-/// bytes.
-///
-/// [`CiInput`]: crate::controller::CiInput
+/// Most bytes of a message on TCP that are accepted, length excluded. Those of the
+/// controller have a few kB at most; a decoded message may need a hundred times its bytes.
 pub const MESSAGE_MAX: usize = 256 * 1024;
 
 /// Most bytes of a UDP datagram over IPv4: 65,535 less the headers.

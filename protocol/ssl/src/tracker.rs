@@ -7,112 +7,88 @@ use prost::{Enumeration, Message};
 
 use crate::common::{Vector2, Vector3};
 
-/// A frame with its source.
-#[derive(Clone, PartialEq, Message)]
-pub struct TrackerWrapperPacket {
-    /// Id of the source, the same through a session.
-    #[prost(string, required, tag = "1")]
-    pub uuid: String,
-    /// Name of the source.
-    #[prost(string, optional, tag = "2")]
-    pub source_name: Option<String>,
-    /// The tracked frame.
-    #[prost(message, optional, tag = "3")]
-    pub tracked_frame: Option<TrackedFrame>,
-}
+messages! {
+    /// A frame with who made it.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct TrackerWrapperPacket {
+        /// Names the source, the same through a session.
+        uuid: String [string, required] = 1;
+        /// The source in words.
+        source_name: Option<String> [string, optional] = 2;
+        /// What it believes.
+        tracked_frame: Option<TrackedFrame> [message, optional] = 3;
+    }
 
-/// The field at one moment.
-#[derive(Clone, PartialEq, Message)]
-pub struct TrackedFrame {
-    /// Counts this source's frames.
-    #[prost(uint32, required, tag = "1")]
-    pub frame_number: u32,
-    /// Time of the frame, s, on the clock of vision's `t_capture`.
-    #[prost(double, required, tag = "2")]
-    pub timestamp: f64,
-    /// Balls; the first is the one in play.
-    #[prost(message, repeated, tag = "3")]
-    pub balls: Vec<TrackedBall>,
-    /// Robots of both teams.
-    #[prost(message, repeated, tag = "4")]
-    pub robots: Vec<TrackedRobot>,
-    /// The last kick while its ball moves.
-    #[prost(message, optional, tag = "5")]
-    pub kicked_ball: Option<KickedBall>,
-    /// Abilities of this source, [`Capability`].
-    #[prost(enumeration = "Capability", repeated, packed = "false", tag = "6")]
-    pub capabilities: Vec<i32>,
-}
+    /// The field at one moment.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct TrackedFrame {
+        /// Counts this source's frames.
+        frame_number: u32 [uint32, required] = 1;
+        /// The moment, s, on the clock of vision's `t_capture`.
+        timestamp: f64 [double, required] = 2;
+        /// Balls; the first is the one in play.
+        balls: Vec<TrackedBall> [message, repeated] = 3;
+        /// Robots of both teams.
+        robots: Vec<TrackedRobot> [message, repeated] = 4;
+        /// The last kick while it lasts.
+        kicked_ball: Option<KickedBall> [message, optional] = 5;
+        /// What this source can do, [`Capability`].
+        capabilities: Vec<i32> [enumeration = "Capability", repeated, packed = "false"] = 6;
+    }
 
-/// State of a ball.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct TrackedBall {
-    /// Position, m.
-    #[prost(message, required, tag = "1")]
-    pub pos: Vector3,
-    /// Velocity, m/s.
-    #[prost(message, optional, tag = "2")]
-    pub vel: Option<Vector3>,
-    /// Recent visibility, 0–1.
-    #[prost(float, optional, tag = "3")]
-    pub visibility: Option<f32>,
-}
+    /// A ball.
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct TrackedBall {
+        /// Where, m.
+        pos: Vector3 [message, required] = 1;
+        /// How fast, m/s.
+        vel: Option<Vector3> [message, optional] = 2;
+        /// How well it was seen of late, 0–1.
+        visibility: Option<f32> [float, optional] = 3;
+    }
 
-/// A ball that was kicked, and where it will end if it is not touched.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct KickedBall {
-    /// Position of the kick, m.
-    #[prost(message, required, tag = "1")]
-    pub pos: Vector2,
-    /// Its velocity after the kick, m/s.
-    #[prost(message, required, tag = "2")]
-    pub vel: Vector3,
-    /// When it was kicked, s.
-    #[prost(double, required, tag = "3")]
-    pub start_timestamp: f64,
-    /// When it will stop, s.
-    #[prost(double, optional, tag = "4")]
-    pub stop_timestamp: Option<f64>,
-    /// Stop position, m.
-    #[prost(message, optional, tag = "5")]
-    pub stop_pos: Option<Vector2>,
-    /// The robot that kicked.
-    #[prost(message, optional, tag = "6")]
-    pub robot_id: Option<TrackedRobotId>,
-}
+    /// A ball that was kicked, and where it will end if nobody touches it.
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct KickedBall {
+        /// Where it was kicked, m.
+        pos: Vector2 [message, required] = 1;
+        /// Its velocity after the kick, m/s.
+        vel: Vector3 [message, required] = 2;
+        /// When it was kicked, s.
+        start_timestamp: f64 [double, required] = 3;
+        /// When it will be at rest, s.
+        stop_timestamp: Option<f64> [double, optional] = 4;
+        /// Where it will be at rest, m.
+        stop_pos: Option<Vector2> [message, optional] = 5;
+        /// Who kicked.
+        robot_id: Option<TrackedRobotId> [message, optional] = 6;
+    }
 
-/// State of a robot.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct TrackedRobot {
-    /// Identity of the robot.
-    #[prost(message, required, tag = "1")]
-    pub robot_id: TrackedRobotId,
-    /// Position, m.
-    #[prost(message, required, tag = "2")]
-    pub pos: Vector2,
-    /// Heading, rad, counter-clockwise from +x.
-    #[prost(float, required, tag = "3")]
-    pub orientation: f32,
-    /// Velocity, m/s, field frame.
-    #[prost(message, optional, tag = "4")]
-    pub vel: Option<Vector2>,
-    /// Turning rate, rad/s, counter-clockwise.
-    #[prost(float, optional, tag = "5")]
-    pub vel_angular: Option<f32>,
-    /// Recent visibility, 0–1.
-    #[prost(float, optional, tag = "6")]
-    pub visibility: Option<f32>,
-}
+    /// A robot.
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct TrackedRobot {
+        /// Which.
+        robot_id: TrackedRobotId [message, required] = 1;
+        /// Where, m.
+        pos: Vector2 [message, required] = 2;
+        /// Heading, rad, counter-clockwise from +x.
+        orientation: f32 [float, required] = 3;
+        /// How fast, m/s, field frame.
+        vel: Option<Vector2> [message, optional] = 4;
+        /// How fast it turns, rad/s, counter-clockwise.
+        vel_angular: Option<f32> [float, optional] = 5;
+        /// How well it was seen of late, 0–1.
+        visibility: Option<f32> [float, optional] = 6;
+    }
 
-/// A robot by shell number and team, as in tracker packets.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct TrackedRobotId {
-    /// Shell number, 0–15.
-    #[prost(uint32, required, tag = "1")]
-    pub id: u32,
-    /// Its team, [`TeamColor`].
-    #[prost(enumeration = "TeamColor", required, tag = "2")]
-    pub team_color: i32,
+    /// A robot by shell number and team, as trackers name it.
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct TrackedRobotId {
+        /// Shell number, 0–15.
+        id: u32 [uint32, required] = 1;
+        /// Its team, [`TeamColor`].
+        team_color: i32 [enumeration = "TeamColor", required] = 2;
+    }
 }
 
 /// Team, with the numbers of [`crate::common::Team`].

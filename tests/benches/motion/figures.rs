@@ -1,7 +1,6 @@
 //! `figures`: figures of the motion benchmark, their budgets, and their table in firmware/motion/README.md.
 
 use std::fmt::Write as _;
-use std::fs;
 
 use motion_bench::{Counted, TASKS, Work};
 
@@ -110,20 +109,6 @@ fn what(work: Work) -> &'static str {
     }
 }
 
-/// Writes the table between its marks.
-#[allow(dead_code, reason = "the test writes nothing")]
-pub(crate) fn write(table: &str) -> Result<(), String> {
-    let file = firmware_build::workspace_root().join("firmware/motion/README.md");
-    let text = fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;
-    let missing = || format!("{} has no marks for the table: `{BEGIN}` and `{END}`", file.display());
-    let (before, rest) = text.split_once(BEGIN).ok_or_else(missing)?;
-    let (_, after) = rest.split_once(END).ok_or_else(missing)?;
-    fs::write(&file, format!("{before}{BEGIN}\n{table}{END}{after}"))
-        .map_err(|error| format!("{}: {error}", file.display()))
-}
-
 const HEAD: &str = "\
 | what | thumbv7em: mean / 99 % / worst | budget: mean / worst | on the PC, mean | budget |
 |---|---:|---:|---:|---:|";
-const BEGIN: &str = "<!-- motion table -->";
-const END: &str = "<!-- end of motion table -->";

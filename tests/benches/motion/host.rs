@@ -2,10 +2,9 @@
 //!
 //! It does all tasks once and then twice; the difference excludes everything that happens once.
 
-use std::env;
 use std::hint::black_box;
-use std::process::{Command, Stdio};
 
+use firmware_build::count::callgrind;
 use motion_bench::{SEED, TASKS, Task, Tasks, Work};
 
 /// Mean instructions per task.
@@ -14,17 +13,7 @@ pub(crate) fn instructions(work: Work) -> Result<u64, String> {
 }
 
 fn counted(work: Work, rounds: u32) -> Result<u64, String> {
-    let program = env::current_exe().map_err(|error| format!("which program is this? {error}"))?;
-    let output = Command::new("valgrind")
-        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
-        .arg(program)
-        .args(["--work", work.word(), &rounds.to_string()])
-        .stdin(Stdio::null())
-        .output()
-        .map_err(|error| format!("valgrind does not start: {error}; install the package valgrind"))?;
-    let said = String::from_utf8_lossy(&output.stderr);
-    let count = said.lines().find_map(|line| line.split_once("Collected :")?.1.trim().parse().ok());
-    count.filter(|_| output.status.success()).ok_or_else(|| format!("callgrind counted nothing: {said}"))
+    callgrind(&["--work", work.word(), &rounds.to_string()])
 }
 
 /// The workload under callgrind: all tasks, `rounds` times.

@@ -11,6 +11,7 @@ mod verify;
 use std::process::ExitCode;
 
 use figures::Figures;
+use firmware_build::count::write_between;
 use motion_bench::Work;
 
 fn main() -> ExitCode {
@@ -49,7 +50,7 @@ fn report(write: bool, here: bool) -> Result<(), String> {
     let text = figures.table();
     println!("{text}");
     if write {
-        figures::write(&text)?;
+        write_between("firmware/motion/README.md", "motion table", &text)?;
     }
     let broken = figures.broken();
     if broken.is_empty() { Ok(()) } else { Err(broken.join("\n")) }

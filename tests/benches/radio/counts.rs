@@ -2,9 +2,9 @@
 //! compared with this machine's.
 
 use std::fmt::Write as _;
-use std::process::{Command, Stdio};
 
-use firmware_build::{Install, MACHINE, Program, build_program, ensure_qemu, workspace_root};
+use firmware_build::Program;
+use firmware_build::count::CountingImage;
 use radio_bench::{Bench, ROUNDS, Work};
 
 /// One workload over all rounds.
@@ -19,22 +19,7 @@ pub(crate) struct Count {
 
 /// Counts of every workload; checked: the radio's results in the image equal those here.
 pub(crate) fn counted() -> Result<Vec<Count>, String> {
-    let qemu = ensure_qemu(Install::ForUser).map_err(|error| error.to_string())?;
-    let image = build_program(&workspace_root(), Program::RadioBench).map_err(|error| error.to_string())?;
-    let output = Command::new(&qemu)
-        .args(["-machine", MACHINE, "-display", "none", "-monitor", "none", "-serial", "none"])
-        .args(["-icount", "shift=6,align=off", "-semihosting-config", "enable=on,target=native"])
-        .arg("-kernel")
-        .arg(&image)
-        .stdin(Stdio::null())
-        .output()
-        .map_err(|error| format!("{} does not start: {error}", qemu.display()))?;
-    let said = String::from_utf8_lossy(&output.stdout);
-    let lines: Vec<[u32; 3]> = said.lines().filter_map(numbers).collect();
-    if !output.status.success() || lines.len() != ROUNDS * Work::ALL.len() {
-        let words = String::from_utf8_lossy(&output.stderr);
-        return Err(format!("the image ended with {} after {} lines: {words}", output.status, lines.len()));
-    }
+    let lines = CountingImage::new(Program::RadioBench)?.lines(&[], numbers, ROUNDS * Work::ALL.len())?;
     let mut bench = Bench::new();
     let mut counts: Vec<Count> = Vec::new();
     for (line, (number, work)) in

@@ -4,8 +4,9 @@
 
 mod counts;
 
-use std::fs;
 use std::process::ExitCode;
+
+use firmware_build::count::write_between;
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -35,22 +36,8 @@ fn report(write: bool) -> Result<(), String> {
     let table = counts::table(&counts);
     println!("{table}");
     if write {
-        put(&table)?;
+        write_between("protocol/README.md", "radio table", &table)?;
     }
     let broken = counts::broken(&counts);
     if broken.is_empty() { Ok(()) } else { Err(broken.join("\n")) }
 }
-
-/// Writes the table between its marks.
-fn put(table: &str) -> Result<(), String> {
-    let file = firmware_build::workspace_root().join("protocol/README.md");
-    let text = fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;
-    let missing = || format!("{} has no marks for the table: `{BEGIN}` and `{END}`", file.display());
-    let (before, rest) = text.split_once(BEGIN).ok_or_else(missing)?;
-    let (_, after) = rest.split_once(END).ok_or_else(missing)?;
-    fs::write(&file, format!("{before}{BEGIN}\n{table}{END}{after}"))
-        .map_err(|error| format!("{}: {error}", file.display()))
-}
-
-const BEGIN: &str = "<!-- radio table -->";
-const END: &str = "<!-- end of radio table -->";

@@ -3,11 +3,11 @@
 //!
 //! It runs over all problems once and then twice; the difference excludes everything that happens once.
 
+use std::fs;
 use std::path::Path;
-use std::process::{Command, Stdio};
-use std::{env, fs};
 
 use casebase::{CaseBase, Problem, Settings, retrieve, retrieve_best};
+use firmware_build::count::callgrind;
 use retrieval_bench::{problems, scan};
 
 use crate::guest::{Folder, in_memory, write};
@@ -29,19 +29,7 @@ pub(crate) fn instructions(table: &[u8], problems: &[Problem]) -> Result<[u64; 3
 }
 
 fn counted(folder: &Path, way: &str, rounds: u32) -> Result<u64, String> {
-    let program = env::current_exe().map_err(|error| format!("which program is this? {error}"))?;
-    let output = Command::new("valgrind")
-        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
-        .arg(program)
-        .arg("--work")
-        .arg(folder)
-        .args([way, &rounds.to_string()])
-        .stdin(Stdio::null())
-        .output()
-        .map_err(|error| format!("valgrind does not start: {error}; install the package valgrind"))?;
-    let said = String::from_utf8_lossy(&output.stderr);
-    let count = said.lines().find_map(|line| line.split_once("Collected :")?.1.trim().parse().ok());
-    count.filter(|_| output.status.success()).ok_or_else(|| format!("callgrind counted nothing: {said}"))
+    callgrind(&["--work", &folder.display().to_string(), way, &rounds.to_string()])
 }
 
 /// The workload under callgrind: all problems in `folder`, `rounds` times.

@@ -2,24 +2,19 @@
 //! instructions.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 use std::{env, fs};
 
 use casebase::{CaseBase, Problem, Settings, retrieve, retrieve_best};
-use firmware_build::{Install, MACHINE, Program, build_program, ensure_qemu, workspace_root};
+use firmware_build::Program;
+use firmware_build::count::CountingImage;
 use retrieval_bench::{Answer, LEN_MAX, PROBLEMS_ADDRESS, TABLE_ADDRESS, encode, header, scan};
 
-/// The emulator and the firmware image.
-pub(crate) struct Board {
-    qemu: PathBuf,
-    image: PathBuf,
-}
+/// The image.
+pub(crate) struct Board(CountingImage);
 
 impl Board {
     pub(crate) fn new() -> Result<Self, String> {
-        let qemu = ensure_qemu(Install::ForUser).map_err(|error| error.to_string())?;
-        let image = build_program(&workspace_root(), Program::RetrievalBench);
-        Ok(Self { qemu, image: image.map_err(|error| error.to_string())? })
+        CountingImage::new(Program::RetrievalBench).map(Self)
     }
 
     /// The answers to all problems, in order.
@@ -32,28 +27,13 @@ impl Board {
         }
         write(&table_file, &table)?;
         write(&problem_file, &in_memory)?;
-        let output = Command::new(&self.qemu)
-            .args(["-machine", MACHINE, "-display", "none", "-monitor", "none", "-serial", "none"])
-            .args(["-icount", "shift=6,align=off", "-semihosting-config", "enable=on,target=native"])
-            .args(["-device", &loader(&table_file, TABLE_ADDRESS)])
-            .args(["-device", &loader(&problem_file, PROBLEMS_ADDRESS)])
-            .arg("-kernel")
-            .arg(&self.image)
-            .stdin(Stdio::null())
-            .output()
-            .map_err(|error| format!("{} does not start: {error}", self.qemu.display()))?;
-        let said = String::from_utf8_lossy(&output.stdout);
-        let answers: Vec<Answer> = said.lines().filter_map(|line| line.parse().ok()).collect();
-        if output.status.success() && answers.len() == problems.len() {
-            return Ok(answers);
-        }
-        let words = String::from_utf8_lossy(&output.stderr);
-        Err(format!(
-            "the image ended with {} after {} of {} answers: {words}",
-            output.status,
-            answers.len(),
-            problems.len()
-        ))
+        let devices = [
+            ("-device", loader(&table_file, TABLE_ADDRESS)),
+            ("-device", loader(&problem_file, PROBLEMS_ADDRESS)),
+        ];
+        let words: Vec<String> =
+            devices.into_iter().flat_map(|(word, device)| [word.to_owned(), device]).collect();
+        self.0.lines(&words, |line| line.parse().ok(), problems.len())
     }
 }
 

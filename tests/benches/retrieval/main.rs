@@ -18,6 +18,7 @@ use std::process::ExitCode;
 use bases::Base;
 use casebase::Problem;
 use figures::{Figures, PLAYED};
+use firmware_build::count::write_between;
 use guest::Board;
 
 fn main() -> ExitCode {
@@ -74,7 +75,7 @@ fn report(write: bool, host: bool) -> Result<(), String> {
     println!("{text}");
     let broken: Vec<String> = all.iter().flat_map(Figures::broken).collect();
     if write {
-        table::write(&text)?;
+        write_between("casebase/README.md", "retrieval table", &text)?;
     }
     if broken.is_empty() { Ok(()) } else { Err(broken.join("\n")) }
 }

@@ -9,7 +9,7 @@ use std::rc::Rc;
 use arena::{TrialConfig, run};
 use brain::{Approach, BrainConfig, Station};
 use casebase::{CaseBase, Problem};
-use hil_sim::{Backend, Configuration, Mcu, McuError, Reply, Scenario};
+use hil_sim::{Backend, Configuration, Mcu, McuError, NativeMcu, Reply, Scenario};
 use protocol::lockstep::TickIn;
 use protocol::team::Decision;
 use protocol::{CycleId, Instant};
@@ -43,66 +43,43 @@ impl<'a> Backend<'a> for Recorder<'a> {
     }
 
     fn boot(&mut self, config: &BrainConfig) -> Result<Box<dyn Mcu + 'a>, McuError> {
-        let station = Station::new(Instant(0), config, self.base);
-        let problems = Rc::clone(&self.problems);
-        Ok(Box::new(Robot { station, reply: Reply::default(), decided: None, problems }))
+        let native = NativeMcu::new(config, self.base);
+        Ok(Box::new(Robot { native, decided: None, problems: Rc::clone(&self.problems) }))
     }
 }
 
 struct Robot<'a> {
-    station: Station<'a>,
-    reply: Reply,
-    /// The last cycle it decided.
+    native: NativeMcu<'a>,
+    /// The cycle it decided last.
     decided: Option<CycleId>,
     problems: Rc<RefCell<Vec<Problem>>>,
 }
 
-impl Robot<'_> {
-    /// Called after every event, before the next one: checks for a new decision, and sends the messages.
-    fn after(&mut self, now: Instant) {
-        self.record(now);
-        while let Some(packet) = self.station.poll_packet(now) {
-            let _dropped = self.reply.packets.push(packet);
-            self.record(now);
-        }
+/// After every event, before anything else is believed: has it just decided?
+fn record(station: &Station<'_>, now: Instant, decided: &mut Option<CycleId>, problems: &mut Vec<Problem>) {
+    let cycle = station.brain().cycle();
+    let Some(state) = cycle.state().filter(|_| cycle.is_mine_to_decide()) else { return };
+    if *decided == Some(state.id) || matches!(state.decision, Decision::Undecided | Decision::Closed(_)) {
+        return;
     }
-
-    fn record(&mut self, now: Instant) {
-        let cycle = self.station.brain().cycle();
-        let Some(state) = cycle.state().filter(|_| cycle.is_mine_to_decide()) else { return };
-        if self.decided == Some(state.id)
-            || matches!(state.decision, Decision::Undecided | Decision::Closed(_))
-        {
-            return;
+    *decided = Some(state.id);
+    if let Some(problem) = station.brain().problem(now) {
+        if let Decision::Play(play) = &state.decision {
+            assert_eq!(play.ball, problem.ball.into(), "the problem is the one that was decided on");
         }
-        self.decided = Some(state.id);
-        if let Some(problem) = self.station.brain().problem(now) {
-            if let Decision::Play(play) = &state.decision {
-                assert_eq!(play.ball, problem.ball.into(), "the problem is the one that was decided on");
-            }
-            self.problems.borrow_mut().push(problem);
-        }
+        problems.push(problem);
     }
 }
 
 impl Mcu for Robot<'_> {
     fn post(&mut self, tick: &TickIn<'_>) -> Result<(), McuError> {
-        self.reply = Reply::default();
-        while let Some(due) = self.station.poll_timeout().filter(|due| *due <= tick.now) {
-            self.station.handle_timeout(due);
-            self.after(due);
-        }
-        for packet in &tick.air {
-            self.station.handle_packet(tick.now, packet);
-            self.after(tick.now);
-        }
-        self.station.handle_sensors(tick.now, &tick.sensors);
-        self.after(tick.now);
-        self.reply.actuators = self.station.poll_actuators(tick.now);
+        let mut problems = self.problems.borrow_mut();
+        let decided = &mut self.decided;
+        self.native.post_seen(tick, |station, now| record(station, now, decided, &mut problems));
         Ok(())
     }
 
     fn collect(&mut self) -> Result<Reply, McuError> {
-        Ok(std::mem::take(&mut self.reply))
+        self.native.collect()
     }
 }

@@ -1,7 +1,6 @@
 //! `table`: table of the retrieval benchmark in casebase/README.md.
 
 use std::fmt::Write as _;
-use std::fs;
 
 use crate::figures::{Figures, Spread};
 
@@ -39,18 +38,7 @@ pub(crate) fn row(figures: &Figures) -> String {
     )
 }
 
-/// Writes the table between its marks.
-pub(crate) fn write(table: &str) -> Result<(), String> {
-    let file = firmware_build::workspace_root().join("casebase/README.md");
-    let text = fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;
-    let missing = || format!("{} has no marks for the table: `{BEGIN}` and `{END}`", file.display());
-    let (before, rest) = text.split_once(BEGIN).ok_or_else(missing)?;
-    let (_, after) = rest.split_once(END).ok_or_else(missing)?;
-    let text = format!("{before}{BEGIN}\n{table}{END}{after}");
-    fs::write(&file, text).map_err(|error| format!("{}: {error}", file.display()))
-}
-
-/// A number with separated thousands.
+/// A number with its thousands apart.
 fn n(number: u32) -> String {
     let digits = number.to_string();
     let mut text = String::new();
@@ -66,5 +54,3 @@ fn n(number: u32) -> String {
 const HEAD: &str = "\
 | stored cases | bytes each | problems | in the gate, mean / most | best: median / p99 / worst | mean of 400 + 60 per case in the gate | with the count | scan | scan ÷ best | on the PC, mean: best / count / scan |
 |---:|---:|---|---:|---:|---:|---:|---:|---:|---:|";
-const BEGIN: &str = "<!-- retrieval table -->";
-const END: &str = "<!-- end of retrieval table -->";

@@ -12,6 +12,12 @@ use ssl::event::GameEventType as Type;
 
 use super::event::{Event, Invalid, Shot, What};
 
+/// The league's type of an event, and the event of the same name with this message.
+macro_rules! sent {
+    ($name:ident { $($fields:tt)* }) => { sent!($name: wire::$name { $($fields)* }) };
+    ($name:ident: $message:expr) => { (Type::$name, Sent::$name($message)) };
+}
+
 impl Event {
     /// The league's message for it; `None` where the league has none. `epoch_us` is added to times, µs.
     pub fn to_wire(&self, epoch_us: u64) -> Option<wire::GameEvent> {
@@ -30,26 +36,21 @@ impl Event {
         let by_team = team(self.by);
         let by_bot = self.robot.map(number);
         let location = Some(point(self.place));
+        let goal = |shot: Option<&Shot>, message| self.goal(shot, epoch_us, message);
         Some(match &self.what {
-            What::LeftTouchLine => (
-                Type::BallLeftFieldTouchLine,
-                Sent::BallLeftFieldTouchLine(wire::BallLeftField { by_team, by_bot, location }),
-            ),
-            What::LeftGoalLine => (
-                Type::BallLeftFieldGoalLine,
-                Sent::BallLeftFieldGoalLine(wire::BallLeftField { by_team, by_bot, location }),
-            ),
+            What::LeftTouchLine => {
+                sent!(BallLeftFieldTouchLine: wire::BallLeftField { by_team, by_bot, location })
+            }
+            What::LeftGoalLine => {
+                sent!(BallLeftFieldGoalLine: wire::BallLeftField { by_team, by_bot, location })
+            }
             What::AimlessKick { from } => {
-                let kick_location = Some(point(*from));
-                let kick = wire::AimlessKick { by_team, by_bot, location, kick_location };
-                (Type::AimlessKick, Sent::AimlessKick(kick))
+                sent!(AimlessKick { by_team, by_bot, location, kick_location: Some(point(*from)) })
             }
-            What::PossibleGoal { shot } => {
-                (Type::PossibleGoal, Sent::PossibleGoal(self.goal(Some(shot), epoch_us, None)))
-            }
+            What::PossibleGoal { shot } => sent!(PossibleGoal: goal(Some(shot), None)),
             What::Goal { shot } => {
                 let words = if shot.is_some() { "valid" } else { "awarded for a foul in a penalty" };
-                (Type::Goal, Sent::Goal(self.goal(shot.as_ref(), epoch_us, Some(words.into()))))
+                sent!(Goal: goal(shot.as_ref(), Some(words.into())))
             }
             What::InvalidGoal { shot, reason } => {
                 let words = match reason {
@@ -57,159 +58,86 @@ impl Event {
                     Invalid::TooHigh => format!("the ball was {:.2} m high", shot.max_height),
                     Invalid::RecentFoul(kind) => format!("recent foul: {}", kind.word()),
                 };
-                (Type::InvalidGoal, Sent::InvalidGoal(self.goal(Some(shot), epoch_us, Some(words))))
+                sent!(InvalidGoal: goal(Some(shot), Some(words)))
             }
-            What::NoProgress { duration } => {
-                let stuck = wire::NoProgressInGame { location, time: Some(*duration) };
-                (Type::NoProgressInGame, Sent::NoProgressInGame(stuck))
-            }
-            What::DoubleTouch => {
-                let touch = wire::AttackerDoubleTouchedBall { by_team, by_bot, location };
-                (Type::AttackerDoubleTouchedBall, Sent::AttackerDoubleTouchedBall(touch))
-            }
+            What::NoProgress { duration } => sent!(NoProgressInGame { location, time: Some(*duration) }),
+            What::DoubleTouch => sent!(AttackerDoubleTouchedBall { by_team, by_bot, location }),
             What::KeeperHeldBall { duration } => {
-                let held = wire::KeeperHeldBall { by_team, location, duration: Some(*duration) };
-                (Type::KeeperHeldBall, Sent::KeeperHeldBall(held))
+                sent!(KeeperHeldBall { by_team, location, duration: Some(*duration) })
             }
-            What::BoundaryCrossing => {
-                let crossing = wire::BoundaryCrossing { by_team, location };
-                (Type::BoundaryCrossing, Sent::BoundaryCrossing(crossing))
-            }
+            What::BoundaryCrossing => sent!(BoundaryCrossing { by_team, location }),
             What::BallTooFast { speed, chipped } => {
                 let (initial_ball_speed, chipped) = (Some(*speed), Some(*chipped));
-                let kick =
-                    wire::BotKickedBallTooFast { by_team, by_bot, location, initial_ball_speed, chipped };
-                (Type::BotKickedBallTooFast, Sent::BotKickedBallTooFast(kick))
+                sent!(BotKickedBallTooFast { by_team, by_bot, location, initial_ball_speed, chipped })
             }
             What::DribbledTooFar { end } => {
-                let (start, end) = (location, Some(point(*end)));
-                let dribble = wire::BotDribbledBallTooFar { by_team, by_bot, start, end };
-                (Type::BotDribbledBallTooFar, Sent::BotDribbledBallTooFar(dribble))
+                sent!(BotDribbledBallTooFar { by_team, by_bot, start: location, end: Some(point(*end)) })
             }
             What::HeldBall { duration } => {
-                let duration = Some(*duration);
-                let held = wire::BotHeldBallDeliberately { by_team, by_bot, location, duration };
-                (Type::BotHeldBallDeliberately, Sent::BotHeldBallDeliberately(held))
+                sent!(BotHeldBallDeliberately { by_team, by_bot, location, duration: Some(*duration) })
             }
             What::PlacementSucceeded { took, precision, distance } => {
-                let placed = wire::PlacementSucceeded {
-                    by_team,
-                    time_taken: Some(*took),
-                    precision: Some(*precision),
-                    distance: Some(*distance),
-                };
-                (Type::PlacementSucceeded, Sent::PlacementSucceeded(placed))
+                let (time_taken, precision, distance) = (Some(*took), Some(*precision), Some(*distance));
+                sent!(PlacementSucceeded { by_team, time_taken, precision, distance })
             }
             What::PlacementFailed { remaining, nearest } => {
-                let failed = wire::PlacementFailed {
-                    by_team,
-                    remaining_distance: Some(*remaining),
-                    nearest_own_bot_distance: Some(*nearest),
-                };
-                (Type::PlacementFailed, Sent::PlacementFailed(failed))
+                let (remaining_distance, nearest_own_bot_distance) = (Some(*remaining), Some(*nearest));
+                sent!(PlacementFailed { by_team, remaining_distance, nearest_own_bot_distance })
             }
             What::PenaltyFailed { reason } => {
-                let failed = wire::PenaltyKickFailed { by_team, location, reason: Some(reason.words()) };
-                (Type::PenaltyKickFailed, Sent::PenaltyKickFailed(failed))
+                sent!(PenaltyKickFailed { by_team, location, reason: Some(reason.words()) })
             }
             What::MultipleFouls { caused_by } => {
                 let caused_game_events =
                     caused_by.iter().filter_map(|event| event.to_wire(epoch_us)).collect();
-                (
-                    Type::MultipleFouls,
-                    Sent::MultipleFouls(wire::MultipleFouls { by_team, caused_game_events }),
-                )
+                sent!(MultipleFouls { by_team, caused_game_events })
             }
-            What::MultipleCards => {
-                (Type::MultipleCards, Sent::MultipleCards(wire::MultipleCards { by_team }))
-            }
-            What::TooManyRobots { allowed, on_field, ball } => {
-                let many = wire::TooManyRobots {
-                    by_team,
-                    num_robots_allowed: Some(*allowed as i32),
-                    num_robots_on_field: Some(*on_field as i32),
-                    ball_location: Some(point(*ball)),
-                };
-                (Type::TooManyRobots, Sent::TooManyRobots(many))
-            }
-            _ => return self.robots_foul(),
-        })
-    }
-
-    /// Fouls of one robot: acts against other robots, or a forbidden position.
-    fn robots_foul(&self) -> Option<(Type, Sent)> {
-        let by_team = team(self.by);
-        let by_bot = self.robot.map(number);
-        let location = Some(point(self.place));
-        Some(match &self.what {
+            What::MultipleCards => sent!(MultipleCards { by_team }),
+            What::TooManyRobots { allowed, on_field, ball } => sent!(TooManyRobots {
+                by_team,
+                num_robots_allowed: Some(*allowed as i32),
+                num_robots_on_field: Some(*on_field as i32),
+                ball_location: Some(point(*ball)),
+            }),
             What::AttackerTooClose { distance, ball } => {
                 let (distance, ball_location) = (Some(*distance), Some(point(*ball)));
-                let close = wire::AttackerTooCloseToDefenseArea {
-                    by_team,
-                    by_bot,
-                    location,
-                    distance,
-                    ball_location,
-                };
-                (Type::AttackerTooCloseToDefenseArea, Sent::AttackerTooCloseToDefenseArea(close))
+                sent!(AttackerTooCloseToDefenseArea { by_team, by_bot, location, distance, ball_location })
             }
             What::AttackerTouchedBall { depth } => {
-                let distance = Some(*depth);
-                let touch = wire::AttackerTouchedBallInDefenseArea { by_team, by_bot, location, distance };
-                (Type::AttackerTouchedBallInDefenseArea, Sent::AttackerTouchedBallInDefenseArea(touch))
+                sent!(AttackerTouchedBallInDefenseArea { by_team, by_bot, location, distance: Some(*depth) })
             }
             What::DefenderInArea { depth } => {
-                let distance = Some(*depth);
-                let inside = wire::DefenderInDefenseArea { by_team, by_bot, location, distance };
-                (Type::DefenderInDefenseArea, Sent::DefenderInDefenseArea(inside))
+                sent!(DefenderInDefenseArea { by_team, by_bot, location, distance: Some(*depth) })
             }
             What::DefenderTooClose { distance } => {
-                let distance = Some(*distance);
-                let close = wire::DefenderTooCloseToKickPoint { by_team, by_bot, location, distance };
-                (Type::DefenderTooCloseToKickPoint, Sent::DefenderTooCloseToKickPoint(close))
+                sent!(DefenderTooCloseToKickPoint { by_team, by_bot, location, distance: Some(*distance) })
             }
             What::TooFastInStop { speed } => {
-                let fast = wire::BotTooFastInStop { by_team, by_bot, location, speed: Some(*speed) };
-                (Type::BotTooFastInStop, Sent::BotTooFastInStop(fast))
+                sent!(BotTooFastInStop { by_team, by_bot, location, speed: Some(*speed) })
             }
-            What::InterferedPlacement => {
-                let stands = wire::BotInterferedPlacement { by_team, by_bot, location };
-                (Type::BotInterferedPlacement, Sent::BotInterferedPlacement(stands))
-            }
-            What::CrashUnique { victim, crash_speed, speed_difference, angle } => {
-                let crash = wire::BotCrashUnique {
-                    by_team,
-                    violator: by_bot,
-                    victim: Some(number(*victim)),
-                    location,
-                    crash_speed: Some(*crash_speed),
-                    speed_diff: Some(*speed_difference),
-                    crash_angle: Some(*angle),
-                };
-                (Type::BotCrashUnique, Sent::BotCrashUnique(crash))
-            }
-            What::CrashDrawn { yellow, blue, crash_speed, speed_difference, angle } => {
-                let crash = wire::BotCrashDrawn {
-                    bot_yellow: Some(number(*yellow)),
-                    bot_blue: Some(number(*blue)),
-                    location,
-                    crash_speed: Some(*crash_speed),
-                    speed_diff: Some(*speed_difference),
-                    crash_angle: Some(*angle),
-                };
-                (Type::BotCrashDrawn, Sent::BotCrashDrawn(crash))
-            }
+            What::InterferedPlacement => sent!(BotInterferedPlacement { by_team, by_bot, location }),
+            What::CrashUnique { victim, crash_speed, speed_difference, angle } => sent!(BotCrashUnique {
+                by_team,
+                violator: by_bot,
+                victim: Some(number(*victim)),
+                location,
+                crash_speed: Some(*crash_speed),
+                speed_diff: Some(*speed_difference),
+                crash_angle: Some(*angle),
+            }),
+            What::CrashDrawn { yellow, blue, crash_speed, speed_difference, angle } => sent!(BotCrashDrawn {
+                bot_yellow: Some(number(*yellow)),
+                bot_blue: Some(number(*blue)),
+                location,
+                crash_speed: Some(*crash_speed),
+                speed_diff: Some(*speed_difference),
+                crash_angle: Some(*angle),
+            }),
             What::Pushed { victim, distance } => {
-                let push = wire::BotPushedBot {
-                    by_team,
-                    violator: by_bot,
-                    victim: Some(number(*victim)),
-                    location,
-                    pushed_distance: Some(*distance),
-                };
-                (Type::BotPushedBot, Sent::BotPushedBot(push))
+                let (victim, pushed_distance) = (Some(number(*victim)), Some(*distance));
+                sent!(BotPushedBot { by_team, violator: by_bot, victim, location, pushed_distance })
             }
-            _ => return None,
+            What::MovedInHalt { .. } | What::Blocked { .. } | What::TooCloseInStop { .. } => return None,
         })
     }
 

@@ -18,48 +18,24 @@ pub enum WorldChoice {
     Random(u64),
 }
 
-/// A profile of `hil-sim/data/worlds`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum NamedWorld {
-    /// grSim's published defaults.
-    Grsim,
-    /// ER-Force's simulator with realism "Realistic".
-    Erforce,
-    /// ER-Force's simulator with realism "None".
-    ErforceNone,
-    /// TIGERs Mannheim's simulator Sumatra.
-    Sumatra,
-    /// Robots whose roller holds the ball weakly.
-    SlowDribbler,
-    /// Cameras with gaps, jitter, ghosts and misses.
-    PoorVision,
-    /// Robots whose kicks leave slower than ordered, and scatter.
-    WeakKickers,
-}
-
-impl NamedWorld {
-    /// All named profiles.
-    pub const ALL: [Self; 7] = [
-        Self::Grsim,
-        Self::Erforce,
-        Self::ErforceNone,
-        Self::Sumatra,
-        Self::SlowDribbler,
-        Self::PoorVision,
-        Self::WeakKickers,
-    ];
-
-    /// Its name in options, reports and files.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Grsim => "grsim",
-            Self::Erforce => "erforce",
-            Self::ErforceNone => "erforce-none",
-            Self::Sumatra => "sumatra",
-            Self::SlowDribbler => "slow-dribbler",
-            Self::PoorVision => "poor-vision",
-            Self::WeakKickers => "weak-kickers",
-        }
+crate::words! {
+    /// A profile of `hil-sim/data/worlds`.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+    pub enum NamedWorld {
+        /// grSim's published defaults.
+        Grsim = "grsim",
+        /// ER-Force's simulator with realism "Realistic".
+        Erforce = "erforce",
+        /// ER-Force's simulator with realism "None".
+        ErforceNone = "erforce-none",
+        /// TIGERs Mannheim's simulator Sumatra.
+        Sumatra = "sumatra",
+        /// Robots whose roller holds the ball weakly.
+        SlowDribbler = "slow-dribbler",
+        /// Cameras with gaps, jitter, ghosts and misses.
+        PoorVision = "poor-vision",
+        /// Robots whose kicks leave slower than ordered, and scatter.
+        WeakKickers = "weak-kickers",
     }
 }
 

@@ -12,8 +12,8 @@ use toml::{Table, Value};
 
 use super::{LinkModel, NamedWorld, RobotSpread, VisionModel, WorldModel};
 use crate::four_legged::parameters::ParameterError;
+use crate::four_legged::parameters::within;
 use crate::small_size::Parameters;
-use crate::small_size::parameters::within;
 
 impl NamedWorld {
     /// The text of its file.

@@ -9,28 +9,18 @@ use super::WorldModel;
 use crate::rng::Stream;
 use crate::small_size::Parameters;
 
-/// Distribution of a quantity between its bounds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Law {
-    /// Uniform.
-    Even,
-    /// Uniform in its logarithm: equally likely from 1 to 2 as from 2 to 4.
-    Log,
-    /// 0 in half of all worlds, uniform in the others.
-    Half,
-    /// Two draws, sorted: the robots of the world are distributed uniformly between them.
-    Pair,
-}
-
-impl Law {
-    /// Its label in the table of `docs/fields.md`.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Even => "even",
-            Self::Log => "log-even",
-            Self::Half => "half none, half even",
-            Self::Pair => "per robot",
-        }
+crate::words! {
+    /// How a quantity is distributed between its bounds.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Law {
+        /// Evenly.
+        Even = "even",
+        /// Evenly in its logarithm: as often from 1 to 2 as from 2 to 4.
+        Log = "log-even",
+        /// Half of all worlds have none of it, the others evenly.
+        Half = "half none, half even",
+        /// Two draws, sorted: the robots of the world lie evenly between them.
+        Pair = "per robot",
     }
 }
 
@@ -47,13 +37,11 @@ pub struct Quantity {
 }
 
 macro_rules! quantity {
+    ($law:ident $name:literal $low:literal $high:literal, |$model:ident, $value:ident| $set:expr) => {
+        Quantity { name: $name, bounds: [$low, $high], law: Law::$law, set: |$model, [$value, _]| $set }
+    };
     ($law:ident $name:literal $low:literal $high:literal, $($path:ident).+) => {
-        Quantity {
-            name: $name,
-            bounds: [$low, $high],
-            law: Law::$law,
-            set: |model, [value, _]| model.parameters.$($path).+ = value,
-        }
+        quantity!($law $name $low $high, |model, value| model.parameters.$($path).+ = value)
     };
 }
 
@@ -100,30 +88,20 @@ pub const DRAWS: &[Quantity] = &[
     quantity!(Even "dribbler.side" 0.5 4.0, dribbler.side),
     quantity!(Half "dribbler.fade" 0.05 0.4, dribbler.fade),
     quantity!(Even "dribbler.center" 0.0 10.0, dribbler.center),
-    Quantity {
-        name: "dribbler (none, perfect)",
-        bounds: [0.0, 1.0],
-        law: Law::Even,
-        set: |model, [value, _]| {
-            let of = &mut model.parameters.dribbler;
-            if value < NO_DRIBBLER {
-                (of.pull, of.side) = (0.0, 0.0);
-            } else if value > 1.0 - PERFECT_DRIBBLER {
-                (of.pull, of.side, of.fade) = (PERFECT_PULL, PERFECT_PULL, 0.0);
-            }
-        },
-    },
+    quantity!(Even "dribbler (none, perfect)" 0.0 1.0, |model, value| {
+        let of = &mut model.parameters.dribbler;
+        if value < NO_DRIBBLER {
+            (of.pull, of.side) = (0.0, 0.0);
+        } else if value > 1.0 - PERFECT_DRIBBLER {
+            (of.pull, of.side, of.fade) = (PERFECT_PULL, PERFECT_PULL, 0.0);
+        }
+    }),
     quantity!(Even "camera.rate" 50.0 100.0, camera.rate),
-    Quantity {
-        name: "camera.delay",
-        bounds: [0.010, 0.050],
-        law: Law::Even,
-        // The delay reported in the packet stays as it is, as far as it fits.
-        set: |model, [value, _]| {
-            let of = &mut model.parameters.camera;
-            (of.delay, of.processing) = (value, of.processing.min(value));
-        },
-    },
+    // What of it the packet tells stays as it is, as far as it fits.
+    quantity!(Even "camera.delay" 0.010 0.050, |model, value| {
+        let of = &mut model.parameters.camera;
+        (of.delay, of.processing) = (value, of.processing.min(value));
+    }),
     quantity!(Even "noise.ball" 0.0 0.003, noise.ball),
     quantity!(Even "noise.robot" 0.0 0.003, noise.robot),
     quantity!(Even "noise.heading" 0.0 0.02, noise.heading),
@@ -139,48 +117,17 @@ pub const DRAWS: &[Quantity] = &[
     pair!("spread.speed" 0.85 1.0, speed),
     pair!("spread.pull" 0.7 1.2, pull),
     pair!("spread.slip" 0.0 0.1, slip),
-    Quantity {
-        name: "link.latency_ms",
-        bounds: [5.0, 60.0],
-        law: Law::Even,
-        set: |model, [value, _]| model.link.latency_ms = value as u32,
-    },
-    Quantity {
-        name: "link.jitter_ms",
-        bounds: [0.0, 10.0],
-        law: Law::Even,
-        set: |model, [value, _]| model.link.jitter_ms = value as u32,
-    },
-    Quantity {
-        name: "link.loss",
-        bounds: [0.0, 0.10],
-        law: Law::Even,
-        set: |model, [value, _]| model.link.loss = value,
-    },
-    Quantity {
-        name: "vision.jitter_ms",
-        bounds: [0.0, 15.0],
-        law: Law::Even,
-        set: |model, [value, _]| model.vision.jitter_ms = value as u32,
-    },
-    Quantity {
-        name: "vision.gap_every_s",
-        bounds: [2.0, 20.0],
-        law: Law::Half,
-        set: |model, [value, _]| (model.vision.gap_every_s, model.vision.gap_ms) = (value, GAP_MS),
-    },
-    Quantity {
-        name: "vision.swap_every_s",
-        bounds: [10.0, 60.0],
-        law: Law::Half,
-        set: |model, [value, _]| (model.vision.swap_every_s, model.vision.swap_frames) = (value, SWAP_FRAMES),
-    },
-    Quantity {
-        name: "bystanders",
-        bounds: [5.0, 11.999],
-        law: Law::Half,
-        set: |model, [value, _]| model.bystanders = value as u8,
-    },
+    quantity!(Even "link.latency_ms" 5.0 60.0, |model, value| model.link.latency_ms = value as u32),
+    quantity!(Even "link.jitter_ms" 0.0 10.0, |model, value| model.link.jitter_ms = value as u32),
+    quantity!(Even "link.loss" 0.0 0.10, |model, value| model.link.loss = value),
+    quantity!(Even "vision.jitter_ms" 0.0 15.0, |model, value| model.vision.jitter_ms = value as u32),
+    quantity!(Half "vision.gap_every_s" 2.0 20.0, |model, value| {
+        (model.vision.gap_every_s, model.vision.gap_ms) = (value, GAP_MS);
+    }),
+    quantity!(Half "vision.swap_every_s" 10.0 60.0, |model, value| {
+        (model.vision.swap_every_s, model.vision.swap_frames) = (value, SWAP_FRAMES);
+    }),
+    quantity!(Half "bystanders" 5.0 11.999, |model, value| model.bystanders = value as u8),
 ];
 
 /// Share of the worlds whose robots have no dribbler; estimate.

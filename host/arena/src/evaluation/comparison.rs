@@ -13,27 +13,29 @@ use super::statistics::{Count, Sample, Test, holm, two_proportions, welch};
 use super::tables::{Extent, TableRow, rounded};
 use crate::trial::approach_word;
 
-/// A measure that is compared.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Measure {
-    /// Share of goals.
-    Goal,
-    /// Share of near misses.
-    Close,
-    /// Share of balls that the goalie caught or kicked.
-    Block,
-    /// Share of balls out.
-    Out,
-    /// Share of trials with a timeout.
-    Timeout,
-    /// Share of goals and near misses.
-    ToGoal,
-    /// The defender's possessions a trial.
-    Possession,
-    /// The midfield defender's.
-    MidfieldPossession,
-    /// Seconds a trial.
-    Time,
+hil_sim::words! {
+    /// What is compared.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Measure {
+        /// Share of goals.
+        Goal = "goal",
+        /// Share of near misses.
+        Close = "close",
+        /// Share of balls the goalie got.
+        Block = "block",
+        /// Share of balls out.
+        Out = "out",
+        /// Share of trials that ran out of time.
+        Timeout = "timeout",
+        /// Share of goals and near misses.
+        ToGoal = "to_goal",
+        /// The defender's possessions a trial.
+        Possession = "possession",
+        /// The midfield defender's.
+        MidfieldPossession = "possession2",
+        /// Seconds a trial.
+        Time = "time",
+    }
 }
 
 /// Comparison of a measure in two rows.
@@ -116,39 +118,6 @@ impl Comparison {
 }
 
 impl Measure {
-    /// All measures.
-    pub const ALL: [Self; 9] = [
-        Self::Goal,
-        Self::Close,
-        Self::Block,
-        Self::Out,
-        Self::Timeout,
-        Self::ToGoal,
-        Self::Possession,
-        Self::MidfieldPossession,
-        Self::Time,
-    ];
-
-    /// Its label, with which the column of `tables.json` starts.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Goal => "goal",
-            Self::Close => "close",
-            Self::Block => "block",
-            Self::Out => "out",
-            Self::Timeout => "timeout",
-            Self::ToGoal => "to_goal",
-            Self::Possession => "possession",
-            Self::MidfieldPossession => "possession2",
-            Self::Time => "time",
-        }
-    }
-
-    /// The measure with this label.
-    pub fn from_word(word: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|measure| measure.word() == word)
-    }
-
     /// Its value in a row, where it was measured.
     pub fn value(self, row: &TableRow) -> Option<f64> {
         match self {

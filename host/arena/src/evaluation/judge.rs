@@ -29,26 +29,17 @@ pub struct Line {
     pub evidence: String,
 }
 
-/// Whether a line holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Held {
-    /// It holds.
-    Held,
-    /// It does not hold.
-    Missed,
-    /// Not all trials that it needs were played.
-    Unmeasured,
-}
-
-impl Held {
-    /// Its label in files.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Held => "held",
-            Self::Missed => "missed",
-            Self::Unmeasured => "unmeasured",
-        }
+hil_sim::words! {
+    /// Does a line hold?
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Held {
+        /// It does.
+        Held = "held",
+        /// It does not.
+        Missed = "missed",
+        /// Not all trials that it needs were played.
+        Unmeasured = "unmeasured",
     }
 }
 

@@ -13,35 +13,20 @@ use serde::{Deserialize, Serialize};
 use super::words;
 use crate::trial::{APPROACHES, TrialConfig};
 
-/// The world trials are played in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Profile {
-    /// The paper's simulator: noiseless perception (§5.2).
-    Simulated,
-    /// As the paper's robots: noise in perception, 5 s of standing still after every cycle (§5.3;
-    /// docs/papers.md R40).
-    Robots,
+hil_sim::words! {
+    /// The world trials are played in.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Profile {
+        /// The paper's simulator: noiseless perception (§5.2).
+        Simulated = "simulated",
+        /// As the paper's robots: noise in perception, 5 s of standing still after every cycle (§5.3; docs/papers.md R40).
+        Robots = "robots",
+    }
 }
 
 impl Profile {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Simulated, Self::Robots];
-
-    /// Its label in options and files.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Simulated => "simulated",
-            Self::Robots => "robots",
-        }
-    }
-
-    /// The profile with this label.
-    pub fn from_word(word: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|profile| profile.word() == word)
-    }
-
-    /// The same trial in the world of this profile.
+    /// The same trial in this world.
     pub fn apply(self, config: TrialConfig<'_>) -> TrialConfig<'_> {
         match self {
             Self::Simulated => config,

@@ -18,23 +18,15 @@ use super::row::TrialRow;
 use super::statistics::{Interval, Sample, wilson};
 use super::words;
 
-/// Which of the trials a row counts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Extent {
-    /// The paper's: all of them, but of Table 6 the first 30.
-    Paper,
-    /// Table 6 alone: all of them, for what 30 do not decide.
-    Large,
-}
-
-impl Extent {
-    /// Its label in files.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Paper => "paper",
-            Self::Large => "large",
-        }
+hil_sim::words! {
+    /// Which of the trials a row is of.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Extent {
+        /// The paper's: all of them, but of Table 6 the first 30.
+        Paper = "paper",
+        /// Table 6 alone: all of them, to say what 30 could not.
+        Large = "large",
     }
 }
 

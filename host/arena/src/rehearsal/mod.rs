@@ -26,30 +26,14 @@ use crate::cycles::{CycleEnd, CycleSeen};
 use crate::names::CaseNames;
 use crate::trial::{Game, TrialConfig, Watcher};
 
-/// Behaviour of the opponents of a case.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Opposition {
-    /// They hold their places, as static obstacles.
-    Standing,
-    /// They play as the paper's scripted ones.
-    Playing,
-}
-
-impl Opposition {
-    /// Both kinds.
-    pub const ALL: [Self; 2] = [Self::Standing, Self::Playing];
-
-    /// Its label in options and reports.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Standing => "standing",
-            Self::Playing => "playing",
-        }
-    }
-
-    /// The opposition with this label.
-    pub fn from_word(word: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|opposition| opposition.word() == word)
+hil_sim::words! {
+    /// What the opponents of a case do.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Opposition {
+        /// They hold their places: bodies in the way.
+        Standing = "standing",
+        /// They play as the paper's scripted ones.
+        Playing = "playing",
     }
 }
 

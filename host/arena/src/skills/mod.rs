@@ -26,57 +26,26 @@ use rules::League;
 use crate::game::GameError;
 pub use rows::{SkillRow, rows};
 
-/// A skill that is measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Skill {
-    /// The referee's ball placement, by a whole team under its coach.
-    Placement,
-    /// Having the ball: resting, rolling, at a board, beside an opponent.
-    GetBall,
-    /// Having a ball that was passed.
-    Receive,
-    /// Carrying the ball a metre, within the rules.
-    Dribble,
-    /// Half a turn with the ball.
-    TurnWithBall,
-    /// A flat kick past a point three metres away.
-    Kick,
-    /// A chip over a robot.
-    Chip,
-    /// The keeper stops a shot.
-    Save,
-}
-
-impl Skill {
-    /// All of them, in the order of the table.
-    pub const ALL: [Self; 8] = [
-        Self::Placement,
-        Self::GetBall,
-        Self::Receive,
-        Self::Dribble,
-        Self::TurnWithBall,
-        Self::Kick,
-        Self::Chip,
-        Self::Save,
-    ];
-
-    /// Its name on the command line and in JSON.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Placement => "placement",
-            Self::GetBall => "get-ball",
-            Self::Receive => "receive",
-            Self::Dribble => "dribble",
-            Self::TurnWithBall => "turn-with-ball",
-            Self::Kick => "kick",
-            Self::Chip => "chip",
-            Self::Save => "save",
-        }
-    }
-
-    /// The skill of that name.
-    pub fn from_word(word: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|skill| skill.word() == word)
+hil_sim::words! {
+    /// A skill that is measured.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+    pub enum Skill {
+        /// The referee's ball placement, by a whole team under its coach.
+        Placement = "placement",
+        /// Having the ball: resting, rolling, at a board, beside an opponent.
+        GetBall = "get-ball",
+        /// Having a ball that was passed.
+        Receive = "receive",
+        /// Carrying the ball a metre, within the rules.
+        Dribble = "dribble",
+        /// Half a turn with the ball.
+        TurnWithBall = "turn-with-ball",
+        /// A flat kick past a point three metres away.
+        Kick = "kick",
+        /// A chip over a robot.
+        Chip = "chip",
+        /// The keeper stops a shot.
+        Save = "save",
     }
 }
 

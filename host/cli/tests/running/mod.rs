@@ -2,7 +2,7 @@
 //! command line.
 
 use std::io::{BufRead, BufReader};
-use std::net::SocketAddr;
+use std::net::{SocketAddr, UdpSocket};
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::thread;
@@ -11,7 +11,19 @@ use std::time::{Duration, Instant};
 /// Generous: a loaded machine is no failure.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(30);
 
-/// A running verb; its stderr comes line by line. Ended when dropped.
+/// A port of this machine's own, waited at for [`PATIENCE`] at most.
+pub(crate) fn socket() -> UdpSocket {
+    let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
+    socket.set_read_timeout(Some(PATIENCE)).expect("a time-out");
+    socket
+}
+
+/// The address of a port that is free at the moment.
+pub(crate) fn free() -> String {
+    socket().local_addr().expect("an address").to_string()
+}
+
+/// A running verb; its words on stderr come line by line. Ended when dropped.
 pub(crate) struct Running {
     pub(crate) process: Child,
     lines: Receiver<(Duration, String)>,

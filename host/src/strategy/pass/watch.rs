@@ -122,12 +122,7 @@ impl PassWatch {
         &self.ordered
     }
 
-    /// Whether the ball has left.
-    pub fn is_on_its_way(&self) -> bool {
-        self.flight.is_some()
-    }
-
-    /// Takes the next snapshot. A verdict ends the watch.
+    /// The next picture. A verdict ends the watch.
     pub fn observe(&mut self, world: &World, field: &FieldSpec) -> Option<Verdict> {
         let Some(ball) = world.ball else { return self.over(world.time) };
         match self.flight {

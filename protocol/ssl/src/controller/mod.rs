@@ -4,38 +4,27 @@
 //! Teams: port 10008. It sends a [`ControllerReply`] with `next_token`; unsigned clients leave `signature`
 //! out.
 
-mod api;
 mod autoref;
-mod remote;
 
 use prost::{Enumeration, Message, Oneof};
 
 use crate::common::Team;
 
-pub use api::{CiInput, CiOutput, Input, Output, Protocol, ProtocolEntry};
-pub use autoref::{
-    AutoRefCiInput, AutoRefCiOutput, AutoRefRegistration, AutoRefToController, ControllerToAutoRef,
-};
-pub use remote::{
-    ControllerToRemoteControl, RemoteControlMessage, RemoteControlRegistration, RemoteControlRequest,
-    RemoteControlRequestType, RemoteControlTeamState, RemoteControlToController,
-};
+pub use autoref::{AutoRefRegistration, AutoRefToController, ControllerToAutoRef};
 
-/// The controller's answer to any message.
-#[derive(Clone, PartialEq, Message)]
-pub struct ControllerReply {
-    /// Result, [`StatusCode`].
-    #[prost(enumeration = "StatusCode", optional, tag = "1")]
-    pub status_code: Option<i32>,
-    /// Reason of a refusal.
-    #[prost(string, optional, tag = "2")]
-    pub reason: Option<String>,
-    /// Token that the next signature must sign.
-    #[prost(string, optional, tag = "3")]
-    pub next_token: Option<String>,
-    /// Result of the signature check, [`Verification`].
-    #[prost(enumeration = "Verification", optional, tag = "4")]
-    pub verification: Option<i32>,
+messages! {
+    /// The controller's answer to whatever was sent.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct ControllerReply {
+        /// Accepted or not, [`StatusCode`].
+        status_code: Option<i32> [enumeration = "StatusCode", optional] = 1;
+        /// Why not.
+        reason: Option<String> [string, optional] = 2;
+        /// What the next signature must be over.
+        next_token: Option<String> [string, optional] = 3;
+        /// Was the signature checked? [`Verification`].
+        verification: Option<i32> [enumeration = "Verification", optional] = 4;
+    }
 }
 
 /// Result of a request.
@@ -58,29 +47,26 @@ pub enum Verification {
     Unverified = 2,
 }
 
-/// Proof of the sender's identity.
-#[derive(Clone, PartialEq, Message)]
-pub struct Signature {
-    /// The controller's last `next_token`.
-    #[prost(string, required, tag = "1")]
-    pub token: String,
-    /// Signature over the message with this field empty: RSA, PKCS #1 v1.5, SHA-256.
-    #[prost(bytes = "vec", required, tag = "2")]
-    pub pkcs1v15: Vec<u8>,
-}
+messages! {
+    /// Proof of who sends.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct Signature {
+        /// The controller's last `next_token`.
+        token: String [string, required] = 1;
+        /// Signature over the message with this field empty: RSA, PKCS #1 v1.5, SHA-256.
+        pkcs1v15: Vec<u8> [bytes = "vec", required] = 2;
+    }
 
-/// A team's first message.
-#[derive(Clone, PartialEq, Message)]
-pub struct TeamRegistration {
-    /// Must be the team's name in the controller.
-    #[prost(string, required, tag = "1")]
-    pub team_name: String,
-    /// Signature, where the controller has the team's key.
-    #[prost(message, optional, tag = "2")]
-    pub signature: Option<Signature>,
-    /// Team colour, where both teams have one name, [`Team`].
-    #[prost(enumeration = "Team", optional, tag = "3")]
-    pub team: Option<i32>,
+    /// A team's first message.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct TeamRegistration {
+        /// Must be the name the controller shows.
+        team_name: String [string, required] = 1;
+        /// Proof, where the controller has the team's key.
+        signature: Option<Signature> [message, optional] = 2;
+        /// Which side, where both teams have one name, [`Team`].
+        team: Option<i32> [enumeration = "Team", optional] = 3;
+    }
 }
 
 /// A team's request; with `msg` absent it does nothing.
@@ -111,12 +97,13 @@ pub enum TeamRequest {
     Ping(bool),
 }
 
-/// Messages from the controller to a team.
-#[derive(Clone, PartialEq, Message)]
-pub struct ControllerToTeam {
-    /// The answer to its last message.
-    #[prost(message, optional, tag = "1")]
-    pub controller_reply: Option<ControllerReply>,
+messages! {
+    /// What a team hears.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct ControllerToTeam {
+        /// The answer to its last message.
+        controller_reply: Option<ControllerReply> [message, optional] = 1;
+    }
 }
 
 /// Stop or continue after a foul against us.

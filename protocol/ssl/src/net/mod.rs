@@ -41,12 +41,6 @@ pub mod addresses {
     pub const AUTOREF_PORT: u16 = 10007;
     /// Game controller's TCP port for teams.
     pub const TEAM_PORT: u16 = 10008;
-    /// Game controller's TCP port for a program that drives its clock.
-    pub const CI_PORT: u16 = 10009;
-    /// Game controller's TCP port for remote controls.
-    pub const REMOTE_CONTROL_PORT: u16 = 10011;
-    /// An automatic referee's TCP port for a program that drives its clock.
-    pub const AUTOREF_CI_PORT: u16 = 10013;
     /// A simulator's UDP port for [`SimulatorCommand`](crate::simulation::SimulatorCommand).
     pub const SIMULATOR_PORT: u16 = 10300;
     /// A simulator's UDP port for the blue team's [`RobotControl`](crate::simulation::RobotControl).

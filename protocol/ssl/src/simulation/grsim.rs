@@ -4,146 +4,114 @@
 
 use prost::Message;
 
-/// To port 20011: commands for one team, and replacements.
-#[derive(Clone, PartialEq, Message)]
-pub struct GrsimPacket {
-    /// Commands to robots.
-    #[prost(message, optional, tag = "1")]
-    pub commands: Option<GrsimCommands>,
-    /// Objects to be moved.
-    #[prost(message, optional, tag = "2")]
-    pub replacement: Option<GrsimReplacement>,
-}
+messages! {
+    /// To port 20011: commands for one team, and things to be moved.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct GrsimPacket {
+        /// What robots shall do.
+        commands: Option<GrsimCommands> [message, optional] = 1;
+        /// What is to be put somewhere else.
+        replacement: Option<GrsimReplacement> [message, optional] = 2;
+    }
 
-/// Commands for one team.
-#[derive(Clone, PartialEq, Message)]
-pub struct GrsimCommands {
-    /// The sender's time, s; read by no known program.
-    #[prost(double, required, tag = "1")]
-    pub timestamp: f64,
-    /// True: for yellow.
-    #[prost(bool, required, tag = "2")]
-    pub isteamyellow: bool,
-    /// Commands, one per robot.
-    #[prost(message, repeated, tag = "3")]
-    pub robot_commands: Vec<GrsimRobotCommand>,
-}
+    /// Commands for one team.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct GrsimCommands {
+        /// The sender's time, s; nobody reads it.
+        timestamp: f64 [double, required] = 1;
+        /// True: for yellow.
+        isteamyellow: bool [bool, required] = 2;
+        /// One a robot.
+        robot_commands: Vec<GrsimRobotCommand> [message, repeated] = 3;
+    }
 
-/// Command to one robot, valid until the next.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct GrsimRobotCommand {
-    /// Shell number, 0–15.
-    #[prost(uint32, required, tag = "1")]
-    pub id: u32,
-    /// Speed of a kick along the ground, m/s; 0: none.
-    #[prost(float, required, tag = "2")]
-    pub kickspeedx: f32,
-    /// Speed of a kick upwards, m/s; with the above it makes a chip.
-    #[prost(float, required, tag = "3")]
-    pub kickspeedz: f32,
-    /// Velocity forward, m/s.
-    #[prost(float, required, tag = "4")]
-    pub veltangent: f32,
-    /// Velocity to the left, m/s.
-    #[prost(float, required, tag = "5")]
-    pub velnormal: f32,
-    /// Turning rate, counter-clockwise, rad/s.
-    #[prost(float, required, tag = "6")]
-    pub velangular: f32,
-    /// Whether the dribbler turns.
-    #[prost(bool, required, tag = "7")]
-    pub spinner: bool,
-    /// The wheels' speeds below hold instead of the velocities above.
-    #[prost(bool, required, tag = "8")]
-    pub wheelsspeed: bool,
-    /// Speed of the front left wheel, rad/s.
-    #[prost(float, optional, tag = "9")]
-    pub wheel1: Option<f32>,
-    /// Speed of the back left wheel, rad/s.
-    #[prost(float, optional, tag = "10")]
-    pub wheel2: Option<f32>,
-    /// Speed of the back right wheel, rad/s.
-    #[prost(float, optional, tag = "11")]
-    pub wheel3: Option<f32>,
-    /// Speed of the front right wheel, rad/s.
-    #[prost(float, optional, tag = "12")]
-    pub wheel4: Option<f32>,
-}
+    /// What one robot shall do until the next command.
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct GrsimRobotCommand {
+        /// Shell number, 0–15.
+        id: u32 [uint32, required] = 1;
+        /// Kick along the ground, m/s; 0: none.
+        kickspeedx: f32 [float, required] = 2;
+        /// Kick upwards, m/s; with the above it makes a chip.
+        kickspeedz: f32 [float, required] = 3;
+        /// Forward, m/s.
+        veltangent: f32 [float, required] = 4;
+        /// To the left, m/s.
+        velnormal: f32 [float, required] = 5;
+        /// Counter-clockwise, rad/s.
+        velangular: f32 [float, required] = 6;
+        /// The dribbler turns.
+        spinner: bool [bool, required] = 7;
+        /// The wheels' speeds below hold instead of the velocities above.
+        wheelsspeed: bool [bool, required] = 8;
+        /// Front left, rad/s.
+        wheel1: Option<f32> [float, optional] = 9;
+        /// Back left, rad/s.
+        wheel2: Option<f32> [float, optional] = 10;
+        /// Back right, rad/s.
+        wheel3: Option<f32> [float, optional] = 11;
+        /// Front right, rad/s.
+        wheel4: Option<f32> [float, optional] = 12;
+    }
 
-/// Objects to be moved.
-#[derive(Clone, PartialEq, Message)]
-pub struct GrsimReplacement {
-    /// The ball's new state.
-    #[prost(message, optional, tag = "1")]
-    pub ball: Option<GrsimBallReplacement>,
-    /// The robots' new states.
-    #[prost(message, repeated, tag = "2")]
-    pub robots: Vec<GrsimRobotReplacement>,
-}
+    /// What is to be put somewhere else.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct GrsimReplacement {
+        /// The ball.
+        ball: Option<GrsimBallReplacement> [message, optional] = 1;
+        /// Robots.
+        robots: Vec<GrsimRobotReplacement> [message, repeated] = 2;
+    }
 
-/// New state of the ball; absent fields stay as they are.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct GrsimBallReplacement {
-    /// Along the field's length, m.
-    #[prost(double, optional, tag = "1")]
-    pub x: Option<f64>,
-    /// Coordinate to the left of +x, m.
-    #[prost(double, optional, tag = "2")]
-    pub y: Option<f64>,
-    /// Velocity along +x, m/s.
-    #[prost(double, optional, tag = "3")]
-    pub vx: Option<f64>,
-    /// Velocity to the left of +x, m/s.
-    #[prost(double, optional, tag = "4")]
-    pub vy: Option<f64>,
-}
+    /// Where the ball shall be; what is left out stays as it is.
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct GrsimBallReplacement {
+        /// Along the field's length, m.
+        x: Option<f64> [double, optional] = 1;
+        /// To the left of +x, m.
+        y: Option<f64> [double, optional] = 2;
+        /// m/s.
+        vx: Option<f64> [double, optional] = 3;
+        /// m/s.
+        vy: Option<f64> [double, optional] = 4;
+    }
 
-/// New state of a robot.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct GrsimRobotReplacement {
-    /// Along the field's length, m.
-    #[prost(double, required, tag = "1")]
-    pub x: f64,
-    /// Coordinate to the left of +x, m.
-    #[prost(double, required, tag = "2")]
-    pub y: f64,
-    /// Heading, **degrees**, counter-clockwise from +x.
-    #[prost(double, required, tag = "3")]
-    pub dir: f64,
-    /// Shell number, 0–15.
-    #[prost(uint32, required, tag = "4")]
-    pub id: u32,
-    /// True: yellow's.
-    #[prost(bool, required, tag = "5")]
-    pub yellowteam: bool,
-    /// False: it is switched off, and invisible to vision. Absent: on.
-    #[prost(bool, optional, tag = "6")]
-    pub turnon: Option<bool>,
-}
+    /// Where a robot shall stand.
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct GrsimRobotReplacement {
+        /// Along the field's length, m.
+        x: f64 [double, required] = 1;
+        /// To the left of +x, m.
+        y: f64 [double, required] = 2;
+        /// Heading, **degrees**, counter-clockwise from +x.
+        dir: f64 [double, required] = 3;
+        /// Shell number, 0–15.
+        id: u32 [uint32, required] = 4;
+        /// True: yellow's.
+        yellowteam: bool [bool, required] = 5;
+        /// False: it is switched off, and vision does not see it. Absent: on.
+        turnon: Option<bool> [bool, optional] = 6;
+    }
 
-/// To port 30011 (blue) or 30012 (yellow) of the last commander: robots whose state changed.
-#[derive(Clone, PartialEq, Message)]
-pub struct RobotsStatus {
-    /// States, one per robot.
-    #[prost(message, repeated, tag = "1")]
-    pub robots_status: Vec<RobotStatus>,
-}
+    /// To port 30011 (blue) or 30012 (yellow) of whoever commanded last: robots whose state changed.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct RobotsStatus {
+        /// One a robot.
+        robots_status: Vec<RobotStatus> [message, repeated] = 1;
+    }
 
-/// One robot's state.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct RobotStatus {
-    /// Shell number, 0–15.
-    #[prost(int32, required, tag = "1")]
-    pub robot_id: i32,
-    /// Whether the ball is at the dribbler.
-    #[prost(bool, required, tag = "2")]
-    pub infrared: bool,
-    /// Whether it kicks along the ground now.
-    #[prost(bool, required, tag = "3")]
-    pub flat_kick: bool,
-    /// Whether it chips now.
-    #[prost(bool, required, tag = "4")]
-    pub chip_kick: bool,
+    /// One robot's state.
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct RobotStatus {
+        /// Shell number, 0–15.
+        robot_id: i32 [int32, required] = 1;
+        /// The ball is at the dribbler.
+        infrared: bool [bool, required] = 2;
+        /// It kicks along the ground now.
+        flat_kick: bool [bool, required] = 3;
+        /// It chips now.
+        chip_kick: bool [bool, required] = 4;
+    }
 }
 
 #[cfg(test)]

@@ -24,235 +24,181 @@ pub use robot::{
     RobotControlResponse, RobotFeedback, RobotMoveCommand,
 };
 
-/// Failed request to a simulator.
-#[derive(Clone, PartialEq, Message)]
-pub struct SimulatorError {
-    /// Error code, of the simulator's own choice.
-    #[prost(string, optional, tag = "1")]
-    pub code: Option<String>,
-    /// Text for the user.
-    #[prost(string, optional, tag = "2")]
-    pub message: Option<String>,
-}
+messages! {
+    /// What a simulator could not do.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct SimulatorError {
+        /// For programs, of the simulator's own choice.
+        code: Option<String> [string, optional] = 1;
+        /// For people.
+        message: Option<String> [string, optional] = 2;
+    }
 
-/// To port 10300: teleports, or settings.
-#[derive(Clone, PartialEq, Message)]
-pub struct SimulatorCommand {
-    /// Objects to be moved.
-    #[prost(message, optional, tag = "1")]
-    pub control: Option<SimulatorControl>,
-    /// Settings to change.
-    #[prost(message, optional, tag = "2")]
-    pub config: Option<SimulatorConfig>,
-}
+    /// To port 10300: move things, or change settings.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct SimulatorCommand {
+        /// Move things.
+        control: Option<SimulatorControl> [message, optional] = 1;
+        /// Change settings.
+        config: Option<SimulatorConfig> [message, optional] = 2;
+    }
 
-/// Answer from port 10300.
-#[derive(Clone, PartialEq, Message)]
-pub struct SimulatorResponse {
-    /// Failed requests; empty when all succeeded.
-    #[prost(message, repeated, tag = "1")]
-    pub errors: Vec<SimulatorError>,
-}
+    /// What comes back from port 10300.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct SimulatorResponse {
+        /// What was not done; empty when all was.
+        errors: Vec<SimulatorError> [message, repeated] = 1;
+    }
 
-/// Move ball and robots, change the pace.
-#[derive(Clone, PartialEq, Message)]
-pub struct SimulatorControl {
+    /// Move ball and robots, change the pace.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct SimulatorControl {
+        /// Move the ball.
+        teleport_ball: Option<TeleportBall> [message, optional] = 1;
+        /// Move robots.
+        teleport_robot: Vec<TeleportRobot> [message, repeated] = 2;
+        /// Simulated seconds a second: 1 is real time, 0 stands still.
+        simulation_speed: Option<f32> [float, optional] = 3;
+    }
+
     /// Move the ball.
-    #[prost(message, optional, tag = "1")]
-    pub teleport_ball: Option<TeleportBall>,
-    /// Robots to be moved.
-    #[prost(message, repeated, tag = "2")]
-    pub teleport_robot: Vec<TeleportRobot>,
-    /// Simulated seconds a second: 1 is real time, 0 stands still.
-    #[prost(float, optional, tag = "3")]
-    pub simulation_speed: Option<f32>,
-}
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct TeleportBall {
+        /// Along the field's length, m.
+        x: Option<f32> [float, optional] = 1;
+        /// To the left of +x, m.
+        y: Option<f32> [float, optional] = 2;
+        /// Up, m.
+        z: Option<f32> [float, optional] = 3;
+        /// Velocity along x, m/s.
+        vx: Option<f32> [float, optional] = 4;
+        /// Velocity along y, m/s.
+        vy: Option<f32> [float, optional] = 5;
+        /// Velocity upwards, m/s.
+        vz: Option<f32> [float, optional] = 6;
+        /// Push robots out of the way instead of putting the ball inside one.
+        teleport_safely: Option<bool> [bool, optional] = 7;
+        /// Start as a rolling ball, without a sliding phase.
+        roll: Option<bool> [bool, optional] = 8;
+        /// Move it by forces, through what stands between, instead of at once.
+        by_force: Option<bool> [bool, optional] = 9;
+    }
 
-/// Move the ball.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct TeleportBall {
-    /// Along the field's length, m.
-    #[prost(float, optional, tag = "1")]
-    pub x: Option<f32>,
-    /// Coordinate to the left of +x, m.
-    #[prost(float, optional, tag = "2")]
-    pub y: Option<f32>,
-    /// Up, m.
-    #[prost(float, optional, tag = "3")]
-    pub z: Option<f32>,
-    /// Velocity along x, m/s.
-    #[prost(float, optional, tag = "4")]
-    pub vx: Option<f32>,
-    /// Velocity along y, m/s.
-    #[prost(float, optional, tag = "5")]
-    pub vy: Option<f32>,
-    /// Velocity upwards, m/s.
-    #[prost(float, optional, tag = "6")]
-    pub vz: Option<f32>,
-    /// Push robots aside instead of putting the ball inside one.
-    #[prost(bool, optional, tag = "7")]
-    pub teleport_safely: Option<bool>,
-    /// Start as a rolling ball, without a sliding phase.
-    #[prost(bool, optional, tag = "8")]
-    pub roll: Option<bool>,
-    /// Move it by forces, through obstacles in between, instead of at once.
-    #[prost(bool, optional, tag = "9")]
-    pub by_force: Option<bool>,
-}
+    /// Move a robot, or take it away.
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct TeleportRobot {
+        /// Which.
+        id: RobotId [message, required] = 1;
+        /// Along the field's length, m.
+        x: Option<f32> [float, optional] = 2;
+        /// To the left of +x, m.
+        y: Option<f32> [float, optional] = 3;
+        /// Heading, rad, counter-clockwise from +x.
+        orientation: Option<f32> [float, optional] = 4;
+        /// Velocity along x, m/s, field frame.
+        v_x: Option<f32> [float, optional, default = "0"] = 5;
+        /// Velocity along y, m/s, field frame.
+        v_y: Option<f32> [float, optional, default = "0"] = 6;
+        /// Rate of turn, rad/s, counter-clockwise.
+        v_angular: Option<f32> [float, optional, default = "0"] = 7;
+        /// False takes the robot away, true puts it there.
+        present: Option<bool> [bool, optional] = 8;
+        /// Move it by forces instead of at once.
+        by_force: Option<bool> [bool, optional] = 9;
+    }
 
-/// Move a robot, or remove it.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct TeleportRobot {
-    /// Robot to be moved.
-    #[prost(message, required, tag = "1")]
-    pub id: RobotId,
-    /// Along the field's length, m.
-    #[prost(float, optional, tag = "2")]
-    pub x: Option<f32>,
-    /// Coordinate to the left of +x, m.
-    #[prost(float, optional, tag = "3")]
-    pub y: Option<f32>,
-    /// Heading, rad, counter-clockwise from +x.
-    #[prost(float, optional, tag = "4")]
-    pub orientation: Option<f32>,
-    /// Velocity along x, m/s, field frame.
-    #[prost(float, optional, default = "0", tag = "5")]
-    pub v_x: Option<f32>,
-    /// Velocity along y, m/s, field frame.
-    #[prost(float, optional, default = "0", tag = "6")]
-    pub v_y: Option<f32>,
-    /// Rate of turn, rad/s, counter-clockwise.
-    #[prost(float, optional, default = "0", tag = "7")]
-    pub v_angular: Option<f32>,
-    /// False removes the robot, true adds it.
-    #[prost(bool, optional, tag = "8")]
-    pub present: Option<bool>,
-    /// Move it by forces instead of at once.
-    #[prost(bool, optional, tag = "9")]
-    pub by_force: Option<bool>,
-}
+    /// The simulator's settings.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct SimulatorConfig {
+        /// The field, in vision's units (mm).
+        geometry: Option<GeometryData> [message, optional] = 1;
+        /// What robots are like.
+        robot_specs: Vec<RobotSpecs> [message, repeated] = 2;
+        /// Noise, delay and losses, in a form of the simulator's own.
+        realism_config: Option<RealismConfig> [message, optional] = 3;
+        /// Where vision packets go.
+        vision_port: Option<u32> [uint32, optional] = 4;
+    }
 
-/// The simulator's settings.
-#[derive(Clone, PartialEq, Message)]
-pub struct SimulatorConfig {
-    /// The field, in vision's units (mm).
-    #[prost(message, optional, tag = "1")]
-    pub geometry: Option<GeometryData>,
-    /// Properties of robots.
-    #[prost(message, repeated, tag = "2")]
-    pub robot_specs: Vec<RobotSpecs>,
-    /// Noise, delay and losses, in a form of the simulator's own.
-    #[prost(message, optional, tag = "3")]
-    pub realism_config: Option<RealismConfig>,
-    /// Port for vision packets.
-    #[prost(uint32, optional, tag = "4")]
-    pub vision_port: Option<u32>,
-}
+    /// Noise, delay and losses.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct RealismConfig {
+        /// For ER-Force's simulator a [`RealismConfigErForce`].
+        custom: Vec<Any> [message, repeated] = 1;
+    }
 
-/// Noise, delay and losses.
-#[derive(Clone, PartialEq, Message)]
-pub struct RealismConfig {
-    /// For ER-Force's simulator a [`RealismConfigErForce`].
-    #[prost(message, repeated, tag = "1")]
-    pub custom: Vec<Any>,
-}
+    /// What a robot is like.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct RobotSpecs {
+        /// Which.
+        id: RobotId [message, required] = 1;
+        /// Radius of its hull, m.
+        radius: Option<f32> [float, optional, default = "0.09"] = 2;
+        /// Height of its hull, m.
+        height: Option<f32> [float, optional, default = "0.15"] = 3;
+        /// Mass, kg.
+        mass: Option<f32> [float, optional] = 4;
+        /// Fastest flat kick, m/s.
+        max_linear_kick_speed: Option<f32> [float, optional] = 7;
+        /// Fastest chip kick, m/s, in space.
+        max_chip_kick_speed: Option<f32> [float, optional] = 8;
+        /// Centre to the flat front, m.
+        center_to_dribbler: Option<f32> [float, optional] = 9;
+        /// Bounds of its motion.
+        limits: Option<RobotLimits> [message, optional] = 10;
+        /// Where its wheels are.
+        wheel_angles: Option<RobotWheelAngles> [message, optional] = 13;
+        /// For ER-Force's simulator a [`RobotSpecErForce`].
+        custom: Vec<Any> [message, repeated] = 14;
+    }
 
-/// Properties of a robot.
-#[derive(Clone, PartialEq, Message)]
-pub struct RobotSpecs {
-    /// The robot.
-    #[prost(message, required, tag = "1")]
-    pub id: RobotId,
-    /// Radius of its hull, m.
-    #[prost(float, optional, default = "0.09", tag = "2")]
-    pub radius: Option<f32>,
-    /// Height of its hull, m.
-    #[prost(float, optional, default = "0.15", tag = "3")]
-    pub height: Option<f32>,
-    /// Mass, kg.
-    #[prost(float, optional, tag = "4")]
-    pub mass: Option<f32>,
-    /// Fastest flat kick, m/s.
-    #[prost(float, optional, tag = "7")]
-    pub max_linear_kick_speed: Option<f32>,
-    /// Fastest chip kick, m/s, in space.
-    #[prost(float, optional, tag = "8")]
-    pub max_chip_kick_speed: Option<f32>,
-    /// Distance from the centre to the flat front, m.
-    #[prost(float, optional, tag = "9")]
-    pub center_to_dribbler: Option<f32>,
-    /// Limits of its motion.
-    #[prost(message, optional, tag = "10")]
-    pub limits: Option<RobotLimits>,
-    /// Angles of its wheels.
-    #[prost(message, optional, tag = "13")]
-    pub wheel_angles: Option<RobotWheelAngles>,
-    /// For ER-Force's simulator a [`RobotSpecErForce`].
-    #[prost(message, repeated, tag = "14")]
-    pub custom: Vec<Any>,
-}
+    /// Bounds of a robot's motion.
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct RobotLimits {
+        /// Getting faster, m/s².
+        acc_speedup_absolute_max: Option<f32> [float, optional] = 1;
+        /// Turning faster, rad/s².
+        acc_speedup_angular_max: Option<f32> [float, optional] = 2;
+        /// Braking, m/s².
+        acc_brake_absolute_max: Option<f32> [float, optional] = 3;
+        /// Braking a turn, rad/s².
+        acc_brake_angular_max: Option<f32> [float, optional] = 4;
+        /// Speed, m/s.
+        vel_absolute_max: Option<f32> [float, optional] = 5;
+        /// Rate of turn, rad/s.
+        vel_angular_max: Option<f32> [float, optional] = 6;
+    }
 
-/// Limits of a robot's motion.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct RobotLimits {
-    /// Largest acceleration, m/s².
-    #[prost(float, optional, tag = "1")]
-    pub acc_speedup_absolute_max: Option<f32>,
-    /// Largest angular acceleration, rad/s².
-    #[prost(float, optional, tag = "2")]
-    pub acc_speedup_angular_max: Option<f32>,
-    /// Braking, m/s².
-    #[prost(float, optional, tag = "3")]
-    pub acc_brake_absolute_max: Option<f32>,
-    /// Largest angular braking, rad/s².
-    #[prost(float, optional, tag = "4")]
-    pub acc_brake_angular_max: Option<f32>,
-    /// Speed, m/s.
-    #[prost(float, optional, tag = "5")]
-    pub vel_absolute_max: Option<f32>,
-    /// Rate of turn, rad/s.
-    #[prost(float, optional, tag = "6")]
-    pub vel_angular_max: Option<f32>,
-}
+    /// Where the wheels' axles point, rad, counter-clockwise from the robot's front.
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct RobotWheelAngles {
+        /// Front right, rad.
+        front_right: f32 [float, required] = 1;
+        /// Back right, rad.
+        back_right: f32 [float, required] = 2;
+        /// Back left, rad.
+        back_left: f32 [float, required] = 3;
+        /// Front left, rad.
+        front_left: f32 [float, required] = 4;
+    }
 
-/// Directions of the wheels' axles, rad, counter-clockwise from the robot's front.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct RobotWheelAngles {
-    /// Axle of the front right wheel, rad.
-    #[prost(float, required, tag = "1")]
-    pub front_right: f32,
-    /// Axle of the back right wheel, rad.
-    #[prost(float, required, tag = "2")]
-    pub back_right: f32,
-    /// Axle of the back left wheel, rad.
-    #[prost(float, required, tag = "3")]
-    pub back_left: f32,
-    /// Axle of the front left wheel, rad.
-    #[prost(float, required, tag = "4")]
-    pub front_left: f32,
-}
+    /// One step of a simulator whose clock the sender drives.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct SimulationSyncRequest {
+        /// Length of the step, s.
+        sim_step: Option<f32> [float, optional] = 1;
+        /// What port 10300 would get.
+        simulator_command: Option<SimulatorCommand> [message, optional] = 2;
+        /// What ports 10301 and 10302 would get.
+        robot_control: Option<RobotControl> [message, optional] = 3;
+    }
 
-/// One step of a simulator whose clock the sender drives.
-#[derive(Clone, PartialEq, Message)]
-pub struct SimulationSyncRequest {
-    /// Length of the step, s.
-    #[prost(float, optional, tag = "1")]
-    pub sim_step: Option<f32>,
-    /// Message as to port 10300.
-    #[prost(message, optional, tag = "2")]
-    pub simulator_command: Option<SimulatorCommand>,
-    /// Message as to ports 10301 and 10302.
-    #[prost(message, optional, tag = "3")]
-    pub robot_control: Option<RobotControl>,
-}
-
-/// Output of the step.
-#[derive(Clone, PartialEq, Message)]
-pub struct SimulationSyncResponse {
-    /// Detections of each camera.
-    #[prost(message, repeated, tag = "1")]
-    pub detection: Vec<DetectionFrame>,
-    /// Message as from ports 10301 and 10302.
-    #[prost(message, optional, tag = "2")]
-    pub robot_control_response: Option<RobotControlResponse>,
+    /// What the step brought.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct SimulationSyncResponse {
+        /// What each camera saw.
+        detection: Vec<DetectionFrame> [message, repeated] = 1;
+        /// What ports 10301 and 10302 would send.
+        robot_control_response: Option<RobotControlResponse> [message, optional] = 2;
+    }
 }

@@ -2,86 +2,65 @@
 
 use prost::Message;
 
-/// Detection of one orange blob.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct DetectionBall {
-    /// Confidence that it is a ball, 0–1.
-    #[prost(float, required, tag = "1")]
-    pub confidence: f32,
-    /// Area of the blob, px.
-    #[prost(uint32, optional, tag = "2")]
-    pub area: Option<u32>,
-    /// Along the field's length, mm.
-    #[prost(float, required, tag = "3")]
-    pub x: f32,
-    /// Coordinate to the left of +x, mm.
-    #[prost(float, required, tag = "4")]
-    pub y: f32,
-    /// Height, mm; set by few programs.
-    #[prost(float, optional, tag = "5")]
-    pub z: Option<f32>,
-    /// Column in the camera frame, px; simulators send dummies.
-    #[prost(float, required, tag = "6")]
-    pub pixel_x: f32,
-    /// Row in the camera frame, px; simulators send dummies.
-    #[prost(float, required, tag = "7")]
-    pub pixel_y: f32,
-}
+messages! {
+    /// One orange blob.
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct DetectionBall {
+        /// How sure it is a ball, 0–1.
+        confidence: f32 [float, required] = 1;
+        /// Pixels of the blob.
+        area: Option<u32> [uint32, optional] = 2;
+        /// Along the field's length, mm.
+        x: f32 [float, required] = 3;
+        /// To the left of +x, mm.
+        y: f32 [float, required] = 4;
+        /// Height, mm; nearly nobody sets it.
+        z: Option<f32> [float, optional] = 5;
+        /// Column in the camera's image, px; simulators send dummies.
+        pixel_x: f32 [float, required] = 6;
+        /// Row in the camera's image, px; simulators send dummies.
+        pixel_y: f32 [float, required] = 7;
+    }
 
-/// Detection of one marker pattern.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct DetectionRobot {
-    /// Confidence of the pattern, 0–1.
-    #[prost(float, required, tag = "1")]
-    pub confidence: f32,
-    /// Shell number, 0–15; absent where only the centre marker was detected.
-    #[prost(uint32, optional, tag = "2")]
-    pub robot_id: Option<u32>,
-    /// Along the field's length, mm.
-    #[prost(float, required, tag = "3")]
-    pub x: f32,
-    /// Coordinate to the left of +x, mm.
-    #[prost(float, required, tag = "4")]
-    pub y: f32,
-    /// Heading, rad, counter-clockwise from +x; absent where only the centre marker was detected.
-    #[prost(float, optional, tag = "5")]
-    pub orientation: Option<f32>,
-    /// Column in the camera frame, px; simulators send dummies.
-    #[prost(float, required, tag = "6")]
-    pub pixel_x: f32,
-    /// Row in the camera frame, px; simulators send dummies.
-    #[prost(float, required, tag = "7")]
-    pub pixel_y: f32,
-    /// Height of the pattern, mm.
-    #[prost(float, optional, tag = "8")]
-    pub height: Option<f32>,
-}
+    /// One pattern of markers.
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct DetectionRobot {
+        /// How sure the pattern is, 0–1.
+        confidence: f32 [float, required] = 1;
+        /// Shell number, 0–15; absent where only the centre marker was seen.
+        robot_id: Option<u32> [uint32, optional] = 2;
+        /// Along the field's length, mm.
+        x: f32 [float, required] = 3;
+        /// To the left of +x, mm.
+        y: f32 [float, required] = 4;
+        /// Heading, rad, counter-clockwise from +x; absent where only the centre marker was seen.
+        orientation: Option<f32> [float, optional] = 5;
+        /// Column in the camera's image, px; simulators send dummies.
+        pixel_x: f32 [float, required] = 6;
+        /// Row in the camera's image, px; simulators send dummies.
+        pixel_y: f32 [float, required] = 7;
+        /// Height of the pattern, mm.
+        height: Option<f32> [float, optional] = 8;
+    }
 
-/// Detections of one camera in one camera frame.
-#[derive(Clone, PartialEq, Message)]
-pub struct DetectionFrame {
-    /// Counts this camera's frames.
-    #[prost(uint32, required, tag = "1")]
-    pub frame_number: u32,
-    /// Capture time of the camera frame, s: Unix time, or the simulation's own (README, trap 1).
-    #[prost(double, required, tag = "2")]
-    pub t_capture: f64,
-    /// When the packet was sent, s, on the same clock.
-    #[prost(double, required, tag = "3")]
-    pub t_sent: f64,
-    /// Number of the camera.
-    #[prost(uint32, required, tag = "4")]
-    pub camera_id: u32,
-    /// Every orange blob: none or two are normal.
-    #[prost(message, repeated, tag = "5")]
-    pub balls: Vec<DetectionBall>,
-    /// Robots with a yellow centre marker.
-    #[prost(message, repeated, tag = "6")]
-    pub robots_yellow: Vec<DetectionRobot>,
-    /// Robots with a blue centre marker.
-    #[prost(message, repeated, tag = "7")]
-    pub robots_blue: Vec<DetectionRobot>,
-    /// Capture time of the camera frame by the camera's own clock, s.
-    #[prost(double, optional, tag = "8")]
-    pub t_capture_camera: Option<f64>,
+    /// What one camera saw in one image.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct DetectionFrame {
+        /// Counts this camera's images.
+        frame_number: u32 [uint32, required] = 1;
+        /// When the image was taken, s: Unix time, or the simulation's own (README, trap 1).
+        t_capture: f64 [double, required] = 2;
+        /// When the packet was sent, s, on the same clock.
+        t_sent: f64 [double, required] = 3;
+        /// Which camera.
+        camera_id: u32 [uint32, required] = 4;
+        /// Every orange blob: none or two are normal.
+        balls: Vec<DetectionBall> [message, repeated] = 5;
+        /// Robots with a yellow centre marker.
+        robots_yellow: Vec<DetectionRobot> [message, repeated] = 6;
+        /// Robots with a blue centre marker.
+        robots_blue: Vec<DetectionRobot> [message, repeated] = 7;
+        /// When the image was taken by the camera's own clock, s.
+        t_capture_camera: Option<f64> [double, optional] = 8;
+    }
 }

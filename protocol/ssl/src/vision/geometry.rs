@@ -2,174 +2,127 @@
 
 use prost::{Enumeration, Message};
 
-/// A point on the ground, mm, field frame.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct Vector2f {
-    /// Along the field's length, mm.
-    #[prost(float, required, tag = "1")]
-    pub x: f32,
-    /// Coordinate to the left of +x, mm.
-    #[prost(float, required, tag = "2")]
-    pub y: f32,
-}
+messages! {
+    /// A point on the ground, mm, field frame.
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct Vector2f {
+        /// Along the field's length, mm.
+        x: f32 [float, required] = 1;
+        /// To the left of +x, mm.
+        y: f32 [float, required] = 2;
+    }
 
-/// A straight line painted on the field.
-#[derive(Clone, PartialEq, Message)]
-pub struct FieldLineSegment {
-    /// Name of the line, as `TopTouchLine` or `LeftPenaltyStretch`.
-    #[prost(string, required, tag = "1")]
-    pub name: String,
-    /// One end, on the middle of the line's width.
-    #[prost(message, required, tag = "2")]
-    pub p1: Vector2f,
-    /// The other end.
-    #[prost(message, required, tag = "3")]
-    pub p2: Vector2f,
-    /// Width of the paint, mm.
-    #[prost(float, required, tag = "4")]
-    pub thickness: f32,
-    /// The same as `name`, as [`FieldShapeType`].
-    #[prost(enumeration = "FieldShapeType", optional, tag = "5")]
-    pub r#type: Option<i32>,
-}
+    /// A straight line painted on the field.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct FieldLineSegment {
+        /// Which line, as `TopTouchLine` or `LeftPenaltyStretch`.
+        name: String [string, required] = 1;
+        /// One end, on the middle of the line's width.
+        p1: Vector2f [message, required] = 2;
+        /// The other end.
+        p2: Vector2f [message, required] = 3;
+        /// Width of the paint, mm.
+        thickness: f32 [float, required] = 4;
+        /// The same as `name`, as [`FieldShapeType`].
+        r#type: Option<i32> [enumeration = "FieldShapeType", optional] = 5;
+    }
 
-/// A round line painted on the field.
-#[derive(Clone, PartialEq, Message)]
-pub struct FieldCircularArc {
-    /// Name of the arc, as `CenterCircle`.
-    #[prost(string, required, tag = "1")]
-    pub name: String,
-    /// Centre of the arc, mm.
-    #[prost(message, required, tag = "2")]
-    pub center: Vector2f,
-    /// Its radius, mm, to the middle of the line's width.
-    #[prost(float, required, tag = "3")]
-    pub radius: f32,
-    /// Where it starts, rad, counter-clockwise from +x.
-    #[prost(float, required, tag = "4")]
-    pub a1: f32,
-    /// Where it ends, rad.
-    #[prost(float, required, tag = "5")]
-    pub a2: f32,
-    /// Width of the paint, mm.
-    #[prost(float, required, tag = "6")]
-    pub thickness: f32,
-    /// The same as `name`, as [`FieldShapeType`].
-    #[prost(enumeration = "FieldShapeType", optional, tag = "7")]
-    pub r#type: Option<i32>,
-}
+    /// A round line painted on the field.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct FieldCircularArc {
+        /// Which arc, as `CenterCircle`.
+        name: String [string, required] = 1;
+        /// Its centre.
+        center: Vector2f [message, required] = 2;
+        /// Its radius, mm, to the middle of the line's width.
+        radius: f32 [float, required] = 3;
+        /// Where it starts, rad, counter-clockwise from +x.
+        a1: f32 [float, required] = 4;
+        /// Where it ends, rad.
+        a2: f32 [float, required] = 5;
+        /// Width of the paint, mm.
+        thickness: f32 [float, required] = 6;
+        /// The same as `name`, as [`FieldShapeType`].
+        r#type: Option<i32> [enumeration = "FieldShapeType", optional] = 7;
+    }
 
-/// Dimensions and lines of the field. Neither simulator sets the fields after `field_arcs` (README, trap 8).
-#[derive(Clone, PartialEq, Message)]
-pub struct GeometryFieldSize {
-    /// Distance from goal line to goal line, mm.
-    #[prost(int32, required, tag = "1")]
-    pub field_length: i32,
-    /// Distance from touch line to touch line, mm.
-    #[prost(int32, required, tag = "2")]
-    pub field_width: i32,
-    /// Distance between the posts, inside, mm.
-    #[prost(int32, required, tag = "3")]
-    pub goal_width: i32,
-    /// Distance from the goal line to the goal's back, mm.
-    #[prost(int32, required, tag = "4")]
-    pub goal_depth: i32,
-    /// Distance from the touch line to the wall, mm; also goal line to wall where `boundary_width_goal_line`
-    /// is absent.
-    #[prost(int32, required, tag = "5")]
-    pub boundary_width: i32,
-    /// Straight lines, in any order.
-    #[prost(message, repeated, tag = "6")]
-    pub field_lines: Vec<FieldLineSegment>,
-    /// Arcs among the lines.
-    #[prost(message, repeated, tag = "7")]
-    pub field_arcs: Vec<FieldCircularArc>,
-    /// Defence area along x, mm.
-    #[prost(int32, optional, tag = "8")]
-    pub penalty_area_depth: Option<i32>,
-    /// Defence area along y, mm.
-    #[prost(int32, optional, tag = "9")]
-    pub penalty_area_width: Option<i32>,
-    /// Radius of the centre circle, mm.
-    #[prost(int32, optional, tag = "10")]
-    pub center_circle_radius: Option<i32>,
-    /// Width of every line, mm.
-    #[prost(int32, optional, tag = "11")]
-    pub line_thickness: Option<i32>,
-    /// Distance from the goal centre to the penalty mark, mm.
-    #[prost(int32, optional, tag = "12")]
-    pub goal_center_to_penalty_mark: Option<i32>,
-    /// Height of the crossbar's lower edge, mm.
-    #[prost(int32, optional, tag = "13")]
-    pub goal_height: Option<i32>,
-    /// Radius of the ball, mm.
-    #[prost(float, optional, tag = "14")]
-    pub ball_radius: Option<f32>,
-    /// Largest radius of a robot, mm.
-    #[prost(float, optional, tag = "15")]
-    pub max_robot_radius: Option<f32>,
-    /// Distance from the goal line to the wall, mm.
-    #[prost(int32, optional, tag = "16")]
-    pub boundary_width_goal_line: Option<i32>,
-    /// Width of the substitution area behind the goal lines, mm.
-    #[prost(int32, optional, tag = "17")]
-    pub goal_substitution_area_width: Option<i32>,
-}
+    /// The field's measures and lines. Neither simulator sets the fields after `field_arcs` (README, trap 8).
+    #[derive(Clone, PartialEq, Message)]
+    pub struct GeometryFieldSize {
+        /// Goal line to goal line, mm.
+        field_length: i32 [int32, required] = 1;
+        /// Touch line to touch line, mm.
+        field_width: i32 [int32, required] = 2;
+        /// Between the posts, inside, mm.
+        goal_width: i32 [int32, required] = 3;
+        /// Goal line to the goal's back, mm.
+        goal_depth: i32 [int32, required] = 4;
+        /// Touch line to the wall, mm; also goal line to wall where `boundary_width_goal_line` is absent.
+        boundary_width: i32 [int32, required] = 5;
+        /// Straight lines, in any order.
+        field_lines: Vec<FieldLineSegment> [message, repeated] = 6;
+        /// Round lines.
+        field_arcs: Vec<FieldCircularArc> [message, repeated] = 7;
+        /// Defence area along x, mm.
+        penalty_area_depth: Option<i32> [int32, optional] = 8;
+        /// Defence area along y, mm.
+        penalty_area_width: Option<i32> [int32, optional] = 9;
+        /// Radius of the centre circle, mm.
+        center_circle_radius: Option<i32> [int32, optional] = 10;
+        /// Width of every line, mm.
+        line_thickness: Option<i32> [int32, optional] = 11;
+        /// Goal centre to penalty mark, mm.
+        goal_center_to_penalty_mark: Option<i32> [int32, optional] = 12;
+        /// Ground to the crossbar's lower edge, mm.
+        goal_height: Option<i32> [int32, optional] = 13;
+        /// Radius of the ball, mm.
+        ball_radius: Option<f32> [float, optional] = 14;
+        /// Largest radius of a robot, mm.
+        max_robot_radius: Option<f32> [float, optional] = 15;
+        /// Goal line to the wall, mm.
+        boundary_width_goal_line: Option<i32> [int32, optional] = 16;
+        /// Width of the substitution area behind the goal lines, mm.
+        goal_substitution_area_width: Option<i32> [int32, optional] = 17;
+    }
 
-/// Position and orientation of a camera, and its lens.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct GeometryCameraCalibration {
-    /// Number of the camera.
-    #[prost(uint32, required, tag = "1")]
-    pub camera_id: u32,
-    /// Focal length, px.
-    #[prost(float, required, tag = "2")]
-    pub focal_length: f32,
-    /// Column of the optical axis, px.
-    #[prost(float, required, tag = "3")]
-    pub principal_point_x: f32,
-    /// Row of the optical axis, px.
-    #[prost(float, required, tag = "4")]
-    pub principal_point_y: f32,
-    /// Radial distortion, the coefficient of r².
-    #[prost(float, required, tag = "5")]
-    pub distortion: f32,
-    /// Rotation from field to camera: quaternion, x. Simulators send 0.7 four times, which is not normalised.
-    #[prost(float, required, tag = "6")]
-    pub q0: f32,
-    /// y of the orientation quaternion.
-    #[prost(float, required, tag = "7")]
-    pub q1: f32,
-    /// z of the orientation quaternion.
-    #[prost(float, required, tag = "8")]
-    pub q2: f32,
-    /// w of the orientation quaternion.
-    #[prost(float, required, tag = "9")]
-    pub q3: f32,
-    /// Translation from field to camera, mm, camera frame.
-    #[prost(float, required, tag = "10")]
-    pub tx: f32,
-    /// Translation along y, mm.
-    #[prost(float, required, tag = "11")]
-    pub ty: f32,
-    /// Translation along z, mm.
-    #[prost(float, required, tag = "12")]
-    pub tz: f32,
-    /// Position of the camera along x, mm, field frame.
-    #[prost(float, optional, tag = "13")]
-    pub derived_camera_world_tx: Option<f32>,
-    /// Position of the camera along y, mm, field frame.
-    #[prost(float, optional, tag = "14")]
-    pub derived_camera_world_ty: Option<f32>,
-    /// Height of the camera, mm.
-    #[prost(float, optional, tag = "15")]
-    pub derived_camera_world_tz: Option<f32>,
-    /// Columns of the camera frame, px.
-    #[prost(uint32, optional, tag = "16")]
-    pub pixel_image_width: Option<u32>,
-    /// Rows of the camera frame, px.
-    #[prost(uint32, optional, tag = "17")]
-    pub pixel_image_height: Option<u32>,
+    /// Where a camera hangs and how it looks.
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct GeometryCameraCalibration {
+        /// Which camera.
+        camera_id: u32 [uint32, required] = 1;
+        /// Focal length, px.
+        focal_length: f32 [float, required] = 2;
+        /// Column of the optical axis, px.
+        principal_point_x: f32 [float, required] = 3;
+        /// Row of the optical axis, px.
+        principal_point_y: f32 [float, required] = 4;
+        /// Radial distortion, the coefficient of r².
+        distortion: f32 [float, required] = 5;
+        /// Rotation from field to camera: quaternion, x. Simulators send 0.7 four times, which is not normalised.
+        q0: f32 [float, required] = 6;
+        /// Quaternion, y.
+        q1: f32 [float, required] = 7;
+        /// Quaternion, z.
+        q2: f32 [float, required] = 8;
+        /// Quaternion, w.
+        q3: f32 [float, required] = 9;
+        /// Translation from field to camera, mm, camera frame.
+        tx: f32 [float, required] = 10;
+        /// Translation, y, mm.
+        ty: f32 [float, required] = 11;
+        /// Translation, z, mm.
+        tz: f32 [float, required] = 12;
+        /// Where the camera hangs, along x, mm, field frame.
+        derived_camera_world_tx: Option<f32> [float, optional] = 13;
+        /// Where the camera hangs, along y, mm, field frame.
+        derived_camera_world_ty: Option<f32> [float, optional] = 14;
+        /// How high the camera hangs, mm.
+        derived_camera_world_tz: Option<f32> [float, optional] = 15;
+        /// Columns of the image, px.
+        pixel_image_width: Option<u32> [uint32, optional] = 16;
+        /// Rows of the image, px.
+        pixel_image_height: Option<u32> [uint32, optional] = 17;
+    }
 }
 
 /// Kind of line or arc.
@@ -193,55 +146,46 @@ pub enum FieldShapeType {
     RightFieldRightPenaltyStretch = 13,
 }
 
-/// A ball on the ground: it slides, then rolls.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct BallModelStraightTwoPhase {
-    /// Acceleration while it slides, m/s², < 0.
-    #[prost(double, required, tag = "1")]
-    pub acc_slide: f64,
-    /// Acceleration while it rolls, m/s², < 0.
-    #[prost(double, required, tag = "2")]
-    pub acc_roll: f64,
-    /// It rolls from this fraction of its kick speed on, 0–1.
-    #[prost(double, required, tag = "3")]
-    pub k_switch: f64,
-}
+messages! {
+    /// A ball on the ground: it slides, then rolls.
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct BallModelStraightTwoPhase {
+        /// Acceleration while it slides, m/s², < 0.
+        acc_slide: f64 [double, required] = 1;
+        /// Acceleration while it rolls, m/s², < 0.
+        acc_roll: f64 [double, required] = 2;
+        /// It rolls from this fraction of its kick speed on, 0–1.
+        k_switch: f64 [double, required] = 3;
+    }
 
-/// A chipped ball: each bounce keeps a fixed part of its speed.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct BallModelChipFixedLoss {
-    /// Share of the speed along the ground that the first bounce keeps, 0–1.
-    #[prost(double, required, tag = "1")]
-    pub damping_xy_first_hop: f64,
-    /// Share of it that later bounces keep, 0–1.
-    #[prost(double, required, tag = "2")]
-    pub damping_xy_other_hops: f64,
-    /// Share of the vertical speed that a bounce keeps, 0–1.
-    #[prost(double, required, tag = "3")]
-    pub damping_z: f64,
-}
+    /// A chipped ball: each bounce keeps a fixed part of its speed.
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct BallModelChipFixedLoss {
+        /// What the first bounce keeps of the speed along the ground, 0–1.
+        damping_xy_first_hop: f64 [double, required] = 1;
+        /// What later bounces keep of it, 0–1.
+        damping_xy_other_hops: f64 [double, required] = 2;
+        /// What a bounce keeps of the vertical speed, 0–1.
+        damping_z: f64 [double, required] = 3;
+    }
 
-/// Ball model of this field. Simulators differ widely: it must be read, not hard-coded.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct GeometryModels {
-    /// Model on the ground.
-    #[prost(message, optional, tag = "1")]
-    pub straight_two_phase: Option<BallModelStraightTwoPhase>,
-    /// Model in the air.
-    #[prost(message, optional, tag = "2")]
-    pub chip_fixed_loss: Option<BallModelChipFixedLoss>,
-}
+    /// How the ball moves here. Simulators differ widely: read it, hard-code nothing.
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct GeometryModels {
+        /// On the ground.
+        straight_two_phase: Option<BallModelStraightTwoPhase> [message, optional] = 1;
+        /// In the air.
+        chip_fixed_loss: Option<BallModelChipFixedLoss> [message, optional] = 2;
+    }
 
-/// The field, its cameras and its ball.
-#[derive(Clone, PartialEq, Message)]
-pub struct GeometryData {
-    /// Dimensions and lines.
-    #[prost(message, required, tag = "1")]
-    pub field: GeometryFieldSize,
-    /// Cameras: all of them, or one a packet; merge by camera id.
-    #[prost(message, repeated, tag = "2")]
-    pub calib: Vec<GeometryCameraCalibration>,
-    /// Model of the ball's motion.
-    #[prost(message, optional, tag = "3")]
-    pub models: Option<GeometryModels>,
+    /// The field, its cameras and its ball.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct GeometryData {
+        /// Measures and lines.
+        field: GeometryFieldSize [message, required] = 1;
+        /// Cameras: all of them, or one a packet; merge by camera id.
+        calib: Vec<GeometryCameraCalibration> [message, repeated] = 2;
+        /// How the ball moves.
+        models: Option<GeometryModels> [message, optional] = 3;
+    }
 }

@@ -7,71 +7,55 @@ use prost::Message;
 
 use super::{DetectionFrame, GeometryCameraCalibration};
 
-/// Field geometry: eleven dimensions and three for restarts, mm.
-#[derive(Clone, Copy, PartialEq, Message)]
-pub struct GeometryFieldSize {
-    /// Width of every line, mm.
-    #[prost(int32, required, tag = "1")]
-    pub line_width: i32,
-    /// Goal line to goal line, mm.
-    #[prost(int32, required, tag = "2")]
-    pub field_length: i32,
-    /// Touch line to touch line, mm.
-    #[prost(int32, required, tag = "3")]
-    pub field_width: i32,
-    /// Line to the referee's walk, mm.
-    #[prost(int32, required, tag = "4")]
-    pub boundary_width: i32,
-    /// Width of the referee's walk, mm.
-    #[prost(int32, required, tag = "5")]
-    pub referee_width: i32,
-    /// Between the posts, mm.
-    #[prost(int32, required, tag = "6")]
-    pub goal_width: i32,
-    /// Goal line to the goal's back, mm.
-    #[prost(int32, required, tag = "7")]
-    pub goal_depth: i32,
-    /// Thickness of the goal's walls, mm.
-    #[prost(int32, required, tag = "8")]
-    pub goal_wall_width: i32,
-    /// Radius of the centre circle, mm.
-    #[prost(int32, required, tag = "9")]
-    pub center_circle_radius: i32,
-    /// Radius of the defence area's quarter circles, mm.
-    #[prost(int32, required, tag = "10")]
-    pub defense_radius: i32,
-    /// Straight part of the defence area between them, mm.
-    #[prost(int32, required, tag = "11")]
-    pub defense_stretch: i32,
-    /// Free kick to the defence area, at least, mm.
-    #[prost(int32, required, tag = "12")]
-    pub free_kick_from_defense_dist: i32,
-    /// Goal line to penalty mark, mm.
-    #[prost(int32, required, tag = "13")]
-    pub penalty_spot_from_field_line_dist: i32,
-    /// Penalty mark to the line the others stay behind, mm.
-    #[prost(int32, required, tag = "14")]
-    pub penalty_line_from_spot_dist: i32,
-}
+messages! {
+    /// The field as eleven measures and three for restarts, mm.
+    #[derive(Clone, Copy, PartialEq, Message)]
+    pub struct GeometryFieldSize {
+        /// Width of every line, mm.
+        line_width: i32 [int32, required] = 1;
+        /// Goal line to goal line, mm.
+        field_length: i32 [int32, required] = 2;
+        /// Touch line to touch line, mm.
+        field_width: i32 [int32, required] = 3;
+        /// Line to the referee's walk, mm.
+        boundary_width: i32 [int32, required] = 4;
+        /// Width of the referee's walk, mm.
+        referee_width: i32 [int32, required] = 5;
+        /// Between the posts, mm.
+        goal_width: i32 [int32, required] = 6;
+        /// Goal line to the goal's back, mm.
+        goal_depth: i32 [int32, required] = 7;
+        /// Thickness of the goal's walls, mm.
+        goal_wall_width: i32 [int32, required] = 8;
+        /// Radius of the centre circle, mm.
+        center_circle_radius: i32 [int32, required] = 9;
+        /// Radius of the defence area's quarter circles, mm.
+        defense_radius: i32 [int32, required] = 10;
+        /// Straight part of the defence area between them, mm.
+        defense_stretch: i32 [int32, required] = 11;
+        /// Free kick to the defence area, at least, mm.
+        free_kick_from_defense_dist: i32 [int32, required] = 12;
+        /// Goal line to penalty mark, mm.
+        penalty_spot_from_field_line_dist: i32 [int32, required] = 13;
+        /// Penalty mark to the line the others stay behind, mm.
+        penalty_line_from_spot_dist: i32 [int32, required] = 14;
+    }
 
-/// The field and its cameras.
-#[derive(Clone, PartialEq, Message)]
-pub struct GeometryData {
-    /// Dimensions of the field.
-    #[prost(message, required, tag = "1")]
-    pub field: GeometryFieldSize,
-    /// Calibration of the cameras.
-    #[prost(message, repeated, tag = "2")]
-    pub calib: Vec<GeometryCameraCalibration>,
-}
+    /// The field and its cameras.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct GeometryData {
+        /// Measures.
+        field: GeometryFieldSize [message, required] = 1;
+        /// Cameras.
+        calib: Vec<GeometryCameraCalibration> [message, repeated] = 2;
+    }
 
-/// A datagram of vision in 2014: a camera's frame, the field, or both.
-#[derive(Clone, PartialEq, Message)]
-pub struct WrapperPacket {
-    /// Detections of one camera.
-    #[prost(message, optional, tag = "1")]
-    pub detection: Option<DetectionFrame>,
-    /// The field and cameras.
-    #[prost(message, optional, tag = "2")]
-    pub geometry: Option<GeometryData>,
+    /// A datagram of vision in 2014: a camera's frame, the field, or both.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct WrapperPacket {
+        /// What one camera saw.
+        detection: Option<DetectionFrame> [message, optional] = 1;
+        /// The field and cameras.
+        geometry: Option<GeometryData> [message, optional] = 2;
+    }
 }

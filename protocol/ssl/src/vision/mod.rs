@@ -18,18 +18,17 @@ pub use geometry::{
     GeometryCameraCalibration, GeometryData, GeometryFieldSize, GeometryModels, Vector2f,
 };
 
-/// A datagram of vision: a camera's frame, the field, or both.
-#[derive(Clone, PartialEq, Message)]
-pub struct WrapperPacket {
-    /// Detections of one camera.
-    #[prost(message, optional, tag = "1")]
-    pub detection: Option<DetectionFrame>,
-    /// The field and cameras; grSim sends one camera's calibration a packet, so merge by camera id.
-    #[prost(message, optional, tag = "2")]
-    pub geometry: Option<GeometryData>,
-    /// Program that sent it, [`Source`]; most leave it out.
-    #[prost(enumeration = "Source", optional, tag = "3")]
-    pub source: Option<i32>,
+messages! {
+    /// A datagram of vision: a camera's frame, the field, or both.
+    #[derive(Clone, PartialEq, Message)]
+    pub struct WrapperPacket {
+        /// What one camera saw.
+        detection: Option<DetectionFrame> [message, optional] = 1;
+        /// The field and cameras; grSim sends one camera's calibration a packet, so merge by camera id.
+        geometry: Option<GeometryData> [message, optional] = 2;
+        /// Which program sent it, [`Source`]; most leave it out.
+        source: Option<i32> [enumeration = "Source", optional] = 3;
+    }
 }
 
 /// Program that sends vision.

@@ -1,7 +1,7 @@
 //! `messages`: map from the league's messages to our types. By the package and name of `golden/facts.txt`.
 
 use ssl::Message;
-use ssl::{common, controller, event, radio, referee, simulation, tracker, vision};
+use ssl::{common, controller, event, referee, simulation, tracker, vision};
 
 /// Decodes a packet: its `Debug` text and its bytes encoded again.
 pub(crate) type Decode = fn(&[u8]) -> Result<(String, Vec<u8>), ssl::DecodeError>;
@@ -99,23 +99,11 @@ decoders! {
         "TooManyRobots" => event::TooManyRobots,
         "BoundaryCrossing" => event::BoundaryCrossing,
         "PenaltyKickFailed" => event::PenaltyKickFailed,
-        "AutoRefCiInput" => controller::AutoRefCiInput,
-        "AutoRefCiOutput" => controller::AutoRefCiOutput,
-        "Output" => controller::Output,
-        "Protocol" => controller::Protocol,
-        "ProtocolEntry" => controller::ProtocolEntry,
-        "Input" => controller::Input,
-        "CiInput" => controller::CiInput,
-        "CiOutput" => controller::CiOutput,
         "ControllerReply" => controller::ControllerReply,
         "Signature" => controller::Signature,
         "AutoRefRegistration" => controller::AutoRefRegistration,
         "AutoRefToController" => controller::AutoRefToController,
         "ControllerToAutoRef" => controller::ControllerToAutoRef,
-        "RemoteControlRegistration" => controller::RemoteControlRegistration,
-        "RemoteControlToController" => controller::RemoteControlToController,
-        "ControllerToRemoteControl" => controller::ControllerToRemoteControl,
-        "RemoteControlTeamState" => controller::RemoteControlTeamState,
         "TeamRegistration" => controller::TeamRegistration,
         "TeamToController" => controller::TeamToController,
         "ControllerToTeam" => controller::ControllerToTeam,
@@ -154,9 +142,5 @@ decoders! {
         "TrackedRobot" => tracker::TrackedRobot,
         "TrackedFrame" => tracker::TrackedFrame,
         "TrackerWrapperPacket" => tracker::TrackerWrapperPacket,
-    ;
-    "radio":
-        "RadioProtocolCommand" => radio::RadioProtocolCommand,
-        "RadioProtocolWrapper" => radio::RadioProtocolWrapper,
     ;
 }

@@ -137,9 +137,7 @@ fn at_a_free_kick_the_game_is_stopped_and_the_others_get_it() {
 fn every_third_foul_is_a_yellow_card_and_the_offender_goes_off() {
     let mut stage = in_play();
     for _ in 0..3 {
-        stage.move_ball(at(-3.0, 1.0));
-        stage.touch(blue(2));
-        stage.kick(7.0, 0.0);
+        stage.kick_from(at(-3.0, 1.0), blue(2), [7.0, 0.0]);
         stage.step();
         stage.kick(0.0, 0.0);
         stage.run(0.5);
@@ -180,11 +178,8 @@ fn one_too_many() -> Stage {
     for number in 3..6 {
         stage.put(blue(number), at(2.5, -2.5 + 0.5 * f32::from(number)));
     }
-    stage.move_ball(at(0.0, 1.0));
-    stage.touch(blue(1));
-    stage.kick(0.0, 6.0);
-    stage.until(Phase::Stop, 1.0);
-    stage.kick(0.0, 0.0);
+    stage.kick_from(at(0.0, 1.0), blue(1), [0.0, 6.0]);
+    stage.until_stop(1.0);
     stage.move_ball(at(0.0, 2.5));
     stage
 }
@@ -228,8 +223,7 @@ fn a_yellow_card_lasts_120_s_of_playing_time_and_the_robot_comes_back_in_a_stop(
     }
     stage.touch(blue(1));
     stage.kick(0.0, 6.0);
-    stage.until(Phase::Stop, 1.0);
-    stage.kick(0.0, 0.0);
+    stage.until_stop(1.0);
     stage.move_ball(stage.referee.placement().unwrap());
     stage.until(Phase::FreeKick(Colour::Yellow), 30.0);
     let Some(WorldOrder::RemoveRobot(taken)) = stage.orders.last().copied() else { panic!() };
@@ -259,9 +253,7 @@ fn a_yellow_card_lasts_120_s_of_playing_time_and_the_robot_comes_back_in_a_stop(
 fn the_third_card_at_a_time_is_red_and_cards_can_be_switched_off() {
     let foul = |stage: &mut Stage| {
         for _ in 0..9 {
-            stage.move_ball(at(-3.0, 1.0));
-            stage.touch(blue(2));
-            stage.kick(7.0, 0.0);
+            stage.kick_from(at(-3.0, 1.0), blue(2), [7.0, 0.0]);
             stage.step();
             stage.kick(0.0, 0.0);
             stage.run(0.5);

@@ -8,9 +8,7 @@ fn shoot(who: Who, from: Point<Field>, x: f32, y: f32) -> Stage {
     let mut stage = in_play();
     stage.put(blue(0), at(4.45, 0.8));
     stage.put(yellow(0), at(-4.45, 0.8));
-    stage.move_ball(from);
-    stage.touch(who);
-    stage.kick(x, y);
+    stage.kick_from(from, who, [x, y]);
     while stage.phase() == Phase::Run {
         assert!(stage.seconds() < 60.0);
         stage.step();
@@ -52,9 +50,7 @@ fn an_own_goal_counts_for_the_other_team() {
 #[test]
 fn a_ball_that_was_above_15_cm_since_the_scorers_last_touch_is_no_goal_but_a_goal_kick() {
     let mut stage = in_play();
-    stage.move_ball(at(3.0, 0.0));
-    stage.touch(yellow(2));
-    stage.kick(5.0, 0.0);
+    stage.kick_from(at(3.0, 0.0), yellow(2), [5.0, 0.0]);
     stage.ball_mut().height = 0.16;
     stage.step();
     stage.ball_mut().height = 0.0;
@@ -75,9 +71,7 @@ fn a_high_ball_that_the_scorers_touch_again_counts() {
     stage.touch(yellow(1));
     stage.step();
     stage.ball_mut().height = 0.0;
-    stage.move_ball(at(3.0, 0.0));
-    stage.touch(yellow(2));
-    stage.kick(5.0, 0.0);
+    stage.kick_from(at(3.0, 0.0), yellow(2), [5.0, 0.0]);
     stage.until(Phase::Halt, 1.0);
     assert_eq!(stage.referee.accounts().yellow.score, 1);
 }
@@ -85,9 +79,7 @@ fn a_high_ball_that_the_scorers_touch_again_counts() {
 #[test]
 fn a_ball_over_the_bar_is_out() {
     let mut stage = in_play();
-    stage.move_ball(at(4.0, 0.0));
-    stage.touch(yellow(2));
-    stage.kick(5.0, 0.0);
+    stage.kick_from(at(4.0, 0.0), yellow(2), [5.0, 0.0]);
     stage.ball_mut().height = 0.2;
     stage.until(Phase::Stop, 1.0);
     stage.only(Kind::LeftGoalLine);
@@ -96,9 +88,7 @@ fn a_ball_over_the_bar_is_out() {
 #[test]
 fn no_goal_within_two_seconds_of_a_foul_that_did_not_stop_the_game() {
     let mut stage = in_play();
-    stage.move_ball(at(3.0, 0.0));
-    stage.touch(yellow(2));
-    stage.kick(7.0, 0.0);
+    stage.kick_from(at(3.0, 0.0), yellow(2), [7.0, 0.0]);
     stage.until(Phase::Halt, 1.0);
     stage.only(Kind::BallTooFast);
     let What::InvalidGoal { reason, .. } = stage.only(Kind::InvalidGoal).what else { panic!() };
@@ -111,9 +101,7 @@ fn no_goal_with_too_many_robots() {
     for number in 3..7 {
         stage.put(yellow(number), at(-3.0, -2.5 + 0.3 * f32::from(number)));
     }
-    stage.move_ball(at(3.0, 0.0));
-    stage.touch(yellow(2));
-    stage.kick(5.0, 0.0);
+    stage.kick_from(at(3.0, 0.0), yellow(2), [5.0, 0.0]);
     stage.until(Phase::Halt, 1.0);
     let What::InvalidGoal { reason, shot } = stage.only(Kind::InvalidGoal).what else { panic!() };
     assert_eq!((reason, shot.robots), (Invalid::TooManyRobots, 7));

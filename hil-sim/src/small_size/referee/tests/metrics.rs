@@ -27,9 +27,7 @@ fn time_is_told_apart_by_what_the_ball_does() {
 /// Yellow's robot 2 kicks the ball from there with this velocity, and no robot stops it for half a second.
 fn shot(from: Point<Field>, x: f32, y: f32) -> TeamMetrics {
     let mut stage = in_play();
-    stage.move_ball(from);
-    stage.touch(yellow(2));
-    stage.kick(x, y);
+    stage.kick_from(from, yellow(2), [x, y]);
     stage.run(0.5);
     stage.referee.metrics().yellow
 }
@@ -88,9 +86,7 @@ fn possession_is_the_time_after_a_teams_touch() {
 fn offences_are_counted_by_team_and_kind() {
     let mut stage = in_play();
     for _ in 0..2 {
-        stage.move_ball(at(-3.0, 1.0));
-        stage.touch(yellow(1));
-        stage.kick(7.0, 0.0);
+        stage.kick_from(at(-3.0, 1.0), yellow(1), [7.0, 0.0]);
         stage.step();
         stage.kick(0.0, 0.0);
         stage.run(0.5);

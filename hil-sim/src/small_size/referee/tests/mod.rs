@@ -144,6 +144,19 @@ impl Stage {
         self.ball_mut().velocity = Vector::new(x, y);
     }
 
+    /// The ball is there, that robot touches it for a step, and it has this velocity, m/s.
+    fn kick_from(&mut self, place: Point<Field>, who: Who, [x, y]: [f32; 2]) {
+        self.move_ball(place);
+        self.touch(who);
+        self.kick(x, y);
+    }
+
+    /// Steps until the game is stopped, and holds the ball.
+    fn until_stop(&mut self, seconds: f32) {
+        self.until(Phase::Stop, seconds);
+        self.kick(0.0, 0.0);
+    }
+
     fn ball_mut(&mut self) -> &mut BallSeen {
         self.ball.as_mut().unwrap()
     }

@@ -6,9 +6,7 @@ use super::*;
 #[test]
 fn a_kick_over_the_limit_is_told_once_and_the_game_goes_on() {
     let mut stage = in_play();
-    stage.move_ball(at(-3.0, 1.0));
-    stage.touch(yellow(1));
-    stage.kick(6.6, 0.0);
+    stage.kick_from(at(-3.0, 1.0), yellow(1), [6.6, 0.0]);
     stage.run(0.5);
     let event = stage.only(Kind::BallTooFast).clone();
     assert_eq!((event.by, event.robot), (Some(Colour::Yellow), Some(id(1))));
@@ -229,11 +227,8 @@ fn three_robots_around_the_ball_for_two_seconds_hold_it() {
 /// The ball went out over blue's touch line; yellow has to place it at (1, 2.8).
 fn placement() -> Stage {
     let mut stage = in_play();
-    stage.move_ball(at(1.0, 2.9));
-    stage.touch(blue(1));
-    stage.kick(0.0, 5.0);
-    stage.until(Phase::Stop, 1.0);
-    stage.kick(0.0, 0.0);
+    stage.kick_from(at(1.0, 2.9), blue(1), [0.0, 5.0]);
+    stage.until_stop(1.0);
     stage.put(blue(1), at(2.0, 1.0));
     stage.put(yellow(1), at(-2.0, 1.0));
     stage.until(Phase::BallPlacement(Colour::Yellow), 1.0);
@@ -300,8 +295,7 @@ fn a_team_of_division_b_that_does_not_place_leaves_it_to_the_other() {
     stage.step();
     stage.touch(blue(1));
     stage.kick(0.0, 5.0);
-    stage.until(Phase::Stop, 1.0);
-    stage.kick(0.0, 0.0);
+    stage.until_stop(1.0);
     stage.until(Phase::BallPlacement(Colour::Blue), 1.0);
     assert_eq!(stage.referee.next(), Some(Restart::FreeKick(Colour::Yellow)));
 }
@@ -314,8 +308,7 @@ fn in_division_a_who_fails_to_place_a_ball_that_went_out_loses_the_free_kick() {
     stage.step();
     stage.touch(blue(1));
     stage.kick(0.0, 5.0);
-    stage.until(Phase::Stop, 1.0);
-    stage.kick(0.0, 0.0);
+    stage.until_stop(1.0);
     stage.until(Phase::BallPlacement(Colour::Yellow), 1.0);
     stage.run(30.1);
     assert_eq!(stage.phase(), Phase::BallPlacement(Colour::Blue));
@@ -340,12 +333,9 @@ fn a_ball_near_its_place_needs_no_placement() {
 #[test]
 fn a_ball_in_the_goal_is_fetched_by_a_person() {
     let mut stage = in_play();
-    stage.move_ball(at(3.0, 0.0));
-    stage.touch(yellow(2));
-    stage.kick(5.0, 0.0);
+    stage.kick_from(at(3.0, 0.0), yellow(2), [5.0, 0.0]);
     stage.ball_mut().height = 0.2;
-    stage.until(Phase::Stop, 1.0);
-    stage.kick(0.0, 0.0);
+    stage.until_stop(1.0);
     stage.ball_mut().height = 0.0;
     stage.run(2.2);
     assert!(

@@ -214,9 +214,7 @@ fn steps_of_1_and_of_20_ms_see_the_same_offences() {
     let play = |step: Duration| {
         let mut stage = in_play();
         stage.step = step;
-        stage.move_ball(at(-3.0, 1.0));
-        stage.touch(yellow(1));
-        stage.kick(6.8, 0.0);
+        stage.kick_from(at(-3.0, 1.0), yellow(1), [6.8, 0.0]);
         stage.run(0.3);
         stage.kick(0.0, 0.0);
         stage.until(Phase::Stop, 12.0);
@@ -237,9 +235,7 @@ fn a_ball_that_nobody_fetches_from_the_goal_does_not_score_again() {
     let mut stage = in_play();
     stage.obeyed = false;
     stage.put(blue(0), at(4.45, 0.8));
-    stage.move_ball(at(3.0, 0.0));
-    stage.touch(yellow(2));
-    stage.kick(5.0, 0.0);
+    stage.kick_from(at(3.0, 0.0), yellow(2), [5.0, 0.0]);
     stage.until(Phase::Halt, 1.0);
     stage.kick(0.0, 0.0);
     stage.run(120.0);

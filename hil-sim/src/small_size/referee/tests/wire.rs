@@ -74,9 +74,7 @@ fn trap_03_the_designated_position_is_sent_in_every_command_unless_asked_otherwi
 fn the_position_is_in_millimetres_and_always_there_in_a_placement() {
     let mut stage = stage_with(RefereeSettings { position_always: false, ..settings() });
     stage.until(Phase::Kickoff(Colour::Yellow), 30.0);
-    stage.move_ball(at(1.0, 2.9));
-    stage.touch(blue(1));
-    stage.kick(0.0, 5.0);
+    stage.kick_from(at(1.0, 2.9), blue(1), [0.0, 5.0]);
     stage.until(Phase::Stop, 1.0);
     assert_eq!(stage.referee.packet().designated_position, None);
     stage.kick(0.0, 0.0);
@@ -89,9 +87,7 @@ fn the_position_is_in_millimetres_and_always_there_in_a_placement() {
 fn a_goal_is_announced_once_by_the_old_command() {
     let mut stage = in_play();
     stage.put(blue(0), at(4.45, 0.8));
-    stage.move_ball(at(3.0, 0.0));
-    stage.touch(yellow(2));
-    stage.kick(5.0, 0.0);
+    stage.kick_from(at(3.0, 0.0), yellow(2), [5.0, 0.0]);
     stage.run(1.0);
     let goal = sent::Command::GoalYellow as i32;
     let announced: Vec<usize> =

@@ -35,29 +35,19 @@ pub struct Claim {
     pub paper: Judgement,
 }
 
-/// Whether numbers support the claim.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Verdict {
-    /// The numbers support it.
-    Supported,
-    /// The opposite holds, in one point at least.
-    Contradicted,
-    /// The numbers do not decide it.
-    Undecided,
-    /// There are no numbers.
-    Unmeasured,
-}
-
-impl Verdict {
-    /// Its label in files.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Supported => "supported",
-            Self::Contradicted => "contradicted",
-            Self::Undecided => "undecided",
-            Self::Unmeasured => "unmeasured",
-        }
+hil_sim::words! {
+    /// Do numbers bear it out?
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Verdict {
+        /// They do.
+        Supported = "supported",
+        /// They say the opposite, in one point at least.
+        Contradicted = "contradicted",
+        /// They cannot tell.
+        Undecided = "undecided",
+        /// There are none.
+        Unmeasured = "unmeasured",
     }
 }
 
