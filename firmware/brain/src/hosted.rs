@@ -8,7 +8,7 @@ use geometry::{Field, Point};
 use protocol::host::{Command, Directive, Duty, HostMessage};
 use protocol::robot_io::SensorFrame;
 use protocol::{Duration, Instant, RobotId};
-use rules::{Phase, Side};
+use rules::{Phase, Side, contact};
 
 use crate::belief::{Belief, Game};
 use crate::governor::{Hearing, LATENCY_MAX, SILENCE};
@@ -130,7 +130,10 @@ impl Hosted {
     fn watch_touches(&mut self, phase: Phase<Side>, duty: Duty, belief: &Belief) {
         let others_touch = || {
             belief.ball.is_some_and(|ball| {
-                belief.others.iter().any(|other| other.pose.position.distance(ball.position) < TOUCHES_WITHIN)
+                belief
+                    .others
+                    .iter()
+                    .any(|other| other.pose.position.distance(ball.position) < contact::TOUCHES_WITHIN)
             })
         };
         let ours =
@@ -161,8 +164,6 @@ fn gone(belief: &Belief, lay: Point<Field>) -> bool {
     belief.ball.is_none_or(|ball| ball.position.distance(lay) > LEFT)
 }
 
-/// A robot whose centre is this near the ball touches it, m: both radii and the vision's noise.
-const TOUCHES_WITHIN: f32 = 0.125;
 /// The ball has left, m: in play after 0.05 m by the rules, and the mouth that told where it lay errs by a centimetre.
 const LEFT: f32 = 0.06;
 

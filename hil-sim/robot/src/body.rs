@@ -17,6 +17,7 @@ use geometry::{Body, Twist, Vector};
 use motion::omni::Omni;
 use protocol::robot_io::{ActuatorFrame, Health, OmniKick, SensorFrame};
 use protocol::{Duration, Instant, RobotId};
+use rules::RobotSpec;
 use ssl::simulation::{
     MoveCommand, MoveLocalVelocity, RobotCommand, RobotControl, RobotControlResponse, RobotMoveCommand,
 };
@@ -26,10 +27,10 @@ pub const TICK: Duration = Duration::millis(10);
 /// How long the last word on ball contact holds: five responses in a row are lost once in 100,000 at the 10 % loss of
 /// ER-Force's "realistic".
 const CONTACT_HOLDS: Duration = Duration::millis(50);
-/// Of a dribbler's full speed, rpm: what ours and our other simulated robots' turn at; ER-Force's is full at 1432.
-const DRIBBLER_FULL: f32 = 1000.0;
+/// Of a dribbler's full speed, rpm.
+const DRIBBLER_FULL: f32 = RobotSpec::OURS.dribbler.full_rpm;
 /// Of a chip kick, degrees above the ground.
-const CHIP_ANGLE: f32 = 45.0;
+const CHIP_ANGLE: f32 = RobotSpec::OURS.kicker.chip_degrees;
 /// Nobody's simulated kicker is faster, and nobody's robot: what is beyond is a mistake, m/s.
 const SPEED_MAX: f32 = 10.0;
 /// rad/s.

@@ -6,6 +6,7 @@
 
 use geometry::{Attack, Point};
 use protocol::RobotId;
+use rules::RobotSpec;
 
 use super::view::{Robot, View};
 
@@ -65,10 +66,10 @@ pub fn assign<const N: usize>(
 
 /// How much sooner another robot must be there to take over a role, s: the time in which a robot brakes and turns.
 pub const WORTH: f32 = 0.4;
-/// Speed of a robot on its way, m/s: of the 3 m/s and more that teams drive, what is had on average over a few metres.
-const TYPICAL_SPEED: f32 = 2.0;
-/// m/s²: the 3 to 4.7 m/s² that teams accelerate with.
-const TYPICAL_ACCELERATION: f32 = 3.0;
+/// Speed of a robot on its way, m/s.
+const TYPICAL_SPEED: f32 = RobotSpec::OURS.assumed.role.speed;
+/// m/s².
+const TYPICAL_ACCELERATION: f32 = RobotSpec::OURS.assumed.role.acceleration;
 /// Time lost in speeding up and braking, s: v/a with the two above.
 const SPEEDING_UP: f32 = 0.65;
 

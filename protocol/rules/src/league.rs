@@ -13,6 +13,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::limits::{BALL_RADIUS, ROBOT_RADIUS};
 use crate::{AreaForm, FieldSpec};
 
 /// A league's world.
@@ -30,7 +31,7 @@ pub enum League {
 
 /// A robot's footprint.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RobotSpec {
+pub struct Footprint {
     /// Radius of the disc that stands for it, m.
     pub radius: f32,
 }
@@ -130,11 +131,10 @@ impl League {
     }
 
     /// Its robots.
-    pub const fn robot(self) -> RobotSpec {
+    pub const fn robot(self) -> Footprint {
         match self {
-            Self::FourLegged => RobotSpec { radius: 0.12 },
-            // The rules' distances assume 0.09 m.
-            Self::Ssl2013 | Self::DivisionB | Self::DivisionA => RobotSpec { radius: 0.09 },
+            Self::FourLegged => Footprint { radius: 0.12 },
+            Self::Ssl2013 | Self::DivisionB | Self::DivisionA => Footprint { radius: ROBOT_RADIUS },
         }
     }
 
@@ -145,7 +145,7 @@ impl League {
             Self::FourLegged => BallSpec { radius: 0.0425, rolling_deceleration: 0.35 },
             // A golf ball, 43 mm across; ER-Force's rolling deceleration, the middle of what teams measured (0.26–0.5).
             Self::Ssl2013 | Self::DivisionB | Self::DivisionA => {
-                BallSpec { radius: 0.0215, rolling_deceleration: 0.35 }
+                BallSpec { radius: BALL_RADIUS, rolling_deceleration: 0.35 }
             }
         }
     }

@@ -301,8 +301,8 @@ fn is_in_front(robot: &Moved, ball: Point<Field>) -> bool {
     ball.x() > 0.0 && ball.y().abs() <= ball.x()
 }
 
-/// The ball touches a robot's front at 0.095 m (0.073 m to the plate, 0.0215 m of ball), m, with room for noise.
-const TOUCH: f32 = 0.125;
+/// A robot whose centre is this near the ball may have touched it, m.
+const TOUCH: f32 = rules::contact::TOUCHES_WITHIN;
 /// A robot this near can have turned the ball, m: hull, ball, and 7 cm that the robot moved since.
 const REACH: f32 = 0.18;
 /// A contact ends this long after the last glimpse of it, s.

@@ -10,7 +10,7 @@ use motion::avoid::{self, Course, Restraint, Verdict};
 use motion::trajectory::{CalcMotion, FreeLimits, Motion, TurnLimits};
 use protocol::robot_io::OmniKick;
 use protocol::{Duration, Instant};
-use rules::{Duty, FieldSpec, Phase, Side};
+use rules::{Duty, FieldSpec, Phase, RobotSpec, Side};
 
 use super::surroundings::Surroundings;
 use super::{Drive, Manner};
@@ -225,14 +225,12 @@ fn limits(belief: &Belief, drive: &Drive) -> FreeLimits {
     limits.slowed_to(drive.speed.min(stop))
 }
 
-/// What is planned with, free: below what wheels hold (the simulator's 3.5 to 5.5 m/s²), so that a plan can be kept.
-pub const LIMITS: FreeLimits = FreeLimits { speed: 3.0, acceleration: 3.0, braking: 3.5 };
-/// With the ball on the dribbler, which pulls it with some 6 m/s² and holds it aside with 4: it brakes a ball that it caught on the
-/// run before the rules' metre is over (2.2 m/s in 0.97 m), and backs up no harder than the roller follows.
-const HOLDING: FreeLimits = FreeLimits { speed: 1.5, acceleration: 1.8, braking: 2.5 };
-const TURN: TurnLimits = TurnLimits { rate: 8.0, acceleration: 30.0 };
-/// ω² · 95 mm stays below 1.2 m/s².
-const HOLDING_TURN: TurnLimits = TurnLimits { rate: 3.5, acceleration: 12.0 };
+/// What is planned with, free.
+pub const LIMITS: FreeLimits = FreeLimits::of(&RobotSpec::OURS.plan);
+/// With the ball on the dribbler.
+const HOLDING: FreeLimits = FreeLimits::of(&RobotSpec::OURS.plan_holding);
+const TURN: TurnLimits = TurnLimits::of(&RobotSpec::OURS.turn);
+const HOLDING_TURN: TurnLimits = TurnLimits::of(&RobotSpec::OURS.turn_holding);
 /// The last bit of a turn while a ball is placed, 1/s: orders that arrive 0.1 s late make a faster one swing about its goal.
 const SETTLES: f32 = 5.0;
 /// Below the governor's limit in STOP, m/s: it shall not need to say anything.

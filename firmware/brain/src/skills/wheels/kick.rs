@@ -7,6 +7,7 @@ use geometry::{Field, Point, Vector};
 use motion::ball::BallModel;
 use protocol::robot_io::OmniKick;
 use rules::Phase;
+use rules::limits::ROBOT_RADIUS;
 
 use crate::belief::Belief;
 use crate::body::Intent;
@@ -91,7 +92,7 @@ fn sideways(belief: &Belief) -> f32 {
 const LIES: f32 = 0.25;
 /// From a ball to the centre of who lines up behind it, m (`get_ball`); and two bodies side by side.
 const LINES_UP: f32 = 0.165;
-const BODIES: f32 = 0.18;
+const BODIES: f32 = 2.0 * ROBOT_RADIUS;
 /// How fast a robot goes in for a kick, m/s.
 const GO_IN: f32 = 0.35;
 /// This near the ball it must look right before it goes on, m.
