@@ -23,6 +23,7 @@ use geometry::Pose;
 use protocol::{Instant, RobotId};
 use rules::{Colour, League};
 use ssl::Message;
+use ssl::net::addresses;
 use ssl::simulation::{
     RobotControl, RobotControlResponse, SimulationSyncRequest, SimulationSyncResponse, SimulatorCommand,
     SimulatorResponse,
@@ -79,10 +80,10 @@ impl Port {
     /// Its number.
     pub const fn number(self) -> u16 {
         match self {
-            Self::Simulator => 10300,
-            Self::Team(Colour::Blue) => 10301,
-            Self::Team(Colour::Yellow) => 10302,
-            Self::Legacy => 20011,
+            Self::Simulator => addresses::SIMULATOR_PORT,
+            Self::Team(Colour::Blue) => addresses::ROBOTS_BLUE_PORT,
+            Self::Team(Colour::Yellow) => addresses::ROBOTS_YELLOW_PORT,
+            Self::Legacy => addresses::GRSIM_PORT,
         }
     }
 }
@@ -367,7 +368,7 @@ pub const SPEED_MAX: f32 = 1000.0;
 /// s: the longest synchronous step.
 pub const SYNC_MAX: f32 = 10.0;
 /// Where simulators send vision by default, so as not to disturb a tournament's 10006.
-pub const VISION_PORT: u16 = 10020;
+pub const VISION_PORT: u16 = addresses::VISION_SIMULATED.port();
 /// µs in a step.
 const STEP_US: f32 = 1000.0;
 /// Simulated µs that are caught up at once after a pause of the caller; what is beyond is skipped.

@@ -7,7 +7,7 @@ use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
 use std::time::Duration;
 
 use super::error::LOOPBACK_MEND;
-use super::{Interfaces, NetError, Receiver, Sender, interfaces};
+use super::{Interfaces, NetError, Receiver, Sender, addresses, interfaces};
 
 /// What a packet sent by loopback met.
 #[derive(Debug)]
@@ -89,4 +89,4 @@ fn send_and_wait(group: Ipv4Addr, wait: Duration) -> Result<bool, NetError> {
 const PROBE: &[u8] = b"onetwo: does loopback carry multicast?";
 
 /// Any; nothing is sent to it.
-const PROBE_PORT: u16 = 10006;
+const PROBE_PORT: u16 = addresses::VISION.port();
