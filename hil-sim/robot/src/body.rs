@@ -15,7 +15,7 @@
 
 use geometry::{Body, Twist, Vector};
 use motion::omni::Omni;
-use protocol::robot_io::{ActuatorFrame, Health, OmniKick, SensorFrame};
+use protocol::robot_io::{ActuatorFrame, Health, OmniKick, SensorFrame, WHEELED_STEP};
 use protocol::{Duration, Instant, RobotId};
 use rules::RobotSpec;
 use ssl::simulation::{
@@ -23,7 +23,7 @@ use ssl::simulation::{
 };
 
 /// Between two commands, and between two pictures of the senses.
-pub const TICK: Duration = Duration::millis(10);
+pub const TICK: Duration = WHEELED_STEP;
 /// How long the last word on ball contact holds: five responses in a row are lost once in 100,000 at the 10 % loss of
 /// ER-Force's "realistic".
 const CONTACT_HOLDS: Duration = Duration::millis(50);

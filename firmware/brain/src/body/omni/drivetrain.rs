@@ -8,8 +8,8 @@
 use geometry::{Angle, Body, Field, Point, Twist, Vector, math};
 use motion::avoid::{self, Course, Restraint, Verdict};
 use motion::trajectory::{CalcMotion, FreeLimits, Motion, TurnLimits};
-use protocol::robot_io::OmniKick;
-use protocol::{Duration, Instant};
+use protocol::Instant;
+use protocol::robot_io::{OmniKick, WHEELED_STEP};
 use rules::{Duty, FieldSpec, Phase, RobotSpec, Side};
 
 use super::surroundings::Surroundings;
@@ -44,7 +44,7 @@ struct UnderWay {
 impl Drivetrain {
     /// What the body shall do for `intent`.
     pub fn actuate(&mut self, now: Instant, belief: &Belief, intent: Intent) -> Wanted {
-        let since = self.stepped.map_or(STEP, |last| now.since(last));
+        let since = self.stepped.map_or(WHEELED_STEP, |last| now.since(last));
         let step = since.as_secs_f32().clamp(STEP_LEAST, STEP_MOST);
         (self.stepped, self.step) = (Some(now), step);
         if (self.velocity - belief.velocity).norm() > ASTRAY {
@@ -245,7 +245,6 @@ const FACED_RATE: f32 = 0.2;
 const ASTRAY: f32 = 0.6;
 /// The same for turning, rad/s.
 const ASTRAY_TURN: f32 = 3.0;
-/// A wheeled robot's step, s (docs/architecture.md §2.3), and what is taken for one.
-const STEP: Duration = Duration::millis(10);
+/// What is taken for a step, s.
 const STEP_LEAST: f32 = 0.001;
 const STEP_MOST: f32 = 0.03;
