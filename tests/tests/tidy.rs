@@ -4,6 +4,9 @@
 //! The rules are docs/architecture.md §1.2, §2.4: shared crates give the same bits everywhere, allocate
 //! nothing and do no I/O; who depends on whom has one direction; and nothing half-done stays behind.
 
+#[path = "tidy/facts.rs"]
+mod facts;
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use match_tests::workspace::{Finding, Manifest, Source, members, root, rust_sources, text_sources};
