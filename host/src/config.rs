@@ -33,6 +33,7 @@ use foreign::excerpt;
 use protocol::RobotId;
 use rules::{Colour, League};
 use serde::Deserialize;
+use ssl::net::addresses;
 
 use crate::referee::{OnSilence, SourcePin};
 
@@ -257,11 +258,11 @@ impl TeamSettings {
             robots: RobotLink::parse(self.robots.as_deref().unwrap_or("sim://127.0.0.1"))?,
             key_file: self.key_file,
             insecure_zero_key: self.insecure_zero_key.unwrap_or(false),
-            vision: self.vision.unwrap_or_else(|| SocketAddr::from(([224, 5, 23, 2], 10_006))),
-            referee: self.referee.unwrap_or_else(|| SocketAddr::from(([224, 5, 23, 1], 10_003))),
+            vision: self.vision.unwrap_or_else(|| addresses::VISION.into()),
+            referee: self.referee.unwrap_or_else(|| addresses::REFEREE.into()),
             referee_source: self.referee_source.as_deref().map(pin).transpose()?,
             referee_silence: self.referee_silence.as_deref().map_or(Ok(OnSilence::default()), on_silence)?,
-            tracker: self.tracker.unwrap_or_else(|| SocketAddr::from(([224, 5, 23, 2], 10_010))),
+            tracker: self.tracker.unwrap_or_else(|| addresses::TRACKER.into()),
             game_controller: self.game_controller,
             kick,
             roll: self.ball.roll,

@@ -14,7 +14,7 @@ use geometry::{GoalEnd, Point};
 use protocol::frame::TeamKey;
 use protocol::host::{Command, Condition, Directive, Duty, Telemetry};
 use protocol::link::Packet;
-use protocol::team::{Beacon, Progress};
+use protocol::team::{Beacon, PRESENCE_LEASE, Progress};
 use protocol::{Duration, Instant, RobotId, TeamId};
 use rules::{Colour, FieldSpec, League, Limits, Phase};
 use ssl::Message;
@@ -382,7 +382,7 @@ impl Host {
             let part =
                 beacon.cycle.as_ref().and_then(|cycle| cycle.play()).and_then(|play| play.part_of(robot));
             let busy = !matches!(beacon.progress, Progress::WaitEnd { .. } | Progress::Idle);
-            if now.since(*heard) < BEACON_LEASE && part.is_some() && busy {
+            if now.since(*heard) < PRESENCE_LEASE && part.is_some() && busy {
                 playing.insert(robot);
             }
         }
@@ -396,7 +396,7 @@ impl Host {
         }
         let fresh = RobotId::all().filter_map(|robot| {
             let (heard, beacon) = self.robots[robot.index()].beacon.as_ref()?;
-            (now.since(*heard) < BEACON_LEASE).then_some((robot, beacon))
+            (now.since(*heard) < PRESENCE_LEASE).then_some((robot, beacon))
         });
         let told: heapless::Vec<_, { RobotId::COUNT }> = fresh.collect();
         proposal(&self.cases, &told, flip)
@@ -424,8 +424,6 @@ const ROLL_CHANGES: f32 = 0.05;
 const PLAINLY: Duration = Duration::millis(120);
 /// The tracker's confidence in a ball that it has followed for a tenth of a second.
 const SURE: f32 = 0.6;
-/// Time for which robots count each other as present after a beacon.
-const BEACON_LEASE: Duration = Duration::millis(400);
 
 #[cfg(test)]
 mod tests;

@@ -9,7 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::Duration;
 
-/// Most opponents a robot can detect at once: a whole team of the largest league.
+/// A wheeled brain steps this often, and gets a sensor frame (docs/architecture.md §2.3).
+pub const WHEELED_STEP: Duration = Duration::millis(10);
+/// Opponents a robot can see at once: a whole team of the largest league.
 pub const OPPONENTS_MAX: usize = 11;
 
 /// Measurements of a robot at one moment.

@@ -11,7 +11,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::host::Telemetry;
 use crate::quantized::{WirePoint, WirePose};
-use crate::{CaseId, CycleId, RobotId};
+use crate::{CaseId, CycleId, Duration, RobotId};
+
+/// A robot is present for this long after its last beacon (docs/architecture.md §5.1): eight beacons of 20 Hz, so that a lost
+/// one is no absence. Robots and host hold to it.
+pub const PRESENCE_LEASE: Duration = Duration::millis(400);
 
 /// Robots of a team that can take part in one case (paper §2: n ≤ 4).
 pub const CASE_ROBOTS_MAX: usize = 4;

@@ -5,6 +5,9 @@
 //! allocate nothing and do no I/O; dependencies between crates have one direction; and nothing unfinished is
 //! left behind.
 
+#[path = "tidy/facts.rs"]
+mod facts;
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use match_tests::workspace::{Finding, Manifest, Source, members, root, rust_sources, text_sources};

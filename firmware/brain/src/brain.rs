@@ -10,7 +10,7 @@ mod tell;
 use casebase::{CaseBase, Problem};
 use protocol::host::HostMessage;
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
-use protocol::team::TeamMessage;
+use protocol::team::{PRESENCE_LEASE, TeamMessage};
 use protocol::{CycleId, Duration, Instant, RobotId};
 
 use crate::belief::Belief;
@@ -20,7 +20,7 @@ use crate::directive::Errand;
 use crate::execution::Execution;
 use crate::governor::Ruling;
 use crate::hosted::Hosted;
-use crate::mates::{Mates, PRESENCE_LEASE};
+use crate::mates::Mates;
 use crate::reactive::Reactive;
 use crate::team::monitor::Monitor;
 use crate::team::{Cycle, retrieval};

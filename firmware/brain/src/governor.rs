@@ -19,7 +19,7 @@
 use geometry::{Body, Twist, Vector, math};
 use protocol::robot_io::{Health, OmniKick};
 use protocol::{Duration, Instant};
-use rules::{League, Phase, Side};
+use rules::{League, Phase, RobotSpec, Side};
 
 /// Motion, dribbler and kick that the brain wants for the coming step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -293,13 +293,9 @@ impl Governor {
     }
 }
 
-/// The fastest ball a robot of that league kicks, m/s: the rules' 6.5 (8 in 2013, paper 2 §1) less 11 %, as a
-/// kicker may give 10 % more than it is ordered (the worlds' spread; docs/fields.md).
+/// The fastest ball a robot of that league kicks, m/s.
 pub fn ball_speed(league: League) -> f32 {
-    match league {
-        League::Ssl2013 => 7.1,
-        League::FourLegged | League::DivisionB | League::DivisionA => 5.8,
-    }
+    RobotSpec::OURS.kicker.fastest_in(league)
 }
 
 /// Whether we may kick a ball in that phase.
@@ -350,15 +346,15 @@ const ARM_AFTER: Duration = Duration::millis(500);
 /// Speed limit of a robot in STOP, m/s: 1.5 by the rules, less wheels that run 10 % fast and the vision's
 /// noise.
 pub const STOP_SPEED: f32 = 1.3;
-/// Speed limit, m/s (an estimate; the fastest teams publish 4).
-const SPEED_MAX: f32 = 4.0;
-/// Largest turning rate, rad/s (an estimate).
-const TURN_MAX: f32 = 20.0;
-/// Deceleration on the field surface, m/s²: about what wheels hold (the simulator's 5.5, less a tenth).
-pub const BRAKE: f32 = 5.0;
+/// No robot is faster, m/s.
+const SPEED_MAX: f32 = RobotSpec::OURS.governor.speed;
+/// Nor turns faster, rad/s.
+const TURN_MAX: f32 = RobotSpec::OURS.governor.turn;
+/// Deceleration on the carpet, m/s².
+pub const BRAKE: f32 = RobotSpec::OURS.governor.brake;
 /// The same for turning, rad/s².
-const BRAKE_TURN: f32 = 40.0;
-/// A robot that turns this fast is out of control, rad/s (TIGERs' robots use the same).
+const BRAKE_TURN: f32 = RobotSpec::OURS.governor.brake_turn;
+/// A robot that turns this fast has gone mad, rad/s (TIGERs' robots use the same).
 const SPINNING: f32 = 30.0;
 /// The battery is too low to play, V: four lithium cells of 3.5 V, where teams change them.
 const BATTERY_LOW: f32 = 14.0;

@@ -9,7 +9,7 @@ use geometry::{Field, Point};
 use protocol::host::{Command, Directive, Duty, HostMessage};
 use protocol::robot_io::SensorFrame;
 use protocol::{Duration, Instant, RobotId};
-use rules::{Phase, Side};
+use rules::{Phase, Side, contact};
 
 use crate::belief::{Belief, Game};
 use crate::governor::{Hearing, LATENCY_MAX, SILENCE};
@@ -132,7 +132,10 @@ impl Hosted {
     fn watch_touches(&mut self, phase: Phase<Side>, duty: Duty, belief: &Belief) {
         let others_touch = || {
             belief.ball.is_some_and(|ball| {
-                belief.others.iter().any(|other| other.pose.position.distance(ball.position) < TOUCHES_WITHIN)
+                belief
+                    .others
+                    .iter()
+                    .any(|other| other.pose.position.distance(ball.position) < contact::TOUCHES_WITHIN)
             })
         };
         let ours =
@@ -164,10 +167,7 @@ fn gone(belief: &Belief, lay: Point<Field>) -> bool {
     belief.ball.is_none_or(|ball| ball.position.distance(lay) > LEFT)
 }
 
-/// A robot whose centre is this near the ball touches it, m: both radii and the vision's noise.
-const TOUCHES_WITHIN: f32 = 0.125;
-/// Distance after which the ball has left, m: in play after 0.05 m by the rules, and the break-beam position
-/// of the ball errs by a centimetre.
+/// The ball has left, m: in play after 0.05 m by the rules, and the mouth that told where it lay errs by a centimetre.
 const LEFT: f32 = 0.06;
 
 #[cfg(test)]

@@ -1,11 +1,8 @@
 //! `mates`: the newest beacon of every teammate, with a lease.
 
 use geometry::{Field, Pose};
-use protocol::team::{Beacon, CycleState, Progress, Status};
-use protocol::{CycleId, Duration, Instant, RobotId};
-
-/// Silence after which a robot counts as absent (docs/architecture.md §5.1).
-pub const PRESENCE_LEASE: Duration = Duration::millis(400);
+use protocol::team::{Beacon, CycleState, PRESENCE_LEASE, Progress, Status};
+use protocol::{CycleId, Instant, RobotId};
 
 /// A teammate's newest beacon.
 #[derive(Clone, Debug)]

@@ -7,6 +7,7 @@
 //! then singly, without planning a motion to them; the result equals that of the search through all of them.
 
 use geometry::{Point, Vector};
+use rules::RobotSpec;
 
 use crate::ball::BallPath;
 use crate::trajectory::{CalcMotion, Motion};
@@ -75,10 +76,9 @@ impl<F> Meeting<F> {
     }
 }
 
-/// Distance from the robot's centre to the ball's, when it kicks, m: the ball enters the dribbler opening by
-/// 10 mm.
+/// From the robot's centre to the ball's, when it kicks, m: the dribbler's opening lets the ball in (`HullSpec::opening`).
 pub fn kick_reach(robot_radius: f32, ball_radius: f32) -> f32 {
-    robot_radius + ball_radius - MOUTH_DEPTH
+    robot_radius + ball_radius - RobotSpec::OURS.hull.opening
 }
 
 /// The robot's place for a kick of a ball at `ball` to `target`: `reach` behind it. If ball and target
@@ -256,8 +256,6 @@ const ROUNDING: f32 = 1e-5;
 const PROBES: u32 = 6;
 /// Longest prediction, s: a kick of 6.5 m/s has left the field by then.
 pub const HORIZON: f32 = 5.0;
-/// Depth of the dribbler opening, m (paper 2's robots; docs/papers.md D2).
-const MOUTH_DEPTH: f32 = 0.01;
 
 #[cfg(test)]
 mod tests {

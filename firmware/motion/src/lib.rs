@@ -11,9 +11,10 @@
 //!
 //! ```
 //! use geometry::{Field, Point, Vector};
+//! use rules::RobotSpec;
 //! use motion::trajectory::{CalcMotion, FreeLimits, Motion};
 //!
-//! let robot = FreeLimits { speed: 3.0, acceleration: 3.5, braking: 3.5 };
+//! let robot = FreeLimits::of(&RobotSpec::OURS.plan);
 //! let motion = robot.plan(Point::<Field>::new(0.0, 0.0), Vector::new(0.0, 1.0), Point::new(2.0, 0.5));
 //! // What to drive at the end of a control step of 10 ms, and when it will be there.
 //! let (next, arrival) = (motion.at(0.01), motion.duration());

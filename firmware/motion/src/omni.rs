@@ -6,6 +6,7 @@
 //! counter-clockwise.
 
 use geometry::{Angle, Body, Twist, Vector};
+use rules::RobotSpec;
 
 /// Rim speeds in the order of the wire, m/s.
 pub type Rims = [f32; 4];
@@ -20,10 +21,10 @@ pub struct Wheels {
 }
 
 impl Default for Wheels {
-    /// A usual robot: 60° in front to make room for the dribbler, 135° behind; wheels just within the 90 mm
-    /// of the hull.
+    /// Our robots' (`RobotSpec::OURS.wheels`).
     fn default() -> Self {
-        Self { angles: [-60.0, -135.0, 135.0, 60.0].map(Angle::degrees), distance: 0.081 }
+        let wheels = RobotSpec::OURS.wheels;
+        Self { angles: wheels.degrees.map(Angle::degrees), distance: wheels.distance }
     }
 }
 

@@ -16,22 +16,23 @@
 
 use geometry::{Body, Twist, Vector};
 use motion::omni::Omni;
-use protocol::robot_io::{ActuatorFrame, Health, OmniKick, SensorFrame};
+use protocol::robot_io::{ActuatorFrame, Health, OmniKick, SensorFrame, WHEELED_STEP};
 use protocol::{Duration, Instant, RobotId};
+use rules::RobotSpec;
 use ssl::simulation::{
     MoveCommand, MoveLocalVelocity, RobotCommand, RobotControl, RobotControlResponse, RobotMoveCommand,
 };
 
-/// Period of commands, and of sensor frames.
-pub const TICK: Duration = Duration::millis(10);
-/// How long the last response on ball contact holds: five responses in a row are lost once in 100,000 at the
-/// 10 % loss of ER-Force's "realistic".
+/// Between two commands, and between two pictures of the senses.
+pub const TICK: Duration = WHEELED_STEP;
+/// How long the last word on ball contact holds: five responses in a row are lost once in 100,000 at the 10 % loss of
+/// ER-Force's "realistic".
 const CONTACT_HOLDS: Duration = Duration::millis(50);
-/// Full speed of a dribbler, rpm: that of our simulated robots; ER-Force's is full at 1432.
-const DRIBBLER_FULL: f32 = 1000.0;
-/// Angle of a chip kick, degrees above the ground.
-const CHIP_ANGLE: f32 = 45.0;
-/// No known kicker, simulated or real, is faster: a larger value is an error, m/s.
+/// Of a dribbler's full speed, rpm.
+const DRIBBLER_FULL: f32 = RobotSpec::OURS.dribbler.full_rpm;
+/// Of a chip kick, degrees above the ground.
+const CHIP_ANGLE: f32 = RobotSpec::OURS.kicker.chip_degrees;
+/// Nobody's simulated kicker is faster, and nobody's robot: what is beyond is a mistake, m/s.
 const SPEED_MAX: f32 = 10.0;
 /// Largest turning rate, rad/s.
 const TURN_MAX: f32 = 30.0;

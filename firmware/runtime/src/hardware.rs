@@ -19,7 +19,7 @@ use embassy_sync::signal::Signal;
 use embassy_time::{Duration, Ticker, Timer};
 use geometry::{Body, Twist};
 use motion::omni::Omni;
-use protocol::robot_io::{Health, OmniKick, SensorFrame};
+use protocol::robot_io::{Health, OmniKick, SensorFrame, WHEELED_STEP};
 
 use crate::kicker::{Interlock, KickerAct};
 use crate::mailboxes::{Arrival, Mailboxes};
@@ -150,9 +150,9 @@ pub async fn watchdog<D: Dog>(mut dog: D, boxes: &Mailboxes) -> ! {
     }
 }
 
-/// Period of the brain on wheels (docs/architecture.md §2.3).
-const BRAIN_PERIOD: Duration = Duration::from_millis(10);
-/// Silence of the control loop for ten of its steps.
+/// The brain's pace on wheels (docs/architecture.md §2.3).
+const BRAIN_PERIOD: Duration = Duration::from_micros(WHEELED_STEP.0);
+/// The control loop has said nothing for ten of its steps.
 const SILENT: Duration = Duration::from_millis(10);
 /// Period in which a radio that receives nothing reports that it listens.
 const LISTENS: Duration = Duration::from_millis(10);

@@ -10,6 +10,7 @@
 
 use protocol::robot_io::OmniKick;
 use protocol::{Duration, Instant};
+use rules::{KickerSpec, RobotSpec};
 
 /// Output of the kicker's board until the next step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,16 +96,17 @@ fn pulse(speed: f32, table: &[(f32, u64)]) -> Option<Duration> {
     Some(Duration(last.1))
 }
 
-/// Ball speed, m/s, and the pulse for it, µs: estimates that stand in for a robot's own calibration.
-const FLAT_PULSE: &[(f32, u64)] = &[(2.0, 1_500), (4.0, 2_600), (6.5, 4_500)];
-/// The same for the chip kicker.
-const CHIP_PULSE: &[(f32, u64)] = &[(2.0, 2_000), (4.0, 3_800), (6.0, 6_000)];
-/// Voltage of a full capacitor, V (teams use 180 to 240).
-pub const FULL_VOLTS: f32 = 200.0;
-/// Voltage below which it is safe to touch, V (extra-low voltage is 60 V of direct current; half of it).
-const EMPTY_VOLTS: f32 = 30.0;
-/// Pause before the next kick: the plunger must return.
-const PAUSE: Duration = Duration::millis(500);
+const SPEC: KickerSpec = RobotSpec::OURS.kicker;
+/// Ball speed, m/s, and the pulse for it, µs.
+const FLAT_PULSE: &[(f32, u64)] = SPEC.flat_pulses;
+/// The same of the chip kicker.
+const CHIP_PULSE: &[(f32, u64)] = SPEC.chip_pulses;
+/// The capacitor is full, V.
+pub const FULL_VOLTS: f32 = SPEC.full_volts;
+/// It is safe to touch below this, V.
+const EMPTY_VOLTS: f32 = SPEC.empty_volts;
+/// No second kick before this.
+const PAUSE: Duration = Duration::millis(SPEC.pause_ms);
 
 #[cfg(test)]
 mod tests {

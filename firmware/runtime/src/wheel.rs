@@ -4,6 +4,7 @@
 
 use protocol::robot_io::{ActuatorFrame, OmniKick};
 use protocol::{Duration, Instant};
+use rules::{RobotSpec, WheelSpec};
 
 /// Number of wheels of a robot.
 pub const WHEELS: usize = 4;
@@ -104,15 +105,17 @@ fn is_finite(wheels: &[f32; WHEELS], dribbler: f32) -> bool {
 /// An order older than this is invalid: five steps of the brain. The governor brakes for a silent host, this
 /// loop for a silent brain.
 pub const ORDER_STALE: Duration = Duration::millis(50);
-/// Decrease of a rim's speed in a step, m/s: the governor's 5 m/s².
-const BRAKE_A_STEP: f32 = 0.005;
-/// Duty cycle for a rim speed, s/m: a rim runs 6 m/s free at full voltage (the simulator's; to be measured on
-/// a robot).
-const FEED_FORWARD: f32 = 1.0 / 6.0;
-/// Duty cycle for an error, s/m: a tenth of full voltage for 0.25 m/s (an estimate, to be tuned on a robot).
-const PROPORTIONAL: f32 = 0.4;
-/// Duty cycle that an error of 1 m/s adds in a step: 6 s/m a second (an estimate, likewise).
-const INTEGRAL_A_STEP: f32 = 0.006;
+const SPEC: WheelSpec = RobotSpec::OURS.wheels;
+/// Steps in a second.
+const STEPS: f32 = (1_000_000 / CONTROL_PERIOD.0) as f32;
+/// By so much a rim slows down in a step, m/s: as the governor brakes.
+const BRAKE_A_STEP: f32 = RobotSpec::OURS.governor.brake / STEPS;
+/// Duty for a rim speed, s/m.
+const FEED_FORWARD: f32 = 1.0 / SPEC.free_speed;
+/// Duty for an error, s/m.
+const PROPORTIONAL: f32 = SPEC.proportional;
+/// Duty that an error of 1 m/s adds in a step.
+const INTEGRAL_A_STEP: f32 = SPEC.integral / STEPS;
 
 #[cfg(test)]
 mod tests {

@@ -21,7 +21,7 @@ use geometry::{Attack, Point};
 use motion::ball::BallModel;
 use motion::ball::chip::ChipModel;
 use protocol::{Duration, Instant, RobotId};
-use rules::{League, Phase, Side};
+use rules::{League, Phase, Side, contact};
 
 use super::bench::Bench;
 use super::opponents::{Rival, Team};
@@ -294,8 +294,8 @@ impl Coach {
 
 /// Most robots that get a place in order: all field players, as behind a penalty of the opponents.
 const OTHERS: usize = 10;
-/// A robot's centre this near the ball touches it, m: radii of body and ball, and 0.015 m.
-const TOUCHING: f32 = 0.126;
+/// A robot's centre this near the ball touches it, m.
+const TOUCHING: f32 = contact::COACH_TOUCHES_WITHIN;
 /// A pass is not waited for longer: 5 m take 2.5 s.
 const PASS_LASTS: Duration = Duration::millis(3000);
 /// Before this its speed is not used: the ball is known to have moved, but not yet how fast.

@@ -7,6 +7,7 @@
 
 use geometry::{Attack, Point};
 use protocol::RobotId;
+use rules::RobotSpec;
 
 use super::view::{Robot, View};
 
@@ -70,12 +71,11 @@ pub fn assign<const N: usize>(
 /// Time by which another robot must be there sooner to take over a role, s: the time in which a robot brakes
 /// and turns.
 pub const WORTH: f32 = 0.4;
-/// Mean speed of a robot on its path, m/s: teams drive 3 m/s and more, of which this is the average over a
-/// few metres.
-const TYPICAL_SPEED: f32 = 2.0;
-/// Acceleration of teams' robots, m/s²: 3 to 4.7.
-const TYPICAL_ACCELERATION: f32 = 3.0;
-/// Time lost by acceleration and braking, s: v/a with the two above.
+/// Speed of a robot on its way, m/s.
+const TYPICAL_SPEED: f32 = RobotSpec::OURS.assumed.role.speed;
+/// m/s².
+const TYPICAL_ACCELERATION: f32 = RobotSpec::OURS.assumed.role.acceleration;
+/// Time lost in speeding up and braking, s: v/a with the two above.
 const SPEEDING_UP: f32 = 0.65;
 
 #[cfg(test)]

@@ -14,6 +14,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::limits::{BALL_RADIUS, ROBOT_RADIUS};
 use crate::{AreaForm, FieldSpec};
 
 /// A league.
@@ -31,8 +32,8 @@ pub enum League {
 
 /// A robot's footprint.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RobotSpec {
-    /// Radius of the disc that models it, m.
+pub struct Footprint {
+    /// Radius of the disc that stands for it, m.
     pub radius: f32,
 }
 
@@ -130,12 +131,11 @@ impl League {
         }
     }
 
-    /// Robots of the league.
-    pub const fn robot(self) -> RobotSpec {
+    /// Its robots.
+    pub const fn robot(self) -> Footprint {
         match self {
-            Self::FourLegged => RobotSpec { radius: 0.12 },
-            // The rules' distances assume 0.09 m.
-            Self::Ssl2013 | Self::DivisionB | Self::DivisionA => RobotSpec { radius: 0.09 },
+            Self::FourLegged => Footprint { radius: 0.12 },
+            Self::Ssl2013 | Self::DivisionB | Self::DivisionA => Footprint { radius: ROBOT_RADIUS },
         }
     }
 
@@ -148,7 +148,7 @@ impl League {
             // A golf ball, 43 mm across; ER-Force's rolling deceleration, the middle of what teams measured
             // (0.26–0.5).
             Self::Ssl2013 | Self::DivisionB | Self::DivisionA => {
-                BallSpec { radius: 0.0215, rolling_deceleration: 0.35 }
+                BallSpec { radius: BALL_RADIUS, rolling_deceleration: 0.35 }
             }
         }
     }

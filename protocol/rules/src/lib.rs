@@ -1,9 +1,9 @@
 //! `rules`: rules of the leagues. Dimensions, limits, keep-out areas, restarts, offences and the state of a
 //! game, SI, field frame.
 //!
-//! [`FieldSpec`] and [`League`] are data; [`limits`] are the rules' numbers; [`keep_out`] computes where a
-//! robot must not be, [`restart`] where the ball goes, [`legality`] what is an offence, [`state`] what a
-//! referee's command means.
+//! [`FieldSpec`] and [`League`] are data; [`limits`] are the rules' numbers; [`RobotSpec`] holds
+//! every number of our own robots, [`contact`] how near a robot is to a ball that it touches; [`keep_out`] says where a robot must not be,
+//! [`restart`] where the ball goes, [`legality`] what is an offence, [`state`] what a referee's command means.
 //!
 //! **Invariants.** No I/O, no clock, no allocation. One source per fact: physics, brains, referee and
 //! renderings read the dimensions here.
@@ -13,6 +13,7 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod contact;
 mod field;
 mod game;
 pub mod keep_out;
@@ -20,9 +21,14 @@ mod league;
 pub mod legality;
 pub mod limits;
 pub mod restart;
+mod robot;
 pub mod state;
 
 pub use field::{AREA_SHAPES_MAX, AreaForm, FieldFault, FieldSpec};
 pub use game::{Colour, Duty, Phase, Side};
-pub use league::{BallSpec, League, RobotSpec};
+pub use league::{BallSpec, Footprint, League};
 pub use limits::Limits;
+pub use robot::{
+    AssumedSpec, DribblerSpec, DriveSpec, GovernorSpec, HullSpec, KickerSpec, RobotSpec, TurnSpec,
+    TypicalSpec, WheelSpec,
+};

@@ -2,14 +2,15 @@
 //! docs/architecture.md §5).
 
 use casebase::CaseRobot;
-use protocol::team::{AbortReason, Beacon, Closure, CycleState, Decision, Play, Progress, Status};
+use protocol::team::{
+    AbortReason, Beacon, Closure, CycleState, Decision, PRESENCE_LEASE, Play, Progress, Status,
+};
 use protocol::{Duration, Instant, RobotId};
 
 use super::Brain;
 use crate::config::Approach;
 use crate::estimate;
 use crate::execution::{Execution, Scene};
-use crate::mates::PRESENCE_LEASE;
 use crate::team::cycle::News;
 use crate::team::{election, hybrid, retrieval};
 use crate::timer::Timer;

@@ -6,6 +6,7 @@
 //! for, as without drag.
 
 use geometry::{Point, Vector, math};
+use rules::RobotSpec;
 
 use super::balance::{Balance, balance};
 use super::{CalcMotion, Motion, State, Utmost, out_of_reach, somewhere, usable};
@@ -21,9 +22,10 @@ pub struct DragLimits {
 }
 
 impl Default for DragLimits {
-    /// As [`super::FreeLimits`]: 3.0 m/s, 3.5 m/s².
+    /// As [`super::FreeLimits`].
     fn default() -> Self {
-        Self { speed: 3.0, acceleration: 3.5 }
+        let drive = RobotSpec::OURS.assumed.pass;
+        Self { speed: drive.speed, acceleration: drive.acceleration }
     }
 }
 

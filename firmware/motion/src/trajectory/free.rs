@@ -2,6 +2,7 @@
 //! SI.
 
 use geometry::{Point, Vector, math};
+use rules::{DriveSpec, RobotSpec};
 
 use super::axis::{AxisLimits, Phases};
 use super::balance::{Balance, balance};
@@ -22,14 +23,18 @@ pub struct FreeLimits {
 }
 
 impl Default for FreeLimits {
-    /// 3.0 m/s and 3.5 m/s² in both directions: the league's 2013 robots exceed 3 m/s (paper 2 §1); no paper
-    /// prints accelerations, 3.5 m/s² lies between published teams' 2 and 4.5.
+    /// What is assumed of any robot of the league (`RobotSpec::OURS.assumed.pass`).
     fn default() -> Self {
-        Self { speed: 3.0, acceleration: 3.5, braking: 3.5 }
+        Self::of(&RobotSpec::OURS.assumed.pass)
     }
 }
 
 impl FreeLimits {
+    /// Of that robot.
+    pub const fn of(drive: &DriveSpec) -> Self {
+        Self { speed: drive.speed, acceleration: drive.acceleration, braking: drive.braking }
+    }
+
     /// The same robot, no faster than `speed`, m/s.
     pub fn slowed_to(self, speed: f32) -> Self {
         Self { speed: math::min(self.speed, speed), ..self }

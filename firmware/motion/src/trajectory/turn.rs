@@ -1,6 +1,7 @@
 //! `turn`: time-optimal turn to a heading. One axis with a wrap; rad, rad/s, rad/s².
 
 use geometry::{Angle, math};
+use rules::{RobotSpec, TurnSpec};
 
 use super::FreeLimits;
 use super::axis::{AxisLimits, Phases};
@@ -15,16 +16,19 @@ pub struct TurnLimits {
 }
 
 impl Default for TurnLimits {
-    /// 6 rad/s of ER-Force's simulated robot (its generation of 2020), and half its 60 rad/s², which wheels
-    /// on a field surface cannot keep.
+    /// What is assumed of any robot of the league (`RobotSpec::OURS.assumed.turn`).
     fn default() -> Self {
-        Self { rate: 6.0, acceleration: 30.0 }
+        Self::of(&RobotSpec::OURS.assumed.turn)
     }
 }
 
 impl TurnLimits {
-    /// Plans from `from`, turning with `rate` rad/s, to standstill at `to`: in the direction that is sooner
-    /// there.
+    /// Of that robot.
+    pub const fn of(turn: &TurnSpec) -> Self {
+        Self { rate: turn.rate, acceleration: turn.acceleration }
+    }
+
+    /// From `from`, turning with `rate` rad/s, to rest at `to`: the way round that is sooner there.
     pub fn plan(&self, from: Angle, rate: f32, to: Angle) -> Turn {
         let (speed, braking) = (self.rate, self.acceleration);
         // False for NaN.

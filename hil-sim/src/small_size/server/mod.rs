@@ -24,6 +24,7 @@ use geometry::Pose;
 use protocol::{Instant, RobotId};
 use rules::{Colour, League};
 use ssl::Message;
+use ssl::net::addresses;
 use ssl::simulation::{
     RobotControl, RobotControlResponse, SimulationSyncRequest, SimulationSyncResponse, SimulatorCommand,
     SimulatorResponse,
@@ -80,10 +81,10 @@ impl Port {
     /// Its port number.
     pub const fn number(self) -> u16 {
         match self {
-            Self::Simulator => 10300,
-            Self::Team(Colour::Blue) => 10301,
-            Self::Team(Colour::Yellow) => 10302,
-            Self::Legacy => 20011,
+            Self::Simulator => addresses::SIMULATOR_PORT,
+            Self::Team(Colour::Blue) => addresses::ROBOTS_BLUE_PORT,
+            Self::Team(Colour::Yellow) => addresses::ROBOTS_YELLOW_PORT,
+            Self::Legacy => addresses::GRSIM_PORT,
         }
     }
 }
@@ -369,9 +370,9 @@ impl Server {
 pub const SPEED_MAX: f32 = 1000.0;
 /// Maximum synchronous step, s.
 pub const SYNC_MAX: f32 = 10.0;
-/// Default port of simulated vision, so as not to disturb a tournament's 10006.
-pub const VISION_PORT: u16 = 10020;
-/// Duration of a step, µs.
+/// Where simulators send vision by default, so as not to disturb a tournament's 10006.
+pub const VISION_PORT: u16 = addresses::VISION_SIMULATED.port();
+/// µs in a step.
 const STEP_US: f32 = 1000.0;
 /// Simulated µs that are simulated at once after a pause of the caller; the remainder is skipped.
 const CATCH_UP: f32 = 250_000.0;

@@ -164,7 +164,7 @@ const LONG: f32 = 2.5;
 const SWING: f32 = 0.087;
 /// Radius of the ball, m (rules).
 const BALL_RADIUS: f32 = rules::limits::BALL_RADIUS;
-const BODY_HEIGHT: f32 = 0.15;
+const BODY_HEIGHT: f32 = rules::limits::ROBOT_HEIGHT;
 
 #[cfg(test)]
 mod tests {

@@ -41,7 +41,7 @@ use side::Team;
 /// Steps of physics in a tick of brains.
 pub const STEPS_A_TICK: u64 = 10;
 /// Length of a tick, µs (docs/architecture.md §2.3).
-pub const TICK_US: u64 = 10_000;
+pub const TICK_US: u64 = protocol::robot_io::WHEELED_STEP.0;
 
 /// An observer of a match.
 pub trait Watcher {

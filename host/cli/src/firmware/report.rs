@@ -5,12 +5,12 @@ use std::fmt::Write as _;
 use std::fs;
 
 use clap::Args;
-use firmware_build::inspect::{Budget, Chip, STACK_BUDGET};
+use firmware_build::inspect::{Budget, Chip, STACK_BUDGET, STEP_BUDGET};
 use firmware_build::{Program, workspace_root};
 
 use super::at;
 use super::failsafe;
-use super::size::{Known, POOL_LEAST, STEP_BUDGET, Share};
+use super::size::{Known, POOL_LEAST, Share};
 use crate::Failure;
 use crate::output::say;
 

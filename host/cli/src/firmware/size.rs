@@ -5,7 +5,7 @@
 use std::fmt::Write as _;
 
 use clap::Args;
-use firmware_build::inspect::{Budget, Chip, Part, STACK_BUDGET, Sizes};
+use firmware_build::inspect::{Budget, Chip, Part, STACK_BUDGET, STEP_BUDGET, Sizes};
 use firmware_build::{Body, Program};
 use serde::Serialize;
 
@@ -210,5 +210,3 @@ fn tell(known: &Known, largest: usize, told: &mut String) {
 
 /// Least size of a static that is listed, bytes: smaller ones are flags and counters.
 pub(super) const POOL_LEAST: u64 = 256;
-/// One brain step on its worst path (docs/architecture.md §9), guest instructions.
-pub(super) const STEP_BUDGET: u32 = 40_000;

@@ -2,11 +2,11 @@
 //! al. 2014 §6).
 
 use host::world::World;
-use rules::{Colour, Phase};
+use rules::{Colour, Phase, contact};
 
-/// A robot whose centre is nearer to the ball than this touches it, m: hull, ball, and 30 mm for noise.
-const TOUCH: f32 = 0.14;
-/// Longest time between two samples that is counted, s: what is longer is a gap.
+/// A robot whose centre is nearer to the ball than this touches it, m.
+const TOUCH: f32 = contact::POSSESSION_WITHIN;
+/// Between two looks no more than this counts, s: what is longer is a gap.
 const GAP_S: f64 = 0.5;
 
 /// Seconds by team: yellow, blue.

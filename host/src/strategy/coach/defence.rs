@@ -3,7 +3,8 @@
 
 use geometry::{Attack, Point};
 use protocol::{Duration, Instant, RobotId};
-use rules::Phase;
+use rules::limits::ROBOT_RADIUS;
+use rules::{Phase, contact};
 
 use super::super::order::{Role, Task, Why};
 use super::super::threat::{self, receiving::comes_at_goal};
@@ -207,11 +208,10 @@ const KEEPERS: f32 = 0.3;
 /// Where a field player lines up for such a ball its centre is this far off our area, m: a body, and the
 /// distance robots keep (`brain`'s surroundings: 0.01 m off the line's middle of 0.01 m).
 const OFF_OUR_AREA: f32 = 0.115;
-/// Nearer than this to our area no field player gets behind the ball or beside it, m.
-const BEHIND_BALL: f32 = 0.09;
-/// A ball this near a robot's centre, m, and this far from its heading, rad, is at its front: radii and
-/// noise.
-const AT_FRONT: f32 = 0.125;
+/// Nearer than this to our area no field player gets behind the ball or beside it, m: a body.
+const BEHIND_BALL: f32 = ROBOT_RADIUS;
+/// A ball this near a robot's centre, m, and this far from its heading, rad, is at its front.
+const AT_FRONT: f32 = contact::TOUCHES_WITHIN;
 const BEFORE_FRONT: f32 = 0.4;
 /// From such a ball to the nearest robot that only defends, m: a robot that lines up is 0.17 m behind it, and
 /// two bodies are 0.18 m.

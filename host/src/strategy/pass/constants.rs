@@ -3,7 +3,7 @@
 
 use geometry::math;
 use motion::trajectory::FreeLimits;
-use rules::League;
+use rules::{League, RobotSpec};
 
 /// Parameters of the conditions c1–c5 and c1'–c4' and of the kicks; [`PassConstants::of`] a league.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,14 +100,14 @@ const TODAY: PassConstants = PassConstants {
     pass_fastest: DIVISION_B_BALL_SPEED * KICK_SHARE,
     pass_slowest: 1.0,
     arrival: 2.0,
-    chip_slope: 1.0,
+    chip_slope: RobotSpec::OURS.kicker.chip_slope,
 };
-/// Assumed limits of any robot of the league: 3 m/s and 3.5 m/s² (`FreeLimits::default`, with its reasons).
-const ROBOT: FreeLimits = FreeLimits { speed: 3.0, acceleration: 3.5, braking: 3.5 };
-/// Ball speed limit, m/s (rules 2026, offences).
+/// What any robot of the league is taken to drive.
+const ROBOT: FreeLimits = FreeLimits::of(&RobotSpec::OURS.assumed.pass);
+/// m/s (rules 2026, offences).
 const DIVISION_B_BALL_SPEED: f32 = 6.5;
-/// Share of the limit that is ordered of a kicker.
-const KICK_SHARE: f32 = 0.96;
+/// Share of the limit that is asked of a kicker.
+const KICK_SHARE: f32 = RobotSpec::OURS.assumed.kick_share;
 
 #[cfg(test)]
 mod tests {

@@ -6,8 +6,8 @@
 
 use geometry::{Field, Point, Vector};
 use protocol::{Duration, Instant, RobotId, Who};
-use rules::limits::{BALL_RADIUS, ROBOT_HEIGHT, ROBOT_RADIUS};
-use rules::{Colour, FieldSpec};
+use rules::limits::{BALL_RADIUS, ROBOT_HEIGHT};
+use rules::{Colour, FieldSpec, contact};
 
 use crate::world::{Ball, World};
 
@@ -245,11 +245,10 @@ impl Flight {
     }
 }
 
-/// A robot's centre this near the ball may touch it, m: both radii, and the joint error of two positions of
-/// vision.
-const TOUCHING: f32 = ROBOT_RADIUS + BALL_RADIUS + 0.02;
-/// At a larger distance from the passer the ball has left it, m.
-const LEFT: f32 = ROBOT_RADIUS + BALL_RADIUS + 0.05;
+/// A robot's centre this near the ball may touch it, m.
+const TOUCHING: f32 = contact::PASS_TOUCHED_WITHIN;
+/// Farther from the passer the ball has left it, m.
+const LEFT: f32 = contact::PASS_LEFT_BEYOND;
 /// … when it is faster than this, m/s: slower than any pass, faster than a ball that is pushed along.
 const KICKED: f32 = 0.8;
 /// A change of velocity that the field surface does not cause between two snapshots, m/s, and as a share of

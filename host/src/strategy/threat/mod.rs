@@ -23,6 +23,7 @@ use core::fmt;
 
 use geometry::{Attack, Point};
 use protocol::RobotId;
+use rules::RobotSpec;
 
 use super::view::{ROBOTS_MAX, RobotSet, View};
 use cover::{Case, Cover};
@@ -72,7 +73,7 @@ pub struct Settings {
     pub open_worth: f32,
     /// Bonus on the time to shoot of a defended opponent, s.
     pub time_worth: f32,
-    /// Acceleration of opponents and our defenders, m/s²: values that teams publish (3 to 4.7).
+    /// How strongly opponents and our defenders speed up, m/s².
     pub acceleration: f32,
     /// Delay from an opponent's start to our robot's, s: camera to wheels are 0.05–0.07 s in the league, a
     /// tick of ours and theirs more.
@@ -105,10 +106,10 @@ impl Default for Settings {
             open_enough: 0.174_532_93,
             open_worth: 0.02,
             time_worth: 0.2,
-            acceleration: 4.0,
+            acceleration: RobotSpec::OURS.assumed.defence_acceleration,
             latency: 0.1,
             clear: 0.25,
-            in_place: 0.09,
+            in_place: RobotSpec::OURS.hull.radius,
             worth: 0.8,
         }
     }

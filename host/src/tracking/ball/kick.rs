@@ -304,10 +304,9 @@ fn is_in_front(robot: &Moved, ball: Point<Field>) -> bool {
     ball.x() > 0.0 && ball.y().abs() <= ball.x()
 }
 
-/// The ball touches a robot's front at 0.095 m (0.073 m to the plate, 0.0215 m of ball), m, with a margin for
-/// noise.
-const TOUCH: f32 = 0.125;
-/// A robot this near can have turned the ball, m: hull, ball, and 7 cm of motion of the robot since.
+/// A robot whose centre is this near the ball may have touched it, m.
+const TOUCH: f32 = rules::contact::TOUCHES_WITHIN;
+/// A robot this near can have turned the ball, m: hull, ball, and 7 cm that the robot moved since.
 const REACH: f32 = 0.18;
 /// A contact ends this long after its last detection, s.
 const CONTACT: f32 = 0.1;

@@ -8,7 +8,7 @@ use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
 use std::time::Duration;
 
 use super::error::LOOPBACK_MEND;
-use super::{Interfaces, NetError, Receiver, Sender, interfaces};
+use super::{Interfaces, NetError, Receiver, Sender, addresses, interfaces};
 
 /// Result of a packet sent by loopback.
 #[derive(Debug)]
@@ -90,5 +90,5 @@ fn send_and_wait(group: Ipv4Addr, wait: Duration) -> Result<bool, NetError> {
 
 const PROBE: &[u8] = b"onetwo: does loopback carry multicast?";
 
-/// Arbitrary port; nothing is sent to it.
-const PROBE_PORT: u16 = 10006;
+/// Any; nothing is sent to it.
+const PROBE_PORT: u16 = addresses::VISION.port();

@@ -8,9 +8,9 @@
 use geometry::{Angle, Body, Field, Point, Twist, Vector, math};
 use motion::avoid::{self, Course, Restraint, Verdict};
 use motion::trajectory::{CalcMotion, FreeLimits, Motion, TurnLimits};
-use protocol::robot_io::OmniKick;
-use protocol::{Duration, Instant};
-use rules::{Duty, FieldSpec, Phase, Side};
+use protocol::Instant;
+use protocol::robot_io::{OmniKick, WHEELED_STEP};
+use rules::{Duty, FieldSpec, Phase, RobotSpec, Side};
 
 use super::surroundings::Surroundings;
 use super::{Drive, Manner};
@@ -44,7 +44,7 @@ struct UnderWay {
 impl Drivetrain {
     /// The motion, dribbler and kick for `intent`.
     pub fn actuate(&mut self, now: Instant, belief: &Belief, intent: Intent) -> Wanted {
-        let since = self.stepped.map_or(STEP, |last| now.since(last));
+        let since = self.stepped.map_or(WHEELED_STEP, |last| now.since(last));
         let step = since.as_secs_f32().clamp(STEP_LEAST, STEP_MOST);
         (self.stepped, self.step) = (Some(now), step);
         if (self.velocity - belief.velocity).norm() > ASTRAY {
@@ -231,20 +231,17 @@ fn limits(belief: &Belief, drive: &Drive) -> FreeLimits {
     limits.slowed_to(drive.speed.min(stop))
 }
 
-/// Planning limits without the ball: below what wheels hold (the simulator's 3.5 to 5.5 m/s²), so that a plan
-/// can be kept.
-pub const LIMITS: FreeLimits = FreeLimits { speed: 3.0, acceleration: 3.0, braking: 3.5 };
-/// With the ball on the dribbler, which pulls it with some 6 m/s² and holds it sideways with 4: it brakes a
-/// ball that it caught while moving before the rules' metre is over (2.2 m/s in 0.97 m), and backs up no
-/// harder than the roller follows.
-const HOLDING: FreeLimits = FreeLimits { speed: 1.5, acceleration: 1.8, braking: 2.5 };
-/// How fast a ball is pushed to its place at most, m/s.
+/// Planning limits without the ball.
+pub const LIMITS: FreeLimits = FreeLimits::of(&RobotSpec::OURS.plan);
+/// Planning limits with the ball on the dribbler.
+const HOLDING: FreeLimits = FreeLimits::of(&RobotSpec::OURS.plan_holding);
+/// Speed limit of a ball that is pushed to its place, m/s.
 const PLACING_SPEED: f32 = 2.0;
-const TURN: TurnLimits = TurnLimits { rate: 8.0, acceleration: 30.0 };
-/// Turning limits with the ball: ω² · 95 mm stays below 1.2 m/s².
-const HOLDING_TURN: TurnLimits = TurnLimits { rate: 3.5, acceleration: 12.0 };
-/// The same where there is time: 0.4 m/s² along the roller.
-const PLACING_TURN: TurnLimits = TurnLimits { rate: 1.5, acceleration: 4.0 };
+const TURN: TurnLimits = TurnLimits::of(&RobotSpec::OURS.turn);
+/// Turning limits with the ball.
+const HOLDING_TURN: TurnLimits = TurnLimits::of(&RobotSpec::OURS.turn_holding);
+/// Turning limits while a ball is placed.
+const PLACING_TURN: TurnLimits = TurnLimits::of(&RobotSpec::OURS.turn_placing);
 /// Gain of the final turn while a ball is placed, 1/s: with orders that arrive 0.1 s late a larger gain
 /// oscillates.
 const SETTLES: f32 = 5.0;
@@ -260,7 +257,6 @@ const FACED_RATE: f32 = 0.2;
 const ASTRAY: f32 = 0.6;
 /// The same for turning, rad/s.
 const ASTRAY_TURN: f32 = 3.0;
-/// A wheeled robot's step, s (docs/architecture.md §2.3), and what is taken for one.
-const STEP: Duration = Duration::millis(10);
+/// What is taken for a step, s.
 const STEP_LEAST: f32 = 0.001;
 const STEP_MOST: f32 = 0.03;

@@ -13,7 +13,7 @@ use motion::trajectory::Motion;
 use protocol::Duration;
 use protocol::quantized::from_mm;
 use protocol::robot_io::OmniKick;
-use rules::League;
+use rules::{League, RobotSpec, contact};
 
 use crate::belief::Belief;
 use crate::body::{Body, BodySpec, Intent};
@@ -22,10 +22,10 @@ use crate::skills::{Reception, Step};
 
 pub use drivetrain::{Drivetrain, LIMITS};
 
-/// Distance from the robot's centre to its flat front, m: usual for robots of 180 mm.
-pub const FRONT: f32 = 0.073;
-/// Distance from the robot's centre to a ball at its front, m.
-pub const BALL_AT: f32 = FRONT + rules::limits::BALL_RADIUS;
+/// From the robot's centre to its flat front, m.
+pub const FRONT: f32 = RobotSpec::OURS.hull.front;
+/// From the robot's centre to a ball at its front, m.
+pub const BALL_AT: f32 = RobotSpec::OURS.hull.ball_at();
 
 /// A target to drive to, and what dribbler and kicker do meanwhile.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,9 +143,9 @@ impl Body for Wheeled {
     }
 }
 
-/// The fastest kick wanted, m/s; the governor limits it.
-pub const SHOT: f32 = 5.8;
-/// Remaining speed of a ball kicked into free space at the case's end point, m/s: nearly stationary.
+/// The fastest kick wanted, m/s; the governor has the last word.
+pub const SHOT: f32 = RobotSpec::OURS.kicker.fastest;
+/// How fast a ball kicked into free space still is where the case wants it, m/s: nearly lying.
 const ROLLS_ON: f32 = 0.3;
 
 const SPEC: BodySpec = BodySpec {
@@ -162,8 +162,7 @@ const SPEC: BodySpec = BodySpec {
     receiver_haste: 0.7,
     receiver_near: 0.15,
     shot_patience: Duration::millis(1000),
-    // Radii of body (0.09) and ball (0.0215) and a centimetre.
-    opponent_holds_within: 0.1215,
+    opponent_holds_within: contact::HELD_WITHIN,
     disputed_within: 0.15,
     doubt_steps: 20,
 };

@@ -7,6 +7,7 @@
 use geometry::{Field, Point, Pose, Segment};
 use motion::ball::BallModel;
 use motion::intercept::{Interception, Verdict, Wish};
+use rules::limits::ROBOT_RADIUS;
 use rules::{Phase, Side};
 
 use crate::belief::{Ball, Belief};
@@ -95,7 +96,7 @@ fn crossing(way: Segment<Field>, stretch: Segment<Field>, beyond: f32) -> Option
 /// A faster ball approaches, m/s.
 const COMING: f32 = 0.3;
 /// A ball that passes the stretch's ends within this is blocked there, m: a robot's width.
-const BESIDE: f32 = 0.18;
+const BESIDE: f32 = 2.0 * ROBOT_RADIUS;
 /// An opponent this near the ball has it, m.
 const HOLDS: f32 = 0.15;
 /// The kicker of a penalty this near the ball lines up for its shot, m; and faces it within this, rad.

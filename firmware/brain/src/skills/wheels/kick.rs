@@ -8,6 +8,7 @@ use geometry::{Field, Point, Vector};
 use motion::ball::BallModel;
 use protocol::robot_io::OmniKick;
 use rules::Phase;
+use rules::limits::ROBOT_RADIUS;
 
 use crate::belief::Belief;
 use crate::body::Intent;
@@ -96,8 +97,8 @@ const LIES: f32 = 0.25;
 /// Distance from a ball to the centre of a robot that lines up behind it, m (`get_ball`); and two bodies side
 /// by side.
 const LINES_UP: f32 = 0.165;
-const BODIES: f32 = 0.18;
-/// Approach speed for a kick, m/s.
+const BODIES: f32 = 2.0 * ROBOT_RADIUS;
+/// How fast a robot goes in for a kick, m/s.
 const GO_IN: f32 = 0.35;
 /// Within this distance of the ball it must face the target before it continues, m.
 const CLOSE: f32 = 0.02;

@@ -6,6 +6,7 @@
 use geometry::{Field, GoalEnd, Point, Segment};
 use motion::ball::BallModel;
 use protocol::robot_io::OmniKick;
+use rules::{RobotSpec, contact};
 
 use crate::belief::Belief;
 use crate::body::Intent;
@@ -91,13 +92,13 @@ const WING_INSIDE: f32 = 1.1;
 /// More room than this has no benefit, m.
 const ROOM_ENOUGH: f32 = 0.5;
 /// Radii of a robot and a ball, m.
-const BODY: f32 = 0.1115;
-/// Average speed of a shot, m/s.
+const BODY: f32 = contact::CENTERS;
+/// How fast a shot is on average, m/s.
 const FAIR_SPEED: f32 = 5.0;
 /// Reaction time of an opponent, s.
 const REACTION: f32 = 0.15;
-/// Acceleration of an opponent, m/s².
-const OPPONENT_ACCELERATION: f32 = 3.0;
+/// How fast it speeds up, m/s².
+const OPPONENT_ACCELERATION: f32 = RobotSpec::OURS.assumed.blocker_acceleration;
 
 #[cfg(test)]
 mod tests {

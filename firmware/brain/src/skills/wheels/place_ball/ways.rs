@@ -80,7 +80,7 @@ pub(super) fn pull(belief: &Belief, at: Point<Field>, out: Option<Angle>, gentle
 pub(super) fn push(belief: &Belief, ball: &Ball, at: Point<Field>, grip: f32) -> Intent {
     let face = ball.position.direction_to(at);
     // So slow that the ball rests at the place when it rolls on from here, and no slower than it starts at all.
-    let rolls = BRAKES.iter().find(|(held, _)| grip > *held).map_or(ROLLS, |(_, brakes)| *brakes);
+    let rolls = SLOWS.iter().find(|(held, _)| grip > *held).map_or(ROLLS, |(_, brakes)| *brakes);
     let left = ball.position.distance(at) - LAG * belief.velocity.norm();
     let speed = math::sqrt(2.0 * rolls * left.max(0.0)).clamp(CREEP, PUSH);
     let to = ball.position + Vector::polar(AHEAD - BALL_AT, face);
@@ -191,7 +191,7 @@ const PUSH: f32 = 2.0;
 /// A pushed ball is slowed down by this on the way, m/s²: about as carpets do, so that it stays near the front.
 const ROLLS: f32 = 0.35;
 /// The same of one that followed with such a share of the acceleration or more, m/s².
-const BRAKES: [(f32, f32); 3] = [(0.3, 1.0), (0.12, 0.7), (0.065, 0.5)];
+const SLOWS: [(f32, f32); 3] = [(0.3, 1.0), (0.12, 0.7), (0.065, 0.5)];
 /// The slowest push, m/s.
 const CREEP: f32 = 0.2;
 /// The ball is ahead of where it is shown by what it does in so long, s: picture, radio, a step; estimate.

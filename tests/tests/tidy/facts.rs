@@ -1,0 +1,261 @@
+//! `facts`: numbers that may stand in one place only: the robot's, contact distances, leases, ports, the step's
+//! budget.
+
+use std::collections::BTreeSet;
+
+use match_tests::workspace::{Source, rust_sources};
+
+#[test]
+fn a_fact_has_one_place() {
+    let sources = rust_sources();
+    let findings: Vec<_> = FACTS.iter().flat_map(|fact| retyped(fact, &sources)).collect();
+    assert!(findings.is_empty(), "{} findings\n{}", findings.len(), findings.join("\n"));
+}
+
+#[test]
+fn a_retyped_number_is_found_and_so_is_an_exception_that_nothing_needs() {
+    let fact = |patterns, other| Fact { name: "x", patterns, folders: &["a"], home: "a/home.rs", other };
+    let code = |text: &str| vec![Source { path: "a/b.rs".into(), text: text.into() }];
+    let home = || Source { path: "a/home.rs".into(), text: "const X: f32 = 0.09;\n".into() };
+    let found = |fact: &Fact, text: &str| {
+        let mut sources = code(text);
+        sources.push(home());
+        retyped(fact, &sources).len()
+    };
+    let radius = fact(&["0.09"], &[]);
+    for (text, findings) in [
+        ("let a = 0.09;\nlet b = 2.0 * 0.090_0_f32;\n", 2),
+        ("let a = 0.091; // 0.09\nlet b = \"0.09\";\nlet c = x0.09;\n", 0),
+        ("say(\"so \\\n     far 0.09\");\nlet a = .3 + 0.09;\n", 1),
+        ("#[cfg(test)]\nmod tests {\n    let a = 0.09;\n}\n", 0),
+    ] {
+        assert_eq!(found(&radius, text), findings, "{text}");
+    }
+    let brakes = fact(&["0.09", "braking: #", "BRAKE #"], &[]);
+    assert_eq!(found(&brakes, "L { braking: 3.5 }\nconst BRAKE: f32 = 5.0;\nL { braking: x }\n"), 2);
+    // An exception holds for its line alone, and is found when nothing needs it any more; so is a home that moved.
+    let gap = fact(&["0.09"], &[("a/b.rs", "GAP")]);
+    assert_eq!(found(&gap, "const GAP: f32 = 0.09;\nconst GO: f32 = 0.09;\n"), 1);
+    assert_eq!(found(&gap, "const GAP: f32 = 0.08;\n"), 1);
+    assert_eq!(retyped(&radius, &code("")).len(), 1);
+}
+
+/// Where a fact is written as a number outside its home, and exceptions that nothing needs any more.
+fn retyped(fact: &Fact, sources: &[Source]) -> Vec<String> {
+    let Fact { name, patterns, folders, home, other } = fact;
+    let mut findings = Vec::new();
+    let mut needed = BTreeSet::new();
+    let of_tests = |path: &str| path.ends_with("tests.rs") || path.contains("/tests/");
+    let within =
+        |path: &str| folders.iter().any(|folder| path == *folder || path.starts_with(&format!("{folder}/")));
+    for source in sources.iter().filter(|source| within(&source.path) && !of_tests(&source.path)) {
+        let mut in_text = false;
+        for (number, line) in source.code() {
+            let code = without_texts(line, &mut in_text);
+            let Some(pattern) = patterns.iter().find(|pattern| writes(&code, pattern)) else { continue };
+            let exception = other.iter().find(|(path, words)| *path == source.path && line.contains(words));
+            if source.path == *home {
+                needed.insert(*home);
+            } else if let Some((_, words)) = exception {
+                needed.insert(*words);
+            } else {
+                let mend = format!("read it from {home}, or say in FACTS why it is another fact");
+                findings.push(source.at(number, &format!("{name}, `{pattern}`"), &mend).to_string());
+            }
+        }
+    }
+    let words = other.iter().map(|(_, words)| *words).chain([*home]);
+    let stale = words.filter(|words| !needed.contains(words));
+    findings.extend(stale.map(|words| format!("{words}: nothing there is {name}; mend FACTS")));
+    findings
+}
+
+/// A line of code without its texts; `in_text` tells whether one goes on from the line before, and into the next.
+fn without_texts(line: &str, in_text: &mut bool) -> String {
+    let (mut code, mut escaped) = (String::new(), false);
+    for letter in line.chars() {
+        let ends = letter == '"' && !escaped;
+        escaped = *in_text && letter == '\\' && !escaped;
+        if ends {
+            *in_text = !*in_text;
+        } else if !*in_text {
+            code.push(letter);
+        }
+    }
+    // Only an escaped end of the line goes on; anything else was no text (a quote as a character).
+    *in_text &= escaped;
+    code
+}
+
+/// Whether code writes a fact: a number of that value, or a name (field or constant) that gets a number (`NAME #`).
+fn writes(code: &str, pattern: &str) -> bool {
+    let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';
+    if let Some(name) = pattern.strip_suffix(" #") {
+        let digit = |text: &str| text.trim_start().starts_with(|c: char| c.is_ascii_digit());
+        let part_of_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        return code.match_indices(name).any(|(at, _)| {
+            let after = &code[at + name.len()..];
+            // A constant's name may go on; a field's begins here.
+            let field = name.ends_with(':') && !code[..at].ends_with(part_of_name) && digit(after);
+            let number = |value: &str| value.split(|c| !is_part(c)).any(digit);
+            let constant =
+                code.contains("const ") && after.split_once('=').is_some_and(|(_, value)| number(value));
+            field || (!name.ends_with(':') && constant)
+        });
+    }
+    let value =
+        |text: &str| text.replace('_', "").trim_end_matches("f32").trim_end_matches("f64").parse().ok();
+    let wanted: Option<f64> = value(pattern);
+    code.split(|c| !is_part(c)).any(|token| wanted.is_some() && value(token) == wanted)
+}
+
+/// A fact of the robot, the league or the protocol, and where its number stands.
+struct Fact {
+    name: &'static str,
+    /// Its number; or `NAME #`, a constant or `field: #`, a field that no number may be given to.
+    patterns: &'static [&'static str],
+    /// Where the number means this fact.
+    folders: &'static [&'static str],
+    home: &'static str,
+    /// Lines where the same number is another fact.
+    other: &'static [(&'static str, &'static str)],
+}
+
+const ROBOT: &str = "protocol/rules/src/robot.rs";
+const CODE_OF_ROBOTS: &[&str] = &[
+    "firmware/brain/src",
+    "firmware/motion/src",
+    "firmware/runtime/src",
+    "protocol/rules/src",
+    "host/src",
+    "host/cli/src",
+    "hil-sim/robot/src",
+];
+/// Tests write numbers down, so that they can disagree.
+const FACTS: [Fact; 10] = [
+    Fact {
+        name: "the ball's radius",
+        patterns: &["0.0215"],
+        folders: CODE_OF_ROBOTS,
+        home: "protocol/rules/src/limits.rs",
+        other: &[],
+    },
+    Fact {
+        name: "a robot's radius",
+        patterns: &["0.09"],
+        folders: CODE_OF_ROBOTS,
+        home: "protocol/rules/src/limits.rs",
+        other: &[
+            // Half a body is misread for sure.
+            ("host/src/tracking/robots.rs", "SAME_PLACE"),
+            // What a robot leaves to a ball and stands off by.
+            ("host/src/strategy/coach/ahead.rs", "WAITS_WITHIN"),
+            // Nine times the noise of vision.
+            ("host/src/learned/latency.rs", "const FAR"),
+        ],
+    },
+    Fact {
+        name: "a robot's front or wheels",
+        patterns: &["0.073", "0.0945", "0.081"],
+        folders: CODE_OF_ROBOTS,
+        home: ROBOT,
+        other: &[],
+    },
+    Fact {
+        name: "a limit of motion",
+        patterns: &["acceleration: #", "braking: #", "ACCELERATION #", "BRAK #"],
+        folders: CODE_OF_ROBOTS,
+        home: ROBOT,
+        other: &[
+            // The legged robot's, of the first paper's simulator.
+            ("firmware/motion/src/legged.rs", "WALK_ACCELERATION"),
+            // How gently a skill closes in on a ball.
+            ("firmware/brain/src/skills/wheels/get_ball.rs", "CLOSING_BRAKE"),
+            // m, not m/s².
+            ("firmware/motion/src/avoid/item.rs", "BRAKE_SKIN"),
+        ],
+    },
+    Fact {
+        name: "the governor's speed, turn or brake",
+        patterns: &["SPEED_MAX #", "TURN_MAX #", "speed: #", "turn: #", "brake: #"],
+        folders: &["firmware/brain/src/governor.rs", "firmware/runtime/src/wheel.rs", "protocol/rules/src"],
+        home: ROBOT,
+        other: &[],
+    },
+    Fact {
+        name: "kicker and wheel control",
+        patterns: &[
+            "5.8",
+            "7.1",
+            "PULSE #",
+            "VOLTS #",
+            "PAUSE #",
+            "PROPORTIONAL #",
+            "INTEGRAL #",
+            "_pulses: #",
+            "proportional: #",
+        ],
+        folders: &["firmware/brain/src", "firmware/runtime/src", "protocol/rules/src", "host/src/strategy"],
+        home: ROBOT,
+        other: &[],
+    },
+    Fact {
+        name: "contact of robot and ball",
+        patterns: &[
+            "0.0135",
+            "0.0145",
+            "0.0285",
+            "0.1115",
+            "0.1215",
+            "0.125",
+            "0.126",
+            "0.1315",
+            "0.14",
+            "TOUCHES_WITHIN #",
+            "CENTERS #",
+            "TOUCH #",
+        ],
+        folders: CODE_OF_ROBOTS,
+        home: "protocol/rules/src/contact.rs",
+        other: &[
+            // The legged robot's way to a ball.
+            ("firmware/brain/src/skills/legged/get_ball.rs", "STAND_OFF"),
+            // Where a way starts and where it ends.
+            ("firmware/motion/src/avoid/item.rs", "TOUCH"),
+            // A share of a radius.
+            ("host/src/strategy/pass/bridge.rs", "FIRST_STEP"),
+            // Off the goal line: a body, and less than a ball.
+            ("host/src/strategy/threat/mod.rs", "keeper_back"),
+            // A ring that is drawn.
+            ("host/cli/src/live/beliefs.rs", "RING"),
+        ],
+    },
+    Fact {
+        name: "how long a robot counts as present",
+        patterns: &["PRESENCE_LEASE #", "BEACON_LEASE #"],
+        folders: &["protocol/src", "firmware/brain/src", "host/src"],
+        home: "protocol/src/team.rs",
+        other: &[],
+    },
+    Fact {
+        name: "a port",
+        patterns: &["10300", "10301", "10302", "10020", "10006", "10003", "10010", "10005", "20011"],
+        folders: &[
+            "protocol/ssl/src",
+            "host/src",
+            "host/cli/src",
+            "hil-sim/src",
+            "hil-sim/robot/src",
+            "hil-sim/arena/src",
+        ],
+        home: "protocol/ssl/src/net/mod.rs",
+        other: &[],
+    },
+    Fact {
+        name: "the step's budget",
+        patterns: &["40_000"],
+        folders: &["firmware/build/src", "host/cli/src", "xtask/src"],
+        home: "firmware/build/src/inspect/budget.rs",
+        other: &[],
+    },
+];
