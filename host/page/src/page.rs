@@ -9,16 +9,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, sync_channel};
 
-use axum::extract::ws::Utf8Bytes;
-use tokio::sync::watch;
-
 use crate::archive::Archive;
 use crate::happening::Happening;
 use crate::limits::Limits;
 use crate::request::{Powers, Request};
-use crate::server::{self, Ask, Refusals, Shared};
+use crate::server::{Ask, Server, Shared};
 use crate::sketch::Sketch;
 use crate::token::Token;
+use crate::viewers::{Mailbox, Viewers};
 
 /// More requests than this wait for the match: viewers are told that it is busy.
 const REQUESTS_MAX: usize = 256;
@@ -87,11 +85,11 @@ pub struct Page {
     archive: Archive,
     requests: Receiver<Ask>,
     /// To the viewer whose request was taken last.
-    asker: RefCell<Option<Refusals>>,
-    viewers: Arc<AtomicUsize>,
+    asker: RefCell<Option<Arc<Mailbox>>>,
+    seats: Arc<AtomicUsize>,
     told: u64,
     left_out: u64,
-    _ends: tokio::sync::oneshot::Sender<()>,
+    _server: Server,
 }
 
 impl Page {
@@ -103,32 +101,30 @@ impl Page {
             _ => PageError::Listen(listen, error),
         };
         let listener = TcpListener::bind(listen).map_err(failed)?;
-        listener.set_nonblocking(true).map_err(failed)?;
         let address = listener.local_addr().map_err(failed)?;
-        let (newest, news) = watch::channel(Utf8Bytes::default());
-        let archive = Archive::begin(newest);
+        let viewers = Arc::new(Viewers::default());
+        let archive = Archive::begin(viewers.clone());
         let (asks, requests) = sync_channel(REQUESTS_MAX);
-        let (ends, ended) = tokio::sync::oneshot::channel();
-        let viewers = Arc::new(AtomicUsize::new(0));
+        let seats = Arc::new(AtomicUsize::new(0));
         let shared = Shared {
             port: address.port(),
             settings,
             oracle,
-            news,
+            viewers,
             kept: archive.kept(),
             asks,
-            viewers: viewers.clone(),
+            seats: seats.clone(),
         };
-        server::serve(listener, shared, ended).map_err(failed)?;
+        let server = Server::start(listener, shared).map_err(failed)?;
         Ok(Self {
             address,
             archive,
             requests,
             asker: RefCell::default(),
-            viewers,
+            seats,
             told: 0,
             left_out: 0,
-            _ends: ends,
+            _server: server,
         })
     }
 
@@ -178,13 +174,13 @@ impl Page {
     pub fn refuse(&self, words: impl Into<String>) {
         if let Some(asker) = &*self.asker.borrow() {
             // A viewer that is gone, or that asks faster than it reads, is told nothing.
-            let _ = asker.try_send(words.into());
+            asker.refuse(words.into());
         }
     }
 
     /// How many look on now.
     pub fn viewers(&self) -> usize {
-        self.viewers.load(Ordering::Relaxed)
+        self.seats.load(Ordering::Relaxed)
     }
 
     /// Scenes that were left out because finishing and encoding them was behind.
