@@ -21,8 +21,8 @@ pub(crate) fn run(context: &Context) -> Result<(), Failure> {
     firmware_build::ensure_qemu(Install::SystemWide).map_err(Failure::Qemu)?;
     // `onetwo` builds the image by itself; that must find a compiler for the target.
     context.ensure_target()?;
-    // Built as `cargo run` builds them, so that both are the programs a person runs.
-    context::run(&mut context.cargo("build --bin onetwo"))?;
+    // Release as `cargo run` builds it, so that it is the program a person runs; debug with the features of the tests.
+    context::run(&mut context.cargo("build --features onetwo/png --bin onetwo"))?;
     context::run(&mut context.cargo("build --release --bin onetwo"))?;
     let built = |folder: &str| {
         let name = format!("onetwo{}", std::env::consts::EXE_SUFFIX);

@@ -13,6 +13,7 @@ use foreign::printable;
 use hil_sim::SimulationError;
 
 use crate::output::{note, shown};
+use crate::picture::PictureError;
 
 /// One variant per thing the person can do something about.
 #[derive(Debug)]
@@ -69,7 +70,7 @@ pub(crate) enum Failure {
         /// Where to.
         file: PathBuf,
         /// Why.
-        words: String,
+        error: PictureError,
     },
     /// A Markdown file has no place for figures.
     Markdown {
@@ -191,8 +192,8 @@ impl fmt::Display for Failure {
             Self::Firmware(words) | Self::Game(words) => f.write_str(words),
             Self::Recording(words) => write!(f, "cannot keep the recording: {words}"),
             Self::Markdown { file, error } => write!(f, "{}: {error}", shown(file)),
-            Self::Picture { file, words } => {
-                write!(f, "cannot write the picture {}: {words}", shown(file))
+            Self::Picture { file, error } => {
+                write!(f, "cannot write the picture {}: {error}", shown(file))
             }
             Self::UnknownName { asked, league } => write!(
                 f,

@@ -18,6 +18,7 @@ mod net;
 mod output;
 mod picture;
 mod play;
+mod progress;
 mod replay;
 mod setup;
 mod simulate;

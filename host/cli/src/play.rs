@@ -2,7 +2,7 @@
 //! Shown on the page at the clock's pace;
 //! `--headless` as fast as the machine plays it, told line by line, or as one JSON object.
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
@@ -14,7 +14,6 @@ use hil_sim::NativeBackend;
 use hil_sim::small_size::worlds::WorldChoice;
 use host::shell::Recorder;
 use host::strategy::{Tactics, Team};
-use indicatif::{ProgressBar, ProgressStyle};
 use page::Powers;
 use protocol::Instant;
 use rules::{Colour, League};
@@ -24,6 +23,7 @@ use crate::args::{FolderArgs, SettingsArgs};
 use crate::library::Shelf;
 use crate::live::{AnewWatcher, CaseOracle, End, PageArgs, Theatre, shelf_of};
 use crate::output::{self, note};
+use crate::progress::Progress;
 use crate::stop::{signal, stopped_by_hand};
 
 /// What decides a match.
@@ -290,29 +290,25 @@ fn tell(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> io::Resul
 /// Tells the story on stdout, or how far it is on a terminal where only the report is wanted.
 struct Teller {
     story: Option<GameStory>,
-    bar: ProgressBar,
+    bar: Option<Progress>,
 }
 
 impl Teller {
     fn new(args: &PlayArgs) -> Self {
-        let bar = if args.json && io::stderr().is_terminal() {
-            let style = ProgressStyle::with_template("{bar:40} {pos} of {len} s")
-                .unwrap_or_else(|_| ProgressStyle::default_bar());
-            ProgressBar::new(args.duration as u64).with_style(style)
-        } else {
-            ProgressBar::hidden()
-        };
+        let bar = args.json.then(|| Progress::of(args.duration as u64, "s"));
         Self { story: (!args.json).then(GameStory::default), bar }
     }
 
-    fn end(&self) {
-        self.bar.finish_and_clear();
+    fn end(&mut self) {
+        self.bar = None;
     }
 }
 
 impl Watcher for Teller {
     fn tick(&mut self, game: &Game<'_>) {
-        self.bar.set_position(game.time() as u64);
+        if let Some(bar) = &self.bar {
+            bar.reach(game.time() as u64);
+        }
         if let Some(story) = &mut self.story {
             story.tick(game);
             let mut out = output::lines();

@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 use super::survey::{SurveyArgs, Trial, class, percent, problem_line, region};
 use crate::Failure;
 use crate::output;
-use crate::picture;
+use crate::picture::{self, PictureError};
 
 /// What `cases coverage` may be told.
 #[derive(Debug, Args)]
@@ -29,7 +29,7 @@ pub(crate) struct CoverageArgs {
     /// One JSON object instead of maps and tables.
     #[arg(long)]
     json: bool,
-    /// Write the map as a picture (FILE.svg, FILE.png), or every cell as a table (FILE.csv).
+    /// Write the map as a picture (FILE.svg; FILE.png if built with --features png), or every cell as a table (FILE.csv).
     #[arg(long, value_name = "FILE", value_parser = picture_file)]
     out: Option<PathBuf>,
     /// What the picture shows.
@@ -295,6 +295,6 @@ impl Panel {
     }
 }
 
-fn picture_file(text: &str) -> Result<PathBuf, String> {
+fn picture_file(text: &str) -> Result<PathBuf, PictureError> {
     picture::named(text, &["svg", "png", "csv"])
 }

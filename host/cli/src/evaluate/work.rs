@@ -11,13 +11,13 @@ use arena::evaluation::{
     Evaluation, EvaluationError, Plan, Progress, ROBOTS, Results, Setup, Shard, TrialRow, summary, verdicts,
 };
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 
 use super::report::{self, ReportArgs};
 use crate::Failure;
 use crate::args::VERSION;
 use crate::library::Shelf;
 use crate::output;
+use crate::progress;
 use crate::setup::SetupArgs;
 use crate::stop::stopped_by_hand;
 
@@ -101,23 +101,14 @@ pub(super) fn with_bar<R: Send>(
     // The trials under way are still played and kept.
     let stopped = stopped_by_hand();
     // Drawn on a terminal's stderr, and nowhere else.
-    let bar = ProgressBar::new(0);
-    if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}, {eta} to go") {
-        bar.set_style(style);
-    }
-    bar.set_message(title.to_owned());
+    let line = progress::Progress::open();
+    line.say(title);
     let told = |progress: Progress| {
-        if bar.length() != Some(progress.of as u64) {
-            bar.set_length(progress.of as u64);
-            // What an earlier run played says nothing of how long the rest takes.
-            bar.set_position(progress.done as u64);
-            bar.reset_eta();
-        }
-        bar.set_position(progress.done as u64);
+        line.set(progress.done as u64, progress.of as u64);
         if stopped.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let played = pool.install(|| play(&told));
-    bar.finish_and_clear();
+    drop(line);
     Ok(played?)
 }
 
