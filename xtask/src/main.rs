@@ -12,6 +12,7 @@ mod deny;
 mod determinism;
 mod emulate;
 mod evaluation;
+mod first_build;
 mod game_cost;
 mod images;
 mod page;
