@@ -3,6 +3,7 @@
 //! Connect: the battery, or a supply in its place; motors and kicker unplugged.
 //! See: its voltage, within 2 % of a meter's. It differs: the divider is another (`src/analog.rs`). The governor brakes a robot whose
 //! battery is low for a while (`firmware/brain/src/governor.rs`), so a wrong divider keeps it from driving at all.
+#![allow(unsafe_code, reason = "registers, interrupts and flash are reached by address")]
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

@@ -4,6 +4,7 @@
 //! See: four counts and four rim speeds, five times a second. Turn each wheel so that it would turn the robot counter-clockwise: its
 //! count rises, by 4,096 a turn (`src/encoders.rs` says how many yours has), and its speed is positive. Falls: swap A and B. Goes one
 //! up and one down: A or B is not connected.
+#![allow(unsafe_code, reason = "registers, interrupts and flash are reached by address")]
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

@@ -3,6 +3,7 @@
 //! Connect: the probe and the board's supply, nothing else.
 //! See: green and red take turns, a second each, and the log counts them. A second must be one: otherwise the quartz is another
 //! (`src/clocks.rs`, feature `crystal`). Nothing at all: the quartz does not run, or the probe does not reach the chip.
+#![allow(unsafe_code, reason = "registers, interrupts and flash are reached by address")]
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
