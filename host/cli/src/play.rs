@@ -132,10 +132,10 @@ pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
             crowd.0.push(recording);
         }
         game::play_until(&config, &mut backend, &mut crowd, || stopped.load(Ordering::Relaxed))
-            .map_err(|error| Failure::Game(error.to_string()))?
+            .map_err(Failure::Game)?
     };
     if let Some(recording) = recording {
-        recording.finish().map_err(|error| Failure::Recording(error.to_string()))?;
+        recording.finish().map_err(|error| Failure::Recording { stem: None, error })?;
     }
     teller.end();
     let mut out = output::lines();
@@ -176,7 +176,7 @@ fn on_page(
             End::ByHand(report) => (report, false),
         };
         if let Some(recording) = watched.recording.take() {
-            recording.finish().map_err(|error| Failure::Recording(error.to_string()))?;
+            recording.finish().map_err(|error| Failure::Recording { stem: None, error })?;
         }
         let mut out = output::lines();
         tell(&mut out, args, &report).and_then(|()| out.flush()).map_err(Failure::Output)?;
@@ -245,7 +245,7 @@ fn hint_at_foreign_cases(config: &GameConfig, base: &CaseBase<'_>) {
 
 fn record(stem: &std::path::Path, config: &GameConfig) -> Result<Recorder, Failure> {
     let header = game::header(env!("CARGO_PKG_VERSION"), env!("ONETWO_COMMIT"), config);
-    Recorder::begin(stem, &header).map_err(|error| Failure::Recording(format!("{}: {error}", stem.display())))
+    Recorder::begin(stem, &header).map_err(|error| Failure::Recording { stem: Some(stem.to_owned()), error })
 }
 
 fn tell(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> io::Result<()> {

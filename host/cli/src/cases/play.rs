@@ -107,7 +107,7 @@ fn play(
     oppositions: &[Opposition],
 ) -> Result<Vec<Score>, Failure> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(args.jobs.map_or(0, usize::from)).build();
-    let pool = pool.map_err(|error| Failure::Threads(error.to_string()))?;
+    let pool = pool.map_err(Failure::Threads)?;
     let attempts = u64::from(args.trials) * (cases.len() * oppositions.len()) as u64;
     // Drawn on stderr where that is a terminal, and nowhere else.
     let bar = Progress::of(attempts, "");

@@ -113,7 +113,7 @@ impl<'a> Trial<'a> {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(self.args.jobs.map_or(0, usize::from))
             .build()
-            .map_err(|error| Failure::Survey(format!("no threads to work with: {error}; try --jobs 1")))?;
+            .map_err(Failure::Threads)?;
         let tally = pool.install(|| tally(&survey, self.len(), |number| self.problem(number)));
         if tally.problems == 0 {
             return Err(Failure::Survey(

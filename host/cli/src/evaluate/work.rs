@@ -39,7 +39,7 @@ impl WorkArgs {
     /// Threads to play on.
     pub(super) fn pool(&self) -> Result<rayon::ThreadPool, Failure> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(self.jobs.map_or(0, usize::from));
-        pool.build().map_err(|error| Failure::Threads(error.to_string()))
+        pool.build().map_err(Failure::Threads)
     }
 
     /// The folder, made where it is missing; without earlier trials where that was asked for.
