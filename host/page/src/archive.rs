@@ -35,11 +35,14 @@ pub struct Sample {
     pub values: BTreeMap<String, f32>,
 }
 
+/// When a scene was, s, and its JSON.
+type Encoded = (f64, Arc<str>);
+
 /// All that is kept.
 #[derive(Debug, Default)]
 pub(crate) struct Kept {
     seconds: BTreeMap<u32, Arc<[u8]>>,
-    open: Option<(u32, Vec<(f64, Arc<str>)>)>,
+    open: Option<(u32, Vec<Encoded>)>,
     pub(crate) happenings: Vec<Happening>,
     pub(crate) samples: Vec<Sample>,
     /// From the first to the last scene, s.
@@ -207,7 +210,7 @@ fn sample(scene: &Scene) -> Sample {
     Sample { t: scene.t, values: values.collect() }
 }
 
-fn gzip(texts: &[(f64, Arc<str>)]) -> Arc<[u8]> {
+fn gzip(texts: &[Encoded]) -> Arc<[u8]> {
     let mut out = GzEncoder::new(Vec::new(), Compression::fast());
     let mut write = || -> std::io::Result<()> {
         out.write_all(b"[")?;

@@ -296,7 +296,7 @@ impl Answer {
         }
         // Nothing follows the head of a changed protocol.
         if self.status != Status::SWITCHING {
-            bytes.push_str(&format!("content-length: {}\r\n", self.body.len()));
+            bytes.extend(["content-length: ", &self.body.len().to_string(), "\r\n"]);
             bytes.push_str(if keeps { "" } else { "connection: close\r\n" });
         }
         let mut bytes = (bytes + "\r\n").into_bytes();

@@ -203,7 +203,10 @@ mod tests {
         bytes
     }
 
-    fn read(bytes: &[u8]) -> io::Result<Option<(u8, bool, Vec<u8>, usize)>> {
+    /// Kind, whether it is the last of its message, payload and length.
+    type Parts = (u8, bool, Vec<u8>, usize);
+
+    fn read(bytes: &[u8]) -> io::Result<Option<Parts>> {
         let parsed = parse(&mut bytes.to_vec(), 1000)?;
         Ok(parsed.map(|(frame, length)| (frame.kind, frame.last, frame.payload, length)))
     }
@@ -216,7 +219,7 @@ mod tests {
         let hello = [0x81, 0x85, 0x37, 0xfa, 0x21, 0x3d, 0x7f, 0x9f, 0x4d, 0x51, 0x58];
         assert_eq!(read(&hello).unwrap(), Some((TEXT, true, b"Hello".to_vec(), hello.len())));
         assert_eq!(frame(TEXT, &[0; 256])[..4], [0x81, 0x7E, 0x01, 0x00]);
-        assert_eq!(frame(TEXT, &[0; 65536])[..10], [0x81, 0x7F, 0, 0, 0, 0, 0, 1, 0, 0]);
+        assert_eq!(frame(TEXT, &vec![0; 65536])[..10], [0x81, 0x7F, 0, 0, 0, 0, 0, 1, 0, 0]);
         for (bytes, digits) in
             [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foob", "Zm9vYg==")]
         {
