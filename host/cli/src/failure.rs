@@ -13,6 +13,7 @@ use casebase::SettingError;
 use foreign::printable;
 use hil_sim::SimulationError;
 
+use crate::cases::new::DraftError;
 use crate::output::{note, shown};
 use crate::picture::PictureError;
 use crate::virtual_robot::RobotError;
@@ -99,7 +100,7 @@ pub(crate) enum Failure {
         league: String,
     },
     /// No case can be drafted from the problem.
-    Draft(String),
+    Draft(DraftError),
     /// A virtual robot cannot run.
     Robot(RobotError),
     /// Threads cannot be started.
@@ -192,7 +193,8 @@ impl fmt::Display for Failure {
             Self::EmptyLibrary(league) => {
                 write!(f, "the library {league} holds no case; add one at <region>/<name>.toml")
             }
-            Self::Draft(words) | Self::Survey(words) | Self::Network(words) => f.write_str(words),
+            Self::Draft(error) => write!(f, "{error}"),
+            Self::Survey(words) | Self::Network(words) => f.write_str(words),
             Self::Robot(error) => write!(f, "{error}"),
             Self::Trial(error) => write!(f, "{error}"),
             Self::Firmware(words) => f.write_str(words),
