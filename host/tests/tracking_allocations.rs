@@ -1,5 +1,6 @@
 //! `tracking_allocations`: test: tracking does not allocate after the first seconds of a match
 //! (docs/architecture.md §9).
+#![allow(unsafe_code, reason = "an allocator that counts is one by an unsafe trait")]
 
 mod allocations;
 

@@ -13,6 +13,7 @@ mod determinism;
 mod emulate;
 mod evaluation;
 mod example_cost;
+mod first_build;
 mod game_cost;
 mod images;
 mod page;

@@ -7,7 +7,7 @@
 use firmware_build::Install;
 
 use crate::context::{Context, Failure, run};
-use crate::{deny, determinism, emulate, images, page, readme};
+use crate::{deny, determinism, emulate, first_build, images, page, readme};
 
 /// One checked property.
 #[derive(Debug)]
@@ -19,7 +19,7 @@ pub(crate) struct Step {
     pub(crate) run: fn(&Context) -> Result<(), Failure>,
 }
 
-pub(crate) const STEPS: [Step; 13] = [
+pub(crate) const STEPS: [Step; 14] = [
     Step { name: "fmt", what: "sources are formatted as rustfmt.toml says", run: fmt },
     Step { name: "clippy", what: "the linter has no warning, on the PC", run: clippy },
     Step { name: "deny", what: deny::WHAT, run: deny::check },
@@ -39,6 +39,7 @@ pub(crate) const STEPS: [Step; 13] = [
     Step { name: "image", what: images::WHAT, run: images::check },
     Step { name: "qemu", what: "the tests that run the image on QEMU pass", run: qemu },
     Step { name: "determinism", what: determinism::WHAT, run: determinism::run },
+    Step { name: "first-build", what: first_build::WHAT, run: first_build::check },
     Step { name: "page", what: page::WHAT, run: page::check },
     Step { name: "readme", what: readme::WHAT, run: readme::check },
 ];
@@ -50,12 +51,12 @@ fn fmt(context: &Context) -> Result<(), Failure> {
 
 fn clippy(context: &Context) -> Result<(), Failure> {
     context.ensure_component("clippy", "clippy")?;
-    run(&mut context.cargo("clippy --workspace --all-targets -- -D warnings"))
+    run(&mut context.cargo("clippy --workspace --all-targets --features onetwo/png -- -D warnings"))
 }
 
 fn test(context: &Context) -> Result<(), Failure> {
-    // Reports all failures, not only those of the first crate that has one.
-    run(&mut context.cargo("test --workspace --no-fail-fast"))
+    // All failures, not only those of the first crate that has one.
+    run(&mut context.cargo("test --workspace --features onetwo/png --no-fail-fast"))
 }
 
 fn doc(context: &Context) -> Result<(), Failure> {

@@ -7,12 +7,16 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use arena::evaluation::EvaluationError;
+use arena::game::GameError;
 use case_tools::{Finding, Severity};
 use casebase::SettingError;
 use foreign::printable;
 use hil_sim::SimulationError;
 
+use crate::cases::new::DraftError;
 use crate::output::{note, shown};
+use crate::picture::PictureError;
+use crate::virtual_robot::RobotError;
 
 /// One variant for each failure that the operator can fix.
 #[derive(Debug)]
@@ -59,17 +63,22 @@ pub(crate) enum Failure {
     /// A trial could not be played.
     Trial(SimulationError),
     /// A match could not be played.
-    Game(String),
+    Game(GameError),
     /// A recording could not be written.
-    Recording(String),
-    /// The robots' firmware image or its emulator is not available.
+    Recording {
+        /// `stem` of what could not be begun; none where what was begun is not whole.
+        stem: Option<PathBuf>,
+        /// Why.
+        error: io::Error,
+    },
+    /// The robots' image or its emulator cannot be had.
     Firmware(String),
     /// A figure could not be written.
     Picture {
         /// The output file.
         file: PathBuf,
-        /// The reason.
-        words: String,
+        /// Why.
+        error: PictureError,
     },
     /// A Markdown file has no place for figures.
     Markdown {
@@ -91,12 +100,12 @@ pub(crate) enum Failure {
         league: String,
     },
     /// No case can be drafted from the problem.
-    Draft(String),
+    Draft(DraftError),
     /// A virtual robot cannot run.
-    Robot(String),
+    Robot(RobotError),
     /// Threads cannot be started.
-    Threads(String),
-    /// An evaluation could not be played, stored or merged.
+    Threads(rayon::ThreadPoolBuildError),
+    /// An evaluation could not be played, kept or put together.
     Evaluation(EvaluationError),
     /// The filters of an evaluation leave nothing.
     NoTrials,
@@ -184,15 +193,21 @@ impl fmt::Display for Failure {
             Self::EmptyLibrary(league) => {
                 write!(f, "the library {league} holds no case; add one at <region>/<name>.toml")
             }
-            Self::Draft(words) | Self::Survey(words) | Self::Robot(words) | Self::Network(words) => {
-                f.write_str(words)
-            }
+            Self::Draft(error) => write!(f, "{error}"),
+            Self::Survey(words) | Self::Network(words) => f.write_str(words),
+            Self::Robot(error) => write!(f, "{error}"),
             Self::Trial(error) => write!(f, "{error}"),
-            Self::Firmware(words) | Self::Game(words) => f.write_str(words),
-            Self::Recording(words) => write!(f, "cannot keep the recording: {words}"),
+            Self::Firmware(words) => f.write_str(words),
+            Self::Game(error) => write!(f, "{error}"),
+            Self::Recording { stem: Some(stem), error } => {
+                write!(f, "cannot keep the recording: {}: {error}", shown(stem))
+            }
+            Self::Recording { stem: None, error } => {
+                write!(f, "cannot keep the recording: it is not whole: {error}")
+            }
             Self::Markdown { file, error } => write!(f, "{}: {error}", shown(file)),
-            Self::Picture { file, words } => {
-                write!(f, "cannot write the picture {}: {words}", shown(file))
+            Self::Picture { file, error } => {
+                write!(f, "cannot write the picture {}: {error}", shown(file))
             }
             Self::UnknownName { asked, league } => write!(
                 f,
@@ -208,7 +223,7 @@ impl fmt::Display for Failure {
                 "no trial is left: robots' trials (--profile robots) are of scenarios 3 and 4 against dg; \
                  leave out a filter",
             ),
-            Self::Threads(words) => write!(f, "cannot start threads: {words}; try --jobs 1"),
+            Self::Threads(error) => write!(f, "cannot start threads: {error}; try --jobs 1"),
             Self::Recorded { file, words } => {
                 let file = shown(file);
                 // The reason may quote the file's own text.

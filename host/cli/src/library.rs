@@ -1,15 +1,16 @@
 //! `library`: a case library: built in, or one league's directory read at run time (docs/case-format.md §5).
 
+use std::cell::OnceCell;
 use std::path::Path;
 
 use case_library::{LEAGUES, League};
 use case_tools::{Files, Finding, Library, Reduction};
 use casebase::{CaseBase, KickId, Symmetry};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use protocol::CaseId;
 
 use crate::Failure;
 use crate::args::LibraryArgs;
+use crate::progress::Progress;
 
 /// One opened library.
 #[derive(Debug)]
@@ -141,23 +142,21 @@ impl Shelf {
 /// Reads one league's directory; with a bar on a terminal's stderr where there are many files, and nothing in
 /// a pipe.
 pub(crate) fn load(folder: &Path) -> Result<Library, Vec<Finding>> {
-    let progress = ProgressBar::hidden();
-    progress.set_style(ProgressStyle::with_template(BAR).unwrap_or_else(|_| ProgressStyle::default_bar()));
-    let library = case_tools::load_telling(folder, |done, all| {
-        if done == 0 && all >= MANY {
-            progress.set_length(all as u64);
-            progress.set_draw_target(ProgressDrawTarget::stderr());
+    let progress = OnceCell::new();
+    case_tools::load_telling(folder, |done, all| {
+        if all >= MANY {
+            let line = progress.get_or_init(|| {
+                let line = Progress::open();
+                line.say("reading the library");
+                line
+            });
+            line.set(done as u64, all as u64);
         }
-        progress.set_position(done as u64);
-    });
-    progress.finish_and_clear();
-    library
+    })
 }
 
 /// Number of load steps from which a progress bar is drawn: half a thousand files.
 const MANY: usize = 1000;
-/// Drawn on a terminal's stderr only.
-const BAR: &str = "reading the library {bar:40} {percent} %";
 
 /// Number of the case file that a stored case is generated from.
 fn authored(id: CaseId) -> usize {

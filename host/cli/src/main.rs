@@ -17,6 +17,7 @@ mod net;
 mod output;
 mod picture;
 mod play;
+mod progress;
 mod replay;
 mod setup;
 mod simulate;

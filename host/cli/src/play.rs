@@ -2,7 +2,7 @@
 //! Displayed on the page at the clock's pace; `--headless` as fast as the machine plays it, printed line by
 //! line, or as one JSON object.
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
@@ -14,7 +14,6 @@ use hil_sim::NativeBackend;
 use hil_sim::small_size::worlds::WorldChoice;
 use host::record::Recorder;
 use host::strategy::{Tactics, Team};
-use indicatif::{ProgressBar, ProgressStyle};
 use page::Powers;
 use protocol::Instant;
 use rules::{Colour, League};
@@ -24,6 +23,7 @@ use crate::args::{FolderArgs, SettingsArgs};
 use crate::library::Shelf;
 use crate::live::{AnewWatcher, CaseOracle, End, PageArgs, Theatre, shelf_of};
 use crate::output::{self, note};
+use crate::progress::Progress;
 use crate::stop::{signal, stopped_by_hand};
 
 /// Settings of a match.
@@ -134,10 +134,10 @@ pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
             crowd.0.push(recording);
         }
         game::play_until(&config, &mut backend, &mut crowd, || stopped.load(Ordering::Relaxed))
-            .map_err(|error| Failure::Game(error.to_string()))?
+            .map_err(Failure::Game)?
     };
     if let Some(recording) = recording {
-        recording.finish().map_err(|error| Failure::Recording(error.to_string()))?;
+        recording.finish().map_err(|error| Failure::Recording { stem: None, error })?;
     }
     teller.end();
     let mut out = output::lines();
@@ -178,7 +178,7 @@ fn on_page(
             End::ByHand(report) => (report, false),
         };
         if let Some(recording) = watched.recording.take() {
-            recording.finish().map_err(|error| Failure::Recording(error.to_string()))?;
+            recording.finish().map_err(|error| Failure::Recording { stem: None, error })?;
         }
         let mut out = output::lines();
         tell(&mut out, args, &report).and_then(|()| out.flush()).map_err(Failure::Output)?;
@@ -248,7 +248,7 @@ fn hint_at_foreign_cases(config: &GameConfig, base: &CaseBase<'_>) {
 
 fn record(stem: &std::path::Path, config: &GameConfig) -> Result<Recorder, Failure> {
     let header = game::header(env!("CARGO_PKG_VERSION"), env!("ONETWO_COMMIT"), config);
-    Recorder::begin(stem, &header).map_err(|error| Failure::Recording(format!("{}: {error}", stem.display())))
+    Recorder::begin(stem, &header).map_err(|error| Failure::Recording { stem: Some(stem.to_owned()), error })
 }
 
 fn tell(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> io::Result<()> {
@@ -293,29 +293,25 @@ fn tell(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> io::Resul
 /// Prints events on stdout, or the progress on a terminal where only the report is wanted.
 struct Teller {
     story: Option<GameStory>,
-    bar: ProgressBar,
+    bar: Option<Progress>,
 }
 
 impl Teller {
     fn new(args: &PlayArgs) -> Self {
-        let bar = if args.json && io::stderr().is_terminal() {
-            let style = ProgressStyle::with_template("{bar:40} {pos} of {len} s")
-                .unwrap_or_else(|_| ProgressStyle::default_bar());
-            ProgressBar::new(args.duration as u64).with_style(style)
-        } else {
-            ProgressBar::hidden()
-        };
+        let bar = args.json.then(|| Progress::of(args.duration as u64, "s"));
         Self { story: (!args.json).then(GameStory::default), bar }
     }
 
-    fn end(&self) {
-        self.bar.finish_and_clear();
+    fn end(&mut self) {
+        self.bar = None;
     }
 }
 
 impl Watcher for Teller {
     fn tick(&mut self, game: &Game<'_>) {
-        self.bar.set_position(game.time() as u64);
+        if let Some(bar) = &self.bar {
+            bar.reach(game.time() as u64);
+        }
         if let Some(story) = &mut self.story {
             story.tick(game);
             let mut out = output::lines();

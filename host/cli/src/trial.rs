@@ -18,6 +18,7 @@ use crate::Failure;
 use crate::library::Shelf;
 use crate::live::{CaseOracle, Legged, PageArgs, stay};
 use crate::output;
+use crate::picture::PictureError;
 use crate::setup::{SetupArgs, opponents, profile, scenario};
 
 /// Settings of a trial.
@@ -89,7 +90,7 @@ pub(crate) fn run(args: &TrialArgs) -> Result<ExitCode, Failure> {
     let report = play(args, &mut watchers)?;
     if let Some(file) = svg {
         fs::write(file, arena::picture(&recording))
-            .map_err(|error| Failure::Picture { file: file.to_owned(), words: error.to_string() })?;
+            .map_err(|error| Failure::Picture { file: file.to_owned(), error: PictureError::Write(error) })?;
     }
     let mut out = output::lines();
     if args.json {

@@ -2,6 +2,7 @@
 //! use: `control` starts it for each robot of `--robots sim://HOST`; by hand it helps to find out why one
 //! does not run.
 
+use std::fmt;
 use std::io::{self, BufRead as _};
 use std::net::{SocketAddr, ToSocketAddrs as _};
 use std::path::PathBuf;
@@ -13,11 +14,11 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use brain::BrainConfig;
 use casebase::GoalEnd;
 use clap::Args;
-use host::shell::key;
+use host::shell::key::{self, KeyError};
 use protocol::frame::TeamKey;
 use protocol::{RobotId, TeamId};
 use rules::{Colour, League};
-use virtual_robot::{Options, parent_gone, run as play};
+use virtual_robot::{Options, RunError, parent_gone, run as play};
 
 use crate::Failure;
 use crate::args::{FolderArgs, SettingsArgs};
@@ -85,20 +86,19 @@ pub(crate) fn run(args: &VirtualRobotArgs) -> Result<ExitCode, Failure> {
         host: args.host,
         simulator: simulator(&args.simulator, args.team)?,
     };
-    play(&options, base, &end).map_err(|error| Failure::Robot(error.to_string()))?;
+    play(&options, base, &end).map_err(RobotError::Run)?;
     Ok(ExitCode::SUCCESS)
 }
 
 fn key_of_parent() -> Result<TeamKey, Failure> {
     let mut line = String::new();
     io::stdin().lock().read_line(&mut line).map_err(Failure::Input)?;
-    key::parse(&line)
-        .map_err(|what| Failure::Robot(format!("--with-parent: standard input begins with {what}, no key")))
+    key::parse(&line).map_err(|what| RobotError::NoKey(what).into())
 }
 
 fn key_of_file(file: Option<&std::path::Path>) -> Result<TeamKey, Failure> {
     let Some(file) = file else { return Ok(TeamKey::ZERO) };
-    let read = key::read(file).map_err(|error| Failure::Robot(error.to_string()))?;
+    let read = key::read(file).map_err(RobotError::KeyFile)?;
     if let Some(warning) = read.warning {
         note!("warning: {warning}");
     }
@@ -111,9 +111,40 @@ fn simulator(text: &str, team: Colour) -> Result<SocketAddr, Failure> {
         Colour::Yellow => ssl::net::addresses::ROBOTS_YELLOW_PORT,
     };
     let with_port = text.to_socket_addrs().or_else(|_| (text, port).to_socket_addrs());
-    with_port.ok().and_then(|mut found| found.next()).ok_or_else(|| {
-        Failure::Robot(format!("nobody knows the host of --simulator {text}; give HOST or HOST:PORT"))
-    })
+    let found = with_port.ok().and_then(|mut found| found.next());
+    found.ok_or_else(|| RobotError::UnknownSimulator(text.to_owned()).into())
+}
+
+/// Why a virtual robot cannot run.
+#[derive(Debug)]
+pub(crate) enum RobotError {
+    /// It has no socket.
+    Run(RunError),
+    /// Standard input begins with something else than a key: what.
+    NoKey(String),
+    /// The key's file cannot be used.
+    KeyFile(KeyError),
+    /// `--simulator` names no host that is known.
+    UnknownSimulator(String),
+}
+
+impl From<RobotError> for Failure {
+    fn from(error: RobotError) -> Self {
+        Self::Robot(error)
+    }
+}
+
+impl fmt::Display for RobotError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Run(error) => write!(f, "{error}"),
+            Self::NoKey(what) => write!(f, "--with-parent: standard input begins with {what}, no key"),
+            Self::KeyFile(error) => write!(f, "{error}"),
+            Self::UnknownSimulator(text) => {
+                write!(f, "nobody knows the host of --simulator {text}; give HOST or HOST:PORT")
+            }
+        }
+    }
 }
 
 fn address(text: &str) -> Result<SocketAddr, String> {

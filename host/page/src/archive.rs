@@ -9,16 +9,14 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-use axum::body::Bytes;
-use axum::extract::ws::Utf8Bytes;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use serde::Serialize;
-use tokio::sync::watch;
 
 use crate::happening::Happening;
 use crate::scene::Scene;
 use crate::sketch::Sketch;
+use crate::viewers::Viewers;
 
 /// Scenes that may wait to be finished and encoded, a third of a second of them: further ones are left out,
 /// because old scenes are of no use.
@@ -38,10 +36,12 @@ pub struct Sample {
 }
 
 /// The stored history.
+type Encoded = (f64, Arc<str>);
+
 #[derive(Debug, Default)]
 pub(crate) struct Kept {
-    seconds: BTreeMap<u32, Bytes>,
-    open: Option<(u32, Vec<(f64, Utf8Bytes)>)>,
+    seconds: BTreeMap<u32, Arc<[u8]>>,
+    open: Option<(u32, Vec<Encoded>)>,
     pub(crate) happenings: Vec<Happening>,
     pub(crate) samples: Vec<Sample>,
     /// Time of the first and the last scene, s.
@@ -66,11 +66,11 @@ pub(crate) struct Archive {
 }
 
 impl Archive {
-    /// Starts; every newest scene goes to `newest`.
-    pub(crate) fn begin(newest: watch::Sender<Utf8Bytes>) -> Self {
+    /// Begins; every newest scene goes to `viewers`.
+    pub(crate) fn begin(viewers: Arc<Viewers>) -> Self {
         let (mail, inbox) = channel();
         let (waiting, kept) = (Arc::new(AtomicUsize::new(0)), Arc::new(Mutex::new(Kept::default())));
-        let worker = Worker { inbox, waiting: waiting.clone(), kept: kept.clone(), newest };
+        let worker = Worker { inbox, waiting: waiting.clone(), kept: kept.clone(), viewers };
         thread::spawn(move || worker.work());
         Self { mail, waiting, kept }
     }
@@ -122,7 +122,7 @@ struct Worker {
     inbox: Receiver<Mail>,
     waiting: Arc<AtomicUsize>,
     kept: Arc<Mutex<Kept>>,
-    newest: watch::Sender<Utf8Bytes>,
+    viewers: Arc<Viewers>,
 }
 
 impl Worker {
@@ -131,10 +131,10 @@ impl Worker {
             match mail {
                 Mail::Sketch(sketch) => {
                     let scene = sketch.finished();
-                    // Strings, numbers and lists of them: always valid JSON.
-                    let text = Utf8Bytes::from(serde_json::to_string(&scene).unwrap_or_default());
+                    // Strings, numbers and lists of them: nothing that JSON cannot say.
+                    let text: Arc<str> = Arc::from(serde_json::to_string(&scene).unwrap_or_default());
                     look(&self.kept, |kept| kept.add(&scene, text.clone()));
-                    self.newest.send_replace(text);
+                    self.viewers.show(&text);
                     self.waiting.fetch_sub(1, Ordering::Relaxed);
                 }
                 Mail::Happening(happening) => look(&self.kept, |kept| {
@@ -151,7 +151,7 @@ impl Worker {
 }
 
 impl Kept {
-    fn add(&mut self, scene: &Scene, text: Utf8Bytes) {
+    fn add(&mut self, scene: &Scene, text: Arc<str>) {
         let second = scene.t.max(0.0) as u32;
         let same = matches!(&self.open, Some((open, _)) if *open == second);
         if same {
@@ -185,7 +185,7 @@ impl Kept {
     }
 
     /// The scenes of a second as a JSON list, gzipped.
-    pub(crate) fn second(&self, second: u32) -> Option<Bytes> {
+    pub(crate) fn second(&self, second: u32) -> Option<Arc<[u8]>> {
         let open = self.open.as_ref().filter(|(open, _)| *open == second);
         open.map(|(_, texts)| gzip(texts)).or_else(|| self.seconds.get(&second).cloned())
     }
@@ -209,7 +209,7 @@ fn sample(scene: &Scene) -> Sample {
     Sample { t: scene.t, values: values.collect() }
 }
 
-fn gzip(texts: &[(f64, Utf8Bytes)]) -> Bytes {
+fn gzip(texts: &[Encoded]) -> Arc<[u8]> {
     let mut out = GzEncoder::new(Vec::new(), Compression::fast());
     let mut write = || -> std::io::Result<()> {
         out.write_all(b"[")?;
@@ -228,7 +228,7 @@ fn gzip(texts: &[(f64, Utf8Bytes)]) -> Bytes {
 mod tests {
     use super::*;
 
-    fn scene(t: f64) -> (Scene, Utf8Bytes) {
+    fn scene(t: f64) -> (Scene, Arc<str>) {
         let scene = Scene { t, ..Scene::default() };
         let text = serde_json::to_string(&scene).unwrap().into();
         (scene, text)

@@ -8,8 +8,7 @@
 
 use std::net::IpAddr;
 
-use axum::http::HeaderMap;
-use axum::http::header::{HOST, ORIGIN};
+use crate::http::Head;
 
 /// Why a request is not answered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,18 +30,15 @@ impl Foreign {
     }
 }
 
-/// Whether a request to the page on `port` comes from its own viewer.
-pub(crate) fn check(headers: &HeaderMap, port: u16) -> Result<(), Foreign> {
-    let mut hosts = headers.get_all(HOST).iter();
-    let host = hosts.next().and_then(|host| host.to_str().ok()).ok_or(Foreign::Host)?;
-    if hosts.next().is_some() || !is_ours(host, port) {
+/// Whether a request to the page on `port` is its own viewer's.
+pub(crate) fn check(head: &Head, port: u16) -> Result<(), Foreign> {
+    let host = head.one("host").ok().flatten().ok_or(Foreign::Host)?;
+    if !is_ours(host, port) {
         return Err(Foreign::Host);
     }
-    let mut origins = headers.get_all(ORIGIN).iter();
-    let Some(origin) = origins.next() else { return Ok(()) };
-    let same = origin.to_str().ok().and_then(|origin| origin.strip_prefix("http://"));
-    let same = same.is_some_and(|origin| origin.eq_ignore_ascii_case(host));
-    if same && origins.next().is_none() { Ok(()) } else { Err(Foreign::Origin) }
+    let Some(origin) = head.one("origin").map_err(|_| Foreign::Origin)? else { return Ok(()) };
+    let same = origin.strip_prefix("http://").is_some_and(|origin| origin.eq_ignore_ascii_case(host));
+    if same { Ok(()) } else { Err(Foreign::Origin) }
 }
 
 fn is_ours(host: &str, port: u16) -> bool {
@@ -60,12 +56,9 @@ mod tests {
     use super::*;
 
     fn asked(host: &str, origin: Option<&str>) -> Result<(), Foreign> {
-        let mut headers = HeaderMap::new();
-        headers.insert(HOST, host.parse().unwrap());
-        if let Some(origin) = origin {
-            headers.insert(ORIGIN, origin.parse().unwrap());
-        }
-        check(&headers, 8080)
+        let mut headers = vec![("host", host)];
+        headers.extend(origin.map(|origin| ("origin", origin)));
+        check(&Head::with_headers(&headers), 8080)
     }
 
     #[test]
@@ -91,7 +84,7 @@ mod tests {
             assert_eq!(asked(host, None), Err(Foreign::Host), "{host}");
             assert_eq!(asked(host, Some(&format!("http://{host}"))), Err(Foreign::Host), "{host}");
         }
-        assert_eq!(check(&HeaderMap::new(), 8080), Err(Foreign::Host));
+        assert_eq!(check(&Head::default(), 8080), Err(Foreign::Host));
     }
 
     #[test]

@@ -9,16 +9,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, sync_channel};
 
-use axum::extract::ws::Utf8Bytes;
-use tokio::sync::watch;
-
 use crate::archive::Archive;
 use crate::happening::Happening;
 use crate::limits::Limits;
 use crate::request::{Powers, Request};
-use crate::server::{self, Ask, Refusals, Shared};
+use crate::server::{Ask, Server, Shared};
 use crate::sketch::Sketch;
 use crate::token::Token;
+use crate::viewers::{Mailbox, Viewers};
 
 /// Requests that may wait for the match; further ones are answered that it is busy.
 const REQUESTS_MAX: usize = 256;
@@ -87,12 +85,12 @@ pub struct Page {
     address: SocketAddr,
     archive: Archive,
     requests: Receiver<Ask>,
-    /// Channel to the viewer whose request was taken last.
-    asker: RefCell<Option<Refusals>>,
-    viewers: Arc<AtomicUsize>,
+    /// To the viewer whose request was taken last.
+    asker: RefCell<Option<Arc<Mailbox>>>,
+    seats: Arc<AtomicUsize>,
     told: u64,
     left_out: u64,
-    _ends: tokio::sync::oneshot::Sender<()>,
+    _server: Server,
 }
 
 impl Page {
@@ -104,32 +102,30 @@ impl Page {
             _ => PageError::Listen(listen, error),
         };
         let listener = TcpListener::bind(listen).map_err(failed)?;
-        listener.set_nonblocking(true).map_err(failed)?;
         let address = listener.local_addr().map_err(failed)?;
-        let (newest, news) = watch::channel(Utf8Bytes::default());
-        let archive = Archive::begin(newest);
+        let viewers = Arc::new(Viewers::default());
+        let archive = Archive::begin(viewers.clone());
         let (asks, requests) = sync_channel(REQUESTS_MAX);
-        let (ends, ended) = tokio::sync::oneshot::channel();
-        let viewers = Arc::new(AtomicUsize::new(0));
+        let seats = Arc::new(AtomicUsize::new(0));
         let shared = Shared {
             port: address.port(),
             settings,
             oracle,
-            news,
+            viewers,
             kept: archive.kept(),
             asks,
-            viewers: viewers.clone(),
+            seats: seats.clone(),
         };
-        server::serve(listener, shared, ended).map_err(failed)?;
+        let server = Server::start(listener, shared).map_err(failed)?;
         Ok(Self {
             address,
             archive,
             requests,
             asker: RefCell::default(),
-            viewers,
+            seats,
             told: 0,
             left_out: 0,
-            _ends: ends,
+            _server: server,
         })
     }
 
@@ -178,14 +174,14 @@ impl Page {
     /// Answers the viewer whose request was taken last with the reason why it is refused.
     pub fn refuse(&self, words: impl Into<String>) {
         if let Some(asker) = &*self.asker.borrow() {
-            // A viewer that is gone, or that asks faster than it reads, gets no answer.
-            let _ = asker.try_send(words.into());
+            // A viewer that is gone, or that asks faster than it reads, is told nothing.
+            asker.refuse(words.into());
         }
     }
 
     /// Number of viewers at the moment.
     pub fn viewers(&self) -> usize {
-        self.viewers.load(Ordering::Relaxed)
+        self.seats.load(Ordering::Relaxed)
     }
 
     /// Scenes that were left out because finishing and encoding them was behind.

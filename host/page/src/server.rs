@@ -1,4 +1,4 @@
-//! `server`: HTTP and WebSocket server on a thread of its own.
+//! `server`: HTTP and WebSocket server on threads of its own: one that accepts, one for each connection.
 //!
 //! A viewer's socket carries the newest scene whenever the viewer has taken the one before: it acknowledges
 //! with a dot. So a slow viewer sees fewer scenes, none of them old, and one that is gone holds nothing up.
@@ -6,142 +6,210 @@
 //! time.
 
 use std::io;
-use std::net::TcpListener;
+use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::sync::atomic::AtomicUsize;
-use std::sync::mpsc::SyncSender;
-use std::sync::{Arc, Mutex};
-use std::thread;
-use std::time::Duration;
+use std::sync::mpsc::{RecvTimeoutError, SyncSender, sync_channel};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
 
-use axum::Router;
-use axum::body::Bytes;
-use axum::extract::ws::{Message, Utf8Bytes, WebSocket, WebSocketUpgrade};
-use axum::extract::{Path, Query, Request as HttpRequest, State};
-use axum::http::{HeaderName, HeaderValue, StatusCode, header};
-use axum::middleware::{Next, from_fn_with_state};
-use axum::response::{IntoResponse, Response};
-use axum::routing::{get, post};
-use hyper::server::conn::http1;
-use hyper_util::rt::{TokioIo, TokioTimer};
-use hyper_util::service::TowerToHyperService;
-use serde::Deserialize;
-use serde_json::json;
-use tokio::sync::{Semaphore, mpsc, oneshot, watch};
-use tokio::time::{sleep, timeout};
-
-use crate::archive::{Kept, look};
-use crate::limits::{Limits, Seat};
+use crate::archive::Kept;
+use crate::guard;
+use crate::http::{Answer, Head, NoRequest, Status, Wire};
+use crate::limits::Seat;
 use crate::page::{Oracle, Settings};
-use crate::problem::{Freeze, problem, skeleton};
-use crate::request::{Request, Team};
-use crate::{files, guard};
+use crate::request::Request;
+use crate::routes;
+use crate::socket::{self, Received};
+use crate::viewers::{Mailbox, Sent, Viewers};
 
-/// Scenes sent to a viewer that it has not yet acknowledged.
-const UNTAKEN_MAX: u32 = 2;
-/// A viewer that takes nothing for this time is gone.
+/// A viewer that takes nothing for so long is gone.
 const GONE: Duration = Duration::from_secs(30);
-/// Refusals that wait for a viewer that does not read; more are dropped.
-const REFUSALS_MAX: usize = 16;
-/// If no connection can be accepted (no descriptor is left), the next attempt is after this time.
+/// Where no connection can be taken (no descriptor is left), the next attempt is after that time.
 const ACCEPT_AGAIN: Duration = Duration::from_millis(50);
 /// The longest message of a viewer, bytes: a request, a problem.
 const WORD_MAX: usize = 16 * 1024;
-/// Events in one answer.
-const HAPPENINGS_A_TIME: usize = 5_000;
+/// How long the page's own connection may take that wakes its server for the end.
+const WAKE: Duration = Duration::from_millis(200);
 
 /// State shared by all request handlers.
 pub(crate) struct Shared {
     pub(crate) port: u16,
     pub(crate) settings: Settings,
     pub(crate) oracle: Arc<dyn Oracle>,
-    pub(crate) news: watch::Receiver<Utf8Bytes>,
+    pub(crate) viewers: Arc<Viewers>,
     pub(crate) kept: Arc<Mutex<Kept>>,
     pub(crate) asks: SyncSender<Ask>,
-    pub(crate) viewers: Arc<AtomicUsize>,
+    pub(crate) seats: Arc<AtomicUsize>,
 }
 
-/// Channel to a viewer for the reasons why its requests are refused.
-pub(crate) type Refusals = mpsc::Sender<String>;
-
-/// A viewer's request, and the channel for the answer if it is refused.
+/// What a viewer asked for, and how it is told that it is not done.
 pub(crate) struct Ask {
     pub(crate) request: Request,
-    pub(crate) asker: Refusals,
+    pub(crate) asker: Arc<Mailbox>,
 }
 
 impl Shared {
-    /// Whether a viewer with this token may send requests.
-    fn may_ask(&self, brought: Option<&str>) -> bool {
+    /// May a viewer that brought that token ask for anything?
+    pub(crate) fn may_ask(&self, brought: Option<&str>) -> bool {
         self.settings.token.as_ref().is_none_or(|token| brought.is_some_and(|brought| token.is(brought)))
+    }
+
+    /// Works that out in `within` on a thread of its own, and not on the connection's: the answer cannot be called off.
+    pub(crate) fn in_time<T: Send + 'static>(
+        &self,
+        within: Duration,
+        work: impl FnOnce(&dyn Oracle) -> T + Send + 'static,
+    ) -> Result<T, Status> {
+        let (done, answer) = sync_channel(1);
+        let oracle = self.oracle.clone();
+        let worker = thread::Builder::new().spawn(move || done.send(work(&*oracle)));
+        worker.map_err(|_| Status::UNAVAILABLE)?;
+        answer.recv_timeout(within).map_err(|error| match error {
+            RecvTimeoutError::Timeout => Status::TIMED_OUT,
+            RecvTimeoutError::Disconnected => Status::INTERNAL,
+        })
     }
 }
 
-/// Serves on a thread of its own until `ended` is signalled or dropped.
-pub(crate) fn serve(listener: TcpListener, shared: Shared, ended: oneshot::Receiver<()>) -> io::Result<()> {
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
-    thread::spawn(move || {
-        runtime.block_on(async move {
-            let Ok(listener) = tokio::net::TcpListener::from_std(listener) else { return };
-            let shared = Arc::new(shared);
-            let limits = shared.settings.limits;
-            let routes = Router::new()
-                .route("/socket", get(socket))
-                .route("/api/state", get(state))
-                .route("/api/second/{second}", get(second))
-                .route("/api/happenings", get(happenings))
-                .route("/api/plots", get(plots))
-                .route("/api/explain", post(explain))
-                .route("/api/freeze", post(freeze))
-                .fallback(get(file))
-                .layer(axum::extract::DefaultBodyLimit::max(WORD_MAX))
-                .layer(from_fn_with_state(shared.clone(), guarded))
-                .with_state(shared);
-            tokio::select! {
-                () = accept(listener, routes, limits) => {}
-                _ = ended => {}
-            }
-        });
-    });
-    Ok(())
+/// A server that goes on until this is dropped.
+#[derive(Debug)]
+pub(crate) struct Server {
+    address: SocketAddr,
+    viewers: Arc<Viewers>,
+    accepting: Option<JoinHandle<()>>,
 }
 
-/// Serves connection by connection, at most the limit's number at once.
-async fn accept(listener: tokio::net::TcpListener, routes: Router, limits: Limits) {
-    let places = Arc::new(Semaphore::new(limits.connections));
+impl Server {
+    /// Serves on threads of its own.
+    pub(crate) fn start(listener: TcpListener, shared: Shared) -> io::Result<Self> {
+        let (address, viewers) = (listener.local_addr()?, shared.viewers.clone());
+        let accepting = thread::Builder::new().spawn(move || accept(&listener, &Arc::new(shared)))?;
+        Ok(Self { address, viewers, accepting: Some(accepting) })
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        self.viewers.end();
+        // It waits for a connection; that of an address of all interfaces is this machine's.
+        let mut address = self.address;
+        if address.ip().is_unspecified() {
+            address.set_ip(if address.is_ipv4() {
+                [127, 0, 0, 1].into()
+            } else {
+                [0, 0, 0, 0, 0, 0, 0, 1].into()
+            });
+        }
+        let woken = TcpStream::connect_timeout(&address, WAKE).is_ok();
+        if let Some(accepting) = self.accepting.take().filter(|_| woken) {
+            let until = Instant::now() + WAKE;
+            // Where every place is taken it wakes later, and finds that the page has ended.
+            while !accepting.is_finished() && Instant::now() < until {
+                thread::sleep(Duration::from_millis(1));
+            }
+        }
+    }
+}
+
+/// Connections that are being served, viewers' sockets aside.
+#[derive(Debug, Default)]
+struct Places {
+    taken: Mutex<usize>,
+    freed: Condvar,
+}
+
+impl Places {
+    /// Waits until fewer than `most` are taken, and takes one.
+    fn take(self: &Arc<Self>, most: usize) -> Place {
+        let taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner);
+        let waited = self.freed.wait_while(taken, |taken| *taken >= most);
+        *waited.unwrap_or_else(PoisonError::into_inner) += 1;
+        Place(self.clone())
+    }
+}
+
+/// One of them.
+struct Place(Arc<Places>);
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        *self.0.taken.lock().unwrap_or_else(PoisonError::into_inner) -= 1;
+        self.0.freed.notify_one();
+    }
+}
+
+/// Serves connection by connection, no more at once than the limits say.
+fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
+    let places = Arc::new(Places::default());
     loop {
-        // The semaphore is never closed.
-        let Ok(place) = places.clone().acquire_owned().await else { return };
-        let Ok((stream, _)) = listener.accept().await else {
-            sleep(ACCEPT_AGAIN).await;
+        let place = places.take(shared.settings.limits.connections);
+        let accepted = listener.accept();
+        if shared.viewers.have_ended() {
+            return;
+        }
+        let Ok((stream, _)) = accepted else {
+            thread::sleep(ACCEPT_AGAIN);
             continue;
         };
         // Scenes are small and needed at once.
         let _ = stream.set_nodelay(true);
-        let service = TowerToHyperService::new(routes.clone());
-        let mut builder = http1::Builder::new();
-        builder.timer(TokioTimer::new()).header_read_timeout(limits.header).half_close(false);
-        let connection = builder.serve_connection(TokioIo::new(stream), service).with_upgrades();
-        tokio::spawn(async move {
-            // A viewer's socket leaves its connection with the answer to its request: it has a time limit of
-            // its own (`GONE`).
-            let _ = timeout(limits.connection, connection).await;
-            drop(place);
-        });
+        let shared = shared.clone();
+        // Where no thread can be had the connection closes.
+        let _ = thread::Builder::new().spawn(move || serve(stream, &shared, place));
     }
 }
 
-/// Refuses foreign pages, and sends browsers the headers that restrict this page.
-async fn guarded(State(shared): State<Arc<Shared>>, request: HttpRequest, next: Next) -> Response {
-    if let Err(foreign) = guard::check(request.headers(), shared.port) {
-        return (StatusCode::FORBIDDEN, foreign.words()).into_response();
+/// Answers the requests of one connection, until it ends or becomes a viewer's socket.
+fn serve(stream: TcpStream, shared: &Shared, place: Place) {
+    let limits = shared.settings.limits;
+    let mut wire = Wire::new(stream);
+    let closes = Instant::now() + limits.connection;
+    loop {
+        let by = closes.min(Instant::now() + limits.header);
+        let head = match Head::read(&mut wire, by) {
+            Ok(head) => head,
+            Err(NoRequest::Refused(status)) => return Answer::bare(status).end(&mut wire, by),
+            Err(NoRequest::Gone) => return,
+        };
+        if shared.viewers.have_ended() {
+            return;
+        }
+        let answered = Instant::now() + limits.request;
+        let body = match guard::check(&head, shared.port) {
+            Err(foreign) => {
+                return Answer::words(Status::FORBIDDEN, foreign.words()).end(&mut wire, closes);
+            }
+            Ok(()) => head.body(&mut wire, WORD_MAX, closes.min(answered)),
+        };
+        let body = match body {
+            Ok(body) => body,
+            Err(NoRequest::Refused(status)) => return guarded(Answer::bare(status)).end(&mut wire, closes),
+            Err(NoRequest::Gone) => return,
+        };
+        if head.path == "/socket" {
+            match sit_down(shared, &head) {
+                Ok((seat, answer)) => return look_on(wire, shared, &head, answer, place, seat),
+                Err(answer) => {
+                    if !matches!(guarded(answer).send(&mut wire, &head, closes), Ok(true)) {
+                        return;
+                    }
+                    continue;
+                }
+            }
+        }
+        let within = closes.min(answered).saturating_duration_since(Instant::now());
+        let answer = routes::answer(shared, &head, body, within);
+        if !matches!(guarded(answer).send(&mut wire, &head, closes), Ok(true)) {
+            return;
+        }
     }
-    let Ok(mut response) = timeout(shared.settings.limits.request, next.run(request)).await else {
-        return (StatusCode::REQUEST_TIMEOUT, "it took too long").into_response();
-    };
-    for (name, value) in HEADERS {
-        response.headers_mut().insert(HeaderName::from_static(name), HeaderValue::from_static(value));
-    }
-    response
+}
+
+/// Tells browsers what this page may do.
+fn guarded(mut answer: Answer) -> Answer {
+    answer.headers.extend(HEADERS.map(|(name, value)| (name, value.into())));
+    answer
 }
 
 /// Nothing from elsewhere, not in another page's frame, nothing cached by the browser: another version may be
@@ -157,148 +225,73 @@ const HEADERS: [(&str, &str); 5] = [
     ("cache-control", "no-store"),
 ];
 
-const JSON: (HeaderName, &str) = (header::CONTENT_TYPE, "application/json");
-
-async fn file(request: HttpRequest) -> Response {
-    match files::find(request.uri().path()) {
-        Some(file) => ([(header::CONTENT_TYPE, file.kind)], file.text).into_response(),
-        None => (StatusCode::NOT_FOUND, "nothing here").into_response(),
+/// A viewer's place and the answer that makes it a socket.
+fn sit_down(shared: &Shared, head: &Head) -> Result<(Seat, Answer), Answer> {
+    if head.method != "GET" {
+        return Err(Answer::bare(Status::NOT_ALLOWED).with("allow", "GET"));
+    }
+    let answer = socket::handshake(head)?;
+    // Taken before the answer: of those that come at once none can pass while the others are not counted yet.
+    match Seat::take(&shared.seats, shared.settings.limits.viewers) {
+        Some(seat) => Ok((seat, answer)),
+        None => Err(Answer::words(Status::UNAVAILABLE, "too many look on")),
     }
 }
 
-async fn state(State(shared): State<Arc<Shared>>, Query(Brought { token }): Query<Brought>) -> Response {
-    let (span, life) = look(&shared.kept, |kept| (kept.span, kept.life));
-    let settings = &shared.settings;
-    let state = json!({
-        "title": settings.title,
-        "recorded": settings.recorded,
-        "powers": settings.powers,
-        "may_ask": shared.may_ask(token.as_deref()),
-        "situations": shared.oracle.situations(),
-        "span": span,
-        "life": life,
-    });
-    ([JSON], state.to_string()).into_response()
-}
-
-async fn second(State(shared): State<Arc<Shared>>, Path(second): Path<u32>) -> Response {
-    match look(&shared.kept, |kept| kept.second(second)) {
-        Some(bytes) => ([JSON, (header::CONTENT_ENCODING, "gzip")], bytes).into_response(),
-        None => (StatusCode::NOT_FOUND, "not kept").into_response(),
+/// One viewer, until it goes.
+fn look_on(mut wire: Wire, shared: &Shared, head: &Head, answer: Answer, place: Place, seat: Seat) {
+    let may_ask = shared.may_ask(head.asked("token"));
+    let Ok(mut out) = wire.writer() else { return };
+    if guarded(answer).send(&mut wire, head, Instant::now() + GONE).is_err() {
+        return;
     }
-}
-
-#[derive(Deserialize)]
-struct From {
-    #[serde(default)]
-    from: usize,
-}
-
-async fn happenings(State(shared): State<Arc<Shared>>, Query(From { from }): Query<From>) -> Response {
-    let text = look(&shared.kept, |kept| {
-        let all = &kept.happenings;
-        let until = all.len().min(from.saturating_add(HAPPENINGS_A_TIME));
-        serde_json::to_string(&all[from.min(until)..until]).unwrap_or_default()
-    });
-    ([JSON], text).into_response()
-}
-
-async fn plots(State(shared): State<Arc<Shared>>) -> Response {
-    let text = look(&shared.kept, |kept| serde_json::to_string(&kept.samples).unwrap_or_default());
-    ([JSON], text).into_response()
-}
-
-async fn explain(State(shared): State<Arc<Shared>>, body: Bytes) -> Response {
-    let oracle = shared.oracle.clone();
-    let answer = tokio::task::spawn_blocking(move || match std::str::from_utf8(&body) {
-        Ok(problem) => oracle.explain(problem),
-        Err(_) => Err("a problem is text".to_owned()),
-    });
-    match answer.await {
-        Ok(Ok(text)) => ([JSON], text).into_response(),
-        Ok(Err(words)) => (StatusCode::UNPROCESSABLE_ENTITY, words).into_response(),
-        Err(_) => (StatusCode::INTERNAL_SERVER_ERROR, "no answer").into_response(),
+    // Its time is its own from now on (`GONE`).
+    drop(place);
+    let mailbox = shared.viewers.join();
+    let sending = mailbox.clone();
+    let sender = thread::Builder::new().spawn(move || send(&mut out, &sending));
+    if sender.is_ok() {
+        listen(&mut wire, shared, &mailbox, may_ask);
     }
+    mailbox.leave();
+    wire.close();
+    drop(seat);
 }
 
-#[derive(Deserialize)]
-struct Frozen {
-    t: f64,
-    team: Team,
-    what: Freeze,
-}
-
-async fn freeze(State(shared): State<Arc<Shared>>, body: Bytes) -> Response {
-    let Ok(asked) = serde_json::from_slice::<Frozen>(&body) else {
-        return (StatusCode::UNPROCESSABLE_ENTITY, "expected t, team and what").into_response();
-    };
-    let scene = look(&shared.kept, |kept| kept.scene_at(asked.t));
-    let text = scene.and_then(|scene| match asked.what {
-        Freeze::Problem => problem(&scene, asked.team).map(|line| line + "\n"),
-        Freeze::Case => skeleton(&scene, asked.team),
-    });
-    match text {
-        Some(text) => ([(header::CONTENT_TYPE, "text/plain; charset=utf-8")], text).into_response(),
-        None => (StatusCode::UNPROCESSABLE_ENTITY, "no ball or no such team at that moment").into_response(),
+/// Sends a viewer what is for it, until its socket is over.
+fn send(wire: &mut Wire, mailbox: &Mailbox) {
+    while let Some(sent) = mailbox.next() {
+        let frame = match sent {
+            Sent::Scene(scene) => socket::text(&scene),
+            Sent::Refusal(words) => socket::text(&serde_json::json!({ "refused": words }).to_string()),
+            Sent::Pong(payload) => socket::pong(&payload),
+        };
+        if wire.send(&frame, Instant::now() + GONE).is_err() {
+            break;
+        }
     }
+    // The match is over with its page: the socket closes, and viewers say so.
+    let _ = wire.send(&socket::close(), Instant::now() + WAKE);
+    wire.close();
 }
 
-/// The token in a viewer's address.
-#[derive(Deserialize)]
-struct Brought {
-    token: Option<String>,
-}
-
-async fn socket(
-    State(shared): State<Arc<Shared>>,
-    Query(Brought { token }): Query<Brought>,
-    upgrade: WebSocketUpgrade,
-) -> Response {
-    // Taken before the answer: of simultaneous requests none can pass while the others are not counted yet.
-    let Some(seat) = Seat::take(&shared.viewers, shared.settings.limits.viewers) else {
-        return (StatusCode::SERVICE_UNAVAILABLE, "too many look on").into_response();
-    };
-    let may_ask = shared.may_ask(token.as_deref());
-    let upgrade = upgrade.max_message_size(WORD_MAX).max_frame_size(WORD_MAX);
-    upgrade.on_upgrade(move |socket| async move {
-        look_on(socket, &shared, may_ask).await;
-        drop(seat);
-    })
-}
-
-/// Serves one viewer until it disconnects.
-async fn look_on(mut socket: WebSocket, shared: &Shared, may_ask: bool) {
-    let mut news = shared.news.clone();
-    news.mark_changed();
-    let (asker, mut refusals) = mpsc::channel(REFUSALS_MAX);
-    let mut untaken = 0;
+/// Reads what a viewer says, until it says nothing more.
+fn listen(wire: &mut Wire, shared: &Shared, mailbox: &Arc<Mailbox>, may_ask: bool) {
+    let mut begun = None;
     loop {
-        let sends = untaken < UNTAKEN_MAX;
-        tokio::select! {
-            changed = news.changed(), if sends => {
-                let scene = news.borrow_and_update().clone();
-                // The match is over with its page: the socket closes, and viewers display that.
-                if changed.is_err() { return; }
-                if scene.is_empty() { continue; }
-                if !sent(&mut socket, scene).await { return; }
-                untaken += 1;
-            }
-            Some(words) = refusals.recv() => {
-                if !refused(&mut socket, words).await { return; }
-            }
-            word = timeout(GONE, socket.recv()) => match word {
-                Ok(Some(Ok(Message::Text(word)))) if word.as_str() == "." => untaken = untaken.saturating_sub(1),
-                // A viewer of a paused match reports that it is still connected.
-                Ok(Some(Ok(Message::Text(word)))) if word.is_empty() => {}
-                Ok(Some(Ok(Message::Text(word)))) => {
-                    let asked = if may_ask { ask(shared, &asker, &word) } else { Err(NO_TOKEN.to_owned()) };
-                    if let Err(words) = asked && !refused(&mut socket, words).await {
-                        return;
-                    }
+        match socket::receive(wire, &mut begun, WORD_MAX, Instant::now() + GONE) {
+            Ok(Received::Text(word)) if word == "." => mailbox.take(),
+            // A viewer of something that stands still says that it is there.
+            Ok(Received::Text(word)) if word.is_empty() => {}
+            Ok(Received::Text(word)) => {
+                let asked = if may_ask { ask(shared, mailbox, &word) } else { Err(NO_TOKEN.to_owned()) };
+                if let Err(words) = asked {
+                    mailbox.refuse(words);
                 }
-                Ok(Some(Ok(Message::Ping(_) | Message::Pong(_)))) => {}
-                _ => return,
-            },
+            }
+            Ok(Received::Ping(payload)) => mailbox.ping(payload),
+            Ok(Received::Pong) => {}
+            Ok(Received::Close) | Err(_) => return,
         }
     }
 }
@@ -307,18 +300,10 @@ async fn look_on(mut socket: WebSocket, shared: &Shared, may_ask: bool) {
 const NO_TOKEN: &str = "this page is open to the network: to ask for anything, open it by the address with ?token= that the program \
                         printed when it started";
 
-fn ask(shared: &Shared, asker: &Refusals, word: &str) -> Result<(), String> {
+fn ask(shared: &Shared, asker: &Arc<Mailbox>, word: &str) -> Result<(), String> {
     let request = Request::read(word, shared.settings.powers).map_err(|refused| refused.to_string())?;
     shared
         .asks
         .try_send(Ask { request, asker: asker.clone() })
         .map_err(|_| "the match is busy: ask again".to_owned())
-}
-
-async fn refused(socket: &mut WebSocket, words: String) -> bool {
-    sent(socket, json!({ "refused": words }).to_string().into()).await
-}
-
-async fn sent(socket: &mut WebSocket, text: Utf8Bytes) -> bool {
-    matches!(timeout(GONE, socket.send(Message::Text(text))).await, Ok(Ok(())))
 }

@@ -4,6 +4,7 @@
 //! cosine are single-precision polynomials (libm's use doubles: soft-float on an M4F, about 50 times dearer);
 //! all other functions are libm's, rounding is micromath's (exact). Never call `f32`'s own methods of these
 //! names in shared code: on the host they are the C library's, whose bits differ.
+#![cfg_attr(target_arch = "arm", allow(unsafe_code, reason = "one instruction that core does not offer"))]
 
 pub use core::f32::consts::{FRAC_PI_2, PI, TAU};
 

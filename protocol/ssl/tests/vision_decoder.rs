@@ -1,5 +1,6 @@
 //! `vision_decoder`: tests: the allocation-free decoder gives what a plain decode gives, and does not
 //! allocate.
+#![allow(unsafe_code, reason = "an allocator that counts is one by an unsafe trait")]
 
 #[path = "support/messages.rs"]
 mod messages;

@@ -4,6 +4,7 @@
 //! lit and dark; with a ball, or a hand, in the beam `ball`, as long as it is there. Lit and dark are alike
 //! with nothing in the beam: lamp or receiver point elsewhere. Dark is over 0.8: too much daylight, the
 //! receiver's resistor is too large. The two thresholds stand in `runtime::sense`.
+#![allow(unsafe_code, reason = "registers, interrupts and flash are reached by address")]
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

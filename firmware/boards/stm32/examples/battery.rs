@@ -4,6 +4,7 @@
 //! of a meter's. If it differs, the divider is another (`src/analog.rs`). The governor brakes a robot whose
 //! battery is low for a while (`firmware/brain/src/governor.rs`), so a wrong divider keeps it from driving at
 //! all.
+#![allow(unsafe_code, reason = "registers, interrupts and flash are reached by address")]
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

@@ -7,6 +7,7 @@
 //! meter, then falls to under 30 V, and again, three times. If log and meter differ, the divider is another
 //! (`src/analog.rs`). If it does not fall, the resistor or its wire `hold` is not connected, **do not go
 //! on**. If it does not rise, the test gives up after two seconds.
+#![allow(unsafe_code, reason = "registers, interrupts and flash are reached by address")]
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

@@ -4,6 +4,7 @@
 //! times a second. Turn each wheel so that it would turn the robot counter-clockwise: its count rises, by
 //! 4,096 a turn (`src/encoders.rs` holds the number of your encoders), and its speed is positive. If it
 //! falls, swap A and B. If it alternates up and down: A or B is not connected.
+#![allow(unsafe_code, reason = "registers, interrupts and flash are reached by address")]
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

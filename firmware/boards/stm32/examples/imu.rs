@@ -4,6 +4,7 @@
 //! of 0. Turn the board counter-clockwise (seen from above): the third rate is positive. On its side: the
 //! third acceleration is about 0. `Stranger(0)` or `Stranger(255)`: no answer, check clock, data and select;
 //! another number: another sensor.
+#![allow(unsafe_code, reason = "registers, interrupts and flash are reached by address")]
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

@@ -4,6 +4,7 @@
 //! the log counts them. Check the second against a clock: if it differs, the quartz is another
 //! (`src/clocks.rs`, feature `crystal`). If nothing happens, the quartz does not run, or the probe does not
 //! reach the chip.
+#![allow(unsafe_code, reason = "registers, interrupts and flash are reached by address")]
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

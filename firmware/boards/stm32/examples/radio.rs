@@ -3,6 +3,7 @@
 //! Connect: the radio modem; or a USB serial adapter of 3.3 V instead of it, crossed (its TX to our RX). See:
 //! from the other end (1 Mbit/s, 8N1) all typed characters come back, and the log counts it. `line errors`
 //! rise: another rate, or noise. Nothing comes: TX and RX are not crossed.
+#![allow(unsafe_code, reason = "registers, interrupts and flash are reached by address")]
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

@@ -7,6 +7,7 @@
 //! (its rim runs to the left when seen from the robot's centre), then two seconds back. Wrong wheel: pins
 //! swapped. Wrong direction: swap two phases, or the direction's wire. `a driver has switched itself off`:
 //! its fault wire is low.
+#![allow(unsafe_code, reason = "registers, interrupts and flash are reached by address")]
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

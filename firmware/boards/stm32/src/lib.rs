@@ -15,6 +15,7 @@
 //! | radio | [`radio`] |
 //! | key page and counter of starts | [`flash`] |
 //! | watchdog, panics, everything off | [`dog`], [`fault`], [`off`](fn@off::everything) |
+#![allow(unsafe_code, reason = "registers, interrupts and flash are reached by address")]
 #![cfg(target_os = "none")]
 #![no_std]
 

@@ -2,6 +2,7 @@
 //! starts, tasks, and their log.
 //!
 //! Without a page, an epoch or a radio it drives nothing and sends nothing; its red lamp is lit.
+#![allow(unsafe_code, reason = "registers, interrupts and flash are reached by address")]
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

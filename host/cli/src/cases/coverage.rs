@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 use super::survey::{SurveyArgs, Trial, class, percent, problem_line, region};
 use crate::Failure;
 use crate::output;
-use crate::picture;
+use crate::picture::{self, PictureError};
 
 /// Arguments of `cases coverage`.
 #[derive(Debug, Args)]
@@ -296,6 +296,6 @@ impl Panel {
     }
 }
 
-fn picture_file(text: &str) -> Result<PathBuf, String> {
+fn picture_file(text: &str) -> Result<PathBuf, PictureError> {
     picture::named(text, &["svg", "png", "csv"])
 }

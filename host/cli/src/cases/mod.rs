@@ -7,7 +7,7 @@ mod diff;
 mod explain;
 mod lines;
 mod list;
-mod new;
+pub(crate) mod new;
 mod play;
 mod problem;
 mod render;

@@ -2,6 +2,7 @@
 //! passes `cases check` and is retrieved from its problem; the parts of the problem that it leaves out are
 //! reported on stderr.
 
+use std::fmt;
 use std::fs::OpenOptions;
 use std::io::{self, Read, Write, stdin};
 use std::path::{Path, PathBuf};
@@ -12,7 +13,7 @@ use casebase::Problem;
 use clap::Args;
 
 use super::lines::LINE_MAX;
-use super::problem;
+use super::problem::{self, Malformed};
 use crate::Failure;
 use crate::args::LibraryArgs;
 use crate::output::{note, say, shown};
@@ -37,10 +38,7 @@ pub(super) fn run(args: &NewArgs) -> Result<ExitCode, Failure> {
     let rules = rules(&args.library)?;
     let problem = read(&args.from)?;
     let draft = skeleton(&rules, &problem).map_err(|error| match error {
-        SkeletonError::NoTeammate => Failure::Draft(
-            "the problem has no teammate, and a case needs one; add who plays the ball to \"teammates\""
-                .to_owned(),
-        ),
+        SkeletonError::NoTeammate => Failure::Draft(DraftError::NoTeammate),
         SkeletonError::League(findings) => {
             let folder = rules.path.parent().map(Path::to_owned).unwrap_or_default();
             Failure::FaultyLibrary { folder, findings }
@@ -68,10 +66,8 @@ pub(super) fn run(args: &NewArgs) -> Result<ExitCode, Failure> {
 fn rules(args: &LibraryArgs) -> Result<SourceFile, Failure> {
     if let Some(folder) = &args.folder.library {
         let path = folder.join("league.toml");
-        let text = foreign::read_text(&path, CASE_FILE_LEN_MAX).map_err(|error| {
-            let mend = "--library takes one league's folder, the one that holds league.toml";
-            Failure::Draft(format!("cannot read {}: {error}; {mend}", shown(&path)))
-        })?;
+        let text = foreign::read_text(&path, CASE_FILE_LEN_MAX)
+            .map_err(|error| Failure::Draft(DraftError::Rules { file: path.clone(), error }))?;
         return Ok(SourceFile { path, name: "league".to_owned(), text });
     }
     let league = case_library::league(&args.league);
@@ -89,23 +85,23 @@ fn read(from: &Path) -> Result<Problem, Failure> {
     } else {
         (shown(from), foreign::read(from, most))
     };
-    let fail = |words: &dyn std::fmt::Display| Failure::Draft(format!("{name}: {words}"));
-    let bytes = read.map_err(|error| fail(&error))?;
+    let fail = |error| Failure::Draft(DraftError::Problem { from: name.clone(), error });
+    let bytes = read.map_err(|error| fail(ProblemError::Read(error)))?;
     if bytes.len() > LINE_MAX {
-        return Err(fail(&format!("more than {LINE_MAX} bytes; give one problem")));
+        return Err(fail(ProblemError::TooLong));
     }
-    let text = std::str::from_utf8(&bytes).map_err(|_| fail(&"not UTF-8; give one problem as JSON"))?;
+    let text = std::str::from_utf8(&bytes).map_err(|_| fail(ProblemError::NotText))?;
     let text = text.trim_start_matches('\u{feff}').trim();
     if text.is_empty() {
-        return Err(fail(&"holds no problem; give one as JSON"));
+        return Err(fail(ProblemError::Empty));
     }
     // One problem may be spread over lines; several problems are several lines.
     let first = text.lines().next().unwrap_or_default();
     problem::parse(text).map_err(|malformed| {
         if first.len() < text.len() && problem::parse(first).is_ok() {
-            fail(&"holds more than one problem; keep the line that the case is for")
+            fail(ProblemError::Several)
         } else {
-            fail(&malformed)
+            fail(ProblemError::Malformed(malformed))
         }
     })
 }
@@ -118,12 +114,83 @@ fn write(file: &Path, force: bool, text: &str) -> Result<(), Failure> {
     } else {
         options.create_new(true).open(file)
     };
-    opened.and_then(|mut out| out.write_all(text.as_bytes())).map_err(|error| {
-        let mend = match error.kind() {
-            io::ErrorKind::AlreadyExists => "--force writes over it",
-            io::ErrorKind::NotFound => "make its folder first",
-            _ => "choose another --out",
-        };
-        Failure::Draft(format!("cannot write {}: {error}; {mend}", shown(file)))
-    })
+    opened
+        .and_then(|mut out| out.write_all(text.as_bytes()))
+        .map_err(|error| Failure::Draft(DraftError::Write { file: file.to_owned(), error }))
+}
+
+/// Why no case is drafted.
+#[derive(Debug)]
+pub(crate) enum DraftError {
+    /// Nobody plays the ball.
+    NoTeammate,
+    /// The league's rules cannot be read.
+    Rules {
+        /// `league.toml` of the folder that was named.
+        file: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+    /// The problem cannot be had.
+    Problem {
+        /// The file's name, or stdin.
+        from: String,
+        /// Why.
+        error: ProblemError,
+    },
+    /// The draft cannot be written.
+    Write {
+        /// Where to.
+        file: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+}
+
+/// What is wrong with the problem of a draft.
+#[derive(Debug)]
+pub(crate) enum ProblemError {
+    Read(io::Error),
+    TooLong,
+    NotText,
+    Empty,
+    Several,
+    Malformed(Malformed),
+}
+
+impl fmt::Display for DraftError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoTeammate => f.write_str(
+                "the problem has no teammate, and a case needs one; add who plays the ball to \"teammates\"",
+            ),
+            Self::Rules { file, error } => write!(
+                f,
+                "cannot read {}: {error}; --library takes one league's folder, the one that holds league.toml",
+                shown(file)
+            ),
+            Self::Problem { from, error } => write!(f, "{from}: {error}"),
+            Self::Write { file, error } => {
+                let hint = match error.kind() {
+                    io::ErrorKind::AlreadyExists => "--force writes over it",
+                    io::ErrorKind::NotFound => "make its folder first",
+                    _ => "choose another --out",
+                };
+                write!(f, "cannot write {}: {error}; {hint}", shown(file))
+            }
+        }
+    }
+}
+
+impl fmt::Display for ProblemError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Read(error) => write!(f, "{error}"),
+            Self::TooLong => write!(f, "more than {LINE_MAX} bytes; give one problem"),
+            Self::NotText => f.write_str("not UTF-8; give one problem as JSON"),
+            Self::Empty => f.write_str("holds no problem; give one as JSON"),
+            Self::Several => f.write_str("holds more than one problem; keep the line that the case is for"),
+            Self::Malformed(error) => write!(f, "{error}"),
+        }
+    }
 }

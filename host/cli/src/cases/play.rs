@@ -12,12 +12,12 @@ use std::process::ExitCode;
 use arena::{CaseNames, Opposition, Rehearsal, Score, Story};
 use casebase::Case;
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs};
 use crate::library::Shelf;
 use crate::output::{self, say};
+use crate::progress::Progress;
 use crate::setup::refuse_other_fields;
 
 /// Arguments of `cases play`.
@@ -108,24 +108,20 @@ fn play(
     oppositions: &[Opposition],
 ) -> Result<Vec<Score>, Failure> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(args.jobs.map_or(0, usize::from)).build();
-    let pool = pool.map_err(|error| Failure::Threads(error.to_string()))?;
+    let pool = pool.map_err(Failure::Threads)?;
     let attempts = u64::from(args.trials) * (cases.len() * oppositions.len()) as u64;
-    // Drawn only if stderr is a terminal.
-    let bar = ProgressBar::new(attempts);
-    if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}, {eta} to go") {
-        bar.set_style(style);
-    }
+    // Drawn on stderr where that is a terminal, and nowhere else.
+    let bar = Progress::of(attempts, "");
     let mut scores = Vec::new();
     for case in cases {
         let name = rehearsal.names.of(case.id());
-        bar.set_message(name.clone());
+        bar.say(name.clone());
         for kind in oppositions {
-            let attempts = pool.install(|| rehearsal.play(case, *kind, &|| bar.inc(1)));
+            let attempts = pool.install(|| rehearsal.play(case, *kind, &|| bar.add(1)));
             let attempts = attempts.map_err(Failure::Trial)?;
             scores.push(Score::of(name.clone(), kind.word(), &attempts));
         }
     }
-    bar.finish_and_clear();
     Ok(scores)
 }
 

@@ -15,7 +15,7 @@ use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs};
 use crate::library::Shelf;
 use crate::output::{say, shown};
-use crate::picture;
+use crate::picture::{self, PictureError};
 
 /// Arguments of `cases render`.
 #[derive(Debug, Args)]
@@ -33,7 +33,7 @@ pub(crate) struct RenderArgs {
     /// Draw every authored case into the directory --out, as region/name.svg.
     #[arg(long, requires = "out", conflicts_with_all = ["case", "problem"])]
     all: bool,
-    /// Draw all authored cases small on one page, an .svg or a .png.
+    /// Draw all authored cases small on one page, an .svg, or a .png if built with --features png.
     #[arg(long, value_name = "FILE", value_parser = picture_file, conflicts_with_all = ["case", "problem"])]
     sheet: Option<PathBuf>,
     /// What the figure is for.
@@ -70,7 +70,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     let svg = one(args, &shelf)?;
     if let Some(file) = &args.out {
         picture::named(&file.to_string_lossy(), &KINDS)
-            .map_err(|words| Failure::Picture { file: file.clone(), words })?;
+            .map_err(|error| Failure::Picture { file: file.clone(), error })?;
         picture::write(file, &svg)?;
     } else {
         say(&svg)?;
@@ -132,8 +132,10 @@ fn every(args: &RenderArgs, shelf: &Shelf) -> Result<ExitCode, Failure> {
         for picture in &pictures {
             let file = folder.join(format!("{}.svg", picture.name));
             if let Some(folder) = file.parent() {
-                std::fs::create_dir_all(folder)
-                    .map_err(|error| Failure::Picture { file: file.clone(), words: error.to_string() })?;
+                std::fs::create_dir_all(folder).map_err(|error| Failure::Picture {
+                    file: file.clone(),
+                    error: PictureError::Write(error),
+                })?;
             }
             picture::write(&file, &case_picture(picture))?;
         }
@@ -171,7 +173,7 @@ fn read(argument: &str) -> Result<Problem, Failure> {
     problem::parse(text.trim()).map_err(|error| Failure::Problem(format!("--problem: {error}")))
 }
 
-fn picture_file(text: &str) -> Result<PathBuf, String> {
+fn picture_file(text: &str) -> Result<PathBuf, PictureError> {
     picture::named(text, &KINDS)
 }
 

@@ -9,7 +9,6 @@ use case_tools::coverage::{Cells, Survey, Tally};
 use case_tools::{Files, Sampler, build};
 use casebase::{GoalEnd, Problem, Symmetry};
 use clap::{Args, value_parser};
-use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
 use super::lines::for_each_problem;
@@ -17,6 +16,7 @@ use crate::Failure;
 use crate::args::{Chosen, LibraryArgs, SettingsArgs};
 use crate::library::Shelf;
 use crate::output::shown;
+use crate::progress::Progress;
 
 /// Arguments of both verbs.
 #[derive(Debug, Args)]
@@ -113,7 +113,7 @@ impl<'a> Trial<'a> {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(self.args.jobs.map_or(0, usize::from))
             .build()
-            .map_err(|error| Failure::Survey(format!("no threads to work with: {error}; try --jobs 1")))?;
+            .map_err(Failure::Threads)?;
         let tally = pool.install(|| tally(&survey, self.len(), |number| self.problem(number)));
         if tally.problems == 0 {
             return Err(Failure::Survey(
@@ -126,19 +126,16 @@ impl<'a> Trial<'a> {
 
 /// All counts over the problems numbered below `len`, on the threads of the caller's pool.
 pub(crate) fn tally(survey: &Survey<'_>, len: u64, problem: impl Fn(u64) -> Option<Problem> + Sync) -> Tally {
-    let progress = ProgressBar::new(len);
-    progress.set_style(ProgressStyle::with_template(BAR).unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let progress = Progress::of(len, "problems");
     let block = |number: u64| {
         let numbers = number * BLOCK..len.min((number + 1) * BLOCK);
         let count = numbers.end - numbers.start;
         let tally = survey.over(numbers.filter_map(|number| Some((number, problem(number)?))));
-        progress.inc(count);
+        progress.add(count);
         tally
     };
     let blocks = (0..len.div_ceil(BLOCK)).into_par_iter();
-    let tally = blocks.map(block).reduce(|| survey.empty(), Tally::merge);
-    progress.finish_and_clear();
-    tally
+    blocks.map(block).reduce(|| survey.empty(), Tally::merge)
 }
 
 /// A problem as `cases retrieve` reads it.
@@ -225,5 +222,3 @@ fn goal(word: &str) -> Result<GoalEnd, String> {
 const RECORDED_MAX: usize = 5_000_000;
 /// Problems that are counted in one go: some tens of milliseconds.
 const BLOCK: u64 = 2048;
-/// Drawn on a terminal's stderr only.
-const BAR: &str = "{bar:40} {pos}/{len} problems, {eta} left";

@@ -176,7 +176,7 @@ pub(super) fn run(
         counts.robots,
         counts.sent
     );
-    recording.map_err(|error| Failure::Recording(format!("it is not whole: {error}")))?;
+    recording.map_err(|error| Failure::Recording { stem: None, error })?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -6,9 +6,8 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use indicatif::ProgressBar;
-
 use crate::output::note;
+use crate::progress::Progress;
 
 /// Lines that wait for the terminal.
 const LINES_MAX: usize = 256;
@@ -63,15 +62,11 @@ impl Terminal {
 }
 
 fn print(waiting: &Receiver<Print>) {
-    let bar = ProgressBar::new_spinner();
+    let bar = Progress::open();
     for print in waiting {
         match print {
-            Print::Line(words) => bar.suspend(|| note!("{words}")),
-            Print::Status(words) => {
-                bar.set_message(words);
-                bar.tick();
-            }
+            Print::Line(words) => bar.aside(|| note!("{words}")),
+            Print::Status(words) => bar.say(words),
         }
     }
-    bar.finish_and_clear();
 }

@@ -28,7 +28,7 @@ pub(super) struct ReportArgs {
     #[arg(long, value_name = "N", default_value_t = 100)]
     maps: u32,
     /// Every plot as PNG too, beside its SVG.
-    #[arg(long)]
+    #[arg(long, value_parser = picture::flag)]
     png: bool,
 }
 
@@ -50,7 +50,7 @@ pub(super) struct AgainArgs {
 #[derive(Debug, Args)]
 pub(super) struct PageArgs {
     /// The plot as PNG too, beside its SVG.
-    #[arg(long)]
+    #[arg(long, value_parser = picture::flag)]
     png: bool,
     /// Put the table between the markers of this Markdown file, and the plot into a directory of its name
     /// beside it.
@@ -60,7 +60,7 @@ pub(super) struct PageArgs {
 
 /// Writes the page of a played ablation.
 pub(super) fn write_ablation(ablation: &Ablation<'_>, folder: &Path, args: &PageArgs) -> Result<(), Failure> {
-    let drawn = ablation.write(folder).map_err(|error| unwritten(&folder.join(PAGE), &error))?;
+    let drawn = ablation.write(folder).map_err(|error| unwritten(&folder.join(PAGE), error))?;
     if args.png {
         picture::write(&folder.join("plots").join(&drawn.name).with_extension("png"), &drawn.svg)?;
     }
@@ -123,7 +123,7 @@ impl Made {
 
     fn write(&self, results: &Results, folder: &Path, args: &ReportArgs) -> Result<(), Failure> {
         let written = self.report(results).write(folder);
-        let pictures = written.map_err(|error| unwritten(&folder.join(PAGE), &error))?;
+        let pictures = written.map_err(|error| unwritten(&folder.join(PAGE), error))?;
         if args.png {
             for drawn in pictures {
                 picture::write(&folder.join("plots").join(drawn.name).with_extension("png"), &drawn.svg)?;
@@ -149,7 +149,7 @@ pub(super) fn insert(
     figures: impl Fn(&str) -> String,
     pictures: Vec<Picture>,
 ) -> Result<(), Failure> {
-    let failed = |error: std::io::Error| unwritten(file, &error);
+    let failed = |error: std::io::Error| unwritten(file, error);
     let beside = format!("{}/", file.file_stem().unwrap_or_default().to_string_lossy());
     let text = foreign::read_text(file, MARKDOWN_LEN_MAX).map_err(failed)?;
     let figures = figures(&beside);
@@ -165,8 +165,8 @@ pub(super) fn insert(
     fs::write(file, text).map_err(failed)
 }
 
-fn unwritten(file: &Path, error: &std::io::Error) -> Failure {
-    Failure::Picture { file: file.to_owned(), words: error.to_string() }
+fn unwritten(file: &Path, error: std::io::Error) -> Failure {
+    Failure::Picture { file: file.to_owned(), error: picture::PictureError::Write(error) }
 }
 
 /// The maps of the first trials of each cell, if this program plays identical ones.

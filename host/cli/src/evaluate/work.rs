@@ -11,13 +11,13 @@ use arena::evaluation::{
     Evaluation, EvaluationError, Plan, Progress, ROBOTS, Results, Setup, Shard, TrialRow, summary, verdicts,
 };
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 
 use super::report::{self, ReportArgs};
 use crate::Failure;
 use crate::args::VERSION;
 use crate::library::Shelf;
 use crate::output;
+use crate::progress;
 use crate::setup::SetupArgs;
 use crate::stop::stopped_by_hand;
 
@@ -39,7 +39,7 @@ impl WorkArgs {
     /// Threads to play on.
     pub(super) fn pool(&self) -> Result<rayon::ThreadPool, Failure> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(self.jobs.map_or(0, usize::from));
-        pool.build().map_err(|error| Failure::Threads(error.to_string()))
+        pool.build().map_err(Failure::Threads)
     }
 
     /// The directory, created if missing; without earlier trials if `fresh` is set.
@@ -100,24 +100,15 @@ pub(super) fn with_bar<R: Send>(
 ) -> Result<R, Failure> {
     // The running trials are still finished and stored.
     let stopped = stopped_by_hand();
-    // Drawn only if stderr is a terminal.
-    let bar = ProgressBar::new(0);
-    if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}, {eta} to go") {
-        bar.set_style(style);
-    }
-    bar.set_message(title.to_owned());
+    // Drawn on a terminal's stderr, and nowhere else.
+    let line = progress::Progress::open();
+    line.say(title);
     let told = |progress: Progress| {
-        if bar.length() != Some(progress.of as u64) {
-            bar.set_length(progress.of as u64);
-            // The pace of an earlier run is no measure for the remaining time.
-            bar.set_position(progress.done as u64);
-            bar.reset_eta();
-        }
-        bar.set_position(progress.done as u64);
+        line.set(progress.done as u64, progress.of as u64);
         if stopped.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let played = pool.install(|| play(&told));
-    bar.finish_and_clear();
+    drop(line);
     Ok(played?)
 }
 

@@ -125,18 +125,17 @@ impl<'s> Theatre<'s> {
     }
 
     fn one(&mut self, hands: &mut Hands, watcher: &mut dyn AnewWatcher) -> Result<GameReport, Failure> {
-        let failed = |error: arena::game::GameError| Failure::Game(error.to_string());
         let config = self.config.clone();
         let base = self.shelf.map_or_else(CaseBase::default, Shelf::lasting_base);
         let mut backend = NativeBackend::new(base);
-        let mut game = Game::new(&config, &mut backend).map_err(failed)?;
+        let mut game = Game::new(&config, &mut backend).map_err(Failure::Game)?;
         let mut eyes = Eyes { composer: Composer::new(self.shelf), t: 0.0 };
         let ticks = (config.duration_s * 1e6 / TICK_US as f64) as u64;
         let mut shown = f64::NEG_INFINITY;
         let stopped = stopped_by_hand();
         while game.now().0 / TICK_US < ticks && !game.is_over() && !stopped.load(Ordering::Relaxed) {
             while let Some(request) = self.page.next_request() {
-                self.obey(&request, hands, &mut game, &mut backend).map_err(failed)?;
+                self.obey(&request, hands, &mut game, &mut backend).map_err(Failure::Game)?;
             }
             if hands.anew.is_some() {
                 break;
@@ -149,7 +148,7 @@ impl<'s> Theatre<'s> {
             hands.steps = hands.steps.saturating_sub(1);
             let begun = Instant::now();
             eyes.t = game.time();
-            game.step(&mut Crowd(vec![&mut eyes, watcher.watcher()])).map_err(failed)?;
+            game.step(&mut Crowd(vec![&mut eyes, watcher.watcher()])).map_err(Failure::Game)?;
             hands.took = (hands.took * 15 + begun.elapsed()) / 16;
             let every = (SCENE_EVERY_S * f64::from(hands.speed)).min(SCENE_EVERY_MAX_S);
             if game.time() - shown >= every - 1e-6 || hands.paused {

@@ -9,7 +9,6 @@ use std::process::ExitCode;
 use host::referee::{Listener, SenderAddress};
 use host::tracking::{Heard, Tracker};
 use host::{Host, HostSettings, Input};
-use indicatif::ProgressBar;
 use protocol::Instant;
 use rules::Colour;
 use ssl::log::{MessageKind, Packet, Record};
@@ -21,6 +20,7 @@ use super::report::{self, Gap, Report};
 use super::{ReplayArgs, failed};
 use crate::Failure;
 use crate::output::say;
+use crate::progress::Progress;
 
 /// Vision that is silent longer than this is a gap: robots are blind after three missed periods at 60 Hz, and
 /// teams complain from 0.2 s on.
@@ -31,16 +31,16 @@ const REFEREE_GAP_S: f64 = 2.0;
 pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     let mut reader = ssl::log::open(&args.file).map_err(|error| failed(&args.file, &error))?;
     let mut pass = Pass::new(args)?;
-    let bar = ProgressBar::new_spinner();
+    let bar = Progress::open();
     let mut shown = None;
     for (number, record) in (0_u64..).zip(reader.by_ref()) {
-        bar.inc(1);
+        bar.add(1);
         if let Some(moment) = pass.read(number, &record) {
             shown = Some(moment);
             break;
         }
     }
-    bar.finish_and_clear();
+    drop(bar);
     if let Some(moment) = shown {
         say(&if args.json { json(&moment)? } else { moment.tell() })?;
         return Ok(ExitCode::SUCCESS);

@@ -12,7 +12,6 @@ use host::Host;
 use host::record::header::RecordingHeader;
 use host::record::recheck::Recheck;
 use host::record::trace::{End, Kind, Reader};
-use indicatif::ProgressBar;
 use protocol::Instant;
 use protocol::frame::TeamKey;
 use serde::Serialize;
@@ -26,6 +25,7 @@ use super::sheet::Sheet;
 use super::{ReplayArgs, failed, is_gzipped, open};
 use crate::Failure;
 use crate::output::{note, say};
+use crate::progress::Progress;
 
 #[derive(Debug, Serialize)]
 struct Report<'a> {
@@ -69,14 +69,14 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     let shown =
         header.hosts.iter().position(|host| Some(&*host.colour) == args.team.map(rules::Colour::word));
     let shown = shown.unwrap_or(0);
-    let bar = ProgressBar::new_spinner();
+    let bar = Progress::open();
     for record in reader.by_ref() {
-        bar.inc(1);
+        bar.add(1);
         if let Some(at) = args.at
             && record.at.0 as f64 * 1e-6 > at
             && let Some(host) = recheck.host(shown)
         {
-            bar.finish_and_clear();
+            drop(bar);
             return show(args, host, &all(&recheck), Instant((at * 1e6) as u64), None);
         }
         let (first, last) = span.get_or_insert((record.at, record.at));
@@ -101,13 +101,13 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
                 if met == args.nth
                     && let Some(host) = recheck.host(shown)
                 {
-                    bar.finish_and_clear();
+                    drop(bar);
                     return show(args, host, &all(&recheck), record.at, Some(happening.name.clone()));
                 }
             }
         }
     }
-    bar.finish_and_clear();
+    drop(bar);
     let damage = damage_of(reader.end()).or(unfinished(file, &recheck)?);
     if args.at.is_some() || args.event.is_some() {
         let (_, last) = span.unwrap_or_default();

@@ -14,7 +14,6 @@ use hil_sim::small_size::referee::{InternalReferee, RefereeSettings};
 use hil_sim::small_size::server::{Destination, Port, Server, ServerSettings};
 use hil_sim::small_size::{Event, World};
 use host::tracking::{Publisher, Tracker};
-use indicatif::ProgressBar;
 use ssl::Message;
 use ssl::net::{LoopbackProbe, probe_loopback};
 use ssl::simulation::{SimulatorCommand, SimulatorControl};
@@ -29,6 +28,7 @@ use crate::Failure;
 use crate::live::PageArgs;
 use crate::net::Mouth;
 use crate::output::note;
+use crate::progress::Progress;
 use crate::stop::stopped_by_hand;
 
 /// Period of the referee, simulated ms: its detectors are tuned for it.
@@ -87,7 +87,7 @@ pub(super) fn run(
     words.extend(multicast_advice(args.vision));
     set_pace(&mut server, args.speed);
 
-    let bar = ProgressBar::new_spinner();
+    let bar = Progress::open();
     let (began, mut second, mut skipped) = (Instant::now(), 0, 0);
     while !stopped.load(Ordering::Relaxed) {
         let running = began.elapsed();
@@ -146,15 +146,14 @@ pub(super) fn run(
                     server.pace()
                 ));
             }
-            bar.set_message(status(&server, &whistle, &vision));
-            bar.tick();
+            bar.say(status(&server, &whistle, &vision));
         }
         for words in words.drain(..) {
-            bar.suspend(|| note!("{words}"));
+            bar.aside(|| note!("{words}"));
         }
         thread::sleep(BEAT.saturating_sub(began.elapsed().saturating_sub(running)));
     }
-    bar.finish_and_clear();
+    drop(bar);
     let counts = server.counts();
     note!(
         "ended after {:.1} simulated s: {} vision packets out, {} control and {} robot messages in, {} undecodable, {} refusals told, {} ms left out",

@@ -7,8 +7,8 @@ use super::common::{refused, said, scratch, text};
 #[test]
 fn an_evaluation_has_a_report_with_maps_plots_and_every_parameter() {
     let out = scratch("report");
-    let asked = ["evaluate", "--trials", "2", "--scenario", "3", "--maps", "1", "--png", "--out", text(&out)];
-    said(&asked);
+    let asked = ["evaluate", "--trials", "2", "--scenario", "3", "--maps", "1", "--out", text(&out)];
+    said(&[&asked[..], PNG].concat());
     let page = fs::read_to_string(out.join("report.html")).expect("a report");
     assert!(page.starts_with("<!DOCTYPE html>") && page.ends_with("</html>"));
     for part in
@@ -19,8 +19,10 @@ fn an_evaluation_has_a_report_with_maps_plots_and_every_parameter() {
     for picture in ["table-1-outcomes", "differences", "maps-dg-3"] {
         let svg = fs::read_to_string(out.join(format!("plots/{picture}.svg"))).expect(picture);
         assert!(svg.starts_with("<svg") && page.contains("<svg"));
-        let png = fs::read(out.join(format!("plots/{picture}.png"))).expect(picture);
-        assert!(png.starts_with(b"\x89PNG"), "{picture}");
+        if cfg!(feature = "png") {
+            let png = fs::read(out.join(format!("plots/{picture}.png"))).expect(picture);
+            assert!(png.starts_with(b"\x89PNG"), "{picture}");
+        }
     }
 
     fs::remove_file(out.join("report.html")).expect("it was there");
@@ -77,14 +79,27 @@ fn an_ablation_has_its_page_and_its_table_in_a_document() {
         "<!-- ablations: written by `cargo xtask evaluation` -->\n<!-- end of ablations -->\n",
     )
     .expect("a file");
-    let asked = ["evaluate", "ablations", "--arm", "no-opponents", "--trials", "1", "--png"];
-    said(&[&asked[..], &["--out", text(&out), "--markdown", text(&document)]].concat());
+    let asked = ["evaluate", "ablations", "--arm", "no-opponents", "--trials", "1"];
+    said(&[&asked[..], PNG, &["--out", text(&out), "--markdown", text(&document)]].concat());
     let page = fs::read_to_string(out.join("report.html")).expect("a page");
     assert!(
         page.contains("--no-opponents") && page.contains("In every cell") && page.contains("grab.success")
     );
-    assert!(fs::read(out.join("plots/ablations.png")).expect("a plot").starts_with(b"\x89PNG"));
+    if cfg!(feature = "png") {
+        assert!(fs::read(out.join("plots/ablations.png")).expect("a plot").starts_with(b"\x89PNG"));
+    }
     let written = fs::read_to_string(&document).expect("a file");
     assert!(written.contains("| no-opponents |") && written.contains("](worth/ablations.svg)"), "{written}");
     assert!(out.join("worth/ablations.svg").is_file());
+}
+
+/// Plots as PNG too, where the program draws them.
+const PNG: &[&str] = if cfg!(feature = "png") { &["--png"] } else { &[] };
+
+#[cfg(not(feature = "png"))]
+#[test]
+fn a_program_without_png_says_how_to_get_one_with_it() {
+    let out = scratch("without-png");
+    let refused = refused(&["evaluate", "--trials", "1", "--png", "--out", text(&out)], 2);
+    assert!(refused.contains("cargo build --release --features png"), "{refused}");
 }

@@ -2,6 +2,7 @@
 //! simulated motors, watchdog and panic as on a robot; all of it is in [`standalone`].
 //!
 //! `onetwo firmware run` starts it. Built with the feature `omni` alone.
+#![allow(unsafe_code, reason = "registers, interrupts and flash are reached by address")]
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

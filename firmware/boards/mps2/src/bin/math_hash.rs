@@ -1,6 +1,7 @@
 //! `math_hash`: golden-hash test of `geometry::math` and of the runtime's memory copy on the target. Prints
 //! the golden hash of `geometry::math` (docs/architecture.md §2.4); exit code 0 if it equals the PC's and the
 //! runtime's memory copy moves exactly the requested bytes, else 1.
+#![allow(unsafe_code, reason = "registers, interrupts and flash are reached by address")]
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

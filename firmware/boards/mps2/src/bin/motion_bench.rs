@@ -2,6 +2,7 @@
 //! seed; a line a task.
 //!
 //! Needs `-icount shift=6`. `cargo xtask bench motion` starts it and reads the lines.
+#![allow(unsafe_code, reason = "registers, interrupts and flash are reached by address")]
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

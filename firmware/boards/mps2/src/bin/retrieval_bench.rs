@@ -4,6 +4,7 @@
 //!
 //! Needs `-icount shift=6`. `cargo xtask bench retrieval` puts table and problems into memory and reads the
 //! lines.
+#![allow(unsafe_code, reason = "registers, interrupts and flash are reached by address")]
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

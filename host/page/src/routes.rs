@@ -1,0 +1,121 @@
+//! `routes`: what is answered to a request: files of the page, seconds that are kept, explanations, frozen moments.
+
+use std::time::Duration;
+
+use serde::Deserialize;
+use serde_json::json;
+
+use crate::archive::look;
+use crate::files;
+use crate::http::{Answer, Head, Status};
+use crate::problem::{Freeze, problem, skeleton};
+use crate::request::Team;
+use crate::server::Shared;
+
+/// Happenings in one answer.
+const HAPPENINGS_A_TIME: usize = 5_000;
+const JSON: &str = "application/json";
+
+/// The answer to anything but a viewer's socket, worked out `within` that time.
+pub(crate) fn answer(shared: &Shared, head: &Head, body: Vec<u8>, within: Duration) -> Answer {
+    let reads = matches!(&*head.method, "GET" | "HEAD");
+    let allowed = |method, allowed: bool, answer: &dyn Fn() -> Answer| {
+        if allowed { answer() } else { Answer::bare(Status::NOT_ALLOWED).with("allow", method) }
+    };
+    match &*head.path {
+        "/api/state" => allowed("GET, HEAD", reads, &|| state(shared, head)),
+        "/api/happenings" => allowed("GET, HEAD", reads, &|| happenings(shared, head)),
+        "/api/plots" => allowed("GET, HEAD", reads, &|| plots(shared)),
+        "/api/freeze" => allowed("POST", head.method == "POST", &|| freeze(shared, &body)),
+        "/api/explain" if head.method == "POST" => explain(shared, body, within),
+        "/api/explain" => allowed("POST", false, &|| Answer::bare(Status::OK)),
+        path => match path.strip_prefix("/api/second/") {
+            Some(digits) => allowed("GET, HEAD", reads, &|| second(shared, digits)),
+            None => allowed("GET, HEAD", reads, &|| file(path)),
+        },
+    }
+}
+
+fn file(path: &str) -> Answer {
+    match files::find(path) {
+        Some(file) => Answer::of(file.kind, file.text.as_bytes()),
+        None => Answer::words(Status::NOT_FOUND, "nothing here"),
+    }
+}
+
+fn state(shared: &Shared, head: &Head) -> Answer {
+    let (span, life) = look(&shared.kept, |kept| (kept.span, kept.life));
+    let settings = &shared.settings;
+    let state = json!({
+        "title": settings.title,
+        "recorded": settings.recorded,
+        "powers": settings.powers,
+        "may_ask": shared.may_ask(head.asked("token")),
+        "situations": shared.oracle.situations(),
+        "span": span,
+        "life": life,
+    });
+    Answer::of(JSON, state.to_string().into_bytes())
+}
+
+fn second(shared: &Shared, digits: &str) -> Answer {
+    let Ok(second) = digits.parse() else {
+        return Answer::words(Status::BAD_REQUEST, "expected a whole number of seconds");
+    };
+    match look(&shared.kept, |kept| kept.second(second)) {
+        Some(bytes) => Answer::of(JSON, bytes.to_vec()).with("content-encoding", "gzip"),
+        None => Answer::words(Status::NOT_FOUND, "not kept"),
+    }
+}
+
+fn happenings(shared: &Shared, head: &Head) -> Answer {
+    let Ok(from) = head.asked("from").unwrap_or("0").parse::<usize>() else {
+        return Answer::words(Status::BAD_REQUEST, "from: expected a whole number");
+    };
+    let text = look(&shared.kept, |kept| {
+        let all = &kept.happenings;
+        let until = all.len().min(from.saturating_add(HAPPENINGS_A_TIME));
+        serde_json::to_string(&all[from.min(until)..until]).unwrap_or_default()
+    });
+    Answer::of(JSON, text.into_bytes())
+}
+
+fn plots(shared: &Shared) -> Answer {
+    let text = look(&shared.kept, |kept| serde_json::to_string(&kept.samples).unwrap_or_default());
+    Answer::of(JSON, text.into_bytes())
+}
+
+fn explain(shared: &Shared, body: Vec<u8>, within: Duration) -> Answer {
+    let answer = shared.in_time(within, move |oracle| match std::str::from_utf8(&body) {
+        Ok(problem) => oracle.explain(problem),
+        Err(_) => Err("a problem is text".to_owned()),
+    });
+    match answer {
+        Ok(Ok(text)) => Answer::of(JSON, text.into_bytes()),
+        Ok(Err(words)) => Answer::words(Status::UNPROCESSABLE, words),
+        Err(Status::TIMED_OUT) => Answer::words(Status::TIMED_OUT, "it took too long"),
+        Err(status) => Answer::words(status, "no answer"),
+    }
+}
+
+#[derive(Deserialize)]
+struct Frozen {
+    t: f64,
+    team: Team,
+    what: Freeze,
+}
+
+fn freeze(shared: &Shared, body: &[u8]) -> Answer {
+    let Ok(asked) = serde_json::from_slice::<Frozen>(body) else {
+        return Answer::words(Status::UNPROCESSABLE, "expected t, team and what");
+    };
+    let scene = look(&shared.kept, |kept| kept.scene_at(asked.t));
+    let text = scene.and_then(|scene| match asked.what {
+        Freeze::Problem => problem(&scene, asked.team).map(|line| line + "\n"),
+        Freeze::Case => skeleton(&scene, asked.team),
+    });
+    match text {
+        Some(text) => Answer::words(Status::OK, text),
+        None => Answer::words(Status::UNPROCESSABLE, "no ball or no such team at that moment"),
+    }
+}
