@@ -22,8 +22,8 @@ fn main() {
     let out = PathBuf::from(variable("OUT_DIR"));
     let mut code = String::new();
     let mut names = String::new();
-    for folder in &folders {
-        let (library, rules) = read(folder);
+    for directory in &folders {
+        let (library, rules) = read(directory);
         let constant = library.league.to_uppercase().replace(|c: char| !c.is_ascii_alphanumeric(), "_");
         let blob = out.join(format!("{}.table", library.league));
         fs::write(&blob, library.table.bytes()).expect("the output folder is writable");
@@ -36,17 +36,17 @@ fn main() {
 }
 
 /// A league's library and the text of its `league.toml`; a failure ends the build.
-fn read(folder: &Path) -> (Library, String) {
-    let library = case_tools::load(folder).unwrap_or_else(|findings| {
+fn read(directory: &Path) -> (Library, String) {
+    let library = case_tools::load(directory).unwrap_or_else(|findings| {
         for finding in &findings {
             println!("cargo::error={finding}");
         }
-        panic!("the case library in {} is refused: see the findings", folder.display());
+        panic!("the case library in {} is refused: see the findings", directory.display());
     });
     for finding in &library.findings {
         println!("cargo::warning={finding}");
     }
-    let rules = fs::read_to_string(folder.join("league.toml")).expect("read a moment ago");
+    let rules = fs::read_to_string(directory.join("league.toml")).expect("read a moment ago");
     (library, rules)
 }
 

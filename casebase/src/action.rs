@@ -84,7 +84,7 @@ impl Action {
     }
 
     /// Its key in case files.
-    pub const fn word(self) -> &'static str {
+    pub const fn label(self) -> &'static str {
         match self {
             Self::Wait => "wait",
             Self::GoToPoint(_) => "go_to_point",
@@ -161,7 +161,7 @@ impl Primitive {
         [Self::Unspecified, Self::ForwardSoft, Self::ForwardHard, Self::Left, Self::Right, Self::Pass];
 
     /// Its key in the league's file; empty for [`Primitive::Unspecified`].
-    pub const fn word(self) -> &'static str {
+    pub const fn label(self) -> &'static str {
         match self {
             Self::Unspecified => "",
             Self::ForwardSoft => "forward_soft",
@@ -173,8 +173,8 @@ impl Primitive {
     }
 
     /// The primitive of that key in the league's file.
-    pub fn from_word(word: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|primitive| *primitive != Self::Unspecified && primitive.word() == word)
+    pub fn from_label(label: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|primitive| *primitive != Self::Unspecified && primitive.label() == label)
     }
 }
 
@@ -243,10 +243,10 @@ mod tests {
     }
 
     #[test]
-    fn the_words_of_primitives_lead_back() {
+    fn the_description_of_primitives_lead_back() {
         for primitive in Primitive::ALL.into_iter().skip(1) {
-            assert_eq!(Primitive::from_word(primitive.word()), Some(primitive));
+            assert_eq!(Primitive::from_label(primitive.label()), Some(primitive));
         }
-        assert_eq!(Primitive::from_word(""), None);
+        assert_eq!(Primitive::from_label(""), None);
     }
 }

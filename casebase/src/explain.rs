@@ -70,7 +70,7 @@ pub enum Verdict {
 
 impl Verdict {
     /// Its label in answers.
-    pub const fn word(&self) -> &'static str {
+    pub const fn label(&self) -> &'static str {
         match self {
             Self::Ball { .. } => "ball",
             Self::Robots { .. } => "robots",

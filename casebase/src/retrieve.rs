@@ -204,8 +204,8 @@ impl<'a> Race<'_, 'a> {
         }
         let Some(nearest) = query.nearest(case) else { return };
         if class == self.class
-            && let Some(rival) = &self.best
-            && nearest.players.cost > rival.key.cost
+            && let Some(candidate) = &self.best
+            && nearest.players.cost > candidate.key.cost
         {
             return;
         }
@@ -219,8 +219,8 @@ impl<'a> Race<'_, 'a> {
             case: case.id.0,
         };
         if class == self.class
-            && let Some(rival) = &self.best
-            && key_order(&key, &rival.key, query.settings).is_ge()
+            && let Some(candidate) = &self.best
+            && key_order(&key, &candidate.key, query.settings).is_ge()
         {
             return;
         }

@@ -185,49 +185,49 @@ struct Setting {
 }
 
 /// The labels of an option with two or three values.
-trait Words: Copy + PartialEq + 'static {
-    const WORDS: &'static [(&'static str, Self)];
+trait Description: Copy + PartialEq + 'static {
+    const DESCRIPTION: &'static [(&'static str, Self)];
 
-    fn parse(word: &str) -> Option<Self> {
-        Self::WORDS.iter().find(|(name, _)| *name == word).map(|(_, value)| *value)
+    fn parse(label: &str) -> Option<Self> {
+        Self::DESCRIPTION.iter().find(|(name, _)| *name == label).map(|(_, value)| *value)
     }
-    fn word(self) -> &'static str {
-        Self::WORDS.iter().find(|(_, value)| *value == self).map_or("", |(name, _)| name)
+    fn label(self) -> &'static str {
+        Self::DESCRIPTION.iter().find(|(_, value)| *value == self).map_or("", |(name, _)| name)
     }
 }
-impl Words for CorrespondenceRule {
-    const WORDS: &'static [(&'static str, Self)] =
+impl Description for CorrespondenceRule {
+    const DESCRIPTION: &'static [(&'static str, Self)] =
         &[("min-then-test", Self::MinThenTest), ("constrained", Self::Constrained)];
 }
-impl Words for CostRule {
-    const WORDS: &'static [(&'static str, Self)] = &[("sum", Self::Sum), ("max", Self::Max)];
+impl Description for CostRule {
+    const DESCRIPTION: &'static [(&'static str, Self)] = &[("sum", Self::Sum), ("max", Self::Max)];
 }
-impl Words for Criterion {
-    const WORDS: &'static [(&'static str, Self)] = &[
+impl Description for Criterion {
+    const DESCRIPTION: &'static [(&'static str, Self)] = &[
         ("conditions", Self::Conditions),
         ("teammates", Self::Teammates),
         ("interval-cost", Self::IntervalCost),
     ];
 }
-impl Words for OutOfField {
-    const WORDS: &'static [(&'static str, Self)] =
+impl Description for OutOfField {
+    const DESCRIPTION: &'static [(&'static str, Self)] =
         &[("keep", Self::Keep), ("clamp", Self::Clamp), ("reject", Self::Reject)];
 }
-impl Words for ScopeRule {
-    const WORDS: &'static [(&'static str, Self)] =
+impl Description for ScopeRule {
+    const DESCRIPTION: &'static [(&'static str, Self)] =
         &[("translated", Self::Translated), ("absolute", Self::Absolute)];
 }
-impl Words for FreePathRule {
-    const WORDS: &'static [(&'static str, Self)] = &[("crisp", Self::Crisp), ("fuzzy", Self::Fuzzy)];
+impl Description for FreePathRule {
+    const DESCRIPTION: &'static [(&'static str, Self)] = &[("crisp", Self::Crisp), ("fuzzy", Self::Fuzzy)];
 }
 
 /// A permutation of the three criteria, with or without brackets.
 fn parse_ranking(value: &str) -> Option<[Criterion; 3]> {
     let inner = value.strip_prefix('[').and_then(|v| v.strip_suffix(']')).unwrap_or(value);
-    let mut words = inner.split(',').map(|word| Criterion::parse(word.trim()));
-    let ranking = [words.next()??, words.next()??, words.next()??];
+    let mut description = inner.split(',').map(|label| Criterion::parse(label.trim()));
+    let ranking = [description.next()??, description.next()??, description.next()??];
     let all_different = ranking[0] != ranking[1] && ranking[1] != ranking[2] && ranking[0] != ranking[2];
-    (words.next().is_none() && all_different).then_some(ranking)
+    (description.next().is_none() && all_different).then_some(ranking)
 }
 
 fn parse_number(value: &str, allowed: impl Fn(f32) -> bool) -> Option<f32> {
@@ -239,20 +239,20 @@ const SETTINGS: &[Setting] = &[
         name: "correspondence",
         expected: "min-then-test or constrained",
         set: |s, v| CorrespondenceRule::parse(v).map(|v| s.correspondence = v),
-        get: |s, out| out.write_str(s.correspondence.word()),
+        get: |s, out| out.write_str(s.correspondence.label()),
     },
     Setting {
         name: "cost",
         expected: "sum or max",
         set: |s, v| CostRule::parse(v).map(|v| s.cost = v),
-        get: |s, out| out.write_str(s.cost.word()),
+        get: |s, out| out.write_str(s.cost.label()),
     },
     Setting {
         name: "ranking",
         expected: "conditions,teammates,interval-cost in any order",
         set: |s, v| parse_ranking(v).map(|v| s.ranking = v),
         get: |s, out| {
-            let [a, b, c] = s.ranking.map(Criterion::word);
+            let [a, b, c] = s.ranking.map(Criterion::label);
             write!(out, "{a},{b},{c}")
         },
     },
@@ -260,19 +260,19 @@ const SETTINGS: &[Setting] = &[
         name: "out_of_field",
         expected: "keep, clamp or reject",
         set: |s, v| OutOfField::parse(v).map(|v| s.out_of_field = v),
-        get: |s, out| out.write_str(s.out_of_field.word()),
+        get: |s, out| out.write_str(s.out_of_field.label()),
     },
     Setting {
         name: "scopes",
         expected: "translated or absolute",
         set: |s, v| ScopeRule::parse(v).map(|v| s.scopes = v),
-        get: |s, out| out.write_str(s.scopes.word()),
+        get: |s, out| out.write_str(s.scopes.label()),
     },
     Setting {
         name: "free_path",
         expected: "crisp or fuzzy",
         set: |s, v| FreePathRule::parse(v).map(|v| s.free_path = v),
-        get: |s, out| out.write_str(s.free_path.word()),
+        get: |s, out| out.write_str(s.free_path.label()),
     },
     Setting {
         name: "thr_c",

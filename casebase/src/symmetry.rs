@@ -43,7 +43,7 @@ impl Symmetry {
     }
 
     /// Its label in files and answers.
-    pub const fn word(self) -> &'static str {
+    pub const fn label(self) -> &'static str {
         match self {
             Self::Identity => "identity",
             Self::AcrossX => "across-x",
@@ -79,7 +79,7 @@ impl Symmetry {
 
 impl fmt::Display for Symmetry {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.word())
+        f.write_str(self.label())
     }
 }
 
@@ -90,7 +90,7 @@ mod tests {
     #[test]
     fn the_four_situations_of_the_papers_figure_3() {
         let p = PointMm::new(1000, 500);
-        let of = |s: Symmetry| (s.point(p), s.goal(GoalEnd::Negative).word());
+        let of = |s: Symmetry| (s.point(p), s.goal(GoalEnd::Negative).label());
         assert_eq!(of(Symmetry::Identity), (PointMm::new(1000, 500), "yellow"));
         assert_eq!(of(Symmetry::AcrossX), (PointMm::new(1000, -500), "yellow"));
         assert_eq!(of(Symmetry::AcrossY), (PointMm::new(-1000, 500), "cyan"));
@@ -111,10 +111,10 @@ mod tests {
     }
 
     #[test]
-    fn words_lead_back_to_their_goals() {
+    fn description_lead_back_to_their_goals() {
         for goal in [GoalEnd::Negative, GoalEnd::Positive] {
-            assert_eq!(GoalEnd::from_word(goal.word()), Some(goal));
+            assert_eq!(GoalEnd::from_label(goal.label()), Some(goal));
         }
-        assert_eq!(GoalEnd::from_word("blue"), None);
+        assert_eq!(GoalEnd::from_label("blue"), None);
     }
 }

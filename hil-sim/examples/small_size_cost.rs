@@ -10,15 +10,15 @@ use std::process::ExitCode;
 use geometry::{Pose, Twist, Vector};
 use hil_sim::TraceHash;
 use hil_sim::small_size::camera::Cameras;
-use hil_sim::small_size::quirks::Profile;
+use hil_sim::small_size::compatibility::Profile;
 use hil_sim::small_size::{Ball, Drive, Event, Kick, Order, Parameters, World};
 use protocol::{RobotId, Who};
 use rules::{Colour, League};
 use ssl::Message;
 
 fn main() -> ExitCode {
-    let words: Vec<String> = std::env::args().skip(1).collect();
-    let [part, seconds] = &words[..] else { return usage() };
+    let description: Vec<String> = std::env::args().skip(1).collect();
+    let [part, seconds] = &description[..] else { return usage() };
     let (Ok(seconds), Some(part)) = (seconds.parse::<u32>(), PARTS.iter().position(|name| name == part))
     else {
         return usage();

@@ -301,18 +301,18 @@ mod tests {
     }
 
     /// Robot 1 sends `n` numbered packets, one per tick; returns what robot 2 received, with the ticks.
-    fn heard(settings: AirSettings, n: u32) -> (Vec<(u32, u32)>, AirCounts) {
+    fn received(settings: AirSettings, n: u32) -> (Vec<(u32, u32)>, AirCounts) {
         let mut air = air(settings);
-        let mut heard = Vec::new();
+        let mut received = Vec::new();
         for tick in 0..n + 20 {
             for p in air.deliver(tick, id(2)) {
-                heard.push((tick, u32::from_le_bytes(p[..4].try_into().unwrap())));
+                received.push((tick, u32::from_le_bytes(p[..4].try_into().unwrap())));
             }
             if tick < n {
                 air.send(tick, id(1), &packet(tick));
             }
         }
-        (heard, air.counts())
+        (received, air.counts())
     }
 
     #[test]
@@ -329,10 +329,10 @@ mod tests {
     #[test]
     fn thirty_in_a_hundred_are_lost_and_ten_come_twice() {
         let settings = AirSettings { duplication: 0.1, ..AirSettings::with_loss(0.3) };
-        let (heard, counts) = heard(settings, 4_000);
+        let (received, counts) = received(settings, 4_000);
         let once = 4_000.0 * 0.7;
         // Deviations: √(4000·0.3·0.7) = 29 losses, and about √(2800·0.1·0.9) = 16 copies; four of each.
-        assert!((heard.len() as f32 - once * 1.1).abs() < 4.0 * (29.0 + 16.0), "{}", heard.len());
+        assert!((received.len() as f32 - once * 1.1).abs() < 4.0 * (29.0 + 16.0), "{}", received.len());
         assert_eq!(counts.sent, 8_000);
         assert!(counts.lost.abs_diff(2_400) < 4 * 41 && counts.doubled.abs_diff(560) < 4 * 23, "{counts:?}");
     }
@@ -342,8 +342,8 @@ mod tests {
         let settings =
             AirSettings { bursts: Some(Bursts { share: 0.3, ticks: 8.0 }), ..AirSettings::default() };
         let n = 40_000;
-        let (heard, _) = heard(settings, n);
-        let came: std::collections::BTreeSet<u32> = heard.iter().map(|(_, number)| *number).collect();
+        let (received, _) = received(settings, n);
+        let came: std::collections::BTreeSet<u32> = received.iter().map(|(_, number)| *number).collect();
         let lost = f64::from(n) - came.len() as f64;
         let stretches = (1..n).filter(|i| came.contains(&(i - 1)) && !came.contains(i)).count() as f64;
         // 1,500 dead periods of 8 ± 8: 0.2 of their mean, and 2 % of the share; four of each.
@@ -353,17 +353,17 @@ mod tests {
 
     #[test]
     fn delays_stay_within_their_bounds_and_reach_both() {
-        let (heard, _) = heard(AirSettings { delay: [1, 3], ..AirSettings::default() }, 300);
-        let delays: Vec<u32> = heard.iter().map(|(tick, sent)| tick - sent).collect();
+        let (received, _) = received(AirSettings { delay: [1, 3], ..AirSettings::default() }, 300);
+        let delays: Vec<u32> = received.iter().map(|(tick, sent)| tick - sent).collect();
         assert!(delays.iter().all(|d| (1..=3).contains(d)) && [1, 2, 3].iter().all(|d| delays.contains(d)));
-        assert_eq!(heard.len(), 300);
+        assert_eq!(received.len(), 300);
     }
 
     #[test]
     fn reordering_swaps_and_loses_nothing() {
         let settings = AirSettings { reordering: 0.5, delay: [2, 2], ..AirSettings::default() };
-        let (heard, _) = heard(settings, 300);
-        let mut numbers: Vec<u32> = heard.iter().map(|(_, n)| *n).collect();
+        let (received, _) = received(settings, 300);
+        let mut numbers: Vec<u32> = received.iter().map(|(_, n)| *n).collect();
         assert!(numbers.windows(2).any(|pair| pair[0] > pair[1]));
         numbers.sort_unstable();
         assert_eq!(numbers, (0..300).collect::<Vec<_>>());
@@ -424,18 +424,18 @@ mod tests {
         let deaf = LinkLoss { from: Sender::Host, to: Sender::Robot(id(2)), loss: 1.0 };
         let settings = AirSettings { links: vec![deaf], ..AirSettings::with_loss(0.3) };
         let mut air = Air::with_host(settings, 9, &[id(1), id(2)]);
-        let mut heard = [0, 0, 0];
+        let mut received = [0, 0, 0];
         for tick in 0..4_000 {
-            heard[0] += air.deliver(tick, id(1)).len();
-            heard[1] += air.deliver(tick, id(2)).len();
-            heard[2] += air.deliver_to_host(tick).len();
+            received[0] += air.deliver(tick, id(1)).len();
+            received[1] += air.deliver(tick, id(2)).len();
+            received[2] += air.deliver_to_host(tick).len();
             air.send_from_host(tick, None, &packet(tick));
             air.send(tick, id(2), &packet(tick));
         }
         // Robot 1 receives from two senders, robot 2 from none, the host from one; √(n·0.3·0.7) = 41 and 29,
         // four of each.
-        assert!(heard[0].abs_diff(5_600) < 4 * 41 && heard[2].abs_diff(2_800) < 4 * 29, "{heard:?}");
-        assert_eq!(heard[1], 0);
+        assert!(received[0].abs_diff(5_600) < 4 * 41 && received[2].abs_diff(2_800) < 4 * 29, "{received:?}");
+        assert_eq!(received[1], 0);
         air.discard(4_500, id(1));
         air.set(AirSettings { host_group: 1, ..AirSettings::default() });
         air.send_from_host(5_000, None, &packet(0));

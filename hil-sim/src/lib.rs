@@ -17,13 +17,13 @@
 mod air;
 pub mod four_legged;
 mod hash;
+mod labels;
 mod mcu;
 mod meter;
 mod native;
 mod qemu;
 mod rng;
 pub mod small_size;
-mod words;
 
 pub use air::{Air, AirCounts, AirSettings, Bursts, LinkLoss};
 pub use four_legged::fault::{Fault, ScheduledFault};
@@ -32,7 +32,7 @@ pub use four_legged::parameters::{FOUR_LEGGED_TOML, Noise, ParameterError, Param
 pub use four_legged::referee::{Configuration, Outcome, Party, Referee, Verdict};
 pub use four_legged::scenario::{Layout, Placed, Scenario, TEAM};
 pub use four_legged::simulation::{
-    Heard, Sent, Simulation, SimulationConfig, SimulationError, TICK_US, Tick,
+    Received, Sent, Simulation, SimulationConfig, SimulationError, TICK_US, Tick,
 };
 pub use four_legged::trace::TraceHash;
 pub use hash::Fnv;

@@ -57,7 +57,7 @@ pub enum McuError {
         /// The program or file.
         what: String,
         /// How to get it.
-        mend: String,
+        hint: String,
     },
     /// The process could not be started.
     Start(std::io::Error),
@@ -87,7 +87,7 @@ pub enum McuError {
 impl fmt::Display for McuError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Missing { what, mend } => write!(f, "{what} is missing: {mend}"),
+            Self::Missing { what, hint } => write!(f, "{what} is missing: {hint}"),
             Self::Start(e) => write!(f, "the robot's computer could not be started: {e}"),
             Self::Io(e) => write!(f, "talking to the robot's computer failed: {e}"),
             Self::Silent { asked, waited_ms } => {

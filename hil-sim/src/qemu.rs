@@ -48,11 +48,11 @@ impl QemuBackend {
     fn check(&self) -> Result<(), McuError> {
         if !self.image.is_file() {
             let what = format!("the firmware image {}", self.image.display());
-            return Err(McuError::Missing { what, mend: "build it with `onetwo firmware build`".into() });
+            return Err(McuError::Missing { what, hint: "build it with `onetwo firmware build`".into() });
         }
         if find(&self.program).is_none() {
-            let mend = "install QEMU 7.2 or newer, for example `apt-get install qemu-system-arm` or `brew install qemu`";
-            return Err(McuError::Missing { what: self.program.display().to_string(), mend: mend.into() });
+            let hint = "install QEMU 7.2 or newer, for example `apt-get install qemu-system-arm` or `brew install qemu`";
+            return Err(McuError::Missing { what: self.program.display().to_string(), hint: hint.into() });
         }
         Ok(())
     }
@@ -244,7 +244,7 @@ fn find(program: &Path) -> Option<PathBuf> {
         return program.is_file().then(|| program.to_path_buf());
     }
     let path = env::var_os("PATH")?;
-    env::split_paths(&path).map(|folder| folder.join(program)).find(|file| file.is_file())
+    env::split_paths(&path).map(|directory| directory.join(program)).find(|file| file.is_file())
 }
 
 /// What goes into the library slot of the board's flash: a temporary file of its own for each back end,
@@ -257,7 +257,7 @@ impl LibraryFile {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let header = slot::header(table.len()).ok_or_else(|| McuError::Missing {
             what: format!("room for a case table of {} bytes", table.len()),
-            mend: format!("the slot in the robot's flash takes {} bytes", slot::LEN - slot::HEADER_LEN),
+            hint: format!("the slot in the robot's flash takes {} bytes", slot::LEN - slot::HEADER_LEN),
         })?;
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
         let name = format!("onetwo-library-{}-{number}.bin", std::process::id());
@@ -371,7 +371,7 @@ mod tests {
         BrainConfig::new(RobotId::new(2).unwrap(), TeamId(1))
     }
 
-    fn picture() -> SensorFrame {
+    fn snapshot() -> SensorFrame {
         SensorFrame {
             pose: Some(Pose::from_mm_deg(100.0, -200.0, 30.0)),
             ball: None,
@@ -385,7 +385,7 @@ mod tests {
 
     fn tick(seq: u32) -> TickIn<'static> {
         let air = [&b"one"[..], b"two"].into_iter().collect();
-        TickIn { seq, now: protocol::Instant(40_000), air, sensors: picture() }
+        TickIn { seq, now: protocol::Instant(40_000), air, sensors: snapshot() }
     }
 
     #[test]
@@ -394,8 +394,8 @@ mod tests {
         says(&board, &FromRobot::Hello);
         says(&board, &FromRobot::Ready);
         robot.set_up(&config()).unwrap();
-        let heard = hears(&board);
-        let ToRobot::Setup { config: bytes } = postcard::from_bytes(&heard).unwrap() else { panic!() };
+        let received = hears(&board);
+        let ToRobot::Setup { config: bytes } = postcard::from_bytes(&received).unwrap() else { panic!() };
         assert_eq!(postcard::from_bytes::<BrainConfig>(bytes).unwrap(), config());
 
         robot.post(&tick(7)).unwrap();
@@ -439,7 +439,7 @@ mod tests {
     }
 
     #[test]
-    fn an_emulator_that_ends_tells_its_last_words() {
+    fn an_emulator_that_ends_tells_its_last_description() {
         let (mut robot, _board) = quiet("sh", &["-c", "echo no such machine >&2; exit 3"]);
         let error = robot.set_up(&config()).unwrap_err().to_string();
         assert!(error.contains("exit status: 3; no such machine"), "{error}");

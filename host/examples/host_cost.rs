@@ -21,8 +21,8 @@ fn main() -> ExitCode {
         return ExitCode::from(2);
     };
     match feed(&file) {
-        Ok(words) => {
-            println!("{words}");
+        Ok(description) => {
+            println!("{description}");
             ExitCode::SUCCESS
         }
         Err(error) => {

@@ -72,10 +72,10 @@ fn report(packets: &[(Instant, WrapperPacket)]) {
         let camera = cameras.entry(image.camera_id).or_insert((0, image.t_capture, image.t_capture));
         (camera.0, camera.2) = (camera.0 + 1, image.t_capture);
         delays.push(tracker.delay().0);
-        let world = tracker.picture();
+        let world = tracker.snapshot();
         let kicked = world.ball.and_then(|ball| ball.kicked);
         if let Some(now) = kicked.filter(|now| kick != Some((now.by, now.from))) {
-            let by = now.by.map_or("somebody".into(), |who| format!("{} {}", who.colour.word(), who.id));
+            let by = now.by.map_or("somebody".into(), |who| format!("{} {}", who.colour.label(), who.id));
             println!(
                 "{:8.3} s: {by} kicks at {:?} with {:.1} m/s, {:.1} m/s up",
                 now.at.as_secs_f32(),

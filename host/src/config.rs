@@ -162,19 +162,19 @@ pub struct ConfigError {
     /// The key or flag.
     pub key: String,
     /// What is wrong, and what to write.
-    pub words: String,
+    pub description: String,
 }
 
 impl fmt::Display for ConfigError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.key, self.words)
+        write!(f, "{}: {}", self.key, self.description)
     }
 }
 
 impl std::error::Error for ConfigError {}
 
-fn error(key: &str, words: impl Into<String>) -> ConfigError {
-    ConfigError { key: key.to_owned(), words: words.into() }
+fn error(key: &str, description: impl Into<String>) -> ConfigError {
+    ConfigError { key: key.to_owned(), description: description.into() }
 }
 
 /// Error text for a file of settings, with its place; of a long line only the start.
@@ -276,22 +276,29 @@ pub(crate) const KICK_RANGE: std::ops::RangeInclusive<f32> = 0.4..=2.0;
 const ROLL_RANGE: std::ops::RangeInclusive<f32> = 0.05..=1.5;
 const LEAGUES: [League; 3] = [League::Ssl2013, League::DivisionB, League::DivisionA];
 
-fn colour(word: &str) -> Result<Colour, ConfigError> {
+fn colour(label: &str) -> Result<Colour, ConfigError> {
     [Colour::Blue, Colour::Yellow]
         .into_iter()
-        .find(|colour| colour.word() == word)
-        .ok_or_else(|| error("colour", format!("`{word}` is none; blue or yellow")))
+        .find(|colour| colour.label() == label)
+        .ok_or_else(|| error("colour", format!("`{label}` is none; blue or yellow")))
 }
 
 fn pin(text: &str) -> Result<SourcePin, ConfigError> {
-    let words = "empty; an address such as 192.168.1.5, one with a port, or a referee's identifier";
-    if text.trim().is_empty() { Err(error("referee_source", words)) } else { Ok(SourcePin::of(text.trim())) }
+    let description = "empty; an address such as 192.168.1.5, one with a port, or a referee's identifier";
+    if text.trim().is_empty() {
+        Err(error("referee_source", description))
+    } else {
+        Ok(SourcePin::of(text.trim()))
+    }
 }
 
-fn on_silence(word: &str) -> Result<OnSilence, ConfigError> {
-    let known = OnSilence::ALL.into_iter().find(|(known, _)| *known == word);
+fn on_silence(label: &str) -> Result<OnSilence, ConfigError> {
+    let known = OnSilence::ALL.into_iter().find(|(known, _)| *known == label);
     known.map(|(_, known)| known).ok_or_else(|| {
-        error("referee_silence", format!("`{word}` is none; halt (after 2 s) or go-on (by its last command)"))
+        error(
+            "referee_silence",
+            format!("`{label}` is none; halt (after 2 s) or go-on (by its last command)"),
+        )
     })
 }
 
@@ -366,7 +373,7 @@ mod tests {
     fn every_mistake_names_its_key_and_what_would_be_right() {
         let refused =
             |text: &str| TeamSettings::from_toml(text).and_then(TeamSettings::complete).unwrap_err();
-        assert!(refused("color = \"blue\"").words.contains("color"));
+        assert!(refused("color = \"blue\"").description.contains("color"));
         assert!(refused("colour = \"red\"").to_string().contains("blue or yellow"));
         assert!(refused("keeper = 16").to_string().contains("0 to 15"));
         assert!(refused("referee_source = ' '").to_string().contains("192.168.1.5"));
@@ -381,12 +388,12 @@ mod tests {
 
     #[test]
     fn a_broken_line_is_told_with_its_place_and_without_its_length() {
-        let refused = |text: &str| TeamSettings::from_toml(text).unwrap_err().words;
-        let words = refused(&format!("colour = \"blue\"\nname = {}\n", "x".repeat(1_000_000)));
-        assert!(words.starts_with("line 2: "), "{words}");
-        assert!(words.len() < 600, "{} bytes", words.len());
-        let words = refused("name = \"a\"\nkeeper = \u{1b}[2J\u{1b}]0;pwn\u{7}");
-        assert!(words.contains("line 2") && !words.contains(char::is_control), "{words:?}");
+        let refused = |text: &str| TeamSettings::from_toml(text).unwrap_err().description;
+        let description = refused(&format!("colour = \"blue\"\nname = {}\n", "x".repeat(1_000_000)));
+        assert!(description.starts_with("line 2: "), "{description}");
+        assert!(description.len() < 600, "{} bytes", description.len());
+        let description = refused("name = \"a\"\nkeeper = \u{1b}[2J\u{1b}]0;pwn\u{7}");
+        assert!(description.contains("line 2") && !description.contains(char::is_control), "{description:?}");
     }
 
     #[test]

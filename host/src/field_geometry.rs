@@ -39,7 +39,7 @@ pub struct VisionGeometry {
 
 /// What a geometry packet changed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct News {
+pub struct GeometryChange {
     /// The field differs from before, or known for the first time.
     pub field: bool,
     /// Number of cameras that are new or have moved.
@@ -106,9 +106,9 @@ impl VisionGeometry {
     }
 
     /// Takes a geometry packet. An implausible field refuses the whole packet.
-    pub fn hear(&mut self, data: &GeometryData) -> Result<News, GeometryFault> {
+    pub fn receive(&mut self, data: &GeometryData) -> Result<GeometryChange, GeometryFault> {
         let field = field_of(&data.field).map_err(GeometryFault::Field)?;
-        let mut news = News { field: self.field != Some(field), ..News::default() };
+        let mut news = GeometryChange { field: self.field != Some(field), ..GeometryChange::default() };
         self.field = Some(field);
         for calibration in &data.calib {
             let possible = calibration.camera_id < CAMERAS_MAX;

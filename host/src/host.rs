@@ -12,7 +12,7 @@ mod state;
 use casebase::CaseBase;
 use geometry::{GoalEnd, Point};
 use protocol::frame::TeamKey;
-use protocol::host::{Command, Condition, Directive, Duty, Telemetry};
+use protocol::host::{Command, Condition, Directive, RuleRole, Telemetry};
 use protocol::link::Packet;
 use protocol::team::{Beacon, PRESENCE_LEASE, Progress};
 use protocol::{Duration, Instant, RobotId, TeamId};
@@ -26,8 +26,8 @@ use crate::radio::{self, Radio, RadioSettings, Situation, To};
 use crate::referee::team_port::Request;
 use crate::referee::{Listener, OnSilence, SenderAddress, SourcePin};
 use crate::requests::Requests;
+use crate::strategy::counters::Bookkeeper;
 use crate::strategy::pass::bridge::CasePass;
-use crate::strategy::tally::Bookkeeper;
 use crate::strategy::view::{Game, RobotSet};
 use crate::strategy::{Coach, Flip, Orders, Tactics, Team, View};
 use crate::tracking::HiddenBall;
@@ -87,7 +87,7 @@ impl HostSettings {
 }
 
 /// Orders that replace the coach's: robot, its role, and its directive.
-pub type Drill = heapless::Vec<(RobotId, Duty, Directive), { RobotId::COUNT }>;
+pub type Drill = heapless::Vec<(RobotId, RuleRole, Directive), { RobotId::COUNT }>;
 
 /// The host of one team: all state from vision to radio.
 #[derive(Clone, Debug)]
@@ -222,17 +222,17 @@ impl Host {
         self.undecodable.empty += u64::from(packet.geometry.is_none() && packet.detection.is_none());
         if let Some(data) = &packet.geometry {
             // A field that is refused is counted by the geometry; the previous field is kept.
-            let _told = self.geometry.hear(data);
+            let _told = self.geometry.receive(data);
         }
-        let heard = self.tracker.handle(&packet, now);
-        let news = !matches!(heard, tracking::Heard::NoImage | tracking::Heard::Repeated);
+        let received = self.tracker.handle(&packet, now);
+        let news = !matches!(received, tracking::Received::NoImage | tracking::Received::Repeated);
         if news {
             self.imaged = Some(now);
         }
         if news && self.planned.is_none_or(|last| now.since(last) >= PLAN_EVERY) {
             self.plan(now);
         }
-        Verdict::Vision(heard)
+        Verdict::Vision(received)
     }
 
     fn obey(&mut self, now: Instant, bytes: &[u8], from: SenderAddress) -> Verdict {
@@ -242,7 +242,7 @@ impl Host {
         };
         let before = self.listener.game().phase;
         let ball = plainly_seen(now, self.tracker.world(now).ball);
-        let verdict = self.listener.hear(&packet, from, now, ball);
+        let verdict = self.listener.receive(&packet, from, now, ball);
         let phase = self.listener.game().phase;
         let lately = self.replanned.is_some_and(|last| now.since(last) < PLAN_EVERY);
         if phase == Phase::Halt && self.ordered != Phase::Halt {
@@ -257,15 +257,15 @@ impl Host {
 
     fn listen(&mut self, now: Instant, bytes: &[u8]) -> Verdict {
         match self.radio.handle_packet(now, bytes) {
-            Ok(radio::Heard::Beacon(robot, beacon)) => {
+            Ok(radio::Received::Beacon(robot, beacon)) => {
                 self.robots[robot.index()].beacon = Some((now, beacon));
                 Verdict::Robot(robot)
             }
-            Ok(radio::Heard::Telemetry(robot, telemetry)) => {
+            Ok(radio::Received::Telemetry(robot, telemetry)) => {
                 self.robots[robot.index()].telemetry = Some((now, telemetry));
                 Verdict::Robot(robot)
             }
-            Ok(radio::Heard::Greeting(robot)) => Verdict::Robot(robot),
+            Ok(radio::Received::Handshake(robot)) => Verdict::Robot(robot),
             Err(refusal) => Verdict::Refused(refusal),
         }
     }
@@ -280,8 +280,8 @@ impl Host {
     /// Plans orders for the present field and sends them.
     fn plan(&mut self, now: Instant) {
         self.planned = Some(now);
-        let picture = self.tracker.picture();
-        self.world = picture.at(now);
+        let snapshot = self.tracker.snapshot();
+        self.world = snapshot.at(now);
         // Only a visible ball counts as moved: the place of a hidden one is an estimate.
         self.listener.tick(now, plainly_seen(now, self.world.ball));
         self.remember_ball(now);
@@ -291,28 +291,28 @@ impl Host {
             .allowing(self.allowed(us))
             .allowing_them(self.allowed(us.other()))
             .proposing(self.proposed(now, Flip::defending(game.defending)));
-        let view = View { strangers: self.strangers(&view.field, game.defending), ..view };
+        let view = View { unauthenticated: self.unauthenticated(&view.field, game.defending), ..view };
         self.orders = self.coach.decide(&view);
         if !self.halted {
             self.requests.look(&view, self.listener.game().team(us).substitutions_left);
         }
         let flip = Flip::defending(game.defending);
         self.books.note((&self.world, &view, &view.field), (us, flip), &self.orders, self.coach.take_sent());
-        let command = |(to, duty, directive): (RobotId, Duty, Directive)| Command {
+        let command = |(to, rule_role, directive): (RobotId, RuleRole, Directive)| Command {
             to,
             defending: game.defending,
             phase: game.phase,
-            duty,
+            rule_role,
             directive: self.calibrated(to, directive),
         };
         let coached = |order: &crate::strategy::Order| {
-            command((order.robot, order.role.duty(), order.task.directive(flip)))
+            command((order.robot, order.role.rule_role(), order.task.directive(flip)))
         };
         let commands: heapless::Vec<Command, { RobotId::COUNT }> = match &self.drill {
             Some(drill) => drill.iter().cloned().map(command).collect(),
             None => self.orders.iter().map(coached).collect(),
         };
-        self.learned.see(now, (&picture, us), game.phase, &commands);
+        self.learned.see(now, (&snapshot, us), game.phase, &commands);
         if self.settings.learns
             && let Some(known) = self.learned.friction()
             && self.roll.is_none_or(|roll| (known.value - roll).abs() > roll * ROLL_CHANGES)
@@ -325,7 +325,7 @@ impl Host {
     }
 
     /// Number of robots of our colour on the field that have not reported since this host started.
-    fn strangers(&self, field: &FieldSpec, defending: GoalEnd) -> usize {
+    fn unauthenticated(&self, field: &FieldSpec, defending: GoalEnd) -> usize {
         let stands = |robot: &&crate::world::Robot| field.counts(defending, robot.pose.position);
         let silent = |robot: &&crate::world::Robot| {
             let known = &self.robots[robot.who.id.index()];
@@ -378,11 +378,11 @@ impl Host {
     fn in_play(&self, now: Instant) -> RobotSet {
         let mut playing = RobotSet::default();
         for robot in RobotId::all() {
-            let Some((heard, beacon)) = &self.robots[robot.index()].beacon else { continue };
+            let Some((received, beacon)) = &self.robots[robot.index()].beacon else { continue };
             let part =
                 beacon.cycle.as_ref().and_then(|cycle| cycle.play()).and_then(|play| play.part_of(robot));
             let busy = !matches!(beacon.progress, Progress::WaitEnd { .. } | Progress::Idle);
-            if now.since(*heard) < PRESENCE_LEASE && part.is_some() && busy {
+            if now.since(*received) < PRESENCE_LEASE && part.is_some() && busy {
                 playing.insert(robot);
             }
         }
@@ -395,8 +395,8 @@ impl Host {
             return None;
         }
         let fresh = RobotId::all().filter_map(|robot| {
-            let (heard, beacon) = self.robots[robot.index()].beacon.as_ref()?;
-            (now.since(*heard) < PRESENCE_LEASE).then_some((robot, beacon))
+            let (received, beacon) = self.robots[robot.index()].beacon.as_ref()?;
+            (now.since(*received) < PRESENCE_LEASE).then_some((robot, beacon))
         });
         let told: heapless::Vec<_, { RobotId::COUNT }> = fresh.collect();
         proposal(&self.cases, &told, flip)

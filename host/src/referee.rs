@@ -1,7 +1,7 @@
 //! `referee`: merges the game controller's packets into the one [`Game`] that robots obey. Times: µs of the
 //! host's clock.
 //!
-//! [`Listener::hear`] takes packets with their sender, [`Listener::tick`] the time and the ball. All rules
+//! [`Listener::receive`] takes packets with their sender, [`Listener::tick`] the time and the ball. All rules
 //! prefer standing still, because league multicast carries no proof of its sender:
 //!
 //! - **Within one source** packets count by stamp and counter, but HALT and STOP count by arrival,
@@ -22,6 +22,7 @@
 //! a new counter means (trap 4). The referee's clock is Unix time, µs; ages of commands are differences on
 //! it.
 
+mod description;
 mod game;
 mod identity;
 mod source;
@@ -29,7 +30,6 @@ mod stamps;
 pub mod team_port;
 mod verdict;
 mod warning;
-mod words;
 
 use geometry::{Field, Point};
 use protocol::{Duration, Instant};
@@ -40,13 +40,13 @@ use ssl::referee::Referee;
 
 use source::{Outcome, Source, Strictness};
 
+pub use description::{command_of, stage_of};
 pub use game::{Game, TeamAccount};
 pub use identity::{SenderAddress, SourceKey, SourcePin};
 pub use source::{CONFIRM, HOLD};
 pub use stamps::WINDOW;
 pub use verdict::{Counts, Doubt, Taken, Verdict};
 pub use warning::Warning;
-pub use words::{command_of, stage_of};
 
 /// The silence of the referee is reported to the operator after this: it sends every 25 ms, pauses of 1.6 s
 /// were recorded on a loaded machine, and twice that is no pause any more. A source that is silent longer is
@@ -76,7 +76,7 @@ impl OnSilence {
     pub const ALL: [(&'static str, Self); 2] = [("halt", Self::Halt), ("go-on", Self::GoOn)];
 
     /// Its name in `team.toml` and on the command line.
-    pub const fn word(self) -> &'static str {
+    pub const fn label(self) -> &'static str {
         match self {
             Self::Halt => "halt",
             Self::GoOn => "go-on",
@@ -111,7 +111,7 @@ pub enum Silence {
     /// Nothing was ever received, for this time.
     Never(Duration),
     /// The newest packet was received this long ago: normal.
-    Heard(Duration),
+    Received(Duration),
     /// It has been silent long enough to warn the operator. Its last command is kept.
     Silent(Duration),
 }
@@ -166,8 +166,10 @@ impl Listener {
     pub fn silence(&self, now: Instant) -> Silence {
         match self.sources.first() {
             None => Silence::Never(now.since(self.started)),
-            Some(source) if now.since(source.heard) < SILENCE => Silence::Heard(now.since(source.heard)),
-            Some(source) => Silence::Silent(now.since(source.heard)),
+            Some(source) if now.since(source.received) < SILENCE => {
+                Silence::Received(now.since(source.received))
+            }
+            Some(source) => Silence::Silent(now.since(source.received)),
         }
     }
 
@@ -185,7 +187,7 @@ impl Listener {
     }
 
     /// Takes a packet that came from `from` at `now`; `ball` is the ball's place then.
-    pub fn hear(
+    pub fn receive(
         &mut self,
         packet: &Referee,
         from: SenderAddress,
@@ -201,7 +203,7 @@ impl Listener {
         let before = self.source().cloned();
         let known = self.sources.iter_mut().find(|source| source.key == key);
         let mut outcome = if let Some(source) = known {
-            source.hear(packet, now, ball)
+            source.receive(packet, now, ball)
         } else {
             let (source, taken) = Source::new(key.clone(), packet, now, ball);
             self.admit(source, now);
@@ -240,7 +242,7 @@ impl Listener {
             return;
         }
         let others = self.sources.iter_mut().skip(1);
-        if let Some(weakest) = others.min_by_key(|other| (other.strictness(now), other.heard))
+        if let Some(weakest) = others.min_by_key(|other| (other.strictness(now), other.received))
             && weakest.strictness(now) <= source.strictness(now)
         {
             *weakest = source;
@@ -273,7 +275,7 @@ impl Listener {
 
     /// Chooses the source that is followed, and the strictness imposed on it.
     fn settle(&mut self, now: Instant) {
-        let audible = |source: &Source| now.since(source.heard) < SILENCE;
+        let audible = |source: &Source| now.since(source.received) < SILENCE;
         let successor = self.sources.iter().position(audible).filter(|place| *place > 0);
         if let Some(place) = successor {
             // It has been silent, and another source is active: those before it are dropped.
@@ -305,7 +307,7 @@ impl Listener {
         } else {
             self.undecided = None;
         }
-        let newest = others.iter().map(|other| other.heard).fold(followed.heard, Instant::max);
+        let newest = others.iter().map(|other| other.received).fold(followed.received, Instant::max);
         if self.on_silence == OnSilence::Halt && now.since(newest) >= HALT_AFTER {
             strictest = Strictness::Halt;
         }

@@ -7,7 +7,7 @@ use geometry::{Angle, Field, GoalEnd, Point, Pose, Vector};
 use host::radio::{Radio, RadioSettings, Relay, Situation};
 use host::world::{BallModels, Robot, World};
 use protocol::frame::TeamKey;
-use protocol::host::{Command, Directive, Duty, Telemetry};
+use protocol::host::{Command, Directive, RuleRole, Telemetry};
 use protocol::link::{Link, Packet};
 use protocol::quantized::WirePose;
 use protocol::team::{Beacon, Progress, Role, Status, TeamMessage};
@@ -15,7 +15,7 @@ use protocol::{Instant, RobotId, TeamId, Who};
 use rules::{Colour, Phase};
 
 #[test]
-fn eleven_robots_at_a_hundred_pictures_a_second_need_no_heap() {
+fn eleven_robots_at_a_hundred_snapshots_a_second_need_no_heap() {
     let team = TeamId(1);
     let mut radio = Radio::new(RadioSettings { relay: Relay::ToEach, ..RadioSettings::new(team, 70) });
     let mut robots: Vec<Link> =
@@ -37,11 +37,11 @@ fn eleven_robots_at_a_hundred_pictures_a_second_need_no_heap() {
             to,
             defending: GoalEnd::Negative,
             phase: Phase::Run,
-            duty: Duty::Player,
+            rule_role: RuleRole::Player,
             directive: gameplay.clone(),
         })
         .collect();
-    let (mut sent, mut heard) = (0_u64, 0_u64);
+    let (mut sent, mut received) = (0_u64, 0_u64);
     let mut second = |radio: &mut Radio, number: u64| {
         for n in 0..100 {
             let now = Instant(number * 1_000_000 + n * 10_000);
@@ -50,7 +50,7 @@ fn eleven_robots_at_a_hundred_pictures_a_second_need_no_heap() {
             let mut out: heapless::Vec<Packet, 400> = heapless::Vec::new();
             for (i, robot) in robots.iter_mut().enumerate() {
                 let packet = say(robot, now, (n + i as u64).is_multiple_of(2));
-                heard += u64::from(radio.handle_packet(now, &packet).is_ok());
+                received += u64::from(radio.handle_packet(now, &packet).is_ok());
                 while let Some((_, packet)) = radio.poll_packet() {
                     sent += 1;
                     let _ = out.push(packet);
@@ -67,7 +67,7 @@ fn eleven_robots_at_a_hundred_pictures_a_second_need_no_heap() {
     let before = allocations::count();
     (1..10).for_each(|number| second(&mut radio, number));
     let during = allocations::count() - before;
-    assert!(sent > 10 * 100 * 15 && heard > 10 * 100 * 10, "{sent} sent, {heard} heard");
+    assert!(sent > 10 * 100 * 15 && received > 10 * 100 * 10, "{sent} sent, {received} heard");
     assert_eq!(radio.dropped(), 0);
     assert_eq!(during, 0, "allocations in nine seconds");
 }

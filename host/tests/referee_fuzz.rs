@@ -46,18 +46,18 @@ fn turned_packets_of_the_referee_leave_a_game_with_finite_places() {
     let names = ["ball_placement_blue", "halt", "normal_start", "with_yellow_card", "prepare_penalty_blue"];
     let packets = names.map(|name| packet(&format!("referee_{name}.bin")));
     let mut listener = Listener::new(League::DivisionB.limits().unwrap(), None, Instant(0));
-    let mut heard = 0;
+    let mut received = 0;
     for round in 0..ROUNDS {
         let bytes = turned(&packets[round as usize % packets.len()], &mut random);
         let now = Instant(u64::from(round) * 25_000);
         if let Ok(packet) = Referee::decode(&bytes[..]) {
-            listener.hear(&packet, SenderAddress::INTERNAL, now, None);
-            heard += 1;
+            listener.receive(&packet, SenderAddress::INTERNAL, now, None);
+            received += 1;
         }
         listener.tick(now, None);
         sound(&listener);
     }
-    assert!(heard > ROUNDS / 10, "{heard} of {ROUNDS} decode");
+    assert!(received > ROUNDS / 10, "{received} of {ROUNDS} decode");
 }
 
 #[test]
@@ -92,7 +92,7 @@ fn numbers_that_no_referee_sends_are_survived() {
         // One machine sends most of them, eleven others the remaining ones.
         let machine = if any(0) % 4 == 0 { any(0) as u8 % 12 } else { 1 };
         let from = SenderAddress::new(([10, 0, 0, machine], 40_000).into());
-        listener.hear(&odd, from, now, ball);
+        listener.receive(&odd, from, now, ball);
         assert!(listener.warnings(now).iter().all(|warning| !warning.to_string().is_empty()));
         listener.tick(Instant(any(0)), ball);
         listener.silence(Instant(any(0)));
@@ -108,18 +108,18 @@ fn turned_packets_of_vision_leave_a_field_that_can_be() {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(2);
     let packets = ["erforce_vision.bin", "vision_detection_and_geometry.bin"].map(packet);
     let mut geometry = VisionGeometry::default();
-    let (mut heard, mut refused) = (0, 0);
+    let (mut received, mut refused) = (0, 0);
     for round in 0..ROUNDS {
         let bytes = turned(&packets[round as usize % packets.len()], &mut random);
         if let Some(data) = WrapperPacket::decode(&bytes[..]).ok().and_then(|packet| packet.geometry) {
-            heard += 1;
-            refused += u32::from(geometry.hear(&data).is_err());
+            received += 1;
+            refused += u32::from(geometry.receive(&data).is_err());
         }
         assert!(geometry.field().is_none_or(|field| field.checked().is_ok()));
         let places = geometry.cameras().values().flat_map(|camera| camera.position);
         assert!(places.into_iter().all(|x| x.abs() < 100.0));
     }
-    assert!(heard > ROUNDS / 10 && refused > 10, "{heard} of {ROUNDS} decode, {refused} refused");
+    assert!(received > ROUNDS / 10 && refused > 10, "{received} of {ROUNDS} decode, {refused} refused");
 }
 
 #[test]

@@ -9,9 +9,9 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let (mut count, mut seed) = (1_000_000, 1);
-    let mut words = std::env::args().skip(1);
-    while let Some(word) = words.next() {
-        match (word.as_str(), words.next().and_then(|value| value.parse().ok())) {
+    let mut description = std::env::args().skip(1);
+    while let Some(label) = description.next() {
+        match (label.as_str(), description.next().and_then(|value| value.parse().ok())) {
             ("--count", Some(value)) => count = value,
             ("--seed", Some(value)) => seed = value,
             _ => {
@@ -20,13 +20,13 @@ fn main() -> ExitCode {
             }
         }
     }
-    let tally = forgery::tries(count, seed);
-    let [said, flipped, counter, epoch, length, name, made] = tally.kinds;
+    let counters = forgery::tries(count, seed);
+    let [said, flipped, counter, epoch, length, name, made] = counters.kinds;
     println!(
         "{count} frames (seed {seed}), none believed: {said} as they were said, {flipped} with flipped bits, {counter} with a newer \
          counter, {epoch} with a newer epoch, {length} cut or stretched, {name} in another's name, {made} made with guessed keys; \
          and {} recordings right after {} boots, {} to hosts that had just started",
-        tally.after_boots, tally.boots, tally.to_fresh_hosts
+        counters.after_boots, counters.boots, counters.to_fresh_hosts
     );
     ExitCode::SUCCESS
 }

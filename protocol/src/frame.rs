@@ -172,7 +172,7 @@ pub enum Refusal {
     /// The payload does not decode.
     Payload,
     /// A sender that has not named our present boot epoch: a new one, or a recording.
-    Stranger {
+    Unauthenticated {
         /// The epoch in the frame.
         epoch: u32,
     },
@@ -195,7 +195,7 @@ impl Refusal {
             Self::Counter { .. } => 5,
             Self::Tag => 6,
             Self::Payload => 7,
-            Self::Stranger { .. } => 8,
+            Self::Unauthenticated { .. } => 8,
             Self::Stale => 9,
         }
     }
@@ -212,7 +212,7 @@ impl core::fmt::Display for Refusal {
             Self::Counter { seen, last } => write!(f, "frame {seen} is not after {last}"),
             Self::Tag => f.write_str("frame with a wrong tag"),
             Self::Payload => f.write_str("frame whose payload is no message"),
-            Self::Stranger { epoch } => {
+            Self::Unauthenticated { epoch } => {
                 write!(f, "frame of a sender in epoch {epoch}, which has not named our epoch")
             }
             Self::Stale => f.write_str("frame of the host that is too old"),

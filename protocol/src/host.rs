@@ -11,7 +11,7 @@
 mod read;
 
 use geometry::GoalEnd;
-pub use rules::Duty;
+pub use rules::RuleRole;
 use rules::{Phase, Side};
 use serde::{Deserialize, Serialize};
 
@@ -81,7 +81,7 @@ pub struct Welcome {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WorldPart {
     /// Number of the snapshot; parts of one snapshot carry one number, the next snapshot the next (wrapping).
-    pub picture: u8,
+    pub snapshot: u8,
     /// Index of the part, from 0.
     pub part: u8,
     /// Number of parts of the snapshot.
@@ -178,7 +178,7 @@ pub struct Command {
     /// The phase of the game, from our side.
     pub phase: Phase<Side>,
     /// Its present role under the rules.
-    pub duty: Duty,
+    pub rule_role: RuleRole,
     /// The directive.
     pub directive: Directive,
 }
@@ -279,7 +279,7 @@ pub struct Telemetry {
     pub battery: u16,
     /// Number of parts of the host's snapshots received in this boot epoch, wrapping.
     #[serde(with = "postcard::fixint::le")]
-    pub heard: u16,
+    pub received: u16,
     /// Number of parts never received, by the snapshots' numbers, wrapping.
     #[serde(with = "postcard::fixint::le")]
     pub lost: u16,
@@ -288,7 +288,7 @@ pub struct Telemetry {
     #[serde(with = "counts")]
     pub refused: [u16; Refusal::KINDS],
     /// The newest snapshot of which a part was received; meaningless before the first.
-    pub picture: u8,
+    pub snapshot: u8,
     /// Time since the last frame of the host, 0.1 ms, saturating.
     #[serde(with = "postcard::fixint::le")]
     pub silence: u16,
@@ -380,7 +380,7 @@ mod tests {
                 to: id,
                 defending: GoalEnd::Positive,
                 phase,
-                duty: Duty::Taker,
+                rule_role: RuleRole::Taker,
                 directive,
             });
             assert!(len(&command) <= COMMAND_LEN_MAX, "{} bytes: {command:?}", len(&command));
@@ -399,7 +399,7 @@ mod tests {
             for placement in [None, Some(WirePoint { x: -1, y: -1 })] {
                 let robots_max = WorldPart::robots_max(addressees, placement.is_some());
                 let part = WorldPart {
-                    picture: 255,
+                    snapshot: 255,
                     part: 255,
                     parts: 255,
                     phase: Phase::BallPlacement(Side::Theirs),

@@ -42,7 +42,7 @@ pub enum Opened {
     Believed(RobotId, TeamMessage),
     /// Genuine telemetry of a robot that has not named our epoch: new, led by another host, or recorded. It
     /// may be welcomed.
-    Stranger(RobotId, Telemetry),
+    Unauthenticated(RobotId, Telemetry),
 }
 
 impl HostLink {
@@ -169,7 +169,7 @@ impl HostLink {
         let offset = ((now.0 >> TICK_BITS).saturating_sub(self.zero) as u32).wrapping_sub(clock);
         self.newest[robot.index()] = Some((frame.epoch, offset));
         if host != self.epoch {
-            return Ok(Opened::Stranger(robot, telemetry));
+            return Ok(Opened::Unauthenticated(robot, telemetry));
         }
         if self.own.epoch(frame.sender) != Some(frame.epoch) {
             // Its messages to teammates before it knew us may be recordings.
@@ -182,7 +182,7 @@ impl HostLink {
     /// Beacons and handshakes, under the key that all robots hold.
     fn open_shared(&mut self, packet: &[u8], frame: &Frame<'_>, robot: RobotId) -> Result<Opened, Refusal> {
         if self.own.epoch(frame.sender) != Some(frame.epoch) {
-            return Err(Refusal::Stranger { epoch: frame.epoch });
+            return Err(Refusal::Unauthenticated { epoch: frame.epoch });
         }
         self.shared.check(frame)?;
         if !frame.is_genuine(packet, self.keys.team(), robot) {

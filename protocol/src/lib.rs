@@ -2,7 +2,7 @@
 //!
 //! Bottom up: [`ids`] and [`time`] name things; [`quantized`] is the one place where SI becomes integers of
 //! the wire; [`key`] derives the keys, [`frame`] is the radio's envelope (sender, epoch, counter, tags),
-//! [`link`] and [`host_link`] are its two ends ([`acquaintance`]: which teammates are trusted;
+//! [`link`] and [`host_link`] are its two ends ([`peer`]: which teammates are trusted;
 //! [`host_clock`]: the age of a frame of the host), [`serial`] puts it on a line; [`team`] has the messages
 //! between robots, [`mod@host`] those between host and robots; [`robot_io`] is what a body gives its brain
 //! and takes from it; [`lockstep`] carries the latter between simulator and computer, [`provision`] is a
@@ -13,7 +13,6 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
-pub mod acquaintance;
 pub mod frame;
 pub mod host;
 pub mod host_clock;
@@ -22,6 +21,7 @@ pub mod ids;
 pub mod key;
 pub mod link;
 pub mod lockstep;
+pub mod peer;
 pub mod provision;
 pub mod quantized;
 pub mod robot_io;

@@ -2,18 +2,18 @@
 //! [`crate::host_link`] is the other.
 //!
 //! A robot receives its teammates and its host, and trusts neither before they have answered its present boot
-//! epoch: the host with a [`Welcome`](crate::host::Welcome), teammates with a [`Greeting`] (handshake). A
+//! epoch: the host with a [`Welcome`](crate::host::Welcome), teammates with a [`Handshake`] (handshake). A
 //! recording cannot, because it was made before the robot's epoch was known. Until then, and again when a
-//! host or teammate with a newer epoch sends, its frames are refused as [`Refusal::Stranger`]
+//! host or teammate with a newer epoch sends, its frames are refused as [`Refusal::Unauthenticated`]
 //! (unauthenticated peer). The host's frames are refused as [`Refusal::Stale`] when they are older than
 //! [`AGE_MAX`](crate::host_clock::AGE_MAX).
 
-use crate::acquaintance::Acquaintances;
 use crate::frame::{Frame, FrameBytes, Refusal, RobotKeys, Sender, Sessions, TeamKeys};
 use crate::host::{HostMessage, PARTS_MAX, Telemetry, WorldPart};
 use crate::host_clock::{Age, HostClock, ticks};
 use crate::key::Key;
-use crate::team::{Greeting, TEAM_MESSAGE_LEN_MAX, TeamMessage};
+use crate::peer::PeerTable;
+use crate::team::{Handshake, TEAM_MESSAGE_LEN_MAX, TeamMessage};
 use crate::{Duration, Instant, RobotId, TeamId};
 
 /// A radio packet: one whole frame.
@@ -22,9 +22,9 @@ pub type Packet = FrameBytes;
 /// An accepted frame.
 #[allow(clippy::large_enum_variant, reason = "one value at a time, on the stack, and no heap to box it on")]
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Heard {
+pub enum Received {
     /// A message of a teammate.
-    Mate(RobotId, TeamMessage),
+    Teammate(RobotId, TeamMessage),
     /// A message of the host, sent at most [`Link::age`] ago.
     Host(HostMessage),
     /// It is for another receiver: not opened, without any effect here.
@@ -40,7 +40,7 @@ pub struct Link {
     epoch: u32,
     counter: u32,
     sessions: Sessions,
-    acquaintances: Acquaintances,
+    peer_table: PeerTable,
     /// State of the trusted host's clock.
     clock: Option<HostClock>,
     /// Age of the host's last frame that was opened.
@@ -48,7 +48,7 @@ pub struct Link {
     refused: [u32; Refusal::KINDS],
     /// Number of these that were its own messages, echoed.
     echoes: u32,
-    pictures: Pictures,
+    snapshots: Snapshots,
 }
 
 impl Link {
@@ -61,12 +61,12 @@ impl Link {
             epoch,
             counter: 0,
             sessions: Sessions::default(),
-            acquaintances: Acquaintances::default(),
+            peer_table: PeerTable::default(),
             clock: None,
             age: Duration(0),
             refused: [0; Refusal::KINDS],
             echoes: 0,
-            pictures: Pictures::default(),
+            snapshots: Snapshots::default(),
         }
     }
 
@@ -86,13 +86,13 @@ impl Link {
     }
 
     /// The handshake for teammates that do not yet know our present boot epoch, if one is due.
-    pub fn poll_greeting(&mut self, now: Instant) -> Option<Packet> {
-        let greeting = self.acquaintances.poll(now)?;
-        Some(self.seal(&TeamMessage::Greeting(greeting)))
+    pub fn poll_handshake(&mut self, now: Instant) -> Option<Packet> {
+        let handshake = self.peer_table.poll(now)?;
+        Some(self.seal(&TeamMessage::Handshake(handshake)))
     }
 
     /// The sender and its message, or why the packet is refused (counted).
-    pub fn open(&mut self, now: Instant, packet: &[u8]) -> Result<Heard, Refusal> {
+    pub fn open(&mut self, now: Instant, packet: &[u8]) -> Result<Received, Refusal> {
         let opened = self.try_open(now, packet);
         if let Err(refusal) = opened {
             count(&mut self.refused, refusal);
@@ -117,17 +117,17 @@ impl Link {
     }
 
     /// Counters of received and lost parts of the host's snapshots.
-    pub fn pictures(&self) -> &Pictures {
-        &self.pictures
+    pub fn snapshots(&self) -> &Snapshots {
+        &self.snapshots
     }
 
     /// Fills in the link's counters; all but condition, battery and silence.
     pub fn tell(&self, now: Instant, telemetry: &mut Telemetry) {
         telemetry.host = self.host_epoch().unwrap_or(0);
         telemetry.clock = ticks(now);
-        telemetry.heard = self.pictures.heard as u16;
-        telemetry.lost = self.pictures.lost as u16;
-        telemetry.picture = self.pictures.newest().unwrap_or(0);
+        telemetry.received = self.snapshots.received as u16;
+        telemetry.lost = self.snapshots.lost as u16;
+        telemetry.snapshot = self.snapshots.newest().unwrap_or(0);
         telemetry.refused = self.refused.map(|count| count.min(u32::from(u16::MAX)) as u16);
         // A base station that sends to all echoes a robot's own messages; that is no sign of an attack.
         let sender = &mut telemetry.refused[Refusal::Sender(0).kind()];
@@ -155,31 +155,33 @@ impl Link {
         }
     }
 
-    fn try_open(&mut self, now: Instant, packet: &[u8]) -> Result<Heard, Refusal> {
+    fn try_open(&mut self, now: Instant, packet: &[u8]) -> Result<Received, Refusal> {
         let frame = self.envelope(packet)?;
         // Tags are expensive: a frame for another receiver is not opened.
         if !self.is_for_me(&frame) {
-            return Ok(Heard::Elsewhere);
+            return Ok(Received::Elsewhere);
         }
         let key = if frame.sender == Sender::Host { &self.keys.host } else { &self.keys.team };
         if !frame.is_genuine(packet, key, self.me) {
             return Err(Refusal::Tag);
         }
         match frame.sender {
-            Sender::Robot(mate) => self.open_mate(mate, &frame).map(|message| Heard::Mate(mate, message)),
-            Sender::Host => self.open_host(now, &frame).map(Heard::Host),
+            Sender::Robot(teammate) => {
+                self.open_teammate(teammate, &frame).map(|message| Received::Teammate(teammate, message))
+            }
+            Sender::Host => self.open_host(now, &frame).map(Received::Host),
         }
     }
 
-    fn open_mate(&mut self, mate: RobotId, frame: &Frame<'_>) -> Result<TeamMessage, Refusal> {
-        self.acquaintances.hear(mate, frame.epoch);
+    fn open_teammate(&mut self, teammate: RobotId, frame: &Frame<'_>) -> Result<TeamMessage, Refusal> {
+        self.peer_table.receive(teammate, frame.epoch);
         let message = decode::<TeamMessage>(frame.payload);
-        if let Some(TeamMessage::Greeting(Greeting { mates })) = &message
-            && let Some(own) = mates.iter().find(|own| own.who == self.me && own.life == self.epoch)
+        if let Some(TeamMessage::Handshake(Handshake { teammates })) = &message
+            && let Some(own) = teammates.iter().find(|own| own.who == self.me && own.life == self.epoch)
         {
-            self.acquaintances.believe(mate, frame.epoch, own.bond);
+            self.peer_table.believe(teammate, frame.epoch, own.bond);
         } else if self.sessions.epoch(frame.sender) != Some(frame.epoch) {
-            return Err(Refusal::Stranger { epoch: frame.epoch });
+            return Err(Refusal::Unauthenticated { epoch: frame.epoch });
         }
         self.sessions.accept(frame);
         message.ok_or(Refusal::Payload)
@@ -195,7 +197,7 @@ impl Link {
             clock = Some(HostClock::learned(clock, now, welcome.offset));
         }
         // Without a welcome the host's clock is unknown.
-        let age = clock.ok_or(Refusal::Stranger { epoch: frame.epoch })?.age(now, frame.counter);
+        let age = clock.ok_or(Refusal::Unauthenticated { epoch: frame.epoch })?.age(now, frame.counter);
         if known {
             self.clock = if age == Age::Ahead && frame.audience.is_none() { None } else { clock };
         }
@@ -204,10 +206,10 @@ impl Link {
         (self.clock, self.age) = (clock, age);
         let message = message.ok_or(Refusal::Payload)?;
         if !known {
-            self.pictures.forget();
+            self.snapshots.forget();
         }
         if let HostMessage::World(part) = &message {
-            self.pictures.handle(part);
+            self.snapshots.handle(part);
         }
         Ok(message)
     }
@@ -215,9 +217,9 @@ impl Link {
 
 /// Counters of the host's snapshots. Every robot is sent every part, so a missing part was lost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Pictures {
+pub struct Snapshots {
     /// Parts received in this boot epoch.
-    pub heard: u32,
+    pub received: u32,
     /// Parts never received: of snapshots that are over, or whole snapshots between two received ones (as
     /// many parts as the later one). 256 snapshots missed in a row cannot be distinguished from none; a
     /// caller that relies on it must check the silence too.
@@ -236,7 +238,7 @@ struct Now {
 
 const _: () = assert!(PARTS_MAX <= u8::BITS as usize, "a bit for each part");
 
-impl Pictures {
+impl Snapshots {
     /// The newest snapshot of which a part was received.
     pub fn newest(&self) -> Option<u8> {
         self.now.map(|now| now.number)
@@ -249,17 +251,17 @@ impl Pictures {
 
     fn handle(&mut self, part: &WorldPart) {
         let bit = 1_u8.checked_shl(u32::from(part.part)).unwrap_or(0);
-        self.heard = self.heard.saturating_add(1);
+        self.received = self.received.saturating_add(1);
         match &mut self.now {
-            Some(now) if now.number == part.picture => now.came |= bit,
+            Some(now) if now.number == part.snapshot => now.came |= bit,
             _ => {
                 if let Some(last) = self.now {
                     let missing = u32::from(last.parts).saturating_sub(last.came.count_ones());
-                    let between = part.picture.wrapping_sub(last.number).wrapping_sub(1);
+                    let between = part.snapshot.wrapping_sub(last.number).wrapping_sub(1);
                     let skipped = u32::from(between) * u32::from(part.parts);
                     self.lost = self.lost.saturating_add(missing + skipped);
                 }
-                self.now = Some(Now { number: part.picture, parts: part.parts, came: bit });
+                self.now = Some(Now { number: part.snapshot, parts: part.parts, came: bit });
             }
         }
     }

@@ -4,8 +4,8 @@
 //! knows it, and the robot's own progress. Nothing is sent once: a lost packet only delays. What a robot
 //! knows of the cycle is a value that only grows ([`CycleState::is_newer_than`]), so that packets may be
 //! lost, doubled and reordered, and any robot may pass on the coordinator's announcements. [`Telemetry`] is
-//! for the host; teammates ignore it. A [`Greeting`] is the handshake by which teammates trust each other
-//! after a boot ([`crate::acquaintance`]).
+//! for the host; teammates ignore it. A [`Handshake`] is the handshake by which teammates trust each other
+//! after a boot ([`crate::peer`]).
 
 use serde::{Deserialize, Serialize};
 
@@ -31,7 +31,7 @@ pub enum TeamMessage {
     /// To the host: state of the sender's body and link.
     Telemetry(Telemetry),
     /// Handshake to teammates that do not know yet that the sender is live.
-    Greeting(Greeting),
+    Handshake(Handshake),
 }
 
 impl TeamMessage {
@@ -45,9 +45,9 @@ impl TeamMessage {
 /// Handshake: teammates' boot epochs that the sender has received. A robot that finds its present epoch named
 /// knows that this is no recording.
 #[derive(Clone, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct Greeting {
+pub struct Handshake {
     /// Teammates and their boot epochs.
-    pub mates: heapless::Vec<Greeted, GREETED_MAX>,
+    pub teammates: heapless::Vec<Greeted, GREETED_MAX>,
 }
 
 /// Teammates in one handshake: as many as its frame holds.
@@ -69,7 +69,7 @@ pub struct Greeted {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Bond {
     /// The sender has received the other, and does not trust it yet.
-    Heard,
+    Received,
     /// The sender trusts the other.
     Believed,
     /// It also knows that the other trusts it: no answer is needed.
@@ -322,10 +322,10 @@ mod tests {
         let telemetry = Telemetry {
             condition: crate::host::Condition(u16::MAX),
             battery: u16::MAX,
-            heard: u16::MAX,
+            received: u16::MAX,
             lost: u16::MAX,
             refused: [u16::MAX; crate::frame::Refusal::KINDS],
-            picture: u8::MAX,
+            snapshot: u8::MAX,
             silence: u16::MAX,
             host: u32::MAX,
             clock: u32::MAX,
@@ -336,11 +336,11 @@ mod tests {
     }
 
     #[test]
-    fn the_longest_greeting_fits_its_budget() {
-        let mate = Greeted { who: robot(15), life: u32::MAX, bond: Bond::Mutual };
-        let mates = [mate; GREETED_MAX].into_iter().collect();
+    fn the_longest_handshake_fits_its_budget() {
+        let teammate = Greeted { who: robot(15), life: u32::MAX, bond: Bond::Mutual };
+        let teammates = [teammate; GREETED_MAX].into_iter().collect();
         let mut out = [0; 128];
-        let n = postcard::to_slice(&TeamMessage::Greeting(Greeting { mates }), &mut out).unwrap().len();
+        let n = postcard::to_slice(&TeamMessage::Handshake(Handshake { teammates }), &mut out).unwrap().len();
         assert!(n <= TEAM_MESSAGE_LEN_MAX, "{n} bytes");
     }
 

@@ -8,8 +8,11 @@ const TRIES: u64 = 100_000;
 
 #[test]
 fn of_a_hundred_thousand_forged_replayed_and_foreign_frames_none_is_believed() {
-    let tally = forgery::tries(TRIES, 11);
+    let counters = forgery::tries(TRIES, 11);
     // No kind is left out by chance.
-    assert!(tally.kinds.iter().all(|tries| *tries > TRIES / 10), "{tally:?}");
-    assert!(tally.boots == 5 && tally.after_boots > 1_000 && tally.to_fresh_hosts > 1_000, "{tally:?}");
+    assert!(counters.kinds.iter().all(|tries| *tries > TRIES / 10), "{counters:?}");
+    assert!(
+        counters.boots == 5 && counters.after_boots > 1_000 && counters.to_fresh_hosts > 1_000,
+        "{counters:?}"
+    );
 }

@@ -4,13 +4,13 @@
 use geometry::GoalEnd;
 use protocol::frame::{Audience, Frame, Key, Sender, TeamKey};
 use protocol::host::{
-    Command, Condition, Directive, Duty, Hint, HostMessage, KickOrder, Telemetry, Welcome, WireBall,
+    Command, Condition, Directive, Hint, HostMessage, KickOrder, RuleRole, Telemetry, Welcome, WireBall,
     WireRobot, WireWho, WorldPart,
 };
 use protocol::quantized::{WirePoint, WirePose};
 use protocol::serial::{Lines, line};
 use protocol::team::{
-    AbortReason, BallReport, Beacon, Bond, Closure, CycleState, Decision, Greeted, Greeting, Play, Progress,
+    AbortReason, BallReport, Beacon, Bond, Closure, CycleState, Decision, Greeted, Handshake, Play, Progress,
     Role, Status, TeamMessage,
 };
 use protocol::{CaseId, CycleId, RobotId, TeamId};
@@ -29,8 +29,8 @@ fn worked(name: &str) -> Vec<u8> {
         .lines()
         .skip(1)
         .flat_map(|line| line.split(';').next().unwrap_or("").split_whitespace())
-        .filter(|word| *word != "|")
-        .map(|word| u8::from_str_radix(word, 16).unwrap_or_else(|_| panic!("{name}: {word} is no byte")))
+        .filter(|label| *label != "|")
+        .map(|label| u8::from_str_radix(label, 16).unwrap_or_else(|_| panic!("{name}: {label} is no byte")))
         .collect()
 }
 
@@ -102,7 +102,7 @@ fn worlds() -> [(&'static str, HostMessage); 2] {
         vy: 0,
     };
     let world = WorldPart {
-        picture: 7,
+        snapshot: 7,
         part: 1,
         parts: 2,
         phase: Phase::Run,
@@ -111,7 +111,7 @@ fn worlds() -> [(&'static str, HostMessage); 2] {
         robots: [ours, theirs].into_iter().collect(),
     };
     let placement = WorldPart {
-        picture: 255,
+        snapshot: 255,
         part: 0,
         parts: 1,
         phase: Phase::BallPlacement(Side::Theirs),
@@ -122,38 +122,38 @@ fn worlds() -> [(&'static str, HostMessage); 2] {
     [("world", HostMessage::World(world)), ("placement", HostMessage::World(placement))]
 }
 
-fn commands() -> [(&'static str, Phase<Side>, Duty, Directive); 11] {
+fn commands() -> [(&'static str, Phase<Side>, RuleRole, Directive); 11] {
     use Directive::{Block, Dribble, Gameplay, GetBall, GoTo, Kick, Pass, PlaceBall, Receive, Stand};
-    let (run, ours, player) = (Phase::Run, Side::Ours, Duty::Player);
-    let (meeting, goal) = (point(1000, 900), point(4500, 0));
+    let (run, ours, player) = (Phase::Run, Side::Ours, RuleRole::Player);
+    let (interception_point, goal) = (point(1000, 900), point(4500, 0));
     let hint = Hint {
         case: CaseId(300),
         robots: [robot(3), robot(5)].into_iter().collect(),
-        pass_point: Some(meeting),
+        pass_point: Some(interception_point),
     };
     [
         ("stand", Phase::Halt, player, Stand),
         ("go-to", run, player, GoTo { pose: pose(-720, 0, 1571) }),
-        ("get-ball", Phase::FreeKick(ours), Duty::Taker, GetBall { face: Some(goal) }),
+        ("get-ball", Phase::FreeKick(ours), RuleRole::Taker, GetBall { face: Some(goal) }),
         ("kick", run, player, Kick { at: point(4500, -200), kick: KickOrder::Flat(630) }),
         (
             "pass",
             run,
             player,
-            Pass { at: meeting, receiver: robot(4), kick: KickOrder::Chip(100), ready: false },
+            Pass { at: interception_point, receiver: robot(4), kick: KickOrder::Chip(100), ready: false },
         ),
-        ("receive", run, player, Receive { at: meeting, then: Some(goal) }),
+        ("receive", run, player, Receive { at: interception_point, then: Some(goal) }),
         ("dribble", run, player, Dribble { pose: pose(0, -1, -3142) }),
-        ("block", Phase::Stop, Duty::Keeper, Block { from: point(-4400, 400), to: point(-4400, -400) }),
-        ("place-ball", Phase::BallPlacement(ours), Duty::Taker, PlaceBall { at: point(-3000, 2000) }),
+        ("block", Phase::Stop, RuleRole::Keeper, Block { from: point(-4400, 400), to: point(-4400, -400) }),
+        ("place-ball", Phase::BallPlacement(ours), RuleRole::Taker, PlaceBall { at: point(-3000, 2000) }),
         ("gameplay", run, player, Gameplay { hint: Some(hint) }),
         ("gameplay-free", run, player, Gameplay { hint: None }),
     ]
 }
 
 fn stand() -> HostMessage {
-    let (phase, duty, directive) = (Phase::Halt, Duty::Player, Directive::Stand);
-    HostMessage::Command(Command { to: robot(3), defending: GoalEnd::Negative, phase, duty, directive })
+    let (phase, rule_role, directive) = (Phase::Halt, RuleRole::Player, Directive::Stand);
+    HostMessage::Command(Command { to: robot(3), defending: GoalEnd::Negative, phase, rule_role, directive })
 }
 
 /// The message is these bytes, and these bytes are the message.
@@ -175,18 +175,19 @@ fn robots_messages_have_the_bytes_of_the_specification() {
     let telemetry = Telemetry {
         condition: Condition::BALL_CONTACT.with(Condition::KICKER_READY),
         battery: 1640,
-        heard: 500,
+        received: 500,
         lost: 3,
         refused: [0, 0, 2, 0, 0, 1, 0, 0, 258, 4],
-        picture: 249,
+        snapshot: 249,
         silence: 73,
         host: 0x6500_0000,
         clock: 0x0001_e848,
     };
     both_ways("telemetry", &TeamMessage::Telemetry(telemetry));
-    let mate = |who, life, bond| Greeted { who: robot(who), life, bond };
-    let mates = [mate(1, 9, Bond::Heard), mate(3, 258, Bond::Believed), mate(12, 1, Bond::Mutual)];
-    both_ways("greeting", &TeamMessage::Greeting(Greeting { mates: mates.into_iter().collect() }));
+    let teammate = |who, life, bond| Greeted { who: robot(who), life, bond };
+    let teammates =
+        [teammate(1, 9, Bond::Received), teammate(3, 258, Bond::Believed), teammate(12, 1, Bond::Mutual)];
+    both_ways("greeting", &TeamMessage::Handshake(Handshake { teammates: teammates.into_iter().collect() }));
 }
 
 #[test]
@@ -194,14 +195,14 @@ fn the_hosts_messages_have_the_bytes_of_the_specification() {
     for (name, world) in worlds() {
         both_ways(name, &world);
     }
-    for (name, phase, duty, directive) in commands() {
+    for (name, phase, rule_role, directive) in commands() {
         both_ways(
             name,
             &HostMessage::Command(Command {
                 to: robot(3),
                 defending: GoalEnd::Negative,
                 phase,
-                duty,
+                rule_role,
                 directive,
             }),
         );

@@ -4,8 +4,8 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use match_tests::swarm::words;
-use match_tests::sweep::{page, picture, sweep};
+use match_tests::swarm::description;
+use match_tests::sweep::{page, snapshot, sweep};
 
 fn main() -> ExitCode {
     let (mut seeds, mut write) = (40_u64, false);
@@ -13,7 +13,7 @@ fn main() -> ExitCode {
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
             "--write" => write = true,
-            "--seeds" => match arguments.next().and_then(|word| word.parse().ok()).filter(|n| *n > 0) {
+            "--seeds" => match arguments.next().and_then(|label| label.parse().ok()).filter(|n| *n > 0) {
                 Some(n) => seeds = n,
                 None => return usage(),
             },
@@ -23,7 +23,7 @@ fn main() -> ExitCode {
     let rows = match sweep(seeds) {
         Ok(rows) => rows,
         Err((seed, found)) => {
-            eprintln!("{}", words(seed, &found));
+            eprintln!("{}", description(seed, &found));
             return ExitCode::FAILURE;
         }
     };
@@ -35,7 +35,7 @@ fn main() -> ExitCode {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
     let written = std::fs::create_dir_all(docs.join("faults"))
         .and_then(|()| std::fs::write(docs.join("faults.md"), text))
-        .and_then(|()| std::fs::write(docs.join("faults/loss.svg"), picture(&rows)));
+        .and_then(|()| std::fs::write(docs.join("faults/loss.svg"), snapshot(&rows)));
     match written {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

@@ -9,11 +9,11 @@ use match_tests::hil::Pair;
 
 fn main() -> ExitCode {
     let (mut seconds, mut seed) = (20.0, 1);
-    let mut words = std::env::args().skip(1);
-    while let Some(word) = words.next() {
-        let value = words.next();
+    let mut description = std::env::args().skip(1);
+    while let Some(label) = description.next() {
+        let value = description.next();
         let parsed: Option<f64> = value.as_deref().and_then(|value| value.parse().ok());
-        match (word.as_str(), parsed.filter(|number| *number > 0.0)) {
+        match (label.as_str(), parsed.filter(|number| *number > 0.0)) {
             ("--seconds", Some(number)) => seconds = number,
             ("--seed", Some(number)) => seed = number as u64,
             _ => {

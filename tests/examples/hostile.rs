@@ -13,10 +13,10 @@ const BATCH: u64 = 50_000;
 fn main() -> ExitCode {
     let jobs = std::thread::available_parallelism().map_or(1, std::num::NonZero::get) as u64;
     let (mut count, mut seed, mut threads) = (1_000_000_u64, 0_u64, jobs);
-    let mut words = std::env::args().skip(1);
-    while let Some(word) = words.next() {
-        let value = words.next().and_then(|value| value.parse().ok());
-        match (word.as_str(), value) {
+    let mut description = std::env::args().skip(1);
+    while let Some(label) = description.next() {
+        let value = description.next().and_then(|value| value.parse().ok());
+        match (label.as_str(), value) {
             ("--count", Some(value)) => count = value,
             ("--seed", Some(value)) => seed = value,
             ("--jobs", Some(value)) => threads = value,

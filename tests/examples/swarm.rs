@@ -14,7 +14,7 @@ use std::time::Instant;
 use arena::game::header;
 use host::record::Recorder;
 use match_tests::swarm::matches::{self, Plan, Sum};
-use match_tests::swarm::{Runs, watch, watch_matches, words};
+use match_tests::swarm::{Runs, description, watch, watch_matches};
 
 fn main() -> ExitCode {
     let Some(Arguments { plan, runs, record }) = arguments(std::env::args().skip(1)) else {
@@ -53,7 +53,7 @@ fn recorded(seed: u64, stem: &Path) -> ExitCode {
         }
     };
     let outcome = matches::play(&plan, &mut recorder);
-    println!("{}", matches::words(&plan, &outcome));
+    println!("{}", matches::description(&plan, &outcome));
     match recorder.finish() {
         Ok(()) if outcome.found.is_empty() => ExitCode::SUCCESS,
         Ok(()) => ExitCode::FAILURE,
@@ -76,7 +76,7 @@ fn referee(runs: Runs) -> ExitCode {
     let begin = Instant::now();
     let ended = watch_matches(runs, |done, (plan, outcome)| {
         if !outcome.found.is_empty() {
-            println!("{}", matches::words(plan, outcome));
+            println!("{}", matches::description(plan, outcome));
         }
         if done.is_multiple_of(10) {
             eprintln!("{done} of {} matches", runs.seeds);
@@ -110,7 +110,7 @@ fn referee(runs: Runs) -> ExitCode {
 /// Runs of a team under faults.
 fn faults(runs: Runs) -> ExitCode {
     let (begin, shown) = (Instant::now(), std::io::stderr().is_terminal());
-    let (tally, broken) = watch(runs, |done| {
+    let (counters, broken) = watch(runs, |done| {
         if shown && done.is_multiple_of(50) {
             eprint!("\r{done} of {} runs", runs.seeds);
         }
@@ -119,37 +119,37 @@ fn faults(runs: Runs) -> ExitCode {
         eprintln!();
     }
     for (seed, found) in broken.iter().take(SHOWN) {
-        println!("{}", words(*seed, found));
+        println!("{}", description(*seed, found));
     }
     let Runs { first, seeds, .. } = runs;
     println!(
         "seeds {first} to {}: {} broke a promise, {} kept all",
         first + seeds - 1,
         broken.len(),
-        tally.runs
+        counters.runs
     );
     println!(
         "{} cycles, {} gameplays, {} overlaps; {} packets handed to robots, {} of them not to be believed; {} steps of \
          braking; the slowest team played {} ms after healing; {:.0} s",
-        tally.cycles,
-        tally.gameplays,
-        tally.overlaps,
-        tally.packets,
-        tally.unbelievable,
-        tally.brakings,
-        tally.slowest_ms,
+        counters.cycles,
+        counters.gameplays,
+        counters.overlaps,
+        counters.packets,
+        counters.unbelievable,
+        counters.brakings,
+        counters.slowest_ms,
         begin.elapsed().as_secs_f64()
     );
     if broken.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-fn arguments(mut words: impl Iterator<Item = String>) -> Option<Arguments> {
+fn arguments(mut description: impl Iterator<Item = String>) -> Option<Arguments> {
     let jobs = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let (mut plan, mut runs, mut record) = (Which::Faults, Runs { first: 0, seeds: 100, jobs }, None);
-    while let Some(word) = words.next() {
-        let value = words.next()?;
+    while let Some(label) = description.next() {
+        let value = description.next()?;
         let number = || value.parse::<u64>().ok();
-        match word.as_str() {
+        match label.as_str() {
             "--plan" if value == "faults" => plan = Which::Faults,
             "--plan" if value == "referee" => plan = Which::Referee,
             "--seeds" => runs.seeds = number().filter(|seeds| *seeds > 0)?,

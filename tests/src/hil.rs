@@ -6,7 +6,7 @@ use std::fmt;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use arena::game::{Game, GameConfig, GameError, Nobody};
+use arena::game::{Game, GameConfig, GameError, NoWatcher};
 use hil_sim::{ByTeam, McuError, Meter, Metered, NativeBackend, QemuBackend};
 use protocol::TeamId;
 use rules::{Colour, League};
@@ -89,7 +89,7 @@ impl Pair {
         for tick in 0..self.ticks {
             for ((game, took), hash) in self.games.iter_mut().zip(&mut took).zip(&mut hashes) {
                 let begin = Instant::now();
-                game.step(&mut Nobody)?;
+                game.step(&mut NoWatcher)?;
                 *took += begin.elapsed();
                 *hash = game.trace().digits();
             }

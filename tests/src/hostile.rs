@@ -25,9 +25,9 @@ pub type Corpus = Vec<(targets::Target, Vec<Vec<u8>>)>;
 
 /// The committed corpus, in the order of names.
 pub fn corpus() -> io::Result<Corpus> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../protocol/fuzz/corpus");
+    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("../protocol/fuzz/corpus");
     let of = |target: targets::Target| {
-        let mut files: Vec<_> = fs::read_dir(folder.join(target.0))?
+        let mut files: Vec<_> = fs::read_dir(directory.join(target.0))?
             .map(|file| file.map(|file| file.path()))
             .collect::<Result<_, _>>()?;
         files.sort();

@@ -16,7 +16,7 @@ pub enum Seen {
     /// A robot sent this beacon.
     Sent(RobotId, Beacon),
     /// A robot received this beacon of another.
-    Heard(RobotId, RobotId, Beacon),
+    Received(RobotId, RobotId, Beacon),
     /// A robot crashed.
     Crashed(RobotId),
     /// A robot boots.
@@ -84,7 +84,7 @@ struct Pending {
     lost: RobotId,
     /// Time of the fault; where packets are lost, of the first beacon that any robot received after it.
     since: Instant,
-    heard_since: bool,
+    received_since: bool,
     newer_than: CycleId,
 }
 
@@ -128,7 +128,7 @@ impl Watcher {
                 self.robots.insert(*id, Watched::default());
             }
             Seen::Crashed(id) => self.crashed(now, *id),
-            Seen::Heard(id, _, beacon) => self.heard(now, *id, beacon),
+            Seen::Received(id, _, beacon) => self.received(now, *id, beacon),
             Seen::Sent(id, beacon) => self.sent(now, *id, beacon),
         }
     }
@@ -186,7 +186,7 @@ impl Watcher {
         let goes_on = self.plays_on_without(id);
         let owed = self.air != Air::Hostile && !goes_on && !self.robots.is_empty();
         if let (Some(newer_than), true) = (newest, owed) {
-            self.pending = Some(Pending { lost: id, since: now, heard_since: false, newer_than });
+            self.pending = Some(Pending { lost: id, since: now, received_since: false, newer_than });
         }
     }
 
@@ -199,11 +199,11 @@ impl Watcher {
         })
     }
 
-    fn heard(&mut self, now: Instant, id: RobotId, beacon: &Beacon) {
+    fn received(&mut self, now: Instant, id: RobotId, beacon: &Beacon) {
         if let (Some(pending), Air::Lossy) = (&mut self.pending, self.air)
-            && !pending.heard_since
+            && !pending.received_since
         {
-            (pending.since, pending.heard_since) = (now, true);
+            (pending.since, pending.received_since) = (now, true);
         }
         let (Some(watched), Some(cycle)) = (self.robots.get_mut(&id), &beacon.cycle) else { return };
         if cycle.is_newer_than(watched.told.as_ref().map(|(state, _)| state)) {
@@ -335,7 +335,7 @@ mod tests {
         let abort = Closure::Aborted { by: robot(2), reason: AbortReason::Timeout };
         watcher.see(Instant(0), &Seen::Sent(robot(1), beacon(1, play(&[1]), BUSY)));
         let end = beacon(1, Decision::Closed(abort), Progress::Idle);
-        watcher.see(Instant(40_000), &Seen::Heard(robot(1), robot(2), end));
+        watcher.see(Instant(40_000), &Seen::Received(robot(1), robot(2), end));
         watcher.see(Instant(40_000), &Seen::Sent(robot(1), beacon(1, play(&[1]), BUSY)));
         watcher.end_of_step(Instant(40_000));
         assert_eq!(watcher.violations().len(), 1);

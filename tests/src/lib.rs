@@ -2,12 +2,12 @@
 #![forbid(unsafe_code)]
 
 pub mod bad_line;
-pub mod carpet;
 pub mod hil;
 pub mod hostile;
 pub mod invariants;
 pub mod oracle;
 pub mod random_library;
+pub mod surface;
 pub mod swarm;
 pub mod sweep;
 pub mod tabletop;

@@ -245,9 +245,9 @@ mod tests {
         assert_eq!(library.cases, RandomLibrary::new(7, 60).cases);
         assert_ne!(library.cases, RandomLibrary::new(8, 60).cases);
         let all: String = library.cases.values().cloned().collect();
-        for word in ["wait", "go_to_point", "heading_deg", "face", "dribble_to", "pass_ball", "receive_ball"]
+        for label in ["wait", "go_to_point", "heading_deg", "face", "dribble_to", "pass_ball", "receive_ball"]
         {
-            assert!(all.contains(word), "{word}");
+            assert!(all.contains(label), "{label}");
         }
         for kind in ["\"goal\"", "\"ahead\"", "\"side0\"", "\"side0-mirrored\"", "\"post\"", "cyan"] {
             assert!(all.contains(kind), "{kind}");

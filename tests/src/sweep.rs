@@ -7,7 +7,7 @@ use drawing::{Anchor, Font, Svg, Theme};
 use hil_sim::{AirSettings, Bursts};
 
 use crate::swarm::plan::{Plan, Squad};
-use crate::swarm::{Found, Tally, play};
+use crate::swarm::{Counters, Found, play};
 
 /// Distribution of packet loss.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +23,7 @@ impl Kind {
     pub const ALL: [Self; 2] = [Self::Independent, Self::Bursty];
 
     /// Its label in the table.
-    pub const fn word(self) -> &'static str {
+    pub const fn label(self) -> &'static str {
         match self {
             Self::Independent => "independent",
             Self::Bursty => "in stretches",
@@ -53,7 +53,7 @@ pub struct Row {
     /// The share of lost packets, percent.
     pub percent: u32,
     /// The results.
-    pub tally: Tally,
+    pub counters: Counters,
     /// Robot-seconds under loss, approximately: runs of two to four robots.
     pub seconds: f64,
 }
@@ -61,23 +61,23 @@ pub struct Row {
 impl Row {
     /// Share of the ended gameplays that were finished, percent.
     pub fn finished(&self) -> Option<f64> {
-        let all = self.tally.finished + self.tally.stopped;
-        (all > 0).then(|| 100.0 * f64::from(self.tally.finished) / f64::from(all))
+        let all = self.counters.finished + self.counters.stopped;
+        (all > 0).then(|| 100.0 * f64::from(self.counters.finished) / f64::from(all))
     }
 
     /// Stops for lack of a host, per robot and minute; only robots on wheels have one.
     pub fn false_stops(&self) -> Option<f64> {
-        (self.squad == Squad::Wheels).then(|| 60.0 * f64::from(self.tally.false_stops) / self.seconds)
+        (self.squad == Squad::Wheels).then(|| 60.0 * f64::from(self.counters.false_stops) / self.seconds)
     }
 
     /// Share of the time for which a robot stood for that reason, percent.
     pub fn stood(&self) -> Option<f64> {
-        (self.squad == Squad::Wheels).then(|| 0.1 * self.tally.stood_ms as f64 / self.seconds)
+        (self.squad == Squad::Wheels).then(|| 0.1 * self.counters.stood_ms as f64 / self.seconds)
     }
 
     /// From the end of a gameplay to a newer cycle that all robots know, ms.
     pub fn gap(&self) -> Option<f64> {
-        (self.tally.gaps > 0).then(|| self.tally.gaps_ms as f64 / f64::from(self.tally.gaps))
+        (self.counters.gaps > 0).then(|| self.counters.gaps_ms as f64 / f64::from(self.counters.gaps))
     }
 }
 
@@ -87,13 +87,13 @@ pub fn sweep(seeds: u64) -> Result<Vec<Row>, (u64, Found)> {
     for squad in [Squad::Legged, Squad::Wheels] {
         for kind in Kind::ALL {
             for percent in PERCENT {
-                let mut row = Row { squad, kind, percent, tally: Tally::default(), seconds: 0.0 };
+                let mut row = Row { squad, kind, percent, counters: Counters::default(), seconds: 0.0 };
                 for seed in 0..seeds {
                     let plan = Plan::with_air(seed, squad, RUN_MS, kind.air(percent, squad));
                     // Stops are counted until the run's end.
                     let watched = f64::from(plan.end - plan.trouble.from) * 1e-3;
                     row.seconds += watched * plan.brains.len() as f64;
-                    row.tally = row.tally.with(play(plan).map_err(|found| (seed, found))?);
+                    row.counters = row.counters.with(play(plan).map_err(|found| (seed, found))?);
                 }
                 rows.push(row);
             }
@@ -126,8 +126,8 @@ pub fn page(rows: &[Row], seeds: u64) -> String {
             "\n## {name}\n\n| lost | how | gameplays | finished, % | stops a minute | stood, % | new cycle, ms |\n|---:|---|---:|---:|---:|---:|---:|\n"
         );
         for row in rows.iter().filter(|row| row.squad == squad) {
-            let ended = row.tally.finished + row.tally.stopped;
-            let (percent, kind) = (row.percent, row.kind.word());
+            let ended = row.counters.finished + row.counters.stopped;
+            let (percent, kind) = (row.percent, row.kind.label());
             let [finished, stops, stood, gap] =
                 [row.finished(), row.false_stops(), row.stood(), row.gap()].map(number);
             let _ =
@@ -142,7 +142,7 @@ fn number(value: Option<f64>) -> String {
 }
 
 /// Three panels, a line for each squad and kind.
-pub fn picture(rows: &[Row]) -> String {
+pub fn snapshot(rows: &[Row]) -> String {
     let colors = Theme::Light.colors();
     let mut svg = Svg::default();
     type Measure = (&'static str, fn(&Row) -> Option<f64>);
@@ -190,7 +190,7 @@ pub fn picture(rows: &[Row]) -> String {
             format!(r#"stroke="{color}" stroke-width="2" stroke-dasharray="{dash}""#),
         );
         let font = Font { size: 13.0, fill: colors.ink, bold: false, halo: None };
-        svg.text([x + 36.0, 320.0], &format!("{name}, {}", kind.word()), Anchor::Start, font);
+        svg.text([x + 36.0, 320.0], &format!("{name}, {}", kind.label()), Anchor::Start, font);
         x += 220.0;
     }
     svg.finish([0.0, 0.0], [1_000.0, 350.0], 1.0, colors.paper, "What loss costs a team")

@@ -83,14 +83,14 @@ impl<'a> Tabletop<'a> {
     pub fn step(&mut self) {
         self.steps += 1;
         let now = self.now();
-        let heard = std::mem::take(&mut self.air);
+        let received = std::mem::take(&mut self.air);
         let (ball, opponents) = (self.ball, self.opponents.clone());
         let mut orders = Vec::new();
         for robot in self.robots.iter_mut().filter(|robot| !robot.dead) {
             while let Some(due) = robot.brain.poll_timeout().filter(|due| *due <= now) {
                 robot.brain.handle_timeout(due);
             }
-            for (from, message) in heard.iter().filter(|(from, _)| *from != robot.id) {
+            for (from, message) in received.iter().filter(|(from, _)| *from != robot.id) {
                 robot.brain.handle_team_message(now, *from, message);
             }
             let sensors = SensorFrame {

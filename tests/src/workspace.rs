@@ -43,13 +43,13 @@ pub struct Finding {
     /// From 1.
     pub line: usize,
     what: String,
-    mend: String,
+    hint: String,
 }
 
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { path, line, what, mend } = self;
-        write!(f, "{path}:{line}: {what}; {mend}")
+        let Self { path, line, what, hint } = self;
+        write!(f, "{path}:{line}: {what}; {hint}")
     }
 }
 
@@ -58,14 +58,14 @@ impl Source {
     pub fn read(path: &Path) -> Self {
         let bytes = fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         let relative = path.strip_prefix(root()).unwrap_or(path);
-        let words: Vec<_> = relative.iter().map(|word| word.to_string_lossy()).collect();
-        Self { path: words.join("/"), text: String::from_utf8_lossy(&bytes).into_owned() }
+        let description: Vec<_> = relative.iter().map(|label| label.to_string_lossy()).collect();
+        Self { path: description.join("/"), text: String::from_utf8_lossy(&bytes).into_owned() }
     }
 
     /// Whether it is code of one of the crates in these directories, and not a file of tests.
     pub fn is_under(&self, folders: &[String]) -> bool {
         // A crate nested in another one's directory is excluded: only files in `src` count.
-        folders.iter().any(|folder| self.path.starts_with(&format!("{folder}/src/")))
+        folders.iter().any(|directory| self.path.starts_with(&format!("{directory}/src/")))
             && !self.path.ends_with("/tests.rs")
     }
 
@@ -84,34 +84,34 @@ impl Source {
     }
 
     /// Lines whose code has one of the patterns.
-    pub fn code_with(&self, patterns: &[&str], mend: &str) -> Vec<Finding> {
-        self.code().filter_map(|(number, line)| self.first_of(patterns, number, line, mend)).collect()
+    pub fn code_with(&self, patterns: &[&str], hint: &str) -> Vec<Finding> {
+        self.code().filter_map(|(number, line)| self.first_of(patterns, number, line, hint)).collect()
     }
 
     /// Lines that have one of the patterns, comments included.
-    pub fn text_with(&self, patterns: &[&str], mend: &str) -> Vec<Finding> {
+    pub fn text_with(&self, patterns: &[&str], hint: &str) -> Vec<Finding> {
         (1..)
             .zip(self.text.lines())
-            .filter_map(|(number, line)| self.first_of(patterns, number, line, mend))
+            .filter_map(|(number, line)| self.first_of(patterns, number, line, hint))
             .collect()
     }
 
-    fn first_of(&self, patterns: &[&str], number: usize, line: &str, mend: &str) -> Option<Finding> {
+    fn first_of(&self, patterns: &[&str], number: usize, line: &str, hint: &str) -> Option<Finding> {
         let pattern = patterns.iter().find(|pattern| names(line, pattern))?;
-        Some(self.at(number, &format!("`{pattern}`"), mend))
+        Some(self.at(number, &format!("`{pattern}`"), hint))
     }
 
     /// A finding in this file.
-    pub fn at(&self, line: usize, what: &str, mend: &str) -> Finding {
-        Finding { path: self.path.clone(), line, what: what.into(), mend: mend.into() }
+    pub fn at(&self, line: usize, what: &str, hint: &str) -> Finding {
+        Finding { path: self.path.clone(), line, what: what.into(), hint: hint.into() }
     }
 }
 
 /// Whether the pattern occurs in the line as a name of its own, not as the tail of a longer name.
 fn names(line: &str, pattern: &str) -> bool {
-    let starts_word = pattern.starts_with(|first: char| first.is_alphanumeric());
+    let starts_label = pattern.starts_with(|first: char| first.is_alphanumeric());
     let is_tail = |at: usize| line[..at].ends_with(|before: char| before.is_alphanumeric() || before == '_');
-    line.match_indices(pattern).any(|(at, _)| !(starts_word && is_tail(at)))
+    line.match_indices(pattern).any(|(at, _)| !(starts_label && is_tail(at)))
 }
 
 fn files(wanted: &dyn Fn(&Path) -> bool) -> Vec<Source> {
@@ -122,9 +122,9 @@ fn files(wanted: &dyn Fn(&Path) -> bool) -> Vec<Source> {
     paths.iter().map(|path| Source::read(path)).collect()
 }
 
-fn walk(folder: &Path, wanted: &dyn Fn(&Path) -> bool, paths: &mut Vec<PathBuf>) {
+fn walk(directory: &Path, wanted: &dyn Fn(&Path) -> bool, paths: &mut Vec<PathBuf>) {
     for entry in
-        fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display())).flatten()
+        fs::read_dir(directory).unwrap_or_else(|error| panic!("{}: {error}", directory.display())).flatten()
     {
         let path = entry.path();
         if path.is_dir() {

@@ -26,16 +26,16 @@ const TICKS: u32 = 300;
 
 #[test]
 fn without_loss_gameplays_do_not_overlap() {
-    let tally = for_each_seed(|seed| {
+    let counters = for_each_seed(|seed| {
         let team = Team::drawn(seed);
         watch(&team, AirSettings::default(), vec![], Air::Lossless)
     });
-    assert!(tally.gameplays > tally.seeds || tally.seeds == 1, "{tally:?}");
+    assert!(counters.gameplays > counters.seeds || counters.seeds == 1, "{counters:?}");
 }
 
 #[test]
-fn under_loss_robots_leave_an_old_gameplay_when_they_hear_of_a_newer_one() {
-    let tally = for_each_seed(|seed| {
+fn under_loss_robots_leave_an_old_gameplay_when_they_receive_of_a_newer_one() {
+    let counters = for_each_seed(|seed| {
         let air = AirSettings {
             loss: 0.3,
             delay: [1, 2],
@@ -45,30 +45,30 @@ fn under_loss_robots_leave_an_old_gameplay_when_they_hear_of_a_newer_one() {
         };
         watch(&Team::drawn(seed), air, vec![], Air::Lossy)
     });
-    println!("30 % loss: {tally:?}");
-    assert!(tally.gameplays > tally.seeds || tally.seeds == 1, "{tally:?}");
+    println!("30 % loss: {counters:?}");
+    assert!(counters.gameplays > counters.seeds || counters.seeds == 1, "{counters:?}");
 }
 
 #[test]
 fn a_robot_may_crash_and_return_at_any_time() {
-    let tally = for_each_seed(|seed| {
+    let counters = for_each_seed(|seed| {
         let team = Team::drawn(seed);
         let faults = crash_and_return(&team);
         watch(&team, AirSettings::default(), faults, Air::Lossless)
     });
-    println!("crash and return: {tally:?}");
-    assert!(tally.slowest_ms > 0 || tally.seeds == 1, "{tally:?}");
+    println!("crash and return: {counters:?}");
+    assert!(counters.slowest_ms > 0 || counters.seeds == 1, "{counters:?}");
 }
 
 #[test]
 fn a_robot_may_crash_and_return_while_packets_are_lost() {
-    let tally = for_each_seed(|seed| {
+    let counters = for_each_seed(|seed| {
         let team = Team::drawn(seed);
         let faults = crash_and_return(&team);
         watch(&team, AirSettings { loss: 0.3, delay: [1, 2], ..AirSettings::default() }, faults, Air::Lossy)
     });
-    println!("crash and return under 30 % loss: {tally:?}");
-    assert!(tally.slowest_ms > 0 || tally.seeds == 1, "{tally:?}");
+    println!("crash and return under 30 % loss: {counters:?}");
+    assert!(counters.slowest_ms > 0 || counters.seeds == 1, "{counters:?}");
 }
 
 #[test]
@@ -167,7 +167,7 @@ impl Team {
 
 #[derive(Clone, Copy, Debug, Default)]
 #[allow(dead_code, reason = "read by Debug in the printed line")]
-struct Tally {
+struct Counters {
     seeds: u32,
     cycles: u32,
     gameplays: u32,
@@ -176,19 +176,19 @@ struct Tally {
 }
 
 /// Runs every seed, or the one that ONETWO_SEED names; panics with the first seed that fails.
-fn for_each_seed(trial: impl Fn(u64) -> Result<Tally, String>) -> Tally {
-    let number = |name| std::env::var(name).ok().and_then(|word| word.parse::<u64>().ok());
+fn for_each_seed(trial: impl Fn(u64) -> Result<Counters, String>) -> Counters {
+    let number = |name| std::env::var(name).ok().and_then(|label| label.parse::<u64>().ok());
     let all = 0..number("ONETWO_SEEDS").unwrap_or(SEEDS);
     let seeds = number("ONETWO_SEED").map_or(all, |seed| seed..seed + 1);
-    let mut sum = Tally::default();
+    let mut sum = Counters::default();
     for seed in seeds {
         match trial(seed) {
-            Ok(tally) => {
+            Ok(counters) => {
                 sum.seeds += 1;
-                sum.cycles += tally.cycles;
-                sum.gameplays += tally.gameplays;
-                sum.overlaps += tally.overlaps;
-                sum.slowest_ms = sum.slowest_ms.max(tally.slowest_ms);
+                sum.cycles += counters.cycles;
+                sum.gameplays += counters.gameplays;
+                sum.overlaps += counters.overlaps;
+                sum.slowest_ms = sum.slowest_ms.max(counters.slowest_ms);
             }
             Err(what) => panic!(
                 "seed {seed}: {what}\nrepeat: ONETWO_SEED={seed} cargo test -p match-tests --test coordination"
@@ -198,7 +198,7 @@ fn for_each_seed(trial: impl Fn(u64) -> Result<Tally, String>) -> Tally {
     sum
 }
 
-fn watch(team: &Team, air: AirSettings, faults: Vec<ScheduledFault>, kind: Air) -> Result<Tally, String> {
+fn watch(team: &Team, air: AirSettings, faults: Vec<ScheduledFault>, kind: Air) -> Result<Counters, String> {
     let mut simulation = team.simulation(air, faults);
     let mut watcher = Watcher::new(kind);
     for _ in 0..TICKS {
@@ -207,12 +207,12 @@ fn watch(team: &Team, air: AirSettings, faults: Vec<ScheduledFault>, kind: Air) 
     report(&watcher)
 }
 
-fn report(watcher: &Watcher) -> Result<Tally, String> {
+fn report(watcher: &Watcher) -> Result<Counters, String> {
     if let Some(violation) = watcher.violations().first() {
         let all = watcher.violations().len();
         return Err(format!("at {} ms: {} ({all} in all)", violation.at.0 / 1000, violation.what));
     }
-    Ok(Tally {
+    Ok(Counters {
         seeds: 1,
         cycles: watcher.cycles,
         gameplays: watcher.gameplays,
@@ -237,11 +237,11 @@ fn step(team: &Team, simulation: &mut Simulation<'_>, watcher: &mut Watcher) {
             Fault::Air(_) | Fault::FlipOrderBit { .. } => {}
         }
     }
-    for heard in &tick.heard {
+    for received in &tick.received {
         if let Ok((from, TeamMessage::Beacon(beacon))) =
-            overhear(&heard.packet, TEAM, &TeamKey::ZERO.of_team())
+            overhear(&received.packet, TEAM, &TeamKey::ZERO.of_team())
         {
-            watcher.see(now, &Seen::Heard(heard.to, from, beacon));
+            watcher.see(now, &Seen::Received(received.to, from, beacon));
         }
     }
     for sent in &tick.sent {

@@ -18,12 +18,12 @@ const REGIONS: [&str; 6] = ["back", "center", "corner", "front", "front-side", "
 /// Maximum length of a dribble, mm.
 const DRIBBLE_MAX: f64 = 1000.0;
 
-fn folder() -> PathBuf {
+fn directory() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../casebase/library/cases/division-b")
 }
 
 fn division_b() -> Library {
-    Library::read(&folder()).expect("the built-in library is readable")
+    Library::read(&directory()).expect("the built-in library is readable")
 }
 
 #[test]
@@ -35,7 +35,7 @@ fn it_has_gameplays_for_two_and_three_robots_in_every_region_and_lint_finds_noth
     assert!(library.cases.iter().any(|case| case.robots.len() == 3));
     let regions: BTreeSet<_> = library.cases.iter().filter_map(|case| case.name.split('/').next()).collect();
     assert_eq!(regions, BTreeSet::from(REGIONS));
-    let built = case_tools::load(&folder()).expect("no errors");
+    let built = case_tools::load(&directory()).expect("no errors");
     assert!(built.findings.is_empty(), "{:?}", built.findings);
     assert!(case_library::LEAGUES.iter().any(|league| league.name == "division-b"));
 }

@@ -20,24 +20,24 @@ const REGIONS: [&str; 6] = ["back", "center", "corner", "front", "front-side", "
 /// Number of problems drawn.
 const PROBLEMS: u64 = 6000;
 
-fn folder() -> PathBuf {
+fn directory() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../casebase/library/cases/four-legged")
 }
 
 fn four_legged() -> Library {
-    Library::read(&folder()).expect("the built-in library is readable")
+    Library::read(&directory()).expect("the built-in library is readable")
 }
 
 /// Problems as the paper's scenarios place robots, the ball over the whole field.
 fn drawn() -> impl Iterator<Item = Problem> {
-    let built = case_tools::load(&folder()).expect("the built-in library is sound");
+    let built = case_tools::load(&directory()).expect("the built-in library is sound");
     let sampler = case_tools::Sampler::new(built.lineup.clone(), built.base().field(), 2009);
     (0..PROBLEMS).map(move |number| {
         let problem = sampler.problem(number);
         let point = |at: casebase::PointMm| Point { x: at.x.into(), y: at.y.into() };
         Problem {
             ball: point(problem.ball),
-            defending: Goal::from_word(problem.defending.word()).expect("one of two words"),
+            defending: Goal::from_label(problem.defending.label()).expect("one of two words"),
             teammates: problem.teammates.iter().map(|(id, at)| (id.number(), point(*at))).collect(),
             opponents: problem.opponents.iter().map(|at| point(*at)).collect(),
         }
@@ -107,7 +107,7 @@ fn a_robot_behind_a_ball_that_nobody_blocks_has_a_case_on_95_percent_of_the_fiel
                 covered += usize::from(retrieve(&library, &problem, &Rules::default()).winner.is_some());
             }
         }
-        assert!(covered * 100 >= places * 95, "defending {}: {covered} of {places}", defending.word());
+        assert!(covered * 100 >= places * 95, "defending {}: {covered} of {places}", defending.label());
     }
 }
 

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use arena::{CaseNames, Opposition, Rehearsal, Score, markdown};
+use arena::{CaseNames, CaseTrial, Opposition, Score, markdown};
 use casebase::Settings;
 
 /// What `onetwo cases play --trials 200 --seed 1 --markdown` wrote.
@@ -25,8 +25,8 @@ fn the_table_of_played_cases_lists_every_case_against_both_kinds_of_opponents() 
     let (file, names) = (file(), names());
     for name in names {
         for opponents in Opposition::ALL {
-            let row = format!("| {name} | {} | ", opponents.word());
-            assert_eq!(file.matches(&row).count(), 1, "{name} {}; {AGAIN}", opponents.word());
+            let row = format!("| {name} | {} | ", opponents.label());
+            assert_eq!(file.matches(&row).count(), 1, "{name} {}; {AGAIN}", opponents.label());
         }
     }
     assert_eq!(file.lines().filter(|line| line.starts_with("| ")).count(), 1 + 2 * names.len(), "{AGAIN}");
@@ -35,7 +35,7 @@ fn the_table_of_played_cases_lists_every_case_against_both_kinds_of_opponents() 
 #[test]
 fn rows_of_the_table_come_out_again() {
     let (file, names) = (file(), names());
-    let rehearsal = Rehearsal {
+    let case_trial = CaseTrial {
         base: case_library::four_legged(),
         names: CaseNames::new(names.iter().copied()),
         settings: Settings::default(),
@@ -43,10 +43,10 @@ fn rows_of_the_table_come_out_again() {
         seed: SEED,
     };
     for authored in (0..names.len()).step_by(8) {
-        let case = rehearsal.case(authored).expect("a stored case for every authored one");
+        let case = case_trial.case(authored).expect("a stored case for every authored one");
         for opponents in Opposition::ALL {
-            let attempts = rehearsal.play(&case, opponents, &|| ()).expect("the simulator runs");
-            let score = Score::of(names[authored].to_owned(), opponents.word(), &attempts);
+            let attempts = case_trial.play(&case, opponents, &|| ()).expect("the simulator runs");
+            let score = Score::of(names[authored].to_owned(), opponents.label(), &attempts);
             let table = markdown(&[score]);
             let row = table.lines().last().unwrap_or_default();
             assert!(file.contains(row), "the file has no row {row}; {AGAIN}");
@@ -59,7 +59,7 @@ fn a_case_completed_by_less_than_sixty_in_a_hundred_says_why_in_its_file() {
     let file = file();
     let league = case_library::league("four-legged").expect("built in");
     for (name, text) in league.names.iter().zip(league.sources) {
-        for opponents in Opposition::ALL.map(Opposition::word) {
+        for opponents in Opposition::ALL.map(Opposition::label) {
             let row = file.lines().find(|line| line.starts_with(&format!("| {name} | {opponents} |")));
             let completed: f64 =
                 row.and_then(|row| row.split('|').nth(4)?.trim().parse().ok()).expect("a share");

@@ -58,8 +58,8 @@ fn native_equals_qemu_when_packets_are_lost_and_a_robot_dies_and_returns() {
 
 #[test]
 fn a_library_put_into_flash_is_the_one_that_is_played() {
-    let folder = Folder::with(&["league.toml", "center/pass-around.toml", "front/shot.toml"]);
-    let library = case_tools::load(&folder.0).unwrap_or_else(|findings| panic!("{findings:?}"));
+    let directory = Directory::with(&["league.toml", "center/pass-around.toml", "front/shot.toml"]);
+    let library = case_tools::load(&directory.0).unwrap_or_else(|findings| panic!("{findings:?}"));
     let built_in = TrialConfig::new(Scenario::MiddleBack, Configuration::TwoDefenders, Approach::Cases, 5);
     let names = CaseNames::new(library.names.iter().cloned());
     let config = built_in.clone().with_library(library.base(), names);
@@ -84,7 +84,7 @@ fn both<'a>(config: &TrialConfig<'a>, qemu: QemuBackend, meter: &mut Meter) -> S
     };
     let native = play(Box::new(NativeBackend::new(config.base)));
     let emulated = play(Box::new(Metered::new(qemu, &meter.taken)));
-    let which = format!("scenario {} {} seed {}", config.scenario, config.opponents.word(), config.seed);
+    let which = format!("scenario {} {} seed {}", config.scenario, config.opponents.label(), config.seed);
     assert_eq!(native.trace_hash, emulated.trace_hash, "{which}");
     meter.trials += 1;
     meter.gameplays += emulated.cycles.iter().filter(|cycle| cycle.case.is_some()).count() as u64;
@@ -127,22 +127,22 @@ static IMAGE: LazyLock<PathBuf> = LazyLock::new(|| {
 });
 
 /// A directory with some files of the built-in library; deleted on drop.
-struct Folder(PathBuf);
+struct Directory(PathBuf);
 
-impl Folder {
+impl Directory {
     fn with(files: &[&str]) -> Self {
-        let folder = std::env::temp_dir().join(format!("onetwo-some-cases-{}", std::process::id()));
+        let directory = std::env::temp_dir().join(format!("onetwo-some-cases-{}", std::process::id()));
         let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("../casebase/library/cases/four-legged");
         for file in files {
-            let to = folder.join(file);
+            let to = directory.join(file);
             fs::create_dir_all(to.parent().expect("a file in a folder")).expect("a temporary folder");
             fs::copy(from.join(file), to).expect("a case of the built-in library");
         }
-        Self(folder)
+        Self(directory)
     }
 }
 
-impl Drop for Folder {
+impl Drop for Directory {
     fn drop(&mut self) {
         // A temporary directory that stays is no error.
         let _ = fs::remove_dir_all(&self.0);

@@ -19,7 +19,7 @@ use firmware_build::inspect::STACK_BUDGET;
 use firmware_build::{Install, MACHINE, Program, build_program, ensure_qemu, workspace_root};
 use match_tests::bad_line::{BadLine, Trouble};
 use protocol::frame::TeamKey;
-use protocol::host::{Command, Condition, Directive, Duty, HostMessage, Telemetry, Welcome};
+use protocol::host::{Command, Condition, Directive, HostMessage, RuleRole, Telemetry, Welcome};
 use protocol::host_link::HostLink;
 use protocol::link::overhear;
 use protocol::serial::{Lines, line};
@@ -58,7 +58,7 @@ fn a_robot_obeys_its_own_host_while_it_speaks_and_nobody_elses() {
         robot.say(&mut theirs, ours.welcome(id()));
         thread::sleep(Duration::from_millis(5));
     }
-    robot.heard.try_iter().for_each(drop);
+    robot.received.try_iter().for_each(drop);
     assert!(robot.until(&mut ours, false, |_| true), "it still speaks");
     assert!(robot.last.as_ref().is_some_and(lost), "a stranger's host moved it");
 }
@@ -87,11 +87,11 @@ fn a_serial_line_that_corrupts_bytes_makes_a_robot_brake_at_worst_and_it_obeys_a
 
 #[test]
 fn a_robot_without_a_key_or_with_a_damaged_page_says_nothing_on_the_air() {
-    for (page, words) in [(None, "no page"), (Some(damaged()), "a damaged page")] {
+    for (page, description) in [(None, "no page"), (Some(damaged()), "a damaged page")] {
         let mut robot = Robot::start(page.as_ref(), 0);
-        robot.hears_itself_say(words);
+        robot.hears_itself_say(description);
         thread::sleep(Duration::from_millis(500));
-        assert!(robot.heard.try_recv().is_err(), "it speaks");
+        assert!(robot.received.try_recv().is_err(), "it speaks");
     }
 }
 
@@ -143,7 +143,7 @@ struct Robot {
     child: Child,
     said: String,
     console: Receiver<Vec<u8>>,
-    heard: Receiver<Vec<u8>>,
+    received: Receiver<Vec<u8>>,
     lines: Lines,
     began: Instant,
     /// Time at which its host last sent.
@@ -173,13 +173,13 @@ impl Robot {
             .stderr(Stdio::piped())
             .spawn()
             .expect("the emulator that was just found");
-        let heard = pumped(child.stdout.take().expect("piped"));
+        let received = pumped(child.stdout.take().expect("piped"));
         let console = pumped(child.stderr.take().expect("piped"));
         Self {
             child,
             said: String::new(),
             console,
-            heard,
+            received,
             lines: Lines::new(),
             began: Instant::now(),
             spoke: Instant::now(),
@@ -196,13 +196,13 @@ impl Robot {
     }
 
     /// Waits for a text on the console.
-    fn hears_itself_say(&mut self, words: &str) {
+    fn hears_itself_say(&mut self, description: &str) {
         let began = Instant::now();
-        while !self.said.contains(words) {
+        while !self.said.contains(description) {
             if let Ok(more) = self.console.recv_timeout(Duration::from_millis(100)) {
                 self.said += &String::from_utf8_lossy(&more);
             }
-            assert!(began.elapsed() < PATIENCE, "`{words}` was not said: {}", self.said);
+            assert!(began.elapsed() < PATIENCE, "`{description}` was not said: {}", self.said);
         }
     }
 
@@ -217,7 +217,7 @@ impl Robot {
             to: id(),
             defending: geometry::GoalEnd::Negative,
             phase: Phase::Run,
-            duty: Duty::Player,
+            rule_role: RuleRole::Player,
             directive: Directive::Stand,
         };
         let Some(welcome) = welcome else { return };
@@ -240,7 +240,7 @@ impl Robot {
                 self.spoke = Instant::now();
                 self.say(link, link.welcome(id()));
             }
-            let Ok(bytes) = self.heard.recv_timeout(Duration::from_millis(5)) else { continue };
+            let Ok(bytes) = self.received.recv_timeout(Duration::from_millis(5)) else { continue };
             let carried: Vec<u8> = bytes.iter().flat_map(|byte| self.up.carry(*byte)).collect();
             let packets: Vec<_> = carried.iter().filter_map(|byte| self.lines.push(*byte)).collect();
             for packet in packets {

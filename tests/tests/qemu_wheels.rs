@@ -14,8 +14,8 @@ use hil_sim::small_size::{Ball, Drive, Order, Parameters, World};
 use hil_sim::{Backend, Mcu, Meter, NativeBackend, QemuBackend};
 use protocol::frame::{Audience, TeamKey};
 use protocol::host::{
-    Command, Directive, Duty, HostMessage, KickOrder, PART_ROBOTS_MAX, Welcome, WireBall, WireRobot, WireWho,
-    WorldPart,
+    Command, Directive, HostMessage, KickOrder, PART_ROBOTS_MAX, RuleRole, Welcome, WireBall, WireRobot,
+    WireWho, WorldPart,
 };
 use protocol::host_link::{HostLink, Opened};
 use protocol::link::Packet;
@@ -136,7 +136,7 @@ impl Table {
         if !field.contains(self.world.ball.position) {
             self.world.put_ball(Ball::at(Point::new(0.3, -0.4)));
         }
-        let heard = std::mem::take(&mut self.air);
+        let received = std::mem::take(&mut self.air);
         let parts = self.parts(now, phase);
         for ((robot, computers), directive) in robots.iter_mut().zip(directives) {
             let mut packets: Vec<Packet> = Vec::new();
@@ -149,15 +149,16 @@ impl Table {
                 to: *robot,
                 defending: GoalEnd::Negative,
                 phase,
-                duty: match robot.number() {
-                    1 => Duty::Taker,
-                    3 => Duty::Keeper,
-                    _ => Duty::Player,
+                rule_role: match robot.number() {
+                    1 => RuleRole::Taker,
+                    3 => RuleRole::Keeper,
+                    _ => RuleRole::Player,
                 },
                 directive: directive.clone(),
             };
             packets.push(self.link.seal(now, &HostMessage::Command(command)));
-            packets.extend(heard.iter().filter(|(from, _)| from != robot).map(|(_, packet)| packet.clone()));
+            packets
+                .extend(received.iter().filter(|(from, _)| from != robot).map(|(_, packet)| packet.clone()));
             let sensors = self.world.sensors(ours(*robot)).expect("a robot");
             let tick = TickIn { seq, now, air: packets.iter().map(|p| &p[..]).collect(), sensors };
             let [native, emulated] = computers;
@@ -171,7 +172,7 @@ impl Table {
             // The host relays messages for teammates.
             for packet in a.packets {
                 let opened = self.link.open(now, &packet);
-                if let Ok(Opened::Believed(_, TeamMessage::Beacon(_) | TeamMessage::Greeting(_))) = opened {
+                if let Ok(Opened::Believed(_, TeamMessage::Beacon(_) | TeamMessage::Handshake(_))) = opened {
                     self.air.push((*robot, packet));
                 }
             }
@@ -207,9 +208,9 @@ impl Table {
         };
         let robots: Vec<_> = self.world.robots().iter().map(wire).collect();
         let chunks = robots.chunks(PART_ROBOTS_MAX);
-        let (count, picture) = (chunks.len() as u8, self.ticks as u8);
+        let (count, snapshot) = (chunks.len() as u8, self.ticks as u8);
         let part = |(part, robots): (u8, &[WireRobot])| WorldPart {
-            picture,
+            snapshot,
             part,
             parts: count,
             phase,

@@ -10,7 +10,7 @@ use hil_sim::Stream;
 use host::radio::{Radio, RadioSettings, RadioWarning, Relay, Situation};
 use host::world::{BallModels, Robot, World};
 use protocol::frame::{Frame, Refusal, RobotKeys, TeamKey};
-use protocol::host::{Command, Directive, Duty};
+use protocol::host::{Command, Directive, RuleRole};
 use protocol::link::Packet;
 use protocol::quantized::{WirePoint, WirePose};
 use protocol::robot_io::{ActuatorFrame, Health, SensorFrame};
@@ -88,9 +88,9 @@ impl Body {
     }
 
     /// A step: packets in, packets out.
-    fn step(&mut self, now: u64, heard: &[Packet]) -> Vec<Packet> {
+    fn step(&mut self, now: u64, received: &[Packet]) -> Vec<Packet> {
         let clock = self.clock(now);
-        for packet in heard {
+        for packet in received {
             self.station.handle_packet(clock, packet);
         }
         let odometry = Twist { linear: Vector::new(self.speed, 0.0), angular: 0.0 };
@@ -132,8 +132,8 @@ fn offer(radio: &mut Radio, now: u64) -> Vec<Packet> {
         seen: ms(now),
     });
     let directive = Directive::GoTo { pose: WirePose { at: WirePoint { x: 3_000, y: 0 }, heading: 0 } };
-    let (defending, phase, duty) = (GoalEnd::Negative, Phase::Run, Duty::Player);
-    let command = Command { to: id(), defending, phase, duty, directive };
+    let (defending, phase, rule_role) = (GoalEnd::Negative, Phase::Run, RuleRole::Player);
+    let command = Command { to: id(), defending, phase, rule_role, directive };
     radio.offer(ms(now), &world, Situation { us: Colour::Blue, phase, placement: None }, &[command]);
     fetch(radio)
 }
@@ -168,8 +168,8 @@ impl Match {
                 self.down.send(self.now, packet);
             }
         }
-        let heard = self.down.receive(self.now);
-        for packet in self.body.step(self.now, &heard) {
+        let received = self.down.receive(self.now);
+        for packet in self.body.step(self.now, &received) {
             self.up.send(self.now, packet);
         }
     }

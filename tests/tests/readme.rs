@@ -42,7 +42,7 @@ fn every_command_in_a_shell_block_runs_the_program_or_is_xtasks() {
 fn the_table_names_every_crate_and_where_it_lies() {
     let table = read("docs/architecture.md");
     for crate_ in members() {
-        let row = format!("| `{}` | {} |", crate_.name, crate_.folder);
+        let row = format!("| `{}` | {} |", crate_.name, crate_.directory);
         assert!(table.contains(&row), "docs/architecture.md §1.1 lacks a row `{row}`");
     }
 }

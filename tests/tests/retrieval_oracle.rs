@@ -30,7 +30,7 @@ fn random_libraries_are_answered_as_the_oracle_answers() {
 
 #[test]
 fn the_built_in_library_is_answered_as_the_oracle_answers() {
-    let trial = Trial::of_folder(1, &four_legged_folder());
+    let trial = Trial::of_directory(1, &four_legged_directory());
     trial.compare(&Settings::default(), &Rules::default());
     assert_eq!(
         trial.table.base().hash(),
@@ -41,7 +41,7 @@ fn the_built_in_library_is_answered_as_the_oracle_answers() {
 
 #[test]
 fn the_built_in_library_leaves_the_lint_nothing_to_say() {
-    let trial = Trial::of_folder(1, &four_legged_folder());
+    let trial = Trial::of_directory(1, &four_legged_directory());
     let findings: Vec<String> = trial.table.findings.iter().map(ToString::to_string).collect();
     assert!(findings.is_empty(), "{}", findings.join("\n"));
 }
@@ -80,7 +80,7 @@ fn settings_change_the_answers_as_the_agreement_says() {
 
 #[test]
 fn every_authored_case_in_all_four_symmetries_retrieves_itself_from_its_own_situation() {
-    let trial = Trial::of_folder(1, &four_legged_folder());
+    let trial = Trial::of_directory(1, &four_legged_directory());
     for (id, case) in trial.oracle.cases.iter().enumerate() {
         let problem = Problem::own_situation(case);
         let answer = casebase::retrieve(&trial.table.base(), &translated(&problem), &Settings::default());
@@ -103,10 +103,10 @@ impl Trial {
     fn of_random_library(seed: u64, size: usize) -> Self {
         let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("random-library-{seed}-{size}"));
         RandomLibrary::new(seed, size).write(&dir).expect("a folder for the library");
-        Self::of_folder(seed, &dir)
+        Self::of_directory(seed, &dir)
     }
 
-    fn of_folder(seed: u64, dir: &Path) -> Self {
+    fn of_directory(seed: u64, dir: &Path) -> Self {
         let oracle = Library::read(dir).expect("readable by the oracle");
         let table = case_tools::load(dir).unwrap_or_else(|findings| {
             let findings: Vec<String> = findings.iter().map(ToString::to_string).collect();
@@ -195,6 +195,6 @@ fn translated(problem: &Problem) -> casebase::Problem {
     }
 }
 
-fn four_legged_folder() -> PathBuf {
+fn four_legged_directory() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../casebase/library/cases/four-legged")
 }

@@ -1,21 +1,21 @@
 //! `swarm`: samples of the runs that `cargo xtask swarm` plays by the thousand. A hundred runs of a team
 //! under faults drawn at random, and two matches under the referee's plan.
 
-use arena::game::Nobody;
+use arena::game::NoWatcher;
 use match_tests::swarm::matches::{self, LENGTH, Plan};
-use match_tests::swarm::{Runs, run, watch, words};
+use match_tests::swarm::{Runs, description, run, watch};
 
 const SEEDS: u64 = 100;
 
 #[test]
 fn a_hundred_runs_with_faults_of_their_own_keep_every_promise() {
-    let (tally, broken) = watch(Runs { first: 0, seeds: SEEDS, jobs: 2 }, |_| {});
-    let told: Vec<String> = broken.iter().map(|(seed, found)| words(*seed, found)).collect();
+    let (counters, broken) = watch(Runs { first: 0, seeds: SEEDS, jobs: 2 }, |_| {});
+    let told: Vec<String> = broken.iter().map(|(seed, found)| description(*seed, found)).collect();
     assert!(told.is_empty(), "\n{}", told.join("\n"));
-    assert_eq!(u64::from(tally.runs), SEEDS);
+    assert_eq!(u64::from(counters.runs), SEEDS);
     // The runs are not trivial: teams play, forged packets are sent, robots brake.
-    assert!(u64::from(tally.gameplays) > SEEDS && tally.unbelievable > 10_000, "{tally:?}");
-    assert!(tally.brakings > 10_000 && tally.slowest_ms > 0, "{tally:?}");
+    assert!(u64::from(counters.gameplays) > SEEDS && counters.unbelievable > 10_000, "{counters:?}");
+    assert!(counters.brakings > 10_000 && counters.slowest_ms > 0, "{counters:?}");
 }
 
 #[test]
@@ -30,8 +30,8 @@ fn matches_with_cards_restarts_and_halts_keep_every_promise() {
     // One of each division.
     for seed in [4, 7] {
         let plan = Plan::drawn(seed, LENGTH);
-        let outcome = matches::play(&plan, &mut Nobody);
-        assert!(outcome.found.is_empty(), "\n{}", matches::words(&plan, &outcome));
+        let outcome = matches::play(&plan, &mut NoWatcher);
+        assert!(outcome.found.is_empty(), "\n{}", matches::description(&plan, &outcome));
         // The match is not trivial.
         assert!(outcome.acts > 1 && outcome.begun[1] > 0, "{outcome:?}");
     }

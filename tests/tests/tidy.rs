@@ -28,8 +28,8 @@ fn every_file_opens_with_a_line_that_names_it_and_asks_nothing() {
 fn no_file_is_longer_than_a_reader_holds_in_mind() {
     check(&rust_sources(), |source| {
         let lines = source.text.lines().count();
-        let mend = "split it along its purposes; 100 to 400 lines read best";
-        if lines <= LINES_MAX { vec![] } else { vec![source.at(lines, &format!("{lines} lines"), mend)] }
+        let hint = "split it along its purposes; 100 to 400 lines read best";
+        if lines <= LINES_MAX { vec![] } else { vec![source.at(lines, &format!("{lines} lines"), hint)] }
     });
 }
 
@@ -45,9 +45,9 @@ fn shared_arithmetic_goes_through_geometry_math() {
 fn nalgebra_stays_within_geometry_and_without_its_roots_and_rotations() {
     let sources = rust_sources().into_iter().filter(|source| source.is_under(&folders(&SAME_BITS)));
     check(&sources.collect::<Vec<_>>(), |source| {
-        let mend =
+        let hint =
             "use geometry's own `norm`, `distance` and `Angle`: nalgebra's reach for libm's √ and sine";
-        source.code_with(&NALGEBRA_INEXACT, mend)
+        source.code_with(&NALGEBRA_INEXACT, hint)
     });
 }
 
@@ -67,7 +67,7 @@ fn nothing_half_done_stays_behind() {
 #[test]
 fn no_file_knows_the_machine_it_was_written_on() {
     check(&text_sources(), |source| {
-        let mend = "use a path relative to the workspace, or `std::env::temp_dir()`";
+        let hint = "use a path relative to the workspace, or `std::env::temp_dir()`";
         let roots =
             [concat!("/wo", "rk/"), concat!("/tm", "p/"), concat!("/ho", "me/"), concat!("/ro", "ot/")];
         let within = |line: &str, root: &str| {
@@ -77,7 +77,7 @@ fn no_file_knows_the_machine_it_was_written_on() {
         let lines = (1..).zip(source.text.lines());
         let found = lines.filter_map(|(number, line)| {
             let root = roots.into_iter().find(|root| within(line, root))?;
-            Some(source.at(number, &format!("`{root}…`"), mend))
+            Some(source.at(number, &format!("`{root}…`"), hint))
         });
         found.collect()
     });
@@ -85,17 +85,17 @@ fn no_file_knows_the_machine_it_was_written_on() {
 
 #[test]
 fn robots_crates_are_no_std_and_allocate_nothing() {
-    let crates: Vec<_> = NO_STD.into_iter().map(|name| (folder_of(name), "src/lib.rs")).collect();
-    let boards = board_folders().into_iter().map(|folder| (folder, "src/main.rs"));
+    let crates: Vec<_> = NO_STD.into_iter().map(|name| (directory_of(name), "src/lib.rs")).collect();
+    let boards = board_folders().into_iter().map(|directory| (directory, "src/main.rs"));
     let all: Vec<_> = crates.into_iter().chain(boards).collect();
     let heads: Vec<_> =
-        all.iter().map(|(folder, file)| Source::read(&root().join(folder).join(file))).collect();
+        all.iter().map(|(directory, file)| Source::read(&root().join(directory).join(file))).collect();
     check(&heads, |source| {
         let says_so = source.code().any(|(_, line)| line.starts_with("#![") && line.contains("no_std"));
         let finding = source.at(1, "not `no_std`", "add `#![no_std]`: the crate runs on the robot");
         if says_so { vec![] } else { vec![finding] }
     });
-    let folders: Vec<_> = all.into_iter().map(|(folder, _)| folder).collect();
+    let folders: Vec<_> = all.into_iter().map(|(directory, _)| directory).collect();
     let sources = rust_sources().into_iter().filter(|source| source.is_under(&folders));
     check(&sources.collect::<Vec<_>>(), |source| {
         source.code_with(
@@ -113,11 +113,11 @@ fn only_runtime_calls_the_brain_on_a_board() {
     check(&sources.collect::<Vec<_>>(), |source| {
         source.code_with(&["brain::"], "start `runtime`'s tasks; a board is pins, clocks and drivers")
     });
-    for folder in boards {
-        let manifest = Manifest::read(&folder);
+    for directory in boards {
+        let manifest = Manifest::read(&directory);
         assert!(
             !manifest.all.contains("brain"),
-            "{folder}/Cargo.toml: depends on brain; depend on runtime instead"
+            "{directory}/Cargo.toml: depends on brain; depend on runtime instead"
         );
     }
 }
@@ -126,11 +126,11 @@ fn only_runtime_calls_the_brain_on_a_board() {
 fn robots_crates_do_no_io() {
     let mut findings = Vec::new();
     for name in NO_STD.iter().filter(|name| **name != "runtime") {
-        let Manifest { folder, linked, .. } = Manifest::read(&folder_of(name));
+        let Manifest { directory, linked, .. } = Manifest::read(&directory_of(name));
         for dependency in linked.iter().filter(|name| !is_pure(name)) {
-            let mend =
+            let hint =
                 "is not known to be free of I/O and clocks; do without, or add it to PURE with a reason";
-            findings.push(format!("{folder}/Cargo.toml: `{dependency}` {mend}"));
+            findings.push(format!("{directory}/Cargo.toml: `{dependency}` {hint}"));
         }
     }
     assert!(findings.is_empty(), "\n{}", findings.join("\n"));
@@ -139,10 +139,10 @@ fn robots_crates_do_no_io() {
 #[test]
 fn a_crate_without_unsafe_forbids_it() {
     let mut findings = Vec::new();
-    for Manifest { folder, .. } in members() {
-        let own = [folder.clone()];
+    for Manifest { directory, .. } in members() {
+        let own = [directory.clone()];
         let sources: Vec<_> = rust_sources().into_iter().filter(|source| source.is_under(&own)).collect();
-        let roots = ["lib.rs", "main.rs"].map(|name| format!("{folder}/src/{name}"));
+        let roots = ["lib.rs", "main.rs"].map(|name| format!("{directory}/src/{name}"));
         let is_root = |source: &&Source| roots.contains(&source.path);
         let uses = |source: &Source| {
             source.code().any(|(_, line)| line.contains("unsafe ") || line.contains("unsafe("))
@@ -164,10 +164,10 @@ fn a_crate_without_unsafe_forbids_it() {
 fn dependencies_point_one_way() {
     let crates: BTreeMap<String, Manifest> = members().into_iter().map(|m| (m.name.clone(), m)).collect();
     let mut findings = upward(&crates);
-    for (from, to, mend) in NEVER_LINKED {
+    for (from, to, hint) in NEVER_LINKED {
         // A crate that does not exist links nothing.
         if crates.contains_key(from) && reachable(&crates, from).contains(to) {
-            findings.push(format!("{from} links {to}; {mend}"));
+            findings.push(format!("{from} links {to}; {hint}"));
         }
     }
     assert!(findings.is_empty(), "\n{}", findings.join("\n"));
@@ -218,14 +218,14 @@ fn upward(crates: &BTreeMap<String, Manifest>) -> Vec<String> {
         let Some(own) = height(&manifest.name) else {
             findings.push(format!(
                 "{}/Cargo.toml: `{}` has no place in LOWEST_FIRST; give it one",
-                manifest.folder, manifest.name
+                manifest.directory, manifest.name
             ));
             continue;
         };
         for dependency in manifest.all.iter().filter(|name| height(name).is_some_and(|other| other >= own)) {
             findings.push(format!(
                 "{}/Cargo.toml: `{}` depends on `{dependency}`, which stands above it; turn the dependency round (docs/architecture.md §1.2)",
-                manifest.folder, manifest.name
+                manifest.directory, manifest.name
             ));
         }
     }
@@ -259,22 +259,22 @@ fn check(sources: &[Source], rule: impl Fn(&Source) -> Vec<Finding>) {
     assert!(findings.is_empty(), "{} findings\n{}", findings.len(), findings.join("\n"));
 }
 
-fn folder_of(name: &str) -> String {
+fn directory_of(name: &str) -> String {
     let found = members().into_iter().find(|manifest| manifest.name == name);
     found
         .unwrap_or_else(|| {
             panic!("no crate `{name}` in the workspace; mend the lists at the end of this file")
         })
-        .folder
+        .directory
 }
 
 fn folders(names: &[&str]) -> Vec<String> {
-    names.iter().map(|name| folder_of(name)).collect()
+    names.iter().map(|name| directory_of(name)).collect()
 }
 
 fn board_folders() -> Vec<String> {
-    let folders = members().into_iter().map(|manifest| manifest.folder);
-    folders.filter(|folder| folder.starts_with("firmware/boards/")).collect()
+    let folders = members().into_iter().map(|manifest| manifest.directory);
+    folders.filter(|directory| directory.starts_with("firmware/boards/")).collect()
 }
 
 // What we agreed on

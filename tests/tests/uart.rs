@@ -13,7 +13,7 @@ use match_tests::bad_line::{BadLine, Trouble};
 use match_tests::swarm::guard::Guard;
 use match_tests::swarm::honest::Sayings;
 use protocol::frame::TeamKey;
-use protocol::host::{Command, Directive, Duty};
+use protocol::host::{Command, Directive, RuleRole};
 use protocol::quantized::{WirePoint, WirePose};
 use protocol::robot_io::{ActuatorFrame, Health, OmniKick, SensorFrame};
 use protocol::serial::{Lines, line};
@@ -89,7 +89,7 @@ fn run(seed: u64, bad: Trouble, late: u32) -> Told {
             to: id,
             defending: GoalEnd::Negative,
             phase: Phase::Run,
-            duty: Duty::Player,
+            rule_role: RuleRole::Player,
             // Never reached: it drives on.
             directive: Directive::GoTo { pose: WirePose { at: WirePoint { x: 3_000, y: 0 }, heading: 0 } },
         };
@@ -101,9 +101,9 @@ fn run(seed: u64, bad: Trouble, late: u32) -> Told {
         }
         for packet in down.receive(tick, &mut robots_lines) {
             told.frames += 1;
-            if let Some(believed) = guard.honest.hear(&packet, &sayings) {
+            if let Some(believed) = guard.honest.receive(&packet, &sayings) {
                 told.believed += 1;
-                guard.hear(ms, &believed);
+                guard.receive(ms, &believed);
             }
             station.handle_packet(now, &packet);
         }

@@ -4,9 +4,9 @@
 use brain::governor::Ruling;
 use casebase::CaseBase;
 use geometry::{Angle, Field, GoalEnd, Point};
-use match_tests::carpet::{Carpet, kicks, pose};
+use match_tests::surface::{Surface, kicks, pose};
 use protocol::RobotId;
-use protocol::host::{Condition, Directive, Duty, Hint, KickOrder};
+use protocol::host::{Condition, Directive, Hint, KickOrder, RuleRole};
 use protocol::quantized::{WirePoint, WirePose};
 use protocol::team::{Closure, TeamMessage};
 use rules::{League, Phase, Side};
@@ -15,14 +15,14 @@ fn base() -> CaseBase<'static> {
     case_library::division_b()
 }
 
-fn carpet(ball: (f32, f32), ours: &[(u8, f32, f32, f32)]) -> Carpet<'static> {
-    let mut carpet = Carpet::new(League::DivisionB, base(), ball, ours);
+fn surface(ball: (f32, f32), ours: &[(u8, f32, f32, f32)]) -> Surface<'static> {
+    let mut surface = Surface::new(League::DivisionB, base(), ball, ours);
     for &(number, ..) in ours {
-        carpet.tell(number, Duty::Player, Directive::Stand);
+        surface.tell(number, RuleRole::Player, Directive::Stand);
     }
     // The link must have been good for half a second.
-    carpet.during(0.6, |_| {});
-    carpet
+    surface.during(0.6, |_| {});
+    surface
 }
 
 fn at(x: f32, y: f32) -> WirePoint {
@@ -35,19 +35,19 @@ fn go_to(x: f32, y: f32, degrees: f32) -> Directive {
 
 #[test]
 fn three_metres_across_the_field_take_less_than_2_2_s_and_end_within_a_centimetre_at_rest() {
-    let mut carpet = carpet((0.0, 2.5), &[(1, -1.0, -1.0, 0.0)]);
-    carpet.tell(1, Duty::Player, go_to(1.0, 1.236, 135.0));
+    let mut surface = surface((0.0, 2.5), &[(1, -1.0, -1.0, 0.0)]);
+    surface.tell(1, RuleRole::Player, go_to(1.0, 1.236, 135.0));
     let goal = Point::new(1.0, 1.236);
-    let there = |carpet: &Carpet<'_>| {
-        let robot = carpet.ours(1);
+    let there = |surface: &Surface<'_>| {
+        let robot = surface.ours(1);
         robot.pose.position.distance(goal) < 0.01
             && robot.velocity.norm() < 0.05
             && (robot.pose.heading - Angle::degrees(135.0)).abs() < 0.05
     };
     // From standstill to standstill with 3 and 3.5 m/s²: √(2·3·(1/3 + 1/3.5)) = 1.93 s.
-    let took = carpet.until(4.0, there).expect("arrives");
+    let took = surface.until(4.0, there).expect("arrives");
     assert!(took < 2.2, "{took}");
-    carpet.during(1.0, |carpet| assert!(there(carpet), "stays"));
+    surface.during(1.0, |surface| assert!(there(surface), "stays"));
 }
 
 #[test]
@@ -56,15 +56,15 @@ fn a_robot_that_hears_much_in_a_step_stays_on_its_way_and_plans_in_the_next() {
     // Whether its order of that step changes when it is ordered back, with or without messages of teammates.
     let turns = |chatter: &[u8]| {
         let [on, back] = [go_to(1.0, 1.236, 135.0), go_to(-1.0, -1.0, 0.0)].map(|second| {
-            let mut carpet = carpet((0.0, 2.5), &[(1, -1.0, -1.0, 0.0)]);
-            carpet.tell(1, Duty::Player, go_to(1.0, 1.236, 135.0));
-            carpet.during(0.3, |_| {});
-            carpet.tell(1, Duty::Player, second);
-            for mates in chatter {
-                carpet.chatter = *mates;
-                carpet.step();
+            let mut surface = surface((0.0, 2.5), &[(1, -1.0, -1.0, 0.0)]);
+            surface.tell(1, RuleRole::Player, go_to(1.0, 1.236, 135.0));
+            surface.during(0.3, |_| {});
+            surface.tell(1, RuleRole::Player, second);
+            for teammates in chatter {
+                surface.chatter = *teammates;
+                surface.step();
             }
-            carpet.orders[&robot]
+            surface.orders[&robot]
         });
         on != back
     };
@@ -75,23 +75,23 @@ fn a_robot_that_hears_much_in_a_step_stays_on_its_way_and_plans_in_the_next() {
 fn on_an_air_that_is_always_full_a_robot_arrives_an_eighth_of_a_second_later_at_most() {
     let goal = Point::new(1.0, 1.236);
     let [quiet, full] = [0, 9].map(|chatter| {
-        let mut carpet = carpet((0.0, 2.5), &[(1, -1.0, -1.0, 0.0)]);
-        carpet.chatter = chatter;
-        carpet.tell(1, Duty::Player, go_to(1.0, 1.236, 135.0));
-        carpet.until(4.0, |c| c.ours(1).pose.position.distance(goal) < 0.01).expect("arrives")
+        let mut surface = surface((0.0, 2.5), &[(1, -1.0, -1.0, 0.0)]);
+        surface.chatter = chatter;
+        surface.tell(1, RuleRole::Player, go_to(1.0, 1.236, 135.0));
+        surface.until(4.0, |c| c.ours(1).pose.position.distance(goal) < 0.01).expect("arrives")
     });
     // In the first ten steps it keeps standing; after that every second step plans.
     assert!(full < quiet + 0.125, "{full} s instead of {quiet}");
 }
 
 #[test]
-fn mates_speak_twenty_times_a_second_and_no_more_than_two_of_six_in_a_step() {
+fn teammates_speak_twenty_times_a_second_and_no_more_than_two_of_six_in_a_step() {
     let places: Vec<_> = (0..6).map(|n| (n, 0.5 * f32::from(n), -1.0, 0.0)).collect();
-    let mut carpet = carpet((0.0, 2.5), &places);
+    let mut surface = surface((0.0, 2.5), &places);
     let mut beacons = [0; 6];
-    carpet.during(1.0, |carpet| {
+    surface.during(1.0, |surface| {
         let speaks = |(_, message): &&_| matches!(message, TeamMessage::Beacon(_));
-        let speakers: Vec<_> = carpet.said().iter().filter(speaks).map(|(id, _)| id.index()).collect();
+        let speakers: Vec<_> = surface.said().iter().filter(speaks).map(|(id, _)| id.index()).collect();
         assert!(speakers.len() <= 2, "{speakers:?}");
         for id in speakers {
             beacons[id] += 1;
@@ -102,26 +102,26 @@ fn mates_speak_twenty_times_a_second_and_no_more_than_two_of_six_in_a_step() {
 
 #[test]
 fn a_robot_in_the_way_is_passed_without_touching_it() {
-    let mut carpet = carpet((0.0, 2.5), &[(1, -1.5, 0.0, 0.0)]);
-    carpet.opponent(1, 0.0, 0.02, 0.0);
-    carpet.opponent(2, 0.3, -0.3, 0.0);
-    carpet.tell(1, Duty::Player, go_to(1.5, 0.0, 0.0));
-    let took = carpet.until(4.0, |c| c.ours(1).pose.position.distance(Point::new(1.5, 0.0)) < 0.02);
+    let mut surface = surface((0.0, 2.5), &[(1, -1.5, 0.0, 0.0)]);
+    surface.opponent(1, 0.0, 0.02, 0.0);
+    surface.opponent(2, 0.3, -0.3, 0.0);
+    surface.tell(1, RuleRole::Player, go_to(1.5, 0.0, 0.0));
+    let took = surface.until(4.0, |c| c.ours(1).pose.position.distance(Point::new(1.5, 0.0)) < 0.02);
     assert!(took.is_some_and(|took| took < 3.2), "{took:?}");
-    assert!(carpet.events.is_empty(), "{:?}", carpet.events);
+    assert!(surface.events.is_empty(), "{:?}", surface.events);
 }
 
 #[test]
 fn a_resting_ball_is_had_facing_the_way_asked() {
     for (x, y) in [(0.8, 0.0), (-0.8, 0.3), (0.0, 1.0)] {
-        let mut carpet = carpet((0.0, 0.0), &[(1, x, y, 30.0)]);
-        carpet.tell(1, Duty::Player, Directive::GetBall { face: Some(at(4.5, 0.0)) });
-        let took = carpet.until(5.0, |c| {
+        let mut surface = surface((0.0, 0.0), &[(1, x, y, 30.0)]);
+        surface.tell(1, RuleRole::Player, Directive::GetBall { face: Some(at(4.5, 0.0)) });
+        let took = surface.until(5.0, |c| {
             c.ours(1).ball_contact && (c.ours(1).pose.turn_to(Point::new(4.5, 0.0))).abs() < 0.05
         });
         assert!(took.is_some_and(|took| took < 3.5), "from {x}, {y}: {took:?}");
-        carpet.during(1.0, |_| {});
-        assert!(carpet.ours(1).ball_contact, "kept, from {x}, {y}");
+        surface.during(1.0, |_| {});
+        assert!(surface.ours(1).ball_contact, "kept, from {x}, {y}");
     }
 }
 
@@ -129,112 +129,112 @@ fn a_resting_ball_is_had_facing_the_way_asked() {
 fn a_rolling_ball_is_met_and_had() {
     for (from, velocity) in [((2.0, 0.4), (-2.0, 0.0)), ((-2.0, 1.5), (1.2, -0.8)), ((0.5, -1.0), (0.4, 0.9))]
     {
-        let mut carpet = carpet((0.0, 2.9), &[(1, 0.0, 0.0, 0.0)]);
-        carpet.roll(from, velocity);
-        carpet.tell(1, Duty::Player, Directive::GetBall { face: None });
-        let took = carpet.until(6.0, |c| c.brain(1).belief().holds_ball);
-        assert!(took.is_some(), "{from:?} {velocity:?}: ball at {:?}", carpet.ball());
-        carpet.during(0.5, |_| {});
-        assert!(carpet.ours(1).ball_contact, "kept: {from:?} {velocity:?}");
+        let mut surface = surface((0.0, 2.9), &[(1, 0.0, 0.0, 0.0)]);
+        surface.roll(from, velocity);
+        surface.tell(1, RuleRole::Player, Directive::GetBall { face: None });
+        let took = surface.until(6.0, |c| c.brain(1).belief().holds_ball);
+        assert!(took.is_some(), "{from:?} {velocity:?}: ball at {:?}", surface.ball());
+        surface.during(0.5, |_| {});
+        assert!(surface.ours(1).ball_contact, "kept: {from:?} {velocity:?}");
     }
 }
 
 #[test]
 fn a_kick_goes_where_it_was_aimed_with_the_speed_asked() {
     for (target, speed) in [((4.5, 0.3), 600), ((0.0, -2.0), 300), ((-3.0, 2.0), 450)] {
-        let mut carpet = carpet((0.5, 0.2), &[(1, -0.5, -0.4, 0.0)]);
-        carpet.tell(
+        let mut surface = surface((0.5, 0.2), &[(1, -0.5, -0.4, 0.0)]);
+        surface.tell(
             1,
-            Duty::Player,
+            RuleRole::Player,
             Directive::Kick { at: at(target.0, target.1), kick: KickOrder::Flat(speed) },
         );
-        let took = carpet.until(6.0, |c| !c.kicks().is_empty());
+        let took = surface.until(6.0, |c| !c.kicks().is_empty());
         assert!(took.is_some_and(|took| took < 5.0), "{target:?}: {took:?}");
-        let (_, left, velocity) = carpet.kicks()[0];
+        let (_, left, velocity) = surface.kicks()[0];
         assert!((left - f32::from(speed) * 0.01).abs() < 0.25, "{left}");
-        let wanted = carpet.ball().direction_to(Point::new(target.0, target.1));
+        let wanted = surface.ball().direction_to(Point::new(target.0, target.1));
         assert!((velocity.angle() - wanted).abs() < 0.08, "{:?} {wanted:?}", velocity.angle());
     }
 }
 
 #[test]
 fn a_chip_flies() {
-    let mut carpet = carpet((0.5, 0.2), &[(1, -0.5, -0.4, 0.0)]);
-    carpet.tell(1, Duty::Player, Directive::Kick { at: at(3.5, 0.3), kick: KickOrder::Chip(400) });
-    assert!(carpet.until(6.0, |c| c.world.ball.height > 0.2).is_some());
+    let mut surface = surface((0.5, 0.2), &[(1, -0.5, -0.4, 0.0)]);
+    surface.tell(1, RuleRole::Player, Directive::Kick { at: at(3.5, 0.3), kick: KickOrder::Chip(400) });
+    assert!(surface.until(6.0, |c| c.world.ball.height > 0.2).is_some());
 }
 
 #[test]
 fn a_free_kick_is_taken_with_one_touch_and_the_taker_leaves_the_ball_alone_afterwards() {
-    let mut carpet = carpet((-1.0, 1.0), &[(1, -1.5, 0.6, 0.0)]);
-    carpet.phase = Phase::FreeKick(Side::Ours);
-    carpet.tell(1, Duty::Taker, Directive::Kick { at: at(1.0, 1.0), kick: KickOrder::Flat(150) });
-    assert!(carpet.until(6.0, |c| !c.kicks().is_empty()).is_some());
-    let touches = |c: &Carpet<'_>| {
+    let mut surface = surface((-1.0, 1.0), &[(1, -1.5, 0.6, 0.0)]);
+    surface.phase = Phase::FreeKick(Side::Ours);
+    surface.tell(1, RuleRole::Taker, Directive::Kick { at: at(1.0, 1.0), kick: KickOrder::Flat(150) });
+    assert!(surface.until(6.0, |c| !c.kicks().is_empty()).is_some());
+    let touches = |c: &Surface<'_>| {
         c.events.iter().filter(|(_, e)| matches!(e, hil_sim::small_size::Event::Touched { .. })).count()
     };
-    let before = touches(&carpet);
-    carpet.phase = Phase::Run;
-    carpet.during(4.0, |_| {});
-    assert_eq!(touches(&carpet), before, "{:?}", carpet.events);
+    let before = touches(&surface);
+    surface.phase = Phase::Run;
+    surface.during(4.0, |_| {});
+    assert_eq!(touches(&surface), before, "{:?}", surface.events);
     assert!(before <= 1);
 }
 
 #[test]
 fn a_pass_waits_behind_the_ball_until_it_is_ready() {
-    let mut carpet = carpet((0.0, 0.0), &[(1, -0.6, 0.2, 0.0), (2, 2.0, 1.0, 0.0)]);
-    carpet.phase = Phase::FreeKick(Side::Ours);
+    let mut surface = surface((0.0, 0.0), &[(1, -0.6, 0.2, 0.0), (2, 2.0, 1.0, 0.0)]);
+    surface.phase = Phase::FreeKick(Side::Ours);
     let receiver = RobotId::new(2).unwrap();
     let order = |ready| Directive::Pass { at: at(2.0, 1.0), receiver, kick: KickOrder::Flat(350), ready };
-    carpet.tell(1, Duty::Taker, order(false));
-    carpet.during(3.0, |c| assert!(!c.ours(1).touching));
-    carpet.tell(1, Duty::Taker, order(true));
-    let took = carpet.until(2.0, |c| !c.kicks().is_empty()).expect("passes");
+    surface.tell(1, RuleRole::Taker, order(false));
+    surface.during(3.0, |c| assert!(!c.ours(1).touching));
+    surface.tell(1, RuleRole::Taker, order(true));
+    let took = surface.until(2.0, |c| !c.kicks().is_empty()).expect("passes");
     assert!(took < 1.0, "{took}");
 }
 
 #[test]
 fn a_pass_is_received() {
     for speed in [2.0, 3.5, 4.5] {
-        let mut carpet = carpet((0.0, 0.0), &[(2, 2.3, 0.3, 0.0)]);
-        carpet.tell(2, Duty::Player, Directive::Receive { at: at(2.0, 0.0), then: None });
-        carpet.during(1.0, |_| {});
-        carpet.roll((-1.0, 0.1), (speed, 0.0));
-        let took = carpet.until(4.0, |c| c.brain(2).belief().holds_ball);
+        let mut surface = surface((0.0, 0.0), &[(2, 2.3, 0.3, 0.0)]);
+        surface.tell(2, RuleRole::Player, Directive::Receive { at: at(2.0, 0.0), then: None });
+        surface.during(1.0, |_| {});
+        surface.roll((-1.0, 0.1), (speed, 0.0));
+        let took = surface.until(4.0, |c| c.brain(2).belief().holds_ball);
         assert!(took.is_some(), "{speed} m/s");
-        carpet.during(0.6, |_| {});
+        surface.during(0.6, |_| {});
         assert!(
-            carpet.ours(2).ball_contact,
+            surface.ours(2).ball_contact,
             "{speed} m/s: ball at {:?}, robot at {:?}",
-            carpet.ball(),
-            carpet.ours(2).pose
+            surface.ball(),
+            surface.ours(2).pose
         );
     }
 }
 
 #[test]
 fn a_pass_is_shot_at_the_goal_at_first_touch() {
-    let mut carpet = carpet((0.0, 0.0), &[(2, 2.5, 0.0, 0.0)]);
-    carpet.tell(2, Duty::Player, Directive::Receive { at: at(2.5, 0.0), then: Some(at(4.5, 0.0)) });
-    carpet.during(1.0, |_| {});
+    let mut surface = surface((0.0, 0.0), &[(2, 2.5, 0.0, 0.0)]);
+    surface.tell(2, RuleRole::Player, Directive::Receive { at: at(2.5, 0.0), then: Some(at(4.5, 0.0)) });
+    surface.during(1.0, |_| {});
     // From the front left: the goal lies 45° to the right of the ball's origin.
-    carpet.roll((4.0, 1.5), (-2.1, -2.1));
-    let took = carpet.until(3.0, |c| c.ball().x() > 4.5 && c.ball().y().abs() < 0.5);
-    assert!(took.is_some(), "ball at {:?}, {:?}", carpet.ball(), carpet.kicks());
+    surface.roll((4.0, 1.5), (-2.1, -2.1));
+    let took = surface.until(3.0, |c| c.ball().x() > 4.5 && c.ball().y().abs() < 0.5);
+    assert!(took.is_some(), "ball at {:?}, {:?}", surface.ball(), surface.kicks());
 }
 
 #[test]
 fn the_ball_is_dribbled_for_less_than_a_metre_at_a_time() {
-    let mut carpet = carpet((0.0, 0.0), &[(1, -0.4, 0.0, 0.0)]);
-    carpet.tell(1, Duty::Player, Directive::Dribble { pose: WirePose::from(pose(2.5, 0.0, 0.0)) });
+    let mut surface = surface((0.0, 0.0), &[(1, -0.4, 0.0, 0.0)]);
+    surface.tell(1, RuleRole::Player, Directive::Dribble { pose: WirePose::from(pose(2.5, 0.0, 0.0)) });
     let mut longest = 0.0_f32;
-    carpet.during(10.0, |c| {
+    surface.during(10.0, |c| {
         if let Some(from) = c.ours(1).dribbling_from {
             longest = longest.max(from.distance(c.ball()));
         }
     });
     assert!(longest < 0.95, "{longest}");
-    assert!(carpet.ball().x() > 2.0, "and gets on: {:?}", carpet.ball());
+    assert!(surface.ball().x() > 2.0, "and gets on: {:?}", surface.ball());
 }
 
 #[test]
@@ -242,13 +242,13 @@ fn a_keeper_on_its_stretch_stops_shots() {
     let mut stopped = 0;
     let shots = [(1.0, -0.35, 4.0), (0.5, 0.3, 5.0), (-0.8, 0.0, 5.5), (1.5, 0.25, 4.5), (-1.2, -0.3, 4.0)];
     for (y, aim, speed) in shots {
-        let mut carpet = carpet((-2.0, y), &[(0, -4.3, 0.0, 0.0)]);
-        carpet.tell(0, Duty::Keeper, Directive::Block { from: at(-4.35, -0.5), to: at(-4.35, 0.5) });
-        carpet.during(1.5, |_| {});
+        let mut surface = surface((-2.0, y), &[(0, -4.3, 0.0, 0.0)]);
+        surface.tell(0, RuleRole::Keeper, Directive::Block { from: at(-4.35, -0.5), to: at(-4.35, 0.5) });
+        surface.during(1.5, |_| {});
         let (from, to) = (Point::<Field>::new(-1.5, y), Point::new(-4.5, aim));
         let v = (to - from).unit().unwrap() * speed;
-        carpet.roll((from.x(), from.y()), (v.x(), v.y()));
-        let goal = carpet.until(3.0, |c| c.ball().x() < -4.53);
+        surface.roll((from.x(), from.y()), (v.x(), v.y()));
+        let goal = surface.until(3.0, |c| c.ball().x() < -4.53);
         stopped += usize::from(goal.is_none());
     }
     assert!(stopped >= 4, "{stopped} of {}", shots.len());
@@ -259,30 +259,35 @@ fn the_ball_is_placed_from_everywhere_and_left_alone() {
     let spots = [(0.0, 0.0), (2.0, 3.25), (4.75, 3.25), (-4.6, 0.3), (-4.75, -1.0)];
     for spot in spots {
         let target = Point::new(1.0, -1.5);
-        let mut carpet = carpet(spot, &[(1, 0.5, 0.5, 0.0)]);
-        carpet.phase = Phase::BallPlacement(Side::Ours);
-        carpet.placement = Some(target);
-        carpet.tell(1, Duty::Taker, Directive::PlaceBall { at: target.into() });
-        let done = carpet.until(28.0, |c| {
+        let mut surface = surface(spot, &[(1, 0.5, 0.5, 0.0)]);
+        surface.phase = Phase::BallPlacement(Side::Ours);
+        surface.placement = Some(target);
+        surface.tell(1, RuleRole::Taker, Directive::PlaceBall { at: target.into() });
+        let done = surface.until(28.0, |c| {
             c.ball().distance(target) < 0.15
                 && c.world.ball.velocity.norm() < 0.01
                 && c.ours(1).pose.position.distance(c.ball()) > 0.6
         });
-        assert!(done.is_some(), "{spot:?}: ball at {:?}, robot at {:?}", carpet.ball(), carpet.ours(1).pose);
-        carpet.during(2.0, |_| {});
-        assert!(carpet.ball().distance(target) < 0.15, "{spot:?}");
+        assert!(
+            done.is_some(),
+            "{spot:?}: ball at {:?}, robot at {:?}",
+            surface.ball(),
+            surface.ours(1).pose
+        );
+        surface.during(2.0, |_| {});
+        assert!(surface.ball().distance(target) < 0.15, "{spot:?}");
     }
 }
 
 #[test]
 fn on_halt_a_robot_at_full_speed_stands_within_a_second_and_stays() {
-    let mut carpet = carpet((0.0, 2.5), &[(1, -3.0, -1.0, 0.0)]);
-    carpet.tell(1, Duty::Player, go_to(3.0, -1.0, 0.0));
-    carpet.until(3.0, |c| c.ours(1).velocity.norm() > 2.8).expect("gets fast");
-    carpet.phase = Phase::Halt;
-    let took = carpet.until(2.0, |c| c.ours(1).velocity.norm() < 0.02).expect("stands");
+    let mut surface = surface((0.0, 2.5), &[(1, -3.0, -1.0, 0.0)]);
+    surface.tell(1, RuleRole::Player, go_to(3.0, -1.0, 0.0));
+    surface.until(3.0, |c| c.ours(1).velocity.norm() > 2.8).expect("gets fast");
+    surface.phase = Phase::Halt;
+    let took = surface.until(2.0, |c| c.ours(1).velocity.norm() < 0.02).expect("stands");
     assert!(took < 1.0, "{took}");
-    carpet.during(2.0, |c| {
+    surface.during(2.0, |c| {
         assert!(c.ours(1).velocity.norm() < 0.05);
         assert!(c.orders.values().all(|order| !kicks(order)));
         assert!(matches!(c.brain(1).ruling(), Ruling::Braking(_)));
@@ -291,13 +296,13 @@ fn on_halt_a_robot_at_full_speed_stands_within_a_second_and_stays() {
 
 #[test]
 fn in_stop_nobody_is_faster_than_1_5_m_per_s_nor_within_half_a_metre_of_the_ball() {
-    let mut carpet = carpet((0.0, 0.0), &[(1, -2.0, 0.0, 0.0), (2, -0.3, 0.2, 0.0)]);
-    carpet.phase = Phase::Stop;
-    carpet.tell(1, Duty::Player, go_to(2.0, 0.0, 0.0));
-    carpet.tell(2, Duty::Player, go_to(-0.2, 0.2, 0.0));
-    carpet.during(1.5, |_| {});
+    let mut surface = surface((0.0, 0.0), &[(1, -2.0, 0.0, 0.0), (2, -0.3, 0.2, 0.0)]);
+    surface.phase = Phase::Stop;
+    surface.tell(1, RuleRole::Player, go_to(2.0, 0.0, 0.0));
+    surface.tell(2, RuleRole::Player, go_to(-0.2, 0.2, 0.0));
+    surface.during(1.5, |_| {});
     let mut fastest = 0.0_f32;
-    carpet.during(3.0, |c| {
+    surface.during(3.0, |c| {
         fastest = fastest.max(c.ours(1).velocity.norm());
         for robot in [c.ours(1), c.ours(2)] {
             let gap = robot.pose.position.distance(c.ball()) - 0.09;
@@ -305,38 +310,39 @@ fn in_stop_nobody_is_faster_than_1_5_m_per_s_nor_within_half_a_metre_of_the_ball
         }
     });
     assert!(fastest < 1.4, "{fastest}");
-    assert!(carpet.ours(1).pose.position.distance(Point::new(2.0, 0.0)) < 0.02, "and gets there around it");
+    assert!(surface.ours(1).pose.position.distance(Point::new(2.0, 0.0)) < 0.02, "and gets there around it");
 }
 
 #[test]
-fn when_the_host_falls_silent_a_robot_stands_within_a_second_and_moves_again_after_half_a_second_of_words() {
-    let mut carpet = carpet((0.0, 2.5), &[(1, -3.0, -1.0, 0.0)]);
-    carpet.tell(1, Duty::Player, go_to(3.0, -1.0, 0.0));
-    carpet.until(3.0, |c| c.ours(1).velocity.norm() > 2.8).expect("gets fast");
-    carpet.silent = true;
-    let took = carpet.until(2.0, |c| c.ours(1).velocity.norm() < 0.02).expect("stands");
+fn when_the_host_falls_silent_a_robot_stands_within_a_second_and_moves_again_after_half_a_second_of_description()
+ {
+    let mut surface = surface((0.0, 2.5), &[(1, -3.0, -1.0, 0.0)]);
+    surface.tell(1, RuleRole::Player, go_to(3.0, -1.0, 0.0));
+    surface.until(3.0, |c| c.ours(1).velocity.norm() > 2.8).expect("gets fast");
+    surface.silent = true;
+    let took = surface.until(2.0, |c| c.ours(1).velocity.norm() < 0.02).expect("stands");
     assert!(took < 1.0, "{took}");
-    carpet.silent = false;
-    carpet.during(0.45, |c| assert!(c.ours(1).velocity.norm() < 0.05));
-    assert!(carpet.until(1.0, |c| c.ours(1).velocity.norm() > 0.5).is_some());
+    surface.silent = false;
+    surface.during(0.45, |c| assert!(c.ours(1).velocity.norm() < 0.05));
+    assert!(surface.until(1.0, |c| c.ours(1).velocity.norm() > 0.5).is_some());
 }
 
 #[test]
 fn a_field_player_sent_into_its_own_area_stays_out_and_the_keeper_does_not() {
-    let mut carpet = carpet((0.0, 2.5), &[(0, -3.0, 1.5, 0.0), (1, -3.0, -1.5, 0.0)]);
-    carpet.tell(0, Duty::Keeper, go_to(-4.2, 0.2, 0.0));
-    carpet.tell(1, Duty::Player, go_to(-4.2, -0.3, 0.0));
-    carpet.during(4.0, |c| {
+    let mut surface = surface((0.0, 2.5), &[(0, -3.0, 1.5, 0.0), (1, -3.0, -1.5, 0.0)]);
+    surface.tell(0, RuleRole::Keeper, go_to(-4.2, 0.2, 0.0));
+    surface.tell(1, RuleRole::Player, go_to(-4.2, -0.3, 0.0));
+    surface.during(4.0, |c| {
         let p = c.ours(1).pose.position;
         let area = League::DivisionB.field().defence_area(GoalEnd::Negative);
         assert!(area.iter().all(|shape| shape.distance_to(p) > 0.09), "{p:?}");
     });
-    assert!(carpet.ours(0).pose.position.distance(Point::new(-4.2, 0.2)) < 0.02);
+    assert!(surface.ours(0).pose.position.distance(Point::new(-4.2, 0.2)) < 0.02);
 }
 
-fn gameplay(carpet: &mut Carpet<'_>, robots: &[u8]) {
+fn gameplay(surface: &mut Surface<'_>, robots: &[u8]) {
     for &robot in robots {
-        carpet.tell(robot, Duty::Player, Directive::Gameplay { hint: None });
+        surface.tell(robot, RuleRole::Player, Directive::Gameplay { hint: None });
     }
 }
 
@@ -346,12 +352,12 @@ fn three_robots_play_cases_on_wheels_and_score_against_nobody() {
     let mut ends = Vec::new();
     for ball in [(-0.2, 0.1), (0.8, 1.0), (2.2, -0.2), (-1.5, 0.5), (2.6, 1.8)] {
         let (x, y) = ball;
-        let mut carpet =
-            carpet(ball, &[(1, x - 0.6, y, 0.0), (2, x + 0.5, y + 1.0, 0.0), (3, x, y - 1.3, 0.0)]);
-        gameplay(&mut carpet, &[1, 2, 3]);
-        let goal = carpet.until(15.0, |c| c.ball().x() > 4.5 && c.ball().y().abs() < 0.5);
+        let mut surface =
+            surface(ball, &[(1, x - 0.6, y, 0.0), (2, x + 0.5, y + 1.0, 0.0), (3, x, y - 1.3, 0.0)]);
+        gameplay(&mut surface, &[1, 2, 3]);
+        let goal = surface.until(15.0, |c| c.ball().x() > 4.5 && c.ball().y().abs() < 0.5);
         scored += usize::from(goal.is_some());
-        ends.extend(carpet.ends.iter().map(|(_, end)| *end));
+        ends.extend(surface.ends.iter().map(|(_, end)| *end));
     }
     let finished = ends.iter().filter(|end| **end == Closure::Finished).count();
     let broken = ends.iter().filter(|end| matches!(end, Closure::Aborted { .. })).count();
@@ -361,16 +367,16 @@ fn three_robots_play_cases_on_wheels_and_score_against_nobody() {
 
 #[test]
 fn a_robot_that_is_led_elsewhere_leaves_its_gameplay_and_the_others_choose_anew_without_it() {
-    let mut carpet = carpet((-0.2, 0.1), &[(1, -0.8, 0.1, 0.0), (2, 0.3, 1.1, 0.0), (3, -0.2, -1.2, 0.0)]);
-    gameplay(&mut carpet, &[1, 2, 3]);
+    let mut surface = surface((-0.2, 0.1), &[(1, -0.8, 0.1, 0.0), (2, 0.3, 1.1, 0.0), (3, -0.2, -1.2, 0.0)]);
+    gameplay(&mut surface, &[1, 2, 3]);
     let id = |n| RobotId::new(n).unwrap();
     let plays =
-        |c: &Carpet<'_>, n| c.brain(1).cycle().play().is_some_and(|play| play.part_of(id(n)).is_some());
-    carpet.until(3.0, |c| plays(c, 2)).expect("a gameplay with robot 2");
-    carpet.tell(2, Duty::Player, go_to(-2.0, 2.0, 0.0));
-    let took = carpet.until(1.0, |c| !plays(c, 2)).expect("leaves");
+        |c: &Surface<'_>, n| c.brain(1).cycle().play().is_some_and(|play| play.part_of(id(n)).is_some());
+    surface.until(3.0, |c| plays(c, 2)).expect("a gameplay with robot 2");
+    surface.tell(2, RuleRole::Player, go_to(-2.0, 2.0, 0.0));
+    let took = surface.until(1.0, |c| !plays(c, 2)).expect("leaves");
     assert!(took <= 0.1, "{took}");
-    carpet.during(4.0, |c| assert!(!plays(c, 2)));
+    surface.during(4.0, |c| assert!(!plays(c, 2)));
 }
 
 #[test]
@@ -388,19 +394,19 @@ fn the_hosts_proposal_is_played_while_it_is_fresh_and_only_if_it_can_be() {
             })
         })
         .unwrap();
-    let mut carpet = carpet(problem, &places);
+    let mut surface = surface(problem, &places);
     let hint = |ids: &[u8]| Some(Hint { case, robots: robots(ids), pass_point: None });
     for robot in [1, 2, 3] {
-        carpet.tell(robot, Duty::Player, Directive::Gameplay { hint: hint(&[3, 1]) });
+        surface.tell(robot, RuleRole::Player, Directive::Gameplay { hint: hint(&[3, 1]) });
     }
-    let proposed = |c: &Carpet<'_>, ids: &[u8]| {
+    let proposed = |c: &Surface<'_>, ids: &[u8]| {
         c.brain(1).cycle().play().is_some_and(|play| play.case == case && play.robots == robots(ids))
     };
-    assert!(carpet.until(2.0, |c| proposed(c, &[3, 1])).is_some());
+    assert!(surface.until(2.0, |c| proposed(c, &[3, 1])).is_some());
     // Robot 7 is absent: the robots play the case that they retrieve themselves.
-    let mut alone = self::carpet(problem, &places);
+    let mut alone = self::surface(problem, &places);
     for robot in [1, 2, 3] {
-        alone.tell(robot, Duty::Player, Directive::Gameplay { hint: hint(&[7, 1]) });
+        alone.tell(robot, RuleRole::Player, Directive::Gameplay { hint: hint(&[7, 1]) });
     }
     alone.during(2.0, |c| assert!(!proposed(c, &[7, 1])));
     assert!(
@@ -410,27 +416,27 @@ fn the_hosts_proposal_is_played_while_it_is_fresh_and_only_if_it_can_be() {
 
 #[test]
 fn a_robot_tells_the_host_ten_times_a_second_how_it_is_and_that_it_lost_the_link() {
-    let mut carpet = carpet((0.0, 2.5), &[(1, -1.0, 0.0, 0.0)]);
+    let mut surface = surface((0.0, 2.5), &[(1, -1.0, 0.0, 0.0)]);
     let one = RobotId::new(1).unwrap();
     // The kicker was discharged until the link was good, and charging takes half a second.
-    carpet.during(0.6, |_| {});
-    carpet.during(1.0, |c| {
+    surface.during(0.6, |_| {});
+    surface.during(1.0, |c| {
         let (at, telemetry) = c.telemetry[&one];
         assert!(c.now().since(at) <= protocol::Duration::millis(100));
         assert!(telemetry.condition.has(Condition::KICKER_READY) && telemetry.battery > 1400);
         assert!(!telemetry.condition.has(Condition::LINK_LOST) && telemetry.silence < 300);
     });
-    carpet.silent = true;
-    let lost = |c: &Carpet<'_>| c.telemetry[&one].1.condition.has(Condition::LINK_LOST);
-    let took = carpet.until(1.0, lost).expect("tells");
+    surface.silent = true;
+    let lost = |c: &Surface<'_>| c.telemetry[&one].1.condition.has(Condition::LINK_LOST);
+    let took = surface.until(1.0, lost).expect("tells");
     assert!((0.095..0.15).contains(&took), "{took}");
 }
 
 #[test]
-fn without_any_word_of_a_host_a_robot_does_nothing_at_all() {
-    let mut carpet = Carpet::new(League::DivisionB, base(), (0.3, 0.0), &[(1, 0.0, 0.0, 0.0)]);
-    carpet.silent = true;
-    carpet.during(2.0, |c| {
+fn without_any_label_of_a_host_a_robot_does_nothing_at_all() {
+    let mut surface = Surface::new(League::DivisionB, base(), (0.3, 0.0), &[(1, 0.0, 0.0, 0.0)]);
+    surface.silent = true;
+    surface.during(2.0, |c| {
         assert!(c.ours(1).velocity.norm() < 1e-3);
         assert!(c.orders.values().all(|order| !kicks(order)));
     });

@@ -58,17 +58,17 @@ pub(crate) fn judge(rows: &[Row]) -> Result<(), Failure> {
 /// A program of the workspace, built for release.
 pub(crate) fn release(context: &Context, build: &str, name: &str) -> Result<PathBuf, Failure> {
     run(&mut context.cargo(&format!("build --release {build}")))?;
-    let folder = firmware_build::target_dir(context.root()).join("release");
-    Ok(folder.join(format!("{name}{}", std::env::consts::EXE_SUFFIX)))
+    let directory = firmware_build::target_dir(context.root()).join("release");
+    Ok(directory.join(format!("{name}{}", std::env::consts::EXE_SUFFIX)))
 }
 
 /// Instructions of a whole run, and its output.
 pub(crate) fn counted<'a>(
     program: &Path,
-    words: impl IntoIterator<Item = &'a str>,
+    description: impl IntoIterator<Item = &'a str>,
 ) -> Result<(f64, String), Failure> {
     let mut command = Command::new("valgrind");
-    command.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).arg(program).args(words);
+    command.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).arg(program).args(description);
     let line = line_of(&command);
     let output = command
         .stdin(Stdio::null())

@@ -71,7 +71,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tools_lie_within_the_target_folder() {
+    fn tools_lie_within_the_target_directory() {
         let tools = tools(&Context::new());
         assert!(tools.is_absolute() && tools.ends_with("tools"), "{}", tools.display());
     }

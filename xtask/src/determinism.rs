@@ -24,9 +24,9 @@ pub(crate) fn run(context: &Context) -> Result<(), Failure> {
     // Release as `cargo run` builds it, so that it is the program a person runs; debug with the features of the tests.
     context::run(&mut context.cargo("build --features onetwo/png --bin onetwo"))?;
     context::run(&mut context.cargo("build --release --bin onetwo"))?;
-    let built = |folder: &str| {
+    let built = |directory: &str| {
         let name = format!("onetwo{}", std::env::consts::EXE_SUFFIX);
-        firmware_build::target_dir(context.root()).join(folder).join(name)
+        firmware_build::target_dir(context.root()).join(directory).join(name)
     };
     let players = [
         Player { what: "debug", program: built("debug"), backend: "native" },

@@ -7,9 +7,9 @@ use crate::context::{Context, Failure, run};
 /// second paper, and the paper's own league, and writes `docs/matches.md`. Played matches are kept: the same
 /// command continues after an interrupt.
 pub(crate) fn write_matches(context: &Context, fresh: bool) -> Result<(), Failure> {
-    for (section, words) in MATCHES {
+    for (section, description) in MATCHES {
         let line = format!(
-            "evaluate matches {words} --out out/matches/{section} --markdown docs/matches.md --section {section}{}",
+            "evaluate matches {description} --out out/matches/{section} --markdown docs/matches.md --section {section}{}",
             if fresh { " --fresh" } else { "" }
         );
         run(&mut context.cargo(&format!("run --release -- {line}")))?;
@@ -30,8 +30,10 @@ const MATCHES: [(&str, &str); 5] = [
 /// Tests single skills in the league's own world and in random ones, and writes the tables of
 /// `docs/skills.md`.
 pub(crate) fn write_skills(context: &Context) -> Result<(), Failure> {
-    for (section, words) in [("nominal", "--tries 50"), ("random", "--world random --worlds 60 --tries 5")] {
-        let line = format!("evaluate skills {words} --markdown docs/skills.md --section {section}");
+    for (section, description) in
+        [("nominal", "--tries 50"), ("random", "--world random --worlds 60 --tries 5")]
+    {
+        let line = format!("evaluate skills {description} --markdown docs/skills.md --section {section}");
         run(&mut context.cargo(&format!("run --release -- {line}")))?;
     }
     Ok(())

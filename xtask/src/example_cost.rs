@@ -20,7 +20,7 @@ impl Example {
         let build = format!("-p {package} --example {name}");
         let program = release(context, &build, &format!("examples/{name}"))?;
         let row = |part: &Part| {
-            let count = |times: u32| Ok(counted(&program, [part.word, &times.to_string()])?.0);
+            let count = |times: u32| Ok(counted(&program, [part.label, &times.to_string()])?.0);
             let each = (count(2 * part.count)? - count(part.count)?) / f64::from(part.count);
             Ok(Row::new(part.what, each, part.most))
         };
@@ -30,7 +30,7 @@ impl Example {
 
 struct Part {
     /// The program's word.
-    word: &'static str,
+    label: &'static str,
     what: &'static str,
     /// So many and twice as many.
     count: u32,
@@ -38,8 +38,8 @@ struct Part {
     most: Option<f64>,
 }
 
-const fn part(word: &'static str, what: &'static str, count: u32, most: Option<f64>) -> Part {
-    Part { word, what, count, most }
+const fn part(label: &'static str, what: &'static str, count: u32, most: Option<f64>) -> Part {
+    Part { label, what, count, most }
 }
 
 /// docs/architecture.md §9: one pass location evaluated.

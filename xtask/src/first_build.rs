@@ -48,8 +48,8 @@ fn answer(command: &mut Command) -> Result<String, Failure> {
 /// Name and version of each crate of a tree.
 fn crates(tree: &str) -> BTreeSet<(String, String)> {
     let lines = tree.lines().filter_map(|line| {
-        let mut words = line.split(' ');
-        Some((words.next()?.to_owned(), words.next()?.to_owned()))
+        let mut description = line.split(' ');
+        Some((description.next()?.to_owned(), description.next()?.to_owned()))
     });
     lines.collect()
 }

@@ -16,18 +16,18 @@ use crate::cost::{Row, counted, release};
 pub(crate) fn rows(context: &Context) -> Result<Vec<Row>, Failure> {
     let onetwo = release(context, "--bin onetwo", "onetwo")?;
     let feeder = release(context, "-p host --example host_cost", "examples/host_cost")?;
-    let folder = firmware_build::target_dir(context.root()).join("bench-game");
-    let _ = fs::remove_dir_all(&folder);
-    let wrong = |error| Failure::Start { line: folder.display().to_string(), error };
-    fs::create_dir_all(&folder).map_err(wrong)?;
+    let directory = firmware_build::target_dir(context.root()).join("bench-game");
+    let _ = fs::remove_dir_all(&directory);
+    let wrong = |error| Failure::Start { line: directory.display().to_string(), error };
+    fs::create_dir_all(&directory).map_err(wrong)?;
     let mut match_of_eleven = Command::new(&onetwo);
     match_of_eleven.args("play --headless --league division-a --seed 1 --json --duration".split(' '));
-    match_of_eleven.args([&SECONDS.to_string(), "--record"]).arg(folder.join("match"));
+    match_of_eleven.args([&SECONDS.to_string(), "--record"]).arg(directory.join("match"));
     run(match_of_eleven.stdout(Stdio::null()))?;
-    let rounds = each_round(&feeder, &folder)?;
+    let rounds = each_round(&feeder, &directory)?;
     let mean = rounds.iter().sum::<f64>() / rounds.len() as f64;
     let late = rounds[rounds.len() - 1 - rounds.len() / 1000];
-    let _ = fs::remove_dir_all(&folder);
+    let _ = fs::remove_dir_all(&directory);
     let played = |seconds: u32| {
         let line = format!("play --headless --seed 1 --json --duration {seconds}");
         Ok::<_, Failure>(counted(&onetwo, line.split(' '))?.0)
@@ -43,11 +43,13 @@ pub(crate) fn rows(context: &Context) -> Result<Vec<Row>, Failure> {
 }
 
 /// Instructions of each packet, rising.
-fn each_round(feeder: &Path, folder: &Path) -> Result<Vec<f64>, Failure> {
+fn each_round(feeder: &Path, directory: &Path) -> Result<Vec<f64>, Failure> {
     let mut command = Command::new("valgrind");
-    command.arg("--tool=callgrind").arg(format!("--callgrind-out-file={}", folder.join("round").display()));
+    command
+        .arg("--tool=callgrind")
+        .arg(format!("--callgrind-out-file={}", directory.join("round").display()));
     command.args([format!("--toggle-collect={ROUND}"), format!("--dump-after={ROUND}")]);
-    command.arg(feeder).arg(folder.join("match.trace"));
+    command.arg(feeder).arg(directory.join("match.trace"));
     let line = line_of(&command);
     let start = |error| Failure::Start { line: format!("{line} (is valgrind installed?)"), error };
     let status = command.stdin(Stdio::null()).stderr(Stdio::null()).status().map_err(start)?;
@@ -55,7 +57,7 @@ fn each_round(feeder: &Path, folder: &Path) -> Result<Vec<f64>, Failure> {
         return Err(Failure::Command { line, status });
     }
     let mut rounds = Vec::new();
-    for entry in fs::read_dir(folder).map_err(start)? {
+    for entry in fs::read_dir(directory).map_err(start)? {
         let path = entry.map_err(start)?.path();
         if path.file_name().is_some_and(|name| name.to_string_lossy().starts_with("round.")) {
             let text = fs::read_to_string(&path).map_err(start)?;

@@ -5,7 +5,6 @@
 #![forbid(unsafe_code)]
 
 mod bench;
-mod chores;
 mod context;
 mod cost;
 mod deny;
@@ -22,18 +21,19 @@ mod readme;
 mod report;
 mod space;
 mod steps;
+mod tasks;
 mod trial_cost;
 
 use std::env;
 use std::process::ExitCode;
 
-use chores::Chore;
 use context::Context;
 use steps::{STEPS, Step};
+use tasks::Task;
 
 fn main() -> ExitCode {
-    let words: Vec<String> = env::args().skip(1).collect();
-    match Request::from_words(&words) {
+    let description: Vec<String> = env::args().skip(1).collect();
+    match Request::from_description(&description) {
         Ok(Request::Test(steps)) => test(&steps),
         Ok(Request::List) => {
             for step in &STEPS {
@@ -41,7 +41,7 @@ fn main() -> ExitCode {
             }
             ExitCode::SUCCESS
         }
-        Ok(Request::Chore(chore, words)) => match (chore.run)(&Context::new(), &words) {
+        Ok(Request::Task(task, description)) => match (task.run)(&Context::new(), &description) {
             Ok(()) => ExitCode::SUCCESS,
             Err(failure) => {
                 eprintln!("xtask: {failure}");
@@ -49,11 +49,11 @@ fn main() -> ExitCode {
             }
         },
         Ok(Request::Help) => {
-            println!("{USAGE}{}", chores::usage());
+            println!("{USAGE}{}", tasks::usage());
             ExitCode::SUCCESS
         }
         Err(wrong) => {
-            eprintln!("xtask: {wrong}\n{USAGE}{}", chores::usage());
+            eprintln!("xtask: {wrong}\n{USAGE}{}", tasks::usage());
             ExitCode::from(2)
         }
     }
@@ -79,25 +79,27 @@ enum Request {
     Test(Vec<&'static Step>),
     List,
     /// A command with its own arguments.
-    Chore(&'static Chore, Vec<String>),
+    Task(&'static Task, Vec<String>),
     Help,
 }
 
 impl Request {
-    fn from_words(words: &[String]) -> Result<Self, String> {
-        match words.first().map(String::as_str) {
+    fn from_description(description: &[String]) -> Result<Self, String> {
+        match description.first().map(String::as_str) {
             None | Some("help" | "--help" | "-h") => return Ok(Self::Help),
             Some("test") => {}
-            Some(_) => return Chore::asked(words).map(|(chore, words)| Self::Chore(chore, words)),
+            Some(_) => {
+                return Task::asked(description).map(|(task, description)| Self::Task(task, description));
+            }
         }
         let mut chosen = Vec::new();
-        let mut words = words[1..].iter().map(String::as_str);
-        while let Some(word) = words.next() {
-            match word {
+        let mut description = description[1..].iter().map(String::as_str);
+        while let Some(label) = description.next() {
+            match label {
                 "--list" => return Ok(Self::List),
                 "--help" | "-h" => return Ok(Self::Help),
                 "--only" => {
-                    let name = words.next().ok_or("--only needs the name of a step")?;
+                    let name = description.next().ok_or("--only needs the name of a step")?;
                     let step = STEPS.iter().find(|step| step.name == name);
                     chosen.push(step.ok_or_else(|| {
                         format!("no step `{name}`; `cargo xtask test --list` has them all")
@@ -122,13 +124,13 @@ mod tests {
     use super::*;
 
     fn ask(line: &str) -> Result<Request, String> {
-        Request::from_words(&line.split_whitespace().map(String::from).collect::<Vec<_>>())
+        Request::from_description(&line.split_whitespace().map(String::from).collect::<Vec<_>>())
     }
 
     /// The command that a line names, and its arguments.
-    fn chore(line: &str) -> Option<(&'static str, Vec<String>)> {
+    fn task(line: &str) -> Option<(&'static str, Vec<String>)> {
         match ask(line) {
-            Ok(Request::Chore(chore, words)) => Some((chore.name, words)),
+            Ok(Request::Task(task, description)) => Some((task.name, description)),
             _ => None,
         }
     }
@@ -147,15 +149,15 @@ mod tests {
     }
 
     #[test]
-    fn chores_are_found_by_all_their_words_and_get_the_rest() {
-        let words = |list: &[&str]| list.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
-        assert_eq!(chore("pictures"), Some(("pictures", words(&[]))));
-        assert_eq!(chore("budgets"), Some(("budgets", words(&[]))));
-        assert_eq!(chore("bench game"), Some(("bench game", words(&[]))));
-        assert_eq!(chore("bench simulator --write"), Some(("bench simulator", words(&["--write"]))));
-        assert_eq!(chore("bench retrieval --guest"), Some(("bench retrieval", words(&["--guest"]))));
-        assert_eq!(chore("swarm --seeds 9"), Some(("swarm", words(&["--seeds", "9"]))));
-        assert!(chores::usage().contains("bench hil [--seconds N]"));
+    fn tasks_are_found_by_all_their_description_and_get_the_rest() {
+        let description = |list: &[&str]| list.iter().map(|label| (*label).to_owned()).collect::<Vec<_>>();
+        assert_eq!(task("pictures"), Some(("pictures", description(&[]))));
+        assert_eq!(task("budgets"), Some(("budgets", description(&[]))));
+        assert_eq!(task("bench game"), Some(("bench game", description(&[]))));
+        assert_eq!(task("bench simulator --write"), Some(("bench simulator", description(&["--write"]))));
+        assert_eq!(task("bench retrieval --guest"), Some(("bench retrieval", description(&["--guest"]))));
+        assert_eq!(task("swarm --seeds 9"), Some(("swarm", description(&["--seeds", "9"]))));
+        assert!(tasks::usage().contains("bench hil [--seconds N]"));
     }
 
     #[test]

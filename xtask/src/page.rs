@@ -29,10 +29,10 @@ pub(crate) fn pictures(context: &Context) -> Result<(), Failure> {
     tour(context, "pictures docs/page")
 }
 
-fn tour(context: &Context, words: &str) -> Result<(), Failure> {
+fn tour(context: &Context, description: &str) -> Result<(), Failure> {
     let program = built(context)?;
     let mut tour = context.cargo("run --release --package page-browser --example tour --");
-    run(tour.arg(program).args(words.split_whitespace()))
+    run(tour.arg(program).args(description.split_whitespace()))
 }
 
 /// Output of the tour about frames: the ratio of a full frame's cost to an empty one's, and after a colon the
@@ -114,15 +114,15 @@ struct Counted {
 
 /// A match under callgrind with viewers of these kinds.
 fn count(program: &Path, ways: &str) -> Result<Counted, Failure> {
-    let folder = program.with_file_name(format!("page-{ways}"));
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder)
-        .map_err(|error| Failure::Start { line: folder.display().to_string(), error })?;
+    let directory = program.with_file_name(format!("page-{ways}"));
+    let _ = fs::remove_dir_all(&directory);
+    fs::create_dir_all(&directory)
+        .map_err(|error| Failure::Start { line: directory.display().to_string(), error })?;
     let line = format!("valgrind {} play", program.display());
     let failed = |error| Failure::Start { line: line.clone(), error };
     let mut child = Command::new("valgrind")
         .args(["--tool=callgrind", "--separate-threads=yes"])
-        .arg(format!("--callgrind-out-file={}", folder.join("out").display()))
+        .arg(format!("--callgrind-out-file={}", directory.join("out").display()))
         .arg(program)
         .args(["play", "--seed", "1", "--listen", "127.0.0.1:0", "--duration"])
         .arg(SECONDS.to_string())
@@ -155,9 +155,10 @@ fn count(program: &Path, ways: &str) -> Result<Counted, Failure> {
         let said = looking.wait_with_output().map_err(failed)?;
         taken = String::from_utf8_lossy(&said.stdout).trim().parse().unwrap_or(0);
     }
-    let main = fs::read_to_string(folder.join("out-01")).map_err(failed)?;
+    let main = fs::read_to_string(directory.join("out-01")).map_err(failed)?;
     let totals = main.lines().find_map(|line| line.strip_prefix("totals: "));
-    let instructions = totals.and_then(|words| words.trim().parse().ok()).ok_or_else(|| failed(silent()))?;
+    let instructions =
+        totals.and_then(|description| description.trim().parse().ok()).ok_or_else(|| failed(silent()))?;
     Ok(Counted { instructions, taken })
 }
 

@@ -40,7 +40,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn programs_are_run_and_chores_are_not() {
+    fn programs_are_run_and_tasks_are_not() {
         let readme = "text `cargo run x`\n```sh\ncargo run --release -- play\ncargo xtask test\n```\n```text\ncargo run no\n```\n";
         assert_eq!(commands(readme), ["run --release -- play"]);
     }

@@ -12,11 +12,11 @@ use crate::cost::{Row, counted, release};
 /// Instructions a simulated second, of every approach against both kinds of opponents.
 pub(crate) fn rows(context: &Context) -> Result<Vec<Row>, Failure> {
     let program = release(context, "--bin onetwo", "onetwo")?;
-    let folder = firmware_build::target_dir(context.root()).join("bench-trial");
+    let directory = firmware_build::target_dir(context.root()).join("bench-trial");
     let mut rows = Vec::new();
     for opponents in ["dg", "2d"] {
         for approach in ["cbr", "reactive"] {
-            let count = |trials| played(&program, &folder, opponents, approach, trials);
+            let count = |trials| played(&program, &directory, opponents, approach, trials);
             let (once, twice) = (count(TRIALS)?, count(2 * TRIALS)?);
             let cost = (twice.instructions - once.instructions) / (twice.seconds - once.seconds);
             rows.push(Row::new(format!("{approach} against {opponents}"), cost, Some(BUDGET)));
@@ -33,20 +33,20 @@ struct Played {
 
 fn played(
     program: &Path,
-    folder: &Path,
+    directory: &Path,
     opponents: &str,
     approach: &str,
     trials: u32,
 ) -> Result<Played, Failure> {
     // Results kept by an earlier run would not be played again.
-    let _ = fs::remove_dir_all(folder);
+    let _ = fs::remove_dir_all(directory);
     let line = format!(
         "evaluate --jobs 1 --maps 0 --profile simulated --scenario 3 --opponents {opponents} --approach {approach} \
          --trials {trials} --out"
     );
-    let out = folder.display().to_string();
+    let out = directory.display().to_string();
     let (instructions, _) = counted(program, line.split_whitespace().chain([out.as_str()]))?;
-    let file = folder.join("trials.csv");
+    let file = directory.join("trials.csv");
     let wrong = |error| Failure::Start { line: file.display().to_string(), error };
     let rows = fs::read_to_string(&file).map_err(wrong)?;
     let none = || wrong(io::Error::new(io::ErrorKind::InvalidData, "no column of seconds"));

@@ -32,7 +32,7 @@ pub fn encode<'b>(problem: &Problem, buffer: &'b mut [u8]) -> Option<&'b [u8]> {
 /// The problems in `memory`, up to the first that cannot be decoded.
 pub fn problems(memory: &[u8]) -> impl Iterator<Item = Problem> + '_ {
     let mut rest = behind_header(memory);
-    (0..word(memory, 4)).map_while(move |_| {
+    (0..label(memory, 4)).map_while(move |_| {
         let (problem, behind) = postcard::take_from_bytes(rest).ok()?;
         rest = behind;
         Some(problem)
@@ -41,10 +41,10 @@ pub fn problems(memory: &[u8]) -> impl Iterator<Item = Problem> + '_ {
 
 /// The bytes behind the header, as many as its length field states; none where there are fewer.
 pub fn behind_header(memory: &[u8]) -> &[u8] {
-    memory.get(HEADER_LEN..HEADER_LEN.saturating_add(word(memory, 0))).unwrap_or(&[])
+    memory.get(HEADER_LEN..HEADER_LEN.saturating_add(label(memory, 0))).unwrap_or(&[])
 }
 
-fn word(memory: &[u8], at: usize) -> usize {
+fn label(memory: &[u8], at: usize) -> usize {
     memory.get(at..at + 4).and_then(|bytes| bytes.try_into().ok()).map_or(0, u32::from_le_bytes) as usize
 }
 
@@ -87,12 +87,12 @@ impl Found {
         }
     }
 
-    fn words(self) -> [u32; 5] {
+    fn description(self) -> [u32; 5] {
         let [cost, exponent, similarity] = self.bits;
         [self.case, cost, exponent, similarity, self.players]
     }
 
-    fn from_words([case, cost, exponent, similarity, players]: [u32; 5]) -> Self {
+    fn from_description([case, cost, exponent, similarity, players]: [u32; 5]) -> Self {
         Self { case, bits: [cost, exponent, similarity], players }
     }
 }
@@ -123,10 +123,10 @@ impl Answer {
 impl fmt::Display for Answer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let found = [self.best, self.counted, self.scanned];
-        let words =
-            found.into_iter().flat_map(Found::words).chain([self.candidates]).chain(self.instructions);
-        for (i, word) in words.enumerate() {
-            write!(f, "{}{word}", if i == 0 { "" } else { " " })?;
+        let description =
+            found.into_iter().flat_map(Found::description).chain([self.candidates]).chain(self.instructions);
+        for (i, label) in description.enumerate() {
+            write!(f, "{}{label}", if i == 0 { "" } else { " " })?;
         }
         Ok(())
     }
@@ -136,16 +136,16 @@ impl FromStr for Answer {
     type Err = ();
 
     fn from_str(line: &str) -> Result<Self, ()> {
-        let mut words = line.split(' ').map(|word| word.parse::<u32>().map_err(|_| ()));
-        let mut next = || words.next().ok_or(())?;
+        let mut description = line.split(' ').map(|label| label.parse::<u32>().map_err(|_| ()));
+        let mut next = || description.next().ok_or(())?;
         let mut found = [Found::default(); 3];
         for found in &mut found {
-            *found = Found::from_words([next()?, next()?, next()?, next()?, next()?]);
+            *found = Found::from_description([next()?, next()?, next()?, next()?, next()?]);
         }
         let [best, counted, scanned] = found;
         let answer =
             Self { best, counted, candidates: next()?, scanned, instructions: [next()?, next()?, next()?] };
-        if words.next().is_none() { Ok(answer) } else { Err(()) }
+        if description.next().is_none() { Ok(answer) } else { Err(()) }
     }
 }
 

@@ -15,8 +15,8 @@ pub fn half_extent(field: &FieldMm) -> [f64; 2] {
 /// Field surface, then lines and goals.
 pub fn draw(svg: &mut Svg, field: &FieldMm, colors: &Colors) {
     let [x, y] = half_extent(field);
-    let Colors { carpet, .. } = colors;
-    svg.rect([-x, -y], [x, y], format_args!(r#"fill="{carpet}""#));
+    let Colors { surface, .. } = colors;
+    svg.rect([-x, -y], [x, y], format_args!(r#"fill="{surface}""#));
     lines(svg, field, colors, colors.line);
 }
 

@@ -202,13 +202,13 @@ pub fn width(text: &str, size: f64) -> f64 {
 /// `text` in lines of at most that width.
 pub fn wrapped(text: &str, size: f64, room: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
+    for label in text.split_whitespace() {
         match lines.last_mut() {
-            Some(line) if width(line, size) + width(word, size) + size * 0.57 <= room => {
+            Some(line) if width(line, size) + width(label, size) + size * 0.57 <= room => {
                 line.push(' ');
-                line.push_str(word);
+                line.push_str(label);
             }
-            _ => lines.push(word.to_owned()),
+            _ => lines.push(label.to_owned()),
         }
     }
     lines
@@ -221,7 +221,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn up_on_the_field_is_up_on_the_picture() {
+    fn up_on_the_field_is_up_on_the_snapshot() {
         let mut svg = Svg::default();
         svg.circle([100.0, 250.0], 30.0, "");
         assert!(svg.body.contains(r#"cx="100.0" cy="-250.0" rx="30.0""#), "{}", svg.body);
@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn words_from_outside_cannot_break_the_picture() {
+    fn description_from_outside_cannot_break_the_snapshot() {
         let mut svg = Svg::default();
         let font = Font { size: 10.0, fill: "black", bold: false, halo: None };
         svg.text([0.0, 0.0], "a<b & c>d\u{7}", Anchor::Start, font);

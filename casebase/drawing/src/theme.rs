@@ -19,7 +19,7 @@ pub struct Colors {
     /// The page.
     pub paper: &'static str,
     /// The field.
-    pub carpet: &'static str,
+    pub surface: &'static str,
     /// The lines on it.
     pub line: &'static str,
     /// Text.
@@ -57,7 +57,7 @@ impl Theme {
 
 const LIGHT: Colors = Colors {
     paper: "#ffffff",
-    carpet: "#e3eedd",
+    surface: "#e3eedd",
     line: "#ffffff",
     ink: "#1b1b1b",
     faint: "#5c5c5c",
@@ -72,7 +72,7 @@ const LIGHT: Colors = Colors {
 };
 const DARK: Colors = Colors {
     paper: "#14181b",
-    carpet: "#1f2d26",
+    surface: "#1f2d26",
     line: "#5d6f65",
     ink: "#f2f2f2",
     faint: "#b0b6b3",
@@ -87,7 +87,7 @@ const DARK: Colors = Colors {
 };
 const PRINT: Colors = Colors {
     paper: "#ffffff",
-    carpet: "#ffffff",
+    surface: "#ffffff",
     line: "#8a8a8a",
     ink: "#000000",
     faint: "#444444",

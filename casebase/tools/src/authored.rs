@@ -133,11 +133,11 @@ fn read_case(reader: &mut Reader<'_>, root: &Table<'_, '_>, league: Option<&Leag
 }
 
 fn read_defending(reader: &mut Reader<'_>, value: Value<'_, '_>) -> Option<GoalEnd> {
-    let word = reader.text(value, "defending")?;
-    let goal = GoalEnd::from_word(word);
+    let label = reader.text(value, "defending")?;
+    let goal = GoalEnd::from_label(label);
     if goal.is_none() {
-        let mend = "write \"yellow\" (the goal at -x) or \"cyan\" (the goal at +x)";
-        reader.error(code::BAD_DEFENDING, value.span(), format!("defending is {word:?}"), mend);
+        let hint = "write \"yellow\" (the goal at -x) or \"cyan\" (the goal at +x)";
+        reader.error(code::BAD_DEFENDING, value.span(), format!("defending is {label:?}"), hint);
     }
     goal
 }
@@ -221,26 +221,26 @@ struct Cast<'l> {
 
 fn read_action(reader: &mut Reader<'_>, value: Value<'_, '_>, cast: &Cast<'_>) -> Option<Action> {
     let whose = format!("an action of {}", cast.robot);
-    if let Some(word) = value.get_ref().as_str() {
-        return match word {
+    if let Some(label) = value.get_ref().as_str() {
+        return match label {
             "wait" => Some(Action::Wait),
             "get_ball" => Some(Action::GetBall),
             _ => {
-                let message = format!("{whose} is {word:?}");
-                reader.error(code::UNKNOWN_KEY, value.span(), message, ACTION_MEND);
+                let message = format!("{whose} is {label:?}");
+                reader.error(code::UNKNOWN_KEY, value.span(), message, ACTION_HINT);
                 None
             }
         };
     }
     let table = reader.table(value, whose.as_str())?;
     let entries = table.entries();
-    let [(word, span, argument)] = entries.as_slice() else {
+    let [(label, span, argument)] = entries.as_slice() else {
         let message = format!("{whose} has {} keys", entries.len());
-        reader.error(code::WRONG_TYPE, value.span(), message, ACTION_MEND);
+        reader.error(code::WRONG_TYPE, value.span(), message, ACTION_HINT);
         return None;
     };
-    let name = format!("{word} of {}", cast.robot);
-    match *word {
+    let name = format!("{label} of {}", cast.robot);
+    match *label {
         "go_to_point" => reader.point(argument, &name).map(Action::GoToPoint),
         "dribble_to" => reader.point(argument, &name).map(Action::DribbleTo),
         "turn" => read_turn(reader, argument, &name).map(Action::Turn),
@@ -248,8 +248,8 @@ fn read_action(reader: &mut Reader<'_>, value: Value<'_, '_>, cast: &Cast<'_>) -
         "receive_ball" => read_robot(reader, argument, &name, cast).map(Action::ReceiveBall),
         "kick" => read_kick(reader, argument, &name, cast),
         _ => {
-            let message = format!("unknown key {word} in {whose}");
-            reader.error(code::UNKNOWN_KEY, span.clone(), message, ACTION_MEND);
+            let message = format!("unknown key {label} in {whose}");
+            reader.error(code::UNKNOWN_KEY, span.clone(), message, ACTION_HINT);
             None
         }
     }
@@ -299,8 +299,8 @@ fn read_kick(reader: &mut Reader<'_>, value: Value<'_, '_>, name: &str, cast: &C
     if id.is_none() {
         let known: Vec<_> = league.kicks.iter().map(|(name, _)| name.as_str()).collect();
         let message = format!("{name} is of kind {kind:?}, which league.toml does not have");
-        let mend = format!("add [kicks.{kind}] or take one of: {}", known.join(", "));
-        reader.error(code::UNKNOWN_KICK, value.span(), message, mend);
+        let hint = format!("add [kicks.{kind}] or take one of: {}", known.join(", "));
+        reader.error(code::UNKNOWN_KICK, value.span(), message, hint);
     }
     id.map(Action::Kick)
 }
@@ -329,5 +329,5 @@ fn read_opponents(reader: &mut Reader<'_>, root: &Table<'_, '_>) -> Option<Vec<O
 
 /// Maximum number of actions of all robots of a case: the table counts them in a byte.
 const ACTIONS_MAX: usize = 255;
-const ACTION_MEND: &str = "write \"wait\", \"get_ball\" or one of { go_to_point = [x, y] }, { turn = … }, \
+const ACTION_HINT: &str = "write \"wait\", \"get_ball\" or one of { go_to_point = [x, y] }, { turn = … }, \
     { dribble_to = [x, y] }, { pass_ball = N }, { receive_ball = N }, { kick = \"KIND\" }";

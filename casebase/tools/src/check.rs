@@ -12,8 +12,8 @@ use crate::league::League;
 /// Every error of a case that was read without a fault.
 pub(crate) fn errors(file: &SourceFile, case: &Authored, league: &League) -> Vec<Finding> {
     let mut findings = Vec::new();
-    let mut error = |code, span: &std::ops::Range<usize>, message: String, mend: &str| {
-        findings.push(file.finding(Severity::Error, code, file.line(span.start), message, mend));
+    let mut error = |code, span: &std::ops::Range<usize>, message: String, hint: &str| {
+        findings.push(file.finding(Severity::Error, code, file.line(span.start), message, hint));
     };
 
     let balls = [("the ball".to_owned(), case.ball, &case.ball_span)];
@@ -42,7 +42,7 @@ pub(crate) fn errors(file: &SourceFile, case: &Authored, league: &League) -> Vec
 
     let script = case.mirrored(Symmetry::Identity, league);
     if let Err(problem) = walk(&script, league, |_| {}) {
-        let (code, at, mend) = match problem {
+        let (code, at, hint) = match problem {
             // The one getter was found above.
             WalkError::NoGetter => return findings,
             WalkError::NotHolding(robot, index) => (
@@ -66,8 +66,8 @@ pub(crate) fn errors(file: &SourceFile, case: &Authored, league: &League) -> Vec
         };
         let (robot, index) = at;
         let (_, span) = &case.teammates[robot.index()].gameplay[index];
-        let word = script.action(robot, index).map_or("", |action| action.word());
-        error(code, span, format!("{problem} ({word})"), mend);
+        let label = script.action(robot, index).map_or("", |action| action.label());
+        error(code, span, format!("{problem} ({label})"), hint);
     }
     findings
 }

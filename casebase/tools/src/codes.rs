@@ -68,7 +68,7 @@ codes! {
     UNKNOWN_PRIMITIVE "unknown-primitive" Warning "A kick asks the body for a primitive no body knows."
     NO_INTENT "no-intent" Warning "The intent is blank. Say in a sentence what the case is for."
     SAME_SPOT "same-spot" Warning "Two robots stand where only one has room. Move one of them."
-    MATE_IN_PATH "mate-in-path" Warning "A teammate that does not take the ball stands on a leg of its way. Move it aside."
+    TEAMMATE_IN_PATH "mate-in-path" Warning "A teammate that does not take the ball stands on a leg of its way. Move it aside."
     SHORT_PASS "short-pass" Warning "A pass shorter than its own radius r_min. Let the robot dribble, or stand farther off."
     KICK_LEAVES "kick-leaves" Warning "A kick leaves the field in the case's own situation. Take a shorter kind, or another heading."
     IDLE_BALL "idle-ball" Warning "A robot goes for the ball and does nothing with it. Say what is done with it."

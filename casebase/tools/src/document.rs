@@ -54,10 +54,10 @@ impl<'f> Reader<'f> {
         code: &'static str,
         span: Range<usize>,
         message: impl Into<String>,
-        mend: impl Into<String>,
+        hint: impl Into<String>,
     ) {
         let line = self.file.line(span.start);
-        self.findings.push(self.file.finding(Severity::Error, code, line, message, mend));
+        self.findings.push(self.file.finding(Severity::Error, code, line, message, hint));
     }
 
     pub(crate) fn warning(
@@ -65,10 +65,10 @@ impl<'f> Reader<'f> {
         code: &'static str,
         span: Range<usize>,
         message: impl Into<String>,
-        mend: impl Into<String>,
+        hint: impl Into<String>,
     ) {
         let line = self.file.line(span.start);
-        self.findings.push(self.file.finding(Severity::Warning, code, line, message, mend));
+        self.findings.push(self.file.finding(Severity::Warning, code, line, message, hint));
     }
 
     /// An error about a value's type.
@@ -122,8 +122,8 @@ impl<'f> Reader<'f> {
         if number.is_none() {
             let (low, high) = (allowed.start(), allowed.end());
             let message = format!("{name} is {integer}");
-            let mend = format!("give a whole number from {low} to {high}");
-            self.error(code::BAD_VALUE, value.span(), message, mend);
+            let hint = format!("give a whole number from {low} to {high}");
+            self.error(code::BAD_VALUE, value.span(), message, hint);
         }
         number
     }

@@ -37,9 +37,9 @@ impl SourceFile {
         code: &'static str,
         line: u32,
         message: impl Into<String>,
-        mend: impl Into<String>,
+        hint: impl Into<String>,
     ) -> Finding {
-        Finding { code, severity, file: self.path.clone(), line, message: message.into(), mend: mend.into() }
+        Finding { code, severity, file: self.path.clone(), line, message: message.into(), hint: hint.into() }
     }
 }
 
@@ -56,21 +56,21 @@ pub struct Files {
 
 impl Files {
     /// Reads a league's directory.
-    pub fn read(folder: &Path) -> Result<Self, Vec<Finding>> {
+    pub fn read(directory: &Path) -> Result<Self, Vec<Finding>> {
         let mut found = Found::default();
-        found.enter(folder, "", 0);
+        found.enter(directory, "", 0);
         let at = found.cases.iter().position(|file| file.name == LEAGUE);
         let rules = at.map(|at| found.cases.remove(at));
         if rules.is_none() && !found.league_unreadable {
             let message = "the library has no league.toml";
-            let mend = "add one with [field], [pass] and [kicks.KIND], and name one league's folder";
-            found.error(code::NO_LEAGUE, folder.join("league.toml"), message, mend);
+            let hint = "add one with [field], [pass] and [kicks.KIND], and name one league's folder";
+            found.error(code::NO_LEAGUE, directory.join("league.toml"), message, hint);
         }
         let Some(rules) = rules.filter(|_| found.findings.is_empty()) else {
             found.findings.sort_by(|a, b| a.file.cmp(&b.file));
             return Err(found.findings);
         };
-        let absolute = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+        let absolute = directory.canonicalize().unwrap_or_else(|_| directory.to_owned());
         let league = absolute.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         Ok(Self { league, rules, cases: found.cases }.sorted())
     }
@@ -102,12 +102,17 @@ struct Found {
 
 impl Found {
     /// Reads a directory, `depth` levels below the library's; `prefix` is its path with a `/` at the end.
-    fn enter(&mut self, folder: &Path, prefix: &str, depth: usize) {
-        let entries = match fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>) {
+    fn enter(&mut self, directory: &Path, prefix: &str, depth: usize) {
+        let entries = match fs::read_dir(directory).and_then(Iterator::collect::<Result<Vec<_>, _>>) {
             Ok(entries) => entries,
             Err(error) => {
                 let message = format!("the folder cannot be read: {error}");
-                return self.error(code::UNREADABLE, folder.to_owned(), message, "make it a readable folder");
+                return self.error(
+                    code::UNREADABLE,
+                    directory.to_owned(),
+                    message,
+                    "make it a readable folder",
+                );
             }
         };
         for entry in entries {
@@ -129,8 +134,8 @@ impl Found {
                     self.read(path, format!("{prefix}{stem}"), is_league);
                 } else {
                     let message = format!("{prefix}{name} is not at <region>/<name>.toml");
-                    let mend = "move it into the folder of its region, right below league.toml";
-                    self.error(code::MISPLACED, path, message, mend);
+                    let hint = "move it into the folder of its region, right below league.toml";
+                    self.error(code::MISPLACED, path, message, hint);
                 }
             }
         }
@@ -147,9 +152,9 @@ impl Found {
         }
     }
 
-    fn error(&mut self, code: &'static str, file: PathBuf, message: impl Into<String>, mend: &str) {
-        let (message, mend) = (message.into(), mend.to_owned());
-        self.findings.push(Finding { code, severity: Severity::Error, file, line: 1, message, mend });
+    fn error(&mut self, code: &'static str, file: PathBuf, message: impl Into<String>, hint: &str) {
+        let (message, hint) = (message.into(), hint.to_owned());
+        self.findings.push(Finding { code, severity: Severity::Error, file, line: 1, message, hint });
     }
 }
 

@@ -22,7 +22,7 @@ pub struct Finding {
     /// What is wrong.
     pub message: String,
     /// How to fix it.
-    pub mend: String,
+    pub hint: String,
 }
 
 /// Severity of a finding.
@@ -45,11 +45,11 @@ impl fmt::Display for Severity {
 
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { code, severity, file, line, message, mend } = self;
+        let Self { code, severity, file, line, message, hint } = self;
         let file = file.to_string_lossy();
         // File names and contents are untrusted: a finding stays one line, and quotes its subject.
-        let (file, message, mend) = (printable(&file), excerpt(message, MESSAGE_LEN), printable(mend));
-        write!(f, "{file}:{line}: {severity}[{code}]: {message}; {mend}")
+        let (file, message, hint) = (printable(&file), excerpt(message, MESSAGE_LEN), printable(hint));
+        write!(f, "{file}:{line}: {severity}[{code}]: {message}; {hint}")
     }
 }
 
@@ -59,14 +59,14 @@ mod tests {
     use crate::codes::code;
 
     #[test]
-    fn a_finding_reads_as_file_line_kind_words_and_mend() {
+    fn a_finding_reads_as_file_line_kind_description_and_hint() {
         let finding = Finding {
             code: code::BAD_SCOPE,
             severity: Severity::Error,
             file: PathBuf::from("lib/center/a.toml"),
             line: 3,
             message: "a scope radius is 0".into(),
-            mend: "give mm above 0".into(),
+            hint: "give mm above 0".into(),
         };
         let text = "lib/center/a.toml:3: error[bad-scope]: a scope radius is 0; give mm above 0";
         assert_eq!(finding.to_string(), text);
@@ -80,7 +80,7 @@ mod tests {
             file: PathBuf::from("lib/center/\u{1b}[2Ja\n.toml"),
             line: 1,
             message: "no robot `\u{1b}]0;x\u{7}`".into(),
-            mend: "name one".into(),
+            hint: "name one".into(),
         };
         let text = finding.to_string();
         assert!(!text.contains(char::is_control), "{text:?}");

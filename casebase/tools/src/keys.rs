@@ -10,7 +10,7 @@ pub const SCOPED: &[&str] = &["at", "scope"];
 /// A robot of a case.
 pub const TEAMMATE: &[&str] = &["at", "gameplay"];
 /// Actions without an argument, written as a string.
-pub const WORDS: &[&str] = &["wait", "get_ball"];
+pub const DESCRIPTION: &[&str] = &["wait", "get_ball"];
 /// Actions that are a table of one key.
 pub const ACTIONS: &[&str] = &["go_to_point", "turn", "dribble_to", "pass_ball", "receive_ball", "kick"];
 /// Directions of a `turn`, one of them.

@@ -86,8 +86,8 @@ fn read_league(reader: &mut Reader<'_>, root: &Table<'_, '_>) -> Option<League> 
             partners.push(KickId(at as u8));
         } else {
             let message = format!("kicks.{name} has no partner to the other side");
-            let mend = "add a kind of opposite heading_deg or offset with equal length and radii, for the mirrored cases";
-            reader.error(code::NO_PARTNER, span, message, mend);
+            let hint = "add a kind of opposite heading_deg or offset with equal length and radii, for the mirrored cases";
+            reader.error(code::NO_PARTNER, span, message, hint);
         }
     }
     Some(League { field: field?, pass: pass?, kicks, lineup, partners })
@@ -125,9 +125,9 @@ fn read_kick(reader: &mut Reader<'_>, name: &str, value: Value<'_, '_>) -> Optio
     let primitive = table.optional("primitive").and_then(|value| read_primitive(reader, name, value));
     let aim = if let Some(value) = table.optional("aim") {
         table.refuse_others(reader, keys::KICK_AT_GOAL);
-        let word = reader.text(value, &table.name_of("aim"))?;
-        if word != "goal" {
-            let message = format!("{name} aims at {word:?}");
+        let label = reader.text(value, &table.name_of("aim"))?;
+        if label != "goal" {
+            let message = format!("{name} aims at {label:?}");
             reader.error(
                 code::BAD_VALUE,
                 value.span(),
@@ -149,13 +149,13 @@ fn read_kick(reader: &mut Reader<'_>, name: &str, value: Value<'_, '_>) -> Optio
 }
 
 fn read_primitive(reader: &mut Reader<'_>, name: &str, value: Value<'_, '_>) -> Option<Primitive> {
-    let word = reader.text(value, &format!("{name}.primitive"))?;
-    let primitive = Primitive::from_word(word);
+    let label = reader.text(value, &format!("{name}.primitive"))?;
+    let primitive = Primitive::from_label(label);
     if primitive.is_none() {
-        let known = Primitive::ALL.map(Primitive::word).join(", ");
-        let message = format!("{name} asks the body for {word:?}, which no body knows");
-        let mend = format!("take one of: {}", known.trim_start_matches(", "));
-        reader.warning(code::UNKNOWN_PRIMITIVE, value.span(), message, mend);
+        let known = Primitive::ALL.map(Primitive::label).join(", ");
+        let message = format!("{name} asks the body for {label:?}, which no body knows");
+        let hint = format!("take one of: {}", known.trim_start_matches(", "));
+        reader.warning(code::UNKNOWN_PRIMITIVE, value.span(), message, hint);
     }
     primitive
 }

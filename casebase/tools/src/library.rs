@@ -52,13 +52,13 @@ pub struct Place {
 
 /// Reads one league's directory; returns the findings, with at least one error among them, where it is
 /// refused.
-pub fn load(folder: &Path) -> Result<Library, Vec<Finding>> {
-    load_telling(folder, |_, _| {})
+pub fn load(directory: &Path) -> Result<Library, Vec<Finding>> {
+    load_telling(directory, |_, _| {})
 }
 
 /// The same; `tell` is called with the number of completed steps and the total: two a case file.
-pub fn load_telling(folder: &Path, tell: impl FnMut(usize, usize)) -> Result<Library, Vec<Finding>> {
-    build_telling(&Files::read(folder)?, Reduction::NONE, tell)
+pub fn load_telling(directory: &Path, tell: impl FnMut(usize, usize)) -> Result<Library, Vec<Finding>> {
+    build_telling(&Files::read(directory)?, Reduction::NONE, tell)
 }
 
 /// Which parts of its cases a library keeps: for measuring the value of each.
@@ -105,8 +105,8 @@ fn build_telling(
     }
     if files.cases.len() > CASES_MAX {
         let message = format!("{} cases, at most {CASES_MAX} can be numbered", files.cases.len());
-        let mend = "split the league, or take cases out";
-        findings.push(files.rules.finding(Severity::Error, code::TOO_MANY_CASES, 1, message, mend));
+        let hint = "split the league, or take cases out";
+        findings.push(files.rules.finding(Severity::Error, code::TOO_MANY_CASES, 1, message, hint));
     }
     let Some(league) = league.filter(|_| findings.iter().all(|finding| finding.severity != Severity::Error))
     else {

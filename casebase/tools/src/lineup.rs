@@ -73,8 +73,8 @@ impl Lineup {
         let teammates = table.required(reader, "teammates")?;
         let list = areas(reader, teammates, "problems.teammates", PROBLEM_TEAMMATES_MAX)?;
         if list.is_empty() {
-            let mend = "give the area of one robot at least, such as { x = [-700, -300], y = [-300, 300] }";
-            reader.error(code::BAD_VALUE, teammates.span(), "problems.teammates is empty", mend);
+            let hint = "give the area of one robot at least, such as { x = [-700, -300], y = [-300, 300] }";
+            reader.error(code::BAD_VALUE, teammates.span(), "problems.teammates is empty", hint);
             return None;
         }
         let opponents = table.required(reader, "opponents")?;
@@ -83,8 +83,8 @@ impl Lineup {
             lineups.push(areas(reader, lineup, "problems.opponents", PROBLEM_OPPONENTS_MAX)?);
         }
         if lineups.is_empty() {
-            let mend = "give one line-up at least; [] is the one without opponents";
-            reader.error(code::BAD_VALUE, opponents.span(), "problems.opponents has no line-up", mend);
+            let hint = "give one line-up at least; [] is the one without opponents";
+            reader.error(code::BAD_VALUE, opponents.span(), "problems.opponents has no line-up", hint);
             return None;
         }
         Some(Self { teammates: list, opponents: lineups })

@@ -20,18 +20,18 @@ pub(crate) fn doubts(notes: &mut Notes<'_>, case: &Authored, stored: &Case<'_>, 
         let span = &case.teammates[leg.robot.index()].gameplay[leg.action].1;
         leg_doubts(notes, &leg, span, league);
         if index == 0 {
-            mates_on(notes, case, &leg, league);
+            teammates_on(notes, case, &leg, league);
         }
     }
     idle_ball(notes, case);
 }
 
 fn same_spot(notes: &mut Notes<'_>, case: &Authored) {
-    let mates = CaseRobot::first(case.teammates.len()).zip(&case.teammates);
-    let mates = mates.map(|(robot, mate)| (robot.to_string(), mate.at, &mate.at_span));
+    let teammates = CaseRobot::first(case.teammates.len()).zip(&case.teammates);
+    let teammates = teammates.map(|(robot, teammate)| (robot.to_string(), teammate.at, &teammate.at_span));
     let opponents = case.opponents.iter().enumerate();
     let opponents = opponents.map(|(i, opponent)| (format!("opp{}", i + 1), opponent.at, &opponent.span));
-    let all: Vec<_> = mates.chain(opponents).collect();
+    let all: Vec<_> = teammates.chain(opponents).collect();
     for (later, (who, at, span)) in all.iter().enumerate() {
         let near = |(_, other, _): &&(String, PointMm, &Range<usize>)| {
             let [dx, dy] = at.minus(*other).to_f32();
@@ -69,19 +69,19 @@ fn leg_doubts(notes: &mut Notes<'_>, leg: &Leg, span: &Range<usize>, league: &Le
 
 /// Teammates on the first leg, before any robot has moved, which are neither its kicker nor ever receive the
 /// ball.
-fn mates_on(notes: &mut Notes<'_>, case: &Authored, leg: &Leg, league: &League) {
+fn teammates_on(notes: &mut Notes<'_>, case: &Authored, leg: &Leg, league: &League) {
     let mut takers = vec![leg.robot];
     // The case passed the same simulation among the checks.
     let _ = walk(&case.mirrored(Symmetry::Identity, league), league, |step| {
         takers.extend(step.hand_over().map(|hand_over| hand_over.to.0));
     });
-    for (robot, mate) in CaseRobot::first(case.teammates.len()).zip(&case.teammates) {
-        let moves = mate.gameplay.iter().any(|(action, _)| matches!(action, Action::GoToPoint(_)));
-        let abreast = leg.abreast(mate.at.to_f32());
+    for (robot, teammate) in CaseRobot::first(case.teammates.len()).zip(&case.teammates) {
+        let moves = teammate.gameplay.iter().any(|(action, _)| matches!(action, Action::GoToPoint(_)));
+        let abreast = leg.abreast(teammate.at.to_f32());
         let stands_on = abreast.is_some_and(|place| place.across.abs() < ROOM_MM);
         if stands_on && !moves && !takers.contains(&robot) {
             let message = format!("{robot} stands on the ball's first leg");
-            notes.add(code::MATE_IN_PATH, &mate.at_span, message, "move it aside");
+            notes.add(code::TEAMMATE_IN_PATH, &teammate.at_span, message, "move it aside");
         }
     }
 }
@@ -89,8 +89,8 @@ fn mates_on(notes: &mut Notes<'_>, case: &Authored, leg: &Leg, league: &League) 
 /// A robot that gets the ball should play it on; a pass received may end a gameplay, since the next case
 /// starts with it.
 fn idle_ball(notes: &mut Notes<'_>, case: &Authored) {
-    for (robot, mate) in CaseRobot::first(case.teammates.len()).zip(&case.teammates) {
-        let last = mate.gameplay.iter().rev().find(|(action, _)| *action != Action::Wait);
+    for (robot, teammate) in CaseRobot::first(case.teammates.len()).zip(&case.teammates) {
+        let last = teammate.gameplay.iter().rev().find(|(action, _)| *action != Action::Wait);
         if let Some((Action::GetBall, span)) = last {
             let message = format!("{robot} takes the ball and does nothing with it");
             notes.add(code::IDLE_BALL, span, message, "let it dribble_to, pass_ball or kick");

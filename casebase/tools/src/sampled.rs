@@ -4,7 +4,7 @@
 use casebase::{SettingError, Settings};
 
 use crate::codes::code;
-use crate::coverage::{CaseTally, Cells, Survey, Tally, VERDICTS};
+use crate::coverage::{CaseCounters, Cells, Counters, Survey, VERDICTS};
 use crate::finding::{Finding, Severity};
 use crate::library::Library;
 
@@ -21,31 +21,31 @@ impl Library {
 
 /// Warns of every authored case that none of the counted problems retrieved. Twins are skipped: their own
 /// warning gives the reason.
-pub fn never_retrieved(library: &Library, tally: &Tally) -> Vec<Finding> {
-    if tally.problems == 0 {
+pub fn never_retrieved(library: &Library, counters: &Counters) -> Vec<Finding> {
+    if counters.problems == 0 {
         return Vec::new();
     }
     let is_twin = |file| library.findings.iter().any(|other| other.code == code::TWIN && other.file == file);
-    let never = library.balls.iter().zip(&tally.cases).filter(|(_, case)| case.wins == 0);
+    let never = library.balls.iter().zip(&counters.cases).filter(|(_, case)| case.wins == 0);
     let never = never.filter(|(ball, _)| !is_twin(ball.file.as_path()));
     never
         .map(|(ball, case)| {
-            let drawn = tally.problems;
-            let (why, mend) = reason(library, case, drawn);
+            let drawn = counters.problems;
+            let (why, hint) = reason(library, case, drawn);
             Finding {
                 code: code::NEVER_RETRIEVED,
                 severity: Severity::Warning,
                 file: ball.file.clone(),
                 line: ball.line,
                 message: format!("never retrieved in {drawn} drawn problems: {why}"),
-                mend: mend.to_owned(),
+                hint: hint.to_owned(),
             }
         })
         .collect()
 }
 
 /// The obstacle in most of the `drawn` problems, and its fix.
-fn reason(library: &Library, case: &CaseTally, drawn: u64) -> (String, &'static str) {
+fn reason(library: &Library, case: &CaseCounters, drawn: u64) -> (String, &'static str) {
     // The lowest id of those that beat it equally often.
     let beaten_by = case.beaten_by.iter().max_by_key(|(winner, count)| (**count, u16::MAX - **winner));
     if let Some((winner, count)) = beaten_by {
@@ -63,12 +63,12 @@ fn reason(library: &Library, case: &CaseTally, drawn: u64) -> (String, &'static 
             "enlarge the scope of the ball, or draw more problems (--problems)",
         );
     }
-    let (word, count) = VERDICTS
+    let (label, count) = VERDICTS
         .iter()
         .zip(&case.verdicts)
         .skip(BALL + 1)
-        .fold(("", 0), |most, (word, count)| if *count > most.1 { (*word, *count) } else { most });
-    let (failed, mend) = match word {
+        .fold(("", 0), |most, (label, count)| if *count > most.1 { (*label, *count) } else { most });
+    let (failed, hint) = match label {
         "robots" => (
             "fewer robots are drawn than it needs",
             "draw more with [problems] in league.toml, or leave robots out of the case",
@@ -82,7 +82,7 @@ fn reason(library: &Library, case: &CaseTally, drawn: u64) -> (String, &'static 
     let why = format!(
         "a candidate in none of them; the ball lay in its scope in {at_ball}, and in {count} {failed}"
     );
-    (why, mend)
+    (why, hint)
 }
 
 /// The index of "ball" in [`VERDICTS`].

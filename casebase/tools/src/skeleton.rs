@@ -120,7 +120,7 @@ impl Scene {
              defending = \"{}\"\n\
              # scope = [x, y]: how far off the ball may lie for the case to apply.\n\
              ball = {{ at = {}, scope = {scope:?} }}\n",
-            defending.word(),
+            defending.label(),
             point(*ball),
         );
         for (number, (id, at)) in (1..).zip(&self.teammates) {
@@ -156,8 +156,9 @@ fn plans(league: &League, scene: &Scene) -> Vec<String> {
         KickAim::Goal { offset_mm } => (!attacks, offset_mm.abs(), 0),
         KickAim::Heading { degrees, length_mm } => (attacks, degrees.abs(), -length_mm),
     });
-    let words = |name: &String| format!("\"get_ball\", {{ kick = {} }}", toml::Value::from(name.as_str()));
-    let mut plans: Vec<_> = kicks.into_iter().map(|(name, _)| words(name)).collect();
+    let description =
+        |name: &String| format!("\"get_ball\", {{ kick = {} }}", toml::Value::from(name.as_str()));
+    let mut plans: Vec<_> = kicks.into_iter().map(|(name, _)| description(name)).collect();
     let ahead = PointMm::new(scene.defending.attack_sign() * DRIBBLE.of(scene.field.length), 0);
     plans.push(format!(
         "\"get_ball\", {{ dribble_to = {} }}",

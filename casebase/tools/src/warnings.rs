@@ -28,13 +28,13 @@ pub(crate) fn warnings(
 ) -> Vec<Finding> {
     let mut findings = Vec::new();
     if cases.is_empty() {
-        let mend = "add cases at <region>/<name>.toml; until then every retrieval finds nothing";
+        let hint = "add cases at <region>/<name>.toml; until then every retrieval finds nothing";
         findings.push(files.rules.finding(
             Severity::Warning,
             code::EMPTY,
             1,
             "the library has no case",
-            mend,
+            hint,
         ));
     }
     let twins = twins(base);
@@ -69,10 +69,10 @@ impl Notes<'_> {
         code: &'static str,
         at: &Range<usize>,
         message: impl Into<String>,
-        mend: &str,
+        hint: &str,
     ) {
         let line = self.file.line(at.start);
-        self.findings.push(self.file.finding(Severity::Warning, code, line, message, mend));
+        self.findings.push(self.file.finding(Severity::Warning, code, line, message, hint));
     }
 }
 
@@ -106,8 +106,8 @@ fn big_scopes(notes: &mut Notes<'_>, case: &Authored) {
 fn gameplays(notes: &mut Notes<'_>, case: &Authored, league: &League) {
     for (robot, teammate) in CaseRobot::first(case.teammates.len()).zip(&case.teammates) {
         if teammate.gameplay.iter().all(|(action, _)| *action == Action::Wait) {
-            let mend = "leave it out of the case, or give it something to do";
-            notes.add(code::BYSTANDER, &teammate.span, format!("{robot} only waits"), mend);
+            let hint = "leave it out of the case, or give it something to do";
+            notes.add(code::BYSTANDER, &teammate.span, format!("{robot} only waits"), hint);
         }
         let mut holds_ball = false;
         for (action, span) in &teammate.gameplay {
@@ -119,7 +119,7 @@ fn gameplays(notes: &mut Notes<'_>, case: &Authored, league: &League) {
             };
             if let Some(at) = point.filter(|at| !league.field.contains(*at)) {
                 let message =
-                    format!("{robot} should {} [{}, {}], outside the lines", action.word(), at.x, at.y);
+                    format!("{robot} should {} [{}, {}], outside the lines", action.label(), at.x, at.y);
                 notes.add(code::POINT_OUTSIDE, span, message, "move the point inside the field");
             }
             match action {

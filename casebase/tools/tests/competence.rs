@@ -1,6 +1,6 @@
 //! `competence`: tests: survey counts agree with cases actually deleted and problems actually retrieved.
 
-use case_tools::coverage::{Cells, Survey, Tally};
+use case_tools::coverage::{Cells, Counters, Survey};
 use case_tools::{Files, Library, build};
 use casebase::{GoalEnd, PointMm, Problem, Settings, retrieve};
 use protocol::RobotId;
@@ -48,7 +48,7 @@ fn problem(number: u64) -> Problem {
     Problem { ball, defending, teammates, opponents }
 }
 
-fn survey(library: &Library) -> Tally {
+fn survey(library: &Library) -> Counters {
     let base = library.base();
     let cells = Cells::new(base.field(), 300).expect("a grid");
     Survey::new(base, &Settings::default(), cells)
@@ -74,7 +74,7 @@ fn the_loss_of_a_deletion_is_what_really_deleting_the_file_loses() {
 #[test]
 fn winners_and_candidates_are_those_of_retrieval() {
     let library = library(&texts());
-    let tally = survey(&library);
+    let counters = survey(&library);
     let (mut wins, mut candidates, mut none) = (vec![0; 4], 0, 0);
     for number in 0..PROBLEMS {
         let found = retrieve(&library.base(), &problem(number), &Settings::default());
@@ -84,14 +84,14 @@ fn winners_and_candidates_are_those_of_retrieval() {
             None => none += 1,
         }
     }
-    assert_eq!(tally.cases.iter().map(|case| case.wins).collect::<Vec<u64>>(), wins);
-    assert_eq!((tally.candidates, tally.none, tally.problems), (candidates, none, PROBLEMS));
-    for case in &tally.cases {
+    assert_eq!(counters.cases.iter().map(|case| case.wins).collect::<Vec<u64>>(), wins);
+    assert_eq!((counters.candidates, counters.none, counters.problems), (candidates, none, PROBLEMS));
+    for case in &counters.cases {
         assert_eq!(case.verdicts.iter().sum::<u64>(), PROBLEMS);
         assert_eq!(case.wins + case.beaten_by.values().sum::<u64>(), case.candidate());
     }
-    assert_eq!(tally.cells.iter().map(|cell| cell.none).sum::<u64>(), none);
-    assert_eq!(tally.rings.iter().sum::<u64>(), tally.costs.iter().sum::<u64>());
+    assert_eq!(counters.cells.iter().map(|cell| cell.none).sum::<u64>(), none);
+    assert_eq!(counters.rings.iter().sum::<u64>(), counters.costs.iter().sum::<u64>());
 }
 
 #[test]
@@ -118,8 +118,8 @@ fn a_problem_just_outside_a_scope_is_told_as_one_that_a_larger_scope_would_fill(
         problem.ball = PointMm::new(x, 0);
         problem.teammates =
             [(RobotId::new(1).expect("an id"), PointMm::new(x - 150, 0))].into_iter().collect();
-        let tally = survey.over([(0, problem)]);
-        assert_eq!((tally.none == 1).then_some(tally.cases[0].would_fill), would_fill, "{x} mm");
+        let counters = survey.over([(0, problem)]);
+        assert_eq!((counters.none == 1).then_some(counters.cases[0].would_fill), would_fill, "{x} mm");
     }
 }
 

@@ -11,7 +11,7 @@ fn findings(league: &str, cases: &[(&str, &str)]) -> (Vec<(&'static str, u32)>, 
     let refused = result.is_err();
     let list = result.map_or_else(|findings| findings, |library| library.findings);
     let short = |finding: &Finding| {
-        assert!(!finding.message.is_empty() && !finding.mend.is_empty(), "{finding}");
+        assert!(!finding.message.is_empty() && !finding.hint.is_empty(), "{finding}");
         (finding.code, finding.line)
     };
     (list.iter().map(short).collect(), refused)

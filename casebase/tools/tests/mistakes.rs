@@ -19,18 +19,18 @@ fn only(rules: &str, cases: &[(&str, &str)]) -> Finding {
     let result = build(&Files::from_texts("test", rules, cases));
     let refused = result.is_err();
     let findings = result.map_or_else(|findings| findings, |library| library.findings);
-    let words: Vec<_> = findings.iter().map(ToString::to_string).collect();
-    assert_eq!(findings.len(), 1, "{}", words.join("\n"));
+    let description: Vec<_> = findings.iter().map(ToString::to_string).collect();
+    assert_eq!(findings.len(), 1, "{}", description.join("\n"));
     assert_eq!(refused, findings[0].severity == Severity::Error, "{}", findings[0]);
     assert_eq!(entry(findings[0].code).map(|entry| entry.severity), Some(findings[0].severity));
     findings[0].clone()
 }
 
 #[track_caller]
-fn told(finding: &Finding, file: &str, line: u32, code: &str, mend: &str) {
+fn told(finding: &Finding, file: &str, line: u32, code: &str, hint: &str) {
     let place = (finding.code, finding.file.as_path(), finding.line);
     assert_eq!(place, (code, Path::new(file), line), "{finding}");
-    assert!(finding.mend.contains(mend), "{finding}");
+    assert!(finding.hint.contains(hint), "{finding}");
 }
 
 #[track_caller]
@@ -41,13 +41,13 @@ fn replaced(text: &str, old: &str, new: &str) -> String {
 
 /// One test a kind: in the case or the league, `old => new`, the code, the line and a part of the hint.
 macro_rules! mistakes {
-    ($($name:ident $place:ident $old:literal => $new:literal, $code:ident $line:literal $mend:literal;)*) => {
+    ($($name:ident $place:ident $old:literal => $new:literal, $code:ident $line:literal $hint:literal;)*) => {
         $(
             #[test]
             fn $name() {
                 let finding = mistakes!(@$place $old, $new);
                 let file = mistakes!(@file $place);
-                told(&finding, file, $line, code::$code, $mend);
+                told(&finding, file, $line, code::$code, $hint);
             }
         )*
         const IN_TEXTS: &[(&str, &str)] = &[$((stringify!($name), code::$code)),*];
@@ -73,7 +73,7 @@ mistakes! {
     a_robot_without_a_place_is_told case "at = [-720, 0]\n" => "", MISSING_KEY 5 "add at";
     an_opponent_without_a_scope_is_told case "scope = [300, 300]" => "", MISSING_KEY 13 "add scope";
     a_team_s_colour_is_no_goal case "\"yellow\"" => "\"blue\"", BAD_DEFENDING 2 "write \"yellow\"";
-    a_number_for_a_word_is_told case "\"yellow\"" => "1", WRONG_TYPE 2 "a string in quotes";
+    a_number_for_a_label_is_told case "\"yellow\"" => "1", WRONG_TYPE 2 "a string in quotes";
     a_fraction_of_a_millimetre_is_told case "[-600, 0]" => "[-600.5, 0]", WRONG_TYPE 3 "a whole number";
     three_coordinates_are_told case "[-720, 0]" => "[-720, 0, 0]", WRONG_TYPE 6 "[x, y] in whole mm";
     two_actions_in_one_table_are_told case "{ pass_ball = 2 }" => "{ pass_ball = 2, kick = \"goal\" }", WRONG_TYPE 7 "{ kick = \"KIND\" }";
@@ -116,7 +116,7 @@ const OTHERS: &[(&str, &str)] = &[
     ("five robots", code::TOO_MANY_TEAMMATES),
     ("five opponents", code::TOO_MANY_OPPONENTS),
     ("bystander", code::BYSTANDER),
-    ("mate on the leg", code::MATE_IN_PATH),
+    ("mate on the leg", code::TEAMMATE_IN_PATH),
     ("beyond every get_ball", code::NEVER_REACHED),
     ("twin", code::TWIN),
     ("no case", code::EMPTY),
@@ -160,7 +160,7 @@ fn a_bystander_is_doubtful_and_more_so_on_the_ball_s_way() {
     let far = "[[teammates]]\nat = [0, -900]\ngameplay = [\"wait\"]\n";
     told(&appended(far), "test/center/a.toml", 16, code::BYSTANDER, "leave it out");
     let turns = "[[teammates]]\nat = [-150, 450]\ngameplay = [{ turn = { heading_deg = 0 } }]\n";
-    told(&appended(turns), "test/center/a.toml", 17, code::MATE_IN_PATH, "move it aside");
+    told(&appended(turns), "test/center/a.toml", 17, code::TEAMMATE_IN_PATH, "move it aside");
 }
 
 #[test]

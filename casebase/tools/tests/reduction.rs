@@ -7,8 +7,8 @@ use case_tools::{Files, Library, Reduction, build_reduced};
 use casebase::{Match, Problem, Settings, Verdict, explain, retrieve, retrieve_best};
 
 fn kept(symmetry: bool, opponents: bool) -> Library {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../library/cases/four-legged");
-    let files = Files::read(&folder).expect("the built-in library");
+    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("../library/cases/four-legged");
+    let files = Files::read(&directory).expect("the built-in library");
     build_reduced(&files, Reduction { symmetry, opponents }).expect("sound files")
 }
 

@@ -22,12 +22,12 @@ fn shot(scope: &str, rest: &str) -> String {
 
 #[test]
 fn a_case_that_another_always_beats_is_told_with_that_other() {
-    // Same position, but `rival` dribbles and has an opponent scope over the whole field: where `shadowed` is
-    // a candidate, `rival` is one with one condition or two more, or by its lower id with the same.
+    // Same position, but `candidate` dribbles and has an opponent scope over the whole field: where `shadowed` is
+    // a candidate, `candidate` is one with one condition or two more, or by its lower id with the same.
     let everywhere = "[[opponents]]\nat = [0, 0]\nscope = [9000, 9000]\n";
-    let rival = shot("[800, 600]", everywhere).replace("kick = \"forward\"", "dribble_to = [9, 0]");
+    let candidate = shot("[800, 600]", everywhere).replace("kick = \"forward\"", "dribble_to = [9, 0]");
     let shadowed = shot("[800, 600]", "");
-    let library = library(&[("a/rival", &rival), ("a/shadowed", &shadowed)]);
+    let library = library(&[("a/rival", &candidate), ("a/shadowed", &shadowed)]);
     let found = findings(&library);
     let [one] = found.as_slice() else { panic!("{found:?}") };
     assert_eq!((one.code, one.line, one.file.ends_with("a/shadowed.toml")), (code::NEVER_RETRIEVED, 3, true));
@@ -40,26 +40,26 @@ fn a_case_that_another_always_beats_is_told_with_that_other() {
         let mut candidate = false;
         explain(&base, &problem, &settings, |id, verdict| {
             candidate |=
-                library.names[usize::from(id.0 / 4)] == "a/shadowed" && verdict.word() == "candidate";
+                library.names[usize::from(id.0 / 4)] == "a/shadowed" && verdict.label() == "candidate";
         });
         beaten += u64::from(candidate);
         let best = retrieve_best(&base, &problem, &settings);
         assert!(best.is_none_or(|best| best.case.0 / 4 == 0), "{number}");
     }
     assert!(beaten > 100, "{beaten}");
-    let words = format!(
+    let description = format!(
         "never retrieved in {DRAWN} drawn problems: a candidate in {beaten} of them, beaten most often by a/rival \
          ({beaten} times)"
     );
-    assert_eq!(one.message, words);
-    assert!(one.mend.contains("tell them apart"));
+    assert_eq!(one.message, description);
+    assert!(one.hint.contains("tell them apart"));
 }
 
 #[test]
 fn a_case_that_is_retrieved_now_and_then_is_not_told() {
     // Its scope is larger than the rival's: the balls there are its own.
     let everywhere = "[[opponents]]\nat = [0, 0]\nscope = [9000, 9000]\n";
-    let rival = shot("[600, 600]", everywhere).replace("kick = \"forward\"", "dribble_to = [9, 0]");
-    let library = library(&[("a/rival", &rival), ("a/wide", &shot("[800, 600]", ""))]);
+    let candidate = shot("[600, 600]", everywhere).replace("kick = \"forward\"", "dribble_to = [9, 0]");
+    let library = library(&[("a/rival", &candidate), ("a/wide", &shot("[800, 600]", ""))]);
     assert_eq!(findings(&library), []);
 }

@@ -9,14 +9,14 @@ pub mod shown;
 
 use geometry::{Field, GoalEnd, Point, Pose, Vector, math};
 use motion::rolling::RollingBall;
-use protocol::host::Duty;
+use protocol::host::RuleRole;
 use protocol::robot_io::{OPPONENTS_MAX, OmniKick, SensorFrame};
 use protocol::{Duration, Instant, RobotId};
 use rules::{League, Phase, Side};
 
 use crate::belief::shown::Handling;
 use crate::body::{self, BodySpec};
-use crate::mates::Mates;
+use crate::teammates::Teammates;
 
 /// Own detections older than this are ignored.
 const SIGHT_LEASE: Duration = Duration::millis(400);
@@ -82,12 +82,12 @@ pub struct Game {
     /// Target of a ball placement, while one is running.
     pub placement: Option<Point<Field>>,
     /// Role under the rules, which allow it more than others.
-    pub duty: Duty,
+    pub rule_role: RuleRole,
     /// The goal its team defends.
     pub defending: GoalEnd,
     /// Double touch: it has touched the ball in a restart and no other robot has since, so it must not touch
     /// it again.
-    pub barred: bool,
+    pub double_touch_blocked: bool,
 }
 
 impl Default for Game {
@@ -96,9 +96,9 @@ impl Default for Game {
         Self {
             phase: Phase::Run,
             placement: None,
-            duty: Duty::Player,
+            rule_role: RuleRole::Player,
             defending: GoalEnd::Negative,
-            barred: false,
+            double_touch_blocked: false,
         }
     }
 }
@@ -172,7 +172,7 @@ impl Belief {
     }
 
     /// Takes in what the body perceives and what teammates report.
-    pub fn update(&mut self, now: Instant, me: RobotId, sensors: &SensorFrame, mates: &Mates) {
+    pub fn update(&mut self, now: Instant, me: RobotId, sensors: &SensorFrame, teammates: &Teammates) {
         if let Some(pose) = sensors.pose.filter(|pose| pose.position.is_finite()) {
             self.pose = pose;
         }
@@ -188,7 +188,7 @@ impl Belief {
         }
         let slow = self.sight.is_some_and(|s| s.velocity.norm() < GRAB_SPEED) && !self.holds_ball;
         self.slow_sights = if slow { self.slow_sights.saturating_add(1) } else { 0 };
-        self.ball = self.own_ball(now).or_else(|| Self::reported_ball(now, me, mates, self.league));
+        self.ball = self.own_ball(now).or_else(|| Self::reported_ball(now, me, teammates, self.league));
     }
 
     /// The opponent whose centre is nearest to `point`, and its distance.
@@ -197,11 +197,11 @@ impl Belief {
     }
 
     /// Whether an opponent is on the ball and none of us disputes it.
-    pub fn opponent_on_ball(&self, now: Instant, mates: &Mates) -> bool {
+    pub fn opponent_on_ball(&self, now: Instant, teammates: &Teammates) -> bool {
         let Some(ball) = self.ball else { return false };
         let ours = |at: Point<Field>| at.distance(ball.position) < self.spec.disputed_within;
         !ours(self.pose.position)
-            && !mates.present(now).any(|(_, mate)| ours(mate.pose().position))
+            && !teammates.present(now).any(|(_, teammate)| ours(teammate.pose().position))
             && self.nearest_opponent(ball.position).is_some_and(|(_, d)| d < self.spec.opponent_holds_within)
     }
 
@@ -250,11 +250,11 @@ impl Belief {
         Some(ball)
     }
 
-    fn reported_ball(now: Instant, me: RobotId, mates: &Mates, league: League) -> Option<Ball> {
-        let report = mates
+    fn reported_ball(now: Instant, me: RobotId, teammates: &Teammates, league: League) -> Option<Ball> {
+        let report = teammates
             .present(now)
             .filter(|(id, _)| *id != me)
-            .filter_map(|(_, mate)| mate.beacon.ball)
+            .filter_map(|(_, teammate)| teammate.beacon.ball)
             .min_by_key(|ball| ball.distance)?;
         Some(rolling(report.at.into(), Vector::default(), league))
     }
@@ -300,9 +300,9 @@ mod tests {
     fn two_sights_of_a_ball_tell_its_speed_and_where_it_will_rest() {
         let me = RobotId::new(1).unwrap();
         let mut belief = Belief::new(League::FourLegged);
-        let mates = Mates::default();
-        belief.update(Instant(40_000), me, &seen(0.0), &mates);
-        belief.update(Instant(80_000), me, &seen(0.028), &mates);
+        let teammates = Teammates::default();
+        belief.update(Instant(40_000), me, &seen(0.0), &teammates);
+        belief.update(Instant(80_000), me, &seen(0.028), &teammates);
         let ball = belief.ball.unwrap();
         assert!((ball.velocity.x() - 0.7).abs() < 1e-4);
         // s = v²/2a = 0.49/0.7 = 0.7 m further on
@@ -315,11 +315,11 @@ mod tests {
     fn without_a_fresh_sight_or_report_there_is_no_ball() {
         let me = RobotId::new(1).unwrap();
         let mut belief = Belief::new(League::FourLegged);
-        belief.update(Instant(40_000), me, &seen(0.5), &Mates::default());
+        belief.update(Instant(40_000), me, &seen(0.5), &Teammates::default());
         let blind = SensorFrame { ball: None, ..seen(0.0) };
-        belief.update(Instant(80_000), me, &blind, &Mates::default());
+        belief.update(Instant(80_000), me, &blind, &Teammates::default());
         assert!(belief.ball.is_some());
-        belief.update(Instant(900_000), me, &blind, &Mates::default());
+        belief.update(Instant(900_000), me, &blind, &Teammates::default());
         assert_eq!(belief.ball, None);
     }
 
@@ -329,7 +329,7 @@ mod tests {
         let mut belief = Belief::new(League::FourLegged);
         let mut mad = seen(f32::NAN);
         mad.pose = Some(Pose { position: Point::new(f32::INFINITY, 0.0), heading: geometry::Angle::ZERO });
-        belief.update(Instant(40_000), me, &mad, &Mates::default());
+        belief.update(Instant(40_000), me, &mad, &Teammates::default());
         assert_eq!(belief.ball, None);
         assert_eq!(belief.pose, Pose::default());
     }

@@ -14,16 +14,16 @@ use protocol::team::{PRESENCE_LEASE, TeamMessage};
 use protocol::{CycleId, Duration, Instant, RobotId};
 
 use crate::belief::Belief;
-use crate::body::{self, Body, Intent, Limbs};
+use crate::body::{self, Actuation, Body, Intent};
 use crate::config::{Approach, BrainConfig};
-use crate::directive::Errand;
+use crate::directive::TaskState;
 use crate::execution::Execution;
 use crate::governor::Ruling;
 use crate::hosted::Hosted;
-use crate::mates::Mates;
 use crate::reactive::Reactive;
 use crate::team::monitor::Monitor;
 use crate::team::{Cycle, retrieval};
+use crate::teammates::Teammates;
 use crate::timer::{Timer, TimerTable};
 use tell::Spoken;
 
@@ -31,7 +31,7 @@ use tell::Spoken;
 #[derive(Clone, Copy, Debug, Default)]
 struct Since {
     /// Number of frames received from teammates and host.
-    heard: u8,
+    received: u8,
     /// Whether it has retrieved.
     retrieved: bool,
     /// A gameplay has started or ended.
@@ -44,7 +44,7 @@ pub struct Brain<'a> {
     body: &'static dyn Body,
     base: CaseBase<'a>,
     belief: Belief,
-    mates: Mates,
+    teammates: Teammates,
     cycle: Cycle,
     execution: Option<Execution>,
     monitor: Monitor,
@@ -53,9 +53,9 @@ pub struct Brain<'a> {
     awake: bool,
     /// The closed cycle whose end this robot has announced to its teammates.
     told_end_of: Option<CycleId>,
-    limbs: Limbs,
+    actuation: Actuation,
     host: Option<Hosted>,
-    errand: Errand,
+    task_state: TaskState,
     /// It took part in election and retrieval in the last step.
     was_available: bool,
     actuators: Option<ActuatorFrame>,
@@ -77,7 +77,7 @@ impl<'a> Brain<'a> {
             body: body::of(config.league),
             base,
             belief: Belief::defending(config.league, config.defending),
-            mates: Mates::default(),
+            teammates: Teammates::default(),
             cycle: Cycle::new(config.robot),
             execution: None,
             monitor: Monitor::default(),
@@ -85,9 +85,9 @@ impl<'a> Brain<'a> {
             timers,
             awake: false,
             told_end_of: None,
-            limbs: Limbs::of(config.league),
+            actuation: Actuation::of(config.league),
             host: config.hosted.then(|| Hosted::new(config.robot)),
-            errand: Errand::default(),
+            task_state: TaskState::default(),
             was_available: !config.hosted,
             actuators: None,
             beacon_due: false,
@@ -101,9 +101,9 @@ impl<'a> Brain<'a> {
     pub fn handle_team_message(&mut self, now: Instant, from: RobotId, message: &TeamMessage) {
         // Teammates' messages to the host are not for this robot.
         let TeamMessage::Beacon(beacon) = message else { return };
-        self.since.heard = self.since.heard.saturating_add(1);
+        self.since.received = self.since.received.saturating_add(1);
         self.timers.advance(now);
-        self.mates.hear(now, from, beacon);
+        self.teammates.receive(now, from, beacon);
         if self.config.approach != Approach::Reactive
             && let Some(state) = &beacon.cycle
         {
@@ -114,17 +114,17 @@ impl<'a> Brain<'a> {
     /// Handles the host's message, sent at most `age` ago; a robot that expects no host ignores it.
     pub fn handle_host_message(&mut self, now: Instant, age: Duration, message: &HostMessage) {
         let Some(host) = &mut self.host else { return };
-        self.since.heard = self.since.heard.saturating_add(1);
+        self.since.received = self.since.received.saturating_add(1);
         self.timers.advance(now);
-        if let Some(heard) = host.handle(now, age, message) {
-            self.limbs.hear_host(heard);
+        if let Some(received) = host.handle(now, age, message) {
+            self.actuation.receive_host(received);
         }
     }
 
     /// A host that was not trusted before leads from now on.
     pub fn handle_new_host(&mut self) {
         if let Some(host) = &mut self.host {
-            host.begin_anew();
+            host.restart();
             self.spoken.owes_telemetry();
         }
     }
@@ -132,19 +132,19 @@ impl<'a> Brain<'a> {
     /// Handles a sensor frame: one whole step.
     pub fn handle_sensors(&mut self, now: Instant, sensors: &SensorFrame) {
         self.timers.advance(now);
-        self.mates.forget_the_silent(now);
+        self.teammates.forget_the_silent(now);
         // The host overrides own sensors and teammates' reports (docs/architecture.md §3.1): a robot led by a
         // host does not use them.
         match &mut self.host {
             Some(host) => host.see(now, sensors, &mut self.belief),
-            None => self.belief.update(now, self.config.robot, sensors, &self.mates),
+            None => self.belief.update(now, self.config.robot, sensors, &self.teammates),
         }
         self.coordinate(now);
         let intent = self.intent(now);
-        let Self { limbs, belief, mates, host, .. } = self;
-        self.actuators = Some(limbs.act(now, belief, mates, host.as_ref(), sensors, intent));
+        let Self { actuation, belief, teammates, host, .. } = self;
+        self.actuators = Some(actuation.act(now, belief, teammates, host.as_ref(), sensors, intent));
         self.spoken.sense(sensors);
-        self.beacon_due |= self.spoken.has_turn(self.config.robot, self.limbs.beacon_steps());
+        self.beacon_due |= self.spoken.has_turn(self.config.robot, self.actuation.beacon_steps());
     }
 
     /// What it wants of its body. Where steps are short, a step does not both plan and do something else that
@@ -152,15 +152,15 @@ impl<'a> Brain<'a> {
     /// received many frames reuses its path.
     fn intent(&mut self, now: Instant) -> Intent {
         let since = core::mem::take(&mut self.since);
-        let heard_most = if self.limbs.winds() { HEARD_MOST_WINDING } else { HEARD_MOST };
-        let is_busy = since.retrieved || since.heard > heard_most;
+        let received_most = if self.actuation.winds() { RECEIVED_MOST_WINDING } else { RECEIVED_MOST };
+        let is_busy = since.retrieved || since.received > received_most;
         if !self.has_short_steps() {
             self.act(now)
         } else if since.turned {
             Intent::Stand { face: None }
         } else if is_busy && self.onwards > 0 {
             self.onwards -= 1;
-            Intent::Onwards
+            Intent::KeepPath
         } else {
             self.onwards = ONWARDS_MOST.min(self.onwards + 1);
             self.act(now)
@@ -174,7 +174,7 @@ impl<'a> Brain<'a> {
         if self.has_short_steps() {
             return;
         }
-        self.mates.forget_the_silent(now);
+        self.teammates.forget_the_silent(now);
         self.coordinate(now);
     }
 
@@ -209,7 +209,7 @@ impl<'a> Brain<'a> {
 
     /// Whether its body's steps are short, so that work is spread over several.
     pub(crate) fn has_short_steps(&self) -> bool {
-        self.limbs.has_short_steps()
+        self.actuation.has_short_steps()
     }
 
     /// The robot's belief.
@@ -219,7 +219,7 @@ impl<'a> Brain<'a> {
 
     /// The governor's decision on the motion wanted in the last step.
     pub fn ruling(&self) -> Ruling {
-        self.limbs.ruling()
+        self.actuation.ruling()
     }
 
     /// State of the running cycle.
@@ -229,17 +229,17 @@ impl<'a> Brain<'a> {
 
     /// The problem for which it would retrieve now.
     pub fn problem(&self, now: Instant) -> Option<Problem> {
-        let Self { config, base, belief, mates, .. } = self;
-        retrieval::problem(now, config.robot, base, belief.game.defending, belief, mates)
+        let Self { config, base, belief, teammates, .. } = self;
+        retrieval::problem(now, config.robot, base, belief.game.defending, belief, teammates)
     }
 }
 
 /// Frames that a short step opens and still plans: both parts of a snapshot, a command and two teammates'
 /// beacons. Opening one takes 2,000 instructions, planning up to 25,000 of the 40,000 that a step may take
 /// (docs/architecture.md §9).
-const HEARD_MOST: u8 = 5;
+const RECEIVED_MOST: u8 = 5;
 /// One less where the path leads around something: planning such a path takes 7,000 of them.
-const HEARD_MOST_WINDING: u8 = 4;
+const RECEIVED_MOST_WINDING: u8 = 4;
 /// Most steps in a row that reuse the path: a cycle's end, a proposal, its answer and teammates' usual
 /// beacons between them, twice. Each step that plans adds one again, so that on a radio channel that is
 /// always full every second step plans.

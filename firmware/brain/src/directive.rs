@@ -12,17 +12,17 @@ use crate::skills::wheels::{self, Placement};
 
 /// State of the running directive.
 #[derive(Clone, Debug, Default)]
-pub struct Errand {
+pub struct TaskState {
     placement: Placement,
 }
 
-impl Errand {
+impl TaskState {
     /// The intent for `directive`; `None` where the robots choose for themselves.
     pub fn step(&mut self, now: Instant, belief: &Belief, directive: &Directive) -> Option<Intent> {
         if !matches!(directive, Directive::PlaceBall { .. }) {
             self.placement.end();
         }
-        if belief.game.barred && touches(directive) {
+        if belief.game.double_touch_blocked && touches(directive) {
             return Some(wheels::keep_off(belief));
         }
         Some(match *directive {
@@ -81,7 +81,7 @@ mod tests {
     #[test]
     fn who_took_our_restart_keeps_off_the_ball_whatever_it_is_told_to_do_with_it() {
         let mut b = belief((0.0, 0.0, 0.0), (0.12, 0.0));
-        b.game.barred = true;
+        b.game.double_touch_blocked = true;
         let kick = KickOrder::Flat(400);
         let directives = [
             Directive::GetBall { face: None },
@@ -90,7 +90,7 @@ mod tests {
             Directive::Receive { at: AT, then: None },
         ];
         for directive in directives {
-            let Some(Intent::Drive(drive)) = Errand::default().step(Instant(0), &b, &directive) else {
+            let Some(Intent::Drive(drive)) = TaskState::default().step(Instant(0), &b, &directive) else {
                 panic!()
             };
             assert!(drive.to.x() < -0.2, "{directive:?}: {drive:?}");
@@ -100,7 +100,7 @@ mod tests {
     #[test]
     fn gameplay_is_the_robots_own_choice() {
         let b = belief((0.0, 0.0, 0.0), (1.0, 0.0));
-        assert_eq!(Errand::default().step(Instant(0), &b, &Directive::Gameplay { hint: None }), None);
+        assert_eq!(TaskState::default().step(Instant(0), &b, &Directive::Gameplay { hint: None }), None);
         assert_eq!(order(KickOrder::Chip(350)), OmniKick::Chip(3.5));
     }
 }

@@ -20,8 +20,8 @@ pub(crate) fn gameplay(scene: &Scene<'_>) -> f32 {
     for part in case.robots() {
         let from = scene
             .player(part)
-            .and_then(|id| scene.mates.get(scene.now, id))
-            .map_or(scene.belief.pose.position, |mate| mate.pose().position);
+            .and_then(|id| scene.teammates.get(scene.now, id))
+            .map_or(scene.belief.pose.position, |teammate| teammate.pose().position);
         walk = walk.max(from.distance(scene.place_of(part)) / scene.body.spec().speed);
     }
     let chain: f32 = case

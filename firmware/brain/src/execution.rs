@@ -13,8 +13,8 @@ use protocol::{CycleId, Duration, Instant, RobotId};
 use crate::belief::Belief;
 use crate::body::{Body, Intent};
 use crate::estimate;
-use crate::mates::Mates;
 use crate::skills::{Reception, Step};
+use crate::teammates::Teammates;
 use crate::timer::{Timer, TimerTable};
 
 /// Inputs of an execution in one step.
@@ -25,7 +25,7 @@ pub struct Scene<'s> {
     /// This robot's belief.
     pub belief: &'s Belief,
     /// Its teammates' beacons.
-    pub mates: &'s Mates,
+    pub teammates: &'s Teammates,
     /// The cycle's id.
     pub cycle: CycleId,
     /// The gameplay of the cycle.
@@ -61,7 +61,7 @@ impl Scene<'_> {
 
     /// How far the teammate that plays `part` has come; `None` if nothing is known of it in this cycle.
     pub fn progress_of(&self, part: CaseRobot) -> Option<Progress> {
-        self.mates.get(self.now, self.player(part)?)?.progress_in(self.cycle)
+        self.teammates.get(self.now, self.player(part)?)?.progress_in(self.cycle)
     }
 
     /// The leg of the ball's path that this action makes.
@@ -219,8 +219,8 @@ impl Execution {
                 .belief
                 .ball
                 .is_some_and(|ball| ball.rolls_towards(scene.belief.pose.position, COMING_WITHIN))
-            && !scene.mates.anyone_holds_ball();
-        let taken = !receiving && scene.mates.anyone_holds_ball();
+            && !scene.teammates.anyone_holds_ball();
+        let taken = !receiving && scene.teammates.anyone_holds_ball();
         (done && !taken) || coming
     }
 
@@ -236,8 +236,8 @@ impl Execution {
         let rolls_for = estimate::roll(scene, scene.belief.pose.position.distance(place));
         let spec = scene.body.spec();
         let near = (rolls_for * spec.speed * spec.receiver_haste).max(spec.receiver_near);
-        let mate = scene.player(to).and_then(|id| scene.mates.get(scene.now, id));
-        at_receive && mate.is_some_and(|mate| mate.pose().position.distance(place) < near)
+        let teammate = scene.player(to).and_then(|id| scene.teammates.get(scene.now, id));
+        at_receive && teammate.is_some_and(|teammate| teammate.pose().position.distance(place) < near)
     }
 
     fn run(&mut self, scene: &Scene<'_>, timers: &mut TimerTable, action: Action) -> Verdict {
@@ -258,7 +258,7 @@ impl Execution {
                     return Verdict::Done;
                 }
                 let face = face_ball(belief, to);
-                Verdict::Running(Intent::Walk { to, face, shy_of_ball: true })
+                Verdict::Running(Intent::Walk { to, face, avoiding_of_ball: true })
             }
             Action::Turn(target) => {
                 let heading = match target {
@@ -313,7 +313,7 @@ impl Execution {
 
     /// Getting the ball fails when an opponent has had it for too long.
     fn take(scene: &Scene<'_>, timers: &mut TimerTable, step: Step) -> Verdict {
-        if scene.belief.opponent_on_ball(scene.now, scene.mates) {
+        if scene.belief.opponent_on_ball(scene.now, scene.teammates) {
             timers.set_if_idle(Timer::OpponentHolds, scene.now, OPPONENT_PATIENCE);
         } else {
             timers.clear(Timer::OpponentHolds);
@@ -345,7 +345,7 @@ impl Execution {
             return self.aim_ahead(scene).unwrap_or(Intent::Stand { face: None });
         }
         let to = self.place.unwrap_or_else(|| scene.place_of(self.part));
-        Intent::Walk { to, face: face_ball(scene.belief, to), shy_of_ball: true }
+        Intent::Walk { to, face: face_ball(scene.belief, to), avoiding_of_ball: true }
     }
 
     /// Turning for the pass that waits for its receiver.

@@ -145,7 +145,7 @@ pub struct Governor {
     last: Twist<Body>,
     last_at: Option<Instant>,
     /// Since when the host has been received without a long silence.
-    heard_since: Option<Instant>,
+    received_since: Option<Instant>,
     last_frame: Option<Instant>,
     low_since: Option<Instant>,
     /// Since when it has stood still without a command.
@@ -160,7 +160,7 @@ impl Governor {
             league,
             last: Twist::default(),
             last_at: None,
-            heard_since: None,
+            received_since: None,
             last_frame: None,
             low_since: None,
             left_since: None,
@@ -168,12 +168,12 @@ impl Governor {
         }
     }
 
-    /// Counts a frame of the host as received at `heard`, never before the last.
-    pub fn hear_host(&mut self, heard: Instant) {
-        if self.last_frame.is_some_and(|last| heard.since(last) >= LONG_SILENCE) {
-            self.heard_since = None;
+    /// Counts a frame of the host as received at `received`, never before the last.
+    pub fn receive_host(&mut self, received: Instant) {
+        if self.last_frame.is_some_and(|last| received.since(last) >= LONG_SILENCE) {
+            self.received_since = None;
         }
-        self.last_frame = Some(heard);
+        self.last_frame = Some(received);
     }
 
     /// The allowed part of the wanted motion. Must be called every step; its result goes to the body.
@@ -209,8 +209,8 @@ impl Governor {
             let silent = |last: Option<Instant>| last.is_none_or(|last| at.now.since(last) >= SILENCE);
             // From the step on in which it came: a frame with a long latency counts as received before that.
             let gone = hearing.frame.is_none_or(|last| at.now.since(last) > LONG_SILENCE);
-            self.heard_since = if gone { None } else { Some(self.heard_since.unwrap_or(at.now)) };
-            let disarmed = self.heard_since.is_none_or(|since| at.now.since(since) < ARM_AFTER);
+            self.received_since = if gone { None } else { Some(self.received_since.unwrap_or(at.now)) };
+            let disarmed = self.received_since.is_none_or(|since| at.now.since(since) < ARM_AFTER);
             let silence = disarmed || silent(hearing.frame);
             why.add_if(silence, Why::Silence);
             why.add_if(!silence && silent(hearing.command), Why::NoCommand);

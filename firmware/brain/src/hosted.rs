@@ -3,23 +3,23 @@
 //!
 //! A directive is held until the next one, and stale after 100 ms without a command (the governor's
 //! [`SILENCE`]); the phase is that of the newest frame. A frame counts as received on arrival if it is at
-//! most [`LATENCY_MAX`] old, and earlier by its excess age otherwise (`heard_at`).
+//! most [`LATENCY_MAX`] old, and earlier by its excess age otherwise (`received_at`).
 
 use geometry::{Field, Point};
-use protocol::host::{Command, Directive, Duty, HostMessage};
+use protocol::host::{Command, Directive, HostMessage, RuleRole};
 use protocol::robot_io::SensorFrame;
 use protocol::{Duration, Instant, RobotId};
 use rules::{Phase, Side, contact};
 
 use crate::belief::{Belief, Game};
 use crate::governor::{Hearing, LATENCY_MAX, SILENCE};
-use crate::picture::{Picture, Taken};
+use crate::snapshot::{HostSnapshot, Taken};
 
 /// A robot's view of its host, from the frames received.
 #[derive(Clone, Debug)]
 pub struct Hosted {
     me: RobotId,
-    picture: Picture,
+    snapshot: HostSnapshot,
     command: Option<(Instant, Command)>,
     frame: Option<Instant>,
     /// Arrival of the last frame, of any age.
@@ -37,7 +37,7 @@ enum Restart {
     /// This robot has touched the ball as the kicker of the restart; the ball lay here.
     Touched(Point<Field>),
     /// The ball has moved away from it: no second touch before another robot's.
-    Barred,
+    DoubleTouchBlocked,
 }
 
 impl Hosted {
@@ -45,7 +45,7 @@ impl Hosted {
     pub fn new(me: RobotId) -> Self {
         Self {
             me,
-            picture: Picture::new(me),
+            snapshot: HostSnapshot::new(me),
             command: None,
             frame: None,
             arrived: None,
@@ -57,9 +57,9 @@ impl Hosted {
     /// Handles a message of the host that was sent at most `age` ago. Returns when it counts as received, if
     /// it was for this robot, and new.
     pub fn handle(&mut self, now: Instant, age: Duration, message: &HostMessage) -> Option<Instant> {
-        let heard = heard_at(now, age);
+        let received = received_at(now, age);
         match message {
-            HostMessage::World(part) => match self.picture.handle_part(now, part) {
+            HostMessage::World(part) => match self.snapshot.handle_part(now, part) {
                 Taken::Begun | Taken::More => self.phase = Some(part.phase),
                 Taken::Doubled | Taken::Late | Taken::Malformed => return None,
             },
@@ -69,37 +69,37 @@ impl Hosted {
                 }
                 self.phase = Some(command.phase);
                 self.command = Some((
-                    self.command.as_ref().map_or(heard, |(last, _)| heard.max(*last)),
+                    self.command.as_ref().map_or(received, |(last, _)| received.max(*last)),
                     command.clone(),
                 ));
             }
             HostMessage::Welcome(_) => {}
         }
         self.arrived = Some(now);
-        self.frame = Some(self.frame.map_or(heard, |last| heard.max(last)));
+        self.frame = Some(self.frame.map_or(received, |last| received.max(last)));
         self.frame
     }
 
     /// Another host than before has welcomed this robot: its snapshots have numbers of their own.
-    pub fn begin_anew(&mut self) {
-        self.picture.begin_anew();
+    pub fn restart(&mut self) {
+        self.snapshot.restart();
     }
 
     /// Carries the snapshot forward by what the wheels measured, and copies it into `belief`.
     pub fn see(&mut self, now: Instant, sensors: &SensorFrame, belief: &mut Belief) {
-        self.picture.handle_odometry(now, sensors.odometry);
-        belief.show(now, &self.picture, sensors);
-        let duty = self.command.as_ref().map_or(Duty::Player, |(_, command)| command.duty);
+        self.snapshot.handle_odometry(now, sensors.odometry);
+        belief.show(now, &self.snapshot, sensors);
+        let rule_role = self.command.as_ref().map_or(RuleRole::Player, |(_, command)| command.rule_role);
         let defending = self.command.as_ref().map_or(belief.game.defending, |(_, command)| command.defending);
         // A robot without a received phase does nothing.
         let phase = self.phase.unwrap_or(Phase::Halt);
-        self.watch_touches(phase, duty, belief);
+        self.watch_touches(phase, rule_role, belief);
         belief.game = Game {
             phase,
-            placement: self.picture.placement(),
-            duty,
+            placement: self.snapshot.placement(),
+            rule_role,
             defending,
-            barred: self.restart == Restart::Barred,
+            double_touch_blocked: self.restart == Restart::DoubleTouchBlocked,
         };
     }
 
@@ -126,10 +126,10 @@ impl Hosted {
 
     /// Whether the host's snapshot has a current pose of this robot.
     pub fn shows_me(&self, now: Instant) -> bool {
-        self.picture.own(now).is_some()
+        self.snapshot.own(now).is_some()
     }
 
-    fn watch_touches(&mut self, phase: Phase<Side>, duty: Duty, belief: &Belief) {
+    fn watch_touches(&mut self, phase: Phase<Side>, rule_role: RuleRole, belief: &Belief) {
         let others_touch = || {
             belief.ball.is_some_and(|ball| {
                 belief
@@ -138,27 +138,29 @@ impl Hosted {
                     .any(|other| other.pose.position.distance(ball.position) < contact::TOUCHES_WITHIN)
             })
         };
-        let ours =
-            matches!(phase, Phase::FreeKick(Side::Ours) | Phase::Kickoff(Side::Ours)) && duty == Duty::Taker;
+        let ours = matches!(phase, Phase::FreeKick(Side::Ours) | Phase::Kickoff(Side::Ours))
+            && rule_role == RuleRole::Taker;
         self.restart = match (phase, self.restart) {
             (Phase::Run, Restart::Touched(_)) if belief.contact() => self.restart,
-            (Phase::Run, Restart::Touched(_)) => Restart::Barred,
-            (Phase::Run, Restart::Barred) if others_touch() => Restart::None,
+            (Phase::Run, Restart::Touched(_)) => Restart::DoubleTouchBlocked,
+            (Phase::Run, Restart::DoubleTouchBlocked) if others_touch() => Restart::None,
             (Phase::Run, same) => same,
             (_, Restart::None) if ours && belief.contact() => {
                 belief.ball.map_or(Restart::None, |ball| Restart::Touched(ball.position))
             }
             // Before the ball is in play it may be touched again: contact at the break-beam sensor alone has
             // not moved it.
-            (_, Restart::Touched(lay)) if ours && !belief.contact() && gone(belief, lay) => Restart::Barred,
-            (_, Restart::Touched(_) | Restart::Barred) if ours => self.restart,
+            (_, Restart::Touched(lay)) if ours && !belief.contact() && gone(belief, lay) => {
+                Restart::DoubleTouchBlocked
+            }
+            (_, Restart::Touched(_) | Restart::DoubleTouchBlocked) if ours => self.restart,
             _ => Restart::None,
         };
     }
 }
 
 /// When a frame of that age counts as received.
-fn heard_at(now: Instant, age: Duration) -> Instant {
+fn received_at(now: Instant, age: Duration) -> Instant {
     now - Duration(age.0.saturating_sub(LATENCY_MAX.0))
 }
 
@@ -187,7 +189,7 @@ mod tests {
             to: id(to),
             defending: geometry::GoalEnd::Negative,
             phase: Phase::Run,
-            duty: Duty::Player,
+            rule_role: RuleRole::Player,
             directive,
         })
     }
@@ -227,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn the_taker_of_our_free_kick_is_barred_until_another_robot_has_touched_the_ball() {
+    fn the_taker_of_our_free_kick_is_double_touch_blocked_until_another_robot_has_touched_the_ball() {
         let mut hosted = Hosted::new(id(3));
         let mut held = with_ball(0.0);
         let sensors = SensorFrame {
@@ -239,28 +241,28 @@ mod tests {
             odometry: Twist::default(),
             health: Health::default(),
         };
-        held.show(Instant(0), &Picture::new(id(3)), &sensors);
+        held.show(Instant(0), &HostSnapshot::new(id(3)), &sensors);
         let free_kick = Phase::FreeKick(Side::Ours);
-        hosted.watch_touches(free_kick, Duty::Player, &held);
+        hosted.watch_touches(free_kick, RuleRole::Player, &held);
         assert_eq!(hosted.restart, Restart::None, "only the taker's touch counts");
-        hosted.watch_touches(free_kick, Duty::Taker, &held);
+        hosted.watch_touches(free_kick, RuleRole::Taker, &held);
         assert!(matches!(hosted.restart, Restart::Touched(_)));
-        hosted.watch_touches(free_kick, Duty::Taker, &with_ball(0.5));
-        assert_eq!(hosted.restart, Restart::Barred);
-        hosted.watch_touches(Phase::Run, Duty::Player, &with_ball(1.0));
-        assert_eq!(hosted.restart, Restart::Barred, "in play it may still not");
-        let mut mate_has_it = with_ball(1.0);
+        hosted.watch_touches(free_kick, RuleRole::Taker, &with_ball(0.5));
+        assert_eq!(hosted.restart, Restart::DoubleTouchBlocked);
+        hosted.watch_touches(Phase::Run, RuleRole::Player, &with_ball(1.0));
+        assert_eq!(hosted.restart, Restart::DoubleTouchBlocked, "in play it may still not");
+        let mut teammate_has_it = with_ball(1.0);
         let pose = Pose { position: Point::new(1.1, 0.0), ..Pose::default() };
         let other = Other { side: Side::Theirs, id: id(1), pose, velocity: Vector::default() };
-        let _ = mate_has_it.others.push(other);
-        hosted.watch_touches(Phase::Run, Duty::Player, &mate_has_it);
+        let _ = teammate_has_it.others.push(other);
+        hosted.watch_touches(Phase::Run, RuleRole::Player, &teammate_has_it);
         assert_eq!(hosted.restart, Restart::None);
     }
 
     #[test]
     fn a_stop_ends_the_bar() {
-        let mut hosted = Hosted { restart: Restart::Barred, ..Hosted::new(id(3)) };
-        hosted.watch_touches(Phase::Stop, Duty::Taker, &with_ball(1.0));
+        let mut hosted = Hosted { restart: Restart::DoubleTouchBlocked, ..Hosted::new(id(3)) };
+        hosted.watch_touches(Phase::Stop, RuleRole::Taker, &with_ball(1.0));
         assert_eq!(hosted.restart, Restart::None);
     }
 }

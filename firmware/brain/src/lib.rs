@@ -3,11 +3,11 @@
 //!
 //! Four kinds of methods, as on [`Brain`]: getters; `handle_*(now, …)` for inputs; `poll_*` for outputs, to
 //! be drained after every `handle_*`; no commands besides. Bottom up: [`timer`] (every deadline), [`belief`]
-//! and [`mates`] (what it knows), [`body`] and [`skills`] (what it can do), [`reactive`] (what it does by
+//! and [`teammates`] (what it knows), [`body`] and [`skills`] (what it can do), [`reactive`] (what it does by
 //! itself), [`execution`] (its part of a case), [`team`] (the cycle), [`Brain`] (the order of these within a
 //! step), [`Station`] (brain with radio).
 //!
-//! Where a host leads (wheels): [`picture`] and [`hosted`] (what it sends), [`directive`] (the skill that
+//! Where a host leads (wheels): [`snapshot`] and [`hosted`] (what it sends), [`directive`] (the skill that
 //! carries it out), [`governor`] (what of it reaches the motors).
 //!
 //! **Invariants.** No I/O, no clock, no allocation, no randomness; nothing from outside can panic; it
@@ -25,12 +25,12 @@ mod estimate;
 pub mod execution;
 pub mod governor;
 pub mod hosted;
-pub mod mates;
-pub mod picture;
 pub mod reactive;
 pub mod skills;
+pub mod snapshot;
 mod station;
 pub mod team;
+pub mod teammates;
 pub mod timer;
 
 pub use brain::Brain;

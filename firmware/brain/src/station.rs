@@ -5,7 +5,7 @@
 
 use casebase::CaseBase;
 use protocol::frame::{RobotKeys, TeamKey};
-use protocol::link::{Heard, Link, Packet};
+use protocol::link::{Link, Packet, Received};
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
 use protocol::team::TeamMessage;
 use protocol::{Duration, Instant};
@@ -48,14 +48,14 @@ impl<'a> Station<'a> {
         }
         let led_by = self.link.host_epoch();
         match self.link.open(now, packet) {
-            Ok(Heard::Mate(from, message)) => self.brain.handle_team_message(now, from, &message),
-            Ok(Heard::Host(message)) => {
+            Ok(Received::Teammate(from, message)) => self.brain.handle_team_message(now, from, &message),
+            Ok(Received::Host(message)) => {
                 if self.link.host_epoch() != led_by {
                     self.brain.handle_new_host();
                 }
                 self.brain.handle_host_message(now, self.link.age(), &message);
             }
-            Ok(Heard::Elsewhere) | Err(_) => {}
+            Ok(Received::Elsewhere) | Err(_) => {}
         }
     }
 
@@ -84,13 +84,13 @@ impl<'a> Station<'a> {
     fn next_packet(&mut self, now: Instant) -> Option<Packet> {
         let Some(mut message) = self.brain.poll_message(now) else {
             // One message a step, where steps are short: sealing costs time, and the next step comes soon.
-            let waits =
-                self.spoke == Some(now) && self.greeted.is_some_and(|last| now.since(last) < GREET_WITHIN);
-            let greeting = if waits { None } else { self.link.poll_greeting(now) };
-            if greeting.is_some() {
+            let waits = self.spoke == Some(now)
+                && self.greeted.is_some_and(|last| now.since(last) < SHAKE_HANDS_WITHIN);
+            let handshake = if waits { None } else { self.link.poll_handshake(now) };
+            if handshake.is_some() {
                 self.greeted = Some(now);
             }
-            return greeting;
+            return handshake;
         };
         self.spoke = Some(now);
         if let TeamMessage::Telemetry(telemetry) = &mut message {
@@ -121,4 +121,4 @@ impl<'a> Station<'a> {
 }
 
 /// Handshakes wait for a step without other messages, but no longer than this: a walking robot sends in each.
-const GREET_WITHIN: Duration = Duration::millis(40);
+const SHAKE_HANDS_WITHIN: Duration = Duration::millis(40);

@@ -5,7 +5,7 @@ use brain::belief::{Ball, Belief};
 use brain::body::omni::{Drive, Drivetrain};
 use geometry::{Angle, Field, GoalEnd, Point, Pose, Vector};
 use protocol::Instant;
-use rules::{Duty, League, Phase, Side};
+use rules::{League, Phase, RuleRole, Side};
 
 const STEP: f32 = 0.01;
 
@@ -13,7 +13,7 @@ const STEP: f32 = 0.01;
 fn last_second(phase: Phase<Side>, from: Point<Field>, to: Point<Field>) -> Vec<Point<Field>> {
     let own = GoalEnd::Positive;
     let mut belief = Belief::defending(League::DivisionA, own);
-    (belief.game.phase, belief.game.duty) = (phase, Duty::Keeper);
+    (belief.game.phase, belief.game.rule_role) = (phase, RuleRole::Keeper);
     belief.pose = Pose { position: from, heading: Angle::HALF_TURN };
     let ball = League::DivisionA.field().penalty_spot(own);
     belief.ball = Some(Ball { position: ball, velocity: Vector::default(), rest: ball });

@@ -5,17 +5,17 @@ use brain::belief::{Ball, Belief};
 use brain::body::omni::{Drive, Drivetrain};
 use geometry::{Angle, GoalEnd, Point, Pose, Vector};
 use protocol::Instant;
-use rules::{Duty, League, Phase, Side};
+use rules::{League, Phase, RuleRole, Side};
 
 /// Distance of the robot from the ball after two seconds, m.
 fn left(gap: f32, held: bool, phase: Phase<Side>) -> f32 {
     let mut belief = Belief::defending(League::DivisionB, GoalEnd::Positive);
-    (belief.game.phase, belief.game.duty) = (phase, Duty::Player);
+    (belief.game.phase, belief.game.rule_role) = (phase, RuleRole::Player);
     let heading = Angle::degrees(139.0);
     belief.pose = Pose { position: Point::new(0.948, 1.512), heading };
     let ball = belief.pose.position + Vector::polar(gap, heading);
     belief.holds_ball = held;
-    let (mut drivetrain, drive) = (Drivetrain::default(), Drive::shy(Point::new(2.46, 0.19), heading));
+    let (mut drivetrain, drive) = (Drivetrain::default(), Drive::avoiding(Point::new(2.46, 0.19), heading));
     for step in 0..200_u64 {
         belief.ball = Some(Ball { position: ball, velocity: Vector::default(), rest: ball });
         let wanted = drivetrain.actuate(Instant(step * 10_000), &belief, drive.into());

@@ -9,10 +9,10 @@ use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro128PlusPlus;
 use rules::keep_out::{Situation, Why, keep_out};
 use rules::limits::ROBOT_RADIUS;
-use rules::{Duty, League, Phase, Side};
+use rules::{League, Phase, RuleRole, Side};
 
 const LEAGUES: [League; 3] = [League::Ssl2013, League::DivisionB, League::DivisionA];
-const DUTIES: [Duty; 3] = [Duty::Keeper, Duty::Taker, Duty::Player];
+const DUTIES: [RuleRole; 3] = [RuleRole::Keeper, RuleRole::Taker, RuleRole::Player];
 const STEP: f32 = 0.01;
 /// Time that the controller gives teams to prepare, s.
 const TIME: f32 = 10.0;
@@ -28,7 +28,7 @@ impl Dice {
         ((self.0.next_u32() >> 8) as f32 / 8_388_608.0 - 1.0) * range
     }
 
-    fn on_carpet(&mut self, league: League, inside: f32) -> Point<Field> {
+    fn on_surface(&mut self, league: League, inside: f32) -> Point<Field> {
         let field = league.field();
         let x = self.within(field.length * 0.5 + field.goal_line_margin - inside);
         Point::new(x, self.within(field.width * 0.5 + field.margin - inside))
@@ -68,12 +68,12 @@ impl Player {
         league: League,
         own: GoalEnd,
         phase: Phase<Side>,
-        duty: Duty,
+        rule_role: RuleRole,
         at: Point<Field>,
         drive: Drive,
     ) -> Self {
         let mut belief = Belief::defending(league, own);
-        (belief.game.phase, belief.game.duty) = (phase, duty);
+        (belief.game.phase, belief.game.rule_role) = (phase, rule_role);
         belief.pose = Pose { position: at, heading: Angle::ZERO };
         Self { belief, drivetrain: Drivetrain::default(), drive, stood: 0.0, longest: 0.0 }
     }
@@ -95,7 +95,7 @@ impl Player {
             field: &field,
             own: game.defending,
             phase: game.phase,
-            duty: game.duty,
+            rule_role: game.rule_role,
             ball: belief.ball.map(|ball| ball.position),
             placement: game.placement,
             ball_in_play: false,
@@ -142,9 +142,9 @@ fn ball(dice: &mut Dice, league: League, phase: Phase<Side>, own: GoalEnd) -> (P
             let x = own.sign() as f32 * (0.5 * field.length + 0.1 + dice.within(0.15));
             Point::new(x, dice.within(0.5 * field.goal_width))
         }
-        _ => dice.on_carpet(league, 0.03),
+        _ => dice.on_surface(league, 0.03),
     };
-    (at, dice.on_carpet(league, 0.5))
+    (at, dice.on_surface(league, 0.5))
 }
 
 /// Whether the point is inside a goal's walls, where no robot can be.
@@ -160,7 +160,7 @@ fn in_walls(league: League, at: Point<Field>) -> bool {
 
 fn place(dice: &mut Dice, league: League, taken: &[Point<Field>]) -> Point<Field> {
     loop {
-        let at = dice.on_carpet(league, ROBOT_RADIUS);
+        let at = dice.on_surface(league, ROBOT_RADIUS);
         if !in_walls(league, at) && taken.iter().all(|other| other.distance(at) > 2.0 * ROBOT_RADIUS) {
             return at;
         }
@@ -184,13 +184,13 @@ fn alone(phases: &[Phase<Side>], starts: u32, obstacles: usize, may_fail: usize)
     for (l, league) in LEAGUES.into_iter().enumerate() {
         for (p, phase) in phases.iter().copied().enumerate() {
             for (i, own) in [GoalEnd::Negative, GoalEnd::Positive].into_iter().enumerate() {
-                for duty in DUTIES {
+                for rule_role in DUTIES {
                     for start in 0..starts {
                         let seed =
                             (((l * 16 + p) * 2 + i) as u64) << 32 | u64::from(start) << 8 | obstacles as u64;
                         let mut dice = Dice(Xoshiro128PlusPlus::seed_from_u64(seed));
                         drives += 1;
-                        let situation = (league, phase, own, duty);
+                        let situation = (league, phase, own, rule_role);
                         failed.extend(
                             one(&mut dice, situation, obstacles).map(|why| format!("seed {seed:#x}: {why}")),
                         );
@@ -205,7 +205,7 @@ fn alone(phases: &[Phase<Side>], starts: u32, obstacles: usize, may_fail: usize)
 /// One drive; returns its failure, if any.
 fn one(
     dice: &mut Dice,
-    (league, phase, own, duty): (League, Phase<Side>, GoalEnd, Duty),
+    (league, phase, own, rule_role): (League, Phase<Side>, GoalEnd, RuleRole),
     obstacles: usize,
 ) -> Option<String> {
     let (ball, placement) = ball(dice, league, phase, own);
@@ -214,8 +214,8 @@ fn one(
     for _ in 0..obstacles {
         taken.push(place(dice, league, &taken));
     }
-    let to = if dice.0.next_u32().is_multiple_of(3) { from } else { dice.on_carpet(league, 0.0) };
-    let mut player = Player::new(league, own, phase, duty, from, Drive::shy(to, Angle::ZERO));
+    let to = if dice.0.next_u32().is_multiple_of(3) { from } else { dice.on_surface(league, 0.0) };
+    let mut player = Player::new(league, own, phase, rule_role, from, Drive::avoiding(to, Angle::ZERO));
     player.sees(ball, placement);
     for (number, at) in taken[1..].iter().enumerate() {
         let id = RobotId::all().nth(number).expect("sixteen numbers");
@@ -243,7 +243,7 @@ fn one(
         return None;
     };
     Some(format!(
-        "{wrong} at {:?} after {time:.2} s; {} {phase:?} {duty:?} of {own:?} from {from:?} to {to:?}, ball {ball:?}, target \
+        "{wrong} at {:?} after {time:.2} s; {} {phase:?} {rule_role:?} of {own:?} from {from:?} to {to:?}, ball {ball:?}, target \
          {placement:?}, others {:?}",
         player.at(),
         league.name(),
@@ -294,9 +294,9 @@ fn teams(league: League, phase: Phase<Side>, robots: usize, seed: u64) -> Vec<St
         for number in 0..robots {
             let at = place(&mut dice, league, &taken);
             taken.push(at);
-            let duty = DUTIES[number.min(2)];
-            let to = dice.on_carpet(league, 0.0);
-            let mut player = Player::new(league, own, seen, duty, at, Drive::shy(to, Angle::ZERO));
+            let rule_role = DUTIES[number.min(2)];
+            let to = dice.on_surface(league, 0.0);
+            let mut player = Player::new(league, own, seen, rule_role, at, Drive::avoiding(to, Angle::ZERO));
             player.sees(ball, placement);
             players.push((side, number, player));
         }
@@ -334,10 +334,16 @@ fn teams(league: League, phase: Phase<Side>, robots: usize, seed: u64) -> Vec<St
 
 /// How near a robot that crosses comes to the first 0.9 m of the ball's path, when a teammate is about to
 /// kick it.
-fn crossing(phase: Phase<Side>, duty: Duty) -> (f32, f32) {
+fn crossing(phase: Phase<Side>, rule_role: RuleRole) -> (f32, f32) {
     let (from, to) = (Point::new(0.5, -1.5), Point::new(0.5, 1.5));
-    let mut player =
-        Player::new(League::DivisionB, GoalEnd::Negative, phase, duty, from, Drive::bold(to, Angle::ZERO));
+    let mut player = Player::new(
+        League::DivisionB,
+        GoalEnd::Negative,
+        phase,
+        rule_role,
+        from,
+        Drive::bold(to, Angle::ZERO),
+    );
     player.sees(Point::new(0.0, 0.0), Point::new(3.0, 0.0));
     let pose = Pose { position: Point::new(-0.2, 0.0), heading: Angle::ZERO };
     let kicker = Other { side: Side::Ours, id: RobotId::ZERO, pose, velocity: Vector::default() };
@@ -356,11 +362,11 @@ fn crossing(phase: Phase<Side>, duty: Duty) -> (f32, f32) {
 fn nobody_crosses_in_front_of_a_teammate_that_is_about_to_kick() {
     let touches = ROBOT_RADIUS + rules::limits::BALL_RADIUS;
     for phase in [Phase::FreeKick(Side::Ours), Phase::Kickoff(Side::Ours)] {
-        let (nearest, left) = crossing(phase, Duty::Player);
+        let (nearest, left) = crossing(phase, RuleRole::Player);
         assert!(nearest > touches, "{phase:?}: {nearest} m");
         // Around it, to the other side; at a kick-off the other half is forbidden.
         assert!(left < 0.01 || phase == Phase::Kickoff(Side::Ours), "{phase:?}: {left} m left");
     }
     // In play there is no such lane: the test distinguishes the two.
-    assert!(crossing(Phase::Run, Duty::Player).0 < touches);
+    assert!(crossing(Phase::Run, RuleRole::Player).0 < touches);
 }

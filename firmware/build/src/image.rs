@@ -37,10 +37,10 @@ fn build_into(target_dir: &Path, root: &Path, program: Program) -> Result<PathBu
         .args(["--package", program.package(), "--bin", program.name(), "--profile", PROFILE, "--target-dir"])
         .arg(target_dir);
     if let Program::Robot(body) = program {
-        build.args(["--no-default-features", "--features", body.word()]);
+        build.args(["--no-default-features", "--features", body.label()]);
     }
     if program == Program::Free {
-        build.args(["--no-default-features", "--features", Body::Omni.word()]);
+        build.args(["--no-default-features", "--features", Body::Omni.label()]);
     }
     run_cargo(&mut build)?;
     if image.is_file() { Ok(image) } else { Err(BuildError::NoImage { image }) }
@@ -115,7 +115,7 @@ impl Body {
     pub const ALL: [Self; 2] = [Self::Legged, Self::Omni];
 
     /// Its name in options, which is the feature's name.
-    pub const fn word(self) -> &'static str {
+    pub const fn label(self) -> &'static str {
         match self {
             Self::Legged => "legged",
             Self::Omni => "omni",
@@ -126,8 +126,8 @@ impl Body {
 /// Where cargo puts what it builds: `CARGO_TARGET_DIR` as cargo reads it, or the workspace's own `target`.
 pub fn target_dir(root: &Path) -> PathBuf {
     env::var_os("CARGO_TARGET_DIR")
-        .filter(|folder| !folder.is_empty())
-        .and_then(|folder| std::path::absolute(folder).ok())
+        .filter(|directory| !directory.is_empty())
+        .and_then(|directory| std::path::absolute(directory).ok())
         .unwrap_or_else(|| root.join("target"))
 }
 
@@ -200,9 +200,9 @@ fn run_cargo(build: &mut Command) -> Result<(), BuildError> {
     let command = line_of(build);
     let lost = |error| BuildError::Cargo { command: command.clone(), error };
     let mut child = build.spawn().map_err(lost)?;
-    if let Some(words) = child.stderr.take() {
+    if let Some(description) = child.stderr.take() {
         let mut told = false;
-        for line in BufReader::new(words).split(b'\n').map_while(Result::ok) {
+        for line in BufReader::new(description).split(b'\n').map_while(Result::ok) {
             let line = String::from_utf8_lossy(&line).into_owned();
             if told || !line.contains("Finished") {
                 if !told {

@@ -61,11 +61,11 @@ pub fn tests_in(elf: &[u8]) -> Result<Option<Vec<OnTarget>>, NoTests> {
         let Some(told) = symbol.name().ok().filter(|name| name.starts_with('{')) else { continue };
         let told: Value = serde_json::from_str(told).map_err(|_| NoTests("a test's name is no JSON"))?;
         let at = symbol.address().checked_sub(section.address()).and_then(|at| usize::try_from(at).ok());
-        let word = |n: usize| {
+        let label = |n: usize| {
             let bytes = table.get(at? + 4 * n..)?.first_chunk()?;
             Some(u32::from_le_bytes(*bytes))
         };
-        let (Some(address), Some(path), Some(len)) = (word(0), word(1), word(2)) else {
+        let (Some(address), Some(path), Some(len)) = (label(0), label(1), label(2)) else {
             return Err(NoTests("a test has no function"));
         };
         let module = text_at(&file, path, len).unwrap_or_default();
@@ -158,8 +158,10 @@ mod tests {
         assert_eq!(judged(&test(false), Some(false), "why"), Verdict::Failed("why".into()));
         assert!(matches!(judged(&test(true), Some(true), ""), Verdict::Failed(_)));
         for should_panic in [false, true] {
-            let Verdict::Failed(words) = judged(&test(should_panic), None, "") else { panic!("passed") };
-            assert!(words.contains("60 s"), "{words}");
+            let Verdict::Failed(description) = judged(&test(should_panic), None, "") else {
+                panic!("passed")
+            };
+            assert!(description.contains("60 s"), "{description}");
         }
     }
 

@@ -50,14 +50,14 @@ pub(crate) fn run_within(limit: Duration, command: &mut Command) -> Result<(), S
 /// The command as a user would type it: by the program's name, not by its path.
 pub(crate) fn line_of(command: &Command) -> String {
     let program = Path::new(command.get_program());
-    let words = std::iter::once(program.file_stem().unwrap_or_default()).chain(command.get_args());
-    words.map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" ")
+    let description = std::iter::once(program.file_stem().unwrap_or_default()).chain(command.get_args());
+    description.map(|label| label.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" ")
 }
 
 /// Path of the program, searched in `PATH` as a shell does.
 pub(crate) fn in_path(program: &str) -> Option<PathBuf> {
     let name = format!("{program}{}", env::consts::EXE_SUFFIX);
-    env::split_paths(&env::var_os("PATH")?).map(|folder| folder.join(&name)).find(|path| path.is_file())
+    env::split_paths(&env::var_os("PATH")?).map(|directory| directory.join(&name)).find(|path| path.is_file())
 }
 
 /// Period in which a running command is polled: short against any download, long against the poll itself.
@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_word_of_a_failed_command_is_kept() {
+    fn the_last_label_of_a_failed_command_is_kept() {
         let error =
             output_of(Command::new("sh").args(["-c", "echo first >&2; echo 'no such thing' >&2; exit 3"]));
         let error = error.unwrap_err();

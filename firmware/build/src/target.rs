@@ -83,8 +83,8 @@ fn rustc() -> Command {
 fn prebuilt(root: &Path) -> Result<(), String> {
     let mut question = rustc();
     question.current_dir(root).args(["--print", "target-libdir", "--target", TARGET]);
-    let folder = PathBuf::from(output_of(&mut question)?.trim());
-    let entries = fs::read_dir(&folder).map_err(|_| "not installed".to_string())?;
+    let directory = PathBuf::from(output_of(&mut question)?.trim());
+    let entries = fs::read_dir(&directory).map_err(|_| "not installed".to_string())?;
     let has_core = entries.flatten().any(|entry| entry.file_name().to_string_lossy().starts_with("libcore-"));
     if has_core { Ok(()) } else { Err("without `core`".into()) }
 }

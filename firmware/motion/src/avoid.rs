@@ -125,7 +125,7 @@ pub enum Restraint {
 
 /// Result of the planner.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Way<F> {
+pub struct Detour<F> {
     /// Kind of path.
     pub verdict: Verdict<F>,
     /// Stop position: the target, or the free point that replaces it.
@@ -141,7 +141,7 @@ pub struct Way<F> {
 }
 
 /// Plans the next step.
-pub fn plan<F: Copy>(course: &Course<'_, F>) -> Way<F> {
+pub fn plan<F: Copy>(course: &Course<'_, F>) -> Detour<F> {
     let Course { from, velocity, to, limits, within, step, .. } = *course;
     let time_passes = step > 0.0 && step <= STEP_MAX;
     if !time_passes || !limits.are_usable() || !usable(from, velocity, to) {
@@ -149,7 +149,7 @@ pub fn plan<F: Copy>(course: &Course<'_, F>) -> Way<F> {
         let motion = FreeLimits::default().plan(from, Vector::new(f32::NAN, 0.0), to);
         let next = motion.at(0.0);
         let (verdict, restraint) = (Verdict::Blocked { at: next.position }, Restraint::Braked);
-        return Way { verdict, goal: next.position, length: 0.0, restraint, next, motion };
+        return Detour { verdict, goal: next.position, length: 0.0, restraint, next, motion };
     }
     let mut scene = Scene::new(course.obstacles, within, course.effort);
     scene.look();
@@ -166,11 +166,11 @@ pub fn plan<F: Copy>(course: &Course<'_, F>) -> Way<F> {
     };
     let motion = limits.plan(from, velocity, towards);
     let (next, restraint) = safe_step(course, &scene, &motion, towards);
-    Way { verdict, goal, length: route.length, restraint, next, motion }
+    Detour { verdict, goal, length: route.length, restraint, next, motion }
 }
 
 /// Out of the obstacle that holds the start: to a free point, around all bodies, through any region.
-fn escape<F: Copy>(course: &Course<'_, F>, scene: &mut Scene<'_, F>) -> Way<F> {
+fn escape<F: Copy>(course: &Course<'_, F>, scene: &mut Scene<'_, F>) -> Detour<F> {
     let Course { from, velocity, to, limits, .. } = *course;
     let exit = scene.exit(from, course.effort_to_leave);
     // One search a step: a free point for a covered target is searched for when the robot is out.
@@ -187,7 +187,7 @@ fn escape<F: Copy>(course: &Course<'_, F>, scene: &mut Scene<'_, F>) -> Way<F> {
     let motion = limits.plan(from, velocity, towards);
     let (next, restraint) = safe_step(course, scene, &motion, towards);
     let length = route.length + exit.distance(goal);
-    Way { verdict: Verdict::Escape { to: exit }, goal, length, restraint, next, motion }
+    Detour { verdict: Verdict::Escape { to: exit }, goal, length, restraint, next, motion }
 }
 
 /// A point beyond a corner, at such a distance that the robot comes to the corner as fast as it can turn
@@ -225,9 +225,9 @@ fn safe_step<F: Copy>(
 fn brakes_clear<F: Copy>(course: &Course<'_, F>, scene: &Scene<'_, F>, state: &State<F>) -> bool {
     let speed = state.velocity.norm();
     let time = speed / course.limits.braking;
-    let way = state.velocity * (0.5 * time);
-    scene.stays_within_or_returns(course.from, state.position + way)
-        && scene.is_clear(state.position, way, course.step, time)
+    let path = state.velocity * (0.5 * time);
+    scene.stays_within_or_returns(course.from, state.position + path)
+        && scene.is_clear(state.position, path, course.step, time)
 }
 
 /// Cancels the speed across the path with all that the limits leave; the remainder accelerates along it.

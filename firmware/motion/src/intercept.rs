@@ -33,7 +33,7 @@ pub struct Interception<'b, F> {
 
 /// Which of the reachable interceptions to choose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wish {
+pub enum Request {
     /// arg min t_ball: for an attacker, whose failure is cheap.
     Soonest,
     /// arg max slack: for a defender, whose failure is a goal.
@@ -44,7 +44,7 @@ pub enum Wish {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict<F> {
     /// The robot can intercept in time.
-    Meets(Meeting<F>),
+    Meets(InterceptionPoint<F>),
     /// No point is reached in time: go to the ball's stop position, or to where it is no longer of interest.
     Chase {
         /// Position of the ball then, m.
@@ -58,7 +58,7 @@ pub enum Verdict<F> {
 
 /// An interception of the ball by a robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Meeting<F> {
+pub struct InterceptionPoint<F> {
     /// Position of the ball then, m.
     pub ball: Point<F>,
     /// Position of the robot behind it.
@@ -69,7 +69,7 @@ pub struct Meeting<F> {
     pub robot_time: f32,
 }
 
-impl<F> Meeting<F> {
+impl<F> InterceptionPoint<F> {
     /// Time that the robot waits, s.
     pub fn slack(&self) -> f32 {
         self.ball_time - self.robot_time
@@ -89,15 +89,15 @@ pub fn kick_place<F: Copy>(ball: Point<F>, target: Point<F>, reach: f32) -> Poin
 
 impl<F: Copy> Interception<'_, F> {
     /// Finds the interception.
-    pub fn find<L: CalcMotion>(&self, limits: &L, wish: Wish) -> Verdict<F> {
-        let best = match wish {
-            Wish::Soonest => self.soonest(limits, u32::MAX),
-            Wish::Safest => self.safest(limits),
+    pub fn find<L: CalcMotion>(&self, limits: &L, request: Request) -> Verdict<F> {
+        let best = match request {
+            Request::Soonest => self.soonest(limits, u32::MAX),
+            Request::Safest => self.safest(limits),
         };
         best.map_or_else(|| self.chase(limits, self.horizon()), Verdict::Meets)
     }
 
-    /// As [`Interception::find`] with [`Wish::Soonest`], in bounded time: after `most` points without an
+    /// As [`Interception::find`] with [`Request::Soonest`], in bounded time: after `most` points without an
     /// interception only every fourth is tested, and after as many more one of eight; from the first in time
     /// back by bisection.
     pub fn find_within<L: CalcMotion>(&self, limits: &L, most: u32) -> Verdict<F> {
@@ -114,7 +114,7 @@ impl<F: Copy> Interception<'_, F> {
         (self.horizon() * (1.0 / STEP)) as u32
     }
 
-    fn soonest<L: CalcMotion>(&self, limits: &L, most: u32) -> Option<Meeting<F>> {
+    fn soonest<L: CalcMotion>(&self, limits: &L, most: u32) -> Option<InterceptionPoint<F>> {
         let steps = self.steps();
         // The last point without an interception, the number of such points, and their stride.
         let (mut late, mut vain, mut stride) = (0, 0, 1);
@@ -129,7 +129,9 @@ impl<F: Copy> Interception<'_, F> {
                 let mut step = first;
                 while step <= last {
                     match self.look(limits, step as f32 * STEP, 0.0) {
-                        Look::Meets(meeting) => return Some(self.sooner(limits, late, step, meeting)),
+                        Look::Meets(interception_point) => {
+                            return Some(self.sooner(limits, late, step, interception_point));
+                        }
                         Look::TooLate | Look::OutOfReach => vain += 1,
                     }
                     late = step;
@@ -139,7 +141,7 @@ impl<F: Copy> Interception<'_, F> {
                     step += stride;
                 }
                 if last == steps {
-                    return self.look(limits, time, 0.0).meeting();
+                    return self.look(limits, time, 0.0).interception_point();
                 }
             }
             begins = ends;
@@ -149,12 +151,18 @@ impl<F: Copy> Interception<'_, F> {
 
     /// The soonest of the points between a late one and one in time, by bisection: once in time, the robot
     /// mostly stays so.
-    fn sooner<L: CalcMotion>(&self, limits: &L, late: u32, in_time: u32, found: Meeting<F>) -> Meeting<F> {
+    fn sooner<L: CalcMotion>(
+        &self,
+        limits: &L,
+        late: u32,
+        in_time: u32,
+        found: InterceptionPoint<F>,
+    ) -> InterceptionPoint<F> {
         let (mut late, mut in_time, mut best) = (late, in_time, found);
         while in_time - late > 1 {
             let middle = late.midpoint(in_time);
-            match self.look(limits, middle as f32 * STEP, 0.0).meeting() {
-                Some(meeting) => (in_time, best) = (middle, meeting),
+            match self.look(limits, middle as f32 * STEP, 0.0).interception_point() {
+                Some(interception_point) => (in_time, best) = (middle, interception_point),
                 None => late = middle,
             }
         }
@@ -163,14 +171,14 @@ impl<F: Copy> Interception<'_, F> {
 
     /// Searches from the end backwards, as slack mostly grows to the end, after some probes for the slack
     /// available.
-    fn safest<L: CalcMotion>(&self, limits: &L) -> Option<Meeting<F>> {
+    fn safest<L: CalcMotion>(&self, limits: &L) -> Option<InterceptionPoint<F>> {
         let (steps, horizon) = (self.steps(), self.horizon());
-        let mut best = self.look(limits, horizon, 0.0).meeting();
-        let mut least = best.as_ref().map_or(0.0, Meeting::slack);
+        let mut best = self.look(limits, horizon, 0.0).interception_point();
+        let mut least = best.as_ref().map_or(0.0, InterceptionPoint::slack);
         for probe in 1..PROBES {
             let step = steps * probe / PROBES;
-            if let Look::Meets(meeting) = self.look(limits, step as f32 * STEP, least) {
-                least = meeting.slack();
+            if let Look::Meets(interception_point) = self.look(limits, step as f32 * STEP, least) {
+                least = interception_point.slack();
             }
         }
         let mut block = steps / BLOCK + 1;
@@ -185,9 +193,9 @@ impl<F: Copy> Interception<'_, F> {
             }
             for step in (first..=last).rev() {
                 // The first of equal ones.
-                if let Look::Meets(meeting) = self.look(limits, step as f32 * STEP, least) {
-                    least = meeting.slack();
-                    best = Some(meeting);
+                if let Look::Meets(interception_point) = self.look(limits, step as f32 * STEP, least) {
+                    least = interception_point.slack();
+                    best = Some(interception_point);
                 }
             }
         }
@@ -214,8 +222,8 @@ impl<F: Copy> Interception<'_, F> {
         let Some(robot_time) = limits.time_within(self.robot, self.velocity, place, within) else {
             return Look::TooLate;
         };
-        let meeting = Meeting { ball, place, ball_time: time, robot_time };
-        if meeting.slack() >= least { Look::Meets(meeting) } else { Look::TooLate }
+        let interception_point = InterceptionPoint { ball, place, ball_time: time, robot_time };
+        if interception_point.slack() >= least { Look::Meets(interception_point) } else { Look::TooLate }
     }
 
     fn chase<L: CalcMotion>(&self, limits: &L, horizon: f32) -> Verdict<F> {
@@ -228,7 +236,7 @@ impl<F: Copy> Interception<'_, F> {
 /// Result of testing one point.
 enum Look<F> {
     /// The robot intercepts the ball there.
-    Meets(Meeting<F>),
+    Meets(InterceptionPoint<F>),
     /// It does not intercept, by a planned motion.
     TooLate,
     /// It cannot intercept; no motion was planned.
@@ -236,9 +244,9 @@ enum Look<F> {
 }
 
 impl<F> Look<F> {
-    fn meeting(self) -> Option<Meeting<F>> {
+    fn interception_point(self) -> Option<InterceptionPoint<F>> {
         match self {
-            Self::Meets(meeting) => Some(meeting),
+            Self::Meets(interception_point) => Some(interception_point),
             Self::TooLate | Self::OutOfReach => None,
         }
     }
@@ -267,25 +275,30 @@ mod tests {
     use rand_xoshiro::Xoshiro128PlusPlus;
 
     /// The plain search through every place.
-    fn linear<L: CalcMotion>(asked: &Interception<'_, Field>, limits: &L, wish: Wish) -> Verdict<Field> {
+    fn linear<L: CalcMotion>(
+        asked: &Interception<'_, Field>,
+        limits: &L,
+        request: Request,
+    ) -> Verdict<Field> {
         let horizon = asked.horizon();
-        let mut best: Option<Meeting<Field>> = None;
+        let mut best: Option<InterceptionPoint<Field>> = None;
         let steps = (horizon / STEP) as u32;
         for time in (0..=steps).map(|step| step as f32 * STEP).chain([horizon]) {
             let ball = asked.ball.from() + asked.ball.along() * asked.ball.progress(time).0;
             let place = kick_place(ball, asked.target, asked.reach);
             let robot_time = limits.time(asked.robot, asked.velocity, place);
-            let meeting = Meeting { ball, place, ball_time: time, robot_time };
-            let better = best.is_none_or(|best| wish == Wish::Safest && meeting.slack() > best.slack());
-            if meeting.slack() >= 0.0 && better {
-                best = Some(meeting);
+            let interception_point = InterceptionPoint { ball, place, ball_time: time, robot_time };
+            let better = best
+                .is_none_or(|best| request == Request::Safest && interception_point.slack() > best.slack());
+            if interception_point.slack() >= 0.0 && better {
+                best = Some(interception_point);
             }
         }
         best.map_or_else(|| asked.chase(limits, horizon), Verdict::Meets)
     }
 
     #[test]
-    fn in_bounded_time_a_meeting_is_mostly_the_soonest_and_at_most_seven_places_later() {
+    fn in_bounded_time_a_interception_point_is_mostly_the_soonest_and_at_most_seven_places_later() {
         let mut rng = Xoshiro128PlusPlus::seed_from_u64(3);
         let mut within = |range: f32| ((rng.next_u32() >> 8) as f32 / 8_388_608.0 - 1.0) * range;
         let (mut same, mut later, mut none) = (0, 0, 0);
@@ -302,7 +315,7 @@ mod tests {
                 until: 2.0,
             };
             let limits = FreeLimits::default();
-            match (asked.find(&limits, Wish::Soonest), asked.find_within(&limits, 4)) {
+            match (asked.find(&limits, Request::Soonest), asked.find_within(&limits, 4)) {
                 (Verdict::Meets(best), Verdict::Meets(found)) if best == found => same += 1,
                 (Verdict::Meets(best), Verdict::Meets(found)) => {
                     let by = found.ball_time - best.ball_time;
@@ -325,7 +338,7 @@ mod tests {
     fn the_answer_is_that_of_the_search_through_every_place() {
         let mut rng = Xoshiro128PlusPlus::seed_from_u64(2);
         let mut within = |range: f32| ((rng.next_u32() >> 8) as f32 / 8_388_608.0 - 1.0) * range;
-        let (mut meetings, mut chases) = (0, 0);
+        let (mut interception_points, mut chases) = (0, 0);
         for i in 0..1_500 {
             let velocity = Vector::polar(3.25 + within(3.25), Angle::new(within(3.0)));
             let start = Point::new(within(4.5), within(3.0));
@@ -340,20 +353,20 @@ mod tests {
                 reach: kick_reach(0.09, 0.0215),
                 until: 3.0 + within(3.0),
             };
-            for wish in [Wish::Soonest, Wish::Safest] {
-                let found = asked.find(&FreeLimits::default(), wish);
-                assert_eq!(found, linear(&asked, &FreeLimits::default(), wish), "{asked:?}");
+            for request in [Request::Soonest, Request::Safest] {
+                let found = asked.find(&FreeLimits::default(), request);
+                assert_eq!(found, linear(&asked, &FreeLimits::default(), request), "{asked:?}");
                 match found {
-                    Verdict::Meets(_) => meetings += 1,
+                    Verdict::Meets(_) => interception_points += 1,
                     Verdict::Chase { .. } => chases += 1,
                 }
             }
             if i < 100 {
                 let drag = DragLimits::default();
-                assert_eq!(asked.find(&drag, Wish::Soonest), linear(&asked, &drag, Wish::Soonest));
+                assert_eq!(asked.find(&drag, Request::Soonest), linear(&asked, &drag, Request::Soonest));
             }
         }
-        assert!(meetings > 500 && chases > 500, "{meetings} {chases}");
+        assert!(interception_points > 500 && chases > 500, "{interception_points} {chases}");
     }
 
     fn asked(ball: &BallPath<Field>, robot: Point<Field>) -> Interception<'_, Field> {
@@ -365,10 +378,12 @@ mod tests {
     fn a_ball_that_comes_by_is_met_soonest_where_the_robot_is_just_in_time() {
         let ball = BallModel::default().rolling(Point::new(-2.0, 1.0), Vector::new(2.0, 0.0));
         let question = asked(&ball, Point::new(0.0, 0.0));
-        let Verdict::Meets(soonest) = question.find(&FreeLimits::default(), Wish::Soonest) else { panic!() };
+        let Verdict::Meets(soonest) = question.find(&FreeLimits::default(), Request::Soonest) else {
+            panic!()
+        };
         // One step earlier the robot would be late.
         assert!(soonest.slack() >= 0.0 && soonest.slack() < 0.1, "{soonest:?}");
-        let Verdict::Meets(safest) = question.find(&FreeLimits::default(), Wish::Safest) else { panic!() };
+        let Verdict::Meets(safest) = question.find(&FreeLimits::default(), Request::Safest) else { panic!() };
         assert!(safest.slack() > soonest.slack() && safest.ball_time > soonest.ball_time);
         // It stands 0.1 m behind the ball, seen from the target.
         assert!((soonest.place.distance(soonest.ball) - 0.1).abs() < 1e-5);
@@ -380,7 +395,7 @@ mod tests {
         let ball = BallModel::default().rolling(Point::new(0.0, 0.0), Vector::new(1.0, 0.0));
         let slow = FreeLimits { speed: 0.1, acceleration: 1.0, braking: 1.0 };
         let Verdict::Chase { ball: rest, robot_time, .. } =
-            asked(&ball, Point::new(-2.0, 0.0)).find(&slow, Wish::Soonest)
+            asked(&ball, Point::new(-2.0, 0.0)).find(&slow, Request::Soonest)
         else {
             panic!()
         };
@@ -392,9 +407,9 @@ mod tests {
         let ball = BallModel::default().rolling(Point::new(1.0, 0.0), Vector::default());
         let behind = asked(&ball, Point::new(0.9, 0.0));
         assert!(
-            matches!(behind.find(&FreeLimits::default(), Wish::Safest), Verdict::Meets(m) if m.ball_time == 0.0)
+            matches!(behind.find(&FreeLimits::default(), Request::Safest), Verdict::Meets(m) if m.ball_time == 0.0)
         );
         let away = asked(&ball, Point::new(0.0, 0.0));
-        assert!(matches!(away.find(&FreeLimits::default(), Wish::Safest), Verdict::Chase { .. }));
+        assert!(matches!(away.find(&FreeLimits::default(), Request::Safest), Verdict::Chase { .. }));
     }
 }

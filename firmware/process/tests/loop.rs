@@ -78,7 +78,7 @@ fn random_datagrams_are_survived_and_counted() {
 }
 
 #[test]
-fn over_a_socket_it_is_heard_by_its_host_and_its_simulator_and_ends_when_asked() {
+fn over_a_socket_it_is_received_by_its_host_and_its_simulator_and_ends_when_asked() {
     let socket = || {
         let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
         socket.set_read_timeout(Some(Duration::from_secs(5))).unwrap();
@@ -97,7 +97,7 @@ fn over_a_socket_it_is_heard_by_its_host_and_its_simulator_and_ends_when_asked()
         let mut link = HostLink::new(TeamId::of(Colour::Blue), KEY, 1);
         let mut bytes = [0; 1024];
         let (len, from) = host.recv_from(&mut bytes).unwrap();
-        assert!(matches!(link.open(Instant(0), &bytes[..len]), Ok(Opened::Stranger(..))));
+        assert!(matches!(link.open(Instant(0), &bytes[..len]), Ok(Opened::Unauthenticated(..))));
         assert_eq!(link.welcome(id()).map(|welcome| welcome.life), Some(77));
         let began = Clock::now();
         for _ in 0..20 {

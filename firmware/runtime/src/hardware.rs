@@ -23,7 +23,7 @@ use protocol::robot_io::{Health, OmniKick, SensorFrame, WHEELED_STEP};
 
 use crate::kicker::{Interlock, KickerAct};
 use crate::mailboxes::{Arrival, Mailboxes};
-use crate::ports::{Dog, Kicker, Probes, RadioReceiver, Wheels};
+use crate::ports::{Kicker, Probes, RadioReceiver, Watchdog, Wheels};
 use crate::progress::Part;
 use crate::tasks::now;
 use crate::wheel::{CONTROL_PERIOD, Control, Motors, WHEELS};
@@ -33,13 +33,13 @@ pub struct Wires {
     /// Measured rim speeds, m/s.
     rims: Signal<CriticalSectionRawMutex, [f32; WHEELS]>,
     /// Kicker request.
-    wish: Signal<CriticalSectionRawMutex, OmniKick>,
+    request: Signal<CriticalSectionRawMutex, OmniKick>,
 }
 
 impl Wires {
     /// Without any signal yet.
     pub const fn new() -> Self {
-        Self { rims: Signal::new(), wish: Signal::new() }
+        Self { rims: Signal::new(), request: Signal::new() }
     }
 }
 
@@ -63,11 +63,11 @@ pub async fn control(mut wheels: impl Wheels, boxes: &Mailboxes, wires: &Wires) 
         let measured = wheels.measured();
         let step = control.step(now, measured);
         match step.motors {
-            Motors::Driven(duty) => wheels.drive(duty, step.dribbler),
+            Motors::Driven(rule_role) => wheels.drive(rule_role, step.dribbler),
             Motors::Released => wheels.release(),
         }
         wires.rims.signal(measured);
-        wires.wish.signal(step.kick);
+        wires.request.signal(step.kick);
         boxes.progress.mark(Part::Control);
     }
 }
@@ -77,15 +77,15 @@ pub async fn kicker(mut kicker: impl Kicker, wires: &Wires) -> ! {
     let mut interlock = Interlock::new();
     loop {
         // The control loop requests it every millisecond; once it stops, the kicker must not fire.
-        let wish = match select(wires.wish.wait(), Timer::after(SILENT)).await {
-            Either::First(wish) => wish,
+        let request = match select(wires.request.wait(), Timer::after(SILENT)).await {
+            Either::First(request) => request,
             Either::Second(()) => OmniKick::Discharge,
         };
-        let act = interlock.step(now(), wish, kicker.state());
+        let act = interlock.step(now(), request, kicker.state());
         kicker.act(act).await;
         if matches!(act, KickerAct::Flat(_) | KickerAct::Chip(_)) {
             // A request made while the coil had current is outdated.
-            wires.wish.reset();
+            wires.request.reset();
         }
     }
 }
@@ -106,7 +106,7 @@ pub async fn senses(mut probes: impl Probes, boxes: &Mailboxes, wires: &Wires) -
         // A gyroscope measures the turning rate better than four wheels, where there is one.
         let odometry: Twist<Body> = Twist { linear, angular: seen.turn.unwrap_or(angular) };
         let health = Health { battery: seen.battery, tipped: seen.tipped, kicker_ready: seen.kicker_ready };
-        let picture = SensorFrame {
+        let snapshot = SensorFrame {
             pose: None,
             ball: None,
             opponents: heapless::Vec::new(),
@@ -116,7 +116,7 @@ pub async fn senses(mut probes: impl Probes, boxes: &Mailboxes, wires: &Wires) -
             health,
         };
         boxes.room_for_arrival().await;
-        boxes.deliver(Arrival::Sensors(picture));
+        boxes.deliver(Arrival::Sensors(snapshot));
     }
 }
 
@@ -139,13 +139,13 @@ pub async fn radio_receive(mut radio: impl RadioReceiver, boxes: &Mailboxes) -> 
     }
 }
 
-/// Feeds the watchdog as long as control, radio and brain all run. Its time-out is [`Dog::PATIENCE`].
-pub async fn watchdog<D: Dog>(mut dog: D, boxes: &Mailboxes) -> ! {
+/// Feeds the watchdog as long as control, radio and brain all run. Its time-out is [`Watchdog::PATIENCE`].
+pub async fn watchdog<D: Watchdog>(mut watchdog: D, boxes: &Mailboxes) -> ! {
     let mut ticker = Ticker::every(Duration::from_micros(D::PATIENCE.0 / LOOKS_A_PATIENCE));
     loop {
         ticker.next().await;
         if boxes.progress.all() {
-            dog.feed();
+            watchdog.feed();
         }
     }
 }
@@ -178,11 +178,11 @@ mod tests {
         fn measured(&mut self) -> [f32; WHEELS] {
             self.1
         }
-        fn drive(&mut self, duty: [f32; WHEELS], _dribbler: f32) {
-            for (speed, duty) in self.1.iter_mut().zip(duty) {
-                *speed += (6.0 * duty - *speed) / 30.0;
+        fn drive(&mut self, rule_role: [f32; WHEELS], _dribbler: f32) {
+            for (speed, rule_role) in self.1.iter_mut().zip(rule_role) {
+                *speed += (6.0 * rule_role - *speed) / 30.0;
             }
-            self.0.set(Some(duty));
+            self.0.set(Some(rule_role));
         }
         fn release(&mut self) {
             self.0.set(None);
@@ -207,7 +207,7 @@ mod tests {
     }
 
     struct Counting(&'static Cell<u32>);
-    impl Dog for Counting {
+    impl Watchdog for Counting {
         const PATIENCE: protocol::Duration = protocol::Duration::millis(100);
         fn feed(&mut self) {
             self.0.set(self.0.get() + 1);
@@ -231,19 +231,22 @@ mod tests {
     #[test]
     fn an_order_drives_and_kicks_and_its_absence_brakes_and_discharges() {
         let (boxes, wires) = (leaked(Mailboxes::new()), leaked(Wires::new()));
-        let (duty, acts) = (leaked(Cell::new(None)), leaked(RefCell::new(Vec::new())));
+        let (rule_role, acts) = (leaked(Cell::new(None)), leaked(RefCell::new(Vec::new())));
         let mut world = World::new();
-        world.spawn(control(Motor(duty, [0.0; WHEELS]), boxes, wires));
+        world.spawn(control(Motor(rule_role, [0.0; WHEELS]), boxes, wires));
         world.spawn(kicker(Coil(acts), wires));
         world.settle();
         world.advance(5_000);
-        assert_eq!(duty.get(), None, "no order yet, no current");
+        assert_eq!(rule_role.get(), None, "no order yet, no current");
         boxes.orders.signal(GO);
         world.advance(30_000);
-        assert!(duty.get().is_some_and(|duty| duty[0] > 0.1));
+        assert!(rule_role.get().is_some_and(|rule_role| rule_role[0] > 0.1));
         assert_eq!(acts.borrow().iter().filter(|act| matches!(act, KickerAct::Flat(_))).count(), 1);
         world.advance(300_000);
-        assert!(duty.get().is_some_and(|duty| duty.iter().all(|duty| duty.abs() < 0.02)), "{duty:?}");
+        assert!(
+            rule_role.get().is_some_and(|rule_role| rule_role.iter().all(|rule_role| rule_role.abs() < 0.02)),
+            "{rule_role:?}"
+        );
         assert_eq!(acts.borrow().last(), Some(&KickerAct::Bleed));
     }
 
@@ -257,19 +260,19 @@ mod tests {
             .rims
             .signal(Omni::default().rims(Twist { linear: geometry::Vector::new(1.0, 0.0), angular: 0.0 }));
         world.advance(10_000);
-        let Ok(Arrival::Sensors(picture)) = boxes.inbox.try_receive() else { panic!("nothing seen") };
-        assert!((picture.odometry.linear.x() - 1.0).abs() < 1e-3 && picture.ball_contact);
-        assert_eq!((picture.pose, picture.health.battery), (None, Some(15.0)));
+        let Ok(Arrival::Sensors(snapshot)) = boxes.inbox.try_receive() else { panic!("nothing seen") };
+        assert!((snapshot.odometry.linear.x() - 1.0).abs() < 1e-3 && snapshot.ball_contact);
+        assert_eq!((snapshot.pose, snapshot.health.battery), (None, Some(15.0)));
         world.advance(60_000);
         assert_eq!(boxes.inbox.len(), 5);
     }
 
     #[test]
-    fn the_dog_is_fed_only_while_control_radio_and_brain_all_run() {
+    fn the_watchdog_is_fed_only_while_control_radio_and_brain_all_run() {
         let (boxes, wires) = (leaked(Mailboxes::new()), leaked(Wires::new()));
-        let (fed, duty) = (leaked(Cell::new(0)), leaked(Cell::new(None)));
+        let (fed, rule_role) = (leaked(Cell::new(0)), leaked(Cell::new(None)));
         let mut world = World::new();
-        world.spawn(control(Motor(duty, [0.0; WHEELS]), boxes, wires));
+        world.spawn(control(Motor(rule_role, [0.0; WHEELS]), boxes, wires));
         world.spawn(radio_receive(Quiet, boxes));
         world.spawn(watchdog(Counting(fed), boxes));
         world.settle();

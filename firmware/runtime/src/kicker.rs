@@ -49,14 +49,14 @@ impl Interlock {
     }
 
     /// Output for the next step.
-    pub fn step(&mut self, now: Instant, wish: OmniKick, state: KickerState) -> KickerAct {
+    pub fn step(&mut self, now: Instant, request: OmniKick, state: KickerState) -> KickerAct {
         // An unreadable voltage counts as a full capacitor: it is not charged, and not fired.
         let (full, readable) = (state.volts.is_nan() || state.volts >= FULL_VOLTS, !state.volts.is_nan());
-        if wish == OmniKick::Discharge {
+        if request == OmniKick::Discharge {
             return if readable && state.volts < EMPTY_VOLTS { KickerAct::Rest } else { KickerAct::Bleed };
         }
         let rested = self.fired.is_none_or(|fired| now.since(fired) >= PAUSE);
-        let pulse = match wish {
+        let pulse = match request {
             OmniKick::Flat(speed) => pulse(speed, FLAT_PULSE).map(KickerAct::Flat),
             OmniKick::Chip(speed) => pulse(speed, CHIP_PULSE).map(KickerAct::Chip),
             OmniKick::None | OmniKick::Discharge => None,

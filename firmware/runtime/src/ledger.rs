@@ -42,8 +42,8 @@ impl Cell {
 /// The bytes of a cell with this epoch.
 pub fn cell(epoch: u32) -> [u8; CELL_LEN] {
     let mut bytes = [EMPTY; CELL_LEN];
-    let words = MAGIC.into_iter().chain(epoch.to_le_bytes()).chain((!epoch).to_le_bytes());
-    bytes.iter_mut().zip(words).for_each(|(to, from)| *to = from);
+    let description = MAGIC.into_iter().chain(epoch.to_le_bytes()).chain((!epoch).to_le_bytes());
+    bytes.iter_mut().zip(description).for_each(|(to, from)| *to = from);
     bytes
 }
 

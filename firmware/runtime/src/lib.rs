@@ -27,6 +27,7 @@
 #[cfg(test)]
 extern crate std;
 
+mod controller;
 #[cfg(all(target_arch = "arm", target_os = "none"))]
 mod copy;
 pub mod ending;
@@ -34,7 +35,6 @@ pub mod hardware;
 pub mod kicker;
 pub mod ledger;
 mod mailboxes;
-mod mind;
 pub mod ports;
 pub mod progress;
 pub mod sense;

@@ -69,7 +69,7 @@ impl Mailboxes {
     }
 
     /// Delivers a received packet on a board without a radio; returns whether there was room for it.
-    pub fn hear(&self, packet: Packet) -> bool {
+    pub fn receive(&self, packet: Packet) -> bool {
         self.inbox.try_send(Arrival::Packet(packet)).is_ok()
     }
 

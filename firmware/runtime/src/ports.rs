@@ -45,7 +45,7 @@ pub trait Wheels {
 
     /// Applies these shares of the battery's voltage, −1 to 1, and the dribbler's share of its full speed,
     /// until the next call.
-    fn drive(&mut self, duty: [f32; WHEELS], dribbler: f32);
+    fn drive(&mut self, rule_role: [f32; WHEELS], dribbler: f32);
 
     /// Takes the current off all of them.
     fn release(&mut self);
@@ -83,7 +83,7 @@ pub struct Seen {
 }
 
 /// A watchdog that resets the computer unless it is fed.
-pub trait Dog {
+pub trait Watchdog {
     /// Time-out.
     const PATIENCE: Duration;
 

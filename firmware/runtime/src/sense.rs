@@ -23,7 +23,7 @@ impl Encoder {
     /// Rim speed since the last step, m/s, from the counter and from the duty cycle of that time; NaN once
     /// the wheel was driven hard for a while without moving. Then the encoder, its cable or the motor is
     /// broken, and the governor brakes the robot.
-    pub fn step(&mut self, now: Instant, count: u16, duty: f32) -> f32 {
+    pub fn step(&mut self, now: Instant, count: u16, rule_role: f32) -> f32 {
         if let Some((at, before)) = self.last {
             let micros = now.since(at).0;
             if micros > 0 {
@@ -34,7 +34,7 @@ impl Encoder {
         } else {
             self.last = Some((now, count));
         }
-        let hard = duty.abs() >= HARD;
+        let hard = rule_role.abs() >= HARD;
         self.stuck = match self.stuck {
             Some((_, from)) if count.wrapping_sub(from).cast_signed().unsigned_abs() > SHAKES => None,
             // Broken stays broken until the wheel moves: the duty cycle falls because the wheel is broken.
@@ -217,8 +217,11 @@ mod tests {
     fn a_wheel_that_moves_is_never_told() {
         let mut encoder = Encoder::new(0.0001);
         for t in 0..5_000 {
-            let duty = if t % 700 < 350 { 1.0 } else { -1.0 };
-            assert!(encoder.step(ms(t), (t % 700).min(700 - t % 700) as u16, duty).is_finite(), "{t} ms");
+            let rule_role = if t % 700 < 350 { 1.0 } else { -1.0 };
+            assert!(
+                encoder.step(ms(t), (t % 700).min(700 - t % 700) as u16, rule_role).is_finite(),
+                "{t} ms"
+            );
         }
     }
 

@@ -13,8 +13,8 @@ use embassy_time::with_deadline;
 use protocol::frame::{RobotKeys, TeamKey};
 use protocol::{Duration, Instant};
 
+use crate::controller::Controller;
 use crate::mailboxes::{Arrival, Mailboxes};
-use crate::mind::Mind;
 use crate::ports::{Body, RadioReceiver, RadioSender, Senses};
 use crate::progress::Part;
 
@@ -55,9 +55,9 @@ pub async fn radio_send(mut radio: impl RadioSender, boxes: &Mailboxes) -> ! {
 /// Moves sensor frames into the inbox.
 pub async fn sensors(mut senses: impl Senses, boxes: &Mailboxes) -> ! {
     loop {
-        let picture = senses.sense().await;
+        let snapshot = senses.sense().await;
         boxes.room_for_arrival().await;
-        boxes.deliver(Arrival::Sensors(picture));
+        boxes.deliver(Arrival::Sensors(snapshot));
     }
 }
 
@@ -70,34 +70,34 @@ pub async fn body(mut body: impl Body, boxes: &Mailboxes) -> ! {
 }
 
 /// The brain's task, for any implementation of the interface.
-pub(crate) async fn think(mind: &mut impl Mind, boxes: &Mailboxes) -> ! {
+pub(crate) async fn think(controller: &mut impl Controller, boxes: &Mailboxes) -> ! {
     let mut last = now();
     loop {
         let time = now();
-        let due = mind.poll_timeout().map(|due| due.max(last));
+        let due = controller.poll_timeout().map(|due| due.max(last));
         // With any number of arrivals, a missed deadline waits for one of them at most.
         last = if let Some(due) = due.filter(|due| *due < time) {
-            mind.handle_timeout(due);
+            controller.handle_timeout(due);
             due
-        } else if take(mind, time, boxes) {
+        } else if take(controller, time, boxes) {
             time
         } else if let Some(due) = deadline_before_arrival(due, last, boxes).await {
-            mind.handle_timeout(due);
+            controller.handle_timeout(due);
             due
         } else {
             continue;
         };
-        empty(mind, last, boxes);
+        empty(controller, last, boxes);
         boxes.progress.mark(Part::Brain);
     }
 }
 
-/// Gives `mind` the input that has waited longest; returns whether there was any.
-fn take(mind: &mut impl Mind, now: Instant, boxes: &Mailboxes) -> bool {
+/// Gives `controller` the input that has waited longest; returns whether there was any.
+fn take(controller: &mut impl Controller, now: Instant, boxes: &Mailboxes) -> bool {
     // An arrival is not passed by value: it is large, and every move would copy it.
     match &boxes.inbox.try_receive() {
-        Ok(Arrival::Packet(packet)) => mind.handle_packet(now, packet),
-        Ok(Arrival::Sensors(picture)) => mind.handle_sensors(now, picture),
+        Ok(Arrival::Packet(packet)) => controller.handle_packet(now, packet),
+        Ok(Arrival::Sensors(snapshot)) => controller.handle_sensors(now, snapshot),
         Err(TryReceiveError::Empty) => return false,
     }
     true
@@ -114,12 +114,12 @@ async fn deadline_before_arrival(due: Option<Instant>, last: Instant, boxes: &Ma
     with_deadline(alarm, boxes.inbox.ready_to_receive()).await.err().map(|_| due)
 }
 
-/// Drains the output of `mind`.
-fn empty(mind: &mut impl Mind, now: Instant, boxes: &Mailboxes) {
-    while let Some(packet) = mind.poll_packet(now) {
+/// Drains the output of `controller`.
+fn empty(controller: &mut impl Controller, now: Instant, boxes: &Mailboxes) {
+    while let Some(packet) = controller.poll_packet(now) {
         boxes.post(packet);
     }
-    if let Some(wanted) = mind.poll_actuators(now) {
+    if let Some(wanted) = controller.poll_actuators(now) {
         boxes.orders.signal(wanted);
     }
 }

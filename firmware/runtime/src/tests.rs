@@ -16,8 +16,8 @@ use protocol::link::Packet;
 use protocol::robot_io::{ActuatorFrame, BallSight, Health, OmniKick, SensorFrame};
 use protocol::{Duration, Instant, RobotId, TeamId};
 
+use crate::controller::Controller;
 use crate::mailboxes::{Arrival, Mailboxes, OUTBOX_LEN};
-use crate::mind::Mind;
 use crate::ports::{Body, RadioReceiver, RadioSender, Senses};
 use crate::tasks;
 use crate::testing::{World, clock};
@@ -26,7 +26,7 @@ use crate::testing::{World, clock};
 fn deadlines_run_at_their_own_times_before_the_packet_that_came_later() {
     let diary = Diary::default();
     let mut robot = Robot::new(Clerk::new(&diary, &[7_000, 3_000, 40_000, 40_001]));
-    robot.tick(40_000, &[packet(&[9])], &picture(0.0));
+    robot.tick(40_000, &[packet(&[9])], &snapshot(0.0));
     let expected =
         ["3000 timeout", "7000 timeout", "40000 timeout", "40000 packet 9", "40000 sensors", "40001 timeout"];
     robot.world.advance(50_000);
@@ -37,9 +37,9 @@ fn deadlines_run_at_their_own_times_before_the_packet_that_came_later() {
 fn a_deadline_that_is_due_when_it_is_set_runs_as_soon_as_the_clock_moves() {
     let diary = Diary::default();
     let mut robot = Robot::new(Clerk::new(&diary, &[]));
-    robot.tick(10, &[packet(&[1, 0]), packet(&[2])], &picture(0.0));
+    robot.tick(10, &[packet(&[1, 0]), packet(&[2])], &snapshot(0.0));
     assert_eq!(*diary.borrow(), ["10 packet 1", "10 packet 2", "10 sensors"]);
-    robot.tick(20, &[packet(&[3])], &picture(0.0));
+    robot.tick(20, &[packet(&[3])], &snapshot(0.0));
     assert_eq!(diary.borrow()[3..], ["10 timeout", "20 packet 3", "20 sensors"]);
 }
 
@@ -69,7 +69,7 @@ fn the_tasks_drive_a_mind_as_a_plain_loop_does() {
         let packets: Vec<_> = (0..random.below(4))
             .map(|_| packet(&[random.below(200) as u8, random.below(60) as u8][..=random.below(2) as usize]))
             .collect();
-        let sight = picture(now as f32);
+        let sight = snapshot(now as f32);
         robot.tick(now, &packets, &sight);
         twin.tick(now, &packets, &sight);
     }
@@ -87,16 +87,17 @@ fn a_station_says_and_does_the_same_through_the_tasks() {
     // The robot under test, its twin driven by a plain loop, and a teammate whose packets both receive.
     let mut robot = Robot::new(station(1));
     let mut twin = Plain::new(station(1));
-    let mut mate = Plain::new(station(2));
+    let mut teammate = Plain::new(station(2));
     let mut random = Random(3);
     for tick in 1..=500_u64 {
         let now = tick * 40_000;
-        let sight = picture(random.below(1_000) as f32 * 0.001);
-        let said = mate.sent.len();
-        mate.tick(now, &[], &sight);
-        let heard: Vec<_> = mate.sent[said..].iter().filter(|_| random.below(5) > 0).cloned().collect();
-        robot.tick(now, &heard, &sight);
-        twin.tick(now, &heard, &sight);
+        let sight = snapshot(random.below(1_000) as f32 * 0.001);
+        let said = teammate.sent.len();
+        teammate.tick(now, &[], &sight);
+        let received: Vec<_> =
+            teammate.sent[said..].iter().filter(|_| random.below(5) > 0).cloned().collect();
+        robot.tick(now, &received, &sight);
+        twin.tick(now, &received, &sight);
         assert_eq!(robot.sent.borrow()[..], twin.sent[..], "tick {tick}");
         assert_eq!(robot.done.borrow()[..], twin.done[..], "tick {tick}");
     }
@@ -117,7 +118,7 @@ fn what_the_outbox_cannot_hold_is_dropped_and_counted() {
     }
     let mut world = World::new();
     world.spawn(tasks::think(Box::leak(Box::new(clerk)), boxes));
-    boxes.inbox.try_send(Arrival::Sensors(picture(0.0))).unwrap();
+    boxes.inbox.try_send(Arrival::Sensors(snapshot(0.0))).unwrap();
     world.settle();
     assert_eq!(boxes.unsent(), 3);
     assert_eq!(boxes.outbox.try_receive().unwrap()[..], [0, 1], "what was said first is kept");
@@ -128,7 +129,7 @@ fn a_body_that_is_late_does_the_latest_order_only() {
     let boxes: &'static Mailboxes = Box::leak(Box::default());
     let done: &'static RefCell<_> = Box::leak(Box::default());
     let mut world = World::new();
-    world.spawn(tasks::body(Limbs(done), boxes));
+    world.spawn(tasks::body(Actuators(done), boxes));
     for speed in [1.0, 2.0, 3.0] {
         boxes.orders.signal(order(speed));
     }
@@ -146,7 +147,7 @@ struct Robot {
 }
 
 impl Robot {
-    fn new(mind: impl Mind + 'static) -> Self {
+    fn new(controller: impl Controller + 'static) -> Self {
         let boxes: &'static Mailboxes = Box::leak(Box::default());
         let mut robot = Self {
             world: World::new(),
@@ -155,11 +156,11 @@ impl Robot {
             sent: Box::leak(Box::default()),
             done: Box::leak(Box::default()),
         };
-        robot.world.spawn(tasks::body(Limbs(robot.done), boxes));
-        robot.world.spawn(tasks::sensors(Eyes(robot.sights), boxes));
-        robot.world.spawn(tasks::radio_receive(Ear(robot.air), boxes));
-        robot.world.spawn(tasks::radio_send(Mouth(robot.sent), boxes));
-        robot.world.spawn(tasks::think(Box::leak(Box::new(mind)), boxes));
+        robot.world.spawn(tasks::body(Actuators(robot.done), boxes));
+        robot.world.spawn(tasks::sensors(Sensors(robot.sights), boxes));
+        robot.world.spawn(tasks::radio_receive(MailReceiver(robot.air), boxes));
+        robot.world.spawn(tasks::radio_send(PacketLog(robot.sent), boxes));
+        robot.world.spawn(tasks::think(Box::leak(Box::new(controller)), boxes));
         robot.world.settle();
         robot
     }
@@ -177,39 +178,39 @@ impl Robot {
 
 /// The same brain, driven by hand.
 struct Plain<M> {
-    mind: M,
+    controller: M,
     sent: Vec<Packet>,
     done: Vec<ActuatorFrame>,
 }
 
-impl<M: Mind> Plain<M> {
-    fn new(mind: M) -> Self {
-        Self { mind, sent: vec![], done: vec![] }
+impl<M: Controller> Plain<M> {
+    fn new(controller: M) -> Self {
+        Self { controller, sent: vec![], done: vec![] }
     }
 
     fn tick(&mut self, now: u64, packets: &[Packet], sight: &SensorFrame) {
         let now = Instant(now);
         self.deadlines(now);
         for packet in packets {
-            self.mind.handle_packet(now, packet);
+            self.controller.handle_packet(now, packet);
             self.drain(now);
         }
-        self.mind.handle_sensors(now, sight);
+        self.controller.handle_sensors(now, sight);
         self.drain(now);
     }
 
     fn deadlines(&mut self, now: Instant) {
-        while let Some(due) = self.mind.poll_timeout().filter(|due| *due <= now) {
-            self.mind.handle_timeout(due);
+        while let Some(due) = self.controller.poll_timeout().filter(|due| *due <= now) {
+            self.controller.handle_timeout(due);
             self.drain(due);
         }
     }
 
     fn drain(&mut self, now: Instant) {
-        while let Some(packet) = self.mind.poll_packet(now) {
+        while let Some(packet) = self.controller.poll_packet(now) {
             self.sent.push(packet);
         }
-        self.done.extend(self.mind.poll_actuators(now));
+        self.done.extend(self.controller.poll_actuators(now));
     }
 }
 
@@ -238,7 +239,7 @@ impl Clerk {
     }
 }
 
-impl Mind for Clerk {
+impl Controller for Clerk {
     fn handle_packet(&mut self, now: Instant, packet: &[u8]) {
         self.diary.borrow_mut().push(format!("{} packet {}", now.0, packet[0]));
         self.answers.push(self::packet(&[packet[0], 1]));
@@ -271,27 +272,27 @@ impl Mind for Clerk {
 }
 
 type Mail<T> = Channel<CriticalSectionRawMutex, T, 1>;
-struct Ear(&'static Mail<Packet>);
-struct Eyes(&'static Mail<SensorFrame>);
-struct Mouth(&'static RefCell<Vec<Packet>>);
-struct Limbs(&'static RefCell<Vec<ActuatorFrame>>);
+struct MailReceiver(&'static Mail<Packet>);
+struct Sensors(&'static Mail<SensorFrame>);
+struct PacketLog(&'static RefCell<Vec<Packet>>);
+struct Actuators(&'static RefCell<Vec<ActuatorFrame>>);
 
-impl RadioReceiver for Ear {
+impl RadioReceiver for MailReceiver {
     async fn receive(&mut self) -> Packet {
         self.0.receive().await
     }
 }
-impl Senses for Eyes {
+impl Senses for Sensors {
     async fn sense(&mut self) -> SensorFrame {
         self.0.receive().await
     }
 }
-impl RadioSender for Mouth {
+impl RadioSender for PacketLog {
     async fn send(&mut self, packet: Packet) {
         self.0.borrow_mut().push(packet);
     }
 }
-impl Body for Limbs {
+impl Body for Actuators {
     async fn act(&mut self, wanted: ActuatorFrame) {
         self.0.borrow_mut().push(wanted);
     }
@@ -306,7 +307,7 @@ fn order(speed: f32) -> ActuatorFrame {
 }
 
 /// A robot and the ball somewhere left of the centre, moved by `x`.
-fn picture(x: f32) -> SensorFrame {
+fn snapshot(x: f32) -> SensorFrame {
     let ball = BallSight { position: Point::new(x - 1.0, 0.2), sigma: 0.01, age: Duration(0) };
     SensorFrame {
         pose: Some(Pose { position: Point::new(x, 0.1), heading: Angle::new(0.3) }),

@@ -73,22 +73,22 @@ impl Control {
                 (0.0, OmniKick::Discharge)
             }
         };
-        let mut duty = [0.0; WHEELS];
-        for (((duty, wanted), measured), integral) in
-            duty.iter_mut().zip(&self.wanted).zip(&measured).zip(&mut self.integral)
+        let mut rule_role = [0.0; WHEELS];
+        for (((rule_role, wanted), measured), integral) in
+            rule_role.iter_mut().zip(&self.wanted).zip(&measured).zip(&mut self.integral)
         {
             // A broken sensor is ignored: the wheel runs open-loop, by the motor's own constant.
             let error = if measured.is_finite() { wanted - measured } else { 0.0 };
             let open = wanted * FEED_FORWARD + error * PROPORTIONAL;
             let trial = *integral + error * INTEGRAL_A_STEP;
             let free = open + trial;
-            *duty = free.clamp(-1.0, 1.0);
+            *rule_role = free.clamp(-1.0, 1.0);
             // At the voltage limit the integral does not grow (anti-windup).
-            if free == *duty || free.abs() < (open + *integral).abs() {
+            if free == *rule_role || free.abs() < (open + *integral).abs() {
                 *integral = trial;
             }
         }
-        Step { motors: Motors::Driven(duty), dribbler, kick }
+        Step { motors: Motors::Driven(rule_role), dribbler, kick }
     }
 }
 
@@ -123,8 +123,8 @@ mod tests {
 
     /// A motor that runs 5.4 m/s free (a weak battery), reaches two thirds of a change in 30 ms, and has a
     /// load that takes 8 % of its voltage.
-    fn motor(speed: f32, duty: f32) -> f32 {
-        speed + ((duty - 0.08) * 5.4 - speed) * (0.001 / 0.03)
+    fn motor(speed: f32, rule_role: f32) -> f32 {
+        speed + ((rule_role - 0.08) * 5.4 - speed) * (0.001 / 0.03)
     }
 
     fn omni(speed: f32) -> ActuatorFrame {
@@ -145,10 +145,10 @@ mod tests {
                 control.order(now, order);
             }
             last = control.step(now, *speeds);
-            if let Motors::Driven(duty) = last.motors {
-                for (speed, duty) in speeds.iter_mut().zip(duty) {
-                    assert!((-1.0..=1.0).contains(&duty));
-                    *speed = motor(*speed, duty);
+            if let Motors::Driven(rule_role) = last.motors {
+                for (speed, rule_role) in speeds.iter_mut().zip(rule_role) {
+                    assert!((-1.0..=1.0).contains(&rule_role));
+                    *speed = motor(*speed, rule_role);
                 }
             }
         }
@@ -200,9 +200,9 @@ mod tests {
         let step = control.step(Instant(0), [0.0; WHEELS]);
         assert_eq!((step.motors, step.kick), (Motors::Driven([0.0; WHEELS]), OmniKick::Discharge));
         control.order(Instant(1000), omni(1.0));
-        let Motors::Driven(duty) = control.step(Instant(1000), [f32::NAN; WHEELS]).motors else {
+        let Motors::Driven(rule_role) = control.step(Instant(1000), [f32::NAN; WHEELS]).motors else {
             panic!("released")
         };
-        assert!(duty.iter().all(|duty| duty.is_finite()), "{duty:?}");
+        assert!(rule_role.iter().all(|rule_role| rule_role.is_finite()), "{rule_role:?}");
     }
 }

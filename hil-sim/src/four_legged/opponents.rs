@@ -13,7 +13,7 @@ use serde::Deserialize;
 use crate::four_legged::parameters::{Parameters, Region};
 use crate::four_legged::world::World;
 
-crate::words! {
+crate::labels! {
     /// What an opponent is there for.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
     #[serde(rename_all = "lowercase")]

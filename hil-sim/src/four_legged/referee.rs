@@ -12,7 +12,7 @@ use crate::four_legged::opponents::Role;
 use crate::four_legged::parameters::RefereeParameters;
 use crate::four_legged::world::{Side, World, WorldEvent};
 
-crate::words! {
+crate::labels! {
     /// Which opponents play (paper §5.1.2, Fig. 11).
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
     pub enum Configuration {
@@ -25,7 +25,7 @@ crate::words! {
     }
 }
 
-crate::words! {
+crate::labels! {
     /// How a trial ended.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
@@ -63,10 +63,10 @@ pub enum Party {
 
 impl Party {
     /// Its label in reports.
-    pub const fn word(self) -> &'static str {
+    pub const fn label(self) -> &'static str {
         match self {
             Self::Attackers => "attackers",
-            Self::Opponent(role) => role.word(),
+            Self::Opponent(role) => role.label(),
         }
     }
 }
@@ -328,7 +328,7 @@ mod tests {
         let mut game = kick_off(Configuration::DefenderGoalie);
         assert_eq!(game.referee.last_touch(), None);
         game.touch(1.0, 1);
-        assert_eq!(game.referee.last_touch().map(Party::word), Some("defender"));
+        assert_eq!(game.referee.last_touch().map(Party::label), Some("defender"));
         let grab = WorldEvent::Grabbed { robot: 0 };
         game.referee.observe(2.0, &game.world, &[grab]);
         assert_eq!(game.referee.last_touch(), Some(Party::Attackers));

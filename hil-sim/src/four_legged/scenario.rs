@@ -16,7 +16,7 @@ use crate::four_legged::parameters::Parameters;
 use crate::four_legged::referee::Configuration;
 use crate::rng::Stream;
 
-crate::words! {
+crate::labels! {
     /// A scenario's name.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Scenario {
@@ -98,7 +98,7 @@ impl Scenario {
 
 impl fmt::Display for Scenario {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.word())
+        f.write_str(self.label())
     }
 }
 
@@ -243,8 +243,8 @@ mod tests {
         let draw = |seed| Scenario::Random.layout(Configuration::DefenderGoalie, p, seed);
         assert_eq!(draw(3), draw(3));
         assert_ne!(draw(3), draw(4));
-        assert_eq!(Scenario::from_word("random"), Some(Scenario::Random));
-        assert_eq!(Scenario::from_word("5"), None);
+        assert_eq!(Scenario::from_label("random"), Some(Scenario::Random));
+        assert_eq!(Scenario::from_label("5"), None);
         assert_eq!(Scenario::LeftSide.title(), "left side");
     }
 }

@@ -84,7 +84,7 @@ pub struct Tick {
     /// Faults applied in it.
     pub faults: Vec<Fault>,
     /// Packets received by robots, in delivery order.
-    pub heard: Vec<Heard>,
+    pub received: Vec<Received>,
     /// Orders to bodies, by id.
     pub orders: Vec<(RobotId, ActuatorFrame)>,
     /// Packets sent by robots, in order.
@@ -104,7 +104,7 @@ pub struct Sent {
 
 /// A packet delivered to a robot.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Heard {
+pub struct Received {
     /// The receiver.
     pub to: RobotId,
     /// The bytes.
@@ -266,12 +266,12 @@ impl<'a> Simulation<'a> {
                 continue;
             };
             let packets = self.air.deliver(number, id);
-            let first = self.tick.heard.len();
-            self.tick.heard.extend(packets.into_iter().map(|packet| Heard { to: id, packet }));
+            let first = self.tick.received.len();
+            self.tick.received.extend(packets.into_iter().map(|packet| Received { to: id, packet }));
             let tick = TickIn {
                 seq: number,
                 now: Instant(u64::from(number - robot.born) * TICK_US),
-                air: self.tick.heard[first..].iter().map(|heard| &heard.packet[..]).collect(),
+                air: self.tick.received[first..].iter().map(|received| &received.packet[..]).collect(),
                 sensors,
             };
             computer.post(&tick).map_err(|error| SimulationError::Computer { robot: id, error })?;
@@ -289,7 +289,7 @@ impl<'a> Simulation<'a> {
                 self.tick.orders.push((id, order));
             }
         }
-        for Heard { to, packet } in &self.tick.heard {
+        for Received { to, packet } in &self.tick.received {
             self.trace.packet(*to, packet);
         }
         Ok(())

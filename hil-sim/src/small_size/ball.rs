@@ -164,7 +164,7 @@ mod tests {
     use super::*;
     use crate::small_size::{Parameters, STEP};
 
-    fn carpet() -> BallParameters {
+    fn surface() -> BallParameters {
         Parameters::of(League::DivisionB).unwrap().ball
     }
 
@@ -179,7 +179,7 @@ mod tests {
 
     #[test]
     fn a_flat_kick_of_six_metres_a_second_rests_where_the_closed_formula_says() {
-        let (mut ball, of) = (Ball::at(Point::default()), carpet());
+        let (mut ball, of) = (Ball::at(Point::default()), surface());
         ball.velocity = Vector::new(6.0, 0.0);
         let steps = run_until_rest(&mut ball, &of);
         // v²(1−c²)/2a + c²v²/2r with c = 5/7, a = 3.9, r = 0.35: 2.2606 + 26.2391 m; v(1−c)/a + cv/r = 0.4396
@@ -192,7 +192,7 @@ mod tests {
     #[test]
     fn a_ball_set_rolling_never_slides() {
         let mut ball = Ball::rolling(Point::default(), Vector::new(0.0, -2.0));
-        let of = carpet();
+        let of = surface();
         run_until_rest(&mut ball, &of);
         // 2²/(2·0.35) = 5.714 m.
         assert!((ball.position.y() + 5.714_29).abs() < 1e-3, "{:?}", ball.position);
@@ -203,14 +203,14 @@ mod tests {
         let mut ball = Ball::at(Point::default());
         ball.velocity = Vector::new(1.0, 0.0);
         ball.spin = Vector::new(-4.0, 0.0);
-        run_until_rest(&mut ball, &carpet());
+        run_until_rest(&mut ball, &surface());
         // In the end it rolls with 5/7 · 1 + 2/7 · (−4) = −3/7 m/s.
         assert!(ball.position.x() < 0.0, "{:?}", ball.position);
     }
 
     #[test]
     fn a_chip_lands_where_the_parabola_says_and_hops_as_the_wires_model() {
-        let (mut ball, of) = (Ball::at(Point::default()), carpet());
+        let (mut ball, of) = (Ball::at(Point::default()), surface());
         ball.velocity = Vector::new(3.0, 0.0);
         ball.climb = 3.0;
         let mut top = 0.0_f32;

@@ -300,7 +300,7 @@ impl World {
             return;
         }
         let over = self.ball.height >= self.pitch.around.wall_height;
-        let (x, y) = if over || outside { (x + HALL, y + HALL) } else { (x, y) };
+        let (x, y) = if over || outside { (x + SERVER_LOOP, y + SERVER_LOOP) } else { (x, y) };
         // The walls of the room are far enough away that a ball that passed a board stays outside.
         let bounce = if outside { self.parameters.bounce.net } else { self.parameters.bounce.wall };
         for (normal, beyond) in [
@@ -357,4 +357,4 @@ const NEAR_MAX: usize = 8;
 /// Speed at which a ball that fell on a robot leaves it, m/s.
 const SLIP_OFF: f32 = 0.3;
 /// Distance from the boards to the walls of the room, m.
-const HALL: f32 = 2.0;
+const SERVER_LOOP: f32 = 2.0;

@@ -1,8 +1,8 @@
 //! `small_size`: physics of the Small Size League. Robots on wheels and a golf ball in three dimensions, 1 ms
 //! a step (docs/architecture.md §2.3, §7.1).
 //!
-//! A step of the [`World`]: wheels drive (`robot`), bodies are pushed apart (`crowd`), kickers and dribblers
-//! act (`mouth`), the ball moves (`ball`) and bounces (`contact`), break-beam sensors measure. What happened
+//! A step of the [`World`]: wheels drive (`robot`), bodies are pushed apart (`collisions`), kickers and dribblers
+//! act (`dribbler`), the ball moves (`ball`) and bounces (`contact`), break-beam sensors measure. What happened
 //! is returned as [`Event`]s. SI units, field frame; heights are those of the ball's lowest point above the
 //! field surface.
 //!
@@ -11,14 +11,14 @@
 
 mod ball;
 pub mod camera;
+mod collisions;
+pub mod compatibility;
 mod contact;
-mod crowd;
+mod dribbler;
 mod event;
-mod mouth;
 mod order;
 mod parameters;
 mod pitch;
-pub mod quirks;
 pub mod referee;
 mod robot;
 mod senses;
@@ -309,7 +309,7 @@ impl World {
         self.dribble();
         self.follow_drag();
         self.move_ball();
-        self.look_into_mouths();
+        self.read_break_beams();
         self.ball_was = self.ball.position;
     }
 

@@ -28,7 +28,7 @@ fn main() -> Result<(), String> {
     let [league, world, opponent, first, count, seconds] = &arguments[..] else { return Err(USAGE.into()) };
     let league = named(league)?;
     let teams = [Team::Ours, Team::Reactive, Team::Marking, Team::Zone, Team::Idle];
-    let opponent = teams.into_iter().find(|team| team.word() == opponent).ok_or(USAGE)?;
+    let opponent = teams.into_iter().find(|team| team.label() == opponent).ok_or(USAGE)?;
     let number = |text: &str| text.parse::<u64>().map_err(|error| format!("{text}: {error}; {USAGE}"));
     let (first, count, seconds) = (number(first)?, number(count)?, number(seconds)?);
     let played: Vec<(GameReport, Account)> = (first..first + count)
@@ -78,7 +78,7 @@ impl Watcher for Account {
         *self.phases.entry(name(game.referee().phase())).or_default() += 0.01;
         let events = game.referee().events();
         for event in &events[self.seen..] {
-            *self.events.entry(event.what.kind().word()).or_default() += 1;
+            *self.events.entry(event.what.kind().label()).or_default() += 1;
         }
         self.seen = events.len();
     }

@@ -26,7 +26,7 @@ impl BackupCount {
     }
 
     /// `robot` reported `role` at `time` seconds.
-    pub(crate) fn hear(&mut self, time: f32, robot: RobotId, role: Role) {
+    pub(crate) fn receive(&mut self, time: f32, robot: RobotId, role: Role) {
         let Some(entry) = self.robots.iter_mut().find(|entry| entry.robot == robot) else { return };
         let enters = role == Role::Supporter && entry.role != Role::Supporter;
         entry.role = role;
@@ -62,9 +62,9 @@ mod tests {
             (1.6, Role::None),
             (1.7, Role::Supporter),
         ] {
-            count.hear(time, id(2), role);
+            count.receive(time, id(2), role);
         }
-        count.hear(2.0, id(9), Role::Supporter);
+        count.receive(2.0, id(9), Role::Supporter);
         assert_eq!(count.counts(), [0, 2]);
     }
 }

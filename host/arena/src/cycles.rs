@@ -34,7 +34,7 @@ pub enum CycleEnd {
 
 impl CycleEnd {
     /// The labels of all ends that a play of a case can have.
-    pub const WORDS: [&'static str; 12] = [
+    pub const DESCRIPTION: [&'static str; 12] = [
         "finished",
         "ball-out-of-scope",
         "path-blocked",
@@ -50,11 +50,11 @@ impl CycleEnd {
     ];
 
     /// Its label in reports.
-    pub const fn word(self) -> &'static str {
+    pub const fn label(self) -> &'static str {
         match self {
             Self::Closed(Closure::Finished) => "finished",
             Self::Closed(Closure::NoCase) => "no-case",
-            Self::Closed(Closure::Aborted { reason, .. }) => abort_word(reason),
+            Self::Closed(Closure::Aborted { reason, .. }) => abort_label(reason),
             Self::Superseded => "superseded",
             Self::TrialOver => "trial-over",
         }
@@ -62,7 +62,7 @@ impl CycleEnd {
 }
 
 /// The label of an abort reason.
-const fn abort_word(reason: AbortReason) -> &'static str {
+const fn abort_label(reason: AbortReason) -> &'static str {
     match reason {
         AbortReason::BallOutOfScope => "ball-out-of-scope",
         AbortReason::PathBlocked => "path-blocked",
@@ -84,7 +84,7 @@ pub struct CycleLog {
 
 /// Change of the log by a beacon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum News {
+pub enum CycleEvent {
     /// No change.
     Nothing,
     /// A cycle started.
@@ -97,7 +97,7 @@ pub enum News {
 
 impl CycleLog {
     /// A robot reported `state` of its newest cycle at `time` seconds.
-    pub fn hear(&mut self, time: f32, state: &CycleState) -> News {
+    pub fn receive(&mut self, time: f32, state: &CycleState) -> CycleEvent {
         let place = self.cycles.binary_search_by_key(&state.id, |cycle| cycle.id);
         let (place, began) = match place {
             Ok(place) => (place, false),
@@ -130,10 +130,10 @@ impl CycleLog {
             }
         }
         match () {
-            () if ended => News::Ended(place),
-            () if !decided_before && (cycle.play.is_some() || cycle.no_case) => News::Decided(place),
-            () if began => News::Began(place),
-            () => News::Nothing,
+            () if ended => CycleEvent::Ended(place),
+            () if !decided_before && (cycle.play.is_some() || cycle.no_case) => CycleEvent::Decided(place),
+            () if began => CycleEvent::Began(place),
+            () => CycleEvent::Nothing,
         }
     }
 
@@ -173,26 +173,26 @@ mod tests {
     #[test]
     fn a_cycle_begins_is_decided_and_ends() {
         let mut log = CycleLog::default();
-        assert_eq!(log.hear(0.4, &state(1, Decision::Undecided)), News::Began(0));
-        assert_eq!(log.hear(0.44, &state(1, play())), News::Decided(0));
-        assert_eq!(log.hear(0.48, &state(1, play())), News::Nothing);
-        assert_eq!(log.hear(5.0, &state(1, Decision::Closed(Closure::Finished))), News::Ended(0));
-        assert_eq!(log.hear(5.04, &state(1, Decision::Closed(Closure::Finished))), News::Nothing);
+        assert_eq!(log.receive(0.4, &state(1, Decision::Undecided)), CycleEvent::Began(0));
+        assert_eq!(log.receive(0.44, &state(1, play())), CycleEvent::Decided(0));
+        assert_eq!(log.receive(0.48, &state(1, play())), CycleEvent::Nothing);
+        assert_eq!(log.receive(5.0, &state(1, Decision::Closed(Closure::Finished))), CycleEvent::Ended(0));
+        assert_eq!(log.receive(5.04, &state(1, Decision::Closed(Closure::Finished))), CycleEvent::Nothing);
         let cycle = &log.cycles()[0];
         assert_eq!((cycle.start, cycle.end.unwrap().0), (0.4, 5.0));
-        assert_eq!(cycle.end.unwrap().1.word(), "finished");
+        assert_eq!(cycle.end.unwrap().1.label(), "finished");
         assert_eq!(cycle.play.as_ref().unwrap().case, CaseId(9));
     }
 
     #[test]
     fn a_newer_cycle_ends_an_older_one_and_a_late_closure_still_says_why() {
         let mut log = CycleLog::default();
-        log.hear(0.0, &state(1, play()));
-        log.hear(2.0, &state(2, Decision::Undecided));
+        log.receive(0.0, &state(1, play()));
+        log.receive(2.0, &state(2, Decision::Undecided));
         assert_eq!(log.cycles()[0].end, Some((2.0, CycleEnd::Superseded)));
         let closure = Closure::Aborted { by: robot(2), reason: AbortReason::OpponentOnBall };
-        assert_eq!(log.hear(2.1, &state(1, Decision::Closed(closure))), News::Ended(0));
-        assert_eq!(log.cycles()[0].end.map(|(at, end)| (at, end.word())), Some((2.0, "opponent-on-ball")));
+        assert_eq!(log.receive(2.1, &state(1, Decision::Closed(closure))), CycleEvent::Ended(0));
+        assert_eq!(log.cycles()[0].end.map(|(at, end)| (at, end.label())), Some((2.0, "opponent-on-ball")));
         log.finish(3.0);
         assert_eq!(log.cycles()[1].end, Some((3.0, CycleEnd::TrialOver)));
     }
@@ -200,13 +200,13 @@ mod tests {
     #[test]
     fn a_closure_for_want_of_a_case_counts_as_no_case() {
         let mut log = CycleLog::default();
-        log.hear(0.0, &state(1, Decision::Closed(Closure::NoCase)));
+        log.receive(0.0, &state(1, Decision::Closed(Closure::NoCase)));
         assert!(log.cycles()[0].no_case && log.cycles()[0].play.is_none());
-        assert_eq!(log.cycles()[0].end.unwrap().1.word(), "no-case");
+        assert_eq!(log.cycles()[0].end.unwrap().1.label(), "no-case");
     }
 
     #[test]
-    fn the_list_of_words_has_every_end_of_a_play() {
+    fn the_list_of_description_has_every_end_of_a_play() {
         use AbortReason as Why;
         let by = robot(1);
         let aborted = [
@@ -223,14 +223,14 @@ mod tests {
         let aborted = aborted.map(|reason| CycleEnd::Closed(Closure::Aborted { by, reason }));
         let all = [CycleEnd::Closed(Closure::Finished)].into_iter().chain(aborted);
         let all = all.chain([CycleEnd::Superseded, CycleEnd::TrialOver]);
-        assert_eq!(all.map(CycleEnd::word).collect::<Vec<_>>(), CycleEnd::WORDS);
+        assert_eq!(all.map(CycleEnd::label).collect::<Vec<_>>(), CycleEnd::DESCRIPTION);
     }
 
     #[test]
     fn a_straggler_of_an_unknown_older_cycle_is_filed_before_the_newer() {
         let mut log = CycleLog::default();
-        log.hear(1.0, &state(5, Decision::Undecided));
-        log.hear(1.1, &state(4, play()));
+        log.receive(1.0, &state(5, Decision::Undecided));
+        log.receive(1.1, &state(4, play()));
         assert_eq!(log.cycles().iter().map(|c| c.id.counter).collect::<Vec<_>>(), [4, 5]);
         assert_eq!(log.cycles()[0].end, Some((1.1, CycleEnd::Superseded)));
         assert_eq!(log.cycles()[1].end, None);

@@ -58,7 +58,7 @@ impl DefaultWatch {
     }
 
     /// Takes the newest cycle when it is decided on or ended.
-    pub(crate) fn hear(
+    pub(crate) fn receive(
         &mut self,
         cycle: &CycleSeen,
         problem: &Problem,
@@ -135,11 +135,11 @@ mod tests {
         PointMm { x, y }
     }
 
-    fn cause(ball: PointMm, mates: &[PointMm]) -> Causes {
+    fn cause(ball: PointMm, teammates: &[PointMm]) -> Causes {
         let id = |n: usize| RobotId::new(n as u8).unwrap();
         let problem = Problem {
             ball,
-            teammates: mates.iter().enumerate().map(|(i, mate)| (id(i + 1), *mate)).collect(),
+            teammates: teammates.iter().enumerate().map(|(i, teammate)| (id(i + 1), *teammate)).collect(),
             ..problem_of_nobody()
         };
         let mut causes = Causes::default();
@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn a_spell_lasts_from_the_first_word_to_the_next_case() {
+    fn a_spell_lasts_from_the_first_label_to_the_next_case() {
         let problem = Problem { ball: at(60_000, 0), ..problem_of_nobody() };
         let (base, settings) = (case_library::four_legged(), Settings::default());
         let mut watch = DefaultWatch::default();
@@ -191,7 +191,7 @@ mod tests {
             (3, false, true, 100),
             (4, true, false, 15),
         ] {
-            watch.hear(&cycle(counter, no_case, play), &problem, &base, &settings);
+            watch.receive(&cycle(counter, no_case, play), &problem, &base, &settings);
             (0..ticks).for_each(|_| watch.tick());
         }
         let causes = Causes { ball: 3, ..Causes::default() };

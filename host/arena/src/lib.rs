@@ -2,9 +2,9 @@
 //!
 //! [`run`] plays one trial of Ros et al. 2009 and returns its [`TrialReport`] (docs/case-format.md §5.2). For
 //! more than the report there is a [`Watcher`]: it gets every tick, as an observer at the field's edge with a
-//! radio receiver would see it; [`Story`] writes it as text, [`Recording`] keeps what [`picture()`] draws.
+//! radio receiver would see it; [`TextLog`] writes it as text, [`Recording`] keeps what [`picture()`] draws.
 //!
-//! [`Rehearsal`] plays single cases from their own situation, many times, and reports whether a case does
+//! [`CaseTrial`] plays single cases from their own situation, many times, and reports whether a case does
 //! what its author intended.
 //!
 //! [`game`] plays matches of the Small Size League, a host and its robots on each side.
@@ -20,6 +20,7 @@
 #![forbid(unsafe_code)]
 
 mod backups;
+mod case_trial;
 mod cycles;
 mod defaults;
 pub mod evaluation;
@@ -28,20 +29,20 @@ pub mod matches;
 mod names;
 mod picture;
 mod recording;
-mod rehearsal;
 mod report;
 pub mod skills;
 mod story;
 mod trial;
 
-pub use cycles::{CycleEnd, CycleLog, CycleSeen, News};
+pub use case_trial::{Attempt, CaseTrial, Opposition, Retrieved, Score, markdown};
+pub use cycles::{CycleEnd, CycleEvent, CycleLog, CycleSeen};
 pub use defaults::{Causes, DefaultReport};
 pub use names::{CaseNames, Cast, letter};
 pub use picture::picture;
 pub use recording::{Kick, Recording, Sample, Start};
-pub use rehearsal::{Attempt, Opposition, Rehearsal, Retrieved, Score, markdown};
 pub use report::{Backups, CaseCounts, CycleReport, Possession, TrialReport};
-pub use story::Story;
+pub use story::TextLog;
 pub use trial::{
-    APPROACHES, Moment, TEAM, TrialConfig, Watcher, approach_from_word, approach_word, positioning_word, run,
+    APPROACHES, Moment, TEAM, TrialConfig, Watcher, approach_from_label, approach_label, positioning_label,
+    run,
 };

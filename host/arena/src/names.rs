@@ -21,7 +21,7 @@ impl Cast {
             None => letter(robot).to_string(),
             Some(i) => match self.opponents.get(i) {
                 Some(Role::Midfield) => "the midfield defender".to_owned(),
-                Some(role) => format!("the {}", role.word()),
+                Some(role) => format!("the {}", role.label()),
                 None => format!("robot {robot}"),
             },
         }
@@ -56,7 +56,7 @@ impl CaseNames {
 
 /// Symmetry of a stored case.
 pub(crate) fn symmetry(case: CaseId) -> &'static str {
-    Symmetry::from_bits(case.0).word()
+    Symmetry::from_bits(case.0).label()
 }
 
 /// The letter of the attacker in place `index` of the team.

@@ -6,7 +6,7 @@ use hil_sim::TICK_US;
 use hil_sim::four_legged::world::WorldEvent;
 use protocol::robot_io::LeggedKick;
 
-use crate::cycles::News;
+use crate::cycles::CycleEvent;
 use crate::names::{Cast, symmetry};
 use crate::report::TrialReport;
 use crate::trial::{Moment, Watcher};
@@ -77,7 +77,7 @@ impl Watcher for Recording {
             self.cast = moment.cast.clone();
         }
         for news in moment.news {
-            let News::Decided(cycle) = *news else { continue };
+            let CycleEvent::Decided(cycle) = *news else { continue };
             let Some(play) = moment.cycles.cycles().get(cycle).and_then(|cycle| cycle.play.as_ref()) else {
                 continue;
             };

@@ -121,7 +121,7 @@ impl CycleReport {
     /// The report of a cycle of a trial that lasted until `time` seconds.
     pub(crate) fn new(cycle: &CycleSeen, names: &CaseNames, time: f32) -> Self {
         let play = cycle.play.as_ref();
-        let (end_s, end) = cycle.end.map_or((time, "trial-over"), |(at, end)| (at, end.word()));
+        let (end_s, end) = cycle.end.map_or((time, "trial-over"), |(at, end)| (at, end.label()));
         Self {
             cycle: cycle.id.to_string(),
             coordinator: cycle.coordinator.number(),
@@ -142,9 +142,9 @@ pub(crate) fn in_seconds(time: f32) -> f64 {
 
 #[allow(clippy::trivially_copy_pass_by_ref, reason = "serde's signature")]
 pub(crate) fn scenario<S: Serializer>(scenario: &Scenario, s: S) -> Result<S::Ok, S::Error> {
-    match scenario.word().parse::<u8>() {
+    match scenario.label().parse::<u8>() {
         Ok(number) => s.serialize_u8(number),
-        Err(_) => s.serialize_str(scenario.word()),
+        Err(_) => s.serialize_str(scenario.label()),
     }
 }
 
@@ -156,14 +156,14 @@ mod tests {
     fn numbers_read_as_people_write_them() {
         assert_eq!(serde_json::to_string(&in_seconds(23.44)).unwrap(), "23.44");
         assert_eq!(serde_json::to_string(&Backups(vec![3, 16])).unwrap(), r#"{"A":3,"B":16}"#);
-        let words = |s| serde_json::to_string(&Word(s)).unwrap();
+        let description = |s| serde_json::to_string(&Label(s)).unwrap();
         assert_eq!(
-            (words(Scenario::LeftSide), words(Scenario::Random)),
+            (description(Scenario::LeftSide), description(Scenario::Random)),
             ("2".to_owned(), "\"random\"".to_owned())
         );
     }
 
     /// A scenario as a report writes it.
     #[derive(Serialize)]
-    struct Word(#[serde(serialize_with = "scenario")] Scenario);
+    struct Label(#[serde(serialize_with = "scenario")] Scenario);
 }

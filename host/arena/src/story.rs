@@ -10,14 +10,14 @@ use protocol::RobotId;
 use protocol::robot_io::LeggedKick;
 use protocol::team::{Play, Progress};
 
-use crate::cycles::{CycleSeen, News};
+use crate::cycles::{CycleEvent, CycleSeen};
 use crate::names::symmetry;
 use crate::report::TrialReport;
 use crate::trial::{Moment, Watcher};
 
 /// Writes the log of a trial while it runs.
 #[derive(Clone, Debug, Default)]
-pub struct Story {
+pub struct TextLog {
     lines: Vec<String>,
     /// Progress of each robot as last logged.
     progress: Vec<(RobotId, Progress)>,
@@ -26,7 +26,7 @@ pub struct Story {
     possessions: u32,
 }
 
-impl Story {
+impl TextLog {
     /// The lines since the last call.
     pub fn take_lines(&mut self) -> Vec<String> {
         std::mem::take(&mut self.lines)
@@ -50,7 +50,7 @@ impl Story {
                 Configuration::DefenderGoalie => "a defender and a goalie",
                 Configuration::TwoDefenders => "a midfield defender and a defender",
             };
-            if scenario.word() == title {
+            if scenario.label() == title {
                 format!("random scenario {seed} against {against}")
             } else {
                 format!("scenario {scenario} ({title}) against {against}")
@@ -76,13 +76,13 @@ impl Story {
         self.tell(moment.tick.time, text);
     }
 
-    fn news(&mut self, moment: &Moment<'_>, news: News) {
-        let (News::Began(i) | News::Decided(i) | News::Ended(i)) = news else { return };
+    fn news(&mut self, moment: &Moment<'_>, news: CycleEvent) {
+        let (CycleEvent::Began(i) | CycleEvent::Decided(i) | CycleEvent::Ended(i)) = news else { return };
         let Some(cycle) = moment.cycles.cycles().get(i) else { return };
         match (news, &cycle.play) {
-            (News::Decided(_), Some(play)) => self.decided(moment, cycle, play),
-            (News::Ended(_), Some(_)) => {
-                let end = cycle.end.map_or("", |(_, end)| end.word());
+            (CycleEvent::Decided(_), Some(play)) => self.decided(moment, cycle, play),
+            (CycleEvent::Ended(_), Some(_)) => {
+                let end = cycle.end.map_or("", |(_, end)| end.label());
                 self.tell(moment.tick.time, format!("cycle {} is over: {end}", cycle.id));
             }
             _ if cycle.no_case && !self.without_case => {
@@ -103,7 +103,7 @@ impl Story {
         for (i, id) in play.robots.iter().enumerate() {
             let actions: Vec<_> = (0..)
                 .map_while(|n| action(moment, play, i, n))
-                .map(|a| action_words(moment, play, a))
+                .map(|a| action_description(moment, play, a))
                 .collect();
             let _ = write!(text, "\n             {} plays: {}", moment.cast.name_of(*id), actions.join(", "));
         }
@@ -123,7 +123,7 @@ impl Story {
         let name = moment.cast.name_of(id);
         let next = |done: u8| {
             let (play, part) = play.and_then(|play| Some((play, play.part_of(id)?)))?;
-            action(moment, play, part, usize::from(done)).map(|a| action_words(moment, play, a))
+            action(moment, play, part, usize::from(done)).map(|a| action_description(moment, play, a))
         };
         let text = match now {
             Progress::Idle | Progress::WaitEnd { finished: false } => return,
@@ -160,7 +160,7 @@ impl Story {
     }
 }
 
-impl Watcher for Story {
+impl Watcher for TextLog {
     fn watch(&mut self, moment: &Moment<'_>) {
         if moment.tick.number == 0 {
             self.opening(moment);
@@ -181,7 +181,7 @@ impl Watcher for Story {
         let possessions =
             moment.referee.possessions(Role::Defender) + moment.referee.possessions(Role::Midfield);
         if possessions > self.possessions {
-            let who = moment.referee.last_touch().map_or("an opponent", hil_sim::Party::word);
+            let who = moment.referee.last_touch().map_or("an opponent", hil_sim::Party::label);
             self.tell(moment.tick.time, format!("possession {possessions} of the opponents ({who})"));
             self.possessions = possessions;
         }
@@ -218,14 +218,14 @@ fn action(moment: &Moment<'_>, play: &Play, part: usize, n: usize) -> Option<Act
     moment.config.base.case(play.case)?.action(CaseRobot::new(part)?, n)
 }
 
-fn action_words(moment: &Moment<'_>, play: &Play, action: Action) -> String {
+fn action_description(moment: &Moment<'_>, play: &Play, action: Action) -> String {
     let case = moment.config.base.case(play.case);
     let shift = case.map_or(PointMm::default(), |case| case.shift(play.ball.into()));
     let place = |p: PointMm| {
         let PointMm { x, y } = p.plus(shift);
         format!("({x}, {y})")
     };
-    let mate = |robot: CaseRobot| {
+    let teammate = |robot: CaseRobot| {
         play.robots.get(robot.index()).map_or_else(|| "nobody".to_owned(), |id| moment.cast.name_of(*id))
     };
     match action {
@@ -235,8 +235,8 @@ fn action_words(moment: &Moment<'_>, play: &Play, action: Action) -> String {
         Action::Turn(TurnTarget::Face(p)) => format!("face {}", place(p)),
         Action::GetBall => "get the ball".to_owned(),
         Action::DribbleTo(p) => format!("dribble to {}", place(p)),
-        Action::PassBall(to) => format!("pass to {}", mate(to)),
-        Action::ReceiveBall(from) => format!("receive from {}", mate(from)),
+        Action::PassBall(to) => format!("pass to {}", teammate(to)),
+        Action::ReceiveBall(from) => format!("receive from {}", teammate(from)),
         Action::Kick(_) => "kick".to_owned(),
     }
 }
@@ -250,7 +250,7 @@ mod tests {
     use crate::trial::{TrialConfig, run};
 
     fn told(config: &TrialConfig<'static>) -> (Vec<String>, TrialReport) {
-        let mut story = Story::default();
+        let mut story = TextLog::default();
         let report = run(config, Box::new(NativeBackend::new(config.base)), &mut [&mut story]).unwrap();
         (story.take_lines(), report)
     }
@@ -266,8 +266,8 @@ mod tests {
         let played = report.cycles.iter().find_map(|cycle| cycle.case.clone()).unwrap();
         let retrieval = lines.iter().find(|line| line.contains("coordinates and retrieves")).unwrap();
         assert!(retrieval.contains(&played) && retrieval.contains("plays: get the ball"), "{retrieval}");
-        for words in ["goes to its place", ": get the ball", "   4.00 s  B crashes"] {
-            assert!(lines.iter().any(|line| line.contains(words)), "{words}");
+        for description in ["goes to its place", ": get the ball", "   4.00 s  B crashes"] {
+            assert!(lines.iter().any(|line| line.contains(description)), "{description}");
         }
         let end = &lines[lines.len() - 2];
         assert!(end.starts_with(&format!("{:7.2} s", report.time_s)), "{end}");

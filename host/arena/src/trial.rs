@@ -13,7 +13,7 @@ use protocol::team::{Beacon, TeamMessage};
 use protocol::{Duration, RobotId, TeamId};
 
 use crate::backups::BackupCount;
-use crate::cycles::{CycleLog, News};
+use crate::cycles::{CycleEvent, CycleLog};
 use crate::defaults::{self, DefaultWatch};
 use crate::names::{CaseNames, Cast};
 use crate::report::{Backups, CaseCounts, CycleReport, Possession, TrialReport, in_seconds};
@@ -139,7 +139,7 @@ pub struct Moment<'a> {
     /// The cycles so far, these beacons included.
     pub cycles: &'a CycleLog,
     /// Changes of the cycles by these beacons.
-    pub news: &'a [News],
+    pub news: &'a [CycleEvent],
 }
 
 /// Plays a trial to its end.
@@ -168,7 +168,7 @@ pub(crate) struct Game<'c, 'a> {
     cycles: CycleLog,
     defaults: DefaultWatch,
     beacons: Vec<(RobotId, Beacon)>,
-    news: Vec<News>,
+    news: Vec<CycleEvent>,
     keys: TeamKeys,
 }
 
@@ -207,9 +207,9 @@ impl<'c, 'a> Game<'c, 'a> {
             let Ok((from, TeamMessage::Beacon(beacon))) = overhear(&sent.packet, TEAM, &self.keys) else {
                 continue;
             };
-            self.backups.hear(tick.time, from, beacon.role);
+            self.backups.receive(tick.time, from, beacon.role);
             if let Some(state) = &beacon.cycle {
-                self.news.push(self.cycles.hear(tick.time, state));
+                self.news.push(self.cycles.receive(tick.time, state));
             }
             self.beacons.push((from, beacon));
         }
@@ -225,12 +225,12 @@ impl<'c, 'a> Game<'c, 'a> {
     fn watch_defaults(&mut self) {
         let Self { config, simulation, cast, cycles, defaults, news, .. } = self;
         for news in news.iter() {
-            let (News::Decided(i) | News::Ended(i)) = *news else { continue };
+            let (CycleEvent::Decided(i) | CycleEvent::Ended(i)) = *news else { continue };
             // Late reports of an older cycle have no effect any more.
             if let [cycle] = &cycles.cycles()[i..] {
                 let deceleration = config.parameters.ball.deceleration;
                 let problem = defaults::problem(simulation.world(), &cast.attackers, deceleration);
-                defaults.hear(cycle, &problem, &config.base, &config.settings);
+                defaults.receive(cycle, &problem, &config.base, &config.settings);
             }
         }
         defaults.tick();
@@ -263,11 +263,11 @@ impl<'c, 'a> Game<'c, 'a> {
 
     fn report(&self, verdict: Verdict) -> TrialReport {
         let (config, referee) = (self.config, self.simulation.referee());
-        let out_by = referee.last_touch().filter(|_| verdict.outcome == Outcome::Out).map(Party::word);
+        let out_by = referee.last_touch().filter(|_| verdict.outcome == Outcome::Out).map(Party::label);
         TrialReport {
             scenario: config.scenario,
             opponents: config.opponents,
-            approach: approach_word(config.approach),
+            approach: approach_label(config.approach),
             backend: self.backend,
             seed: config.seed,
             outcome: verdict.outcome,
@@ -286,7 +286,7 @@ impl<'c, 'a> Game<'c, 'a> {
             settings: (config.settings.describe())
                 .map(|(name, value)| (name, value.as_str().to_owned()))
                 .collect(),
-            positioning: positioning_word(config.positioning),
+            positioning: positioning_label(config.positioning),
             case_base: format!("{:08x}", config.base.hash()),
             default: (config.approach != Approach::Reactive).then(|| self.defaults.report()),
         }
@@ -294,7 +294,7 @@ impl<'c, 'a> Game<'c, 'a> {
 }
 
 /// The label of an approach in options and reports.
-pub const fn approach_word(approach: Approach) -> &'static str {
+pub const fn approach_label(approach: Approach) -> &'static str {
     match approach {
         Approach::Cases => "cbr",
         Approach::Reactive => "reactive",
@@ -303,15 +303,15 @@ pub const fn approach_word(approach: Approach) -> &'static str {
 }
 
 /// The approach with this label.
-pub fn approach_from_word(word: &str) -> Option<Approach> {
-    APPROACHES.into_iter().find(|approach| approach_word(*approach) == word)
+pub fn approach_from_label(label: &str) -> Option<Approach> {
+    APPROACHES.into_iter().find(|approach| approach_label(*approach) == label)
 }
 
 /// All approaches, in the order of tables: the paper's two first.
 pub const APPROACHES: [Approach; 3] = [Approach::Cases, Approach::Reactive, Approach::Hybrid];
 
 /// The label of a positioning in options and reports.
-pub const fn positioning_word(positioning: Positioning) -> &'static str {
+pub const fn positioning_label(positioning: Positioning) -> &'static str {
     match positioning {
         Positioning::Dependent => "dependent",
         Positioning::Independent => "independent",

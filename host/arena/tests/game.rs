@@ -1,7 +1,7 @@
 //! `game`: tests: invariants of a match. Short matches of division B, watched from outside: the true state,
 //! the referee's counts, and what the hosts sent.
 
-use arena::game::{Crowd, Game, GameConfig, GameReport, Nobody, Watcher, play};
+use arena::game::{Game, GameConfig, GameReport, NoWatcher, Watcher, Watchers, play};
 use geometry::Point;
 use hil_sim::NativeBackend;
 use host::radio::To;
@@ -72,7 +72,7 @@ fn nobody_is_fast_in_stop_or_moves_in_halt_and_no_ball_is_faster_than_the_rules_
 
 #[test]
 fn the_ball_is_in_play_for_most_of_every_match_both_teams_have_chances_and_fouls_are_few() {
-    let matches: Vec<GameReport> = (1..=8).map(|seed| short(seed, 120.0, &mut Nobody)).collect();
+    let matches: Vec<GameReport> = (1..=8).map(|seed| short(seed, 120.0, &mut NoWatcher)).collect();
     // Over 60 seeds the mean is 0.56 with a standard deviation of 0.10 (example `conduct`); a sixth is the
     // start of the two halves.
     let in_play: Vec<f32> = matches.iter().map(|report| report.ball_in_play).collect();
@@ -93,7 +93,7 @@ fn the_ball_is_in_play_for_most_of_every_match_both_teams_have_chances_and_fouls
 
 #[test]
 fn the_same_seed_gives_the_same_match_to_the_bit_and_another_seed_another() {
-    let hash = |seed| short(seed, 20.0, &mut Nobody).trace_hash;
+    let hash = |seed| short(seed, 20.0, &mut NoWatcher).trace_hash;
     assert_eq!(hash(3), hash(3));
     assert_ne!(hash(3), hash(4));
 }
@@ -125,8 +125,8 @@ impl Watcher for Traffic {
 #[test]
 fn watching_changes_nothing_and_frames_keep_their_budgets() {
     let mut traffic = Traffic::default();
-    let watched = short(6, 15.0, &mut Crowd(vec![&mut traffic]));
-    assert_eq!(watched, short(6, 15.0, &mut Nobody));
+    let watched = short(6, 15.0, &mut Watchers(vec![&mut traffic]));
+    assert_eq!(watched, short(6, 15.0, &mut NoWatcher));
     // docs/architecture.md §6.1: a command takes at most 40 B of air, a part of the world 120 B.
     assert!(traffic.longest_to_one > 0 && traffic.longest_to_one <= 40, "{} B", traffic.longest_to_one);
     assert!(traffic.longest_to_all > 0 && traffic.longest_to_all <= 120, "{} B", traffic.longest_to_all);
@@ -136,24 +136,24 @@ fn watching_changes_nothing_and_frames_keep_their_budgets() {
 }
 
 #[test]
-fn a_robot_that_crashes_falls_silent_and_one_that_boots_is_heard_and_led_again() {
+fn a_robot_that_crashes_falls_silent_and_one_that_boots_is_received_and_led_again() {
     let base = case_library::division_b();
     let config = GameConfig::new(League::DivisionB, 4, 60.0);
     let mut backend = NativeBackend::new(base);
     let mut game = Game::new(&config, &mut backend).unwrap();
     let who = Who { colour: Colour::Blue, id: RobotId::new(3).unwrap() };
-    let run = |game: &mut Game<'_>, ticks: u32| (0..ticks).for_each(|_| game.step(&mut Nobody).unwrap());
-    let heard =
+    let run = |game: &mut Game<'_>, ticks: u32| (0..ticks).for_each(|_| game.step(&mut NoWatcher).unwrap());
+    let received =
         |game: &Game<'_>| game.host(Colour::Blue).quality(who.id).is_some_and(|q| q.is_present(game.now()));
     let led = |game: &Game<'_>| game.host(Colour::Blue).orders().iter().any(|order| order.robot == who.id);
     run(&mut game, 300);
-    assert!(heard(&game) && led(&game));
+    assert!(received(&game) && led(&game));
     assert!(game.power(who, false, &mut backend).unwrap());
     run(&mut game, 100);
-    assert!(!heard(&game) && !led(&game));
+    assert!(!received(&game) && !led(&game));
     assert!(game.power(who, true, &mut backend).unwrap());
     run(&mut game, 100);
-    assert!(heard(&game) && led(&game));
+    assert!(received(&game) && led(&game));
     assert_eq!(game.host(Colour::Blue).quality(who.id).unwrap().lives(), 2);
     let nobody = Who { id: RobotId::new(9).unwrap(), ..who };
     assert!(!game.power(nobody, false, &mut backend).unwrap());
@@ -172,7 +172,7 @@ fn a_hand_moves_ball_and_robots_whether_the_match_runs_or_stands() {
     assert!(game.world().robot(who).unwrap().pose.position.distance(elsewhere) < 1e-6);
     for _ in 0..200 {
         game.move_ball(elsewhere, false);
-        game.step(&mut Nobody).unwrap();
+        game.step(&mut NoWatcher).unwrap();
     }
     assert!(game.world().ball.position.distance(elsewhere) < 0.3, "{:?}", game.world().ball.position);
 }
@@ -214,6 +214,6 @@ fn a_match_among_bystanders_is_played_without_them_and_is_had_again_from_its_wor
     assert!(standing.unpushed >= 7, "{} of 10 stand where they stood", standing.unpushed);
     assert!(standing.touched, "somebody took the kick-off");
     assert!(!report.fouls.blue.contains_key("too_many_robots"), "{:?}", report.fouls);
-    assert_eq!(play_in("random:3", &mut Nobody).trace_hash, report.trace_hash);
-    assert_ne!(play_in("nominal", &mut Nobody).trace_hash, report.trace_hash);
+    assert_eq!(play_in("random:3", &mut NoWatcher).trace_hash, report.trace_hash);
+    assert_ne!(play_in("nominal", &mut NoWatcher).trace_hash, report.trace_hash);
 }

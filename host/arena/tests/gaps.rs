@@ -9,7 +9,7 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use arena::game::{Game, GameConfig, Nobody};
+use arena::game::{Game, GameConfig, NoWatcher};
 use brain::BrainConfig;
 use brain::governor::{Ruling, Why};
 use casebase::CaseBase;
@@ -143,7 +143,7 @@ fn play(seed: u64, seconds: f64, fails: Fails) -> Stood {
         let (blind, deaf) = (vision_gaps.next(), radio_gaps.next());
         game.blind(matches!(fails, Fails::Vision | Fails::Both) && blind);
         game.lose(if matches!(fails, Fails::Radio | Fails::Both) && deaf { 1.0 } else { 0.0 });
-        game.step(&mut Nobody).unwrap();
+        game.step(&mut NoWatcher).unwrap();
         for colour in [Colour::Yellow, Colour::Blue] {
             look(&game, colour, &rulings, &mut stood, &mut runs);
         }
@@ -221,16 +221,16 @@ fn silence(seed: u64, ticks: u32, fail: impl Fn(&mut Game<'static>, u32)) -> Vec
     for _ in 0..1_200 {
         game.blind(vision_gaps.next());
         game.lose(if radio_gaps.next() { 1.0 } else { 0.0 });
-        game.step(&mut Nobody).unwrap();
+        game.step(&mut NoWatcher).unwrap();
     }
     // No fault for half a second, so that the silence starts with its first tick.
     game.blind(false);
     game.lose(0.0);
-    (0..50).for_each(|_| game.step(&mut Nobody).unwrap());
+    (0..50).for_each(|_| game.step(&mut NoWatcher).unwrap());
     let mut seen = Vec::new();
     for tick in 0..ticks {
         fail(&mut game, tick);
-        game.step(&mut Nobody).unwrap();
+        game.step(&mut NoWatcher).unwrap();
         let rulings = rulings.borrow();
         seen.push((rulings.len(), rulings.values().filter(|ruling| held(**ruling)).count()));
     }
@@ -238,8 +238,8 @@ fn silence(seed: u64, ticks: u32, fail: impl Fn(&mut Game<'static>, u32)) -> Vec
 }
 
 #[test]
-fn in_a_real_silence_of_the_radio_every_robot_brakes_before_what_it_heard_is_200_ms_old_and_goes_on_after_it()
-{
+fn in_a_real_silence_of_the_radio_every_robot_brakes_before_what_it_received_is_200_ms_old_and_goes_on_after_it()
+ {
     for seed in [1, 2, 3] {
         // After a gap the first frame counts; after half a second of silence, half a second of receiving, and
         // a telemetry packet (10 Hz) by which the host knows the robot again.

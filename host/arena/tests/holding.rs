@@ -1,7 +1,7 @@
 //! `holding`: tests: a robot with the ball always acts on it. Situations in which robots stood with the ball,
 //! or beside it, set up in a match in play; seconds until the ball has moved on.
 
-use arena::game::{Game, GameConfig, GameReport, Nobody};
+use arena::game::{Game, GameConfig, GameReport, NoWatcher};
 use geometry::{Angle, Field, GoalEnd, Point, Pose, Vector};
 use hil_sim::NativeBackend;
 use hil_sim::small_size::Ball;
@@ -28,7 +28,7 @@ impl Stage<'_> {
         let backend = Box::leak(Box::new(NativeBackend::new(case_library::division_b())));
         let mut game = Game::new(&config, backend).unwrap();
         while game.referee().phase() != Phase::Run {
-            game.step(&mut Nobody).unwrap();
+            game.step(&mut NoWatcher).unwrap();
         }
         let sign = if game.referee().own_end(Colour::Blue) == GoalEnd::Negative { 1.0 } else { -1.0 };
         Self { game, config, sign }
@@ -57,7 +57,7 @@ impl Stage<'_> {
         let (from, begin) = (self.game.world().ball.position, self.game.time());
         while self.game.time() - begin < seconds {
             meanwhile(self);
-            self.game.step(&mut Nobody).unwrap();
+            self.game.step(&mut NoWatcher).unwrap();
             if self.game.world().ball.position.distance(from) > way {
                 return Some(self.game.time() - begin);
             }

@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use arena::game::{Game, GameConfig, Nobody};
+use arena::game::{Game, GameConfig, NoWatcher};
 use brain::BrainConfig;
 use casebase::CaseBase;
 use geometry::{Point, Vector};
 use hil_sim::small_size::camera::Cameras;
-use hil_sim::small_size::quirks::Profile;
+use hil_sim::small_size::compatibility::Profile;
 use hil_sim::small_size::{Ball, Parameters, World};
 use hil_sim::{Backend, Mcu, McuError, NativeMcu, Reply};
 use host::{Host, HostSettings, Input};
@@ -59,7 +59,7 @@ fn play(seed: u64, seconds: u32, gain: fn(TeamId, RobotId) -> f32, delay: u32) -
     config.air.delay = [delay, delay];
     let backend = Box::leak(Box::new(Kickers { base: case_library::division_b(), gain }));
     let mut game = Game::new(&config, backend).unwrap();
-    (0..seconds * 100).for_each(|_| game.step(&mut Nobody).unwrap());
+    (0..seconds * 100).for_each(|_| game.step(&mut NoWatcher).unwrap());
     game
 }
 
@@ -72,8 +72,8 @@ fn kickers_that_give_less_or_more_than_ordered_are_known_from_the_kicks_of_a_mat
         for (colour, truth) in [(Colour::Blue, 0.72), (Colour::Yellow, 1.1)] {
             for id in RobotId::all() {
                 if let Some(found) = game.host(colour).learned().kick(id) {
-                    println!("seed {seed}, {} {id}: {found:?}", colour.word());
-                    known.insert((seed, colour.word(), id), (found, truth));
+                    println!("seed {seed}, {} {id}: {found:?}", colour.label());
+                    known.insert((seed, colour.label(), id), (found, truth));
                 }
             }
         }
@@ -129,7 +129,7 @@ fn friction(roll: f32, balls: u64) -> Option<f32> {
 }
 
 #[test]
-fn the_friction_of_a_carpet_is_known_within_a_sixth_from_balls_that_roll_on_it() {
+fn the_friction_of_a_surface_is_known_within_a_sixth_from_balls_that_roll_on_it() {
     for truth in [0.25, 0.35, 0.7] {
         let known = friction(truth, 8).expect("eight balls are enough");
         println!("truly {truth}, learned {known}");

@@ -1,14 +1,14 @@
 //! `prepare`: tests: a whole team stands where it must after a PREPARE command, from any start positions.
 //! Hosts, radio, brains and wheels as in a match; the judge is `rules::keep_out` on the simulator's truth.
 
-use arena::game::{Game, GameConfig, Nobody};
+use arena::game::{Game, GameConfig, NoWatcher};
 use geometry::{Angle, Field, Point, Pose};
 use hil_sim::NativeBackend;
 use protocol::{Duration, Who};
 use rules::keep_out::{Situation, Why, keep_out};
 use rules::limits::ROBOT_RADIUS;
 use rules::state::Command;
-use rules::{Colour, Duty, League, Phase};
+use rules::{Colour, League, Phase, RuleRole};
 
 /// Time that the controller gives teams to prepare, s.
 const TIME: f64 = 10.0;
@@ -56,12 +56,12 @@ fn offence(game: &Game<'_>, league: League, who: Who) -> Option<Why> {
         field: &field,
         own: game.referee().own_end(who.colour),
         phase,
-        duty: if keeper {
-            Duty::Keeper
+        rule_role: if keeper {
+            RuleRole::Keeper
         } else if taker {
-            Duty::Taker
+            RuleRole::Taker
         } else {
-            Duty::Player
+            RuleRole::Player
         },
         ball: Some(game.world().ball.position),
         placement: None,
@@ -84,7 +84,7 @@ fn prepare(league: League, command: Command, seed: u64) -> Vec<String> {
         if !asked && game.time() > 0.5 {
             asked = game.command(command);
         }
-        game.step(&mut Nobody).unwrap();
+        game.step(&mut NoWatcher).unwrap();
     }
     assert_eq!(game.referee().phase(), wanted, "seed {seed}: the referee prepares");
     scatter(&mut game, league, &mut state);
@@ -92,7 +92,7 @@ fn prepare(league: League, command: Command, seed: u64) -> Vec<String> {
     let all: Vec<Who> = game.world().robots().iter().filter(|robot| robot.present).map(|r| r.who).collect();
     let mut stood = vec![(0.0_f64, 0.0_f64); all.len()];
     while game.time() - begun < TIME && game.referee().phase() == wanted {
-        game.step(&mut Nobody).unwrap();
+        game.step(&mut NoWatcher).unwrap();
         for (who, (now, longest)) in all.iter().zip(&mut stood) {
             let stands = game.world().robot(*who).is_some_and(|robot| robot.velocity.norm() < STANDING);
             // The tracked state of a robot that was lifted elsewhere settles within the first half second.
@@ -107,7 +107,7 @@ fn prepare(league: League, command: Command, seed: u64) -> Vec<String> {
     for (who, (_, longest)) in all.iter().zip(&stood) {
         let at = game.world().robot(*who).map(|robot| robot.pose.position);
         let told = || {
-            format!("{} {command:?}, seed {seed}: {} {} at {at:?}", league.name(), who.colour.word(), who.id)
+            format!("{} {command:?}, seed {seed}: {} {} at {at:?}", league.name(), who.colour.label(), who.id)
         };
         if let Some(why) = offence(&game, league, *who).filter(|_| ended) {
             wrong.push(format!("{} ends in {why:?}", told()));

@@ -1,7 +1,7 @@
 //! `sanity`: a healthy match reports no finding, and a field on which something does not fit is reported
 //! within two seconds, for both divisions.
 
-use arena::game::{Game, GameConfig, Nobody};
+use arena::game::{Game, GameConfig, NoWatcher};
 use geometry::{Angle, Point, Pose};
 use hil_sim::NativeBackend;
 use host::sanity::{Finding, Sanity, SideEvidence};
@@ -26,7 +26,7 @@ fn play(
     let mut sanity = [Sanity::default(), Sanity::default()];
     for tick in 0..seconds * 100 {
         hand(&mut game, tick * 10);
-        game.step(&mut Nobody).unwrap();
+        game.step(&mut NoWatcher).unwrap();
         if tick % 10 == 9 {
             for colour in [Colour::Yellow, Colour::Blue] {
                 let now = game.now();
@@ -50,7 +50,7 @@ fn a_healthy_match_of_either_division_says_nothing_ever() {
                         found.is_empty(),
                         "{} seed {seed}, {ms} ms, {}: {found:?}",
                         league.name(),
-                        colour.word()
+                        colour.label()
                     );
                 },
             );

@@ -58,7 +58,7 @@ pub(crate) enum Verb {
 
 /// Which libraries: every built-in league unless a directory is given.
 #[derive(Debug, Args)]
-pub(crate) struct FolderArgs {
+pub(crate) struct DirectoryArgs {
     /// Directory of one league's case files, read now: `league.toml` and `<region>/<name>.toml`.
     #[arg(long, value_name = "DIR")]
     pub(crate) library: Option<PathBuf>,
@@ -68,7 +68,7 @@ pub(crate) struct FolderArgs {
 #[derive(Debug, Args)]
 pub(crate) struct LibraryArgs {
     #[command(flatten)]
-    pub(crate) folder: FolderArgs,
+    pub(crate) directory: DirectoryArgs,
     /// A built-in league.
     #[arg(long, value_name = "NAME", default_value = "four-legged", conflicts_with = "library")]
     pub(crate) league: String,

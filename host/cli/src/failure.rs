@@ -15,18 +15,18 @@ use hil_sim::SimulationError;
 
 use crate::cases::new::DraftError;
 use crate::output::{note, shown};
-use crate::picture::PictureError;
+use crate::picture::SnapshotError;
 use crate::virtual_robot::RobotError;
 
 /// One variant for each failure that the operator can fix.
 #[derive(Debug)]
 pub(crate) enum Failure {
     /// `--library` names no directory.
-    NoFolder(PathBuf),
+    NoDirectory(PathBuf),
     /// The case files in a directory are faulty.
     FaultyLibrary {
         /// The league's directory.
-        folder: PathBuf,
+        directory: PathBuf,
         /// The findings, errors among them.
         findings: Vec<Finding>,
     },
@@ -78,7 +78,7 @@ pub(crate) enum Failure {
         /// The output file.
         file: PathBuf,
         /// Why.
-        error: PictureError,
+        error: SnapshotError,
     },
     /// A Markdown file has no place for figures.
     Markdown {
@@ -114,7 +114,7 @@ pub(crate) enum Failure {
         /// The file.
         file: PathBuf,
         /// What is wrong, and how to fix it.
-        words: String,
+        description: String,
     },
     /// A verb on the league's networks cannot continue.
     Network(String),
@@ -129,8 +129,8 @@ impl Failure {
         Self::Setting { assignment: format!("{name}={value}"), error }
     }
 
-    pub(crate) fn missing_folder(folder: &Path) -> Self {
-        Self::NoFolder(folder.to_owned())
+    pub(crate) fn missing_directory(directory: &Path) -> Self {
+        Self::NoDirectory(directory.to_owned())
     }
 
     /// Prints it on stderr. A closed stdout is not an error: the reader has read enough.
@@ -152,14 +152,14 @@ impl From<EvaluationError> for Failure {
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoFolder(folder) => write!(
+            Self::NoDirectory(directory) => write!(
                 f,
                 "no library at {}: no such folder; --library takes one league's folder, the one that holds league.toml",
-                shown(folder)
+                shown(directory)
             ),
-            Self::FaultyLibrary { folder, findings } => {
+            Self::FaultyLibrary { directory, findings } => {
                 let errors = findings.iter().filter(|finding| finding.severity == Severity::Error);
-                writeln!(f, "the library at {} is refused:", shown(folder))?;
+                writeln!(f, "the library at {} is refused:", shown(directory))?;
                 for finding in errors {
                     writeln!(f, "  {finding}")?;
                 }
@@ -181,7 +181,7 @@ impl fmt::Display for Failure {
                     None => f.write_str("the library holds no case"),
                 }
             }
-            Self::Problem(words) => f.write_str(words),
+            Self::Problem(description) => f.write_str(description),
             Self::NoCaseFits => {
                 f.write_str("no case fits the problem; name a case to see why, or ask `onetwo cases explain`")
             }
@@ -194,10 +194,10 @@ impl fmt::Display for Failure {
                 write!(f, "the library {league} holds no case; add one at <region>/<name>.toml")
             }
             Self::Draft(error) => write!(f, "{error}"),
-            Self::Survey(words) | Self::Network(words) => f.write_str(words),
+            Self::Survey(description) | Self::Network(description) => f.write_str(description),
             Self::Robot(error) => write!(f, "{error}"),
             Self::Trial(error) => write!(f, "{error}"),
-            Self::Firmware(words) => f.write_str(words),
+            Self::Firmware(description) => f.write_str(description),
             Self::Game(error) => write!(f, "{error}"),
             Self::Recording { stem: Some(stem), error } => {
                 write!(f, "cannot keep the recording: {}: {error}", shown(stem))
@@ -224,12 +224,16 @@ impl fmt::Display for Failure {
                  leave out a filter",
             ),
             Self::Threads(error) => write!(f, "cannot start threads: {error}; try --jobs 1"),
-            Self::Recorded { file, words } => {
+            Self::Recorded { file, description } => {
                 let file = shown(file);
                 // The reason may quote the file's own text.
-                let words = printable(words);
+                let description = printable(description);
                 // Some reasons name the file already.
-                if words.starts_with(&file) { f.write_str(&words) } else { write!(f, "{file}: {words}") }
+                if description.starts_with(&file) {
+                    f.write_str(&description)
+                } else {
+                    write!(f, "{file}: {description}")
+                }
             }
             Self::Input(error) => write!(f, "cannot read stdin: {error}"),
             Self::Output(error) => write!(f, "cannot write stdout: {error}"),

@@ -14,18 +14,18 @@ use crate::progress::Progress;
 
 /// One opened library.
 #[derive(Debug)]
-pub(crate) enum Shelf {
+pub(crate) enum LibraryHandle {
     /// Built into this program; with the case base over its table, which is checked once.
     BuiltIn(&'static League, CaseBase<'static>),
     /// Read from a directory. It is kept until the program ends, because the case base borrows from it.
-    Folder(&'static Library, CaseBase<'static>),
+    Directory(&'static Library, CaseBase<'static>),
 }
 
-impl Shelf {
+impl LibraryHandle {
     /// Opens the library that the command line names.
     pub(crate) fn open(args: &LibraryArgs) -> Result<Self, Failure> {
-        match &args.folder.library {
-            Some(folder) => Self::read(folder),
+        match &args.directory.library {
+            Some(directory) => Self::read(directory),
             None => case_library::league(&args.league)
                 .map(Self::built_in)
                 .ok_or_else(|| Failure::UnknownLeague(args.league.clone())),
@@ -39,32 +39,32 @@ impl Shelf {
             return Ok(whole);
         }
         let refused = |findings| Failure::FaultyLibrary {
-            folder: args.folder.library.clone().unwrap_or_else(|| args.league.clone().into()),
+            directory: args.directory.library.clone().unwrap_or_else(|| args.league.clone().into()),
             findings,
         };
-        let files = match (&args.folder.library, &whole) {
-            (Some(folder), _) => Files::read(folder).map_err(refused)?,
+        let files = match (&args.directory.library, &whole) {
+            (Some(directory), _) => Files::read(directory).map_err(refused)?,
             (None, Self::BuiltIn(league, _)) => {
                 let cases = league.names.iter().zip(league.sources).map(|(name, text)| (*name, *text));
                 Files::from_texts(league.name, league.rules, &cases.collect::<Vec<_>>())
             }
-            (None, Self::Folder(..)) => return Ok(whole),
+            (None, Self::Directory(..)) => return Ok(whole),
         };
         let library = case_tools::build_reduced(&files, reduction).map_err(refused)?;
         let library: &'static Library = Box::leak(Box::new(library));
-        Ok(Self::Folder(library, library.base()))
+        Ok(Self::Directory(library, library.base()))
     }
 
     /// One league's directory.
-    pub(crate) fn read(folder: &Path) -> Result<Self, Failure> {
-        if !folder.is_dir() {
-            return Err(Failure::missing_folder(folder));
+    pub(crate) fn read(directory: &Path) -> Result<Self, Failure> {
+        if !directory.is_dir() {
+            return Err(Failure::missing_directory(directory));
         }
         let library: &'static Library = Box::leak(Box::new(
-            load(folder)
-                .map_err(|findings| Failure::FaultyLibrary { folder: folder.to_owned(), findings })?,
+            load(directory)
+                .map_err(|findings| Failure::FaultyLibrary { directory: directory.to_owned(), findings })?,
         ));
-        Ok(Self::Folder(library, library.base()))
+        Ok(Self::Directory(library, library.base()))
     }
 
     fn built_in(league: &'static League) -> Self {
@@ -72,9 +72,9 @@ impl Shelf {
     }
 
     /// The libraries if no single one is named: the directory, or every built-in league.
-    pub(crate) fn all(folder: Option<&Path>) -> Result<Vec<Self>, Failure> {
-        match folder {
-            Some(folder) => Ok(vec![Self::read(folder)?]),
+    pub(crate) fn all(directory: Option<&Path>) -> Result<Vec<Self>, Failure> {
+        match directory {
+            Some(directory) => Ok(vec![Self::read(directory)?]),
             None => Ok(LEAGUES.iter().map(Self::built_in).collect()),
         }
     }
@@ -82,14 +82,14 @@ impl Shelf {
     /// The case base over the table.
     pub(crate) const fn base(&self) -> CaseBase<'_> {
         match self {
-            Self::BuiltIn(_, base) | Self::Folder(_, base) => *base,
+            Self::BuiltIn(_, base) | Self::Directory(_, base) => *base,
         }
     }
 
     /// The same for the lifetime of the program: built in, or kept until its end.
     pub(crate) const fn lasting_base(&self) -> CaseBase<'static> {
         match self {
-            Self::BuiltIn(_, base) | Self::Folder(_, base) => *base,
+            Self::BuiltIn(_, base) | Self::Directory(_, base) => *base,
         }
     }
 
@@ -97,7 +97,7 @@ impl Shelf {
     pub(crate) fn league(&self) -> &str {
         match self {
             Self::BuiltIn(league, _) => league.name,
-            Self::Folder(library, _) => &library.league,
+            Self::Directory(library, _) => &library.league,
         }
     }
 
@@ -105,7 +105,7 @@ impl Shelf {
     pub(crate) fn names(&self) -> Vec<String> {
         match self {
             Self::BuiltIn(league, _) => league.names.iter().map(ToString::to_string).collect(),
-            Self::Folder(library, _) => library.names.clone(),
+            Self::Directory(library, _) => library.names.clone(),
         }
     }
 
@@ -114,7 +114,7 @@ impl Shelf {
         let authored = authored(id);
         match self {
             Self::BuiltIn(league, _) => league.names[authored],
-            Self::Folder(library, _) => &library.names[authored],
+            Self::Directory(library, _) => &library.names[authored],
         }
     }
 
@@ -123,7 +123,7 @@ impl Shelf {
         let kind = usize::from(kind.0);
         match self {
             Self::BuiltIn(league, _) => league.kicks[kind],
-            Self::Folder(library, _) => &library.kicks[kind],
+            Self::Directory(library, _) => &library.kicks[kind],
         }
     }
 
@@ -132,7 +132,7 @@ impl Shelf {
         let authored = authored(id);
         let source = match self {
             Self::BuiltIn(league, _) => league.sources[authored],
-            Self::Folder(library, _) => &library.sources[authored],
+            Self::Directory(library, _) => &library.sources[authored],
         };
         let table: toml::Table = source.parse().ok()?;
         Some(table.get("intent")?.as_str()?.to_owned())
@@ -141,9 +141,9 @@ impl Shelf {
 
 /// Reads one league's directory; with a bar on a terminal's stderr where there are many files, and nothing in
 /// a pipe.
-pub(crate) fn load(folder: &Path) -> Result<Library, Vec<Finding>> {
+pub(crate) fn load(directory: &Path) -> Result<Library, Vec<Finding>> {
     let progress = OnceCell::new();
-    case_tools::load_telling(folder, |done, all| {
+    case_tools::load_telling(directory, |done, all| {
         if all >= MANY {
             let line = progress.get_or_init(|| {
                 let line = Progress::open();

@@ -7,7 +7,7 @@ use ssl::net::{Datagram, Interfaces, NetError, Port, Receiver, Sender};
 
 /// Sends to an address; an error is reported once, not a thousand times a second.
 #[derive(Debug)]
-pub(crate) struct Mouth {
+pub(crate) struct NetSender {
     to: SocketAddr,
     /// The interface to send by; `None`: the system's choice.
     by: Option<String>,
@@ -17,7 +17,7 @@ pub(crate) struct Mouth {
     pub(crate) sent: u64,
 }
 
-impl Mouth {
+impl NetSender {
     /// The socket is opened with the first datagram.
     pub(crate) fn new(to: SocketAddr, by: Option<&str>) -> Self {
         Self { to, by: by.map(str::to_owned), sender: None, troubled: false, sent: 0 }
@@ -39,7 +39,7 @@ impl Mouth {
     /// Sends; returns a message for the operator where sending starts to fail, recovers, or uses another
     /// interface than requested.
     pub(crate) fn send(&mut self, bytes: &[u8]) -> Option<String> {
-        let words = match self.try_send(bytes) {
+        let description = match self.try_send(bytes) {
             Ok(()) => return self.works(),
             Err(NetError::NoRoute { .. }) if self.by.is_none() && self.to.ip().is_multicast() => {
                 // Without any network this machine can still be reached.
@@ -59,7 +59,7 @@ impl Mouth {
             Err(error) => error.to_string(),
         };
         self.sender = None;
-        (!std::mem::replace(&mut self.troubled, true)).then_some(words)
+        (!std::mem::replace(&mut self.troubled, true)).then_some(description)
     }
 
     fn works(&mut self) -> Option<String> {
@@ -81,14 +81,14 @@ impl Mouth {
 
 /// Receives from an address: a multicast group shared with other programs, or a port of its own.
 #[derive(Debug)]
-pub(crate) enum Ear {
+pub(crate) enum NetReceiver {
     /// A multicast group.
     Group(Receiver),
     /// A unicast port.
     Own(Port),
 }
 
-impl Ear {
+impl NetReceiver {
     /// Joins the group, or takes the port.
     pub(crate) fn open(address: SocketAddr, by: &Interfaces) -> Result<Self, NetError> {
         match address {
@@ -106,7 +106,7 @@ impl Ear {
     }
 
     /// How it receives, as text.
-    pub(crate) fn words(&self) -> String {
+    pub(crate) fn description(&self) -> String {
         match self {
             Self::Group(receiver) => {
                 receiver.joined().iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
@@ -121,21 +121,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_machine_is_spoken_to_and_heard_straight() {
+    fn one_machine_is_spoken_to_and_received_straight() {
         let any: SocketAddr = ([127, 0, 0, 1], 0).into();
         let port = Port::bind(any).expect("a port").address();
-        let mut ear = Ear::open(port, &Interfaces::All).expect("the port is free again");
-        let mut mouth = Mouth::new(port, None);
-        assert_eq!(mouth.send(b"hello"), None);
-        let heard = ear.receive(Duration::from_secs(5)).expect("no error").expect("a datagram");
-        assert_eq!((heard.bytes, mouth.sent), (&b"hello"[..], 1));
+        let mut receiver = NetReceiver::open(port, &Interfaces::All).expect("the port is free again");
+        let mut sender = NetSender::new(port, None);
+        assert_eq!(sender.send(b"hello"), None);
+        let received = receiver.receive(Duration::from_secs(5)).expect("no error").expect("a datagram");
+        assert_eq!((received.bytes, sender.sent), (&b"hello"[..], 1));
     }
 
     #[test]
     fn what_cannot_be_sent_is_told_once() {
-        let mut mouth = Mouth::new(([127, 0, 0, 1], 9).into(), None);
+        let mut sender = NetSender::new(([127, 0, 0, 1], 9).into(), None);
         let too_large = vec![0; 70_000];
-        assert!(mouth.send(&too_large).is_some_and(|words| words.contains("70000")));
-        assert_eq!(mouth.send(&too_large), None);
+        assert!(sender.send(&too_large).is_some_and(|description| description.contains("70000")));
+        assert_eq!(sender.send(&too_large), None);
     }
 }

@@ -19,20 +19,20 @@ pub(crate) fn lines() -> BufWriter<Printable<StdoutLock<'static>>> {
 }
 
 /// Prints on stdout, whole or not at all; a reader that closed it has read enough.
-pub(crate) fn say(words: &str) -> Result<(), Failure> {
+pub(crate) fn say(description: &str) -> Result<(), Failure> {
     let mut out = Printable::new(io::stdout().lock());
-    out.write_all(words.as_bytes()).and_then(|()| out.flush()).map_err(Failure::Output)
+    out.write_all(description.as_bytes()).and_then(|()| out.flush()).map_err(Failure::Output)
 }
 
 /// Prints a line on stderr. If stderr is closed the line is lost.
-pub(crate) fn say_aside(words: Arguments<'_>) {
+pub(crate) fn say_aside(description: Arguments<'_>) {
     let mut out = Printable::new(io::stderr().lock());
-    let _ = writeln!(out, "{words}");
+    let _ = writeln!(out, "{description}");
 }
 
 /// Prints a line on stderr, as `eprintln!` would.
 macro_rules! note {
-    ($($words:tt)*) => { $crate::output::say_aside(format_args!($($words)*)) };
+    ($($description:tt)*) => { $crate::output::say_aside(format_args!($($description)*)) };
 }
 pub(crate) use note;
 
@@ -54,8 +54,8 @@ mod tests {
         assert_eq!(name, "a\\u001b]0;pwn\\u0007\\n0.00 s  GOAL");
     }
 
-    fn sources(folder: &Path, into: &mut Vec<PathBuf>) {
-        for entry in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+    fn sources(directory: &Path, into: &mut Vec<PathBuf>) {
+        for entry in fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().path()) {
             if entry.is_dir() {
                 sources(&entry, into);
             } else if entry.extension().is_some_and(|extension| extension == "rs") {

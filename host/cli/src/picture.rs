@@ -14,34 +14,34 @@ use crate::Failure;
 /// Writes the SVG, or its PNG when the name ends in `.png`.
 pub(crate) fn write(file: &Path, svg: &str) -> Result<(), Failure> {
     let written = match bytes(file, svg) {
-        Ok(bytes) => std::fs::write(file, bytes).map_err(PictureError::Write),
+        Ok(bytes) => std::fs::write(file, bytes).map_err(SnapshotError::Write),
         Err(error) => Err(error),
     };
     written.map_err(|error| Failure::Picture { file: file.to_owned(), error })
 }
 
 #[cfg(feature = "png")]
-fn bytes(file: &Path, svg: &str) -> Result<Vec<u8>, PictureError> {
-    if has_extension(file, "png") { png::png(svg).map_err(PictureError::Png) } else { Ok(svg.into()) }
+fn bytes(file: &Path, svg: &str) -> Result<Vec<u8>, SnapshotError> {
+    if has_extension(file, "png") { png::png(svg).map_err(SnapshotError::Png) } else { Ok(svg.into()) }
 }
 
 #[cfg(not(feature = "png"))]
-fn bytes(file: &Path, svg: &str) -> Result<Vec<u8>, PictureError> {
-    if has_extension(file, "png") { Err(PictureError::WithoutPng) } else { Ok(svg.into()) }
+fn bytes(file: &Path, svg: &str) -> Result<Vec<u8>, SnapshotError> {
+    if has_extension(file, "png") { Err(SnapshotError::WithoutPng) } else { Ok(svg.into()) }
 }
 
 /// For clap: `--png`, which is refused before any work is done where this program cannot write one.
-pub(crate) fn flag(text: &str) -> Result<bool, PictureError> {
+pub(crate) fn flag(text: &str) -> Result<bool, SnapshotError> {
     match text {
         "true" if cfg!(feature = "png") => Ok(true),
-        "true" => Err(PictureError::WithoutPng),
+        "true" => Err(SnapshotError::WithoutPng),
         _ => Ok(false),
     }
 }
 
 /// Why a picture is not written.
 #[derive(Debug)]
-pub(crate) enum PictureError {
+pub(crate) enum SnapshotError {
     /// The name ends in none of these.
     Name(&'static [&'static str]),
     /// The file cannot be written.
@@ -53,7 +53,7 @@ pub(crate) enum PictureError {
     WithoutPng,
 }
 
-impl fmt::Display for PictureError {
+impl fmt::Display for SnapshotError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Name(kinds) => write!(f, "expected a name that ends in .{}", kinds.join(" or .")),
@@ -68,16 +68,16 @@ impl fmt::Display for PictureError {
     }
 }
 
-impl std::error::Error for PictureError {}
+impl std::error::Error for SnapshotError {}
 
 /// For clap: the name of a picture, of one of these kinds.
-pub(crate) fn named(text: &str, kinds: &'static [&'static str]) -> Result<PathBuf, PictureError> {
+pub(crate) fn named(text: &str, kinds: &'static [&'static str]) -> Result<PathBuf, SnapshotError> {
     let file = PathBuf::from(text);
     if !kinds.iter().any(|kind| has_extension(&file, kind)) {
-        return Err(PictureError::Name(kinds));
+        return Err(SnapshotError::Name(kinds));
     }
     if has_extension(&file, "png") && !cfg!(feature = "png") {
-        return Err(PictureError::WithoutPng);
+        return Err(SnapshotError::WithoutPng);
     }
     Ok(file)
 }
@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_picture_has_a_name_that_tells_its_kind() {
+    fn a_snapshot_has_a_name_that_tells_its_kind() {
         assert!(named("a.svg", &["svg", "png"]).is_ok());
         assert_eq!(named("a.PNG", &["svg", "png"]).is_ok(), cfg!(feature = "png"));
         let refused = named("a.jpg", &["svg", "png"]).unwrap_err().to_string();

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 
-use arena::game::{self, Crowd, Game, GameConfig, GameReport, GameStory, Watcher};
+use arena::game::{self, Game, GameConfig, GameReport, MatchLog, Watcher, Watchers};
 use casebase::CaseBase;
 use clap::Args;
 use hil_sim::NativeBackend;
@@ -19,9 +19,9 @@ use protocol::Instant;
 use rules::{Colour, League};
 
 use crate::Failure;
-use crate::args::{FolderArgs, SettingsArgs};
-use crate::library::Shelf;
-use crate::live::{AnewWatcher, CaseOracle, End, PageArgs, Theatre, shelf_of};
+use crate::args::{DirectoryArgs, SettingsArgs};
+use crate::library::LibraryHandle;
+use crate::live::{CaseExplanations, End, MatchRunner, PageArgs, RestartWatcher, library_handle_of};
 use crate::output::{self, note};
 use crate::progress::Progress;
 use crate::stop::{signal, stopped_by_hand};
@@ -75,7 +75,7 @@ pub(crate) struct PlayArgs {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    folder: FolderArgs,
+    directory: DirectoryArgs,
     #[command(flatten)]
     settings: SettingsArgs,
 }
@@ -104,8 +104,8 @@ pub(crate) fn league(name: &str) -> Result<League, String> {
 }
 
 /// A team by its name.
-pub(crate) fn team(word: &str) -> Result<Team, String> {
-    Team::from_word(word).ok_or_else(|| format!("take {}", Team::ALL.map(Team::word).join(", ")))
+pub(crate) fn team(label: &str) -> Result<Team, String> {
+    Team::from_label(label).ok_or_else(|| format!("take {}", Team::ALL.map(Team::label).join(", ")))
 }
 
 /// `onetwo play`.
@@ -118,18 +118,18 @@ pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
         team.tactics = if team.colour == Colour::Blue { args.blue_tactics } else { args.yellow_tactics };
         team.robots = args.robots.unwrap_or(team.robots);
     }
-    let shelf = cases(&args.folder, args.league)?;
-    let base = shelf.as_ref().map_or_else(CaseBase::default, Shelf::base);
+    let library_handle = cases(&args.directory, args.league)?;
+    let base = library_handle.as_ref().map_or_else(CaseBase::default, LibraryHandle::base);
     hint_at_foreign_cases(&config, &base);
     let mut backend = NativeBackend::new(base);
     let mut recording = args.record.as_ref().map(|stem| record(stem, &config)).transpose()?;
     let mut teller = Teller::new(args);
     if !args.headless && !args.json {
-        return on_page(args, config, shelf.as_ref(), Watched { teller, recording });
+        return on_page(args, config, library_handle.as_ref(), Watched { teller, recording });
     }
     let stopped = stopped_by_hand();
     let report = {
-        let mut crowd = Crowd(vec![&mut teller]);
+        let mut crowd = Watchers(vec![&mut teller]);
         if let Some(recording) = &mut recording {
             crowd.0.push(recording);
         }
@@ -161,19 +161,20 @@ pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
 fn on_page(
     args: &PlayArgs,
     config: GameConfig,
-    shelf: Option<&Shelf>,
+    library_handle: Option<&LibraryHandle>,
     mut watched: Watched,
 ) -> Result<ExitCode, Failure> {
     let settings = args.settings.choose()?.settings;
-    let oracle = CaseOracle::new(shelf_of(args.league, args.folder.library.as_deref())?, settings);
+    let explanations =
+        CaseExplanations::new(library_handle_of(args.league, args.directory.library.as_deref())?, settings);
     let world =
         if args.world == WorldChoice::Nominal { String::new() } else { format!(", world {}", args.world) };
     let title = format!("{}, seed {}{world}", args.league.name(), args.seed);
-    let page = args.page.open(title, false, Powers::Simulation, oracle)?;
+    let page = args.page.open(title, false, Powers::Simulation, explanations)?;
     note!("playing  {}; Ctrl-C ends it", args.league.name());
-    let mut theatre = Theatre::new(config, shelf, page, args.speed, args.record.is_some());
+    let mut match_runner = MatchRunner::new(config, library_handle, page, args.speed, args.record.is_some());
     loop {
-        let (report, over) = match theatre.play(&mut watched)? {
+        let (report, over) = match match_runner.play(&mut watched)? {
             End::Over(report) => (report, true),
             End::ByHand(report) => (report, false),
         };
@@ -186,8 +187,8 @@ fn on_page(
             return Ok(ExitCode::SUCCESS);
         }
         note!("the match is over; the page stays until Ctrl-C");
-        let Some(seed) = theatre.linger() else { return Ok(ExitCode::SUCCESS) };
-        theatre.anew(seed);
+        let Some(seed) = match_runner.linger() else { return Ok(ExitCode::SUCCESS) };
+        match_runner.anew(seed);
         watched.anew();
     }
 }
@@ -198,13 +199,13 @@ struct Watched {
     recording: Option<Recorder>,
 }
 
-impl AnewWatcher for Watched {
+impl RestartWatcher for Watched {
     fn watcher(&mut self) -> &mut dyn Watcher {
         self
     }
 
     fn anew(&mut self) {
-        self.teller.story = self.teller.story.is_some().then(GameStory::default);
+        self.teller.story = self.teller.story.is_some().then(MatchLog::default);
     }
 }
 
@@ -228,12 +229,12 @@ impl Watcher for Watched {
 
 /// The league's cases; a league without any plays by the reactive behaviour where the host leaves robots
 /// free.
-pub(crate) fn cases(folder: &FolderArgs, league: League) -> Result<Option<Shelf>, Failure> {
-    let shelf = shelf_of(league, folder.library.as_deref())?;
-    if shelf.is_none() {
+pub(crate) fn cases(directory: &DirectoryArgs, league: League) -> Result<Option<LibraryHandle>, Failure> {
+    let library_handle = library_handle_of(league, directory.library.as_deref())?;
+    if library_handle.is_none() {
         note!("no cases come with {}: robots that are left free play reactively", league.name());
     }
-    Ok(shelf)
+    Ok(library_handle)
 }
 
 /// Hosts know the cases that come with the league, and no others.
@@ -273,33 +274,37 @@ fn tell(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> io::Resul
     }
     for block in &report.blocked {
         let phase = format!("blocked for {:.1} s from {:.1} s", block.lasted_s, block.from_s);
-        writeln!(out, "{phase}: {}", block.words)?;
+        writeln!(out, "{phase}: {}", block.description)?;
     }
-    let mut words =
+    let mut description =
         if args.duration == 600.0 { String::new() } else { format!(" --duration {}", args.duration) };
     for (side, team) in [("blue", args.blue), ("yellow", args.yellow)] {
         if team != Team::Ours {
-            words.extend([" --", side, " ", team.word()]);
+            description.extend([" --", side, " ", team.label()]);
         }
     }
     for (side, tactics) in [("blue", args.blue_tactics), ("yellow", args.yellow_tactics)] {
         if tactics != Tactics::default() {
-            words.extend([" --", side, "-tactics ", &tactics.words()]);
+            description.extend([" --", side, "-tactics ", &tactics.description()]);
         }
     }
-    writeln!(out, "trace {}, to see it again: onetwo play --seed {}{words}", report.trace_hash, args.seed)
+    writeln!(
+        out,
+        "trace {}, to see it again: onetwo play --seed {}{description}",
+        report.trace_hash, args.seed
+    )
 }
 
 /// Prints events on stdout, or the progress on a terminal where only the report is wanted.
 struct Teller {
-    story: Option<GameStory>,
+    story: Option<MatchLog>,
     bar: Option<Progress>,
 }
 
 impl Teller {
     fn new(args: &PlayArgs) -> Self {
         let bar = args.json.then(|| Progress::of(args.duration as u64, "s"));
-        Self { story: (!args.json).then(GameStory::default), bar }
+        Self { story: (!args.json).then(MatchLog::default), bar }
     }
 
     fn end(&mut self) {

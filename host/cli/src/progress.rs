@@ -17,7 +17,7 @@ pub(crate) struct Progress(Mutex<Line>);
 #[derive(Debug)]
 struct Line {
     shown: bool,
-    words: String,
+    description: String,
     unit: &'static str,
     done: u64,
     of: Option<u64>,
@@ -39,13 +39,13 @@ impl Progress {
 
     fn new(unit: &'static str, of: Option<u64>) -> Self {
         let (shown, start) = (io::stderr().is_terminal(), (Instant::now(), 0));
-        Self(Mutex::new(Line { shown, words: String::new(), unit, done: 0, of, start, drawn: None }))
+        Self(Mutex::new(Line { shown, description: String::new(), unit, done: 0, of, start, drawn: None }))
     }
 
     /// The words before the bar, or all of the line where the end is not known.
-    pub(crate) fn say(&self, words: impl Into<String>) {
+    pub(crate) fn say(&self, description: impl Into<String>) {
         let mut line = self.line();
-        line.words = words.into();
+        line.description = description.into();
         line.draw();
     }
 
@@ -112,12 +112,16 @@ impl Line {
 
     fn text(&self, now: Instant) -> String {
         let Some(of) = self.of else {
-            return if self.words.is_empty() { self.done.to_string() } else { self.words.clone() };
+            return if self.description.is_empty() {
+                self.done.to_string()
+            } else {
+                self.description.clone()
+            };
         };
         let full = (BAR * self.done.min(of)).checked_div(of).unwrap_or(0) as usize;
         let bar = "█".repeat(full) + &"░".repeat(BAR as usize - full);
-        let gap = if self.words.is_empty() { "" } else { " " };
-        let mut text = format!("{}{gap}{bar} {}/{of}", self.words, self.done);
+        let gap = if self.description.is_empty() { "" } else { " " };
+        let mut text = format!("{}{gap}{bar} {}/{of}", self.description, self.done);
         if !self.unit.is_empty() {
             let _ = write!(text, " {}", self.unit);
         }
@@ -149,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn work_without_an_end_tells_its_steps_or_its_words() {
+    fn work_without_an_end_tells_its_steps_or_its_description() {
         let progress = Progress::open();
         progress.line().shown = false;
         progress.add(7);

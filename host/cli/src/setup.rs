@@ -11,14 +11,14 @@ use rules::League;
 
 use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs};
-use crate::library::Shelf;
+use crate::library::LibraryHandle;
 
 /// The attackers' set-up.
 #[derive(Debug, Args)]
 pub(crate) struct SetupArgs {
     /// When a case's actions start.
-    #[arg(long, value_enum, default_value_t = PositioningWord::Dependent)]
-    positioning: PositioningWord,
+    #[arg(long, value_enum, default_value_t = PositioningLabel::Dependent)]
+    positioning: PositioningLabel,
     /// Number of robots that may retrieve; all by default.
     #[arg(long, value_parser = clap::value_parser!(u8).range(1..=4))]
     retrievers: Option<u8>,
@@ -39,7 +39,7 @@ pub(crate) struct SetupArgs {
 
 /// The paper's two positionings, on the command line.
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum PositioningWord {
+enum PositioningLabel {
     /// As soon as the robot that gets the ball is at its place.
     Dependent,
     /// When all are at their places.
@@ -52,8 +52,8 @@ impl SetupArgs {
         Ok(Setup {
             settings: self.settings.choose()?.settings,
             positioning: match self.positioning {
-                PositioningWord::Dependent => Positioning::Dependent,
-                PositioningWord::Independent => Positioning::Independent,
+                PositioningLabel::Dependent => Positioning::Dependent,
+                PositioningLabel::Independent => Positioning::Independent,
             },
             retrievers: self.retrievers.map_or(robots, usize::from).min(robots),
             loss: self.loss,
@@ -63,56 +63,56 @@ impl SetupArgs {
     }
 
     /// The cases of that set-up; refused if they are of a field that no simulator has.
-    pub(crate) fn open(&self, setup: &Setup) -> Result<Shelf, Failure> {
-        let shelf = Shelf::open_reduced(&self.library, reduction(setup))?;
-        refuse_other_fields(&shelf)?;
-        Ok(shelf)
+    pub(crate) fn open(&self, setup: &Setup) -> Result<LibraryHandle, Failure> {
+        let library_handle = LibraryHandle::open_reduced(&self.library, reduction(setup))?;
+        refuse_other_fields(&library_handle)?;
+        Ok(library_handle)
     }
 
     /// Whether the firmware contains the cases.
     pub(crate) fn is_built_in(&self) -> bool {
-        self.library.folder.library.is_none() && !self.no_symmetry && !self.no_opponents
+        self.library.directory.library.is_none() && !self.no_symmetry && !self.no_opponents
     }
 
     /// Name of the library: a league's name, or the directory.
-    pub(crate) fn library_word(&self) -> String {
-        match &self.library.folder.library {
-            Some(folder) => folder.display().to_string(),
+    pub(crate) fn library_label(&self) -> String {
+        match &self.library.directory.library {
+            Some(directory) => directory.display().to_string(),
             None => self.library.league.clone(),
         }
     }
 
     /// The flags that are not at their defaults, each with a blank before it.
-    pub(crate) fn words(&self) -> String {
+    pub(crate) fn description(&self) -> String {
         use std::fmt::Write as _;
-        let mut words = String::new();
-        if let PositioningWord::Independent = self.positioning {
-            words.push_str(" --positioning independent");
+        let mut description = String::new();
+        if let PositioningLabel::Independent = self.positioning {
+            description.push_str(" --positioning independent");
         }
         if let Some(retrievers) = self.retrievers {
-            let _ = write!(words, " --retrievers {retrievers}");
+            let _ = write!(description, " --retrievers {retrievers}");
         }
         if self.loss > 0.0 {
-            let _ = write!(words, " --loss {}", self.loss);
+            let _ = write!(description, " --loss {}", self.loss);
         }
         for (flag, given) in [("no-symmetry", self.no_symmetry), ("no-opponents", self.no_opponents)] {
             if given {
-                let _ = write!(words, " --{flag}");
+                let _ = write!(description, " --{flag}");
             }
         }
-        match &self.library.folder.library {
-            Some(folder) => {
-                let _ = write!(words, " --library {}", folder.display());
+        match &self.library.directory.library {
+            Some(directory) => {
+                let _ = write!(description, " --library {}", directory.display());
             }
             None if self.library.league != "four-legged" => {
-                let _ = write!(words, " --league {}", self.library.league);
+                let _ = write!(description, " --league {}", self.library.league);
             }
             None => {}
         }
         for (name, value) in self.settings.given() {
-            let _ = write!(words, " --set {name}={value}");
+            let _ = write!(description, " --set {name}={value}");
         }
-        words
+        description
     }
 }
 
@@ -122,39 +122,43 @@ pub(crate) const fn reduction(setup: &Setup) -> Reduction {
 }
 
 /// The simulator has one field.
-pub(crate) fn refuse_other_fields(shelf: &Shelf) -> Result<(), Failure> {
-    let (played, field) = (League::FourLegged.field(), shelf.base().field());
+pub(crate) fn refuse_other_fields(library_handle: &LibraryHandle) -> Result<(), Failure> {
+    let (played, field) = (League::FourLegged.field(), library_handle.base().field());
     let in_mm = |metres: f32| (metres * 1000.0).round() as i32;
     if [in_mm(played.length), in_mm(played.width)] == [field.length, field.width] {
         Ok(())
     } else {
-        Err(Failure::NoSimulator { league: shelf.league().to_owned() })
+        Err(Failure::NoSimulator { league: library_handle.league().to_owned() })
     }
 }
 
 /// Parses a scenario, as flags take it.
-pub(crate) fn scenario(word: &str) -> Result<hil_sim::Scenario, String> {
-    hil_sim::Scenario::from_word(word).ok_or_else(|| "take 1, 2, 3, 4 or random".to_owned())
+pub(crate) fn scenario(label: &str) -> Result<hil_sim::Scenario, String> {
+    hil_sim::Scenario::from_label(label).ok_or_else(|| "take 1, 2, 3, 4 or random".to_owned())
 }
 
 /// Parses opponents.
-pub(crate) fn opponents(word: &str) -> Result<hil_sim::Configuration, String> {
-    hil_sim::Configuration::from_word(word).ok_or_else(|| "take dg or 2d".to_owned())
+pub(crate) fn opponents(label: &str) -> Result<hil_sim::Configuration, String> {
+    hil_sim::Configuration::from_label(label).ok_or_else(|| "take dg or 2d".to_owned())
 }
 
 /// Parses a world.
-pub(crate) fn profile(word: &str) -> Result<Profile, String> {
-    Profile::from_word(word).ok_or_else(|| "take simulated or robots".to_owned())
+pub(crate) fn profile(label: &str) -> Result<Profile, String> {
+    Profile::from_label(label).ok_or_else(|| "take simulated or robots".to_owned())
 }
 
 /// Parses the approach of the attackers.
-pub(crate) fn approach(word: &str) -> Result<brain::Approach, String> {
-    arena::approach_from_word(word).ok_or_else(|| {
-        let known: Vec<_> = arena::APPROACHES.map(arena::approach_word).into();
+pub(crate) fn approach(label: &str) -> Result<brain::Approach, String> {
+    arena::approach_from_label(label).ok_or_else(|| {
+        let known: Vec<_> = arena::APPROACHES.map(arena::approach_label).into();
         format!("take {}", known.join(" or "))
     })
 }
 
-fn share(word: &str) -> Result<f32, String> {
-    word.parse().ok().filter(|x| (0.0..=1.0).contains(x)).ok_or_else(|| "take a share from 0 to 1".to_owned())
+fn share(label: &str) -> Result<f32, String> {
+    label
+        .parse()
+        .ok()
+        .filter(|x| (0.0..=1.0).contains(x))
+        .ok_or_else(|| "take a share from 0 to 1".to_owned())
 }

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use arena::evaluation::Profile;
-use arena::{Recording, Story, TrialConfig, TrialReport, Watcher};
+use arena::{Recording, TextLog, TrialConfig, TrialReport, Watcher};
 use brain::Approach;
 use clap::{Args, ValueEnum};
 use firmware_build::Install;
@@ -15,10 +15,10 @@ use hil_sim::{Backend, Configuration, NativeBackend, QemuBackend, Scenario};
 use page::Powers;
 
 use crate::Failure;
-use crate::library::Shelf;
-use crate::live::{CaseOracle, Legged, PageArgs, stay};
+use crate::library::LibraryHandle;
+use crate::live::{CaseExplanations, Legged, PageArgs, stay};
 use crate::output;
-use crate::picture::PictureError;
+use crate::picture::SnapshotError;
 use crate::setup::{SetupArgs, opponents, profile, scenario};
 
 /// Settings of a trial.
@@ -31,14 +31,14 @@ pub(crate) struct TrialArgs {
     #[arg(long, default_value = "dg", value_parser = opponents)]
     opponents: Configuration,
     /// Approach of the attackers.
-    #[arg(long, value_enum, default_value_t = ApproachWord::Cbr)]
-    approach: ApproachWord,
+    #[arg(long, value_enum, default_value_t = ApproachLabel::Cbr)]
+    approach: ApproachLabel,
     /// Random seed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Where the attackers' brains run.
-    #[arg(long, value_enum, default_value_t = BackendWord::Native)]
-    backend: BackendWord,
+    #[arg(long, value_enum, default_value_t = BackendLabel::Native)]
+    backend: BackendLabel,
     /// As the paper's simulator, or as its robots: noisy perception, 5 s of standing still after every cycle.
     #[arg(long, default_value = "simulated", value_parser = profile)]
     profile: Profile,
@@ -62,7 +62,7 @@ pub(crate) struct TrialArgs {
 
 /// A trial's approach on the command line.
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum ApproachWord {
+enum ApproachLabel {
     /// Cases; the reactive behaviour where none fits.
     Cbr,
     /// The reactive behaviour alone.
@@ -73,7 +73,7 @@ enum ApproachWord {
 
 /// Where brains run, on the command line.
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum BackendWord {
+enum BackendLabel {
     /// In this process.
     Native,
     /// As the firmware, each robot in a QEMU of its own.
@@ -83,14 +83,16 @@ enum BackendWord {
 /// `onetwo trial`.
 pub(crate) fn run(args: &TrialArgs) -> Result<ExitCode, Failure> {
     let svg = args.svg.as_deref();
-    let (mut recording, mut story) = (Recording::default(), Story::default());
+    let (mut recording, mut story) = (Recording::default(), TextLog::default());
     let mut legged = args.watch.then(|| on_page(args)).transpose()?;
     let mut watchers: Vec<&mut dyn Watcher> = vec![&mut recording, &mut story];
     watchers.extend(legged.as_mut().map(|legged| legged as &mut dyn Watcher));
     let report = play(args, &mut watchers)?;
     if let Some(file) = svg {
-        fs::write(file, arena::picture(&recording))
-            .map_err(|error| Failure::Picture { file: file.to_owned(), error: PictureError::Write(error) })?;
+        fs::write(file, arena::picture(&recording)).map_err(|error| Failure::Picture {
+            file: file.to_owned(),
+            error: SnapshotError::Write(error),
+        })?;
     }
     let mut out = output::lines();
     if args.json {
@@ -117,37 +119,37 @@ pub(crate) fn run(args: &TrialArgs) -> Result<ExitCode, Failure> {
 /// The page that stores the trial's course.
 fn on_page(args: &TrialArgs) -> Result<Legged, Failure> {
     let setup = args.setup.choose(usize::from(args.robots))?;
-    let shelf = args.setup.open(&setup)?;
-    let base = shelf.lasting_base();
-    let oracle = CaseOracle::new(Some(shelf), setup.settings.clone());
-    let title = format!("trial, scenario {}, seed {}", args.scenario.word(), args.seed);
-    Ok(Legged::new(args.page.open(title, true, Powers::None, oracle)?, base))
+    let library_handle = args.setup.open(&setup)?;
+    let base = library_handle.lasting_base();
+    let explanations = CaseExplanations::new(Some(library_handle), setup.settings.clone());
+    let title = format!("trial, scenario {}, seed {}", args.scenario.label(), args.seed);
+    Ok(Legged::new(args.page.open(title, true, Powers::None, explanations)?, base))
 }
 
 /// Plays the trial.
 fn play(args: &TrialArgs, watchers: &mut [&mut dyn Watcher]) -> Result<TrialReport, Failure> {
     let approach = match args.approach {
-        ApproachWord::Cbr => Approach::Cases,
-        ApproachWord::Reactive => Approach::Reactive,
-        ApproachWord::Hybrid => Approach::Hybrid,
+        ApproachLabel::Cbr => Approach::Cases,
+        ApproachLabel::Reactive => Approach::Reactive,
+        ApproachLabel::Hybrid => Approach::Hybrid,
     };
     let robots = usize::from(args.robots);
     let setup = args.setup.choose(robots)?;
-    let shelf = args.setup.open(&setup)?;
-    let base = shelf.base();
-    let names = arena::CaseNames::new(shelf.names());
+    let library_handle = args.setup.open(&setup)?;
+    let base = library_handle.base();
+    let names = arena::CaseNames::new(library_handle.names());
     let config =
         TrialConfig { robots, ..TrialConfig::new(args.scenario, args.opponents, approach, args.seed) };
     let config = args.profile.apply(setup.apply(config)).with_library(base, names);
     let backend: Box<dyn Backend<'_>> = match args.backend {
-        BackendWord::Native => Box::new(NativeBackend::new(base)),
-        BackendWord::Qemu => Box::new(qemu(args, &shelf)?),
+        BackendLabel::Native => Box::new(NativeBackend::new(base)),
+        BackendLabel::Qemu => Box::new(qemu(args, &library_handle)?),
     };
     arena::run(&config, backend, watchers).map_err(Failure::Trial)
 }
 
 /// QEMU with freshly built firmware; the user's own library goes into the robots' flash beside it.
-fn qemu(args: &TrialArgs, shelf: &Shelf) -> Result<QemuBackend, Failure> {
+fn qemu(args: &TrialArgs, library_handle: &LibraryHandle) -> Result<QemuBackend, Failure> {
     firmware_build::ensure_qemu(Install::ForUser).map_err(|error| Failure::Firmware(error.to_string()))?;
     let image = firmware_build::build_image(&firmware_build::workspace_root(), firmware_build::Body::Legged)
         .map_err(|error| Failure::Firmware(error.to_string()))?;
@@ -155,27 +157,27 @@ fn qemu(args: &TrialArgs, shelf: &Shelf) -> Result<QemuBackend, Failure> {
     if args.setup.is_built_in() {
         return Ok(backend);
     }
-    backend.with_library(shelf.base().bytes()).map_err(|error| Failure::Firmware(error.to_string()))
+    backend.with_library(library_handle.base().bytes()).map_err(|error| Failure::Firmware(error.to_string()))
 }
 
 impl TrialArgs {
     /// The command that replays the same trial.
     fn again(&self, report: &TrialReport) -> String {
         use std::fmt::Write as _;
-        let mut words = format!(
+        let mut description = format!(
             "onetwo trial --scenario {} --opponents {} --approach {} --seed {}",
-            self.scenario.word(),
-            self.opponents.word(),
+            self.scenario.label(),
+            self.opponents.label(),
             report.approach,
             self.seed
         );
         if self.profile == Profile::Robots {
-            words.push_str(" --profile robots");
+            description.push_str(" --profile robots");
         }
         if self.robots != 2 {
-            let _ = write!(words, " --robots {}", self.robots);
+            let _ = write!(description, " --robots {}", self.robots);
         }
-        words.push_str(&self.setup.words());
-        words
+        description.push_str(&self.setup.description());
+        description
     }
 }

@@ -21,8 +21,8 @@ use rules::{Colour, League};
 use virtual_robot::{Options, RunError, parent_gone, run as play};
 
 use crate::Failure;
-use crate::args::{FolderArgs, SettingsArgs};
-use crate::library::Shelf;
+use crate::args::{DirectoryArgs, SettingsArgs};
+use crate::library::LibraryHandle;
 use crate::output::note;
 
 /// The robot's identity and its addresses.
@@ -54,7 +54,7 @@ pub(crate) struct VirtualRobotArgs {
     #[arg(long)]
     with_parent: bool,
     #[command(flatten)]
-    folder: FolderArgs,
+    directory: DirectoryArgs,
     #[command(flatten)]
     settings: SettingsArgs,
 }
@@ -66,9 +66,9 @@ pub(crate) fn run(args: &VirtualRobotArgs) -> Result<ExitCode, Failure> {
     } else {
         (key_of_file(args.key_file.as_deref())?, Arc::new(AtomicBool::new(false)))
     };
-    let shelf = args.folder.library.as_deref().map(Shelf::read).transpose()?;
-    let base = match &shelf {
-        Some(shelf) => shelf.base(),
+    let library_handle = args.directory.library.as_deref().map(LibraryHandle::read).transpose()?;
+    let base = match &library_handle {
+        Some(library_handle) => library_handle.base(),
         // A league without a case library is played without cases.
         None => host::cases_of(args.league),
     };
@@ -158,7 +158,7 @@ fn robot_id(text: &str) -> Result<RobotId, String> {
 }
 
 fn colour(text: &str) -> Result<Colour, String> {
-    let known = [Colour::Blue, Colour::Yellow].into_iter().find(|colour| colour.word() == text);
+    let known = [Colour::Blue, Colour::Yellow].into_iter().find(|colour| colour.label() == text);
     known.ok_or_else(|| "expected blue or yellow".to_owned())
 }
 
@@ -169,5 +169,5 @@ fn league(text: &str) -> Result<League, String> {
 }
 
 fn goal(text: &str) -> Result<GoalEnd, String> {
-    GoalEnd::from_word(text).ok_or_else(|| "expected yellow (the goal at -x) or cyan (at +x)".to_owned())
+    GoalEnd::from_label(text).ok_or_else(|| "expected yellow (the goal at -x) or cyan (at +x)".to_owned())
 }

@@ -20,13 +20,13 @@ fn onetwo(arguments: &[&str]) -> Output {
 }
 
 /// A directory of this test's own; removed with this value.
-struct Folder(PathBuf);
+struct Directory(PathBuf);
 
-impl Folder {
+impl Directory {
     fn new(name: &str) -> Self {
-        let folder = std::env::temp_dir().join(format!("onetwo-firmware-{name}-{}", std::process::id()));
-        fs::create_dir_all(&folder).expect("a temporary folder");
-        Self(folder)
+        let directory = std::env::temp_dir().join(format!("onetwo-firmware-{name}-{}", std::process::id()));
+        fs::create_dir_all(&directory).expect("a temporary folder");
+        Self(directory)
     }
 
     fn at(&self, file: &str) -> String {
@@ -34,7 +34,7 @@ impl Folder {
     }
 }
 
-impl Drop for Folder {
+impl Drop for Directory {
     fn drop(&mut self) {
         // A temporary directory that remains is not an error.
         let _ = fs::remove_dir_all(&self.0);
@@ -43,13 +43,14 @@ impl Drop for Folder {
 
 #[test]
 fn the_page_that_is_written_is_the_one_a_robot_reads_and_its_owner_alone_may() {
-    let folder = Folder::new("page");
-    let (key, page) = (folder.at("key"), folder.at("robot.page"));
+    let directory = Directory::new("page");
+    let (key, page) = (directory.at("key"), directory.at("robot.page"));
     fs::write(&key, "000102030405060708090a0b0c0d0e0f\n").expect("a file");
-    let words = ["firmware", "provision", "--robot", "5", "--team", "2", "--key-file", &key, "--out", &page];
+    let description =
+        ["firmware", "provision", "--robot", "5", "--team", "2", "--key-file", &key, "--out", &page];
     // An existing file that is open to all is closed to others.
     fs::write(&page, "old").expect("a file");
-    let told = onetwo(&words);
+    let told = onetwo(&description);
     assert!(told.status.success(), "{}", String::from_utf8_lossy(&told.stderr));
     let who = read(&fs::read(&page).expect("the page"), false).expect("a robot can read it");
     assert_eq!((Some(who.robot), who.team, who.league), (RobotId::new(5), TeamId(2), League::DivisionB));
@@ -67,12 +68,12 @@ fn the_page_that_is_written_is_the_one_a_robot_reads_and_its_owner_alone_may() {
 }
 
 #[test]
-fn what_no_robot_could_use_is_refused_with_a_mend() {
-    let folder = Folder::new("refused");
-    let (key, zeros, page) = (folder.at("key"), folder.at("zeros"), folder.at("robot.page"));
+fn what_no_robot_could_use_is_refused_with_a_hint() {
+    let directory = Directory::new("refused");
+    let (key, zeros, page) = (directory.at("key"), directory.at("zeros"), directory.at("robot.page"));
     fs::write(&key, "0123").expect("a file");
     fs::write(&zeros, "0".repeat(32)).expect("a file");
-    for (robot, key, words) in
+    for (robot, key, description) in
         [("5", &key, "32 hexadecimal digits"), ("5", &zeros, "all zeros"), ("16", &zeros, "none of 0–15")]
     {
         let told = onetwo(&[
@@ -89,8 +90,8 @@ fn what_no_robot_could_use_is_refused_with_a_mend() {
         ]);
         assert_eq!(told.status.code(), Some(1));
         let said = String::from_utf8_lossy(&told.stderr).into_owned();
-        assert!(said.contains(words), "{said}");
-        assert!(!fs::exists(&page).expect("a folder"), "a page of {words}");
+        assert!(said.contains(description), "{said}");
+        assert!(!fs::exists(&page).expect("a folder"), "a page of {description}");
     }
 }
 
@@ -106,13 +107,13 @@ fn without_probe_rs_flashing_says_what_to_install() {
 }
 
 #[test]
-fn wrong_words_are_wrong_usage() {
-    for words in [
+fn wrong_description_are_wrong_usage() {
+    for description in [
         &["firmware"][..],
         &["firmware", "flash", "--elf", "image"],
         &["firmware", "flash", "--page-address", "0x0"],
         &["firmware", "size", "--image", "stm"],
     ] {
-        assert_eq!(onetwo(words).status.code(), Some(2), "{words:?}");
+        assert_eq!(onetwo(description).status.code(), Some(2), "{description:?}");
     }
 }

@@ -29,9 +29,9 @@ use ssl::vision::{DetectionFrame, WrapperPacket};
 const PATIENCE: Duration = Duration::from_mins(2);
 
 fn scratch(name: &str) -> PathBuf {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("hostile-cli");
-    fs::create_dir_all(&folder).unwrap();
-    folder.join(name)
+    let directory = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("hostile-cli");
+    fs::create_dir_all(&directory).unwrap();
+    directory.join(name)
 }
 
 fn text(path: &Path) -> &str {
@@ -149,7 +149,10 @@ fn a_recording_cut_between_any_two_records_is_cut_and_never_other_decisions() {
             let file = scratch("cut.trace");
             fs::write(&file, left(&whole[..*at])).unwrap();
             let report = json(&["replay", text(&file)], 1);
-            assert!(report["damage"].as_str().is_some_and(|words| words.contains("cut at byte")), "{report}");
+            assert!(
+                report["damage"].as_str().is_some_and(|description| description.contains("cut at byte")),
+                "{report}"
+            );
             assert_eq!(report["same_decisions"], true, "after {kind:?} at byte {at}: {}", report["hosts"]);
             let out = onetwo(&["replay", text(&file)]);
             let (told, why) = (String::from_utf8_lossy(&out.stdout), String::from_utf8_lossy(&out.stderr));
@@ -177,7 +180,7 @@ fn a_recording_cut_between_any_two_records_is_cut_and_never_other_decisions() {
         fs::write(&cut, &bytes[..bytes.len() * (parts - 1) / parts]).unwrap();
         let report = json(&["replay", text(&cut)], 1);
         assert!(
-            report["damage"].as_str().is_some_and(|words| words.starts_with("cut: ")),
+            report["damage"].as_str().is_some_and(|description| description.starts_with("cut: ")),
             "{}",
             report["damage"]
         );
@@ -230,7 +233,10 @@ fn a_match_that_is_killed_has_lost_a_second_at_most() {
     child.kill().unwrap();
     child.wait().unwrap();
     let report = json(&["replay", text(&stem.with_extension("trace"))], 1);
-    assert!(report["damage"].as_str().is_some_and(|words| words.contains("cut at byte")), "{report}");
+    assert!(
+        report["damage"].as_str().is_some_and(|description| description.contains("cut at byte")),
+        "{report}"
+    );
     assert_eq!(report["same_decisions"], true, "{}", report["hosts"]);
     let of_trace = report["span_s"][1].as_f64().unwrap();
     let of_log = json(&["replay", text(&stem.with_extension("log.gz"))], 1)["span_s"].as_f64().unwrap();
@@ -294,8 +300,8 @@ fn a_log_cannot_speak_to_the_terminal_nor_write_lines_of_its_own() {
     assert_eq!(report["teams"]["blue"]["name"], hostile, "data is kept as it is");
     // Errors name files too, and so do findings about case files.
     let out = onetwo(&["replay", text(&scratch("\u{1b}[2Jno\nsuch.log"))]);
-    let words = String::from_utf8(out.stderr).unwrap();
-    assert_eq!((obeyed(&words), words.lines().count()), (None, 1), "{words:?}");
+    let description = String::from_utf8(out.stderr).unwrap();
+    assert_eq!((obeyed(&description), description.lines().count()), (None, 1), "{description:?}");
     let library = scratch("library-\u{1b}[31m");
     fs::create_dir_all(library.join("center")).unwrap();
     fs::write(library.join("league.toml"), "\u{1b}[2J = \"\u{1b}]0;x\u{7}\"").unwrap();
@@ -305,8 +311,8 @@ fn a_log_cannot_speak_to_the_terminal_nor_write_lines_of_its_own() {
     {
         let out = onetwo(&arguments);
         assert_ne!(out.status.code(), Some(0));
-        let words = String::from_utf8([out.stdout, out.stderr].concat()).unwrap();
-        assert!(!words.is_empty() && obeyed(&words).is_none(), "{words:?}");
+        let description = String::from_utf8([out.stdout, out.stderr].concat()).unwrap();
+        assert!(!description.is_empty() && obeyed(&description).is_none(), "{description:?}");
     }
 }
 
@@ -349,7 +355,7 @@ fn field_names_cards_robots_and_places_of_a_recording_are_told() {
     assert!(!named("MAX_BOTS").is_empty(), "a card takes a robot off");
     let placed: Vec<_> = happenings
         .iter()
-        .filter(|h| h["words"].as_str().is_some_and(|words| words.contains("the ball to (")))
+        .filter(|h| h["words"].as_str().is_some_and(|description| description.contains("the ball to (")))
         .collect();
     assert!(!placed.is_empty());
     let told = String::from_utf8(onetwo(&["replay", text(&data)]).stdout).unwrap();
@@ -387,19 +393,19 @@ fn special_files_are_refused_by_what_they_are_wherever_a_file_is_read() {
         ];
         for arguments in all {
             let out = onetwo(&arguments);
-            let words = String::from_utf8_lossy(&[out.stdout, out.stderr].concat()).into_owned();
-            assert_ne!(out.status.code(), Some(0), "{arguments:?}: {words}");
+            let description = String::from_utf8_lossy(&[out.stdout, out.stderr].concat()).into_owned();
+            assert_ne!(out.status.code(), Some(0), "{arguments:?}: {description}");
             // Some verbs have no such flag for files: clap exits with 2.
             if out.status.code() == Some(1) {
                 let kind = if special.starts_with("/dev") { "this is a device" } else { "this is a pipe" };
-                assert!(words.contains(kind), "{arguments:?}: {words}");
+                assert!(description.contains(kind), "{arguments:?}: {description}");
             }
         }
     }
 }
 
 #[test]
-fn a_bad_line_of_fifty_megabytes_is_refused_in_a_few_words() {
+fn a_bad_line_of_fifty_megabytes_is_refused_in_a_few_description() {
     let config = scratch("long.toml");
     fs::write(&config, format!("name = \"a\"\n{}\n", "x".repeat(900_000))).unwrap();
     let control = ["control", "--headless", "--duration", "1", "--config", text(&config)];

@@ -121,11 +121,11 @@ fn control_says_what_it_waits_for_and_goes_on_when_it_comes() {
         latest = latest.max(at);
         waits.push(line);
     }
-    for (what, mend) in
+    for (what, hint) in
         [("vision", "onetwo simulate"), ("the referee", "game controller"), ("robots", "base station")]
     {
         let line = waits.iter().find(|line| line.contains(&format!("waiting for {what}")));
-        assert!(line.is_some_and(|line| line.contains(mend)), "{what}: {waits:?}");
+        assert!(line.is_some_and(|line| line.contains(hint)), "{what}: {waits:?}");
     }
     // Specified are 2 s; a loaded machine may take longer to start a program at all.
     assert!(latest < Duration::from_secs(15), "{latest:?}");
@@ -133,7 +133,7 @@ fn control_says_what_it_waits_for_and_goes_on_when_it_comes() {
     let _simulator =
         Running::start(&[&arguments[..], &["--vision", &vision, "--referee-to", &referee]].concat());
     let mut came = [control.says("vision comes").1, String::new()];
-    if !control.heard.iter().any(|(_, line)| line.contains("the referee is heard")) {
+    if !control.received.iter().any(|(_, line)| line.contains("the referee is heard")) {
         came[1] = control.says("the referee is heard").1;
     }
     assert!(came[0].contains(&vision), "{came:?}");
@@ -159,9 +159,9 @@ fn brains_of_our_own_take_their_places_for_the_kickoff() {
         let robots = packet.tracked_frame.unwrap_or_default().robots;
         let blue = robots.iter().filter(|robot| robot.robot_id.team_color == TeamColor::Blue as i32);
         places = blue.map(|robot| (robot.robot_id.id, robot.pos.x, robot.pos.y)).collect();
-        let lawful = places.iter().all(|(_, x, y)| *x < 0.0 && x.hypot(*y) > 0.5);
+        let legal = places.iter().all(|(_, x, y)| *x < 0.0 && x.hypot(*y) > 0.5);
         let guarded = places.iter().any(|(id, x, y)| *id == 0 && *x < -4.0 && y.abs() < 0.6);
-        if places.len() == 6 && lawful && guarded {
+        if places.len() == 6 && legal && guarded {
             return;
         }
     }
@@ -170,7 +170,7 @@ fn brains_of_our_own_take_their_places_for_the_kickoff() {
 
 #[test]
 fn wrong_settings_are_refused_with_what_would_be_right() {
-    for (arguments, words) in [
+    for (arguments, description) in [
         (vec!["control", "--colour", "red"], "blue or yellow"),
         (vec!["control", "--robots", "tcp://x"], "sim://HOST"),
         (vec!["control", "--config", "no-such.toml"], "no-such.toml"),
@@ -178,7 +178,7 @@ fn wrong_settings_are_refused_with_what_would_be_right() {
     ] {
         let out = Command::new(env!("CARGO_BIN_EXE_onetwo")).args(&arguments).output().expect("it starts");
         assert_eq!(out.status.code(), Some(1), "{arguments:?}");
-        assert!(String::from_utf8_lossy(&out.stderr).contains(words), "{arguments:?}");
+        assert!(String::from_utf8_lossy(&out.stderr).contains(description), "{arguments:?}");
     }
     let out = Command::new(env!("CARGO_BIN_EXE_onetwo")).args(["simulate", "--cameras", "3"]).output();
     assert_eq!(out.expect("it starts").status.code(), Some(2));

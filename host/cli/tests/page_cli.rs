@@ -32,8 +32,8 @@ impl Viewer {
         Self(socket)
     }
 
-    fn ask(&mut self, words: &str) {
-        self.0.send(Message::text(words)).unwrap();
+    fn ask(&mut self, description: &str) {
+        self.0.send(Message::text(description)).unwrap();
     }
 
     /// The first message for which `holds` is true.
@@ -42,9 +42,9 @@ impl Viewer {
         while begun.elapsed() < PATIENCE {
             if let Message::Text(text) = self.0.read().unwrap() {
                 self.ask(".");
-                let word: Value = serde_json::from_str(&text).unwrap();
-                if holds(&word) {
-                    return word;
+                let label: Value = serde_json::from_str(&text).unwrap();
+                if holds(&label) {
+                    return label;
                 }
             }
         }
@@ -58,8 +58,8 @@ fn robots(scene: &Value) -> usize {
 
 /// A match on a page of its own, four times as fast as the clock.
 fn played() -> Program {
-    let words = "play --duration 600 --seed 5 --listen 127.0.0.1:0 --speed 4";
-    Program::start(&words.split(' ').collect::<Vec<_>>())
+    let description = "play --duration 600 --seed 5 --listen 127.0.0.1:0 --speed 4";
+    Program::start(&description.split(' ').collect::<Vec<_>>())
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn a_match_is_shown_stopped_and_begun_anew() {
         ways.filter_map(Value::as_array).any(|way| way.len() > 3)
     });
     viewer.ask(r#"{"ask":"fly"}"#);
-    let refused = viewer.until(|word| word.get("refused").is_some());
+    let refused = viewer.until(|label| label.get("refused").is_some());
     assert!(refused["refused"].as_str().unwrap().contains("no request"), "{refused}");
 }
 
@@ -96,24 +96,27 @@ fn what_is_asked_of_a_robot_that_is_not_there_is_refused_with_a_reason() {
         r#"{"ask":"power","team":"yellow","id":15,"on":false}"#,
     ] {
         viewer.ask(asked);
-        let refused = viewer.until(|word| word.get("refused").is_some());
+        let refused = viewer.until(|label| label.get("refused").is_some());
         assert!(refused["refused"].as_str().unwrap().contains("has no robot 15"), "{asked}: {refused}");
     }
     viewer.ask("{\"ask\":\"referee\",\"command\":\"FLY\\u001b[2J\"}");
-    let refused = viewer.until(|word| word.get("refused").is_some());
-    let words = refused["refused"].as_str().unwrap();
-    assert!(words.contains("makes no sense now") && !words.contains(char::is_control), "{words:?}");
+    let refused = viewer.until(|label| label.get("refused").is_some());
+    let description = refused["refused"].as_str().unwrap();
+    assert!(
+        description.contains("makes no sense now") && !description.contains(char::is_control),
+        "{description:?}"
+    );
 }
 
 #[test]
 fn a_page_on_the_network_is_looked_at_by_all_and_asked_by_those_with_its_token() {
-    let words = "play --duration 600 --seed 5 --listen 0.0.0.0:0";
-    let play = Program::start(&words.split(' ').collect::<Vec<_>>());
+    let description = "play --duration 600 --seed 5 --listen 0.0.0.0:0";
+    let play = Program::start(&description.split(' ').collect::<Vec<_>>());
     let token = play.token().expect("a token is printed with the address").to_owned();
-    let mut stranger = Viewer::of(&play);
-    stranger.until(|scene| robots(scene) == 12);
-    stranger.ask(r#"{"ask":"pause","on":true}"#);
-    let refused = stranger.until(|word| word.get("refused").is_some());
+    let mut unauthenticated = Viewer::of(&play);
+    unauthenticated.until(|scene| robots(scene) == 12);
+    unauthenticated.ask(r#"{"ask":"pause","on":true}"#);
+    let refused = unauthenticated.until(|label| label.get("refused").is_some());
     assert!(refused["refused"].as_str().unwrap().contains("?token="), "{refused}");
     let mut own = Viewer::with(&play, &format!("?token={token}"));
     own.ask(r#"{"ask":"pause","on":true}"#);
@@ -133,12 +136,12 @@ fn a_case_is_played_from_its_own_situation() {
     // Its own side is known after the first referee packet.
     viewer.until(|scene| robots(scene) == 12 && scene["t"].as_f64().unwrap() > 2.0);
     viewer.ask(r#"{"ask":"situation","name":"nowhere/nothing"}"#);
-    let refused = viewer.until(|word| word.get("refused").is_some());
+    let refused = viewer.until(|label| label.get("refused").is_some());
     assert!(refused["refused"].as_str().unwrap().contains("nowhere/nothing"), "{refused}");
     viewer.ask(r#"{"ask":"pause","on":true}"#);
     viewer.until(|scene| scene["paused"] == true);
     // From its file: three robots that build up from the back.
-    let (ball, mates) = ([-3.2, 0.5], [[-3.35, 0.5], [-2.2, 1.7], [-0.9, 0.5]]);
+    let (ball, teammates) = ([-3.2, 0.5], [[-3.35, 0.5], [-2.2, 1.7], [-0.9, 0.5]]);
     viewer.ask(r#"{"ask":"situation","name":"back/build-up"}"#);
     let there = viewer.until(|scene| {
         let truth =
@@ -150,7 +153,7 @@ fn a_case_is_played_from_its_own_situation() {
             .any(|shape| shape["tone"] == "ball" && off(shape, ball) < 0.01)
     });
     let truth = there["layers"].as_array().unwrap().iter().find(|layer| layer["name"] == "truth").unwrap();
-    for at in mates {
+    for at in teammates {
         assert!(truth["shapes"].as_array().unwrap().iter().any(|shape| off(shape, at) < 0.01), "{at:?}");
     }
     viewer.ask(r#"{"ask":"pause","on":false}"#);
@@ -158,15 +161,15 @@ fn a_case_is_played_from_its_own_situation() {
 }
 
 #[test]
-fn a_taken_port_ends_a_match_with_a_word_about_what_to_do() {
+fn a_taken_port_ends_a_match_with_a_label_about_what_to_do() {
     let first = Program::start(&["play", "--duration", "600", "--listen", "127.0.0.1:0"]);
     let second = Command::new(env!("CARGO_BIN_EXE_onetwo"))
         .args(["play", "--listen", first.address()])
         .output()
         .unwrap();
-    let words = String::from_utf8_lossy(&second.stderr);
-    assert_eq!(second.status.code(), Some(1), "{words}");
-    assert!(words.contains("another program") && words.contains("--listen"), "{words}");
+    let description = String::from_utf8_lossy(&second.stderr);
+    assert_eq!(second.status.code(), Some(1), "{description}");
+    assert!(description.contains("another program") && description.contains("--listen"), "{description}");
 }
 
 #[test]
@@ -178,7 +181,7 @@ fn a_real_field_is_halted_from_the_page_and_nothing_else() {
     let mut viewer = Viewer::of(&control);
     viewer.until(|scene| scene["t"].is_number());
     viewer.ask(r#"{"ask":"speed","factor":2}"#);
-    let refused = viewer.until(|word| word.get("refused").is_some());
+    let refused = viewer.until(|label| label.get("refused").is_some());
     assert!(refused["refused"].as_str().unwrap().contains("nothing but HALT"), "{refused}");
     viewer.ask(r#"{"ask":"halt"}"#);
     control.says("HALT was asked for on the page");
@@ -217,7 +220,7 @@ fn a_recording_is_kept_whole_for_who_looks_through_it() {
     let last = viewer.until(|scene| scene["t"].as_f64().is_some_and(|t| t > 20.0));
     assert!(robots(&last) > 0);
     viewer.ask(r#"{"ask":"halt"}"#);
-    let refused = viewer.until(|word| word.get("refused").is_some());
+    let refused = viewer.until(|label| label.get("refused").is_some());
     assert!(refused["refused"].as_str().unwrap().contains("recording"), "{refused}");
 }
 

@@ -173,7 +173,7 @@ fn without_a_game_controller_elsewhere_both_are_refused() {
             .output()
             .expect("the program runs");
         assert!(!output.status.success());
-        let words = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(words.contains("--referee none"), "{words}");
+        let description = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(description.contains("--referee none"), "{description}");
     }
 }

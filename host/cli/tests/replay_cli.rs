@@ -39,14 +39,14 @@ fn refused(arguments: &[&str]) -> String {
 }
 
 fn recording(name: &str) -> String {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../protocol/ssl/tests/data");
-    folder.join(name).display().to_string()
+    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../protocol/ssl/tests/data");
+    directory.join(name).display().to_string()
 }
 
 fn scratch(name: &str) -> PathBuf {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("replay-cli");
-    fs::create_dir_all(&folder).expect("a scratch folder");
-    folder.join(name)
+    let directory = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("replay-cli");
+    fs::create_dir_all(&directory).expect("a scratch folder");
+    directory.join(name)
 }
 
 #[test]
@@ -87,8 +87,8 @@ fn an_event_is_found_and_the_field_shown_as_it_was() {
     assert_eq!(second["at_s"].as_f64(), Some(stops[1]));
     assert_eq!((&second["phase"], &second["event"]), (&"stop".into(), &"STOP".into()));
     assert!(second["blue"].as_array().is_some_and(|robots| !robots.is_empty()));
-    let words = refused(&[&file, "--event", "stop", "--nth", "99"]);
-    assert!(words.contains("not 99") && words.contains("HALT"), "{words}");
+    let description = refused(&[&file, "--event", "stop", "--nth", "99"]);
+    assert!(description.contains("not 99") && description.contains("HALT"), "{description}");
 }
 
 #[test]
@@ -118,7 +118,11 @@ fn cut_and_foreign_files_are_told_with_their_place() {
     let cut = scratch("cut.log");
     fs::write(&cut, &bytes[..100_001]).expect("a file");
     let report = json(&[&cut.display().to_string()], 1);
-    assert!(report["damage"].as_str().is_some_and(|words| words.contains("byte")), "{}", report["damage"]);
+    assert!(
+        report["damage"].as_str().is_some_and(|description| description.contains("byte")),
+        "{}",
+        report["damage"]
+    );
     assert!(report["messages"].as_object().is_some_and(|kinds| !kinds.is_empty()));
     let foreign = scratch("foreign.log");
     fs::write(&foreign, "goals: none\n").expect("a file");
@@ -193,7 +197,9 @@ fn one_bit_that_was_turned_in_a_packet_is_found() {
     let report = json(&[&file], 1);
     assert_eq!(report["same_decisions"], false);
     assert!(
-        report["hosts"][0]["difference"].as_str().is_some_and(|words| words.contains("differs from byte")),
+        report["hosts"][0]["difference"]
+            .as_str()
+            .is_some_and(|description| description.contains("differs from byte")),
         "{report}"
     );
 }
@@ -203,7 +209,7 @@ fn a_trace_cut_in_a_record_is_checked_up_to_there() {
     let file = trace("cut.trace", |bytes, _| bytes.truncate(bytes.len() / 2));
     let report = json(&[&file], 1);
     assert!(
-        report["damage"].as_str().is_some_and(|words| words.contains("cut at byte")),
+        report["damage"].as_str().is_some_and(|description| description.contains("cut at byte")),
         "{}",
         report["damage"]
     );
@@ -227,7 +233,10 @@ fn a_moment_of_a_match_says_what_each_robot_has_to_do_and_why() {
         assert_eq!(robots.len(), 6, "{moment}");
         for robot in robots {
             for said in ["role", "directive", "why"] {
-                assert!(robot[said].as_str().is_some_and(|words| !words.is_empty()), "{said} of {robot}");
+                assert!(
+                    robot[said].as_str().is_some_and(|description| !description.is_empty()),
+                    "{said} of {robot}"
+                );
             }
         }
         assert_eq!(robots.iter().filter(|robot| robot["role"] == "keeper").count(), 1, "{moment}");

@@ -23,9 +23,9 @@ fn refused(arguments: &[&str], code: i32) -> String {
 }
 
 fn scratch(name: &str) -> PathBuf {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("trial-cli");
-    std::fs::create_dir_all(&folder).expect("a scratch folder");
-    folder.join(name)
+    let directory = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("trial-cli");
+    std::fs::create_dir_all(&directory).expect("a scratch folder");
+    directory.join(name)
 }
 
 #[test]
@@ -102,8 +102,8 @@ fn a_trial_is_told_as_a_story_and_drawn() {
     let out = onetwo(&["trial", "--seed", "3", "--svg", picture.to_str().expect("UTF-8")]);
     assert_eq!(out.status.code(), Some(0));
     let story = String::from_utf8(out.stdout).expect("words in UTF-8");
-    for word in ["coordinates and retrieves", "plays:", "trace ", "onetwo trial --scenario 3", "picture: "] {
-        assert!(story.contains(word), "{word} is missing in\n{story}");
+    for label in ["coordinates and retrieves", "plays:", "trace ", "onetwo trial --scenario 3", "picture: "] {
+        assert!(story.contains(label), "{label} is missing in\n{story}");
     }
     let svg = std::fs::read_to_string(picture).expect("the picture is there");
     assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
@@ -118,7 +118,7 @@ fn wrong_usage_is_told_and_ends_with_two() {
 }
 
 #[test]
-fn what_cannot_be_done_is_told_with_its_mend_and_ends_with_one() {
+fn what_cannot_be_done_is_told_with_its_hint_and_ends_with_one() {
     assert!(refused(&["trial", "--library", "no/such/folder"], 1).contains("league.toml"));
     assert!(refused(&["trial", "--set", "thr_c=far"], 1).contains("thr_c"));
     let nowhere = scratch("no-folder").join("x.svg");
@@ -133,6 +133,6 @@ fn a_missing_emulator_is_told_with_what_to_install() {
         .output()
         .expect("the program starts");
     assert_eq!(out.status.code(), Some(1));
-    let words = String::from_utf8(out.stderr).expect("words in UTF-8");
-    assert!(words.contains("qemu-system-arm") && words.contains("install"), "{words}");
+    let description = String::from_utf8(out.stderr).expect("words in UTF-8");
+    assert!(description.contains("qemu-system-arm") && description.contains("install"), "{description}");
 }

@@ -13,13 +13,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant as Clock};
 
 use geometry::{Angle, Field, GoalEnd, Point, Pose};
-use hil_sim::small_size::quirks::Profile;
+use hil_sim::small_size::compatibility::Profile;
 use hil_sim::small_size::server::{Destination, Port, Server, ServerSettings};
 use host::radio::{Radio, RadioSettings, Relay, Situation, To};
 use host::shell::{Link as _, SimLink, SimSettings};
 use host::world::{BallModels, Robot, World};
 use protocol::frame::TeamKey;
-use protocol::host::{Command, Directive, Duty};
+use protocol::host::{Command, Directive, RuleRole};
 use protocol::{Instant, RobotId, TeamId, Who};
 use rules::{Colour, League, Phase};
 
@@ -121,8 +121,8 @@ impl Team {
             let commands = ROBOTS.map(|robot| {
                 let pose = Pose { position: target(id(robot)), heading: Angle::new(0.0) };
                 let directive = Directive::GoTo { pose: pose.into() };
-                let (phase, duty, defending) = (Phase::Run, Duty::Player, GoalEnd::Negative);
-                Command { to: id(robot), defending, phase, duty, directive }
+                let (phase, rule_role, defending) = (Phase::Run, RuleRole::Player, GoalEnd::Negative);
+                Command { to: id(robot), defending, phase, rule_role, directive }
             });
             self.radio.offer(now, &world, situation, &commands);
         }
@@ -239,12 +239,12 @@ fn a_key_that_is_none_and_a_host_nobody_knows_are_told() {
             .unwrap();
         (out.status.code(), String::from_utf8(out.stderr).unwrap())
     };
-    let (code, words) = robot(&["--simulator", "no.such.host.invalid"]);
-    assert!(code == Some(1) && words.contains("--simulator"), "{words}");
-    let (code, words) = robot(&["--simulator", "127.0.0.1", "--with-parent"]);
-    assert!(code == Some(1) && words.contains("no key"), "{words}");
-    let (code, words) = robot(&["--simulator", "127.0.0.1", "--key-file", "no-such.key"]);
-    assert!(code == Some(1) && words.contains("no-such.key"), "{words}");
+    let (code, description) = robot(&["--simulator", "no.such.host.invalid"]);
+    assert!(code == Some(1) && description.contains("--simulator"), "{description}");
+    let (code, description) = robot(&["--simulator", "127.0.0.1", "--with-parent"]);
+    assert!(code == Some(1) && description.contains("no key"), "{description}");
+    let (code, description) = robot(&["--simulator", "127.0.0.1", "--key-file", "no-such.key"]);
+    assert!(code == Some(1) && description.contains("no-such.key"), "{description}");
     let (code, _) = robot(&["--simulator", "127.0.0.1", "--id", "16"]);
     assert_eq!(code, Some(2));
 }

@@ -31,12 +31,12 @@ pub(crate) fn draw() -> String {
         panel.ours(cover.keeper, "K", "#9fd3f0");
         panel.ball(cover.opening.from);
         let degrees = cover.opening.angle().to_degrees();
-        let words = match cover.case {
+        let description = match cover.case {
             Case::Defender => "one defender",
             Case::DefenderAndKeeper => "a defender and the keeper",
             Case::DefendersAndKeeper => "two defenders and the keeper",
         };
-        panel.title(&format!("{degrees:.1}° open: {words}"));
+        panel.title(&format!("{degrees:.1}° open: {description}"));
         panels.push(panel.svg);
     }
     let mut legend = Svg::default();

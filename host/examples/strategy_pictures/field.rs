@@ -155,11 +155,11 @@ pub(crate) fn robots(svg: &mut Svg, view: &View) {
 }
 
 /// Text above and to the right of a place, readable over any background.
-pub(crate) fn label(svg: &mut Svg, at: Point<Attack>, words: &str) {
+pub(crate) fn label(svg: &mut Svg, at: Point<Attack>, description: &str) {
     let [x, y] = mm(at);
     let font = Font { size: LETTERS, fill: "#ffffff", bold: true, halo: Some("#1b1b1b") };
     svg.circle([x, y], 45.0, r##"fill="#ffffff" stroke="#1b1b1b" stroke-width="18""##);
-    svg.text([x + 70.0, y + 110.0], words, Anchor::Start, font);
+    svg.text([x + 70.0, y + 110.0], description, Anchor::Start, font);
 }
 
 /// Plain text of a figure.

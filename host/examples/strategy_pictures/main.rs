@@ -1,4 +1,4 @@
-//! `strategy_pictures`: the figures of the second paper, by our own code (Biswas et al. 2014).
+//! `strategy_snapshots`: the figures of the second paper, by our own code (Biswas et al. 2014).
 //!
 //! `cargo run --release -p host --example strategy_pictures -- FOLDER` writes them to that directory; `cargo
 //! xtask pictures` keeps those in `docs/strategy`.
@@ -16,14 +16,14 @@ use std::path::Path;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let words: Vec<String> = std::env::args().skip(1).collect();
-    let [folder] = &words[..] else {
+    let description: Vec<String> = std::env::args().skip(1).collect();
+    let [directory] = &description[..] else {
         eprintln!("usage: strategy_pictures FOLDER");
         return ExitCode::from(2);
     };
     for (name, draw) in PICTURES {
-        let file = Path::new(folder).join(name);
-        let written = std::fs::create_dir_all(folder).and_then(|()| std::fs::write(&file, draw()));
+        let file = Path::new(directory).join(name);
+        let written = std::fs::create_dir_all(directory).and_then(|()| std::fs::write(&file, draw()));
         if let Err(error) = written {
             eprintln!("{}: {error}; name a folder that can be written to", file.display());
             return ExitCode::FAILURE;

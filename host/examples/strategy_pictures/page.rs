@@ -42,7 +42,7 @@ impl Panel {
         let colors = Theme::Light.colors();
         let mut panel = Self { svg: Svg::default(), colors, field, low, high, corner, scale };
         let (from, to) = (panel.at(low), panel.at(high));
-        panel.svg.rect(from, to, format_args!(r#"fill="{}""#, colors.carpet));
+        panel.svg.rect(from, to, format_args!(r#"fill="{}""#, colors.surface));
         panel
     }
 

@@ -35,8 +35,8 @@ pub(crate) fn draw() -> String {
     for (i, (title, value, full)) in panels.iter().enumerate() {
         let at = [wide * (i % 2) as f64, -high * (i / 2) as f64];
         let mut panel = Svg::default();
-        let carpet = format!(r#"fill="{}""#, colors().carpet);
-        panel.rect([-half_x, -half_y], [half_x, half_y], carpet);
+        let surface = format!(r#"fill="{}""#, colors().surface);
+        panel.rect([-half_x, -half_y], [half_x, half_y], surface);
         map(&mut panel, &view.field, CELL, |at| value(at) / *full as f32);
         over(&mut panel, &view, (i == 3).then_some(&best));
         if i < 2 {
@@ -73,8 +73,8 @@ fn over(svg: &mut Svg, view: &View, best: Option<&Rating>) {
     robots(svg, view);
     if let Some(best) = best {
         let kick = if best.kick.is_chip() { "chip" } else { "flat" };
-        let words = format!("{kick}: {:.2} · {:.2}", best.receive(), best.goal());
-        label(svg, best.at, &words);
+        let description = format!("{kick}: {:.2} · {:.2}", best.receive(), best.goal());
+        label(svg, best.at, &description);
     }
 }
 

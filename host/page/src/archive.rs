@@ -13,9 +13,9 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use serde::Serialize;
 
+use crate::deferred_scene::DeferredScene;
 use crate::happening::Happening;
 use crate::scene::Scene;
-use crate::sketch::Sketch;
 use crate::viewers::Viewers;
 
 /// Scenes that may wait to be finished and encoded, a third of a second of them: further ones are left out,
@@ -52,7 +52,7 @@ pub(crate) struct Kept {
 
 /// A message to the archive's thread.
 enum Mail {
-    Sketch(Box<Sketch>),
+    DeferredScene(Box<DeferredScene>),
     Happening(Box<Happening>),
     Clear,
 }
@@ -76,26 +76,26 @@ impl Archive {
     }
 
     /// Passes a scene to the archive, unless it is behind. Never waits.
-    pub(crate) fn show(&self, sketch: Sketch) -> bool {
+    pub(crate) fn show(&self, deferred_scene: DeferredScene) -> bool {
         if self.waiting.load(Ordering::Relaxed) >= WAITING_MAX {
             return false;
         }
-        self.push(sketch);
+        self.push(deferred_scene);
         true
     }
 
     /// Passes a scene to the archive in any case, and waits for it.
-    pub(crate) fn keep(&self, sketch: Sketch) {
+    pub(crate) fn keep(&self, deferred_scene: DeferredScene) {
         while self.waiting.load(Ordering::Relaxed) >= WAITING_MAX {
             thread::sleep(Duration::from_millis(1));
         }
-        self.push(sketch);
+        self.push(deferred_scene);
     }
 
-    fn push(&self, sketch: Sketch) {
+    fn push(&self, deferred_scene: DeferredScene) {
         self.waiting.fetch_add(1, Ordering::Relaxed);
         // The receiver is gone only while the program ends.
-        let _ = self.mail.send(Mail::Sketch(Box::new(sketch)));
+        let _ = self.mail.send(Mail::DeferredScene(Box::new(deferred_scene)));
     }
 
     /// Takes an event.
@@ -129,8 +129,8 @@ impl Worker {
     fn work(self) {
         while let Ok(mail) = self.inbox.recv() {
             match mail {
-                Mail::Sketch(sketch) => {
-                    let scene = sketch.finished();
+                Mail::DeferredScene(deferred_scene) => {
+                    let scene = deferred_scene.finished();
                     // Strings, numbers and lists of them: nothing that JSON cannot say.
                     let text: Arc<str> = Arc::from(serde_json::to_string(&scene).unwrap_or_default());
                     look(&self.kept, |kept| kept.add(&scene, text.clone()));

@@ -78,7 +78,7 @@ mod tests {
     fn the_page_loads_nothing_from_elsewhere() {
         for file in FILES {
             let loads = ["src=\"http", "href=\"http", "from \"http", "url(http", "import(\"http"];
-            assert!(!loads.iter().any(|word| file.text.contains(word)), "{}", file.path);
+            assert!(!loads.iter().any(|label| file.text.contains(label)), "{}", file.path);
         }
     }
 

@@ -20,7 +20,7 @@ pub(crate) enum Foreign {
 }
 
 impl Foreign {
-    pub(crate) fn words(self) -> &'static str {
+    pub(crate) fn description(self) -> &'static str {
         match self {
             Self::Host => {
                 "this page answers to its address or to localhost, with its own port, and to no other name"

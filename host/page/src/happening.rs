@@ -15,7 +15,8 @@ pub struct Happening {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub team: Option<Team>,
     /// A short text.
-    pub words: String,
+    #[serde(rename = "words")]
+    pub description: String,
     /// Place of the event, m, field frame.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at: Option<[f32; 2]>,

@@ -180,7 +180,7 @@ impl Head {
             headers: headers.collect(),
             ..Self::default()
         };
-        head.keeps = request.version == Some(1) && !head.has_word("connection", "close");
+        head.keeps = request.version == Some(1) && !head.has_label("connection", "close");
         // Two readings of a body's length are how requests are smuggled: one length in plain digits, or none.
         if head.all("transfer-encoding").next().is_some() {
             return Err(Status::LENGTH_REQUIRED);
@@ -197,7 +197,7 @@ impl Head {
         if self.length > most {
             return Err(NoRequest::Refused(Status::TOO_LARGE));
         }
-        if wire.received.len() < self.length && self.has_word("expect", "100-continue") {
+        if wire.received.len() < self.length && self.has_label("expect", "100-continue") {
             wire.send(b"HTTP/1.1 100 Continue\r\n\r\n", by).map_err(|_| NoRequest::Gone)?;
         }
         while wire.received.len() < self.length {
@@ -226,9 +226,9 @@ impl Head {
     }
 
     /// Whether a header's list of words has that one, in whatever case.
-    pub(crate) fn has_word(&self, name: &str, word: &str) -> bool {
+    pub(crate) fn has_label(&self, name: &str, label: &str) -> bool {
         let values = self.all(name).filter_map(|value| std::str::from_utf8(value).ok());
-        values.flat_map(|value| value.split(',')).any(|one| one.trim().eq_ignore_ascii_case(word))
+        values.flat_map(|value| value.split(',')).any(|one| one.trim().eq_ignore_ascii_case(label))
     }
 
     /// The value of `name` in the query, as it stands there: neither tokens nor numbers need escapes.
@@ -259,17 +259,17 @@ impl Answer {
     }
 
     /// Plain words.
-    pub(crate) fn words(status: Status, words: impl Into<Cow<'static, str>>) -> Self {
-        let body = match words.into() {
-            Cow::Borrowed(words) => Cow::Borrowed(words.as_bytes()),
-            Cow::Owned(words) => Cow::Owned(words.into_bytes()),
+    pub(crate) fn description(status: Status, description: impl Into<Cow<'static, str>>) -> Self {
+        let body = match description.into() {
+            Cow::Borrowed(description) => Cow::Borrowed(description.as_bytes()),
+            Cow::Owned(description) => Cow::Owned(description.into_bytes()),
         };
         Self { status, ..Self::of("text/plain; charset=utf-8", body) }
     }
 
     /// The status' own words.
     pub(crate) fn bare(status: Status) -> Self {
-        Self::words(status, status.1)
+        Self::description(status, status.1)
     }
 
     pub(crate) fn with(mut self, name: &'static str, value: impl Into<Cow<'static, str>>) -> Self {

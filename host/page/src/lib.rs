@@ -2,7 +2,7 @@
 //! PC).
 //!
 //! The driver of a match fills a [`Scene`] some 25 times a second and passes it to [`Page::show`], which
-//! never waits; expensive parts are computed later, on the page's own thread ([`Sketch`]). Viewers get the
+//! never waits; expensive parts are computed later, on the page's own thread ([`DeferredScene`]). Viewers get the
 //! newest one over a WebSocket; the seconds that have passed are kept, so that every viewer can seek back for
 //! itself. Viewers' requests come back as [`Request`]s, which the driver takes when it has time
 //! ([`Page::next_request`]).
@@ -19,6 +19,7 @@
 #![forbid(unsafe_code)]
 
 mod archive;
+mod deferred_scene;
 mod files;
 mod guard;
 mod happening;
@@ -31,22 +32,21 @@ mod routes;
 mod scene;
 mod server;
 mod shape;
-mod sketch;
 mod socket;
 mod token;
 mod viewers;
 
 pub use archive::Sample;
+pub use deferred_scene::DeferredScene;
 pub use happening::{Happening, Kind};
 pub use limits::Limits;
-pub use page::{Oracle, Page, PageError, Settings};
+pub use page::{ExplanationService, Page, PageError, Settings};
 pub use problem::{Freeze, problem, skeleton};
 pub use request::{Powers, Refused, Request, Team};
 pub use scene::{
     Ball, Cycle, Field, Gauge, Intent, Match, Mind, PerTeam, Raw, Robot, Scene, TeamSheet, Timer, Vitals,
 };
 pub use shape::{Heat, Layer, Shape, Tone};
-pub use sketch::Sketch;
 pub use token::{NoToken, Token};
 
 /// Rounded to a thousandth: millimetres are enough for the page, and JSON is shorter.

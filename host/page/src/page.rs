@@ -10,11 +10,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, sync_channel};
 
 use crate::archive::Archive;
+use crate::deferred_scene::DeferredScene;
 use crate::happening::Happening;
 use crate::limits::Limits;
 use crate::request::{Powers, Request};
 use crate::server::{Ask, Server, Shared};
-use crate::sketch::Sketch;
 use crate::token::Token;
 use crate::viewers::{Mailbox, Viewers};
 
@@ -39,7 +39,7 @@ pub struct Settings {
 }
 
 /// Answers viewers' questions, on another thread than the match.
-pub trait Oracle: Send + Sync {
+pub trait ExplanationService: Send + Sync {
     /// Explains why a case is retrieved: `problem` as `onetwo cases explain` takes it; the answer as it gives
     /// it with `--json`.
     fn explain(&self, problem: &str) -> Result<String, String>;
@@ -95,7 +95,7 @@ pub struct Page {
 
 impl Page {
     /// Opens the port and serves.
-    pub fn open(settings: Settings, oracle: Arc<dyn Oracle>) -> Result<Self, PageError> {
+    pub fn open(settings: Settings, explanations: Arc<dyn ExplanationService>) -> Result<Self, PageError> {
         let listen = settings.listen;
         let failed = |error: io::Error| match error.kind() {
             io::ErrorKind::AddrInUse => PageError::Taken(listen),
@@ -110,7 +110,7 @@ impl Page {
         let shared = Shared {
             port: address.port(),
             settings,
-            oracle,
+            explanations,
             viewers,
             kept: archive.kept(),
             asks,
@@ -135,21 +135,21 @@ impl Page {
     }
 
     /// Passes a moment to the page; if the page's thread is behind, it is left out. Never waits.
-    pub fn show(&mut self, sketch: impl Into<Sketch>) {
-        let sketch = self.dated(sketch.into());
-        if !self.archive.show(sketch) {
+    pub fn show(&mut self, deferred_scene: impl Into<DeferredScene>) {
+        let deferred_scene = self.dated(deferred_scene.into());
+        if !self.archive.show(deferred_scene) {
             self.left_out += 1;
         }
     }
 
     /// Stores a moment in any case, and waits for it: for recordings.
-    pub fn keep(&mut self, sketch: impl Into<Sketch>) {
-        self.archive.keep(self.dated(sketch.into()));
+    pub fn keep(&mut self, deferred_scene: impl Into<DeferredScene>) {
+        self.archive.keep(self.dated(deferred_scene.into()));
     }
 
-    fn dated(&self, mut sketch: Sketch) -> Sketch {
-        sketch.scene.happened = self.told;
-        sketch
+    fn dated(&self, mut deferred_scene: DeferredScene) -> DeferredScene {
+        deferred_scene.scene.happened = self.told;
+        deferred_scene
     }
 
     /// Passes an event to the page. Never waits.
@@ -172,10 +172,10 @@ impl Page {
     }
 
     /// Answers the viewer whose request was taken last with the reason why it is refused.
-    pub fn refuse(&self, words: impl Into<String>) {
+    pub fn refuse(&self, description: impl Into<String>) {
         if let Some(asker) = &*self.asker.borrow() {
             // A viewer that is gone, or that asks faster than it reads, is told nothing.
-            asker.refuse(words.into());
+            asker.refuse(description.into());
         }
     }
 

@@ -39,12 +39,12 @@ struct Problem {
 /// The moment as that team's problem; `None` without a ball. Its keeper is left out: it plays no cases.
 pub fn problem(scene: &Scene, team: Team) -> Option<String> {
     let ball = scene.ball.as_ref()?;
-    let mates = field_players(scene, team).take(PROBLEM_ROBOTS_MAX);
+    let teammates = field_players(scene, team).take(PROBLEM_ROBOTS_MAX);
     let opponents = scene.robots.iter().filter(|robot| robot.team != team).take(PROBLEM_ROBOTS_MAX);
     let problem = Problem {
         ball: mm(ball.at),
         defending: defending(scene, team),
-        teammates: mates.map(|robot| (robot.id, mm(robot.at))).collect(),
+        teammates: teammates.map(|robot| (robot.id, mm(robot.at))).collect(),
         opponents: opponents.map(|robot| mm(robot.at)).collect(),
     };
     serde_json::to_string(&problem).ok()
@@ -63,9 +63,9 @@ pub fn skeleton(scene: &Scene, team: Team) -> Option<String> {
         robots.truncate(CASE_ROBOTS_MAX);
         robots
     };
-    let mates = nearest(field_players(scene, team).cloned().collect());
+    let teammates = nearest(field_players(scene, team).cloned().collect());
     let opponents = nearest(scene.robots.iter().filter(|robot| robot.team != team).cloned().collect());
-    if mates.is_empty() {
+    if teammates.is_empty() {
         return None;
     }
     let place = |at: [f32; 2]| {
@@ -78,8 +78,8 @@ pub fn skeleton(scene: &Scene, team: Team) -> Option<String> {
         defending(scene, team),
         place(ball.at)
     );
-    for (i, robot) in mates.iter().enumerate() {
-        let plan = match (i, mates.len()) {
+    for (i, robot) in teammates.iter().enumerate() {
+        let plan = match (i, teammates.len()) {
             (0, 1) => "\"get_ball\"",
             (0, _) => "\"get_ball\", { pass_ball = 2 }",
             (1, _) => "\"wait\", { receive_ball = 1 }",
@@ -89,7 +89,7 @@ pub fn skeleton(scene: &Scene, team: Team) -> Option<String> {
             out,
             "\n[[teammates]] # robot {} of {}\nat = {}\ngameplay = [{plan}]\n",
             robot.id,
-            word(team),
+            label(team),
             place(robot.at)
         );
     }
@@ -113,7 +113,7 @@ fn defending(scene: &Scene, team: Team) -> &'static str {
     }
 }
 
-fn word(team: Team) -> &'static str {
+fn label(team: Team) -> &'static str {
     match team {
         Team::Blue => "blue",
         Team::Yellow => "yellow",

@@ -104,10 +104,10 @@ pub enum Refused {
 impl std::fmt::Display for Refused {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Malformed(words) => write!(f, "no request: {words}"),
+            Self::Malformed(description) => write!(f, "no request: {description}"),
             Self::NotHere(Powers::Halt) => f.write_str("a real field takes nothing but HALT from the page"),
             Self::NotHere(_) => f.write_str("a recording cannot be changed"),
-            Self::Range(words) => f.write_str(words),
+            Self::Range(description) => f.write_str(description),
         }
     }
 }
@@ -146,7 +146,7 @@ impl Request {
             Self::Robot { id, .. } | Self::Power { id, .. } if *id > 15 => Some("robots: 0 to 15"),
             _ => None,
         };
-        wrong.or(id).map_or(Ok(self), |words| Err(Refused::Range(words)))
+        wrong.or(id).map_or(Ok(self), |description| Err(Refused::Range(description)))
     }
 }
 

@@ -39,7 +39,7 @@ pub(crate) fn answer(shared: &Shared, head: &Head, body: Vec<u8>, within: Durati
 fn file(path: &str) -> Answer {
     match files::find(path) {
         Some(file) => Answer::of(file.kind, file.text.as_bytes()),
-        None => Answer::words(Status::NOT_FOUND, "nothing here"),
+        None => Answer::description(Status::NOT_FOUND, "nothing here"),
     }
 }
 
@@ -51,7 +51,7 @@ fn state(shared: &Shared, head: &Head) -> Answer {
         "recorded": settings.recorded,
         "powers": settings.powers,
         "may_ask": shared.may_ask(head.asked("token")),
-        "situations": shared.oracle.situations(),
+        "situations": shared.explanations.situations(),
         "span": span,
         "life": life,
     });
@@ -60,17 +60,17 @@ fn state(shared: &Shared, head: &Head) -> Answer {
 
 fn second(shared: &Shared, digits: &str) -> Answer {
     let Ok(second) = digits.parse() else {
-        return Answer::words(Status::BAD_REQUEST, "expected a whole number of seconds");
+        return Answer::description(Status::BAD_REQUEST, "expected a whole number of seconds");
     };
     match look(&shared.kept, |kept| kept.second(second)) {
         Some(bytes) => Answer::of(JSON, bytes.to_vec()).with("content-encoding", "gzip"),
-        None => Answer::words(Status::NOT_FOUND, "not kept"),
+        None => Answer::description(Status::NOT_FOUND, "not kept"),
     }
 }
 
 fn happenings(shared: &Shared, head: &Head) -> Answer {
     let Ok(from) = head.asked("from").unwrap_or("0").parse::<usize>() else {
-        return Answer::words(Status::BAD_REQUEST, "from: expected a whole number");
+        return Answer::description(Status::BAD_REQUEST, "from: expected a whole number");
     };
     let text = look(&shared.kept, |kept| {
         let all = &kept.happenings;
@@ -86,15 +86,15 @@ fn plots(shared: &Shared) -> Answer {
 }
 
 fn explain(shared: &Shared, body: Vec<u8>, within: Duration) -> Answer {
-    let answer = shared.in_time(within, move |oracle| match std::str::from_utf8(&body) {
-        Ok(problem) => oracle.explain(problem),
+    let answer = shared.in_time(within, move |explanations| match std::str::from_utf8(&body) {
+        Ok(problem) => explanations.explain(problem),
         Err(_) => Err("a problem is text".to_owned()),
     });
     match answer {
         Ok(Ok(text)) => Answer::of(JSON, text.into_bytes()),
-        Ok(Err(words)) => Answer::words(Status::UNPROCESSABLE, words),
-        Err(Status::TIMED_OUT) => Answer::words(Status::TIMED_OUT, "it took too long"),
-        Err(status) => Answer::words(status, "no answer"),
+        Ok(Err(description)) => Answer::description(Status::UNPROCESSABLE, description),
+        Err(Status::TIMED_OUT) => Answer::description(Status::TIMED_OUT, "it took too long"),
+        Err(status) => Answer::description(status, "no answer"),
     }
 }
 
@@ -107,7 +107,7 @@ struct Frozen {
 
 fn freeze(shared: &Shared, body: &[u8]) -> Answer {
     let Ok(asked) = serde_json::from_slice::<Frozen>(body) else {
-        return Answer::words(Status::UNPROCESSABLE, "expected t, team and what");
+        return Answer::description(Status::UNPROCESSABLE, "expected t, team and what");
     };
     let scene = look(&shared.kept, |kept| kept.scene_at(asked.t));
     let text = scene.and_then(|scene| match asked.what {
@@ -115,7 +115,7 @@ fn freeze(shared: &Shared, body: &[u8]) -> Answer {
         Freeze::Case => skeleton(&scene, asked.team),
     });
     match text {
-        Some(text) => Answer::words(Status::OK, text),
-        None => Answer::words(Status::UNPROCESSABLE, "no ball or no such team at that moment"),
+        Some(text) => Answer::description(Status::OK, text),
+        None => Answer::description(Status::UNPROCESSABLE, "no ball or no such team at that moment"),
     }
 }

@@ -17,7 +17,7 @@ use crate::archive::Kept;
 use crate::guard;
 use crate::http::{Answer, Head, NoRequest, Status, Wire};
 use crate::limits::Seat;
-use crate::page::{Oracle, Settings};
+use crate::page::{ExplanationService, Settings};
 use crate::request::Request;
 use crate::routes;
 use crate::socket::{self, Received};
@@ -28,7 +28,7 @@ const GONE: Duration = Duration::from_secs(30);
 /// Where no connection can be taken (no descriptor is left), the next attempt is after that time.
 const ACCEPT_AGAIN: Duration = Duration::from_millis(50);
 /// The longest message of a viewer, bytes: a request, a problem.
-const WORD_MAX: usize = 16 * 1024;
+const LABEL_MAX: usize = 16 * 1024;
 /// How long the page's own connection may take that wakes its server for the end.
 const WAKE: Duration = Duration::from_millis(200);
 
@@ -36,7 +36,7 @@ const WAKE: Duration = Duration::from_millis(200);
 pub(crate) struct Shared {
     pub(crate) port: u16,
     pub(crate) settings: Settings,
-    pub(crate) oracle: Arc<dyn Oracle>,
+    pub(crate) explanations: Arc<dyn ExplanationService>,
     pub(crate) viewers: Arc<Viewers>,
     pub(crate) kept: Arc<Mutex<Kept>>,
     pub(crate) asks: SyncSender<Ask>,
@@ -59,11 +59,11 @@ impl Shared {
     pub(crate) fn in_time<T: Send + 'static>(
         &self,
         within: Duration,
-        work: impl FnOnce(&dyn Oracle) -> T + Send + 'static,
+        work: impl FnOnce(&dyn ExplanationService) -> T + Send + 'static,
     ) -> Result<T, Status> {
         let (done, answer) = sync_channel(1);
-        let oracle = self.oracle.clone();
-        let worker = thread::Builder::new().spawn(move || done.send(work(&*oracle)));
+        let explanations = self.explanations.clone();
+        let worker = thread::Builder::new().spawn(move || done.send(work(&*explanations)));
         worker.map_err(|_| Status::UNAVAILABLE)?;
         answer.recv_timeout(within).map_err(|error| match error {
             RecvTimeoutError::Timeout => Status::TIMED_OUT,
@@ -178,9 +178,9 @@ fn serve(stream: TcpStream, shared: &Shared, place: Place) {
         let answered = Instant::now() + limits.request;
         let body = match guard::check(&head, shared.port) {
             Err(foreign) => {
-                return Answer::words(Status::FORBIDDEN, foreign.words()).end(&mut wire, closes);
+                return Answer::description(Status::FORBIDDEN, foreign.description()).end(&mut wire, closes);
             }
-            Ok(()) => head.body(&mut wire, WORD_MAX, closes.min(answered)),
+            Ok(()) => head.body(&mut wire, LABEL_MAX, closes.min(answered)),
         };
         let body = match body {
             Ok(body) => body,
@@ -234,7 +234,7 @@ fn sit_down(shared: &Shared, head: &Head) -> Result<(Seat, Answer), Answer> {
     // Taken before the answer: of those that come at once none can pass while the others are not counted yet.
     match Seat::take(&shared.seats, shared.settings.limits.viewers) {
         Some(seat) => Ok((seat, answer)),
-        None => Err(Answer::words(Status::UNAVAILABLE, "too many look on")),
+        None => Err(Answer::description(Status::UNAVAILABLE, "too many look on")),
     }
 }
 
@@ -263,7 +263,9 @@ fn send(wire: &mut Wire, mailbox: &Mailbox) {
     while let Some(sent) = mailbox.next() {
         let frame = match sent {
             Sent::Scene(scene) => socket::text(&scene),
-            Sent::Refusal(words) => socket::text(&serde_json::json!({ "refused": words }).to_string()),
+            Sent::Refusal(description) => {
+                socket::text(&serde_json::json!({ "refused": description }).to_string())
+            }
             Sent::Pong(payload) => socket::pong(&payload),
         };
         if wire.send(&frame, Instant::now() + GONE).is_err() {
@@ -279,14 +281,14 @@ fn send(wire: &mut Wire, mailbox: &Mailbox) {
 fn listen(wire: &mut Wire, shared: &Shared, mailbox: &Arc<Mailbox>, may_ask: bool) {
     let mut begun = None;
     loop {
-        match socket::receive(wire, &mut begun, WORD_MAX, Instant::now() + GONE) {
-            Ok(Received::Text(word)) if word == "." => mailbox.take(),
+        match socket::receive(wire, &mut begun, LABEL_MAX, Instant::now() + GONE) {
+            Ok(Received::Text(label)) if label == "." => mailbox.take(),
             // A viewer of something that stands still says that it is there.
-            Ok(Received::Text(word)) if word.is_empty() => {}
-            Ok(Received::Text(word)) => {
-                let asked = if may_ask { ask(shared, mailbox, &word) } else { Err(NO_TOKEN.to_owned()) };
-                if let Err(words) = asked {
-                    mailbox.refuse(words);
+            Ok(Received::Text(label)) if label.is_empty() => {}
+            Ok(Received::Text(label)) => {
+                let asked = if may_ask { ask(shared, mailbox, &label) } else { Err(NO_TOKEN.to_owned()) };
+                if let Err(description) = asked {
+                    mailbox.refuse(description);
                 }
             }
             Ok(Received::Ping(payload)) => mailbox.ping(payload),
@@ -300,8 +302,8 @@ fn listen(wire: &mut Wire, shared: &Shared, mailbox: &Arc<Mailbox>, may_ask: boo
 const NO_TOKEN: &str = "this page is open to the network: to ask for anything, open it by the address with ?token= that the program \
                         printed when it started";
 
-fn ask(shared: &Shared, asker: &Arc<Mailbox>, word: &str) -> Result<(), String> {
-    let request = Request::read(word, shared.settings.powers).map_err(|refused| refused.to_string())?;
+fn ask(shared: &Shared, asker: &Arc<Mailbox>, label: &str) -> Result<(), String> {
+    let request = Request::read(label, shared.settings.powers).map_err(|refused| refused.to_string())?;
     shared
         .asks
         .try_send(Ask { request, asker: asker.clone() })

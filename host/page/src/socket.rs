@@ -30,9 +30,9 @@ pub(crate) enum Received {
 
 /// The answer that makes a socket of a connection; why it can be none.
 pub(crate) fn handshake(head: &Head) -> Result<Answer, Answer> {
-    let refused = |words: &'static str| Answer::words(Status::BAD_REQUEST, words);
-    if !head.has_word("connection", "upgrade") || !head.has_word("upgrade", "websocket") {
-        let answer = Answer::words(Status::UPGRADE_REQUIRED, "a WebSocket is served here");
+    let refused = |description: &'static str| Answer::description(Status::BAD_REQUEST, description);
+    if !head.has_label("connection", "upgrade") || !head.has_label("upgrade", "websocket") {
+        let answer = Answer::description(Status::UPGRADE_REQUIRED, "a WebSocket is served here");
         return Err(answer.with("upgrade", "websocket").with("connection", "upgrade"));
     }
     if head.one("sec-websocket-version") != Ok(Some("13")) {

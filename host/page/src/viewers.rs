@@ -89,8 +89,8 @@ impl Mailbox {
             if let Some(payload) = mail.ping.take() {
                 return Some(Sent::Pong(payload));
             }
-            if let Some(words) = mail.refusals.pop_front() {
-                return Some(Sent::Refusal(words));
+            if let Some(description) = mail.refusals.pop_front() {
+                return Some(Sent::Refusal(description));
             }
             if mail.untaken < UNTAKEN_MAX
                 && let Some(scene) = mail.scene.take()
@@ -108,10 +108,10 @@ impl Mailbox {
     }
 
     /// Tells the viewer why something is not done; dropped where it reads nothing.
-    pub(crate) fn refuse(&self, words: String) {
+    pub(crate) fn refuse(&self, description: String) {
         self.change(|mail| {
             if mail.refusals.len() < REFUSALS_MAX {
-                mail.refusals.push_back(words);
+                mail.refusals.push_back(description);
             }
         });
     }

@@ -10,7 +10,7 @@ use std::sync::{Arc, Barrier};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use page::{Limits, Oracle, Page, Powers, Request, Settings, Team, Token};
+use page::{ExplanationService, Limits, Page, Powers, Request, Settings, Team, Token};
 use tungstenite::stream::MaybeTlsStream;
 use tungstenite::{Message, WebSocket};
 
@@ -27,7 +27,7 @@ const PATIENCE: Duration = Duration::from_mins(1);
 
 struct Silent;
 
-impl Oracle for Silent {
+impl ExplanationService for Silent {
     fn explain(&self, _problem: &str) -> Result<String, String> {
         Err("nothing is explained".to_owned())
     }
@@ -180,11 +180,11 @@ fn without_the_token_everybody_looks_on_and_nobody_asks() {
     let right = format!("?token={}", token.as_str());
     let halt = Message::text(r#"{"ask":"halt"}"#);
     for query in ["", "?token=", "?token=0123", "?other=1", &format!("{right}0")] {
-        let mut stranger = viewer(&page, query).expect("looking is free");
-        stranger.send(halt.clone()).unwrap();
-        let words = refused(&mut stranger);
-        assert!(words.contains("?token="), "{query}: {words}");
-        assert!(!words.contains(token.as_str()), "the token is told to nobody: {words}");
+        let mut unauthenticated = viewer(&page, query).expect("looking is free");
+        unauthenticated.send(halt.clone()).unwrap();
+        let description = refused(&mut unauthenticated);
+        assert!(description.contains("?token="), "{query}: {description}");
+        assert!(!description.contains(token.as_str()), "the token is told to nobody: {description}");
     }
     assert!(get(at, &format!("/api/state{right}")).contains(r#""may_ask":true"#));
     let mut own = viewer(&page, &right).unwrap();

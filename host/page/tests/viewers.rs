@@ -8,7 +8,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use page::{
-    Happening, Kind, Layer, Limits, Oracle, Page, PageError, Powers, Request, Scene, Settings, Sketch, Team,
+    DeferredScene, ExplanationService, Happening, Kind, Layer, Limits, Page, PageError, Powers, Request,
+    Scene, Settings, Team,
 };
 use tungstenite::client::IntoClientRequest;
 use tungstenite::stream::MaybeTlsStream;
@@ -18,7 +19,7 @@ type Viewer = WebSocket<MaybeTlsStream<TcpStream>>;
 
 struct Echo;
 
-impl Oracle for Echo {
+impl ExplanationService for Echo {
     fn explain(&self, problem: &str) -> Result<String, String> {
         if problem.starts_with('{') {
             Ok(format!("{{\"asked\":{problem}}}"))
@@ -87,14 +88,14 @@ fn post(at: SocketAddr, path: &str, body: &str, more: &str) -> (u16, String) {
     )
 }
 
-fn ask(at: SocketAddr, words: &str) -> (u16, String) {
+fn ask(at: SocketAddr, description: &str) -> (u16, String) {
     let mut stream = TcpStream::connect(at).unwrap();
     stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
-    stream.write_all(words.as_bytes()).unwrap();
+    stream.write_all(description.as_bytes()).unwrap();
     let mut bytes = Vec::new();
     let _ = stream.read_to_end(&mut bytes);
     let answer = String::from_utf8_lossy(&bytes).into_owned();
-    let status = answer.split(' ').nth(1).and_then(|word| word.parse().ok()).unwrap_or(0);
+    let status = answer.split(' ').nth(1).and_then(|label| label.parse().ok()).unwrap_or(0);
     (status, answer.split_once("\r\n\r\n").map(|(_, body)| body.to_owned()).unwrap_or_default())
 }
 
@@ -158,12 +159,12 @@ fn showing_never_waits_whoever_looks_on() {
 }
 
 #[test]
-fn a_sketch_is_finished_after_the_match_has_gone_on() {
+fn a_deferred_scene_is_finished_after_the_match_has_gone_on() {
     let mut page = open(Powers::None);
     let mut looking = viewer(&page);
     wait_for(|| page.viewers() == 1);
     let (gate, opens) = std::sync::mpsc::channel::<()>();
-    page.show(Sketch::new(scene(1.5), move |scene| {
+    page.show(DeferredScene::new(scene(1.5), move |scene| {
         // `show` returns before the scene is finished: else this would wait for ever.
         let _ = opens.recv();
         scene.layers.push(Layer { name: "late".into(), ..Layer::default() });
@@ -181,7 +182,7 @@ fn what_has_passed_is_asked_for_by_the_second() {
         t: 0.2,
         kind: Kind::Goal,
         team: Some(Team::Blue),
-        words: "goal".into(),
+        description: "goal".into(),
         at: None,
         problem: None,
     });
@@ -202,9 +203,9 @@ fn foreign_pages_and_foreign_names_are_refused() {
     let at = page.address();
     let port = at.port();
     for path in ["/", "/api/state", "/socket"] {
-        let (status, words) = get(at, path, &format!("Host: evil.example:{port}\r\n"));
+        let (status, description) = get(at, path, &format!("Host: evil.example:{port}\r\n"));
         assert_eq!(status, 403, "{path}");
-        assert!(words.contains("no other name"), "{words}");
+        assert!(description.contains("no other name"), "{description}");
         assert_eq!(get(at, path, "Origin: http://evil.example\r\n").0, 403, "{path}");
     }
     assert_eq!(post(at, "/api/explain", "{}", "Origin: http://evil.example\r\n").0, 403);
@@ -240,8 +241,8 @@ fn a_real_field_is_only_ever_halted() {
     let page = open(Powers::Halt);
     let mut viewer = viewer(&page);
     viewer.send(Message::text(r#"{"ask":"ball","at":[0,0]}"#)).unwrap();
-    let Message::Text(words) = viewer.read().unwrap() else { panic!("no text") };
-    assert!(words.contains("nothing but HALT"), "{words}");
+    let Message::Text(description) = viewer.read().unwrap() else { panic!("no text") };
+    assert!(description.contains("nothing but HALT"), "{description}");
     viewer.send(Message::text(r#"{"ask":"halt"}"#)).unwrap();
     let mut asked = None;
     wait_for_some(&mut asked, || page.next_request());

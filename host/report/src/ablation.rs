@@ -14,7 +14,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use crate::columns::CONFIDENCE;
 use crate::plot::{Dot, Row, axis, panel};
 use crate::plot::{Figure, Key, Shape};
-use crate::{Facts, Picture, numbers, style, words};
+use crate::{Facts, Picture, description, numbers, style};
 
 /// Inputs of an ablation's page.
 #[derive(Clone, Copy, Debug)]
@@ -32,12 +32,12 @@ type Look = (&'static str, &'static str, &'static str, usize, bool);
 
 impl Ablation<'_> {
     /// Writes the page and its plot.
-    pub fn write(&self, folder: &Path) -> io::Result<Picture> {
-        let plots = folder.join("plots");
+    pub fn write(&self, directory: &Path) -> io::Result<Picture> {
+        let plots = directory.join("plots");
         fs::create_dir_all(&plots)?;
         let picture = self.figure().picture();
         fs::write(plots.join(format!("{}.svg", picture.name)), &picture.svg)?;
-        fs::write(folder.join("report.html"), self.html())?;
+        fs::write(directory.join("report.html"), self.html())?;
         Ok(picture)
     }
 
@@ -115,9 +115,9 @@ impl Ablation<'_> {
     /// The unchanged team's numbers, then every arm's differences.
     fn lines(&self, cell: Option<Place<'_>>) -> Vec<(&Arm, Vec<Said<'_>>)> {
         let lines = self.arms.iter().filter_map(|arm| {
-            let cells = LOOKS.iter().map(|(word, _, _, decimals, _)| {
+            let cells = LOOKS.iter().map(|(label, _, _, decimals, _)| {
                 let own = |effect: &&Effect| {
-                    effect.measure == *word && (arm.is_default() || effect.arm == arm.name)
+                    effect.measure == *label && (arm.is_default() || effect.arm == arm.name)
                 };
                 let effect = self.effects.iter().filter(|effect| place(effect) == cell).find(own)?;
                 Some(if arm.is_default() {
@@ -137,10 +137,10 @@ impl Ablation<'_> {
                 thead { tr {
                     th.name scope="col" { "arm" }
                     @for (_, head, unit, ..) in LOOKS { th scope="col" { (head) span.unit { (unit) } } }
-                    th.word scope="col" { "what is changed" }
+                    th.label scope="col" { "what is changed" }
                 } }
                 tbody { @for (arm, cells) in self.lines(cell) {
-                    tr class=(if arm.is_default() { "ours" } else { "difference" }) style=(words::css(Approach::Cases)) {
+                    tr class=(if arm.is_default() { "ours" } else { "difference" }) style=(description::css(Approach::Cases)) {
                         th.name scope="row" { (arm.name) }
                         @for (value, effect) in cells { td {
                             (value)
@@ -150,7 +150,7 @@ impl Ablation<'_> {
                                 small { (numbers::p(p)) }
                             }
                         } }
-                        td.word { (arm.what) @if !arm.flags.is_empty() { small { code { (arm.flags) } } } }
+                        td.label { (arm.what) @if !arm.flags.is_empty() { small { code { (arm.flags) } } } }
                     }
                 } }
             } }
@@ -158,7 +158,7 @@ impl Ablation<'_> {
     }
 
     fn figure(&self) -> Figure {
-        let panels = LOOKS.iter().filter_map(|(word, head, unit, decimals, share)| {
+        let panels = LOOKS.iter().filter_map(|(label, head, unit, decimals, share)| {
             let dot = |effect: &Effect| {
                 let sure = effect.p_holm.is_some_and(|p| p < 1.0 - CONFIDENCE);
                 let reach = share.then(|| reach(effect)).flatten();
@@ -166,7 +166,7 @@ impl Ablation<'_> {
                 let text = format!("{} {marks}", numbers::signed(effect.difference, *decimals));
                 Dot { approach: Approach::Cases, ours: sure, value: effect.difference, reach, text }
             };
-            let rows = self.of(None).filter(|effect| effect.measure == *word);
+            let rows = self.of(None).filter(|effect| effect.measure == *label);
             let rows: Vec<_> =
                 rows.map(|effect| Row { name: effect.arm.to_owned(), dots: vec![dot(effect)] }).collect();
             let ends = || {
@@ -178,9 +178,9 @@ impl Ablation<'_> {
             let unit = if *share { "percentage points" } else { unit };
             (!rows.is_empty()).then(|| panel((*head).to_owned(), unit, &rows, axis(low - room, high)))
         });
-        let key = |word: &str, filled| Key {
-            word: word.to_owned(),
-            color: words::color(Approach::Cases),
+        let key = |label: &str, filled| Key {
+            label: label.to_owned(),
+            color: description::color(Approach::Cases),
             filled,
             shape: Shape::Dot,
         };
@@ -202,7 +202,7 @@ type Place<'a> = (&'static str, &'a str);
 
 /// `None` for an effect over all cells.
 fn place(effect: &Effect) -> Option<Place<'_>> {
-    Some((words::opponents(effect.configuration?), effect.scenario?))
+    Some((description::opponents(effect.configuration?), effect.scenario?))
 }
 
 /// Newcombe's interval, as if the trials were not paired: wider than necessary.
@@ -255,7 +255,7 @@ mod tests {
     #[test]
     fn every_arm_has_its_differences_and_what_it_changes() {
         let (arms, name) = (&ARMS[..2], ARMS[1].name);
-        let effects: Vec<_> = LOOKS.iter().map(|(word, ..)| effect(name, word, 30.0, 42.0)).collect();
+        let effects: Vec<_> = LOOKS.iter().map(|(label, ..)| effect(name, label, 30.0, 42.0)).collect();
         let facts =
             [Facts { title: "Program".to_owned(), entries: vec![("seed".to_owned(), "<1>".to_owned())] }];
         let ablation = Ablation { arms, effects: &effects, facts: &facts };

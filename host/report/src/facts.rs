@@ -27,7 +27,7 @@ impl Facts {
                     rest.push(facts);
                 }
                 (None, Value::Array(names)) => {
-                    first.entries.push((name.clone(), format!("{}: {}", names.len(), words(names))));
+                    first.entries.push((name.clone(), format!("{}: {}", names.len(), description(names))));
                 }
                 (None, value) => flatten(name, value, &mut first.entries),
             }
@@ -52,11 +52,11 @@ fn heading(name: &str) -> Option<&'static str> {
     }
 }
 
-fn words(values: &[Value]) -> String {
-    values.iter().map(word).collect::<Vec<_>>().join(", ")
+fn description(values: &[Value]) -> String {
+    values.iter().map(label).collect::<Vec<_>>().join(", ")
 }
 
-fn word(value: &Value) -> String {
+fn label(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
@@ -71,15 +71,15 @@ fn flatten(name: &str, value: &Value, entries: &mut Vec<(String, String)>) {
                     // One line for each element: its members belong together.
                     Value::Object(part) => {
                         let said: Vec<_> =
-                            part.iter().map(|(key, value)| format!("{key} {}", word(value))).collect();
+                            part.iter().map(|(key, value)| format!("{key} {}", label(value))).collect();
                         entries.push((below(&(i + 1).to_string()), said.join(", ")));
                     }
                     part => flatten(&below(&(i + 1).to_string()), part, entries),
                 }
             }
         }
-        Value::Array(parts) => entries.push((name.to_owned(), words(parts))),
-        value => entries.push((name.to_owned(), word(value))),
+        Value::Array(parts) => entries.push((name.to_owned(), description(parts))),
+        value => entries.push((name.to_owned(), label(value))),
     }
 }
 

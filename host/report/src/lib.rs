@@ -12,6 +12,7 @@
 
 mod ablation;
 mod columns;
+mod description;
 mod facts;
 mod map;
 mod markdown;
@@ -20,7 +21,6 @@ mod page;
 mod plot;
 mod style;
 mod table;
-mod words;
 
 use std::fs;
 use std::io;
@@ -85,15 +85,15 @@ impl Report<'_> {
         markdown::markdown(self, pictures)
     }
 
-    /// `report.html` and `plots/*.svg` under `folder`; returns the figures.
-    pub fn write(&self, folder: &Path) -> io::Result<Vec<Picture>> {
-        let plots = folder.join("plots");
+    /// `report.html` and `plots/*.svg` under `directory`; returns the figures.
+    pub fn write(&self, directory: &Path) -> io::Result<Vec<Picture>> {
+        let plots = directory.join("plots");
         fs::create_dir_all(&plots)?;
         let pictures = self.pictures();
         for picture in &pictures {
             fs::write(plots.join(format!("{}.svg", picture.name)), &picture.svg)?;
         }
-        fs::write(folder.join("report.html"), self.html())?;
+        fs::write(directory.join("report.html"), self.html())?;
         Ok(pictures)
     }
 }

@@ -8,16 +8,16 @@ use arena::evaluation::{Claim, Judgement, Line};
 
 use crate::facts::HASH;
 use crate::table::{Cell, LineKind, Table, tables};
-use crate::{Report, map, table, words};
+use crate::{Report, description, map, table};
 
 /// Tables, claims and figures as Markdown.
 pub(crate) fn markdown(report: &Report<'_>, pictures: &str) -> String {
     let mut text = String::new();
     let facts = || report.facts.iter().flat_map(|facts| &facts.entries);
     let known = [("program", "onetwo"), ("plan.seed", "seed"), ("seed", "seed"), (HASH, HASH)];
-    let said = known.into_iter().filter_map(|(name, word)| {
+    let said = known.into_iter().filter_map(|(name, label)| {
         let (_, value) = facts().find(|(own, _)| own == name)?;
-        Some(format!("{word} {value}"))
+        Some(format!("{label} {value}"))
     });
     let said: Vec<_> = said.collect();
     if !said.is_empty() {
@@ -29,8 +29,8 @@ pub(crate) fn markdown(report: &Report<'_>, pictures: &str) -> String {
     }
     for table in tables(report) {
         let number = table.number;
-        let _ = writeln!(text, "### Table {number}: {}\n", words::table(number));
-        let _ = writeln!(text, "{}\n", words::note(number));
+        let _ = writeln!(text, "### Table {number}: {}\n", description::table(number));
+        let _ = writeln!(text, "{}\n", description::note(number));
         own(&mut text, &table);
         against(&mut text, &table);
         for figure in figures.iter().filter(|figure| figure.table == number) {
@@ -61,8 +61,8 @@ fn own(text: &mut String, table: &Table) {
             let LineKind::Ours(trials) = line.kind else { continue };
             let paper = lines.next_if(|line| matches!(line.kind, LineKind::Paper(_)));
             let less = lines.next_if(|line| line.kind == LineKind::Difference);
-            let scenario = words::scenario(block.scenario);
-            let _ = write!(text, "| {scenario} | {} | {trials} |", words::approach(line.approach));
+            let scenario = description::scenario(block.scenario);
+            let _ = write!(text, "| {scenario} | {} | {trials} |", description::approach(line.approach));
             for (i, cell) in line.cells.iter().enumerate() {
                 let printed = paper.and_then(|line| line.cells.get(i)).filter(|cell| !cell.value.is_empty());
                 let printed = printed.map_or(String::new(), |cell| format!(" *{}*", cell.value));
@@ -92,7 +92,8 @@ fn against(text: &mut String, table: &Table) {
             }
             let trials = line.trials().unwrap_or_default();
             let paper = lines.next_if(|line| matches!(line.kind, LineKind::PaperAgainst(_)));
-            let _ = write!(text, "| {} | {} | {trials} |", words::scenario(block.scenario), line.label());
+            let _ =
+                write!(text, "| {} | {} | {trials} |", description::scenario(block.scenario), line.label());
             let both = |cell: &Cell| format!("{}{}", cell.value, escaped(cell.marks));
             for (i, cell) in line.cells.iter().enumerate() {
                 let printed = paper.and_then(|line| line.cells.get(i)).filter(|cell| !cell.value.is_empty());
@@ -109,7 +110,8 @@ fn claims(text: &mut String, claims: &[Claim]) {
     text.push_str("### What the paper says, and what the numbers say\n\n");
     text.push_str("| § | claim | our trials | the paper’s own tables |\n|---|---|---|---|\n");
     for Claim { section, sentence, ours, ours_as_paper, paper, .. } in claims {
-        let few = ours_as_paper.as_ref().map(|few| format!(" (its first 30 trials: {})", few.verdict.word()));
+        let few =
+            ours_as_paper.as_ref().map(|few| format!(" (its first 30 trials: {})", few.verdict.label()));
         let (claim, few) = (cell(sentence), few.unwrap_or_default());
         let _ = writeln!(text, "| {section} | {claim} | {}{few} | {} |", said(ours), said(paper));
     }
@@ -117,25 +119,25 @@ fn claims(text: &mut String, claims: &[Claim]) {
 }
 
 fn said(judgement: &Judgement) -> String {
-    let word = judgement.verdict.word();
+    let label = judgement.verdict.label();
     if judgement.evidence.is_empty() {
-        return format!("**{word}**");
+        return format!("**{label}**");
     }
-    format!("**{word}**: {}", cell(&judgement.evidence))
+    format!("**{label}**: {}", cell(&judgement.evidence))
 }
 
 fn lines(text: &mut String, lines: &[Line]) {
     text.push_str("### The pattern of its results, and what is asked of ours\n\n");
     text.push_str("| | line | | the numbers |\n|---|---|---|---|\n");
     for Line { id, line, verdict, evidence } in lines {
-        let _ = writeln!(text, "| {id} | {} | **{}** | {} |", cell(line), verdict.word(), cell(evidence));
+        let _ = writeln!(text, "| {id} | {} | **{}** | {} |", cell(line), verdict.label(), cell(evidence));
     }
     text.push('\n');
 }
 
 /// Text that stays in its cell.
-fn cell(words: &str) -> String {
-    words.replace('|', "\\|").replace('*', "\\*").replace('\n', " ")
+fn cell(description: &str) -> String {
+    description.replace('|', "\\|").replace('*', "\\*").replace('\n', " ")
 }
 
 /// A row of heads, the first ones to the left, numbers to the right.
@@ -160,16 +162,16 @@ fn escaped(marks: &str) -> String {
 
 /// Replaces everything between the markers of `name` in `text`: `<!-- NAME: written by `cargo xtask CHORE`
 /// -->` and `<!-- end of NAME -->`.
-pub fn between_markers(text: &str, chore: &str, name: &str, generated: &str) -> Result<String, MarkerError> {
-    let (begin, end) = markers(chore, name);
+pub fn between_markers(text: &str, task: &str, name: &str, generated: &str) -> Result<String, MarkerError> {
+    let (begin, end) = markers(task, name);
     let missing = |marker: &str| MarkerError::Missing { marker: marker.to_owned() };
     let from = text.find(&begin).ok_or_else(|| missing(&begin))? + begin.len();
     let to = text[from..].find(&end).ok_or_else(|| missing(&end))? + from;
     Ok(format!("{}\n\n{}\n\n{}", &text[..from], generated.trim(), &text[to..]))
 }
 
-fn markers(chore: &str, name: &str) -> (String, String) {
-    (format!("<!-- {name}: written by `cargo xtask {chore}` -->"), format!("<!-- end of {name} -->"))
+fn markers(task: &str, name: &str) -> (String, String) {
+    (format!("<!-- {name}: written by `cargo xtask {task}` -->"), format!("<!-- end of {name} -->"))
 }
 
 /// A file lacks a marker.

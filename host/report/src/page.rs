@@ -6,7 +6,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::plot::{Figure, figures};
 use crate::table::tables;
-use crate::{Facts, Report, map, numbers, style, words};
+use crate::{Facts, Report, description, map, numbers, style};
 
 /// The whole page.
 pub(crate) fn page(report: &Report<'_>) -> Markup {
@@ -45,8 +45,8 @@ pub(crate) fn page(report: &Report<'_>) -> Markup {
                     @if !report.lines.is_empty() { (pattern(report.lines)) }
                     @for table in &tables {
                         section id={ "table-" (table.number) } {
-                            h2 { "Table " (table.number) ": " (words::table(table.number)) }
-                            p.note { (words::note(table.number)) }
+                            h2 { "Table " (table.number) ": " (description::table(table.number)) }
+                            p.note { (description::note(table.number)) }
                             (table.html())
                             (plots(&figures, table.number))
                         }
@@ -115,7 +115,7 @@ fn counted<'c>(whose: &str, judgements: &(impl Iterator<Item = &'c Judgement> + 
     let verdicts = [Verdict::Supported, Verdict::Contradicted, Verdict::Undecided, Verdict::Unmeasured];
     let counts = verdicts.into_iter().filter_map(|verdict| {
         let count = judgements.clone().filter(|judgement| judgement.verdict == verdict).count();
-        (count > 0).then(|| format!("{count} {}", verdict.word()))
+        (count > 0).then(|| format!("{count} {}", verdict.label()))
     });
     format!("{whose}: {}. ", counts.collect::<Vec<_>>().join(", "))
 }
@@ -127,12 +127,12 @@ fn judgement(judgement: &Judgement) -> Markup {
         Verdict::Undecided => "?",
         Verdict::Unmeasured => "–",
     };
-    verdict(sign, judgement.verdict.word(), &judgement.evidence)
+    verdict(sign, judgement.verdict.label(), &judgement.evidence)
 }
 
 /// The verdict; its numbers on demand, because they are many.
-fn verdict(sign: &str, word: &str, evidence: &str) -> Markup {
-    let said = html! { span class={ "verdict " (word) } { (sign) " " (word) } };
+fn verdict(sign: &str, label: &str, evidence: &str) -> Markup {
+    let said = html! { span class={ "verdict " (label) } { (sign) " " (label) } };
     html! {
         @if evidence.is_empty() { (said) } @else {
             details { summary { (said) } small { (evidence) } }
@@ -151,7 +151,7 @@ fn pattern(lines: &[Line]) -> Markup {
                     th scope="row" { (line.line) small { (line.id) } }
                     td {
                         @let sign = match line.verdict { Held::Held => "✓", Held::Missed => "✗", Held::Unmeasured => "–" };
-                        (verdict(sign, line.verdict.word(), &line.evidence))
+                        (verdict(sign, line.verdict.label(), &line.evidence))
                     }
                 } } }
             } }
@@ -184,15 +184,15 @@ fn listed(comparisons: &[Comparison]) -> Markup {
     html! {
         div.scroll tabindex="0" role="region" aria-label="Comparisons" { table.listed {
             thead { tr {
-                @for head in ["table", "scenario", "first", "second", "measure"] { th.word scope="col" { (head) } }
+                @for head in ["table", "scenario", "first", "second", "measure"] { th.label scope="col" { (head) } }
                 @for head in ["first", "second", "difference", "z or t", "p", "p, Holm"] { th scope="col" { (head) } }
             } }
             tbody { @for c in comparisons { tr {
-                td.word { (c.table) }
-                td.word { (c.scenario.word()) }
-                td.word { (words::approach(c.first_approach)) }
-                td.word { (words::approach(c.second_approach)) }
-                td.word { (c.measure.word()) }
+                td.label { (c.table) }
+                td.label { (c.scenario.label()) }
+                td.label { (description::approach(c.first_approach)) }
+                td.label { (description::approach(c.second_approach)) }
+                td.label { (c.measure.label()) }
                 td { (numbers::plain(c.first, 2)) }
                 td { (numbers::plain(c.second, 2)) }
                 td { (numbers::signed(c.first - c.second, 2)) }

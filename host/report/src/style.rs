@@ -27,7 +27,7 @@ pub(crate) fn sheet() -> String {
 fn pairs() -> Vec<(&'static str, &'static str)> {
     let (light, dark) = (Theme::Light.colors(), Theme::Dark.colors());
     let of = |c: &Colors| {
-        [c.paper, c.carpet, c.ink, c.faint, c.ball, c.team, c.opponent, c.path, c.warning, c.yellow, c.cyan]
+        [c.paper, c.surface, c.ink, c.faint, c.ball, c.team, c.opponent, c.path, c.warning, c.yellow, c.cyan]
     };
     let mut pairs: Vec<_> = of(light).into_iter().zip(of(dark)).collect();
     // The scale is reversed: on a dark page more is brighter.

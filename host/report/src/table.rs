@@ -10,7 +10,7 @@ use hil_sim::Scenario;
 use maud::{Markup, html};
 
 use crate::columns::{Column, Kind, columns};
-use crate::{Report, numbers, words};
+use crate::{Report, description, numbers};
 
 /// One of the paper's tables, beside ours.
 #[derive(Debug)]
@@ -106,7 +106,7 @@ impl Table {
                     @for block in &self.blocks {
                         tbody {
                             tr.block { th scope="rowgroup" colspan=(self.columns.len() + 1) {
-                                span { (words::scenario(block.scenario)) }
+                                span { (description::scenario(block.scenario)) }
                             } }
                             @for line in &block.lines { (line.html()) }
                         }
@@ -184,7 +184,7 @@ fn by_approach(rows: &[TableRow]) -> Vec<&TableRow> {
 pub(crate) fn pairs(comparisons: &[Comparison], table: u8, scenario: Scenario) -> Vec<(Approach, Approach)> {
     let mut pairs = Vec::new();
     for c in comparisons.iter().filter(|c| (c.table, c.scenario) == (table, scenario)) {
-        let pair = words::oriented((c.first_approach, c.second_approach));
+        let pair = description::oriented((c.first_approach, c.second_approach));
         if !pairs.contains(&pair) {
             pairs.push(pair);
         }
@@ -242,7 +242,7 @@ impl Line {
     fn html(&self) -> Markup {
         html! {
             tr class=(self.class()) {
-                th.name scope="row" style=(words::css(self.approach)) {
+                th.name scope="row" style=(description::css(self.approach)) {
                     (self.label())
                     @if let Some(trials) = self.trials() { small { (trials) " trials" } }
                 }
@@ -278,12 +278,12 @@ impl Line {
     }
 
     pub(crate) fn label(&self) -> String {
-        let own = words::approach(self.approach);
+        let own = description::approach(self.approach);
         match self.kind {
             LineKind::Ours(_) => own.to_owned(),
             LineKind::Paper(_) => "paper".to_owned(),
             LineKind::Difference => "ours − paper".to_owned(),
-            LineKind::Against(other, _) => format!("{own} − {}", words::approach(other)),
+            LineKind::Against(other, _) => format!("{own} − {}", description::approach(other)),
             LineKind::PaperAgainst(_) => "paper’s".to_owned(),
         }
     }

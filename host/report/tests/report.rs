@@ -133,7 +133,7 @@ fn the_page_stands_alone() {
 }
 
 #[test]
-fn words_from_outside_cannot_break_the_page() {
+fn description_from_outside_cannot_break_the_page() {
     let html = Made::new().report().html();
     assert!(html.contains("&lt;script&gt;alert('&amp;')&lt;/script&gt;"));
     assert!(html.contains("more &lt; less") && html.contains("Program &amp; options"));
@@ -204,7 +204,7 @@ fn paper_rows() -> usize {
 }
 
 #[test]
-fn plots_are_whole_pictures_and_carry_their_numbers() {
+fn plots_are_whole_snapshots_and_carry_their_numbers() {
     let made = Made::new();
     let pictures = made.report().pictures();
     let names: Vec<_> = pictures.iter().map(|picture| picture.name.as_str()).collect();

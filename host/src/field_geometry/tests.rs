@@ -42,9 +42,9 @@ fn line(name: &str, p1: (f32, f32), p2: (f32, f32)) -> FieldLineSegment {
     FieldLineSegment { name: name.into(), p1: point(p1), p2: point(p2), thickness: 10.0, r#type: None }
 }
 
-fn heard(field: GeometryFieldSize) -> Result<VisionGeometry, GeometryFault> {
+fn received(field: GeometryFieldSize) -> Result<VisionGeometry, GeometryFault> {
     let mut geometry = VisionGeometry::default();
-    geometry.hear(&GeometryData { field, calib: vec![], models: None })?;
+    geometry.receive(&GeometryData { field, calib: vec![], models: None })?;
     Ok(geometry)
 }
 
@@ -56,7 +56,7 @@ fn trap_02_calibrations_of_one_camera_a_packet_become_four_cameras() {
         let mut geometry = VisionGeometry::default();
         let mut news = 0;
         for data in &packets {
-            let told = geometry.hear(data).unwrap();
+            let told = geometry.receive(data).unwrap();
             news += told.cameras;
             assert_eq!((told.cameras_refused, told.models_refused), (0, 0));
         }
@@ -64,7 +64,7 @@ fn trap_02_calibrations_of_one_camera_a_packet_become_four_cameras() {
     }
     let mut geometry = VisionGeometry::default();
     for data in recorded("grsim_divB_22s.log.gz") {
-        geometry.hear(&data).unwrap();
+        geometry.receive(&data).unwrap();
     }
     let places: Vec<_> = geometry.cameras().values().map(|camera| camera.position).collect();
     // grSim hangs them over the quarters, 4 m high.
@@ -86,7 +86,7 @@ fn trap_08_the_defence_area_comes_from_the_lines_in_any_order() {
         orders[2].field.field_lines.rotate_left(7);
         for data in orders {
             let mut geometry = VisionGeometry::default();
-            assert!(geometry.hear(&data).unwrap().field);
+            assert!(geometry.receive(&data).unwrap().field);
             let field = geometry.field().unwrap();
             assert_eq!(geometry.area_source(), Some(AreaSource::Lines));
             for (got, expected) in [
@@ -105,7 +105,7 @@ fn trap_08_the_defence_area_comes_from_the_lines_in_any_order() {
                 near(got, expected);
             }
             assert_eq!(field.penalty_form, AreaForm::Box);
-            assert!(!geometry.hear(&data).unwrap().field, "the same again is no news");
+            assert!(!geometry.receive(&data).unwrap().field, "the same again is no news");
         }
     }
 }
@@ -114,7 +114,7 @@ fn trap_08_the_defence_area_comes_from_the_lines_in_any_order() {
 fn trap_08_ball_models_are_the_ones_on_the_wire() {
     let model = |name: &str| {
         let mut geometry = VisionGeometry::default();
-        geometry.hear(&recorded(name)[0]).unwrap();
+        geometry.receive(&recorded(name)[0]).unwrap();
         let (ground, chip) = (geometry.ground().unwrap(), geometry.chip().unwrap());
         [ground.slide, ground.roll, ground.switch, chip.first, chip.other, chip.rise]
     };
@@ -130,10 +130,10 @@ fn finding_21_invented_cameras_take_no_place_of_genuine_ones() {
     let camera = |camera_id| GeometryCameraCalibration { camera_id, ..real };
     let invented =
         GeometryData { calib: (16..2_000).chain([u32::MAX]).map(camera).collect(), ..data.clone() };
-    let news = geometry.hear(&invented).unwrap();
+    let news = geometry.receive(&invented).unwrap();
     assert_eq!((news.cameras, news.cameras_refused, geometry.cameras().len()), (0, 1_985, 0));
     let genuine = GeometryData { calib: (0..16).map(camera).collect(), ..data };
-    assert_eq!(geometry.hear(&genuine).unwrap().cameras, 16);
+    assert_eq!(geometry.receive(&genuine).unwrap().cameras, 16);
 }
 
 #[test]
@@ -143,7 +143,7 @@ fn trap_08_a_cameras_dummy_rotation_is_not_believed() {
     let mut geometry = VisionGeometry::default();
     let mut data = recorded("grsim_divB_22s.log.gz")[0].clone();
     data.calib[0].derived_camera_world_tx = None;
-    let news = geometry.hear(&data).unwrap();
+    let news = geometry.receive(&data).unwrap();
     assert_eq!((news.cameras, news.cameras_refused), (0, 1));
     // A valid rotation: half a turn about x looks straight down (quaternion (1, 0, 0, 0)): p ↦ (x, −y, −z).
     let real = GeometryCameraCalibration {
@@ -158,13 +158,13 @@ fn trap_08_a_cameras_dummy_rotation_is_not_believed() {
         ..dummy
     };
     data.calib = vec![real];
-    geometry.hear(&data).unwrap();
+    geometry.receive(&data).unwrap();
     let camera = geometry.cameras()[&real.camera_id];
     assert_eq!(camera, Camera { position: [1.5, 0.8, 4.2], source: CameraSource::Calibration });
     // A quarter turn about z on top: q = (√½, √½, 0, 0) takes (x, y, z) to (y, x, −z).
     let half = core::f32::consts::FRAC_1_SQRT_2;
     data.calib = vec![GeometryCameraCalibration { q0: half, q1: half, ..real }];
-    geometry.hear(&data).unwrap();
+    geometry.receive(&data).unwrap();
     let position = geometry.cameras()[&real.camera_id].position;
     for (got, expected) in position.into_iter().zip([-0.8, 1.5, 4.2]) {
         near(got, expected);
@@ -179,7 +179,7 @@ fn numbers_of_the_area_come_before_lines_and_lines_before_the_division() {
     ];
     let mut size = GeometryFieldSize { field_lines: lines, ..plain(8000, 5000) };
     let area = |size: &GeometryFieldSize| {
-        let geometry = heard(size.clone()).unwrap();
+        let geometry = received(size.clone()).unwrap();
         let field = geometry.field().unwrap();
         (field.penalty_depth, field.penalty_width, geometry.area_source().unwrap())
     };
@@ -199,9 +199,9 @@ fn numbers_of_the_area_come_before_lines_and_lines_before_the_division() {
 }
 
 #[test]
-fn a_field_without_any_word_of_the_area_has_its_divisions() {
+fn a_field_without_any_label_of_the_area_has_its_divisions() {
     let area = |length, width| {
-        let geometry = heard(plain(length, width)).unwrap();
+        let geometry = received(plain(length, width)).unwrap();
         let field = *geometry.field().unwrap();
         (field.penalty_depth, field.penalty_width, field.penalty_mark, geometry.area_source().unwrap())
     };
@@ -230,7 +230,7 @@ fn a_round_area_of_old_is_told_by_its_arcs() {
     };
     let field_lines = vec![line("LeftPenaltyStretch", (-2200.0, -175.0), (-2200.0, 175.0))];
     let size = GeometryFieldSize { field_lines, field_arcs: vec![arc], ..plain(6000, 4000) };
-    let geometry = heard(size).unwrap();
+    let geometry = received(size).unwrap();
     let (field, paper) = (geometry.field().unwrap(), League::Ssl2013.field());
     assert_eq!(field.penalty_form, AreaForm::QuarterCircles);
     near(field.penalty_depth, paper.penalty_depth);
@@ -252,7 +252,7 @@ fn the_newest_message_tells_everything_itself() {
         boundary_width_goal_line: Some(600),
         ..plain(12000, 9000)
     };
-    let geometry = heard(size).unwrap();
+    let geometry = received(size).unwrap();
     assert_eq!(geometry.field(), Some(&League::DivisionA.field()));
     assert_eq!(
         (geometry.ball_radius(), geometry.robot_radius()),
@@ -262,7 +262,7 @@ fn the_newest_message_tells_everything_itself() {
 
 #[test]
 fn nonsense_is_refused_by_name_and_what_was_known_stands() {
-    let mut geometry = heard(plain(9000, 6000)).unwrap();
+    let mut geometry = received(plain(9000, 6000)).unwrap();
     let before = geometry.clone();
     let nonsense = |change: fn(&mut GeometryFieldSize)| {
         let mut size = plain(9000, 6000);
@@ -276,7 +276,7 @@ fn nonsense_is_refused_by_name_and_what_was_known_stands() {
         (nonsense(|size| size.boundary_width = -1), "margin"),
         (nonsense(|size| size.line_thickness = Some(i32::MAX)), "line_width"),
     ] {
-        let fault = geometry.hear(&GeometryData { field, calib: vec![], models: None }).unwrap_err();
+        let fault = geometry.receive(&GeometryData { field, calib: vec![], models: None }).unwrap_err();
         let GeometryFault::Field(told) = fault;
         assert_eq!(told.field, name);
         assert!(fault.to_string().contains(name), "{fault}");
@@ -285,5 +285,5 @@ fn nonsense_is_refused_by_name_and_what_was_known_stands() {
     // Lines at places that are no numbers.
     let mut size = plain(9000, 6000);
     size.field_lines = vec![line("LeftPenaltyStretch", (f32::NAN, f32::NAN), (0.0, f32::INFINITY))];
-    assert!(matches!(heard(size), Ok(geometry) if geometry.area_source() != Some(AreaSource::Lines)));
+    assert!(matches!(received(size), Ok(geometry) if geometry.area_source() != Some(AreaSource::Lines)));
 }

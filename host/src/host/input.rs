@@ -25,7 +25,7 @@ pub enum Input<'a> {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
     /// A camera frame or geometry.
-    Vision(tracking::Heard),
+    Vision(tracking::Received),
     /// A packet of the referee.
     Referee(Box<referee::Verdict>),
     /// A frame of this robot was accepted.

@@ -10,7 +10,7 @@ use crate::learned::Learned;
 use crate::radio::{Quality, Radio};
 use crate::referee::{self, Listener};
 use crate::strategy::Orders;
-use crate::strategy::tally::PlayTally;
+use crate::strategy::counters::PlayCounters;
 use crate::tracking::Tracker;
 use crate::world::World;
 
@@ -21,8 +21,8 @@ impl Host {
     }
 
     /// Counts of our passes, free kicks and roles.
-    pub fn tally(&self) -> &PlayTally {
-        self.books.tally()
+    pub fn counters(&self) -> &PlayCounters {
+        self.books.counters()
     }
 
     /// The newest orders of all robots, with their reasons.

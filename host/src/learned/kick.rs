@@ -165,7 +165,7 @@ const GAIN_MAX: f32 = 2.0;
 mod tests {
     use super::*;
     use crate::world::{Ball, BallModels};
-    use protocol::host::Duty;
+    use protocol::host::RuleRole;
 
     const US: Colour = Colour::Blue;
 
@@ -183,7 +183,7 @@ mod tests {
                 to: id(),
                 defending: geometry::GoalEnd::Negative,
                 phase: rules::Phase::Run,
-                duty: Duty::Player,
+                rule_role: RuleRole::Player,
                 directive: Directive::Kick {
                     at: Point::<Field>::new(3.0, 0.0).into(),
                     kick: KickOrder::Flat((ordered * 100.0) as u16),

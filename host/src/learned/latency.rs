@@ -145,7 +145,7 @@ const GIVEN_UP: f32 = 0.8;
 mod tests {
     use super::*;
     use crate::world::{self, BallModels};
-    use protocol::host::Duty;
+    use protocol::host::RuleRole;
 
     const US: Colour = Colour::Yellow;
 
@@ -188,7 +188,7 @@ mod tests {
                     to: id(),
                     defending: geometry::GoalEnd::Negative,
                     phase: Phase::Stop,
-                    duty: Duty::Player,
+                    rule_role: RuleRole::Player,
                     directive: Directive::GoTo { pose: pose.into() },
                 };
                 learned.see(Instant(now), &world, US, Phase::Stop, &[command]);

@@ -4,7 +4,7 @@
 //!
 //! **Presence.** A robot is present while its telemetry names this host's epoch ([`protocol::host_link`]).
 //! Only then it is commanded, addressed by snapshots, relayed and used by the strategy. Before, it is
-//! welcomed, at most every [`STRANGER_EVERY`].
+//! welcomed, at most every [`UNAUTHENTICATED_EVERY`].
 //!
 //! **Rate.** A new snapshot goes out at once, but at most one per [`PERIOD_MIN`] (100 Hz); one that comes too
 //! early waits, the newest replaces older ones. Where no new one comes for [`PERIOD_MAX`] (60 Hz) the last
@@ -16,9 +16,9 @@
 //!
 //! No heap: capacities are named constants, packets that do not fit are dropped and counted.
 
-mod picture;
+mod counters;
 mod quality;
-mod tally;
+mod snapshot;
 mod warning;
 
 use protocol::frame::{Audience, Frame, Refusal, Sender, TeamKey};
@@ -31,9 +31,9 @@ use protocol::{Duration, Instant, RobotId, TeamId};
 use crate::world::World;
 use warning::Refusals;
 
-pub use picture::{PARTS_ROBOTS_MAX, Situation};
+pub use counters::Counters;
 pub use quality::{Quality, table};
-pub use tally::Tally;
+pub use snapshot::{PARTS_ROBOTS_MAX, Situation};
 pub use warning::{RadioWarning, Why};
 
 /// At most one snapshot in this time: 100 Hz, as fast as the league's cameras and the best published radios.
@@ -52,7 +52,7 @@ pub const PRESENT: Duration = Duration::millis(1_000);
 const WELCOME_EVERY: Duration = Duration::millis(100);
 /// A robot that has not named our epoch is welcomed at most this often: replayed frames of robots cause no
 /// higher rate.
-pub const STRANGER_EVERY: Duration = Duration::millis(20);
+pub const UNAUTHENTICATED_EVERY: Duration = Duration::millis(20);
 /// Capacity of the queue of outgoing packets: the parts, a command and a welcome for each robot, and each
 /// robot's beacon for each other.
 const OUT_MAX: usize = 320;
@@ -89,26 +89,26 @@ pub struct RadioSettings {
     /// How beacons are forwarded between robots.
     pub relay: Relay,
     /// One-way latency of a packet: snapshots are extrapolated by it. 3 ms is what ER-Force takes for theirs.
-    pub way: Duration,
+    pub latency: Duration,
 }
 
 impl RadioSettings {
     /// With a key of zeros over a base station.
     pub fn new(team: TeamId, epoch: u32) -> Self {
-        Self { team, key: TeamKey::ZERO, epoch, relay: Relay::ToAll, way: Duration::millis(3) }
+        Self { team, key: TeamKey::ZERO, epoch, relay: Relay::ToAll, latency: Duration::millis(3) }
     }
 }
 
 /// A message received from a robot.
 #[allow(clippy::large_enum_variant, reason = "one value at a time, on the stack")]
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Heard {
+pub enum Received {
     /// To its teammates: its state.
     Beacon(RobotId, Beacon),
     /// To the host: its condition.
     Telemetry(RobotId, Telemetry),
     /// To its teammates: its boot epoch.
-    Greeting(RobotId),
+    Handshake(RobotId),
 }
 
 /// The host's radio: queue of frames, links to robots, refusals.
@@ -121,7 +121,7 @@ pub struct Radio {
     free: Instant,
     /// When the last snapshot went out.
     last: Option<Instant>,
-    picture: u8,
+    snapshot: u8,
     /// When each snapshot went out, by its number.
     departures: [Option<Instant>; 256],
     robots: [Quality; RobotId::COUNT],
@@ -150,7 +150,7 @@ impl Radio {
             latest: None,
             free: Instant(0),
             last: None,
-            picture: u8::MAX,
+            snapshot: u8::MAX,
             departures: [None; 256],
             robots: Default::default(),
             out: heapless::Deque::new(),
@@ -203,7 +203,7 @@ impl Radio {
     }
 
     /// Handles a packet of a robot: returns its message, or why it is refused (counted).
-    pub fn handle_packet(&mut self, now: Instant, packet: &[u8]) -> Result<Heard, Refusal> {
+    pub fn handle_packet(&mut self, now: Instant, packet: &[u8]) -> Result<Received, Refusal> {
         let frame = Frame::parse(packet, self.settings.team);
         let opened = self.link.open(now, packet);
         if let Err(refusal) = opened {
@@ -215,39 +215,39 @@ impl Radio {
         }
         let (robot, message) = match opened? {
             Opened::Believed(robot, message) => (robot, message),
-            Opened::Stranger(robot, telemetry) => {
+            Opened::Unauthenticated(robot, telemetry) => {
                 self.refusals.tell(now, robot, &telemetry);
-                if self.robots[robot.index()].wants_welcome(now, STRANGER_EVERY) {
+                if self.robots[robot.index()].wants_welcome(now, UNAUTHENTICATED_EVERY) {
                     self.welcome(now, robot);
                 }
-                return Err(Refusal::Stranger {
+                return Err(Refusal::Unauthenticated {
                     epoch: self.link.welcome(robot).map_or(0, |known| known.life),
                 });
             }
         };
         let frame = frame?;
-        self.robots[robot.index()].hear(now, packet.len(), frame.epoch, frame.counter);
+        self.robots[robot.index()].receive(now, packet.len(), frame.epoch, frame.counter);
         match message {
             TeamMessage::Beacon(beacon) => {
                 self.relay(now, robot, packet);
-                Ok(Heard::Beacon(robot, beacon))
+                Ok(Received::Beacon(robot, beacon))
             }
-            TeamMessage::Greeting(_) => {
+            TeamMessage::Handshake(_) => {
                 self.relay(now, robot, packet);
-                Ok(Heard::Greeting(robot))
+                Ok(Received::Handshake(robot))
             }
             TeamMessage::Telemetry(telemetry) => {
-                let departed = self.departures[usize::from(telemetry.picture)];
+                let departed = self.departures[usize::from(telemetry.snapshot)];
                 self.refusals.tell(now, robot, &telemetry);
                 self.robots[robot.index()].tell(now, telemetry, departed);
-                Ok(Heard::Telemetry(robot, telemetry))
+                Ok(Received::Telemetry(robot, telemetry))
             }
         }
     }
 
     /// How the link to that robot is; `None` until a frame of it was received.
     pub fn quality(&self, robot: RobotId) -> Option<&Quality> {
-        Some(&self.robots[robot.index()]).filter(|quality| quality.heard_at().is_some())
+        Some(&self.robots[robot.index()]).filter(|quality| quality.received_at().is_some())
     }
 
     /// Robots whose telemetry has named our epoch within [`PRESENT`], lowest number first.
@@ -288,16 +288,16 @@ impl Radio {
         let Some(mut latest) = self.latest.take() else { return };
         self.free = self.free.max(now - EARLY) + PERIOD_MIN;
         self.last = Some(now);
-        self.picture = self.picture.wrapping_add(1);
-        self.departures[usize::from(self.picture)] = Some(now);
+        self.snapshot = self.snapshot.wrapping_add(1);
+        self.departures[usize::from(self.snapshot)] = Some(now);
         let audience: Audience = self.present(now).collect();
         self.link.set_audience(audience);
-        let there = latest.world.at(now + self.settings.way);
+        let there = latest.world.at(now + self.settings.latency);
         // Without robots one part goes out to an empty audience: a base station learns the host's address
         // from it.
         let most = if audience.is_empty() { 1 } else { PARTS_MAX };
         for part in
-            picture::parts(self.picture, audience.len(), &there, &latest.situation).into_iter().take(most)
+            snapshot::parts(self.snapshot, audience.len(), &there, &latest.situation).into_iter().take(most)
         {
             self.say(now, To::All, &HostMessage::World(part));
         }
@@ -339,9 +339,9 @@ impl Radio {
             Relay::No => {}
             Relay::ToAll => self.push(To::All, packet),
             Relay::ToEach => {
-                for mate in RobotId::all().filter(|mate| *mate != from) {
-                    if self.robots[mate.index()].is_present(now) {
-                        self.push(To::One(mate), packet.clone());
+                for teammate in RobotId::all().filter(|teammate| *teammate != from) {
+                    if self.robots[teammate.index()].is_present(now) {
+                        self.push(To::One(teammate), packet.clone());
                     }
                 }
             }

@@ -17,7 +17,7 @@ use protocol::host::{Condition, Telemetry};
 use protocol::{Duration, Instant, RobotId};
 
 use super::PRESENT;
-use super::tally::Tally;
+use super::counters::Counters;
 
 /// Duration of one data-rate sample.
 const SECOND: Duration = Duration::millis(1_000);
@@ -27,24 +27,24 @@ const TRIP_MAX: Duration = Duration::millis(1_000);
 /// The link to one robot.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Quality {
-    heard_at: Option<Instant>,
+    received_at: Option<Instant>,
     /// When the last telemetry came that named our epoch.
     present_at: Option<Instant>,
     telemetry: Option<(Instant, Telemetry)>,
-    life: Option<Life>,
+    life: Option<Session>,
     welcomed: Option<Instant>,
     lives: u32,
-    trip: Tally,
+    trip: Counters,
     down: Share,
     up: Share,
-    rate: Tally,
-    frames: Tally,
+    rate: Counters,
+    frames: Counters,
     window: Window,
     start_up: Option<Duration>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Life {
+struct Session {
     epoch: u32,
     counter: u32,
     since: Instant,
@@ -74,13 +74,13 @@ struct Window {
 
 impl Quality {
     /// When its newest frame was received.
-    pub fn heard_at(&self) -> Option<Instant> {
-        self.heard_at
+    pub fn received_at(&self) -> Option<Instant> {
+        self.received_at
     }
 
     /// How long it has been silent.
     pub fn silence(&self, now: Instant) -> Option<Duration> {
-        self.heard_at.map(|heard| now.since(heard))
+        self.received_at.map(|received| now.since(received))
     }
 
     /// Its telemetry has named our epoch within [`PRESENT`].
@@ -105,7 +105,7 @@ impl Quality {
     }
 
     /// Round trips, ms.
-    pub fn round_trip(&self) -> &Tally {
+    pub fn round_trip(&self) -> &Counters {
         &self.trip
     }
 
@@ -120,12 +120,12 @@ impl Quality {
     }
 
     /// kbit/s of frames, both directions, one value per second.
-    pub fn data_rate(&self) -> &Tally {
+    pub fn data_rate(&self) -> &Counters {
         &self.rate
     }
 
     /// Frames received from it, one value per second.
-    pub fn frame_rate(&self) -> &Tally {
+    pub fn frame_rate(&self) -> &Counters {
         &self.frames
     }
 
@@ -145,8 +145,8 @@ impl Quality {
     }
 
     /// A genuine frame of it came.
-    pub(super) fn hear(&mut self, now: Instant, len: usize, epoch: u32, counter: u32) {
-        self.heard_at = Some(now);
+    pub(super) fn receive(&mut self, now: Instant, len: usize, epoch: u32, counter: u32) {
+        self.received_at = Some(now);
         match &mut self.life {
             Some(life) if life.epoch == epoch => {
                 self.up.came += 1;
@@ -159,7 +159,7 @@ impl Quality {
                 }
             }
             life => {
-                *life = Some(Life { epoch, counter, since: now });
+                *life = Some(Session { epoch, counter, since: now });
                 self.lives = self.lives.saturating_add(1);
                 (self.telemetry, self.start_up) = (None, None);
                 self.up.came += 1;
@@ -173,7 +173,7 @@ impl Quality {
     /// Takes its telemetry; `departed` is when the snapshot that it names went out.
     pub(super) fn tell(&mut self, now: Instant, telemetry: Telemetry, departed: Option<Instant>) {
         self.present_at = Some(now);
-        if telemetry.heard > 0
+        if telemetry.received > 0
             && let (Some(departed), Some(life)) = (departed, self.life)
         {
             let held = Duration(u64::from(telemetry.silence) * 100);
@@ -185,7 +185,7 @@ impl Quality {
             }
         }
         if let Some((_, before)) = self.telemetry {
-            self.down.came += u64::from(telemetry.heard.wrapping_sub(before.heard));
+            self.down.came += u64::from(telemetry.received.wrapping_sub(before.received));
             self.down.lost += u64::from(telemetry.lost.wrapping_sub(before.lost));
         }
         self.telemetry = Some((now, telemetry));
@@ -193,7 +193,7 @@ impl Quality {
 
     /// A frame was sent to it.
     pub(super) fn sent(&mut self, now: Instant, len: usize) {
-        if self.heard_at.is_some() {
+        if self.received_at.is_some() {
             self.roll(now);
             self.window.bytes += len as u32;
         }

@@ -4,8 +4,8 @@ use super::*;
 use crate::world::{BallModels, Robot};
 use geometry::{Angle, Field, GoalEnd, Point, Pose, Vector};
 use protocol::Who;
-use protocol::host::{Directive, Duty};
-use protocol::link::{Heard as RobotHeard, Link};
+use protocol::host::{Directive, RuleRole};
+use protocol::link::{Link, Received as RobotReceived};
 use protocol::team::{Progress, Role, Status};
 use rules::{Colour, Phase};
 
@@ -51,7 +51,7 @@ fn stand(to: u8) -> Command {
         to: id(to),
         defending: GoalEnd::Negative,
         phase: Phase::Run,
-        duty: Duty::Player,
+        rule_role: RuleRole::Player,
         directive: Directive::Stand,
     }
 }
@@ -80,7 +80,7 @@ fn tell(link: &mut Link, now: Instant) -> Packet {
 
 /// Makes the robot present: telemetry, welcome, telemetry.
 fn join(radio: &mut Radio, link: &mut Link, n: u8, now: Instant) {
-    assert!(matches!(radio.handle_packet(now, &tell(link, now)), Err(Refusal::Stranger { .. })));
+    assert!(matches!(radio.handle_packet(now, &tell(link, now)), Err(Refusal::Unauthenticated { .. })));
     let welcome = fetch(radio);
     assert!(matches!(deliver(link, n, now, &welcome)[..], [HostMessage::Welcome(_)]));
     assert!(radio.handle_packet(now, &tell(link, now)).is_ok());
@@ -96,14 +96,14 @@ fn deliver(link: &mut Link, n: u8, now: Instant, packets: &[(To, Packet)]) -> Ve
     let meant = packets.iter().filter(|(to, _)| *to == To::All || *to == To::One(id(n)));
     meant
         .filter_map(|(_, packet)| match link.open(now, packet) {
-            Ok(RobotHeard::Host(message)) => Some(message),
+            Ok(RobotReceived::Host(message)) => Some(message),
             _ => None,
         })
         .collect()
 }
 
 #[test]
-fn a_picture_of_two_teams_goes_to_all_in_parts_and_each_command_to_its_robot() {
+fn a_snapshot_of_two_teams_goes_to_all_in_parts_and_each_command_to_its_robot() {
     let mut radio = radio(Relay::No);
     for n in [0, 3] {
         join(&mut radio, &mut robot(n), n, ms(1));
@@ -127,17 +127,17 @@ fn eleven_robots_are_shown_twenty_two_in_parts_that_fit() {
     let packets = fetch(&mut radio);
     assert!(packets.iter().all(|(_, packet)| packet.len() <= 120));
     for (n, link) in (0..).zip(&mut links) {
-        let heard = deliver(link, n, ms(6), &packets);
-        let shown: usize = heard
+        let received = deliver(link, n, ms(6), &packets);
+        let shown: usize = received
             .iter()
             .map(|message| if let HostMessage::World(part) = message { part.robots.len() } else { 0 })
             .sum();
-        assert_eq!((heard.len(), shown), (5, 22), "robot {n}");
+        assert_eq!((received.len(), shown), (5, 22), "robot {n}");
     }
 }
 
 #[test]
-fn a_robot_is_welcomed_when_its_telemetry_is_first_heard_and_hears_everything_once_it_names_us() {
+fn a_robot_is_welcomed_when_its_telemetry_is_first_received_and_hears_everything_once_it_names_us() {
     let mut radio = radio(Relay::No);
     let mut link = robot(2);
     assert!(radio.handle_packet(ms(1), &link.seal(&beacon())).is_err(), "a beacon proves nothing");
@@ -148,9 +148,9 @@ fn a_robot_is_welcomed_when_its_telemetry_is_first_heard_and_hears_everything_on
     assert!(deliver(&mut link, 2, ms(2), &announced).is_empty());
     join(&mut radio, &mut link, 2, ms(3));
     radio.offer(ms(15), &world(ms(15), 1, 0), situation(), &[stand(2)]);
-    let heard = deliver(&mut link, 2, ms(15), &fetch(&mut radio));
-    assert!(matches!(heard[..], [HostMessage::World(_), HostMessage::Command(_)]), "{heard:?}");
-    let HostMessage::World(part) = &heard[0] else { unreachable!() };
+    let received = deliver(&mut link, 2, ms(15), &fetch(&mut radio));
+    assert!(matches!(received[..], [HostMessage::World(_), HostMessage::Command(_)]), "{received:?}");
+    let HostMessage::World(part) = &received[0] else { unreachable!() };
     // 1 m/s for a latency of 3 ms.
     assert_eq!(part.robots[0].pose.at.x, 3);
     // It is welcomed again after a while.
@@ -242,20 +242,20 @@ fn departures(times: impl Iterator<Item = u64>, until: u64) -> Vec<u64> {
 }
 
 #[test]
-fn pictures_of_a_trembling_100_hz_camera_all_go_out_at_once() {
+fn snapshots_of_a_trembling_100_hz_camera_all_go_out_at_once() {
     // ± 1 ms around 10 ms.
     let times: Vec<u64> = (0..100).map(|n| 10_000 + n * 10_000 + (n * 7919 % 2000)).collect();
     assert_eq!(departures(times.iter().copied(), 1_010_000), times);
 }
 
 #[test]
-fn of_too_many_pictures_a_hundred_a_second_go_out() {
+fn of_too_many_snapshots_a_hundred_a_second_go_out() {
     let out = departures((0..1_000).map(|n| n * 1_000), 999_999);
     assert!((99..=102).contains(&out.len()), "{}", out.len());
 }
 
 #[test]
-fn of_too_few_pictures_sixty_a_second_go_out_until_half_a_second_is_over() {
+fn of_too_few_snapshots_sixty_a_second_go_out_until_half_a_second_is_over() {
     let out = departures((0..4).map(|n| n * 250_000), 3_000_000);
     let gaps = out.windows(2).map(|pair| pair[1] - pair[0]);
     assert!(gaps.max().unwrap() <= PERIOD_MAX.0);
@@ -264,7 +264,7 @@ fn of_too_few_pictures_sixty_a_second_go_out_until_half_a_second_is_over() {
 }
 
 #[test]
-fn a_repeated_picture_is_carried_forward() {
+fn a_repeated_snapshot_is_carried_forward() {
     let mut radio = radio(Relay::No);
     let mut link = robot(0);
     join(&mut radio, &mut link, 0, ms(0));
@@ -274,10 +274,10 @@ fn a_repeated_picture_is_carried_forward() {
     radio.handle_timeout(Instant(due.0 - 1));
     assert!(fetch(&mut radio).is_empty(), "not yet");
     radio.handle_timeout(due);
-    let heard = deliver(&mut link, 0, due, &fetch(&mut radio));
-    let [HostMessage::World(part)] = &heard[..] else { panic!("{heard:?}") };
+    let received = deliver(&mut link, 0, due, &fetch(&mut radio));
+    let [HostMessage::World(part)] = &received[..] else { panic!("{received:?}") };
     // 16.6 ms and a latency of 3 ms at 1 m/s, in whole millimetres.
-    assert_eq!((part.picture, part.robots[0].pose.at.x), (1, 20));
+    assert_eq!((part.snapshot, part.robots[0].pose.at.x), (1, 20));
 }
 
 #[test]
@@ -311,13 +311,13 @@ fn beacons_are_passed_on_unchanged_and_telemetry_is_not() {
     }
 }
 
-/// A robot that sends telemetry `held` after each snapshot; the latency is `way` in each direction, and it
+/// A robot that sends telemetry `held` after each snapshot; the latency is `latency` in each direction, and it
 /// receives four of five snapshots.
 #[test]
 fn round_trip_loss_rate_and_start_up_are_those_of_the_link() {
     let mut radio = radio(Relay::No);
     let mut link = robot(4);
-    let (way, held) = (Duration(1_500), Duration(2_000));
+    let (latency, held) = (Duration(1_500), Duration(2_000));
     join(&mut radio, &mut link, 4, ms(0));
     for n in 0..500 {
         let now = ms(10 * n);
@@ -333,7 +333,7 @@ fn round_trip_loss_rate_and_start_up_are_those_of_the_link() {
         let packet = link.seal(&TeamMessage::Telemetry(telemetry));
         // Of ten of its own frames one is lost.
         if n % 10 != 1 {
-            assert!(radio.handle_packet(now + way + held + way, &packet).is_ok());
+            assert!(radio.handle_packet(now + latency + held + latency, &packet).is_ok());
         }
     }
     let quality = radio.quality(id(4)).unwrap();
@@ -351,7 +351,7 @@ fn round_trip_loss_rate_and_start_up_are_those_of_the_link() {
         "{:?}, not {bits}",
         quality.data_rate().mean()
     );
-    assert_eq!(quality.start_up(), Some(way + held + way));
+    assert_eq!(quality.start_up(), Some(latency + held + latency));
     assert!(near(quality.battery().map(f64::from), 15.8, 1e-4));
     let table = table([(id(4), quality)].into_iter(), radio.foreign());
     assert!(

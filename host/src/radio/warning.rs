@@ -46,13 +46,14 @@ pub enum Why {
     /// Their tags are not its key's.
     Tag,
     /// They are of a host or teammate that has not named its epoch.
-    Stranger,
+    Unauthenticated,
     /// They are more than 200 ms old.
     Stale,
 }
 
 impl Why {
-    const ALL: [Self; 6] = [Self::Version, Self::Team, Self::Epoch, Self::Tag, Self::Stranger, Self::Stale];
+    const ALL: [Self; 6] =
+        [Self::Version, Self::Team, Self::Epoch, Self::Tag, Self::Unauthenticated, Self::Stale];
 
     fn kind(self) -> usize {
         match self {
@@ -60,7 +61,7 @@ impl Why {
             Self::Team => Refusal::Team(TeamId(0)).kind(),
             Self::Epoch => Refusal::Epoch { seen: 0, current: 0 }.kind(),
             Self::Tag => Refusal::Tag.kind(),
-            Self::Stranger => Refusal::Stranger { epoch: 0 }.kind(),
+            Self::Unauthenticated => Refusal::Unauthenticated { epoch: 0 }.kind(),
             Self::Stale => Refusal::Stale.kind(),
         }
     }
@@ -85,7 +86,7 @@ impl fmt::Display for RadioWarning {
                         "with a wrong tag",
                         "another host with another key, or an attacker, sends on this channel",
                     ),
-                    Why::Stranger => (
+                    Why::Unauthenticated => (
                         "of a sender it does not know",
                         "another host or robot of this team number, or recordings, are on this channel",
                     ),
@@ -220,7 +221,7 @@ impl Refusals {
             let whys = Why::ALL.into_iter().zip(known.rising).filter(move |(why, rising)| {
                 // That it refuses this host's epoch is reported already.
                 match why {
-                    Why::Stranger => rising.goes_on_for(now, HANDSHAKES),
+                    Why::Unauthenticated => rising.goes_on_for(now, HANDSHAKES),
                     Why::Epoch => rising.goes_on(now) && later.is_none(),
                     _ => rising.goes_on(now),
                 }
@@ -258,12 +259,13 @@ mod tests {
         refusals.tell(ms(0), id(), &told([0; Refusal::KINDS], 71));
         let warnings: Vec<_> = refusals.warnings(ms(10), 70).collect();
         assert_eq!(warnings, [RadioWarning::LaterHost(id(), 71)]);
-        let words = warnings[0].to_string();
+        let description = warnings[0].to_string();
         assert!(
-            words.starts_with("robot 3 refuses this host: a host with a later epoch (71) led it before;"),
-            "{words}"
+            description
+                .starts_with("robot 3 refuses this host: a host with a later epoch (71) led it before;"),
+            "{description}"
         );
-        assert!(words.ends_with("restart the robot or set this computer's clock"), "{words}");
+        assert!(description.ends_with("restart the robot or set this computer's clock"), "{description}");
         assert_eq!(refusals.warnings(ms(10), 72).count(), 0, "that one is earlier: it will be taken over");
         assert_eq!(refusals.warnings(ms(2_010), 70).count(), 0, "it is silent");
     }
@@ -283,7 +285,7 @@ mod tests {
                     reported = reported.or(Some(100 * n));
                 }
             }
-            let expected = if why == Why::Stranger { 3_000..=4_500 } else { 0..=1_000 };
+            let expected = if why == Why::Unauthenticated { 3_000..=4_500 } else { 0..=1_000 };
             assert!(reported.is_some_and(|at| expected.contains(&at)), "{why:?}: {reported:?}");
             // One in a second is a bit that flipped; a reboot resets the counts to 0.
             let mut refusals = Refusals::default();

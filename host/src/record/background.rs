@@ -45,7 +45,7 @@ struct Shared {
 
 /// An entry of the queue.
 enum Entry {
-    Heard(Instant, MessageKind, Vec<u8>),
+    Received(Instant, MessageKind, Vec<u8>),
     Input(Instant, Colour, Owned),
     Sent(Instant, Colour, To, Packet),
     Lost(Instant),
@@ -85,7 +85,7 @@ impl Entry {
     fn len(&self) -> usize {
         ENTRY_LEN
             + match self {
-                Self::Heard(_, _, bytes) => bytes.len(),
+                Self::Received(_, _, bytes) => bytes.len(),
                 Self::Input(_, _, Owned::Vision(bytes) | Owned::Referee(bytes, _) | Owned::Robot(bytes)) => {
                     bytes.len()
                 }
@@ -111,9 +111,9 @@ impl BackgroundRecorder {
     }
 
     /// A league message was received from the network.
-    pub fn heard(&mut self, now: Instant, kind: MessageKind, bytes: &[u8]) {
+    pub fn received(&mut self, now: Instant, kind: MessageKind, bytes: &[u8]) {
         if self.has_room(bytes.len()) {
-            self.put(Entry::Heard(now, kind, bytes.to_vec()));
+            self.put(Entry::Received(now, kind, bytes.to_vec()));
         } else {
             self.dropped += 1;
         }
@@ -190,7 +190,7 @@ impl BackgroundRecorder {
 fn write(mut recorder: Recorder, entries: &Receiver<Entry>, shared: &Shared) -> io::Result<()> {
     for entry in entries {
         match &entry {
-            Entry::Heard(now, kind, bytes) => recorder.heard(*now, *kind, bytes),
+            Entry::Received(now, kind, bytes) => recorder.received(*now, *kind, bytes),
             Entry::Input(now, host, input) => recorder.input(*now, *host, input.input()),
             Entry::Sent(now, host, to, packet) => recorder.sent(*now, *host, *to, packet),
             Entry::Lost(now) => recorder.lost(*now),
@@ -267,7 +267,7 @@ mod tests {
         let mut background =
             BackgroundRecorder { queue, shared: shared.clone(), room, ended: None, dropped: 0, thread };
         for number in 0..1_000 {
-            background.heard(Instant(number), MessageKind::Vision2014, &[0; 1_000]);
+            background.received(Instant(number), MessageKind::Vision2014, &[0; 1_000]);
             background.input(Instant(number), Colour::Blue, Input::Vision(&[0; 1_000]));
             assert!(background.waiting() <= room + ENTRY_LEN, "{}", background.waiting());
         }

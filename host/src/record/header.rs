@@ -95,19 +95,19 @@ pub struct HostHeader {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct HeaderError {
     /// What is wrong, with its place.
-    pub words: String,
+    pub description: String,
 }
 
 impl fmt::Display for HeaderError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "the recording's header: {}", self.words)
+        write!(f, "the recording's header: {}", self.description)
     }
 }
 
 impl std::error::Error for HeaderError {}
 
-fn wrong(words: impl Into<String>) -> HeaderError {
-    HeaderError { words: words.into() }
+fn wrong(description: impl Into<String>) -> HeaderError {
+    HeaderError { description: description.into() }
 }
 
 impl RecordingHeader {
@@ -147,10 +147,10 @@ impl HostHeader {
         radio: &RadioSettings,
         began: Instant,
     ) -> Self {
-        let relay = RELAYS.iter().find(|(_, relay)| *relay == radio.relay).map_or("no", |(word, _)| word);
+        let relay = RELAYS.iter().find(|(_, relay)| *relay == radio.relay).map_or("no", |(label, _)| label);
         Self {
-            colour: colour.word().to_owned(),
-            defending: defending.word().to_owned(),
+            colour: colour.label().to_owned(),
+            defending: defending.label().to_owned(),
             keeper: keeper.number(),
             kick: kick.to_vec(),
             roll: None,
@@ -160,7 +160,7 @@ impl HostHeader {
             team: radio.team.0,
             epoch: radio.epoch,
             relay: relay.to_owned(),
-            way_us: radio.way.0,
+            way_us: radio.latency.0,
             referee_source: None,
             referee_silence: None,
             keyed: radio.key != TeamKey::ZERO,
@@ -177,7 +177,7 @@ impl HostHeader {
             roll: settings.roll,
             learns: settings.learns,
             referee_source: settings.referee.as_ref().map(ToString::to_string),
-            referee_silence: Some(settings.referee_silence.word().to_owned()),
+            referee_silence: Some(settings.referee_silence.label().to_owned()),
             tactics: settings.tactics,
             cases: settings.tactics.bridge.then(|| hash_of_cases(settings.league)),
             ..Self::new(who, &settings.kick, &settings.radio, began)
@@ -209,24 +209,24 @@ impl HostHeader {
     }
 
     fn referee_silence(&self) -> Result<OnSilence, HeaderError> {
-        let Some(word) = &self.referee_silence else { return Ok(OnSilence::GoOn) };
-        let known = OnSilence::ALL.into_iter().find(|(known, _)| known == word);
+        let Some(label) = &self.referee_silence else { return Ok(OnSilence::GoOn) };
+        let known = OnSilence::ALL.into_iter().find(|(known, _)| known == label);
         known
             .map(|(_, known)| known)
-            .ok_or_else(|| wrong(format!("referee_silence: `{word}` is none; halt or go-on")))
+            .ok_or_else(|| wrong(format!("referee_silence: `{label}` is none; halt or go-on")))
     }
 
     /// The colour of that name.
     pub fn colour(&self) -> Result<Colour, HeaderError> {
         [Colour::Blue, Colour::Yellow]
             .into_iter()
-            .find(|colour| colour.word() == self.colour)
+            .find(|colour| colour.label() == self.colour)
             .ok_or_else(|| wrong(format!("colour: `{}` is none; blue or yellow", self.colour)))
     }
 
     /// The goal it defended at the start.
     pub fn defending(&self) -> Result<GoalEnd, HeaderError> {
-        GoalEnd::from_word(&self.defending).ok_or_else(|| {
+        GoalEnd::from_label(&self.defending).ok_or_else(|| {
             wrong(format!("defending: `{}` is no goal; yellow (−x) or cyan (+x)", self.defending))
         })
     }
@@ -253,7 +253,7 @@ impl HostHeader {
 
     /// Its radio, sealed with that key.
     pub fn radio(&self, key: TeamKey) -> Result<RadioSettings, HeaderError> {
-        let relay = RELAYS.iter().find(|(word, _)| *word == self.relay);
+        let relay = RELAYS.iter().find(|(label, _)| *label == self.relay);
         let (_, relay) =
             relay.ok_or_else(|| wrong(format!("relay: `{}`; no, to-each or to-all", self.relay)))?;
         Ok(RadioSettings {
@@ -261,7 +261,7 @@ impl HostHeader {
             key,
             epoch: self.epoch,
             relay: *relay,
-            way: Duration(self.way_us),
+            latency: Duration(self.way_us),
         })
     }
 }
@@ -291,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_host_began_with_is_read_again_from_the_words() {
+    fn what_a_host_began_with_is_read_again_from_the_description() {
         let written = header();
         let read = RecordingHeader::from_json(&written.to_json()).unwrap();
         assert_eq!(read, written);
@@ -304,7 +304,7 @@ mod tests {
         );
         let radio = host.radio(TeamKey([7; 16])).unwrap();
         assert_eq!((radio.team, radio.epoch, radio.relay), (TeamId(2), 1_795_000_000, Relay::ToEach));
-        assert_eq!(radio.way, Duration::millis(3));
+        assert_eq!(radio.latency, Duration::millis(3));
     }
 
     #[test]
@@ -336,8 +336,8 @@ mod tests {
         assert_eq!(told.cases, Some(format!("{:08x}", case_library::division_b().hash())));
         assert!(told.settings(League::DivisionB, TeamKey::ZERO).is_ok());
         told.cases = Some("01234567".to_owned());
-        let words = told.settings(League::DivisionB, TeamKey::ZERO).unwrap_err().to_string();
-        assert!(words.contains("01234567"), "{words}");
+        let description = told.settings(League::DivisionB, TeamKey::ZERO).unwrap_err().to_string();
+        assert!(description.contains("01234567"), "{description}");
     }
 
     #[test]

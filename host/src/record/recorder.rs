@@ -78,7 +78,7 @@ impl Recorder {
     }
 
     /// A league message was on the network: vision, referee or a tracker's.
-    pub fn heard(&mut self, now: Instant, kind: MessageKind, bytes: &[u8]) {
+    pub fn received(&mut self, now: Instant, kind: MessageKind, bytes: &[u8]) {
         let at_ns = self.zero_unix_ns.saturating_add((now.0 as i64).saturating_mul(1000));
         self.write(now, |files| files.log.write(at_ns, kind, bytes));
     }
@@ -195,7 +195,7 @@ mod tests {
     /// As a host with six robots records a packet: in, and a frame to each robot, which no compression makes
     /// shorter.
     fn record(recorder: &mut Recorder, now: Instant, kind: MessageKind, bytes: &[u8], noise: &mut u64) {
-        recorder.heard(now, kind, bytes);
+        recorder.received(now, kind, bytes);
         match kind {
             MessageKind::Vision2014 => recorder.input(now, Colour::Blue, Input::Vision(bytes)),
             MessageKind::Refbox2013 => recorder.input(

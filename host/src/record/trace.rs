@@ -246,21 +246,21 @@ impl<R: Read> Reader<R> {
             Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => return Err(TraceError::NotATrace),
             Err(error) => return Err(TraceError::Io(error)),
         }
-        let mut word = [0; 4];
-        from.read_exact(&mut word)?;
-        let version = u32::from_le_bytes(word);
+        let mut label = [0; 4];
+        from.read_exact(&mut label)?;
+        let version = u32::from_le_bytes(label);
         if !(OLDEST..=VERSION).contains(&version) {
             return Err(TraceError::Version(version));
         }
-        from.read_exact(&mut word)?;
-        let length = u32::from_le_bytes(word) as usize;
+        from.read_exact(&mut label)?;
+        let length = u32::from_le_bytes(label) as usize;
         if length > HEADER_LEN_MAX {
             return Err(TraceError::Header);
         }
         let mut header = vec![0; length];
         from.read_exact(&mut header)?;
         let header = String::from_utf8(header).map_err(|_| TraceError::Header)?;
-        let at = (MAGIC.len() + 2 * word.len() + header.len()) as u64;
+        let at = (MAGIC.len() + 2 * label.len() + header.len()) as u64;
         Ok(Self { from, version, header, end: None, at, last: None })
     }
 

@@ -62,14 +62,14 @@ fn play(
     let (mut free, mut halted) = (0, false);
     for now in (0..total).step_by(5 * MS as usize) {
         for (program, packet) in more(now) {
-            listener.hear(&packet, program.address, Instant(now), None);
+            listener.receive(&packet, program.address, Instant(now), None);
         }
         if now % PERIOD == 0 {
             let halt = now >= halt_at;
             genuine.counter = if halt { 8 } else { 7 };
             let command = if halt { Wire::Halt } else { Wire::ForceStart };
             let packet = genuine.packet(now, clock(now), command);
-            listener.hear(&packet, genuine.address, Instant(now), None);
+            listener.receive(&packet, genuine.address, Instant(now), None);
             halted |= halt;
         }
         listener.tick(Instant(now), None);
@@ -108,16 +108,16 @@ fn finding_1_a_spoofed_stamp_of_the_future_does_not_hide_a_halt() {
 fn a_stamp_ahead_of_its_arrival_never_becomes_the_newest() {
     let mut listener = listener(None);
     let genuine = Program::new("gc", 1);
-    let hear = |listener: &mut Listener, now: u64, off: i64, command, counter| {
+    let receive = |listener: &mut Listener, now: u64, off: i64, command, counter| {
         let program = Program { counter, ..genuine.clone() };
-        listener.hear(&program.packet(now, off, command), genuine.address, Instant(now), None)
+        listener.receive(&program.packet(now, off, command), genuine.address, Instant(now), None)
     };
-    hear(&mut listener, 0, 0, Wire::Stop, 1);
-    let verdict = hear(&mut listener, S, 4_900_000, Wire::ForceStart, 2);
+    receive(&mut listener, 0, 0, Wire::Stop, 1);
+    let verdict = receive(&mut listener, S, 4_900_000, Wire::ForceStart, 2);
     assert_eq!(verdict, Verdict::Doubted { doubt: Doubt::Ahead(Duration(4_900_000)), restrains: false });
     assert_eq!(listener.game().phase, Phase::Stop);
     // Genuine packets are followed as before.
-    assert!(matches!(hear(&mut listener, S + PERIOD, 0, Wire::ForceStart, 2), Verdict::Taken(_)));
+    assert!(matches!(receive(&mut listener, S + PERIOD, 0, Wire::ForceStart, 2), Verdict::Taken(_)));
     assert_eq!(listener.game().phase, Phase::Run);
     let warned = listener.warnings(Instant(S + PERIOD));
     assert!(warned.iter().any(|warning| warning.to_string().contains("4.9 s ahead")), "{warned:?}");
@@ -140,7 +140,7 @@ fn finding_1_a_clock_that_steps_does_not_delay_halt_and_is_followed_within_the_w
             genuine.counter = 1 + u32::from(stepped);
             let command = if stepped { Wire::ForceStart } else { Wire::Stop };
             let packet = genuine.packet(now, if stepped { step } else { 0 }, command);
-            listener.hear(&packet, genuine.address, Instant(now), None);
+            listener.receive(&packet, genuine.address, Instant(now), None);
             if listener.game().phase == Phase::Run {
                 followed.get_or_insert(now - S);
             }
@@ -163,7 +163,7 @@ fn finding_2_who_speaks_first_every_2_8_s_does_not_keep_halt_out() {
     let evil = Program::new("evil", 66);
     // It sends before the controller does, and then every 2.8 s; HALT for 17.5 s at 40 Hz.
     let mut first = listener.clone();
-    first.hear(&evil.packet(0, 0, Wire::ForceStart), evil.address, Instant(0), None);
+    first.receive(&evil.packet(0, 0, Wire::ForceStart), evil.address, Instant(0), None);
     let free = play(
         &mut first,
         (S, S + 17_500 * MS),
@@ -176,9 +176,12 @@ fn finding_2_who_speaks_first_every_2_8_s_does_not_keep_halt_out() {
     assert_eq!(free, 0);
     let warned = first.warnings(Instant(18_500 * MS));
     let [Warning::Disagreement { .. }] = &warned[..] else { panic!("{warned:?}") };
-    let words = warned[0].to_string();
-    assert!(words.contains("10.0.0.1:40000") && words.contains("10.0.0.66:40000"), "{words}");
-    assert!(words.contains("--referee-source"), "{words}");
+    let description = warned[0].to_string();
+    assert!(
+        description.contains("10.0.0.1:40000") && description.contains("10.0.0.66:40000"),
+        "{description}"
+    );
+    assert!(description.contains("--referee-source"), "{description}");
     // The same where it comes second.
     let free = play(
         &mut listener,
@@ -195,7 +198,7 @@ fn finding_2_who_speaks_first_every_2_8_s_does_not_keep_halt_out() {
 /// A source's newest packet, all at one time.
 fn say(listener: &mut Listener, program: &mut Program, now: u64, command: Wire) {
     program.counter += 1;
-    listener.hear(&program.packet(now, 0, command), program.address, Instant(now), None);
+    listener.receive(&program.packet(now, 0, command), program.address, Instant(now), None);
 }
 
 #[test]
@@ -267,7 +270,7 @@ fn one_controller_on_two_networks_is_followed_without_a_stop() {
     for now in (0..18 * S).step_by(5 * MS as usize) {
         for (delay, program) in [(0, &one), (30 * MS, &two), (60 * MS, &one), (90 * MS, &two)] {
             if let Some(sent) = now.checked_sub(delay).filter(|sent| sent % PERIOD == 0) {
-                listener.hear(&packet_of(sent), program.address, Instant(now), None);
+                listener.receive(&packet_of(sent), program.address, Instant(now), None);
             }
         }
         listener.tick(Instant(now), None);
@@ -293,18 +296,18 @@ fn one_controller_on_two_networks_is_followed_without_a_stop() {
 fn a_late_copy_of_an_old_stop_stands_in_the_way_once_and_briefly() {
     let mut listener = listener(None);
     let genuine = Program::new("gc", 1);
-    let hear = |listener: &mut Listener, sent: u64, now: u64, command, counter| {
+    let receive = |listener: &mut Listener, sent: u64, now: u64, command, counter| {
         let program = Program { counter, ..genuine.clone() };
-        listener.hear(&program.packet(sent, 0, command), genuine.address, Instant(now), None);
+        listener.receive(&program.packet(sent, 0, command), genuine.address, Instant(now), None);
         listener.game().phase
     };
-    assert_eq!(hear(&mut listener, 0, 0, Wire::Stop, 1), Phase::Stop);
-    assert_eq!(hear(&mut listener, S - 50 * MS, S - 50 * MS, Wire::Stop, 1), Phase::Stop);
-    assert_eq!(hear(&mut listener, S, S, Wire::ForceStart, 2), Phase::Run);
+    assert_eq!(receive(&mut listener, 0, 0, Wire::Stop, 1), Phase::Stop);
+    assert_eq!(receive(&mut listener, S - 50 * MS, S - 50 * MS, Wire::Stop, 1), Phase::Stop);
+    assert_eq!(receive(&mut listener, S, S, Wire::ForceStart, 2), Phase::Run);
     // A copy of a received packet restrains nothing.
-    assert_eq!(hear(&mut listener, S - 50 * MS, S + 10 * MS, Wire::Stop, 1), Phase::Run);
+    assert_eq!(receive(&mut listener, S - 50 * MS, S + 10 * MS, Wire::Stop, 1), Phase::Run);
     // The first network lost this one, the second was late.
-    assert_eq!(hear(&mut listener, S - PERIOD, S + 20 * MS, Wire::Stop, 1), Phase::Stop);
+    assert_eq!(receive(&mut listener, S - PERIOD, S + 20 * MS, Wire::Stop, 1), Phase::Stop);
     listener.tick(Instant(S + 20 * MS + HOLD.0 - 1), None);
     assert_eq!(listener.game().phase, Phase::Stop);
     listener.tick(Instant(S + 20 * MS + HOLD.0), None);
@@ -341,7 +344,7 @@ fn a_pinned_referee_is_obeyed_alone_and_the_other_is_reported() {
         say(&mut listener, &mut genuine, 0, Wire::Stop);
         say(&mut listener, &mut genuine, S, Wire::ForceStart);
         let packet = evil.packet(S, 0, Wire::Halt);
-        let verdict = listener.hear(&packet, evil.address, Instant(S), None);
+        let verdict = listener.receive(&packet, evil.address, Instant(S), None);
         assert!(matches!(verdict, Verdict::Excluded { .. }), "{verdict:?}");
         assert_eq!((listener.game().phase, listener.counts().excluded), (Phase::Run, 1));
         let warned = listener.warnings(Instant(S));
@@ -366,7 +369,7 @@ fn a_second_source_that_halts_for_ever_halts_us_is_reported_and_leaves_through_s
     let mut now = 100 * MS;
     for _ in 0..200 {
         now += PERIOD;
-        listener.hear(&genuine.packet(now, 0, Wire::ForceStart), genuine.address, Instant(now), None);
+        listener.receive(&genuine.packet(now, 0, Wire::ForceStart), genuine.address, Instant(now), None);
         say(&mut listener, &mut other, now, Wire::Halt);
         assert_eq!(listener.game().phase, Phase::Halt);
         assert!(listener.warnings(Instant(now)).iter().any(Warning::is_urgent));
@@ -376,7 +379,7 @@ fn a_second_source_that_halts_for_ever_halts_us_is_reported_and_leaves_through_s
     let mut phases = vec![];
     while now < ended + 10 * S {
         now += PERIOD;
-        listener.hear(&genuine.packet(now, 0, Wire::ForceStart), genuine.address, Instant(now), None);
+        listener.receive(&genuine.packet(now, 0, Wire::ForceStart), genuine.address, Instant(now), None);
         if phases.last().is_none_or(|(_, phase)| *phase != listener.game().phase) {
             phases.push((now - ended, listener.game().phase));
         }
@@ -417,18 +420,19 @@ fn a_counter_that_starts_again_is_followed_once_it_stays() {
     let mut listener = listener(None);
     let mut genuine = Program::new("gc", 1);
     genuine.counter = 40;
-    listener.hear(&genuine.packet(0, 0, Wire::ForceStart), genuine.address, Instant(0), None);
+    listener.receive(&genuine.packet(0, 0, Wire::ForceStart), genuine.address, Instant(0), None);
     genuine.counter = 0;
     let verdict =
-        listener.hear(&genuine.packet(PERIOD, 0, Wire::Halt), genuine.address, Instant(PERIOD), None);
+        listener.receive(&genuine.packet(PERIOD, 0, Wire::Halt), genuine.address, Instant(PERIOD), None);
     assert_eq!(verdict, Verdict::Doubted { doubt: Doubt::Counter, restrains: true });
     assert_eq!(listener.game().phase, Phase::Halt, "HALT at once");
     let mut now = PERIOD;
     let taken = loop {
         now += PERIOD;
-        let heard = listener.hear(&genuine.packet(now, 0, Wire::Halt), genuine.address, Instant(now), None);
+        let received =
+            listener.receive(&genuine.packet(now, 0, Wire::Halt), genuine.address, Instant(now), None);
         assert_eq!(listener.game().phase, Phase::Halt);
-        if let Verdict::Taken(taken) = heard {
+        if let Verdict::Taken(taken) = received {
             break taken;
         }
     };
@@ -441,10 +445,10 @@ fn a_goal_that_the_controller_announces_with_its_next_commands_counter_is_in_ord
     let mut listener = listener(None);
     let mut genuine = Program::new("gc", 1);
     genuine.counter = 40;
-    listener.hear(&genuine.packet(0, 0, Wire::ForceStart), genuine.address, Instant(0), None);
+    listener.receive(&genuine.packet(0, 0, Wire::ForceStart), genuine.address, Instant(0), None);
     genuine.counter = 41;
     for (now, command) in [(PERIOD, Wire::GoalBlue), (2 * PERIOD, Wire::Halt), (3 * PERIOD, Wire::Halt)] {
-        let verdict = listener.hear(&genuine.packet(now, 0, command), genuine.address, Instant(now), None);
+        let verdict = listener.receive(&genuine.packet(now, 0, command), genuine.address, Instant(now), None);
         assert!(matches!(verdict, Verdict::Taken(_)), "{command:?}: {verdict:?}");
     }
     assert_eq!((listener.game().phase, listener.warnings(Instant(3 * PERIOD))), (Phase::Halt, vec![]));
@@ -462,7 +466,7 @@ fn a_referee_whose_stamps_stand_still_is_obeyed_when_it_says_halt() {
             let mut packet = silly.packet(now, 0, command);
             packet.packet_timestamp = 0;
             packet.command_timestamp = 0;
-            listener.hear(&packet, silly.address, Instant(now), None);
+            listener.receive(&packet, silly.address, Instant(now), None);
         }
         listener.tick(Instant(now), None);
         free += u64::from(now >= 4 * S && listener.game().phase != Phase::Halt);

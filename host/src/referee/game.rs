@@ -7,7 +7,7 @@ use rules::state::{GameState, Stage};
 use rules::{Colour, Phase};
 use ssl::referee::{HullColor, MatchType, Referee, TeamInfo};
 
-use super::words;
+use super::description;
 
 /// No field reaches farther from its centre than this, m: a designated position beyond it is refused.
 const FARTHEST: f32 = 20.0;
@@ -114,7 +114,7 @@ impl Game {
     /// Takes all fields of a packet except its command.
     pub(super) fn read(&mut self, packet: &Referee) {
         let place = |mm: f32| mm / 1000.0;
-        self.stage = words::stage_of(packet.stage).unwrap_or(self.stage);
+        self.stage = description::stage_of(packet.stage).unwrap_or(self.stage);
         self.stage_time_left = packet.stage_time_left.map(seconds);
         self.action_time_left = packet.current_action_time_remaining.map(seconds);
         self.designated = packet.designated_position.map(|at| Point::new(place(at.x), place(at.y)));
@@ -136,7 +136,7 @@ impl Game {
         let placing = matches!(self.phase, Phase::BallPlacement(_));
         self.placement = self.designated.filter(|_| placing);
         // The next phase is unknown where another phase is imposed.
-        let next = self.next_command.filter(|_| phase == state.phase()).and_then(words::command_of);
+        let next = self.next_command.filter(|_| phase == state.phase()).and_then(description::command_of);
         self.next = next.and_then(|command| command.leads_to(self.phase));
     }
 

@@ -34,15 +34,15 @@ fn play(
     let mut seen = Vec::new();
     for now in (0..12 * S).step_by(5 * MS as usize) {
         if now.is_multiple_of(25 * MS) && !gap.contains(&now) {
-            listener.hear(&packet(now, "a"), SenderAddress::INTERNAL, Instant(now), None);
+            listener.receive(&packet(now, "a"), SenderAddress::INTERNAL, Instant(now), None);
         }
         if second && now.is_multiple_of(25 * MS) {
-            listener.hear(&packet(now, "b"), SenderAddress::INTERNAL, Instant(now), None);
+            listener.receive(&packet(now, "b"), SenderAddress::INTERNAL, Instant(now), None);
         }
         if now.is_multiple_of(10 * MS) {
             listener.tick(Instant(now), None);
-            let words = listener.warnings(Instant(now)).iter().map(ToString::to_string).collect();
-            seen.push((now, listener.game().phase, words));
+            let description = listener.warnings(Instant(now)).iter().map(ToString::to_string).collect();
+            seen.push((now, listener.game().phase, description));
         }
     }
     seen
@@ -52,7 +52,7 @@ fn play(
 fn two_seconds_without_a_referee_halt_the_robots_and_a_stop_of_two_seconds_follows_when_it_is_back() {
     // The last packet is that of 2.975 s.
     let seen = play(OnSilence::Halt, 3 * S..8 * S, false);
-    for (now, phase, words) in &seen {
+    for (now, phase, description) in &seen {
         let expected = match now {
             0..4_975_000 => Phase::Run,
             4_975_000..8_000_000 => Phase::Halt,
@@ -60,26 +60,26 @@ fn two_seconds_without_a_referee_halt_the_robots_and_a_stop_of_two_seconds_follo
             _ => Phase::Run,
         };
         assert_eq!(*phase, expected, "{now} µs");
-        assert_eq!(words.is_empty(), expected != Phase::Halt, "{now} µs: {words:?}");
+        assert_eq!(description.is_empty(), expected != Phase::Halt, "{now} µs: {description:?}");
     }
-    let words = &seen.iter().find(|(_, phase, _)| *phase == Phase::Halt).unwrap().2[0];
+    let description = &seen.iter().find(|(_, phase, _)| *phase == Phase::Halt).unwrap().2[0];
     assert!(
-        words.contains("for 2 s: the robots halt") && words.contains("--referee-silence go-on"),
-        "{words}"
+        description.contains("for 2 s: the robots halt") && description.contains("--referee-silence go-on"),
+        "{description}"
     );
 }
 
 #[test]
 fn a_pause_of_less_than_two_seconds_changes_nothing() {
     let seen = play(OnSilence::Halt, 3 * S..4_900 * MS, false);
-    assert!(seen.iter().all(|(_, phase, words)| *phase == Phase::Run && words.is_empty()));
+    assert!(seen.iter().all(|(_, phase, description)| *phase == Phase::Run && description.is_empty()));
 }
 
 #[test]
 fn where_it_is_configured_the_last_command_stands_and_the_silence_is_reported_all_the_same() {
     let seen = play(OnSilence::GoOn, 3 * S..8 * S, false);
     assert!(seen.iter().all(|(_, phase, _)| *phase == Phase::Run));
-    let told: Vec<_> = seen.iter().filter(|(_, _, words)| !words.is_empty()).collect();
+    let told: Vec<_> = seen.iter().filter(|(_, _, description)| !description.is_empty()).collect();
     assert_eq!((told[0].0, told.last().unwrap().0), (4_980 * MS, 7_990 * MS));
     assert!(told[0].2[0].contains("its last command stands"), "{:?}", told[0].2);
 }

@@ -26,7 +26,7 @@ use ssl::referee::{Command as Wire, Referee};
 use super::identity::SourceKey;
 use super::stamps::{StampClock, WINDOW};
 use super::verdict::{Doubt, Taken};
-use super::{Game, SILENCE, words};
+use super::{Game, SILENCE, description};
 
 /// Time for which HALT or STOP out of order restrains: 12 periods of the controller, and twice `COPY`, so
 /// that a referee whose stamps stay the same restrains without a gap.
@@ -71,7 +71,7 @@ impl Strictness {
 pub(super) struct Source {
     pub(super) key: SourceKey,
     /// When its newest packet came, copies aside.
-    pub(super) heard: Instant,
+    pub(super) received: Instant,
     pub(super) state: GameState,
     pub(super) game: Game,
     /// Its newest command in order.
@@ -158,7 +158,7 @@ impl Source {
         let newest = Stamped::of(packet);
         let mut source = Self {
             key,
-            heard: now,
+            received: now,
             state: GameState::new(),
             game: Game::default(),
             command: Command::Halt,
@@ -179,13 +179,13 @@ impl Source {
     }
 
     /// A packet of this source that came at `now`.
-    pub(super) fn hear(&mut self, packet: &Referee, now: Instant, ball: Option<Point<Field>>) -> Outcome {
+    pub(super) fn receive(&mut self, packet: &Referee, now: Instant, ball: Option<Point<Field>>) -> Outcome {
         let came = Stamped::of(packet);
         if self.recent.iter().any(|(known, at)| *known == came && now.since(*at).0 < COPY.0) {
             return Outcome::Copy;
         }
         self.remember(came, now);
-        self.heard = self.heard.max(now);
+        self.received = self.received.max(now);
         let mut taken = Taken::default();
         if let Some(doubt) = self.doubt(came, now) {
             if !self.confirmed(came, doubt, now) {
@@ -296,7 +296,7 @@ impl Source {
     /// HALT and STOP are obeyed whether their stamp fits or not. True: the packet was one of them.
     fn restrain(&mut self, packet: &Referee, now: Instant) -> bool {
         let until = now + HOLD;
-        match Strictness::of(words::command_of(packet.command).unwrap_or(Command::Halt)) {
+        match Strictness::of(description::command_of(packet.command).unwrap_or(Command::Halt)) {
             Strictness::Halt => self.halt_until = self.halt_until.max(until),
             Strictness::Stop => self.stop_until = self.stop_until.max(until),
             Strictness::Play => return false,
@@ -311,7 +311,7 @@ impl Source {
         ball: Option<Point<Field>>,
         taken: &mut Taken,
     ) {
-        let command = words::command_of(packet.command).unwrap_or_else(|| {
+        let command = description::command_of(packet.command).unwrap_or_else(|| {
             taken.unknown = Some(packet.command);
             Command::Halt
         });
@@ -320,8 +320,8 @@ impl Source {
             given => packet.packet_timestamp.saturating_sub(given),
         };
         self.command = command;
-        let heard = self.state.hear(command, now.0.saturating_sub(age), ball);
-        taken.command = Some((command, heard));
+        let received = self.state.receive(command, now.0.saturating_sub(age), ball);
+        taken.command = Some((command, received));
     }
 
     fn remember(&mut self, came: Stamped, now: Instant) {

@@ -19,7 +19,7 @@ use ssl::controller::{
 };
 use ssl::stream::{FrameReader, MESSAGE_MAX, delimited};
 
-use super::words::team_of;
+use super::description::team_of;
 
 /// The controller answers within this, or the connection is closed. It answers at once; a loaded machine was
 /// seen to pause for 1.6 s.

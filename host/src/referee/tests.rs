@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 
 use geometry::GoalEnd;
-use rules::state::{Heard, Stage};
+use rules::state::{Received, Stage};
 use rules::{Colour, League, Phase};
 use ssl::Message;
 use ssl::log::Packet;
@@ -29,7 +29,7 @@ fn listener() -> Listener {
 impl Listener {
     /// A packet of a referee in this program.
     fn hears(&mut self, packet: &Referee, now: Instant, ball: Option<Point<Field>>) -> Verdict {
-        self.hear(packet, SenderAddress::INTERNAL, now, ball)
+        self.receive(packet, SenderAddress::INTERNAL, now, ball)
     }
 }
 
@@ -48,9 +48,9 @@ fn packet(sent: u64, command: Wire, counter: u32) -> Referee {
     }
 }
 
-fn command(verdict: Verdict) -> Option<Heard> {
+fn command(verdict: Verdict) -> Option<Received> {
     match verdict {
-        Verdict::Taken(taken) => taken.command.map(|(_, heard)| heard),
+        Verdict::Taken(taken) => taken.command.map(|(_, received)| received),
         other => panic!("{other:?}"),
     }
 }
@@ -130,8 +130,8 @@ fn single_packets_say_what_an_independent_decoder_reads_in_them() {
         let mut listener = listener();
         listener.hears(&packet, Instant(S), None);
         let game = listener.game();
-        for (colour, word) in [(Y, "yellow"), (B, "blue")] {
-            let (team, json) = (game.team(colour), &json[word]);
+        for (colour, label) in [(Y, "yellow"), (B, "blue")] {
+            let (team, json) = (game.team(colour), &json[label]);
             assert_eq!(team.name, json["name"], "{name}");
             assert_eq!(team.score, json["score"], "{name}");
             assert_eq!(team.keeper.map(RobotNumber::number), json["goalkeeper"].as_u64(), "{name}");
@@ -199,19 +199,19 @@ fn trap_04_a_rising_counter_is_no_changed_command() {
     let mut now = S;
     let mut say = |command, counter| {
         now += S;
-        let heard = listener.hears(&packet(now, command, counter), Instant(now), None);
-        (super::tests::command(heard), listener.game().phase)
+        let received = listener.hears(&packet(now, command, counter), Instant(now), None);
+        (super::tests::command(received), listener.game().phase)
     };
     say(Wire::Stop, 1);
     say(Wire::PrepareKickoffYellow, 2);
-    assert_eq!(say(Wire::NormalStart, 3), (Some(Heard::Followed), Phase::Kickoff(Y)));
-    assert_eq!(say(Wire::NormalStart, 4), (Some(Heard::Repeated), Phase::Kickoff(Y)));
+    assert_eq!(say(Wire::NormalStart, 3), (Some(Received::Followed), Phase::Kickoff(Y)));
+    assert_eq!(say(Wire::NormalStart, 4), (Some(Received::Repeated), Phase::Kickoff(Y)));
     assert_eq!(say(Wire::NormalStart, 4), (None, Phase::Kickoff(Y)), "the same packet again is no command");
     say(Wire::Stop, 5);
     say(Wire::BallPlacementBlue, 6);
-    assert_eq!(say(Wire::BallPlacementBlue, 7), (Some(Heard::Repeated), Phase::BallPlacement(B)));
+    assert_eq!(say(Wire::BallPlacementBlue, 7), (Some(Received::Repeated), Phase::BallPlacement(B)));
     say(Wire::Halt, 8);
-    assert_eq!(say(Wire::Halt, 9), (Some(Heard::Repeated), Phase::Halt));
+    assert_eq!(say(Wire::Halt, 9), (Some(Received::Repeated), Phase::Halt));
 }
 
 #[test]
@@ -223,13 +223,13 @@ fn trap_05_a_pause_of_the_referee_is_no_loss() {
     for pause in [25_000, 100_000, 1_562_466] {
         let now = Instant(S + pause);
         listener.tick(now, None);
-        assert_eq!(listener.silence(now), Silence::Heard(Duration(pause)));
+        assert_eq!(listener.silence(now), Silence::Received(Duration(pause)));
         assert_eq!(listener.game().phase, Phase::Run);
     }
     assert_eq!(listener.silence(Instant(5 * S)), Silence::Silent(Duration(4 * S)));
     assert_eq!(listener.game().phase, Phase::Run, "what was said last stands");
     listener.hears(&packet(5 * S, Wire::ForceStart, 1), Instant(6 * S), None);
-    assert_eq!(listener.silence(Instant(6 * S)), Silence::Heard(Duration(0)));
+    assert_eq!(listener.silence(Instant(6 * S)), Silence::Received(Duration(0)));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use protocol::Duration;
-use rules::state::{Command, Heard};
+use rules::state::{Command, Received};
 
 use super::identity::SourceKey;
 
@@ -88,7 +88,7 @@ impl fmt::Display for Doubt {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Taken {
     /// A command, and its effect.
-    pub command: Option<(Command, Heard)>,
+    pub command: Option<(Command, Received)>,
     /// Commands that were never received, by the counter.
     pub missed: u32,
     /// The counter restarted: a new match, or another program.

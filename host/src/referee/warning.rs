@@ -78,12 +78,12 @@ impl Listener {
             warnings.extend(self.exclusions(now));
             return warnings;
         };
-        let newest = self.sources.iter().map(|source| source.heard).fold(followed.heard, Instant::max);
+        let newest = self.sources.iter().map(|source| source.received).fold(followed.received, Instant::max);
         let since = now.since(newest);
         if since >= HALT_AFTER {
             warnings.push(Warning::Silent { source: followed.key.clone(), since, robots: self.on_silence });
         }
-        for other in others.iter().filter(|other| lately(other.heard)) {
+        for other in others.iter().filter(|other| lately(other.received)) {
             warnings.push(if other.command == followed.command {
                 Warning::Several { followed: followed.key.clone(), other: other.key.clone() }
             } else {

@@ -34,7 +34,7 @@ impl fmt::Display for TooManyRobots {
         write!(
             f,
             "{on_field} {} robots ({whose}) are on the field, {} allows {allowed}: {remedy} (another division: --league)",
-            team.word(),
+            team.label(),
             league.name()
         )
     }
@@ -42,11 +42,11 @@ impl fmt::Display for TooManyRobots {
 
 /// Counts robots inside the lines.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Crowd {
+pub(super) struct RobotCount {
     teams: [Lasting; 2],
 }
 
-impl Crowd {
+impl RobotCount {
     pub(super) fn look(
         &mut self,
         now: Instant,
@@ -135,8 +135,11 @@ mod tests {
             }
         }
         let found = other_field(League::DivisionB, &League::DivisionA.field()).unwrap();
-        let words = found.to_string();
-        assert!(words.contains("12.0 × 9.0 m") && words.contains("--league division-a"), "{words}");
+        let description = found.to_string();
+        assert!(
+            description.contains("12.0 × 9.0 m") && description.contains("--league division-a"),
+            "{description}"
+        );
     }
 
     #[test]

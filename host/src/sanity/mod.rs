@@ -107,7 +107,7 @@ impl fmt::Display for Finding {
 #[derive(Clone, Debug, Default)]
 pub struct Sanity {
     looked: Option<Instant>,
-    crowd: field::Crowd,
+    crowd: field::RobotCount,
     side: side::Sides,
     port: port::Port,
     stalls: stall::Stalls,

@@ -135,10 +135,12 @@ mod tests {
                 assert!(same, "{n}: {found:?}");
             }
         }
-        for words in [VisionPort::Nothing, VisionPort::Foreign { packets: 5_785 }, VisionPort::NoFrames] {
+        for description in [VisionPort::Nothing, VisionPort::Foreign { packets: 5_785 }, VisionPort::NoFrames]
+        {
             assert!(
-                words.to_string().contains("SSL-Vision") || words.to_string().contains("--vision"),
-                "{words}"
+                description.to_string().contains("SSL-Vision")
+                    || description.to_string().contains("--vision"),
+                "{description}"
             );
         }
     }

@@ -208,8 +208,11 @@ mod tests {
         ] {
             let (at, wrong) = found(|_| seen.clone(), 10_000).unwrap();
             assert!(at <= 2_000 && wrong.evidence == evidence, "{at} ms: {wrong:?}");
-            let words = wrong.to_string();
-            assert!(words.contains("at −x") && words.contains("game controller"), "{words}");
+            let description = wrong.to_string();
+            assert!(
+                description.contains("at −x") && description.contains("game controller"),
+                "{description}"
+            );
         }
     }
 

@@ -105,10 +105,10 @@ struct Last {
 impl Last {
     fn of(host: &Host, now: Instant) -> Self {
         let radio = host.radio();
-        let heard = protocol::RobotId::all().filter_map(|id| radio.quality(id));
+        let received = protocol::RobotId::all().filter_map(|id| radio.quality(id));
         Self {
             frame: host.imaged(),
-            robot: heard.filter_map(crate::radio::Quality::heard_at).max(),
+            robot: received.filter_map(crate::radio::Quality::received_at).max(),
             sent: radio.transmitted(),
             unheard: unheard(radio, now),
         }
@@ -117,7 +117,7 @@ impl Last {
 
 fn unheard(radio: &Radio, now: Instant) -> Option<Duration> {
     let told = radio.present(now).filter_map(|id| radio.quality(id)?.telemetry());
-    let new = told.filter(|(at, told)| now.since(*at) < TELEMETRY_NEW && told.heard > 0);
+    let new = told.filter(|(at, told)| now.since(*at) < TELEMETRY_NEW && told.received > 0);
     new.map(|(at, told)| Duration(u64::from(told.silence) * 100 + now.since(*at).0)).min()
 }
 
@@ -239,8 +239,8 @@ mod tests {
     }
 
     #[test]
-    fn each_stall_is_said_within_half_a_second_by_its_own_words_and_by_no_others() {
-        for (still, place, words) in [
+    fn each_stall_is_said_within_half_a_second_by_its_own_description_and_by_no_others() {
+        for (still, place, description) in [
             ("host", "host", "this computer did not run"),
             ("vision", "vision", "no camera frame"),
             ("up", "radio", "no robot is received"),
@@ -254,7 +254,7 @@ mod tests {
             assert!((5_000..=latest).contains(&first), "{still}: {first} ms");
             for (ms, stall) in &said {
                 assert!(
-                    stall.place() == place && stall.to_string().contains(words),
+                    stall.place() == place && stall.to_string().contains(description),
                     "{still}, {ms}: {stall}"
                 );
             }

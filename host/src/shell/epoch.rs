@@ -101,9 +101,9 @@ fn read(path: &Path) -> io::Result<Option<u32>> {
 mod tests {
     use super::*;
 
-    struct Folder(PathBuf);
+    struct Directory(PathBuf);
 
-    impl Folder {
+    impl Directory {
         fn new(name: &str) -> Self {
             let path = env::temp_dir().join(format!("onetwo-epoch-{name}-{}", std::process::id()));
             let _ = fs::remove_dir_all(&path);
@@ -111,7 +111,7 @@ mod tests {
         }
     }
 
-    impl Drop for Folder {
+    impl Drop for Directory {
         fn drop(&mut self) {
             let _ = fs::remove_dir_all(&self.0);
         }
@@ -119,22 +119,23 @@ mod tests {
 
     #[test]
     fn epochs_are_the_calendars_and_rise_when_it_is_set_back() {
-        let folder = Folder::new("rise");
-        let epoch = |calendar| next(Some(&folder.0), calendar);
+        let directory = Directory::new("rise");
+        let epoch = |calendar| next(Some(&directory.0), calendar);
         assert_eq!(epoch(1_000), Epoch { epoch: 1_000, warning: None });
         assert_eq!(epoch(1_000).epoch, 1_001, "twice in a second");
         assert_eq!(epoch(2_000), Epoch { epoch: 2_000, warning: None });
         let behind = epoch(500);
         assert_eq!(behind.epoch, 2_001);
-        assert!(behind.warning.is_some_and(|words| words.contains("1501 s behind")), "told");
-        assert_eq!(fs::read_to_string(folder.0.join(FILE)).unwrap(), "2001\n");
+        assert!(behind.warning.is_some_and(|description| description.contains("1501 s behind")), "told");
+        assert_eq!(fs::read_to_string(directory.0.join(FILE)).unwrap(), "2001\n");
     }
 
     #[test]
     fn many_starts_at_once_get_an_epoch_each() {
-        let folder = Folder::new("many");
+        let directory = Directory::new("many");
         let mut epochs: Vec<u32> = std::thread::scope(|scope| {
-            let starts: Vec<_> = (0..8).map(|_| scope.spawn(|| next(Some(&folder.0), 100).epoch)).collect();
+            let starts: Vec<_> =
+                (0..8).map(|_| scope.spawn(|| next(Some(&directory.0), 100).epoch)).collect();
             starts.into_iter().map(|start| start.join().unwrap()).collect()
         });
         epochs.sort_unstable();
@@ -143,19 +144,19 @@ mod tests {
 
     #[test]
     fn a_file_that_holds_no_epoch_and_a_directory_that_cannot_be_are_told_and_the_host_starts() {
-        let folder = Folder::new("bad");
-        fs::create_dir_all(&folder.0).unwrap();
-        fs::write(folder.0.join(FILE), "yesterday").unwrap();
+        let directory = Directory::new("bad");
+        fs::create_dir_all(&directory.0).unwrap();
+        fs::write(directory.0.join(FILE), "yesterday").unwrap();
         let told = |directory| {
             let Epoch { epoch, warning } = next(directory, 1_000);
             assert_eq!(epoch, 1_000);
             warning.unwrap()
         };
-        assert!(told(Some(&folder.0)).contains("it holds no epoch; delete it"));
-        let no_directory = folder.0.join(FILE);
+        assert!(told(Some(&directory.0)).contains("it holds no epoch; delete it"));
+        let no_directory = directory.0.join(FILE);
         assert!(told(Some(&no_directory)).contains("cannot be kept"));
         assert!(told(None).contains("XDG_STATE_HOME"));
-        fs::write(folder.0.join(FILE), u32::MAX.to_string()).unwrap();
-        assert!(told(Some(&folder.0)).contains("largest"));
+        fs::write(directory.0.join(FILE), u32::MAX.to_string()).unwrap();
+        assert!(told(Some(&directory.0)).contains("largest"));
     }
 }

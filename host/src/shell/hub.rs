@@ -102,7 +102,7 @@ fn pass(socket: &UdpSocket, end: &AtomicBool, mut to: impl FnMut(&[u8], SocketAd
 fn remember(known: &Known, from: SocketAddr) {
     let now = Instant::now();
     let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
-    known.retain(|(robot, heard)| *robot != from && now.duration_since(*heard) < GONE);
+    known.retain(|(robot, received)| *robot != from && now.duration_since(*received) < GONE);
     known.push((from, now));
 }
 
@@ -116,24 +116,24 @@ mod tests {
         socket
     }
 
-    fn hear(socket: &UdpSocket) -> (Vec<u8>, SocketAddr) {
+    fn receive(socket: &UdpSocket) -> (Vec<u8>, SocketAddr) {
         let mut bytes = [0; 64];
         let (len, from) = socket.recv_from(&mut bytes).unwrap();
         (bytes[..len].to_vec(), from)
     }
 
     #[test]
-    fn trap_09_a_simulator_that_answers_only_the_last_speaker_is_heard_by_all() {
+    fn trap_09_a_simulator_that_answers_only_the_last_speaker_is_received_by_all() {
         let (simulator, one, two) = (socket(), socket(), socket());
         let hub = Hub::start(simulator.local_addr().unwrap()).unwrap();
         one.send_to(b"one", hub.address()).unwrap();
-        let (first, from_one) = hear(&simulator);
+        let (first, from_one) = receive(&simulator);
         two.send_to(b"two", hub.address()).unwrap();
-        let (second, from_two) = hear(&simulator);
+        let (second, from_two) = receive(&simulator);
         assert_eq!((&first[..], &second[..]), (&b"one"[..], &b"two"[..]));
         assert_eq!(from_one, from_two, "one speaker");
         simulator.send_to(b"both", from_two).unwrap();
-        assert_eq!(hear(&one).0, b"both");
-        assert_eq!(hear(&two).0, b"both");
+        assert_eq!(receive(&one).0, b"both");
+        assert_eq!(receive(&two).0, b"both");
     }
 }

@@ -223,12 +223,12 @@ mod tests {
         link.send(To::All, &frame).unwrap();
         let mut bytes = [0; 64];
         let mut lines = Lines::new();
-        let mut heard = Vec::new();
-        while heard.len() < 2 {
+        let mut received = Vec::new();
+        while received.len() < 2 {
             let len = station.read(&mut bytes).unwrap();
-            heard.extend(bytes[..len].iter().filter_map(|byte| lines.push(*byte)));
+            received.extend(bytes[..len].iter().filter_map(|byte| lines.push(*byte)));
         }
-        assert_eq!(heard, [frame.clone(), frame]);
+        assert_eq!(received, [frame.clone(), frame]);
     }
 
     #[test]

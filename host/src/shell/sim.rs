@@ -119,7 +119,7 @@ impl SimLink {
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let mut process = command
             .arg("virtual-robot")
-            .args(["--id", &robot.id.to_string(), "--team", settings.colour.word()])
+            .args(["--id", &robot.id.to_string(), "--team", settings.colour.label()])
             .args(["--league", settings.league.name(), "--host", &self.own.to_string()])
             .args(["--simulator", &self.hub.address().to_string(), "--with-parent"])
             .args(&settings.more)

@@ -24,12 +24,12 @@ use protocol::{Duration, Instant, RobotId};
 use rules::{League, Phase, Side, contact};
 
 use super::bench::Bench;
-use super::opponents::{Rival, Team};
+use super::counters::Sent;
+use super::opponents::{OpponentModel, Team};
 use super::order::{Order, Role, Task, Why};
 use super::pass::{Kicks, PassConstants, Searches};
 use super::support::{self, Target};
 use super::tactics::Tactics;
-use super::tally::Sent;
 use super::threat;
 use super::view::{ROBOTS_MAX, Robot, View, nearest};
 use super::{restart, roles};
@@ -68,7 +68,7 @@ struct Settled {
 pub struct Coach {
     team: Team,
     /// Another team's open play, where it is not ours.
-    rival: Option<Rival>,
+    model: Option<OpponentModel>,
     tactics: Tactics,
     /// Models of kicks and rolling balls, for the values of passes.
     kicks: Kicks,
@@ -99,7 +99,7 @@ pub struct Coach {
     /// A pass that has just left, until the caller takes it.
     sent: Option<Sent>,
     /// The robot that took our restart, until another robot touches the ball.
-    barred: Option<RobotId>,
+    double_touch_blocked: Option<RobotId>,
     /// The shot, pass or case chosen for the ball of open play.
     intent: Option<Intent>,
     /// Whether the ball that is before our area is left to the keeper.
@@ -115,7 +115,7 @@ impl Coach {
     pub fn new(team: Team, tactics: Tactics, league: League) -> Self {
         Self {
             team,
-            rival: Rival::of(team),
+            model: OpponentModel::of(team),
             tactics: if team == Team::Ours { tactics } else { Tactics::NONE },
             kicks: Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default()),
             searches: Searches::new(SEARCH_SEED),
@@ -135,7 +135,7 @@ impl Coach {
             placing: None,
             attacked: false,
             pass: None,
-            barred: None,
+            double_touch_blocked: None,
             intent: None,
             keepers: None,
             settled: None,
@@ -172,8 +172,10 @@ impl Coach {
         match view.phase {
             _ if self.team == Team::Idle => plan.everybody(Role::Player, Task::Stand, Why::Idle),
             Phase::Halt | Phase::Timeout(_) => plan.everybody(Role::Player, Task::Stand, Why::Referee),
-            Phase::Run => match &mut self.rival {
-                Some(rival) => plan.orders.extend(rival.open_play(view, &mut plan.free, self.barred)),
+            Phase::Run => match &mut self.model {
+                Some(model) => {
+                    plan.orders.extend(model.open_play(view, &mut plan.free, self.double_touch_blocked))
+                }
                 None => self.open_play(&mut plan),
             },
             Phase::BallPlacement(Side::Ours) => self.place_ball(&mut plan),
@@ -187,7 +189,7 @@ impl Coach {
                 _ => self.free_kick(&mut plan, Side::Theirs),
             },
         }
-        plan.stay_lawful();
+        plan.stay_legal();
         plan.orders.sort_unstable_by_key(|order| order.robot);
         plan.orders
     }
@@ -199,9 +201,9 @@ impl Coach {
                 self.phase,
                 Some(Phase::FreeKick(Side::Ours) | Phase::Kickoff(Side::Ours) | Phase::Penalty(Side::Ours))
             );
-            self.barred = if view.phase == Phase::Run && taken { self.first } else { None };
+            self.double_touch_blocked = if view.phase == Phase::Run && taken { self.first } else { None };
             self.pass = match self.aim {
-                Some((_, Target::Mate { id, at, .. })) if view.phase == Phase::Run && taken => {
+                Some((_, Target::Teammate { id, at, .. })) if view.phase == Phase::Run && taken => {
                     self.sent = self.sent(view, id, at);
                     let shot = self.ahead.map(|ahead| ahead.rating.shot).filter(|shot| shot.one_touch);
                     Some(Pass { receiver: id, at, then: shot.map(|shot| shot.aim), since: view.now })
@@ -230,10 +232,11 @@ impl Coach {
                 self.pass = None;
             }
         }
-        if let (Some(barred), Some(ball)) = (self.barred, view.ball) {
-            let others = view.ours.iter().filter(|robot| robot.id != barred).chain(view.theirs.iter());
+        if let (Some(double_touch_blocked), Some(ball)) = (self.double_touch_blocked, view.ball) {
+            let others =
+                view.ours.iter().filter(|robot| robot.id != double_touch_blocked).chain(view.theirs.iter());
             if nearest(others, ball.position).is_some_and(|(_, distance)| distance < TOUCHING) {
-                self.barred = None;
+                self.double_touch_blocked = None;
             }
         }
     }

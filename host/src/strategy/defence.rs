@@ -41,9 +41,10 @@ pub fn clearance(view: &View, ball: &Ball) -> (Point<Attack>, KickOrder, f32) {
     let wings = [1.0_f32, -1.0].map(|side| {
         Point::new(ball.position.x() + CLEAR_AHEAD, side * (view.field.width * 0.5 - CLEAR_INSIDE))
     });
-    let mates = view.ours.iter().filter(|mate| mate.id != view.keeper).map(|mate| mate.position);
+    let teammates =
+        view.ours.iter().filter(|teammate| teammate.id != view.keeper).map(|teammate| teammate.position);
     let far = |at: &Point<Attack>| at.distance(ball.position) > CLEAR_AT_LEAST && at.x() > ball.position.x();
-    let best = mates
+    let best = teammates
         .filter(far)
         .chain(wings)
         .map(|at| (at, room_along(view, ball.position, at)))
@@ -85,8 +86,9 @@ pub fn clearance_beside(
             }
             let at = view.clamp(ball.position + way * CLEAR_AHEAD, CLEAR_INSIDE);
             let room = room_along(view, ball.position, at);
-            let mates = view.ours.iter().filter(|mate| mate.id != who.id && mate.id != view.keeper);
-            let blocked = nearest(mates, lines_up).is_some_and(|(_, distance)| distance < BODIES);
+            let teammates =
+                view.ours.iter().filter(|teammate| teammate.id != who.id && teammate.id != view.keeper);
+            let blocked = nearest(teammates, lines_up).is_some_and(|(_, distance)| distance < BODIES);
             let costs = CLEAR_TURN_COSTS * turn.unsigned_abs() as f32
                 + CLEAR_WAY_COSTS * who.position.distance(lines_up)
                 + if blocked { ROOM_ENOUGH } else { 0.0 };

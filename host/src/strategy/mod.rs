@@ -13,6 +13,7 @@
 mod bench;
 mod coach;
 pub mod coerce;
+pub mod counters;
 pub mod defence;
 pub mod opponents;
 mod order;
@@ -21,7 +22,6 @@ pub mod restart;
 pub mod roles;
 pub mod support;
 mod tactics;
-pub mod tally;
 pub mod threat;
 pub mod view;
 

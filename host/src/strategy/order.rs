@@ -5,7 +5,7 @@ use core::fmt;
 
 use casebase::CaseRobot;
 use geometry::{Angle, Attack, Point};
-use protocol::host::{Directive, Duty, KickOrder};
+use protocol::host::{Directive, KickOrder, RuleRole};
 use protocol::{CaseId, RobotId};
 
 use super::threat::Guards;
@@ -38,7 +38,7 @@ pub enum Role {
     /// Receives the pass of our restart.
     Receiver,
     /// Took our restart and must not touch the ball before another robot has.
-    Barred,
+    DoubleTouchBlocked,
     /// Draws an opponent away before our free kick.
     Coercer,
     /// Stands where a pass can come.
@@ -251,11 +251,11 @@ impl fmt::Display for Why {
 
 impl Role {
     /// The role under the rules: permissions beyond those of other robots.
-    pub fn duty(self) -> Duty {
+    pub fn rule_role(self) -> RuleRole {
         match self {
-            Self::Keeper => Duty::Keeper,
-            Self::Taker => Duty::Taker,
-            _ => Duty::Player,
+            Self::Keeper => RuleRole::Keeper,
+            Self::Taker => RuleRole::Taker,
+            _ => RuleRole::Player,
         }
     }
 }
@@ -274,8 +274,9 @@ mod tests {
         assert_eq!(chances.to_string(), "the best pass: received with 0.75, then a goal with 0.20");
         let part = CaseRobot::new(1).unwrap();
         let of_case = Why::OfCase { case: CaseId(12), part, moved: 0.31, receive: 0.75, goal: 0.2 };
-        let words = "tm2 of case 12, its pass moved by 0.31 m: received with 0.75, then a goal with 0.20";
-        assert_eq!(of_case.to_string(), words);
+        let description =
+            "tm2 of case 12, its pass moved by 0.31 m: received with 0.75, then a goal with 0.20";
+        assert_eq!(of_case.to_string(), description);
         let held = Why::Threat(Guards::Held { opponent: marker, primaries_off: 0.5 });
         assert!(held.to_string().contains("0.50 m"), "{held}");
     }

@@ -53,7 +53,7 @@ pub fn take(view: &View, ball: &Ball, target: Option<Target>) -> (Task, Why) {
         Some(Target::Ahead { at, room }) => {
             (Task::Kick { at, kick: support::push_kick(distance(at)) }, Why::BestTarget { room })
         }
-        Some(Target::Mate { id, at, room }) => {
+        Some(Target::Teammate { id, at, room }) => {
             let kick = support::pass_kick(distance(at));
             (Task::Pass { at, receiver: id, kick, ready: true }, Why::BestTarget { room })
         }

@@ -75,7 +75,7 @@ pub enum Target {
         room: f32,
     },
     /// Pass to this teammate.
-    Mate {
+    Teammate {
         /// Its number.
         id: RobotId,
         /// The place.
@@ -98,31 +98,35 @@ pub fn target(view: &View, taker: RobotId, ball: Point<Attack>) -> Target {
     if room > ROOM_TO_SHOOT && ball.distance(view.their_goal()) < SHOOT_WITHIN {
         return Target::Shot { at: shot, room };
     }
-    let receivable = |mate: &&Robot| {
-        mate.id != taker && mate.id != view.keeper && view.clamp(mate.position, INSIDE) == mate.position && {
-            let distance = mate.position.distance(ball);
-            mate.position.x() > ball.x() - BACKWARDS && (PASS_SHORTEST..PASS_LONGEST).contains(&distance)
-        }
+    let receivable = |teammate: &&Robot| {
+        teammate.id != taker
+            && teammate.id != view.keeper
+            && view.clamp(teammate.position, INSIDE) == teammate.position
+            && {
+                let distance = teammate.position.distance(ball);
+                teammate.position.x() > ball.x() - BACKWARDS
+                    && (PASS_SHORTEST..PASS_LONGEST).contains(&distance)
+            }
     };
     let best = view
         .ours
         .iter()
         .filter(receivable)
-        .map(|mate| (mate, worth(view, ball, mate.position)))
+        .map(|teammate| (teammate, worth(view, ball, teammate.position)))
         .reduce(|best, next| if next.1 > best.1 { next } else { best });
     match best {
-        Some((mate, worth)) if worth > WORTH_PASSING => {
-            let room = room_along(view, ball, mate.position);
-            Target::Mate { id: mate.id, at: mate.position, room }
+        Some((teammate, worth)) if worth > WORTH_PASSING => {
+            let room = room_along(view, ball, teammate.position);
+            Target::Teammate { id: teammate.id, at: teammate.position, room }
         }
         _ if room > ROOM_TO_PASS_BY && ball.distance(view.their_goal()) < SHOOT_WITHIN => {
             Target::Shot { at: shot, room }
         }
         // A kick at an opponent's body, from beside the touch line, goes out for them: a pass back to any
         // teammate there is better.
-        Some((mate, _)) if room_along(view, ball, mate.position) > ROOM_TO_PASS_BY => {
-            let room = room_along(view, ball, mate.position);
-            Target::Mate { id: mate.id, at: mate.position, room }
+        Some((teammate, _)) if room_along(view, ball, teammate.position) > ROOM_TO_PASS_BY => {
+            let room = room_along(view, ball, teammate.position);
+            Target::Teammate { id: teammate.id, at: teammate.position, room }
         }
         _ => {
             let half = view.field.width * 0.5 - 0.6;
@@ -233,7 +237,7 @@ mod tests {
         assert!(at.y() > 0.2);
         let ours = [(-4.4, 0.0), (1.9, 0.0), (2.0, 2.0)];
         let blocked = view((2.0, 0.0), &ours, &[(4.4, 0.0), (2.6, 0.0), (2.6, 0.15), (2.6, -0.15)]);
-        let Target::Mate { id, .. } = target(&blocked, blocked.ours[1].id, Point::new(2.0, 0.0)) else {
+        let Target::Teammate { id, .. } = target(&blocked, blocked.ours[1].id, Point::new(2.0, 0.0)) else {
             panic!()
         };
         assert_eq!(id.number(), 2);

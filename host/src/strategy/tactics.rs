@@ -55,7 +55,7 @@ impl Tactics {
     }
 
     /// As text that [`Tactics::parse`] reads.
-    pub fn words(&self) -> String {
+    pub fn description(&self) -> String {
         let Self { threats, second_level, pass_ahead, coerce, attack, bridge } = *self;
         let named = [
             (threats, "threats"),
@@ -65,8 +65,8 @@ impl Tactics {
             (attack, "attack"),
             (bridge, "bridge"),
         ];
-        let words: Vec<_> = named.into_iter().filter(|(on, _)| *on).map(|(_, name)| name).collect();
-        if words.is_empty() { "none".to_owned() } else { words.join(",") }
+        let description: Vec<_> = named.into_iter().filter(|(on, _)| *on).map(|(_, name)| name).collect();
+        if description.is_empty() { "none".to_owned() } else { description.join(",") }
     }
 
     /// From `none`, `all`, `usual`, or names with commas between, such as `threats,pass-ahead`.
@@ -78,8 +78,8 @@ impl Tactics {
             _ => {}
         }
         let mut tactics = Self::NONE;
-        for word in text.split(',') {
-            let part = match word {
+        for label in text.split(',') {
+            let part = match label {
                 "threats" => &mut tactics.threats,
                 "second-level" => &mut tactics.second_level,
                 "pass-ahead" => &mut tactics.pass_ahead,
@@ -88,7 +88,7 @@ impl Tactics {
                 "bridge" => &mut tactics.bridge,
                 _ => {
                     return Err(format!(
-                        "`{word}` is no tactic; none, all, usual, or some of threats, second-level, pass-ahead, coerce, attack, bridge"
+                        "`{label}` is no tactic; none, all, usual, or some of threats, second-level, pass-ahead, coerce, attack, bridge"
                     ));
                 }
             };
@@ -117,7 +117,7 @@ mod tests {
         let some = Tactics::parse("threats,coerce").unwrap();
         assert_eq!(some, Tactics { threats: true, coerce: true, ..Tactics::NONE });
         for tactics in [Tactics::NONE, some, Tactics::ALL] {
-            assert_eq!(Tactics::parse(&tactics.words()), Ok(tactics));
+            assert_eq!(Tactics::parse(&tactics.description()), Ok(tactics));
         }
         assert!(Tactics::parse("threats,").unwrap_err().contains("second-level"));
     }

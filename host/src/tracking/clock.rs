@@ -26,14 +26,14 @@ pub(super) enum Judgement {
 pub(super) struct Clock {
     /// Time of the newest camera frame, and its arrival.
     newest: Option<(Captured, i64)>,
-    rival: Option<Rival>,
+    candidate: Option<CandidateClock>,
     /// Least difference of clocks seen in the current and in the last window.
     least: Option<[i64; 2]>,
     stretch_start: i64,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Rival {
+struct CandidateClock {
     newest: Captured,
     images: u32,
 }
@@ -55,14 +55,16 @@ impl Clock {
     }
 
     fn foreign(&mut self, captured: Captured, silent: i64, patience: i64) -> Judgement {
-        let follows = self.rival.filter(|rival| (captured - rival.newest).abs() <= FAR);
-        let rival = match follows {
-            Some(rival) if captured > rival.newest => Rival { newest: captured, images: rival.images + 1 },
-            Some(rival) => rival,
-            None => Rival { newest: captured, images: 1 },
+        let follows = self.candidate.filter(|candidate| (captured - candidate.newest).abs() <= FAR);
+        let candidate = match follows {
+            Some(candidate) if captured > candidate.newest => {
+                CandidateClock { newest: captured, images: candidate.images + 1 }
+            }
+            Some(candidate) => candidate,
+            None => CandidateClock { newest: captured, images: 1 },
         };
-        self.rival = Some(rival);
-        if rival.images >= IMAGES_TO_BELIEVE && silent >= patience {
+        self.candidate = Some(candidate);
+        if candidate.images >= IMAGES_TO_BELIEVE && silent >= patience {
             *self = Self::default();
             return Judgement::Restart;
         }
@@ -70,11 +72,11 @@ impl Clock {
     }
 
     /// Updates the offset by a new camera frame of the clock we follow; `sent` is when vision sent it.
-    pub(super) fn hear(&mut self, captured: Captured, sent: Option<Captured>, arrived: Instant) {
+    pub(super) fn receive(&mut self, captured: Captured, sent: Option<Captured>, arrived: Instant) {
         let arrived = arrived.0 as i64;
         if self.newest.is_none_or(|(newest, _)| captured > newest) {
             self.newest = Some((captured, arrived));
-            self.rival = None;
+            self.candidate = None;
         }
         let sent = sent.filter(|sent| (captured..=captured + PROCESSING_MAX).contains(sent));
         let difference = arrived - sent.unwrap_or(captured);
@@ -146,7 +148,7 @@ mod tests {
             let arrived = Instant((i * TICK + delay(i)) as u64);
             match clock.judge(captured, arrived) {
                 Judgement::Foreign => {}
-                Judgement::Ours | Judgement::Restart => clock.hear(captured, None, arrived),
+                Judgement::Ours | Judgement::Restart => clock.receive(captured, None, arrived),
             }
         }
     }
@@ -164,7 +166,7 @@ mod tests {
     #[test]
     fn what_vision_needed_itself_counts_as_delay() {
         let mut clock = Clock::default();
-        clock.hear(1_000_000, Some(1_010_000), Instant(5_011_000));
+        clock.receive(1_000_000, Some(1_010_000), Instant(5_011_000));
         assert_eq!(clock.ours(1_000_000), Instant(5_001_000));
         assert_eq!(clock.delay(), Duration(10_000));
     }
@@ -200,7 +202,7 @@ mod tests {
         for i in 0..1_000 {
             let arrived = Instant((i * TICK) as u64);
             assert_eq!(clock.judge(i * TICK, arrived), Judgement::Ours);
-            clock.hear(i * TICK, None, arrived);
+            clock.receive(i * TICK, None, arrived);
             if i > 0 {
                 assert_eq!(clock.judge(1_795_220_511_000_000 + i * TICK, arrived), Judgement::Foreign);
                 assert_eq!(clock.late(i * TICK - 100_000, arrived), Judgement::Foreign);

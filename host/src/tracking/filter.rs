@@ -11,15 +11,15 @@ use geometry::{Angle, Field, Point, Vector, math};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Freedom {
     /// Density while predictions fit.
-    pub(super) calm: f32,
+    pub(super) stop_rules: f32,
     /// Density when predictions lag behind.
     pub(super) changing: f32,
 }
 
 impl Freedom {
     fn at(self, lag: f32) -> f32 {
-        let share = ((lag - LAG_CALM) * (1.0 / (LAG_CHANGING - LAG_CALM))).clamp(0.0, 1.0);
-        self.calm + (self.changing - self.calm) * share
+        let share = ((lag - LAG_STOP_RULES) * (1.0 / (LAG_CHANGING - LAG_STOP_RULES))).clamp(0.0, 1.0);
+        self.stop_rules + (self.changing - self.stop_rules) * share
     }
 }
 
@@ -154,7 +154,7 @@ impl Turning {
 /// Weight of the newest innovation in the average: about the last three count.
 const LAG_SHARE: f32 = 0.3;
 /// Squared averages below this are noise: white innovations give 2 · 0.3 / (2 − 0.3) = 0.35 in the mean.
-const LAG_CALM: f32 = 1.2;
+const LAG_STOP_RULES: f32 = 1.2;
 /// Squared averages above this are certainly a change (probability exp(−4 / 0.35) by noise).
 const LAG_CHANGING: f32 = 4.0;
 /// Least variance of a speed, against rounding: (1 mm/s)², in (m/s)².
@@ -164,7 +164,7 @@ const SPEED_VARIANCE_MIN: f32 = 1e-6;
 mod tests {
     use super::*;
 
-    const FREEDOM: Freedom = Freedom { calm: 0.1, changing: 10.0 };
+    const FREEDOM: Freedom = Freedom { stop_rules: 0.1, changing: 10.0 };
 
     #[test]
     fn two_exact_glimpses_of_a_free_point_give_its_velocity() {
@@ -178,7 +178,7 @@ mod tests {
     fn a_heading_turns_over_the_seam_without_swinging_round() {
         let mut turning = Turning::new(Angle::degrees(170.0), 0.01, 10.0);
         for step in 1..=20 {
-            turning.pass(0.01, Freedom { calm: 1.0, changing: 100.0 });
+            turning.pass(0.01, Freedom { stop_rules: 1.0, changing: 100.0 });
             turning.see(Angle::degrees(170.0 + step as f32 * 2.0), 0.01);
         }
         assert!((turning.rate.to_degrees() - 200.0).abs() < 5.0, "{turning:?}");

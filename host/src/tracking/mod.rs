@@ -85,7 +85,7 @@ impl Default for Settings {
 
 /// Result of a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Heard {
+pub enum Received {
     /// It contains no camera frame.
     NoImage,
     /// It is the newest camera frame.
@@ -138,16 +138,16 @@ impl Counts {
         self.newest + self.reordered + self.repeated + self.late + self.nonsense + self.foreign
     }
 
-    fn count(&mut self, heard: Heard) {
-        *match heard {
-            Heard::NoImage => &mut self.no_image,
-            Heard::Newest => &mut self.newest,
-            Heard::Reordered(_) => &mut self.reordered,
-            Heard::Repeated => &mut self.repeated,
-            Heard::Late(_) => &mut self.late,
-            Heard::Nonsense => &mut self.nonsense,
-            Heard::ForeignClock => &mut self.foreign,
-            Heard::Restarted => {
+    fn count(&mut self, received: Received) {
+        *match received {
+            Received::NoImage => &mut self.no_image,
+            Received::Newest => &mut self.newest,
+            Received::Reordered(_) => &mut self.reordered,
+            Received::Repeated => &mut self.repeated,
+            Received::Late(_) => &mut self.late,
+            Received::Nonsense => &mut self.nonsense,
+            Received::ForeignClock => &mut self.foreign,
+            Received::Restarted => {
                 self.restarts += 1;
                 &mut self.newest
             }
@@ -218,23 +218,23 @@ impl Tracker {
     }
 
     /// Takes a packet that came at `arrived`, our clock.
-    pub fn handle(&mut self, packet: &WrapperPacket, arrived: Instant) -> Heard {
+    pub fn handle(&mut self, packet: &WrapperPacket, arrived: Instant) -> Received {
         if let Some(geometry) = &packet.geometry {
-            self.counts.geometry_refused += u64::from(self.scene.hear(geometry).is_err());
+            self.counts.geometry_refused += u64::from(self.scene.receive(geometry).is_err());
         }
-        let heard = packet.detection.as_ref().map_or(Heard::NoImage, |image| self.see(image, arrived));
-        self.counts.count(heard);
-        heard
+        let received = packet.detection.as_ref().map_or(Received::NoImage, |image| self.see(image, arrived));
+        self.counts.count(received);
+        received
     }
 
-    fn see(&mut self, image: &DetectionFrame, arrived: Instant) -> Heard {
+    fn see(&mut self, image: &DetectionFrame, arrived: Instant) -> Received {
         if !self.frame.read(image) {
-            return Heard::Nonsense;
+            return Received::Nonsense;
         }
         let at = self.frame.at;
         let mut restarted = match self.clock.judge(at, arrived) {
             Judgement::Ours => false,
-            Judgement::Foreign => return Heard::ForeignClock,
+            Judgement::Foreign => return Received::ForeignClock,
             Judgement::Restart => true,
         };
         let mut placed = self.place(restarted);
@@ -245,14 +245,14 @@ impl Tracker {
             placed = self.place(restarted);
         }
         match placed {
-            Placed::Repeated => return Heard::Repeated,
-            Placed::Late(by) => return Heard::Late(Duration(by.unsigned_abs())),
-            Placed::Newest | Placed::Before(_) => self.clock.hear(at, captured(image.t_sent), arrived),
+            Placed::Repeated => return Received::Repeated,
+            Placed::Late(by) => return Received::Late(Duration(by.unsigned_abs())),
+            Placed::Newest | Placed::Before(_) => self.clock.receive(at, captured(image.t_sent), arrived),
         }
         match placed {
-            _ if restarted => Heard::Restarted,
-            Placed::Before(newer) => Heard::Reordered(newer),
-            _ => Heard::Newest,
+            _ if restarted => Received::Restarted,
+            Placed::Before(newer) => Received::Reordered(newer),
+            _ => Received::Newest,
         }
     }
 
@@ -272,13 +272,13 @@ impl Tracker {
     }
 
     /// The field when the newest camera frame was taken; empty before the first.
-    pub fn picture(&self) -> World {
+    pub fn snapshot(&self) -> World {
         let at = self.timeline.newest().unwrap_or(0);
         let ours = |captured: Captured| self.clock.ours(captured);
         let mut world = World::empty(ours(at), self.scene.models);
         let around = Around { robots: &self.state.robots, scene: &self.scene, sigma: self.settings.ball };
-        world.ball = self.state.balls.picture(at, around, ours);
-        for robot in self.state.robots.picture(at, ours) {
+        world.ball = self.state.balls.snapshot(at, around, ours);
+        for robot in self.state.robots.snapshot(at, ours) {
             world.put(robot);
         }
         world
@@ -286,7 +286,7 @@ impl Tracker {
 
     /// The field at `time` of our clock: the newest world extrapolated.
     pub fn world(&self, time: Instant) -> World {
-        self.picture().at(time)
+        self.snapshot().at(time)
     }
 
     /// When the newest camera frame was taken, s on vision's clock; `None` before the first.

@@ -30,7 +30,7 @@ impl Publisher {
     /// The newest world as a packet; `None` before the first camera frame.
     pub fn publish(&mut self, tracker: &Tracker) -> Option<&TrackerWrapperPacket> {
         let captured = tracker.captured()?;
-        let world = tracker.picture();
+        let world = tracker.snapshot();
         // Taken out and put back, so that its lists keep their memory.
         let mut frame = self.packet.tracked_frame.take().unwrap_or_else(|| self.frame.clone());
         frame.frame_number = self.frame.frame_number;

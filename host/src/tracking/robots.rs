@@ -217,7 +217,7 @@ impl Robots {
     }
 
     /// All robots at that moment; `ours` converts moments to our clock.
-    pub(super) fn picture(
+    pub(super) fn snapshot(
         &self,
         at: Captured,
         ours: impl Fn(Captured) -> Instant,
@@ -269,8 +269,8 @@ const SPEED_SIGMA: f32 = 2.0;
 const RATE_SIGMA: f32 = 5.0;
 /// White acceleration, m²/s³: calm is a robot that holds its speed within 0.1 m/s; changing is 5 m/s² held
 /// for 0.2 s.
-const PLACE_FREEDOM: Freedom = Freedom { calm: 0.15, changing: 10.0 };
+const PLACE_FREEDOM: Freedom = Freedom { stop_rules: 0.15, changing: 10.0 };
 /// White angular acceleration, rad²/s³: as above with 0.3 rad/s, and 50 rad/s² held for 0.1 s.
-const HEADING_FREEDOM: Freedom = Freedom { calm: 2.0, changing: 250.0 };
+const HEADING_FREEDOM: Freedom = Freedom { stop_rules: 2.0, changing: 250.0 };
 /// Weight of the newest detection in the quality.
 const QUALITY_SHARE: f32 = 0.1;

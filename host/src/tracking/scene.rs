@@ -5,7 +5,7 @@ use motion::ball::BallModel;
 use ssl::vision::GeometryData;
 
 use super::seen::CAMERAS_MAX;
-use crate::field_geometry::{GeometryFault, News, VisionGeometry};
+use crate::field_geometry::{GeometryChange, GeometryFault, VisionGeometry};
 use crate::world::BallModels;
 
 /// Position of a camera.
@@ -32,8 +32,8 @@ impl Scene {
     }
 
     /// Takes a packet; refused parts keep their previous values.
-    pub(super) fn hear(&mut self, data: &GeometryData) -> Result<News, GeometryFault> {
-        let news = self.geometry.hear(data)?;
+    pub(super) fn receive(&mut self, data: &GeometryData) -> Result<GeometryChange, GeometryFault> {
+        let news = self.geometry.receive(data)?;
         for (number, camera) in self.geometry.cameras() {
             let [x, y, height] = camera.position;
             if let Some(place) = self.cameras.get_mut(*number as usize) {
@@ -100,7 +100,7 @@ mod tests {
     fn trap_02_cameras_told_one_a_packet_are_all_at_hand() {
         let mut scene = Scene::default();
         for id in 0..4 {
-            scene.hear(&packet(id, 4_000.0)).unwrap();
+            scene.receive(&packet(id, 4_000.0)).unwrap();
         }
         for id in 0..4 {
             let camera = scene.camera(id).unwrap();
@@ -109,7 +109,7 @@ mod tests {
             );
         }
         assert_eq!((scene.camera(4), scene.camera(u32::MAX)), (None, None));
-        scene.hear(&packet(2, 300.0)).unwrap();
+        scene.receive(&packet(2, 300.0)).unwrap();
         assert_eq!(scene.camera(2), None, "on a tripod");
     }
 
@@ -117,10 +117,10 @@ mod tests {
     fn a_ball_between_the_walls_can_be_played_and_one_beyond_them_cannot() {
         let mut scene = Scene::default();
         assert!(scene.is_playable(Point::new(9.0, 0.0)), "the field is unknown");
-        scene.hear(&packet(0, 4_000.0)).unwrap();
+        scene.receive(&packet(0, 4_000.0)).unwrap();
         assert!(scene.is_playable(Point::new(-4.75, 3.25)) && !scene.is_playable(Point::new(9.0, 0.0)));
         let nonsense = GeometryData { field: GeometryFieldSize::default(), ..packet(0, 4_000.0) };
-        assert!(scene.hear(&nonsense).is_err());
+        assert!(scene.receive(&nonsense).is_err());
         assert!(!scene.is_playable(Point::new(9.0, 0.0)), "what was known stands");
     }
 }

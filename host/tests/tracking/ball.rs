@@ -39,7 +39,7 @@ fn a_flat_kick_is_noticed_within_three_images_with_its_speed_its_robot_and_its_r
             let (mut place, mut rate) = (Rms::default(), Rms::default());
             let (mut after, mut noticed) = (0, None);
             play(&mut stadium, &mut Tracker::default(), (0.0, 2.2), kicked(from, velocity), |t, tracker| {
-                let ball = tracker.picture().ball;
+                let ball = tracker.snapshot().ball;
                 if t < KICK {
                     assert!(ball.is_none_or(|ball| ball.kicked.is_none()), "kick seen {} s early", KICK - t);
                     return;
@@ -60,7 +60,7 @@ fn a_flat_kick_is_noticed_within_three_images_with_its_speed_its_robot_and_its_r
                     assert!(!kick.is_chip(), "{speed} m/s, seed {seed}: {kick:?}");
                     assert!((kick.velocity.norm() / speed - 1.0).abs() < 0.06, "{speed} m/s: {kick:?}");
                     assert!(kick.from.distance(from) < 0.05, "{speed} m/s: {kick:?}");
-                    let rest = ball.rest(&tracker.picture().models).distance(path.rest());
+                    let rest = ball.rest(&tracker.snapshot().models).distance(path.rest());
                     assert!(rest < 0.10 * path.rest_distance(), "{speed} m/s at {t}: rest {rest} m off");
                 }
             });
@@ -91,7 +91,7 @@ fn a_resting_and_a_rolling_ball_are_followed_within_millimetres() {
         let (mut place, mut rate) = (Rms::default(), Rms::default());
         play(&mut Stadium::one_camera(9), &mut Tracker::default(), (0.0, 3.0), truth, |t, tracker| {
             if t > 0.3 {
-                let ball = tracker.picture().ball.unwrap();
+                let ball = tracker.snapshot().ball.unwrap();
                 place.add(f64::from(ball.position.distance(path.at(t as f32).position)));
                 rate.add(f64::from((ball.velocity - path.at(t as f32).velocity).norm()));
                 assert!(ball.kicked.is_none() && ball.height == 0.0);
@@ -116,7 +116,7 @@ fn chip(mut stadium: Stadium, from: Point<Field>, velocity: Vector<Field>, climb
     };
     let (mut known, mut off) = (None, Rms::default());
     play(&mut stadium, &mut Tracker::default(), (0.0, KICK + flight + 0.6), truth, |t, tracker| {
-        let World { ball: Some(ball), .. } = tracker.picture() else { return };
+        let World { ball: Some(ball), .. } = tracker.snapshot() else { return };
         let share = (t - KICK) / flight;
         if ball.height > 0.0 {
             known = known.or(Some(share));
@@ -201,7 +201,7 @@ fn a_ball_hidden_by_the_robot_that_has_it_goes_with_the_robot() {
     let mut off = Rms::default();
     play(&mut Stadium::one_camera(10), &mut Tracker::default(), (0.0, 2.5), truth, |t, tracker| {
         if t > 0.7 {
-            let ball = tracker.picture().ball.unwrap_or_else(|| panic!("lost at {t} s"));
+            let ball = tracker.snapshot().ball.unwrap_or_else(|| panic!("lost at {t} s"));
             let [x, y, _] = front(t);
             off.add(f64::from(ball.position.distance(Point::new(x as f32, y as f32))));
             assert!(ball.confidence < 0.99 || !(0.7..2.1).contains(&t));
@@ -218,7 +218,7 @@ fn a_ball_that_vanishes_in_the_open_goes_on_for_a_while_and_is_gone_after_a_seco
         Truth { balls, robots: vec![(who(Blue, 1), [0.0, 2.0, 0.0])] }
     };
     play(&mut Stadium::one_camera(11), &mut Tracker::default(), (0.0, 2.5), truth, |t, tracker| {
-        let ball = tracker.picture().ball;
+        let ball = tracker.snapshot().ball;
         match t {
             1.05..1.3 => assert!((f64::from(ball.unwrap().position.x()) - (t - 2.0)).abs() < 0.05),
             2.05.. => assert!(ball.is_none(), "at {t} s"),
@@ -251,7 +251,7 @@ fn a_second_ball_a_shoe_or_a_flicker_does_not_take_over_from_the_ball_in_sight()
     let mut off = Rms::default();
     play(&mut stadium, &mut Tracker::default(), (0.0, 3.0), truth, |t, tracker| {
         if t > 0.2 {
-            let ball = tracker.picture().ball.unwrap();
+            let ball = tracker.snapshot().ball.unwrap();
             off.add(f64::from(ball.position.distance(path.at(t as f32).position)));
             assert!(ball.kicked.is_none(), "at {t} s: {ball:?}");
         }
@@ -273,7 +273,7 @@ fn trap_11_a_ball_far_outside_and_images_with_no_ball_or_two_are_normal() {
         Truth { balls, robots: vec![] }
     };
     play(&mut stadium, &mut Tracker::default(), (0.0, 4.0), truth, |t, tracker| {
-        let ball = tracker.picture().ball;
+        let ball = tracker.snapshot().ball;
         match t {
             0.3..2.0 => assert!(ball.unwrap().position.distance(Point::new(9.0, 0.5)) < 0.02, "at {t} s"),
             2.5.. => assert!(ball.unwrap().position.distance(Point::new(1.2, -0.8)) < 0.02, "at {t} s"),
@@ -289,7 +289,7 @@ fn a_ball_that_is_put_elsewhere_was_not_kicked_there() {
         Truth { balls: vec![ball], robots: vec![(who(Blue, 1), [-0.1, 0.0, 0.0])] }
     };
     play(&mut Stadium::one_camera(14), &mut Tracker::default(), (0.0, 2.0), truth, |t, tracker| {
-        let ball = tracker.picture().ball;
+        let ball = tracker.snapshot().ball;
         assert!(ball.is_none_or(|ball| ball.kicked.is_none()), "at {t} s: {ball:?}");
         assert!(
             t < 1.2 || ball.unwrap().position.distance(Point::new(1.2, 2.8)) < 0.02,
@@ -315,7 +315,7 @@ fn a_ball_that_bounces_off_a_hull_keeps_no_old_kick_and_its_new_way_is_known_in_
     let mut tracker = Tracker::default();
     play(&mut Stadium::one_camera(15), &mut tracker, (0.0, 2.5), truth, |t, tracker| {
         if t > hit + 3.0 / RATE {
-            let ball = tracker.picture().ball.unwrap();
+            let ball = tracker.snapshot().ball.unwrap();
             let off = (ball.velocity - second.at((t - hit) as f32).velocity).norm();
             assert!(off < 0.5, "at {t} s: {off} m/s");
             assert!(ball.kicked.is_none());

@@ -1,7 +1,7 @@
 //! `order`: tests: tracking does not depend on how the network shuffled, copied and delayed packets.
 
 use geometry::{Field, Point, Vector};
-use host::tracking::{Heard, Tracker};
+use host::tracking::{Received, Tracker};
 use host::world::World;
 use motion::ball::BallModel;
 use motion::trajectory::Motion;
@@ -52,30 +52,30 @@ fn copies_of_half_of_the_images_and_late_copies_of_all_change_nothing_ever() {
         plain.handle(packet, arrival(*t));
         // The wireless copies, a tenth of a second late.
         while let Some((then, packet)) = late.next_if(|(then, _)| then < t) {
-            let heard = copied.handle(packet, arrival(then));
-            assert!(matches!(heard, Heard::Repeated | Heard::Late(_)), "{heard:?}");
+            let received = copied.handle(packet, arrival(then));
+            assert!(matches!(received, Received::Repeated | Received::Late(_)), "{received:?}");
             copies += 1;
         }
         copied.handle(packet, arrival(*t));
         if i > 0 && i % 2 == 0 {
-            assert_eq!(copied.handle(packet, arrival(*t + 0.001)), Heard::Repeated);
+            assert_eq!(copied.handle(packet, arrival(*t + 0.001)), Received::Repeated);
             copies += 1;
         }
-        assert_eq!(plain.picture(), copied.picture(), "at {t} s");
+        assert_eq!(plain.snapshot(), copied.snapshot(), "at {t} s");
     }
     assert_eq!(plain.objects(), copied.objects());
     assert_eq!(copied.counts().repeated + copied.counts().late, copies);
-    assert!(copies > 1_000 && plain.picture().robots().count() == 12);
+    assert!(copies > 1_000 && plain.snapshot().robots().count() == 12);
 }
 
 #[test]
-fn images_that_come_out_of_order_give_the_same_picture_as_in_order() {
+fn images_that_come_out_of_order_give_the_same_snapshot_as_in_order() {
     let mut plain = Tracker::default();
     let images = images();
     for (t, packet) in &images {
         plain.handle(packet, arrival(*t));
     }
-    let expected = bits(&plain.picture());
+    let expected = bits(&plain.snapshot());
     for seed in 0..5 {
         let mut random = Stadium::one_camera(seed);
         // Each packet is in transit for up to 40 ms: about ten packets overtake each other.
@@ -89,7 +89,7 @@ fn images_that_come_out_of_order_give_the_same_picture_as_in_order() {
         }
         let counts = tracker.counts();
         assert!(counts.reordered > 300 && counts.late == 0 && counts.repeated == 0, "{counts:?}");
-        assert_eq!(bits(&tracker.picture()), expected, "seed {seed}");
+        assert_eq!(bits(&tracker.snapshot()), expected, "seed {seed}");
         assert_eq!(tracker.objects(), plain.objects(), "seed {seed}");
     }
 }
@@ -110,10 +110,10 @@ fn trap_02_four_images_a_tick_with_a_robot_in_all_of_them_are_one_robot() {
                 robots: vec![(who(Blue, 3), [0.1, -0.1, 0.5]), (who(Yellow, 8), [-3.0, 2.0, 0.0])],
             };
             let packet = stadium.image(camera, 500 + tick * (camera as u32 + 1), t, &truth);
-            assert_eq!(tracker.handle(&packet, arrival(t)), Heard::Newest);
+            assert_eq!(tracker.handle(&packet, arrival(t)), Received::Newest);
         }
     }
-    let world = tracker.picture();
+    let world = tracker.snapshot();
     assert_eq!(world.robots().count(), 2);
     let robot = world.robot(who(Blue, 3)).unwrap();
     assert!(robot.pose.position.distance(Point::new(0.1, -0.1)) < 0.005, "{robot:?}");

@@ -5,7 +5,7 @@
 use std::path::PathBuf;
 
 use geometry::Point;
-use host::tracking::{Heard, Tracker};
+use host::tracking::{Received, Tracker};
 use protocol::{Instant, Who};
 use rules::Colour::{Blue, Yellow};
 use ssl::Message;
@@ -130,12 +130,15 @@ fn compare(name: &str, bounds: [[f64; 3]; 2]) -> Tracker {
     let mut tracker = Tracker::default();
     let (mut robots, mut balls, mut without) = (Vec::new(), Vec::new(), 0);
     for (i, (arrived, packet)) in packets.iter().enumerate() {
-        let heard = tracker.handle(packet, *arrived);
-        assert!(matches!(heard, Heard::Newest | Heard::Reordered(_)), "{name}, packet {i}: {heard:?}");
+        let received = tracker.handle(packet, *arrived);
+        assert!(
+            matches!(received, Received::Newest | Received::Reordered(_)),
+            "{name}, packet {i}: {received:?}"
+        );
         if i % 20 != 19 || i < 100 {
             continue;
         }
-        let (world, t) = (tracker.picture(), tracker.captured().unwrap());
+        let (world, t) = (tracker.snapshot(), tracker.captured().unwrap());
         for robot in world.robots() {
             robots.extend(raw.robot(robot.who, t).map(|truth| off(robot.pose.position, truth)));
         }
@@ -206,7 +209,7 @@ fn single_packets_agree_with_what_an_independent_decoder_read_in_them() {
             image.t_capture += 0.016;
             tracker.handle(&packet, Instant(1_000_000 + i * 16_000));
         }
-        let world = tracker.picture();
+        let world = tracker.snapshot();
         let mm = |value: &serde_json::Value| value.as_f64().unwrap() * 1e-3;
         for (colour, key) in [(Yellow, "robots_yellow"), (Blue, "robots_blue")] {
             for robot in read["detection"][key].as_array().into_iter().flatten() {
@@ -246,7 +249,7 @@ fn the_recorded_trackers_ball_and_ours_agree_while_its_ball_is_where_the_images_
                 let there = [f64::from(theirs.x), f64::from(theirs.y)];
                 let true_now =
                     raw.ball(tracker.captured().unwrap()).is_some_and(|[x, y]| f64::hypot(x, y) < 0.002);
-                if let Some(ball) = tracker.picture().ball.filter(|_| true_now) {
+                if let Some(ball) = tracker.snapshot().ball.filter(|_| true_now) {
                     distance.add(off(ball.position, there));
                 }
             }

@@ -19,7 +19,7 @@ fn errors(mut stadium: Stadium) -> [Rms; 4] {
     let robot = who(Blue, 4);
     let truth = |t| Truth { robots: vec![(robot, eight(t).0)], ..Truth::default() };
     play(&mut stadium, &mut Tracker::default(), (0.0, 30.0), truth, |t, tracker| {
-        let Some(seen) = tracker.picture().robot(robot).copied() else {
+        let Some(seen) = tracker.snapshot().robot(robot).copied() else {
             assert!(t < 0.2, "lost at {t} s");
             return;
         };
@@ -76,7 +76,7 @@ fn the_velocity_of_a_robot_that_starts_with_3_m_s2_lags_less_than_60_ms() {
     for seed in 0..runs {
         let mut image = 0;
         play(&mut Stadium::one_camera(seed), &mut Tracker::default(), (0.0, 2.5), truth, |t, tracker| {
-            let seen = tracker.picture().robot(robot).map_or(0.0, |seen| f64::from(seen.velocity.x()));
+            let seen = tracker.snapshot().robot(robot).map_or(0.0, |seen| f64::from(seen.velocity.x()));
             lags[image] += (speed(t) - seen) / 3.0 / runs as f64;
             if (0.5..1.0).contains(&t) {
                 noise.add(seen);
@@ -110,7 +110,7 @@ fn a_robot_is_believed_after_three_images_and_a_misread_one_never() {
     let mut images = 0;
     play(&mut stadium, &mut Tracker::default(), (0.0, 5.0), truth, |t, tracker| {
         images += 1;
-        let world = tracker.picture();
+        let world = tracker.snapshot();
         assert_eq!(world.robot(real).is_some(), images >= 3, "image {images}");
         assert!(world.robot(ghost).is_none(), "at {t} s");
     });
@@ -128,7 +128,7 @@ fn a_pattern_read_in_the_wrong_colour_or_number_makes_no_second_robot() {
         Truth { robots: vec![(name, [0.5 * t, -0.1, 1.0])], ..Truth::default() }
     };
     play(&mut stadium, &mut Tracker::default(), (0.0, 4.0), truth, |t, tracker| {
-        let world = tracker.picture();
+        let world = tracker.snapshot();
         assert!(world.robots().all(|robot| robot.who == real), "at {t} s");
         assert!(t < 0.2 || world.robot(real).is_some(), "at {t} s");
     });
@@ -144,7 +144,7 @@ fn a_wrong_name_that_was_believed_first_gives_way() {
         Truth { robots: vec![(name, [0.0, 0.0, 0.0])], ..Truth::default() }
     };
     play(&mut stadium, &mut Tracker::default(), (0.0, 4.0), truth, |t, tracker| {
-        let world = tracker.picture();
+        let world = tracker.snapshot();
         assert!(t < 0.5 || world.robot(real).is_some(), "at {t} s");
         assert!(t < 1.3 || world.robot(wrong).is_none(), "at {t} s");
     });
@@ -171,7 +171,7 @@ fn a_robot_seen_elsewhere_now_and_then_stays_where_it_is_but_one_that_is_carried
     };
     let mut tracker = Tracker::default();
     play(&mut stadium, &mut tracker, (0.0, 4.0), truth, |t, tracker| {
-        let Some(seen) = tracker.picture().robot(robot).copied() else { return assert!(t < 0.1) };
+        let Some(seen) = tracker.snapshot().robot(robot).copied() else { return assert!(t < 0.1) };
         let there = seen.pose.position.x() < 0.0;
         assert!(if t < 3.0 { !there } else { there || t < 3.2 }, "at {t} s: {seen:?}");
         assert!(seen.velocity.norm() < 0.3, "at {t} s: {seen:?}");
@@ -191,7 +191,7 @@ fn an_unseen_robot_coasts_fades_goes_and_returns() {
     };
     let mut confidence = 1.0;
     play(&mut stadium, &mut Tracker::default(), (0.0, 4.0), truth, |t, tracker| {
-        let world = tracker.picture();
+        let world = tracker.snapshot();
         let seen = world.robot(robot);
         let off = seen.map(|seen| f64::from(seen.pose.position.x()) - place(t)[0]);
         match t {

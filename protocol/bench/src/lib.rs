@@ -7,11 +7,11 @@
 use geometry::GoalEnd;
 use protocol::frame::{Audience, TeamKey};
 use protocol::host::{
-    Command, Condition, Directive, Duty, Hint, HostMessage, PART_ROBOTS_MAX, Telemetry, Welcome, WireBall,
-    WireRobot, WireWho, WorldPart,
+    Command, Condition, Directive, Hint, HostMessage, PART_ROBOTS_MAX, RuleRole, Telemetry, Welcome,
+    WireBall, WireRobot, WireWho, WorldPart,
 };
 use protocol::host_link::HostLink;
-use protocol::link::{Heard, Link, Packet};
+use protocol::link::{Link, Packet, Received};
 use protocol::quantized::{WirePoint, WirePose};
 use protocol::team::{BallReport, Beacon, CycleState, Decision, Play, Progress, Role, Status, TeamMessage};
 use protocol::{CaseId, CycleId, Instant, RobotId, TeamId};
@@ -67,7 +67,7 @@ impl Work {
     ];
 
     /// Its name in tables.
-    pub const fn word(self) -> &'static str {
+    pub const fn label(self) -> &'static str {
         match self {
             Self::SealShort => "seal a short beacon",
             Self::SealLong => "seal the longest beacon",
@@ -93,7 +93,7 @@ impl Work {
 /// A robot, its teammate and its host, after their handshakes.
 pub struct Bench {
     robot: Link,
-    mate: Link,
+    teammate: Link,
     host: HostLink,
 }
 
@@ -111,7 +111,7 @@ impl Bench {
         let (team, key) = (TeamId(2), TeamKey(core::array::from_fn(|i| 7 * i as u8 + 1)));
         let mut bench = Self {
             robot: Link::new(team, id(2), key.of_robot(id(2)), 9),
-            mate: Link::new(team, id(3), key.of_robot(id(3)), 4),
+            teammate: Link::new(team, id(3), key.of_robot(id(3)), 4),
             host: HostLink::new(team, key, 70),
         };
         // Six robots play, as in division B.
@@ -121,16 +121,16 @@ impl Bench {
         // The teammate receives a first frame and sends a handshake; the receiver of a handshake trusts its
         // sender.
         let first = bench.robot.seal(&short());
-        let _heard = bench.mate.open(NOW, &first);
-        if let Some(greeting) = bench.mate.poll_greeting(Instant(0)) {
-            let _greeted = bench.robot.open(NOW, &greeting);
+        let _received = bench.teammate.open(NOW, &first);
+        if let Some(handshake) = bench.teammate.poll_handshake(Instant(0)) {
+            let _greeted = bench.robot.open(NOW, &handshake);
         }
         bench
     }
 
     /// Prepares a task: only [`Task::run`] is measured.
     pub fn task(&mut self, work: Work) -> Task<'_> {
-        let Self { robot, mate, host } = self;
+        let Self { robot, teammate, host } = self;
         let mut message = None;
         let mut packet = Packet::new();
         match work {
@@ -139,17 +139,17 @@ impl Bench {
             Work::SealTelemetry => message = Some(telemetry()),
             Work::OpenCommand => packet = host.seal(NOW, &command(2, Directive::Stand)),
             Work::OpenLongCommand => packet = host.seal(NOW, &command(2, longest())),
-            Work::OpenShort => packet = mate.seal(&short()),
-            Work::OpenLong => packet = mate.seal(&long()),
+            Work::OpenShort => packet = teammate.seal(&short()),
+            Work::OpenLong => packet = teammate.seal(&long()),
             Work::OpenSmallWorld => packet = host.seal(NOW, &world(1)),
             Work::OpenWorld => packet = host.seal(NOW, &world(PART_ROBOTS_MAX)),
             Work::Skip => packet = host.seal(NOW, &command(3, longest())),
             Work::RefuseReplay => {
-                packet = mate.seal(&long());
+                packet = teammate.seal(&long());
                 let _believed = robot.open(NOW, &packet);
             }
             Work::RefuseForged => {
-                packet = mate.seal(&long());
+                packet = teammate.seal(&long());
                 if let Some(last) = packet.last_mut() {
                     *last ^= 1;
                 }
@@ -172,7 +172,8 @@ impl Task<'_> {
         if let Some(message) = &self.message {
             return self.link.seal(message).len() as u32;
         }
-        let believed = matches!(self.link.open(NOW, &self.packet), Ok(Heard::Mate(..) | Heard::Host(..)));
+        let believed =
+            matches!(self.link.open(NOW, &self.packet), Ok(Received::Teammate(..) | Received::Host(..)));
         self.packet.len() as u32 + 1_000 * u32::from(believed)
     }
 }
@@ -217,12 +218,12 @@ fn long() -> TeamMessage {
 
 fn telemetry() -> TeamMessage {
     let condition = Condition::BALL_CONTACT.with(Condition::KICKER_READY);
-    TeamMessage::Telemetry(Telemetry { condition, battery: 1580, heard: 999, ..Telemetry::default() })
+    TeamMessage::Telemetry(Telemetry { condition, battery: 1580, received: 999, ..Telemetry::default() })
 }
 
 fn command(to: u8, directive: Directive) -> HostMessage {
     let (defending, phase) = (GoalEnd::Negative, Phase::FreeKick(Side::Ours));
-    HostMessage::Command(Command { to: id(to), defending, phase, duty: Duty::Player, directive })
+    HostMessage::Command(Command { to: id(to), defending, phase, rule_role: RuleRole::Player, directive })
 }
 
 fn longest() -> Directive {
@@ -234,7 +235,7 @@ fn world(robots: usize) -> HostMessage {
     let pose = WirePose { at: FAR, heading: -3 };
     let robot = WireRobot { who: WireWho { side: Side::Theirs, id: id(4) }, pose, vx: 1234, vy: -1234 };
     HostMessage::World(WorldPart {
-        picture: 7,
+        snapshot: 7,
         part: 0,
         parts: 2,
         phase: Phase::FreeKick(Side::Ours),

@@ -26,8 +26,9 @@ pub fn read_from(file: &File, limit: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     file.take(limit.saturating_add(1)).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > limit {
-        let words = format!("the file is longer than {limit} bytes, the most that is read of such a file");
-        return Err(io::Error::new(ErrorKind::FileTooLarge, words));
+        let description =
+            format!("the file is longer than {limit} bytes, the most that is read of such a file");
+        return Err(io::Error::new(ErrorKind::FileTooLarge, description));
     }
     Ok(bytes)
 }
@@ -44,8 +45,8 @@ fn regular(kind: FileType) -> io::Result<()> {
     if kind.is_file() {
         return Ok(());
     }
-    let words = format!("this is a {}, not a regular file; copy what it gives into a file", name(kind));
-    Err(io::Error::new(ErrorKind::InvalidInput, words))
+    let description = format!("this is a {}, not a regular file; copy what it gives into a file", name(kind));
+    Err(io::Error::new(ErrorKind::InvalidInput, description))
 }
 
 #[cfg(unix)]
@@ -90,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_is_refused_by_name() {
+    fn a_directory_is_refused_by_name() {
         assert!(read(&std::env::temp_dir(), 8).unwrap_err().to_string().contains("a folder"));
     }
 

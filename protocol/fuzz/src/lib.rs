@@ -9,7 +9,7 @@ use std::fmt::Debug;
 use protocol::frame::{FRAME_LEN_MAX, Frame, SHORT_TAG_LEN, TAG_LEN, TeamKey};
 use protocol::host::HostMessage;
 use protocol::host_link::HostLink;
-use protocol::link::{Heard, Link, overhear, overhear_host};
+use protocol::link::{Link, Received, overhear, overhear_host};
 use protocol::lockstep::{FromRobot, ToRobot};
 use protocol::serial::{Lines, line as stuffed};
 use protocol::team::TeamMessage;
@@ -49,7 +49,7 @@ pub fn frame(bytes: &[u8]) {
     // The key belongs to no sender: every frame is refused.
     let (mut robot, now) = (Link::new(team, RobotId::ZERO, key.of_robot(RobotId::ZERO), 3), Instant(0));
     let opened = robot.open(now, bytes);
-    assert!(matches!(opened, Err(_) | Ok(Heard::Elsewhere)));
+    assert!(matches!(opened, Err(_) | Ok(Received::Elsewhere)));
     assert!(HostLink::new(team, key, 3).open(now, bytes).is_err());
     assert_eq!(robot.refused().iter().sum::<u32>(), u32::from(opened.is_err()));
     let _message = overhear(bytes, team, &TeamKey::ZERO.of_team());

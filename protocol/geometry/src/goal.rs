@@ -14,7 +14,7 @@ pub enum GoalEnd {
 
 impl GoalEnd {
     /// The paper's name, as in files and problems.
-    pub const fn word(self) -> &'static str {
+    pub const fn label(self) -> &'static str {
         match self {
             Self::Negative => "yellow",
             Self::Positive => "cyan",
@@ -22,8 +22,8 @@ impl GoalEnd {
     }
 
     /// From the paper's name.
-    pub fn from_word(word: &str) -> Option<Self> {
-        match word {
+    pub fn from_label(label: &str) -> Option<Self> {
+        match label {
             "yellow" => Some(Self::Negative),
             "cyan" => Some(Self::Positive),
             _ => None,
@@ -58,9 +58,9 @@ mod tests {
 
     #[test]
     fn who_defends_yellow_attacks_cyan_towards_plus_x() {
-        let ours = GoalEnd::from_word("yellow").unwrap();
+        let ours = GoalEnd::from_label("yellow").unwrap();
         assert_eq!((ours.sign(), ours.attack_sign()), (-1, 1));
-        assert_eq!(ours.opposite().word(), "cyan");
+        assert_eq!(ours.opposite().label(), "cyan");
         assert_eq!(ours.opposite().sign(), ours.attack_sign());
     }
 }

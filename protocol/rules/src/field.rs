@@ -136,7 +136,7 @@ impl FieldSpec {
     }
 
     /// The whole field surface within the walls.
-    pub fn carpet(&self) -> Shape<Field> {
+    pub fn surface(&self) -> Shape<Field> {
         let (x, y) = (self.length * 0.5 + self.goal_line_margin, self.width * 0.5 + self.margin);
         Shape::Box { low: Point::new(-x, -y), high: Point::new(x, y) }
     }

@@ -22,7 +22,7 @@ impl Colour {
     }
 
     /// The colour's name in options and files.
-    pub const fn word(self) -> &'static str {
+    pub const fn label(self) -> &'static str {
         match self {
             Self::Yellow => "yellow",
             Self::Blue => "blue",
@@ -41,7 +41,7 @@ pub enum Side {
 
 /// A robot's role under the rules.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub enum Duty {
+pub enum RuleRole {
     /// Field player without special rights.
     #[default]
     Player,

@@ -12,7 +12,7 @@ use crate::legality::{InArea, in_area};
 use crate::limits::{
     BALL_DISTANCE, BALL_RADIUS, NEAR_MARK, OPPONENT_AREA_DISTANCE, PENALTY_BEHIND, ROBOT_RADIUS, STOP_SPEED,
 };
-use crate::{Duty, FieldSpec, Phase, Side};
+use crate::{FieldSpec, Phase, RuleRole, Side};
 
 /// Most shapes in a list: a keeper at a penalty, with a reserve.
 pub const FORBIDDEN_MAX: usize = 12;
@@ -27,7 +27,7 @@ pub struct Situation<'a> {
     /// The phase of the game.
     pub phase: Phase<Side>,
     /// Its role in the team.
-    pub duty: Duty,
+    pub rule_role: RuleRole,
     /// Position of the ball; `None`: nothing around it is forbidden.
     pub ball: Option<Point<Field>>,
     /// Placement target of the ball; only used in ball placement.
@@ -109,8 +109,8 @@ impl KeepOut {
 /// Keep-out regions of this robot.
 pub fn keep_out(s: &Situation) -> KeepOut {
     let mut list = List(Vec::new());
-    let keeper = s.duty == Duty::Keeper;
-    let taker = s.duty == Duty::Taker;
+    let keeper = s.rule_role == RuleRole::Keeper;
+    let taker = s.rule_role == RuleRole::Taker;
     let disc = |center: Point<Field>, radius: f32| Shape::Disc { center, radius };
     match s.phase {
         Phase::Halt | Phase::Timeout(_) => {}
@@ -158,7 +158,7 @@ pub fn keep_out(s: &Situation) -> KeepOut {
         }
         Phase::PreparePenalty(side) | Phase::Penalty(side) => list.penalty(s, side, keeper, taker),
     }
-    KeepOut { forbidden: list.0, within: s.field.carpet() }
+    KeepOut { forbidden: list.0, within: s.field.surface() }
 }
 
 /// Speed limit of a robot, m/s; `None`: no limit.
@@ -188,10 +188,10 @@ pub fn may_touch_ball(s: &Situation, center: Point<Field>) -> Touch {
     let may = match s.phase {
         Phase::Run => true,
         Phase::FreeKick(Side::Ours) | Phase::Kickoff(Side::Ours) | Phase::BallPlacement(Side::Ours) => {
-            s.duty == Duty::Taker
+            s.rule_role == RuleRole::Taker
         }
-        Phase::Penalty(Side::Ours) => s.duty == Duty::Taker,
-        Phase::Penalty(Side::Theirs) => s.duty == Duty::Keeper,
+        Phase::Penalty(Side::Ours) => s.rule_role == RuleRole::Taker,
+        Phase::Penalty(Side::Theirs) => s.rule_role == RuleRole::Keeper,
         _ => false,
     };
     if !may {
@@ -202,7 +202,7 @@ pub fn may_touch_ball(s: &Situation, center: Point<Field>) -> Touch {
     }
     if in_area(s.field, s.own.opposite(), center) != InArea::Out {
         Touch::InOpponentArea
-    } else if s.duty != Duty::Keeper && in_area(s.field, s.own, center) == InArea::Entirely {
+    } else if s.rule_role != RuleRole::Keeper && in_area(s.field, s.own, center) == InArea::Entirely {
         Touch::InOwnArea
     } else {
         Touch::Allowed
@@ -225,7 +225,7 @@ impl List {
     }
 
     fn own_area(&mut self, s: &Situation) {
-        if s.duty != Duty::Keeper {
+        if s.rule_role != RuleRole::Keeper {
             for shape in &s.field.defence_area(s.own) {
                 self.add(Why::OwnArea, shape.grown(s.field.line_width * 0.5));
             }

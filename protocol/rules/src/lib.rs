@@ -25,7 +25,7 @@ mod robot;
 pub mod state;
 
 pub use field::{AREA_SHAPES_MAX, AreaForm, FieldFault, FieldSpec};
-pub use game::{Colour, Duty, Phase, Side};
+pub use game::{Colour, Phase, RuleRole, Side};
 pub use league::{BallSpec, Footprint, League};
 pub use limits::Limits;
 pub use robot::{

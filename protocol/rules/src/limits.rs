@@ -126,7 +126,7 @@ pub struct Limits {
     /// Whether a kick from the own half over their goal line is "aimless" (ball leaves the field).
     pub aimless_kick: bool,
     /// Whether teams must place the ball; else they may decline (referee commands, ball placement).
-    pub placement_duty: bool,
+    pub placement_rule_role: bool,
     /// A free kick is taken this far or farther from every line, m (referee commands, free kick).
     pub spot_line_distance: f32,
     /// … and this far from both defence areas, m (same).
@@ -144,7 +144,7 @@ const DIVISION_B: Limits = Limits {
     keeper_hold: 10.0,
     no_progress: 10.0,
     aimless_kick: true,
-    placement_duty: false,
+    placement_rule_role: false,
     spot_line_distance: 0.2,
     spot_area_distance: 1.0,
     goal_kick_distance: 1.0,
@@ -176,7 +176,7 @@ impl League {
                 keeper_hold: 5.0,
                 no_progress: 5.0,
                 aimless_kick: false,
-                placement_duty: true,
+                placement_rule_role: true,
                 ..DIVISION_B
             }),
         }

@@ -1,16 +1,16 @@
 //! `state`: state machine of the referee's commands. The league's state graph as a value (rules 2026,
 //! appendix "game states").
 //!
-//! [`GameState::hear`] takes the commands, [`GameState::tick`] the time and the ball; both return the
+//! [`GameState::receive`] takes the commands, [`GameState::tick`] the time and the ball; both return the
 //! resulting change. Times are µs of one clock, the caller's. Three points that the rules leave open are
 //! decided here:
 //!
 //! - **The newest command counts.** The referee repeats its current command many times a second, so a command
 //!   that does not follow from the one before means that some were missed; it is followed and reported
-//!   ([`Heard::OffGraph`]).
+//!   ([`Received::OffGraph`]).
 //! - **No robot starts from a standstill without warning.** Team members may be on the field in HALT and
 //!   time-outs, which STOP alone ends. Any other command is read as STOP for [`GRACE`] first
-//!   ([`Heard::AsStop`]). NORMAL_START with nothing prepared (a program joins in the middle of a game) is
+//!   ([`Received::AsStop`]). NORMAL_START with nothing prepared (a program joins in the middle of a game) is
 //!   read as STOP until the longest kick-off or penalty is over, counted from when the command was given:
 //!   then the ball is in play in either case.
 //! - **The same command again is no new command**, though its counter rises (operators and automatic
@@ -146,7 +146,7 @@ impl Stage {
 
 /// Effect of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Heard {
+pub enum Received {
     /// It follows from the phase before.
     Followed,
     /// The command that holds already.
@@ -235,7 +235,7 @@ impl GameState {
     }
 
     /// A command that was given at `at`, µs; `ball` is where it lies then, if known.
-    pub fn hear(&mut self, command: Command, at: u64, ball: Option<Point<Field>>) -> Heard {
+    pub fn receive(&mut self, command: Command, at: u64, ball: Option<Point<Field>>) -> Received {
         let (from, first) = (self.phase, self.command.is_none());
         let again = self.command == Some(command);
         self.command = Some(command);
@@ -257,7 +257,7 @@ impl GameState {
             return self.stop_first(to, at, self.still_until);
         }
         self.enter(to, at, ball);
-        if first || follows(from, to) { Heard::Followed } else { Heard::OffGraph { from } }
+        if first || follows(from, to) { Received::Followed } else { Received::OffGraph { from } }
     }
 
     /// Handles the time `now`, µs, and the observed position of the ball.
@@ -291,25 +291,25 @@ impl GameState {
         Ticked::BallMoved
     }
 
-    fn repeat(&mut self, command: Command, at: u64, ball: Option<Point<Field>>) -> Heard {
+    fn repeat(&mut self, command: Command, at: u64, ball: Option<Point<Field>>) -> Received {
         match (self.phase, command) {
             (Phase::Kickoff(_) | Phase::FreeKick(_) | Phase::Penalty(_), _) => {
                 self.since = self.since.max(at);
-                Heard::Repeated
+                Received::Repeated
             }
             (Phase::Run, Command::FreeKick(who)) => {
                 self.enter(Phase::FreeKick(who), at, ball);
-                Heard::OffGraph { from: Phase::Run }
+                Received::OffGraph { from: Phase::Run }
             }
-            _ => Heard::Repeated,
+            _ => Received::Repeated,
         }
     }
 
-    fn stop_first(&mut self, then: Phase<Colour>, now: u64, at: u64) -> Heard {
+    fn stop_first(&mut self, then: Phase<Colour>, now: u64, at: u64) -> Received {
         let from = self.phase;
         self.enter(Phase::Stop, now, None);
         self.later = Some((then, at));
-        Heard::AsStop { from, then, at }
+        Received::AsStop { from, then, at }
     }
 
     fn enter(&mut self, phase: Phase<Colour>, at: u64, ball: Option<Point<Field>>) {

@@ -25,13 +25,13 @@ impl HostMessage {
 impl WorldPart {
     fn read(bytes: &[u8]) -> Option<Self> {
         let (head, rest) = postcard::take_from_bytes::<Head>(bytes).ok()?;
-        let Head { picture, part, parts, phase, placement, ball } = head;
+        let Head { snapshot, part, parts, phase, placement, ball } = head;
         let (count, rest) = rest.split_first()?;
         let (robots, []) = rest.as_chunks::<WIRE_ROBOT_LEN>() else { return None };
         if robots.len() != usize::from(*count) || robots.len() > PART_ROBOTS_MAX {
             return None;
         }
-        let mut world = Self { picture, part, parts, phase, placement, ball, robots: heapless::Vec::new() };
+        let mut world = Self { snapshot, part, parts, phase, placement, ball, robots: heapless::Vec::new() };
         for robot in robots {
             // The capacity suffices: counted above.
             let _ = world.robots.push(WireRobot::read(robot)?);
@@ -43,7 +43,7 @@ impl WorldPart {
 /// The fields before the robots in a part of a snapshot.
 #[derive(Deserialize)]
 struct Head {
-    picture: u8,
+    snapshot: u8,
     part: u8,
     parts: u8,
     phase: Phase<Side>,
@@ -85,7 +85,7 @@ mod tests {
         };
         let ball = WireBall { at: WirePoint { x: 1, y: -1 }, height: 300, vx: -2, vy: 0x0102 };
         HostMessage::World(WorldPart {
-            picture: 7,
+            snapshot: 7,
             part: 1,
             parts: 2,
             phase: Phase::BallPlacement(Side::Theirs),

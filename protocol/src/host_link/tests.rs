@@ -6,7 +6,7 @@ use std::vec::Vec;
 
 use super::*;
 use crate::Duration;
-use crate::host::{Command, Directive, Duty};
+use crate::host::{Command, Directive, RuleRole};
 use crate::link::Link;
 use crate::quantized::WirePose;
 use crate::team::{Beacon, Progress, Role, Status};
@@ -50,14 +50,14 @@ fn stand(to: u8) -> HostMessage {
         to: id(to),
         defending: geometry::GoalEnd::Negative,
         phase: Phase::Run,
-        duty: Duty::Player,
+        rule_role: RuleRole::Player,
         directive: Directive::Stand,
     })
 }
 
 /// Telemetry, welcome, telemetry.
 fn meet(host: &mut HostLink, link: &mut Link, n: u8, now: Instant) {
-    assert!(matches!(host.open(now, &tell(link, now)), Ok(Opened::Stranger(..))));
+    assert!(matches!(host.open(now, &tell(link, now)), Ok(Opened::Unauthenticated(..))));
     let welcome = HostMessage::Welcome(host.welcome(id(n)).unwrap());
     assert!(link.open(now, &host.seal(now, &welcome)).is_ok());
     assert!(matches!(host.open(now, &tell(link, now)), Ok(Opened::Believed(..))));
@@ -66,7 +66,7 @@ fn meet(host: &mut HostLink, link: &mut Link, n: u8, now: Instant) {
 #[test]
 fn a_robot_is_believed_once_it_names_this_epoch_of_the_host() {
     let (mut host, mut link) = (HostLink::new(TEAM, KEY, 70), robot(2, 9));
-    assert_eq!(host.open(ms(1), &beacon(&mut link)), Err(Refusal::Stranger { epoch: 9 }));
+    assert_eq!(host.open(ms(1), &beacon(&mut link)), Err(Refusal::Unauthenticated { epoch: 9 }));
     meet(&mut host, &mut link, 2, ms(2));
     assert!(matches!(host.open(ms(3), &beacon(&mut link)), Ok(Opened::Believed(..))));
     assert_eq!(host.life(id(2)), Some(9));
@@ -84,7 +84,7 @@ fn a_fresh_host_believes_no_recording() {
     for packet in recorded.iter().chain(&recorded) {
         let opened = fresh.open(ms(5), packet);
         assert!(
-            matches!(opened, Ok(Opened::Stranger(..)) | Err(Refusal::Stranger { epoch: 9 })),
+            matches!(opened, Ok(Opened::Unauthenticated(..)) | Err(Refusal::Unauthenticated { epoch: 9 })),
             "{opened:?}"
         );
     }
@@ -103,9 +103,9 @@ fn a_recording_of_a_greater_boot_epoch_does_not_lock_the_robot_out() {
     let (mut host, mut link) = (HostLink::new(TEAM, KEY, 70), robot(2, 9));
     let mut before = robot(2, 50);
     let recorded = tell(&mut before, ms(0));
-    assert!(matches!(host.open(ms(1), &recorded), Ok(Opened::Stranger(..))));
+    assert!(matches!(host.open(ms(1), &recorded), Ok(Opened::Unauthenticated(..))));
     meet(&mut host, &mut link, 2, ms(2));
-    assert!(matches!(host.open(ms(3), &recorded), Ok(Opened::Stranger(..))));
+    assert!(matches!(host.open(ms(3), &recorded), Ok(Opened::Unauthenticated(..))));
     assert!(matches!(host.open(ms(4), &tell(&mut link, ms(4))), Ok(Opened::Believed(..))));
 }
 
@@ -140,7 +140,7 @@ fn after_76_hours_a_new_epoch_begins_and_the_robot_is_welcomed_again() {
     let (mut host, mut link) = (HostLink::new(TEAM, KEY, 70), robot(2, 9));
     meet(&mut host, &mut link, 2, ms(2));
     let late = Instant(u64::from(u32::MAX) * 64) + Duration::millis(1);
-    assert_eq!(link.open(late, &host.seal(late, &stand(2))), Err(Refusal::Stranger { epoch: 71 }));
+    assert_eq!(link.open(late, &host.seal(late, &stand(2))), Err(Refusal::Unauthenticated { epoch: 71 }));
     meet(&mut host, &mut link, 2, late + Duration::millis(5));
     assert!(link.open(late + Duration::millis(6), &host.seal(late + Duration::millis(6), &stand(2))).is_ok());
 }

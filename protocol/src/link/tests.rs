@@ -5,7 +5,7 @@ extern crate std;
 use super::*;
 use crate::frame::{Audience, TeamKey};
 use crate::host::Welcome;
-use crate::host::{Command, Directive, Duty, WorldPart};
+use crate::host::{Command, Directive, RuleRole, WorldPart};
 use crate::host_link::{HostLink, Opened};
 use crate::team::{Beacon, Progress, Role, Status};
 use rules::Phase;
@@ -44,15 +44,15 @@ fn stand(to: u8) -> HostMessage {
         to: robot(to),
         defending: geometry::GoalEnd::Negative,
         phase: Phase::Halt,
-        duty: Duty::Player,
+        rule_role: RuleRole::Player,
         directive,
     })
 }
 
-fn world(picture: u8, part: u8, parts: u8) -> HostMessage {
+fn world(snapshot: u8, part: u8, parts: u8) -> HostMessage {
     let robots = heapless::Vec::new();
     let phase = Phase::Run;
-    HostMessage::World(WorldPart { picture, part, parts, phase, placement: None, ball: None, robots })
+    HostMessage::World(WorldPart { snapshot, part, parts, phase, placement: None, ball: None, robots })
 }
 
 fn welcome(to: u8, life: u32) -> HostMessage {
@@ -69,7 +69,7 @@ fn tell(link: &mut Link) -> Packet {
 /// A robot and its host after their handshake.
 fn acquainted() -> (Link, HostLink) {
     let (mut link, mut host) = (link(2, 9), host(70));
-    assert!(matches!(host.open(NOW, &tell(&mut link)), Ok(Opened::Stranger(..))));
+    assert!(matches!(host.open(NOW, &tell(&mut link)), Ok(Opened::Unauthenticated(..))));
     let welcome = host.welcome(robot(2)).unwrap();
     assert_eq!(welcome, Welcome { to: robot(2), life: 9, offset: 0 });
     assert!(link.open(NOW, &host.seal(NOW, &HostMessage::Welcome(welcome))).is_ok());
@@ -81,10 +81,10 @@ fn acquainted() -> (Link, HostLink) {
 /// Both receive a first frame of each other, exchange handshakes, and trust from then on.
 fn acquaint(a: &mut Link, b: &mut Link) {
     let (from_a, from_b) = (a.seal(&beacon(0)), b.seal(&beacon(0)));
-    assert!(matches!(b.open(NOW, &from_a), Err(Refusal::Stranger { .. })));
-    assert!(matches!(a.open(NOW, &from_b), Err(Refusal::Stranger { .. })));
+    assert!(matches!(b.open(NOW, &from_a), Err(Refusal::Unauthenticated { .. })));
+    assert!(matches!(a.open(NOW, &from_b), Err(Refusal::Unauthenticated { .. })));
     let now = Instant(0);
-    let (greets_b, greets_a) = (a.poll_greeting(now).unwrap(), b.poll_greeting(now).unwrap());
+    let (greets_b, greets_a) = (a.poll_handshake(now).unwrap(), b.poll_handshake(now).unwrap());
     assert!(a.open(NOW, &greets_a).is_ok() && b.open(NOW, &greets_b).is_ok());
 }
 
@@ -93,7 +93,7 @@ fn what_one_seals_another_opens_once() {
     let (mut a, mut b) = (link(1, 0), link(2, 0));
     acquaint(&mut a, &mut b);
     let packet = a.seal(&beacon(7));
-    assert_eq!(b.open(NOW, &packet), Ok(Heard::Mate(robot(1), beacon(7))));
+    assert_eq!(b.open(NOW, &packet), Ok(Received::Teammate(robot(1), beacon(7))));
     // After a first frame and a handshake.
     assert_eq!(b.open(NOW, &packet), Err(Refusal::Counter { seen: 3, last: 3 }));
     assert_eq!(b.refused()[5], 1);
@@ -120,16 +120,16 @@ fn frames_of_an_earlier_life_are_refused() {
 }
 
 #[test]
-fn a_host_is_a_stranger_until_it_welcomes_this_life_of_this_robot() {
+fn a_host_is_a_unauthenticated_until_it_welcomes_this_life_of_this_robot() {
     let (mut a, mut host) = (link(2, 9), host(70));
-    let stranger = Err(Refusal::Stranger { epoch: 70 });
-    assert_eq!(a.open(NOW, &host.seal(NOW, &stand(2))), stranger);
-    assert_eq!(a.open(NOW, &host.seal(NOW, &welcome(2, 8))), stranger, "an earlier life");
-    assert_eq!(a.open(NOW, &host.seal(NOW, &welcome(3, 9))), Ok(Heard::Elsewhere), "another robot");
+    let unauthenticated = Err(Refusal::Unauthenticated { epoch: 70 });
+    assert_eq!(a.open(NOW, &host.seal(NOW, &stand(2))), unauthenticated);
+    assert_eq!(a.open(NOW, &host.seal(NOW, &welcome(2, 8))), unauthenticated, "an earlier life");
+    assert_eq!(a.open(NOW, &host.seal(NOW, &welcome(3, 9))), Ok(Received::Elsewhere), "another robot");
     assert_eq!(a.refused()[8], 2);
     assert!(a.open(NOW, &host.seal(NOW, &welcome(2, 9))).is_ok());
-    assert_eq!(a.open(NOW, &host.seal(NOW, &stand(2))), Ok(Heard::Host(stand(2))));
-    assert_eq!(a.open(NOW, &host.seal(NOW, &stand(3))), Ok(Heard::Elsewhere));
+    assert_eq!(a.open(NOW, &host.seal(NOW, &stand(2))), Ok(Received::Host(stand(2))));
+    assert_eq!(a.open(NOW, &host.seal(NOW, &stand(3))), Ok(Received::Elsewhere));
 }
 
 #[test]
@@ -142,7 +142,7 @@ fn after_a_boot_a_recording_of_the_host_moves_nobody() {
     }
     let mut after = link(2, 10);
     for packet in &recorded {
-        assert_eq!(after.open(NOW, packet), Err(Refusal::Stranger { epoch: 70 }));
+        assert_eq!(after.open(NOW, packet), Err(Refusal::Unauthenticated { epoch: 70 }));
     }
 }
 
@@ -150,7 +150,7 @@ fn after_a_boot_a_recording_of_the_host_moves_nobody() {
 fn a_host_that_starts_again_takes_over_and_the_old_one_is_refused() {
     let (mut a, mut old) = acquainted();
     let mut new = host(71);
-    assert_eq!(a.open(NOW, &new.seal(NOW, &stand(2))), Err(Refusal::Stranger { epoch: 71 }));
+    assert_eq!(a.open(NOW, &new.seal(NOW, &stand(2))), Err(Refusal::Unauthenticated { epoch: 71 }));
     assert!(a.open(NOW, &old.seal(NOW, &stand(2))).is_ok(), "a stranger moves nothing");
     assert!(a.open(NOW, &new.seal(NOW, &welcome(2, 9))).is_ok());
     assert!(a.open(NOW, &new.seal(NOW, &stand(2))).is_ok());
@@ -191,16 +191,16 @@ fn a_part_that_cannot_be_is_no_message() {
 }
 
 #[test]
-fn what_is_lost_of_pictures_is_counted_by_their_numbers() {
+fn what_is_lost_of_snapshots_is_counted_by_their_numbers() {
     let (mut a, mut host) = acquainted();
     // Of snapshots 254, 255, 0, 1, 2 with two parts each: all of 254, half of 255, nothing of 0 and 1, all
     // of 2.
-    for (picture, part) in [(254, 0), (254, 1), (255, 1), (2, 0), (2, 1)] {
-        assert!(a.open(NOW, &host.seal(NOW, &world(picture, part, 2))).is_ok());
+    for (snapshot, part) in [(254, 0), (254, 1), (255, 1), (2, 0), (2, 1)] {
+        assert!(a.open(NOW, &host.seal(NOW, &world(snapshot, part, 2))).is_ok());
     }
     let mut telemetry = Telemetry { silence: 3, ..Telemetry::default() };
     a.tell(NOW, &mut telemetry);
-    assert_eq!((telemetry.heard, telemetry.lost, telemetry.picture), (5, 5, 2));
+    assert_eq!((telemetry.received, telemetry.lost, telemetry.snapshot), (5, 5, 2));
     assert_eq!((telemetry.refused, telemetry.silence), ([0; Refusal::KINDS], 3));
 }
 
@@ -266,7 +266,7 @@ fn a_frame_that_was_withheld_is_stale_after_200_ms_and_moves_nothing() {
     }
     let now = NOW + Duration::millis(800);
     let fresh = host.seal(now, &stand(2));
-    assert_eq!(a.open(now + Duration::millis(150), &fresh), Ok(Heard::Host(stand(2))));
+    assert_eq!(a.open(now + Duration::millis(150), &fresh), Ok(Received::Host(stand(2))));
     assert!((149_000..152_000).contains(&a.age().0), "{:?}", a.age());
 }
 
@@ -279,7 +279,7 @@ fn a_withheld_welcome_of_a_dead_host_does_not_lead_a_robot() {
     let (welcome, command) = (host.seal(NOW, &welcome), host.seal(NOW, &stand(2)));
     let late = NOW + Duration::millis(5_000);
     assert_eq!(a.open(late, &welcome), Err(Refusal::Stale));
-    assert_eq!(a.open(late, &command), Err(Refusal::Stranger { epoch: 70 }));
+    assert_eq!(a.open(late, &command), Err(Refusal::Unauthenticated { epoch: 70 }));
     assert_eq!(a.host_epoch(), None);
 }
 
@@ -289,7 +289,7 @@ fn a_robot_whose_clock_stood_still_asks_for_a_welcome_instead_of_taking_old_fram
     // The host's clock has advanced by ten seconds, the robot's has not.
     let later = NOW + Duration::millis(10_000);
     assert_eq!(a.open(NOW, &host.seal(later, &stand(2))), Err(Refusal::Stale));
-    assert_eq!(a.open(NOW, &host.seal(later, &stand(2))), Err(Refusal::Stranger { epoch: 70 }));
+    assert_eq!(a.open(NOW, &host.seal(later, &stand(2))), Err(Refusal::Unauthenticated { epoch: 70 }));
     assert!(host.open(later, &tell(&mut a)).is_ok());
     let welcome = HostMessage::Welcome(host.welcome(robot(2)).unwrap());
     assert!(a.open(NOW, &host.seal(later, &welcome)).is_ok());
@@ -323,18 +323,18 @@ fn another_robots_keys_make_no_frame_of_the_host_that_this_robot_believes() {
     let payload = &*postcard::to_slice(&stand(2), &mut payload).unwrap();
     let smuggled = Frame { payload, ..forged };
     let smuggled = packet_to_audience(&smuggled, &TeamKey::ZERO.of_team());
-    assert_eq!(a.open(NOW, &smuggled), Ok(Heard::Elsewhere));
+    assert_eq!(a.open(NOW, &smuggled), Ok(Received::Elsewhere));
     assert!(a.open(NOW, &command).is_ok(), "nothing of it moved the counter");
 }
 
 #[test]
-fn after_a_boot_a_recording_of_a_mate_is_not_believed_and_keeps_the_mate_from_nothing() {
-    let (mut mate, mut before) = (link(1, 5), link(2, 8));
-    acquaint(&mut mate, &mut before);
-    let recorded: std::vec::Vec<Packet> = (0..20).map(|n| mate.seal(&beacon(n))).collect();
+fn after_a_boot_a_recording_of_a_teammate_is_not_believed_and_keeps_the_teammate_from_nothing() {
+    let (mut teammate, mut before) = (link(1, 5), link(2, 8));
+    acquaint(&mut teammate, &mut before);
+    let recorded: std::vec::Vec<Packet> = (0..20).map(|n| teammate.seal(&beacon(n))).collect();
     let mut after = link(2, 9);
     for packet in recorded.iter().chain(&recorded) {
-        assert_eq!(after.open(NOW, packet), Err(Refusal::Stranger { epoch: 5 }));
+        assert_eq!(after.open(NOW, packet), Err(Refusal::Unauthenticated { epoch: 5 }));
     }
     let mut born_again = link(1, 6);
     acquaint(&mut born_again, &mut after);
@@ -356,7 +356,7 @@ fn random_bytes_never_panic() {
         }
         let len = usize::from(bytes[120]) % 121;
         (bytes[0], bytes[1], bytes[2]) = (2, 1, [3, 16, 17][round % 3]);
-        assert!(matches!(b.open(NOW, &bytes[..len]), Err(_) | Ok(Heard::Elsewhere)));
+        assert!(matches!(b.open(NOW, &bytes[..len]), Err(_) | Ok(Received::Elsewhere)));
         assert!(h.open(NOW, &bytes[..len]).is_err());
         bytes[0] %= 3;
         let _ = decode::<TeamMessage>(&bytes[..len]);
@@ -367,8 +367,8 @@ fn random_bytes_never_panic() {
 #[test]
 fn what_is_for_another_receiver_is_not_opened_and_counts_for_nothing() {
     let (mut link, mut host) = acquainted();
-    let mut mate = self::link(3, 5);
-    let telemetry = mate.seal(&TeamMessage::Telemetry(Telemetry::default()));
+    let mut teammate = self::link(3, 5);
+    let telemetry = teammate.seal(&TeamMessage::Telemetry(Telemetry::default()));
     let others = [host.seal(NOW, &stand(3)), host.seal(NOW, &welcome(3, 9)), telemetry];
     host.set_audience(Audience(1 << 3));
     let world = host.seal(NOW, &world(1, 0, 1));
@@ -376,7 +376,7 @@ fn what_is_for_another_receiver_is_not_opened_and_counts_for_nothing() {
         if let Some(last) = packet.last_mut() {
             *last ^= 1;
         }
-        assert_eq!(link.open(NOW, &packet), Ok(Heard::Elsewhere), "its tag is not looked at");
+        assert_eq!(link.open(NOW, &packet), Ok(Received::Elsewhere), "its tag is not looked at");
     }
     assert_eq!(link.refused(), &[0; Refusal::KINDS]);
 }

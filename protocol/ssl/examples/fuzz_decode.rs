@@ -21,21 +21,21 @@ fn main() -> ExitCode {
     };
     let seeds = mutate::seeds(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests"));
     let begin = Instant::now();
-    let mut total = mutate::Tally::default();
+    let mut total = mutate::Counters::default();
     for batch in 0..count.div_ceil(BATCH) {
         let size = BATCH.min(count - batch * BATCH);
         let own = seed.wrapping_add(batch);
         let ran = std::panic::catch_unwind(|| mutate::run(&seeds, size, own));
-        let Ok(tally) = ran else {
+        let Ok(counters) = ran else {
             eprintln!("panic above: repeat it with --count {size} --seed {own}");
             return ExitCode::FAILURE;
         };
-        total.packets += tally.packets;
-        total.decoded += tally.decoded;
-        total.refused += tally.refused;
-        total.guessed += tally.guessed;
-        total.logged += tally.logged;
-        total.framed += tally.framed;
+        total.packets += counters.packets;
+        total.decoded += counters.decoded;
+        total.refused += counters.refused;
+        total.guessed += counters.guessed;
+        total.logged += counters.logged;
+        total.framed += counters.framed;
     }
     println!(
         "{} packets of {} seeds broken (seed {seed}), no panic: {} still decode, {} are refused; {} are \
@@ -54,10 +54,10 @@ fn main() -> ExitCode {
 
 fn arguments() -> Option<(u64, u64)> {
     let (mut count, mut seed) = (1_000_000, 1);
-    let mut words = std::env::args().skip(1);
-    while let Some(word) = words.next() {
-        let value = words.next()?.parse().ok()?;
-        match word.as_str() {
+    let mut description = std::env::args().skip(1);
+    while let Some(label) = description.next() {
+        let value = description.next()?.parse().ok()?;
+        match label.as_str() {
             "--count" => count = value,
             "--seed" => seed = value,
             _ => return None,

@@ -150,14 +150,14 @@ mod tests {
         let bytes: Vec<u8> = names.iter().flat_map(|name| delimited(&registration(name))).collect();
         for piece in 1..=bytes.len() {
             let mut reader = FrameReader::new(MESSAGE_MAX);
-            let mut heard = Vec::new();
+            let mut received = Vec::new();
             for chunk in bytes.chunks(piece) {
                 reader.push(chunk);
                 while let Some(message) = reader.next_message().expect("a sound stream") {
-                    heard.push(TeamRegistration::decode(message).expect("decodes").team_name);
+                    received.push(TeamRegistration::decode(message).expect("decodes").team_name);
                 }
             }
-            assert_eq!(heard, names, "in pieces of {piece}");
+            assert_eq!(received, names, "in pieces of {piece}");
             assert_eq!(reader.pending(), 0);
         }
     }

@@ -48,7 +48,7 @@ fn nobody_there_is_told_with_the_ports() {
 }
 
 #[test]
-fn a_closed_connection_is_told_and_what_came_before_is_heard() {
+fn a_closed_connection_is_told_and_what_came_before_is_received() {
     let (mut stream, mut controller) = raw_pair();
     let bytes = ssl::stream::delimited(&reply("token"));
     stream.write_all(&bytes).expect("sent");

@@ -10,11 +10,11 @@ use std::path::Path;
 #[test]
 fn twenty_thousand_broken_packets_are_read_or_refused() {
     let seeds = mutate::seeds(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests"));
-    let tally = mutate::run(&seeds, 20_000, 7);
-    assert_eq!(tally.packets, 20_000);
+    let counters = mutate::run(&seeds, 20_000, 7);
+    assert_eq!(counters.packets, 20_000);
     // Enough mutations that both happen often, or the run proves nothing.
-    assert!(tally.decoded > 5_000 && tally.refused > 5_000, "{tally:?}");
-    assert!(tally.guessed > 2000 && tally.logged > 10_000 && tally.framed > 10_000, "{tally:?}");
+    assert!(counters.decoded > 5_000 && counters.refused > 5_000, "{counters:?}");
+    assert!(counters.guessed > 2000 && counters.logged > 10_000 && counters.framed > 10_000, "{counters:?}");
 }
 
 #[test]

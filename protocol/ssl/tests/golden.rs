@@ -47,8 +47,8 @@ fn every_field_of_every_message_is_set_in_some_packet() {
     let mut message = String::new();
     let mut missing = Vec::new();
     for line in FACTS.lines() {
-        let words: Vec<_> = line.split(' ').collect();
-        match words[..] {
+        let description: Vec<_> = line.split(' ').collect();
+        match description[..] {
             ["message", package, name] => message = format!("{package} {name}"),
             ["enum", ..] => message.clear(),
             ["", "", _, field, _, ..] if !message.is_empty() => {
@@ -79,10 +79,10 @@ fn every_enum_has_the_leagues_numbers_and_names() {
 #[test]
 fn a_number_no_enum_knows_survives_and_reads_as_the_safe_first_one() {
     let sent = referee::Referee { command: 99, ..Default::default() };
-    let heard = referee::Referee::decode(&sent.encode_to_vec()[..]).expect("decodes");
-    assert_eq!(heard.command, 99);
-    assert!(referee::Command::try_from(heard.command).is_err());
-    assert_eq!(heard.command(), referee::Command::Halt);
+    let received = referee::Referee::decode(&sent.encode_to_vec()[..]).expect("decodes");
+    assert_eq!(received.command, 99);
+    assert!(referee::Command::try_from(received.command).is_err());
+    assert_eq!(received.command(), referee::Command::Halt);
 }
 
 #[test]

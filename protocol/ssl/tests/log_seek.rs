@@ -49,7 +49,7 @@ fn our_files_have_an_index_and_gzipped_ones_have_none() {
     let records = &recordings::records(GRSIM)[..50];
     let scratch = Scratch::new("written");
     for (name, place) in [("m.log", Place::Index), ("m.log.gz", Place::Unzipped)] {
-        let path = scratch.folder.join(name);
+        let path = scratch.directory.join(name);
         let mut writer = LogWriter::create(&path).expect("a file");
         for record in records {
             writer.write(record.timestamp_ns, record.kind, &record.payload).expect("written");
@@ -73,14 +73,14 @@ fn a_broken_index_is_told_and_the_headers_are_read_instead() {
         ("do not rise", index + 16 + 8 * 100, &7u64.to_be_bytes()),
         ("no index message", index + 11, &[4]),
     ];
-    for (words, at, bytes) in wrong {
+    for (description, at, bytes) in wrong {
         let mut file = file.clone();
         file[at..at + bytes.len()].copy_from_slice(bytes);
         let path = scratch.file("broken.log", &file);
         let (mut reader, place) = open_at(&path, records[3000].timestamp_ns).expect("opens");
-        let Place::Headers(Some(why)) = place else { panic!("{words}: {place:?}") };
-        assert!(why.contains(words), "{why}, not {words}");
-        assert_eq!(reader.next().as_ref(), Some(&records[3000]), "{words}");
+        let Place::Headers(Some(why)) = place else { panic!("{description}: {place:?}") };
+        assert!(why.contains(description), "{why}, not {description}");
+        assert_eq!(reader.next().as_ref(), Some(&records[3000]), "{description}");
     }
 }
 
@@ -103,7 +103,7 @@ fn an_index_of_another_file_is_found_out() {
 #[test]
 fn an_empty_match_has_an_index_too() {
     let scratch = Scratch::new("empty");
-    let path = scratch.folder.join("empty.log");
+    let path = scratch.directory.join("empty.log");
     LogWriter::create(&path).expect("a file").close().expect("closed");
     let mut file = File::open(&path).expect("the file");
     assert_eq!(Index::read(&mut file).expect("readable"), Index::Whole(vec![]));
@@ -134,18 +134,18 @@ fn without_index(file: &[u8]) -> Vec<u8> {
 
 /// A directory of one test's own, removed when it ends.
 struct Scratch {
-    folder: PathBuf,
+    directory: PathBuf,
 }
 
 impl Scratch {
     fn new(name: &str) -> Self {
-        let folder = std::env::temp_dir().join(format!("ssl-log-seek-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).expect("a folder");
-        Self { folder }
+        let directory = std::env::temp_dir().join(format!("ssl-log-seek-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&directory).expect("a folder");
+        Self { directory }
     }
 
     fn file(&self, name: &str, bytes: &[u8]) -> PathBuf {
-        let path = self.folder.join(name);
+        let path = self.directory.join(name);
         std::fs::write(&path, bytes).expect("written");
         path
     }
@@ -154,6 +154,6 @@ impl Scratch {
 impl Drop for Scratch {
     fn drop(&mut self) {
         // A directory that is left over is harmless.
-        let _ = std::fs::remove_dir_all(&self.folder);
+        let _ = std::fs::remove_dir_all(&self.directory);
     }
 }

@@ -12,7 +12,7 @@ const SOON: Duration = Duration::from_secs(5);
 const GROUP: Ipv4Addr = Ipv4Addr::new(224, 5, 23, 2);
 
 #[test]
-fn several_programs_hear_one_group() {
+fn several_programs_receive_one_group() {
     let group = free_group();
     let mut receivers: Vec<_> =
         (0..3).map(|_| Receiver::join(group, &Interfaces::loopback()).expect("joins")).collect();
@@ -31,7 +31,7 @@ fn several_programs_hear_one_group() {
 }
 
 #[test]
-fn by_all_interfaces_a_packet_is_heard_once() {
+fn by_all_interfaces_a_packet_is_received_once() {
     let group = free_group();
     let mut receiver = Receiver::join(group, &Interfaces::All).expect("joins");
     assert!(receiver.joined().iter().any(ssl::net::Interface::is_loopback));
@@ -54,13 +54,13 @@ fn a_receive_waits_as_long_as_it_is_told() {
     let from = Port::bind(localhost(0)).expect("a port");
     from.send(port.address(), b"here").expect("sent");
     let begin = Instant::now();
-    let heard = loop {
+    let received = loop {
         if let Some(datagram) = port.receive(Duration::ZERO).expect("no error") {
             break (datagram.bytes.to_vec(), datagram.from);
         }
         assert!(begin.elapsed() < SOON, "nothing came");
     };
-    assert_eq!(heard, (b"here".to_vec(), from.address()));
+    assert_eq!(received, (b"here".to_vec(), from.address()));
 }
 
 #[test]
@@ -86,9 +86,9 @@ fn a_port_that_is_not_shared_is_told_with_the_command_that_finds_it() {
     let taken = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).expect("a port that is not shared");
     let port = taken.local_addr().expect("bound").port();
     let error = Receiver::join(SocketAddrV4::new(GROUP, port), &Interfaces::loopback()).expect_err("taken");
-    let words = error.to_string();
-    assert!(matches!(error, NetError::Busy { shared: true, .. }), "{words}");
-    assert!(words.contains(&format!("ss -ulpn 'sport = :{port}'")), "{words}");
+    let description = error.to_string();
+    assert!(matches!(error, NetError::Busy { shared: true, .. }), "{description}");
+    assert!(description.contains(&format!("ss -ulpn 'sport = :{port}'")), "{description}");
 }
 
 #[test]
@@ -102,8 +102,8 @@ fn an_interface_that_is_not_there_is_told_with_those_that_are() {
     let from_port =
         Port::bind("203.0.113.7:0".parse().expect("an address")).map(|_| ()).expect_err("not ours");
     for (error, wanted) in [(from_receiver, "wlan77"), (from_sender, "wlan77"), (from_port, "203.0.113.7")] {
-        let words = error.to_string();
-        assert!(words.contains(wanted) && words.contains(&there_is), "{words}");
+        let description = error.to_string();
+        assert!(description.contains(wanted) && description.contains(&there_is), "{description}");
     }
 }
 
@@ -125,10 +125,10 @@ fn a_datagram_that_udp_cannot_carry_is_told() {
 #[test]
 fn no_way_to_a_group_is_told_with_the_command_that_makes_one() {
     let to = SocketAddr::from((GROUP, 10006));
-    let words = NetError::NoRoute { to, by: None }.to_string();
+    let description = NetError::NoRoute { to, by: None }.to_string();
     assert!(
-        words.contains("sudo ip link set lo multicast on && sudo ip route add 224.0.0.0/4 dev lo"),
-        "{words}"
+        description.contains("sudo ip link set lo multicast on && sudo ip route add 224.0.0.0/4 dev lo"),
+        "{description}"
     );
     // The system's answer about this machine is one of two, and ours is made of it.
     match route(SocketAddrV4::new(GROUP, 10006)) {
@@ -141,9 +141,9 @@ fn no_way_to_a_group_is_told_with_the_command_that_makes_one() {
 fn the_loopback_probe_says_what_works_here() {
     let probe = probe_loopback(GROUP, SOON);
     let LoopbackProbe::Works { league_sends_by } = &probe else { panic!("{probe}") };
-    let words = probe.to_string();
+    let description = probe.to_string();
     let alone = league_sends_by.is_some_and(|by| by.is_loopback());
-    assert_eq!(words.contains("sudo ip link"), !alone, "{words}");
+    assert_eq!(description.contains("sudo ip link"), !alone, "{description}");
 }
 
 fn localhost(port: u16) -> SocketAddr {

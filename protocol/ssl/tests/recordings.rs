@@ -17,9 +17,9 @@ use ssl::vision::WrapperPacket;
 
 #[test]
 fn single_packets_agree_field_by_field_with_an_independent_decoder() {
-    let folder = recordings::path("packets");
+    let directory = recordings::path("packets");
     let mut compared = 0;
-    for entry in std::fs::read_dir(folder).expect("packets") {
+    for entry in std::fs::read_dir(directory).expect("packets") {
         let path = entry.expect("an entry").path();
         if path.extension().is_none_or(|extension| extension != "bin") {
             continue;

@@ -150,20 +150,20 @@ fn trap_07_unicast_to_shared_listeners_reaches_one_of_them_and_multicast_all() {
     let to_all = Sender::multicast(group, Some("127.0.0.1")).expect("a sender");
     straight.send(b"straight").expect("sent");
     to_all.send(b"to all").expect("sent");
-    let mut heard = Vec::new();
+    let mut received = Vec::new();
     for listener in &mut listeners {
         // On one machine's loopback the order holds: a receiver that has the second has had the first, or
         // never gets it.
         loop {
             let datagram = listener.receive(Duration::from_secs(5)).expect("no error").expect("the group's");
-            heard.push(datagram.bytes.to_vec());
+            received.push(datagram.bytes.to_vec());
             if datagram.bytes == b"to all" {
                 break;
             }
         }
     }
-    assert_eq!(heard.iter().filter(|bytes| *bytes == b"straight").count(), 1);
-    assert_eq!(heard.iter().filter(|bytes| *bytes == b"to all").count(), 3);
+    assert_eq!(received.iter().filter(|bytes| *bytes == b"straight").count(), 1);
+    assert_eq!(received.iter().filter(|bytes| *bytes == b"to all").count(), 3);
 }
 
 #[test]

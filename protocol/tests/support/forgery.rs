@@ -3,9 +3,9 @@
 
 use geometry::GoalEnd;
 use protocol::frame::{Audience, Frame, Sender, TeamKey};
-use protocol::host::{Command, Directive, Duty, HostMessage, Telemetry, Welcome, WorldPart};
+use protocol::host::{Command, Directive, HostMessage, RuleRole, Telemetry, Welcome, WorldPart};
 use protocol::host_link::{HostLink, Opened};
-use protocol::link::{Heard, Link, Packet};
+use protocol::link::{Link, Packet, Received};
 use protocol::quantized::WirePose;
 use protocol::team::{Beacon, Progress, Role, Status, TeamMessage};
 use protocol::{Instant, RobotId, TeamId};
@@ -28,18 +28,18 @@ fn robot(n: u8) -> RobotId {
 fn messages(n: u32, welcome: Welcome) -> [HostMessage; 3] {
     let (phase, directive) = (Phase::Run, Directive::GetBall { face: None });
     let robots = heapless::Vec::new();
-    let picture = n as u8;
+    let snapshot = n as u8;
     [
         HostMessage::Welcome(welcome),
         HostMessage::Command(Command {
             to: robot(2),
             defending: GoalEnd::Negative,
             phase,
-            duty: Duty::Player,
+            rule_role: RuleRole::Player,
             directive,
         }),
         HostMessage::World(WorldPart {
-            picture,
+            snapshot,
             part: 0,
             parts: 1,
             phase,
@@ -72,7 +72,7 @@ fn telemetry(link: &mut Link, now: Instant) -> Packet {
 /// messages so far.
 struct Team {
     robot: Link,
-    mate: Link,
+    teammate: Link,
     host: HostLink,
     recorded: Vec<Packet>,
     /// The robot's boot epoch, and the host's.
@@ -87,7 +87,7 @@ impl Team {
         let link = |n, epoch| Link::new(TEAM, robot(n), KEY.of_robot(robot(n)), epoch);
         let mut team = Self {
             robot: link(2, FIRST_LIFE),
-            mate: link(3, 4),
+            teammate: link(3, 4),
             host: host(FIRST_HOST),
             recorded: Vec::new(),
             life: FIRST_LIFE,
@@ -95,7 +95,7 @@ impl Team {
             now: Instant(0),
         };
         team.meet_host();
-        team.greet();
+        team.shake_hands();
         for n in 0..100 {
             team.speak(n);
         }
@@ -105,7 +105,7 @@ impl Team {
     /// Robots trust a host once it has welcomed them, and it trusts them once they name it.
     fn meet_host(&mut self) {
         self.now.0 += 100_000;
-        for (link, id) in [(&mut self.robot, robot(2)), (&mut self.mate, robot(3))] {
+        for (link, id) in [(&mut self.robot, robot(2)), (&mut self.teammate, robot(3))] {
             let first = telemetry(link, self.now);
             let _believed_or_not = self.host.open(self.now, &first);
             let welcome = self.host.welcome(id).map(HostMessage::Welcome).unwrap();
@@ -118,35 +118,40 @@ impl Team {
     }
 
     /// Teammates trust each other after their handshakes.
-    fn greet(&mut self) {
+    fn shake_hands(&mut self) {
         self.now.0 += 100_000;
-        let (first, second) = (self.robot.seal(&beacon(0)), self.mate.seal(&beacon(0)));
+        let (first, second) = (self.robot.seal(&beacon(0)), self.teammate.seal(&beacon(0)));
         assert!(self.robot.open(self.now, &second).is_err() && self.host.open(self.now, &second).is_ok());
         // To the teammate a new epoch is an unauthenticated peer, and it sends a handshake.
-        assert!(self.mate.open(self.now, &first).is_err() && self.host.open(self.now, &first).is_ok());
-        let greeting = self.mate.poll_greeting(self.now).unwrap();
-        assert!(self.robot.open(self.now, &greeting).is_ok() && self.host.open(self.now, &greeting).is_ok());
-        self.recorded.extend([first, second, greeting]);
+        assert!(self.teammate.open(self.now, &first).is_err() && self.host.open(self.now, &first).is_ok());
+        let handshake = self.teammate.poll_handshake(self.now).unwrap();
+        assert!(
+            self.robot.open(self.now, &handshake).is_ok() && self.host.open(self.now, &handshake).is_ok()
+        );
+        self.recorded.extend([first, second, handshake]);
     }
 
     /// The robot boots, then the host restarts: each time every recording is tried, then the handshakes are
     /// made.
-    fn boot(&mut self, tally: &mut Tally) {
+    fn boot(&mut self, counters: &mut Counters) {
         (self.life, self.host_life) = (self.life + 1, self.host_life + 1);
         self.robot = Link::new(TEAM, robot(2), KEY.of_robot(robot(2)), self.life);
         for packet in &self.recorded {
             let opened = self.robot.open(self.now, packet);
-            assert!(!matches!(opened, Ok(Heard::Host(..) | Heard::Mate(..))), "after a boot: {packet:02x?}");
+            assert!(
+                !matches!(opened, Ok(Received::Host(..) | Received::Teammate(..))),
+                "after a boot: {packet:02x?}"
+            );
         }
-        tally.after_boots += self.recorded.len() as u64;
+        counters.after_boots += self.recorded.len() as u64;
         self.meet_host();
-        self.greet();
+        self.shake_hands();
         self.host = host(self.host_life);
         for packet in &self.recorded {
             let opened = self.host.open(self.now, packet);
             assert!(!matches!(opened, Ok(Opened::Believed(..))), "a fresh host: {packet:02x?}");
         }
-        tally.to_fresh_hosts += self.recorded.len() as u64;
+        counters.to_fresh_hosts += self.recorded.len() as u64;
         self.meet_host();
     }
 
@@ -157,19 +162,19 @@ impl Team {
         let welcome = self.host.welcome(robot(2)).unwrap();
         let said = messages(n, welcome).map(|message| self.host.seal(now, &message));
         for packet in &said {
-            assert!(matches!(self.robot.open(now, packet), Ok(Heard::Host(..))));
+            assert!(matches!(self.robot.open(now, packet), Ok(Received::Host(..))));
         }
-        let (own, mates) = (telemetry(&mut self.robot, now), self.mate.seal(&beacon(n)));
-        for packet in [&own, &mates] {
+        let (own, teammates) = (telemetry(&mut self.robot, now), self.teammate.seal(&beacon(n)));
+        for packet in [&own, &teammates] {
             assert!(matches!(self.host.open(now, packet), Ok(Opened::Believed(..))));
         }
-        assert!(matches!(self.robot.open(now, &mates), Ok(Heard::Mate(..))));
+        assert!(matches!(self.robot.open(now, &teammates), Ok(Received::Teammate(..))));
         self.recorded.extend(said);
-        self.recorded.extend([own, mates]);
+        self.recorded.extend([own, teammates]);
     }
 
     fn believes(&mut self, packet: &[u8]) -> bool {
-        matches!(self.robot.open(self.now, packet), Ok(Heard::Host(..) | Heard::Mate(..)))
+        matches!(self.robot.open(self.now, packet), Ok(Received::Host(..) | Received::Teammate(..)))
             || matches!(self.host.open(self.now, packet), Ok(Opened::Believed(..)))
     }
 }
@@ -182,7 +187,7 @@ fn host(epoch: u32) -> HostLink {
 
 /// Counters of the tries.
 #[derive(Debug, Default)]
-pub(crate) struct Tally {
+pub(crate) struct Counters {
     /// By kind: as it was sent; flipped bits; a newer counter; a newer epoch; another length; another name;
     /// made from nothing.
     pub kinds: [u64; 7],
@@ -195,16 +200,16 @@ pub(crate) struct Tally {
 }
 
 /// Runs `count` tries; panics with the first frame that is accepted.
-pub(crate) fn tries(count: u64, seed: u64) -> Tally {
-    let mut tally = Tally::default();
+pub(crate) fn tries(count: u64, seed: u64) -> Counters {
+    let mut counters = Counters::default();
     let mut team = Team::new();
     let mut dice = Xoshiro256PlusPlus::seed_from_u64(seed);
     let mut draw = |n: usize| (dice.next_u64() % n as u64) as usize;
     for n in 0..count {
         let recorded = team.recorded[draw(team.recorded.len())].clone();
         let mut bytes = recorded.to_vec();
-        let kind = draw(tally.kinds.len());
-        tally.kinds[kind] += 1;
+        let kind = draw(counters.kinds.len());
+        counters.kinds[kind] += 1;
         match kind {
             // As it was sent.
             0 => {}
@@ -232,12 +237,12 @@ pub(crate) fn tries(count: u64, seed: u64) -> Tally {
             team.speak(n as u32);
         }
         if n % 20_000 == 19_999 {
-            team.boot(&mut tally);
-            tally.boots += 1;
+            team.boot(&mut counters);
+            counters.boots += 1;
             team.speak(n as u32);
         }
     }
-    tally
+    counters
 }
 
 fn forged(draw: &mut impl FnMut(usize) -> usize) -> Vec<u8> {

@@ -39,7 +39,7 @@ impl Figures {
         for Figure { work, mean, worst, host, .. } in &self.0 {
             let mut within = |what: &str, value: u64, limit: u64| {
                 if value > limit {
-                    broken.push(format!("{}: {what} {value} is over {limit}", work.word()));
+                    broken.push(format!("{}: {what} {value} is over {limit}", work.label()));
                 }
             };
             let Limits { mean: mean_limit, worst: worst_limit, host: host_limit } = limits(*work);

@@ -13,12 +13,12 @@ pub(crate) fn instructions(work: Work) -> Result<u64, String> {
 }
 
 fn counted(work: Work, rounds: u32) -> Result<u64, String> {
-    callgrind(&["--work", work.word(), &rounds.to_string()])
+    callgrind(&["--work", work.label(), &rounds.to_string()])
 }
 
 /// The workload under callgrind: all tasks, `rounds` times.
-pub(crate) fn work(word: &str, rounds: &str) -> Result<(), String> {
-    let work = Work::ALL.into_iter().find(|work| work.word() == word).ok_or("no such work")?;
+pub(crate) fn work(label: &str, rounds: &str) -> Result<(), String> {
+    let work = Work::ALL.into_iter().find(|work| work.label() == label).ok_or("no such work")?;
     let rounds: u32 = rounds.parse().map_err(|_| "rounds")?;
     let tasks: Vec<Task> = Tasks::new(SEED).take(TASKS).collect();
     let mut found = 0;

@@ -15,9 +15,10 @@ use firmware_build::count::write_between;
 use motion_bench::Work;
 
 fn main() -> ExitCode {
-    let words: Vec<String> = std::env::args().skip(1).collect();
-    let words: Vec<&str> = words.iter().map(String::as_str).filter(|word| *word != "--bench").collect();
-    let done = match words[..] {
+    let description: Vec<String> = std::env::args().skip(1).collect();
+    let description: Vec<&str> =
+        description.iter().map(String::as_str).filter(|label| *label != "--bench").collect();
+    let done = match description[..] {
         ["--work", work, rounds] => host::work(work, rounds),
         [] => report(false, true),
         ["--write"] => report(true, true),

@@ -27,7 +27,7 @@ pub(crate) fn counted() -> Result<Vec<Count>, String> {
     {
         let here = bench.task(work).run();
         if line[..2] != [number as u32, here] {
-            return Err(format!("{}: {here} here, {} on the board", work.word(), line[1]));
+            return Err(format!("{}: {here} here, {} on the board", work.label(), line[1]));
         }
         match counts.get_mut(number) {
             Some(count) => count.worst = count.worst.max(line[2]),
@@ -38,7 +38,7 @@ pub(crate) fn counted() -> Result<Vec<Count>, String> {
 }
 
 fn numbers(line: &str) -> Option<[u32; 3]> {
-    let numbers: Vec<u32> = line.split(' ').map_while(|word| word.parse().ok()).collect();
+    let numbers: Vec<u32> = line.split(' ').map_while(|label| label.parse().ok()).collect();
     numbers.try_into().ok()
 }
 
@@ -57,7 +57,7 @@ fn limit(bytes: u32) -> Option<u32> {
 pub(crate) fn broken(counts: &[Count]) -> Vec<String> {
     let over = counts.iter().filter_map(|Count { work, bytes, worst }| {
         let limit = limit(*bytes).filter(|limit| worst > limit)?;
-        Some(format!("{} ({bytes} B): {worst} instructions are over {limit}", work.word()))
+        Some(format!("{} ({bytes} B): {worst} instructions are over {limit}", work.label()))
     });
     over.collect()
 }
@@ -66,7 +66,7 @@ pub(crate) fn table(counts: &[Count]) -> String {
     let mut text = "| what | frame, B | instructions | budget |\n|---|---:|---:|---:|\n".to_owned();
     for Count { work, bytes, worst } in counts {
         let limit = limit(*bytes).map_or("–".into(), |limit| limit.to_string());
-        let _ = writeln!(text, "| {} | {bytes} | {worst} | {limit} |", work.word());
+        let _ = writeln!(text, "| {} | {bytes} | {worst} | {limit} |", work.label());
     }
     text
 }

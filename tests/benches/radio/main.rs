@@ -9,9 +9,10 @@ use std::process::ExitCode;
 use firmware_build::count::write_between;
 
 fn main() -> ExitCode {
-    let words: Vec<String> = std::env::args().skip(1).collect();
-    let words: Vec<&str> = words.iter().map(String::as_str).filter(|word| *word != "--bench").collect();
-    let done = match words[..] {
+    let description: Vec<String> = std::env::args().skip(1).collect();
+    let description: Vec<&str> =
+        description.iter().map(String::as_str).filter(|label| *label != "--bench").collect();
+    let done = match description[..] {
         [] => report(false),
         ["--write"] => report(true),
         _ => {

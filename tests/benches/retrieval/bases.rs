@@ -46,22 +46,22 @@ impl Base {
 
 /// The four-legged library's texts.
 fn built_in() -> RandomLibrary {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../casebase/library/cases/four-legged");
+    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("../casebase/library/cases/four-legged");
     let read = |path: &Path| std::fs::read_to_string(path).expect("a file of the project");
-    let entries = |folder: &Path| {
-        let entries = folder.read_dir().expect("a folder of the project");
+    let entries = |directory: &Path| {
+        let entries = directory.read_dir().expect("a folder of the project");
         entries.map(|entry| entry.expect("readable").path()).collect::<Vec<_>>()
     };
-    let regions = entries(&folder).into_iter().filter(|path| path.is_dir());
+    let regions = entries(&directory).into_iter().filter(|path| path.is_dir());
     let cases = regions.flat_map(|region| {
         let name = move |file: &Path| {
             let region = region.file_name().expect("a name").to_string_lossy().into_owned();
             format!("{region}/{}", file.file_stem().expect("a name").to_string_lossy())
         };
-        let files = entries(&folder.join(name(Path::new("x")).trim_end_matches("/x")));
+        let files = entries(&directory.join(name(Path::new("x")).trim_end_matches("/x")));
         files.into_iter().map(move |file| (name(&file), read(&file))).collect::<Vec<_>>()
     });
-    RandomLibrary { league: read(&folder.join("league.toml")), cases: cases.collect() }
+    RandomLibrary { league: read(&directory.join("league.toml")), cases: cases.collect() }
 }
 
 fn translated(problem: &Drawn) -> Problem {

@@ -10,32 +10,32 @@ use casebase::{CaseBase, Problem, Settings, retrieve, retrieve_best};
 use firmware_build::count::callgrind;
 use retrieval_bench::{problems, scan};
 
-use crate::guest::{Folder, in_memory, write};
+use crate::guest::{Directory, in_memory, write};
 
 /// Labels of the measured methods.
 pub(crate) const WAYS: [&str; 3] = ["best", "counted", "scan"];
 
 /// Mean instructions per problem, of each of [`WAYS`].
 pub(crate) fn instructions(table: &[u8], problems: &[Problem]) -> Result<[u64; 3], String> {
-    let folder = Folder::new()?;
-    write(&folder.0.join("table"), table)?;
-    write(&folder.0.join("problems"), &in_memory(problems))?;
+    let directory = Directory::new()?;
+    write(&directory.0.join("table"), table)?;
+    write(&directory.0.join("problems"), &in_memory(problems))?;
     let mut means = [0; 3];
     for (way, mean) in WAYS.iter().zip(&mut means) {
-        let (once, twice) = (counted(&folder.0, way, 1)?, counted(&folder.0, way, 2)?);
+        let (once, twice) = (counted(&directory.0, way, 1)?, counted(&directory.0, way, 2)?);
         *mean = twice.saturating_sub(once) / problems.len().max(1) as u64;
     }
     Ok(means)
 }
 
-fn counted(folder: &Path, way: &str, rounds: u32) -> Result<u64, String> {
-    callgrind(&["--work", &folder.display().to_string(), way, &rounds.to_string()])
+fn counted(directory: &Path, way: &str, rounds: u32) -> Result<u64, String> {
+    callgrind(&["--work", &directory.display().to_string(), way, &rounds.to_string()])
 }
 
-/// The workload under callgrind: all problems in `folder`, `rounds` times.
-pub(crate) fn work(folder: &Path, way: &str, rounds: u32) -> Result<(), String> {
+/// The workload under callgrind: all problems in `directory`, `rounds` times.
+pub(crate) fn work(directory: &Path, way: &str, rounds: u32) -> Result<(), String> {
     let read = |name: &str| {
-        let file = folder.join(name);
+        let file = directory.join(name);
         fs::read(&file).map_err(|error| format!("cannot read {}: {error}", file.display()))
     };
     let table = case_tools::Table::aligned(&read("table")?);

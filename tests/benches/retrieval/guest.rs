@@ -19,8 +19,8 @@ impl Board {
 
     /// The answers to all problems, in order.
     pub(crate) fn answers(&self, table: &[u8], problems: &[Problem]) -> Result<Vec<Answer>, String> {
-        let folder = Folder::new()?;
-        let (table_file, problem_file) = (folder.0.join("table"), folder.0.join("problems"));
+        let directory = Directory::new()?;
+        let (table_file, problem_file) = (directory.0.join("table"), directory.0.join("problems"));
         let (table, in_memory) = ([&header(table.len(), 1), table].concat(), in_memory(problems));
         if table.len().max(in_memory.len()) > LEN_MAX {
             return Err(format!("table or problems are over {LEN_MAX} bytes"));
@@ -31,9 +31,9 @@ impl Board {
             ("-device", loader(&table_file, TABLE_ADDRESS)),
             ("-device", loader(&problem_file, PROBLEMS_ADDRESS)),
         ];
-        let words: Vec<String> =
-            devices.into_iter().flat_map(|(word, device)| [word.to_owned(), device]).collect();
-        self.0.lines(&words, |line| line.parse().ok(), problems.len())
+        let description: Vec<String> =
+            devices.into_iter().flat_map(|(label, device)| [label.to_owned(), device]).collect();
+        self.0.lines(&description, |line| line.parse().ok(), problems.len())
     }
 }
 
@@ -74,17 +74,18 @@ pub(crate) fn write(file: &Path, bytes: &[u8]) -> Result<(), String> {
 }
 
 /// A temporary directory that is deleted on drop.
-pub(crate) struct Folder(pub(crate) PathBuf);
+pub(crate) struct Directory(pub(crate) PathBuf);
 
-impl Folder {
+impl Directory {
     pub(crate) fn new() -> Result<Self, String> {
-        let folder = env::temp_dir().join(format!("onetwo-bench-{}", std::process::id()));
-        fs::create_dir_all(&folder).map_err(|error| format!("cannot make {}: {error}", folder.display()))?;
-        Ok(Self(folder))
+        let directory = env::temp_dir().join(format!("onetwo-bench-{}", std::process::id()));
+        fs::create_dir_all(&directory)
+            .map_err(|error| format!("cannot make {}: {error}", directory.display()))?;
+        Ok(Self(directory))
     }
 }
 
-impl Drop for Folder {
+impl Drop for Directory {
     fn drop(&mut self) {
         // A temporary directory that stays is no error.
         let _ = fs::remove_dir_all(&self.0);

@@ -22,13 +22,14 @@ use firmware_build::count::write_between;
 use guest::Board;
 
 fn main() -> ExitCode {
-    let words: Vec<String> = std::env::args().skip(1).collect();
-    let words: Vec<&str> = words.iter().map(String::as_str).filter(|word| *word != "--bench").collect();
-    let done = match words[..] {
-        ["--work", folder, way, rounds] => rounds
+    let description: Vec<String> = std::env::args().skip(1).collect();
+    let description: Vec<&str> =
+        description.iter().map(String::as_str).filter(|label| *label != "--bench").collect();
+    let done = match description[..] {
+        ["--work", directory, way, rounds] => rounds
             .parse()
             .map_err(|_| "rounds".into())
-            .and_then(|rounds| callgrind::work(Path::new(folder), way, rounds)),
+            .and_then(|rounds| callgrind::work(Path::new(directory), way, rounds)),
         [] => report(false, true),
         ["--write"] => report(true, true),
         ["--guest"] => report(false, false),

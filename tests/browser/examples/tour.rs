@@ -11,10 +11,10 @@ use page_browser::{Browser, BrowserError, Tab};
 type Told<T> = Result<T, BrowserError>;
 
 fn main() -> ExitCode {
-    let words: Vec<String> = std::env::args().skip(1).collect();
-    let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    let done = match words[..] {
-        [program, "pictures", folder] => pictures(program, Path::new(folder)),
+    let description: Vec<String> = std::env::args().skip(1).collect();
+    let description: Vec<&str> = description.iter().map(String::as_str).collect();
+    let done = match description[..] {
+        [program, "pictures", directory] => pictures(program, Path::new(directory)),
         [program, "frames"] => frames(program),
         _ => {
             eprintln!("usage: tour PROGRAM pictures FOLDER | tour PROGRAM frames");
@@ -37,10 +37,10 @@ struct Shown {
 }
 
 impl Shown {
-    fn start(program: &str, words: &[&str]) -> Told<Self> {
-        let failed = |words: String| BrowserError::Start(format!("{program}: {words}"));
+    fn start(program: &str, description: &[&str]) -> Told<Self> {
+        let failed = |description: String| BrowserError::Start(format!("{program}: {description}"));
         let mut child = Command::new(program)
-            .args(words)
+            .args(description)
             .args(["--listen", "127.0.0.1:0"])
             .stdin(Stdio::null())
             .stdout(Stdio::null())
@@ -77,8 +77,8 @@ impl Drop for Shown {
 const SEED: &str = "1";
 const PLAYED_S: u32 = 90;
 
-fn pictures(program: &str, folder: &Path) -> Told<()> {
-    std::fs::create_dir_all(folder).map_err(|error| BrowserError::Answer(error.to_string()))?;
+fn pictures(program: &str, directory: &Path) -> Told<()> {
+    std::fs::create_dir_all(directory).map_err(|error| BrowserError::Answer(error.to_string()))?;
     let shown = Shown::start(program, &["play", "--seed", SEED, "--speed", "20"])?;
     let mut browser = Browser::start()?;
     let mut tab = browser.open(&shown.url("?theme=dark&tab=why"), 1440, 900)?;
@@ -94,7 +94,7 @@ fn pictures(program: &str, folder: &Path) -> Told<()> {
         Ok(())
     };
     here(&mut tab, at)?;
-    take(&mut tab, &folder.join("field.png"))?;
+    take(&mut tab, &directory.join("field.png"))?;
     tab.click("#layers-open")?;
     tab.wait("document.querySelector('[data-layer=truth]')", 10)?;
     // The list lies over the left half: the page is turned so that play is on the right.
@@ -102,25 +102,25 @@ fn pictures(program: &str, folder: &Path) -> Told<()> {
         tab.key("f")?;
     }
     tab.eval("['pass-receive', 'believed'].forEach((name) => onetwo.setLayer(name, true))")?;
-    take(&mut tab, &folder.join("layers.png"))?;
+    take(&mut tab, &directory.join("layers.png"))?;
     tab.eval("['pass-receive', 'believed'].forEach((name) => onetwo.setLayer(name, false))")?;
     tab.click("#layers-open")?;
     tab.eval(
         "(document.querySelector('[data-retrieval]') ?? document.querySelector('[data-explain]')).click()",
     )?;
     tab.wait("document.querySelectorAll('#explanation tbody tr').length > 0", 20)?;
-    take(&mut tab, &folder.join("why.png"))?;
+    take(&mut tab, &directory.join("why.png"))?;
     tab.click("#dialog button")?;
     for (key, name) in [("2", "match.png"), ("3", "health.png"), ("4", "control.png")] {
         tab.key(key)?;
-        take(&mut tab, &folder.join(name))?;
+        take(&mut tab, &directory.join(name))?;
     }
     tab.key("1")?;
     tab.key("t")?;
-    take(&mut tab, &folder.join("light.png"))?;
+    take(&mut tab, &directory.join("light.png"))?;
     tab.key("t")?;
     tab.resize(390, 844, true)?;
-    take(&mut tab, &folder.join("phone.png"))
+    take(&mut tab, &directory.join("phone.png"))
 }
 
 /// The time of a play in the match that was not over at once: a third of its duration.

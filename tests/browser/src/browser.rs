@@ -39,8 +39,8 @@ impl fmt::Display for BrowserError {
             Self::Missing => f.write_str(
                 "no Chromium is found: install it (Debian: apt-get install chromium), or name one in ONETWO_BROWSER",
             ),
-            Self::Start(words) => write!(f, "the browser does not start: {words}"),
-            Self::Answer(words) => write!(f, "the browser: {words}"),
+            Self::Start(description) => write!(f, "the browser does not start: {description}"),
+            Self::Answer(description) => write!(f, "the browser: {description}"),
         }
     }
 }
@@ -54,14 +54,14 @@ pub fn find() -> Result<PathBuf, BrowserError> {
     }
     let paths: Vec<PathBuf> =
         env::var_os("PATH").map(|paths| env::split_paths(&paths).collect()).unwrap_or_default();
-    let there = |name: &str| paths.iter().map(|folder| folder.join(name)).find(|file| file.is_file());
+    let there = |name: &str| paths.iter().map(|directory| directory.join(name)).find(|file| file.is_file());
     NAMES.iter().find_map(|name| there(name)).ok_or(BrowserError::Missing)
 }
 
 /// A running browser; it ends with this value.
 pub struct Browser {
     child: Child,
-    folder: PathBuf,
+    directory: PathBuf,
     socket: WebSocket<MaybeTlsStream<TcpStream>>,
     asked: u64,
     answers: HashMap<u64, Value>,
@@ -74,7 +74,7 @@ impl Browser {
     pub fn start() -> Result<Self, BrowserError> {
         let start = |error: &dyn fmt::Display| BrowserError::Start(error.to_string());
         let clock = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
-        let folder =
+        let directory =
             env::temp_dir().join(format!("onetwo-browser-{}-{}", std::process::id(), clock.as_nanos()));
         let mut child = Command::new(find()?)
             .args([
@@ -93,7 +93,7 @@ impl Browser {
                 "--mute-audio",
                 "about:blank",
             ])
-            .arg(format!("--user-data-dir={}", folder.display()))
+            .arg(format!("--user-data-dir={}", directory.display()))
             .stdin(Stdio::null())
             .stdout(Stdio::null())
             .stderr(Stdio::piped())
@@ -121,7 +121,7 @@ impl Browser {
         if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
             stream.set_read_timeout(Some(LOOK)).map_err(|error| start(&error))?;
         }
-        Ok(Self { child, folder, socket, asked: 0, answers: HashMap::new(), events: Vec::new() })
+        Ok(Self { child, directory, socket, asked: 0, answers: HashMap::new(), events: Vec::new() })
     }
 
     /// A new page of that size, CSS pixels.
@@ -169,13 +169,13 @@ impl Browser {
     pub(crate) fn listen(&mut self) -> Result<(), BrowserError> {
         match self.socket.read() {
             Ok(Message::Text(text)) => {
-                let word: Value =
+                let label: Value =
                     serde_json::from_str(&text).map_err(|error| BrowserError::Answer(error.to_string()))?;
-                if let Some(id) = word["id"].as_u64() {
-                    self.answers.insert(id, word);
+                if let Some(id) = label["id"].as_u64() {
+                    self.answers.insert(id, label);
                 } else {
-                    let text = |key: &str| word[key].as_str().unwrap_or_default().to_owned();
-                    self.events.push((text("sessionId"), text("method"), word["params"].clone()));
+                    let text = |key: &str| label[key].as_str().unwrap_or_default().to_owned();
+                    self.events.push((text("sessionId"), text("method"), label["params"].clone()));
                 }
                 Ok(())
             }
@@ -199,6 +199,6 @@ impl Drop for Browser {
         }
         let _ = self.child.kill();
         let _ = self.child.wait();
-        let _ = std::fs::remove_dir_all(&self.folder);
+        let _ = std::fs::remove_dir_all(&self.directory);
     }
 }

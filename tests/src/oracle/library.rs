@@ -146,8 +146,8 @@ impl Goal {
     }
 
     /// The goal of that label in files and problems.
-    pub fn from_word(word: &str) -> Option<Self> {
-        match word {
+    pub fn from_label(label: &str) -> Option<Self> {
+        match label {
             "yellow" => Some(Self::Yellow),
             "cyan" => Some(Self::Cyan),
             _ => None,
@@ -155,7 +155,7 @@ impl Goal {
     }
 
     /// Its label in files and problems.
-    pub fn word(self) -> &'static str {
+    pub fn label(self) -> &'static str {
         match self {
             Self::Yellow => "yellow",
             Self::Cyan => "cyan",
@@ -229,7 +229,7 @@ impl Library {
             let table: Table = text.parse().map_err(|error| in_file(name)(format!("{error}")))?;
             let authored = read_case(name, &table, &kinds).map_err(in_file(name))?;
             walk::legs(&library, &authored, authored.ball).map_err(in_file(name))?;
-            library.cases.extend(SYMMETRIES.map(|(word, x, y)| authored.mirrored(word, x, y)));
+            library.cases.extend(SYMMETRIES.map(|(label, x, y)| authored.mirrored(label, x, y)));
         }
         Ok(library)
     }
@@ -290,7 +290,7 @@ fn read_league(league: &Table) -> Result<(Point, Tube, Kinds), String> {
 }
 
 fn read_case(name: &str, case: &Table, kinds: &Kinds) -> Result<Case, String> {
-    let word = case.get("defending").and_then(Value::as_str).ok_or("defending is no word")?;
+    let label = case.get("defending").and_then(Value::as_str).ok_or("defending is no word")?;
     let ball = table(case, "ball")?;
     let mut robots = Vec::new();
     for robot in tables(case, "teammates")? {
@@ -305,7 +305,7 @@ fn read_case(name: &str, case: &Table, kinds: &Kinds) -> Result<Case, String> {
     Ok(Case {
         name: name.to_owned(),
         symmetry: "identity",
-        defending: Goal::from_word(word).ok_or_else(|| format!("defending = {word:?}"))?,
+        defending: Goal::from_label(label).ok_or_else(|| format!("defending = {label:?}"))?,
         ball: point(ball, "at")?,
         scope: radii(ball)?,
         robots,
@@ -317,7 +317,7 @@ fn read_action(action: &Value, kinds: &Kinds) -> Result<Action, String> {
     match action.as_str() {
         Some("wait") => return Ok(Action::Stay),
         Some("get_ball") => return Ok(Action::GetBall),
-        Some(word) => return Err(format!("unknown action {word:?}")),
+        Some(label) => return Err(format!("unknown action {label:?}")),
         None => {}
     }
     let action = action.as_table().ok_or("an action is neither word nor table")?;

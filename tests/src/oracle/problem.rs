@@ -48,7 +48,7 @@ impl Problem {
         format!(
             r#"{{"ball":{},"defending":"{}","teammates":{{{}}},"opponents":[{}]}}"#,
             pair(&self.ball),
-            self.defending.word(),
+            self.defending.label(),
             robots.join(","),
             opponents.join(","),
         )
@@ -81,7 +81,7 @@ impl Problem {
 
 fn goal(value: &Node) -> Result<Goal, String> {
     match value {
-        Node::Other(Value::String(word)) => Goal::from_word(word),
+        Node::Other(Value::String(label)) => Goal::from_label(label),
         _ => None,
     }
     .ok_or_else(|| "defending: expected \"yellow\" or \"cyan\"".to_owned())

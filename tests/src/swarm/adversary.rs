@@ -4,7 +4,7 @@
 use geometry::GoalEnd;
 use hil_sim::Stream;
 use protocol::frame::{Frame, Key, Sender};
-use protocol::host::{Command, Directive, Duty, HostMessage, Welcome};
+use protocol::host::{Command, Directive, HostMessage, RuleRole, Welcome};
 use protocol::host_link::HostLink;
 use protocol::link::{Link, Packet};
 use protocol::lockstep::{AIR_IN_BYTES_MAX, AIR_IN_MAX};
@@ -36,7 +36,7 @@ impl Adversary {
     /// What the robot receives in a tick in which `packets` reach it; the adversary knows all packets the
     /// team ever sent.
     pub fn tamper(&mut self, packets: Vec<Packet>, sayings: &Sayings) -> Vec<Packet> {
-        let mut heard = Vec::new();
+        let mut received = Vec::new();
         for mut packet in packets {
             if self.chance.chance(self.flips) && !packet.is_empty() {
                 for _ in 0..=self.chance.whole(0, 2) {
@@ -44,29 +44,29 @@ impl Adversary {
                     packet[(bit / 8) as usize] ^= 1 << (bit % 8);
                 }
             }
-            heard.push(packet);
+            received.push(packet);
         }
         while self.chance.chance(self.replays) && !sayings.in_order.is_empty() {
             let i = self.chance.whole(0, sayings.in_order.len() as u32 - 1) as usize;
-            self.insert(&mut heard, sayings.in_order[i].clone());
+            self.insert(&mut received, sayings.in_order[i].clone());
         }
         while self.chance.chance(self.foreign) {
             let packet = self.foreign_packet();
-            self.insert(&mut heard, packet);
+            self.insert(&mut received, packet);
         }
         // A tick delivers no more than this; further packets are lost.
         let mut bytes = 0;
-        heard.truncate(AIR_IN_MAX);
-        heard.retain(|packet| {
+        received.truncate(AIR_IN_MAX);
+        received.retain(|packet| {
             bytes += packet.len();
             bytes <= AIR_IN_BYTES_MAX
         });
-        heard
+        received
     }
 
-    fn insert(&mut self, heard: &mut Vec<Packet>, packet: Packet) {
-        let place = self.chance.whole(0, heard.len() as u32) as usize;
-        heard.insert(place, packet);
+    fn insert(&mut self, received: &mut Vec<Packet>, packet: Packet) {
+        let place = self.chance.whole(0, received.len() as u32) as usize;
+        received.insert(place, packet);
     }
 
     /// A packet of another team, of a sender without the key, or noise.
@@ -120,7 +120,7 @@ fn go_away(to: RobotId) -> HostMessage {
         to,
         defending: GoalEnd::Negative,
         phase: Phase::Run,
-        duty: Duty::Player,
+        rule_role: RuleRole::Player,
         directive: Directive::GoTo { pose },
     })
 }

@@ -46,7 +46,7 @@ pub struct Guard {
 
 /// Why a robot must brake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Duty {
+pub enum RuleRole {
     /// The host has been silent.
     Silence,
     /// Frames have not come for half a second since a long silence or a boot.
@@ -71,11 +71,11 @@ pub enum Danger {
     /// An order outside every robot's limits.
     Absurd(ActuatorFrame),
     /// It did not brake though it had to.
-    Unbraked(Duty, ActuatorFrame),
+    Unbraked(RuleRole, ActuatorFrame),
     /// It accelerated while it had to brake: speed and turning before and now.
-    Faster(Duty, [f32; 4]),
+    Faster(RuleRole, [f32; 4]),
     /// It had to brake for a second and still moves at this speed.
-    Endless(Duty, f32),
+    Endless(RuleRole, f32),
     /// The host has missed a few frames: the silence, ms, and the speed.
     Hesitant(u32, f32),
     /// The speed in STOP.
@@ -128,7 +128,7 @@ impl Guard {
     }
 
     /// Takes a message that it may accept at that moment.
-    pub fn hear(&mut self, ms: u32, believed: &Believed) {
+    pub fn receive(&mut self, ms: u32, believed: &Believed) {
         let Believed::Host(message) = believed else { return };
         let phase = match message {
             HostMessage::World(part) => Some(part.phase),
@@ -172,12 +172,12 @@ impl Guard {
         if !sane {
             return Err(Danger::Absurd(*order));
         }
-        let duty = self.duty(ms, sensors);
+        let rule_role = self.rule_role(ms, sensors);
         let twist = self.kinematics.twist(wheels);
         let (speed, turn) = (twist.linear.norm(), twist.angular.abs());
         let before = std::mem::replace(&mut self.last, (speed, turn));
-        if let Some(duty) = duty {
-            return self.judge_braking(ms, duty, before, order);
+        if let Some(rule_role) = rule_role {
+            return self.judge_braking(ms, rule_role, before, order);
         }
         self.braking_since = None;
         let silence = self.frame.map_or(0, |last| ms - last).saturating_sub(SLACK);
@@ -205,27 +205,27 @@ impl Guard {
     fn judge_braking(
         &mut self,
         ms: u32,
-        duty: Duty,
+        rule_role: RuleRole,
         before: (f32, f32),
         order: &ActuatorFrame,
     ) -> Result<(), Danger> {
         let ActuatorFrame::Omni { dribbler, kick, .. } = *order else { return Ok(()) };
         if kick != OmniKick::Discharge || dribbler != 0.0 {
-            return Err(Danger::Unbraked(duty, *order));
+            return Err(Danger::Unbraked(rule_role, *order));
         }
         let (speed, turn) = self.last;
         if speed > before.0 + BLUR || turn > before.1 + BLUR {
-            return Err(Danger::Faster(duty, [before.0, before.1, speed, turn]));
+            return Err(Danger::Faster(rule_role, [before.0, before.1, speed, turn]));
         }
         let since = *self.braking_since.get_or_insert(ms);
         if ms - since >= STANDS_WITHIN && speed + turn > 0.0 {
-            return Err(Danger::Endless(duty, speed));
+            return Err(Danger::Endless(rule_role, speed));
         }
         Ok(())
     }
 
     /// The reason for which it must brake now, as far as visible from outside.
-    fn duty(&mut self, ms: u32, sensors: &SensorFrame) -> Option<Duty> {
+    fn rule_role(&mut self, ms: u32, sensors: &SensorFrame) -> Option<RuleRole> {
         let silent = |last: Option<u32>| last.is_none_or(|last| ms - last >= SILENCE + SLACK);
         if self.frame.is_none_or(|last| ms - last >= LONG_SILENCE + SLACK) {
             self.armed = false;
@@ -237,16 +237,16 @@ impl Guard {
         let odometry = sensors.odometry;
         let number = odometry.linear.is_finite() && odometry.angular.is_finite();
         let duties = [
-            (silent(self.frame) && ms - self.born >= SILENCE, Duty::Silence),
-            (!self.armed, Duty::NotArmed),
-            (silent(self.command), Duty::NoCommand),
-            (matches!(self.phase, Some(Phase::Halt | Phase::Timeout(_))), Duty::Halt),
-            (!number, Duty::NotANumber),
-            (sensors.health.tipped, Duty::Tipped),
-            (odometry.angular.abs() > SPINNING, Duty::Spinning),
-            (self.low_since.is_some_and(|since| ms - since >= LOW_FOR + SLACK), Duty::Battery),
+            (silent(self.frame) && ms - self.born >= SILENCE, RuleRole::Silence),
+            (!self.armed, RuleRole::NotArmed),
+            (silent(self.command), RuleRole::NoCommand),
+            (matches!(self.phase, Some(Phase::Halt | Phase::Timeout(_))), RuleRole::Halt),
+            (!number, RuleRole::NotANumber),
+            (sensors.health.tipped, RuleRole::Tipped),
+            (odometry.angular.abs() > SPINNING, RuleRole::Spinning),
+            (self.low_since.is_some_and(|since| ms - since >= LOW_FOR + SLACK), RuleRole::Battery),
         ];
-        duties.into_iter().find_map(|(holds, duty)| holds.then_some(duty))
+        duties.into_iter().find_map(|(holds, rule_role)| holds.then_some(rule_role))
     }
 }
 
@@ -292,7 +292,7 @@ mod tests {
             to: me,
             defending: geometry::GoalEnd::Negative,
             phase: Phase::Run,
-            duty: protocol::host::Duty::Player,
+            rule_role: protocol::host::RuleRole::Player,
             directive: Directive::Stand,
         }))
     }
@@ -319,7 +319,7 @@ mod tests {
     fn driving() -> Guard {
         let mut guard = Guard::new(RobotId::new(1).unwrap(), 5, 0);
         for ms in (0..1_000).step_by(10) {
-            guard.hear(ms, &frame());
+            guard.receive(ms, &frame());
             let speed = if ms < 500 { 0.0 } else { 1.0 };
             let kick = if ms < 500 { OmniKick::Discharge } else { OmniKick::None };
             assert_eq!(guard.judge(ms, &sensors(), &order(speed, kick)), Ok(()), "{ms}");
@@ -341,17 +341,17 @@ mod tests {
             (1_000..1_200).step_by(10).map(|ms| guard.judge(ms, &sensors(), &still)).collect();
         // The last frame came at 990 ms; at 1,100 the tick of slack is over too.
         assert!(judged[..10].iter().all(Result::is_ok));
-        assert_eq!(judged[10], Err(Danger::Unbraked(Duty::Silence, still)));
+        assert_eq!(judged[10], Err(Danger::Unbraked(RuleRole::Silence, still)));
     }
 
     #[test]
     fn a_robot_that_moves_at_once_after_a_long_silence_is_told_and_one_that_does_after_a_gap_is_not() {
         let moves = order(0.5, OmniKick::None);
-        for (silence, judged) in [(210, Ok(())), (600, Err(Danger::Unbraked(Duty::NotArmed, moves)))] {
+        for (silence, judged) in [(210, Ok(())), (600, Err(Danger::Unbraked(RuleRole::NotArmed, moves)))] {
             let mut guard = driving();
             let until = 990 + silence;
             assert!(guard.judge(until - 10, &sensors(), &order(0.0, OmniKick::Discharge)).is_ok());
-            guard.hear(until, &frame());
+            guard.receive(until, &frame());
             assert_eq!(guard.judge(until, &sensors(), &moves), judged, "{silence} ms");
         }
     }
@@ -361,16 +361,16 @@ mod tests {
         let mut mad = sensors();
         mad.odometry.angular = f32::NAN;
         let mut guard = driving();
-        guard.hear(1_000, &frame());
+        guard.receive(1_000, &frame());
         let faster = guard.judge(1_000, &mad, &order(1.5, OmniKick::Discharge));
-        assert!(matches!(faster, Err(Danger::Faster(Duty::NotANumber, _))), "{faster:?}");
+        assert!(matches!(faster, Err(Danger::Faster(RuleRole::NotANumber, _))), "{faster:?}");
         let mut guard = driving();
         let mut found = Ok(());
         for ms in (1_000..2_100).step_by(10) {
-            guard.hear(ms, &frame());
+            guard.receive(ms, &frame());
             found = found.and(guard.judge(ms, &mad, &order(1.0, OmniKick::Discharge)));
         }
-        assert!(matches!(found, Err(Danger::Endless(Duty::NotANumber, _))), "{found:?}");
+        assert!(matches!(found, Err(Danger::Endless(RuleRole::NotANumber, _))), "{found:?}");
         let absurd = order(f32::NAN, OmniKick::None);
         assert!(matches!(driving().judge(1_000, &sensors(), &absurd), Err(Danger::Absurd(_))));
         let hard = order(0.0, OmniKick::Flat(7.0));

@@ -59,7 +59,7 @@ pub enum Believed {
     /// A message of the host.
     Host(HostMessage),
     /// A message of a teammate.
-    Mate(RobotId, TeamMessage),
+    Teammate(RobotId, TeamMessage),
 }
 
 /// A boot epoch of a robot, as a receiver.
@@ -78,7 +78,7 @@ impl Honest {
     }
 
     /// Takes a received packet; returns its message if it may be accepted.
-    pub fn hear(&mut self, packet: &Packet, sayings: &Sayings) -> Option<Believed> {
+    pub fn receive(&mut self, packet: &Packet, sayings: &Sayings) -> Option<Believed> {
         if !seen_by(packet, self.me).is_some_and(|seen| sayings.all.contains(&seen)) {
             return None;
         }
@@ -106,16 +106,17 @@ impl Honest {
                 return None;
             }
             let names_me = match &message {
-                TeamMessage::Greeting(greeting) => {
-                    greeting.mates.iter().any(|mate| (mate.who, mate.life) == (self.me, self.life))
-                }
+                TeamMessage::Handshake(handshake) => handshake
+                    .teammates
+                    .iter()
+                    .any(|teammate| (teammate.who, teammate.life) == (self.me, self.life)),
                 TeamMessage::Beacon(_) | TeamMessage::Telemetry(_) => false,
             };
             if !known && !names_me {
                 return None;
             }
             self.newest[sender] = Some(this);
-            return Some(Believed::Mate(RobotId::new(packet[2])?, message));
+            return Some(Believed::Teammate(RobotId::new(packet[2])?, message));
         }
         let message: HostMessage = postcard::from_bytes(payload).ok()?;
         let welcomes = |welcome: &Welcome| (welcome.to, welcome.life) == (self.me, self.life);

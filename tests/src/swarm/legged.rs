@@ -16,9 +16,9 @@ use super::guard::Danger;
 use super::honest::Honest;
 use super::plan::Plan;
 use super::team::TeamWatch;
-use super::{Broken, Found, Tally};
+use super::{Broken, Counters, Found};
 
-pub(super) fn run(plan: Plan) -> Result<Tally, Found> {
+pub(super) fn run(plan: Plan) -> Result<Counters, Found> {
     let plan = Rc::new(plan);
     let shared = Rc::new(RefCell::new(Shared::default()));
     for packet in earlier_match(&plan) {
@@ -51,8 +51,8 @@ pub(super) fn run(plan: Plan) -> Result<Tally, Found> {
         let handed = std::mem::take(&mut shared.handed);
         shared.sensed.clear();
         for (to, packet) in handed {
-            let believed = lives.get_mut(&to).and_then(|life| life.hear(&packet, &shared.sayings));
-            watch.heard(ms, to, believed.as_ref());
+            let believed = lives.get_mut(&to).and_then(|life| life.receive(&packet, &shared.sayings));
+            watch.received(ms, to, believed.as_ref());
         }
         for sent in &tick.sent {
             watch.said(ms, &plan, &sent.packet);
@@ -64,7 +64,7 @@ pub(super) fn run(plan: Plan) -> Result<Tally, Found> {
         }
         watch.end_of_step(ms)?;
     }
-    Ok(watch.tally())
+    Ok(watch.counters())
 }
 
 fn simulation(plan: &Rc<Plan>, shared: &Rc<RefCell<Shared>>) -> Simulation<'static> {

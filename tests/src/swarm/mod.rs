@@ -24,11 +24,11 @@ use std::fmt;
 use plan::{Plan, Squad};
 use protocol::RobotId;
 
-pub use runs::{Runs, watch, watch_matches, words};
+pub use runs::{Runs, description, watch, watch_matches};
 
 /// Results of a run without violations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tally {
+pub struct Counters {
     /// Number of runs.
     pub runs: u32,
     /// Number of cycles.
@@ -59,7 +59,7 @@ pub struct Tally {
     pub slowest_ms: u32,
 }
 
-impl Tally {
+impl Counters {
     /// The sum of both.
     #[must_use]
     pub fn with(self, other: Self) -> Self {
@@ -122,12 +122,12 @@ impl fmt::Display for Found {
 }
 
 /// Plays the run of that seed.
-pub fn run(seed: u64) -> Result<Tally, Found> {
+pub fn run(seed: u64) -> Result<Counters, Found> {
     play(Plan::drawn(seed))
 }
 
 /// Plays the run of that plan.
-pub fn play(plan: Plan) -> Result<Tally, Found> {
+pub fn play(plan: Plan) -> Result<Counters, Found> {
     match plan.squad {
         Squad::Legged => legged::run(plan),
         Squad::Wheels => wheels::run(plan),

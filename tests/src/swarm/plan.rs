@@ -370,10 +370,10 @@ mod tests {
             assert!(!plan.reboots.iter().any(|(_, span)| outside(span)), "seed {seed}");
             assert!(!plan.madness.iter().any(|(_, span, _)| outside(span)), "seed {seed}");
             assert!(!plan.second_host.iter().any(|(span, _)| outside(span)), "seed {seed}");
-            let calm = AirSettings::default();
+            let stop_rules = AirSettings::default();
             assert_eq!(
                 (plan.air_at(plan.trouble.from - 1), plan.air_at(plan.trouble.to)),
-                (calm.clone(), calm)
+                (stop_rules.clone(), stop_rules)
             );
         }
     }

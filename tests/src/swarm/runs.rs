@@ -3,10 +3,10 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use arena::game::Nobody;
+use arena::game::NoWatcher;
 
 use super::matches::{self, LENGTH, Outcome, Plan};
-use super::{Found, Tally, plan, run};
+use super::{Counters, Found, plan, run};
 
 /// Selection of runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,23 +21,23 @@ pub struct Runs {
 
 /// Plays them all; returns the results of those without violations, and the violations of the others, by
 /// seed. `look` is called with the number done.
-pub fn watch(runs: Runs, look: impl Fn(u64) + Sync) -> (Tally, Vec<(u64, Found)>) {
-    let mut tally = Tally::default();
+pub fn watch(runs: Runs, look: impl Fn(u64) + Sync) -> (Counters, Vec<(u64, Found)>) {
+    let mut counters = Counters::default();
     let mut broken = Vec::new();
     for (seed, ended) in each(runs, run, |done, _| look(done)) {
         match ended {
-            Ok(one) => tally = tally.with(one),
+            Ok(one) => counters = counters.with(one),
             Err(found) => broken.push((seed, found)),
         }
     }
-    (tally, broken)
+    (counters, broken)
 }
 
 /// Plays all matches, ordered by seed; `look` is called with the number done and the results of the last one.
 pub fn watch_matches(runs: Runs, look: impl Fn(u64, &(Plan, Outcome)) + Sync) -> Vec<(Plan, Outcome)> {
     let play = |seed| {
         let plan = Plan::drawn(seed, LENGTH);
-        let outcome = matches::play(&plan, &mut Nobody);
+        let outcome = matches::play(&plan, &mut NoWatcher);
         (plan, outcome)
     };
     each(runs, play, look).into_iter().map(|(_, ended)| ended).collect()
@@ -70,7 +70,7 @@ fn each<T: Send>(runs: Runs, play: impl Fn(u64) -> T + Sync, look: impl Fn(u64, 
 }
 
 /// The lines that report a violation; the last one repeats it.
-pub fn words(seed: u64, found: &Found) -> String {
+pub fn description(seed: u64, found: &Found) -> String {
     let plan = plan::Plan::drawn(seed);
     format!("seed {seed}: {found}\n  {plan}\n  repeat: cargo xtask swarm --first {seed} --seeds 1")
 }

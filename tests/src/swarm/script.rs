@@ -6,7 +6,7 @@ use hil_sim::Stream;
 use hil_sim::small_size::World;
 use host::radio::{Radio, RadioSettings, Situation, To};
 use host::world::{Ball, BallModels, Robot};
-use protocol::host::{Command, Directive, Duty, KickOrder};
+use protocol::host::{Command, Directive, KickOrder, RuleRole};
 use protocol::link::Packet;
 use protocol::quantized::{WirePoint, WirePose};
 use protocol::{Instant, RobotId, Who};
@@ -22,7 +22,7 @@ pub(super) struct Script {
 
 impl Script {
     /// A running game of free robots.
-    pub(super) fn calm() -> Self {
+    pub(super) fn stop_rules() -> Self {
         Self::default()
     }
 
@@ -71,7 +71,7 @@ impl Headquarters {
     }
 
     /// Takes packets of robots and of another host.
-    pub(super) fn hear(&mut self, now: Instant, packets: &[Packet]) {
+    pub(super) fn receive(&mut self, now: Instant, packets: &[Packet]) {
         for packet in packets {
             // Refused packets are counted by the radio.
             let _ = self.radio.handle_packet(now, packet);
@@ -86,7 +86,7 @@ impl Headquarters {
                 to: *to,
                 defending: self.defending,
                 phase,
-                duty: if i == 0 && phase != Phase::Run { Duty::Taker } else { Duty::Player },
+                rule_role: if i == 0 && phase != Phase::Run { RuleRole::Taker } else { RuleRole::Player },
                 directive: self.script.at(ms, i).1,
             })
             .collect();

@@ -6,7 +6,7 @@ use protocol::{CycleId, Instant, RobotId};
 
 use super::honest::Believed;
 use super::plan::{Plan, TEAM};
-use super::{Broken, Found, Tally};
+use super::{Broken, Counters, Found};
 use crate::invariants::{Air, Seen, Watcher};
 
 /// Checks a team's messages.
@@ -26,7 +26,7 @@ pub(super) struct TeamWatch {
     /// The newest cycle whose end was counted.
     counted: Option<CycleId>,
     found: Option<Found>,
-    tally: Tally,
+    counters: Counters,
 }
 
 impl TeamWatch {
@@ -47,7 +47,7 @@ impl TeamWatch {
             ended: None,
             counted: None,
             found: None,
-            tally: Tally { runs: 1, ..Tally::default() },
+            counters: Counters { runs: 1, ..Counters::default() },
         }
     }
 
@@ -63,11 +63,11 @@ impl TeamWatch {
     }
 
     /// A packet was delivered to a robot, which may accept this message of it.
-    pub(super) fn heard(&mut self, ms: u32, to: RobotId, believed: Option<&Believed>) {
-        self.tally.packets += 1;
-        self.tally.unbelievable += u64::from(believed.is_none());
-        if let Some(Believed::Mate(from, TeamMessage::Beacon(beacon))) = believed {
-            self.watcher.see(instant(ms), &Seen::Heard(to, *from, beacon.clone()));
+    pub(super) fn received(&mut self, ms: u32, to: RobotId, believed: Option<&Believed>) {
+        self.counters.packets += 1;
+        self.counters.unbelievable += u64::from(believed.is_none());
+        if let Some(Believed::Teammate(from, TeamMessage::Beacon(beacon))) = believed {
+            self.watcher.see(instant(ms), &Seen::Received(to, *from, beacon.clone()));
         }
     }
 
@@ -99,21 +99,21 @@ impl TeamWatch {
         }
         self.counted = Some(id);
         match end {
-            Closure::Finished => self.tally.finished += 1,
-            Closure::Aborted { .. } => self.tally.stopped += 1,
+            Closure::Finished => self.counters.finished += 1,
+            Closure::Aborted { .. } => self.counters.stopped += 1,
             Closure::NoCase => return,
         }
         self.ended.get_or_insert((id, ms));
     }
 
     pub(super) fn braked(&mut self, steps: u64) {
-        self.tally.brakings += steps;
+        self.counters.brakings += steps;
     }
 
     /// An armed robot has lost its host; or stands for that reason for another tick, ms.
     pub(super) fn stood(&mut self, begins: bool, ms: u32) {
-        self.tally.false_stops += u32::from(begins);
-        self.tally.stood_ms += u64::from(ms);
+        self.counters.false_stops += u32::from(begins);
+        self.counters.stood_ms += u64::from(ms);
     }
 
     /// Records a violation; the first one is kept.
@@ -131,8 +131,8 @@ impl TeamWatch {
         if let Some((id, since)) = self.ended {
             let newest = self.watcher.newest_by_robot();
             if newest.iter().all(|known| known.is_some_and(|known| known > id)) {
-                self.tally.gaps += 1;
-                self.tally.gaps_ms += u64::from(ms - since);
+                self.counters.gaps += 1;
+                self.counters.gaps_ms += u64::from(ms - since);
                 self.ended = None;
             }
         }
@@ -145,18 +145,18 @@ impl TeamWatch {
             self.at_healing = self.watcher.newest_by_robot().into_iter().flatten().max();
         } else if self.united.is_none() && self.plays() {
             self.united = Some(ms);
-            self.tally.slowest_ms = ms - self.healed;
+            self.counters.slowest_ms = ms - self.healed;
         } else if self.united.is_none() && ms > self.owed_since + RECOVER_WITHIN {
-            let words: Vec<String> = self.ids.iter().zip(&self.beacons).map(words).collect();
-            self.find(ms, Broken::Dead(words.join("; ")));
+            let description: Vec<String> = self.ids.iter().zip(&self.beacons).map(description).collect();
+            self.find(ms, Broken::Dead(description.join("; ")));
         }
         self.found.clone().map_or(Ok(()), Err)
     }
 
     /// The results of the run.
-    pub(super) fn tally(&self) -> Tally {
+    pub(super) fn counters(&self) -> Counters {
         let Watcher { cycles, gameplays, overlaps, .. } = self.watcher;
-        Tally { cycles, gameplays, overlaps, ..self.tally }
+        Counters { cycles, gameplays, overlaps, ..self.counters }
     }
 
     /// Whether a robot is present that may retrieve and could be named coordinator.
@@ -181,7 +181,7 @@ impl TeamWatch {
     }
 }
 
-fn words((id, beacon): (&RobotId, &Option<Beacon>)) -> String {
+fn description((id, beacon): (&RobotId, &Option<Beacon>)) -> String {
     match beacon {
         None => format!("{id} silent"),
         Some(beacon) => {

@@ -20,7 +20,7 @@ use super::guard::Guard;
 use super::plan::{FIRST_LIFE, Plan, TEAM};
 use super::script::{Headquarters, Script};
 use super::team::TeamWatch;
-use super::{Broken, Found, Tally};
+use super::{Broken, Counters, Found};
 
 /// A robot of ours.
 struct Player<'a> {
@@ -45,12 +45,12 @@ struct Run<'a> {
     watch: TeamWatch,
 }
 
-pub(super) fn run(plan: Plan) -> Result<Tally, Found> {
+pub(super) fn run(plan: Plan) -> Result<Counters, Found> {
     let mut run = Run::new(Rc::new(plan));
     for number in 0..run.plan.end / TICK_MS {
         run.tick(number)?;
     }
-    Ok(run.watch.tally())
+    Ok(run.watch.counters())
 }
 
 impl Run<'_> {
@@ -87,7 +87,7 @@ impl Run<'_> {
         let ids: Vec<RobotId> = plan.ids().collect();
         let air = Air::with_host(plan.air_at(0), plan.seed, &ids);
         let watch = TeamWatch::new(&plan);
-        let script = if plan.on.is_empty() { Script::calm() } else { Script::drawn(&plan) };
+        let script = if plan.on.is_empty() { Script::stop_rules() } else { Script::drawn(&plan) };
         let hosts = vec![headquarters(&plan, FIRST_LIFE + 10, script)];
         Self { plan, shared, barracks, world, air, players, hosts, watch }
     }
@@ -141,17 +141,17 @@ impl Run<'_> {
         if round_up(plan.trouble.to) == ms && plan.second_host.is_some_and(|(_, later)| later) {
             // The robots follow the second host; the remaining one restarts with a newer epoch to be
             // accepted.
-            self.hosts = vec![headquarters(&plan, FIRST_LIFE + 30, Script::calm())];
+            self.hosts = vec![headquarters(&plan, FIRST_LIFE + 30, Script::stop_rules())];
         }
     }
 
     /// Hosts receive and send.
     fn lead(&mut self, number: u32, ms: u32) {
         let now = Instant(u64::from(ms) * 1000);
-        let heard = self.air.deliver_to_host(number);
+        let received = self.air.deliver_to_host(number);
         let ids: Vec<RobotId> = self.plan.ids().collect();
         for host in &mut self.hosts {
-            host.hear(now, &heard);
+            host.receive(now, &received);
             let shared = &mut *self.shared.borrow_mut();
             let air = &mut self.air;
             // Cameras take 75 frames a second.
@@ -183,11 +183,11 @@ impl Run<'_> {
             let mut shared = shared.borrow_mut();
             let handed = std::mem::take(&mut shared.handed);
             for (_, packet) in handed {
-                let believed = player.guard.honest.hear(&packet, &shared.sayings);
+                let believed = player.guard.honest.receive(&packet, &shared.sayings);
                 if let Some(believed) = &believed {
-                    player.guard.hear(ms, believed);
+                    player.guard.receive(ms, believed);
                 }
-                watch.heard(ms, id, believed.as_ref());
+                watch.received(ms, id, believed.as_ref());
             }
             for packet in &reply.packets {
                 watch.said(ms, plan, packet);
@@ -215,7 +215,7 @@ impl Run<'_> {
 
 fn headquarters(plan: &Plan, epoch: u32, script: Script) -> Headquarters {
     let usual = RadioSettings::new(TEAM, epoch);
-    let settings = RadioSettings { key: plan.key, relay: Relay::No, way: Duration::millis(10), ..usual };
+    let settings = RadioSettings { key: plan.key, relay: Relay::No, latency: Duration::millis(10), ..usual };
     Headquarters::new(settings, Colour::Blue, GoalEnd::Negative, script)
 }
 

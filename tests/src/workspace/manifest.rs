@@ -9,13 +9,13 @@ pub fn members() -> Vec<Manifest> {
     let workspace: toml::Table =
         Source::read(&root().join("Cargo.toml")).text.parse().expect("the workspace's manifest");
     let members = workspace["workspace"]["members"].as_array().expect("members");
-    members.iter().filter_map(|folder| folder.as_str()).map(Manifest::read).collect()
+    members.iter().filter_map(|directory| directory.as_str()).map(Manifest::read).collect()
 }
 
 /// A crate of the workspace, and its dependencies, except dev-dependencies.
 pub struct Manifest {
     /// From the workspace's root.
-    pub folder: String,
+    pub directory: String,
     /// Its name as a dependency.
     pub name: String,
     /// Crates that end up in the same program.
@@ -26,13 +26,14 @@ pub struct Manifest {
 
 impl Manifest {
     /// The manifest of the crate in this directory.
-    pub fn read(folder: &str) -> Self {
-        Self::from_text(folder, &Source::read(&root().join(folder).join("Cargo.toml")).text)
+    pub fn read(directory: &str) -> Self {
+        Self::from_text(directory, &Source::read(&root().join(directory).join("Cargo.toml")).text)
     }
 
     /// From the text of its `Cargo.toml`.
-    pub fn from_text(folder: &str, text: &str) -> Self {
-        let table: toml::Table = text.parse().unwrap_or_else(|error| panic!("{folder}/Cargo.toml: {error}"));
+    pub fn from_text(directory: &str, text: &str) -> Self {
+        let table: toml::Table =
+            text.parse().unwrap_or_else(|error| panic!("{directory}/Cargo.toml: {error}"));
         let name = table["package"]["name"].as_str().unwrap_or_default().to_string();
         let targets =
             table.get("target").and_then(toml::Value::as_table).into_iter().flat_map(toml::Table::values);
@@ -42,7 +43,7 @@ impl Manifest {
             |kind: &str| tables.iter().flat_map(|table| dependencies(table, kind)).collect::<BTreeSet<_>>();
         let linked = of("dependencies");
         let all = linked.union(&of("build-dependencies")).cloned().collect();
-        Self { folder: folder.into(), name, linked, all }
+        Self { directory: directory.into(), name, linked, all }
     }
 }
 

@@ -18,7 +18,7 @@ pub(crate) struct Known {
     /// Steps of `cargo xtask test`.
     steps: BTreeSet<String>,
     /// The other commands of xtask, with all their words.
-    chores: Vec<String>,
+    tasks: Vec<String>,
     /// The source that contains their flags.
     xtask: String,
     /// Directories of packages.
@@ -39,15 +39,15 @@ impl Known {
             verbs.insert(verb.to_owned(), below(path, name));
         }
         let steps = page("xtask/src/steps.rs").text;
-        let chores = page("xtask/src/chores.rs").text;
+        let tasks = page("xtask/src/tasks.rs").text;
         let own = |source: &&Source| source.path.starts_with("host/cli/src/");
         Self {
             verbs,
             program: rust_sources().iter().filter(own).map(|source| source.text.as_str()).collect(),
             steps: after(&steps, "name: ").collect(),
-            chores: after(&chores, "chore(").chain(after(&chores, "handed_on(")).collect(),
-            xtask: chores + &page("xtask/src/main.rs").text,
-            packages: members().into_iter().map(|crate_| (crate_.name, crate_.folder)).collect(),
+            tasks: after(&tasks, "task(").chain(after(&tasks, "handed_on(")).collect(),
+            xtask: tasks + &page("xtask/src/main.rs").text,
+            packages: members().into_iter().map(|crate_| (crate_.name, crate_.directory)).collect(),
         }
     }
 
@@ -64,34 +64,36 @@ impl Known {
 
     /// What is wrong with a command; `None` for a valid one, and for text that is no command.
     fn fault(&self, command: &str) -> Option<String> {
-        let ends = |word: &&str| !matches!(*word, "|" | ">" | "<" | "&&" | ";" | "#" | "\\" | "…");
-        let words: Vec<_> =
-            command.split_whitespace().skip_while(|word| *word == "$").take_while(ends).collect();
-        match words.as_slice() {
+        let ends = |label: &&str| !matches!(*label, "|" | ">" | "<" | "&&" | ";" | "#" | "\\" | "…");
+        let description: Vec<_> =
+            command.split_whitespace().skip_while(|label| *label == "$").take_while(ends).collect();
+        match description.as_slice() {
             ["onetwo", rest @ ..] => self.of_program(rest),
             // A command that continues with `…` names several.
             ["cargo", "xtask", rest @ ..] if command.contains('…') && self.begins(&rest.join(" ")) => None,
             ["cargo", "xtask", rest @ ..] => self.of_xtask(rest),
             ["cargo", "run" | "test", rest @ ..] => {
-                let (own, program) = match rest.iter().position(|word| *word == "--") {
+                let (own, program) = match rest.iter().position(|label| *label == "--") {
                     Some(at) => (&rest[..at], Some(&rest[at + 1..])),
                     None => (rest, None),
                 };
                 let fault = self.of_cargo(own);
-                let runs_program = words[1] == "run" && !own.contains(&"-p");
-                fault.or_else(|| program.filter(|_| runs_program).and_then(|words| self.of_program(words)))
+                let runs_program = description[1] == "run" && !own.contains(&"-p");
+                fault.or_else(|| {
+                    program.filter(|_| runs_program).and_then(|description| self.of_program(description))
+                })
             }
             _ => None,
         }
     }
 
-    fn of_program(&self, words: &[&str]) -> Option<String> {
-        let (verb, rest) = words.split_first()?;
+    fn of_program(&self, description: &[&str]) -> Option<String> {
+        let (verb, rest) = description.split_first()?;
         if verb.starts_with('-') {
             return (!matches!(*verb, "--version" | "--help")).then(|| format!("no flag `{verb}`"));
         }
         let Some(below) = self.verbs.get(*verb) else { return Some(format!("no verb `{verb}`")) };
-        let next = rest.first().filter(|word| word.chars().all(|c| c.is_ascii_lowercase()));
+        let next = rest.first().filter(|label| label.chars().all(|c| c.is_ascii_lowercase()));
         if let Some(next) = next.filter(|next| !below.is_empty() && !below.contains(**next)) {
             return Some(format!("`{verb}` has no verb `{next}`"));
         }
@@ -103,11 +105,11 @@ impl Known {
     }
 
     fn begins(&self, line: &str) -> bool {
-        self.chores.iter().any(|chore| chore.starts_with(&format!("{line} ")))
+        self.tasks.iter().any(|task| task.starts_with(&format!("{line} ")))
     }
 
-    fn of_xtask(&self, words: &[&str]) -> Option<String> {
-        match words {
+    fn of_xtask(&self, description: &[&str]) -> Option<String> {
+        match description {
             [] => None,
             ["test", rest @ ..] => {
                 let chosen = rest.windows(2).filter(|pair| pair[0] == "--only").map(|pair| pair[1]);
@@ -118,42 +120,44 @@ impl Known {
                 unknown.or_else(|| unknown_flag(rest, |flag| matches!(flag, "only" | "list")))
             }
             _ => {
-                let line = words.join(" ");
-                let named = |chore: &&String| {
-                    line.strip_prefix(chore.as_str())
+                let line = description.join(" ");
+                let named = |task: &&String| {
+                    line.strip_prefix(task.as_str())
                         .is_some_and(|rest| rest.is_empty() || rest.starts_with(' '))
                 };
-                let Some(chore) = self.chores.iter().find(named) else {
+                let Some(task) = self.tasks.iter().find(named) else {
                     return Some(format!("no command `{line}`"));
                 };
-                let rest = &words[chore.split(' ').count()..];
+                let rest = &description[task.split(' ').count()..];
                 unknown_flag(rest, |flag| self.xtask.contains(&format!("--{flag}")))
             }
         }
     }
 
     /// Packages, tests and examples of cargo's own arguments.
-    fn of_cargo(&self, words: &[&str]) -> Option<String> {
-        let value = |flag: &str| words.windows(2).find(|pair| pair[0] == flag).map(|pair| pair[1]);
+    fn of_cargo(&self, description: &[&str]) -> Option<String> {
+        let value = |flag: &str| description.windows(2).find(|pair| pair[0] == flag).map(|pair| pair[1]);
         let placeholder = |name: &str| name.chars().all(|c| c.is_ascii_uppercase());
         let package = value("-p").or_else(|| value("--package")).filter(|name| !placeholder(name));
         let package = package?;
-        let Some(folder) = self.packages.get(package) else { return Some(format!("no package `{package}`")) };
+        let Some(directory) = self.packages.get(package) else {
+            return Some(format!("no package `{package}`"));
+        };
         for (flag, sub) in [("--test", "tests"), ("--example", "examples"), ("--bench", "benches")] {
             let Some(name) = value(flag).filter(|name| !placeholder(name) && !name.contains('*')) else {
                 continue;
             };
-            let there = |path: String| root().join(folder).join(sub).join(path).is_file();
+            let there = |path: String| root().join(directory).join(sub).join(path).is_file();
             if !there(format!("{name}.rs")) && !there(format!("{name}/main.rs")) {
-                return Some(format!("{} has no `{name}`", Path::new(folder).join(sub).display()));
+                return Some(format!("{} has no `{name}`", Path::new(directory).join(sub).display()));
             }
         }
         None
     }
 }
 
-fn unknown_flag(words: &[&str], known: impl Fn(&str) -> bool) -> Option<String> {
-    let flags = words.iter().filter_map(|word| word.strip_prefix("--"));
+fn unknown_flag(description: &[&str], known: impl Fn(&str) -> bool) -> Option<String> {
+    let flags = description.iter().filter_map(|label| label.strip_prefix("--"));
     let names = flags.map(|flag| flag.split(|c: char| !c.is_ascii_alphanumeric() && c != '-').next());
     let mut names = names.map(Option::unwrap_or_default).filter(|flag| !flag.is_empty());
     names.find(|flag| !known(flag)).map(|flag| format!("no flag `--{flag}`"))
@@ -171,14 +175,14 @@ fn variants(text: &str, name: &str) -> BTreeSet<String> {
 }
 
 fn kebab(name: &str) -> String {
-    let mut word = String::new();
+    let mut label = String::new();
     for c in name.chars() {
-        if c.is_ascii_uppercase() && !word.is_empty() {
-            word.push('-');
+        if c.is_ascii_uppercase() && !label.is_empty() {
+            label.push('-');
         }
-        word.push(c.to_ascii_lowercase());
+        label.push(c.to_ascii_lowercase());
     }
-    word
+    label
 }
 
 /// The first string after each occurrence of `begin`.
@@ -236,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn variants_are_words_of_the_command_line() {
+    fn variants_are_description_of_the_command_line() {
         let text = "enum Verb {\n    /// A.\n    Play(A),\n    Cases {\n        Verb: B,\n    },\n    VirtualRobot(C),\n}\nenum X {\n    Y,\n}\n";
         assert_eq!(
             variants(text, "Verb").into_iter().collect::<Vec<_>>(),

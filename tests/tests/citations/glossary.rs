@@ -13,13 +13,16 @@ impl Names {
     /// Those of the workspace.
     pub(crate) fn read() -> Self {
         let sources = rust_sources();
-        let of = |folder: &str| {
-            let own = format!("{folder}/src/");
+        let of = |directory: &str| {
+            let own = format!("{directory}/src/");
             let sources = sources.iter().filter(|source| source.path.starts_with(&own));
             sources.flat_map(|source| defined(&source.text)).collect()
         };
         Self(
-            members().into_iter().map(|crate_| (crate_.name.replace('-', "_"), of(&crate_.folder))).collect(),
+            members()
+                .into_iter()
+                .map(|crate_| (crate_.name.replace('-', "_"), of(&crate_.directory)))
+                .collect(),
         )
     }
 
@@ -34,13 +37,13 @@ impl Names {
 /// Names that a file defines.
 fn defined(text: &str) -> impl Iterator<Item = String> {
     text.lines().filter_map(|line| {
-        let mut words = line.split_whitespace().skip_while(|word| {
-            word.starts_with("pub") || matches!(*word, "unsafe" | "async") || word.starts_with("#[")
+        let mut description = line.split_whitespace().skip_while(|label| {
+            label.starts_with("pub") || matches!(*label, "unsafe" | "async") || label.starts_with("#[")
         });
-        let kind = words.next()?;
+        let kind = description.next()?;
         let kinds = ["struct", "enum", "trait", "fn", "mod", "const", "static", "type"];
-        let name = words.next().filter(|_| kinds.contains(&kind))?;
-        let name = if name == "fn" { words.next()? } else { name };
+        let name = description.next().filter(|_| kinds.contains(&kind))?;
+        let name = if name == "fn" { description.next()? } else { name };
         Some(name.split(|c: char| !c.is_alphanumeric() && c != '_').next()?.to_owned())
     })
 }

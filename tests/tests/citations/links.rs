@@ -30,10 +30,10 @@ pub(crate) fn dangling(source: &Source, files: &dyn Lookup) -> Vec<Finding> {
         let targets = line.split("](").skip(1).filter_map(|rest| rest.split(')').next());
         for target in targets.filter(|target| !target.contains("://") && !target.starts_with("mailto:")) {
             let (file, anchor) = target.split_once('#').unwrap_or((target, ""));
-            let folder = Path::new(&source.path).parent().unwrap_or(Path::new(""));
+            let directory = Path::new(&source.path).parent().unwrap_or(Path::new(""));
             let text = match file {
                 "" => Some(source.text.clone()),
-                file => files.text(&clean(&folder.join(file))),
+                file => files.text(&clean(&directory.join(file))),
             };
             let fault = match text {
                 None => format!("links `{target}`, which is not there"),
@@ -82,8 +82,8 @@ pub(crate) fn missing_files(source: &Source, files: &dyn Lookup) -> Vec<Finding>
             continue;
         }
         let name = Path::new(path.trim_end_matches('/'));
-        let folder = Path::new(&source.path).parent().unwrap_or(Path::new(""));
-        match files.text(name).or_else(|| files.text(&folder.join(name))) {
+        let directory = Path::new(&source.path).parent().unwrap_or(Path::new(""));
+        match files.text(name).or_else(|| files.text(&directory.join(name))) {
             None => findings.push(source.at(number, &format!("`{path}` is not there"), "name what is")),
             Some(text) if !item.is_empty() && !text.contains(item) => {
                 findings.push(source.at(number, &format!("{path} has no `{item}`"), "name what it has"));
@@ -109,8 +109,9 @@ pub(crate) fn opens_with_a_summary(text: &str) -> bool {
     let mut lines = text.lines();
     let title = lines.next().is_some_and(|line| line.starts_with("# "));
     let blank = lines.next().is_some_and(str::is_empty);
-    let words = lines.next().is_some_and(|line| line.starts_with(|c: char| c.is_alphanumeric() || c == '`'));
-    title && blank && words
+    let description =
+        lines.next().is_some_and(|line| line.starts_with(|c: char| c.is_alphanumeric() || c == '`'));
+    title && blank && description
 }
 
 /// The repository's top directories, as starts of file paths.

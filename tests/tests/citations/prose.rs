@@ -17,27 +17,28 @@ impl Quoted {
         let mut quoted = Self { spans: Vec::new(), fenced: Vec::new() };
         let (mut block, mut begins, mut in_fence) = (String::new(), 1, false);
         for (number, line) in (1..).zip(source.text.lines()) {
-            let Some((words, alone)) = comment(extension, line) else {
+            let Some((description, alone)) = comment(extension, line) else {
                 quoted.take(&mut block, begins);
                 in_fence = false;
                 continue;
             };
-            let fence = words.trim_start().starts_with("```");
+            let fence = description.trim_start().starts_with("```");
             if fence {
                 quoted.take(&mut block, begins);
                 in_fence = !in_fence;
             } else if in_fence {
-                quoted.fenced.push((number, words.to_owned()));
+                quoted.fenced.push((number, description.to_owned()));
             } else {
                 // A paragraph, a row of a table and an item of a list each end an open quote.
-                let fresh = words.trim().is_empty() || words.trim_start().starts_with(['|', '-', '#']);
+                let fresh =
+                    description.trim().is_empty() || description.trim_start().starts_with(['|', '-', '#']);
                 if !alone || fresh {
                     quoted.take(&mut block, begins);
                 }
                 if block.is_empty() {
                     begins = number;
                 }
-                block.push_str(words);
+                block.push_str(description);
                 block.push('\n');
             }
         }
@@ -81,9 +82,9 @@ fn comment<'a>(extension: &str, line: &'a str) -> Option<(&'a str, bool)> {
         "toml" => "#",
         _ => return None,
     };
-    let (code, words) = line.split_once(sign)?;
-    let words = words.trim_start_matches(['/', '!']);
-    Some((words.strip_prefix(' ').unwrap_or(words), code.trim().is_empty()))
+    let (code, description) = line.split_once(sign)?;
+    let description = description.trim_start_matches(['/', '!']);
+    Some((description.strip_prefix(' ').unwrap_or(description), code.trim().is_empty()))
 }
 
 #[cfg(test)]

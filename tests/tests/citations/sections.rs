@@ -91,7 +91,7 @@ impl Marks {
     pub(crate) fn read() -> Self {
         let rows = page("docs/papers.md").text;
         let marks = rows.lines().filter_map(|line| line.strip_prefix("| ")?.split(' ').next());
-        Self(marks.filter(|word| is_mark(word)).map(str::to_owned).collect())
+        Self(marks.filter(|label| is_mark(label)).map(str::to_owned).collect())
     }
 
     /// Marks in comments that do not exist on the page.
@@ -99,8 +99,8 @@ impl Marks {
         let mut findings = Vec::new();
         for (number, line) in (1..).zip(source.text.lines()) {
             let Some((_, comment)) = line.split_once("//") else { continue };
-            let words = comment.split(|c: char| !c.is_alphanumeric() && c != '_');
-            for mark in words.filter(|word| is_mark(word)).filter(|word| !self.0.contains(*word)) {
+            let description = comment.split(|c: char| !c.is_alphanumeric() && c != '_');
+            for mark in description.filter(|label| is_mark(label)).filter(|label| !self.0.contains(*label)) {
                 let fix = "docs/papers.md has them all; a pin or a domain is written otherwise";
                 findings.push(source.at(number, &format!("no mark `{mark}`"), fix));
             }
@@ -109,8 +109,8 @@ impl Marks {
     }
 }
 
-fn is_mark(word: &str) -> bool {
-    word.strip_prefix(['R', 'D']).is_some_and(|number| {
+fn is_mark(label: &str) -> bool {
+    label.strip_prefix(['R', 'D']).is_some_and(|number| {
         (1..=2).contains(&number.len()) && number.bytes().all(|byte| byte.is_ascii_digit())
     })
 }
@@ -120,18 +120,18 @@ pub(crate) fn outside(source: &Source) -> Vec<Finding> {
     let fix = "cite a section of docs, or say it here";
     let mut findings = Vec::new();
     for (number, line) in (1..).zip(source.text.lines()) {
-        for word in OUTSIDE {
-            let whole = line.match_indices(word).any(|(at, _)| {
+        for label in OUTSIDE {
+            let whole = line.match_indices(label).any(|(at, _)| {
                 let letter = |c: char| c.is_alphanumeric();
-                !line[..at].ends_with(letter) && !line[at + word.len()..].starts_with(letter)
+                !line[..at].ends_with(letter) && !line[at + label.len()..].starts_with(letter)
             });
             if whole {
-                findings.push(source.at(number, &format!("`{word}`"), fix));
+                findings.push(source.at(number, &format!("`{label}`"), fix));
             }
         }
-        let numbered = |word: &str| {
-            line.match_indices(word)
-                .any(|(at, _)| line[at + word.len()..].starts_with(|c: char| c.is_ascii_digit()))
+        let numbered = |label: &str| {
+            line.match_indices(label)
+                .any(|(at, _)| line[at + label.len()..].starts_with(|c: char| c.is_ascii_digit()))
         };
         if ISSUES.into_iter().any(numbered) {
             findings.push(source.at(number, "an issue by its number", fix));
@@ -160,9 +160,9 @@ fn joined(source: &Source) -> String {
     for line in source.text.lines() {
         let bare = line.trim_start();
         let comment = ["//! ", "/// ", "// ", "# "].into_iter().find_map(|sign| bare.strip_prefix(sign));
-        if let Some(words) = comment.filter(|_| !text.is_empty() && !is_document(source)) {
+        if let Some(description) = comment.filter(|_| !text.is_empty() && !is_document(source)) {
             text.push(NEWLINE);
-            text.push_str(words);
+            text.push_str(description);
         } else {
             text.push('\n');
             text.push_str(line);
@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mark_that_is_not_there_is_found_and_other_words_are_none() {
+    fn a_mark_that_is_not_there_is_found_and_other_description_are_none() {
         let marks = Marks(BTreeSet::from(["R1".to_owned(), "D24".to_owned()]));
         let text = "// (docs/papers.md R1, D24)\nlet r99 = PD12; // pin PD12, R100\n/// R2 (D3)\n";
         assert_eq!(lines(&marks.dangling(&source(text))), [3, 3]);

@@ -46,27 +46,29 @@ fn retyped(fact: &Fact, sources: &[Source]) -> Vec<String> {
     let mut findings = Vec::new();
     let mut needed = BTreeSet::new();
     let of_tests = |path: &str| path.ends_with("tests.rs") || path.contains("/tests/");
-    let within =
-        |path: &str| folders.iter().any(|folder| path == *folder || path.starts_with(&format!("{folder}/")));
+    let within = |path: &str| {
+        folders.iter().any(|directory| path == *directory || path.starts_with(&format!("{directory}/")))
+    };
     for source in sources.iter().filter(|source| within(&source.path) && !of_tests(&source.path)) {
         let mut in_text = false;
         for (number, line) in source.code() {
             let code = without_texts(line, &mut in_text);
             let Some(pattern) = patterns.iter().find(|pattern| writes(&code, pattern)) else { continue };
-            let exception = other.iter().find(|(path, words)| *path == source.path && line.contains(words));
+            let exception =
+                other.iter().find(|(path, description)| *path == source.path && line.contains(description));
             if source.path == *home {
                 needed.insert(*home);
-            } else if let Some((_, words)) = exception {
-                needed.insert(*words);
+            } else if let Some((_, description)) = exception {
+                needed.insert(*description);
             } else {
-                let mend = format!("read it from {home}, or say in FACTS why it is another fact");
-                findings.push(source.at(number, &format!("{name}, `{pattern}`"), &mend).to_string());
+                let hint = format!("read it from {home}, or say in FACTS why it is another fact");
+                findings.push(source.at(number, &format!("{name}, `{pattern}`"), &hint).to_string());
             }
         }
     }
-    let words = other.iter().map(|(_, words)| *words).chain([*home]);
-    let stale = words.filter(|words| !needed.contains(words));
-    findings.extend(stale.map(|words| format!("{words}: nothing there is {name}; mend FACTS")));
+    let description = other.iter().map(|(_, description)| *description).chain([*home]);
+    let stale = description.filter(|description| !needed.contains(description));
+    findings.extend(stale.map(|description| format!("{description}: nothing there is {name}; mend FACTS")));
     findings
 }
 

@@ -17,7 +17,7 @@
 
 mod twins;
 
-use crate::coverage::Tally;
+use crate::coverage::Counters;
 
 pub use twins::{Shared, shared};
 
@@ -41,7 +41,7 @@ impl Role {
     pub const ALL: [Self; 5] = [Self::Pivotal, Self::Spanning, Self::Support, Self::Auxiliary, Self::Idle];
 
     /// Its label.
-    pub const fn word(self) -> &'static str {
+    pub const fn label(self) -> &'static str {
         match self {
             Self::Pivotal => "pivotal",
             Self::Spanning => "spanning",
@@ -53,8 +53,8 @@ impl Role {
 }
 
 /// The role of every authored case.
-pub fn roles(tally: &Tally, shared: &[Shared]) -> Vec<Role> {
-    let mut roles: Vec<Role> = tally
+pub fn roles(counters: &Counters, shared: &[Shared]) -> Vec<Role> {
+    let mut roles: Vec<Role> = counters
         .cases
         .iter()
         .map(|case| match (case.candidate(), case.sole) {
@@ -71,7 +71,7 @@ pub fn roles(tally: &Tally, shared: &[Shared]) -> Vec<Role> {
     };
     for pair in shared {
         let [a, b] = pair.cases;
-        let [of_a, of_b] = pair.cases.map(|case| tally.cases[usize::from(case)].candidate());
+        let [of_a, of_b] = pair.cases.map(|case| counters.cases[usize::from(case)].candidate());
         let (a_within, b_within) = (pair.problems == of_a, pair.problems == of_b);
         if a_within {
             mark(b, Role::Support);
@@ -86,9 +86,9 @@ pub fn roles(tally: &Tally, shared: &[Shared]) -> Vec<Role> {
 
 /// The competence groups, largest coverage first: their cases in rising order, and the number of problems
 /// they cover.
-pub fn groups(tally: &Tally) -> Vec<(Vec<u16>, u64)> {
-    let mut parent: Vec<usize> = (0..tally.cases.len()).collect();
-    for cases in tally.reaches.keys() {
+pub fn groups(counters: &Counters) -> Vec<(Vec<u16>, u64)> {
+    let mut parent: Vec<usize> = (0..counters.cases.len()).collect();
+    for cases in counters.reaches.keys() {
         for pair in cases.windows(2) {
             let [a, b] = [pair[0], pair[1]].map(|case| root(&mut parent, usize::from(case)));
             parent[a.max(b)] = a.min(b);
@@ -99,7 +99,7 @@ pub fn groups(tally: &Tally) -> Vec<(Vec<u16>, u64)> {
         let root = root(&mut parent, case);
         groups[root].0.push(case as u16);
     }
-    for (cases, reach) in &tally.reaches {
+    for (cases, reach) in &counters.reaches {
         if let Some(first) = cases.first() {
             groups[root(&mut parent, usize::from(*first))].1 += reach.problems;
         }
@@ -122,19 +122,19 @@ pub struct Deletion {
 
 /// Deletes, again and again, the case with the smallest loss (ties: the one that covers fewest, then the
 /// highest number) while at most `loss_max` problems are lost in total.
-pub fn thin_out(tally: &Tally, loss_max: u64) -> Vec<Deletion> {
-    let mut left: Vec<bool> = vec![true; tally.cases.len()];
+pub fn thin_out(counters: &Counters, loss_max: u64) -> Vec<Deletion> {
+    let mut left: Vec<bool> = vec![true; counters.cases.len()];
     let mut deletions: Vec<Deletion> = Vec::new();
     let mut lost_so_far = 0;
     loop {
         let mut sole = vec![0_u64; left.len()];
-        for (cases, reach) in &tally.reaches {
+        for (cases, reach) in &counters.reaches {
             let mut rest = cases.iter().filter(|case| left[usize::from(**case)]);
             if let (Some(only), None) = (rest.next(), rest.next()) {
                 sole[usize::from(*only)] += reach.problems;
             }
         }
-        let key = |case: &usize| (sole[*case], tally.cases[*case].candidate(), usize::MAX - *case);
+        let key = |case: &usize| (sole[*case], counters.cases[*case].candidate(), usize::MAX - *case);
         let Some(case) = (0..left.len()).filter(|case| left[*case]).min_by_key(key) else { break };
         if lost_so_far + sole[case] > loss_max {
             break;
@@ -157,46 +157,46 @@ fn root(parent: &mut [usize], mut case: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::coverage::{CaseTally, Reach};
+    use crate::coverage::{CaseCounters, Reach};
 
     /// Counts of problems with these reachability sets.
-    fn tally(cases: usize, reaches: &[(&[u16], u64)]) -> Tally {
-        let mut tally = Tally::new(cases, 0);
+    fn counters(cases: usize, reaches: &[(&[u16], u64)]) -> Counters {
+        let mut counters = Counters::new(cases, 0);
         for (first, (cases, problems)) in (0..).zip(reaches) {
-            tally.reaches.insert(cases.to_vec(), Reach { problems: *problems, first });
+            counters.reaches.insert(cases.to_vec(), Reach { problems: *problems, first });
             for case in *cases {
-                let CaseTally { verdicts, sole, .. } = &mut tally.cases[usize::from(*case)];
+                let CaseCounters { verdicts, sole, .. } = &mut counters.cases[usize::from(*case)];
                 verdicts[5] += problems;
                 *sole += if cases.len() == 1 { *problems } else { 0 };
             }
         }
-        tally
+        counters
     }
 
     #[test]
     fn roles_are_those_a_hand_finds() {
         // 0 alone covers 4; 1's problems are all 0's; 2 and 3 cover the same; 4 overlaps 0 and 2; 5 covers
         // nothing.
-        let tally =
-            tally(6, &[(&[0], 4), (&[0, 1], 3), (&[2, 3], 5), (&[0, 4], 1), (&[2, 3, 4], 2), (&[], 9)]);
-        let roles = roles(&tally, &shared(&tally));
+        let counters =
+            counters(6, &[(&[0], 4), (&[0, 1], 3), (&[2, 3], 5), (&[0, 4], 1), (&[2, 3, 4], 2), (&[], 9)]);
+        let roles = roles(&counters, &shared(&counters));
         use Role::{Auxiliary, Idle, Pivotal, Spanning, Support};
         assert_eq!(roles, [Pivotal, Auxiliary, Support, Support, Spanning, Idle]);
     }
 
     #[test]
     fn groups_are_the_connected_components_of_shared_problems() {
-        let tally = tally(6, &[(&[0, 2], 3), (&[2, 4], 1), (&[1], 7), (&[3, 5], 7), (&[], 2)]);
-        assert_eq!(groups(&tally), [(vec![1], 7), (vec![3, 5], 7), (vec![0, 2, 4], 4)]);
+        let counters = counters(6, &[(&[0, 2], 3), (&[2, 4], 1), (&[1], 7), (&[3, 5], 7), (&[], 2)]);
+        assert_eq!(groups(&counters), [(vec![1], 7), (vec![3, 5], 7), (vec![0, 2, 4], 4)]);
     }
 
     #[test]
     fn thinning_counts_what_is_lost_after_the_deletions_before() {
         // 0 and 1 back each other up: deleting the first of them loses nothing, the second all they covered.
-        let tally = tally(3, &[(&[0, 1], 5), (&[2], 3), (&[0, 2], 1)]);
+        let counters = counters(3, &[(&[0, 1], 5), (&[2], 3), (&[0, 2], 1)]);
         let step = |case, lost, lost_so_far| Deletion { case, lost, lost_so_far };
-        assert_eq!(thin_out(&tally, 0), [step(1, 0, 0)]);
-        assert_eq!(thin_out(&tally, 8), [step(1, 0, 0), step(2, 3, 3),]);
-        assert_eq!(thin_out(&tally, 9), [step(1, 0, 0), step(2, 3, 3), step(0, 6, 9)]);
+        assert_eq!(thin_out(&counters, 0), [step(1, 0, 0)]);
+        assert_eq!(thin_out(&counters, 8), [step(1, 0, 0), step(2, 3, 3),]);
+        assert_eq!(thin_out(&counters, 9), [step(1, 0, 0), step(2, 3, 3), step(0, 6, 9)]);
     }
 }

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::coverage::Tally;
+use crate::coverage::Counters;
 
 /// Two authored cases that are candidates in the same problems.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,16 +24,16 @@ impl Shared {
 }
 
 /// Every pair that shares a problem, in the order of their numbers.
-pub fn shared(tally: &Tally) -> Vec<Shared> {
+pub fn shared(counters: &Counters) -> Vec<Shared> {
     let mut both: BTreeMap<[u16; 2], u64> = BTreeMap::new();
-    for (cases, reach) in &tally.reaches {
+    for (cases, reach) in &counters.reaches {
         for (at, a) in cases.iter().enumerate() {
             for b in &cases[at + 1..] {
                 *both.entry([*a, *b]).or_default() += reach.problems;
             }
         }
     }
-    let covers = |case: u16| tally.cases[usize::from(case)].candidate();
+    let covers = |case: u16| counters.cases[usize::from(case)].candidate();
     both.into_iter()
         .map(|([a, b], problems)| Shared {
             cases: [a, b],
@@ -50,15 +50,15 @@ mod tests {
 
     #[test]
     fn likeness_is_the_shared_part_of_what_either_covers() {
-        let mut tally = Tally::new(2, 0);
+        let mut counters = Counters::new(2, 0);
         // Both in 3 problems, the first alone in 2, the second alone in 1.
         for (cases, problems) in [(vec![0, 1], 3), (vec![0], 2), (vec![1], 1)] {
             for case in &cases {
-                tally.cases[usize::from(*case)].verdicts[5] += problems;
+                counters.cases[usize::from(*case)].verdicts[5] += problems;
             }
-            tally.reaches.insert(cases, Reach { problems, first: 0 });
+            counters.reaches.insert(cases, Reach { problems, first: 0 });
         }
-        let pairs = shared(&tally);
+        let pairs = shared(&counters);
         assert_eq!(pairs, [Shared { cases: [0, 1], problems: 3, either: 6 }]);
         assert_eq!(pairs[0].likeness(), 0.5);
     }

@@ -5,7 +5,7 @@ use casebase::{CaseBase, Match, Problem, SettingError, Settings, Verdict, explai
 
 use super::area::Area;
 use super::cells::Cells;
-use super::tally::{COST_BIN_MM, COST_BINS, RINGS, Reach, Tally, VERDICTS};
+use super::counters::{COST_BIN_MM, COST_BINS, Counters, RINGS, Reach, VERDICTS};
 
 /// A library, its retrieval settings, and the grid of the counters.
 #[derive(Clone, Debug)]
@@ -39,22 +39,22 @@ impl<'a> Survey<'a> {
     }
 
     /// Counters at zero.
-    pub fn empty(&self) -> Tally {
-        Tally::new(self.base.len() / COPIES, self.cells.len())
+    pub fn empty(&self) -> Counters {
+        Counters::new(self.base.len() / COPIES, self.cells.len())
     }
 
     /// The counters of numbered problems.
-    pub fn over(&self, problems: impl IntoIterator<Item = (u64, Problem)>) -> Tally {
-        let mut tally = self.empty();
+    pub fn over(&self, problems: impl IntoIterator<Item = (u64, Problem)>) -> Counters {
+        let mut counters = self.empty();
         for (number, problem) in problems {
-            self.count(&mut tally, number, &problem);
+            self.count(&mut counters, number, &problem);
         }
-        tally
+        counters
     }
 
-    fn count(&self, tally: &mut Tally, number: u64, problem: &Problem) {
+    fn count(&self, counters: &mut Counters, number: u64, problem: &Problem) {
         // For each authored case: the last check that its better copy reached, and that copy's interval.
-        let mut reached = vec![(0_usize, RINGS.len()); tally.cases.len()];
+        let mut reached = vec![(0_usize, RINGS.len()); counters.cases.len()];
         let mut best: Option<Match> = None;
         let mut candidates = 0;
         explain(&self.base, problem, &self.settings, |id, verdict| {
@@ -69,15 +69,15 @@ impl<'a> Survey<'a> {
             }
         });
         let area = Area::of(self.base.field(), problem.ball, problem.defending) as usize;
-        let cell = &mut tally.cells[self.cells.cell(problem.ball, problem.defending)];
-        tally.problems += 1;
-        tally.candidates += candidates;
-        tally.areas[area].problems += 1;
+        let cell = &mut counters.cells[self.cells.cell(problem.ball, problem.defending)];
+        counters.problems += 1;
+        counters.candidates += candidates;
+        counters.areas[area].problems += 1;
         cell.problems += 1;
         cell.candidates += candidates;
         let winner = best.as_ref().map(|best| best.case.0 / COPIES as u16);
         let mut reach = Vec::new();
-        for (authored, (counts, (step, interval))) in (0_u16..).zip(tally.cases.iter_mut().zip(&reached)) {
+        for (authored, (counts, (step, interval))) in (0_u16..).zip(counters.cases.iter_mut().zip(&reached)) {
             counts.verdicts[*step] += 1;
             if *step == CANDIDATE {
                 reach.push(authored);
@@ -89,31 +89,31 @@ impl<'a> Survey<'a> {
             }
         }
         if let (Some(best), Some(winner)) = (&best, winner) {
-            let counts = &mut tally.cases[usize::from(winner)];
+            let counts = &mut counters.cases[usize::from(winner)];
             counts.wins += 1;
             counts.rings_won[ring(best)] += 1;
             *cell.wins.entry(winner).or_default() += 1;
-            tally.rings[ring(best)] += 1;
-            tally.costs[((best.cost / COST_BIN_MM) as usize).min(COST_BINS - 1)] += 1;
+            counters.rings[ring(best)] += 1;
+            counters.costs[((best.cost / COST_BIN_MM) as usize).min(COST_BINS - 1)] += 1;
         } else {
-            tally.none += 1;
-            tally.areas[area].none += 1;
+            counters.none += 1;
+            counters.areas[area].none += 1;
             cell.none += 1;
             cell.first_hole = cell.first_hole.into_iter().chain([number]).min();
-            tally.furthest[reached.iter().map(|(step, _)| *step).max().unwrap_or(0)] += 1;
-            self.who_would_fill(tally, problem);
+            counters.furthest[reached.iter().map(|(step, _)| *step).max().unwrap_or(0)] += 1;
+            self.who_would_fill(counters, problem);
         }
         if let [only] = reach[..] {
-            let counts = &mut tally.cases[usize::from(only)];
+            let counts = &mut counters.cases[usize::from(only)];
             counts.sole += 1;
             counts.sole_in[area] += 1;
         }
-        let reach = tally.reaches.entry(reach).or_insert(Reach { problems: 0, first: number });
+        let reach = counters.reaches.entry(reach).or_insert(Reach { problems: 0, first: number });
         reach.problems += 1;
         reach.first = reach.first.min(number);
     }
 
-    fn who_would_fill(&self, tally: &mut Tally, problem: &Problem) {
+    fn who_would_fill(&self, counters: &mut Counters, problem: &Problem) {
         let mut last = None;
         let mut fills = Vec::new();
         explain(&self.base, problem, &self.wider, |id, verdict| {
@@ -124,14 +124,14 @@ impl<'a> Survey<'a> {
             }
         });
         for authored in fills {
-            tally.cases[authored].would_fill += 1;
+            counters.cases[authored].would_fill += 1;
         }
     }
 }
 
 /// The last check that a copy reached: an index of [`VERDICTS`].
 fn step_of(verdict: &Verdict) -> usize {
-    VERDICTS.iter().position(|word| *word == verdict.word()).unwrap_or(0)
+    VERDICTS.iter().position(|label| *label == verdict.label()).unwrap_or(0)
 }
 
 /// The similarity interval: an index of [`RINGS`].

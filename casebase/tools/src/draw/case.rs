@@ -10,8 +10,8 @@ use casebase::{
 
 use drawing::{Anchor, At, Colors, Font, Svg, Theme, draw_field, half_extent, wrapped};
 
+use super::description;
 use super::labels::Labels;
-use super::words;
 
 /// A case to be drawn.
 #[derive(Clone, Debug)]
@@ -76,7 +76,7 @@ fn scene<'p>(picture: &'p CasePicture<'p>, zoom: f64) -> Pen {
     }
     pen.ball(at(ball));
     let mut labels = std::mem::take(&mut pen.labels);
-    labels.write(&mut pen.svg, unit * 1.4, colors.carpet);
+    labels.write(&mut pen.svg, unit * 1.4, colors.surface);
     if zoom <= 1.0 {
         scene.ring_names(&mut pen, &mut labels);
     }
@@ -153,7 +153,7 @@ impl Scene<'_, '_> {
             apart && places.iter().all(|place| labels.free([*place], half).is_some())
         };
         let ray = RAYS.iter().find(|degrees| clear(degrees)).copied();
-        let font = Font { size, fill: pen.colors.ink, bold: false, halo: Some(pen.colors.carpet) };
+        let font = Font { size, fill: pen.colors.ink, bold: false, halo: Some(pen.colors.surface) };
         for (band, letter) in letters.enumerate() {
             let places = ray.iter().chain(&RAYS).map(|degrees| place(*degrees, band));
             if let Some([x, y]) = labels.free(places, half) {
@@ -350,10 +350,10 @@ fn caption(pen: &mut Pen, picture: &CasePicture<'_>, [x, y]: [f64; 2]) -> String
     let font = Font { size: unit * 2.4, fill: colors.ink, bold: true, halo: None };
     pen.svg.text([-x, y + unit * 1.6], picture.name, Anchor::Start, font);
     let towards = if case.defending() == GoalEnd::Negative { "right" } else { "left" };
-    let side = format!("{} · id {} · attacks to the {towards}", case.symmetry().word(), case.id());
+    let side = format!("{} · id {} · attacks to the {towards}", case.symmetry().label(), case.id());
     let font = Font { size: unit * 1.7, fill: colors.faint, bold: false, halo: None };
     pen.svg.text([x, y + unit * 1.6], &side, Anchor::End, font);
-    let verdict = picture.overlay.map(|overlay| words::verdict(overlay.verdict, overlay.rank));
+    let verdict = picture.overlay.map(|overlay| description::verdict(overlay.verdict, overlay.rank));
     let mut below = -y - unit * 0.6;
     for text in [Some(picture.intent.to_owned()), verdict, Some(LEGEND.to_owned())].into_iter().flatten() {
         for line in wrapped(&text, font.size, 2.0 * x) {

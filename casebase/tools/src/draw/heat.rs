@@ -86,8 +86,8 @@ fn panel(map: &HeatMap<'_>) -> (Svg, At, At) {
     svg.text([-x, y + unit * 1.6], map.title, Anchor::Start, font);
     let mut below = -y - unit * 1.6;
     below = match map.scale {
-        Scale::Continuous { low, high, unit: word } => {
-            bar(&mut svg, colors, (low, high, word), [-x, below], x, unit)
+        Scale::Continuous { low, high, unit: label } => {
+            bar(&mut svg, colors, (low, high, label), [-x, below], x, unit)
         }
         Scale::Categorical { names } => list(&mut svg, colors, names, [-x, below], x, unit),
     };
@@ -151,7 +151,7 @@ fn shade(share: f64) -> String {
 fn bar(
     svg: &mut Svg,
     colors: &Colors,
-    (low, high, word): (f64, f64, &str),
+    (low, high, label): (f64, f64, &str),
     [x, y]: [f64; 2],
     half: f64,
     unit: f64,
@@ -172,7 +172,7 @@ fn bar(
             _ => Anchor::Middle,
         };
         let number = number(low + (high - low) * share, high - low);
-        svg.text([x + width * share, y - height - unit * 2.0], &format!("{number}{word}"), anchor, font);
+        svg.text([x + width * share, y - height - unit * 2.0], &format!("{number}{label}"), anchor, font);
     }
     let known = x + width + unit * 6.0;
     let style = format!(r#"fill="{}""#, colors.unknown);

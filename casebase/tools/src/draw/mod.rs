@@ -1,10 +1,10 @@
 //! `draw`: figures of a case base as SVG text, in mm of the field.
 
 mod case;
+mod description;
 mod heat;
 mod labels;
 mod sheet;
-mod words;
 
 pub use case::{CasePicture, Overlay, case_picture};
 pub use drawing::Theme;

@@ -77,8 +77,8 @@ scope = [300, 300]
 /// A library from memory; a finding ends the test.
 pub(crate) fn library(cases: &[(&str, &str)]) -> Library {
     build(&Files::from_texts("test", LEAGUE, cases)).unwrap_or_else(|findings| {
-        let words: Vec<_> = findings.iter().map(ToString::to_string).collect();
-        panic!("{}", words.join("\n"))
+        let description: Vec<_> = findings.iter().map(ToString::to_string).collect();
+        panic!("{}", description.join("\n"))
     })
 }
 

@@ -13,16 +13,16 @@ async fn main(spawner: embassy_executor::Spawner) {
 
     // One task is enough.
     let _ = spawner;
-    let Some((mut mouth, mut ear)) = radio::open(board_stm32::start().radio) else {
+    let Some((mut sender, mut receiver)) = radio::open(board_stm32::start().radio) else {
         defmt::error!("the line cannot have this rate");
         return;
     };
-    let mut heard = 0_u32;
+    let mut received = 0_u32;
     loop {
-        let bytes = ear.bytes().await;
-        heard = heard.wrapping_add(bytes.len() as u32);
-        mouth.say(bytes).await;
-        defmt::info!("{=u32} bytes, line errors {=u32}", heard, radio::noise());
+        let bytes = receiver.bytes().await;
+        received = received.wrapping_add(bytes.len() as u32);
+        sender.say(bytes).await;
+        defmt::info!("{=u32} bytes, line errors {=u32}", received, radio::noise());
     }
 }
 

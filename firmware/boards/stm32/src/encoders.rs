@@ -36,11 +36,13 @@ impl Encoders {
     }
 
     /// Rim speeds, m/s; NaN for one that is broken, judged from its motor's duty cycle.
-    pub fn rims(&mut self, now: Instant, duty: [f32; WHEELS]) -> [f32; WHEELS] {
+    pub fn rims(&mut self, now: Instant, rule_role: [f32; WHEELS]) -> [f32; WHEELS] {
         let mut rims = [0.0; WHEELS];
         let counts = self.counts();
-        for (((rim, encoder), count), duty) in rims.iter_mut().zip(&mut self.wheels).zip(counts).zip(duty) {
-            *rim = encoder.step(now, count, duty);
+        for (((rim, encoder), count), rule_role) in
+            rims.iter_mut().zip(&mut self.wheels).zip(counts).zip(rule_role)
+        {
+            *rim = encoder.step(now, count, rule_role);
         }
         rims
     }

@@ -15,7 +15,7 @@ use crate::off;
 
 /// Record of the boot epochs before this one, since power-on.
 #[derive(Clone, Copy, Debug)]
-pub struct Life {
+pub struct CrashContext {
     /// Starts since power-on, this one included.
     pub boots: u32,
     /// Panics and faults since then.
@@ -26,7 +26,7 @@ pub struct Life {
     place_len: usize,
 }
 
-impl Life {
+impl CrashContext {
     /// File and line of the last panic.
     pub fn place(&self) -> &str {
         let place = self.place.get(..self.place_len).unwrap_or_default();
@@ -35,7 +35,7 @@ impl Life {
 }
 
 /// Counts this start; must be called once, after the clocks are started.
-pub fn life() -> Life {
+pub fn life() -> CrashContext {
     let reset = pac::RCC.rsr().read();
     pac::RCC.rsr().modify(|flags| flags.set_rmvf(true));
     open();
@@ -47,10 +47,10 @@ pub fn life() -> Life {
     }
     write(BOOTS_AT, read(BOOTS_AT).wrapping_add(1));
     let mut place = [0; PLACE_LEN];
-    for (register, word) in (PLACE_AT..).zip(place.as_chunks_mut::<4>().0) {
-        *word = read(register).to_le_bytes();
+    for (register, label) in (PLACE_AT..).zip(place.as_chunks_mut::<4>().0) {
+        *label = read(register).to_le_bytes();
     }
-    Life {
+    CrashContext {
         boots: read(BOOTS_AT),
         panics: read(PANICS_AT),
         bitten: reset.iwdg1rstf(),
@@ -79,8 +79,8 @@ fn ended(how: Ending<'_>) -> ! {
     let mut place = [0; PLACE_LEN];
     let len = how.write(&mut place);
     write(LEN_AT, len as u32);
-    for (register, word) in (PLACE_AT..).zip(place.as_chunks::<4>().0) {
-        write(register, u32::from_le_bytes(*word));
+    for (register, label) in (PLACE_AT..).zip(place.as_chunks::<4>().0) {
+        write(register, u32::from_le_bytes(*label));
     }
     cortex_m::asm::dsb();
     // Last, because the log itself may be what failed.
@@ -99,8 +99,8 @@ fn read(register: usize) -> u32 {
     pac::RTC.bkpr(register).read().bkp()
 }
 
-fn write(register: usize, word: u32) {
-    pac::RTC.bkpr(register).write(|kept| kept.set_bkp(word));
+fn write(register: usize, label: u32) {
+    pac::RTC.bkpr(register).write(|kept| kept.set_bkp(label));
 }
 
 /// Backup registers of the chip (RM0433, 46.6.20).

@@ -21,7 +21,7 @@ pub enum ImuError {
     /// The bus failed.
     Bus,
     /// Another chip answers, or none (0x00, 0xff): this value instead of 0x47.
-    Stranger(u8),
+    Unauthenticated(u8),
     /// The data line never changes: the sensor is unplugged, or without supply.
     Silent,
 }
@@ -58,7 +58,7 @@ impl Imu {
         Timer::after_millis(2).await;
         let name = self.read::<1>(WHO_AM_I)?;
         if name != [NAME] {
-            return Err(ImuError::Stranger(name[0]));
+            return Err(ImuError::Unauthenticated(name[0]));
         }
         self.write(GYRO_CONFIG0, RATE_1_KHZ)?;
         self.write(ACCEL_CONFIG0, RATE_1_KHZ)?;
@@ -75,7 +75,7 @@ impl Imu {
         if raw.iter().all(|byte| *byte == raw[0]) {
             return Err(ImuError::Silent);
         }
-        let [ax, ay, az, gx, gy, gz] = words(raw);
+        let [ax, ay, az, gx, gy, gz] = description(raw);
         Ok(Reading {
             acceleration: [ax, ay, az].map(|raw| f32::from(raw) * G_A_STEP),
             rate: [gx, gy, gz].map(|raw| f32::from(raw) * RAD_A_STEP),
@@ -103,12 +103,12 @@ impl Imu {
 }
 
 /// Decodes 16-bit values, high byte first.
-fn words(raw: [u8; 12]) -> [i16; 6] {
-    let mut words = [0; 6];
-    for (word, pair) in words.iter_mut().zip(raw.as_chunks().0) {
-        *word = i16::from_be_bytes(*pair);
+fn description(raw: [u8; 12]) -> [i16; 6] {
+    let mut description = [0; 6];
+    for (label, pair) in description.iter_mut().zip(raw.as_chunks().0) {
+        *label = i16::from_be_bytes(*pair);
     }
-    words
+    description
 }
 
 /// SPI clock; the sensor allows 24 MHz.

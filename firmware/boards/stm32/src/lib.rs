@@ -14,14 +14,13 @@
 //! | readings taken a thousand times a second | [`sampling`], [`analog`] |
 //! | radio | [`radio`] |
 //! | key page and counter of starts | [`flash`] |
-//! | watchdog, panics, everything off | [`dog`], [`fault`], [`off`](fn@off::everything) |
+//! | watchdog, panics, everything off | [`watchdog`], [`fault`], [`off`](fn@off::everything) |
 #![allow(unsafe_code, reason = "registers, interrupts and flash are reached by address")]
 #![cfg(target_os = "none")]
 #![no_std]
 
 pub mod analog;
 pub mod clocks;
-pub mod dog;
 pub mod encoders;
 pub mod fault;
 pub mod flash;
@@ -32,6 +31,7 @@ pub mod pins;
 pub mod pulse;
 pub mod radio;
 pub mod sampling;
+pub mod watchdog;
 pub mod wheels;
 
 // Transport of the log to the probe.

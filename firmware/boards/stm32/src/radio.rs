@@ -22,7 +22,7 @@ bind_interrupts!(struct Interrupts {
 });
 
 /// Both directions of the line; `None` where the line cannot have this rate. Call once.
-pub fn open(parts: pins::Radio) -> Option<(Mouth, Ear)> {
+pub fn open(parts: pins::Radio) -> Option<(UartSender, UartReceiver)> {
     static RING: StaticCell<[u8; RING_LEN]> = StaticCell::new();
     static LINE: StaticCell<[u8; LINE_LEN_MAX]> = StaticCell::new();
     let mut config = usart::Config::default();
@@ -33,11 +33,11 @@ pub fn open(parts: pins::Radio) -> Option<(Mouth, Ear)> {
         Uart::new(parts.line, parts.rx, parts.tx, parts.tx_dma, parts.rx_dma, Interrupts, config).ok()?;
     let (tx, rx) = line.split();
     let rx = rx.into_ring_buffered(RING.init([0; RING_LEN]));
-    Some((Mouth { tx, line: LINE.init([0; LINE_LEN_MAX]) }, Ear::new(rx)))
+    Some((UartSender { tx, line: LINE.init([0; LINE_LEN_MAX]) }, UartReceiver::new(rx)))
 }
 
 /// Receives frames.
-pub struct Ear {
+pub struct UartReceiver {
     rx: RingBufferedUartRx<'static>,
     lines: Lines,
     came: [u8; CHUNK],
@@ -45,7 +45,7 @@ pub struct Ear {
     rest: (usize, usize),
 }
 
-impl Ear {
+impl UartReceiver {
     fn new(rx: RingBufferedUartRx<'static>) -> Self {
         Self { rx, lines: Lines::new(), came: [0; CHUNK], rest: (0, 0) }
     }
@@ -65,7 +65,7 @@ impl Ear {
     }
 }
 
-impl RadioReceiver for Ear {
+impl RadioReceiver for UartReceiver {
     async fn receive(&mut self) -> Packet {
         loop {
             let (from, to) = self.rest;
@@ -82,13 +82,13 @@ impl RadioReceiver for Ear {
 }
 
 /// Sends frames.
-pub struct Mouth {
+pub struct UartSender {
     tx: UartTx<'static, Async>,
     /// Buffer from which the DMA sends.
     line: &'static mut [u8; LINE_LEN_MAX],
 }
 
-impl Mouth {
+impl UartSender {
     /// Sends bytes unchanged, at most a line's capacity.
     pub async fn say(&mut self, bytes: &[u8]) {
         let len = bytes.len().min(LINE_LEN_MAX);
@@ -101,7 +101,7 @@ impl Mouth {
     }
 }
 
-impl RadioSender for Mouth {
+impl RadioSender for UartSender {
     async fn send(&mut self, packet: Packet) {
         let line = line(&packet);
         self.say(&line).await;

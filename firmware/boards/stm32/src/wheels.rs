@@ -68,15 +68,16 @@ impl Drivers {
 
     /// Sets shares of the battery's voltage, −1 to 1, and 0 to 1 for the dribbler. All off where a driver has
     /// switched itself off: three wheels alone would turn the robot.
-    pub fn drive(&mut self, duty: [f32; WHEELS], dribbler: f32) {
+    pub fn drive(&mut self, rule_role: [f32; WHEELS], dribbler: f32) {
         if self.fault.is_low() {
             self.release();
             return;
         }
         let full = self.pwm.max_duty_cycle();
-        for ((channel, direction), duty) in CHANNELS.into_iter().zip(&mut self.directions).zip(duty) {
-            direction.set_level(if duty < 0.0 { Level::High } else { Level::Low });
-            self.pwm.channel(channel).set_duty_cycle(share(duty.abs(), full));
+        for ((channel, direction), rule_role) in CHANNELS.into_iter().zip(&mut self.directions).zip(rule_role)
+        {
+            direction.set_level(if rule_role < 0.0 { Level::High } else { Level::Low });
+            self.pwm.channel(channel).set_duty_cycle(share(rule_role.abs(), full));
         }
         let full = self.dribbler.max_duty_cycle();
         self.dribbler.ch1().set_duty_cycle(share(dribbler, full));
@@ -102,36 +103,36 @@ impl Drivers {
 pub struct Wheels {
     drivers: Drivers,
     encoders: Encoders,
-    duty: [f32; WHEELS],
+    rule_role: [f32; WHEELS],
 }
 
 impl Wheels {
     /// Wheels with all motors without current.
     pub fn new(drivers: Drivers, encoders: Encoders) -> Self {
-        Self { drivers, encoders, duty: [0.0; WHEELS] }
+        Self { drivers, encoders, rule_role: [0.0; WHEELS] }
     }
 }
 
 impl ports::Wheels for Wheels {
     fn measured(&mut self) -> [f32; WHEELS] {
-        self.encoders.rims(protocol::Instant(Instant::now().as_micros()), self.duty)
+        self.encoders.rims(protocol::Instant(Instant::now().as_micros()), self.rule_role)
     }
 
-    fn drive(&mut self, duty: [f32; WHEELS], dribbler: f32) {
-        self.drivers.drive(duty, dribbler);
-        self.duty = if self.drivers.has_fault() { [0.0; WHEELS] } else { duty };
+    fn drive(&mut self, rule_role: [f32; WHEELS], dribbler: f32) {
+        self.drivers.drive(rule_role, dribbler);
+        self.rule_role = if self.drivers.has_fault() { [0.0; WHEELS] } else { rule_role };
     }
 
     fn release(&mut self) {
         self.drivers.release();
-        self.duty = [0.0; WHEELS];
+        self.rule_role = [0.0; WHEELS];
     }
 }
 
 /// A share of full duty cycle; none for NaN.
-fn share(duty: f32, full: u32) -> u32 {
+fn share(rule_role: f32, full: u32) -> u32 {
     // The cast saturates, and turns NaN into 0.
-    ((duty * full as f32) as u32).min(full)
+    ((rule_role * full as f32) as u32).min(full)
 }
 
 /// Timer channels in the order of the wheels on the wire.

@@ -26,8 +26,8 @@ fn wires_of_the_readme() -> Vec<(String, String)> {
     README.lines().filter_map(wire).collect()
 }
 
-fn is_pin(word: &str) -> bool {
-    let mut letters = word.chars();
+fn is_pin(label: &str) -> bool {
+    let mut letters = label.chars();
     letters.next() == Some('P')
         && letters.next().is_some_and(|port| port.is_ascii_uppercase())
         && letters.as_str().parse::<u8>().is_ok_and(|number| number < 16)
@@ -71,7 +71,7 @@ fn what_a_panic_turns_off_is_what_the_pins_say() {
 }
 
 #[test]
-fn what_is_flashed_from_this_folder_is_compiled_as_what_is_measured() {
+fn what_is_flashed_from_this_directory_is_compiled_as_what_is_measured() {
     let settings = |text: &str, head: &str| -> Option<BTreeSet<String>> {
         let lines = text.lines().skip_while(|line| *line != head).skip(1);
         let lines = lines.take_while(|line| !line.starts_with('[')).filter(|line| line.contains(" = "));
@@ -89,9 +89,9 @@ fn what_is_flashed_from_this_folder_is_compiled_as_what_is_measured() {
 
 #[test]
 fn every_example_is_in_the_readme_and_says_what_to_connect_and_what_to_see() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/examples");
+    let directory = concat!(env!("CARGO_MANIFEST_DIR"), "/examples");
     let mut seen = 0;
-    for entry in std::fs::read_dir(folder).unwrap() {
+    for entry in std::fs::read_dir(directory).unwrap() {
         let path = entry.unwrap().path();
         let (name, text) =
             (path.file_stem().unwrap().to_str().unwrap(), std::fs::read_to_string(&path).unwrap());

@@ -14,7 +14,7 @@ use rules::{FieldSpec, Phase, Side};
 
 use crate::belief::{Ball, Belief, Other};
 use crate::body::omni::{BALL_AT, FRONT};
-use crate::picture::{IN_THE_AIR, Picture};
+use crate::snapshot::{HostSnapshot, IN_THE_AIR};
 
 /// Contact of this robot with the ball.
 #[derive(Clone, Copy, Debug, Default)]
@@ -39,8 +39,8 @@ pub(super) struct Handling {
 
 impl Belief {
     /// Takes over the host's snapshot and what the wheels measure.
-    pub fn show(&mut self, now: Instant, picture: &Picture, sensors: &SensorFrame) {
-        if let Some(pose) = picture.own(now) {
+    pub fn show(&mut self, now: Instant, snapshot: &HostSnapshot, sensors: &SensorFrame) {
+        if let Some(pose) = snapshot.own(now) {
             self.pose = pose;
         }
         let measured = sensors.odometry;
@@ -52,7 +52,7 @@ impl Belief {
         self.busy = sensors.busy;
         self.others.clear();
         self.opponents.clear();
-        for shown in picture.others(now) {
+        for shown in snapshot.others(now) {
             let other =
                 Other { side: shown.who.side, id: shown.who.id, pose: shown.pose, velocity: shown.velocity };
             // Sixteen robots per team can be received, eleven play: robots over the capacity are dropped.
@@ -62,7 +62,7 @@ impl Belief {
             }
         }
         self.handling.height = 0.0;
-        self.ball = picture.ball(now).map(|ball| {
+        self.ball = snapshot.ball(now).map(|ball| {
             self.handling.height = ball.height;
             rolling(ball.position, ball.velocity, &self.league.field())
         });
@@ -82,7 +82,7 @@ impl Belief {
     /// Distance over which the ball has been carried since the first touch, m.
     pub fn carried(&self) -> f32 {
         match (self.handling.from, self.holds_ball) {
-            (Some(from), true) => from.distance(self.mouth()),
+            (Some(from), true) => from.distance(self.dribbler_point()),
             _ => 0.0,
         }
     }
@@ -104,7 +104,7 @@ impl Belief {
     }
 
     /// Position of a held ball: at the dribbler opening.
-    pub fn mouth(&self) -> Point<Field> {
+    pub fn dribbler_point(&self) -> Point<Field> {
         self.pose.position + Vector::polar(BALL_AT, self.pose.heading)
     }
 
@@ -124,19 +124,20 @@ impl Belief {
             self.handling.touched = Some(now);
         }
         let shown = self.ball.map(|ball| ball.position);
-        let at_mouth = shown.is_some_and(|at| is_at_mouth(self.pose, at));
+        let at_dribbler = shown.is_some_and(|at| is_at_dribbler(self.pose, at));
         let recent = self.handling.touched.is_some_and(|last| now.since(last) <= BRIDGED);
-        self.holds_ball = contact || (recent && at_mouth);
-        let mouth = self.mouth();
+        self.holds_ball = contact || (recent && at_dribbler);
+        let dribbler_point = self.dribbler_point();
         if self.holds_ball {
-            self.handling.from.get_or_insert(mouth);
+            self.handling.from.get_or_insert(dribbler_point);
             let since = *self.handling.since.get_or_insert(now);
             self.handling.held = now.since(since).as_secs_f32();
             // A ball that the break-beam sensor sees is at the opening; cameras report it later.
             if contact {
-                self.ball = Some(Ball { position: mouth, velocity: self.velocity, rest: mouth });
+                self.ball =
+                    Some(Ball { position: dribbler_point, velocity: self.velocity, rest: dribbler_point });
             }
-        } else if shown.is_none_or(|at| at.distance(mouth) > VISIBLE_GAP) {
+        } else if shown.is_none_or(|at| at.distance(dribbler_point) > VISIBLE_GAP) {
             (self.handling.from, self.handling.since, self.handling.held) = (None, None, 0.0);
             self.resolved = None;
         }
@@ -158,9 +159,9 @@ fn rolling(position: Point<Field>, velocity: Vector<Field>, field: &FieldSpec) -
 }
 
 /// Whether the ball is in front of the flat front, within the noise of the snapshot.
-fn is_at_mouth(pose: Pose<Field>, ball: Point<Field>) -> bool {
+fn is_at_dribbler(pose: Pose<Field>, ball: Point<Field>) -> bool {
     let seen = pose.to_body(ball);
-    (FRONT - 0.01..BALL_AT + AT_MOUTH_AHEAD).contains(&seen.x()) && seen.y().abs() < AT_MOUTH_BESIDE
+    (FRONT - 0.01..BALL_AT + AT_DRIBBLER_AHEAD).contains(&seen.x()) && seen.y().abs() < AT_DRIBBLER_BESIDE
 }
 
 /// The ball's path is cut this far beyond the lines, m: a ball on the line is still in the field.
@@ -174,9 +175,9 @@ const SLOW: f32 = 0.5;
 /// A gap between ball and dribbler opening that counts as visible by the rules, m.
 const VISIBLE_GAP: f32 = 0.05;
 /// How far before the roller the host may show a ball that is held, m: noise, and 30 ms of its delay.
-const AT_MOUTH_AHEAD: f32 = 0.03;
+const AT_DRIBBLER_AHEAD: f32 = 0.03;
 /// How far beside the middle, m: half the width of the opening.
-const AT_MOUTH_BESIDE: f32 = 0.05;
+const AT_DRIBBLER_BESIDE: f32 = 0.05;
 
 #[cfg(test)]
 mod tests {
@@ -201,15 +202,15 @@ mod tests {
         }
     }
 
-    fn picture(now: Instant, ball: (i16, i16)) -> Picture {
+    fn snapshot(now: Instant, ball: (i16, i16)) -> HostSnapshot {
         let me = RobotId::new(1).unwrap();
-        let mut picture = Picture::new(me);
+        let mut snapshot = HostSnapshot::new(me);
         let who = protocol::host::WireWho { side: Side::Ours, id: me };
         let own = protocol::host::WireRobot { who, pose: WirePose::default(), vx: 0, vy: 0 };
-        picture.handle_part(
+        snapshot.handle_part(
             now,
             &WorldPart {
-                picture: 1,
+                snapshot: 1,
                 part: 0,
                 parts: 1,
                 phase: Phase::Run,
@@ -218,21 +219,21 @@ mod tests {
                 robots: [own].into_iter().collect(),
             },
         );
-        picture
+        snapshot
     }
 
     #[test]
     fn the_light_barriers_flicker_is_bridged_while_the_ball_is_shown_at_the_mouth() {
         let mut belief = Belief::new(League::DivisionB);
-        belief.show(Instant(0), &picture(Instant(0), (95, 0)), &sensors(true));
+        belief.show(Instant(0), &snapshot(Instant(0), (95, 0)), &sensors(true));
         assert!(belief.holds_ball && belief.contact());
         let later = Instant(50_000);
-        belief.show(later, &picture(later, (110, 0)), &sensors(false));
+        belief.show(later, &snapshot(later, (110, 0)), &sensors(false));
         assert!(belief.holds_ball && !belief.contact());
-        belief.show(later, &picture(later, (160, 0)), &sensors(false));
+        belief.show(later, &snapshot(later, (160, 0)), &sensors(false));
         assert!(!belief.holds_ball, "shown away from the mouth");
         let long = Instant(70_000);
-        belief.show(long, &picture(long, (95, 0)), &sensors(false));
+        belief.show(long, &snapshot(long, (95, 0)), &sensors(false));
         assert!(!belief.holds_ball, "missed for too long");
     }
 

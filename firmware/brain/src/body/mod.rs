@@ -2,9 +2,9 @@
 //! skills of the case language behind one trait ([`Body`]); a module per body turns intents into actuator
 //! orders.
 
+mod actuation;
 pub mod kind;
 pub mod legged;
-mod limbs;
 pub mod omni;
 
 use casebase::Kick;
@@ -15,8 +15,8 @@ use rules::League;
 
 use crate::belief::Belief;
 use crate::skills::{Reception, Step};
+pub use actuation::Actuation;
 pub use kind::Kind;
-pub use limbs::Limbs;
 
 /// Motion or primitive wanted for the coming step. Points and angles of the field.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +33,7 @@ pub enum Intent {
         /// Heading at the end.
         face: Angle,
         /// Go around the ball too.
-        shy_of_ball: bool,
+        avoiding_of_ball: bool,
     },
     /// Turn on the spot, with the ball or without.
     Turn {
@@ -52,7 +52,7 @@ pub enum Intent {
     /// On wheels: a target to drive to, with dribbler and kicker.
     Drive(omni::Drive),
     /// On wheels: reuse of the previous step's path.
-    Onwards,
+    KeepPath,
 }
 
 impl Intent {
@@ -62,7 +62,7 @@ impl Intent {
             Self::Kick(_) => true,
             Self::Drive(drive) => drive.armed && matches!(drive.kick, OmniKick::Flat(_) | OmniKick::Chip(_)),
             // The previous intent was reported in its own step.
-            Self::Onwards => false,
+            Self::KeepPath => false,
             Self::Stand { .. } | Self::Walk { .. } | Self::Turn { .. } | Self::Carry { .. } | Self::Grab => {
                 false
             }

@@ -10,7 +10,7 @@ use crate::config::Approach;
 use crate::execution::Scene;
 use crate::reactive::Freedom;
 use crate::skills::wheels;
-use crate::team::reuse::{self, Wish};
+use crate::team::reuse::{self, Request};
 use crate::timer::Timer;
 
 impl Brain<'_> {
@@ -31,7 +31,7 @@ impl Brain<'_> {
             && let Some(host) = &self.host
         {
             let Some(directive) = host.directive(now) else { return Intent::Stand { face: None } };
-            if let Some(intent) = self.errand.step(now, &self.belief, directive) {
+            if let Some(intent) = self.task_state.step(now, &self.belief, directive) {
                 self.reactive.rest();
                 return intent;
             }
@@ -52,11 +52,11 @@ impl Brain<'_> {
             return self.default_behaviour(now, Freedom::Full);
         }
         match self.reuse(now) {
-            Wish::Body(intent) => {
+            Request::Body(intent) => {
                 self.reactive.rest();
                 return intent;
             }
-            Wish::Abort(reason) => {
+            Request::Abort(reason) => {
                 if let Some(state) = self.cycle.aborted(reason) {
                     self.adopt(now, &state);
                 }
@@ -66,7 +66,7 @@ impl Brain<'_> {
                     return Intent::Stand { face: None };
                 }
             }
-            Wish::Nothing => {}
+            Request::Nothing => {}
         }
         if !self.timers.is_idle(Timer::Pause) && !self.timers.has_fired(Timer::Pause) {
             return Intent::Stand { face: None };
@@ -80,26 +80,26 @@ impl Brain<'_> {
     }
 
     /// This robot's part in the running case, if it has one.
-    fn reuse(&mut self, now: Instant) -> Wish {
-        let Some(mut execution) = self.execution.take() else { return Wish::Nothing };
+    fn reuse(&mut self, now: Instant) -> Request {
+        let Some(mut execution) = self.execution.take() else { return Request::Nothing };
         let mut progress = self.cycle.progress;
         let mut touched = self.cycle.touched;
         let mut timers = core::mem::take(&mut self.timers);
         let mut monitor = core::mem::take(&mut self.monitor);
-        let wish = match self.scene(now) {
-            None => Wish::Abort(AbortReason::UnknownCase),
+        let request = match self.scene(now) {
+            None => Request::Abort(AbortReason::UnknownCase),
             Some(scene) => {
                 touched |= scene.belief.holds_ball
                     || scene.play.robots.iter().any(|&id| {
-                        self.mates
+                        self.teammates
                             .get(now, id)
-                            .filter(|mate| mate.progress_in(scene.cycle).is_some())
-                            .is_some_and(|mate| mate.beacon.status.has(Status::HOLDS_BALL))
+                            .filter(|teammate| teammate.progress_in(scene.cycle).is_some())
+                            .is_some_and(|teammate| teammate.beacon.status.has(Status::HOLDS_BALL))
                     });
                 let playing = !matches!(progress, Progress::WaitEnd { .. });
                 let doubt = monitor.step(&scene, touched, &self.config.settings).filter(|_| playing);
                 if let Some(reason) = doubt {
-                    Wish::Abort(reason)
+                    Request::Abort(reason)
                 } else {
                     let how = self.config.positioning;
                     reuse::step(&scene, how, &mut execution, &mut progress, &mut timers)
@@ -111,12 +111,12 @@ impl Brain<'_> {
         self.cycle.touched = touched;
         self.cycle.progress = progress;
         self.execution = Some(execution);
-        wish
+        request
     }
 
     fn default_behaviour(&mut self, now: Instant, freedom: Freedom) -> Intent {
         let attacked = self.belief.game.defending.opposite();
-        self.reactive.step(now, self.config.robot, &self.belief, &self.mates, attacked, freedom)
+        self.reactive.step(now, self.config.robot, &self.belief, &self.teammates, attacked, freedom)
     }
 
     pub(super) fn scene(&self, now: Instant) -> Option<Scene<'_>> {
@@ -126,7 +126,7 @@ impl Brain<'_> {
         Some(Scene {
             now,
             belief: &self.belief,
-            mates: &self.mates,
+            teammates: &self.teammates,
             cycle: state.id,
             play,
             case,

@@ -11,7 +11,7 @@ use super::Brain;
 use crate::config::Approach;
 use crate::estimate;
 use crate::execution::{Execution, Scene};
-use crate::team::cycle::News;
+use crate::team::cycle::CycleEvent;
 use crate::team::{election, hybrid, retrieval};
 use crate::timer::Timer;
 use protocol::host::{Directive, Hint};
@@ -21,7 +21,7 @@ impl Brain<'_> {
     /// Adopts a newer state, and sets this robot's own part accordingly.
     pub(super) fn adopt(&mut self, now: Instant, state: &CycleState) {
         let news = self.cycle.adopt(state, self.awake);
-        if news == News::Known {
+        if news == CycleEvent::Known {
             return;
         }
         self.beacon_due = true;
@@ -39,7 +39,7 @@ impl Brain<'_> {
             }
             Decision::Play(_) | Decision::Closed(_) => {}
         }
-        if news == News::Gameplay {
+        if news == CycleEvent::Gameplay {
             self.since.turned = true;
             self.begin_part(now);
         }
@@ -102,14 +102,14 @@ impl Brain<'_> {
     fn is_available(&self, now: Instant) -> bool {
         self.host.as_ref().is_none_or(|host| {
             let plays = matches!(host.directive(now), Some(Directive::Gameplay { .. }));
-            plays && host.phase() == Some(Phase::Run) && !self.belief.game.barred
+            plays && host.phase() == Some(Phase::Run) && !self.belief.game.double_touch_blocked
         })
     }
 
     /// Proposal, decision or end of the cycle, where it is this robot's to announce.
     fn next_state(&mut self, now: Instant) -> Option<CycleState> {
         let me = self.config.robot;
-        let elects = election::elector(now, me, &self.mates) == me;
+        let elects = election::elector(now, me, &self.teammates) == me;
         match self.cycle.state().map(|s| &s.decision) {
             None | Some(Decision::Closed(_)) => {
                 let paused = !self.timers.is_idle(Timer::Pause) && !self.timers.has_fired(Timer::Pause);
@@ -163,8 +163,8 @@ impl Brain<'_> {
             return false;
         }
         let (Some(cycle), Some(case)) = (self.cycle.id(), self.base.case(play.case)) else { return false };
-        let (belief, mates, base) = (&self.belief, &self.mates, &self.base);
-        let scene = Scene { now, belief, mates, cycle, play, case, base, body: self.body };
+        let (belief, teammates, base) = (&self.belief, &self.teammates, &self.base);
+        let scene = Scene { now, belief, teammates, cycle, play, case, base, body: self.body };
         hybrid::reactive_shoots_sooner(&scene)
     }
 
@@ -174,7 +174,7 @@ impl Brain<'_> {
             return Some(self.config.robot);
         }
         let holds = |beacon: &Beacon| beacon.status.has(Status::HOLDS_BALL);
-        self.mates.present(now).find(|(_, mate)| holds(&mate.beacon)).map(|(id, _)| id)
+        self.teammates.present(now).find(|(_, teammate)| holds(&teammate.beacon)).map(|(id, _)| id)
     }
 
     /// On wheels: the ball rolls and a robot will intercept it before it stops, so that no case can be
@@ -187,7 +187,7 @@ impl Brain<'_> {
 
     fn propose(&mut self, now: Instant) -> Option<CycleState> {
         let me = self.config.robot;
-        let coordinator = election::coordinator(now, me, &self.beacon(), &self.mates)?;
+        let coordinator = election::coordinator(now, me, &self.beacon(), &self.teammates)?;
         Some(election::proposal(self.cycle.id(), me, coordinator, self.config.epoch))
     }
 
@@ -204,14 +204,14 @@ impl Brain<'_> {
     fn reason_to_stop(&self, now: Instant) -> Option<AbortReason> {
         let me = self.config.robot;
         let state = self.cycle.state().filter(|_| self.cycle.closure().is_none())?;
-        let elects = election::elector(now, me, &self.mates) == me;
+        let elects = election::elector(now, me, &self.teammates) == me;
         let takes_part = self.takes_part();
         if !(elects || takes_part) {
             return None;
         }
         // Restarted since: this boot epoch does not know what the earlier one did.
         let lost = |id: RobotId| {
-            if id == me { self.cycle.is_of_an_earlier_life() } else { self.mates.get(now, id).is_none() }
+            if id == me { self.cycle.is_of_an_earlier_life() } else { self.teammates.get(now, id).is_none() }
         };
         let players = state.play().map_or(&[][..], |play| &play.robots[..]);
         if lost(state.coordinator) || players.iter().any(|&id| lost(id)) {
@@ -224,7 +224,8 @@ impl Brain<'_> {
             return Some(AbortReason::Timeout);
         }
         let play = state.play().filter(|play| play.part_of(me).is_some())?;
-        let theirs = self.mates.get(now, state.coordinator).map_or(self.base.hash(), |m| m.beacon.case_base);
+        let theirs =
+            self.teammates.get(now, state.coordinator).map_or(self.base.hash(), |m| m.beacon.case_base);
         let unknown = theirs != self.base.hash() || self.base.case(play.case).is_none();
         unknown.then_some(AbortReason::UnknownCase)
     }
@@ -236,7 +237,7 @@ impl Brain<'_> {
             let progress = if id == self.config.robot {
                 Some(self.cycle.progress)
             } else {
-                self.mates.get(now, id).and_then(|mate| mate.progress_in(state.id))
+                self.teammates.get(now, id).and_then(|teammate| teammate.progress_in(state.id))
             };
             progress == Some(Progress::WaitEnd { finished: true })
         })

@@ -81,14 +81,14 @@ impl Brain<'_> {
     /// Telemetry for the host, if due: ten times a second, and at once when something changes.
     pub(super) fn telemetry(&mut self, now: Instant) -> Option<Telemetry> {
         let arrived = self.host.as_ref()?.arrived();
-        let reasons = self.limbs.reasons();
+        let reasons = self.actuation.reasons();
         let spoken = &self.spoken;
         let condition = [
             (spoken.contact, Condition::BALL_CONTACT),
             (spoken.kicker_ready, Condition::KICKER_READY),
             (spoken.tipped, Condition::TIPPED),
-            (self.limbs.is_battery_low(), Condition::BATTERY_LOW),
-            (self.limbs.ruling() != Ruling::Allowed, Condition::GOVERNED),
+            (self.actuation.is_battery_low(), Condition::BATTERY_LOW),
+            (self.actuation.ruling() != Ruling::Allowed, Condition::GOVERNED),
             (reasons.has(Why::Silence), Condition::LINK_LOST),
         ];
         let set = |all: Condition, (holds, bit): (bool, Condition)| if holds { all.with(bit) } else { all };

@@ -29,7 +29,7 @@ fn at(ms: u64, phase: Phase<Side>) -> Circumstances<'static> {
 fn driving(ms: u64, phase: Phase<Side>) -> Governor {
     let mut governor = Governor::new(League::DivisionB);
     for t in (0..=ms).step_by(10) {
-        governor.hear_host(Instant(t * 1000));
+        governor.receive_host(Instant(t * 1000));
         governor.rule(&at(t, phase), &go(3.0));
     }
     governor
@@ -131,8 +131,8 @@ fn a_body_that_has_stopped_is_not_driven_on_by_the_ramp() {
 #[test]
 fn from_50_to_100_ms_of_silence_the_limit_shrinks_and_the_first_frame_after_a_gap_moves_it_again() {
     let mut governor = driving(600, Phase::Run);
-    let heard = Instant(600_000);
-    let host = Some(Hearing { frame: Some(heard), command: Some(heard) });
+    let received = Instant(600_000);
+    let host = Some(Hearing { frame: Some(received), command: Some(received) });
     let mut speeds = [0.0; 16];
     for (i, speed) in speeds.iter_mut().enumerate() {
         let t = 610 + 10 * i as u64;
@@ -146,21 +146,21 @@ fn from_50_to_100_ms_of_silence_the_limit_shrinks_and_the_first_frame_after_a_ga
         }
     }
     assert!(speeds.windows(2).all(|pair| pair[1] <= pair[0]), "{speeds:?}");
-    governor.hear_host(Instant(770_000));
+    governor.receive_host(Instant(770_000));
     assert_eq!(governor.rule(&at(770, Phase::Run), &go(1.0)).1, Ruling::Allowed);
 }
 
 /// Time from the first frame after a silence of `silence` ms until it may move again, ms.
 fn moves_again_after(silence: u64) -> Option<u64> {
     let mut governor = driving(600, Phase::Run);
-    let heard = Instant(600_000);
-    let host = Some(Hearing { frame: Some(heard), command: Some(heard) });
+    let received = Instant(600_000);
+    let host = Some(Hearing { frame: Some(received), command: Some(received) });
     for t in (610..600 + silence).step_by(10) {
         governor.rule(&Circumstances { host, ..at(t, Phase::Run) }, &go(1.0));
     }
     (0..1000).step_by(10).find(|t| {
         let t = 600 + silence + t;
-        governor.hear_host(Instant(t * 1000));
+        governor.receive_host(Instant(t * 1000));
         governor.rule(&at(t, Phase::Run), &go(1.0)).1 == Ruling::Allowed
     })
 }
@@ -182,7 +182,7 @@ fn a_robot_that_boots_is_armed_half_a_second_after_the_first_frame_whatever_gaps
     for t in (0..2000_u64).step_by(10) {
         // Received for 60 ms, then not for 150 ms, again and again.
         if t % 210 < 60 {
-            governor.hear_host(Instant(t * 1000));
+            governor.receive_host(Instant(t * 1000));
             frame = Some(Instant(t * 1000));
         }
         let host = Some(Hearing { frame, command: frame });
@@ -209,7 +209,7 @@ fn in_stop_a_robot_is_slowed_to_1_3_m_per_s_within_the_grace_of_2_s() {
     let mut governor = driving(600, Phase::Run);
     let mut slow_after = None;
     for t in (610..2610).step_by(10) {
-        governor.hear_host(Instant(t * 1000));
+        governor.receive_host(Instant(t * 1000));
         let odometry = governor.last();
         let (given, ruling) = governor.rule(&Circumstances { odometry, ..at(t, Phase::Stop) }, &go(3.0));
         assert!(matches!(ruling, Ruling::Limited(r) if r.has(Why::StopSpeed)));
@@ -283,7 +283,7 @@ fn a_battery_must_be_low_for_a_second() {
     let mut governor = driving(600, Phase::Run);
     let mut braked = None;
     for t in (610..2000).step_by(10) {
-        governor.hear_host(Instant(t * 1000));
+        governor.receive_host(Instant(t * 1000));
         let ruling = governor.rule(&Circumstances { health: &low, ..at(t, Phase::Run) }, &go(1.0)).1;
         if matches!(ruling, Ruling::Braking(_)) {
             assert!(why(ruling).has(Why::Battery));
@@ -319,9 +319,9 @@ fn released_after(
 
 #[test]
 fn motors_are_released_half_a_second_after_a_silent_robot_stands_and_never_before() {
-    let heard = Some(Instant(600_000));
+    let received = Some(Instant(600_000));
     let silent =
-        |t| Circumstances { host: Some(Hearing { frame: heard, command: heard }), ..at(t, Phase::Run) };
+        |t| Circumstances { host: Some(Hearing { frame: received, command: received }), ..at(t, Phase::Run) };
     let released = released_after(&mut driving(600, Phase::Run), 610, silent);
     // 100 ms of silence, in whose second half the limit falls from 3 m/s with 80 m/s² but never faster than
     // the brake's 5 m/s²: 3 m/s take 600 ms from 62.5 ms on, a turn of 1 rad/s less; then 500 ms.
@@ -350,7 +350,7 @@ fn only_lasting_reasons_release_the_motors_and_a_push_or_the_host_takes_them_bac
     released_after(&mut governor, 520, silent);
     assert!(governor.has_let_go());
     for t in (2000..2510).step_by(10) {
-        governor.hear_host(Instant(t * 1000));
+        governor.receive_host(Instant(t * 1000));
         governor.rule(&at(t, Phase::Run), &go(1.0));
     }
     assert!(!governor.has_let_go(), "it goes");

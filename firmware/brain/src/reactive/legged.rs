@@ -19,10 +19,10 @@ use protocol::{Duration, Instant, RobotId};
 use crate::belief::{Ball, Belief};
 use crate::body::{Intent, legged};
 use crate::execution::face_ball;
-use crate::mates::Mates;
 use crate::reactive::Freedom;
 use crate::skills::Step;
 use crate::skills::legged as skills;
+use crate::teammates::Teammates;
 
 /// State of the behaviour.
 #[derive(Clone, Debug, Default)]
@@ -49,7 +49,7 @@ impl Reactive {
         now: Instant,
         me: RobotId,
         belief: &Belief,
-        mates: &Mates,
+        teammates: &Teammates,
         attacked: GoalEnd,
         freedom: Freedom,
     ) -> Intent {
@@ -57,7 +57,7 @@ impl Reactive {
         if !belief.holds_ball {
             (self.held_since, self.dodge) = (None, None);
         }
-        let mine = freedom != Freedom::KeepNear && is_attacker(now, me, &ball, belief, mates, self.role);
+        let mine = freedom != Freedom::KeepNear && is_attacker(now, me, &ball, belief, teammates, self.role);
         self.role = if mine { Role::Attacker } else { Role::Supporter };
         if !mine {
             let place = match freedom {
@@ -72,7 +72,7 @@ impl Reactive {
         let goal = belief.league().field().goal_center(attacked);
         if belief.holds_ball {
             return match freedom {
-                Freedom::Full => self.advance(now, belief, mates, &ball, attacked),
+                Freedom::Full => self.advance(now, belief, teammates, &ball, attacked),
                 _ => Intent::Stand { face: None },
             };
         }
@@ -92,7 +92,7 @@ impl Reactive {
         &mut self,
         now: Instant,
         belief: &Belief,
-        mates: &Mates,
+        teammates: &Teammates,
         ball: &Ball,
         attacked: GoalEnd,
     ) -> Intent {
@@ -115,7 +115,7 @@ impl Reactive {
         let Some(opponent) = opponent else {
             return skills::push_on(belief, attacked);
         };
-        if let Some(kick) = way_out(now, belief, mates, ball, goal) {
+        if let Some(kick) = way_out(now, belief, teammates, ball, goal) {
             return Intent::Kick(kick);
         }
         let left = *self.dodge.get_or_insert_with(|| left_is_clearer(belief, ball, to_goal));
@@ -133,7 +133,7 @@ impl Reactive {
 fn way_out(
     now: Instant,
     belief: &Belief,
-    mates: &Mates,
+    teammates: &Teammates,
     ball: &Ball,
     goal: Point<Field>,
 ) -> Option<LeggedKick> {
@@ -147,7 +147,7 @@ fn way_out(
         if !inside || clearance(belief, ball.position, direction, SOFT_KICK) < LANE {
             continue;
         }
-        let ours = mates.present(now).map(|(_, mate)| mate.pose().position.distance(end));
+        let ours = teammates.present(now).map(|(_, teammate)| teammate.pose().position.distance(end));
         let ours = ours.fold(belief.pose.position.distance(end), f32::min);
         let theirs = belief.nearest_opponent(end).map_or(f32::INFINITY, |(_, distance)| distance);
         let ahead = ball.position.distance(goal) - end.distance(goal);
@@ -178,16 +178,23 @@ fn strength(belief: &Belief, ball: &Ball, direction: Angle) -> LeggedKick {
 
 /// Whether the ball is this robot's: it holds it, or no robot holds it and no teammate is there earlier (the
 /// robot that already goes for it keeps it unless beaten clearly).
-fn is_attacker(now: Instant, me: RobotId, ball: &Ball, belief: &Belief, mates: &Mates, role: Role) -> bool {
+fn is_attacker(
+    now: Instant,
+    me: RobotId,
+    ball: &Ball,
+    belief: &Belief,
+    teammates: &Teammates,
+    role: Role,
+) -> bool {
     if belief.holds_ball {
         return true;
     }
-    let mine = skills::meeting(ball, belief.pose.position).1;
+    let mine = skills::interception_point(ball, belief.pose.position).1;
     let mine = if role == Role::Attacker { mine - KEEP_ROLE } else { mine };
-    mates.present(now).all(|(id, mate)| {
-        let theirs = skills::meeting(ball, mate.pose().position).1;
-        let theirs = if mate.beacon.role == Role::Attacker { theirs - KEEP_ROLE } else { theirs };
-        !mate.beacon.status.has(Status::HOLDS_BALL) && (mine < theirs || (mine == theirs && me < id))
+    teammates.present(now).all(|(id, teammate)| {
+        let theirs = skills::interception_point(ball, teammate.pose().position).1;
+        let theirs = if teammate.beacon.role == Role::Attacker { theirs - KEEP_ROLE } else { theirs };
+        !teammate.beacon.status.has(Status::HOLDS_BALL) && (mine < theirs || (mine == theirs && me < id))
     })
 }
 
@@ -224,7 +231,7 @@ fn support(belief: &Belief, to: Point<Field>) -> Intent {
     if belief.pose.position.distance(to) < SUPPORT_TOLERANCE {
         return Intent::Stand { face: Some(face_ball(belief, belief.pose.position)) };
     }
-    Intent::Walk { to, face: face_ball(belief, to), shy_of_ball: true }
+    Intent::Walk { to, face: face_ball(belief, to), avoiding_of_ball: true }
 }
 
 /// The opponent that is near the ball and on the path of a kick towards the goal.
@@ -333,7 +340,7 @@ mod tests {
 
     fn step(reactive: &mut Reactive, belief: &Belief, ms: u64) -> Intent {
         let me = RobotId::new(1).unwrap();
-        reactive.step(Instant(ms * 1000), me, belief, &Mates::default(), GoalEnd::Positive, Freedom::Full)
+        reactive.step(Instant(ms * 1000), me, belief, &Teammates::default(), GoalEnd::Positive, Freedom::Full)
     }
 
     #[test]
@@ -417,7 +424,7 @@ mod tests {
         // Straight ahead is the opponent; to the left, behind it, waits a second one.
         let _ = b.opponents.push(Point::new(0.44, 1.16));
         let goal = Point::new(2.7, 0.0);
-        let kick = way_out(Instant(0), &b, &Mates::default(), &b.ball.unwrap(), goal);
+        let kick = way_out(Instant(0), &b, &Teammates::default(), &b.ball.unwrap(), goal);
         assert_eq!(kick, Some(LeggedKick::Right));
     }
 }

@@ -12,7 +12,7 @@ use rules::League;
 use crate::belief::Belief;
 use crate::body::Intent;
 use crate::body::kind::{self, Kind};
-use crate::mates::Mates;
+use crate::teammates::Teammates;
 
 /// Extent of the behaviour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,13 +65,13 @@ impl Reactive {
         now: Instant,
         me: RobotId,
         belief: &Belief,
-        mates: &Mates,
+        teammates: &Teammates,
         attacked: GoalEnd,
         freedom: Freedom,
     ) -> Intent {
         match self {
-            Self::Legged(_, legs) => legs.step(now, me, belief, mates, attacked, freedom),
-            Self::Wheels(_, wheels) => wheels.step(now, me, belief, mates, attacked, freedom),
+            Self::Legged(_, legs) => legs.step(now, me, belief, teammates, attacked, freedom),
+            Self::Wheels(_, wheels) => wheels.step(now, me, belief, teammates, attacked, freedom),
         }
     }
 }

@@ -12,10 +12,10 @@ use protocol::{Instant, RobotId};
 use crate::belief::{Ball, Belief};
 use crate::body::Intent;
 use crate::body::omni::{Drive, SHOT};
-use crate::mates::Mates;
 use crate::reactive::Freedom;
 use crate::skills::Step;
 use crate::skills::wheels as skills;
+use crate::teammates::Teammates;
 
 /// State of the behaviour.
 #[derive(Clone, Debug, Default)]
@@ -40,17 +40,17 @@ impl Reactive {
         now: Instant,
         me: RobotId,
         belief: &Belief,
-        mates: &Mates,
+        teammates: &Teammates,
         attacked: GoalEnd,
         freedom: Freedom,
     ) -> Intent {
         let Some(ball) = belief.ball else { return Intent::Stand { face: None } };
-        let mine = freedom != Freedom::KeepNear && is_attacker(now, me, &ball, belief, mates, self.role);
+        let mine = freedom != Freedom::KeepNear && is_attacker(now, me, &ball, belief, teammates, self.role);
         self.role = if mine { Role::Attacker } else { Role::Supporter };
         let goal = belief.league().field().goal_center(attacked);
         if !mine {
-            let to = place(now, me, belief, mates, &ball, attacked);
-            return Drive::shy(to, to.direction_to(ball.position)).into();
+            let to = place(now, me, belief, teammates, &ball, attacked);
+            return Drive::avoiding(to, to.direction_to(ball.position)).into();
         }
         if belief.holds_ball {
             return match freedom {
@@ -62,7 +62,7 @@ impl Reactive {
         if freedom == Freedom::Approach && !contested(belief, &ball) {
             // Between two gameplays: near enough, but without moving the ball before the next one.
             let behind = ball.rest - Vector::polar(APPROACH, face);
-            return Drive::shy(behind, face).into();
+            return Drive::avoiding(behind, face).into();
         }
         match skills::get_ball(belief, Some(face)) {
             Step::Running(intent) => intent,
@@ -74,23 +74,30 @@ impl Reactive {
 /// With the ball: shoot, carry it on, or clear.
 fn advance(belief: &Belief, attacked: GoalEnd) -> Intent {
     let goal = belief.league().field().goal_center(attacked);
-    let mouth = belief.mouth();
-    let (at, room) = skills::target(belief, mouth, attacked);
-    let near = mouth.distance(goal) < SHOOTS_FROM;
+    let dribbler_point = belief.dribbler_point();
+    let (at, room) = skills::target(belief, dribbler_point, attacked);
+    let near = dribbler_point.distance(goal) < SHOOTS_FROM;
     if near && room > OPEN {
         return skills::kick_held(belief, at, OmniKick::Flat(SHOT));
     }
-    let ahead = Segment::new(mouth, mouth + (goal - mouth).clamped(LOOKS_AHEAD));
+    let ahead = Segment::new(dribbler_point, dribbler_point + (goal - dribbler_point).clamped(LOOKS_AHEAD));
     let blocked = belief.opponents.iter().any(|o| ahead.distance_to(*o) < BLOCKS);
-    let carries = !blocked && belief.carried() < CARRIES && mouth.distance(goal) > TOO_NEAR;
+    let carries = !blocked && belief.carried() < CARRIES && dribbler_point.distance(goal) > TOO_NEAR;
     if carries {
-        return Drive::holding(ahead.to, mouth.direction_to(goal)).into();
+        return Drive::holding(ahead.to, dribbler_point.direction_to(goal)).into();
     }
     skills::clear_or_shoot(belief, attacked)
 }
 
 /// Whether the ball is this robot's: it has it, or no other robot under the same directive has it sooner.
-fn is_attacker(now: Instant, me: RobotId, ball: &Ball, belief: &Belief, mates: &Mates, role: Role) -> bool {
+fn is_attacker(
+    now: Instant,
+    me: RobotId,
+    ball: &Ball,
+    belief: &Belief,
+    teammates: &Teammates,
+    role: Role,
+) -> bool {
     if belief.holds_ball {
         return true;
     }
@@ -99,9 +106,9 @@ fn is_attacker(now: Instant, me: RobotId, ball: &Ball, belief: &Belief, mates: &
         from.distance(soon) - if role == Role::Attacker { KEEPS } else { 0.0 }
     };
     let mine = far(belief.pose.position, role);
-    mates.present(now).all(|(id, mate)| {
-        let theirs = far(mate.pose().position, mate.beacon.role);
-        !mate.beacon.status.has(Status::HOLDS_BALL) && (mine < theirs || (mine == theirs && me < id))
+    teammates.present(now).all(|(id, teammate)| {
+        let theirs = far(teammate.pose().position, teammate.beacon.role);
+        !teammate.beacon.status.has(Status::HOLDS_BALL) && (mine < theirs || (mine == theirs && me < id))
     })
 }
 
@@ -110,7 +117,7 @@ fn place(
     now: Instant,
     me: RobotId,
     belief: &Belief,
-    mates: &Mates,
+    teammates: &Teammates,
     ball: &Ball,
     attacked: GoalEnd,
 ) -> Point<Field> {
@@ -118,8 +125,10 @@ fn place(
     let sign = attacked.sign() as f32;
     let side = if ball.rest.y() > 0.0 { -1.0 } else { 1.0 };
     // Attackers and robots that play a case are no supporters: places go by rank among the others.
-    let before =
-        mates.present(now).filter(|(id, mate)| *id < me && mate.beacon.role == Role::Supporter).count();
+    let before = teammates
+        .present(now)
+        .filter(|(id, teammate)| *id < me && teammate.beacon.role == Role::Supporter)
+        .count();
     let offsets =
         [[1.5, 1.5 * side], [1.2, -1.5 * side], [-1.2, 0.0], [-0.8, 1.8 * side], [-0.8, -1.8 * side]];
     let [along, across] = offsets[before % offsets.len()];
@@ -169,27 +178,27 @@ mod tests {
         RobotId::new(n).unwrap()
     }
 
-    fn mate(x: f32, role: Role) -> Beacon {
+    fn teammate(x: f32, role: Role) -> Beacon {
         let pose = WirePose::from(geometry::Pose::from_mm_deg(x * 1000.0, 0.0, 0.0));
         let status = Status::AVAILABLE;
         Beacon { pose, ball: None, status, case_base: 0, cycle: None, progress: Progress::Idle, role }
     }
 
-    fn step(belief: &Belief, mates: &Mates, freedom: Freedom) -> (Intent, Role) {
+    fn step(belief: &Belief, teammates: &Teammates, freedom: Freedom) -> (Intent, Role) {
         let mut reactive = Reactive::default();
-        let intent = reactive.step(Instant(0), id(2), belief, mates, GoalEnd::Positive, freedom);
+        let intent = reactive.step(Instant(0), id(2), belief, teammates, GoalEnd::Positive, freedom);
         (intent, reactive.role())
     }
 
     #[test]
     fn the_nearest_goes_for_the_ball_and_the_others_take_a_place_each() {
         let b = belief((0.0, 0.0, 0.0), (0.5, 0.0));
-        assert_eq!(step(&b, &Mates::default(), Freedom::Full).1, Role::Attacker);
-        let mut mates = Mates::default();
-        mates.hear(Instant(0), id(1), &mate(0.4, Role::Attacker));
-        let (Intent::Drive(first), Role::Supporter) = step(&b, &mates, Freedom::Full) else { panic!() };
-        mates.hear(Instant(0), id(0), &mate(-2.0, Role::Supporter));
-        let (Intent::Drive(second), _) = step(&b, &mates, Freedom::Full) else { panic!() };
+        assert_eq!(step(&b, &Teammates::default(), Freedom::Full).1, Role::Attacker);
+        let mut teammates = Teammates::default();
+        teammates.receive(Instant(0), id(1), &teammate(0.4, Role::Attacker));
+        let (Intent::Drive(first), Role::Supporter) = step(&b, &teammates, Freedom::Full) else { panic!() };
+        teammates.receive(Instant(0), id(0), &teammate(-2.0, Role::Supporter));
+        let (Intent::Drive(second), _) = step(&b, &teammates, Freedom::Full) else { panic!() };
         assert!(first.to.distance(second.to) > 1.0, "{first:?} {second:?}");
         assert!(first.to.x() > 1.5, "ahead of the ball");
     }
@@ -198,19 +207,19 @@ mod tests {
     fn with_the_ball_it_shoots_at_an_open_goal_and_carries_it_on_from_afar() {
         let mut near = belief((2.5, 0.0, 0.0), (2.5945, 0.0));
         near.holds_ball = true;
-        let (Intent::Drive(shot), _) = step(&near, &Mates::default(), Freedom::Full) else { panic!() };
+        let (Intent::Drive(shot), _) = step(&near, &Teammates::default(), Freedom::Full) else { panic!() };
         assert_eq!(shot.to, near.pose.position, "turns or shoots on the spot");
         let mut far = belief((-2.0, 0.0, 0.0), (-1.9055, 0.0));
         far.holds_ball = true;
-        let (Intent::Drive(carry), _) = step(&far, &Mates::default(), Freedom::Full) else { panic!() };
+        let (Intent::Drive(carry), _) = step(&far, &Teammates::default(), Freedom::Full) else { panic!() };
         assert!(carry.to.x() > -1.5 && carry.dribbler == 1.0);
     }
 
     #[test]
     fn beside_a_gameplay_of_others_nobody_goes_for_the_ball() {
         let b = belief((0.0, 0.0, 0.0), (0.2, 0.0));
-        assert_eq!(step(&b, &Mates::default(), Freedom::KeepNear).1, Role::Supporter);
-        let (Intent::Drive(waits), _) = step(&b, &Mates::default(), Freedom::Approach) else { panic!() };
+        assert_eq!(step(&b, &Teammates::default(), Freedom::KeepNear).1, Role::Supporter);
+        let (Intent::Drive(waits), _) = step(&b, &Teammates::default(), Freedom::Approach) else { panic!() };
         assert!(waits.to.distance(Point::new(0.2, 0.0)) > 0.25);
     }
 }

@@ -19,7 +19,7 @@ pub struct Cycle {
 
 /// Effect of adopting a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum News {
+pub enum CycleEvent {
     /// The state was known.
     Known,
     /// More about the same cycle, without another gameplay.
@@ -69,9 +69,9 @@ impl Cycle {
     }
 
     /// Adopts `state` if it is newer than the known one.
-    pub fn adopt(&mut self, state: &CycleState, awake: bool) -> News {
+    pub fn adopt(&mut self, state: &CycleState, awake: bool) -> CycleEvent {
         if !state.is_newer_than(self.state.as_ref()) {
-            return News::Known;
+            return CycleEvent::Known;
         }
         if self.id() != Some(state.id) {
             self.learned_asleep = !awake;
@@ -85,9 +85,9 @@ impl Cycle {
                 Some(_) => Progress::WaitEnd { finished: false },
                 None => Progress::Idle,
             };
-            News::Gameplay
+            CycleEvent::Gameplay
         } else {
-            News::More
+            CycleEvent::More
         }
     }
 
@@ -134,7 +134,7 @@ mod tests {
     #[test]
     fn a_robot_of_the_case_adapts_and_another_waits() {
         let (mut involved, mut other) = (Cycle::new(robot(3)), Cycle::new(robot(4)));
-        assert_eq!(involved.adopt(&state(1, play(5)), true), News::Gameplay);
+        assert_eq!(involved.adopt(&state(1, play(5)), true), CycleEvent::Gameplay);
         assert_eq!(involved.progress, Progress::Adapt { arrived: false });
         other.adopt(&state(1, play(5)), true);
         assert_eq!(other.progress, Progress::WaitEnd { finished: false });
@@ -145,7 +145,7 @@ mod tests {
         let mut cycle = Cycle::new(robot(3));
         cycle.adopt(&state(2, play(5)), true);
         let abort = Closure::Aborted { by: robot(2), reason: AbortReason::Timeout };
-        assert_eq!(cycle.adopt(&state(1, Decision::Closed(abort)), true), News::Known);
+        assert_eq!(cycle.adopt(&state(1, Decision::Closed(abort)), true), CycleEvent::Known);
         assert!(cycle.play().is_some());
     }
 
@@ -163,9 +163,9 @@ mod tests {
         let mut cycle = Cycle::new(robot(2));
         cycle.adopt(&state(1, play(5)), true);
         let end = cycle.aborted(AbortReason::PathBlocked).unwrap();
-        assert_eq!(cycle.adopt(&end, true), News::Gameplay);
+        assert_eq!(cycle.adopt(&end, true), CycleEvent::Gameplay);
         assert_eq!(cycle.aborted(AbortReason::Timeout), None);
-        assert_eq!(cycle.adopt(&state(1, play(5)), true), News::Known);
+        assert_eq!(cycle.adopt(&state(1, play(5)), true), CycleEvent::Known);
         assert_eq!(cycle.progress, Progress::Idle);
     }
 }

@@ -4,19 +4,19 @@
 use protocol::team::{Beacon, CycleState, Decision, Status};
 use protocol::{CycleId, Instant, RobotId};
 
-use crate::mates::Mates;
+use crate::teammates::Teammates;
 
 /// The robot that must propose cycles.
-pub fn elector(now: Instant, me: RobotId, mates: &Mates) -> RobotId {
-    mates.present(now).map(|(id, _)| id).chain([me]).min().unwrap_or(me)
+pub fn elector(now: Instant, me: RobotId, teammates: &Teammates) -> RobotId {
+    teammates.present(now).map(|(id, _)| id).chain([me]).min().unwrap_or(me)
 }
 
 /// The retriever nearest the ball; of equals the lowest id. `None` without a retriever.
-pub fn coordinator(now: Instant, me: RobotId, own: &Beacon, mates: &Mates) -> Option<RobotId> {
+pub fn coordinator(now: Instant, me: RobotId, own: &Beacon, teammates: &Teammates) -> Option<RobotId> {
     let distance = |beacon: &Beacon| beacon.ball.map_or(u32::MAX, |ball| u32::from(ball.distance));
-    mates
+    teammates
         .present(now)
-        .map(|(id, mate)| (id, &mate.beacon))
+        .map(|(id, teammate)| (id, &teammate.beacon))
         .chain([(me, own)])
         .filter(|(_, beacon)| beacon.status.has(Status::RETRIEVER))
         .min_by_key(|(id, beacon)| (distance(beacon), *id))
@@ -62,23 +62,23 @@ mod tests {
 
     #[test]
     fn the_lowest_id_elects_even_if_it_cannot_retrieve() {
-        let mut mates = Mates::default();
-        mates.hear(Instant(0), robot(2), &beacon(Some(900), false));
-        mates.hear(Instant(0), robot(7), &beacon(Some(500), true));
+        let mut teammates = Teammates::default();
+        teammates.receive(Instant(0), robot(2), &beacon(Some(900), false));
+        teammates.receive(Instant(0), robot(7), &beacon(Some(500), true));
         let now = Instant(40_000);
-        assert_eq!(elector(now, robot(5), &mates), robot(2));
-        assert_eq!(coordinator(now, robot(5), &beacon(Some(400), false), &mates), Some(robot(7)));
-        assert_eq!(coordinator(now, robot(5), &beacon(Some(500), true), &mates), Some(robot(5)));
-        assert_eq!(coordinator(now, robot(5), &beacon(None, true), &mates), Some(robot(7)));
+        assert_eq!(elector(now, robot(5), &teammates), robot(2));
+        assert_eq!(coordinator(now, robot(5), &beacon(Some(400), false), &teammates), Some(robot(7)));
+        assert_eq!(coordinator(now, robot(5), &beacon(Some(500), true), &teammates), Some(robot(5)));
+        assert_eq!(coordinator(now, robot(5), &beacon(None, true), &teammates), Some(robot(7)));
     }
 
     #[test]
-    fn no_life_proposes_what_another_has_proposed_whatever_it_has_heard() {
+    fn no_life_proposes_what_another_has_proposed_whatever_it_has_received() {
         let mut proposed = [0_u32; 4];
         for (life, newest) in (5..9).zip(&mut proposed) {
             let mut known = None;
-            for heard in [0, 1, 40, 63, 64, 65, 200] {
-                let before = known.map_or(0, |id: CycleId| id.counter).max(heard);
+            for received in [0, 1, 40, 63, 64, 65, 200] {
+                let before = known.map_or(0, |id: CycleId| id.counter).max(received);
                 let id = CycleId { counter: before, proposer: robot(3) };
                 let next = proposal(Some(id), robot(1), robot(1), life).id;
                 assert!(next.counter > before && next.counter <= before + 64, "{before} {next}");
@@ -93,13 +93,13 @@ mod tests {
 
     #[test]
     fn without_a_retriever_nobody_is_named() {
-        assert_eq!(coordinator(Instant(0), robot(1), &beacon(Some(1), false), &Mates::default()), None);
+        assert_eq!(coordinator(Instant(0), robot(1), &beacon(Some(1), false), &Teammates::default()), None);
     }
 
     #[test]
     fn the_silent_are_not_elected() {
-        let mut mates = Mates::default();
-        mates.hear(Instant(0), robot(1), &beacon(Some(1), true));
-        assert_eq!(elector(Instant(500_000), robot(3), &mates), robot(3));
+        let mut teammates = Teammates::default();
+        teammates.receive(Instant(0), robot(1), &beacon(Some(1), true));
+        assert_eq!(elector(Instant(500_000), robot(3), &teammates), robot(3));
     }
 }

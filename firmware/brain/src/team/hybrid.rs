@@ -19,9 +19,9 @@ pub fn reactive_shoots_sooner(scene: &Scene<'_>) -> bool {
     if ball.distance(goal) > IN_REACH {
         return false;
     }
-    let players = scene.play.robots.iter().filter_map(|&id| scene.mates.get(scene.now, id));
+    let players = scene.play.robots.iter().filter_map(|&id| scene.teammates.get(scene.now, id));
     let nearest = players
-        .map(|mate| mate.pose().position)
+        .map(|teammate| teammate.pose().position)
         .chain([scene.belief.pose.position])
         .map(|robot| robot.distance(ball))
         .fold(f32::INFINITY, f32::min);

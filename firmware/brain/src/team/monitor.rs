@@ -48,11 +48,11 @@ fn before_touch(scene: &Scene<'_>, settings: &Settings) -> Option<AbortReason> {
 }
 
 fn after_touch(scene: &Scene<'_>) -> Option<AbortReason> {
-    if scene.belief.opponent_on_ball(scene.now, scene.mates) {
+    if scene.belief.opponent_on_ball(scene.now, scene.teammates) {
         return Some(AbortReason::OpponentOnBall);
     }
     let ball = scene.belief.ball?;
-    let held = scene.belief.holds_ball || scene.mates.anyone_holds_ball();
+    let held = scene.belief.holds_ball || scene.teammates.anyone_holds_ball();
     if held || !ball.is_at_rest() {
         return None;
     }

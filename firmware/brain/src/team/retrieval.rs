@@ -9,7 +9,7 @@ use protocol::team::{Decision, Play};
 use protocol::{Instant, RobotId};
 
 use crate::belief::Belief;
-use crate::mates::Mates;
+use crate::teammates::Teammates;
 
 /// The problem from this robot's belief; `None` while no ball is known.
 pub fn problem(
@@ -18,7 +18,7 @@ pub fn problem(
     base: &CaseBase<'_>,
     defending: GoalEnd,
     belief: &Belief,
-    mates: &Mates,
+    teammates: &Teammates,
 ) -> Option<Problem> {
     let ball = belief.ball?;
     let mut problem = Problem {
@@ -28,10 +28,10 @@ pub fn problem(
         opponents: heapless::Vec::new(),
     };
     // Robots that carry another case base could not look the case up.
-    let able = mates
+    let able = teammates
         .present(now)
-        .filter(|(_, mate)| mate.beacon.case_base == base.hash())
-        .map(|(id, mate)| (id, mate.pose().position));
+        .filter(|(_, teammate)| teammate.beacon.case_base == base.hash())
+        .map(|(id, teammate)| (id, teammate.pose().position));
     for (id, position) in able.chain([(me, belief.pose.position)]) {
         // A team larger than a problem holds is cut at its limit.
         let _ = problem.teammates.push((id, position.into()));
@@ -51,7 +51,7 @@ pub fn accept(
     holder: Option<RobotId>,
 ) -> Option<Decision> {
     let case = base.case(hint.case)?;
-    let present = |id: &RobotId| problem.teammates.iter().any(|(mate, _)| mate == id);
+    let present = |id: &RobotId| problem.teammates.iter().any(|(teammate, _)| teammate == id);
     let once = |id: &RobotId| hint.robots.iter().filter(|other| *other == id).count() == 1;
     let all = hint.robots.iter().all(|id| present(id) && once(id));
     let getter = hint.robots.get(case.getter().index()).copied();

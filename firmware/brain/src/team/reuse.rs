@@ -10,7 +10,7 @@ use crate::timer::TimerTable;
 
 /// Result of a step of reuse.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Wish {
+pub enum Request {
     /// This intent for the body.
     Body(Intent),
     /// This robot's part is over: default behaviour.
@@ -26,7 +26,7 @@ pub fn step(
     execution: &mut Execution,
     progress: &mut Progress,
     timers: &mut TimerTable,
-) -> Wish {
+) -> Request {
     if let Progress::Adapt { .. } = progress {
         let arrived = has_arrived(scene, execution);
         *progress = if may_execute(scene, positioning, execution, arrived) {
@@ -36,19 +36,19 @@ pub fn step(
         };
     }
     match progress {
-        Progress::Adapt { .. } => Wish::Body(adapt(scene, execution)),
+        Progress::Adapt { .. } => Request::Body(adapt(scene, execution)),
         Progress::Execute { .. } => match execution.step(scene, timers) {
             Outcome::Running(intent) => {
                 *progress = Progress::Execute { done: execution.done() };
-                Wish::Body(intent)
+                Request::Body(intent)
             }
             Outcome::Finished => {
                 *progress = Progress::WaitEnd { finished: true };
-                Wish::Nothing
+                Request::Nothing
             }
-            Outcome::Failed(reason) => Wish::Abort(reason),
+            Outcome::Failed(reason) => Request::Abort(reason),
         },
-        Progress::WaitEnd { .. } | Progress::Idle => Wish::Nothing,
+        Progress::WaitEnd { .. } | Progress::Idle => Request::Nothing,
     }
 }
 
@@ -58,7 +58,7 @@ fn adapt(scene: &Scene<'_>, execution: &Execution) -> Intent {
         return Intent::Stand { face: None };
     }
     let to = scene.place_of(execution.part());
-    Intent::Walk { to, face: face_ball(scene.belief, to), shy_of_ball: true }
+    Intent::Walk { to, face: face_ball(scene.belief, to), avoiding_of_ball: true }
 }
 
 /// At its adapted position, facing the ball. For the robot that gets the ball, "next to the ball" is enough

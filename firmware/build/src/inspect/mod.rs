@@ -161,7 +161,7 @@ fn crate_of(path: &str) -> &str {
         Some("library") => "case-library",
         Some("mps2") => "board-mps2",
         Some("stm32") => "board-stm32",
-        Some(folder) => folder,
+        Some(directory) => directory,
         None => "core",
     }
 }

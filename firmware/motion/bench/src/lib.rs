@@ -11,7 +11,7 @@ use core::fmt;
 use geometry::{Angle, Field, Point, Segment, Shape, Vector};
 use motion::avoid::{self, Course, Obstacle};
 use motion::ball::{BallModel, BallPath};
-use motion::intercept::{Interception, Wish, kick_reach};
+use motion::intercept::{Interception, Request, kick_reach};
 use motion::trajectory::{CalcMotion, DragLimits, FreeLimits, Motion, State};
 use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro128PlusPlus;
@@ -54,7 +54,7 @@ impl Work {
     ];
 
     /// Its name in reports and options.
-    pub const fn word(self) -> &'static str {
+    pub const fn label(self) -> &'static str {
         match self {
             Self::FreeTime => "free-time",
             Self::FreePlan => "free-plan",
@@ -78,8 +78,8 @@ impl Work {
             Self::FreeState => folded(&task.motion.at(task.time)),
             Self::DragTime => drag.time(from, velocity, to).to_bits(),
             Self::DragPlan => drag.plan(from, velocity, to).duration().to_bits(),
-            Self::Soonest => task.meeting(Wish::Soonest),
-            Self::Safest => task.meeting(Wish::Safest),
+            Self::Soonest => task.interception_point(Request::Soonest),
+            Self::Safest => task.interception_point(Request::Safest),
             Self::Avoid => task.step(&task.standing),
             Self::AvoidMoving => task.step(&task.moving),
         }
@@ -105,7 +105,7 @@ pub struct Task {
 }
 
 impl Task {
-    fn meeting(&self, wish: Wish) -> u32 {
+    fn interception_point(&self, request: Request) -> u32 {
         let asked = Interception {
             robot: self.start,
             velocity: self.velocity,
@@ -114,8 +114,8 @@ impl Task {
             reach: kick_reach(0.09, 0.0215),
             until: 5.0,
         };
-        match asked.find(&FreeLimits::default(), wish) {
-            motion::intercept::Verdict::Meets(meeting) => meeting.robot_time.to_bits(),
+        match asked.find(&FreeLimits::default(), request) {
+            motion::intercept::Verdict::Meets(interception_point) => interception_point.robot_time.to_bits(),
             motion::intercept::Verdict::Chase { robot_time, .. } => robot_time.to_bits() ^ 1,
         }
     }
@@ -139,8 +139,9 @@ impl Task {
 
 fn folded(state: &State<Field>) -> u32 {
     let State { position, velocity, acceleration } = *state;
-    let words = [position.x(), position.y(), velocity.x(), velocity.y(), acceleration.x(), acceleration.y()];
-    words.into_iter().fold(0, |all: u32, word| all.rotate_left(5) ^ word.to_bits())
+    let description =
+        [position.x(), position.y(), velocity.x(), velocity.y(), acceleration.x(), acceleration.y()];
+    description.into_iter().fold(0, |all: u32, label| all.rotate_left(5) ^ label.to_bits())
 }
 
 /// The worst case planned for (docs/architecture.md §9): 12 robots and 4 forbidden regions.
@@ -240,12 +241,12 @@ impl Counted {
 
     /// Reads a line of numbers.
     pub fn from_line(line: &str) -> Option<Self> {
-        let mut words = line.split(' ').map_while(|word| word.parse().ok());
-        let mut counted = Self { instructions: [0; _], found: words.next()? };
+        let mut description = line.split(' ').map_while(|label| label.parse().ok());
+        let mut counted = Self { instructions: [0; _], found: description.next()? };
         for instructions in &mut counted.instructions {
-            *instructions = words.next()?;
+            *instructions = description.next()?;
         }
-        words.next().is_none().then_some(counted)
+        description.next().is_none().then_some(counted)
     }
 }
 

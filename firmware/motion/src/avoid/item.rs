@@ -149,16 +149,16 @@ impl<'o, F: Copy> Scene<'o, F> {
 
     /// The first obstacle that a piece of path touches, by its number, when it takes from `at` to `at + time`
     /// s.
-    pub(super) fn first_hit(&self, from: Point<F>, way: Vector<F>, at: f32, time: f32) -> Option<usize> {
+    pub(super) fn first_hit(&self, from: Point<F>, path: Vector<F>, at: f32, time: f32) -> Option<usize> {
         self.spend(3, PIECE);
         let mut first = None;
         let mut least = f32::INFINITY;
         let seen =
-            Seen { from, way, before: math::min(at, FORESIGHT), later: math::min(at + time, FORESIGHT) };
+            Seen { from, path, before: math::min(at, FORESIGHT), later: math::min(at + time, FORESIGHT) };
         for (number, (item, obstacle)) in self.all().enumerate() {
-            let (from, way) = if item.moves { seen.by(obstacle.velocity) } else { (from, way) };
-            if let Some(share) = touches(from, way, item.center, item.route)
-                && let Some(share) = item.hit(&obstacle.shape, from, way, item.margin, share)
+            let (from, path) = if item.moves { seen.by(obstacle.velocity) } else { (from, path) };
+            if let Some(share) = touches(from, path, item.center, item.route)
+                && let Some(share) = item.hit(&obstacle.shape, from, path, item.margin, share)
                 && share < least
             {
                 (first, least) = (Some(number), share);
@@ -170,32 +170,32 @@ impl<'o, F: Copy> Scene<'o, F> {
     /// Whether no body stands on the straight path; for a body that covers the start, whether the path does
     /// not lead deeper in.
     pub(super) fn sees(&self, from: Point<F>, to: Point<F>) -> bool {
-        let way = to - from;
+        let path = to - from;
         self.all().filter(|(_, obstacle)| obstacle.is_body).all(|(item, obstacle)| {
-            if touches(from, way, item.center, item.route).is_none() {
+            if touches(from, path, item.center, item.route).is_none() {
                 return true;
             }
             let depth = obstacle.shape.distance_to(from);
             if depth < 0.0 {
-                return obstacle.shape.distance_to(from + way * A_LITTLE) >= depth;
+                return obstacle.shape.distance_to(from + path * A_LITTLE) >= depth;
             }
             match obstacle.shape {
-                Shape::Disc { center, radius } => touches(from, way, center, square(radius)).is_none(),
-                Shape::Capsule { spine, radius } => hits_capsule(from, way, &spine, radius).is_none(),
-                Shape::Box { low, high } => hits_box(from, way, low, high, 0.0).is_none(),
+                Shape::Disc { center, radius } => touches(from, path, center, square(radius)).is_none(),
+                Shape::Capsule { spine, radius } => hits_capsule(from, path, &spine, radius).is_none(),
+                Shape::Box { low, high } => hits_box(from, path, low, high, 0.0).is_none(),
             }
         })
     }
 
     /// Whether no obstacle is touched, with the smaller margin that braking keeps.
-    pub(super) fn is_clear(&self, from: Point<F>, way: Vector<F>, at: f32, time: f32) -> bool {
+    pub(super) fn is_clear(&self, from: Point<F>, path: Vector<F>, at: f32, time: f32) -> bool {
         let seen =
-            Seen { from, way, before: math::min(at, FORESIGHT), later: math::min(at + time, FORESIGHT) };
+            Seen { from, path, before: math::min(at, FORESIGHT), later: math::min(at + time, FORESIGHT) };
         self.all().all(|(item, obstacle)| {
-            let (from, way) = if item.moves { seen.by(obstacle.velocity) } else { (from, way) };
+            let (from, path) = if item.moves { seen.by(obstacle.velocity) } else { (from, path) };
             let margin = math::min(item.margin, BRAKE_SKIN);
-            touches(from, way, item.center, item.brake)
-                .and_then(|share| item.hit(&obstacle.shape, from, way, margin, share))
+            touches(from, path, item.center, item.brake)
+                .and_then(|share| item.hit(&obstacle.shape, from, path, margin, share))
                 .is_none()
         })
     }
@@ -239,12 +239,12 @@ impl<F: Copy> Item<F> {
     /// Whether a piece of path that touches the circle at `share` comes nearer than `margin`, and at about
     /// which share.
     #[inline]
-    fn hit(&self, shape: &Shape<F>, from: Point<F>, way: Vector<F>, margin: f32, share: f32) -> Option<f32> {
+    fn hit(&self, shape: &Shape<F>, from: Point<F>, path: Vector<F>, margin: f32, share: f32) -> Option<f32> {
         match *shape {
             _ if self.is_disc => Some(share),
             Shape::Disc { .. } => None,
-            Shape::Capsule { spine, radius } => hits_capsule(from, way, &spine, radius + margin),
-            Shape::Box { low, high } => hits_box(from, way, low, high, margin),
+            Shape::Capsule { spine, radius } => hits_capsule(from, path, &spine, radius + margin),
+            Shape::Box { low, high } => hits_box(from, path, low, high, margin),
         }
     }
 }
@@ -264,7 +264,7 @@ pub(super) fn at<F: Copy>(obstacle: &Obstacle<F>, time: f32) -> Shape<F> {
 /// A piece of path and when it is travelled, s.
 struct Seen<F> {
     from: Point<F>,
-    way: Vector<F>,
+    path: Vector<F>,
     before: f32,
     later: f32,
 }
@@ -273,7 +273,7 @@ impl<F: Copy> Seen<F> {
     /// The piece of path relative to an obstacle that moves with `velocity`.
     #[inline]
     fn by(&self, velocity: Vector<F>) -> (Point<F>, Vector<F>) {
-        (self.from - velocity * self.before, self.way + velocity * (self.before - self.later))
+        (self.from - velocity * self.before, self.path + velocity * (self.before - self.later))
     }
 }
 
@@ -295,52 +295,52 @@ fn gap<F: Copy>(shape: &Shape<F>, point: Point<F>) -> f32 {
 /// The share of the path at which it is nearest to `center`, if that is nearer than the root of
 /// `radius_squared`.
 #[inline]
-fn touches<F: Copy>(from: Point<F>, way: Vector<F>, center: Point<F>, radius_squared: f32) -> Option<f32> {
+fn touches<F: Copy>(from: Point<F>, path: Vector<F>, center: Point<F>, radius_squared: f32) -> Option<f32> {
     let offset = center - from;
-    let (along, length_squared) = (offset.dot(way), way.dot(way));
+    let (along, length_squared) = (offset.dot(path), path.dot(path));
     // Behind, beyond, or beside.
     if along <= 0.0 {
         return (offset.dot(offset) < radius_squared).then_some(0.0);
     }
     if along >= length_squared {
-        let off = offset - way;
+        let off = offset - path;
         return (off.dot(off) < radius_squared).then_some(1.0);
     }
-    let aside = offset.cross(way);
+    let aside = offset.cross(path);
     (aside * aside < radius_squared * length_squared).then(|| along / length_squared)
 }
 
-fn hits_capsule<F: Copy>(from: Point<F>, way: Vector<F>, spine: &Segment<F>, radius: f32) -> Option<f32> {
+fn hits_capsule<F: Copy>(from: Point<F>, path: Vector<F>, spine: &Segment<F>, radius: f32) -> Option<f32> {
     let bone = spine.vector();
     let offset = spine.from - from;
     // Intersection test: from + s·way = spine.from + t·bone.
-    let turn = way.cross(bone);
+    let turn = path.cross(bone);
     if turn != 0.0 {
         let per_turn = 1.0 / turn;
-        let (s, t) = (offset.cross(bone) * per_turn, offset.cross(way) * per_turn);
+        let (s, t) = (offset.cross(bone) * per_turn, offset.cross(path) * per_turn);
         if (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t) {
             return Some(s);
         }
     }
     let end = |at: Point<F>, share: f32| (spine.distance_to(at) < radius).then_some(share);
     end(from, 0.0)
-        .or_else(|| touches(from, way, spine.from, square(radius)))
-        .or_else(|| touches(from, way, spine.to, square(radius)))
-        .or_else(|| end(from + way, 1.0))
+        .or_else(|| touches(from, path, spine.from, square(radius)))
+        .or_else(|| touches(from, path, spine.to, square(radius)))
+        .or_else(|| end(from + path, 1.0))
 }
 
 /// Slab test: the shares between which it is inside of each pair of sides.
 fn hits_box<F: Copy>(
     from: Point<F>,
-    way: Vector<F>,
+    path: Vector<F>,
     low: Point<F>,
     high: Point<F>,
     margin: f32,
 ) -> Option<f32> {
     let (mut enters, mut leaves) = (0.0_f32, 1.0_f32);
     let axes = [
-        (from.x(), way.x(), low.x() - margin, high.x() + margin),
-        (from.y(), way.y(), low.y() - margin, high.y() + margin),
+        (from.x(), path.x(), low.x() - margin, high.x() + margin),
+        (from.y(), path.y(), low.y() - margin, high.y() + margin),
     ];
     for (at, by, least, most) in axes {
         if by == 0.0 {

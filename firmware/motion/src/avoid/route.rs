@@ -108,13 +108,13 @@ impl<F: Copy> Search<'_, F> {
 
     fn first_hit(&mut self, node: &Node<F>, to: Point<F>) -> Option<usize> {
         self.checks = self.checks.saturating_sub(1);
-        let way = to - node.at;
+        let path = to - node.at;
         let (mut at, mut time) = (0.0, 0.0);
         if self.scene.moves() {
             at = self.time_after(node.length);
-            time = self.time_after(node.length + way.norm()) - at;
+            time = self.time_after(node.length + path.norm()) - at;
         }
-        self.scene.first_hit(node.at, way, at, time)
+        self.scene.first_hit(node.at, path, at, time)
     }
 
     /// Approximate time to travel this far: accelerating from its present speed to its limit, s.
@@ -133,9 +133,9 @@ impl<F: Copy> Search<'_, F> {
         if let Some(hit) = self.first_hit(node, at) {
             return Some(hit);
         }
-        let way = at - node.at;
-        let piece = way.norm();
-        let turning = if number == 0 { self.turning(way, piece) } else { 0.0 };
+        let path = at - node.at;
+        let piece = path.norm();
+        let turning = if number == 0 { self.turning(path, piece) } else { 0.0 };
         let (length, cost) = (node.length + piece, node.cost + piece + turning + extra);
         if piece > PIECE_MIN {
             let estimate = cost + at.distance(self.goal);
@@ -147,12 +147,12 @@ impl<F: Copy> Search<'_, F> {
 
     /// Cost of turning the present velocity into this direction, as a length: nothing straight on, twice the
     /// braking distance where it goes back.
-    fn turning(&self, way: Vector<F>, piece: f32) -> f32 {
+    fn turning(&self, path: Vector<F>, piece: f32) -> f32 {
         if piece <= 0.0 {
             return 0.0;
         }
         let speed = self.velocity.norm();
-        0.5 * speed * (speed - self.velocity.dot(way) / piece) / self.limits.braking
+        0.5 * speed * (speed - self.velocity.dot(path) / piece) / self.limits.braking
     }
 
     /// A corner of the path around an obstacle on the left (`side` +1) or right, from the node on towards
@@ -167,16 +167,16 @@ impl<F: Copy> Search<'_, F> {
     ) -> Point<F> {
         let from = node.at;
         let mut gap = item.margin + CORNER_SKIN;
-        let mut meeting = 0.0;
+        let mut interception_point = 0.0;
         if item.moves {
             // The obstacle's position when the robot passes, with a margin for being early or late there.
             for _ in 0..2 {
-                let distance = math::max(at(obstacle, meeting).distance_to(from), 0.0);
-                meeting = self.time_after(node.length + distance);
+                let distance = math::max(at(obstacle, interception_point).distance_to(from), 0.0);
+                interception_point = self.time_after(node.length + distance);
             }
             gap += EARLY_OR_LATE * obstacle.velocity.norm();
         }
-        match if item.moves { at(obstacle, meeting) } else { obstacle.shape } {
+        match if item.moves { at(obstacle, interception_point) } else { obstacle.shape } {
             Shape::Disc { center, radius } => around(center, radius + gap, from, to, side, None),
             Shape::Capsule { spine, radius } => {
                 // The end of the spine whose tangent leaves the other end on the inner side.

@@ -47,10 +47,10 @@ fn drive(start: Course<'_, Field>, patience: f32) -> Drive {
     let mut course = start;
     let mut drive = Drive { time: 0.0, arrived: false, deepest: f32::NEG_INFINITY, left: f32::NEG_INFINITY };
     while drive.time < patience {
-        let way = plan(&course);
+        let path = plan(&course);
         for part in 1..=4 {
             let share = part as f32 * 0.25;
-            let along = course.velocity + (way.next.velocity - course.velocity) * (0.5 * share);
+            let along = course.velocity + (path.next.velocity - course.velocity) * (0.5 * share);
             let place = course.from + along * (STEP * share);
             let depth = |o: &Obstacle<Field>| -o.shape.distance_to(place);
             drive.deepest = course.obstacles.iter().map(depth).fold(drive.deepest, f32::max);
@@ -58,10 +58,10 @@ fn drive(start: Course<'_, Field>, patience: f32) -> Drive {
                 drive.left = drive.left.max(within.distance_to(place));
             }
         }
-        (course.from, course.velocity) = (way.next.position, way.next.velocity);
+        (course.from, course.velocity) = (path.next.position, path.next.velocity);
         drive.time += STEP;
-        if course.from.distance(way.goal) < 0.002 && course.velocity.norm() < 0.01 {
-            drive.arrived = way.goal.distance(course.to) < 0.005;
+        if course.from.distance(path.goal) < 0.002 && course.velocity.norm() < 0.01 {
+            drive.arrived = path.goal.distance(course.to) < 0.005;
             break;
         }
     }
@@ -87,7 +87,7 @@ fn scene(rng: &mut Dice) -> Vec<Obstacle<Field>> {
     scene
 }
 
-const CARPET: Shape<Field> = Shape::Box { low: Point::new(-4.7, -3.2), high: Point::new(4.7, 3.2) };
+const SURFACE: Shape<Field> = Shape::Box { low: Point::new(-4.7, -3.2), high: Point::new(4.7, 3.2) };
 const STEP: f32 = 0.01;
 
 struct Dice(Xoshiro128PlusPlus);
@@ -146,13 +146,13 @@ fn in_a_thousand_scenes_it_enters_nothing_and_arrives_where_there_is_a_way() {
     for number in 0..1_000 {
         let scene = scene(&mut dice);
         let (from, to) = (dice.free(&scene), dice.free(&scene));
-        let mut course = Course { within: Some(CARPET), ..course(from, to, &scene) };
+        let mut course = Course { within: Some(SURFACE), ..course(from, to, &scene) };
         // Already moving, with room to brake.
         let velocity = Vector::polar(1.5 + dice.within(1.5), Angle::new(dice.within(3.0)));
         let stop = velocity * (0.5 * velocity.norm() / course.limits.braking);
-        let (mut free, way) = (Scene::new(&scene, None, EFFORT_MAX), Segment::new(from, from + stop));
+        let (mut free, path) = (Scene::new(&scene, None, EFFORT_MAX), Segment::new(from, from + stop));
         free.look();
-        if free.is_clear(way.from, way.vector(), 0.0, 1.0) && CARPET.contains(way.to) {
+        if free.is_clear(path.from, path.vector(), 0.0, 1.0) && SURFACE.contains(path.to) {
             course.velocity = velocity;
         }
         let drive = drive(course, 15.0);
@@ -176,25 +176,25 @@ fn in_a_thousand_scenes_it_enters_nothing_and_arrives_where_there_is_a_way() {
 
 #[test]
 fn a_free_way_is_taken_straight() {
-    let way = plan(&course(at(0.0, 0.0), at(2.0, 1.0), &[disc(0.0, 1.0, 0.3), disc(2.0, 0.0, 0.3)]));
-    assert_eq!((way.verdict, way.restraint, way.goal), (Verdict::Direct, Restraint::None, at(2.0, 1.0)));
-    assert!(way.next.velocity.cross(Vector::new(2.0, 1.0)).abs() < 1e-3 && way.next.velocity.x() > 0.0);
-    assert_eq!(way.motion, FreeLimits::default().plan(at(0.0, 0.0), Vector::default(), at(2.0, 1.0)));
+    let path = plan(&course(at(0.0, 0.0), at(2.0, 1.0), &[disc(0.0, 1.0, 0.3), disc(2.0, 0.0, 0.3)]));
+    assert_eq!((path.verdict, path.restraint, path.goal), (Verdict::Direct, Restraint::None, at(2.0, 1.0)));
+    assert!(path.next.velocity.cross(Vector::new(2.0, 1.0)).abs() < 1e-3 && path.next.velocity.x() > 0.0);
+    assert_eq!(path.motion, FreeLimits::default().plan(at(0.0, 0.0), Vector::default(), at(2.0, 1.0)));
 }
 
 #[test]
 fn a_disc_in_the_way_is_passed_on_its_nearer_side_at_its_tangent() {
     let obstacles = [disc(1.0, 0.1, 0.3)];
-    let way = plan(&course(at(0.0, 0.0), at(2.0, 0.0), &obstacles));
-    let Verdict::Around { via } = way.verdict else { panic!("{way:?}") };
+    let path = plan(&course(at(0.0, 0.0), at(2.0, 0.0), &obstacles));
+    let Verdict::Around { via } = path.verdict else { panic!("{path:?}") };
     // Below, as its middle is above; both pieces keep 20 mm from it, and hardly more.
-    assert!(via.y() < -0.2 && way.next.velocity.y() < 0.0);
+    assert!(via.y() < -0.2 && path.next.velocity.y() < 0.0);
     for piece in [Segment::new(at(0.0, 0.0), via), Segment::new(via, at(2.0, 0.0))] {
         let gap = piece.distance_to(at(1.0, 0.1)) - 0.3;
         assert!(gap > 0.02 && gap < 0.024, "{gap}");
     }
     // Two tangents of 0.32 m: each √(1.01 − 0.104) long, and the remaining path.
-    assert!(way.length > 2.0 && way.length < 2.1, "{}", way.length);
+    assert!(path.length > 2.0 && path.length < 2.1, "{}", path.length);
 }
 
 #[test]
@@ -202,8 +202,8 @@ fn the_present_velocity_decides_between_two_sides() {
     let obstacles = [disc(1.0, 0.0, 0.3)];
     for sign in [-1.0, 1.0] {
         let velocity = Vector::new(0.5, sign);
-        let way = plan(&Course { velocity, ..course(at(0.0, 0.0), at(2.0, 0.0), &obstacles) });
-        let Verdict::Around { via } = way.verdict else { panic!("{way:?}") };
+        let path = plan(&Course { velocity, ..course(at(0.0, 0.0), at(2.0, 0.0), &obstacles) });
+        let Verdict::Around { via } = path.verdict else { panic!("{path:?}") };
         assert!(via.y() * sign > 0.0);
     }
 }
@@ -211,15 +211,15 @@ fn the_present_velocity_decides_between_two_sides() {
 #[test]
 fn who_is_inside_leaves_by_the_shortest_way() {
     let area = Obstacle::standing(Shape::Box { low: at(-4.5, -1.0), high: at(-3.5, 1.0) });
-    let way = plan(&course(at(-3.7, 0.5), at(-4.0, 3.0), &[area]));
-    let Verdict::Escape { to } = way.verdict else { panic!("{way:?}") };
-    assert!((to.x() + 3.5).abs() < 0.01 && (to.y() - 0.5).abs() < 1e-5 && way.next.velocity.x() > 0.0);
+    let path = plan(&course(at(-3.7, 0.5), at(-4.0, 3.0), &[area]));
+    let Verdict::Escape { to } = path.verdict else { panic!("{path:?}") };
+    assert!((to.x() + 3.5).abs() < 0.01 && (to.y() - 0.5).abs() < 1e-5 && path.next.velocity.x() > 0.0);
     let drive = drive(course(at(-3.7, 0.5), at(-4.0, 3.0), &[area]), 5.0);
     assert!(drive.arrived && drive.time < 2.5, "{} s", drive.time);
 }
 
 #[test]
-fn a_half_plane_that_ends_beyond_a_wall_is_left_on_the_carpets_side() {
+fn a_half_plane_that_ends_beyond_a_wall_is_left_on_the_surface_side() {
     // All of x > 0: the touch line is 0.3 m away, the legal edge 4 m.
     let half = Obstacle::region(Shape::Box { low: at(0.0, -3.4), high: at(4.9, 3.4) });
     let circle = Obstacle::region(Shape::Disc { center: at(0.0, 0.0), radius: 0.63 });
@@ -227,14 +227,14 @@ fn a_half_plane_that_ends_beyond_a_wall_is_left_on_the_carpets_side() {
     for (y, scene) in
         [(3.0, &[half][..]), (-3.1, &[half, circle]), (0.1, &[half, circle]), (3.0, &[half, post])]
     {
-        let course = Course { within: Some(CARPET), ..course(at(4.0, y), at(4.6, y), scene) };
+        let course = Course { within: Some(SURFACE), ..course(at(4.0, y), at(4.6, y), scene) };
         let Verdict::Escape { to } = plan(&course).verdict else { panic!() };
         assert!(to.x() < 0.0 && to.x() > -1.0, "{y}: {to:?}");
         let bodies: Vec<_> = scene.iter().copied().filter(|o| o.is_body).collect();
         let mut driven = course;
         for _ in 0..400 {
-            let way = plan(&driven);
-            (driven.from, driven.velocity) = (way.next.position, way.next.velocity);
+            let path = plan(&driven);
+            (driven.from, driven.velocity) = (path.next.position, path.next.velocity);
             assert!(
                 bodies.iter().all(|o| o.shape.distance_to(driven.from) > -1e-4),
                 "{y}: {:?}",
@@ -259,10 +259,10 @@ fn every_place_of_overlapping_shapes_has_a_way_out() {
         };
         scene.push(Obstacle::region(half));
         let from = at(dice.within(4.7), dice.within(3.2));
-        let mut found = Scene::new(&scene, Some(CARPET), EFFORT_MAX);
+        let mut found = Scene::new(&scene, Some(SURFACE), EFFORT_MAX);
         found.look();
         let exit = found.exit(from, EFFORT_MAX);
-        assert!(CARPET.contains(exit), "scene {number}: {from:?} → {exit:?}");
+        assert!(SURFACE.contains(exit), "scene {number}: {from:?} → {exit:?}");
         assert!(scene.iter().all(|o| o.shape.distance_to(exit) > 0.0), "scene {number}: {from:?} → {exit:?}");
     }
 }
@@ -270,17 +270,17 @@ fn every_place_of_overlapping_shapes_has_a_way_out() {
 #[test]
 fn a_target_inside_becomes_the_nearest_point_outside() {
     let obstacles = [disc(1.0, 0.0, 0.5)];
-    let way = plan(&course(at(0.0, 0.0), at(0.9, 0.0), &obstacles));
-    assert!(way.goal.distance(at(0.5, 0.0)) < 0.01 && way.verdict == Verdict::Direct);
+    let path = plan(&course(at(0.0, 0.0), at(0.9, 0.0), &obstacles));
+    assert!(path.goal.distance(at(0.5, 0.0)) < 0.01 && path.verdict == Verdict::Direct);
     // In the overlap of two, and off the field surface.
     let obstacles = [disc(1.0, 0.0, 0.5), disc(1.3, 0.0, 0.5)];
-    let way = plan(&course(at(0.0, 0.0), at(1.2, 0.05), &obstacles));
+    let path = plan(&course(at(0.0, 0.0), at(1.2, 0.05), &obstacles));
     assert!(
-        obstacles.iter().all(|o| o.shape.distance_to(way.goal) > 0.0)
-            && way.goal.distance(at(1.2, 0.0)) < 1.0
+        obstacles.iter().all(|o| o.shape.distance_to(path.goal) > 0.0)
+            && path.goal.distance(at(1.2, 0.0)) < 1.0
     );
-    let way = plan(&Course { within: Some(CARPET), ..course(at(0.0, 0.0), at(9.0, 1.0), &[]) });
-    assert_eq!(way.goal, at(4.7, 1.0));
+    let path = plan(&Course { within: Some(SURFACE), ..course(at(0.0, 0.0), at(9.0, 1.0), &[]) });
+    assert_eq!(path.goal, at(4.7, 1.0));
 }
 
 #[test]
@@ -291,15 +291,15 @@ fn without_a_way_it_says_so_and_stays_out() {
             disc(center.x(), center.y(), 0.3)
         })
         .collect();
-    let way = plan(&course(at(0.0, 0.0), at(2.0, 0.0), &ring));
-    assert!(matches!(way.verdict, Verdict::Blocked { .. }), "{:?}", way.verdict);
+    let path = plan(&course(at(0.0, 0.0), at(2.0, 0.0), &ring));
+    assert!(matches!(path.verdict, Verdict::Blocked { .. }), "{:?}", path.verdict);
     let drive = drive(course(at(0.0, 0.0), at(2.0, 0.0), &ring), 3.0);
     assert!(!drive.arrived && drive.deepest < 1e-4);
 }
 
 #[test]
-fn who_is_out_of_the_carpet_comes_back() {
-    let drive = drive(Course { within: Some(CARPET), ..course(at(5.2, 0.0), at(4.0, 0.5), &[]) }, 3.0);
+fn who_is_out_of_the_surface_comes_back() {
+    let drive = drive(Course { within: Some(SURFACE), ..course(at(5.2, 0.0), at(4.0, 0.5), &[]) }, 3.0);
     assert!(drive.arrived);
 }
 
@@ -309,8 +309,8 @@ fn a_robot_that_crosses_is_let_by() {
     let (mut crossing, mut nearest) = (at(1.5, -1.5), f32::INFINITY);
     for _ in 0..300 {
         let obstacles = [Obstacle::robot(crossing, Vector::new(0.0, 1.5), 0.2)];
-        let way = plan(&Course { obstacles: &obstacles, ..course });
-        (course.from, course.velocity) = (way.next.position, way.next.velocity);
+        let path = plan(&Course { obstacles: &obstacles, ..course });
+        (course.from, course.velocity) = (path.next.position, path.next.velocity);
         crossing += Vector::new(0.0, 1.5 * STEP);
         nearest = nearest.min(crossing.distance(course.from));
     }
@@ -335,8 +335,8 @@ fn touched(knows_their_velocity: bool) -> u32 {
             let seen =
                 |o: &Obstacle<Field>| if knows_their_velocity { *o } else { Obstacle::standing(o.shape) };
             let obstacles: Vec<_> = others.iter().map(seen).collect();
-            let way = plan(&Course { obstacles: &obstacles, ..course });
-            (course.from, course.velocity) = (way.next.position, way.next.velocity);
+            let path = plan(&Course { obstacles: &obstacles, ..course });
+            (course.from, course.velocity) = (path.next.position, path.next.velocity);
             for other in &mut others {
                 let Shape::Disc { center, .. } = &mut other.shape else { panic!("a robot is a disc") };
                 *center += other.velocity * STEP;
@@ -358,9 +358,9 @@ fn others_velocities_save_a_third_of_the_touches_at_least() {
 #[test]
 fn a_robot_that_cannot_brake_in_time_says_so_and_brakes() {
     let velocity = Vector::new(3.0, 0.0);
-    let way = plan(&Course { velocity, ..course(at(0.0, 0.0), at(2.0, 0.0), &[disc(1.0, 0.0, 0.5)]) });
-    assert_eq!(way.restraint, Restraint::Unavoidable);
-    assert!((way.next.velocity.x() - (3.0 - 3.5 * STEP)).abs() < 1e-5);
+    let path = plan(&Course { velocity, ..course(at(0.0, 0.0), at(2.0, 0.0), &[disc(1.0, 0.0, 0.5)]) });
+    assert_eq!(path.restraint, Restraint::Unavoidable);
+    assert!((path.next.velocity.x() - (3.0 - 3.5 * STEP)).abs() < 1e-5);
 }
 
 #[test]
@@ -384,7 +384,7 @@ fn nothing_that_comes_in_makes_it_fall_over() {
         let limits = if round % 3 == 0 { limits } else { FreeLimits::default() };
         let within = (round % 2 == 0).then(|| Shape::Box { low: point(), high: point() });
         let step = if round % 5 == 0 { point().x() } else { STEP };
-        let way = plan(&Course {
+        let path = plan(&Course {
             from,
             velocity,
             to,
@@ -397,7 +397,7 @@ fn nothing_that_comes_in_makes_it_fall_over() {
             checks: CHECKS_LONG,
         });
         assert!(
-            way.next.velocity.is_finite() && way.next.position.is_finite(),
+            path.next.velocity.is_finite() && path.next.position.is_finite(),
             "{from:?} {velocity:?} {to:?} {obstacles:?} {within:?}"
         );
     }

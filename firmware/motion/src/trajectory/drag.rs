@@ -63,9 +63,9 @@ impl CalcMotion for DragLimits {
         }
         let offset = to - from;
         let shares = self.shares(offset, velocity, f32::INFINITY);
-        let way = self.acceleration / (self.speed * self.speed);
+        let path = self.acceleration / (self.speed * self.speed);
         let axis = |d: f32, v: f32, share: f32| {
-            let (d, v) = (d * way, v / self.speed);
+            let (d, v) = (d * path, v / self.speed);
             Axis { end: d, start: v, pushes: Pushes::new(d, v, share) }
         };
         let x = axis(offset.x(), velocity.x(), shares.x);

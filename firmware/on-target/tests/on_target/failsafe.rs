@@ -12,7 +12,7 @@ mod tests {
     /// Steps a governor of a robot that drives with 3 m/s, every millisecond up to `until`.
     struct Drive {
         governor: Governor,
-        heard: Option<Instant>,
+        received: Option<Instant>,
         last: (Wanted, Ruling),
     }
 
@@ -20,7 +20,7 @@ mod tests {
         fn new() -> Self {
             let mut drive = Self {
                 governor: Governor::new(League::DivisionB),
-                heard: None,
+                received: None,
                 last: (Wanted::STAND, Ruling::Allowed),
             };
             for ms in 0..=1_000 {
@@ -33,12 +33,12 @@ mod tests {
         fn step(&mut self, ms: u64, host: bool, health: Health, wanted: f32) {
             let now = Instant(1_000 * ms);
             if host && ms.is_multiple_of(10) {
-                self.governor.hear_host(now);
-                self.heard = Some(now);
+                self.governor.receive_host(now);
+                self.received = Some(now);
             }
             let circumstances = Circumstances {
                 now,
-                host: Some(Hearing { frame: self.heard, command: self.heard }),
+                host: Some(Hearing { frame: self.received, command: self.received }),
                 phase: Some(Phase::Run),
                 placed: true,
                 health: &health,

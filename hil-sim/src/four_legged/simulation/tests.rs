@@ -156,11 +156,11 @@ fn one_flipped_bit_of_one_order_makes_another_trial() {
 }
 
 #[test]
-fn a_packet_is_heard_one_tick_after_it_was_said() {
+fn a_packet_is_received_one_tick_after_it_was_said() {
     let (_, given) = run(simple(1), 3);
-    let heard: Vec<_> = given.iter().map(|g| (g.seq, g.robot, g.air.clone())).collect();
-    assert_eq!(heard[..2], [(0, 1, vec![]), (0, 2, vec![])]);
-    assert_eq!(heard[2..4], [(1, 1, vec![vec![2, 0]]), (1, 2, vec![vec![1, 0]])]);
+    let received: Vec<_> = given.iter().map(|g| (g.seq, g.robot, g.air.clone())).collect();
+    assert_eq!(received[..2], [(0, 1, vec![]), (0, 2, vec![])]);
+    assert_eq!(received[2..4], [(1, 1, vec![vec![2, 0]]), (1, 2, vec![vec![1, 0]])]);
     assert_eq!(given[4].now, 80_000);
 }
 

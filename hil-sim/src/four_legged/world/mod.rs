@@ -145,7 +145,7 @@ impl World {
         }
         self.push_robots_apart();
         for walker in &mut self.walkers {
-            walker.stay_on_carpet(&self.field, self.robot_radius);
+            walker.stay_on_surface(&self.field, self.robot_radius);
         }
         if self.hold.is_some() {
             self.carry_ball();

@@ -84,7 +84,7 @@ impl Walker {
     }
 
     /// Keeps the robot within the field surface.
-    pub fn stay_on_carpet(&mut self, field: &FieldSpec, radius: f32) {
+    pub fn stay_on_surface(&mut self, field: &FieldSpec, radius: f32) {
         self.pose.position = field.clamp(self.pose.position, radius - field.margin);
     }
 
@@ -184,10 +184,10 @@ mod tests {
     }
 
     #[test]
-    fn the_carpets_edge_stops_everybody() {
+    fn the_surface_edge_stops_everybody() {
         let field = League::FourLegged.field();
         let mut walker = Walker::at(Side::Attackers, Pose::from_mm_deg(5000.0, -5000.0, 0.0));
-        walker.stay_on_carpet(&field, 0.12);
+        walker.stay_on_surface(&field, 0.12);
         assert!(walker.pose.position.distance(Point::new(2.88, -1.98)) < 1e-5);
     }
 }

@@ -10,16 +10,17 @@ use ssl::vision::{
 
 use super::view::View;
 use crate::small_size::World;
-use crate::small_size::quirks::{Quirks, ToldBall};
+use crate::small_size::compatibility::{Compatibility, ReportedBall};
 
 /// The geometry packet of `world`'s field with these cameras.
-pub(super) fn geometry(world: &World, quirks: &Quirks, views: &[View]) -> GeometryData {
+pub(super) fn geometry(world: &World, compatibility: &Compatibility, views: &[View]) -> GeometryData {
     let field = &world.pitch().field;
-    let told = quirks.told_ball.unwrap_or_else(|| ToldBall::of(&world.parameters().ball));
+    let told = compatibility.told_ball.unwrap_or_else(|| ReportedBall::of(&world.parameters().ball));
     let mm = |m: f32| geometry::math::round_to_i32(m * 1000.0);
-    let full = |value: i32| quirks.full_geometry.then_some(value);
-    let newer = (quirks.full_geometry || quirks.drawn_goals).then_some(mm(field.goal_line_margin));
-    let inset = if quirks.drawn_goals { field.line_width * 500.0 } else { 0.0 };
+    let full = |value: i32| compatibility.full_geometry.then_some(value);
+    let newer =
+        (compatibility.full_geometry || compatibility.drawn_goals).then_some(mm(field.goal_line_margin));
+    let inset = if compatibility.drawn_goals { field.line_width * 500.0 } else { 0.0 };
     GeometryData {
         field: GeometryFieldSize {
             field_length: mm(field.length),
@@ -27,7 +28,7 @@ pub(super) fn geometry(world: &World, quirks: &Quirks, views: &[View]) -> Geomet
             goal_width: mm(field.goal_width),
             goal_depth: mm(field.goal_depth),
             boundary_width: mm(field.margin),
-            field_lines: lines(world, quirks),
+            field_lines: lines(world, compatibility),
             field_arcs: vec![FieldCircularArc {
                 name: "CenterCircle".into(),
                 center: Vector2f { x: 0.0, y: 0.0 },
@@ -35,7 +36,7 @@ pub(super) fn geometry(world: &World, quirks: &Quirks, views: &[View]) -> Geomet
                 a1: 0.0,
                 a2: geometry::math::TAU,
                 thickness: field.line_width * 1000.0,
-                r#type: quirks.full_geometry.then_some(FieldShapeType::CenterCircle as i32),
+                r#type: compatibility.full_geometry.then_some(FieldShapeType::CenterCircle as i32),
             }],
             penalty_area_depth: full(mm(field.penalty_depth)),
             penalty_area_width: full(mm(field.penalty_width)),
@@ -43,12 +44,12 @@ pub(super) fn geometry(world: &World, quirks: &Quirks, views: &[View]) -> Geomet
             line_thickness: full(mm(field.line_width)),
             goal_center_to_penalty_mark: full(mm(field.penalty_mark)),
             goal_height: full(mm(field.goal_height)),
-            ball_radius: quirks.full_geometry.then_some(world.parameters().ball.radius * 1000.0),
-            max_robot_radius: quirks.full_geometry.then_some(world.parameters().robot.radius * 1000.0),
+            ball_radius: compatibility.full_geometry.then_some(world.parameters().ball.radius * 1000.0),
+            max_robot_radius: compatibility.full_geometry.then_some(world.parameters().robot.radius * 1000.0),
             boundary_width_goal_line: newer,
             goal_substitution_area_width: newer.map(|_| mm(field.goal_substitution)),
         },
-        calib: views.iter().map(|view| view.calibration(quirks.full_geometry)).collect(),
+        calib: views.iter().map(|view| view.calibration(compatibility.full_geometry)).collect(),
         models: Some(GeometryModels {
             straight_two_phase: Some(BallModelStraightTwoPhase {
                 acc_slide: told.slide,
@@ -64,11 +65,11 @@ pub(super) fn geometry(world: &World, quirks: &Quirks, views: &[View]) -> Geomet
     }
 }
 
-fn lines(world: &World, quirks: &Quirks) -> Vec<FieldLineSegment> {
+fn lines(world: &World, compatibility: &Compatibility) -> Vec<FieldLineSegment> {
     use FieldShapeType as Shape;
     let field = &world.pitch().field;
     let thickness = field.line_width * 1000.0;
-    let inset = if quirks.drawn_goals { thickness * 0.5 } else { 0.0 };
+    let inset = if compatibility.drawn_goals { thickness * 0.5 } else { 0.0 };
     let (x, y) = (field.length * 500.0 - inset, field.width * 500.0 - inset);
     let depth = field.length * 500.0 - field.penalty_depth * 1000.0;
     let half = field.penalty_width * 500.0;
@@ -77,7 +78,7 @@ fn lines(world: &World, quirks: &Quirks) -> Vec<FieldLineSegment> {
         p1: Vector2f { x: p1[0], y: p1[1] },
         p2: Vector2f { x: p2[0], y: p2[1] },
         thickness,
-        r#type: if quirks.full_geometry { shape.map(|shape| shape as i32) } else { None },
+        r#type: if compatibility.full_geometry { shape.map(|shape| shape as i32) } else { None },
     };
     let mut lines = vec![
         line("TopTouchLine", Some(Shape::TopTouchLine), [-x, y], [x, y]),
@@ -89,7 +90,7 @@ fn lines(world: &World, quirks: &Quirks) -> Vec<FieldLineSegment> {
         line("LeftPenaltyStretch", Some(Shape::LeftPenaltyStretch), [-depth, -half], [-depth, half]),
         line("RightPenaltyStretch", Some(Shape::RightPenaltyStretch), [depth, -half], [depth, half]),
     ];
-    if quirks.drawn_goals {
+    if compatibility.drawn_goals {
         let (goal, back) = (field.goal_width * 500.0, x + field.goal_depth * 1000.0);
         for (side, sign) in [("Right", 1.0), ("Left", -1.0)] {
             let goal_line = |name: &str, p1: [f32; 2], p2: [f32; 2]| {
@@ -101,7 +102,7 @@ fn lines(world: &World, quirks: &Quirks) -> Vec<FieldLineSegment> {
         }
     }
     // SSL-Vision's names; grSim swaps the names of all four lines.
-    let first = if quirks.drawn_goals { -half } else { half };
+    let first = if compatibility.drawn_goals { -half } else { half };
     lines.extend([
         line(
             "LeftFieldLeftPenaltyStretch",

@@ -14,8 +14,8 @@ use std::collections::VecDeque;
 use ssl::vision::{DetectionFrame, GeometryData, Source, WrapperPacket};
 
 use super::World;
+use super::compatibility::{Clock, Compatibility, GeometryStyle, Profile};
 use super::parameters::{CameraParameters, NoiseParameters};
-use super::quirks::{Clock, GeometryStyle, Profile, Quirks};
 use super::worlds::VisionModel;
 use mishaps::Mishaps;
 use view::View;
@@ -30,7 +30,7 @@ pub struct CameraSettings {
     /// The clock of their time stamps.
     pub clock: Clock,
     /// The compatibility profile.
-    pub quirks: Quirks,
+    pub compatibility: Compatibility,
 }
 
 /// The cameras over one field.
@@ -65,8 +65,12 @@ impl Cameras {
         let ours = world.parameters();
         let camera = profile.cameras(ours.camera);
         let noise = profile.noise(ours.noise);
-        let quirks = profile.quirks(&camera);
-        Self::new(CameraSettings { camera, noise, clock: profile.clock(unix_now), quirks }, world, seed)
+        let compatibility = profile.compatibility(&camera);
+        Self::new(
+            CameraSettings { camera, noise, clock: profile.clock(unix_now), compatibility },
+            world,
+            seed,
+        )
     }
 
     /// The same with the frame faults of a random world model.
@@ -96,7 +100,7 @@ impl Cameras {
     /// Takes the frames due after a step; to be called after every step.
     pub fn watch(&mut self, world: &World) {
         let now = world.now();
-        if let GeometryStyle::Own(every) = self.settings.quirks.geometry
+        if let GeometryStyle::Own(every) = self.settings.compatibility.geometry
             && now >= self.next_geometry
         {
             self.next_geometry = now + ((every * 1000.0) as u64).max(1);
@@ -140,11 +144,11 @@ impl Cameras {
             Some(i) => &self.views[i..=i],
             None => &self.views[..],
         };
-        field::geometry(world, &self.settings.quirks, views)
+        field::geometry(world, &self.settings.compatibility, views)
     }
 
     fn attached(&self, world: &World, i: usize, detection: &DetectionFrame) -> Option<GeometryData> {
-        match self.settings.quirks.geometry {
+        match self.settings.compatibility.geometry {
             GeometryStyle::Own(_) => None,
             GeometryStyle::EveryFrame => Some(self.geometry(world, None)),
             GeometryStyle::OneCamera(every) => {
@@ -164,7 +168,8 @@ impl Cameras {
     /// Inserts into the queue, behind packets due earlier or at the same time.
     fn send(&mut self, due: u64, mut packet: WrapperPacket) {
         // The league's list has no number for our simulator; the others leave the field out.
-        packet.source = (self.settings.quirks.profile == Profile::Ours).then_some(Source::Other as i32);
+        packet.source =
+            (self.settings.compatibility.profile == Profile::Ours).then_some(Source::Other as i32);
         let place = self.sent.partition_point(|(other, _)| *other <= due);
         self.sent.insert(place, (due, packet));
     }

@@ -21,7 +21,7 @@ fn clear(world: &World) -> CameraSettings {
         camera,
         noise: NoiseParameters::NONE,
         clock: Clock::Simulation,
-        quirks: Profile::Ours.quirks(&camera),
+        compatibility: Profile::Ours.compatibility(&camera),
     }
 }
 
@@ -61,7 +61,7 @@ fn without_noise_everything_is_told_where_it_is_in_millimetres() {
 }
 
 #[test]
-fn pictures_come_at_the_rate_numbered_by_camera_and_are_sent_after_the_delay() {
+fn snapshots_come_at_the_rate_numbered_by_camera_and_are_sent_after_the_delay() {
     let mut world = world(League::DivisionB);
     let mut cameras = Cameras::new(clear(&world), &world, 1);
     let packets = watched(&mut cameras, &mut world, 2_000);

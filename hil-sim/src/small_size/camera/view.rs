@@ -11,7 +11,7 @@ use ssl::vision::{DetectionBall, DetectionFrame, DetectionRobot, GeometryCameraC
 
 use super::CameraSettings;
 use crate::rng::Stream;
-use crate::small_size::quirks::Profile;
+use crate::small_size::compatibility::Profile;
 use crate::small_size::robot::Robot;
 use crate::small_size::{Ball, World};
 use rules::Colour;
@@ -73,8 +73,11 @@ impl View {
                 bottom + along + beyond(row + 1 < rows),
             );
             let reach = (across * 0.5 / IMAGE[0] as f32).max(along * 0.5 / IMAGE[1] as f32) * 1.2;
-            let phase =
-                if settings.quirks.staggered { period * id as u64 / u64::from(camera.count) } else { 0 };
+            let phase = if settings.compatibility.staggered {
+                period * id as u64 / u64::from(camera.count)
+            } else {
+                0
+            };
             views.push(Self {
                 id: id as u32,
                 at: Point::new(left + across * 0.5, bottom + along * 0.5),
@@ -149,13 +152,13 @@ impl View {
             orientation: Some(heading.radians()),
             pixel_x,
             pixel_y,
-            height: (settings.quirks.profile == Profile::Ours).then_some(robot.body.height * 1000.0),
+            height: (settings.compatibility.profile == Profile::Ours).then_some(robot.body.height * 1000.0),
         }
     }
 
     fn ball(&mut self, world: &World, settings: &CameraSettings) -> Option<DetectionBall> {
         let (ball, radius) = (&world.ball, world.parameters().ball.radius);
-        let told_height = settings.quirks.ball_height;
+        let told_height = settings.compatibility.ball_height;
         let seen = if told_height { ball.position } else { self.apparent(ball) };
         if !self.sees(seen) || self.chance.chance(settings.noise.missing_ball) {
             return None;
@@ -170,7 +173,7 @@ impl View {
         let [pixel_x, pixel_y] = self.pixel(p, 0.0, settings);
         Some(DetectionBall {
             confidence: if settings.noise.ball > 0.0 { 0.95 + 0.05 * shows } else { 1.0 },
-            area: (settings.quirks.profile != Profile::Grsim).then_some(area as u32),
+            area: (settings.compatibility.profile != Profile::Grsim).then_some(area as u32),
             x: p.x() * 1000.0,
             y: p.y() * 1000.0,
             // Height of its centre.
@@ -242,7 +245,7 @@ impl View {
     }
 
     fn pixel(&self, p: Point<Field>, height: f32, settings: &CameraSettings) -> [f32; 2] {
-        match settings.quirks.profile {
+        match settings.compatibility.profile {
             Profile::Ours => {
                 let scale = self.focal / (self.height - height).max(0.1);
                 let away = p - self.at;

@@ -30,7 +30,7 @@ pub struct Account {
     /// Number of failed placements minus successful ones.
     pub placement_failures: u32,
     /// Whether it failed too often to place again in this half.
-    pub placement_barred: bool,
+    pub placement_double_touch_blocked: bool,
     /// Number of time-outs left.
     pub timeouts: u32,
     /// Time left for time-outs, µs.
@@ -56,7 +56,7 @@ impl Account {
             red_cards: 0,
             can_place_ball: settings.can_place_ball,
             placement_failures: 0,
-            placement_barred: false,
+            placement_double_touch_blocked: false,
             timeouts: limits::TIMEOUTS,
             timeout_left: micros(limits::TIMEOUT_TIME),
             timeout_wanted: None,
@@ -78,7 +78,7 @@ impl Account {
 
     /// Whether it may place the ball now.
     pub fn places(&self) -> bool {
-        self.can_place_ball && !self.placement_barred
+        self.can_place_ball && !self.placement_double_touch_blocked
     }
 
     /// Gives a yellow card for that playing time; false where it must be a red one.
@@ -110,13 +110,13 @@ impl Account {
             self.placement_failures = self.placement_failures.saturating_sub(1);
         } else {
             self.placement_failures += 1;
-            self.placement_barred |= self.placement_failures >= limits::PLACEMENT_FAILURES_MAX;
+            self.placement_double_touch_blocked |= self.placement_failures >= limits::PLACEMENT_FAILURES_MAX;
         }
     }
 
     pub(super) fn begin_half(&mut self) {
         self.placement_failures = 0;
-        self.placement_barred = false;
+        self.placement_double_touch_blocked = false;
     }
 
     /// The last foul that did not stop the game.

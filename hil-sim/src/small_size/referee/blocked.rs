@@ -13,8 +13,8 @@ use rules::{Colour, Phase, limits};
 
 use super::InternalReferee;
 use super::event::{Event, Restart, What};
+use super::field_staff::WorldOrder;
 use super::observation::RobotSeen;
-use super::people::WorldOrder;
 use super::ready::{Obstacle, Reason};
 use super::scene::COLOURS;
 
@@ -88,7 +88,7 @@ impl InternalReferee {
             // The game is stopped manually, so that the ball can be placed by hand.
             self.give(Command::Stop);
         } else if self.people_can_help(obstacles) {
-            self.people.called = true;
+            self.field_staff.called = true;
             self.give(Command::Halt);
         }
     }
@@ -106,10 +106,10 @@ impl InternalReferee {
     /// not drive.
     pub(super) fn help(&mut self, robots: &[RobotSeen]) {
         let age = self.now.since(Instant(self.state.since())).as_secs_f32();
-        if !self.people.called || self.phase() != Phase::Halt || age < limits::GRACE {
+        if !self.field_staff.called || self.phase() != Phase::Halt || age < limits::GRACE {
             return;
         }
-        self.people.called = false;
+        self.field_staff.called = false;
         for team in COLOURS {
             let mut left: Vec<RobotSeen> = robots
                 .iter()
@@ -175,7 +175,7 @@ impl InternalReferee {
             let Some(place) = fits.or_else(|| self.keeper_place(*who)) else { continue };
             robots[index].pose.position = place;
             let pose = Pose { position: place, heading: place.direction_to(Point::new(0.0, 0.0)) };
-            self.people.orders.push_back(WorldOrder::CarryRobot(*who, pose));
+            self.field_staff.orders.push_back(WorldOrder::CarryRobot(*who, pose));
         }
     }
 

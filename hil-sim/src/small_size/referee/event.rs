@@ -66,19 +66,19 @@ pub enum PenaltyEnd {
 
 impl PenaltyEnd {
     /// As text, for the wire.
-    pub fn words(self) -> String {
+    pub fn description(self) -> String {
         match self {
             Self::Out => "ball left the field".into(),
             Self::Saved => "saved by the keeper".into(),
             Self::MovedBack => "ball moved away from the goal".into(),
-            Self::Foul(kind) => format!("foul of the shooting team: {}", kind.word()),
+            Self::Foul(kind) => format!("foul of the shooting team: {}", kind.label()),
             Self::TimeUp => "time is up".into(),
         }
     }
 }
 
 macro_rules! kinds {
-    ($($(#[$doc:meta])* $kind:ident $({ $($(#[$fdoc:meta])* $field:ident: $type:ty),+ $(,)? })? = $word:literal),+ $(,)?) => {
+    ($($(#[$doc:meta])* $kind:ident $({ $($(#[$fdoc:meta])* $field:ident: $type:ty),+ $(,)? })? = $label:literal),+ $(,)?) => {
         /// A game event, with its evidence.
         #[derive(Clone, Debug, PartialEq)]
         pub enum What { $($(#[$doc])* $kind $({ $($(#[$fdoc])* $field: $type),+ })?),+ }
@@ -92,8 +92,8 @@ macro_rules! kinds {
             pub const ALL: &'static [Self] = &[$(Self::$kind),+];
 
             /// The league's name of it in lower case, as in reports; ours where the league has none.
-            pub const fn word(self) -> &'static str {
-                match self { $(Self::$kind => $word),+ }
+            pub const fn label(self) -> &'static str {
+                match self { $(Self::$kind => $label),+ }
             }
         }
 

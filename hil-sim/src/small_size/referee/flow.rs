@@ -36,7 +36,7 @@ impl InternalReferee {
         let age = self.now.since(Instant(self.state.since()));
         match self.phase() {
             Phase::Halt => {
-                if !self.stage.is_break() && age >= self.settings.halt && !self.people.called {
+                if !self.stage.is_break() && age >= self.settings.halt && !self.field_staff.called {
                     self.give(Command::Stop);
                 }
             }
@@ -70,7 +70,7 @@ impl InternalReferee {
     }
 
     fn go_on_from_stop(&mut self, robots: &[RobotSeen], age: Duration) {
-        if self.stage == Stage::PostGame || age < HEARD {
+        if self.stage == Stage::PostGame || age < RECEIVED {
             return;
         }
         for team in super::scene::COLOURS {
@@ -189,7 +189,7 @@ pub(super) fn is_reachable(field: &FieldSpec, ball: Point<Field>) -> bool {
 }
 
 /// Minimum duration of a stop, so that every receiver sees it: two packets.
-const HEARD: Duration = Duration::millis(50);
+const RECEIVED: Duration = Duration::millis(50);
 /// Time without detection after which a ball in play is searched for and placed by hand: as long as the
 /// rules' graces.
 const BALL_LOST: Duration = Duration::millis(2_000);

@@ -37,7 +37,7 @@ impl InternalReferee {
             What::InterferedPlacement => self.action_left += micros(limits::PLACEMENT_EXTRA_TIME),
             What::DefenderTooClose { .. } => {
                 self.action_left = self.time_for(self.command);
-                self.state.hear(self.command, self.now.0, Some(self.ball.position));
+                self.state.receive(self.command, self.now.0, Some(self.ball.position));
                 self.next_packet = self.now;
             }
             What::PlacementSucceeded { .. } | What::PlacementFailed { .. } => self.placement_ended(event),
@@ -166,14 +166,16 @@ impl InternalReferee {
         let Some(team) = event.by else { return };
         let succeeded = event.what.kind() == Kind::PlacementSucceeded;
         self.accounts.of_mut(team).placed(succeeded);
-        if !self.limits.placement_duty || !self.recent.iter().any(|event| event.what.kind().is_ball_out()) {
+        if !self.limits.placement_rule_role
+            || !self.recent.iter().any(|event| event.what.kind().is_ball_out())
+        {
             return;
         }
         // Division A: a team that cannot place a ball that left the field does not get it.
         if !succeeded {
             self.next = Some(Restart::FreeKick(team.other()));
         } else if self.next == Some(Restart::FreeKick(team.other()))
-            && self.accounts.of(team.other()).placement_barred
+            && self.accounts.of(team.other()).placement_double_touch_blocked
         {
             self.next = Some(Restart::FreeKick(team));
         }

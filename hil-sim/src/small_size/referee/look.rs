@@ -3,8 +3,8 @@
 use protocol::{Instant, Who};
 
 use super::InternalReferee;
+use super::field_staff::WorldOrder;
 use super::observation::{BallSeen, CrashSeen, Observation, RobotSeen};
-use super::people::WorldOrder;
 use crate::small_size::{Ball, Event, World};
 
 impl InternalReferee {

@@ -21,14 +21,14 @@
 
 mod account;
 mod blocked;
-mod desk;
 mod event;
+mod event_loop;
+mod field_staff;
 mod flow;
 mod judge;
 mod look;
 mod metrics;
 mod observation;
-mod people;
 mod ready;
 pub mod remote;
 mod scene;
@@ -45,21 +45,21 @@ use std::collections::VecDeque;
 
 use geometry::{Field, GoalEnd, Point};
 use protocol::Instant;
-use rules::state::{Command, GameState, Heard, Stage};
+use rules::state::{Command, GameState, Received, Stage};
 use rules::{Colour, FieldSpec, League, Limits, Phase};
 
 pub use account::{Account, Accounts};
 pub use blocked::Blocked;
-pub use desk::Card;
 pub use event::{Event, Invalid, Kind, PenaltyEnd, Restart, Shot, What};
+pub use event_loop::Card;
+pub use field_staff::WorldOrder;
 pub use metrics::{FoulCounts, Metrics, TeamMetrics};
 pub use observation::{BallSeen, CrashSeen, Observation, RobotSeen};
-pub use people::WorldOrder;
 pub use ready::{Obstacle, Reason};
 pub use settings::{MatchClock, RefereeSettings, TeamSettings};
 
 use crate::rng::Stream;
-use people::People;
+use field_staff::FieldStaff;
 use scene::{GameView, Scene};
 use watch::Watch;
 
@@ -108,7 +108,7 @@ pub struct InternalReferee {
     accounts: Accounts,
     blue_on_positive: bool,
     watch: Watch,
-    people: People,
+    field_staff: FieldStaff,
     metrics: Metrics,
     log: Vec<Event>,
     chance: Stream,
@@ -152,7 +152,7 @@ impl InternalReferee {
             accounts,
             blue_on_positive: settings.blue_on_positive_half,
             watch: Watch::default(),
-            people: People::default(),
+            field_staff: FieldStaff::default(),
             metrics: Metrics::default(),
             log: Vec::new(),
             chance: Stream::new(seed, "small-size-referee"),
@@ -277,7 +277,7 @@ impl InternalReferee {
 
     /// The next manual act at the field.
     pub fn poll_order(&mut self) -> Option<WorldOrder> {
-        self.people.orders.pop_front()
+        self.field_staff.orders.pop_front()
     }
 
     /// That team requests a time-out of this length at the next stop; false where it has none left.
@@ -319,8 +319,8 @@ impl InternalReferee {
 
     /// Issues a command.
     fn give(&mut self, command: Command) {
-        let heard = self.state.hear(command, self.now.0, Some(self.ball.position));
-        if !matches!(heard, Heard::Followed | Heard::Repeated) {
+        let received = self.state.receive(command, self.now.0, Some(self.ball.position));
+        if !matches!(received, Received::Followed | Received::Repeated) {
             self.off_graph += 1;
         }
         self.command = command;
@@ -330,7 +330,7 @@ impl InternalReferee {
         self.action_left = self.time_for(command);
         self.ready_since = None;
         self.wait_ends();
-        self.people.command_given();
+        self.field_staff.command_given();
         self.watch.command_given();
         let starts = matches!(command, Command::NormalStart | Command::ForceStart | Command::FreeKick(_));
         if starts {

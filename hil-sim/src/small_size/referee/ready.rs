@@ -81,7 +81,7 @@ pub enum Reason {
 
 impl Reason {
     /// Its label, without the numbers.
-    pub const fn word(self) -> &'static str {
+    pub const fn label(self) -> &'static str {
         match self {
             Self::TooManyRobots { .. } => "too_many_robots",
             Self::NearBall { .. } => "robot_near_ball",
@@ -164,8 +164,8 @@ impl Obstacle {
 impl fmt::Display for Obstacle {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (self.team, self.robot) {
-            (Some(team), Some(robot)) => write!(f, "{} {robot}: {}", team.word(), self.reason),
-            (Some(team), None) => write!(f, "{}: {}", team.word(), self.reason),
+            (Some(team), Some(robot)) => write!(f, "{} {robot}: {}", team.label(), self.reason),
+            (Some(team), None) => write!(f, "{}: {}", team.label(), self.reason),
             _ => write!(f, "{}", self.reason),
         }
     }

@@ -100,7 +100,7 @@ impl InternalReferee {
             can_place_ball: Some(account.can_place_ball),
             max_allowed_bots: Some(self.allowed_now(team)),
             bot_substitution_intent: Some(false),
-            ball_placement_failures_reached: Some(account.placement_barred),
+            ball_placement_failures_reached: Some(account.placement_double_touch_blocked),
             bot_substitution_allowed: Some(false),
             bot_substitutions_left: Some(rules::limits::SUBSTITUTIONS),
             bot_substitution_time_left: Some(unsigned(micros(0.0))),

@@ -27,7 +27,7 @@ impl Event {
             r#type: Some(r#type as i32),
             origin: vec![ORIGIN.into()],
             created_timestamp: Some(stamp(self.at)),
-            id: Some(format!("{}-{}", self.at.0, self.what.kind().word())),
+            id: Some(format!("{}-{}", self.at.0, self.what.kind().label())),
             event: Some(event),
         })
     }
@@ -49,16 +49,16 @@ impl Event {
             }
             What::PossibleGoal { shot } => sent!(PossibleGoal: goal(Some(shot), None)),
             What::Goal { shot } => {
-                let words = if shot.is_some() { "valid" } else { "awarded for a foul in a penalty" };
-                sent!(Goal: goal(shot.as_ref(), Some(words.into())))
+                let description = if shot.is_some() { "valid" } else { "awarded for a foul in a penalty" };
+                sent!(Goal: goal(shot.as_ref(), Some(description.into())))
             }
             What::InvalidGoal { shot, reason } => {
-                let words = match reason {
+                let description = match reason {
                     Invalid::TooManyRobots => "too many robots".into(),
                     Invalid::TooHigh => format!("the ball was {:.2} m high", shot.max_height),
-                    Invalid::RecentFoul(kind) => format!("recent foul: {}", kind.word()),
+                    Invalid::RecentFoul(kind) => format!("recent foul: {}", kind.label()),
                 };
-                sent!(InvalidGoal: goal(Some(shot), Some(words)))
+                sent!(InvalidGoal: goal(Some(shot), Some(description)))
             }
             What::NoProgress { duration } => sent!(NoProgressInGame { location, time: Some(*duration) }),
             What::DoubleTouch => sent!(AttackerDoubleTouchedBall { by_team, by_bot, location }),
@@ -85,7 +85,7 @@ impl Event {
                 sent!(PlacementFailed { by_team, remaining_distance, nearest_own_bot_distance })
             }
             What::PenaltyFailed { reason } => {
-                sent!(PenaltyKickFailed { by_team, location, reason: Some(reason.words()) })
+                sent!(PenaltyKickFailed { by_team, location, reason: Some(reason.description()) })
             }
             What::MultipleFouls { caused_by } => {
                 let caused_game_events =

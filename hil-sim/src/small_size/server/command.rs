@@ -7,7 +7,7 @@ use rules::Colour;
 use ssl::simulation::{MoveCommand, RobotCommand, RobotControl, RobotControlResponse, RobotFeedback};
 
 use super::{Refusal, Server};
-use crate::small_size::quirks::Feedback;
+use crate::small_size::compatibility::Feedback;
 use crate::small_size::{Drive, Kick, Order};
 
 impl Server {
@@ -30,9 +30,9 @@ impl Server {
     }
 
     fn command(&mut self, who: Who, command: &RobotCommand, refused: &mut Vec<Refusal>) {
-        let quirks = self.cameras.settings().quirks;
+        let compatibility = self.cameras.settings().compatibility;
         let form = command.move_command.and_then(|wanted| wanted.command);
-        let unknown_form = quirks.local_velocity_only
+        let unknown_form = compatibility.local_velocity_only
             && matches!(form, Some(MoveCommand::WheelVelocity(_) | MoveCommand::GlobalVelocity(_)));
         if unknown_form {
             refused.push(Refusal::VelocityForm(command.id));
@@ -44,7 +44,7 @@ impl Server {
         let before = *robot.order();
         let kick = kick(command, robot.kick_limits, refused);
         let dribbler = match command.dribbler_speed {
-            None if quirks.dribbler_resets => 0.0,
+            None if compatibility.dribbler_resets => 0.0,
             None => before.dribbler,
             Some(rpm) if !rpm.is_finite() => {
                 refused.push(Refusal::NotANumber("dribbler_speed"));
@@ -54,12 +54,12 @@ impl Server {
                 refused.push(Refusal::DribblerBackwards(command.id));
                 0.0
             }
-            Some(rpm) if quirks.dribbler_switches => f32::from(u8::from(rpm > 0.0)),
+            Some(rpm) if compatibility.dribbler_switches => f32::from(u8::from(rpm > 0.0)),
             Some(rpm) => (rpm / self.world.parameters().dribbler.full_rpm).min(1.0),
         };
         let drive = match command.move_command.map(|wanted| wanted.command) {
-            None if quirks.keeps_moving => before.drive,
-            Some(None) if quirks.keeps_moving => {
+            None if compatibility.keeps_moving => before.drive,
+            Some(None) if compatibility.keeps_moving => {
                 refused.push(Refusal::EmptyMove(command.id));
                 before.drive
             }
@@ -84,7 +84,7 @@ impl Server {
         colour: Colour,
         commanded: &[bool; RobotId::COUNT],
     ) -> Vec<RobotFeedback> {
-        let whose = self.cameras.settings().quirks.feedback;
+        let whose = self.cameras.settings().compatibility.feedback;
         let loss = self.radio.answer_loss;
         let mut feedback = Vec::new();
         for robot in self.world.robots().iter().filter(|robot| robot.who.colour == colour) {

@@ -16,7 +16,7 @@ use crate::small_size::{BallParameters, BodyParameters, DriveParameters, Pitch, 
 
 impl Server {
     pub(super) fn configure(&mut self, config: &SimulatorConfig, refused: &mut Vec<Refusal>) {
-        let only_specs = self.cameras.settings().quirks.only_specs;
+        let only_specs = self.cameras.settings().compatibility.only_specs;
         for specs in &config.robot_specs {
             if let Err(refusal) = self.specify(specs, refused) {
                 refused.push(refusal);
@@ -49,7 +49,7 @@ impl Server {
 
     fn specify(&mut self, specs: &RobotSpecs, refused: &mut Vec<Refusal>) -> Result<(), Refusal> {
         let who = who(&specs.id)?;
-        if !self.cameras.settings().quirks.partial
+        if !self.cameras.settings().compatibility.partial
             && let Some(lack) = lack(specs)
         {
             return Err(Refusal::SpecsLack(lack));

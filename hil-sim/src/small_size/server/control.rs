@@ -45,14 +45,14 @@ impl Server {
     }
 
     pub(super) fn teleport_ball(&mut self, asked: &TeleportBall, refused: &mut Vec<Refusal>) {
-        let quirks = self.cameras.settings().quirks;
+        let compatibility = self.cameras.settings().compatibility;
         let numbers = [asked.x, asked.y, asked.z, asked.vx, asked.vy, asked.vz];
         if numbers.into_iter().flatten().any(|number| !number.is_finite()) {
             refused.push(Refusal::NotANumber("teleport_ball"));
             return;
         }
         let by_force = asked.by_force.unwrap_or(false);
-        if !quirks.partial
+        if !compatibility.partial
             && let Some(refusal) = partial_ball(asked)
         {
             refused.push(refusal);
@@ -62,8 +62,8 @@ impl Server {
         let here = self.world.ball_pulled_to().filter(|_| by_force).unwrap_or(before.position);
         let to = Point::new(asked.x.unwrap_or(here.x()), asked.y.unwrap_or(here.y()));
         let height = asked.z.unwrap_or(before.height);
-        if !self.in_hall(to) || !(0.0..=HALL_HEIGHT).contains(&height) {
-            refused.push(Refusal::OutsideHall("teleport_ball"));
+        if !self.in_server_loop(to) || !(0.0..=SERVER_LOOP_HEIGHT).contains(&height) {
+            refused.push(Refusal::OutsideServerLoop("teleport_ball"));
             return;
         }
         if by_force {
@@ -86,13 +86,13 @@ impl Server {
             }
         }
         // A simulator that does not support these reports it even where they are false.
-        if !quirks.safe_teleport {
+        if !compatibility.safe_teleport {
             refused.extend(asked.teleport_safely.map(|_| Refusal::MannersSafely));
             refused.extend(asked.roll.map(|_| Refusal::MannersRoll));
         }
         let moved = asked.vx.is_some() || asked.vy.is_some();
         let placed = asked.x.is_some() || asked.y.is_some() || asked.z.is_some();
-        let roll = asked.roll.unwrap_or(false) && quirks.safe_teleport;
+        let roll = asked.roll.unwrap_or(false) && compatibility.safe_teleport;
         let spin = match (roll, moved) {
             (true, _) => velocity,
             (false, true) => Vector::default(),
@@ -102,7 +102,7 @@ impl Server {
         if moved || placed || roll || asked.vz.is_some() {
             self.world.put_ball(Ball { position: to, height, velocity, climb, spin, hops: 0 });
         }
-        if asked.teleport_safely.unwrap_or(false) && quirks.safe_teleport {
+        if asked.teleport_safely.unwrap_or(false) && compatibility.safe_teleport {
             self.world.make_room_for_ball();
         }
     }
@@ -114,7 +114,7 @@ impl Server {
     ) -> Result<(), Refusal> {
         let who = who(&asked.id)?;
         let id = u32::from(who.id.number());
-        let quirks = self.cameras.settings().quirks;
+        let compatibility = self.cameras.settings().compatibility;
         let numbers = [asked.x, asked.y, asked.orientation, asked.v_x, asked.v_y, asked.v_angular];
         if numbers.into_iter().flatten().any(|number| !number.is_finite()) {
             return Err(Refusal::NotANumber("teleport_robot"));
@@ -130,7 +130,7 @@ impl Server {
         if !present && asked.present != Some(true) {
             return Err(Refusal::UnknownRobot(id));
         }
-        if !quirks.partial {
+        if !compatibility.partial {
             whole_robot(asked, present, known.is_some())?;
         }
         let by_force = asked.by_force.unwrap_or(false);
@@ -138,9 +138,9 @@ impl Server {
             position: Point::new(asked.x.unwrap_or(pose.position.x()), asked.y.unwrap_or(pose.position.y())),
             heading: asked.orientation.map_or(pose.heading, Angle::new),
         };
-        if !self.in_hall(to.position) {
-            if !quirks.parks {
-                return Err(Refusal::OutsideHall("teleport_robot"));
+        if !self.in_server_loop(to.position) {
+            if !compatibility.parks {
+                return Err(Refusal::OutsideServerLoop("teleport_robot"));
             }
             // So far away no camera sees it and nothing touches it: it is off the field surface until it is
             // placed there again.
@@ -179,9 +179,9 @@ impl Server {
         Ok(())
     }
 
-    fn in_hall(&self, p: Point<geometry::Field>) -> bool {
+    fn in_server_loop(&self, p: Point<geometry::Field>) -> bool {
         let [x, y] = self.world.pitch().corner();
-        p.x().abs() <= x + HALL && p.y().abs() <= y + HALL
+        p.x().abs() <= x + SERVER_LOOP && p.y().abs() <= y + SERVER_LOOP
     }
 }
 
@@ -234,8 +234,8 @@ pub(super) fn who(id: &ssl::common::RobotId) -> Result<Who, Refusal> {
 }
 
 /// Distance from the boards to the walls of the room, m.
-const HALL: f32 = 2.0;
+const SERVER_LOOP: f32 = 2.0;
 /// Height of the room, m.
-const HALL_HEIGHT: f32 = 20.0;
+const SERVER_LOOP_HEIGHT: f32 = 20.0;
 /// Maximum speed of a teleported ball, m/s.
 const BALL_SPEED_MAX: f32 = 20.0;

@@ -31,7 +31,7 @@ use ssl::simulation::{
 };
 
 use super::camera::Cameras;
-use super::quirks::{Feedback, Profile};
+use super::compatibility::{Feedback, Profile};
 use super::worlds::{WorldChoice, WorldModel};
 use super::{Order, Who, World};
 use crate::rng::Stream;
@@ -180,7 +180,7 @@ impl Server {
         world.add_bystanders(settings.model.bystanders);
         let WorldModel { link, vision, .. } = &settings.model;
         let cameras = Cameras::of_model(settings.profile, settings.unix_now, &world, *vision, settings.seed);
-        let answer_loss = cameras.settings().quirks.answer_loss.max(link.loss);
+        let answer_loss = cameras.settings().compatibility.answer_loss.max(link.loss);
         let (command_loss, delay) = (link.loss, u64::from(link.latency_ms));
         Self {
             world,
@@ -237,7 +237,7 @@ impl Server {
                     Err(_) => self.undecodable(),
                 };
                 let errors = self.told(&errors);
-                if !errors.is_empty() || self.cameras.settings().quirks.answers_control {
+                if !errors.is_empty() || self.cameras.settings().compatibility.answers_control {
                     self.reply(port, from, SimulatorResponse { errors }.encode_to_vec());
                 }
             }
@@ -256,7 +256,7 @@ impl Server {
     }
 
     fn answer(&mut self, port: Port, from: SocketAddr, answer: RobotControlResponse) {
-        if self.cameras.settings().quirks.feedback != Feedback::CommandedPresent {
+        if self.cameras.settings().compatibility.feedback != Feedback::CommandedPresent {
             self.reply(port, from, answer.encode_to_vec());
             return;
         }

@@ -10,7 +10,7 @@ use std::fmt;
 use ssl::simulation::SimulatorError;
 
 use crate::four_legged::parameters::ParameterError;
-use crate::small_size::quirks::Profile;
+use crate::small_size::compatibility::Profile;
 
 /// Why a part of a message was refused. All other parts of the message were carried out.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,7 +54,7 @@ pub enum Refusal {
     /// A dribbler's speed below zero; the dribbler stops.
     DribblerBackwards(u32),
     /// A position outside the walls of the room.
-    OutsideHall(&'static str),
+    OutsideServerLoop(&'static str),
     /// A teleport with a speed above the maximum; it got the maximum speed.
     TooFast {
         /// Name of the object.
@@ -132,7 +132,7 @@ impl Refusal {
             Self::KickBackwards(_) => "KICK_BACKWARDS",
             Self::KickAngle { .. } => "KICK_ANGLE",
             Self::DribblerBackwards(_) => "DRIBBLER_BACKWARDS",
-            Self::OutsideHall(_) => "OUTSIDE_HALL",
+            Self::OutsideServerLoop(_) => "OUTSIDE_HALL",
             Self::Pace(_) => "SIMULATION_SPEED",
             Self::Specs(_) => "ROBOT_SPECS",
             Self::Geometry(_) => "GEOMETRY",
@@ -241,7 +241,7 @@ impl fmt::Display for Refusal {
             Self::DribblerBackwards(id) => {
                 write!(f, "robot {id}: dribbler_speed is negative; this dribbler turns one way, in rpm from 0")
             }
-            Self::OutsideHall(what) => {
+            Self::OutsideServerLoop(what) => {
                 write!(f, "{what} lies outside the hall; places are in metres, not millimetres")
             }
             Self::Pace(asked) => {

@@ -314,8 +314,8 @@ fn another_field_is_told_by_vision_and_holds_robots() {
     assert_eq!(server.world().pitch().field, League::DivisionA.field());
     steps(&mut server, 30);
     let vision = sent(&mut server).0;
-    let heard = vision.into_iter().find_map(|packet| packet.geometry).unwrap();
-    assert_eq!(heard.field, told.field);
+    let received = vision.into_iter().find_map(|packet| packet.geometry).unwrap();
+    assert_eq!(received.field, told.field);
 }
 
 #[test]

@@ -18,7 +18,7 @@ pub enum WorldChoice {
     Random(u64),
 }
 
-crate::words! {
+crate::labels! {
     /// A profile of `hil-sim/data/worlds`.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
     pub enum NamedWorld {
@@ -42,7 +42,7 @@ crate::words! {
 impl WorldChoice {
     /// Every name that can be chosen, except `random:SEED`.
     pub fn names() -> impl Iterator<Item = &'static str> {
-        [NOMINAL].into_iter().chain(NamedWorld::ALL.into_iter().map(NamedWorld::word))
+        [NOMINAL].into_iter().chain(NamedWorld::ALL.into_iter().map(NamedWorld::label))
     }
 }
 
@@ -50,7 +50,7 @@ impl fmt::Display for WorldChoice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Nominal => f.write_str(NOMINAL),
-            Self::Named(named) => f.write_str(named.word()),
+            Self::Named(named) => f.write_str(named.label()),
             Self::Random(seed) => write!(f, "{RANDOM}:{seed}"),
         }
     }
@@ -59,16 +59,16 @@ impl fmt::Display for WorldChoice {
 impl FromStr for WorldChoice {
     type Err = UnknownWorld;
 
-    fn from_str(word: &str) -> Result<Self, UnknownWorld> {
-        if word == NOMINAL {
+    fn from_str(label: &str) -> Result<Self, UnknownWorld> {
+        if label == NOMINAL {
             return Ok(Self::Nominal);
         }
-        if let Some(named) = NamedWorld::ALL.into_iter().find(|named| named.word() == word) {
+        if let Some(named) = NamedWorld::ALL.into_iter().find(|named| named.label() == label) {
             return Ok(Self::Named(named));
         }
-        let seed = word.strip_prefix(RANDOM).and_then(|rest| rest.strip_prefix(':'));
+        let seed = label.strip_prefix(RANDOM).and_then(|rest| rest.strip_prefix(':'));
         let seed = seed.and_then(|digits| digits.parse().ok());
-        seed.map(Self::Random).ok_or_else(|| UnknownWorld { word: word.to_owned(), plan: false })
+        seed.map(Self::Random).ok_or_else(|| UnknownWorld { label: label.to_owned(), plan: false })
     }
 }
 
@@ -116,18 +116,18 @@ impl fmt::Display for WorldPlan {
 impl FromStr for WorldPlan {
     type Err = UnknownWorld;
 
-    fn from_str(word: &str) -> Result<Self, UnknownWorld> {
-        if word == RANDOM {
+    fn from_str(label: &str) -> Result<Self, UnknownWorld> {
+        if label == RANDOM {
             return Ok(Self::RandomPerMatch);
         }
-        word.parse().map(Self::Same).map_err(|error| UnknownWorld { plan: true, ..error })
+        label.parse().map(Self::Same).map_err(|error| UnknownWorld { plan: true, ..error })
     }
 }
 
 impl TryFrom<String> for WorldChoice {
     type Error = UnknownWorld;
-    fn try_from(word: String) -> Result<Self, UnknownWorld> {
-        word.parse()
+    fn try_from(label: String) -> Result<Self, UnknownWorld> {
+        label.parse()
     }
 }
 
@@ -139,8 +139,8 @@ impl From<WorldChoice> for String {
 
 impl TryFrom<String> for WorldPlan {
     type Error = UnknownWorld;
-    fn try_from(word: String) -> Result<Self, UnknownWorld> {
-        word.parse()
+    fn try_from(label: String) -> Result<Self, UnknownWorld> {
+        label.parse()
     }
 }
 
@@ -154,7 +154,7 @@ impl From<WorldPlan> for String {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownWorld {
     /// The requested name.
-    pub word: String,
+    pub label: String,
     /// Whether `random` alone would have been a name too.
     plan: bool,
 }
@@ -166,7 +166,7 @@ impl fmt::Display for UnknownWorld {
         write!(
             f,
             "no world is named {:?}; there are {}, and {random} with a whole number",
-            self.word,
+            self.label,
             names.join(", ")
         )
     }
@@ -199,12 +199,12 @@ mod tests {
 
     #[test]
     fn an_unknown_name_is_answered_with_all_that_there_are() {
-        for word in ["", "Nominal", "grsim ", "random", "random:", "random:-1", "random:1.5", "mars"] {
-            let error = word.parse::<WorldChoice>().unwrap_err().to_string();
+        for label in ["", "Nominal", "grsim ", "random", "random:", "random:-1", "random:1.5", "mars"] {
+            let error = label.parse::<WorldChoice>().unwrap_err().to_string();
             for name in WorldChoice::names().chain(["random:SEED"]) {
                 assert!(error.contains(name), "{error}");
             }
-            assert!(error.contains(&format!("{word:?}")), "{error}");
+            assert!(error.contains(&format!("{label:?}")), "{error}");
         }
         let error = "mars".parse::<WorldPlan>().unwrap_err().to_string();
         assert!(error.contains("seed of each match"), "{error}");

@@ -129,7 +129,7 @@ mod tests {
         for named in NamedWorld::ALL {
             for league in LEAGUES {
                 let of_league = Parameters::of(league).unwrap();
-                let model = WorldModel::from_toml(named.word(), named.text(), of_league).unwrap();
+                let model = WorldModel::from_toml(named.label(), named.text(), of_league).unwrap();
                 assert_ne!(
                     WorldModel { name: "nominal".into(), ..model.clone() },
                     WorldModel::nominal(of_league.clone())
@@ -145,7 +145,7 @@ mod tests {
         for named in NamedWorld::ALL {
             for line in named.text().lines().filter(|line| line.contains(" = ")) {
                 let source = line.split_once('#').map_or("", |(_, comment)| comment);
-                assert!(source.contains('['), "{}: {line}", named.word());
+                assert!(source.contains('['), "{}: {line}", named.label());
             }
         }
     }
@@ -158,10 +158,10 @@ mod tests {
 
     #[test]
     fn errors_name_file_key_and_bound() {
-        let refuse = |text: &str, words: &[&str]| {
+        let refuse = |text: &str, description: &[&str]| {
             let error = read(text).unwrap_err().to_string();
-            for word in words.iter().chain(&["a-world"]) {
-                assert!(error.contains(word), "{text}: {error}");
+            for label in description.iter().chain(&["a-world"]) {
+                assert!(error.contains(label), "{text}: {error}");
             }
         };
         refuse("[ball]\nroll = -0.1", &["ball.roll", "-0.1", "0.0001", "10"]);

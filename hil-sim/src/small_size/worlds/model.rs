@@ -83,7 +83,7 @@ impl WorldModel {
         let model = match choice {
             WorldChoice::Nominal => Self::nominal(parameters.clone()),
             WorldChoice::Named(named) => {
-                Self::from_toml(named.word(), named.text(), parameters).expect("a test reads every profile")
+                Self::from_toml(named.label(), named.text(), parameters).expect("a test reads every profile")
             }
             WorldChoice::Random(seed) => Self::random(parameters, *seed),
         };

@@ -9,7 +9,7 @@ use super::WorldModel;
 use crate::rng::Stream;
 use crate::small_size::Parameters;
 
-crate::words! {
+crate::labels! {
     /// How a quantity is distributed between its bounds.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Law {

@@ -189,7 +189,7 @@ fn the_front_gives_back_its_share_of_a_ball_and_the_turning_roller_its_own() {
 }
 
 #[test]
-fn a_ball_rolls_as_far_as_its_friction_says_and_a_kick_slides_to_five_sevenths_at_once_where_the_carpet_grips()
+fn a_ball_rolls_as_far_as_its_friction_says_and_a_kick_slides_to_five_sevenths_at_once_where_the_surface_grips()
  {
     let mut world = with_ball(|model| model.parameters.ball.roll = 0.8);
     world.put_ball(Ball::rolling(Point::new(1.0, 1.0), Vector::new(1.0, 0.0)));

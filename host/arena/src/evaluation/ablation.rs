@@ -188,7 +188,7 @@ pub fn effects(default: &[TrialRow], arms: &[(Arm, Vec<TrialRow>)]) -> Vec<Effec
                 let mut effect = look.effect(&pairs)?;
                 (effect.arm, effect.measure) = (arm.name, measure);
                 effect.configuration = cell.map(|(configuration, _)| configuration);
-                effect.scenario = cell.map(|(_, scenario)| scenario.word());
+                effect.scenario = cell.map(|(_, scenario)| scenario.label());
                 Some(effect)
             }));
         }
@@ -238,7 +238,7 @@ impl Look {
 /// Fills in [`Effect::p_holm`]: a family is a measure in a cell, over the arms.
 fn correct(effects: &mut [Effect]) {
     let family =
-        |effect: &Effect| (effect.measure, effect.configuration.map(Configuration::word), effect.scenario);
+        |effect: &Effect| (effect.measure, effect.configuration.map(Configuration::label), effect.scenario);
     for place in 0..effects.len() {
         let own = family(&effects[place]);
         if effects[..place].iter().any(|effect| family(effect) == own) {

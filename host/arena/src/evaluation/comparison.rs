@@ -11,9 +11,9 @@ use serde::Serialize;
 
 use super::statistics::{Count, Sample, Test, holm, two_proportions, welch};
 use super::tables::{Extent, TableRow, rounded};
-use crate::trial::approach_word;
+use crate::trial::approach_label;
 
-hil_sim::words! {
+hil_sim::labels! {
     /// What is compared.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Measure {
@@ -103,9 +103,9 @@ impl Comparison {
             table: self.table.to_string(),
             sample: self.sample,
             scenario: self.scenario,
-            measure: self.measure.word(),
-            first: approach_word(self.first_approach),
-            second: if of_paper { "paper" } else { approach_word(self.second_approach) },
+            measure: self.measure.label(),
+            first: approach_label(self.first_approach),
+            second: if of_paper { "paper" } else { approach_label(self.second_approach) },
             first_value: self.first,
             second_value: self.second,
             difference: rounded(self.first - self.second),

@@ -14,7 +14,7 @@ use super::comparison::Measure;
 use super::paper::paper;
 use super::statistics::holm;
 use super::tables::{Extent, TableRow};
-use crate::trial::{APPROACHES, approach_word};
+use crate::trial::{APPROACHES, approach_label};
 
 /// A line with its verdict.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -29,7 +29,7 @@ pub struct Line {
     pub evidence: String,
 }
 
-hil_sim::words! {
+hil_sim::labels! {
     /// Does a line hold?
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
     #[serde(rename_all = "lowercase")]
@@ -85,8 +85,8 @@ const LINES: &[Entry] = &[
             let shares = each(Scenario::PAPER, share)?;
             let least = shares.iter().copied().fold(f64::INFINITY, f64::min);
             let within = shares.iter().all(|share| (50.0..=60.0).contains(share));
-            let words = shares.iter().map(|share| format!("{share:.1} %"));
-            Some((within && shares[3] <= least + 3.0, words.collect::<Vec<_>>().join(", ")))
+            let description = shares.iter().map(|share| format!("{share:.1} %"));
+            Some((within && shares[3] <= least + 3.0, description.collect::<Vec<_>>().join(", ")))
         },
     ),
     ("e", "reactive: B backs up 3.5 to 7 times as often as A, except in scenario 4", |r| {
@@ -158,8 +158,9 @@ const LINES: &[Entry] = &[
                 Some((s, r.row(1, s, Reactive)?.to_goal?, papers.row(1, s, Reactive)?.to_goal?))
             })?;
             let holds = found.iter().all(|(_, ours, papers)| (ours - papers).abs() <= 10.0);
-            let words = found.iter().map(|(s, ours, papers)| format!("{s}: {ours:.1} against {papers:.0} %"));
-            Some((holds, words.collect::<Vec<_>>().join(", ")))
+            let description =
+                found.iter().map(|(s, ours, papers)| format!("{s}: {ours:.1} against {papers:.0} %"));
+            Some((holds, description.collect::<Vec<_>>().join(", ")))
         },
     ),
     ("timeouts", "no trial against defender and goalie runs out of time (600 s)", |r| {
@@ -183,7 +184,7 @@ fn cells() -> impl Iterator<Item = (u8, Scenario)> {
 
 /// The approach beyond the paper's two, where there is one.
 fn hybrid() -> Option<Approach> {
-    APPROACHES.into_iter().find(|approach| approach_word(*approach) == "hybrid")
+    APPROACHES.into_iter().find(|approach| approach_label(*approach) == "hybrid")
 }
 
 /// Two approaches in a cell.
@@ -205,7 +206,7 @@ fn compare(
     each(cells, |(table, scenario)| {
         let (a, b) = (rows.row(table, scenario, first)?, rows.row(table, scenario, second)?);
         let (x, y) = (measure.value(a)?, measure.value(b)?);
-        let name = format!("{} {scenario}", a.configuration.word());
+        let name = format!("{} {scenario}", a.configuration.label());
         // The spread of single trials is unknown: nothing is significant then.
         let p = measure.test(a, b).map_or(1.0, |test| test.p);
         Some(Cell { name, first: x, second: y, difference: x - y, p })
@@ -218,10 +219,10 @@ fn each<T, V>(items: impl IntoIterator<Item = T>, of: impl FnMut(T) -> Option<V>
 }
 
 fn told(cells: &[Cell]) -> String {
-    let words = cells.iter().map(|Cell { name, first, second, difference, p }| {
+    let description = cells.iter().map(|Cell { name, first, second, difference, p }| {
         format!("{name}: {first:.1} - {second:.1} = {difference:+.1}, {}", p_text(*p))
     });
-    words.collect::<Vec<_>>().join("; ")
+    description.collect::<Vec<_>>().join("; ")
 }
 
 fn numbers(values: &[f64], decimals: usize) -> String {

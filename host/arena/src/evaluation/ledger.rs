@@ -304,17 +304,17 @@ pub(super) mod tests {
         let kept = parse::<TrialRow>(Path::new("x.csv"), file(&csv).as_bytes()).unwrap().unwrap();
         assert_eq!(kept.rows.len(), 1);
         for wrong in ["NaN", "nan", "inf", "-inf", "infinity", "1e999"] {
-            let words = refused(&file(&csv.replace("10.125", wrong)));
-            assert!(words.starts_with("x.csv:3: time_s is "), "{wrong}: {words}");
-            assert!(words.contains("not a finite number"), "{wrong}: {words}");
+            let description = refused(&file(&csv.replace("10.125", wrong)));
+            assert!(description.starts_with("x.csv:3: time_s is "), "{wrong}: {description}");
+            assert!(description.contains("not a finite number"), "{wrong}: {description}");
         }
     }
 
     #[cfg(unix)]
     #[test]
     fn a_device_is_no_ledger() {
-        let words = read::<TrialRow>(Path::new("/dev/zero")).unwrap_err().to_string();
-        assert!(words.contains("a device, not a regular file"), "{words}");
+        let description = read::<TrialRow>(Path::new("/dev/zero")).unwrap_err().to_string();
+        assert!(description.contains("a device, not a regular file"), "{description}");
     }
 
     #[test]

@@ -12,6 +12,7 @@
 mod ablation;
 mod claims;
 mod comparison;
+mod description;
 mod error;
 mod judge;
 mod ledger;
@@ -26,7 +27,6 @@ mod summary;
 mod tables;
 mod uses;
 mod verdicts;
-mod words;
 
 pub use ablation::{ARMS, Arm, Effect, ablation_table, effects};
 pub use claims::{Claim, Judgement, Point, Standing, Verdict, claims};

@@ -8,7 +8,7 @@ use brain::Approach;
 use hil_sim::Scenario;
 
 use super::tables::TableRow;
-use crate::trial::approach_from_word;
+use crate::trial::approach_from_label;
 
 /// The paper's rows, by table and scenario. Percentages and means as printed; Table 6's from its 30 trials a
 /// row.
@@ -37,10 +37,10 @@ fn read(table: u8, text: &str) -> Vec<TableRow> {
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let lines: Result<Vec<_>, _> = reader.deserialize().collect();
     for line in lines.expect("the files are committed, and tests read them").into_iter().map(Line) {
-        let scenario = line.text("scenario").and_then(Scenario::from_word).expect("a scenario a line");
+        let scenario = line.text("scenario").and_then(Scenario::from_label).expect("a scenario a line");
         // Tables 2 and 3 are of one approach each, and name none.
         let default = if table == 2 { Approach::Reactive } else { Approach::Cases };
-        let approach = line.text("approach").and_then(approach_from_word).unwrap_or(default);
+        let approach = line.text("approach").and_then(approach_from_label).unwrap_or(default);
         let known = rows.iter_mut().position(|row| (row.scenario, row.approach) == (scenario, approach));
         let place = known.unwrap_or_else(|| {
             rows.push(TableRow::empty(table, scenario, approach));
@@ -148,9 +148,9 @@ mod tests {
     fn wilsons_intervals_of_the_papers_shares_are_those_computed_apart() {
         let mut checked = 0;
         for line in lines(include_str!("../../data/derived_wilson95.csv")) {
-            let scenario = line.text("scenario").and_then(Scenario::from_word);
-            let approach = line.text("approach").and_then(approach_from_word);
-            let measure = line.text("measure").and_then(Measure::from_word).unwrap();
+            let scenario = line.text("scenario").and_then(Scenario::from_label);
+            let approach = line.text("approach").and_then(approach_from_label);
+            let measure = line.text("measure").and_then(Measure::from_label).unwrap();
             let table = table_of(line.text("table").unwrap());
             let row = paper().iter().find(|row| {
                 row.table == table && Some(row.scenario) == scenario && Some(row.approach) == approach
@@ -170,8 +170,8 @@ mod tests {
         let comparisons = compare(paper(), Approach::Cases, Approach::Reactive);
         let mut checked = 0;
         for line in lines(include_str!("../../data/derived_cbr_vs_reactive_z.csv")) {
-            let scenario = line.text("scenario").and_then(Scenario::from_word);
-            let measure = line.text("measure").and_then(Measure::from_word).unwrap();
+            let scenario = line.text("scenario").and_then(Scenario::from_label);
+            let measure = line.text("measure").and_then(Measure::from_label).unwrap();
             let table = table_of(line.text("table").unwrap());
             let own = comparisons.iter().find(|comparison| {
                 comparison.table == table

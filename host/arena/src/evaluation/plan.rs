@@ -10,10 +10,10 @@ use hil_sim::{Configuration, Fnv, Scenario};
 use protocol::Duration;
 use serde::{Deserialize, Serialize};
 
-use super::words;
+use super::description;
 use crate::trial::{APPROACHES, TrialConfig};
 
-hil_sim::words! {
+hil_sim::labels! {
     /// The world trials are played in.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
@@ -45,10 +45,10 @@ pub struct Cell {
     /// The opponents.
     pub configuration: Configuration,
     /// Start positions.
-    #[serde(with = "words::scenario")]
+    #[serde(with = "description::scenario")]
     pub scenario: Scenario,
     /// Approach of the attackers.
-    #[serde(with = "words::approach")]
+    #[serde(with = "description::approach")]
     pub approach: Approach,
     /// Number of trials.
     pub trials: u32,
@@ -167,8 +167,8 @@ impl Plan {
     fn seed_of(&self, cell: Cell, trial: u32) -> u64 {
         let mut hash = Fnv::default();
         hash.add(&self.seed.to_le_bytes());
-        hash.add(cell.configuration.word().as_bytes());
-        hash.add(cell.scenario.word().as_bytes());
+        hash.add(cell.configuration.label().as_bytes());
+        hash.add(cell.scenario.label().as_bytes());
         hash.add(&trial.to_le_bytes());
         let value = hash.value();
         (value ^ (value >> SEED_BITS)) & ((1 << SEED_BITS) - 1)
@@ -192,8 +192,8 @@ impl Shard {
     }
 
     /// Parses the form `2/3`.
-    pub fn from_word(word: &str) -> Option<Self> {
-        let (index, of) = word.split_once('/')?;
+    pub fn from_label(label: &str) -> Option<Self> {
+        let (index, of) = label.split_once('/')?;
         Self::new(index.parse().ok()?, of.parse().ok()?)
     }
 
@@ -275,11 +275,11 @@ mod tests {
             .collect();
         all.sort_unstable();
         assert_eq!(all, (0..plan.len()).collect::<Vec<_>>());
-        assert_eq!(Shard::from_word("2/3"), Shard::new(2, 3));
+        assert_eq!(Shard::from_label("2/3"), Shard::new(2, 3));
         assert_eq!(Shard::from_file_name(&Shard::new(2, 3).unwrap().file_name()), Shard::new(2, 3));
         assert_eq!(Shard::from_file_name("trials.csv"), None);
-        for word in ["0/3", "4/3", "1/0", "1", "a/b", ""] {
-            assert_eq!(Shard::from_word(word), None, "{word}");
+        for label in ["0/3", "4/3", "1/0", "1", "a/b", ""] {
+            assert_eq!(Shard::from_label(label), None, "{label}");
         }
     }
 }

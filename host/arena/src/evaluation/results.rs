@@ -83,7 +83,7 @@ impl Results {
     }
 
     /// Writes every file into an existing directory.
-    pub fn write(&self, folder: &Path) -> Result<(), EvaluationError> {
+    pub fn write(&self, directory: &Path) -> Result<(), EvaluationError> {
         let all: Vec<_> = self.with_paper.iter().chain(&self.between_approaches).collect();
         let paper = self.with_paper.len();
         let flat: Vec<_> = all.iter().enumerate().map(|(i, comparison)| comparison.flat(i < paper)).collect();
@@ -100,7 +100,7 @@ impl Results {
             ("run.json", json(&run)),
         ];
         for (name, bytes) in files {
-            let file: PathBuf = folder.join(name);
+            let file: PathBuf = directory.join(name);
             let written = bytes.and_then(|bytes| fs::write(&file, bytes));
             written.map_err(EvaluationError::file(&file))?;
         }
@@ -109,9 +109,9 @@ impl Results {
 }
 
 /// Writes the effects of an ablation into an existing directory.
-pub fn write_effects(effects: &[Effect], folder: &Path) -> Result<(), EvaluationError> {
+pub fn write_effects(effects: &[Effect], directory: &Path) -> Result<(), EvaluationError> {
     for (name, bytes) in [("ablations.json", json(&effects)), ("ablations.csv", as_csv(effects))] {
-        let file = folder.join(name);
+        let file = directory.join(name);
         let written = bytes.and_then(|bytes| fs::write(&file, bytes));
         written.map_err(EvaluationError::file(&file))?;
     }

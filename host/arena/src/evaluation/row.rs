@@ -7,8 +7,8 @@ use brain::Approach;
 use hil_sim::{Configuration, Fnv, Outcome, Scenario};
 use serde::{Deserialize, Serialize};
 
+use super::description;
 use super::plan::{Planned, Profile};
-use super::words;
 use crate::defaults::DefaultReport;
 use crate::report::{CycleReport, TrialReport};
 
@@ -22,10 +22,10 @@ pub struct TrialRow {
     /// `dg` or `2d`.
     pub configuration: Configuration,
     /// 1 to 4, or `random`.
-    #[serde(with = "words::scenario")]
+    #[serde(with = "description::scenario")]
     pub scenario: Scenario,
     /// `cbr` or `reactive`.
-    #[serde(with = "words::approach")]
+    #[serde(with = "description::approach")]
     pub approach: Approach,
     /// Seed that replays it.
     pub seed: u64,

@@ -20,7 +20,7 @@ use super::plan::{Plan, Planned, Shard};
 use super::row::TrialRow;
 use super::setup::Setup;
 use crate::names::CaseNames;
-use crate::trial::{TrialConfig, positioning_word, run};
+use crate::trial::{TrialConfig, positioning_label, run};
 
 /// All settings that the trials of an evaluation depend on.
 #[derive(Clone, Debug)]
@@ -61,7 +61,7 @@ impl<'a> Evaluation<'a> {
             symmetry: setup.symmetry,
             case_opponents: setup.opponents,
             settings: settings.map(|(name, value)| (name.to_owned(), value.to_string())).collect(),
-            positioning: positioning_word(setup.positioning).to_owned(),
+            positioning: positioning_label(setup.positioning).to_owned(),
             retrievers: setup.retrievers,
             loss: setup.loss,
             parameters: Parameters::four_legged().clone(),

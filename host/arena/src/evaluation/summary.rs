@@ -12,7 +12,7 @@ use super::comparison::{Comparison, Measure};
 use super::paper::paper;
 use super::results::Results;
 use super::tables::{Extent, TableRow};
-use crate::trial::approach_word;
+use crate::trial::approach_label;
 
 /// A column of a table.
 struct Column {
@@ -118,8 +118,8 @@ fn write(text: &mut String, results: &Results, table: u8, sample: Extent, rows: 
     scenarios.dedup();
     for scenario in scenarios {
         for (place, row) in rows.iter().filter(|row| row.scenario == scenario).enumerate() {
-            let name = if place == 0 { scenario.word() } else { "" };
-            let names = [name.to_owned(), approach_word(row.approach).to_owned()];
+            let name = if place == 0 { scenario.label() } else { "" };
+            let names = [name.to_owned(), approach_label(row.approach).to_owned()];
             lines.push(Line { names, cells: columns.iter().map(|c| cell(results, row, c)).collect() });
         }
         let own = |c: &&Comparison| (c.table, c.sample, c.scenario) == (table, sample, scenario);
@@ -137,7 +137,7 @@ fn write(text: &mut String, results: &Results, table: u8, sample: Extent, rows: 
                     .find(of_pair)
                     .map_or_else(Default::default, |c| difference(c, column.decimals))
             });
-            let name = format!("{} - {}", approach_word(pair.0), approach_word(pair.1));
+            let name = format!("{} - {}", approach_label(pair.0), approach_label(pair.1));
             lines.push(Line { names: [String::new(), name], cells: cells.collect() });
         }
     }
@@ -223,10 +223,10 @@ mod tests {
         let text = summary(&Results::new(identity(), rows.collect()).unwrap());
         let lines: Vec<_> = text.lines().collect();
         assert_eq!(lines[0], "Table 1: defender and goalie; 30 trials a row, in brackets the paper's");
-        let words = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
-        assert_eq!(words(lines[2])[..4], ["2", "cbr", "90.0", "(26)***"]);
-        assert_eq!(words(lines[3])[..3], ["reactive", "80.0", "(25)***"]);
-        assert_eq!(words(lines[4])[..5], ["cbr", "-", "reactive", "+10.0", "+0.0"]);
+        let description = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+        assert_eq!(description(lines[2])[..4], ["2", "cbr", "90.0", "(26)***"]);
+        assert_eq!(description(lines[3])[..3], ["reactive", "80.0", "(25)***"]);
+        assert_eq!(description(lines[4])[..5], ["cbr", "-", "reactive", "+10.0", "+0.0"]);
         assert_eq!(lines[2].find("90.0"), lines[3].find("80.0"), "{text}");
         assert!(text.contains("Table 2") && text.contains("Table 3") && !text.contains("Table 4"), "{text}");
     }

@@ -13,12 +13,12 @@ use hil_sim::{Configuration, Outcome, Scenario};
 use serde::{Serialize, Serializer};
 
 use super::comparison::Measure;
+use super::description;
 use super::plan::Profile;
 use super::row::TrialRow;
 use super::statistics::{Interval, Sample, wilson};
-use super::words;
 
-hil_sim::words! {
+hil_sim::labels! {
     /// Which of the trials a row is of.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
     #[serde(rename_all = "lowercase")]
@@ -42,7 +42,7 @@ pub struct TableRow {
     #[serde(serialize_with = "crate::report::scenario")]
     pub scenario: Scenario,
     /// `cbr` or `reactive`.
-    #[serde(serialize_with = "words::approach::serialize")]
+    #[serde(serialize_with = "description::approach::serialize")]
     pub approach: Approach,
     /// Number of trials.
     pub trials: u32,

@@ -10,7 +10,7 @@ use hil_sim::{Configuration, Outcome};
 use super::plan::Profile;
 use super::row::TrialRow;
 use crate::cycles::CycleEnd;
-use crate::trial::approach_word;
+use crate::trial::approach_label;
 
 /// A case in all trials of a kind.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,8 +25,8 @@ pub struct CaseUse {
     pub case: String,
     /// Number of times it was played.
     pub retrieved: u32,
-    /// Counts of the ends of these plays, in the order of [`CycleEnd::WORDS`].
-    pub ends: [u32; CycleEnd::WORDS.len()],
+    /// Counts of the ends of these plays, in the order of [`CycleEnd::DESCRIPTION`].
+    pub ends: [u32; CycleEnd::DESCRIPTION.len()],
     /// Trials in which it was played.
     pub trials: u32,
     /// Counts of the outcomes, in the order of [`OUTCOMES`].
@@ -68,14 +68,14 @@ pub fn uses(rows: &[TrialRow], cases: &[String]) -> Vec<CaseUse> {
 impl CaseUse {
     fn new((profile, configuration, approach): (Profile, Configuration, Approach), case: &str) -> Self {
         let case = case.to_owned();
-        let (ends, outcomes) = ([0; CycleEnd::WORDS.len()], [0; OUTCOMES.len()]);
+        let (ends, outcomes) = ([0; CycleEnd::DESCRIPTION.len()], [0; OUTCOMES.len()]);
         Self { profile, configuration, approach, case, retrieved: 0, ends, trials: 0, outcomes }
     }
 
     fn count(&mut self, end: &str) {
         self.retrieved += 1;
-        let ends = CycleEnd::WORDS.iter().zip(&mut self.ends);
-        ends.filter(|(word, _)| **word == end).for_each(|(_, count)| *count += 1);
+        let ends = CycleEnd::DESCRIPTION.iter().zip(&mut self.ends);
+        ends.filter(|(label, _)| **label == end).for_each(|(_, count)| *count += 1);
     }
 
     /// Number of plays in which every robot completed its part.
@@ -88,15 +88,15 @@ impl CaseUse {
 pub fn uses_to_csv(uses: &[CaseUse]) -> Result<Vec<u8>, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let columns = ["profile", "configuration", "approach", "case", "retrieved"].into_iter();
-    let outcomes = OUTCOMES.iter().map(|outcome| outcome.word());
-    let outcomes = outcomes.map(|word| format!("trials_{word}"));
-    let header = columns.chain(CycleEnd::WORDS).chain(["trials"]).map(str::to_owned).chain(outcomes);
+    let outcomes = OUTCOMES.iter().map(|outcome| outcome.label());
+    let outcomes = outcomes.map(|label| format!("trials_{label}"));
+    let header = columns.chain(CycleEnd::DESCRIPTION).chain(["trials"]).map(str::to_owned).chain(outcomes);
     writer.write_record(header)?;
     for case in uses {
         let CaseUse { profile, configuration, approach, case, retrieved, ends, trials, outcomes } = case;
-        let words = [profile.word(), configuration.word(), approach_word(*approach), case];
+        let description = [profile.label(), configuration.label(), approach_label(*approach), case];
         let counts = [retrieved].into_iter().chain(ends).chain([trials]).chain(outcomes);
-        writer.write_record(words.map(str::to_owned).into_iter().chain(counts.map(u32::to_string)))?;
+        writer.write_record(description.map(str::to_owned).into_iter().chain(counts.map(u32::to_string)))?;
     }
     writer.into_inner().map_err(|error| error.into_error().into())
 }
@@ -133,12 +133,12 @@ mod tests {
     }
 
     #[test]
-    fn every_end_has_its_word_in_the_list() {
+    fn every_end_has_its_label_in_the_list() {
         let reactive = TrialRow { approach: Approach::Reactive, plays: "a/x:finished".to_owned(), ..row() };
         assert!(uses(&[reactive], &["a/x".to_owned()]).is_empty());
-        for word in CycleEnd::WORDS {
-            let row = TrialRow { plays: format!("a/x:{word}"), ..row() };
-            assert_eq!(uses(&[row], &["a/x".to_owned()])[0].ends.iter().sum::<u32>(), 1, "{word}");
+        for label in CycleEnd::DESCRIPTION {
+            let row = TrialRow { plays: format!("a/x:{label}"), ..row() };
+            assert_eq!(uses(&[row], &["a/x".to_owned()])[0].ends.iter().sum::<u32>(), 1, "{label}");
         }
     }
 }

@@ -17,12 +17,12 @@ fn claims(claims: &[Claim]) -> String {
         "What the paper says, by our trials and by its own tables (claims.json has the numbers)\n".to_owned();
     let has_more = claims.iter().any(|claim| claim.ours_as_paper.is_some());
     // The verdict of as many trials as the paper's, where there were more.
-    let as_paper = |word: &str| if has_more { format!("{word:14}") } else { String::new() };
+    let as_paper = |label: &str| if has_more { format!("{label:14}") } else { String::new() };
     let _ = writeln!(text, "  {:14}{}{:14}§", "ours", as_paper("ours, of 30"), "the paper's");
     for Claim { section, sentence, ours, ours_as_paper, paper, .. } in claims {
-        let word = |judgement: &Judgement| judgement.verdict.word();
-        let of_30 = as_paper(ours_as_paper.as_ref().map_or("", word));
-        let _ = writeln!(text, "  {:14}{of_30}{:14}{section:7}{sentence}", word(ours), word(paper));
+        let label = |judgement: &Judgement| judgement.verdict.label();
+        let of_30 = as_paper(ours_as_paper.as_ref().map_or("", label));
+        let _ = writeln!(text, "  {:14}{of_30}{:14}{section:7}{sentence}", label(ours), label(paper));
     }
     let count = |verdict| claims.iter().filter(|claim| claim.ours.verdict == verdict).count();
     let _ = writeln!(
@@ -40,7 +40,7 @@ fn lines(lines: &[Line]) -> String {
     let mut text = "The pattern of its results, and what is asked of ours\n".to_owned();
     let width = lines.iter().map(|line| line.id.len()).max().unwrap_or_default();
     for Line { id, line, verdict, evidence } in lines {
-        let _ = writeln!(text, "  {:10}  {id:width$}  {line}", verdict.word());
+        let _ = writeln!(text, "  {:10}  {id:width$}  {line}", verdict.label());
         if !evidence.is_empty() {
             let _ = writeln!(text, "  {:10}  {:width$}  {evidence}", "", "");
         }

@@ -113,7 +113,7 @@ impl Holds {
         if lasted >= LONG {
             self.over[team as usize] += 1;
             self.long.push(Hold {
-                team: team.word(),
+                team: team.label(),
                 robot: spell.who.id.number(),
                 from_s: spell.from as f32,
                 lasted_s: lasted,

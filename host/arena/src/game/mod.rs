@@ -22,10 +22,10 @@ pub use config::{GameConfig, TeamSetup};
 pub use holds::Hold;
 pub use recording::header;
 pub use report::{BlockedReport, GameReport, PerTeam, TeamReport};
-pub use story::{GameStory, sentence};
+pub use story::{MatchLog, sentence};
 
 use hil_sim::small_size::camera::Cameras;
-use hil_sim::small_size::quirks::Profile;
+use hil_sim::small_size::compatibility::Profile;
 use hil_sim::small_size::referee::InternalReferee;
 use hil_sim::small_size::worlds::WorldModel;
 use hil_sim::small_size::{Event, World};
@@ -89,8 +89,8 @@ pub enum GameError {
 impl std::fmt::Display for GameError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Computer { who, error } => write!(f, "{} {}: {error}", who.colour.word(), who.id),
-            Self::League(words) => f.write_str(words),
+            Self::Computer { who, error } => write!(f, "{} {}: {error}", who.colour.label(), who.id),
+            Self::League(description) => f.write_str(description),
         }
     }
 }
@@ -194,7 +194,7 @@ impl<'a> Game<'a> {
         let (tick, now) = (self.tick, self.now());
         self.trace.small_size_tick(tick, &self.world);
         for team in &mut self.teams {
-            team.hear(tick, now, watcher);
+            team.receive(tick, now, watcher);
             team.think(tick, now, &mut self.world, &mut self.trace)?;
         }
         self.events.clear();
@@ -283,8 +283,8 @@ pub fn play_until(
 }
 
 /// A watcher that does nothing.
-pub struct Nobody;
-impl Watcher for Nobody {}
+pub struct NoWatcher;
+impl Watcher for NoWatcher {}
 
 /// Our robots' numbers in a team of `robots`.
 pub(crate) fn numbers(robots: u8) -> impl Iterator<Item = RobotId> {
@@ -292,8 +292,8 @@ pub(crate) fn numbers(robots: u8) -> impl Iterator<Item = RobotId> {
 }
 
 /// Several watchers as one.
-pub struct Crowd<'w>(pub Vec<&'w mut dyn Watcher>);
-impl Watcher for Crowd<'_> {
+pub struct Watchers<'w>(pub Vec<&'w mut dyn Watcher>);
+impl Watcher for Watchers<'_> {
     fn vision(&mut self, now: Instant, bytes: &[u8]) {
         self.0.iter_mut().for_each(|watcher| watcher.vision(now, bytes));
     }

@@ -15,7 +15,7 @@ use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 use rules::state::Command;
 use rules::{Colour, League, Phase};
 
-use super::{Game, GameConfig, GameError, Nobody};
+use super::{Game, GameConfig, GameError, NoWatcher};
 use crate::evaluation::statistics::Count;
 
 /// The keeper in the goal.
@@ -150,7 +150,7 @@ pub fn shoot(league: League, seed: u64, keeper: Keeper) -> Result<Outcome, GameE
                 return Ok(Outcome::Saved);
             }
         }
-        game.step(&mut Nobody)?;
+        game.step(&mut NoWatcher)?;
     }
     Ok(Outcome::NoShot)
 }

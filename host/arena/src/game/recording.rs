@@ -13,11 +13,11 @@ use super::{GameConfig, Watcher};
 
 impl Watcher for Recorder {
     fn vision(&mut self, now: Instant, bytes: &[u8]) {
-        self.heard(now, MessageKind::Vision2014, bytes);
+        self.received(now, MessageKind::Vision2014, bytes);
     }
 
     fn referee(&mut self, now: Instant, bytes: &[u8]) {
-        self.heard(now, MessageKind::Refbox2013, bytes);
+        self.received(now, MessageKind::Refbox2013, bytes);
     }
 
     fn input(&mut self, now: Instant, host: Colour, input: Input<'_>) {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use hil_sim::small_size::referee::{Blocked, Event, Kind, Metrics};
 use host::strategy::Team;
-use host::strategy::tally::PlayTally;
+use host::strategy::counters::PlayCounters;
 use rules::Colour;
 use serde::Serialize;
 
@@ -64,7 +64,8 @@ pub struct BlockedReport {
     /// The reason, as a name for programs.
     pub reason: &'static str,
     /// The reason, with its numbers.
-    pub words: String,
+    #[serde(rename = "words")]
+    pub description: String,
 }
 
 impl BlockedReport {
@@ -73,10 +74,10 @@ impl BlockedReport {
         Self {
             from_s: block.since.as_secs_f32(),
             lasted_s: block.lasted.as_secs_f32(),
-            team: obstacle.team.map(Colour::word),
+            team: obstacle.team.map(Colour::label),
             robot: obstacle.robot.map(protocol::RobotId::number),
-            reason: obstacle.reason.word(),
-            words: obstacle.to_string(),
+            reason: obstacle.reason.label(),
+            description: obstacle.to_string(),
         }
     }
 }
@@ -120,11 +121,11 @@ pub struct TeamReport {
     /// Number of its spells that lasted for 2.5 s and longer.
     pub holds_over_2_5s: u32,
     /// Passes of its restarts as its host followed them, planned free kicks, and changes of role.
-    pub play: PlayTally,
+    pub play: PlayCounters,
 }
 
 impl TeamReport {
-    fn of(metrics: &Metrics, holds: &Holds, team: Colour, play: PlayTally) -> Self {
+    fn of(metrics: &Metrics, holds: &Holds, team: Colour, play: PlayCounters) -> Self {
         let own = metrics.team(team);
         Self {
             possession_s: own.possession_s,
@@ -153,7 +154,7 @@ impl GameReport {
             duration_s: game.time(),
             ball_in_play: metrics.ball_in_play(),
             fouls: PerTeam::of(|team| {
-                metrics.offences.team(team).map(|(kind, n)| (kind.word(), n)).collect()
+                metrics.offences.team(team).map(|(kind, n)| (kind.label(), n)).collect()
             }),
             blocked: metrics.blocks.iter().map(BlockedReport::of).collect(),
             longest_hold_s: COLOURS.map(|team| holds.longest(team)).into_iter().fold(0.0, f32::max),
@@ -162,7 +163,7 @@ impl GameReport {
             long_holds: holds.long().to_vec(),
             no_progress: game.referee().events().iter().filter(no_progress).count() as u32,
             teams: PerTeam::of(|team| config.plays(team)),
-            metrics: PerTeam::of(|team| TeamReport::of(metrics, &holds, team, *game.host(team).tally())),
+            metrics: PerTeam::of(|team| TeamReport::of(metrics, &holds, team, *game.host(team).counters())),
             league: config.league.name(),
             seed: config.seed,
             world: config.world.to_string(),

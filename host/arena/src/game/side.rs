@@ -82,7 +82,7 @@ impl<'a> Team<'a> {
     }
 
     /// Delivers the robots' frames to the host.
-    pub(super) fn hear(&mut self, tick: u32, now: Instant, watcher: &mut dyn Watcher) {
+    pub(super) fn receive(&mut self, tick: u32, now: Instant, watcher: &mut dyn Watcher) {
         for packet in self.air.deliver_to_host(tick) {
             self.tell(tick, now, Input::Robot(&packet), watcher);
         }

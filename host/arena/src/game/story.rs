@@ -8,25 +8,25 @@ use super::{Game, Watcher};
 
 /// Writes the log of a match while it is played.
 #[derive(Clone, Debug, Default)]
-pub struct GameStory {
+pub struct MatchLog {
     events: usize,
     phase: Option<Phase<Colour>>,
     score: [u32; 2],
     lines: Vec<String>,
 }
 
-impl GameStory {
+impl MatchLog {
     /// The lines since the last call.
     pub fn take_lines(&mut self) -> Vec<String> {
         std::mem::take(&mut self.lines)
     }
 
-    fn say(&mut self, time: f64, words: &str) {
-        self.lines.push(format!("{time:7.2} s  {words}"));
+    fn say(&mut self, time: f64, description: &str) {
+        self.lines.push(format!("{time:7.2} s  {description}"));
     }
 }
 
-impl Watcher for GameStory {
+impl Watcher for MatchLog {
     fn tick(&mut self, game: &Game<'_>) {
         let referee = game.referee();
         for event in referee.events().iter().skip(self.events) {
@@ -36,8 +36,8 @@ impl Watcher for GameStory {
         let phase = referee.phase();
         if self.phase != Some(phase) {
             self.phase = Some(phase);
-            if let Some(words) = announcement(phase) {
-                self.say(game.time(), &words);
+            if let Some(description) = announcement(phase) {
+                self.say(game.time(), &description);
             }
         }
         let score = [Colour::Blue, Colour::Yellow].map(|team| referee.accounts().of(team).score);
@@ -51,20 +51,20 @@ impl Watcher for GameStory {
 /// An event as text: robot, event, place.
 pub fn sentence(event: &Event) -> String {
     let who = match (event.by, event.robot) {
-        (Some(team), Some(robot)) => format!("{} {robot}: ", team.word()),
-        (Some(team), None) => format!("{}: ", team.word()),
+        (Some(team), Some(robot)) => format!("{} {robot}: ", team.label()),
+        (Some(team), None) => format!("{}: ", team.label()),
         (None, _) => String::new(),
     };
     let what = match &event.what {
         What::Blocked { reason } => format!("the match is blocked, {reason},"),
-        what => what.kind().word().replace('_', " "),
+        what => what.kind().label().replace('_', " "),
     };
     let (x, y) = (event.place.x(), event.place.y());
     format!("{who}{what} at ({x:.2}, {y:.2})")
 }
 
 fn announcement(phase: Phase<Colour>) -> Option<String> {
-    let of = |what: &str, team: Colour| Some(format!("{what} for {}", team.word()));
+    let of = |what: &str, team: Colour| Some(format!("{what} for {}", team.label()));
     match phase {
         Phase::Kickoff(team) => of("kick-off", team),
         Phase::Penalty(team) => of("penalty", team),

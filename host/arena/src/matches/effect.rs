@@ -7,7 +7,7 @@
 
 use serde::Serialize;
 
-use super::entrant::Entrant;
+use super::match_team::MatchTeam;
 use super::outcome::CONFIDENCE;
 use super::plan::Plan;
 use super::row::MatchRow;
@@ -48,9 +48,9 @@ pub struct Effect {
     /// Its name; several with a `+` between.
     pub part: String,
     /// The team that played with it.
-    pub with: Entrant,
+    pub with: MatchTeam,
     /// The team that played without it.
-    pub without: Entrant,
+    pub without: MatchTeam,
     /// Number of matches.
     pub matches: u32,
     /// Goals a match with it, less those without.
@@ -65,7 +65,7 @@ pub struct Effect {
 
 /// One for each pair of the plan whose teams differ by parts that one of them has and the other lacks.
 pub fn effects(plan: &Plan, rows: &[MatchRow]) -> Vec<Effect> {
-    let of = |own: Entrant, opponent: Entrant| {
+    let of = |own: MatchTeam, opponent: MatchTeam| {
         let (more, less) = (own.beyond(opponent), opponent.beyond(own));
         let (part, own_has) = match (&more[..], &less[..]) {
             ([], []) => return None,

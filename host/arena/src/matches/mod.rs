@@ -8,15 +8,15 @@
 //! number of threads, shards and interrupts.
 
 mod calibration;
+mod description;
 mod effect;
-mod entrant;
+mod match_team;
 mod outcome;
 mod paper;
 mod passes;
 mod plan;
 mod plot;
 mod row;
-mod words;
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -27,18 +27,18 @@ use rules::Colour;
 use serde::{Deserialize, Serialize};
 
 pub use calibration::calibration_plot;
+pub use description::markdown;
 pub use effect::{Change, Effect, effects};
-pub use entrant::Entrant;
+pub use match_team::MatchTeam;
 pub use outcome::{Estimate, Outcome, our_passes, outcomes};
 pub use paper::{PAPER, PAPER_PASSES, PaperGame, PaperPasses};
 pub use passes::{Kicked, Passes, Share, Tenth};
 pub use plan::{Pairing, Plan, Planned};
 pub use plot::plot;
 pub use row::MatchRow;
-pub use words::markdown;
 
 use crate::evaluation::{EvaluationError, Progress, Shard, play_open};
-use crate::game::{GameConfig, Nobody, play};
+use crate::game::{GameConfig, NoWatcher, play};
 
 /// All settings that the matches of a plan depend on.
 #[derive(Clone, Debug)]
@@ -114,7 +114,7 @@ impl Matches<'_> {
     /// Plays the match with this number.
     pub fn play(&self, number: usize) -> Result<MatchRow, EvaluationError> {
         let planned = self.plan.get(number).ok_or(EvaluationError::Nothing)?;
-        let report = play(&self.config(&planned)?, &mut NativeBackend::new(self.base), &mut Nobody)
+        let report = play(&self.config(&planned)?, &mut NativeBackend::new(self.base), &mut NoWatcher)
             .map_err(|error| EvaluationError::Match { number, error })?;
         Ok(MatchRow::new(&planned, &report))
     }

@@ -4,10 +4,10 @@
 use std::collections::BTreeMap;
 
 use host::strategy::Team;
-use host::strategy::tally::PlayTally;
+use host::strategy::counters::PlayCounters;
 use serde::Serialize;
 
-use super::entrant::Entrant;
+use super::match_team::MatchTeam;
 use super::passes::{self, Passes};
 use super::plan::Plan;
 use super::row::{MatchRow, counted};
@@ -45,9 +45,9 @@ impl Estimate {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Outcome {
     /// The team whose numbers come first.
-    pub own: Entrant,
+    pub own: MatchTeam,
     /// The opponents.
-    pub opponent: Entrant,
+    pub opponent: MatchTeam,
     /// Number of matches played.
     pub matches: u32,
     /// Won, drawn, lost.
@@ -98,7 +98,7 @@ pub fn outcomes(plan: &Plan, rows: &[MatchRow]) -> Vec<Outcome> {
         .collect()
 }
 
-fn outcome(own: Entrant, opponent: Entrant, rows: &[&MatchRow]) -> Outcome {
+fn outcome(own: MatchTeam, opponent: MatchTeam, rows: &[&MatchRow]) -> Outcome {
     let mean = |of: fn(&MatchRow) -> f64| Estimate::of(rows.iter().map(|row| of(row)), f64::INFINITY);
     let ratio =
         |of: fn(&MatchRow) -> Option<f64>| Estimate::of(rows.iter().filter_map(|row| of(row)), f64::INFINITY);
@@ -147,8 +147,8 @@ fn outcome(own: Entrant, opponent: Entrant, rows: &[&MatchRow]) -> Outcome {
 }
 
 /// Counts of both sides' hosts, over all matches.
-fn played(rows: &[&MatchRow]) -> [PlayTally; 2] {
-    let mut sums = [PlayTally::default(); 2];
+fn played(rows: &[&MatchRow]) -> [PlayCounters; 2] {
+    let mut sums = [PlayCounters::default(); 2];
     for row in rows {
         for (sum, more) in sums.iter_mut().zip(row.play()) {
             passes::add(sum, &more);
@@ -160,7 +160,7 @@ fn played(rows: &[&MatchRow]) -> [PlayTally; 2] {
 /// The passes of restarts of our team in all these matches, with any tactics; of both sides where it played
 /// itself.
 pub fn our_passes(rows: &[MatchRow]) -> Passes {
-    let mut sum = PlayTally::default();
+    let mut sum = PlayCounters::default();
     for row in rows {
         for (side, more) in [row.own, row.opponent].into_iter().zip(row.play()) {
             if side.team == Team::Ours {

@@ -4,9 +4,9 @@
 
 use std::fmt::Write as _;
 
-use host::strategy::pass::PassTally;
-use host::strategy::pass::tally::{Bin, Fates};
-use host::strategy::tally::{CapTally, PlayTally};
+use host::strategy::counters::{CapCounters, PlayCounters};
+use host::strategy::pass::PassCounters;
+use host::strategy::pass::counters::{Bin, Fates};
 use serde::Serialize;
 
 use super::outcome::CONFIDENCE;
@@ -14,7 +14,7 @@ use super::row::counted;
 use crate::evaluation::statistics::{Count, Interval, wilson};
 
 /// Number of passes by kick and fate: `flat.received:3 chip.out:1`.
-pub(super) fn fates_column(passes: &PassTally) -> String {
+pub(super) fn fates_column(passes: &PassCounters) -> String {
     let mut passes = *passes;
     let mut text = String::new();
     for (kind, fates) in kinds(&mut passes) {
@@ -30,46 +30,46 @@ pub(super) fn fates_column(passes: &PassTally) -> String {
 
 /// P(receive) by tenths: `9:12:11.2:10` are 12 passes of the tenth from 0.9, with 11.2 expected to arrive and
 /// 10 that did.
-pub(super) fn calibration_column(passes: &PassTally) -> String {
+pub(super) fn calibration_column(passes: &PassCounters) -> String {
     let bins = passes.calibration.iter().enumerate().filter(|(_, bin)| bin.passes > 0);
-    let words: Vec<_> = bins
+    let description: Vec<_> = bins
         .map(|(tenth, bin)| format!("{tenth}:{}:{}:{}", bin.passes, bin.predicted, bin.received))
         .collect();
-    words.join(" ")
+    description.join(" ")
 }
 
 /// Parses the two columns.
-pub(super) fn read(fates: &str, calibration: &str) -> PassTally {
-    let mut passes = PassTally::default();
+pub(super) fn read(fates: &str, calibration: &str) -> PassCounters {
+    let mut passes = PassCounters::default();
     for (name, n) in counted(fates) {
         let Some((kind, fate)) = name.split_once('.') else { continue };
-        let of_kind = kinds(&mut passes).into_iter().find(|(word, _)| *word == kind);
-        let count = of_kind.and_then(|(_, fates)| named(fates).into_iter().find(|(word, _)| *word == fate));
+        let of_kind = kinds(&mut passes).into_iter().find(|(label, _)| *label == kind);
+        let count = of_kind.and_then(|(_, fates)| named(fates).into_iter().find(|(label, _)| *label == fate));
         if let Some((_, count)) = count {
             *count += n;
         }
     }
     for bin in calibration.split_whitespace() {
-        let mut words = bin.split(':');
-        let tenth = words.next().and_then(|word| word.parse::<usize>().ok());
+        let mut description = bin.split(':');
+        let tenth = description.next().and_then(|label| label.parse::<usize>().ok());
         let Some(slot) = tenth.and_then(|tenth| passes.calibration.get_mut(tenth)) else { continue };
-        let mut word = || words.next();
-        slot.passes += word().and_then(|word| word.parse().ok()).unwrap_or(0);
-        slot.predicted += word().and_then(|word| word.parse::<f64>().ok()).unwrap_or(0.0);
-        slot.received += word().and_then(|word| word.parse().ok()).unwrap_or(0);
+        let mut label = || description.next();
+        slot.passes += label().and_then(|label| label.parse().ok()).unwrap_or(0);
+        slot.predicted += label().and_then(|label| label.parse::<f64>().ok()).unwrap_or(0.0);
+        slot.received += label().and_then(|label| label.parse().ok()).unwrap_or(0);
     }
     passes
 }
 
-fn kinds(passes: &mut PassTally) -> [(&'static str, &mut Fates); 2] {
+fn kinds(passes: &mut PassCounters) -> [(&'static str, &mut Fates); 2] {
     [("flat", &mut passes.flat), ("chip", &mut passes.chip)]
 }
 
 fn named(fates: &mut Fates) -> [(&'static str, &mut u32); 7] {
-    let Fates { received, by_mate, intercepted, missed, late, out, no_kick } = fates;
+    let Fates { received, by_teammate, intercepted, missed, late, out, no_kick } = fates;
     [
         ("received", received),
-        ("by_mate", by_mate),
+        ("by_mate", by_teammate),
         ("intercepted", intercepted),
         ("missed", missed),
         ("late", late),
@@ -133,7 +133,7 @@ pub struct Passes {
     /// By kind of kick.
     pub kinds: Vec<Kicked>,
     /// Free kicks by the Coerce and Attack Planner.
-    pub cap: CapTally,
+    pub cap: CapCounters,
     /// Those of its passes that arrived.
     pub cap_arrived: Share,
     /// P(receive) against observed shares; tenths without passes are left out.
@@ -146,7 +146,7 @@ pub struct Passes {
 
 impl Passes {
     /// Sums of all matches' counts.
-    pub fn of(play: &PlayTally) -> Self {
+    pub fn of(play: &PlayCounters) -> Self {
         let mut passes = play.passes;
         let kinds = kinds(&mut passes).map(|(kick, fates)| Kicked {
             kick,
@@ -170,7 +170,7 @@ impl Passes {
 }
 
 /// Adds another match's counts.
-pub(super) fn add(sum: &mut PlayTally, more: &PlayTally) {
+pub(super) fn add(sum: &mut PlayCounters, more: &PlayCounters) {
     sum.passes.add(&more.passes);
     sum.cap.attempts += more.cap.attempts;
     sum.cap.successes += more.cap.successes;
@@ -184,8 +184,8 @@ mod tests {
     use super::*;
 
     /// 3 + 1 flat passes, one chip; P(receive) 0.95 thrice and 0.25 once.
-    fn passes() -> PassTally {
-        let mut passes = PassTally::default();
+    fn passes() -> PassCounters {
+        let mut passes = PassCounters::default();
         (passes.flat.received, passes.flat.late, passes.flat.no_kick, passes.chip.out) = (2, 1, 1, 1);
         passes.calibration[9] = Bin { passes: 3, predicted: 2.850_000_000_000_1, received: 2 };
         passes.calibration[2] = Bin { passes: 1, predicted: 0.25, received: 0 };
@@ -198,14 +198,14 @@ mod tests {
         assert_eq!(fates, "flat.received:2 flat.late:1 flat.no_kick:1 chip.out:1");
         assert_eq!(calibration, "2:1:0.25:0 9:3:2.8500000000001:2");
         assert_eq!(read(&fates, &calibration), passes());
-        assert_eq!(read("", ""), PassTally::default());
-        assert_eq!(read("flat.lost:3 steep.out:1 x", "12:1:1:1 a"), PassTally::default());
+        assert_eq!(read("", ""), PassCounters::default());
+        assert_eq!(read("flat.lost:3 steep.out:1 x", "12:1:1:1 a"), PassCounters::default());
     }
 
     #[test]
     fn shares_and_their_intervals_are_those_counted_by_hand() {
-        let cap = CapTally { attempts: 10, successes: 9, reuses: 4, reuse_successes: 3 };
-        let mut play = PlayTally { passes: passes(), cap, role_changes: 7 };
+        let cap = CapCounters { attempts: 10, successes: 9, reuses: 4, reuse_successes: 3 };
+        let mut play = PlayCounters { passes: passes(), cap, role_changes: 7 };
         let told = Passes::of(&play);
         // Wilson's interval of 9/10, from any table: 0.5958 to 0.9821.
         let share = told.cap_arrived;
@@ -215,7 +215,7 @@ mod tests {
         let tenths: Vec<_> = told.calibration.iter().map(|tenth| (tenth.tenth, tenth.seen.of)).collect();
         assert_eq!(tenths, [(2, 1), (9, 3)]);
         assert!((told.calibration[1].predicted - 0.95).abs() < 1e-9);
-        add(&mut play, &PlayTally { passes: passes(), cap, role_changes: 7 });
+        add(&mut play, &PlayCounters { passes: passes(), cap, role_changes: 7 });
         assert_eq!((Passes::of(&play).cap_arrived.of, play.role_changes), (20, 14));
     }
 }

@@ -6,15 +6,15 @@ use hil_sim::small_size::worlds::WorldPlan;
 use rules::League;
 use serde::{Deserialize, Serialize};
 
-use super::entrant::Entrant;
+use super::match_team::MatchTeam;
 
 /// Two teams.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Pairing {
     /// The team whose numbers come first.
-    pub own: Entrant,
+    pub own: MatchTeam,
     /// The opponents.
-    pub opponent: Entrant,
+    pub opponent: MatchTeam,
 }
 
 /// Numbers the matches: pair by pair.
@@ -50,7 +50,7 @@ pub struct Planned {
 
 impl Planned {
     /// Blue and yellow.
-    pub fn sides(&self) -> (Entrant, Entrant) {
+    pub fn sides(&self) -> (MatchTeam, MatchTeam) {
         let Pairing { own, opponent } = self.pairing;
         if self.own_is_blue { (own, opponent) } else { (opponent, own) }
     }
@@ -58,13 +58,13 @@ impl Planned {
 
 impl Plan {
     /// A team against each of these.
-    pub fn against(own: Entrant, opponents: &[Entrant]) -> Vec<Pairing> {
+    pub fn against(own: MatchTeam, opponents: &[MatchTeam]) -> Vec<Pairing> {
         opponents.iter().map(|&opponent| Pairing { own, opponent }).collect()
     }
 
     /// Each of these against each other.
-    pub fn round_robin(teams: &[Entrant]) -> Vec<Pairing> {
-        let pairs = |(i, &own): (usize, &Entrant)| {
+    pub fn round_robin(teams: &[MatchTeam]) -> Vec<Pairing> {
+        let pairs = |(i, &own): (usize, &MatchTeam)| {
             teams[i + 1..].iter().map(move |&opponent| Pairing { own, opponent }).collect::<Vec<_>>()
         };
         teams.iter().enumerate().flat_map(pairs).collect()
@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     fn pairs_meet_as_often_on_both_sides_with_the_same_seeds() {
-        let pairings = Plan::round_robin(&[Team::Ours, Team::Reactive, Team::Zone].map(Entrant::from));
+        let pairings = Plan::round_robin(&[Team::Ours, Team::Reactive, Team::Zone].map(MatchTeam::from));
         assert_eq!(pairings.len(), 3);
         let plan = Plan {
             seed: 1,
@@ -131,9 +131,9 @@ mod tests {
         assert_eq!(all.iter().filter(|planned| planned.own_is_blue).count(), 6);
         for round in 0..4 {
             assert_eq!(all[round].seed, all[round + 4].seed);
-            assert_eq!(all[round].pairing.own, Entrant::ours());
+            assert_eq!(all[round].pairing.own, MatchTeam::ours());
         }
         assert_ne!(all[0].seed, all[1].seed);
-        assert_eq!(all[1].sides(), (Team::Reactive.into(), Entrant::ours()));
+        assert_eq!(all[1].sides(), (Team::Reactive.into(), MatchTeam::ours()));
     }
 }

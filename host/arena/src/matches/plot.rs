@@ -28,7 +28,7 @@ pub fn plot(outcomes: &[Outcome]) -> String {
         let left = names + (PANEL + GAP) * panel as f64;
         let x = |ratio: f64| left + PANEL * (ratio.clamp(LEAST, MOST) / LEAST).ln() / (MOST / LEAST).ln();
         let bottom = -height + 2.0 * ROW;
-        svg.rect([x(low), -ROW], [x(high), bottom], format_args!("fill=\"{}\"", colors.carpet));
+        svg.rect([x(low), -ROW], [x(high), bottom], format_args!("fill=\"{}\"", colors.surface));
         svg.text([left, -ROW * 0.6], title, Anchor::Start, Font { bold: true, ..font(colors.ink) });
         for tick in [0.25, 0.5, 1.0, 2.0, 4.0, 8.0] {
             let shade = if tick == 1.0 { colors.faint } else { colors.unknown };

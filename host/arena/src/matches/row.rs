@@ -3,11 +3,11 @@
 
 use std::collections::BTreeMap;
 
-use host::strategy::tally::{CapTally, PlayTally};
+use host::strategy::counters::{CapCounters, PlayCounters};
 use serde::{Deserialize, Serialize};
 
 use super::MatchIdentity;
-use super::entrant::Entrant;
+use super::match_team::MatchTeam;
 use super::passes;
 use super::plan::Planned;
 use crate::evaluation::Entry;
@@ -19,9 +19,9 @@ pub struct MatchRow {
     /// Its number in the plan, from 0.
     pub number: usize,
     /// The team whose numbers come first.
-    pub own: Entrant,
+    pub own: MatchTeam,
     /// The opponents.
-    pub opponent: Entrant,
+    pub opponent: MatchTeam,
     /// Whether the first of them played blue.
     pub own_is_blue: bool,
     /// Seed that replays it.
@@ -155,26 +155,26 @@ impl MatchRow {
     }
 
     /// Counts of the two hosts: own, theirs.
-    pub fn play(&self) -> [PlayTally; 2] {
-        let own = CapTally {
+    pub fn play(&self) -> [PlayCounters; 2] {
+        let own = CapCounters {
             attempts: self.cap_attempts,
             successes: self.cap_successes,
             reuses: self.cap_reuses,
             reuse_successes: self.cap_reuse_successes,
         };
-        let theirs = CapTally {
+        let theirs = CapCounters {
             attempts: self.cap_attempts_against,
             successes: self.cap_successes_against,
             reuses: self.cap_reuses_against,
             reuse_successes: self.cap_reuse_successes_against,
         };
         [
-            PlayTally {
+            PlayCounters {
                 passes: passes::read(&self.restart_passes, &self.calibration),
                 cap: own,
                 role_changes: self.role_changes,
             },
-            PlayTally {
+            PlayCounters {
                 passes: passes::read(&self.restart_passes_against, &self.calibration_against),
                 cap: theirs,
                 role_changes: self.role_changes_against,
@@ -210,8 +210,8 @@ impl Entry for MatchRow {
 }
 
 fn listed(fouls: &BTreeMap<&'static str, u32>) -> String {
-    let words: Vec<_> = fouls.iter().map(|(kind, n)| format!("{kind}:{n}")).collect();
-    words.join(" ")
+    let description: Vec<_> = fouls.iter().map(|(kind, n)| format!("{kind}:{n}")).collect();
+    description.join(" ")
 }
 
 /// Kinds with their numbers in such a list.

@@ -13,14 +13,14 @@ use crate::evaluation::{csv_hash, merge, read, to_csv};
 const GO_ON: &(dyn Fn(Progress) -> ControlFlow<()> + Sync) = &|_| ControlFlow::Continue(());
 
 /// A directory of a test's own, removed at the end of the test.
-struct Folder(PathBuf);
+struct Directory(PathBuf);
 
-impl Folder {
+impl Directory {
     fn new(name: &str) -> Self {
-        let folder = std::env::temp_dir().join(format!("onetwo-matches-{name}-{}", std::process::id()));
-        let _ = fs::remove_dir_all(&folder);
-        fs::create_dir_all(&folder).unwrap();
-        Self(folder)
+        let directory = std::env::temp_dir().join(format!("onetwo-matches-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&directory);
+        fs::create_dir_all(&directory).unwrap();
+        Self(directory)
     }
 
     fn play(&self, shard: Shard, threads: usize) -> Vec<MatchRow> {
@@ -32,8 +32,8 @@ impl Folder {
                 world: WorldPlan::default(),
                 duration_s: 4.0,
                 pairings: Plan::against(
-                    Entrant::ours(),
-                    &[Team::Reactive.into(), Entrant::parse("ours-without-second-level").unwrap()],
+                    MatchTeam::ours(),
+                    &[Team::Reactive.into(), MatchTeam::parse("ours-without-second-level").unwrap()],
                 ),
                 matches: 2,
             },
@@ -46,7 +46,7 @@ impl Folder {
     }
 }
 
-impl Drop for Folder {
+impl Drop for Directory {
     fn drop(&mut self) {
         let _ = fs::remove_dir_all(&self.0);
     }
@@ -55,10 +55,10 @@ impl Drop for Folder {
 #[test]
 fn threads_shards_and_interrupts_change_no_byte() {
     let hash = |rows: &[MatchRow]| csv_hash(&to_csv(rows).unwrap());
-    let alone = Folder::new("alone");
+    let alone = Directory::new("alone");
     let rows = alone.play(Shard::WHOLE, 1);
     assert_eq!(rows.len(), 4);
-    let parts = Folder::new("parts");
+    let parts = Directory::new("parts");
     let halves = [1, 2].map(|i| {
         let shard = Shard::new(i, 2).unwrap();
         parts.play(shard, 2);
@@ -81,7 +81,7 @@ fn matches_of_different_worlds_are_of_different_evaluations_and_a_plan_keeps_its
             league: "division-b".to_owned(),
             world,
             duration_s: 4.0,
-            pairings: Plan::against(Entrant::ours(), &[Team::Reactive.into()]),
+            pairings: Plan::against(MatchTeam::ours(), &[Team::Reactive.into()]),
             matches: 2,
         };
         Matches {
@@ -110,7 +110,7 @@ fn matches_of_different_worlds_are_of_different_evaluations_and_a_plan_keeps_its
 fn row(number: usize, goals: [u32; 2], halves: [f32; 2], shots: [u32; 2]) -> MatchRow {
     MatchRow {
         number,
-        own: Entrant::ours(),
+        own: MatchTeam::ours(),
         opponent: Team::Zone.into(),
         own_is_blue: true,
         seed: 1,
@@ -156,7 +156,7 @@ fn ratios_goals_and_intervals_are_those_counted_by_hand() {
         league: "ssl-2013".to_owned(),
         world: WorldPlan::default(),
         duration_s: 600.0,
-        pairings: Plan::against(Entrant::ours(), &[Team::Zone.into()]),
+        pairings: Plan::against(MatchTeam::ours(), &[Team::Zone.into()]),
         matches: 3,
     };
     let rows = [
@@ -202,13 +202,13 @@ fn ratios_goals_and_intervals_are_those_counted_by_hand() {
 
 #[test]
 fn a_part_is_worth_what_the_side_with_it_was_ahead() {
-    let without = Entrant::parse("ours-without-second-level").unwrap();
+    let without = MatchTeam::parse("ours-without-second-level").unwrap();
     let plan = Plan {
         seed: 1,
         league: "division-b".to_owned(),
         world: WorldPlan::default(),
         duration_s: 600.0,
-        pairings: Plan::against(Entrant::ours(), &[without, Team::Zone.into()]),
+        pairings: Plan::against(MatchTeam::ours(), &[without, Team::Zone.into()]),
         matches: 2,
     };
     let of = |row: MatchRow| MatchRow { opponent: without, ..row };
@@ -220,7 +220,7 @@ fn a_part_is_worth_what_the_side_with_it_was_ahead() {
     let effects = effects(&plan, &rows);
     assert_eq!(effects.len(), 1, "another team lacks no part");
     let effect = &effects[0];
-    assert_eq!((&*effect.part, effect.with, effect.matches), ("second-level", Entrant::ours(), 2));
+    assert_eq!((&*effect.part, effect.with, effect.matches), ("second-level", MatchTeam::ours(), 2));
     // 2 and −1: mean 0.5; 6 and 0: mean 3.
     assert!(
         (effect.goals.unwrap().mean - 0.5).abs() < 1e-9 && (effect.shots.unwrap().mean - 3.0).abs() < 1e-9
@@ -231,14 +231,14 @@ fn a_part_is_worth_what_the_side_with_it_was_ahead() {
     // 2 and −1 once more: spread 2.1213, t = 1/3 with 1 degree, p = 0.7952.
     assert!((effect.goals.unwrap().p.unwrap() - 0.7952).abs() < 1e-4);
     // The same from the other side.
-    let turned = Plan { pairings: vec![Pairing { own: without, opponent: Entrant::ours() }], ..plan };
+    let turned = Plan { pairings: vec![Pairing { own: without, opponent: MatchTeam::ours() }], ..plan };
     let rows = [row(0, [0, 2], [100.0, 200.0], [1, 7])].map(|row| MatchRow {
         own: without,
-        opponent: Entrant::ours(),
+        opponent: MatchTeam::ours(),
         ..row
     });
     let effect = super::effects(&turned, &rows).remove(0);
-    assert_eq!((effect.with, effect.goals.unwrap().mean), (Entrant::ours(), 2.0));
+    assert_eq!((effect.with, effect.goals.unwrap().mean), (MatchTeam::ours(), 2.0));
     assert!((effect.offence_ratio.unwrap().mean - 2.0).abs() < 1e-9 && effect.goals.unwrap().p.is_none());
     let text = markdown(&[], &[effect], &our_passes(&[]));
     assert!(text.contains("| second-level | ours | ours-without-second-level | 1 | 2.00 | – |"), "{text}");

@@ -47,10 +47,10 @@ fn entry(page: &mut Page, recording: &Recording, start: &Start, n: usize, at: Px
 /// One line of signs.
 fn signs(page: &mut Page, y: f32) {
     let mut x = SIDE + 8.0;
-    let say = |page: &mut Page, x: &mut f32, after: f32, words: &str| {
-        page.text(Px::new(*x + after, y + 4.5), words, Anchor::Start, font(13.0, FAINT));
+    let say = |page: &mut Page, x: &mut f32, after: f32, description: &str| {
+        page.text(Px::new(*x + after, y + 4.5), description, Anchor::Start, font(13.0, FAINT));
         // The mean advance of a wide sans-serif at 13 px.
-        *x += after + words.chars().count() as f32 * 7.2 + 22.0;
+        *x += after + description.chars().count() as f32 * 7.2 + 22.0;
     };
     let (blue, grey) = (ATTACKERS[0], OPPONENTS[0]);
     page.circle(Px::new(x, y), 7.0, &format!(r#"fill="white" stroke="{blue}" stroke-width="2""#));

@@ -80,7 +80,7 @@ fn header(page: &mut Page, report: &TrialReport) {
     let approach = if report.approach == "cbr" { "Case-based" } else { "Reactive" };
     let below =
         format!("{approach} attackers, playing to the right, against {opponents} · seed {}", report.seed);
-    let outcome = format!("{} after {:.1} s", report.outcome.word(), report.time_s);
+    let outcome = format!("{} after {:.1} s", report.outcome.label(), report.time_s);
     let (left, right) = (SIDE, WIDTH - SIDE);
     page.text(Px::new(left, 34.0), &title(report), Anchor::Start, bold(21.0, INK));
     page.text(Px::new(left, 56.0), &below, Anchor::Start, font(14.0, FAINT));
@@ -221,7 +221,7 @@ fn seconds(page: &mut Page, samples: &[Sample], taken: &mut Vec<Px>) {
         let at = page.place(sample.ball);
         if last.is_none_or(|last| last.distance(at) > 40.0) {
             let spot = free_spot(at, 22.0, taken);
-            let letters = Font { halo: Some(CARPET), ..font(12.0, INK) };
+            let letters = Font { halo: Some(SURFACE), ..font(12.0, INK) };
             page.circle(at, 2.6, &format!(r#"fill="{INK}""#));
             page.text(spot.moved(0.0, 4.0), &format!("{next:.0} s"), Anchor::Middle, letters);
             taken.push(spot);
@@ -287,7 +287,7 @@ const OPPONENTS: [&str; 2] = ["#5f6368", "#303336"];
 const INK: &str = "#202124";
 const FAINT: &str = "#5f6368";
 /// Colour of the field, behind labels on it.
-const CARPET: &str = "#e3eedd";
+const SURFACE: &str = "#e3eedd";
 /// Orange (Okabe and Ito), as the league's ball.
 const BALL: &str = "#E69F00";
 /// Width of the figure, px.

@@ -118,7 +118,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn up_on_the_field_is_up_on_the_picture() {
+    fn up_on_the_field_is_up_on_the_snapshot() {
         let page = Page::new(Px::new(500.0, 400.0));
         assert_eq!(page.place(Point::new(1.0, 0.5)), Px::new(660.0, 320.0));
         assert_eq!(Px::new(660.0, 320.0).at(), [660.0, -320.0]);

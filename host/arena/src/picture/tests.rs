@@ -57,7 +57,7 @@ fn a_trial_with_gameplays_lists_each_that_could_be_seen() {
         assert!(svg.contains(&start.case), "{}", start.case);
     }
     assert_eq!(svg.contains(" more</text>"), starts.len() > LISTED, "what the list leaves out is told");
-    assert!(svg.contains(&format!("{} after", report.outcome.word())));
+    assert!(svg.contains(&format!("{} after", report.outcome.label())));
 }
 
 #[test]

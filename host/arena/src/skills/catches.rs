@@ -2,7 +2,7 @@
 
 use geometry::{Angle, Field, Point, Vector};
 use hil_sim::small_size::Ball;
-use protocol::host::{Directive, Duty};
+use protocol::host::{Directive, RuleRole};
 use rules::League;
 
 use super::drill::{Judge, Moment, Says, Start, State, player, pose};
@@ -28,7 +28,7 @@ impl Had {
     }
 }
 
-fn words_of_gap(moment: &Moment<'_>) -> String {
+fn description_of_gap(moment: &Moment<'_>) -> String {
     match moment.at_dribbler(ROBOT) {
         Some([gap, beside]) => format!("the ball is {gap:.2} m before the dribbler, {beside:.2} m beside it"),
         None => "the robot is gone".to_owned(),
@@ -67,9 +67,9 @@ impl GetBall {
             robot = places.in_play(0.2, 0.2);
         }
         let at = ball.position;
-        let words = format!("ball {kind} at ({:.2}, {:.2})", at.x(), at.y());
+        let description = format!("ball {kind} at ({:.2}, {:.2})", at.x(), at.y());
         let ours = vec![(ROBOT, pose(robot, places.direction()))];
-        let start = Start { words, ours, theirs, ball, says: Says::Run, limit: GET_LIMIT };
+        let start = Start { description, ours, theirs, ball, says: Says::Run, limit: GET_LIMIT };
         Self { start, had: Had::default() }
     }
 }
@@ -79,7 +79,7 @@ impl Judge for GetBall {
         &self.start
     }
 
-    fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, Duty, Directive)>> {
+    fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, RuleRole, Directive)>> {
         Some(player(ROBOT, Directive::GetBall { face: None }))
     }
 
@@ -88,7 +88,7 @@ impl Judge for GetBall {
     }
 
     fn lacks(&self, moment: &Moment<'_>) -> String {
-        words_of_gap(moment)
+        description_of_gap(moment)
     }
 }
 
@@ -112,10 +112,12 @@ impl Receive {
         // It stands about where it shall have the ball, facing anywhere within a right angle of it.
         let turned = Angle::degrees(places.chance.between(-90.0, 90.0));
         let robot = pose(at, at.direction_to(from) + turned);
-        let words = format!("pass of {speed:.1} m/s over {:.1} m, {askew:.0}° askew", from.distance(at));
+        let description =
+            format!("pass of {speed:.1} m/s over {:.1} m, {askew:.0}° askew", from.distance(at));
         let ball = Ball { velocity, ..Ball::at(from) };
         let ours = vec![(ROBOT, robot)];
-        let start = Start { words, ours, theirs: Vec::new(), ball, says: Says::Run, limit: RECEIVE_LIMIT };
+        let start =
+            Start { description, ours, theirs: Vec::new(), ball, says: Says::Run, limit: RECEIVE_LIMIT };
         Self { start, at, had: Had::default() }
     }
 }
@@ -125,7 +127,7 @@ impl Judge for Receive {
         &self.start
     }
 
-    fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, Duty, Directive)>> {
+    fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, RuleRole, Directive)>> {
         Some(player(ROBOT, Directive::Receive { at: self.at.into(), then: None }))
     }
 
@@ -134,7 +136,7 @@ impl Judge for Receive {
     }
 
     fn lacks(&self, moment: &Moment<'_>) -> String {
-        words_of_gap(moment)
+        description_of_gap(moment)
     }
 }
 
@@ -152,10 +154,17 @@ impl Dribble {
         let heading = places.direction();
         let to = ball + Vector::polar(CARRIES, places.direction());
         let robot = pose(ball - Vector::polar(AT_DRIBBLER + 0.02, heading), heading);
-        let words = format!("ball at ({:.2}, {:.2}) to ({:.2}, {:.2})", ball.x(), ball.y(), to.x(), to.y());
+        let description =
+            format!("ball at ({:.2}, {:.2}) to ({:.2}, {:.2})", ball.x(), ball.y(), to.x(), to.y());
         let ours = vec![(ROBOT, robot)];
-        let start =
-            Start { words, ours, theirs: Vec::new(), ball: Ball::at(ball), says: Says::Run, limit: LIMIT };
+        let start = Start {
+            description,
+            ours,
+            theirs: Vec::new(),
+            ball: Ball::at(ball),
+            says: Says::Run,
+            limit: LIMIT,
+        };
         Self { start, to, heading: ball.direction_to(to) }
     }
 }
@@ -165,7 +174,7 @@ impl Judge for Dribble {
         &self.start
     }
 
-    fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, Duty, Directive)>> {
+    fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, RuleRole, Directive)>> {
         let stands = pose(self.to - Vector::polar(AT_DRIBBLER, self.heading), self.heading);
         Some(player(ROBOT, Directive::Dribble { pose: stands.into() }))
     }
@@ -173,7 +182,7 @@ impl Judge for Dribble {
     fn judge(&mut self, moment: &Moment<'_>) -> State {
         let ball = &moment.world.ball;
         let from = moment.ours(ROBOT).and_then(|robot| robot.dribbling_from);
-        if let Some(far) = from.map(|from| from.distance(ball.position)).filter(|far| *far > LAWFUL) {
+        if let Some(far) = from.map(|from| from.distance(ball.position)).filter(|far| *far > LEGAL) {
             return State::Failed(format!("dribbled {far:.2} m"));
         }
         let there = ball.position.distance(self.to) < THERE && ball.speed() < STILL;
@@ -200,10 +209,16 @@ impl Turn {
         let mut places = Places::new(league, seed);
         let (lay, heading) = (places.in_play(1.0, 0.3), places.direction());
         let robot = pose(lay - Vector::polar(AT_DRIBBLER + 0.1, heading), heading);
-        let words = format!("at ({:.2}, {:.2}), from {:.0}°", lay.x(), lay.y(), heading.to_degrees());
+        let description = format!("at ({:.2}, {:.2}), from {:.0}°", lay.x(), lay.y(), heading.to_degrees());
         let ours = vec![(ROBOT, robot)];
-        let start =
-            Start { words, ours, theirs: Vec::new(), ball: Ball::at(lay), says: Says::Run, limit: LIMIT };
+        let start = Start {
+            description,
+            ours,
+            theirs: Vec::new(),
+            ball: Ball::at(lay),
+            says: Says::Run,
+            limit: LIMIT,
+        };
         Self { start, lay, heading, had: Had::default(), turns: None }
     }
 }
@@ -213,7 +228,7 @@ impl Judge for Turn {
         &self.start
     }
 
-    fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, Duty, Directive)>> {
+    fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, RuleRole, Directive)>> {
         let way = if self.turns.is_some() { self.heading + Angle::HALF_TURN } else { self.heading };
         let face = self.lay + Vector::polar(FAR, way);
         Some(player(ROBOT, Directive::GetBall { face: Some(face.into()) }))
@@ -238,7 +253,7 @@ impl Judge for Turn {
 
     fn lacks(&self, moment: &Moment<'_>) -> String {
         let off = moment.ours(ROBOT).map_or(0.0, |robot| (robot.pose.heading - self.heading).to_degrees());
-        format!("turned by {off:.0}°, {}", words_of_gap(moment))
+        format!("turned by {off:.0}°, {}", description_of_gap(moment))
     }
 }
 
@@ -257,7 +272,7 @@ const AT_DRIBBLER: f32 = brain::body::omni::BALL_AT;
 /// How far the ball is carried, m.
 const CARRIES: f32 = 1.0;
 /// The rules' limit, m.
-const LAWFUL: f32 = 1.0;
+const LEGAL: f32 = 1.0;
 /// Carried there, m; and as good as at rest, m/s.
 const THERE: f32 = 0.15;
 const STILL: f32 = 0.1;

@@ -6,13 +6,13 @@ use hil_sim::small_size::{Ball, Event, Robot, World};
 use hil_sim::{Backend, Fnv};
 use host::Drill as Orders;
 use host::strategy::Team;
-use protocol::host::{Directive, Duty};
+use protocol::host::{Directive, RuleRole};
 use protocol::{RobotId, Who};
 use rules::{Colour, League};
 use ssl::referee::Command;
 
 use super::{Skill, Try, TryResult, catches, kicks, placement, save, story};
-use crate::game::{Game, GameConfig, GameError, Nobody};
+use crate::game::{Game, GameConfig, GameError, NoWatcher};
 
 /// Our team.
 pub(super) const US: Colour = Colour::Yellow;
@@ -32,7 +32,7 @@ pub(super) enum Says {
 #[derive(Clone, Debug)]
 pub(super) struct Start {
     /// In words.
-    pub(super) words: String,
+    pub(super) description: String,
     /// Our robots.
     pub(super) ours: Vec<(u8, Pose<Field>)>,
     /// Opponents, who stand.
@@ -91,7 +91,7 @@ pub(super) trait Judge {
     /// How it begins.
     fn start(&self) -> &Start;
     /// What our robots are told; `None`: what the coach says.
-    fn orders(&mut self, moment: &Moment<'_>) -> Option<Vec<(u8, Duty, Directive)>>;
+    fn orders(&mut self, moment: &Moment<'_>) -> Option<Vec<(u8, RuleRole, Directive)>>;
     /// How it stands.
     fn judge(&mut self, moment: &Moment<'_>) -> State;
     /// What is wrong when time is up.
@@ -111,7 +111,7 @@ pub(super) fn id(number: u8) -> RobotId {
 fn seed_of(tried: &Try) -> u64 {
     let mut hash = Fnv::default();
     hash.add(&tried.seed.to_le_bytes());
-    hash.add(tried.skill.word().as_bytes());
+    hash.add(tried.skill.label().as_bytes());
     hash.add(&tried.number.to_le_bytes());
     hash.value()
 }
@@ -160,7 +160,7 @@ pub(super) fn play(
     game.drill(US, Some(Orders::new()));
     for _ in 0..WARM_UP_TICKS {
         referee.speak(&mut game);
-        game.advance(&mut Nobody)?;
+        game.advance(&mut NoWatcher)?;
     }
     place(&mut game, &start, robots);
     game.world_mut().put_ball(start.ball);
@@ -176,17 +176,20 @@ pub(super) fn play(
             State::Going if time > start.limit => break Err(judge.lacks(&moment)),
             State::Going => {}
             State::Succeeded(after) => break Ok(after),
-            State::Failed(words) => break Err(words),
+            State::Failed(description) => break Err(description),
         }
         let orders = judge.orders(&moment).map(|orders| {
-            orders.into_iter().map(|(number, duty, directive)| (id(number), duty, directive)).collect()
+            orders
+                .into_iter()
+                .map(|(number, rule_role, directive)| (id(number), rule_role, directive))
+                .collect()
         });
         story::tell(told, time, &game);
         game.drill(US, orders);
         referee.speak(&mut game);
-        game.advance(&mut Nobody)?;
+        game.advance(&mut NoWatcher)?;
     };
-    Ok(TryResult { tried, start: start.words, end })
+    Ok(TryResult { tried, start: start.description, end })
 }
 
 /// Everybody and the ball to their places.
@@ -274,7 +277,7 @@ impl Whistle {
         }
         self.next = now.0 + PERIOD_US;
         self.packet.packet_timestamp = self.first_stamp + now.0;
-        game.announce(now, &self.packet, &mut Nobody);
+        game.announce(now, &self.packet, &mut NoWatcher);
     }
 }
 
@@ -284,8 +287,8 @@ pub(super) fn pose(at: Point<Field>, heading: Angle) -> Pose<Field> {
 }
 
 /// A field player's directive.
-pub(super) fn player(number: u8, directive: Directive) -> Vec<(u8, Duty, Directive)> {
-    vec![(number, Duty::Player, directive)]
+pub(super) fn player(number: u8, directive: Directive) -> Vec<(u8, RuleRole, Directive)> {
+    vec![(number, RuleRole::Player, directive)]
 }
 
 /// Robots of a full team of that league.

@@ -2,7 +2,7 @@
 
 use geometry::{Field, Point, Segment, Vector};
 use hil_sim::small_size::{Ball, Event};
-use protocol::host::{Directive, Duty, KickOrder};
+use protocol::host::{Directive, KickOrder, RuleRole};
 use rules::{Colour, League};
 
 use super::drill::{Judge, Moment, Says, Start, State, US, player, pose};
@@ -45,10 +45,10 @@ impl Kick {
         };
         let apart = |at: Point<Field>| theirs.iter().all(|other| other.position.distance(at) > 0.25);
         let robot = if apart(robot) { robot } else { from - Vector::polar(0.4, along) };
-        let words =
+        let description =
             format!("ball at ({:.2}, {:.2}) to ({:.2}, {:.2})", from.x(), from.y(), target.x(), target.y());
         let ours = vec![(1, pose(robot, places.direction()))];
-        let start = Start { words, ours, theirs, ball: Ball::at(from), says: Says::Run, limit: LIMIT };
+        let start = Start { description, ours, theirs, ball: Ball::at(from), says: Says::Run, limit: LIMIT };
         Self { start, from, target, order, within, kicked: None }
     }
 }
@@ -58,7 +58,7 @@ impl Judge for Kick {
         &self.start
     }
 
-    fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, Duty, Directive)>> {
+    fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, RuleRole, Directive)>> {
         // Once is enough: who kicked stands.
         let kicks = Directive::Kick { at: self.target.into(), kick: self.order };
         Some(player(1, if self.kicked.is_some() { Directive::Stand } else { kicks }))
@@ -83,8 +83,8 @@ impl Judge for Kick {
         let along = (ball.position - self.from).dot(way.vector()) / way.vector().norm().max(0.01);
         if along < way.vector().norm() {
             let stopped = ball.speed() < 0.05;
-            let words = || format!("the ball stopped {:.2} m short", way.vector().norm() - along);
-            return if stopped { State::Failed(words()) } else { State::Going };
+            let description = || format!("the ball stopped {:.2} m short", way.vector().norm() - along);
+            return if stopped { State::Failed(description()) } else { State::Going };
         }
         let beside = way.vector().cross(ball.position - self.from).abs() / way.vector().norm().max(0.01);
         if beside <= self.within {

@@ -26,7 +26,7 @@ use rules::League;
 use crate::game::GameError;
 pub use rows::{SkillRow, rows};
 
-hil_sim::words! {
+hil_sim::labels! {
     /// A skill that is measured.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
     pub enum Skill {
@@ -132,7 +132,7 @@ impl Try {
             "onetwo evaluate skills --league {} --world {} --skill {} --first {} --tries 1 --seed {} --story",
             self.league.name(),
             self.world,
-            self.skill.word(),
+            self.skill.label(),
             self.number,
             self.seed
         )

@@ -2,7 +2,7 @@
 
 use geometry::{Field, Point, Segment};
 use hil_sim::small_size::Ball;
-use protocol::host::{Directive, Duty};
+use protocol::host::{Directive, RuleRole};
 use rules::League;
 use rules::limits::PLACEMENT_TIME_MIN;
 use rules::restart::{AfterPlacement, PlacementLack, placement_lack};
@@ -35,7 +35,7 @@ impl Placement {
         let ours = places.robots(team, near_ball, 0.3, &[]);
         // As the rules want it of opponents: off the line from ball to target.
         let theirs = places.robots(team - 1, Segment::new(ball, target), OFF_LINE, &ours);
-        let words = format!(
+        let description = format!(
             "ball {kind} at ({:.2}, {:.2}) to ({:.2}, {:.2})",
             ball.x(),
             ball.y(),
@@ -43,7 +43,7 @@ impl Placement {
             target.y()
         );
         let start = Start {
-            words,
+            description,
             ours: (0..).zip(ours).collect(),
             theirs,
             ball: Ball::at(ball),
@@ -66,7 +66,7 @@ impl Judge for Placement {
         &self.start
     }
 
-    fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, Duty, Directive)>> {
+    fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, RuleRole, Directive)>> {
         None
     }
 

@@ -32,7 +32,7 @@ pub fn rows(plan: &SkillPlan, results: &[TryResult]) -> Vec<SkillRow> {
         let mut times: Vec<f32> = of.iter().filter_map(|result| result.end.as_ref().ok().copied()).collect();
         times.sort_by(f32::total_cmp);
         SkillRow {
-            skill: skill.word(),
+            skill: skill.label(),
             league: plan.league.name().to_owned(),
             world: plan.world.clone(),
             worlds: plan.worlds.len(),

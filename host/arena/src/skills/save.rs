@@ -2,7 +2,7 @@
 
 use geometry::{Angle, Field, GoalEnd, Point, Vector};
 use hil_sim::small_size::{Ball, World};
-use protocol::host::{Directive, Duty};
+use protocol::host::{Directive, RuleRole};
 use rules::League;
 use rules::limits::BALL_RADIUS;
 
@@ -27,9 +27,10 @@ impl Save {
         let aim = Point::new(goal.x(), places.chance.between(-half, half));
         let speed = places.chance.between(SLOWEST, FASTEST);
         let keeper = pose(Point::new(goal.x() + 0.15, 0.0), Angle::ZERO);
-        let words = format!("{speed:.1} m/s from ({:.2}, {:.2}) at y = {:.2}", ball.x(), ball.y(), aim.y());
+        let description =
+            format!("{speed:.1} m/s from ({:.2}, {:.2}) at y = {:.2}", ball.x(), ball.y(), aim.y());
         let start = Start {
-            words,
+            description,
             ours: vec![(0, keeper)],
             theirs: Vec::new(),
             ball: Ball::at(ball),
@@ -45,7 +46,7 @@ impl Judge for Save {
         &self.start
     }
 
-    fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, Duty, Directive)>> {
+    fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, RuleRole, Directive)>> {
         None
     }
 

@@ -20,9 +20,9 @@ fn plan(skills: &[Skill], tries: u32) -> SkillPlan {
 #[test]
 fn every_skill_has_a_name_that_leads_back_to_it() {
     for skill in Skill::ALL {
-        assert_eq!(Skill::from_word(skill.word()), Some(skill));
+        assert_eq!(Skill::from_label(skill.label()), Some(skill));
     }
-    assert_eq!(Skill::from_word("luck"), None);
+    assert_eq!(Skill::from_label("luck"), None);
 }
 
 #[test]

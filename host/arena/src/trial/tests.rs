@@ -4,7 +4,7 @@
 use hil_sim::{Fault, NativeBackend};
 
 use super::*;
-use crate::story::Story;
+use crate::story::TextLog;
 
 fn play(config: &TrialConfig<'static>) -> TrialReport {
     run(config, Box::new(NativeBackend::new(config.base)), &mut []).unwrap()
@@ -32,7 +32,7 @@ fn one_flipped_bit_of_one_order_changes_the_hash() {
 #[test]
 fn watching_changes_nothing() {
     let config = config(3);
-    let (mut story, mut recording) = (Story::default(), crate::Recording::default());
+    let (mut story, mut recording) = (TextLog::default(), crate::Recording::default());
     let backend = Box::new(NativeBackend::new(config.base));
     let watched = run(&config, backend, &mut [&mut story, &mut recording]).unwrap();
     assert_eq!(watched, play(&config));

@@ -8,7 +8,7 @@ use protocol::RobotId;
 use serde::{Serialize, Serializer};
 
 use crate::args::Chosen;
-use crate::library::Shelf;
+use crate::library::LibraryHandle;
 
 /// The answer to one line of `cases retrieve`.
 #[derive(Debug, Serialize)]
@@ -56,7 +56,7 @@ pub(crate) struct Found<'a> {
 
 impl<'a> Answer<'a> {
     pub(crate) fn new(
-        shelf: &'a Shelf,
+        library_handle: &'a LibraryHandle,
         base: &CaseBase<'_>,
         problem: &Problem,
         chosen: &'a Chosen,
@@ -67,9 +67,9 @@ impl<'a> Answer<'a> {
             return Self::Nothing { case: (), candidates: retrieval.candidates, settings: &chosen.changed };
         };
         Self::Found(Found {
-            case: shelf.name(best.case),
+            case: library_handle.name(best.case),
             id: best.case.0,
-            symmetry: case.symmetry().word(),
+            symmetry: case.symmetry().label(),
             similarity: similarity(best),
             cost: cost(best),
             conditions: best.conditions,

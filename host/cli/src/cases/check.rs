@@ -12,7 +12,7 @@ use clap::Args;
 use serde::Serialize;
 
 use crate::Failure;
-use crate::args::FolderArgs;
+use crate::args::DirectoryArgs;
 use crate::output;
 
 use super::answer::write_line;
@@ -23,7 +23,7 @@ use super::survey;
 #[derive(Debug, Args)]
 pub(crate) struct CheckArgs {
     #[command(flatten)]
-    folder: FolderArgs,
+    directory: DirectoryArgs,
     /// Warnings fail too.
     #[arg(long)]
     strict: bool,
@@ -50,7 +50,8 @@ struct Row<'a> {
     file: String,
     line: u32,
     message: &'a str,
-    mend: &'a str,
+    #[serde(rename = "mend")]
+    hint: &'a str,
 }
 
 const ALL: &str = "all";
@@ -76,8 +77,8 @@ pub(super) fn run(args: &CheckArgs) -> Result<ExitCode, Failure> {
         explain(code, &mut output).and_then(|()| output.flush()).map_err(Failure::Output)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let reports = match &args.folder.library {
-        Some(folder) => vec![Report::of(folder, args)?],
+    let reports = match &args.directory.library {
+        Some(directory) => vec![Report::of(directory, args)?],
         None => LEAGUES.iter().map(|league| Report::built_in(league, args)).collect::<Result<_, _>>()?,
     };
     let mut output = output::lines();
@@ -97,8 +98,8 @@ pub(super) fn run(args: &CheckArgs) -> Result<ExitCode, Failure> {
 fn doubts_of_draw(library: &Library, args: &CheckArgs) -> Result<Vec<Finding>, Failure> {
     let fail = |error: casebase::SettingError| Failure::Survey(error.to_string());
     let (survey, sampler) = (library.survey().map_err(fail)?, library.sampler(args.seed));
-    let tally = survey::tally(&survey, args.problems, |number| Some(sampler.problem(number)));
-    Ok(never_retrieved(library, &tally))
+    let counters = survey::counters(&survey, args.problems, |number| Some(sampler.problem(number)));
+    Ok(never_retrieved(library, &counters))
 }
 
 /// What the check of one library found.
@@ -110,13 +111,13 @@ struct Report {
 }
 
 impl Report {
-    fn of(folder: &Path, args: &CheckArgs) -> Result<Self, Failure> {
-        if !folder.is_dir() {
-            return Err(Failure::missing_folder(folder));
+    fn of(directory: &Path, args: &CheckArgs) -> Result<Self, Failure> {
+        if !directory.is_dir() {
+            return Err(Failure::missing_directory(directory));
         }
-        let absolute = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+        let absolute = directory.canonicalize().unwrap_or_else(|_| directory.to_owned());
         let league = absolute.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        Self::new(league, crate::library::load(folder), args)
+        Self::new(league, crate::library::load(directory), args)
     }
 
     /// From the texts in this program; the build refused errors, so only warnings are left.
@@ -149,7 +150,7 @@ impl Report {
             file: finding.file.display().to_string(),
             line: finding.line,
             message: &finding.message,
-            mend: &finding.mend,
+            hint: &finding.hint,
         })
     }
 

@@ -8,7 +8,7 @@ use protocol::CaseId;
 use serde::Serialize;
 
 use crate::Failure;
-use crate::library::Shelf;
+use crate::library::LibraryHandle;
 
 /// Which of two cases ranks first, and by what.
 #[derive(Debug, Serialize)]
@@ -32,26 +32,28 @@ struct Side<'a> {
 }
 
 /// A stored case by its id, its name (as authored) or `name/symmetry`.
-pub(super) fn find(shelf: &Shelf, stored: usize, asked: &str) -> Result<CaseId, Failure> {
+pub(super) fn find(library_handle: &LibraryHandle, stored: usize, asked: &str) -> Result<CaseId, Failure> {
     if let Some(id) = asked.parse::<u16>().ok().filter(|id| usize::from(*id) < stored) {
         return Ok(CaseId(id));
     }
-    let names = shelf.names();
+    let names = library_handle.names();
     let with = |name: &str, symmetry: Symmetry| {
         let authored = names.iter().position(|known| known == name)?;
         Some(CaseId(4 * authored as u16 + symmetry.bits()))
     };
-    let mirrored = asked.rsplit_once('/').and_then(|(name, word)| {
-        let symmetry = Symmetry::ALL.into_iter().find(|symmetry| symmetry.word() == word)?;
+    let mirrored = asked.rsplit_once('/').and_then(|(name, label)| {
+        let symmetry = Symmetry::ALL.into_iter().find(|symmetry| symmetry.label() == label)?;
         with(name, symmetry)
     });
-    mirrored.or_else(|| with(asked, Symmetry::Identity)).ok_or_else(|| super::show::unknown(shelf, asked))
+    mirrored
+        .or_else(|| with(asked, Symmetry::Identity))
+        .ok_or_else(|| super::show::unknown(library_handle, asked))
 }
 
 impl<'a> Difference<'a> {
     /// `told` are both cases with their verdicts and texts; a case for the other goal has none.
     pub(super) fn new(
-        shelf: &'a Shelf,
+        library_handle: &'a LibraryHandle,
         told: [(CaseId, Option<&Verdict>, String); 2],
         settings: &Settings,
     ) -> Self {
@@ -69,9 +71,9 @@ impl<'a> Difference<'a> {
         };
         let cases = told.map(|(id, verdict, why)| Side {
             id: id.0,
-            case: shelf.name(id),
-            symmetry: Symmetry::from_bits(id.0).word(),
-            verdict: verdict.map_or("other_goal", Verdict::word),
+            case: library_handle.name(id),
+            symmetry: Symmetry::from_bits(id.0).label(),
+            verdict: verdict.map_or("other_goal", Verdict::label),
             why,
         });
         Self { first, by, cases }

@@ -19,7 +19,7 @@ use super::lines::for_each_problem;
 use super::whatif::WhatIf;
 use crate::Failure;
 use crate::args::{Chosen, LibraryArgs, SettingsArgs};
-use crate::library::Shelf;
+use crate::library::LibraryHandle;
 use crate::output;
 
 /// Arguments of `cases explain`.
@@ -49,24 +49,27 @@ const NEAREST: usize = 5;
 
 pub(super) fn run(args: &ExplainArgs) -> Result<ExitCode, Failure> {
     let chosen = args.settings.choose()?;
-    let shelf = Shelf::open(&args.library)?;
-    let base = shelf.base();
+    let library_handle = LibraryHandle::open(&args.library)?;
+    let base = library_handle.base();
     let pair = args.diff.as_deref().map(|pair| -> Result<_, Failure> {
-        Ok([diff::find(&shelf, base.len(), &pair[0])?, diff::find(&shelf, base.len(), &pair[1])?])
+        Ok([
+            diff::find(&library_handle, base.len(), &pair[0])?,
+            diff::find(&library_handle, base.len(), &pair[1])?,
+        ])
     });
     let pair = pair.transpose()?;
     let mut output = output::lines();
     for_each_problem(stdin().lock(), &mut output, |output, number, problem| match problem {
         Ok(problem) => {
             if let Some(pair) = pair {
-                let difference = difference(&shelf, &base, &problem, &chosen, pair);
+                let difference = difference(&library_handle, &base, &problem, &chosen, pair);
                 return if args.json {
                     write_line(output, &difference)
                 } else {
                     difference.write(output, number)
                 };
             }
-            let mut explanation = Explanation::new(&shelf, &base, &problem, &chosen);
+            let mut explanation = Explanation::new(&library_handle, &base, &problem, &chosen);
             let told = explanation.told_first(args.all);
             // A table is read by the operator, a few problems at a time: it has these lines by default, for a
             // handful of cases.
@@ -76,7 +79,7 @@ pub(super) fn run(args: &ExplainArgs) -> Result<ExitCode, Failure> {
                 (false, true) => 0,
             };
             if asked > 0 || args.what_if {
-                explanation.ask_what_if(&shelf, &base, &problem, &chosen, &told[..asked]);
+                explanation.ask_what_if(&library_handle, &base, &problem, &chosen, &told[..asked]);
             }
             if args.json {
                 write_line(output, &explanation)
@@ -91,9 +94,13 @@ pub(super) fn run(args: &ExplainArgs) -> Result<ExitCode, Failure> {
 }
 
 /// The explanation of a problem in the form of `--json`; or the error in the problem.
-pub(crate) fn explained(shelf: &Shelf, chosen: &Chosen, line: &str) -> Result<String, String> {
+pub(crate) fn explained(
+    library_handle: &LibraryHandle,
+    chosen: &Chosen,
+    line: &str,
+) -> Result<String, String> {
     let problem = super::problem::parse(line).map_err(|malformed| malformed.to_string())?;
-    let explanation = Explanation::new(shelf, &shelf.base(), &problem, chosen);
+    let explanation = Explanation::new(library_handle, &library_handle.base(), &problem, chosen);
     serde_json::to_string(&explanation).map_err(|error| error.to_string())
 }
 
@@ -163,7 +170,12 @@ enum Evidence {
 }
 
 impl<'a> Explanation<'a> {
-    fn new(shelf: &'a Shelf, base: &CaseBase<'_>, problem: &Problem, chosen: &'a Chosen) -> Self {
+    fn new(
+        library_handle: &'a LibraryHandle,
+        base: &CaseBase<'_>,
+        problem: &Problem,
+        chosen: &'a Chosen,
+    ) -> Self {
         let mut verdicts = Vec::new();
         casebase::explain(base, problem, &chosen.settings, |id, verdict| verdicts.push((id, verdict)));
         let mut ranking: Vec<&Match> =
@@ -175,9 +187,9 @@ impl<'a> Explanation<'a> {
             let rank = ranks.get(id).copied().unwrap_or(0);
             Some(Row {
                 id: id.0,
-                case: shelf.name(*id),
-                symmetry: case.symmetry().word(),
-                verdict: verdict.word(),
+                case: library_handle.name(*id),
+                symmetry: case.symmetry().label(),
+                verdict: verdict.label(),
                 evidence: Evidence::of(verdict, rank, &case, problem, chosen),
             })
         };
@@ -203,7 +215,7 @@ impl<'a> Explanation<'a> {
 
     fn ask_what_if(
         &mut self,
-        shelf: &Shelf,
+        library_handle: &LibraryHandle,
         base: &CaseBase<'_>,
         problem: &Problem,
         chosen: &Chosen,
@@ -212,7 +224,7 @@ impl<'a> Explanation<'a> {
         let what_if = |at: &usize| {
             let id = self.cases[*at].id;
             let found = case_tools::counterfactual(base, problem, &chosen.settings, CaseId(id))?;
-            WhatIf::new(shelf, id, &found)
+            WhatIf::new(library_handle, id, &found)
         };
         self.counterfactuals = Some(told.iter().filter_map(what_if).collect());
     }
@@ -251,7 +263,7 @@ impl<'a> Explanation<'a> {
 
 /// Two cases on one problem.
 fn difference<'a>(
-    shelf: &'a Shelf,
+    library_handle: &'a LibraryHandle,
     base: &CaseBase<'_>,
     problem: &Problem,
     chosen: &Chosen,
@@ -264,12 +276,12 @@ fn difference<'a>(
     let told = pair.map(|id| {
         let verdict = verdicts.iter().find(|(other, _)| *other == id).map(|(_, verdict)| verdict);
         let rank = ranking.iter().position(|found| found.case == id).map_or(0, |before| before + 1);
-        let words = verdict
+        let description = verdict
             .zip(base.case(id))
             .map(|(verdict, case)| Evidence::of(verdict, rank, &case, problem, chosen).told());
-        (id, verdict, words.unwrap_or_else(|| "it defends the other goal".to_owned()))
+        (id, verdict, description.unwrap_or_else(|| "it defends the other goal".to_owned()))
     });
-    Difference::new(shelf, told, &chosen.settings)
+    Difference::new(library_handle, told, &chosen.settings)
 }
 
 fn candidate(verdict: &Verdict) -> Option<&Match> {

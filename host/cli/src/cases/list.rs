@@ -8,22 +8,22 @@ use clap::Args;
 use serde::Serialize;
 
 use crate::Failure;
-use crate::args::FolderArgs;
-use crate::library::Shelf;
+use crate::args::DirectoryArgs;
+use crate::library::LibraryHandle;
 use crate::output;
 
 /// Arguments of `cases list`.
 #[derive(Debug, Args)]
 pub(crate) struct ListArgs {
     #[command(flatten)]
-    folder: FolderArgs,
+    directory: DirectoryArgs,
     /// One JSON list instead of a table.
     #[arg(long)]
     json: bool,
 }
 
 pub(super) fn run(args: &ListArgs) -> Result<ExitCode, Failure> {
-    let shelves = Shelf::all(args.folder.library.as_deref())?;
+    let shelves = LibraryHandle::all(args.directory.library.as_deref())?;
     let rows: Vec<Row<'_>> = shelves.iter().flat_map(rows).collect();
     let mut output = output::lines();
     let written = if args.json { write_json(&mut output, &rows) } else { write_table(&mut output, &rows) };
@@ -44,16 +44,16 @@ struct Row<'a> {
     opponents: usize,
 }
 
-fn rows(shelf: &Shelf) -> impl Iterator<Item = Row<'_>> {
-    shelf.base().cases().map(|case| {
-        let name = shelf.name(case.id());
+fn rows(library_handle: &LibraryHandle) -> impl Iterator<Item = Row<'_>> {
+    library_handle.base().cases().map(|case| {
+        let name = library_handle.name(case.id());
         Row {
-            league: shelf.league(),
+            league: library_handle.league(),
             id: case.id().0,
             case: name,
-            symmetry: case.symmetry().word(),
+            symmetry: case.symmetry().label(),
             region: name.split_once('/').map_or(name, |(region, _)| region),
-            defending: case.defending().word(),
+            defending: case.defending().label(),
             teammates: case.teammates(),
             opponents: case.opponents().count(),
         }

@@ -40,8 +40,8 @@ pub(super) fn run(args: &NewArgs) -> Result<ExitCode, Failure> {
     let draft = skeleton(&rules, &problem).map_err(|error| match error {
         SkeletonError::NoTeammate => Failure::Draft(DraftError::NoTeammate),
         SkeletonError::League(findings) => {
-            let folder = rules.path.parent().map(Path::to_owned).unwrap_or_default();
-            Failure::FaultyLibrary { folder, findings }
+            let directory = rules.path.parent().map(Path::to_owned).unwrap_or_default();
+            Failure::FaultyLibrary { directory, findings }
         }
     })?;
     match &args.out {
@@ -52,7 +52,7 @@ pub(super) fn run(args: &NewArgs) -> Result<ExitCode, Failure> {
         note!("note: {note}");
     }
     for finding in &draft.findings {
-        note!("note: line {}: {}; {}", finding.line, finding.message, finding.mend);
+        note!("note: line {}: {}; {}", finding.line, finding.message, finding.hint);
     }
     if !draft.retrieved {
         note!(
@@ -64,8 +64,8 @@ pub(super) fn run(args: &NewArgs) -> Result<ExitCode, Failure> {
 
 /// `league.toml` of the selected league.
 fn rules(args: &LibraryArgs) -> Result<SourceFile, Failure> {
-    if let Some(folder) = &args.folder.library {
-        let path = folder.join("league.toml");
+    if let Some(directory) = &args.directory.library {
+        let path = directory.join("league.toml");
         let text = foreign::read_text(&path, CASE_FILE_LEN_MAX)
             .map_err(|error| Failure::Draft(DraftError::Rules { file: path.clone(), error }))?;
         return Ok(SourceFile { path, name: "league".to_owned(), text });

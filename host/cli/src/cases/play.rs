@@ -9,13 +9,13 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::process::ExitCode;
 
-use arena::{CaseNames, Opposition, Rehearsal, Score, Story};
+use arena::{CaseNames, CaseTrial, Opposition, Score, TextLog};
 use casebase::Case;
 use clap::Args;
 
 use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs};
-use crate::library::Shelf;
+use crate::library::LibraryHandle;
 use crate::output::{self, say};
 use crate::progress::Progress;
 use crate::setup::refuse_other_fields;
@@ -55,55 +55,62 @@ pub(crate) struct PlayArgs {
 
 pub(super) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
     let settings = args.settings.choose()?.settings;
-    let shelf = Shelf::open(&args.library)?;
-    let rehearsal = Rehearsal {
-        base: shelf.base(),
-        names: CaseNames::new(shelf.names()),
+    let library_handle = LibraryHandle::open(&args.library)?;
+    let case_trial = CaseTrial {
+        base: library_handle.base(),
+        names: CaseNames::new(library_handle.names()),
         settings,
         trials: args.trials,
         seed: args.seed,
     };
-    refuse_other_fields(&shelf)?;
-    let cases = chosen(args, &shelf, &rehearsal)?;
+    refuse_other_fields(&library_handle)?;
+    let cases = chosen(args, &library_handle, &case_trial)?;
     let oppositions: Vec<_> = Opposition::ALL
         .into_iter()
         .filter(|kind| args.opponents.is_none_or(|wanted| wanted == *kind))
         .collect();
     if args.story {
-        return tell(&rehearsal, &cases, &oppositions);
+        return tell(&case_trial, &cases, &oppositions);
     }
-    let scores = play(args, &rehearsal, &cases, &oppositions)?;
-    let words = if args.json {
+    let scores = play(args, &case_trial, &cases, &oppositions)?;
+    let description = if args.json {
         serde_json::to_string(&scores).map_err(|error| Failure::Output(error.into()))? + "\n"
     } else if args.markdown {
-        args.heading(&rehearsal, &scores) + &arena::markdown(&scores)
+        args.heading(&case_trial, &scores) + &arena::markdown(&scores)
     } else {
         arena::markdown(&scores)
     };
-    say(&words)?;
+    say(&description)?;
     Ok(ExitCode::SUCCESS)
 }
 
 /// The authored cases that are selected, in the order of ids.
-fn chosen<'a>(args: &PlayArgs, shelf: &Shelf, rehearsal: &Rehearsal<'a>) -> Result<Vec<Case<'a>>, Failure> {
-    let names = shelf.names();
+fn chosen<'a>(
+    args: &PlayArgs,
+    library_handle: &LibraryHandle,
+    case_trial: &CaseTrial<'a>,
+) -> Result<Vec<Case<'a>>, Failure> {
+    let names = library_handle.names();
     let means = |asked: &str, name: &str| {
         name == asked || name.strip_prefix(asked).is_some_and(|rest| rest.starts_with('/'))
     };
     for asked in &args.names {
         if !names.iter().any(|name| means(asked, name)) {
-            return Err(Failure::UnknownName { asked: asked.clone(), league: shelf.league().to_owned() });
+            return Err(Failure::UnknownName {
+                asked: asked.clone(),
+                league: library_handle.league().to_owned(),
+            });
         }
     }
     let wanted = |name: &str| args.names.is_empty() || args.names.iter().any(|asked| means(asked, name));
     let cases = names.iter().enumerate().filter(|(_, name)| wanted(name));
-    Ok(cases.filter_map(|(number, _)| rehearsal.case(number)).collect())
+    Ok(cases.filter_map(|(number, _)| case_trial.case(number)).collect())
 }
 
 /// All attempts, on the selected number of threads.
 fn play(
     args: &PlayArgs,
-    rehearsal: &Rehearsal<'_>,
+    case_trial: &CaseTrial<'_>,
     cases: &[Case<'_>],
     oppositions: &[Opposition],
 ) -> Result<Vec<Score>, Failure> {
@@ -114,12 +121,12 @@ fn play(
     let bar = Progress::of(attempts, "");
     let mut scores = Vec::new();
     for case in cases {
-        let name = rehearsal.names.of(case.id());
+        let name = case_trial.names.of(case.id());
         bar.say(name.clone());
         for kind in oppositions {
-            let attempts = pool.install(|| rehearsal.play(case, *kind, &|| bar.add(1)));
+            let attempts = pool.install(|| case_trial.play(case, *kind, &|| bar.add(1)));
             let attempts = attempts.map_err(Failure::Trial)?;
-            scores.push(Score::of(name.clone(), kind.word(), &attempts));
+            scores.push(Score::of(name.clone(), kind.label(), &attempts));
         }
     }
     Ok(scores)
@@ -127,23 +134,24 @@ fn play(
 
 /// Attempts as text, one after the other.
 fn tell(
-    rehearsal: &Rehearsal<'_>,
+    case_trial: &CaseTrial<'_>,
     cases: &[Case<'_>],
     oppositions: &[Opposition],
 ) -> Result<ExitCode, Failure> {
     let mut out = output::lines();
     for case in cases {
         for (kind, number) in
-            oppositions.iter().flat_map(|kind| (0..rehearsal.trials).map(move |n| (*kind, n)))
+            oppositions.iter().flat_map(|kind| (0..case_trial.trials).map(move |n| (*kind, n)))
         {
-            let mut story = Story::default();
-            let attempt = rehearsal.attempt(case, kind, number, &mut [&mut story]).map_err(Failure::Trial)?;
+            let mut story = TextLog::default();
+            let attempt =
+                case_trial.attempt(case, kind, number, &mut [&mut story]).map_err(Failure::Trial)?;
             let mut text =
-                format!("{}, opponents {}, attempt {number}\n", rehearsal.names.of(case.id()), kind.word());
+                format!("{}, opponents {}, attempt {number}\n", case_trial.names.of(case.id()), kind.label());
             for line in story.take_lines() {
                 let _ = writeln!(text, "{line}");
             }
-            let end = attempt.end.map_or("not played", arena::CycleEnd::word);
+            let end = attempt.end.map_or("not played", arena::CycleEnd::label);
             let _ = writeln!(text, "{end}, the ball {:.2} m nearer to the goal line\n", attempt.progress);
             out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(Failure::Output)?;
         }
@@ -153,10 +161,10 @@ fn tell(
 
 impl PlayArgs {
     /// Lines above the table.
-    fn heading(&self, rehearsal: &Rehearsal<'_>, scores: &[Score]) -> String {
-        let [trials, seed, hash] = [u64::from(self.trials), self.seed, u64::from(rehearsal.base.hash())];
-        let reached = |word: &str| {
-            let of_kind: Vec<_> = scores.iter().filter(|score| score.opponents == word).collect();
+    fn heading(&self, case_trial: &CaseTrial<'_>, scores: &[Score]) -> String {
+        let [trials, seed, hash] = [u64::from(self.trials), self.seed, u64::from(case_trial.base.hash())];
+        let reached = |label: &str| {
+            let of_kind: Vec<_> = scores.iter().filter(|score| score.opponents == label).collect();
             let reached = of_kind.iter().filter(|score| score.completed_percent() >= ENOUGH_PERCENT).count();
             format!("{reached} of {}", of_kind.len())
         };
@@ -164,15 +172,15 @@ impl PlayArgs {
         for name in &self.names {
             let _ = write!(command, " {name}");
         }
-        if let Some(folder) = &self.library.folder.library {
-            let _ = write!(command, " --library {}", folder.display());
+        if let Some(directory) = &self.library.directory.library {
+            let _ = write!(command, " --library {}", directory.display());
         }
         let _ = write!(command, " --trials {trials} --seed {seed}");
         for (name, value) in self.settings.given() {
             let _ = write!(command, " --set {name}={value}");
         }
         if let Some(kind) = self.opponents {
-            let _ = write!(command, " --opponents {}", kind.word());
+            let _ = write!(command, " --opponents {}", kind.label());
         }
         format!(
             "# Cases played from their own situations\n\n\
@@ -190,8 +198,8 @@ impl PlayArgs {
     }
 }
 
-fn opposition(word: &str) -> Result<Opposition, String> {
-    Opposition::from_word(word).ok_or_else(|| "take standing or playing".to_owned())
+fn opposition(label: &str) -> Result<Opposition, String> {
+    Opposition::from_label(label).ok_or_else(|| "take standing or playing".to_owned())
 }
 
 /// A case that is completed less often must give the reason in its file, percent.

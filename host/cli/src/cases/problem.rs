@@ -85,8 +85,9 @@ fn fill<T>(slot: &mut Option<T>, key: &str, value: T) -> Result<(), Malformed> {
 }
 
 fn goal_end(value: &RawValue) -> Result<GoalEnd, Malformed> {
-    let word = serde_json::from_str::<String>(value.get()).ok();
-    word.and_then(|word| GoalEnd::from_word(&word))
+    let label = serde_json::from_str::<String>(value.get()).ok();
+    label
+        .and_then(|label| GoalEnd::from_label(&label))
         .ok_or_else(|| Malformed::at("defending", "expected \"yellow\" or \"cyan\""))
 }
 

@@ -13,9 +13,9 @@ use super::show::{find, unknown};
 use super::{counted, problem};
 use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs};
-use crate::library::Shelf;
+use crate::library::LibraryHandle;
 use crate::output::{say, shown};
-use crate::picture::{self, PictureError};
+use crate::picture::{self, SnapshotError};
 
 /// Arguments of `cases render`.
 #[derive(Debug, Args)]
@@ -38,7 +38,7 @@ pub(crate) struct RenderArgs {
     sheet: Option<PathBuf>,
     /// What the figure is for.
     #[arg(long, value_enum, default_value = "light")]
-    theme: ThemeWord,
+    theme: ThemeLabel,
     #[command(flatten)]
     library: LibraryArgs,
     #[command(flatten)]
@@ -46,28 +46,28 @@ pub(crate) struct RenderArgs {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum ThemeWord {
+enum ThemeLabel {
     Light,
     Dark,
     Print,
 }
 
-impl From<ThemeWord> for Theme {
-    fn from(word: ThemeWord) -> Self {
-        match word {
-            ThemeWord::Light => Self::Light,
-            ThemeWord::Dark => Self::Dark,
-            ThemeWord::Print => Self::Print,
+impl From<ThemeLabel> for Theme {
+    fn from(label: ThemeLabel) -> Self {
+        match label {
+            ThemeLabel::Light => Self::Light,
+            ThemeLabel::Dark => Self::Dark,
+            ThemeLabel::Print => Self::Print,
         }
     }
 }
 
 pub(super) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
-    let shelf = Shelf::open(&args.library)?;
+    let library_handle = LibraryHandle::open(&args.library)?;
     if args.all || args.sheet.is_some() {
-        return every(args, &shelf);
+        return every(args, &library_handle);
     }
-    let svg = one(args, &shelf)?;
+    let svg = one(args, &library_handle)?;
     if let Some(file) = &args.out {
         picture::named(&file.to_string_lossy(), &KINDS)
             .map_err(|error| Failure::Picture { file: file.clone(), error })?;
@@ -79,13 +79,13 @@ pub(super) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
 }
 
 /// One case, alone or under a problem.
-fn one(args: &RenderArgs, shelf: &Shelf) -> Result<String, Failure> {
+fn one(args: &RenderArgs, library_handle: &LibraryHandle) -> Result<String, Failure> {
     let chosen = args.settings.choose()?;
     let settings = &chosen.settings;
-    let base = shelf.base();
+    let base = library_handle.base();
     let problem = args.problem.as_deref().map(read).transpose()?;
     let case = match (&args.case, &problem) {
-        (Some(asked), _) => Some(find(shelf, asked).ok_or_else(|| unknown(shelf, asked))?),
+        (Some(asked), _) => Some(find(library_handle, asked).ok_or_else(|| unknown(library_handle, asked))?),
         (None, Some(problem)) => {
             casebase::retrieve(&base, problem, settings).best.and_then(|best| base.case(best.case))
         }
@@ -98,7 +98,7 @@ fn one(args: &RenderArgs, shelf: &Shelf) -> Result<String, Failure> {
     }
     let verdict = verdicts.iter().find(|(id, _)| *id == case.id()).map(|(_, verdict)| verdict);
     if problem.is_some() && verdict.is_none() {
-        return Err(Failure::OtherGoal(shelf.name(case.id()).to_owned()));
+        return Err(Failure::OtherGoal(library_handle.name(case.id()).to_owned()));
     }
     let mut ranking: Vec<_> = verdicts.iter().filter_map(|(_, verdict)| candidate(verdict)).collect();
     ranking.sort_by(|a, b| rank_order(a, b, settings));
@@ -106,42 +106,43 @@ fn one(args: &RenderArgs, shelf: &Shelf) -> Result<String, Failure> {
     let rank = before.map(|before| (before + 1, ranking.len()));
     let overlay =
         problem.as_ref().zip(verdict).map(|(problem, verdict)| Overlay { problem, settings, verdict, rank });
-    let intent = shelf.intent(case.id()).unwrap_or_default();
-    let (name, theme) = (shelf.name(case.id()), args.theme.into());
+    let intent = library_handle.intent(case.id()).unwrap_or_default();
+    let (name, theme) = (library_handle.name(case.id()), args.theme.into());
     Ok(case_picture(&CasePicture { base, case, name, intent: &intent, overlay, theme }))
 }
 
 /// Every authored case: a file each, all on one page, or both.
-fn every(args: &RenderArgs, shelf: &Shelf) -> Result<ExitCode, Failure> {
-    let base = shelf.base();
+fn every(args: &RenderArgs, library_handle: &LibraryHandle) -> Result<ExitCode, Failure> {
+    let base = library_handle.base();
     let authored: Vec<_> = base.cases().filter(|case| case.symmetry() == Symmetry::Identity).collect();
-    let intents: Vec<_> = authored.iter().map(|case| shelf.intent(case.id()).unwrap_or_default()).collect();
+    let intents: Vec<_> =
+        authored.iter().map(|case| library_handle.intent(case.id()).unwrap_or_default()).collect();
     let pictures: Vec<_> = authored
         .iter()
         .zip(&intents)
         .map(|(case, intent)| CasePicture {
             base,
             case: *case,
-            name: shelf.name(case.id()),
+            name: library_handle.name(case.id()),
             intent,
             overlay: None,
             theme: args.theme.into(),
         })
         .collect();
-    if let Some(folder) = args.out.as_ref().filter(|_| args.all) {
+    if let Some(directory) = args.out.as_ref().filter(|_| args.all) {
         for picture in &pictures {
-            let file = folder.join(format!("{}.svg", picture.name));
-            if let Some(folder) = file.parent() {
-                std::fs::create_dir_all(folder).map_err(|error| Failure::Picture {
+            let file = directory.join(format!("{}.svg", picture.name));
+            if let Some(directory) = file.parent() {
+                std::fs::create_dir_all(directory).map_err(|error| Failure::Picture {
                     file: file.clone(),
-                    error: PictureError::Write(error),
+                    error: SnapshotError::Write(error),
                 })?;
             }
             picture::write(&file, &case_picture(picture))?;
         }
     }
     if let Some(file) = &args.sheet {
-        let title = format!("{}: {}", shelf.league(), counted(pictures.len(), "case"));
+        let title = format!("{}: {}", library_handle.league(), counted(pictures.len(), "case"));
         picture::write(file, &sheet(&title, &pictures))?;
     }
     Ok(ExitCode::SUCCESS)
@@ -173,7 +174,7 @@ fn read(argument: &str) -> Result<Problem, Failure> {
     problem::parse(text.trim()).map_err(|error| Failure::Problem(format!("--problem: {error}")))
 }
 
-fn picture_file(text: &str) -> Result<PathBuf, PictureError> {
+fn picture_file(text: &str) -> Result<PathBuf, SnapshotError> {
     picture::named(text, &KINDS)
 }
 

@@ -10,7 +10,7 @@ use super::answer::{Answer, write_line};
 use super::lines::for_each_problem;
 use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs};
-use crate::library::Shelf;
+use crate::library::LibraryHandle;
 use crate::output;
 
 /// Arguments of `cases retrieve`.
@@ -24,13 +24,13 @@ pub(crate) struct RetrieveArgs {
 
 pub(super) fn run(args: &RetrieveArgs) -> Result<ExitCode, Failure> {
     let chosen = args.settings.choose()?;
-    let shelf = Shelf::open(&args.library)?;
-    let base = shelf.base();
+    let library_handle = LibraryHandle::open(&args.library)?;
+    let base = library_handle.base();
     let mut output = output::lines();
     for_each_problem(stdin().lock(), &mut output, |output, _, problem| match problem {
         Ok(problem) => {
             let retrieval = casebase::retrieve(&base, &problem, &chosen.settings);
-            write_line(output, &Answer::new(&shelf, &base, &problem, &chosen, &retrieval))
+            write_line(output, &Answer::new(&library_handle, &base, &problem, &chosen, &retrieval))
         }
         Err(error) => write_line(output, &Answer::Malformed { error }),
     })?;

@@ -38,7 +38,7 @@ fn case() -> Value {
     object(keys::CASE, |key| match key {
         "intent" => json!({ "type": "string", "description": "In a sentence, what the case is for." }),
         "defending" => json!({
-            "enum": [GoalEnd::Negative.word(), GoalEnd::Positive.word()],
+            "enum": [GoalEnd::Negative.label(), GoalEnd::Positive.label()],
             "description": "yellow: the goal at -x (attacks towards +x); cyan: the goal at +x.",
         }),
         "ball" => scoped(),
@@ -62,8 +62,8 @@ fn teammate() -> Value {
 }
 
 fn action() -> Value {
-    let tables = keys::ACTIONS.iter().map(|word| {
-        object(&[word], |key| match key {
+    let tables = keys::ACTIONS.iter().map(|label| {
+        object(&[label], |key| match key {
             "turn" => any(keys::TURN.iter().map(|way| object(&[way], turn))),
             "pass_ball" | "receive_ball" => {
                 json!({ "type": "integer", "minimum": 1, "maximum": TEAMMATES_MAX, "description": "Robot of the case." })
@@ -72,7 +72,7 @@ fn action() -> Value {
             _ => point("[x, y] in mm, field frame."),
         })
     });
-    any(std::iter::once(json!({ "enum": keys::WORDS })).chain(tables))
+    any(std::iter::once(json!({ "enum": keys::DESCRIPTION })).chain(tables))
 }
 
 fn turn(way: &str) -> Value {
@@ -109,7 +109,7 @@ fn kick(key: &str) -> Value {
         "offset" => integer(&keys::COORDINATES, "mm along the goal line, left > 0 seen in attack."),
         "primitive" => {
             // An unknown name is a warning of `cases check`, not an error.
-            let known = Primitive::ALL.map(Primitive::word).into_iter().filter(|word| !word.is_empty());
+            let known = Primitive::ALL.map(Primitive::label).into_iter().filter(|label| !label.is_empty());
             json!({ "type": "string", "examples": known.collect::<Vec<_>>() })
         }
         "heading_deg" => integer(&keys::DEGREES, "Degrees from the direction of attack, left > 0."),

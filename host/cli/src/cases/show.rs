@@ -10,7 +10,7 @@ use protocol::CaseId;
 
 use crate::Failure;
 use crate::args::LibraryArgs;
-use crate::library::Shelf;
+use crate::library::LibraryHandle;
 use crate::output;
 
 /// Arguments of `cases show`.
@@ -24,28 +24,28 @@ pub(crate) struct ShowArgs {
 }
 
 pub(super) fn run(args: &ShowArgs) -> Result<ExitCode, Failure> {
-    let shelf = Shelf::open(&args.library)?;
-    let case = find(&shelf, &args.case).ok_or_else(|| unknown(&shelf, &args.case))?;
+    let library_handle = LibraryHandle::open(&args.library)?;
+    let case = find(&library_handle, &args.case).ok_or_else(|| unknown(&library_handle, &args.case))?;
     let mut output = output::lines();
-    let written = write_case(&mut output, &shelf, &case);
+    let written = write_case(&mut output, &library_handle, &case);
     written.and_then(|()| output.flush()).map_err(Failure::Output)?;
     Ok(ExitCode::SUCCESS)
 }
 
-pub(super) fn find<'a>(shelf: &'a Shelf, asked: &str) -> Option<Case<'a>> {
+pub(super) fn find<'a>(library_handle: &'a LibraryHandle, asked: &str) -> Option<Case<'a>> {
     match asked.parse() {
-        Ok(id) => shelf.base().case(CaseId(id)),
-        Err(_) => shelf.base().cases().find(|case| shelf.name(case.id()) == asked),
+        Ok(id) => library_handle.base().case(CaseId(id)),
+        Err(_) => library_handle.base().cases().find(|case| library_handle.name(case.id()) == asked),
     }
 }
 
-pub(super) fn unknown(shelf: &Shelf, asked: &str) -> Failure {
-    let base = shelf.base();
+pub(super) fn unknown(library_handle: &LibraryHandle, asked: &str) -> Failure {
+    let base = library_handle.base();
     Failure::UnknownCase {
         asked: asked.to_owned(),
-        league: shelf.league().to_owned(),
+        league: library_handle.league().to_owned(),
         stored: base.len(),
-        near: near(&shelf.names(), asked),
+        near: near(&library_handle.names(), asked),
     }
 }
 
@@ -65,25 +65,26 @@ fn near(names: &[String], asked: &str) -> Option<String> {
 /// Least share of letters in common for two names to be taken for a typing error.
 const ALIKE: f64 = 0.6;
 
-fn write_case(output: &mut impl Write, shelf: &Shelf, case: &Case<'_>) -> io::Result<()> {
-    let base = shelf.base();
+fn write_case(output: &mut impl Write, library_handle: &LibraryHandle, case: &Case<'_>) -> io::Result<()> {
+    let base = library_handle.base();
     writeln!(
         output,
         "{}  id {}, {}, {}",
-        shelf.name(case.id()),
+        library_handle.name(case.id()),
         case.id(),
-        case.symmetry().word(),
-        shelf.league()
+        case.symmetry().label(),
+        library_handle.league()
     )?;
-    if let Some(intent) = shelf.intent(case.id()) {
+    if let Some(intent) = library_handle.intent(case.id()) {
         writeln!(output, "{intent}")?;
     }
     let (side, ball, scope) = (case.defending(), case.ball(), case.ball_scope());
     let towards = if side == GoalEnd::Negative { "+x" } else { "-x" };
-    writeln!(output, "defending {}: attacks towards {towards}; mm and degrees, field frame", side.word())?;
+    writeln!(output, "defending {}: attacks towards {towards}; mm and degrees, field frame", side.label())?;
     writeln!(output, "\n{:5} {:>14}  scope {} x {}", "ball", at(ball), scope.x, scope.y)?;
     for robot in case.robots() {
-        let gameplay: Vec<_> = case.gameplay(robot).map(|action| told(action, shelf, &base)).collect();
+        let gameplay: Vec<_> =
+            case.gameplay(robot).map(|action| told(action, library_handle, &base)).collect();
         writeln!(
             output,
             "{:5} {:>14}  {}",
@@ -104,15 +105,15 @@ fn write_case(output: &mut impl Write, shelf: &Shelf, case: &Case<'_>) -> io::Re
     }
     writeln!(output, "\npath of the ball")?;
     for (number, leg) in (1..).zip(case.legs(ball)) {
-        writeln!(output, "leg {number} {}", told_leg(&leg, shelf, &base))?;
+        writeln!(output, "leg {number} {}", told_leg(&leg, library_handle, &base))?;
     }
     Ok(())
 }
 
-fn told_leg(leg: &Leg, shelf: &Shelf, base: &CaseBase<'_>) -> String {
+fn told_leg(leg: &Leg, library_handle: &LibraryHandle, base: &CaseBase<'_>) -> String {
     let kind = match leg.kind {
         LegKind::Pass(receiver) => format!("{} passes to {receiver}", leg.robot),
-        LegKind::Kick(kind) => format!("{} kicks {}", leg.robot, told_kick(shelf, base, kind)),
+        LegKind::Kick(kind) => format!("{} kicks {}", leg.robot, told_kick(library_handle, base, kind)),
     };
     let ([x, y], [to_x, to_y]) = (leg.from.map(f64::from), leg.to.map(f64::from));
     let length = (to_x - x).hypot(to_y - y);
@@ -120,27 +121,27 @@ fn told_leg(leg: &Leg, shelf: &Shelf, base: &CaseBase<'_>) -> String {
     format!("{kind}: ({x:.0}, {y:.0}) to ({to_x:.0}, {to_y:.0}), {length:.0} mm, {radii}")
 }
 
-fn told(action: Action, shelf: &Shelf, base: &CaseBase<'_>) -> String {
-    let word = action.word();
+fn told(action: Action, library_handle: &LibraryHandle, base: &CaseBase<'_>) -> String {
+    let label = action.label();
     match action {
-        Action::Wait | Action::GetBall => word.to_owned(),
-        Action::GoToPoint(point) | Action::DribbleTo(point) => format!("{word} {}", at(point)),
-        Action::Turn(TurnTarget::HeadingDeg(degrees)) => format!("{word} to {}", heading(degrees)),
-        Action::Turn(TurnTarget::Face(point)) => format!("{word} to face {}", at(point)),
-        Action::PassBall(other) => format!("{word} to {other}"),
-        Action::ReceiveBall(other) => format!("{word} from {other}"),
-        Action::Kick(kind) => format!("{word} {}", told_kick(shelf, base, kind)),
+        Action::Wait | Action::GetBall => label.to_owned(),
+        Action::GoToPoint(point) | Action::DribbleTo(point) => format!("{label} {}", at(point)),
+        Action::Turn(TurnTarget::HeadingDeg(degrees)) => format!("{label} to {}", heading(degrees)),
+        Action::Turn(TurnTarget::Face(point)) => format!("{label} to face {}", at(point)),
+        Action::PassBall(other) => format!("{label} to {other}"),
+        Action::ReceiveBall(other) => format!("{label} from {other}"),
+        Action::Kick(kind) => format!("{label} {}", told_kick(library_handle, base, kind)),
     }
 }
 
 /// The kind's name in the league and what it does in this case: a mirrored case plays the kind's partner.
-fn told_kick(shelf: &Shelf, base: &CaseBase<'_>, kind: KickId) -> String {
+fn told_kick(library_handle: &LibraryHandle, base: &CaseBase<'_>, kind: KickId) -> String {
     let does = base.kick(kind).map(|kick| match kick.aim {
         KickAim::Goal { offset_mm: 0 } => "at the goal".to_owned(),
         KickAim::Goal { offset_mm } => format!("at the goal, {} mm {}", offset_mm.abs(), side(offset_mm)),
         KickAim::Heading { degrees, length_mm } => format!("{length_mm} mm {}", heading(degrees)),
     });
-    format!("{} ({})", shelf.kick(kind), does.unwrap_or_default())
+    format!("{} ({})", library_handle.kick(kind), does.unwrap_or_default())
 }
 
 /// A heading relative to the direction of attack.

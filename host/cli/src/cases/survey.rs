@@ -5,7 +5,7 @@
 use std::io::sink;
 use std::path::{Path, PathBuf};
 
-use case_tools::coverage::{Cells, Survey, Tally};
+use case_tools::coverage::{Cells, Counters, Survey};
 use case_tools::{Files, Sampler, build};
 use casebase::{GoalEnd, Problem, Symmetry};
 use clap::{Args, value_parser};
@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use super::lines::for_each_problem;
 use crate::Failure;
 use crate::args::{Chosen, LibraryArgs, SettingsArgs};
-use crate::library::Shelf;
+use crate::library::LibraryHandle;
 use crate::output::shown;
 use crate::progress::Progress;
 
@@ -52,7 +52,7 @@ pub(crate) struct SurveyArgs {
 #[derive(Debug)]
 pub(crate) struct Trial<'a> {
     args: &'a SurveyArgs,
-    pub(crate) shelf: Shelf,
+    pub(crate) library_handle: LibraryHandle,
     pub(crate) chosen: Chosen,
     source: Source,
 }
@@ -66,15 +66,15 @@ enum Source {
 impl<'a> Trial<'a> {
     pub(crate) fn open(args: &'a SurveyArgs) -> Result<Self, Failure> {
         let chosen = args.settings.choose()?;
-        let shelf = Shelf::open(&args.library)?;
-        if shelf.base().is_empty() {
-            return Err(Failure::EmptyLibrary(shelf.league().to_owned()));
+        let library_handle = LibraryHandle::open(&args.library)?;
+        if library_handle.base().is_empty() {
+            return Err(Failure::EmptyLibrary(library_handle.league().to_owned()));
         }
         let source = match &args.from {
             Some(file) => Source::Recorded(recorded(file)?),
-            None => Source::Drawn(sampler(&shelf, args.seed)?),
+            None => Source::Drawn(sampler(&library_handle, args.seed)?),
         };
-        Ok(Self { args, shelf, chosen, source })
+        Ok(Self { args, library_handle, chosen, source })
     }
 
     /// Number of problems before those of the other team are left out.
@@ -103,8 +103,8 @@ impl<'a> Trial<'a> {
     }
 
     /// All counts, and the grid they are counted over.
-    pub(crate) fn count(&self) -> Result<(Tally, Cells), Failure> {
-        let base = self.shelf.base();
+    pub(crate) fn count(&self) -> Result<(Counters, Cells), Failure> {
+        let base = self.library_handle.base();
         let edge = self.args.cell.unwrap_or_else(|| Cells::suitable_edge_mm(base.field()));
         let cells = Cells::new(base.field(), edge)
             .map_err(|error| Failure::Survey(format!("--cell {edge}: {error}")))?;
@@ -114,28 +114,32 @@ impl<'a> Trial<'a> {
             .num_threads(self.args.jobs.map_or(0, usize::from))
             .build()
             .map_err(Failure::Threads)?;
-        let tally = pool.install(|| tally(&survey, self.len(), |number| self.problem(number)));
-        if tally.problems == 0 {
+        let counters = pool.install(|| counters(&survey, self.len(), |number| self.problem(number)));
+        if counters.problems == 0 {
             return Err(Failure::Survey(
                 "no problem is left to ask; leave --defending out, or draw more".to_owned(),
             ));
         }
-        Ok((tally, cells))
+        Ok((counters, cells))
     }
 }
 
 /// All counts over the problems numbered below `len`, on the threads of the caller's pool.
-pub(crate) fn tally(survey: &Survey<'_>, len: u64, problem: impl Fn(u64) -> Option<Problem> + Sync) -> Tally {
+pub(crate) fn counters(
+    survey: &Survey<'_>,
+    len: u64,
+    problem: impl Fn(u64) -> Option<Problem> + Sync,
+) -> Counters {
     let progress = Progress::of(len, "problems");
     let block = |number: u64| {
         let numbers = number * BLOCK..len.min((number + 1) * BLOCK);
         let count = numbers.end - numbers.start;
-        let tally = survey.over(numbers.filter_map(|number| Some((number, problem(number)?))));
+        let counters = survey.over(numbers.filter_map(|number| Some((number, problem(number)?))));
         progress.add(count);
-        tally
+        counters
     };
     let blocks = (0..len.div_ceil(BLOCK)).into_par_iter();
-    blocks.map(block).reduce(|| survey.empty(), Tally::merge)
+    blocks.map(block).reduce(|| survey.empty(), Counters::merge)
 }
 
 /// A problem as `cases retrieve` reads it.
@@ -146,7 +150,7 @@ pub(crate) fn problem_line(problem: &Problem) -> String {
         "{{\"ball\":[{},{}],\"defending\":\"{}\",\"teammates\":{{{}}},\"opponents\":[{}]}}",
         problem.ball.x,
         problem.ball.y,
-        problem.defending.word(),
+        problem.defending.label(),
         robots.collect::<Vec<_>>().join(","),
         opponents.collect::<Vec<_>>().join(",")
     )
@@ -163,15 +167,15 @@ pub(crate) fn region(name: &str) -> &str {
 }
 
 /// Class of the authored case in the paper: robots, and opponents in its situation.
-pub(crate) fn class(shelf: &Shelf, authored: usize) -> (&'static str, usize) {
+pub(crate) fn class(library_handle: &LibraryHandle, authored: usize) -> (&'static str, usize) {
     let id = protocol::CaseId((authored * Symmetry::ALL.len()) as u16);
-    shelf.base().case(id).map_or(("individual", 0), |case| {
+    library_handle.base().case(id).map_or(("individual", 0), |case| {
         (if case.teammates() > 1 { "cooperative" } else { "individual" }, case.opponents().count())
     })
 }
 
 fn recorded(file: &Path) -> Result<Vec<Problem>, Failure> {
-    let fail = |words: String| Failure::Survey(format!("--from {}: {words}", shown(file)));
+    let fail = |description: String| Failure::Survey(format!("--from {}: {description}", shown(file)));
     let input = foreign::open(file).map_err(|error| fail(error.to_string()))?;
     let mut problems = Vec::new();
     let (mut first_fault, mut faults) = (None, 0_u64);
@@ -200,22 +204,22 @@ fn recorded(file: &Path) -> Result<Vec<Problem>, Failure> {
     }
 }
 
-fn sampler(shelf: &Shelf, seed: u64) -> Result<Sampler, Failure> {
-    match shelf {
-        Shelf::Folder(library, _) => Ok(library.sampler(seed)),
-        Shelf::BuiltIn(league, _) => {
+fn sampler(library_handle: &LibraryHandle, seed: u64) -> Result<Sampler, Failure> {
+    match library_handle {
+        LibraryHandle::Directory(library, _) => Ok(library.sampler(seed)),
+        LibraryHandle::BuiltIn(league, _) => {
             let cases: Vec<_> = league.names.iter().copied().zip(league.sources.iter().copied()).collect();
             let library =
                 build(&Files::from_texts(league.name, league.rules, &cases)).map_err(|findings| {
-                    Failure::FaultyLibrary { folder: PathBuf::from(league.name), findings }
+                    Failure::FaultyLibrary { directory: PathBuf::from(league.name), findings }
                 })?;
             Ok(library.sampler(seed))
         }
     }
 }
 
-fn goal(word: &str) -> Result<GoalEnd, String> {
-    GoalEnd::from_word(word).ok_or_else(|| "expected yellow (the goal at -x) or cyan".to_owned())
+fn goal(label: &str) -> Result<GoalEnd, String> {
+    GoalEnd::from_label(label).ok_or_else(|| "expected yellow (the goal at -x) or cyan".to_owned())
 }
 
 /// Problems that are read from one file: 2 GB of memory.

@@ -4,7 +4,7 @@ use case_tools::{Counterfactual, Entity, Obstacle};
 use serde::Serialize;
 
 use super::answer::rounded;
-use crate::library::Shelf;
+use crate::library::LibraryHandle;
 
 /// What would make one case the winner, or why no single change does.
 #[derive(Debug, Serialize)]
@@ -29,13 +29,14 @@ enum Told {
     Nothing {
         no_single_move: &'static str,
         #[serde(skip)]
-        words: String,
+        #[serde(rename = "words")]
+        description: String,
     },
 }
 
 impl WhatIf {
     /// `None` for the winner itself.
-    pub(super) fn new(shelf: &Shelf, id: u16, found: &Counterfactual) -> Option<Self> {
+    pub(super) fn new(library_handle: &LibraryHandle, id: u16, found: &Counterfactual) -> Option<Self> {
         let answer = match *found {
             Counterfactual::Winner => return None,
             Counterfactual::Move(found) => {
@@ -48,8 +49,8 @@ impl WhatIf {
                 Told::Move { moved, number, from, to, distance_mm: rounded(found.distance_mm, 1.0) }
             }
             Counterfactual::NoSingleMove(obstacle) => {
-                let (no_single_move, words) = told_obstacle(shelf, obstacle);
-                Told::Nothing { no_single_move, words }
+                let (no_single_move, description) = told_obstacle(library_handle, obstacle);
+                Told::Nothing { no_single_move, description }
             }
         };
         Some(Self { id, answer })
@@ -67,18 +68,18 @@ impl WhatIf {
                 let article = if number.is_empty() { "the " } else { "" };
                 format!("would win if {article}{moved}{number} moved by {distance_mm} mm, to ({x}, {y})")
             }
-            Told::Nothing { words, .. } => words.clone(),
+            Told::Nothing { description, .. } => description.clone(),
         }
     }
 }
 
-fn told_obstacle(shelf: &Shelf, obstacle: Obstacle) -> (&'static str, String) {
+fn told_obstacle(library_handle: &LibraryHandle, obstacle: Obstacle) -> (&'static str, String) {
     match obstacle {
         Obstacle::Robots { needed, present } => {
             ("robots", format!("cannot win: it needs {needed} robots, {present} are present"))
         }
         Obstacle::Conditions { winner, fulfilled, most } => {
-            let name = shelf.name(winner);
+            let name = library_handle.name(winner);
             (
                 "conditions",
                 format!("cannot win while {name} fulfils {fulfilled} conditions: it has {most} at most"),

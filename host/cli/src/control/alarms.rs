@@ -19,7 +19,7 @@ const LASTS: Duration = Duration::millis(3_000);
 pub(super) struct Alarm {
     /// What the alarm is about: its text changes with the figures, this key does not.
     matter: String,
-    words: String,
+    description: String,
     /// It is printed again while it lasts.
     repeats: bool,
 }
@@ -43,8 +43,8 @@ impl Alarms {
     }
 
     /// Records that the robots' line is too slow.
-    pub(super) fn slow(&mut self, now: Instant, words: String) {
-        self.slow = Some((words, now));
+    pub(super) fn slow(&mut self, now: Instant, description: String) {
+        self.slow = Some((description, now));
     }
 
     /// Current faults, for the page.
@@ -63,21 +63,21 @@ impl Alarms {
         let mut alarms: Vec<_> = (host.listener().warnings(now).iter())
             .map(|warning| Alarm {
                 matter: warning.matter(),
-                words: format!("referee  {warning}"),
+                description: format!("referee  {warning}"),
                 repeats: warning.is_urgent(),
             })
             .collect();
         alarms.extend(self.sanity.look(now, host).into_iter().map(|finding| Alarm {
             matter: finding.matter(),
-            words: match finding {
+            description: match finding {
                 Finding::VisionPort(_) => format!("vision   {finding} [{}]", vision()),
                 _ => format!("{:<8} {finding}", finding.heading()),
             },
             repeats: finding.is_urgent(),
         }));
         alarms.extend(self.drops(now, dropped));
-        if let Some((words, _)) = self.slow.as_ref().filter(|(_, at)| now.since(*at) < LASTS) {
-            alarms.push(Alarm { matter: "line".to_owned(), words: words.clone(), repeats: true });
+        if let Some((description, _)) = self.slow.as_ref().filter(|(_, at)| now.since(*at) < LASTS) {
+            alarms.push(Alarm { matter: "line".to_owned(), description: description.clone(), repeats: true });
         }
         self.print(now, alarms)
     }
@@ -120,7 +120,7 @@ impl Alarms {
         self.drops.retain(|(_, _, at)| now.since(*at) < LASTS);
         let alarm = |(what, number, _): &(&str, u64, Instant)| Alarm {
             matter: (*what).to_owned(),
-            words: format!("network  {number} {what}; does another program flood the port?"),
+            description: format!("network  {number} {what}; does another program flood the port?"),
             repeats: true,
         };
         self.drops.iter().map(alarm).collect()
@@ -128,18 +128,18 @@ impl Alarms {
 
     fn print(&mut self, now: Instant, alarms: Vec<Alarm>) -> Vec<String> {
         self.printed.retain(|(_, seen, _)| now.since(*seen) < FORGOTTEN);
-        self.now = alarms.iter().map(|alarm| alarm.words.clone()).collect();
+        self.now = alarms.iter().map(|alarm| alarm.description.clone()).collect();
         let mut lines = Vec::new();
-        for Alarm { matter, words, repeats } in alarms {
+        for Alarm { matter, description, repeats } in alarms {
             if let Some((_, seen, last)) = self.printed.iter_mut().find(|(known, ..)| *known == matter) {
                 *seen = now;
                 if repeats && now.since(*last) >= AGAIN {
                     *last = now;
-                    lines.push(words);
+                    lines.push(description);
                 }
             } else {
                 self.printed.push((matter, now, now));
-                lines.push(words);
+                lines.push(description);
             }
         }
         lines
@@ -151,7 +151,7 @@ mod tests {
     use super::*;
 
     fn alarm(repeats: bool) -> Vec<Alarm> {
-        vec![Alarm { matter: "m".into(), words: "w".into(), repeats }]
+        vec![Alarm { matter: "m".into(), description: "w".into(), repeats }]
     }
 
     #[test]
@@ -174,7 +174,7 @@ mod tests {
         assert_eq!(alarms.drops(Instant(0), dropped(0)).len(), 0);
         alarms.drops(Instant(100_000), dropped(5));
         let now = alarms.drops(Instant(200_000), dropped(12));
-        assert!(now[0].words.contains("12 vision packets"), "{now:?}");
+        assert!(now[0].description.contains("12 vision packets"), "{now:?}");
         assert!(alarms.drops(Instant(200_000) + LASTS, dropped(12)).is_empty());
     }
 }

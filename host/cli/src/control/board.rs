@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 use host::Host;
 use page::{Happening, Kind, Page, Powers, Request};
 
-use crate::library::Shelf;
-use crate::live::{CaseOracle, Composer, Moment, PageArgs, SCENE_EVERY_S, tick};
+use crate::library::LibraryHandle;
+use crate::live::{CaseExplanations, Composer, Moment, PageArgs, SCENE_EVERY_S, tick};
 use crate::output::note;
 
 /// A page and its composer.
@@ -23,12 +23,13 @@ impl Board {
     pub(super) fn open(
         args: &PageArgs,
         title: String,
-        shelf: Option<Shelf>,
+        library_handle: Option<LibraryHandle>,
         settings: casebase::Settings,
     ) -> Option<Self> {
         let open = || {
-            let composer = Composer::new(shelf.as_ref());
-            let page = args.open(title, false, Powers::Halt, CaseOracle::new(shelf, settings))?;
+            let composer = Composer::new(library_handle.as_ref());
+            let page =
+                args.open(title, false, Powers::Halt, CaseExplanations::new(library_handle, settings))?;
             Ok::<_, crate::Failure>(Self { page, composer, shown: None, took: Duration::ZERO })
         };
         open().map_err(|failure| note!("page     there is none: {failure}")).ok()
@@ -43,9 +44,9 @@ impl Board {
     }
 
     /// Adds a fault to the page's events.
-    pub(super) fn fault(&mut self, now: protocol::Instant, words: String) {
+    pub(super) fn fault(&mut self, now: protocol::Instant, description: String) {
         let t = now.0 as f64 * 1e-6;
-        self.page.tell(Happening { t, kind: Kind::Fault, team: None, words, at: None, problem: None });
+        self.page.tell(Happening { t, kind: Kind::Fault, team: None, description, at: None, problem: None });
     }
 
     /// Records how long an input took.
@@ -60,13 +61,13 @@ impl Board {
             self.shown = Some(Instant::now());
             let t = now.0 as f64 * 1e-6;
             let gauges = vec![tick(self.took)];
-            let moment = Moment { t, now, eyes: host, hosts: &[host], truth: None, referee: None, gauges };
-            let mut sketch = self.composer.compose(moment);
-            sketch.scene.alarms = alarms;
+            let moment = Moment { t, now, feed: host, hosts: &[host], truth: None, referee: None, gauges };
+            let mut deferred_scene = self.composer.compose(moment);
+            deferred_scene.scene.alarms = alarms;
             for happening in self.composer.take_happenings() {
                 self.page.tell(happening);
             }
-            self.page.show(sketch);
+            self.page.show(deferred_scene);
         }
         let mut halt = false;
         while let Some(request) = self.page.next_request() {

@@ -13,7 +13,7 @@ use crate::output::note;
 
 /// The team's key: the file's, or zeros where that is allowed.
 pub(super) fn team_key(config: &TeamConfig) -> Result<TeamKey, Failure> {
-    let failed = |words: String| Failure::Network(words);
+    let failed = |description: String| Failure::Network(description);
     let read =
         config.key_file.as_deref().map(key::read).transpose().map_err(|error| failed(error.to_string()))?;
     let key = read.as_ref().map_or(TeamKey::ZERO, |read| read.key);
@@ -82,10 +82,11 @@ mod tests {
         let (zeros, own) = ("0".repeat(32), format!("{}07", "0".repeat(30)));
         for robots in ["udp://127.0.0.1:9", "serial:/dev/ttyACM0"] {
             for key in [None, Some(&*zeros)] {
-                let words = key_for(robots, key, false).unwrap_err();
+                let description = key_for(robots, key, false).unwrap_err();
                 assert!(
-                    words.contains("openssl rand -hex 16") && words.contains("--insecure-zero-key"),
-                    "{words}"
+                    description.contains("openssl rand -hex 16")
+                        && description.contains("--insecure-zero-key"),
+                    "{description}"
                 );
                 assert!(key_for(robots, key, true) == Ok(TeamKey::ZERO));
             }

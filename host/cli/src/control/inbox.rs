@@ -47,7 +47,7 @@ pub(super) enum Mail {
     /// Why a source cannot be received.
     Trouble(Source, String),
     /// A line for the operator.
-    Word(String),
+    Label(String),
     /// The robots' line is too slow, with the rate it would need.
     Slow(String),
 }

@@ -7,7 +7,7 @@
 
 mod alarms;
 mod board;
-mod desk;
+mod event_loop;
 mod identity;
 mod inbox;
 mod port_for_teams;
@@ -29,9 +29,9 @@ use rules::Colour;
 use ssl::net::addresses;
 
 use crate::Failure;
-use crate::args::{FolderArgs, SettingsArgs};
-use crate::library::Shelf;
-use crate::live::{PageArgs, shelf_of};
+use crate::args::{DirectoryArgs, SettingsArgs};
+use crate::library::LibraryHandle;
+use crate::live::{PageArgs, library_handle_of};
 use crate::output::shown;
 use crate::simulate::seconds;
 
@@ -128,7 +128,7 @@ pub(crate) struct ControlArgs {
 #[derive(Debug, Args)]
 pub(crate) struct CasesArgs {
     #[command(flatten)]
-    folder: FolderArgs,
+    directory: DirectoryArgs,
     #[command(flatten)]
     settings: SettingsArgs,
 }
@@ -147,26 +147,30 @@ pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
     };
     let page = (!args.headless).then_some(&args.page);
     let cases = Cases::choose(&args.cases, config.league)?;
-    let keeps = desk::Keeps { record: args.record.as_deref(), learned: args.learned.as_deref() };
-    desk::run(&config, !args.no_learning, &robots, cases, &keeps, args.duration, page)
+    let keeps = event_loop::Keeps { record: args.record.as_deref(), learned: args.learned.as_deref() };
+    event_loop::run(&config, !args.no_learning, &robots, cases, &keeps, args.duration, page)
 }
 
 /// The case library, and the form in which our robots receive cases.
 struct Cases {
-    shelf: Option<Shelf>,
+    library_handle: Option<LibraryHandle>,
     settings: casebase::Settings,
-    words: Vec<OsString>,
+    description: Vec<OsString>,
 }
 
 impl Cases {
     fn choose(args: &CasesArgs, league: rules::League) -> Result<Self, Failure> {
-        let library = args.folder.library.as_deref();
-        let named = library.map(|folder| [OsString::from("--library"), folder.into()]);
+        let library = args.directory.library.as_deref();
+        let named = library.map(|directory| [OsString::from("--library"), directory.into()]);
         let set = |(name, value): &(String, String)| ["--set".into(), format!("{name}={value}").into()];
         Ok(Self {
-            shelf: shelf_of(league, library)?,
+            library_handle: library_handle_of(league, library)?,
             settings: args.settings.choose()?.settings,
-            words: named.into_iter().flatten().chain(args.settings.given().iter().flat_map(set)).collect(),
+            description: named
+                .into_iter()
+                .flatten()
+                .chain(args.settings.given().iter().flat_map(set))
+                .collect(),
         })
     }
 }
@@ -176,7 +180,7 @@ const CONFIG_LEN_MAX: u64 = 1 << 20;
 
 /// A file of settings.
 fn read(path: &Path) -> Result<TeamSettings, Failure> {
-    let said = |words: String| Failure::Network(format!("{}: {words}", shown(path)));
+    let said = |description: String| Failure::Network(format!("{}: {description}", shown(path)));
     let text = foreign::read_text(path, CONFIG_LEN_MAX).map_err(|error| said(error.to_string()))?;
     TeamSettings::from_toml(&text).map_err(|error| said(error.to_string()))
 }
@@ -267,7 +271,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn robots_in_a_simulator_are_told_of_cases_and_settings_in_their_own_words() {
+    fn robots_in_a_simulator_are_told_of_cases_and_settings_in_their_own_description() {
         #[derive(Debug, clap::Parser)]
         struct Line {
             #[command(flatten)]
@@ -275,7 +279,7 @@ mod tests {
         }
         let line = <Line as clap::Parser>::parse_from(["control", "--set", "free_path=fuzzy"]);
         let cases = Cases::choose(&line.cases, rules::League::DivisionB).unwrap();
-        assert_eq!(cases.words, ["--set", "free_path=fuzzy"].map(OsString::from));
+        assert_eq!(cases.description, ["--set", "free_path=fuzzy"].map(OsString::from));
         let line = <Line as clap::Parser>::parse_from(["control", "--library", "/nowhere"]);
         assert!(Cases::choose(&line.cases, rules::League::DivisionB).is_err());
     }

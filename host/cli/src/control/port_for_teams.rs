@@ -54,11 +54,11 @@ pub(super) fn talk(
                 if matches!(event, Event::GivenUp(_) | Event::RegistrationRefused { .. }) {
                     stream = None;
                 }
-                let words = words(&event, address);
+                let description = description(&event, address);
                 // An absent controller is reported once.
-                if words.is_some() && words != last {
-                    mail.put(Mail::Word(words.clone().unwrap_or_default()));
-                    last = words;
+                if description.is_some() && description != last {
+                    mail.put(Mail::Label(description.clone().unwrap_or_default()));
+                    last = description;
                 }
             }
             if stream.is_none() {
@@ -98,7 +98,7 @@ fn exchange(stream: &mut TcpStream, port: &mut TeamPort, now: protocol::Instant)
 /// Longest reason that is printed, characters.
 const REASON_LEN: usize = 200;
 
-fn words(event: &Event, address: SocketAddr) -> Option<String> {
+fn description(event: &Event, address: SocketAddr) -> Option<String> {
     Some(match event {
         Event::Registered { .. } => format!("game controller  at {address} knows us now"),
         Event::RegistrationRefused { reason } => format!(

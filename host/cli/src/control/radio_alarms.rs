@@ -51,7 +51,7 @@ mod tests {
             let now = Instant(n * 100_000);
             let telemetry = Telemetry { host: 71, ..Telemetry::default() };
             assert!(radio.handle_packet(now, &robot.seal(&TeamMessage::Telemetry(telemetry))).is_err());
-            said.extend(alarms.look(now, &radio).into_iter().map(|words| (n, words)));
+            said.extend(alarms.look(now, &radio).into_iter().map(|description| (n, description)));
         }
         assert_eq!(said.iter().map(|(n, _)| *n).collect::<Vec<_>>(), [0, 100, 200]);
         assert!(

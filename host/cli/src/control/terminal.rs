@@ -33,22 +33,22 @@ impl Terminal {
     }
 
     /// Prints a permanent line.
-    pub(super) fn line(&mut self, words: String) {
-        let words = match self.dropped {
-            0 => words,
+    pub(super) fn line(&mut self, description: String) {
+        let description = match self.dropped {
+            0 => description,
             dropped => {
-                format!("{words}\n{dropped} lines before this one were dropped: the terminal took none")
+                format!("{description}\n{dropped} lines before this one were dropped: the terminal took none")
             }
         };
-        match self.prints.try_send(Print::Line(words)) {
+        match self.prints.try_send(Print::Line(description)) {
             Ok(()) => self.dropped = 0,
             Err(_) => self.dropped += 1,
         }
     }
 
     /// Prints the line that is replaced by the next of its kind.
-    pub(super) fn status(&self, words: String) {
-        let _ = self.prints.try_send(Print::Status(words));
+    pub(super) fn status(&self, description: String) {
+        let _ = self.prints.try_send(Print::Status(description));
     }
 
     /// Prints the waiting lines.
@@ -65,8 +65,8 @@ fn print(waiting: &Receiver<Print>) {
     let bar = Progress::open();
     for print in waiting {
         match print {
-            Print::Line(words) => bar.aside(|| note!("{words}")),
-            Print::Status(words) => bar.say(words),
+            Print::Line(description) => bar.aside(|| note!("{description}")),
+            Print::Status(description) => bar.say(description),
         }
     }
 }

@@ -11,7 +11,7 @@ use host::shell::{LineRate, Link, OutCounts, Outbox};
 use ssl::net::{Datagram, Interfaces};
 
 use super::inbox::{Inbox, Mail, REFEREE_LEN_MAX, VISION_LEN_MAX};
-use crate::net::Ear;
+use crate::net::NetReceiver;
 
 /// Where mail comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -52,7 +52,7 @@ const RATES: [u64; 7] = [115_200, 230_400, 460_800, 921_600, 1_000_000, 2_000_00
 const AT_END: Duration = Duration::from_millis(200);
 
 /// Receives on `address` until `end`.
-pub(super) fn hear(
+pub(super) fn receive(
     source: Source,
     address: SocketAddr,
     by: Interfaces,
@@ -62,22 +62,22 @@ pub(super) fn hear(
     thread::spawn(move || {
         let mut told = None;
         while !end.load(Ordering::Relaxed) {
-            let mut ear = match Ear::open(address, &by) {
-                Ok(ear) => ear,
+            let mut receiver = match NetReceiver::open(address, &by) {
+                Ok(receiver) => receiver,
                 Err(error) => {
-                    let words = error.to_string();
-                    if told.as_ref() != Some(&words) {
-                        mail.put(Mail::Trouble(source, words.clone()));
-                        told = Some(words);
+                    let description = error.to_string();
+                    if told.as_ref() != Some(&description) {
+                        mail.put(Mail::Trouble(source, description.clone()));
+                        told = Some(description);
                     }
                     sleep(AGAIN, &end);
                     continue;
                 }
             };
             told = None;
-            mail.put(Mail::Open(source, ear.words()));
+            mail.put(Mail::Open(source, receiver.description()));
             while !end.load(Ordering::Relaxed) {
-                match ear.receive(LOOK) {
+                match receiver.receive(LOOK) {
                     Ok(Some(datagram)) => match letter(source, datagram) {
                         Some(letter) => mail.put(letter),
                         None => mail.refuse(source),
@@ -114,11 +114,11 @@ pub(super) fn carry(
     thread::spawn(move || {
         let mut told: Option<Instant> = None;
         let mut note = |result: Result<(), String>| {
-            if let Err(words) = result
+            if let Err(description) = result
                 && told.is_none_or(|told| told.elapsed() >= TROUBLE_EVERY)
             {
                 told = Some(Instant::now());
-                mail.put(Mail::Trouble(Source::Robots, words));
+                mail.put(Mail::Trouble(Source::Robots, description));
             }
         };
         let mut pace = Pace::new();
@@ -132,11 +132,11 @@ pub(super) fn carry(
                     thread::sleep(LOOK);
                 }
             }
-            while let Some(words) = link.notice() {
-                mail.put(Mail::Word(words));
+            while let Some(description) = link.notice() {
+                mail.put(Mail::Label(description));
             }
-            if let Some(words) = pace.look(&*link, &frames) {
-                mail.put(Mail::Slow(words));
+            if let Some(description) = pace.look(&*link, &frames) {
+                mail.put(Mail::Slow(description));
             }
         }
         let until = Instant::now() + AT_END;
@@ -237,10 +237,10 @@ mod tests {
         // 100 snapshots of 290 bytes in 8 frames.
         let counts =
             OutCounts { snapshots: 1_100, superseded: 460, frames: 5_800, bytes: 229_000, side_dropped: 0 };
-        let words = too_slow(&line, before, counts, Duration::from_secs(1)).expect("it is too slow");
+        let description = too_slow(&line, before, counts, Duration::from_secs(1)).expect("it is too slow");
         assert!(
-            words.contains("needs 306000 bit/s") && words.contains("serial:/dev/ttyACM0:460800"),
-            "{words}"
+            description.contains("needs 306000 bit/s") && description.contains("serial:/dev/ttyACM0:460800"),
+            "{description}"
         );
         let kept_up = OutCounts { superseded: 405, ..counts };
         assert_eq!(too_slow(&line, before, kept_up, Duration::from_secs(1)), None);

@@ -66,9 +66,9 @@ impl Watch {
     }
 
     /// A source cannot be received, with the reason.
-    pub(super) fn trouble(&mut self, source: Source, words: &str) -> String {
-        words.clone_into(&mut self.of(source).way);
-        format!("{}: {words}; it is tried again", source.name())
+    pub(super) fn trouble(&mut self, source: Source, description: &str) -> String {
+        description.clone_into(&mut self.of(source).way);
+        format!("{}: {description}; it is tried again", source.name())
     }
 
     /// How vision is received, or why it cannot be.
@@ -90,7 +90,13 @@ impl Watch {
     }
 
     /// Reports which sources became missing or returned.
-    pub(super) fn look(&mut self, now: Instant, host: &Host, config: &TeamConfig, words: &mut Vec<String>) {
+    pub(super) fn look(
+        &mut self,
+        now: Instant,
+        host: &Host,
+        config: &TeamConfig,
+        description: &mut Vec<String>,
+    ) {
         if now.0 < AT_START.0 {
             return;
         }
@@ -98,7 +104,7 @@ impl Watch {
         let silent = host.imaged().is_none_or(|last| now.since(last) > VISION_SILENT);
         let came =
             self.vision.see(silent, |_| String::new(), || format!("vision comes from {}", config.vision));
-        words.extend(came.filter(|words| !words.is_empty()));
+        description.extend(came.filter(|description| !description.is_empty()));
         let silence = host.listener().silence(now);
         let waits = format!(
             "waiting for the referee at {} ({}): robots halt until then; is the game controller running, and publishes it there \
@@ -109,7 +115,7 @@ impl Watch {
         self.missing.extend(never.then(|| waits.clone()));
         // A source that falls silent is an alarm.
         let came = self.referee.see(
-            !matches!(silence, Silence::Heard(_)),
+            !matches!(silence, Silence::Received(_)),
             |_| if never { waits } else { String::new() },
             || {
                 format!(
@@ -118,12 +124,12 @@ impl Watch {
                 )
             },
         );
-        words.extend(came.filter(|words| !words.is_empty()));
+        description.extend(came.filter(|description| !description.is_empty()));
         let there: Vec<_> = host.radio().present(now).map(|robot| robot.number().to_string()).collect();
         if !there.is_empty() || now.0 >= ROBOTS_BOOT.0 {
             let waits = format!("waiting for robots: none is heard; {}", self.link_advice);
             self.missing.extend(there.is_empty().then(|| waits.clone()));
-            words.extend(self.robots.see(
+            description.extend(self.robots.see(
                 there.is_empty(),
                 |_| waits,
                 || format!("robots are heard: {}", there.join(" ")),

@@ -16,7 +16,7 @@ use super::report::{self, PageArgs};
 use super::work::{self, WorkArgs};
 use crate::Failure;
 use crate::args::LibraryArgs;
-use crate::library::Shelf;
+use crate::library::LibraryHandle;
 use crate::setup::{reduction, refuse_other_fields};
 
 /// Which arms, and how many trials.
@@ -43,17 +43,18 @@ pub(super) fn run(args: &AblationsArgs) -> Result<ExitCode, Failure> {
     let plan = Plan::ablation(args.seed).with_trials(args.trials);
     let wanted = |arm: &&Arm| args.arm.is_empty() || arm.is_default() || args.arm.contains(arm);
     let arms: Vec<Arm> = ARMS.iter().filter(wanted).copied().collect();
-    let (folder, pool) = (args.work.folder()?, args.work.pool()?);
-    let kept = folder.join("arms");
+    let (directory, pool) = (args.work.directory()?, args.work.pool()?);
+    let kept = directory.join("arms");
     work::make(&kept)?;
-    let library = args.library.folder.library.as_ref();
-    let library = library.map_or_else(|| args.library.league.clone(), |folder| folder.display().to_string());
+    let library = args.library.directory.library.as_ref();
+    let library =
+        library.map_or_else(|| args.library.league.clone(), |directory| directory.display().to_string());
     let (mut played, mut identity) = (Vec::new(), None);
     for (place, arm) in arms.iter().enumerate() {
         let setup = arm.setup();
-        let shelf = Shelf::open_reduced(&args.library, reduction(&setup))?;
-        refuse_other_fields(&shelf)?;
-        let evaluation = work::evaluation(plan.clone(), setup, &shelf, library.clone());
+        let library_handle = LibraryHandle::open_reduced(&args.library, reduction(&setup))?;
+        refuse_other_fields(&library_handle)?;
+        let evaluation = work::evaluation(plan.clone(), setup, &library_handle, library.clone());
         let title = format!("{} of {}: {}", place + 1, arms.len(), arm.name);
         let file = kept.join(format!("{}.csv", arm.name));
         args.work.freshen(&file)?;
@@ -63,18 +64,22 @@ pub(super) fn run(args: &AblationsArgs) -> Result<ExitCode, Failure> {
     }
     let (_, default) = played.remove(0);
     let effects = effects(&default, &played);
-    write_effects(&effects, folder)?;
+    write_effects(&effects, directory)?;
     let hash = csv_hash(&to_csv(&default).map_err(EvaluationError::from)?);
     let facts = identity.map(|identity| Facts::of(&identity, &hash)).unwrap_or_default();
-    report::write_ablation(&Ablation { arms: &arms, effects: &effects, facts: &facts }, folder, &args.page)?;
+    report::write_ablation(
+        &Ablation { arms: &arms, effects: &effects, facts: &facts },
+        directory,
+        &args.page,
+    )?;
     let (trials, seed) = (default.len() * arms.len(), args.seed);
     let table = ablation_table(&effects);
-    work::say(&format!("{table}\n{trials} trials, seed {seed}, in {}\n", folder.display()))?;
+    work::say(&format!("{table}\n{trials} trials, seed {seed}, in {}\n", directory.display()))?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn arm(word: &str) -> Result<Arm, String> {
-    ARMS.iter().find(|arm| arm.name == word).copied().ok_or_else(|| {
+fn arm(label: &str) -> Result<Arm, String> {
+    ARMS.iter().find(|arm| arm.name == label).copied().ok_or_else(|| {
         let names: Vec<_> = ARMS.iter().map(|arm| arm.name).collect();
         format!("take one of: {}", names.join(", "))
     })

@@ -8,7 +8,7 @@ use std::process::ExitCode;
 
 use arena::evaluation::{EvaluationError, Shard, csv_hash, merge, to_csv};
 use arena::matches::{
-    Effect, Entrant, MatchIdentity, MatchRow, Matches, Outcome, PAPER, PAPER_PASSES, Passes, Plan,
+    Effect, MatchIdentity, MatchRow, MatchTeam, Matches, Outcome, PAPER, PAPER_PASSES, Passes, Plan,
     calibration_plot, effects, markdown, our_passes, outcomes, plot,
 };
 use casebase::CaseBase;
@@ -23,8 +23,8 @@ use super::merge::shards;
 use super::report::insert;
 use super::work::{self, WorkArgs};
 use crate::Failure;
-use crate::args::{FolderArgs, SettingsArgs, VERSION};
-use crate::library::Shelf;
+use crate::args::{DirectoryArgs, SettingsArgs, VERSION};
+use crate::library::LibraryHandle;
 use crate::play::{cases, league, seconds};
 
 /// Which matches, and the output.
@@ -48,12 +48,12 @@ pub(super) struct MatchesArgs {
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// The team that plays against the opponents; named as they are.
-    #[arg(long, value_name = "TEAM", default_value = "ours", value_parser = Entrant::parse)]
-    team: Entrant,
+    #[arg(long, value_name = "TEAM", default_value = "ours", value_parser = MatchTeam::parse)]
+    team: MatchTeam,
     /// Opponents, with commas between: reactive, marking, zone (these three by default), idle, ours, or ours
     /// with other tactics, such as ours-without-second-level or ours-with-coerce+pass-ahead.
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = Entrant::parse)]
-    opponents: Vec<Entrant>,
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = MatchTeam::parse)]
+    opponents: Vec<MatchTeam>,
     /// Measure what each part of the second paper is worth: our team with one part more or less, for each
     /// part. Instead of the opponents, or beside those that are named, or one more each in the round robin.
     #[arg(long)]
@@ -77,7 +77,7 @@ pub(super) struct MatchesArgs {
     #[command(flatten)]
     work: WorkArgs,
     #[command(flatten)]
-    folder: FolderArgs,
+    directory: DirectoryArgs,
     #[command(flatten)]
     settings: SettingsArgs,
 }
@@ -85,28 +85,28 @@ pub(super) struct MatchesArgs {
 pub(super) fn run(args: &MatchesArgs) -> Result<ExitCode, Failure> {
     if !args.merge.is_empty() {
         let mut kept = Vec::new();
-        for folder in &args.merge {
-            kept.extend(shards::<MatchRow>(folder)?);
+        for directory in &args.merge {
+            kept.extend(shards::<MatchRow>(directory)?);
         }
         let (identity, rows) = merge(kept)?;
-        let folder = args.work.folder()?;
-        return args.finish(&Made::new(&identity, &rows)?, folder);
+        let directory = args.work.directory()?;
+        return args.finish(&Made::new(&identity, &rows)?, directory);
     }
-    let shelf = cases(&args.folder, args.league)?;
+    let library_handle = cases(&args.directory, args.league)?;
     let matches = Matches {
         plan: args.plan(),
-        base: shelf.as_ref().map_or_else(CaseBase::default, Shelf::base),
+        base: library_handle.as_ref().map_or_else(CaseBase::default, LibraryHandle::base),
         settings: args.settings.choose()?.settings,
         program: VERSION.to_owned(),
     };
-    let folder = args.work.folder()?;
-    let file = folder.join(args.shard.file_name());
+    let directory = args.work.directory()?;
+    let file = directory.join(args.shard.file_name());
     let pool = args.work.pool()?;
     let rows = work::with_bar(&pool, "playing", |told| matches.play_shard(args.shard, &file, told))?;
     if args.shard == Shard::WHOLE {
-        return args.finish(&Made::new(&matches.identity(), &rows)?, folder);
+        return args.finish(&Made::new(&matches.identity(), &rows)?, directory);
     }
-    let (kept, out) = (file.display(), folder.display());
+    let (kept, out) = (file.display(), directory.display());
     work::say(&format!(
         "{} matches in {kept}; when all shards are played: onetwo evaluate matches --merge {out} --out {out}\n",
         rows.len()
@@ -118,10 +118,10 @@ impl MatchesArgs {
     fn plan(&self) -> Plan {
         let mut opponents = self.opponents.clone();
         if opponents.is_empty() && (self.round_robin || !self.ablations) {
-            opponents.extend(Team::OPPONENTS.map(Entrant::from));
+            opponents.extend(Team::OPPONENTS.map(MatchTeam::from));
         }
         if self.ablations {
-            opponents.extend(Entrant::ablations());
+            opponents.extend(MatchTeam::ablations());
         }
         let pairings = if self.round_robin {
             let teams: Vec<_> = [self.team].into_iter().chain(opponents).collect();
@@ -140,11 +140,11 @@ impl MatchesArgs {
     }
 
     /// Writes `matches.csv`, `matches.json` and the plots, and prints the tables.
-    fn finish(&self, made: &Made<'_>, folder: &Path) -> Result<ExitCode, Failure> {
-        write(&folder.join("matches.csv"), &made.csv)?;
-        write(&folder.join("matches.json"), &made.json()?)?;
+    fn finish(&self, made: &Made<'_>, directory: &Path) -> Result<ExitCode, Failure> {
+        write(&directory.join("matches.csv"), &made.csv)?;
+        write(&directory.join("matches.json"), &made.json()?)?;
         for picture in made.pictures("") {
-            write(&folder.join(&picture.name).with_extension("svg"), picture.svg.as_bytes())?;
+            write(&directory.join(&picture.name).with_extension("svg"), picture.svg.as_bytes())?;
         }
         if let Some(file) = &self.markdown {
             let figures = |beside: &str| made.text(beside, &self.section);
@@ -155,7 +155,7 @@ impl MatchesArgs {
             "{}\n{matches} matches, seed {seed}, csv hash {}, in {}\n",
             made.tables(),
             made.hash,
-            folder.display()
+            directory.display()
         ))?;
         Ok(ExitCode::SUCCESS)
     }
@@ -228,7 +228,7 @@ impl<'a> Made<'a> {
             plan.league,
             plan.seed,
             self.hash,
-            Tactics::default().words().replace(',', ", "),
+            Tactics::default().description().replace(',', ", "),
             self.tables().trim_end()
         );
         text

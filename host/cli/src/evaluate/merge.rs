@@ -25,8 +25,8 @@ pub(super) struct MergeArgs {
 
 pub(super) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
     let mut kept = Vec::new();
-    for folder in &args.folders {
-        kept.extend(shards(folder)?);
+    for directory in &args.folders {
+        kept.extend(shards(directory)?);
     }
     let (identity, rows) = merge(kept)?;
     work::make(&args.out)?;
@@ -37,10 +37,10 @@ pub(super) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
 }
 
 /// The files of shards in a directory, in the order of their names.
-pub(super) fn shards<R: Entry>(folder: &Path) -> Result<Vec<Kept<R>>, EvaluationError> {
-    let failed = |error| EvaluationError::File { file: folder.to_owned(), error };
+pub(super) fn shards<R: Entry>(directory: &Path) -> Result<Vec<Kept<R>>, EvaluationError> {
+    let failed = |error| EvaluationError::File { file: directory.to_owned(), error };
     let mut files = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(failed)? {
+    for entry in std::fs::read_dir(directory).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
         let name = path.file_name().and_then(|name| name.to_str());
         if name.is_some_and(|name| Shard::from_file_name(name).is_some()) {

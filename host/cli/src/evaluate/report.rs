@@ -16,8 +16,8 @@ use report::{Ablation, Facts, Map, Picture, Report};
 
 use super::{merge as shards, work};
 use crate::Failure;
-use crate::args::{FolderArgs, LibraryArgs, VERSION};
-use crate::library::Shelf;
+use crate::args::{DirectoryArgs, LibraryArgs, VERSION};
+use crate::library::LibraryHandle;
 use crate::output::{note, say, shown};
 use crate::{picture, setup};
 
@@ -37,7 +37,7 @@ pub(super) struct ReportArgs {
 pub(super) struct AgainArgs {
     /// The directory an evaluation was written to.
     #[arg(value_name = "DIR")]
-    folder: PathBuf,
+    directory: PathBuf,
     #[command(flatten)]
     report: ReportArgs,
     /// Put the tables between the markers of this Markdown file, and the plots into a directory of its name
@@ -59,10 +59,14 @@ pub(super) struct PageArgs {
 }
 
 /// Writes the page of a played ablation.
-pub(super) fn write_ablation(ablation: &Ablation<'_>, folder: &Path, args: &PageArgs) -> Result<(), Failure> {
-    let drawn = ablation.write(folder).map_err(|error| unwritten(&folder.join(PAGE), error))?;
+pub(super) fn write_ablation(
+    ablation: &Ablation<'_>,
+    directory: &Path,
+    args: &PageArgs,
+) -> Result<(), Failure> {
+    let drawn = ablation.write(directory).map_err(|error| unwritten(&directory.join(PAGE), error))?;
     if args.png {
-        picture::write(&folder.join("plots").join(&drawn.name).with_extension("png"), &drawn.svg)?;
+        picture::write(&directory.join("plots").join(&drawn.name).with_extension("png"), &drawn.svg)?;
     }
     match &args.markdown {
         Some(file) => {
@@ -74,20 +78,20 @@ pub(super) fn write_ablation(ablation: &Ablation<'_>, folder: &Path, args: &Page
 
 /// `onetwo evaluate report`.
 pub(super) fn run(args: &AgainArgs) -> Result<ExitCode, Failure> {
-    let (identity, rows) = merge(shards::shards(&args.folder)?)?;
+    let (identity, rows) = merge(shards::shards(&args.directory)?)?;
     let results = Results::new(identity, rows)?;
     let made = Made::new(&results, &args.report)?;
-    made.write(&results, &args.folder, &args.report)?;
+    made.write(&results, &args.directory, &args.report)?;
     if let Some(file) = &args.markdown {
         made.write_markdown(&results, file)?;
     }
-    say(&format!("{}\n", shown(&args.folder.join(PAGE))))?;
+    say(&format!("{}\n", shown(&args.directory.join(PAGE))))?;
     Ok(ExitCode::SUCCESS)
 }
 
 /// The report of an evaluation that was just played or merged.
-pub(super) fn write(results: &Results, folder: &Path, args: &ReportArgs) -> Result<(), Failure> {
-    Made::new(results, args)?.write(results, folder, args)
+pub(super) fn write(results: &Results, directory: &Path, args: &ReportArgs) -> Result<(), Failure> {
+    Made::new(results, args)?.write(results, directory, args)
 }
 
 /// Parts of a report beside the results.
@@ -121,12 +125,12 @@ impl Made {
         }
     }
 
-    fn write(&self, results: &Results, folder: &Path, args: &ReportArgs) -> Result<(), Failure> {
-        let written = self.report(results).write(folder);
-        let pictures = written.map_err(|error| unwritten(&folder.join(PAGE), error))?;
+    fn write(&self, results: &Results, directory: &Path, args: &ReportArgs) -> Result<(), Failure> {
+        let written = self.report(results).write(directory);
+        let pictures = written.map_err(|error| unwritten(&directory.join(PAGE), error))?;
         if args.png {
             for drawn in pictures {
-                picture::write(&folder.join("plots").join(drawn.name).with_extension("png"), &drawn.svg)?;
+                picture::write(&directory.join("plots").join(drawn.name).with_extension("png"), &drawn.svg)?;
             }
         }
         Ok(())
@@ -145,7 +149,7 @@ const MARKDOWN_LEN_MAX: u64 = 1 << 24;
 /// beside the file.
 pub(super) fn insert(
     file: &Path,
-    (chore, name): (&str, &str),
+    (task, name): (&str, &str),
     figures: impl Fn(&str) -> String,
     pictures: Vec<Picture>,
 ) -> Result<(), Failure> {
@@ -153,20 +157,20 @@ pub(super) fn insert(
     let beside = format!("{}/", file.file_stem().unwrap_or_default().to_string_lossy());
     let text = foreign::read_text(file, MARKDOWN_LEN_MAX).map_err(failed)?;
     let figures = figures(&beside);
-    let text = report::between_markers(&text, chore, name, &figures)
+    let text = report::between_markers(&text, task, name, &figures)
         .map_err(|error| Failure::Markdown { file: file.to_owned(), error })?;
-    let folder = file.with_extension("");
-    work::make(&folder)?;
+    let directory = file.with_extension("");
+    work::make(&directory)?;
     for drawn in pictures {
         if figures.contains(&format!("{beside}{}.svg", drawn.name)) {
-            picture::write(&folder.join(drawn.name).with_extension("svg"), &drawn.svg)?;
+            picture::write(&directory.join(drawn.name).with_extension("svg"), &drawn.svg)?;
         }
     }
     fs::write(file, text).map_err(failed)
 }
 
 fn unwritten(file: &Path, error: std::io::Error) -> Failure {
-    Failure::Picture { file: file.to_owned(), error: picture::PictureError::Write(error) }
+    Failure::Picture { file: file.to_owned(), error: picture::SnapshotError::Write(error) }
 }
 
 /// The maps of the first trials of each cell, if this program plays identical ones.
@@ -175,14 +179,16 @@ fn maps(identity: &Identity, trials: u32) -> Result<Vec<Map>, Failure> {
         return Ok(Vec::new());
     }
     let setup = setup_of(identity)?;
-    let shelf = match Shelf::open_reduced(&library(&identity.library), setup::reduction(&setup)) {
-        Ok(shelf) => shelf,
-        Err(failure) => {
-            note!("no maps, as the cases of these trials are not here: {failure}");
-            return Ok(Vec::new());
-        }
-    };
-    let evaluation = work::evaluation(identity.plan.clone(), setup, &shelf, identity.library.clone());
+    let library_handle =
+        match LibraryHandle::open_reduced(&library(&identity.library), setup::reduction(&setup)) {
+            Ok(library_handle) => library_handle,
+            Err(failure) => {
+                note!("no maps, as the cases of these trials are not here: {failure}");
+                return Ok(Vec::new());
+            }
+        };
+    let evaluation =
+        work::evaluation(identity.plan.clone(), setup, &library_handle, identity.library.clone());
     let differences = evaluation.identity().differences(identity);
     if differences.is_empty() {
         return Map::of(&evaluation, trials).map_err(Failure::Trial);
@@ -198,7 +204,7 @@ fn setup_of(identity: &Identity) -> Result<Setup, Failure> {
     for (name, value) in &identity.settings {
         settings.set(name, value).map_err(|error| Failure::setting(name, value, error))?;
     }
-    let independent = identity.positioning == arena::positioning_word(Positioning::Independent);
+    let independent = identity.positioning == arena::positioning_label(Positioning::Independent);
     Ok(Setup {
         settings,
         positioning: if independent { Positioning::Independent } else { Positioning::Dependent },
@@ -210,10 +216,10 @@ fn setup_of(identity: &Identity) -> Result<Setup, Failure> {
 }
 
 /// A built-in league by its name; any other argument is a directory.
-fn library(word: &str) -> LibraryArgs {
-    let built_in = case_library::league(word).is_some();
-    let library = (!built_in).then(|| PathBuf::from(word));
-    LibraryArgs { folder: FolderArgs { library }, league: word.to_owned() }
+fn library(label: &str) -> LibraryArgs {
+    let built_in = case_library::league(label).is_some();
+    let library = (!built_in).then(|| PathBuf::from(label));
+    LibraryArgs { directory: DirectoryArgs { library }, league: label.to_owned() }
 }
 
 const PAGE: &str = "report.html";

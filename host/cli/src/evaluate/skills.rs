@@ -59,8 +59,8 @@ pub(super) struct SkillsArgs {
     section: String,
 }
 
-fn skill(word: &str) -> Result<Skill, String> {
-    Skill::from_word(word).ok_or_else(|| format!("take {}", Skill::ALL.map(Skill::word).join(", ")))
+fn skill(label: &str) -> Result<Skill, String> {
+    Skill::from_label(label).ok_or_else(|| format!("take {}", Skill::ALL.map(Skill::label).join(", ")))
 }
 
 pub(super) fn run(args: &SkillsArgs) -> Result<ExitCode, Failure> {
@@ -77,9 +77,9 @@ pub(super) fn run(args: &SkillsArgs) -> Result<ExitCode, Failure> {
         work::say(&format!("{json}\n"))?;
         return Ok(ExitCode::SUCCESS);
     }
-    let mut text = words(&table);
+    let mut text = description(&table);
     if let Some(file) = &args.markdown {
-        insert(file, ("skills", &args.section), |_| words(&table), Vec::new())?;
+        insert(file, ("skills", &args.section), |_| description(&table), Vec::new())?;
     }
     if args.failures {
         text += &failures(&results);
@@ -109,7 +109,7 @@ impl SkillsArgs {
 }
 
 /// The table as Markdown.
-fn words(rows: &[SkillRow]) -> String {
+fn description(rows: &[SkillRow]) -> String {
     let mut text = String::from(
         "| skill | league | world | worlds | tries | succeeded | share | median time | 95 % within |\n\
          |---|---|---|---|---|---|---|---|---|\n",
@@ -140,7 +140,7 @@ fn failures(results: &[TryResult]) -> String {
     for result in results {
         if let Err(what) = &result.end {
             let TryResult { tried, start, .. } = result;
-            let (skill, world, number) = (tried.skill.word(), tried.world, tried.number);
+            let (skill, world, number) = (tried.skill.label(), tried.world, tried.number);
             let _ = writeln!(text, "\n{skill} {number} in {world}: {start}: {what}\n  {}", tried.command());
         }
     }
@@ -157,7 +157,7 @@ fn story(plan: &SkillPlan) -> Result<ExitCode, Failure> {
             Err(what) => format!("failed: {what}"),
         };
         let TryResult { tried, start, .. } = &result;
-        let head = format!("{} {} in {}: {start}", tried.skill.word(), tried.number, tried.world);
+        let head = format!("{} {} in {}: {start}", tried.skill.label(), tried.number, tried.world);
         work::say(&format!("{head}\n{}\n{end}\n", lines.join("\n")))?;
     }
     Ok(ExitCode::SUCCESS)

@@ -15,7 +15,7 @@ use clap::Args;
 use super::report::{self, ReportArgs};
 use crate::Failure;
 use crate::args::VERSION;
-use crate::library::Shelf;
+use crate::library::LibraryHandle;
 use crate::output;
 use crate::progress;
 use crate::setup::SetupArgs;
@@ -43,7 +43,7 @@ impl WorkArgs {
     }
 
     /// The directory, created if missing; without earlier trials if `fresh` is set.
-    pub(super) fn folder(&self) -> Result<&Path, Failure> {
+    pub(super) fn directory(&self) -> Result<&Path, Failure> {
         make(&self.out)?;
         if self.fresh {
             let failed = |error| EvaluationError::File { file: self.out.clone(), error };
@@ -70,15 +70,20 @@ fn forget(file: &Path) -> Result<(), Failure> {
 }
 
 /// Creates a directory for results.
-pub(super) fn make(folder: &Path) -> Result<(), Failure> {
-    let made = std::fs::create_dir_all(folder);
-    made.map_err(|error| EvaluationError::File { file: folder.to_owned(), error }.into())
+pub(super) fn make(directory: &Path) -> Result<(), Failure> {
+    let made = std::fs::create_dir_all(directory);
+    made.map_err(|error| EvaluationError::File { file: directory.to_owned(), error }.into())
 }
 
 /// All settings that the trials of a plan depend on.
-pub(super) fn evaluation(plan: Plan, setup: Setup, shelf: &Shelf, library: String) -> Evaluation<'_> {
-    let names = CaseNames::new(shelf.names());
-    Evaluation { plan, base: shelf.base(), names, library, setup, program: VERSION.to_owned() }
+pub(super) fn evaluation(
+    plan: Plan,
+    setup: Setup,
+    library_handle: &LibraryHandle,
+    library: String,
+) -> Evaluation<'_> {
+    let names = CaseNames::new(library_handle.names());
+    Evaluation { plan, base: library_handle.base(), names, library, setup, program: VERSION.to_owned() }
 }
 
 /// Plays the trials of a shard that are missing in `file`; with `title` before the bar.
@@ -121,19 +126,19 @@ pub(super) fn run(
     reported: &ReportArgs,
 ) -> Result<ExitCode, Failure> {
     let setup = setup_args.choose(ROBOTS)?;
-    let shelf = setup_args.open(&setup)?;
-    let evaluation = evaluation(plan, setup, &shelf, setup_args.library_word());
-    let folder = work.folder()?;
-    let file = folder.join(shard.file_name());
+    let library_handle = setup_args.open(&setup)?;
+    let evaluation = evaluation(plan, setup, &library_handle, setup_args.library_label());
+    let directory = work.directory()?;
+    let file = directory.join(shard.file_name());
     let pool = work.pool()?;
     let rows = play(&evaluation, shard, &file, &pool, "playing")?;
     if shard == Shard::WHOLE {
         let results = Results::new(evaluation.identity(), rows)?;
-        finish(&results, folder)?;
-        pool.install(|| report::write(&results, folder, reported))?;
+        finish(&results, directory)?;
+        pool.install(|| report::write(&results, directory, reported))?;
         return Ok(ExitCode::SUCCESS);
     }
-    let (kept, out) = (file.display(), folder.display());
+    let (kept, out) = (file.display(), directory.display());
     say(&format!(
         "{} trials in {kept}; when all shards are played: onetwo evaluate merge {out} --out {out}\n",
         rows.len()
@@ -142,22 +147,22 @@ pub(super) fn run(
 }
 
 /// Writes everything, and prints the tables, the verdicts and their paths.
-pub(super) fn finish(results: &Results, folder: &Path) -> Result<(), Failure> {
-    results.write(folder)?;
+pub(super) fn finish(results: &Results, directory: &Path) -> Result<(), Failure> {
+    results.write(directory)?;
     let (trials, seed, hash) = (results.rows.len(), results.identity.plan.seed, &results.hash);
     let (tables, verdicts) = (summary(results), verdicts(results));
     say(&format!(
         "{tables}{verdicts}{trials} trials, seed {seed}, csv hash {hash}, in {}\n",
-        folder.display()
+        directory.display()
     ))
 }
 
 /// Prints on stdout.
-pub(super) fn say(words: &str) -> Result<(), Failure> {
-    output::say(words)
+pub(super) fn say(description: &str) -> Result<(), Failure> {
+    output::say(description)
 }
 
 /// A shard on the command line.
-pub(super) fn shard(word: &str) -> Result<Shard, String> {
-    Shard::from_word(word).ok_or_else(|| "take i/n with i from 1 to n, such as 2/3".to_owned())
+pub(super) fn shard(label: &str) -> Result<Shard, String> {
+    Shard::from_label(label).ok_or_else(|| "take i/n with i from 1 to n, such as 2/3".to_owned())
 }

@@ -36,7 +36,7 @@ enum Cause {
 }
 
 impl Cause {
-    const fn words(self) -> &'static str {
+    const fn description(self) -> &'static str {
         match self {
             Self::Silence => "no authentic frame of the host",
             Self::NoCommand => "the host speaks, but not to this robot",
@@ -98,7 +98,7 @@ pub(super) fn table() -> String {
     for cause in CAUSES {
         let Outcome { slow, brakes, stands, released, again } = outcome(cause);
         let row = [slow, brakes, stands, released, again].map(ms).join(" | ");
-        let _ = writeln!(text, "| {} | {row} |", cause.words());
+        let _ = writeln!(text, "| {} | {row} |", cause.description());
     }
     text
 }
@@ -117,7 +117,7 @@ fn outcome(cause: Cause) -> Outcome {
         let now = Instant(ms * 1_000);
         let wrong = (BEGINS + 1..=BEGINS + LASTS).contains(&ms);
         if ms % 10 == 0 && !(wrong && cause == Cause::Silence) {
-            governor.hear_host(now);
+            governor.receive_host(now);
             frame = Some(now);
             command = if wrong && cause == Cause::NoCommand { command } else { Some(now) };
         }
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn a_host_that_forgets_a_robot_brakes_it_after_100_ms_and_moves_it_with_its_first_word() {
+    fn a_host_that_forgets_a_robot_brakes_it_after_100_ms_and_moves_it_with_its_first_label() {
         let found = ends_well(Cause::NoCommand, 100);
         // Motors hold: the host commands the team.
         assert_eq!((found.brakes, found.released), (Some(100), None));

@@ -45,10 +45,10 @@ pub(super) fn run(args: &FlashArgs) -> Result<(), Failure> {
         Some(file) => file.clone(),
         None => build(Program::Stm32)?,
     };
-    for words in downloads(args, &image) {
-        let line = format!("{PROGRAM} {}", words.join(" "));
+    for description in downloads(args, &image) {
+        let line = format!("{PROGRAM} {}", description.join(" "));
         note!("onetwo: {line}");
-        match Command::new(PROGRAM).args(&words).status() {
+        match Command::new(PROGRAM).args(&description).status() {
             Ok(status) if status.success() => {}
             Ok(status) => {
                 return Err(failed(format!("`{line}` failed ({status}); its own words stand above")));
@@ -64,13 +64,13 @@ pub(super) fn run(args: &FlashArgs) -> Result<(), Failure> {
 fn downloads(args: &FlashArgs, image: &Path) -> Vec<Vec<String>> {
     let chip = args.chip.as_deref().unwrap_or(CHIP);
     let call = |file: &Path, more: &[&str]| {
-        let mut words = vec!["download".to_owned(), "--chip".to_owned(), chip.to_owned()];
+        let mut description = vec!["download".to_owned(), "--chip".to_owned(), chip.to_owned()];
         if let Some(probe) = &args.probe {
-            words.extend(["--probe".to_owned(), probe.clone()]);
+            description.extend(["--probe".to_owned(), probe.clone()]);
         }
-        words.extend(more.iter().map(|word| (*word).to_owned()));
-        words.push(file.display().to_string());
-        words
+        description.extend(more.iter().map(|label| (*label).to_owned()));
+        description.push(file.display().to_string());
+        description
     };
     let page = args.page.as_deref().map(|file| {
         let address = format!("{:#010x}", args.page_address.unwrap_or(PAGE_ADDRESS));
@@ -110,7 +110,7 @@ mod tests {
             probe: None,
         };
         let lines: Vec<_> =
-            downloads(&args, Path::new("image")).iter().map(|words| words.join(" ")).collect();
+            downloads(&args, Path::new("image")).iter().map(|description| description.join(" ")).collect();
         assert_eq!(
             lines,
             [

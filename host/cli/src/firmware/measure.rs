@@ -4,7 +4,7 @@
 //!
 //! Instructions of the guest and bytes: the same on every machine for the same firmware.
 
-use arena::game::{Game, GameConfig, Nobody};
+use arena::game::{Game, GameConfig, NoWatcher};
 use arena::{TrialConfig, run};
 use brain::Approach;
 use firmware_build::{Body, Install, Program, ensure_qemu};
@@ -63,7 +63,7 @@ fn play(meter: &Meter, seconds: f64) -> Result<(), Failure> {
     };
     let mut game = Game::new(&config, &mut backend).map_err(failed)?;
     for _ in 0..(seconds * TICKS_A_SECOND) as u64 {
-        game.step(&mut Nobody).map_err(failed)?;
+        game.step(&mut NoWatcher).map_err(failed)?;
     }
     Ok(())
 }

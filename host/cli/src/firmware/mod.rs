@@ -48,12 +48,12 @@ pub(crate) enum FirmwareVerb {
 pub(crate) struct ImagesArgs {
     /// The firmware image; all of them by default.
     #[arg(long, value_enum)]
-    image: Option<ImageWord>,
+    image: Option<ImageLabel>,
 }
 
 /// Name of a firmware image.
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum ImageWord {
+enum ImageLabel {
     /// A walking robot, stepped tick by tick by the simulator.
     Legged,
     /// A robot on wheels, stepped by the simulator.
@@ -64,7 +64,7 @@ enum ImageWord {
     Stm32,
 }
 
-impl ImageWord {
+impl ImageLabel {
     const fn program(self) -> Program {
         match self {
             Self::Legged => Program::Robot(Body::Legged),
@@ -77,7 +77,7 @@ impl ImageWord {
 
 impl ImagesArgs {
     fn programs(&self) -> Vec<Program> {
-        self.image.map_or_else(|| Program::IMAGES.to_vec(), |word| vec![word.program()])
+        self.image.map_or_else(|| Program::IMAGES.to_vec(), |label| vec![label.program()])
     }
 }
 

@@ -25,8 +25,8 @@ pub(crate) struct ProvisionArgs {
     #[arg(long, value_name = "N")]
     team: u8,
     /// Its league.
-    #[arg(long, value_enum, default_value_t = LeagueWord::DivisionB)]
-    league: LeagueWord,
+    #[arg(long, value_enum, default_value_t = LeagueLabel::DivisionB)]
+    league: LeagueLabel,
     /// A file with 32 hexadecimal digits, as `openssl rand -hex 16` makes them.
     #[arg(long, value_name = "FILE")]
     key_file: PathBuf,
@@ -37,7 +37,7 @@ pub(crate) struct ProvisionArgs {
 
 /// Name of a league.
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum LeagueWord {
+enum LeagueLabel {
     /// The four-legged league of 2007.
     FourLegged,
     /// The Small Size League of 2013.
@@ -49,7 +49,7 @@ enum LeagueWord {
     DivisionA,
 }
 
-impl LeagueWord {
+impl LeagueLabel {
     const fn league(self) -> League {
         match self {
             Self::FourLegged => League::FourLegged,

@@ -30,7 +30,7 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     let page = args.page.as_deref().map(|file| check(file).map(|()| file)).transpose()?;
     let qemu = ensure_qemu(Install::ForUser).map_err(failed)?;
     let mut command = Command::new(qemu);
-    command.args(words(&build(Program::Free)?, page, &args.serial)).stdin(Stdio::null());
+    command.args(description(&build(Program::Free)?, page, &args.serial)).stdin(Stdio::null());
     let status = command.status().map_err(failed)?;
     if status.success() { Ok(()) } else { Err(failed(format!("QEMU ended with {status}"))) }
 }
@@ -45,20 +45,20 @@ fn check(file: &Path) -> Result<(), Failure> {
 }
 
 /// Arguments of QEMU.
-fn words(image: &Path, page: Option<&Path>, serial: &str) -> Vec<String> {
-    let mut words: Vec<String> =
+fn description(image: &Path, page: Option<&Path>, serial: &str) -> Vec<String> {
+    let mut description: Vec<String> =
         ["-machine", MACHINE, "-display", "none", "-monitor", "none", "-serial", serial]
             .map(str::to_owned)
             .into();
-    words.extend(["-semihosting-config", "enable=on,target=native", "-kernel"].map(str::to_owned));
-    words.push(image.display().to_string());
+    description.extend(["-semihosting-config", "enable=on,target=native", "-kernel"].map(str::to_owned));
+    description.push(image.display().to_string());
     if let Some(file) = page {
         // In QEMU's options a doubled comma stands for one.
         let path = file.to_string_lossy().replace(',', ",,");
-        words.push("-device".to_owned());
-        words.push(format!("loader,file={path},addr={PAGE_ADDRESS:#x},force-raw=on"));
+        description.push("-device".to_owned());
+        description.push(format!("loader,file={path},addr={PAGE_ADDRESS:#x},force-raw=on"));
     }
-    words
+    description
 }
 
 #[cfg(test)]
@@ -67,11 +67,11 @@ mod tests {
 
     #[test]
     fn a_page_goes_to_its_address_even_from_a_path_with_a_comma() {
-        let words = words(Path::new("image"), Some(Path::new("a,b.page")), "null");
-        let last = words.last().map(String::as_str);
+        let description = description(Path::new("image"), Some(Path::new("a,b.page")), "null");
+        let last = description.last().map(String::as_str);
         let expected = format!("loader,file=a,,b.page,addr={PAGE_ADDRESS:#x},force-raw=on");
         assert_eq!(last, Some(expected.as_str()));
-        assert!(words.windows(2).any(|pair| pair == ["-serial", "null"]), "{words:?}");
+        assert!(description.windows(2).any(|pair| pair == ["-serial", "null"]), "{description:?}");
     }
 
     #[test]
@@ -80,6 +80,6 @@ mod tests {
         std::fs::write(&file, [0xff; 64]).expect("a temporary file");
         let said = check(&file).map_err(|error| error.to_string());
         std::fs::remove_file(&file).expect("our own file");
-        assert!(said.is_err_and(|words| words.contains("firmware provision")));
+        assert!(said.is_err_and(|description| description.contains("firmware provision")));
     }
 }

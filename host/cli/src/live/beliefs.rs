@@ -86,11 +86,11 @@ fn likely(opponent: &Detected, tactic: Tactic) -> f32 {
 
 /// All evidence behind the label.
 fn note(opponent: &Detected, us: Colour) -> String {
-    let who = format!("{} {}", us.other().word(), opponent.opponent.number());
+    let who = format!("{} {}", us.other().label(), opponent.opponent.number());
     let head = match (opponent.tactic, opponent.follows) {
         (Some(Tactic::Mark), Some(follows)) => {
             let side = if opponent.ball_side { "towards the ball" } else { "towards its goal" };
-            format!("marks {} {}, {:.2} m {side}", us.word(), follows.number(), opponent.stand_off)
+            format!("marks {} {}, {:.2} m {side}", us.label(), follows.number(), opponent.stand_off)
         }
         (Some(tactic), _) => format!("plays {}", tactic.name()),
         (None, _) => "does nothing that a model explains".to_owned(),
@@ -137,7 +137,7 @@ mod tests {
         assert!(notes[0].starts_with("yellow 0 plays goalkeeper\n"), "{notes:?}");
         assert!(notes[1].starts_with("yellow 1 marks blue 2, 0.30 m towards its goal\n"), "{notes:?}");
         assert!(notes[2].starts_with("yellow 2 does nothing that a model explains"), "{notes:?}");
-        let words: Vec<_> = shapes
+        let description: Vec<_> = shapes
             .iter()
             .filter_map(|shape| match shape {
                 Shape::Text { text, .. } => Some(text.as_str()),
@@ -145,7 +145,7 @@ mod tests {
             })
             .collect();
         // 0.092 m beside the line from (4.5, 0) to the ball: exp(−0.5 · (0.092 / 0.25)²) = 0.934.
-        assert_eq!(words, ["goalkeeper 93 %", "marks 2 100 %"]);
+        assert_eq!(description, ["goalkeeper 93 %", "marks 2 100 %"]);
         let line = shapes.iter().find_map(|shape| match shape {
             Shape::Line { points, .. } => Some(points.clone()),
             _ => None,

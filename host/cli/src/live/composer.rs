@@ -10,22 +10,24 @@ use host::Host;
 use host::referee::Game;
 use host::sanity::Sanity;
 use host::world::{Ball, World};
-use page::{Field, Gauge, Happening, Kind, Layer, Match, Robot, Scene, Shape, Sketch, TeamSheet, milli};
+use page::{
+    DeferredScene, Field, Gauge, Happening, Kind, Layer, Match, Robot, Scene, Shape, TeamSheet, milli,
+};
 use protocol::{CaseId, Instant};
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 use rules::{AreaForm, Colour, FieldSpec};
 
 use super::cycles::TeamCycles;
 use super::gauges::{self, Rate};
-use super::happenings::News;
+use super::happenings::EventFeed;
 use super::layers;
 use super::minds::{self, Clocks, Faults};
-use super::painter::{Painter, Picture};
+use super::overlay_builder::{OverlayBuilder, Picture};
 use super::possession::Possession;
 use super::raw::Images;
 use super::{spaced, team};
-use crate::library::Shelf;
-use crate::replay::phase_words;
+use crate::library::LibraryHandle;
+use crate::replay::phase_description;
 
 /// Length of the ball's trail, s.
 const TRAIL_S: f64 = 1.5;
@@ -40,11 +42,12 @@ pub(crate) struct Names {
 }
 
 impl Names {
-    fn new(shelf: Option<&Shelf>) -> Self {
-        let Some(shelf) = shelf else { return Self::default() };
-        let names = shelf.names();
-        let meant =
-            (0..names.len()).map(|i| shelf.intent(CaseId(i as u16 * 4)).unwrap_or_default()).collect();
+    fn new(library_handle: Option<&LibraryHandle>) -> Self {
+        let Some(library_handle) = library_handle else { return Self::default() };
+        let names = library_handle.names();
+        let meant = (0..names.len())
+            .map(|i| library_handle.intent(CaseId(i as u16 * 4)).unwrap_or_default())
+            .collect();
         Self { names, meant }
     }
 
@@ -66,7 +69,7 @@ pub(crate) struct Moment<'a> {
     /// On the hosts' clock.
     pub(crate) now: Instant,
     /// The host whose world is displayed.
-    pub(crate) eyes: &'a Host,
+    pub(crate) feed: &'a Host,
     /// The hosts whose robots' states are displayed.
     pub(crate) hosts: &'a [&'a Host],
     /// The true state, in a simulation.
@@ -84,39 +87,39 @@ pub(crate) struct Composer {
     images: Images,
     rate: Rate,
     trail: VecDeque<(f64, [f32; 2])>,
-    news: News,
+    news: EventFeed,
     cycles: [TeamCycles; 2],
     clocks: Clocks,
     faults: Faults,
     sanity: [Sanity; 2],
     possession: Possession,
-    painter: Painter,
+    overlay_builder: OverlayBuilder,
     happenings: Vec<Happening>,
 }
 
 impl Composer {
     /// For matches with these cases.
-    pub(crate) fn new(shelf: Option<&Shelf>) -> Self {
+    pub(crate) fn new(library_handle: Option<&LibraryHandle>) -> Self {
         Self {
-            base: shelf.map(Shelf::lasting_base),
-            names: Names::new(shelf),
+            base: library_handle.map(LibraryHandle::lasting_base),
+            names: Names::new(library_handle),
             images: Images::default(),
             rate: Rate::default(),
             trail: VecDeque::new(),
-            news: News::default(),
+            news: EventFeed::default(),
             cycles: Default::default(),
             clocks: Clocks::default(),
             faults: Faults::default(),
             sanity: Default::default(),
             possession: Possession::default(),
-            painter: Painter::default(),
+            overlay_builder: OverlayBuilder::default(),
             happenings: Vec::new(),
         }
     }
 
     /// A datagram of the vision.
     pub(crate) fn vision(&mut self, bytes: &[u8]) {
-        self.images.hear(bytes);
+        self.images.receive(bytes);
     }
 
     /// A datagram of the referee; `own` where the simulation's referee is part of the moment too.
@@ -130,18 +133,18 @@ impl Composer {
     }
 
     /// The scene of a moment: what is known at once, and what the page's thread computes from a snapshot.
-    pub(crate) fn compose(&mut self, moment: Moment<'_>) -> Sketch {
-        let Moment { t, now, eyes, .. } = moment;
-        let (world, game, field) = (eyes.world(), eyes.game(), eyes.field());
+    pub(crate) fn compose(&mut self, moment: Moment<'_>) -> DeferredScene {
+        let Moment { t, now, feed, .. } = moment;
+        let (world, game, field) = (feed.world(), feed.game(), feed.field());
         for host in moment.hosts {
-            self.cycles[host.settings().us as usize].hear(host, t, &self.names, &mut self.happenings);
-            for words in self.faults.look(host, now) {
+            self.cycles[host.settings().us as usize].receive(host, t, &self.names, &mut self.happenings);
+            for description in self.faults.look(host, now) {
                 let team = Some(team(host.settings().us));
                 self.happenings.push(Happening {
                     t,
                     kind: Kind::Fault,
                     team,
-                    words,
+                    description,
                     at: None,
                     problem: None,
                 });
@@ -152,7 +155,7 @@ impl Composer {
             let us = host.settings().us;
             let found = self.sanity[us as usize].look(now, host);
             alarms.extend(
-                found.iter().map(|found| format!("{} host: {}: {found}", us.word(), found.heading())),
+                found.iter().map(|found| format!("{} host: {}: {found}", us.label(), found.heading())),
             );
         }
         if let Some(referee) = moment.referee {
@@ -201,7 +204,7 @@ impl Composer {
         };
         let cycles = moment.hosts.iter().filter_map(shown).collect();
         let mut gauges = gauges::of_hosts(
-            if moment.hosts.is_empty() { std::slice::from_ref(&eyes) } else { moment.hosts },
+            if moment.hosts.is_empty() { std::slice::from_ref(&feed) } else { moment.hosts },
             now,
             self.rate.of(t, self.images.count),
         );
@@ -224,14 +227,14 @@ impl Composer {
             world: world.clone(),
             game: game.clone(),
             field,
-            league: eyes.settings().league,
+            league: feed.settings().league,
             us: match moment.hosts {
                 [only] => Some(only.settings().us),
                 _ => None,
             },
             aims,
         };
-        self.painter.sketch(scene, picture)
+        self.overlay_builder.deferred_scene(scene, picture)
     }
 
     fn ball(&mut self, t: f64, ball: &Ball, world: &World) -> page::Ball {
@@ -285,8 +288,8 @@ pub(crate) fn field_of(field: &FieldSpec) -> Field {
 
 fn sheet(game: &Game, referee: Option<&InternalReferee>, seen: &Possession) -> Match {
     let mut out = Match {
-        phase: phase_words(game.phase),
-        next: game.next.map(phase_words).unwrap_or_default(),
+        phase: phase_description(game.phase),
+        next: game.next.map(phase_description).unwrap_or_default(),
         stage: spaced(&format!("{:?}", game.stage)),
         stage_left: game.stage_time_left.map(milli),
         action_left: game.action_time_left.map(milli),
@@ -302,7 +305,7 @@ fn sheet(game: &Game, referee: Option<&InternalReferee>, seen: &Possession) -> M
         let counted = referee.map(InternalReferee::metrics);
         let own = counted.map(|metrics| metrics.team(colour));
         *out.teams.of_mut(team(colour)) = TeamSheet {
-            name: if account.name.is_empty() { colour.word().to_owned() } else { account.name.clone() },
+            name: if account.name.is_empty() { colour.label().to_owned() } else { account.name.clone() },
             score: account.score,
             defends: game.own_goal(colour).map_or(0, |goal| goal.sign() as i8),
             keeper: account.keeper.map(protocol::RobotId::number),
@@ -347,7 +350,7 @@ fn truth(world: &Truth) -> Layer {
             radii: [radius; 2],
             tone: layers::tone(robot.who.colour),
             fill: false,
-            note: format!("{} {}, as it truly stands", robot.who.colour.word(), robot.who.id.number()),
+            note: format!("{} {}, as it truly stands", robot.who.colour.label(), robot.who.id.number()),
         })
         .collect();
     let ball = world.ball.position;

@@ -1,6 +1,6 @@
 //! `cycles`: a team's cycles for the page. From its robots' own beacons, by arena's log.
 
-use arena::{CycleLog, News};
+use arena::{CycleEvent, CycleLog};
 use casebase::CaseBase;
 use host::Host;
 use page::{Cycle, Happening, Kind};
@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 use super::composer::Names;
 use super::layers::Played;
-use super::{team, words};
+use super::{description, team};
 
 /// Cycles of one team.
 #[derive(Debug, Default)]
@@ -25,7 +25,7 @@ pub(super) struct TeamCycles {
 
 impl TeamCycles {
     /// Takes the newest reports of the robots; new events go to `into`.
-    pub(super) fn hear(&mut self, host: &Host, t: f64, names: &Names, into: &mut Vec<Happening>) {
+    pub(super) fn receive(&mut self, host: &Host, t: f64, names: &Names, into: &mut Vec<Happening>) {
         for robot in RobotId::all() {
             let Some(state) = host.beacon(robot).and_then(|beacon| beacon.cycle.as_ref()) else { continue };
             if state.is_newer_than(self.newest.as_ref().map(|(state, _)| state)) {
@@ -33,46 +33,52 @@ impl TeamCycles {
                 let began = same.map_or(t, |(_, began)| *began);
                 self.newest = Some((state.clone(), began));
             }
-            let news = self.log.hear(t as f32, state);
+            let news = self.log.receive(t as f32, state);
             self.tell(news, host, t, names, into);
         }
     }
 
-    fn tell(&mut self, news: News, host: &Host, t: f64, names: &Names, into: &mut Vec<Happening>) {
+    fn tell(&mut self, news: CycleEvent, host: &Host, t: f64, names: &Names, into: &mut Vec<Happening>) {
         let us = host.settings().us;
-        let mut say = |kind, words: String, at, problem| {
-            into.push(Happening { t, kind, team: Some(team(us)), words, at, problem });
+        let mut say = |kind, description: String, at, problem| {
+            into.push(Happening { t, kind, team: Some(team(us)), description, at, problem });
         };
         let of = |i: usize| self.log.cycles().get(i);
         match news {
-            News::Decided(i) => {
+            CycleEvent::Decided(i) => {
                 let Some(cycle) = of(i) else { return };
                 if let Some(play) = &cycle.play {
                     self.told_none = false;
                     let players: Vec<_> = play.robots.iter().map(|id| id.number().to_string()).collect();
-                    let words = format!("{}: {} by {}", us.word(), names.of(play.case), players.join(", "));
+                    let description =
+                        format!("{}: {} by {}", us.label(), names.of(play.case), players.join(", "));
                     let ball: geometry::Point<geometry::Field> = play.ball.into();
-                    say(Kind::Case, words, Some([ball.x(), ball.y()]), Some(problem(host, play.ball.into())));
+                    say(
+                        Kind::Case,
+                        description,
+                        Some([ball.x(), ball.y()]),
+                        Some(problem(host, play.ball.into())),
+                    );
                 } else if cycle.no_case && !self.told_none {
                     self.told_none = true;
                     let ball = host.world().ball.map(|ball| ball.position);
                     let problem =
                         ball.map(|ball| problem(host, protocol::quantized::WirePoint::from(ball).into()));
-                    say(Kind::Cycle, format!("{}: no case fits", us.word()), None, problem);
+                    say(Kind::Cycle, format!("{}: no case fits", us.label()), None, problem);
                 }
             }
-            News::Ended(i) => {
+            CycleEvent::Ended(i) => {
                 let Some(cycle) = of(i).filter(|cycle| cycle.play.is_some()) else { return };
                 if let Some((_, end)) = cycle.end {
                     say(
                         Kind::Cycle,
-                        format!("{}: case {}", us.word(), end.word().replace('-', " ")),
+                        format!("{}: case {}", us.label(), end.label().replace('-', " ")),
                         None,
                         None,
                     );
                 }
             }
-            News::Nothing | News::Began(_) => {}
+            CycleEvent::Nothing | CycleEvent::Began(_) => {}
         }
     }
 
@@ -93,9 +99,9 @@ impl TeamCycles {
             team: Some(team(us)),
             number: state.id.counter,
             coordinator: state.coordinator.number(),
-            state: words::decision(&state.decision),
+            state: description::decision(&state.decision),
             case: play.map(|play| names.of(play.case)).unwrap_or_default(),
-            symmetry: case.map(|case| case.symmetry().word().to_owned()).unwrap_or_default(),
+            symmetry: case.map(|case| case.symmetry().label().to_owned()).unwrap_or_default(),
             meant: play.map(|play| names.meant(play.case)).unwrap_or_default(),
             players: play.map(|play| play.robots.iter().map(|id| id.number()).collect()).unwrap_or_default(),
             seconds: (t - began) as f32,
@@ -120,10 +126,10 @@ fn problem(host: &Host, ball: casebase::PointMm) -> Value {
     let world = host.world();
     let now: Instant = world.time;
     let offers = |id: RobotId| {
-        let heard = host.quality(id).is_some_and(|quality| quality.is_present(now));
-        heard && host.beacon(id).is_some_and(|beacon| beacon.status.has(Status::AVAILABLE))
+        let received = host.quality(id).is_some_and(|quality| quality.is_present(now));
+        received && host.beacon(id).is_some_and(|beacon| beacon.status.has(Status::AVAILABLE))
     };
-    let mates: serde_json::Map<String, Value> = world
+    let teammates: serde_json::Map<String, Value> = world
         .ours(us)
         .filter(|robot| offers(robot.who.id))
         .map(|robot| (robot.who.id.number().to_string(), json!(mm(robot.pose.position))))
@@ -133,8 +139,8 @@ fn problem(host: &Host, ball: casebase::PointMm) -> Value {
     let own = game.own_goal(us).unwrap_or(host.settings().defending);
     json!({
         "ball": [ball.x, ball.y],
-        "defending": own.word(),
-        "teammates": mates,
+        "defending": own.label(),
+        "teammates": teammates,
         "opponents": opponents,
     })
 }

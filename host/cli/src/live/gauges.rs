@@ -60,7 +60,7 @@ pub(super) fn of_hosts(hosts: &[&Host], now: Instant, vision: f32) -> Vec<Gauge>
     }
     for host in hosts {
         learned(&mut out, host);
-        let group = format!("radio, {}", host.settings().us.word());
+        let group = format!("radio, {}", host.settings().us.label());
         let links: Vec<_> =
             RobotId::all().filter_map(|id| host.quality(id)).filter(|link| link.is_present(now)).collect();
         if links.is_empty() {
@@ -91,7 +91,7 @@ pub(super) fn of_hosts(hosts: &[&Host], now: Instant, vision: f32) -> Vec<Gauge>
 
 /// Learned values of robots and field.
 fn learned(out: &mut Vec<Gauge>, host: &Host) {
-    let (known, us) = (host.learned(), host.settings().us.word());
+    let (known, us) = (host.learned(), host.settings().us.label());
     let group = format!("learned, {us}");
     for id in RobotId::all() {
         if let Some(gain) = known.kick(id) {

@@ -11,13 +11,13 @@ use crate::replay::happening::{self, Finder};
 
 /// Detects new events.
 #[derive(Debug, Default)]
-pub(super) struct News {
+pub(super) struct EventFeed {
     finder: Finder,
     events: usize,
     kick: Option<Kick>,
 }
 
-impl News {
+impl EventFeed {
     /// A packet of the referee. Where our own referee reports its events itself, the packet's are left out.
     pub(super) fn packet(&mut self, bytes: &[u8], t: f64, own: bool, into: &mut Vec<Happening>) {
         let Ok(packet) = Referee::decode(bytes) else { return };
@@ -37,17 +37,19 @@ impl News {
                 | happening::Kind::DesignatedPosition => Kind::Event,
             };
             // Numbers are stored in the record and left out of the label.
-            let words = match found.kind {
-                happening::Kind::Goal => format!("goal, {}", found.words),
-                happening::Kind::GameEvent if !found.words.is_empty() => format!("{name} ({})", found.words),
+            let description = match found.kind {
+                happening::Kind::Goal => format!("goal, {}", found.description),
+                happening::Kind::GameEvent if !found.description.is_empty() => {
+                    format!("{name} ({})", found.description)
+                }
                 happening::Kind::Card
                 | happening::Kind::MaxBots
                 | happening::Kind::TeamName
-                | happening::Kind::DesignatedPosition => format!("{name}, {}", found.words),
+                | happening::Kind::DesignatedPosition => format!("{name}, {}", found.description),
                 _ => name,
             };
-            let team = whose(&words);
-            into.push(Happening { t, kind, team, words, at: None, problem: None });
+            let team = whose(&description);
+            into.push(Happening { t, kind, team, description, at: None, problem: None });
         }
     }
 
@@ -59,7 +61,7 @@ impl News {
                 t,
                 kind: if kind.is_offence() { Kind::Foul } else { Kind::Event },
                 team: event.by.map(super::team),
-                words: sentence(event),
+                description: sentence(event),
                 at: Some([milli(event.place.x()), milli(event.place.y())]),
                 problem: None,
             });
@@ -79,9 +81,9 @@ impl News {
             t,
             kind: Kind::Kick,
             team: Some(super::team(by.colour)),
-            words: format!(
+            description: format!(
                 "{} {} {how} at {:.1} m/s",
-                by.colour.word(),
+                by.colour.label(),
                 by.id.number(),
                 kick.velocity.norm()
             ),
@@ -113,13 +115,13 @@ pub(crate) fn foul_or_event(name: &str) -> Kind {
     }
 }
 
-fn whose(words: &str) -> Option<Team> {
-    let has = |colour: &str| words.split(|c: char| !c.is_alphabetic()).any(|word| word == colour);
+fn whose(description: &str) -> Option<Team> {
+    let has = |colour: &str| description.split(|c: char| !c.is_alphabetic()).any(|label| label == colour);
     match (has("blue"), has("yellow")) {
         (true, false) => Some(Team::Blue),
         (false, true) => Some(Team::Yellow),
         // "goal, yellow, blue 0 : 1 yellow": the first team is the one that scored.
-        (true, true) => words.split(", ").find_map(|part| match part {
+        (true, true) => description.split(", ").find_map(|part| match part {
             "blue" => Some(Team::Blue),
             "yellow" => Some(Team::Yellow),
             _ => None,

@@ -7,9 +7,9 @@ use page::{Layer, Shape, Tone, milli};
 use protocol::RobotId;
 use protocol::team::Play;
 use rules::keep_out::{Situation, Why, keep_out};
-use rules::{Colour, Duty, FieldSpec, Phase};
+use rules::{Colour, FieldSpec, Phase, RuleRole};
 
-use super::words::spaced;
+use super::description::spaced;
 
 /// A keep-out zone larger than this share of the field is drawn by its border alone.
 const FILLED: f32 = 0.35;
@@ -143,7 +143,7 @@ pub(super) fn keep_outs(
             field,
             own,
             phase: phase.seen_by(team),
-            duty: Duty::Player,
+            rule_role: RuleRole::Player,
             ball,
             placement,
             ball_in_play: true,
@@ -153,7 +153,7 @@ pub(super) fn keep_outs(
             if matches!(phase, Phase::Run) && matches!(forbidden.why, Why::OwnArea | Why::OpponentArea) {
                 continue;
             }
-            let note = format!("{} keeps out: {}", team.word(), spaced(&format!("{:?}", forbidden.why)));
+            let note = format!("{} keeps out: {}", team.label(), spaced(&format!("{:?}", forbidden.why)));
             shapes.push(region(&forbidden.shape, field, note));
         }
     }

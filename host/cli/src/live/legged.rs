@@ -1,7 +1,7 @@
 //! `legged`: a trial of the four-legged league on the page: the true state of the field, and the attackers'
 //! radio messages.
 
-use arena::{Moment, News, TrialReport, Watcher};
+use arena::{CycleEvent, Moment, TrialReport, Watcher};
 use casebase::CaseBase;
 use page::{Cycle, Happening, Intent, Kind, Match, Mind, Page, Robot, Scene, Shape, Team, Tone, milli};
 use protocol::RobotId;
@@ -9,8 +9,8 @@ use protocol::team::{Beacon, CycleState, Role};
 use rules::{Colour, League};
 
 use super::composer::field_of;
+use super::description;
 use super::layers::{self, Played};
-use super::words;
 
 /// The ball's trail, in ticks of 40 ms.
 const TRAIL: usize = 40;
@@ -29,7 +29,7 @@ impl Legged {
         Self { page, base, beacons: Vec::new(), newest: None, trail: Vec::new() }
     }
 
-    fn hear(&mut self, moment: &Moment<'_>) {
+    fn receive(&mut self, moment: &Moment<'_>) {
         for (from, beacon) in moment.beacons {
             if let Some(state) = &beacon.cycle
                 && state.is_newer_than(self.newest.as_ref())
@@ -45,18 +45,18 @@ impl Legged {
 
     fn tell(&mut self, moment: &Moment<'_>, t: f64) {
         for news in moment.news {
-            let (News::Decided(i) | News::Ended(i)) = *news else { continue };
+            let (CycleEvent::Decided(i) | CycleEvent::Ended(i)) = *news else { continue };
             let Some(cycle) = moment.cycles.cycles().get(i) else { continue };
-            let (kind, words) = match (news, &cycle.play) {
-                (News::Decided(_), Some(play)) => (Kind::Case, moment.config.names.of(play.case)),
-                (News::Ended(_), Some(_)) => {
-                    let end = cycle.end.map_or("", |(_, end)| end.word());
+            let (kind, description) = match (news, &cycle.play) {
+                (CycleEvent::Decided(_), Some(play)) => (Kind::Case, moment.config.names.of(play.case)),
+                (CycleEvent::Ended(_), Some(_)) => {
+                    let end = cycle.end.map_or("", |(_, end)| end.label());
                     (Kind::Cycle, format!("case {}", end.replace('-', " ")))
                 }
                 _ => continue,
             };
             let problem = (kind == Kind::Case).then(|| problem(moment));
-            self.page.tell(Happening { t, kind, team: Some(Team::Blue), words, at: None, problem });
+            self.page.tell(Happening { t, kind, team: Some(Team::Blue), description, at: None, problem });
         }
     }
 
@@ -69,7 +69,7 @@ impl Legged {
     ) -> Option<Mind> {
         let (_, beacon) = self.beacons.iter().find(|(known, _)| *known == id)?;
         let part = played.and_then(|played| Some((played, played.place_of(id)?)));
-        let (state, step) = words::progress(
+        let (state, step) = description::progress(
             beacon.progress,
             part.as_ref().map(|(played, (robot, _))| (&played.case, *robot)),
         );
@@ -116,7 +116,7 @@ impl Legged {
             team: Some(Team::Blue),
             number: state.id.counter,
             coordinator: state.coordinator.number(),
-            state: words::decision(&state.decision),
+            state: description::decision(&state.decision),
             case: play.map(|play| moment.config.names.of(play.case)).unwrap_or_default(),
             players: play.map(|play| play.robots.iter().map(|id| id.number()).collect()).unwrap_or_default(),
             ..Cycle::default()
@@ -127,7 +127,7 @@ impl Legged {
         let at = [milli(ball.x()), milli(ball.y())];
         let mut game = Match {
             phase: "trial".into(),
-            stage: format!("scenario {}", moment.config.scenario.word()),
+            stage: format!("scenario {}", moment.config.scenario.label()),
             ..Match::default()
         };
         game.teams.blue.name = "attackers".into();
@@ -165,7 +165,7 @@ impl Legged {
 impl Watcher for Legged {
     fn watch(&mut self, moment: &Moment<'_>) {
         let t = f64::from(moment.tick.time);
-        self.hear(moment);
+        self.receive(moment);
         self.tell(moment, t);
         let scene = self.scene(moment, t);
         self.page.keep(scene);
@@ -174,8 +174,8 @@ impl Watcher for Legged {
     fn end(&mut self, moment: &Moment<'_>, report: &TrialReport) {
         let t = f64::from(moment.tick.time);
         let kind = if report.outcome == hil_sim::Outcome::Goal { Kind::Goal } else { Kind::Event };
-        let words = format!("the trial ends: {}", report.outcome.word());
-        self.page.tell(Happening { t, kind, team: Some(Team::Blue), words, at: None, problem: None });
+        let description = format!("the trial ends: {}", report.outcome.label());
+        self.page.tell(Happening { t, kind, team: Some(Team::Blue), description, at: None, problem: None });
         let mut scene = self.scene(moment, t + 0.04);
         scene.layers.push(page::Layer {
             name: "outcome".into(),
@@ -183,7 +183,7 @@ impl Watcher for Legged {
             on: true,
             shapes: vec![Shape::Text {
                 at: [0.0, 0.0],
-                text: report.outcome.word().to_owned(),
+                text: report.outcome.label().to_owned(),
                 tone: Tone::Plain,
             }],
         });
@@ -198,7 +198,7 @@ fn problem(moment: &Moment<'_>) -> serde_json::Value {
     };
     let attackers = moment.cast.attackers.len();
     let walkers = &moment.world.walkers;
-    let mates: serde_json::Map<String, serde_json::Value> = moment
+    let teammates: serde_json::Map<String, serde_json::Value> = moment
         .cast
         .attackers
         .iter()
@@ -207,6 +207,6 @@ fn problem(moment: &Moment<'_>) -> serde_json::Value {
         .collect();
     let opponents: Vec<_> = walkers.iter().skip(attackers).map(|walker| mm(walker.pose.position)).collect();
     serde_json::json!({
-        "ball": mm(moment.world.ball.position), "defending": "yellow", "teammates": mates, "opponents": opponents,
+        "ball": mm(moment.world.ball.position), "defending": "yellow", "teammates": teammates, "opponents": opponents,
     })
 }

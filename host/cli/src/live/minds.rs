@@ -8,12 +8,12 @@ use page::{Intent, Mind, Timer, Vitals, milli};
 use protocol::host::Condition;
 use protocol::team::{Progress, Role};
 use protocol::{Instant, RobotId};
-use rules::{Colour, Duty};
+use rules::{Colour, RuleRole};
 
 use super::composer::Names;
+use super::description;
 use super::layers::Played;
-use super::painter::Aim;
-use super::words;
+use super::overlay_builder::Aim;
 
 /// Since when robots are in their states: reuse, and what they are ordered.
 #[derive(Debug, Default)]
@@ -22,11 +22,11 @@ pub(super) struct Clocks {
     roles: BTreeMap<(bool, u8), (String, f64)>,
 }
 
-/// Seconds since the state of `who` is `words`.
-fn since(of: &mut BTreeMap<(bool, u8), (String, f64)>, who: (bool, u8), words: &str, t: f64) -> f32 {
-    let entry = of.entry(who).or_insert_with(|| (words.to_owned(), t));
-    if entry.0 != words || t < entry.1 {
-        *entry = (words.to_owned(), t);
+/// Seconds since the state of `who` is `description`.
+fn since(of: &mut BTreeMap<(bool, u8), (String, f64)>, who: (bool, u8), description: &str, t: f64) -> f32 {
+    let entry = of.entry(who).or_insert_with(|| (description.to_owned(), t));
+    if entry.0 != description || t < entry.1 {
+        *entry = (description.to_owned(), t);
     }
     (t - entry.1) as f32
 }
@@ -42,35 +42,35 @@ pub(super) fn mind(
 ) -> Option<(Mind, Option<Aim>)> {
     let id = robot.who.id;
     let order = host.orders().iter().find(|order| order.robot == id)?;
-    let directive = order.task.directive(words::flip(host));
+    let directive = order.task.directive(description::flip(host));
     let beacon = host.beacon(id);
     let part = played.and_then(|played| Some((played, played.place_of(id)?)));
     let progress = beacon.map_or(Progress::Idle, |beacon| beacon.progress);
     let bound = part.is_some() && matches!(progress, Progress::Adapt { .. } | Progress::Execute { .. });
     let in_case = part.as_ref().filter(|_| bound || matches!(progress, Progress::WaitEnd { .. }));
     let (state, step) =
-        words::progress(progress, part.as_ref().map(|(played, (robot, _))| (&played.case, *robot)));
+        description::progress(progress, part.as_ref().map(|(played, (robot, _))| (&played.case, *robot)));
     let here = [milli(robot.pose.position.x()), milli(robot.pose.position.y())];
-    let (to, ball_to) = words::aims(&directive);
+    let (to, ball_to) = description::aims(&directive);
     let place = part.as_ref().filter(|_| matches!(progress, Progress::Adapt { .. })).map(|(_, (_, at))| *at);
-    let duty = match order.role {
-        host::strategy::Role::Keeper => Duty::Keeper,
-        host::strategy::Role::Taker => Duty::Taker,
-        _ => Duty::Player,
+    let rule_role = match order.role {
+        host::strategy::Role::Keeper => RuleRole::Keeper,
+        host::strategy::Role::Taker => RuleRole::Taker,
+        _ => RuleRole::Player,
     };
-    let aim = place.or(to).map(|to| Aim { who: robot.who, to, duty });
+    let aim = place.or(to).map(|to| Aim { who: robot.who, to, rule_role });
     // A straight line until its path is planned.
     let path = aim.map_or_else(Vec::new, |aim| vec![here, aim.to]);
     let who = (host.settings().us == Colour::Blue, id.number());
-    let role = words::role(order.role);
+    let role = description::role(order.role);
     let timers = vec![
         Timer { name: format!("as {role}"), seconds: since(&mut clocks.roles, who, &role, t) },
         Timer { name: format!("in {state}"), seconds: since(&mut clocks.states, who, &state, t) },
     ];
     let mind = Mind {
         role,
-        directive: words::directive(&directive),
-        why: words::why(&order.why),
+        directive: description::directive(&directive),
+        why: description::why(&order.why),
         state,
         step,
         part: in_case.map_or_else(String::new, |(played, (robot, _))| {
@@ -90,30 +90,30 @@ pub(super) fn mind(
 /// State of a robot and its link.
 pub(super) fn vitals(host: &Host, robot: &Robot, now: Instant) -> Option<Vitals> {
     let quality = host.quality(robot.who.id)?;
-    let heard = quality.heard_at()?;
+    let received = quality.received_at()?;
     let condition = quality.condition();
     let ms = |us: u64| milli(us as f32 * 1e-3);
     let mut faults = Vec::new();
-    for (bit, words) in [
+    for (bit, description) in [
         (Condition::TIPPED, "tipped over"),
         (Condition::BATTERY_LOW, "battery low"),
         (Condition::LINK_LOST, "link lost"),
     ] {
         if condition.has(bit) {
-            faults.push(words.to_owned());
+            faults.push(description.to_owned());
         }
     }
     if !quality.is_present(now) {
         faults.push("silent".to_owned());
     }
-    let tally = |value: Option<f64>| value.map(|value| milli(value as f32));
+    let counters = |value: Option<f64>| value.map(|value| milli(value as f32));
     Some(Vitals {
         battery: quality.battery().map(milli),
-        silence_ms: Some(ms(now.since(heard).0)),
-        trip_ms: tally(quality.round_trip().mean()),
-        loss_down: tally(quality.loss_down()),
-        loss_up: tally(quality.loss_up()),
-        frames: tally(quality.frame_rate().mean()),
+        silence_ms: Some(ms(now.since(received).0)),
+        trip_ms: counters(quality.round_trip().mean()),
+        loss_down: counters(quality.loss_down()),
+        loss_up: counters(quality.loss_up()),
+        frames: counters(quality.frame_rate().mean()),
         refused: quality.refused(),
         lives: quality.lives(),
         unseen_ms: ms(now.since(robot.seen).0),
@@ -135,11 +135,11 @@ impl Faults {
         let us = host.settings().us;
         let mut told = Vec::new();
         for id in RobotId::all() {
-            let Some(quality) = host.quality(id).filter(|quality| quality.heard_at().is_some()) else {
+            let Some(quality) = host.quality(id).filter(|quality| quality.received_at().is_some()) else {
                 continue;
             };
             let who = (us == Colour::Blue, id.number());
-            let name = format!("{} {}", us.word(), id.number());
+            let name = format!("{} {}", us.label(), id.number());
             let (lives, here) = (quality.lives(), quality.is_present(now));
             if self.lives.insert(who, lives).is_some_and(|before| lives > before) {
                 told.push(format!("{name} booted again"));

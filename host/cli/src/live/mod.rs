@@ -1,26 +1,26 @@
 //! `live`: feed of the page. A match, a host or a recording becomes a [`page::Scene`] some 25 times a second.
 //!
-//! [`Composer`] fills scenes from hosts, the same for `play`, `control` and `replay`; [`oracle`] answers why
+//! [`Composer`] fills scenes from hosts, the same for `play`, `control` and `replay`; [`explanations`] answers why
 //! a case was chosen. Everything here only observes: no decision is made here.
 
 mod beliefs;
 mod composer;
 mod cycles;
+pub(crate) mod description;
+mod explanations;
 mod gauges;
 mod happenings;
 mod layers;
 mod legged;
+mod match_runner;
 mod minds;
-mod oracle;
-mod painter;
+mod overlay_builder;
+mod paths;
 mod possession;
 mod raw;
 mod tactics;
 #[cfg(test)]
 mod tests;
-mod theatre;
-mod ways;
-pub(crate) mod words;
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -33,17 +33,17 @@ use page::{Limits, Page, Powers, Team, Token};
 use rules::{Colour, League};
 
 use crate::Failure;
-use crate::args::{FolderArgs, LibraryArgs};
-use crate::library::Shelf;
+use crate::args::{DirectoryArgs, LibraryArgs};
+use crate::library::LibraryHandle;
 use crate::output::note;
 use crate::stop::stopped_by_hand;
 
 pub(crate) use composer::{Composer, Moment};
+use description::spaced;
+pub(crate) use explanations::CaseExplanations;
 pub(crate) use gauges::tick;
 pub(crate) use legged::Legged;
-pub(crate) use oracle::CaseOracle;
-pub(crate) use theatre::{AnewWatcher, End, Theatre, command_of};
-use words::spaced;
+pub(crate) use match_runner::{End, MatchRunner, RestartWatcher, command_of};
 
 /// Period of scenes, s: smooth motion, with the page interpolating in between.
 pub(crate) const SCENE_EVERY_S: f64 = 0.04;
@@ -75,7 +75,7 @@ impl PageArgs {
         title: String,
         recorded: bool,
         powers: Powers,
-        oracle: CaseOracle,
+        explanations: CaseExplanations,
     ) -> Result<Page, Failure> {
         let failed = |error: &dyn std::fmt::Display| Failure::Network(format!("{error} ({})", self.flag));
         let open = !self.listen.ip().to_canonical().is_loopback();
@@ -83,7 +83,7 @@ impl PageArgs {
         let limits = Limits::default();
         let settings =
             page::Settings { listen: self.listen, title, recorded, powers, token: token.clone(), limits };
-        let page = Page::open(settings, Arc::new(oracle)).map_err(|error| failed(&error))?;
+        let page = Page::open(settings, Arc::new(explanations)).map_err(|error| failed(&error))?;
         let at = page.address();
         match token {
             None => note!("page     http://{at}"),
@@ -99,8 +99,8 @@ impl PageArgs {
 }
 
 /// Keeps the page open after everything was played, until the operator ends the program.
-pub(crate) fn stay(page: Page, words: &str) {
-    note!("{words}; the page stays until Ctrl-C");
+pub(crate) fn stay(page: Page, description: &str) {
+    note!("{description}; the page stays until Ctrl-C");
     while !stopped_by_hand().load(Ordering::Relaxed) {
         thread::sleep(Duration::from_millis(50));
     }
@@ -108,13 +108,16 @@ pub(crate) fn stay(page: Page, words: &str) {
 }
 
 /// The cases that come with a league, or those of a directory; none if neither exists.
-pub(crate) fn shelf_of(league: League, folder: Option<&std::path::Path>) -> Result<Option<Shelf>, Failure> {
+pub(crate) fn library_handle_of(
+    league: League,
+    directory: Option<&std::path::Path>,
+) -> Result<Option<LibraryHandle>, Failure> {
     let known = case_library::league(league.name()).is_some();
-    if folder.is_none() && !known {
+    if directory.is_none() && !known {
         return Ok(None);
     }
-    let folder = FolderArgs { library: folder.map(std::path::Path::to_owned) };
-    Shelf::open(&LibraryArgs { folder, league: league.name().to_owned() }).map(Some)
+    let directory = DirectoryArgs { library: directory.map(std::path::Path::to_owned) };
+    LibraryHandle::open(&LibraryArgs { directory, league: league.name().to_owned() }).map(Some)
 }
 
 /// A colour in the page's format.

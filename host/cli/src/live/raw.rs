@@ -22,7 +22,7 @@ pub(super) struct Images {
 }
 
 impl Images {
-    pub(super) fn hear(&mut self, bytes: &[u8]) {
+    pub(super) fn receive(&mut self, bytes: &[u8]) {
         self.count += 1;
         // The oldest packet's buffer is used again.
         let mut room = if self.packets.len() >= PACKETS {
@@ -82,7 +82,7 @@ mod tests {
     fn the_newest_image_of_each_camera_is_shown_and_a_dead_camera_is_not() {
         let mut images = Images::default();
         for (camera, t, x) in [(2, 0.5, 900.0), (0, 1.0, 100.0), (1, 1.0, 200.0), (0, 1.02, 110.0)] {
-            images.hear(&image(camera, t, x));
+            images.receive(&image(camera, t, x));
         }
         let xs: Vec<f32> = images.seen().robots.iter().map(|robot| robot.2).collect();
         assert_eq!(xs, [0.11, 0.2]);

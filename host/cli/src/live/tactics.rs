@@ -2,7 +2,7 @@
 //! strategy's own functions: maps of P(receive) and of P(receive) · P(goal) for the team in possession,
 //! threats and open angles for the other, and what the one believes of the other ([`super::beliefs`]).
 //!
-//! Computed from a snapshot, on the page's thread ([`super::painter`]); maps five times a second. Field
+//! Computed from a snapshot, on the page's thread ([`super::overlay_builder`]); maps five times a second. Field
 //! frame, m.
 
 use geometry::{Attack, Point};
@@ -16,7 +16,7 @@ use protocol::RobotId;
 use rules::{Colour, Phase};
 
 use super::beliefs::Beliefs;
-use super::painter::Picture;
+use super::overlay_builder::Picture;
 
 /// Period of the maps, s.
 const EVERY_S: f64 = 0.2;
@@ -150,12 +150,15 @@ struct Rated {
 /// nearest to the place, and the value of that pass.
 fn maps(view: &View, flip: Flip, kicks: &Kicks) -> [Vec<Shape>; 2] {
     let Some(ball) = view.ball else { return Default::default() };
-    let off = |mate: &&host::strategy::view::Robot| mate.position.distance(ball.position);
+    let off = |teammate: &&host::strategy::view::Robot| teammate.position.distance(ball.position);
     let passer = view.ours.iter().min_by(|a, b| off(a).total_cmp(&off(b))).map(|robot| robot.id);
-    let mates: Vec<_> =
-        view.ours.iter().filter(|mate| Some(mate.id) != passer && mate.id != view.keeper).collect();
+    let teammates: Vec<_> = view
+        .ours
+        .iter()
+        .filter(|teammate| Some(teammate.id) != passer && teammate.id != view.keeper)
+        .collect();
     let scenes: Vec<_> =
-        mates.iter().map(|mate| Scene::of(view, kicks, ball.position, passer, mate)).collect();
+        teammates.iter().map(|teammate| Scene::of(view, kicks, ball.position, passer, teammate)).collect();
     let (half_x, half_y) = (view.field.length * 0.5, view.field.width * 0.5);
     let (columns, rows) =
         ((view.field.length / CELL).round() as u32, (view.field.width / CELL).round() as u32);
@@ -165,8 +168,8 @@ fn maps(view: &View, flip: Flip, kicks: &Kicks) -> [Vec<Shape>; 2] {
             let share = |i: u32, n: u32| (i as f32 + 0.5) / n as f32 * 2.0 - 1.0;
             let place = Point::new(share(column, columns) * half_x, share(row, rows) * half_y);
             let at = flip.point(place);
-            let far = |i: &usize| mates[*i].position.distance(at);
-            let nearest = (0..mates.len()).min_by(|a, b| far(a).total_cmp(&far(b)));
+            let far = |i: &usize| teammates[*i].position.distance(at);
+            let nearest = (0..teammates.len()).min_by(|a, b| far(a).total_cmp(&far(b)));
             let rating = nearest.map(|i| scenes[i].rate(at));
             let [receive, value] = rating.map_or([0.0; 2], |rating| [rating.receive(), rating.value()]);
             rated.push(Rated { place, receive, value });

@@ -3,19 +3,19 @@
 
 use std::collections::BTreeSet;
 
-use arena::game::{Crowd, Game, GameConfig, Watcher};
+use arena::game::{Game, GameConfig, Watcher, Watchers};
 use casebase::Settings;
 use hil_sim::NativeBackend;
 use page::{Happening, Kind, Scene, Shape, Team};
 use rules::{Colour, League};
 
-use super::{Composer, Moment, shelf_of};
+use super::{Composer, Moment, library_handle_of};
 use crate::args::Chosen;
 use crate::cases::explained;
 
-struct Eyes(Composer);
+struct Feed(Composer);
 
-impl Watcher for Eyes {
+impl Watcher for Feed {
     fn vision(&mut self, _now: protocol::Instant, bytes: &[u8]) {
         self.0.vision(bytes);
     }
@@ -68,30 +68,30 @@ impl Played {
 
 /// A match of this duration, s.
 fn played(seconds: u32) -> Played {
-    let shelf = shelf_of(League::DivisionB, None).unwrap();
-    let base = shelf.as_ref().unwrap().lasting_base();
+    let library_handle = library_handle_of(League::DivisionB, None).unwrap();
+    let base = library_handle.as_ref().unwrap().lasting_base();
     let mut backend = NativeBackend::new(base);
     let config = GameConfig::new(League::DivisionB, 1, 600.0);
     let mut game = Game::new(&config, &mut backend).unwrap();
-    let mut eyes = Eyes(Composer::new(shelf.as_ref()));
+    let mut feed = Feed(Composer::new(library_handle.as_ref()));
     let mut out = Played::default();
     let ticks = seconds * 100;
     for tick in 0..ticks {
-        game.step(&mut Crowd(vec![&mut eyes])).unwrap();
+        game.step(&mut Watchers(vec![&mut feed])).unwrap();
         if tick % 4 == 3 {
             let hosts = [game.host(Colour::Blue), game.host(Colour::Yellow)];
-            let sketch = eyes.0.compose(Moment {
+            let deferred_scene = feed.0.compose(Moment {
                 t: game.time(),
                 now: game.now(),
-                eyes: hosts[0],
+                feed: hosts[0],
                 hosts: &hosts,
                 truth: Some(game.world()),
                 referee: Some(game.referee()),
                 gauges: Vec::new(),
             });
-            let scene = sketch.finished();
+            let scene = deferred_scene.finished();
             out.most = out.most.max(serde_json::to_string(&scene).unwrap().len());
-            out.happenings.extend(eyes.0.take_happenings());
+            out.happenings.extend(feed.0.take_happenings());
             if tick + 100 > ticks {
                 out.seen.extend(scene.raw.robots.iter().map(|robot| (robot.0, robot.1)));
             }
@@ -139,17 +139,17 @@ fn a_match_fills_scenes_that_hold_against_the_truth() {
 #[test]
 fn a_retrieval_that_is_told_can_be_explained_and_mostly_comes_to_the_same_case() {
     let happenings = played(90).happenings;
-    let shelf = shelf_of(League::DivisionB, None).unwrap().unwrap();
+    let library_handle = library_handle_of(League::DivisionB, None).unwrap().unwrap();
     let chosen = Chosen { settings: Settings::default(), changed: Vec::new() };
     let (mut told, mut same) = (0, 0);
     for happening in happenings.iter().filter(|happening| happening.kind == Kind::Case) {
         let problem = happening.problem.as_ref().unwrap().to_string();
         let answer: serde_json::Value =
-            serde_json::from_str(&explained(&shelf, &chosen, &problem).unwrap()).unwrap();
+            serde_json::from_str(&explained(&library_handle, &chosen, &problem).unwrap()).unwrap();
         let winner = answer["cases"].as_array().unwrap().iter().find(|row| row["id"] == answer["winner"]);
         let name = winner.and_then(|row| row["case"].as_str()).unwrap_or("none");
         told += 1;
-        same += u32::from(happening.words.contains(name));
+        same += u32::from(happening.description.contains(name));
     }
     // The coordinator retrieved by its own belief of a moment before: where two cases are similar it may
     // differ.

@@ -46,7 +46,7 @@ impl fmt::Display for PngError {
         match self {
             Self::Svg(error) => write!(f, "{error}"),
             Self::Empty => f.write_str("it has no size"),
-            Self::Encode(words) => f.write_str(words),
+            Self::Encode(description) => f.write_str(description),
         }
     }
 }
@@ -73,10 +73,10 @@ mod tests {
 
     #[test]
     fn letters_need_no_installed_font() {
-        let text = |words: &str, weight: &str| {
+        let text = |description: &str, weight: &str| {
             let svg = format!(
                 r#"<svg xmlns="http://www.w3.org/2000/svg" width="100" height="20" font-family="Helvetica, sans-serif">
-                   <text x="0" y="15" font-size="12" font-weight="{weight}">{words}</text></svg>"#
+                   <text x="0" y="15" font-size="12" font-weight="{weight}">{description}</text></svg>"#
             );
             let pixels = Pixmap::decode_png(&png(&svg).unwrap()).unwrap();
             assert_eq!((pixels.width(), pixels.height()), (200, 40));

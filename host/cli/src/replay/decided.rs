@@ -4,7 +4,7 @@ use host::Host;
 use protocol::Who;
 use serde::Serialize;
 
-use crate::live::words;
+use crate::live::description;
 
 /// A robot's current directive and what decided it; places in m, field frame.
 #[derive(Debug, Serialize)]
@@ -20,9 +20,9 @@ impl Decided {
         let host = hosts.iter().find(|host| host.settings().us == who.colour)?;
         let order = host.orders().iter().find(|order| order.robot == who.id)?;
         Some(Self {
-            role: words::role(order.role),
-            directive: words::directive(&order.task.directive(words::flip(host))),
-            why: words::why(&order.why),
+            role: description::role(order.role),
+            directive: description::directive(&order.task.directive(description::flip(host))),
+            why: description::why(&order.why),
         })
     }
 

@@ -20,7 +20,8 @@ pub(crate) struct Happening {
     pub(crate) name: String,
     /// Team or player, and number.
     #[serde(skip_serializing_if = "String::is_empty")]
-    pub(crate) words: String,
+    #[serde(rename = "words")]
+    pub(crate) description: String,
 }
 
 /// Kinds of events.
@@ -95,7 +96,7 @@ impl Finder {
             teams: [Account::of(&packet.yellow), Account::of(&packet.blue)],
         };
         let before = self.last.replace(now.clone());
-        let mut tell = |kind, name, words| into.push(Happening { at_s, kind, name, words });
+        let mut tell = |kind, name, description| into.push(Happening { at_s, kind, name, description });
         if before.as_ref().is_none_or(|before| before.stage != now.stage) {
             tell(Kind::Stage, number_name(packet.stage, Stage::try_from(packet.stage).ok()), String::new());
         }
@@ -164,17 +165,17 @@ fn in_metres([x, y]: [i32; 2]) -> String {
 impl Happening {
     /// A line for the operator; text of the referee's program is quoted in it.
     pub(super) fn tell(&self) -> String {
-        let words = if self.words.is_empty() {
+        let description = if self.description.is_empty() {
             String::new()
         } else {
-            format!(" ({})", excerpt(&self.words, WORDS_LEN))
+            format!(" ({})", excerpt(&self.description, DESCRIPTION_LEN))
         };
-        format!("{:>9.2} s  {}{words}", self.at_s, self.name)
+        format!("{:>9.2} s  {}{description}", self.at_s, self.name)
     }
 }
 
 /// Longest text of an event that is printed, characters.
-const WORDS_LEN: usize = 200;
+const DESCRIPTION_LEN: usize = 200;
 
 /// A name as the league writes it; the number where nothing is known by it.
 fn number_name(number: i32, known: Option<impl std::fmt::Debug>) -> String {
@@ -194,9 +195,9 @@ fn screaming(name: &str) -> String {
 }
 
 /// Whether a search text matches an event: the start of its name, without regard to case and dashes.
-pub(crate) fn is_meant(happening: &Happening, word: &str) -> bool {
+pub(crate) fn is_meant(happening: &Happening, label: &str) -> bool {
     let plain = |text: &str| text.replace(['-', ' '], "_").to_ascii_uppercase();
-    happening.name.starts_with(&plain(word))
+    happening.name.starts_with(&plain(label))
 }
 
 #[cfg(test)]
@@ -222,7 +223,7 @@ mod tests {
         ] {
             finder.read(&packet, at, &mut found);
         }
-        let told: Vec<_> = found.iter().map(|h| (h.at_s, h.name.as_str(), h.words.as_str())).collect();
+        let told: Vec<_> = found.iter().map(|h| (h.at_s, h.name.as_str(), h.description.as_str())).collect();
         assert_eq!(
             told,
             [

@@ -7,7 +7,7 @@
 use std::process::ExitCode;
 
 use host::referee::{Listener, SenderAddress};
-use host::tracking::{Heard, Tracker};
+use host::tracking::{Received, Tracker};
 use host::{Host, HostSettings, Input};
 use protocol::Instant;
 use rules::Colour;
@@ -50,7 +50,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     if args.at.is_some() || args.event.is_some() {
         return Err(Failure::Recorded {
             file: args.file.clone(),
-            words: pass.not_there(args, damage.as_deref()),
+            description: pass.not_there(args, damage.as_deref()),
         });
     }
     let report = pass.finish(damage, back_steps);
@@ -58,7 +58,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     let nothing = report.messages.is_empty().then(|| "holds no message".to_owned());
     match report.damage.or(nothing) {
         // What could be read is printed above; the exit code reports that it is not the whole file.
-        Some(words) => Err(Failure::Recorded { file: args.file.clone(), words }),
+        Some(description) => Err(Failure::Recorded { file: args.file.clone(), description }),
         None => Ok(ExitCode::SUCCESS),
     }
 }
@@ -95,7 +95,7 @@ impl<'a> Pass<'a> {
         let report = Report { kind: "log", file: args.file.display().to_string(), ..Report::default() };
         let team = args.team.map(|colour| Team {
             host: Host::new(HostSettings::new(colour, args.league, 1), Instant(0)),
-            told: report::Host { colour: colour.word().to_owned(), ..report::Host::default() },
+            told: report::Host { colour: colour.label().to_owned(), ..report::Host::default() },
             hash: FNV_BASIS,
         });
         Ok(Self {
@@ -133,8 +133,8 @@ impl<'a> Pass<'a> {
                 if let Some(kind) = self.report.messages.get_mut(&record.kind.to_string()) {
                     kind.undecodable += 1;
                 }
-                let words = || format!("message {number} at {at_s:.3} s: {error}");
-                self.report.first_undecodable.get_or_insert_with(words);
+                let description = || format!("message {number} at {at_s:.3} s: {error}");
+                self.report.first_undecodable.get_or_insert_with(description);
                 None
             }
         };
@@ -144,8 +144,8 @@ impl<'a> Pass<'a> {
                 if let Some(image) = &packet.detection {
                     self.image(image.camera_id, at_s);
                 }
-                let heard = self.tracker.handle(&packet, self.now);
-                if matches!(heard, Heard::Newest | Heard::Restarted) {
+                let received = self.tracker.handle(&packet, self.now);
+                if matches!(received, Received::Newest | Received::Restarted) {
                     self.look();
                 }
                 self.feed(Input::Vision(&record.payload));
@@ -153,7 +153,7 @@ impl<'a> Pass<'a> {
             Some(Packet::Referee(packet)) => {
                 let ball = self.tracker.world(self.now).ball.map(|ball| ball.position);
                 // A log file does not record the sender of its packets.
-                self.listener.hear(&packet, SenderAddress::INTERNAL, self.now, ball);
+                self.listener.receive(&packet, SenderAddress::INTERNAL, self.now, ball);
                 let before = self.report.happenings.len();
                 self.finder.read(&packet, at_s, &mut self.report.happenings);
                 self.report.sheet.referee(&packet);
@@ -168,9 +168,9 @@ impl<'a> Pass<'a> {
 
     /// The moment of the requested event, if it is among the newest.
     fn asked_for(&mut self, since: usize) -> Option<Moment> {
-        let word = self.args.event.as_deref()?;
+        let label = self.args.event.as_deref()?;
         for place in since..self.report.happenings.len() {
-            if is_meant(&self.report.happenings[place], word) {
+            if is_meant(&self.report.happenings[place], label) {
                 self.met += 1;
                 if self.met == self.args.nth {
                     let name = self.report.happenings[place].name.clone();
@@ -190,12 +190,12 @@ impl<'a> Pass<'a> {
     fn not_there(&self, args: &ReplayArgs, damage: Option<&str>) -> String {
         let damage = damage.map(|damage| format!("; the file is damaged: {damage}")).unwrap_or_default();
         match (&args.event, args.at) {
-            (Some(word), _) => {
+            (Some(label), _) => {
                 let mut known: Vec<_> = self.report.happenings.iter().map(|h| h.name.as_str()).collect();
                 known.sort_unstable();
                 known.dedup();
                 let known = if known.is_empty() { "no event".to_owned() } else { known.join(", ") };
-                format!("{} `{word}` in it, not {}; it has: {known}{damage}", self.met, args.nth)
+                format!("{} `{label}` in it, not {}; it has: {known}{damage}", self.met, args.nth)
             }
             (None, at) => {
                 format!("it ends after {:.3} s, before {} s{damage}", self.seconds(), at.unwrap_or_default())
@@ -229,7 +229,7 @@ impl<'a> Pass<'a> {
 
     /// Records the current state of the tracker.
     fn look(&mut self) {
-        let world = self.tracker.picture();
+        let world = self.tracker.snapshot();
         for robot in world.robots() {
             let seen = match robot.who.colour {
                 Colour::Blue => &mut self.report.robots.blue,

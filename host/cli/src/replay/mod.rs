@@ -22,7 +22,7 @@ use clap::Args;
 use flate2::bufread::MultiGzDecoder;
 use rules::{Colour, League};
 
-pub(crate) use moment::phase_words;
+pub(crate) use moment::phase_description;
 
 use crate::Failure;
 use crate::live::PageArgs;
@@ -79,9 +79,9 @@ pub(crate) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         return trace::run(args);
     }
     if args.check {
-        let words =
+        let description =
             "no trace, and only a trace can be checked: give the NAME.trace that `--record NAME` wrote";
-        return Err(Failure::Recorded { file: args.file.clone(), words: words.to_owned() });
+        return Err(Failure::Recorded { file: args.file.clone(), description: description.to_owned() });
     }
     league_log::run(args)
 }
@@ -112,7 +112,7 @@ fn begins(file: &Path) -> Result<Vec<u8>, Failure> {
 }
 
 fn failed(file: &Path, error: &dyn std::fmt::Display) -> Failure {
-    Failure::Recorded { file: file.to_owned(), words: error.to_string() }
+    Failure::Recorded { file: file.to_owned(), description: error.to_string() }
 }
 
 fn moment_in_seconds(text: &str) -> Result<f64, String> {
@@ -122,10 +122,10 @@ fn moment_in_seconds(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "expected seconds from the begin, such as 12.5".to_owned())
 }
 
-pub(crate) fn colour(word: &str) -> Result<Colour, String> {
+pub(crate) fn colour(label: &str) -> Result<Colour, String> {
     [Colour::Blue, Colour::Yellow]
         .into_iter()
-        .find(|colour| colour.word() == word)
+        .find(|colour| colour.label() == label)
         .ok_or_else(|| "expected blue or yellow".to_owned())
 }
 

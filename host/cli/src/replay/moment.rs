@@ -9,7 +9,7 @@ use rules::{Colour, Phase};
 use serde::Serialize;
 
 use super::decided::Decided;
-use crate::live::words::spaced;
+use crate::live::description::spaced;
 
 /// A moment, as text and as JSON.
 #[derive(Debug, Serialize)]
@@ -80,7 +80,7 @@ impl Moment {
         Self {
             at_s,
             event,
-            phase: phase_words(game.phase),
+            phase: phase_description(game.phase),
             stage: spaced(&format!("{:?}", game.stage)),
             score: Score { blue: game.team(Colour::Blue).score, yellow: game.team(Colour::Yellow).score },
             placement: game.placement.map(metres),
@@ -142,7 +142,7 @@ fn metres(point: Point<Field>) -> [f32; 2] {
 }
 
 /// `FreeKick(Blue)` as `free kick, blue`.
-pub(crate) fn phase_words(phase: Phase<Colour>) -> String {
+pub(crate) fn phase_description(phase: Phase<Colour>) -> String {
     let debug = format!("{phase:?}");
     match debug.split_once('(') {
         Some((name, who)) => format!("{}, {}", spaced(name), spaced(who.trim_end_matches(')'))),
@@ -155,9 +155,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn phases_and_stages_are_told_in_words() {
-        assert_eq!(phase_words(Phase::FreeKick(Colour::Blue)), "free kick, blue");
-        assert_eq!(phase_words(Phase::Halt), "halt");
+    fn phases_and_stages_are_told_in_description() {
+        assert_eq!(phase_description(Phase::FreeKick(Colour::Blue)), "free kick, blue");
+        assert_eq!(phase_description(Phase::Halt), "halt");
         assert_eq!(spaced("ExtraFirstHalfPre"), "extra first half pre");
     }
 }

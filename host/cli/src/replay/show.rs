@@ -21,7 +21,7 @@ use ssl::log::MessageKind;
 use super::clock::LogClock;
 use super::{ReplayArgs, TRACE, begins, failed, open, trace};
 use crate::Failure;
-use crate::live::{CaseOracle, Composer, Moment, PageArgs, SCENE_EVERY_S, shelf_of, stay};
+use crate::live::{CaseExplanations, Composer, Moment, PageArgs, SCENE_EVERY_S, library_handle_of, stay};
 use crate::output::note;
 use crate::stop::stopped_by_hand;
 
@@ -41,43 +41,43 @@ struct Projector {
 
 impl Projector {
     fn new(args: &ReplayArgs, page: &PageArgs, league: League) -> Result<Self, Failure> {
-        let shelf = shelf_of(league, None)?;
-        let composer = Composer::new(shelf.as_ref());
+        let library_handle = library_handle_of(league, None)?;
+        let composer = Composer::new(library_handle.as_ref());
         let name = args.file.file_name().map(|name| name.to_string_lossy().into_owned());
-        let oracle = CaseOracle::new(shelf, casebase::Settings::default());
-        let page = page.open(name.unwrap_or_default(), true, Powers::None, oracle)?;
+        let explanations = CaseExplanations::new(library_handle, casebase::Settings::default());
+        let page = page.open(name.unwrap_or_default(), true, Powers::None, explanations)?;
         Ok(Self { page, composer, due: f64::NEG_INFINITY, broken: false })
     }
 
     /// Displays the moment after a message, if the last scene is long enough ago.
-    fn look(&mut self, now: Instant, eyes: &Host, hosts: &[&Host]) {
+    fn look(&mut self, now: Instant, feed: &Host, hosts: &[&Host]) {
         let t = now.0 as f64 * 1e-6;
         if t < self.due {
             return;
         }
         self.due = t + SCENE_EVERY_S;
-        let moment = Moment { t, now, eyes, hosts, truth: None, referee: None, gauges: Vec::new() };
-        let sketch = self.composer.compose(moment);
+        let moment = Moment { t, now, feed, hosts, truth: None, referee: None, gauges: Vec::new() };
+        let deferred_scene = self.composer.compose(moment);
         for happening in self.composer.take_happenings() {
             self.page.tell(happening);
         }
-        self.page.keep(sketch);
+        self.page.keep(deferred_scene);
     }
 
     /// Reports that the file is truncated, and where: it is not the end of the match.
-    fn breaks_off(&mut self, now: Instant, damage: &str, eyes: &Host, hosts: &[&Host]) {
+    fn breaks_off(&mut self, now: Instant, damage: &str, feed: &Host, hosts: &[&Host]) {
         let t = now.0 as f64 * 1e-6;
-        let words = format!("the file breaks off: {damage}");
-        note!("{}", printable(&words));
+        let description = format!("the file breaks off: {damage}");
+        note!("{}", printable(&description));
         self.broken = true;
-        self.page.tell(Happening { t, kind: Told::Fault, team: None, words, at: None, problem: None });
+        self.page.tell(Happening { t, kind: Told::Fault, team: None, description, at: None, problem: None });
         self.due = f64::NEG_INFINITY;
-        self.look(now, eyes, hosts);
+        self.look(now, feed, hosts);
     }
 
     /// Keeps the page open after the whole file was read.
-    fn stay(self, words: &str) -> ExitCode {
-        stay(self.page, words);
+    fn stay(self, description: &str) -> ExitCode {
+        stay(self.page, description);
         if self.broken { ExitCode::FAILURE } else { ExitCode::SUCCESS }
     }
 }
@@ -107,24 +107,24 @@ fn show_trace(args: &ReplayArgs, page: &PageArgs) -> Result<ExitCode, Failure> {
         }
         recheck.feed(&record);
         let hosts: Vec<&Host> = (0..header.hosts.len()).filter_map(|i| recheck.host(i)).collect();
-        if let Some(eyes) = hosts.first() {
-            projector.look(now, eyes, &hosts);
+        if let Some(feed) = hosts.first() {
+            projector.look(now, feed, &hosts);
         }
     }
     if let Some(damage) = trace::damage_of(reader.end()) {
         let hosts: Vec<&Host> = (0..header.hosts.len()).filter_map(|i| recheck.host(i)).collect();
-        if let Some(eyes) = hosts.first() {
-            projector.breaks_off(now, &damage, eyes, &hosts);
+        if let Some(feed) = hosts.first() {
+            projector.breaks_off(now, &damage, feed, &hosts);
         }
     }
     recheck.finish(true);
     let same = recheck.results().all(|(_, difference)| difference.is_none());
-    let words = if same {
+    let description = if same {
         "every decision was taken again as recorded"
     } else {
         "hosts decide otherwise than recorded: see the summary"
     };
-    Ok(projector.stay(words))
+    Ok(projector.stay(description))
 }
 
 fn show_log(args: &ReplayArgs, page: &PageArgs) -> Result<ExitCode, Failure> {

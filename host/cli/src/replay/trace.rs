@@ -67,7 +67,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     let mut span: Option<(Instant, Instant)> = None;
     // Every host receives the same referee; events are taken from the host that is displayed.
     let shown =
-        header.hosts.iter().position(|host| Some(&*host.colour) == args.team.map(rules::Colour::word));
+        header.hosts.iter().position(|host| Some(&*host.colour) == args.team.map(rules::Colour::label));
     let shown = shown.unwrap_or(0);
     let bar = Progress::open();
     for record in reader.by_ref() {
@@ -81,7 +81,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         }
         let (first, last) = span.get_or_insert((record.at, record.at));
         (*first, *last) = ((*first).min(record.at), (*last).max(record.at));
-        *records.entry(word(record.kind)).or_insert(0) += 1;
+        *records.entry(label(record.kind)).or_insert(0) += 1;
         strays += u64::from(!recheck.feed(&record));
         if record.kind == Kind::Vision
             && usize::from(record.host) == shown
@@ -95,7 +95,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
                 sheet.referee(&packet);
                 finder.read(&packet, record.at.0 as f64 * 1e-6, &mut happenings);
             }
-            let asked = |h: &&Happening| args.event.as_deref().is_some_and(|word| is_meant(h, word));
+            let asked = |h: &&Happening| args.event.as_deref().is_some_and(|label| is_meant(h, label));
             for happening in happenings[before..].iter().filter(asked) {
                 met += 1;
                 if met == args.nth
@@ -113,7 +113,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         let (_, last) = span.unwrap_or_default();
         let asked = args.event.as_ref().map_or_else(
             || format!("{} s is after its end", args.at.unwrap_or_default()),
-            |word| format!("{met} `{word}` in it, not {}", args.nth),
+            |label| format!("{met} `{label}` in it, not {}", args.nth),
         );
         let damage = damage.map(|damage| format!("; the file is damaged: {damage}")).unwrap_or_default();
         return Err(failed(file, &format!("{asked}; it ends at {:.3} s{damage}", last.0 as f64 * 1e-6)));
@@ -141,15 +141,15 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         same_decisions: hosts.iter().all(|host| host.difference.is_none()) && strays == 0,
         hosts,
     };
-    let words = if args.json {
+    let description = if args.json {
         serde_json::to_string(&report).map_err(|error| Failure::Output(error.into()))? + "\n"
     } else {
         report.tell()
     };
-    say(&words)?;
+    say(&description)?;
     match report.damage {
         // What could be read is printed above.
-        Some(words) => Err(failed(file, &words)),
+        Some(description) => Err(failed(file, &description)),
         None if report.same_decisions => Ok(ExitCode::SUCCESS),
         None => Ok(ExitCode::FAILURE),
     }
@@ -178,12 +178,12 @@ fn show(
     event: Option<String>,
 ) -> Result<ExitCode, Failure> {
     let moment = Moment::new(at.0 as f64 * 1e-6, event, &host.tracker().world(at), host.game(), hosts);
-    let words = if args.json {
+    let description = if args.json {
         serde_json::to_string(&moment).map_err(|error| Failure::Output(error.into()))? + "\n"
     } else {
         moment.tell()
     };
-    say(&words)?;
+    say(&description)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -198,15 +198,15 @@ pub(super) fn key(args: &ReplayArgs, header: &RecordingHeader) -> Result<TeamKey
             Ok(read.key)
         }
         None if header.hosts.iter().any(|host| host.keyed) => {
-            let words =
+            let description =
                 "its frames were sealed with the team's key, which no recording holds: add --key-file FILE";
-            Err(failed(&args.file, &words))
+            Err(failed(&args.file, &description))
         }
         None => Ok(TeamKey::ZERO),
     }
 }
 
-fn word(kind: Kind) -> &'static str {
+fn label(kind: Kind) -> &'static str {
     match kind {
         Kind::Vision => "vision",
         Kind::Referee => "referee",

@@ -148,8 +148,9 @@ fn send(connection: &mut Connection, message: &impl ssl::Message) -> Result<(), 
 }
 
 fn reply(connection: &mut Connection) -> Result<ControllerReply, String> {
-    let heard = connection.receive::<ControllerToAutoRef>(REPLY_TIME).map_err(|error| error.to_string())?;
-    heard.and_then(|message| message.controller_reply).ok_or_else(|| {
+    let received =
+        connection.receive::<ControllerToAutoRef>(REPLY_TIME).map_err(|error| error.to_string())?;
+    received.and_then(|message| message.controller_reply).ok_or_else(|| {
         format!(
             "no answer from {} within {} s; is it a game controller's port for automatic referees?",
             connection.peer(),
@@ -200,7 +201,7 @@ mod tests {
 
     /// A controller's side of one connection: sends its first message, takes the registration, answers it
     /// with `code`.
-    fn greet(listener: &TcpListener, code: StatusCode) -> (Connection, AutoRefRegistration) {
+    fn shake_hands(listener: &TcpListener, code: StatusCode) -> (Connection, AutoRefRegistration) {
         let (stream, _) = listener.accept().expect("a connection");
         let mut talk = Connection::over(stream).expect("a talk");
         let answer = |code: StatusCode| ControllerToAutoRef {
@@ -233,15 +234,16 @@ mod tests {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         let mut reporter = Reporter::new(&listener.local_addr().expect("an address").to_string());
         for _ in 0..2 {
-            let (mut talk, registration) = greet(&listener, StatusCode::Ok);
+            let (mut talk, registration) = shake_hands(&listener, StatusCode::Ok);
             assert_eq!(registration.identifier, NAME);
             assert!(registration.signature.is_none());
             assert!(line(&mut reporter).contains("registered"));
             let event =
                 GameEvent { r#type: Some(GameEventType::PossibleGoal as i32), ..GameEvent::default() };
             reporter.report(event.clone());
-            let heard: AutoRefToController = talk.receive(REPLY_TIME).expect("no error").expect("an event");
-            assert_eq!(heard.game_event, Some(event));
+            let received: AutoRefToController =
+                talk.receive(REPLY_TIME).expect("no error").expect("an event");
+            assert_eq!(received.game_event, Some(event));
             drop(talk);
             assert!(line(&mut reporter).contains("tried again"));
         }
@@ -251,7 +253,7 @@ mod tests {
     fn a_controller_that_wants_a_signature_is_told_of_with_the_remedy() {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         let mut reporter = Reporter::new(&listener.local_addr().expect("an address").to_string());
-        let _talk = greet(&listener, StatusCode::Rejected);
+        let _talk = shake_hands(&listener, StatusCode::Rejected);
         let line = line(&mut reporter);
         assert!(line.contains("Missing signature") && line.contains("remove the key"), "{line}");
     }

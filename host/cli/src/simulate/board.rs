@@ -13,7 +13,9 @@ use page::{Page, Powers, Request};
 use protocol::{RobotId, Who};
 use rules::{Colour, League};
 
-use crate::live::{CaseOracle, Composer, Moment, PageArgs, SCENE_EVERY_S, colour, command_of, shelf_of};
+use crate::live::{
+    CaseExplanations, Composer, Moment, PageArgs, SCENE_EVERY_S, colour, command_of, library_handle_of,
+};
 use crate::output::note;
 
 /// Longest part of a name sent by a viewer that is quoted in an answer, characters.
@@ -21,7 +23,7 @@ const NAME_LEN: usize = 60;
 
 /// Requests of viewers to the simulator loop.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Wish {
+pub(super) struct TeamRequest {
     /// New speed; 0 pauses.
     pub(super) pace: Option<f32>,
     /// Number of further ticks of 10 ms, after which it stands still.
@@ -34,7 +36,7 @@ pub(super) struct Wish {
 pub(super) struct Board {
     page: Page,
     composer: Composer,
-    eyes: Host,
+    feed: Host,
     shown: Option<Instant>,
     /// The speed after a pause.
     speed: f32,
@@ -47,14 +49,15 @@ impl Board {
     /// Opens the page. If it cannot be opened, the error is printed and the field is simulated without it.
     pub(super) fn open(args: &PageArgs, league: League, seed: u64, speed: f32) -> Option<Self> {
         let open = || {
-            let oracle = CaseOracle::new(shelf_of(league, None)?, casebase::Settings::default());
+            let explanations =
+                CaseExplanations::new(library_handle_of(league, None)?, casebase::Settings::default());
             let page =
-                args.open(format!("simulate, {}", league.name()), false, Powers::Simulation, oracle)?;
-            let eyes = Host::new(HostSettings::new(Colour::Blue, league, 1), protocol::Instant(0));
+                args.open(format!("simulate, {}", league.name()), false, Powers::Simulation, explanations)?;
+            let feed = Host::new(HostSettings::new(Colour::Blue, league, 1), protocol::Instant(0));
             Ok::<_, crate::Failure>(Self {
                 page,
                 composer: Composer::new(None),
-                eyes,
+                feed,
                 shown: None,
                 speed,
                 seed,
@@ -66,19 +69,19 @@ impl Board {
 
     pub(super) fn vision(&mut self, bytes: &[u8], running: Duration) {
         self.composer.vision(bytes);
-        self.eyes.handle(protocol::Instant(running.as_micros() as u64), Input::Vision(bytes));
-        while self.eyes.poll_packet().is_some() {}
+        self.feed.handle(protocol::Instant(running.as_micros() as u64), Input::Vision(bytes));
+        while self.feed.poll_packet().is_some() {}
     }
 
     pub(super) fn referee(&mut self, bytes: &[u8], running: Duration) {
         let now = protocol::Instant(running.as_micros() as u64);
         self.composer.referee(bytes, self.t, true);
-        self.eyes.handle(now, Input::Referee(bytes, SenderAddress::INTERNAL));
+        self.feed.handle(now, Input::Referee(bytes, SenderAddress::INTERNAL));
     }
 
     /// Another game starts.
     pub(super) fn anew(&mut self, league: League, seed: u64) {
-        self.eyes = Host::new(HostSettings::new(Colour::Blue, league, 1), protocol::Instant(0));
+        self.feed = Host::new(HostSettings::new(Colour::Blue, league, 1), protocol::Instant(0));
         (self.composer, self.shown, self.seed, self.t) = (Composer::new(None), None, seed, 0.0);
         self.page.clear();
     }
@@ -90,17 +93,17 @@ impl Board {
         running: Duration,
         server: &mut Server,
         mut referee: Option<&mut InternalReferee>,
-    ) -> Wish {
-        let mut wish = Wish::default();
+    ) -> TeamRequest {
+        let mut wanted = TeamRequest::default();
         self.t = server.world().time();
         while let Some(request) = self.page.next_request() {
             match request {
-                Request::Pause { on } => wish.pace = Some(if on { 0.0 } else { self.speed }),
-                Request::Step { ticks } => (wish.pace, wish.ticks) = (Some(0.0), wish.ticks + ticks),
-                Request::Restart { seed } => wish.anew = Some(seed.unwrap_or(self.seed)),
+                Request::Pause { on } => wanted.pace = Some(if on { 0.0 } else { self.speed }),
+                Request::Step { ticks } => (wanted.pace, wanted.ticks) = (Some(0.0), wanted.ticks + ticks),
+                Request::Restart { seed } => wanted.anew = Some(seed.unwrap_or(self.seed)),
                 Request::Speed { factor } => {
                     self.speed = factor;
-                    wish.pace = Some(factor);
+                    wanted.pace = Some(factor);
                 }
                 Request::Ball { at } => server.world_mut().drag_ball(Point::new(at[0], at[1])),
                 Request::Robot { team, id, at } => {
@@ -109,7 +112,7 @@ impl Board {
                     if let Some(who) = who.filter(there) {
                         server.world_mut().drag_robot(who, Point::new(at[0], at[1]), None);
                     } else {
-                        let team = colour(team).word();
+                        let team = colour(team).label();
                         self.page.refuse(format!("{team} has no robot {id} on the field"));
                     }
                 }
@@ -136,22 +139,22 @@ impl Board {
             let moment = Moment {
                 t: self.t,
                 now: protocol::Instant(running.as_micros() as u64),
-                eyes: &self.eyes,
+                feed: &self.feed,
                 hosts: &[],
                 truth: Some(server.world()),
                 referee: referee.as_deref(),
                 gauges: Vec::new(),
             };
-            let mut sketch = self.composer.compose(moment);
+            let mut deferred_scene = self.composer.compose(moment);
             for happening in self.composer.take_happenings() {
                 self.page.tell(happening);
             }
-            let speed = wish.pace.unwrap_or(server.pace());
-            sketch.scene.paused = speed == 0.0;
-            sketch.scene.speed = self.speed;
-            sketch.scene.seed = Some(self.seed);
-            self.page.show(sketch);
+            let speed = wanted.pace.unwrap_or(server.pace());
+            deferred_scene.scene.paused = speed == 0.0;
+            deferred_scene.scene.speed = self.speed;
+            deferred_scene.scene.seed = Some(self.seed);
+            self.page.show(deferred_scene);
         }
-        wish
+        wanted
     }
 }

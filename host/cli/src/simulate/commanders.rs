@@ -34,7 +34,7 @@ pub(super) struct Commanders {
 
 impl Commanders {
     /// Takes a datagram of a team's port; returns a message where another program commands the same robots.
-    pub(super) fn hear(
+    pub(super) fn receive(
         &mut self,
         now: Duration,
         team: Colour,
@@ -66,7 +66,7 @@ impl Commanders {
         self.said.insert(team, now);
         Some(format!(
             "two programs command {} robot {id}: {other} and {from}; end one of them, or give it the other --colour",
-            team.word()
+            team.label()
         ))
     }
 }
@@ -87,7 +87,7 @@ mod tests {
         let one = |n: u64| {
             let now = Duration::from_millis(n * 1000 / 60);
             let from = SocketAddr::from(([127, 0, 0, 1], ports(n)));
-            Some((now.as_millis(), commanders.hear(now, Colour::Blue, from, &control(3))?))
+            Some((now.as_millis(), commanders.receive(now, Colour::Blue, from, &control(3))?))
         };
         (0..25 * 60).filter_map(one).collect()
     }

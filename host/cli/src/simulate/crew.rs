@@ -12,7 +12,7 @@ use ssl::Message;
 use ssl::net::Interfaces;
 
 use super::autoref::Reporter;
-use crate::net::Ear;
+use crate::net::NetReceiver;
 
 /// A port or group that cannot be opened is tried again this often.
 const AGAIN: Duration = Duration::from_secs(1);
@@ -22,7 +22,7 @@ const AT_ONCE: usize = 64;
 /// The external controller's receiver, and the services for it.
 pub(super) struct Crew {
     from: SocketAddr,
-    ear: Option<Ear>,
+    receiver: Option<NetReceiver>,
     /// When opening the receiver was last tried, running time.
     tried: Option<Duration>,
     troubled: bool,
@@ -43,7 +43,7 @@ impl Crew {
     ) -> Result<Self, NoRules> {
         Ok(Self {
             from,
-            ear: None,
+            receiver: None,
             tried: None,
             troubled: false,
             silent: true,
@@ -81,7 +81,11 @@ impl Crew {
 
     /// The state of the game, as text.
     pub(super) fn state(&self) -> String {
-        if self.silent { "no referee".to_owned() } else { crate::replay::phase_words(self.game.phase()) }
+        if self.silent {
+            "no referee".to_owned()
+        } else {
+            crate::replay::phase_description(self.game.phase())
+        }
     }
 
     /// Receives waiting packets; they go to `said`, lines for the operator to `lines`.
@@ -92,12 +96,12 @@ impl Crew {
         said: &mut Vec<Vec<u8>>,
         lines: &mut Vec<String>,
     ) {
-        if self.ear.is_none() && self.tried.is_none_or(|tried| running.saturating_sub(tried) >= AGAIN) {
+        if self.receiver.is_none() && self.tried.is_none_or(|tried| running.saturating_sub(tried) >= AGAIN) {
             self.tried = Some(running);
-            match Ear::open(self.from, &Interfaces::All) {
-                Ok(ear) => {
+            match NetReceiver::open(self.from, &Interfaces::All) {
+                Ok(receiver) => {
                     self.troubled = false;
-                    self.ear = Some(ear);
+                    self.receiver = Some(receiver);
                 }
                 Err(error) if !std::mem::replace(&mut self.troubled, true) => {
                     lines.push(format!("referee  {error}; it is tried again every second"));
@@ -106,19 +110,19 @@ impl Crew {
             }
         }
         let (now, ball) = (time_of(world), world.ball.position);
-        if let Some(ear) = &mut self.ear {
+        if let Some(receiver) = &mut self.receiver {
             for _ in 0..AT_ONCE {
-                match ear.receive(Duration::ZERO) {
+                match receiver.receive(Duration::ZERO) {
                     Ok(Some(datagram)) => {
                         if let Ok(packet) = ssl::referee::Referee::decode(datagram.bytes) {
                             said.push(datagram.bytes.to_vec());
-                            self.game.hear(packet, now, ball);
+                            self.game.receive(packet, now, ball);
                         }
                     }
                     Ok(None) => break,
                     Err(error) => {
                         lines.push(format!("referee  {error}; it is opened again"));
-                        self.ear = None;
+                        self.receiver = None;
                         break;
                     }
                 }
@@ -171,7 +175,7 @@ fn line_of(event: &hil_sim::small_size::referee::Event) -> String {
         (Some(team), None) => format!(" by {}", team_of(team)),
         (None, _) => String::new(),
     };
-    format!("{}{by} at ({:.2}, {:.2}) m", event.what.kind().word(), event.place.x(), event.place.y())
+    format!("{}{by} at ({:.2}, {:.2}) m", event.what.kind().label(), event.place.x(), event.place.y())
 }
 
 const fn team_of(team: Colour) -> &'static str {

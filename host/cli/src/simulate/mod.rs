@@ -9,8 +9,8 @@ mod autoref;
 mod board;
 mod commanders;
 mod crew;
-mod hall;
 mod ports;
+mod server_loop;
 mod sync;
 
 use std::net::SocketAddr;
@@ -19,7 +19,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use clap::{Args, ValueEnum};
 use hil_sim::small_size::NoiseParameters;
-use hil_sim::small_size::quirks::Profile;
+use hil_sim::small_size::compatibility::Profile;
 use hil_sim::small_size::server::{Server, ServerSettings};
 use hil_sim::small_size::worlds::{WorldChoice, WorldModel};
 use rules::League;
@@ -45,8 +45,8 @@ pub(crate) struct SimulateArgs {
     speed: f32,
     /// Compatibility profile: how it behaves on the wire, as itself or as another simulator, to test a
     /// program against.
-    #[arg(long, value_enum, default_value_t = ProfileWord::Ours)]
-    profile: ProfileWord,
+    #[arg(long, value_enum, default_value_t = ProfileLabel::Ours)]
+    profile: ProfileLabel,
     /// Which world of the family is simulated: nominal, grsim, erforce, erforce-none, sumatra, slow-dribbler,
     /// poor-vision, weak-kickers or random:SEED (docs/fields.md). A profile other than ours has cameras and
     /// noise of its own.
@@ -78,7 +78,7 @@ pub(crate) struct SimulateArgs {
     /// Source of referee messages: internal, none, or the ADDRESS:PORT of a game controller's packets, to be
     /// displayed beside the field.
     #[arg(long, value_name = "WHO", default_value = "internal", value_parser = referee)]
-    referee: Whistle,
+    referee: RefereeKind,
     /// With `--referee none` or an address: do the human's tasks that the game controller asks for: put the
     /// ball, take robots off, bring them back. Each action is reported in a line.
     #[arg(long)]
@@ -109,22 +109,22 @@ impl SimulateArgs {
     /// grSim's own port for commands, with the profile of grSim; with 0 for the ports any free port.
     fn legacy_port(&self) -> Option<u16> {
         let number = if self.ports == 0 { 0 } else { addresses::GRSIM_PORT };
-        matches!(self.profile, ProfileWord::Grsim).then_some(number)
+        matches!(self.profile, ProfileLabel::Grsim).then_some(number)
     }
 }
 
 /// Source of referee messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Whistle {
+enum RefereeKind {
     Internal,
     None,
     /// A game controller, received on this address.
-    Heard(SocketAddr),
+    Received(SocketAddr),
 }
 
 /// A profile on the command line.
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum ProfileWord {
+enum ProfileLabel {
     /// This simulator's own behaviour.
     Ours,
     /// As grSim: four cameras at once, its own time base, no noise.
@@ -135,7 +135,7 @@ enum ProfileWord {
 
 /// `onetwo simulate`.
 pub(crate) fn run(args: &SimulateArgs) -> Result<ExitCode, Failure> {
-    if args.referee == Whistle::Internal && (args.assistant || args.autoref.is_some()) {
+    if args.referee == RefereeKind::Internal && (args.assistant || args.autoref.is_some()) {
         return Err(Failure::Network(
             "--assistant and --autoref serve a game controller elsewhere, and the internal referee needs neither; add --referee none, or the ADDRESS:PORT of its packets"
                 .to_owned(),
@@ -143,9 +143,9 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<ExitCode, Failure> {
     }
     let unix = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     let profile = match args.profile {
-        ProfileWord::Ours => Profile::Ours,
-        ProfileWord::Grsim => Profile::Grsim,
-        ProfileWord::ErForce => Profile::ErForce,
+        ProfileLabel::Ours => Profile::Ours,
+        ProfileLabel::Grsim => Profile::Grsim,
+        ProfileLabel::ErForce => Profile::ErForce,
     };
     let settings = ServerSettings::of(args.league, profile, args.seed, unix.as_secs_f64());
     let no_rules = || Failure::Network(format!("{} is not played on wheels", args.league.name()));
@@ -160,7 +160,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<ExitCode, Failure> {
         settings.model.parameters.noise = NoiseParameters::NONE;
     }
     let server = Server::new(&settings);
-    hall::run(args, &settings, server, unix.as_micros() as u64)
+    server_loop::run(args, &settings, server, unix.as_micros() as u64)
 }
 
 fn speed(text: &str) -> Result<f32, String> {
@@ -182,13 +182,13 @@ pub(crate) fn seconds(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "expected seconds, such as 60".to_owned())
 }
 
-fn referee(text: &str) -> Result<Whistle, String> {
+fn referee(text: &str) -> Result<RefereeKind, String> {
     match text {
-        "internal" => Ok(Whistle::Internal),
-        "none" => Ok(Whistle::None),
+        "internal" => Ok(RefereeKind::Internal),
+        "none" => Ok(RefereeKind::None),
         address => address
             .parse()
-            .map(Whistle::Heard)
+            .map(RefereeKind::Received)
             .map_err(|_| "expected internal, none or an address such as 224.5.23.1:10003".to_owned()),
     }
 }
@@ -199,10 +199,10 @@ mod tests {
 
     #[test]
     fn the_whistle_is_ours_nobodys_or_somebody_elses() {
-        assert_eq!(referee("internal"), Ok(Whistle::Internal));
-        assert_eq!(referee("none"), Ok(Whistle::None));
-        assert_eq!(referee("224.5.23.1:10003"), Ok(Whistle::Heard(addresses::REFEREE.into())));
-        assert!(referee("224.5.23.1").is_err_and(|words| words.contains("10003")));
+        assert_eq!(referee("internal"), Ok(RefereeKind::Internal));
+        assert_eq!(referee("none"), Ok(RefereeKind::None));
+        assert_eq!(referee("224.5.23.1:10003"), Ok(RefereeKind::Received(addresses::REFEREE.into())));
+        assert!(referee("224.5.23.1").is_err_and(|description| description.contains("10003")));
     }
 
     #[test]

@@ -18,14 +18,14 @@ const AT_ONCE: usize = 64;
 /// Sockets of the simulation protocol.
 #[derive(Debug)]
 pub(super) struct Ports {
-    doors: Vec<Door>,
+    doors: Vec<Group>,
     tried: Instant,
     commanders: Commanders,
     began: Instant,
 }
 
 #[derive(Debug)]
-struct Door {
+struct Group {
     port: server::Port,
     address: SocketAddr,
     socket: Option<Port>,
@@ -34,10 +34,15 @@ struct Door {
 
 impl Ports {
     /// Opens the ports that are free, and adds a message for each of the others.
-    pub(super) fn open(listen: IpAddr, base: u16, legacy: Option<u16>, words: &mut Vec<String>) -> Self {
+    pub(super) fn open(
+        listen: IpAddr,
+        base: u16,
+        legacy: Option<u16>,
+        description: &mut Vec<String>,
+    ) -> Self {
         let door = |offset: u16, port| {
             let number = if base == 0 { 0 } else { base + offset };
-            Door { port, address: SocketAddr::new(listen, number), socket: None, troubled: false }
+            Group { port, address: SocketAddr::new(listen, number), socket: None, troubled: false }
         };
         let teams = [Colour::Blue, Colour::Yellow].map(server::Port::Team);
         let mut ports = Self {
@@ -49,13 +54,13 @@ impl Ports {
         if base == 0 {
             ports.take_any();
         }
-        ports.doors.extend(legacy.map(|number| Door {
+        ports.doors.extend(legacy.map(|number| Group {
             port: server::Port::Legacy,
             address: SocketAddr::new(listen, number),
             socket: None,
             troubled: false,
         }));
-        ports.take(words);
+        ports.take(description);
         ports
     }
 
@@ -78,19 +83,19 @@ impl Ports {
         }
     }
 
-    fn take(&mut self, words: &mut Vec<String>) {
+    fn take(&mut self, description: &mut Vec<String>) {
         for door in self.doors.iter_mut().filter(|door| door.socket.is_none()) {
             match Port::bind(door.address) {
                 Ok(socket) => {
                     door.address = socket.address();
                     door.socket = Some(socket);
                     if std::mem::take(&mut door.troubled) {
-                        words.push(format!("{} is free and taken now", door.address));
+                        description.push(format!("{} is free and taken now", door.address));
                     }
                 }
                 Err(error) if !door.troubled => {
                     door.troubled = true;
-                    words.push(format!("{}: {error}; it is tried again every second", door.name()));
+                    description.push(format!("{}: {error}; it is tried again every second", door.name()));
                 }
                 Err(_) => {}
             }
@@ -98,7 +103,7 @@ impl Ports {
     }
 
     /// Passes received datagrams to the simulator.
-    pub(super) fn listen(&mut self, server: &mut Server, words: &mut Vec<String>) {
+    pub(super) fn listen(&mut self, server: &mut Server, description: &mut Vec<String>) {
         for door in &mut self.doors {
             let Some(socket) = &mut door.socket else { continue };
             for _ in 0..AT_ONCE {
@@ -106,13 +111,18 @@ impl Ports {
                     Ok(Some(datagram)) => {
                         if let server::Port::Team(team) = door.port {
                             let now = self.began.elapsed();
-                            words.extend(self.commanders.hear(now, team, datagram.from, datagram.bytes));
+                            description.extend(self.commanders.receive(
+                                now,
+                                team,
+                                datagram.from,
+                                datagram.bytes,
+                            ));
                         }
                         server.handle(door.port, datagram.from, datagram.bytes);
                     }
                     Ok(None) => break,
                     Err(error) => {
-                        words.push(format!("{}: {error}; it is opened again", door.name()));
+                        description.push(format!("{}: {error}; it is opened again", door.name()));
                         door.socket = None;
                         break;
                     }
@@ -121,7 +131,7 @@ impl Ports {
         }
         if self.tried.elapsed() >= AGAIN {
             self.tried = Instant::now();
-            self.take(words);
+            self.take(description);
         }
     }
 
@@ -141,7 +151,7 @@ impl Ports {
     }
 
     /// The addresses that clients send to, for the operator.
-    pub(super) fn words(&self) -> String {
+    pub(super) fn description(&self) -> String {
         let mut doors = self.doors.iter();
         let first = doors.next().map(|door| door.address.to_string());
         let others = doors.map(|door| format!("{} {}", door.name(), door.address.port()));
@@ -149,7 +159,7 @@ impl Ports {
     }
 }
 
-impl Door {
+impl Group {
     const fn name(&self) -> &'static str {
         match self.port {
             server::Port::Simulator => "control",
@@ -167,17 +177,21 @@ mod tests {
     #[test]
     fn a_taken_port_is_told_and_the_others_serve() {
         let home: IpAddr = [127, 0, 0, 1].into();
-        let mut words = Vec::new();
-        let first = Ports::open(home, 0, None, &mut words);
-        assert!(words.is_empty(), "{words:?}");
+        let mut description = Vec::new();
+        let first = Ports::open(home, 0, None, &mut description);
+        assert!(description.is_empty(), "{description:?}");
         let base = first.doors[0].address.port();
-        let second = Ports::open(home, base, None, &mut words);
-        assert_eq!(words.len(), 3, "{words:?}");
-        assert!(words[0].contains("is taken") && words[0].contains(&base.to_string()), "{}", words[0]);
+        let second = Ports::open(home, base, None, &mut description);
+        assert_eq!(description.len(), 3, "{description:?}");
+        assert!(
+            description[0].contains("is taken") && description[0].contains(&base.to_string()),
+            "{}",
+            description[0]
+        );
         drop(first);
         let mut second = second;
-        words.clear();
-        second.take(&mut words);
-        assert_eq!(words.len(), 3, "free again: {words:?}");
+        description.clear();
+        second.take(&mut description);
+        assert_eq!(description.len(), 3, "free again: {description:?}");
     }
 }

@@ -21,10 +21,10 @@ const AT_ONCE: usize = 64;
 
 /// Both teams' ports.
 pub(super) struct SyncPorts {
-    doors: [Door; 2],
+    doors: [Group; 2],
 }
 
-struct Door {
+struct Group {
     colour: Colour,
     listener: TcpListener,
     clients: Vec<Connection>,
@@ -36,7 +36,7 @@ impl SyncPorts {
         let door = |colour, address: SocketAddr| {
             let listener = TcpListener::bind(address)?;
             listener.set_nonblocking(true)?;
-            Ok::<_, io::Error>(Door { colour, listener, clients: Vec::new() })
+            Ok::<_, io::Error>(Group { colour, listener, clients: Vec::new() })
         };
         let mut yellow = blue;
         if blue.port() != 0 {
@@ -114,7 +114,7 @@ fn answer(
 mod tests {
     use std::thread;
 
-    use hil_sim::small_size::quirks::Profile;
+    use hil_sim::small_size::compatibility::Profile;
     use hil_sim::small_size::server::ServerSettings;
     use rules::League;
     use ssl::Message;
@@ -146,15 +146,15 @@ mod tests {
         let clients = thread::spawn(move || {
             let wait = Duration::from_secs(20);
             let mut talks = addresses.map(|address| Connection::open(address, wait).expect("connected"));
-            let mut heard = Vec::new();
+            let mut received = Vec::new();
             for step in 0..steps {
                 for (talk, length) in talks.iter_mut().zip([0.0, 0.016]) {
                     talk.send(&request(length, step as f32 * 0.01)).expect("sent");
                     let answer: Option<SimulationSyncResponse> = talk.receive(wait).expect("no error");
-                    heard.extend(answer.expect("an answer").encode_to_vec());
+                    received.extend(answer.expect("an answer").encode_to_vec());
                 }
             }
-            heard
+            received
         });
         let (mut lines, mut looked) = (Vec::new(), 0_u64);
         while !clients.is_finished() {

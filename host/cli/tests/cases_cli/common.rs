@@ -69,17 +69,17 @@ pub(crate) const PROBLEM: &str = r#"{"ball":[-600,10],"defending":"yellow","team
 
 /// A library directory under the build's scratch space, created again: `league.toml` and these files.
 pub(crate) fn library(test: &str, files: &[(&str, &str)]) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cases-cli").join(test);
-    if folder.exists() {
-        fs::remove_dir_all(&folder).unwrap();
+    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cases-cli").join(test);
+    if directory.exists() {
+        fs::remove_dir_all(&directory).unwrap();
     }
-    fs::create_dir_all(&folder).unwrap();
+    fs::create_dir_all(&directory).unwrap();
     for (name, text) in [("league.toml", LEAGUE)].iter().chain(files) {
-        let path = folder.join(name);
+        let path = directory.join(name);
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::write(path, text).unwrap();
     }
-    folder
+    directory
 }
 
 /// The worked example's library: the case of docs/case-format.md §1 alone.
@@ -106,9 +106,9 @@ pub(crate) fn onetwo(arguments: &[&str]) -> Run {
 }
 
 /// Runs `onetwo cases VERB --library FOLDER …` with `input` on stdin.
-pub(crate) fn cases(verb: &str, folder: &Path, more: &[&str], input: impl AsRef<[u8]>) -> Run {
-    let folder = folder.to_str().unwrap();
-    onetwo_fed(&[&["cases", verb, "--library", folder], more].concat(), input.as_ref())
+pub(crate) fn cases(verb: &str, directory: &Path, more: &[&str], input: impl AsRef<[u8]>) -> Run {
+    let directory = directory.to_str().unwrap();
+    onetwo_fed(&[&["cases", verb, "--library", directory], more].concat(), input.as_ref())
 }
 
 fn onetwo_fed(arguments: &[&str], input: &[u8]) -> Run {

@@ -4,11 +4,11 @@ use crate::common::{PASS_AROUND, cases, command, library, onetwo, shot_at, worke
 
 #[test]
 fn the_list_is_one_json_list_of_every_stored_case() {
-    let folder = library(
+    let directory = library(
         "list",
         &[("front/shot.toml", &shot_at(1000, 300)), ("center/pass-around.toml", PASS_AROUND)],
     );
-    let run = cases("list", &folder, &["--json"], "");
+    let run = cases("list", &directory, &["--json"], "");
     // Ordered by the bytes of region/name, four stored for each authored one.
     let row = |id: u16, case: &str, symmetry: &str, defending: &str, teammates: u8, opponents: u8| {
         let region = case.split('/').next().unwrap();
@@ -35,15 +35,15 @@ fn the_list_is_one_json_list_of_every_stored_case() {
 #[test]
 fn the_table_has_a_line_for_every_stored_case() {
     let run = cases("list", &worked_example("table"), &[], "");
-    let words: Vec<Vec<&str>> =
+    let description: Vec<Vec<&str>> =
         run.lines().into_iter().map(|line| line.split_whitespace().collect()).collect();
-    assert_eq!(words[0], ["league", "id", "case", "symmetry", "defending", "teammates", "opponents"]);
-    assert_eq!(words[3], ["table", "2", "center/pass-around", "across-y", "cyan", "2", "1"]);
-    assert_eq!(words.len(), 5);
+    assert_eq!(description[0], ["league", "id", "case", "symmetry", "defending", "teammates", "opponents"]);
+    assert_eq!(description[3], ["table", "2", "center/pass-around", "across-y", "cyan", "2", "1"]);
+    assert_eq!(description.len(), 5);
 }
 
 #[test]
-fn without_a_folder_every_built_in_league_is_listed() {
+fn without_a_directory_every_built_in_league_is_listed() {
     let run = onetwo(&["cases", "list", "--json"]);
     let rows: Vec<serde_json::Value> = serde_json::from_str(&run.stdout).unwrap();
     let stored: usize = case_library::LEAGUES.iter().map(|league| league.base().len()).sum();
@@ -55,8 +55,8 @@ fn without_a_folder_every_built_in_league_is_listed() {
 
 #[test]
 fn a_case_is_shown_with_its_intent_its_gameplays_and_the_balls_path() {
-    let folder = worked_example("show");
-    let run = cases("show", &folder, &["center/pass-around"], "");
+    let directory = worked_example("show");
+    let run = cases("show", &directory, &["center/pass-around"], "");
     assert_eq!(
         run.stdout,
         "center/pass-around  id 0, identity, show\n\
@@ -72,7 +72,7 @@ fn a_case_is_shown_with_its_intent_its_gameplays_and_the_balls_path() {
          leg 1 tm1 passes to tm2: (-600, 0) to (300, 900), 1273 mm, radius 100 to 300\n\
          leg 2 tm2 kicks goal (at the goal): (300, 900) to (2700, 0), 2563 mm, radius 100 to 300\n"
     );
-    let both = cases("show", &folder, &["3"], "");
+    let both = cases("show", &directory, &["3"], "");
     for part in [
         "id 3, both",
         "defending cyan: attacks towards -x",
@@ -91,23 +91,23 @@ fn kicks_and_turns_are_told_by_side_and_mirrored() {
             "\"get_ball\", { turn = { heading_deg = 30 } }, { dribble_to = [-500, 100] }, ",
         )
         .replace("{ kick = \"goal\" }", "{ turn = { face = [2700, 0] } }, { kick = \"left\" }");
-    let folder = library("sides", &[("center/pass-around.toml", &text)]);
-    let authored = cases("show", &folder, &["0"], "").stdout;
+    let directory = library("sides", &[("center/pass-around.toml", &text)]);
+    let authored = cases("show", &directory, &["0"], "").stdout;
     assert!(
         authored.contains("get_ball; turn to 30 deg left; dribble_to (-500, 100); pass_ball to tm2\n"),
         "{authored}"
     );
     assert!(authored.contains("turn to face (2700, 0); kick left (1200 mm 45 deg left)\n"), "{authored}");
-    let mirrored = cases("show", &folder, &["1"], "").stdout;
+    let mirrored = cases("show", &directory, &["1"], "").stdout;
     assert!(mirrored.contains("turn to 30 deg right; dribble_to (-500, -100)"), "{mirrored}");
     assert!(mirrored.contains("turn to face (2700, 0); kick right (1200 mm 45 deg right)\n"), "{mirrored}");
 }
 
 #[test]
 fn a_case_that_is_not_there_is_told_with_those_that_are() {
-    let folder = worked_example("no-case");
+    let directory = worked_example("no-case");
     for asked in ["center/pass", "4", "99999999"] {
-        let run = cases("show", &folder, &[asked], "");
+        let run = cases("show", &directory, &[asked], "");
         assert_eq!((run.code, run.stdout.as_str()), (1, ""), "{asked}");
         assert!(run.stderr.contains(asked) && run.stderr.contains("0 to 3"), "{}", run.stderr);
     }
@@ -123,15 +123,15 @@ fn a_sound_library_passes_the_check() {
 }
 
 #[test]
-fn an_error_fails_the_check_with_file_line_code_and_mend() {
-    let folder = library(
+fn an_error_fails_the_check_with_file_line_code_and_hint() {
+    let directory = library(
         "faulty",
         &[
             ("center/pass-around.toml", &PASS_AROUND.replace("pass_ball = 2", "pass_ball = 3")),
             ("front/shot.toml", "intent = \n"),
         ],
     );
-    let run = cases("check", &folder, &[], "");
+    let run = cases("check", &directory, &[], "");
     assert_eq!(run.code, 1);
     let lines = run.lines();
     assert_eq!(lines.last(), Some(&"faulty: refused; 2 errors, 0 warnings"));
@@ -140,15 +140,15 @@ fn an_error_fails_the_check_with_file_line_code_and_mend() {
         line.unwrap_or_else(|| panic!("{place} is not in\n{}", run.stdout))
     };
     for place in ["center/pass-around.toml:7: error[", "front/shot.toml:1: error["] {
-        let (_, words) = at(place).split_once("]: ").unwrap();
-        assert!(words.contains("; "), "no mend: {words}");
+        let (_, description) = at(place).split_once("]: ").unwrap();
+        assert!(description.contains("; "), "no mend: {description}");
     }
 }
 
 #[test]
-fn a_refused_library_is_named_by_its_folder_even_where_that_is_told_as_a_dot() {
-    let folder = library("dotted", &[("front/shot.toml", "")]);
-    let output = command(&["cases", "check", "--library", "."]).current_dir(folder).output().unwrap();
+fn a_refused_library_is_named_by_its_directory_even_where_that_is_told_as_a_dot() {
+    let directory = library("dotted", &[("front/shot.toml", "")]);
+    let output = command(&["cases", "check", "--library", "."]).current_dir(directory).output().unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains("front/shot.toml:1: error[") && text.contains("\ndotted: refused; "), "{text}");
 }
@@ -156,20 +156,22 @@ fn a_refused_library_is_named_by_its_folder_even_where_that_is_told_as_a_dot() {
 #[test]
 fn a_warning_fails_the_check_only_where_it_is_strict() {
     let wide = PASS_AROUND.replace("scope = [450, 250]", "scope = [950, 250]");
-    let folder = library("wide", &[("center/pass-around.toml", &wide)]);
-    let run = cases("check", &folder, &[], "");
+    let directory = library("wide", &[("center/pass-around.toml", &wide)]);
+    let run = cases("check", &directory, &[], "");
     assert!(run.stdout.contains("center/pass-around.toml:3: warning["), "{}", run.stdout);
-    assert_eq!((run.code, cases("check", &folder, &["--strict"], "").code), (0, 1));
+    assert_eq!((run.code, cases("check", &directory, &["--strict"], "").code), (0, 1));
 }
 
 #[test]
 fn a_case_that_no_drawn_problem_retrieves_is_doubtful_for_any_number_of_threads() {
     // The first is a candidate for every problem of the second, with one condition more.
-    let rival = shot_at(0, 0) + "[[opponents]]\nat = [0, 1500]\nscope = [9000, 9000]\n";
-    let folder = library("shadowed", &[("front/rival.toml", &rival), ("front/shot.toml", &shot_at(0, 0))]);
-    let check = |jobs: &str, words: &[&str]| {
+    let candidate = shot_at(0, 0) + "[[opponents]]\nat = [0, 1500]\nscope = [9000, 9000]\n";
+    let directory =
+        library("shadowed", &[("front/rival.toml", &candidate), ("front/shot.toml", &shot_at(0, 0))]);
+    let check = |jobs: &str, description: &[&str]| {
         let mut command = command(&["cases", "check"]);
-        let command = command.arg("--library").arg(&folder).args(words).env("RAYON_NUM_THREADS", jobs);
+        let command =
+            command.arg("--library").arg(&directory).args(description).env("RAYON_NUM_THREADS", jobs);
         let output = command.output().unwrap();
         (String::from_utf8(output.stdout).unwrap(), output.status.code())
     };
@@ -197,7 +199,7 @@ fn the_built_in_leagues_pass_the_check() {
 }
 
 #[test]
-fn a_folder_that_is_not_there_fails_the_check_in_words() {
+fn a_directory_that_is_not_there_fails_the_check_in_description() {
     let run = onetwo(&["cases", "check", "--library", "no/such/folder"]);
     assert_eq!((run.code, run.stdout.as_str()), (1, ""));
     assert!(run.stderr.contains("no/such/folder"), "{}", run.stderr);
@@ -222,8 +224,8 @@ fn the_version_names_the_commit_and_wrong_usage_is_told_from_failure() {
 #[test]
 fn findings_are_told_as_data_and_their_codes_are_explained() {
     let faulty = PASS_AROUND.replacen("[300, 300]", "[0, 300]", 1);
-    let folder = library("findings-as-data", &[("center/a.toml", &faulty)]);
-    let run = cases("check", &folder, &["--json"], "");
+    let directory = library("findings-as-data", &[("center/a.toml", &faulty)]);
+    let run = cases("check", &directory, &["--json"], "");
     assert_eq!(run.code, 1);
     let findings: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
     assert_eq!(findings.as_array().map(Vec::len), Some(1));

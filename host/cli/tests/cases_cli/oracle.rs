@@ -17,13 +17,13 @@ const PROBLEMS: usize = 1000;
 
 #[test]
 fn a_thousand_lines_are_answered_as_the_oracle_answers() {
-    let folder = scratch("oracle", &[]);
-    RandomLibrary::new(21, 60).write(&folder).expect("a library can be written");
-    let library = Library::read(&folder).expect("the oracle reads it");
+    let directory = scratch("oracle", &[]);
+    RandomLibrary::new(21, 60).write(&directory).expect("a library can be written");
+    let library = Library::read(&directory).expect("the oracle reads it");
     let mut dice = Dice::new(22);
     let problems: Vec<Problem> = (0..PROBLEMS).map(|_| random_problem(&mut dice, &library)).collect();
     let lines: Vec<String> = problems.iter().map(Problem::to_line).collect();
-    let out = cases("retrieve", &folder, &[], lines.join("\n") + "\n");
+    let out = cases("retrieve", &directory, &[], lines.join("\n") + "\n");
     assert_eq!(out.code, 0, "{}", out.stderr);
     let answers = out.lines();
     assert_eq!(answers.len(), PROBLEMS);
@@ -69,14 +69,15 @@ fn explain_agrees_with_retrieve_on_10_000_problems_of_the_built_in_and_of_a_rand
     let random = scratch("explain-agrees", &[]);
     RandomLibrary::new(23, 30).write(&random).expect("a library can be written");
     let built_in = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../casebase/library/cases/four-legged");
-    for (folder, seed) in [(built_in, 24), (random, 25)] {
-        let library = Library::read(&folder).expect("the oracle reads it");
+    for (directory, seed) in [(built_in, 24), (random, 25)] {
+        let library = Library::read(&directory).expect("the oracle reads it");
         let mut dice = Dice::new(seed);
         let mut winners = 0;
         // In parts, so that at most a few MB are held at a time.
         for part in 0..10 {
             let lines: Vec<_> = (0..1_000).map(|_| random_problem(&mut dice, &library).to_line()).collect();
-            let ask = |verb, words: &[&str]| cases(verb, &folder, words, lines.join("\n") + "\n");
+            let ask =
+                |verb, description: &[&str]| cases(verb, &directory, description, lines.join("\n") + "\n");
             let (explained, retrieved) = (ask("explain", &["--json"]), ask("retrieve", &[]));
             assert_eq!((explained.lines().len(), retrieved.lines().len()), (1_000, 1_000));
             for ((explained, retrieved), line) in explained.lines().iter().zip(retrieved.lines()).zip(&lines)

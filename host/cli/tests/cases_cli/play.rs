@@ -4,17 +4,17 @@ use serde_json::Value;
 
 use crate::common::{cases, library, onetwo, shot_at};
 
-fn play(words: &[&str]) -> Vec<Value> {
-    let run = onetwo(&[&["cases", "play", "--json"], words].concat());
+fn play(description: &[&str]) -> Vec<Value> {
+    let run = onetwo(&[&["cases", "play", "--json"], description].concat());
     assert_eq!((run.code, run.stderr.as_str()), (0, ""));
     serde_json::from_str(&run.stdout).unwrap()
 }
 
 #[test]
 fn every_score_counts_its_attempts_and_any_number_of_jobs_gives_the_same() {
-    let words = ["front-side", "side/draw-out", "--trials", "6", "--seed", "3"];
-    let scores = play(&[&words[..], &["--jobs", "1"]].concat());
-    assert_eq!(scores, play(&[&words[..], &["--jobs", "3"]].concat()));
+    let description = ["front-side", "side/draw-out", "--trials", "6", "--seed", "3"];
+    let scores = play(&[&description[..], &["--jobs", "1"]].concat());
+    assert_eq!(scores, play(&[&description[..], &["--jobs", "3"]].concat()));
     assert!(scores.len() >= 4);
     for score in &scores {
         let sum =
@@ -51,7 +51,7 @@ fn a_story_tells_each_attempt() {
 }
 
 #[test]
-fn an_unknown_case_and_a_field_without_a_simulator_are_refused_with_a_mend() {
+fn an_unknown_case_and_a_field_without_a_simulator_are_refused_with_a_hint() {
     let run = onetwo(&["cases", "play", "front/shoot"]);
     assert_eq!(run.code, 1);
     assert!(
@@ -59,12 +59,12 @@ fn an_unknown_case_and_a_field_without_a_simulator_are_refused_with_a_mend() {
         "{}",
         run.stderr
     );
-    let folder = library("small", &[("front/shot.toml", &shot_at(1000, 300))]);
-    let rules = folder.join("league.toml");
+    let directory = library("small", &[("front/shot.toml", &shot_at(1000, 300))]);
+    let rules = directory.join("league.toml");
     let text = std::fs::read_to_string(&rules).unwrap();
     let length = text.lines().find(|line| line.starts_with("length")).unwrap().to_owned();
     std::fs::write(&rules, text.replace(&length, "length = 5000")).unwrap();
-    let run = cases("play", &folder, &["--trials", "1"], "");
+    let run = cases("play", &directory, &["--trials", "1"], "");
     assert_eq!(run.code, 1);
     assert!(run.stderr.contains("cannot be played") && run.stderr.contains("5400"), "{}", run.stderr);
 }

@@ -6,10 +6,10 @@ use crate::common::{PROBLEM, cases, worked_example};
 
 #[test]
 fn a_library_is_drawn_as_files_and_on_one_page() {
-    let folder = worked_example("render-all");
-    let (out, page) = (folder.with_extension("out"), folder.with_extension("svg"));
+    let directory = worked_example("render-all");
+    let (out, page) = (directory.with_extension("out"), directory.with_extension("svg"));
     let [out, page] = [&out, &page].map(|path| path.to_str().unwrap());
-    let run = cases("render", &folder, &["--all", "--out", out, "--sheet", page], "");
+    let run = cases("render", &directory, &["--all", "--out", out, "--sheet", page], "");
     assert_eq!((run.code, run.stderr.as_str()), (0, ""));
     let one = fs::read_to_string(format!("{out}/center/pass-around.svg")).unwrap();
     assert!(one.contains("pass around it and shoot") && one.contains(">tm2</text>"));
@@ -25,15 +25,15 @@ fn a_problem_over_its_case_tells_the_rank() {
 }
 
 #[test]
-fn what_cannot_be_drawn_is_told_with_the_mend() {
-    let folder = worked_example("render-wrong");
-    let out = folder.with_extension("jpg");
-    for (arguments, words) in [
+fn what_cannot_be_drawn_is_told_with_the_hint() {
+    let directory = worked_example("render-wrong");
+    let out = directory.with_extension("jpg");
+    for (arguments, description) in [
         (vec!["center/pas-around"], "did you mean center/pass-around?"),
         (vec!["0", "--out", out.to_str().unwrap()], "expected a name that ends in .svg or .png"),
         (vec!["0", "--problem", "{}"], "--problem: "),
     ] {
-        let run = cases("render", &folder, &arguments, "");
-        assert!(run.code == 1 && run.stderr.contains(words), "{arguments:?}: {}", run.stderr);
+        let run = cases("render", &directory, &arguments, "");
+        assert!(run.code == 1 && run.stderr.contains(description), "{arguments:?}: {}", run.stderr);
     }
 }

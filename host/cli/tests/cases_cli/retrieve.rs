@@ -10,7 +10,7 @@ const ANSWER: &str = r#"{"case":"center/pass-around","id":0,"symmetry":"identity
 const NOTHING: &str = r#"{"case":null,"candidates":0}"#;
 
 #[test]
-fn the_worked_example_is_answered_word_for_word() {
+fn the_worked_example_is_answered_label_for_label() {
     let run = cases("retrieve", &worked_example("worked"), &[], format!("{PROBLEM}\n"));
     assert_eq!((run.stdout.as_str(), run.code), (format!("{ANSWER}\n").as_str(), 0));
     assert_eq!(run.stderr, "");
@@ -42,10 +42,10 @@ fn the_other_three_quarters_of_the_field_are_answered_by_the_symmetric_descripti
     };
     let input = [quarter(1, -1, "yellow"), quarter(-1, 1, "cyan"), quarter(-1, -1, "cyan")].join("\n");
     let run = cases("retrieve", &worked_example("quarters"), &[], input);
-    let expected = |id: u16, word: &str, sx: i32, sy: i32| {
+    let expected = |id: u16, label: &str, sx: i32, sy: i32| {
         ANSWER
             .replace("\"id\":0", &format!("\"id\":{id}"))
-            .replace("identity", word)
+            .replace("identity", label)
             .replace("[-720,10]", &format!("[{},{}]", -720 * sx, 10 * sy))
             .replace("[300,910]", &format!("[{},{}]", 300 * sx, 910 * sy))
     };
@@ -57,9 +57,9 @@ fn the_other_three_quarters_of_the_field_are_answered_by_the_symmetric_descripti
 
 #[test]
 fn whole_numbers_are_rounded_as_all_others() {
-    let folder = library("whole", &[("front/shot.toml", &shot_at(1000, 0))]);
+    let directory = library("whole", &[("front/shot.toml", &shot_at(1000, 0))]);
     let problem = r#"{"ball":[1000,0],"defending":"yellow","teammates":{"15":[880,0]},"opponents":[]}"#;
-    let run = cases("retrieve", &folder, &[], problem);
+    let run = cases("retrieve", &directory, &[], problem);
     assert_eq!(
         run.lines(),
         // The case is symmetric to the axis: its mirrored copy across x equals it, and the lower id wins.
@@ -132,37 +132,37 @@ fn coordinates_beyond_all_fields_are_answered() {
 
 #[test]
 fn settings_change_the_answer_and_are_recorded_with_it() {
-    let folder = worked_example("settings");
+    let directory = worked_example("settings");
     // Robot 3 is 148.66 mm away from tm2's adapted place.
-    let near = cases("retrieve", &folder, &["--set", "thr_c=148"], PROBLEM);
+    let near = cases("retrieve", &directory, &["--set", "thr_c=148"], PROBLEM);
     assert_eq!(near.lines(), [r#"{"case":null,"candidates":0,"settings":{"thr_c":"148"}}"#]);
-    let max = cases("retrieve", &folder, &["--set", "cost=sum", "--set=cost=max"], PROBLEM);
+    let max = cases("retrieve", &directory, &["--set", "cost=sum", "--set=cost=max"], PROBLEM);
     // By the largest distance the mirrored copy is a candidate too: with the robots swapped no robot has more
     // than 1339 mm to go, where the least sum requires 1693 mm of one of them.
     let expected = ANSWER
         .replace("171.02", "148.66")
         .replace("\"candidates\":1", "\"candidates\":2,\"settings\":{\"cost\":\"max\"}");
     assert_eq!(max.lines(), [expected]);
-    let default = cases("retrieve", &folder, &["--set", "thr_c=1500"], PROBLEM);
+    let default = cases("retrieve", &directory, &["--set", "thr_c=1500"], PROBLEM);
     assert_eq!(default.lines(), [ANSWER]);
 }
 
 #[test]
 fn where_positions_are_clamped_the_answer_says_so() {
-    let folder =
+    let directory =
         library("clamped", &[("center/pass-around.toml", &PASS_AROUND.replace("[300, 900]", "[300, 1790]"))]);
     // The ball 100 mm to the left: tm2's place would be (300, 1890), beyond the touch line at 1800.
     let problem = PROBLEM.replace("[-600,10]", "[-600,100]").replace("[200,800]", "[300,1700]");
-    let run = cases("retrieve", &folder, &["--set", "out_of_field=clamp"], &problem);
+    let run = cases("retrieve", &directory, &["--set", "out_of_field=clamp"], &problem);
     assert!(run.stdout.contains(r#""adapted":{"1":[-720,100],"3":[300,1800]}"#), "{}", run.stdout);
-    let kept = cases("retrieve", &folder, &[], &problem);
+    let kept = cases("retrieve", &directory, &[], &problem);
     assert!(kept.stdout.contains(r#""adapted":{"1":[-720,100],"3":[300,1890]}"#), "{}", kept.stdout);
 }
 
 #[test]
 fn a_bad_setting_says_what_is_allowed() {
-    let folder = worked_example("bad-setting");
-    let unknown = cases("retrieve", &folder, &["--set", "thr_x=1"], PROBLEM);
+    let directory = worked_example("bad-setting");
+    let unknown = cases("retrieve", &directory, &["--set", "thr_x=1"], PROBLEM);
     assert_eq!((unknown.code, unknown.stdout.as_str()), (1, ""));
     assert!(unknown.stderr.contains("--set thr_x=1: no such setting"), "{}", unknown.stderr);
     assert!(
@@ -170,10 +170,10 @@ fn a_bad_setting_says_what_is_allowed() {
         "{}",
         unknown.stderr
     );
-    let value = cases("retrieve", &folder, &["--set", "cost=average"], PROBLEM);
+    let value = cases("retrieve", &directory, &["--set", "cost=average"], PROBLEM);
     assert_eq!(value.code, 1);
     assert!(value.stderr.contains("sum or max"), "{}", value.stderr);
-    let usage = cases("retrieve", &folder, &["--set", "cost"], PROBLEM);
+    let usage = cases("retrieve", &directory, &["--set", "cost"], PROBLEM);
     assert_eq!(usage.code, 2);
     assert!(usage.stderr.contains("NAME=VALUE"), "{}", usage.stderr);
 }
@@ -200,15 +200,16 @@ fn a_library_that_cannot_be_had_is_named_with_what_to_do() {
 }
 
 #[test]
-fn the_built_in_league_answers_without_any_folder() {
+fn the_built_in_league_answers_without_any_directory() {
     let run = onetwo(&["cases", "retrieve"]);
     assert_eq!((run.code, run.stdout.as_str(), run.stderr.as_str()), (0, "", ""));
 }
 
 #[test]
 fn a_question_is_answered_before_the_next_is_asked() {
-    let folder = worked_example("dialogue");
-    let mut child = command(&["cases", "retrieve", "--library", folder.to_str().unwrap()]).spawn().unwrap();
+    let directory = worked_example("dialogue");
+    let mut child =
+        command(&["cases", "retrieve", "--library", directory.to_str().unwrap()]).spawn().unwrap();
     let mut stdin = child.stdin.take().unwrap();
     let mut stdout = BufReader::new(child.stdout.take().unwrap());
     for question in [PROBLEM, "{}", PROBLEM] {
@@ -223,15 +224,16 @@ fn a_question_is_answered_before_the_next_is_asked() {
 
 #[test]
 fn whoever_has_read_enough_may_close_the_pipe() {
-    let folder = worked_example("closed");
-    let mut child = command(&["cases", "retrieve", "--library", folder.to_str().unwrap()]).spawn().unwrap();
+    let directory = worked_example("closed");
+    let mut child =
+        command(&["cases", "retrieve", "--library", directory.to_str().unwrap()]).spawn().unwrap();
     let mut stdin = child.stdin.take().unwrap();
     drop(child.stdout.take());
     let questions = format!("{PROBLEM}\n").repeat(10_000);
     // The program stops reading when its reader is gone; then our pipe breaks too.
     let _ = stdin.write_all(questions.as_bytes());
     drop(stdin);
-    let mut words = String::new();
-    child.stderr.take().unwrap().read_to_string(&mut words).unwrap();
-    assert_eq!((child.wait().unwrap().code(), words.as_str()), (Some(0), ""));
+    let mut description = String::new();
+    child.stderr.take().unwrap().read_to_string(&mut description).unwrap();
+    assert_eq!((child.wait().unwrap().code(), description.as_str()), (Some(0), ""));
 }

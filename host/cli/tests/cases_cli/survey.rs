@@ -14,10 +14,10 @@ fn json(run: &str) -> Value {
 
 #[test]
 fn every_gap_is_a_problem_that_retrieval_finds_no_case_for() {
-    let folder = library("gaps", &[("center/pass-around.toml", PASS_AROUND)]);
-    let gaps = cases("coverage", &folder, &[&SMALL[..], &["--gaps", "10"]].concat(), "");
+    let directory = library("gaps", &[("center/pass-around.toml", PASS_AROUND)]);
+    let gaps = cases("coverage", &directory, &[&SMALL[..], &["--gaps", "10"]].concat(), "");
     assert_eq!((gaps.code, gaps.lines().len(), gaps.stderr.as_str()), (0, 10, ""));
-    let answers = cases("retrieve", &folder, &[], &gaps.stdout);
+    let answers = cases("retrieve", &directory, &[], &gaps.stdout);
     assert_eq!(answers.lines(), [r#"{"case":null,"candidates":0}"#; 10]);
 }
 
@@ -33,19 +33,19 @@ fn any_number_of_jobs_prints_the_same_bytes() {
 
 #[test]
 fn the_counts_of_recorded_problems_are_those_of_their_answers() {
-    let folder = library(
+    let directory = library(
         "recorded",
         &[("center/pass-around.toml", PASS_AROUND), ("front/shot.toml", &shot_at(1000, 300))],
     );
     // One that pass-around answers, two that nothing answers, one that the shot answers.
     let far = PROBLEM.replace("[-600,10]", "[-2000,1500]");
     let shot = PROBLEM.replace("[-600,10]", "[1000,300]").replace("[-700,0]", "[880,300]");
-    let file = folder.join("problems.jsonl");
+    let file = directory.join("problems.jsonl");
     fs::write(&file, [PROBLEM, &far, &far, &shot].join("\n")).unwrap();
     let from = ["--from", file.to_str().unwrap(), "--json"];
-    let coverage = json(&cases("coverage", &folder, &from, "").stdout);
+    let coverage = json(&cases("coverage", &directory, &from, "").stdout);
     assert_eq!((&coverage["problems"], &coverage["none"]), (&4.into(), &2.into()));
-    let stats = json(&cases("stats", &folder, &from, "").stdout);
+    let stats = json(&cases("stats", &directory, &from, "").stdout);
     for case in stats["cases"].as_array().unwrap() {
         assert_eq!((&case["wins"], &case["lost_if_deleted"]), (&1.into(), &1.into()), "{case}");
         assert_eq!(case["role"], "pivotal");
@@ -53,12 +53,12 @@ fn the_counts_of_recorded_problems_are_those_of_their_answers() {
 }
 
 #[test]
-fn cells_add_up_to_the_whole_in_picture_and_table() {
-    let folder = worked_example("cells");
-    let [svg, csv] = ["map.svg", "map.csv"].map(|name| folder.join(name));
+fn cells_add_up_to_the_whole_in_snapshot_and_table() {
+    let directory = worked_example("cells");
+    let [svg, csv] = ["map.svg", "map.csv"].map(|name| directory.join(name));
     let out = |file: &std::path::Path| {
         let file = file.to_str().unwrap();
-        assert_eq!(cases("coverage", &folder, &[&SMALL[..], &["--out", file]].concat(), "").code, 0);
+        assert_eq!(cases("coverage", &directory, &[&SMALL[..], &["--out", file]].concat(), "").code, 0);
         fs::read_to_string(file).unwrap()
     };
     assert!(out(&svg).starts_with("<svg"));
@@ -68,26 +68,32 @@ fn cells_add_up_to_the_whole_in_picture_and_table() {
 }
 
 #[test]
-fn what_cannot_be_counted_is_refused_in_words() {
-    let folder = worked_example("refused");
+fn what_cannot_be_counted_is_refused_in_description() {
+    let directory = worked_example("refused");
     let empty = library("empty", &[]);
-    let recorded = folder.join("broken.jsonl");
+    let recorded = directory.join("broken.jsonl");
     fs::write(&recorded, format!("{PROBLEM}\n{{\n")).unwrap();
     let recorded = recorded.to_str().unwrap();
     let table: [(&str, &std::path::Path, &[&str], i32, &str); 9] = [
-        ("coverage", &folder, &["--problems", "0"], 2, "0 is not in 1..="),
-        ("coverage", &folder, &["--cell=-5"], 2, "-5 is not in 1..="),
-        ("coverage", &folder, &["--cell", "1"], 1, "take a larger edge"),
-        ("coverage", &folder, &["--jobs", "0"], 2, "0 is not in 1..="),
-        ("coverage", &folder, &["--out", "map.gif"], 2, "expected a name that ends in .svg or .png or .csv"),
-        ("coverage", &folder, &["--defending", "blue"], 2, "expected yellow"),
-        ("stats", &folder, &["--case", "front/none"], 1, "no case \"front/none\""),
+        ("coverage", &directory, &["--problems", "0"], 2, "0 is not in 1..="),
+        ("coverage", &directory, &["--cell=-5"], 2, "-5 is not in 1..="),
+        ("coverage", &directory, &["--cell", "1"], 1, "take a larger edge"),
+        ("coverage", &directory, &["--jobs", "0"], 2, "0 is not in 1..="),
+        (
+            "coverage",
+            &directory,
+            &["--out", "map.gif"],
+            2,
+            "expected a name that ends in .svg or .png or .csv",
+        ),
+        ("coverage", &directory, &["--defending", "blue"], 2, "expected yellow"),
+        ("stats", &directory, &["--case", "front/none"], 1, "no case \"front/none\""),
         ("stats", &empty, &[], 1, "holds no case"),
-        ("stats", &folder, &["--from", recorded], 1, "line 2: "),
+        ("stats", &directory, &["--from", recorded], 1, "line 2: "),
     ];
-    for (verb, folder, more, code, words) in table {
-        let run = cases(verb, folder, more, "");
+    for (verb, directory, more, code, description) in table {
+        let run = cases(verb, directory, more, "");
         assert_eq!((run.code, run.stdout.as_str()), (code, ""), "{more:?}");
-        assert!(run.stderr.contains(words), "{more:?}: {}", run.stderr);
+        assert!(run.stderr.contains(description), "{more:?}: {}", run.stderr);
     }
 }

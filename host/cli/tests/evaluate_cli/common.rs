@@ -30,10 +30,10 @@ pub(crate) fn refused(arguments: &[&str], code: i32) -> String {
 
 /// An empty directory of a test's own.
 pub(crate) fn scratch(name: &str) -> PathBuf {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("evaluate-cli").join(name);
-    let _ = std::fs::remove_dir_all(&folder);
-    std::fs::create_dir_all(&folder).expect("a scratch folder");
-    folder
+    let directory = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("evaluate-cli").join(name);
+    let _ = std::fs::remove_dir_all(&directory);
+    std::fs::create_dir_all(&directory).expect("a scratch folder");
+    directory
 }
 
 pub(crate) fn text(path: &Path) -> &str {

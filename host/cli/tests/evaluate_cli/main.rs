@@ -141,9 +141,9 @@ fn ctrl_c_keeps_what_is_over_and_says_how_to_go_on() {
     let interrupt = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
     assert!(interrupt.expect("kill is there").success());
     let end = child.wait_with_output().expect("it ends");
-    let words = String::from_utf8(end.stderr).expect("UTF-8");
-    assert_eq!(end.status.code(), Some(1), "{} {words}", end.status);
-    assert!(words.contains("goes on from here"), "{words}");
+    let description = String::from_utf8(end.stderr).expect("UTF-8");
+    assert_eq!(end.status.code(), Some(1), "{} {description}", end.status);
+    assert!(description.contains("goes on from here"), "{description}");
     let kept = fs::read_to_string(&file).expect("kept");
     assert!(kept.ends_with('\n') && rows_kept(&file) >= 2, "no line is torn");
 }
@@ -183,12 +183,12 @@ fn any_row_is_played_again_alone() {
 fn a_change_to_the_team_is_recorded_and_reaches_the_robots() {
     let out = scratch("changed");
     let base = |flags: &[&str]| {
-        let folder = out.join(flags.concat());
+        let directory = out.join(flags.concat());
         said(
-            &[&SHORT[..], &["2", "--trials", "2", "--approach", "cbr"], flags, &["--out", text(&folder)]]
+            &[&SHORT[..], &["2", "--trials", "2", "--approach", "cbr"], flags, &["--out", text(&directory)]]
                 .concat(),
         );
-        json(&folder.join("run.json"))
+        json(&directory.join("run.json"))
     };
     let plain = base(&[]);
     for (flags, key) in [
@@ -209,16 +209,16 @@ fn a_change_to_the_team_is_recorded_and_reaches_the_robots() {
 }
 
 #[test]
-fn what_cannot_be_done_is_told_with_its_mend() {
+fn what_cannot_be_done_is_told_with_its_hint() {
     let out = scratch("refused");
     let short = |seed: &'static str, loss: &'static str| {
         let own = [seed, "--loss", loss, "--trials", "1", "--approach", "cbr", "--out", text(&out)];
         [&SHORT[..], &own].concat()
     };
     said(&short("1", "0"));
-    let words = refused(&short("2", "0.1"), 1);
-    assert!(words.contains("loss, seed") && words.contains("trials-1-of-1.csv"), "{words}");
-    assert!(words.contains("--fresh"), "{words}");
+    let description = refused(&short("2", "0.1"), 1);
+    assert!(description.contains("loss, seed") && description.contains("trials-1-of-1.csv"), "{description}");
+    assert!(description.contains("--fresh"), "{description}");
     said(&[&short("2", "0.1")[..], &["--fresh"]].concat());
     assert_eq!(json(&out.join("run.json"))["plan"]["seed"], 2);
 

@@ -88,8 +88,9 @@ fn a_document_takes_the_tables_between_its_markers_in_both_leagues() {
         |name: &str| format!("<!-- {name}: written by `cargo xtask matches` -->\n<!-- end of {name} -->\n");
     fs::write(&file, format!("# Ours\n{}{}the end\n", markers("here"), markers("small"))).expect("written");
     for (league, section) in [("division-b", "here"), ("ssl-2013", "small")] {
-        let folder = out.join(league);
-        let own = ["--league", league, "--opponents", "reactive", "--matches", "1", "--out", text(&folder)];
+        let directory = out.join(league);
+        let own =
+            ["--league", league, "--opponents", "reactive", "--matches", "1", "--out", text(&directory)];
         let document = ["--markdown", text(&file), "--section", section];
         let done = onetwo(&of("2", &[&own[..], &document].concat())).output().expect("it starts");
         assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
@@ -102,16 +103,18 @@ fn a_document_takes_the_tables_between_its_markers_in_both_leagues() {
         assert!(document.contains(&format!("(report/{picture}.svg)")), "{document}");
         assert!(out.join(format!("report/{picture}.svg")).exists(), "{picture}");
     }
-    let folder = out.join("division-b");
-    let again = ["--opponents", "reactive", "--matches", "1", "--out", text(&folder)];
+    let directory = out.join("division-b");
+    let again = ["--opponents", "reactive", "--matches", "1", "--out", text(&directory)];
     let lost = of("2", &[&again[..], &["--markdown", text(&file), "--section", "nowhere"]].concat());
     assert!(refused(&lost, 1).contains("there is no line `<!-- nowhere"));
 }
 
 #[test]
-fn matches_that_cannot_be_played_are_told_with_their_mend() {
+fn matches_that_cannot_be_played_are_told_with_their_hint() {
     let out = scratch("matches-refused");
-    let told = |words: &[&str], code| refused(&[&MATCHES[..], words, &["--out", text(&out)]].concat(), code);
+    let told = |description: &[&str], code| {
+        refused(&[&MATCHES[..], description, &["--out", text(&out)]].concat(), code)
+    };
     let unknown = told(&["--opponents", "reactive,best"], 2);
     assert!(
         unknown.contains("`best`") && unknown.contains("marking") && unknown.contains("ours-with-A+B"),

@@ -113,16 +113,16 @@ fn explained_on_the_field(tab: &mut Tab<'_>) {
 }
 
 /// Retries a few times: everything moves.
-fn onetwo_says(tab: &mut Tab<'_>, script: &str, words: &str) {
+fn onetwo_says(tab: &mut Tab<'_>, script: &str, description: &str) {
     let mut said = String::new();
     for _ in 0..40 {
         tab.eval(script).unwrap().as_str().unwrap_or_default().clone_into(&mut said);
-        if said.contains(words) {
+        if said.contains(description) {
             return;
         }
         std::thread::sleep(Duration::from_millis(100));
     }
-    panic!("{words}: not in {said}");
+    panic!("{description}: not in {said}");
 }
 
 /// Pause, single step, drag the ball, restart.
@@ -203,8 +203,8 @@ fn a_recording_seeks_to_its_goal_and_to_the_moment_of_an_address() {
 
 #[test]
 fn a_lost_connection_is_shown_and_heals() {
-    let words = ["play", "--duration", "600", "--seed", "3", "--listen"];
-    let first = Program::start(&[&words[..], &["127.0.0.1:0"]].concat());
+    let description = ["play", "--duration", "600", "--seed", "3", "--listen"];
+    let first = Program::start(&[&description[..], &["127.0.0.1:0"]].concat());
     let mut browser = Browser::start().unwrap();
     // At a telephone's width everything is within the screen.
     let mut tab = browser.open(&first.url(""), 390, 844).unwrap();
@@ -214,7 +214,7 @@ fn a_lost_connection_is_shown_and_heals() {
     let address = first.address().to_owned();
     drop(first);
     tab.wait("!document.getElementById('lost').hidden", 20).unwrap();
-    let _second = Program::start(&[&words[..], &[&address]].concat());
+    let _second = Program::start(&[&description[..], &[&address]].concat());
     tab.wait("document.getElementById('lost').hidden && document.getElementById('connection').dataset.state === 'live'", 30).unwrap();
     tab.wait("onetwo.store.scene.t > 0.5", 20).unwrap();
     // A socket without an answer is reported by the browser itself; any other error would be ours.

@@ -27,7 +27,7 @@ pub(crate) fn free() -> String {
 pub(crate) struct Running {
     pub(crate) process: Child,
     lines: Receiver<(Duration, String)>,
-    pub(crate) heard: Vec<(Duration, String)>,
+    pub(crate) received: Vec<(Duration, String)>,
 }
 
 impl Running {
@@ -41,31 +41,31 @@ impl Running {
             .stdout(Stdio::null())
             .spawn()
             .expect("the program starts");
-        let (began, words) = (Instant::now(), process.stderr.take().expect("a pipe"));
+        let (began, description) = (Instant::now(), process.stderr.take().expect("a pipe"));
         let (send, lines) = channel();
         thread::spawn(move || {
-            for line in BufReader::new(words).lines().map_while(Result::ok) {
+            for line in BufReader::new(description).lines().map_while(Result::ok) {
                 if send.send((began.elapsed(), line)).is_err() {
                     break;
                 }
             }
         });
-        Self { process, lines, heard: Vec::new() }
+        Self { process, lines, received: Vec::new() }
     }
 
-    /// Waits for a line that contains `words`.
-    pub(crate) fn says(&mut self, words: &str) -> (Duration, String) {
+    /// Waits for a line that contains `description`.
+    pub(crate) fn says(&mut self, description: &str) -> (Duration, String) {
         let until = Instant::now() + PATIENCE;
         loop {
             let left = until.saturating_duration_since(Instant::now());
             match self.lines.recv_timeout(left) {
                 Ok(line) => {
-                    self.heard.push(line.clone());
-                    if line.1.contains(words) {
+                    self.received.push(line.clone());
+                    if line.1.contains(description) {
                         return line;
                     }
                 }
-                Err(error) => panic!("`{words}` is not said ({error}); said is: {:#?}", self.heard),
+                Err(error) => panic!("`{description}` is not said ({error}); said is: {:#?}", self.received),
             }
         }
     }

@@ -10,19 +10,19 @@ use hil_sim::{Configuration, Outcome, Scenario};
 use maud::{Markup, PreEscaped, html};
 
 use super::{EDGE, Map, PassKind};
-use crate::{Picture, words};
+use crate::{Picture, description};
 
 /// The maps of a page: a scenario a row, an approach a column.
 pub(crate) fn html(maps: &[Map]) -> Markup {
     html! {
-        div.keys { @for (sign, word) in signs() { span.key { (PreEscaped(sign)) (word) } } }
+        div.keys { @for (sign, label) in signs() { span.key { (PreEscaped(sign)) (label) } } }
         div.keys { span.key { "ball, seconds a trial in a square of 10 cm" } (PreEscaped(scale_svg())) }
         @for (configuration, scenario, row) in rows(maps) {
-            h3 { (words::scenario(scenario)) ", against " (words::opponents(configuration)) small { (trials(&row)) } }
+            h3 { (description::scenario(scenario)) ", against " (description::opponents(configuration)) small { (trials(&row)) } }
             div.maps { @for map in &row {
                 figure {
-                    figcaption style=(words::css(map.cell.approach)) {
-                        (words::approach(map.cell.approach)) small { (told(map)) }
+                    figcaption style=(description::css(map.cell.approach)) {
+                        (description::approach(map.cell.approach)) small { (told(map)) }
                     }
                     (PreEscaped(alone(&passes(map), map, "Passes and ends")))
                     (PreEscaped(alone(&heat(map), map, "The ball")))
@@ -40,15 +40,15 @@ pub(crate) fn sheets(maps: &[Map]) -> Vec<Picture> {
         let mut svg = Svg::default();
         let Some([x, y]) = row.first().map(|map| half_extent(&map.field)) else { continue };
         let (gap, size) = (x * 0.08, x * 0.075);
-        let against = words::opponents(configuration);
-        let title = format!("{}, against {against}: {}", words::scenario(scenario), trials(&row));
+        let against = description::opponents(configuration);
+        let title = format!("{}, against {against}: {}", description::scenario(scenario), trials(&row));
         let heading = Font { size: size * 1.1, fill: colors.ink, bold: true, halo: None };
         svg.text([-x, size], &title, Anchor::Start, heading);
         let mut down = -size * 0.4;
         for map in &row {
-            let fill = words::color(map.cell.approach);
+            let fill = description::color(map.cell.approach);
             let font = Font { size, fill, bold: true, halo: None };
-            let name = words::approach(map.cell.approach);
+            let name = description::approach(map.cell.approach);
             svg.text([-x, down - size], name, Anchor::Start, font);
             let after = -x + drawing::width(name, size) * 1.15 + size;
             let font = Font { size: size * 0.8, fill: colors.faint, bold: false, halo: None };
@@ -68,7 +68,7 @@ pub(crate) fn sheets(maps: &[Map]) -> Vec<Picture> {
             colors.paper,
             &title,
         );
-        let name = format!("maps-{}-{}", configuration.word(), scenario.word());
+        let name = format!("maps-{}-{}", configuration.label(), scenario.label());
         pictures.push(Picture { name, svg: picture });
     }
     pictures
@@ -215,7 +215,7 @@ fn end(svg: &mut Svg, [x, y]: [f64; 2], outcome: Outcome) {
             svg.circle([x, y], 46.0, format!(r#"fill="none" stroke="{}" stroke-width="22""#, colors.ball));
         }
         Outcome::Block => {
-            let style = format!(r#"fill="{}" stroke="{}" stroke-width="8""#, colors.opponent, colors.carpet);
+            let style = format!(r#"fill="{}" stroke="{}" stroke-width="8""#, colors.opponent, colors.surface);
             svg.rect([x - 36.0, y - 36.0], [x + 36.0, y + 36.0], style);
         }
         Outcome::Out => {
@@ -224,7 +224,7 @@ fn end(svg: &mut Svg, [x, y]: [f64; 2], outcome: Outcome) {
             svg.line([x - 32.0, y + 32.0], [x + 32.0, y - 32.0], &style);
         }
         Outcome::Timeout => {
-            svg.circle([x, y], 26.0, format!(r#"fill="{}" stroke="{ink}" stroke-width="9""#, colors.carpet));
+            svg.circle([x, y], 26.0, format!(r#"fill="{}" stroke="{ink}" stroke-width="9""#, colors.surface));
         }
     }
 }
@@ -250,10 +250,10 @@ fn alone(svg: &Svg, map: &Map, title: &str) -> String {
 /// What the signs mean, in the order of the legend.
 fn signs() -> Vec<(String, &'static str)> {
     let paper = Theme::Light.colors().paper;
-    let drawn = entries().into_iter().map(|(sign, word)| {
+    let drawn = entries().into_iter().map(|(sign, label)| {
         let mut svg = Svg::default();
         svg.inset(&sign, [0.0, 0.0]);
-        (svg.finish([-160.0, -110.0], [160.0, 110.0], 0.11, paper, word), word)
+        (svg.finish([-160.0, -110.0], [160.0, 110.0], 0.11, paper, label), label)
     });
     drawn.collect()
 }
@@ -271,21 +271,21 @@ fn entries() -> Vec<(Svg, &'static str)> {
         (Outcome::Out, "out"),
         (Outcome::Timeout, "timeout"),
     ];
-    let passes = passes.into_iter().map(|(kind, word)| {
+    let passes = passes.into_iter().map(|(kind, label)| {
         let mut svg = Svg::default();
         arrows(&mut svg, &[([-140.0, 0.0], [150.0, 0.0])], kind, "1");
-        (svg, word)
+        (svg, label)
     });
-    let ends = ends.into_iter().map(|(outcome, word)| {
+    let ends = ends.into_iter().map(|(outcome, label)| {
         let mut svg = Svg::default();
         end(&mut svg, [60.0, 0.0], outcome);
-        (svg, word)
+        (svg, label)
     });
     let starts = [(true, "attacker at kick-off"), (false, "opponent at kick-off")];
-    let starts = starts.into_iter().map(|(attacker, word)| {
+    let starts = starts.into_iter().map(|(attacker, label)| {
         let mut svg = Svg::default();
         kick_off(&mut svg, [40.0, 0.0], attacker);
-        (svg, word)
+        (svg, label)
     });
     starts.chain(passes).chain(ends).collect()
 }
@@ -295,13 +295,13 @@ fn legend(svg: &mut Svg, [left, top]: [f64; 2], [from, right]: [f64; 2], size: f
     let colors = Theme::Light.colors();
     let font = Font { size, fill: colors.ink, bold: false, halo: None };
     let (mut across, mut down) = (left, top - size * 1.2);
-    for (sign, word) in entries() {
-        let wide = 470.0 + drawing::width(word, size);
+    for (sign, label) in entries() {
+        let wide = 470.0 + drawing::width(label, size);
         if across > left && across + wide > from - size {
             (across, down) = (left, down - size * 1.9);
         }
         svg.inset(&sign, [across + 150.0, down + size * 0.35]);
-        svg.text([across + 340.0, down], word, Anchor::Start, font);
+        svg.text([across + 340.0, down], label, Anchor::Start, font);
         across += wide;
     }
     svg.inset(&scale(right - from, size), [from, top]);

@@ -8,7 +8,7 @@ use drawing::{Anchor, Font, Svg, Theme};
 use super::axis::{Axis, BELOW};
 use super::{Entry, Figure, PANEL, Panel, Shape, entries, keys, scenarios, style};
 use crate::columns::interval;
-use crate::{Report, numbers, words};
+use crate::{Report, description, numbers};
 
 /// A measure of the bars: its label, its value, its interval.
 type Bar = (&'static str, fn(&TableRow) -> Option<f64>, fn(&TableRow) -> Option<Interval>);
@@ -69,7 +69,7 @@ fn figure(
     let axis = Axis::up_to(high, LEFT, PANEL - RIGHT);
     let panels = scenarios.into_iter().map(|scenario| {
         let entries = entries(report, table, scenario);
-        panel(words::scenario(scenario), &entries, &bars, axis, unit, decimals)
+        panel(description::scenario(scenario), &entries, &bars, axis, unit, decimals)
     });
     Figure {
         table,
@@ -94,9 +94,9 @@ fn panel(
     let bottom = -(group + BETWEEN) * bars.len() as f64;
     axis.draw(&mut svg, 0.0, bottom, unit);
     let font = Font { size: 13.0, fill: colors.ink, bold: false, halo: None };
-    for (i, (word, value, interval)) in bars.iter().enumerate() {
+    for (i, (label, value, interval)) in bars.iter().enumerate() {
         let top = -(group + BETWEEN) * i as f64 - BETWEEN * 0.5;
-        svg.text([LEFT - 8.0, top - group * 0.5 - 4.5], word, Anchor::End, font);
+        svg.text([LEFT - 8.0, top - group * 0.5 - 4.5], label, Anchor::End, font);
         for (j, entry) in entries.iter().enumerate() {
             let Some(share) = value(entry.row) else { continue };
             let (upper, lower) = (top - BAR * j as f64 - 1.0, top - BAR * (j + 1) as f64 + 1.5);

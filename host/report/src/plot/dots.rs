@@ -5,7 +5,7 @@ use arena::evaluation::Measure;
 use super::rows::{Dot, Row, axis, panel};
 use super::{Entry, Figure, Panel, Shape, entries, keys, scenarios};
 use crate::columns::interval;
-use crate::{Report, numbers, words};
+use crate::{Report, description, numbers};
 
 /// Means of a table.
 pub(super) fn figure(report: &Report<'_>, table: u8, measures: &[Measure]) -> Figure {
@@ -28,12 +28,12 @@ pub(super) fn figure(report: &Report<'_>, table: u8, measures: &[Measure]) -> Fi
 fn of_measure(report: &Report<'_>, table: u8, measure: Measure) -> Option<Panel> {
     let rows = scenarios(report, table).into_iter().map(|scenario| {
         let dots = entries(report, table, scenario).into_iter().filter_map(|entry| dot(measure, entry));
-        Row { name: words::scenario(scenario), dots: dots.collect() }
+        Row { name: description::scenario(scenario), dots: dots.collect() }
     });
     let rows: Vec<_> = rows.collect();
     let ends = rows.iter().flat_map(|row| &row.dots).map(|dot| dot.reach.map_or(dot.value, |(_, high)| high));
     let high = ends.fold(None, |high: Option<f64>, end| Some(high.map_or(end, |high| high.max(end))))?;
-    let (title, unit) = words_of(measure, table);
+    let (title, unit) = description_of(measure, table);
     Some(panel(title.to_owned(), unit, &rows, axis(0.0, high)))
 }
 
@@ -45,7 +45,7 @@ fn dot(measure: Measure, Entry { row, ours }: Entry<'_>) -> Option<Dot> {
 }
 
 /// A panel's title and its axis.
-const fn words_of(measure: Measure, table: u8) -> (&'static str, &'static str) {
+const fn description_of(measure: Measure, table: u8) -> (&'static str, &'static str) {
     match (measure, table) {
         (Measure::Time, 5) => ("Time of trials that did not run out of it", "s"),
         (Measure::Time, _) => ("Time of a trial", "s"),

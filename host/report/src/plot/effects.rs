@@ -9,7 +9,7 @@ use super::rows::{Dot, Row, axis, panel};
 use super::{Figure, Key, Shape, entries, scenarios};
 use crate::columns::difference;
 use crate::table::pairs;
-use crate::{Report, numbers, words};
+use crate::{Report, description, numbers};
 
 /// To goal and out of Tables 1, 4 and 6, all on one scale.
 pub(super) fn figure(report: &Report<'_>) -> Figure {
@@ -29,7 +29,7 @@ pub(super) fn figure(report: &Report<'_>) -> Figure {
                 }
                 if !effects.is_empty() {
                     let dots = effects.into_iter().map(|(_, dot)| dot).collect();
-                    rows.push(Row { name: words::scenario(scenario), dots });
+                    rows.push(Row { name: description::scenario(scenario), dots });
                 }
             }
             if !rows.is_empty() {
@@ -79,7 +79,7 @@ fn effects(report: &Report<'_>, table: u8, scenario: Scenario, measure: Measure)
 }
 
 fn key(first: Approach, second: Approach, ours: bool) -> Key {
-    let pair = format!("{} − {}", words::approach(first), words::approach(second));
-    let word = if ours { pair } else { format!("{pair}, the paper’s") };
-    Key { word, color: words::color(first), filled: ours, shape: Shape::Dot }
+    let pair = format!("{} − {}", description::approach(first), description::approach(second));
+    let label = if ours { pair } else { format!("{pair}, the paper’s") };
+    Key { label, color: description::color(first), filled: ours, shape: Shape::Dot }
 }

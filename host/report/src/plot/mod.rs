@@ -20,7 +20,7 @@ use maud::{Markup, PreEscaped, html};
 pub(crate) use axis::GRID;
 pub(crate) use rows::{Dot, Row, axis, panel};
 
-use crate::{Picture, Report, words};
+use crate::{Picture, Report, description};
 
 /// A plot of several panels.
 #[derive(Debug)]
@@ -44,7 +44,7 @@ pub(crate) struct Panel {
 /// Entry of the legend: meaning of a sign.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Key {
-    pub(crate) word: String,
+    pub(crate) label: String,
     pub(crate) color: &'static str,
     pub(crate) filled: bool,
     pub(crate) shape: Shape,
@@ -116,9 +116,9 @@ pub(crate) fn scenarios(report: &Report<'_>, table: u8) -> Vec<Scenario> {
 pub(crate) fn keys<'a>(entries: impl Iterator<Item = Entry<'a>>, shape: Shape) -> Vec<Key> {
     let mut keys: Vec<Key> = Vec::new();
     for Entry { row, ours } in entries {
-        let own = words::approach(row.approach);
-        let word = if ours { own.to_owned() } else { format!("{own}, the paper’s") };
-        let key = Key { word, color: words::color(row.approach), filled: ours, shape };
+        let own = description::approach(row.approach);
+        let label = if ours { own.to_owned() } else { format!("{own}, the paper’s") };
+        let key = Key { label, color: description::color(row.approach), filled: ours, shape };
         if !keys.contains(&key) {
             keys.push(key);
         }
@@ -128,7 +128,7 @@ pub(crate) fn keys<'a>(entries: impl Iterator<Item = Entry<'a>>, shape: Shape) -
 
 /// The colour of an approach filled or hollow.
 pub(crate) fn style(approach: Approach, ours: bool) -> String {
-    let (color, paper) = (words::color(approach), Theme::Light.colors().paper);
+    let (color, paper) = (description::color(approach), Theme::Light.colors().paper);
     let fill = if ours { color } else { paper };
     format!(r#"fill="{fill}" stroke="{color}" stroke-width="1.4""#)
 }
@@ -149,12 +149,12 @@ impl Figure {
         down -= 24.0;
         let (mut across, font) = (0.0, Font { size: 13.0, fill: colors.ink, bold: false, halo: None });
         for key in &self.keys {
-            let wide = 40.0 + drawing::width(&key.word, font.size);
+            let wide = 40.0 + drawing::width(&key.label, font.size);
             if across > 0.0 && across + wide > right {
                 (across, down) = (0.0, down - 22.0);
             }
             svg.inset(&key.sign(), [across, down + 9.0]);
-            svg.text([across + 28.0, down], &key.word, Anchor::Start, font);
+            svg.text([across + 28.0, down], &key.label, Anchor::Start, font);
             across += wide;
         }
         down -= 14.0;
@@ -174,7 +174,7 @@ impl Figure {
             figure id=(self.name) {
                 figcaption { (self.title) }
                 div.keys { @for key in &self.keys {
-                    span.key { (PreEscaped(key.svg())) (key.word) }
+                    span.key { (PreEscaped(key.svg())) (key.label) }
                 } }
                 div.panels { @for panel in &self.panels { (PreEscaped(panel.svg())) } }
             }
@@ -215,7 +215,7 @@ impl Key {
     }
 
     fn svg(&self) -> String {
-        self.sign().finish([0.0, -10.0], [22.0, 0.0], 1.0, Theme::Light.colors().paper, &self.word)
+        self.sign().finish([0.0, -10.0], [22.0, 0.0], 1.0, Theme::Light.colors().paper, &self.label)
     }
 }
 

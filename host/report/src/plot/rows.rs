@@ -5,7 +5,7 @@ use drawing::{Anchor, Font, Svg, Theme};
 
 use super::axis::{Axis, BELOW, GRID};
 use super::{PANEL, Panel, style};
-use crate::words;
+use crate::description;
 
 /// A number with its interval.
 #[derive(Clone, Debug)]
@@ -62,7 +62,7 @@ impl Dot {
         let colors = Theme::Light.colors();
         let at = axis.place(self.value);
         let (low, high) = self.reach.map_or((at, at), |(low, high)| (axis.place(low), axis.place(high)));
-        let color = words::color(self.approach);
+        let color = description::color(self.approach);
         if high > low {
             svg.line([low, y], [high, y], format!(r#"stroke="{color}" stroke-width="1.8""#));
         }

@@ -7,7 +7,7 @@ use drawing::{Anchor, Font, Svg, Theme};
 
 use super::axis::{Axis, BELOW};
 use super::{Figure, Key, PANEL, Panel, Shape};
-use crate::{Report, words};
+use crate::{Report, description};
 
 /// Of the simulated trials.
 pub(super) fn figure(report: &Report<'_>) -> Figure {
@@ -26,12 +26,12 @@ pub(super) fn figure(report: &Report<'_>) -> Figure {
         cases.sort_by_key(|case| std::cmp::Reverse(case.retrieved));
         panel(&cases, never)
     });
-    let bar = |color, word: &str| Key { word: word.to_owned(), color, filled: true, shape: Shape::Bar };
+    let bar = |color, label: &str| Key { label: label.to_owned(), color, filled: true, shape: Shape::Bar };
     Figure {
         table: 3,
         name: "table-3-plays".to_owned(),
         title: "What became of each case: how its plays ended, and how many there were".to_owned(),
-        keys: ENDS.iter().map(|(color, word, _)| bar(color, word)).collect(),
+        keys: ENDS.iter().map(|(color, label, _)| bar(color, label)).collect(),
         panels: panels.collect(),
     }
 }
@@ -48,8 +48,8 @@ fn panel(cases: &[&CaseUse], never: usize) -> Option<Panel> {
         let (top, low) = (-ROW * i as f64 - 1.5, -ROW * (i + 1) as f64 + 1.5);
         svg.text([LEFT - 6.0, low + 2.5], &case.case, Anchor::End, font);
         let mut share = 0.0;
-        for (color, _, words) in &ENDS {
-            let plays = ends(case, words);
+        for (color, _, description) in &ENDS {
+            let plays = ends(case, description);
             let (from, to) = (share, share + 100.0 * f64::from(plays) / f64::from(case.retrieved));
             if plays > 0 {
                 let corner = [axis.place(from), low];
@@ -64,17 +64,18 @@ fn panel(cases: &[&CaseUse], never: usize) -> Option<Panel> {
     if never > 0 {
         svg.text([0.0, bottom - 31.0], &format!("{never} never played"), Anchor::Start, font);
     }
-    let (approach, against) = (words::approach(first.approach), words::opponents(first.configuration));
+    let (approach, against) =
+        (description::approach(first.approach), description::opponents(first.configuration));
     let title = format!("Cases of {approach} attackers, against {against}");
     Some(Panel { title, svg, height: -bottom + BELOW })
 }
 
 /// Plays that ended with one of these; without any, with an end that has no colour of its own.
-fn ends(case: &CaseUse, words: &[&str]) -> u32 {
-    let all = CycleEnd::WORDS.iter().zip(case.ends);
-    let own = all.filter(|(word, _)| match words {
-        [] => !ENDS.iter().any(|(_, _, words)| words.contains(*word)),
-        words => words.contains(*word),
+fn ends(case: &CaseUse, description: &[&str]) -> u32 {
+    let all = CycleEnd::DESCRIPTION.iter().zip(case.ends);
+    let own = all.filter(|(label, _)| match description {
+        [] => !ENDS.iter().any(|(_, _, description)| description.contains(*label)),
+        description => description.contains(*label),
     });
     own.map(|(_, plays)| plays).sum()
 }
@@ -111,12 +112,12 @@ mod tests {
             approach: Approach::Cases,
             case: "a/b".to_owned(),
             retrieved: 78,
-            // 1 to 12, in the order of `CycleEnd::WORDS`.
+            // 1 to 12, in the order of `CycleEnd::DESCRIPTION`.
             ends: std::array::from_fn(|i| i as u32 + 1),
             trials: 9,
             outcomes: [0; 5],
         };
-        let plays: Vec<_> = ENDS.iter().map(|(_, _, words)| ends(&case, words)).collect();
+        let plays: Vec<_> = ENDS.iter().map(|(_, _, description)| ends(&case, description)).collect();
         // Robot lost 4, ball at rest 7, timeout 8, no decision 9, unknown case 10, superseded 11 are anything
         // else.
         assert_eq!(plays, [1, 2, 3, 5, 6, 4 + 7 + 8 + 9 + 10 + 11, 12]);

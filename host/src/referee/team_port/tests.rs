@@ -98,7 +98,7 @@ fn requests_go_one_at_a_time_and_replies_belong_to_them_in_order() {
 }
 
 #[test]
-fn the_newest_wish_of_a_kind_is_the_one_that_waits() {
+fn the_newest_request_of_a_kind_is_the_one_that_waits() {
     let mut port = TeamPort::new("onetwo", Colour::Blue);
     for id in 0..16 {
         port.ask(Request::Keeper(RobotId::new(id).unwrap()), Instant(0));

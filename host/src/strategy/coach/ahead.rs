@@ -3,12 +3,12 @@
 use geometry::{Attack, Point};
 use protocol::{Instant, RobotId};
 
+use super::super::counters::Sent;
 use super::super::defence::room_along;
 use super::super::order::{Task, Why};
 use super::super::pass::ahead::{PassAhead, PasserMove, Places, Times};
 use super::super::pass::{Rating, SAMPLES, Scene};
 use super::super::support::{self, Target};
-use super::super::tally::Sent;
 use super::super::view::{Ball, Robot, View};
 use super::{Coach, restart};
 use rules::{Phase, Side};
@@ -61,7 +61,7 @@ impl Coach {
         let Some(best) = best else { return usual };
         self.ahead = Some(Ahead::new(best.receiver, best.rating, view.now, None));
         let at = best.rating.at;
-        Target::Mate { id: best.receiver, at, room: room_along(view, ball.position, at) }
+        Target::Teammate { id: best.receiver, at, room: room_along(view, ball.position, at) }
     }
 
     /// The taker's task for its pass ahead, if it has one.
@@ -97,7 +97,7 @@ impl Coach {
     /// The pass of our restart that has just left.
     pub(super) fn sent(&self, view: &View, receiver: RobotId, to: Point<Attack>) -> Option<Sent> {
         let (passer, from) = (self.first?, self.ball_lay?);
-        let rated = |mate| Scene::of(view, &self.kicks, from, Some(passer), mate).rate(to);
+        let rated = |teammate| Scene::of(view, &self.kicks, from, Some(passer), teammate).rate(to);
         let rating = self.ahead.map(|ahead| ahead.rating).or_else(|| view.our(receiver).map(rated))?;
         Some(Sent {
             passer,

@@ -10,12 +10,12 @@ use geometry::{Attack, Point};
 use motion::trajectory::CalcMotion;
 use protocol::{Duration, Instant, RobotId};
 
+use super::super::counters::Sent;
 use super::super::order::{Role, Task, Why};
 use super::super::pass::bridge::{CasePass, RADIUS, refine};
 use super::super::pass::shot::shot;
 use super::super::pass::{Rating, SAMPLES, Scene};
 use super::super::support;
-use super::super::tally::Sent;
 use super::super::view::{Ball, View};
 use super::{Coach, Pass, Plan};
 
@@ -85,13 +85,14 @@ impl Coach {
 
     /// The passer's task, with an order for the receiver too; `None` where there is no receiver any more.
     fn pass_to(&self, plan: &mut Plan<'_>, receiver: RobotId, rating: &Rating, why: Why) -> Option<Task> {
-        let mate = plan.view.our(receiver)?;
+        let teammate = plan.view.our(receiver)?;
         if plan.take(receiver) {
             let then = rating.shot.one_touch.then_some(rating.shot.aim);
             plan.order(receiver, Role::Receiver, Task::Receive { at: rating.at, then }, why);
         }
         let limits = &self.kicks.constants().receiver;
-        let ready = limits.time(mate.position, mate.velocity, rating.at) <= rating.ball_time + TOGETHER;
+        let ready =
+            limits.time(teammate.position, teammate.velocity, rating.at) <= rating.ball_time + TOGETHER;
         Some(Task::Pass { at: rating.at, receiver, kick: rating.kick.order(), ready })
     }
 
@@ -146,8 +147,8 @@ impl Coach {
         };
         let likely = || {
             let Some((receiver, rating)) = intent.what.pass() else { return true };
-            let receive = view.our(receiver).map_or(0.0, |mate| {
-                let scene = Scene::of(view, &self.kicks, ball.position, Some(intent.who), mate);
+            let receive = view.our(receiver).map_or(0.0, |teammate| {
+                let scene = Scene::of(view, &self.kicks, ball.position, Some(intent.who), teammate);
                 scene.rate(rating.at).receive()
             });
             receive > rating.receive() * STILL_LIKELY
@@ -178,8 +179,8 @@ impl Coach {
     fn of_the_case(&self, view: &View, who: RobotId, ball: &Ball) -> Option<What> {
         let pass = view.proposal.filter(|pass| self.tactics.bridge && pass.passer.0 == who)?;
         let receiver = pass.receiver.0;
-        let mate = view.our(receiver).filter(|_| !self.defenders.contains(&Some(receiver)))?;
-        let scene = Scene::of(view, &self.kicks, ball.position, Some(who), mate);
+        let teammate = view.our(receiver).filter(|_| !self.defenders.contains(&Some(receiver)))?;
+        let scene = Scene::of(view, &self.kicks, ball.position, Some(who), teammate);
         let refined = refine(&scene, pass.at, RADIUS);
         let rating = refined.best;
         (rating.receive() > LIKELY).then_some(What::OfCase { pass, rating, moved: refined.moved() })

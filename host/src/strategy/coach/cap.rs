@@ -79,7 +79,7 @@ impl Coach {
             self.ahead = begin(view, &self.kicks, taker, ball, &attack);
             self.aim = self.ahead.map(|ahead| {
                 let (id, at) = (ahead.receiver, ahead.rating.at);
-                (view.now, Target::Mate { id, at, room: defence::room_along(view, ball.position, at) })
+                (view.now, Target::Teammate { id, at, room: defence::room_along(view, ball.position, at) })
             });
             self.gave_up = self.ahead.is_none();
         }

@@ -78,7 +78,7 @@ impl Coach {
         let away =
             (robot.position - ball.position).unit().or_else(|| (ball.position - view.our_goal()).unit());
         let at = ball.position + away.unwrap_or_default() * CLEARER_NEEDS;
-        threat::lawful(view, at, &threat::Settings::default())
+        threat::legal(view, at, &threat::Settings::default())
     }
 
     /// Whether the ball before our area is left to our keeper: it is there first. Held until another robot is
@@ -91,7 +91,10 @@ impl Coach {
             return false;
         };
         let home = ball.position.distance(view.our_goal());
-        let players = view.ours.iter().filter(|robot| robot.id != keeper.id && Some(robot.id) != self.barred);
+        let players = view
+            .ours
+            .iter()
+            .filter(|robot| robot.id != keeper.id && Some(robot.id) != self.double_touch_blocked);
         let soonest = players
             .map(|robot| {
                 // A robot that comes from the field drives around the ball first, or turns with it.

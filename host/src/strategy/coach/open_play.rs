@@ -13,11 +13,16 @@ impl Coach {
     pub(super) fn open_play(&mut self, plan: &mut Plan<'_>) {
         let view = plan.view;
         let Some(ball) = view.ball else { return self.defend(plan, false) };
-        if let Some(barred) = self.barred
-            && plan.take(barred)
+        if let Some(double_touch_blocked) = self.double_touch_blocked
+            && plan.take(double_touch_blocked)
         {
             let (at, worth) = best_place(view, ball.position);
-            plan.order(barred, Role::Barred, plan.facing_ball(at), Why::FreePlace { worth });
+            plan.order(
+                double_touch_blocked,
+                Role::DoubleTouchBlocked,
+                plan.facing_ball(at),
+                Why::FreePlace { worth },
+            );
         }
         self.see_pass_leave(view);
         let keepers = self.is_keepers(view, &ball);

@@ -2,7 +2,7 @@
 
 use geometry::{Angle, Attack, Point};
 use protocol::RobotId;
-use rules::{Duty, Phase};
+use rules::{Phase, RuleRole};
 
 use super::super::order::{Order, Role, Task, Why};
 use super::super::view::{ROBOTS_MAX, Robot, View};
@@ -25,16 +25,16 @@ impl<'v> Plan<'v> {
     /// Sets the robot's order. While the ball is not in play no robot is sent to where the rules do not let
     /// it stand, nor to another robot's place: it would not get there.
     pub(super) fn order(&mut self, robot: RobotId, role: Role, task: Task, why: Why) {
-        let duty = match role {
-            Role::Taker => Duty::Taker,
-            _ if robot == self.view.keeper => Duty::Keeper,
-            _ => Duty::Player,
+        let rule_role = match role {
+            Role::Taker => RuleRole::Taker,
+            _ if robot == self.view.keeper => RuleRole::Keeper,
+            _ => RuleRole::Player,
         };
         let task = match task {
             Task::GoTo { at, face } if self.view.phase != Phase::Run => {
                 let taken = self.places();
                 let settings = threat::Settings::default();
-                Task::GoTo { at: threat::lawful_for(self.view, duty, at, &taken, &settings), face }
+                Task::GoTo { at: threat::legal_for(self.view, rule_role, at, &taken, &settings), face }
             }
             other => other,
         };
@@ -79,7 +79,7 @@ impl<'v> Plan<'v> {
 
     /// Orders the remaining robots to stay; while the ball is not in play by going to their present place, so
     /// that they leave forbidden areas.
-    pub(super) fn stay_lawful(&mut self) {
+    pub(super) fn stay_legal(&mut self) {
         let view = self.view;
         if view.phase == Phase::Run {
             return self.everybody(Role::Player, Task::Stand, Why::NoBall);

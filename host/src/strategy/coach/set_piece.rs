@@ -113,7 +113,7 @@ impl Coach {
         if let Some((task, why)) = self.coerce(plan, id, &ball) {
             return plan.order(id, Role::Taker, task, why);
         }
-        let wait = if penalty { Duration(0) } else { MATES_GET_READY };
+        let wait = if penalty { Duration(0) } else { TEAMMATES_GET_READY };
         let stands =
             self.ahead.is_some() || self.aim.is_some_and(|(since, _)| view.now.since(since) < AIM_STANDS);
         if self.age(view) >= wait && !stands {
@@ -140,7 +140,7 @@ impl Coach {
             }
             return;
         }
-        if let Some((_, Target::Mate { id, at, room })) = self.aim
+        if let Some((_, Target::Teammate { id, at, room })) = self.aim
             && plan.take(id)
         {
             plan.order(id, Role::Receiver, Task::Receive { at, then: None }, Why::BestTarget { room });
@@ -173,7 +173,7 @@ impl Coach {
 const TAKER_WORTH: f32 = 1.0;
 /// Mates are given this long to take their places before a restart is aimed, of the 5 s (A) that the rules give: they are there since
 /// the ball was placed, and run on while the taker goes around it.
-const MATES_GET_READY: Duration = Duration::millis(200);
+const TEAMMATES_GET_READY: Duration = Duration::millis(200);
 /// A target once chosen stands for this long: to walk around the ball, aim and kick.
 const AIM_STANDS: Duration = Duration::millis(3000);
 /// Nearer to our goal than this the defenders are the wall, m.

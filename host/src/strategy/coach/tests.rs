@@ -92,11 +92,11 @@ fn who_took_our_free_kick_leaves_the_ball_to_others_until_somebody_touched_it() 
     assert_eq!(taker.number(), 3);
     view.phase = Phase::Run;
     let orders = coach.decide(&view);
-    assert_eq!(orders[3].role, Role::Barred);
+    assert_eq!(orders[3].role, Role::DoubleTouchBlocked);
     // Another one is at the ball: it may touch it again.
     let ball = Point::new(0.5, 1.4);
     view.ball = Some(Ball { position: ball, rest: ball, ..view.ball.unwrap() });
-    assert_ne!(coach.decide(&view)[3].role, Role::Barred);
+    assert_ne!(coach.decide(&view)[3].role, Role::DoubleTouchBlocked);
 }
 
 #[test]
@@ -263,8 +263,8 @@ fn a_ball_that_lies_before_our_area_is_the_keepers_unless_a_field_player_is_ther
 }
 
 /// Our 3 stands behind the ball at (2, 0), our 4 and 5 at these places; with these opponents.
-fn attack(mates: [(f32, f32); 2], theirs: &[(f32, f32)], tactics: Tactics) -> (Coach, View, Orders) {
-    let ours = [(-4.4, 0.0), (-3.2, 0.3), (-3.2, -0.3), (1.85, 0.0), mates[0], mates[1]];
+fn attack(teammates: [(f32, f32); 2], theirs: &[(f32, f32)], tactics: Tactics) -> (Coach, View, Orders) {
+    let ours = [(-4.4, 0.0), (-3.2, 0.3), (-3.2, -0.3), (1.85, 0.0), teammates[0], teammates[1]];
     let view = view((2.0, 0.0), &ours, theirs);
     let mut coach = Coach::new(Team::Ours, tactics, League::DivisionB);
     let orders = coach.decide(&view);

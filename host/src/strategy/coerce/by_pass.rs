@@ -5,7 +5,7 @@ use geometry::{Attack, Point, Vector};
 use protocol::RobotId;
 
 use super::super::pass::conditions::not_intercepted;
-use super::super::pass::intercept::{Opponent, SAFE, Way};
+use super::super::pass::intercept::{BallPath, Opponent, SAFE};
 use super::super::pass::kicks::FlatKick;
 use super::super::pass::reach::Mover;
 use super::super::pass::{Kicks, Scene};
@@ -28,7 +28,7 @@ impl<'k> ByPassLocation<'k> {
     fn meets(self, opponent: &Robot, from: Point<Attack>, to: Point<Attack>, kick: &FlatKick) -> f32 {
         let c = self.kicks.constants();
         let way = to - from;
-        let way = Way {
+        let way = BallPath {
             from,
             along: way.unit().unwrap_or(Vector::new(1.0, 0.0)),
             length: way.norm(),

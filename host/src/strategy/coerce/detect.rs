@@ -124,7 +124,7 @@ mod tests {
     use super::*;
     use rules::League;
 
-    fn picture(ms: u64, theirs: &[(f32, f32)]) -> View {
+    fn snapshot(ms: u64, theirs: &[(f32, f32)]) -> View {
         let ours = [(-2.8, 0.0), (-0.1, 1.0), (1.0, -1.0), (1.0, 0.5)];
         let mut view = view((0.0, 1.0), &ours, theirs);
         view.field = League::Ssl2013.field();
@@ -139,10 +139,10 @@ mod tests {
         for tick in 0..150_u64 {
             // 0 stands 0.4 m goal-side of our 2; 1 runs through our 3's mark and is far behind 0.8 s later.
             let y = (-3.0 + 0.05 * tick as f32).min(1.95);
-            let view = picture(tick * 10, &[(1.358, -0.821), (1.3, y)]);
+            let view = snapshot(tick * 10, &[(1.358, -0.821), (1.3, y)]);
             detector.watch(&view, taker);
         }
-        let view = picture(1_500, &[(1.358, -0.821), (1.3, 1.95)]);
+        let view = snapshot(1_500, &[(1.358, -0.821), (1.3, 1.95)]);
         let read = detector.read(&view, taker);
         assert_eq!((read[0].tactic, read[0].follows), (Some(Tactic::Mark), RobotId::new(2)));
         assert!(!read[0].ball_side && (read[0].stand_off - 0.4).abs() < 0.02, "{:?}", read[0]);
@@ -150,18 +150,18 @@ mod tests {
     }
 
     #[test]
-    fn half_a_second_of_places_outweighs_one_picture() {
+    fn half_a_second_of_places_outweighs_one_snapshot() {
         let mut detector = Detector::new(Models::default());
         let taker = RobotId::new(1);
         for tick in 0..60 {
-            detector.watch(&picture(tick * 10, &[(2.7, 0.1)]), taker);
+            detector.watch(&snapshot(tick * 10, &[(2.7, 0.1)]), taker);
         }
         // One snapshot in which the keeper is taken for another robot at our robot 2.
-        let off = picture(600, &[(1.25, -0.9)]);
+        let off = snapshot(600, &[(1.25, -0.9)]);
         detector.watch(&off, taker);
         assert_eq!(detector.read(&off, taker)[0].tactic, Some(Tactic::Goalkeeper));
         // After a gap all estimates restart.
-        let later = picture(5_000, &[(1.25, -0.9)]);
+        let later = snapshot(5_000, &[(1.25, -0.9)]);
         detector.watch(&later, taker);
         assert_eq!(detector.read(&later, taker)[0].tactic, Some(Tactic::Mark));
     }

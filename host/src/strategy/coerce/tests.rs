@@ -41,8 +41,8 @@ impl PassValue for ByDistance {
                 view.theirs.iter().map(|robot| Self::free(way.distance_to(robot.position))).product::<f32>()
             };
             let goal = view.their_goal();
-            let lawful = !view.in_their_area(at, 0.3) && at.distance(from) > 0.8;
-            let receive = if lawful { product(Segment::new(from, at)) } else { 0.0 };
+            let legal = !view.in_their_area(at, 0.3) && at.distance(from) > 0.8;
+            let receive = if legal { product(Segment::new(from, at)) } else { 0.0 };
             let near = (1.0 - at.distance(goal) / 6.0).max(0.0);
             // The keeper always obstructs the shot: only the others count.
             let shot = Segment::new(at, goal);
@@ -63,13 +63,13 @@ impl PassValue for ByDistance {
 
 /// Division B, our free kick at (0.5, 1.8) with 1 as taker; keeper 0, teammates from 2 on. Theirs: keeper 0,
 /// primaries 1 and 2, then a marker goal-side of each teammate named.
-fn free_kick(mates: &[(f32, f32)], marked: &[usize]) -> View {
+fn free_kick(teammates: &[(f32, f32)], marked: &[usize]) -> View {
     let mut ours = vec![(-4.4, 0.0), (0.4, 1.9)];
-    ours.extend(mates);
+    ours.extend(teammates);
     let goal = Point::<Attack>::new(4.5, 0.0);
     let mut theirs = vec![(4.3, 0.1), (3.39, 0.25), (3.39, 0.0)];
-    for mate in marked {
-        let at = Point::new(mates[*mate].0, mates[*mate].1);
+    for teammate in marked {
+        let at = Point::new(teammates[*teammate].0, teammates[*teammate].1);
         let by = at + (goal - at).unit().unwrap() * 0.3;
         theirs.push((by.x(), by.y()));
     }
@@ -85,20 +85,20 @@ fn planner() -> Planner {
     Planner::new(Settings { least: ANY, ..Settings::default() }, Models::default())
 }
 
-fn run(mates: &[(f32, f32)], marked: &[usize]) -> (Planner, CapPlan, View) {
-    let view = free_kick(mates, marked);
+fn run(teammates: &[(f32, f32)], marked: &[usize]) -> (Planner, CapPlan, View) {
+    let view = free_kick(teammates, marked);
     let mut planner = planner();
     planner.observe(&view, id(1));
     let plan = planner.plan(&view, &ByDistance, id(1), 1).unwrap().clone();
     (planner, plan, view)
 }
 
-const MATES: [(f32, f32); 4] = [(2.2, 0.2), (2.0, -1.2), (1.0, -0.6), (-1.0, 1.0)];
+const TEAMMATES: [(f32, f32); 4] = [(2.2, 0.2), (2.0, -1.2), (1.0, -0.6), (-1.0, 1.0)];
 
 #[test]
 fn as_many_coerce_as_are_followed_and_the_rest_attacks() {
     // The paper's examples: 3 followers of 4, then 4 of 4.
-    let (_, plan, _) = run(&MATES, &[0, 1, 2]);
+    let (_, plan, _) = run(&TEAMMATES, &[0, 1, 2]);
     let who: Vec<_> = plan
         .coerce
         .coercers
@@ -111,16 +111,16 @@ fn as_many_coerce_as_are_followed_and_the_rest_attacks() {
     }
     assert_eq!(plan.attackers[..], [id(5)]);
     assert_eq!(plan.optimistic.receiver, id(5));
-    let (_, all, _) = run(&MATES, &[0, 1, 2, 3]);
+    let (_, all, _) = run(&TEAMMATES, &[0, 1, 2, 3]);
     assert_eq!((all.coerce.coercers.len(), all.attackers.len()), (4, 0));
     assert!(all.coercer(all.optimistic.receiver).is_some(), "one is used again");
-    let (_, none, _) = run(&MATES, &[]);
+    let (_, none, _) = run(&TEAMMATES, &[]);
     assert!(none.coerce.coercers.is_empty() && none.attackers.len() == 4);
 }
 
 #[test]
 fn the_optimistic_attack_sees_ball_followers_only() {
-    let (_, plan, view) = run(&MATES, &[0, 1, 2]);
+    let (_, plan, view) = run(&TEAMMATES, &[0, 1, 2]);
     assert_eq!(plan.optimistic.against, 3);
     // Its value is above that against all opponents, and the best of all cells by hand.
     let mut seen = view.clone();
@@ -147,7 +147,7 @@ fn the_optimistic_attack_sees_ball_followers_only() {
 
 #[test]
 fn coercers_go_where_their_followers_are_least_in_the_way() {
-    let (_, plan, view) = run(&MATES, &[0, 1, 2]);
+    let (_, plan, view) = run(&TEAMMATES, &[0, 1, 2]);
     let from = Point::new(0.5, 1.8);
     let (pass, shot) =
         (Segment::new(from, plan.optimistic.at), Segment::new(plan.optimistic.at, plan.optimistic.worth.aim));
@@ -195,7 +195,7 @@ fn play(planner: &mut Planner, view: &mut View, follow: bool, seconds: f32) -> P
 
 #[test]
 fn who_is_followed_as_expected_attacks_as_planned_after_the_followers_came() {
-    let (mut planner, plan, mut view) = run(&MATES, &[0, 1, 2]);
+    let (mut planner, plan, mut view) = run(&TEAMMATES, &[0, 1, 2]);
     let begin = view.now;
     let first = planner.watch(&view, &ByDistance);
     assert!(matches!(first, Progress::Coercing { of: 3, .. }), "{first:?}");
@@ -217,7 +217,7 @@ fn who_is_followed_as_expected_attacks_as_planned_after_the_followers_came() {
 
 #[test]
 fn who_does_not_follow_makes_a_new_attack_against_everybody() {
-    let (mut planner, _, mut view) = run(&MATES, &[0, 1, 2]);
+    let (mut planner, _, mut view) = run(&TEAMMATES, &[0, 1, 2]);
     let Progress::Attacking(attack) = play(&mut planner, &mut view, false, 5.0) else { panic!() };
     let Followed::Otherwise { off, .. } = attack.followed else { panic!("{attack:?}") };
     assert!(off > 0.5 && attack.plan.against == 6);
@@ -230,7 +230,7 @@ fn who_does_not_follow_makes_a_new_attack_against_everybody() {
 
 #[test]
 fn where_all_coerce_one_whom_nobody_follows_is_used_again() {
-    let (mut planner, plan, mut view) = run(&MATES, &[0, 1, 2, 3]);
+    let (mut planner, plan, mut view) = run(&TEAMMATES, &[0, 1, 2, 3]);
     let marked = plan.optimistic.receiver;
     let Progress::Attacking(attack) = play(&mut planner, &mut view, true, 5.0) else { panic!() };
     // All are followed as expected, so the receiver is marked; no robot is free; one of them attacks
@@ -238,7 +238,7 @@ fn where_all_coerce_one_whom_nobody_follows_is_used_again() {
     assert!(matches!(attack.followed, Followed::ReceiverMarked { .. }), "{attack:?} {marked:?}");
     assert!(attack.reused);
     // One loses its follower: it becomes the receiver.
-    let (mut planner, plan, mut view) = run(&MATES, &[0, 1, 2, 3]);
+    let (mut planner, plan, mut view) = run(&TEAMMATES, &[0, 1, 2, 3]);
     let left = plan.coercer(plan.optimistic.receiver).unwrap().marker;
     view.theirs.retain(|robot| robot.id != left);
     let free = plan.coerce.coercers.iter().find(|coercer| coercer.marker == left).unwrap().robot;
@@ -261,15 +261,15 @@ fn where_all_coerce_one_whom_nobody_follows_is_used_again() {
 }
 
 #[test]
-fn the_same_pictures_and_seed_give_the_same_plan() {
-    let (_, once, _) = run(&MATES, &[0, 2]);
-    let (_, twice, _) = run(&MATES, &[0, 2]);
+fn the_same_snapshots_and_seed_give_the_same_plan() {
+    let (_, once, _) = run(&TEAMMATES, &[0, 2]);
+    let (_, twice, _) = run(&TEAMMATES, &[0, 2]);
     assert_eq!(once, twice);
 }
 
 #[test]
 fn before_the_free_kick_the_clock_stands_and_a_halt_ends_it() {
-    let (mut planner, _, mut view) = run(&MATES, &[0, 1, 2]);
+    let (mut planner, _, mut view) = run(&TEAMMATES, &[0, 1, 2]);
     view.phase = Phase::Stop;
     for _ in 0..1_000 {
         view.now += protocol::Duration::millis(10);
@@ -282,7 +282,7 @@ fn before_the_free_kick_the_clock_stands_and_a_halt_ends_it() {
 }
 
 #[test]
-fn without_a_ball_or_mates_there_is_no_plan() {
+fn without_a_ball_or_teammates_there_is_no_plan() {
     let mut planner = planner();
     let mut lonely = free_kick(&[], &[]);
     assert_eq!(planner.plan(&lonely, &ByDistance, id(1), 1), None);
@@ -296,7 +296,7 @@ fn without_a_ball_or_mates_there_is_no_plan() {
 #[test]
 fn a_pass_that_hardly_arrives_is_no_attack_and_a_way_is_sought_until_the_time_to_coerce_is_over() {
     let likely = |receive| Settings { least: attack::Least { receive, value: 0.0 }, ..Settings::default() };
-    let mut view = free_kick(&MATES, &[0, 1, 2]);
+    let mut view = free_kick(&TEAMMATES, &[0, 1, 2]);
     let mut strict = Planner::new(likely(1.1), Models::default());
     assert_eq!(strict.plan(&view, &ByDistance, id(1), 1), None);
     let mut planner = Planner::new(likely(0.7), Models::default());
@@ -370,7 +370,7 @@ impl PassValue for Counting {
 #[test]
 fn the_work_of_a_tick_is_bounded_by_cells_receivers_and_followers() {
     for marked in [&[][..], &[0, 1], &[0, 1, 2, 3]] {
-        let mut view = free_kick(&MATES, marked);
+        let mut view = free_kick(&TEAMMATES, marked);
         let mut planner = planner();
         let counting = Counting::default();
         planner.plan(&view, &counting, id(1), 1);

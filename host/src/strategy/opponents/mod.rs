@@ -42,7 +42,7 @@ impl Team {
     pub const OPPONENTS: [Self; 3] = [Self::Reactive, Self::Marking, Self::Zone];
 
     /// Its name on command lines and in files.
-    pub const fn word(self) -> &'static str {
+    pub const fn label(self) -> &'static str {
         match self {
             Self::Ours => "ours",
             Self::Reactive => "reactive",
@@ -53,14 +53,14 @@ impl Team {
     }
 
     /// The team of that name.
-    pub fn from_word(word: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|team| team.word() == word)
+    pub fn from_label(label: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|team| team.label() == label)
     }
 }
 
 /// The open play of one of [`Team::OPPONENTS`], with its state.
 #[derive(Clone, Debug)]
-pub(super) struct Rival {
+pub(super) struct OpponentModel {
     style: Style,
     /// The robot that goes for the ball.
     first: Option<RobotId>,
@@ -84,7 +84,7 @@ type Place = (Point<Attack>, Role, Why);
 type Places = heapless::Vec<Place, ROBOTS_MAX>;
 type Free = heapless::Vec<RobotId, ROBOTS_MAX>;
 
-impl Rival {
+impl OpponentModel {
     /// The state for that team; `None` for those whose open play is not here.
     pub(super) fn of(team: Team) -> Option<Self> {
         let style = match team {
@@ -96,8 +96,13 @@ impl Rival {
         Some(Self { style, first: None, aim: None, held: [None; PLACES] })
     }
 
-    /// Orders in open play for those of `free`, which are removed from it; `barred` must not touch the ball.
-    pub(super) fn open_play(&mut self, view: &View, free: &mut Free, barred: Option<RobotId>) -> Orders {
+    /// Orders in open play for those of `free`, which are removed from it; `double_touch_blocked` must not touch the ball.
+    pub(super) fn open_play(
+        &mut self,
+        view: &View,
+        free: &mut Free,
+        double_touch_blocked: Option<RobotId>,
+    ) -> Orders {
         let mut orders = Orders::new();
         // At most one order per robot, and as many places as robots.
         let mut order = |free: &mut Free, robot: RobotId, role: Role, task: Task, why: Why| {
@@ -109,12 +114,12 @@ impl Rival {
             order(free, view.keeper, Role::Keeper, task, why);
         }
         let Some(ball) = view.ball else { return orders };
-        if let Some((robot, seconds)) = self.choose_first(view, &ball, free, barred) {
+        if let Some((robot, seconds)) = self.choose_first(view, &ball, free, double_touch_blocked) {
             let target = self.target(view, robot, &ball);
             let (task, why) = restart::take(view, &ball, Some(target));
             let why = if ball.velocity.norm() > LIES { Why::SoonestAtBall { seconds } } else { why };
             order(free, robot, Role::Player, task, why);
-            if let Target::Mate { id, at, room } = target
+            if let Target::Teammate { id, at, room } = target
                 && free.contains(&id)
             {
                 order(free, id, Role::Receiver, Task::Receive { at, then: None }, Why::BestTarget { room });
@@ -124,13 +129,13 @@ impl Rival {
         }
         let wanted = free.len();
         let places = (self.style.places)(view, &ball, wanted);
-        let lawful = |at: Point<Attack>| off_areas(view, off_ball(view, &ball, at));
+        let legal = |at: Point<Attack>| off_areas(view, off_ball(view, &ball, at));
         let at: heapless::Vec<_, ROBOTS_MAX> =
-            places.iter().take(wanted).map(|(at, _, _)| lawful(*at)).collect();
+            places.iter().take(wanted).map(|(at, _, _)| legal(*at)).collect();
         self.held = roles::assign(view, free, &at, &self.held);
         for (i, robot) in self.held.into_iter().enumerate() {
             if let (Some(robot), Some(at), Some((_, role, why))) = (robot, at.get(i), places.get(i)) {
-                let role = if Some(robot) == barred { Role::Barred } else { *role };
+                let role = if Some(robot) == double_touch_blocked { Role::DoubleTouchBlocked } else { *role };
                 order(free, robot, role, facing(view, *at), *why);
             }
         }
@@ -143,10 +148,13 @@ impl Rival {
         view: &View,
         ball: &Ball,
         free: &Free,
-        barred: Option<RobotId>,
+        double_touch_blocked: Option<RobotId>,
     ) -> Option<(RobotId, f32)> {
         let forbidden = view.in_their_area(ball.position, 0.0) || view.in_our_area(ball.position, 0.0);
-        let able = view.ours.iter().filter(|robot| free.contains(&robot.id) && Some(robot.id) != barred);
+        let able = view
+            .ours
+            .iter()
+            .filter(|robot| free.contains(&robot.id) && Some(robot.id) != double_touch_blocked);
         let first = roles::choose(able, self.first, roles::WORTH, |robot| roles::time_to(robot, ball.rest));
         let first = first.filter(|_| !forbidden);
         self.first = first.map(|(id, _)| id);
@@ -190,11 +198,11 @@ fn facing(view: &View, at: Point<Attack>) -> Task {
 /// Away from the ball that a teammate plays: a supporting robot does not obstruct it.
 fn off_ball(view: &View, ball: &Ball, at: Point<Attack>) -> Point<Attack> {
     let away = at - ball.position;
-    if away.norm() >= OFF_MATES_BALL {
+    if away.norm() >= OFF_TEAMMATES_BALL {
         return at;
     }
     let out = away.unit().or_else(|| (view.our_goal() - ball.position).unit()).unwrap_or_default();
-    ball.position + out * OFF_MATES_BALL
+    ball.position + out * OFF_TEAMMATES_BALL
 }
 
 /// Out of both areas, straight away from their goal lines' middles, and inside the lines.
@@ -222,7 +230,7 @@ const AIM_STANDS: Duration = Duration::millis(1500);
 /// Distance the ball moves from which a new target is chosen, m.
 const AIM_MOVES: f32 = 0.3;
 /// A supporting robot keeps this far from the ball, m: two bodies and room to turn with it.
-const OFF_MATES_BALL: f32 = 0.5;
+const OFF_TEAMMATES_BALL: f32 = 0.5;
 /// No robot is sent nearer to a line than this, m.
 const INSIDE: f32 = 0.15;
 /// Centres keep this far off their area, m: the rules' 0.2 m at restarts, a body and the control error.

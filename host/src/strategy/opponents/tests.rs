@@ -8,7 +8,7 @@ const THEIRS: [(f32, f32); 4] = [(4.4, 0.0), (-1.5, 1.4), (-1.0, -1.6), (2.0, 0.
 
 fn orders(team: Team, view: &View) -> Orders {
     let mut free = view.ours.iter().map(|robot| robot.id).collect();
-    let mut orders = Rival::of(team).unwrap().open_play(view, &mut free, None);
+    let mut orders = OpponentModel::of(team).unwrap().open_play(view, &mut free, None);
     assert!(free.is_empty() || view.ball.is_none(), "{team:?} leaves {free:?}");
     orders.sort_unstable_by_key(|order| order.robot);
     orders
@@ -35,7 +35,7 @@ fn every_robot_has_one_order_and_nobody_but_the_keeper_is_sent_into_an_area_or_o
 }
 
 #[test]
-fn nobody_but_the_keeper_goes_for_a_ball_in_an_area_and_the_barred_never_does() {
+fn nobody_but_the_keeper_goes_for_a_ball_in_an_area_and_the_double_touch_blocked_never_does() {
     for team in Team::OPPONENTS {
         for ball in [(-4.2, 0.3), (4.2, 0.3)] {
             let orders = orders(team, &view(ball, &OURS, &THEIRS));
@@ -43,10 +43,10 @@ fn nobody_but_the_keeper_goes_for_a_ball_in_an_area_and_the_barred_never_does() 
         }
         let view = view((-0.4, 0.0), &OURS, &THEIRS);
         let mut free = view.ours.iter().map(|robot| robot.id).collect();
-        let barred = view.ours[3].id;
-        let orders = Rival::of(team).unwrap().open_play(&view, &mut free, Some(barred));
-        let order = orders.iter().find(|order| order.robot == barred).unwrap();
-        assert_eq!(order.role, Role::Barred, "{team:?}");
+        let double_touch_blocked = view.ours[3].id;
+        let orders = OpponentModel::of(team).unwrap().open_play(&view, &mut free, Some(double_touch_blocked));
+        let order = orders.iter().find(|order| order.robot == double_touch_blocked).unwrap();
+        assert_eq!(order.role, Role::DoubleTouchBlocked, "{team:?}");
         assert!(matches!(order.task, Task::GoTo { .. }), "{order:?}");
     }
 }
@@ -98,10 +98,10 @@ fn the_wall_stands_across_the_line_from_ball_to_goal_and_moves_with_the_ball() {
 }
 
 #[test]
-fn a_team_is_read_by_the_word_it_is_written_with() {
+fn a_team_is_read_by_the_label_it_is_written_with() {
     for team in Team::ALL {
-        assert_eq!(Team::from_word(team.word()), Some(team));
-        assert_eq!(serde_json::to_string(&team).unwrap(), format!("\"{}\"", team.word()));
+        assert_eq!(Team::from_label(team.label()), Some(team));
+        assert_eq!(serde_json::to_string(&team).unwrap(), format!("\"{}\"", team.label()));
     }
-    assert_eq!(Team::from_word("best"), None);
+    assert_eq!(Team::from_label("best"), None);
 }

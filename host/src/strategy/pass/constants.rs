@@ -31,7 +31,7 @@ pub struct PassConstants {
     /// c5: off the lines, m (D8; Thunderbots take 0.3).
     pub line_margin: f32,
     /// c5: off teammates, m (D8; two bodies and a ball between).
-    pub mate_margin: f32,
+    pub teammate_margin: f32,
     /// c5: whether attackers are kept out of the opponents' defence area. Until 2017 they were allowed to
     /// enter (c4' is about that), today a touch of the ball in it is an offence.
     pub their_area_forbidden: bool,
@@ -88,7 +88,7 @@ const TODAY: PassConstants = PassConstants {
     longest: 5.0,
     area_margin: 0.2,
     line_margin: 0.3,
-    mate_margin: 0.5,
+    teammate_margin: 0.5,
     their_area_forbidden: true,
     keeper_time: 0.4,
     closed_prior: 0.1,

@@ -34,7 +34,7 @@ pub struct Interceptor {
 
 /// The path of a pass.
 #[derive(Clone, Copy, Debug)]
-pub struct Way {
+pub struct BallPath {
     /// Place of the ball at the kick.
     pub from: Point<Attack>,
     /// Direction of the pass, of length 1.
@@ -47,7 +47,7 @@ pub struct Way {
     pub reaction: f32,
 }
 
-impl Way {
+impl BallPath {
     /// The opponent with the least margin along a flat pass, if it is below [`SAFE`]; the first one below
     /// −[`SAFE`], which certainly has the ball.
     pub fn flat(&self, kick: &FlatKick, opponents: &[Opponent]) -> Option<Interceptor> {
@@ -193,9 +193,9 @@ mod tests {
         Opponent { id: RobotId::new(id).unwrap(), mover }
     }
 
-    fn way(length: f32) -> Way {
+    fn way(length: f32) -> BallPath {
         let (from, along) = (Point::new(0.0, 0.0), Vector::new(1.0, 0.0));
-        Way { from, along, length, body: 0.1115, reaction: 0.1 }
+        BallPath { from, along, length, body: 0.1115, reaction: 0.1 }
     }
 
     fn kicks() -> Kicks {

@@ -7,7 +7,7 @@
 //! | Probability of a goal by a direct shot | [`shot`] |
 //! | Best x for a receiver, near the previous one | [`search`] |
 //! | Start times of passer and receiver, and time of the kick (Algorithm 1) | [`ahead`] |
-//! | Outcome of a pass, and quality of the prediction | [`watch`], [`tally`] |
+//! | Outcome of a pass, and quality of the prediction | [`watch`], [`counters`] |
 //! | Best x near the place that a case proposes | [`bridge`] |
 //!
 //! Attack frame, SI units; [`watch`] follows the world in the field frame. No I/O, no clock; random numbers
@@ -17,6 +17,7 @@ pub mod ahead;
 pub mod bridge;
 pub mod conditions;
 pub mod constants;
+pub mod counters;
 pub mod intercept;
 pub mod kicks;
 pub mod open;
@@ -24,13 +25,12 @@ pub mod reach;
 pub mod scene;
 pub mod search;
 pub mod shot;
-pub mod tally;
 pub mod watch;
 
 pub use ahead::{Moves, PassAhead, PasserMove, Places, Times};
 pub use constants::PassConstants;
+pub use counters::PassCounters;
 pub use kicks::{Kicks, PassKick};
 pub use scene::{Rating, Scene};
 pub use search::{Offer, SAMPLES, Search, Searches};
-pub use tally::PassTally;
 pub use watch::{Ordered, PassWatch, Verdict};

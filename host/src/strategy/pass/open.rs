@@ -7,7 +7,7 @@ use super::super::view::ROBOTS_MAX;
 
 /// A goal opening on the line x = `x`, between ±`half`, and the size of bodies that can block a ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mouth {
+pub struct GoalOpening {
     /// Position of the goal line, m.
     pub x: f32,
     /// Half its width less the ball's radius, m.
@@ -25,7 +25,7 @@ pub struct OpenAngle {
     pub aim: Point<Attack>,
 }
 
-impl Mouth {
+impl GoalOpening {
     /// The widest gap seen from `from`, with bodies at `blockers`.
     pub fn open_from(&self, from: Point<Attack>, blockers: impl Iterator<Item = Point<Attack>>) -> OpenAngle {
         let depth = self.x - from.x();
@@ -108,11 +108,11 @@ mod tests {
     use rand_core::{RngCore, SeedableRng};
     use rand_xoshiro::Xoshiro128PlusPlus;
 
-    const MOUTH: Mouth = Mouth { x: 4.5, half: 0.5, body: 0.1 };
+    const DRIBBLER_WIDTH: GoalOpening = GoalOpening { x: 4.5, half: 0.5, body: 0.1 };
 
     fn open(from: (f32, f32), blockers: &[(f32, f32)]) -> OpenAngle {
         let at = |(x, y): (f32, f32)| Point::new(x, y);
-        MOUTH.open_from(at(from), blockers.iter().copied().map(at))
+        DRIBBLER_WIDTH.open_from(at(from), blockers.iter().copied().map(at))
     }
 
     #[test]

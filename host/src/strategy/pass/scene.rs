@@ -11,9 +11,9 @@ use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 use super::super::view::{ROBOTS_MAX, Robot, View};
 use super::conditions as given;
 use super::constants::PassConstants;
-use super::intercept::{Interceptor, Opponent, SAFE, Way};
+use super::intercept::{BallPath, Interceptor, Opponent, SAFE};
 use super::kicks::{FlatKick, Kicks, PassKick};
-use super::open::Mouth;
+use super::open::GoalOpening;
 use super::reach::Mover;
 
 /// Probabilities of a pass to a place, with their factors.
@@ -33,7 +33,7 @@ pub struct Rating {
     pub receiver_time: f32,
     /// The opponent that can be there soonest, and its time, s; none if not within [`SAFE`] after the
     /// receiver. Of those that are there [`SAFE`] before it, any.
-    pub rival: Option<(RobotId, f32)>,
+    pub model: Option<(RobotId, f32)>,
     /// The opponent that comes nearest to intercepting the ball, if its margin is below [`SAFE`]. Of those
     /// that certainly do (−[`SAFE`]), any.
     pub interceptor: Option<Interceptor>,
@@ -66,7 +66,7 @@ pub enum Spoiler {
     /// A line of the field.
     Line,
     /// A teammate.
-    Mate,
+    Teammate,
 }
 
 impl Rating {
@@ -93,11 +93,11 @@ pub struct Scene<'k> {
     from: Point<Attack>,
     receiver: Mover,
     opponents: heapless::Vec<Opponent, ROBOTS_MAX>,
-    mates: heapless::Vec<Point<Attack>, ROBOTS_MAX>,
+    teammates: heapless::Vec<Point<Attack>, ROBOTS_MAX>,
     our_area: heapless::Vec<Shape<Field>, { rules::AREA_SHAPES_MAX }>,
     their_area: heapless::Vec<Shape<Field>, { rules::AREA_SHAPES_MAX }>,
     half: [f32; 2],
-    mouth: Mouth,
+    opening: GoalOpening,
     shot: FlatKick,
 }
 
@@ -124,7 +124,8 @@ impl<'k> Scene<'k> {
     ) -> Self {
         let c = kicks.constants();
         let mover = |robot: &Robot, limits| Mover::new(robot.position, robot.velocity, limits);
-        let others = view.ours.iter().filter(|mate| mate.id != receiver.id && Some(mate.id) != passer);
+        let others =
+            view.ours.iter().filter(|teammate| teammate.id != receiver.id && Some(teammate.id) != passer);
         let (length, width) = (view.field.length, view.field.width);
         // The field is the same seen from either end, so its areas have the same places in the attack frame.
         Self {
@@ -135,11 +136,11 @@ impl<'k> Scene<'k> {
                 .map(|robot| Opponent { id: robot.id, mover: mover(robot, &c.opponent) })
                 .take(ROBOTS_MAX)
                 .collect(),
-            mates: others.map(|mate| mate.position).collect(),
+            teammates: others.map(|teammate| teammate.position).collect(),
             our_area: view.field.defence_area(GoalEnd::Negative),
             their_area: view.field.defence_area(GoalEnd::Positive),
             half: [length * 0.5, width * 0.5],
-            mouth: Mouth {
+            opening: GoalOpening {
                 x: length * 0.5,
                 half: view.field.goal_width * 0.5 - BALL_RADIUS,
                 body: ROBOT_RADIUS + BALL_RADIUS,
@@ -178,11 +179,11 @@ impl<'k> Scene<'k> {
         [of(way.flat(&self.kicks.flat(way.length), &self.opponents), false), chip]
     }
 
-    fn way(&self, off: Vector<Attack>) -> Way {
+    fn way(&self, off: Vector<Attack>) -> BallPath {
         let length = off.norm();
         let along = if length > ON_THE_SPOT { off * (1.0 / length) } else { Vector::new(1.0, 0.0) };
         let reaction = self.kicks.constants().reaction;
-        Way { from: self.from, along, length, body: self.mouth.body, reaction }
+        BallPath { from: self.from, along, length, body: self.opening.body, reaction }
     }
 
     /// Rates it, if its value is above `floor`; below, it costs less.
@@ -195,9 +196,9 @@ impl<'k> Scene<'k> {
     fn weigh(&self, at: Point<Attack>, floor: f32) -> Rating {
         let c = self.kicks.constants();
         let way = self.way(at - self.from);
-        let Way { along, length, .. } = way;
+        let BallPath { along, length, .. } = way;
         let spoiler = self.spoiler(at, c);
-        let goal = Point::new(self.mouth.x, 0.0);
+        let goal = Point::new(self.opening.x, 0.0);
         let mut rating = Rating {
             at,
             kick: PassKick::Flat { speed: 0.0 },
@@ -216,7 +217,7 @@ impl<'k> Scene<'k> {
             ],
             ball_time: 0.0,
             receiver_time: 0.0,
-            rival: None,
+            model: None,
             interceptor: None,
             spoiler,
             shot: ShotFrom { aim: goal, angle: 0.0, time: 0.0, one_touch: false },
@@ -236,8 +237,8 @@ impl<'k> Scene<'k> {
             return rating;
         }
         rating.receiver_time = self.receiver.time_to(at);
-        rating.rival = self.rival(at, rating.receiver_time);
-        let soonest = rating.rival.map_or(rating.receiver_time + SAFE, |(_, time)| time);
+        rating.model = self.model(at, rating.receiver_time);
+        let soonest = rating.model.map_or(rating.receiver_time + SAFE, |(_, time)| time);
         rating.receive_factors[0] = given::first_there(rating.receiver_time, soonest, c);
         let first = goal * rating.receive_factors[0];
         if first <= floor {
@@ -257,7 +258,7 @@ impl<'k> Scene<'k> {
 
     /// c1' for the nearest possible point of the goal, where that matters: near the goal it is 1.
     fn keeper_at_best(&self, at: Point<Attack>, c: &PassConstants) -> f32 {
-        let depth = self.mouth.x - at.x();
+        let depth = self.opening.x - at.x();
         if depth < KEEPER_MATTERS {
             return 1.0;
         }
@@ -266,7 +267,7 @@ impl<'k> Scene<'k> {
 
     /// A chip instead, where it is likelier to end in a goal. It gives more time (c3) and passes over
     /// opponents (c2), but bounces: no one-touch shot follows (c3').
-    fn chip_if_better(&self, way: &Way, rating: &mut Rating, floor: f32, c: &PassConstants) {
+    fn chip_if_better(&self, way: &BallPath, rating: &mut Rating, floor: f32, c: &PassConstants) {
         let flat = rating.receive_factors[1] * rating.receive_factors[2] * rating.goal_factors[2];
         let most = c.chip_prior * c.turn_prior;
         let others = rating.value() / flat.max(f32::MIN_POSITIVE);
@@ -291,7 +292,7 @@ impl<'k> Scene<'k> {
 
     /// The opponent that can be at `at` soonest, if it affects a receiver that takes `receiver_time`; the
     /// first one that is sooner by so large a margin that the others do not matter.
-    fn rival(&self, at: Point<Attack>, receiver_time: f32) -> Option<(RobotId, f32)> {
+    fn model(&self, at: Point<Attack>, receiver_time: f32) -> Option<(RobotId, f32)> {
         let mut soonest = (None, receiver_time + SAFE);
         for opponent in &self.opponents {
             let way = at - opponent.mover.position;
@@ -328,10 +329,13 @@ impl<'k> Scene<'k> {
         } else if c.their_area_forbidden {
             look(Spoiler::TheirArea, off(&self.their_area));
         }
-        let nearest =
-            self.mates.iter().map(|mate| (at - *mate).dot(at - *mate)).fold(f32::INFINITY, f32::min);
+        let nearest = self
+            .teammates
+            .iter()
+            .map(|teammate| (at - *teammate).dot(at - *teammate))
+            .fold(f32::INFINITY, f32::min);
         if nearest < f32::INFINITY {
-            look(Spoiler::Mate, geometry::math::sqrt(nearest) - c.mate_margin);
+            look(Spoiler::Teammate, geometry::math::sqrt(nearest) - c.teammate_margin);
         }
         worst
     }
@@ -344,7 +348,7 @@ impl<'k> Scene<'k> {
 
     /// The shot that follows a pass which comes along `along`.
     fn shot(&self, at: Point<Attack>, along: Vector<Attack>, c: &PassConstants) -> ShotFrom {
-        let open = self.mouth.open_from(at, self.opponents.iter().map(|opponent| opponent.mover.position));
+        let open = self.opening.open_from(at, self.opponents.iter().map(|opponent| opponent.mover.position));
         let way = open.aim - at;
         let distance = way.norm();
         // Angle between the incoming and the outgoing path of the ball, at the receiver.

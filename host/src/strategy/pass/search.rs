@@ -129,13 +129,15 @@ impl Searches {
         samples: u32,
     ) -> heapless::Vec<Offer, ROBOTS_MAX> {
         let mut offers: heapless::Vec<Offer, ROBOTS_MAX> = heapless::Vec::new();
-        for mate in view.ours.iter().filter(|mate| mate.id != passer && mate.id != view.keeper) {
-            let scene = Scene::of(view, kicks, from, Some(passer), mate);
-            let rating = self.each[mate.id.index()].step(&scene, samples);
+        for teammate in
+            view.ours.iter().filter(|teammate| teammate.id != passer && teammate.id != view.keeper)
+        {
+            let scene = Scene::of(view, kicks, from, Some(passer), teammate);
+            let rating = self.each[teammate.id.index()].step(&scene, samples);
             let worse = |other: &Offer| other.rating.value() < rating.value();
             let place = offers.iter().position(worse).unwrap_or(offers.len());
             // At most one per robot.
-            let _ = offers.insert(place, Offer { receiver: mate.id, rating });
+            let _ = offers.insert(place, Offer { receiver: teammate.id, rating });
         }
         offers
     }

@@ -7,7 +7,7 @@ use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 use super::super::view::View;
 use super::conditions as given;
 use super::kicks::Kicks;
-use super::open::Mouth;
+use super::open::GoalOpening;
 
 /// A shot that could be taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,12 +32,12 @@ impl Shot {
 /// From `from`, against all opponents of the view.
 pub fn shot(view: &View, kicks: &Kicks, from: Point<Attack>) -> Shot {
     let c = kicks.constants();
-    let mouth = Mouth {
+    let opening = GoalOpening {
         x: view.their_goal().x(),
         half: view.field.goal_width * 0.5 - BALL_RADIUS,
         body: ROBOT_RADIUS + BALL_RADIUS,
     };
-    let open = mouth.open_from(from, view.theirs.iter().map(|robot| robot.position));
+    let open = opening.open_from(from, view.theirs.iter().map(|robot| robot.position));
     let time = kicks.shot().at(from.distance(open.aim)).0;
     let factors = [
         given::beats_the_keeper(time, c),

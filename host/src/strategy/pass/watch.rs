@@ -45,7 +45,7 @@ pub enum Verdict {
         late: f32,
     },
     /// Another teammate has received it.
-    ByMate {
+    ByTeammate {
         /// The robot.
         by: RobotId,
         /// Distance from x*, m.
@@ -87,7 +87,7 @@ pub enum Verdict {
 impl Verdict {
     /// Our team has the ball.
     pub fn is_success(&self) -> bool {
-        matches!(self, Self::Received { .. } | Self::ByMate { .. })
+        matches!(self, Self::Received { .. } | Self::ByTeammate { .. })
     }
 }
 
@@ -175,7 +175,7 @@ impl PassWatch {
         if let Some(who) = self.touch(flight, before, world, ball) {
             return Some(match (who.colour == us, who.id) {
                 (true, id) if id == receiver => Verdict::Received { off, late: after - self.ordered.flight },
-                (true, by) => Verdict::ByMate { by, off },
+                (true, by) => Verdict::ByTeammate { by, off },
                 (false, by) => {
                     let along = way.unit().map_or(0.0, |along| (ball.position - from).dot(along));
                     Verdict::Intercepted { by, along, after }

@@ -89,7 +89,7 @@ struct Giving<'v> {
 
 impl Giving<'_> {
     fn give(&mut self, robot: RobotId, at: Point<Attack>, guards: Guards) {
-        let at = if robot == self.view.keeper { at } else { super::lawful(self.view, at, self.settings) };
+        let at = if robot == self.view.keeper { at } else { super::legal(self.view, at, self.settings) };
         // At most one per robot.
         let _ = self.given.push(Assignment { robot, at, guards });
     }

@@ -12,7 +12,7 @@ use super::angle::{BODY, Opening, widest};
 use super::cover::Cover;
 use super::edge::Edge;
 use super::receiving::{Because, FirstLevel};
-use super::{Memory, Settings, lawful};
+use super::{Memory, Settings, legal};
 
 /// A second-level threat.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,7 +108,7 @@ fn danger(
         open: widest(&gaps),
         time_to_shoot: time_to_shoot(threat.distance(at), at.distance(goal)),
         block_shot: block_shot(view, at, settings),
-        block_pass: lawful(view, at + (threat - at) * 0.5, settings),
+        block_pass: legal(view, at + (threat - at) * 0.5, settings),
     }
 }
 
@@ -131,10 +131,10 @@ pub fn block_shot(view: &View, opponent: Point<Attack>, settings: &Settings) -> 
     let at = goal + way * share;
     let edge = Edge::of(&view.field, settings.off_area);
     if edge.distance_to(at) >= 0.0 {
-        return (lawful(view, at, settings), share);
+        return (legal(view, at, settings), share);
     }
     let at = edge.crossing(goal, way);
-    (lawful(view, at, settings), at.distance(goal) / length)
+    (legal(view, at, settings), at.distance(goal) / length)
 }
 
 /// The greatest share k of the distance from goal to opponent at which our robot still is in the line when

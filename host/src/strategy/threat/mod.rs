@@ -16,7 +16,7 @@ mod assign;
 pub mod cover;
 pub mod danger;
 pub mod edge;
-mod lawful;
+mod legal;
 pub mod receiving;
 
 use core::fmt;
@@ -30,7 +30,7 @@ use cover::{Case, Cover};
 use danger::{Blocks, Danger};
 use receiving::FirstLevel;
 
-pub use lawful::{lawful, lawful_for};
+pub use legal::{legal, legal_for};
 
 /// Settings that the paper leaves open.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,7 +8,7 @@ use protocol::Instant;
 use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro128PlusPlus;
 use rules::keep_out::{Situation, keep_out};
-use rules::{Duty, League, Phase, Side};
+use rules::{League, Phase, RuleRole, Side};
 
 fn id(n: u8) -> RobotId {
     RobotId::new(n).unwrap()
@@ -38,7 +38,7 @@ impl Noise {
 }
 
 #[test]
-fn whatever_the_picture_every_robot_has_one_lawful_place_at_most() {
+fn whatever_the_snapshot_every_robot_has_one_legal_place_at_most() {
     let mut noise = Noise::seeded(1);
     let settings = Settings::default();
     let phases = [Phase::Run, Phase::Stop, Phase::FreeKick(Side::Theirs)];
@@ -65,7 +65,7 @@ fn whatever_the_picture_every_robot_has_one_lawful_place_at_most() {
                     field: &view.field,
                     own: GoalEnd::Negative,
                     phase: view.phase,
-                    duty: if keeper { Duty::Keeper } else { Duty::Player },
+                    rule_role: if keeper { RuleRole::Keeper } else { RuleRole::Player },
                     ball: ball.filter(|_| !keeper),
                     placement: None,
                     ball_in_play: true,

@@ -128,7 +128,7 @@ impl Balls {
     }
 
     /// The ball at that moment; `ours` converts moments to our clock.
-    pub(super) fn picture(
+    pub(super) fn snapshot(
         &self,
         at: Captured,
         around: Around<'_>,

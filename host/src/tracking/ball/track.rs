@@ -158,7 +158,7 @@ impl Track {
 
 /// White acceleration of a rolling ball, m²/s³: calm is a field surface that decelerates it 0.3 m/s² more or
 /// less than configured; changing is a robot that pushes or dribbles it with 5 m/s² for 0.2 s.
-const FREEDOM: Freedom = Freedom { calm: 0.02, changing: 8.0 };
+const FREEDOM: Freedom = Freedom { stop_rules: 0.02, changing: 8.0 };
 /// A detection is an outlier when its distance squared is more variances than this ...
 const SURPRISE_MAX: f32 = 20.0;
 /// ... and it is farther than this off, m: noise between cameras is no turn.

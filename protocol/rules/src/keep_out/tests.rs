@@ -4,7 +4,7 @@ use super::*;
 use crate::League;
 
 const SIDES: [Side; 2] = [Side::Ours, Side::Theirs];
-const DUTIES: [Duty; 3] = [Duty::Player, Duty::Keeper, Duty::Taker];
+const DUTIES: [RuleRole; 3] = [RuleRole::Player, RuleRole::Keeper, RuleRole::Taker];
 
 fn phases() -> impl Iterator<Item = Phase<Side>> {
     let with = SIDES.into_iter().flat_map(|side| {
@@ -21,27 +21,28 @@ fn phases() -> impl Iterator<Item = Phase<Side>> {
     [Phase::Halt, Phase::Stop, Phase::Run].into_iter().chain(with)
 }
 
-fn why(field: &FieldSpec, phase: Phase<Side>, duty: Duty, at: (f32, f32)) -> Option<Why> {
-    why_with_ball(field, phase, duty, (0.0, 0.0), at)
+fn why(field: &FieldSpec, phase: Phase<Side>, rule_role: RuleRole, at: (f32, f32)) -> Option<Why> {
+    why_with_ball(field, phase, rule_role, (0.0, 0.0), at)
 }
 
 fn why_with_ball(
     field: &FieldSpec,
     phase: Phase<Side>,
-    duty: Duty,
+    rule_role: RuleRole,
     ball: (f32, f32),
     at: (f32, f32),
 ) -> Option<Why> {
     let ball = Some(Point::new(ball.0, ball.1));
     let placement = Some(Point::new(2.0, 0.0));
-    let s = Situation { field, own: GoalEnd::Negative, phase, duty, ball, placement, ball_in_play: false };
+    let s =
+        Situation { field, own: GoalEnd::Negative, phase, rule_role, ball, placement, ball_in_play: false };
     keep_out(&s).offence(Point::new(at.0, at.1), ROBOT_RADIUS)
 }
 
 #[test]
 fn on_stop_a_robots_side_is_half_a_metre_from_the_ball() {
     let field = League::DivisionB.field();
-    let at = |x| why(&field, Phase::Stop, Duty::Taker, (x, 0.0));
+    let at = |x| why(&field, Phase::Stop, RuleRole::Taker, (x, 0.0));
     assert_eq!((at(0.58), at(0.60)), (Some(Why::BallDistance), None));
 }
 
@@ -49,7 +50,7 @@ fn on_stop_a_robots_side_is_half_a_metre_from_the_ball() {
 fn on_stop_and_at_free_kicks_attackers_are_two_tenths_from_the_area_and_in_play_out_of_it() {
     let field = League::DivisionB.field();
     // The area starts at x = 3.495, its line's outer edge; with the body's 0.09: 3.205 and 3.405.
-    let at = |phase, x| why(&field, phase, Duty::Player, (x, 0.0));
+    let at = |phase, x| why(&field, phase, RuleRole::Player, (x, 0.0));
     for phase in [Phase::Stop, Phase::FreeKick(Side::Ours), Phase::FreeKick(Side::Theirs)] {
         assert_eq!((at(phase, 3.22), at(phase, 3.20)), (Some(Why::OpponentArea), None), "{phase:?}");
         assert!(Why::OpponentArea.offends(phase));
@@ -62,19 +63,19 @@ fn on_stop_and_at_free_kicks_attackers_are_two_tenths_from_the_area_and_in_play_
 fn only_the_keeper_is_in_its_own_area() {
     let field = League::DivisionB.field();
     for phase in [Phase::Stop, Phase::Run, Phase::FreeKick(Side::Ours), Phase::Kickoff(Side::Theirs)] {
-        assert_eq!(why(&field, phase, Duty::Player, (-3.58, 0.0)), Some(Why::OwnArea));
-        assert_eq!(why(&field, phase, Duty::Taker, (-3.58, 0.0)), Some(Why::OwnArea));
-        assert_eq!(why(&field, phase, Duty::Player, (-3.40, 0.0)), None);
-        assert_eq!(why(&field, phase, Duty::Keeper, (-4.3, 0.0)), None);
+        assert_eq!(why(&field, phase, RuleRole::Player, (-3.58, 0.0)), Some(Why::OwnArea));
+        assert_eq!(why(&field, phase, RuleRole::Taker, (-3.58, 0.0)), Some(Why::OwnArea));
+        assert_eq!(why(&field, phase, RuleRole::Player, (-3.40, 0.0)), None);
+        assert_eq!(why(&field, phase, RuleRole::Keeper, (-4.3, 0.0)), None);
     }
-    assert_eq!(why(&field, Phase::BallPlacement(Side::Ours), Duty::Player, (-4.0, 0.0)), None);
+    assert_eq!(why(&field, Phase::BallPlacement(Side::Ours), RuleRole::Player, (-4.0, 0.0)), None);
 }
 
 #[test]
 fn the_round_area_of_2013_lets_robots_cut_its_corner() {
     let field = League::Ssl2013.field();
     // 0.095 m beyond the curve at 45°: 0.895 / √2 = 0.633 from its centre at (−3, 0.175).
-    let at = |d: f32| why(&field, Phase::Run, Duty::Player, (-3.0 + d, 0.175 + d));
+    let at = |d: f32| why(&field, Phase::Run, RuleRole::Player, (-3.0 + d, 0.175 + d));
     assert_eq!((at(0.62), at(0.64)), (Some(Why::OwnArea), None));
 }
 
@@ -82,22 +83,25 @@ fn the_round_area_of_2013_lets_robots_cut_its_corner() {
 fn at_a_kick_off_only_the_kicker_is_in_the_circle() {
     let field = League::DivisionB.field();
     for phase in [Phase::PrepareKickoff(Side::Ours), Phase::Kickoff(Side::Ours)] {
-        let player = |x, y| why(&field, phase, Duty::Player, (x, y));
+        let player = |x, y| why(&field, phase, RuleRole::Player, (x, y));
         assert_eq!(player(-0.08, 1.0), Some(Why::OtherHalf));
         assert_eq!(player(-0.10, 1.0), None);
         assert_eq!(player(-0.58, 0.0), Some(Why::CentreCircle));
         assert_eq!(player(-0.60, 0.0), None);
-        let taker = |x, y| why(&field, phase, Duty::Taker, (x, y));
+        let taker = |x, y| why(&field, phase, RuleRole::Taker, (x, y));
         assert_eq!(taker(-0.12, 0.0), None);
         assert_eq!(taker(0.12, 0.0), None, "the whole circle is the kicker's");
         assert_eq!(taker(0.5, 0.0), Some(Why::OtherHalf));
         assert_eq!(taker(0.0, 0.6), Some(Why::OtherHalf));
     }
-    let touch = |phase| why(&field, phase, Duty::Taker, (-0.1, 0.0));
+    let touch = |phase| why(&field, phase, RuleRole::Taker, (-0.1, 0.0));
     assert_eq!(touch(Phase::PrepareKickoff(Side::Ours)), Some(Why::BallTouch));
     assert_eq!(touch(Phase::Kickoff(Side::Ours)), None);
-    let theirs = |duty, x| why(&field, Phase::Kickoff(Side::Theirs), duty, (x, 0.0));
-    assert_eq!((theirs(Duty::Taker, -0.3), theirs(Duty::Player, -0.6)), (Some(Why::CentreCircle), None));
+    let theirs = |rule_role, x| why(&field, Phase::Kickoff(Side::Theirs), rule_role, (x, 0.0));
+    assert_eq!(
+        (theirs(RuleRole::Taker, -0.3), theirs(RuleRole::Player, -0.6)),
+        (Some(Why::CentreCircle), None)
+    );
 }
 
 #[test]
@@ -105,19 +109,19 @@ fn at_a_penalty_all_others_are_a_metre_behind_the_ball() {
     let field = League::DivisionB.field();
     for phase in [Phase::PreparePenalty(Side::Ours), Phase::Penalty(Side::Ours)] {
         // The ball is at x = −1.6, 0.1 m behind its mark, and we attack +x: the body ends at x = −2.6.
-        let player = |x| why_with_ball(&field, phase, Duty::Player, (-1.6, 0.0), (x, 2.0));
+        let player = |x| why_with_ball(&field, phase, RuleRole::Player, (-1.6, 0.0), (x, 2.0));
         assert_eq!((player(-2.68), player(-2.70)), (Some(Why::BehindBall), None));
         // A ball that was carried elsewhere: the mark, at x = −1.5, is used.
-        let carried = |x| why(&field, phase, Duty::Player, (x, 2.0));
+        let carried = |x| why(&field, phase, RuleRole::Player, (x, 2.0));
         assert_eq!((carried(-2.58), carried(-2.60)), (Some(Why::BehindBall), None));
-        assert_eq!(why(&field, phase, Duty::Keeper, (-4.4, 0.0)), None);
-        assert_eq!(why(&field, phase, Duty::Taker, (-0.3, 0.0)), None);
+        assert_eq!(why(&field, phase, RuleRole::Keeper, (-4.4, 0.0)), None);
+        assert_eq!(why(&field, phase, RuleRole::Taker, (-0.3, 0.0)), None);
     }
     for phase in [Phase::PreparePenalty(Side::Theirs), Phase::Penalty(Side::Theirs)] {
         // They attack −x: behind the ball is x > 2.6.
-        let player = |x| why_with_ball(&field, phase, Duty::Player, (1.6, 0.0), (x, 2.0));
+        let player = |x| why_with_ball(&field, phase, RuleRole::Player, (1.6, 0.0), (x, 2.0));
         assert_eq!((player(2.68), player(2.70)), (Some(Why::BehindBall), None));
-        let keeper = |x, y| why(&field, phase, Duty::Keeper, (x, y));
+        let keeper = |x, y| why(&field, phase, RuleRole::Keeper, (x, y));
         assert_eq!(keeper(-4.5, 0.0), None);
         assert_eq!(keeper(-4.42, 0.4), None);
         assert_eq!(keeper(-4.40, 0.0), Some(Why::KeeperLine));
@@ -129,9 +133,9 @@ fn at_a_penalty_all_others_are_a_metre_behind_the_ball() {
 #[test]
 fn a_penalty_that_is_in_play_frees_the_keeper() {
     let field = League::DivisionB.field();
-    let (phase, duty) = (Phase::Penalty(Side::Theirs), Duty::Keeper);
+    let (phase, rule_role) = (Phase::Penalty(Side::Theirs), RuleRole::Keeper);
     let (ball, own) = (Some(Point::new(1.0, 0.0)), GoalEnd::Negative);
-    let s = Situation { field: &field, own, phase, duty, ball, placement: None, ball_in_play: true };
+    let s = Situation { field: &field, own, phase, rule_role, ball, placement: None, ball_in_play: true };
     assert_eq!(keep_out(&s).forbidden.len(), 0);
 }
 
@@ -139,26 +143,26 @@ fn a_penalty_that_is_in_play_frees_the_keeper() {
 fn who_does_not_place_keeps_out_of_the_stadium() {
     let field = League::DivisionB.field();
     // Ball at 0, target at (2, 0).
-    let theirs = |x, y| why(&field, Phase::BallPlacement(Side::Theirs), Duty::Player, (x, y));
+    let theirs = |x, y| why(&field, Phase::BallPlacement(Side::Theirs), RuleRole::Player, (x, y));
     assert_eq!((theirs(1.0, 0.58), theirs(1.0, 0.60)), (Some(Why::Stadium), None));
     assert_eq!((theirs(2.58, 0.0), theirs(2.60, 0.0)), (Some(Why::Stadium), None));
-    let ours = |duty, x| why(&field, Phase::BallPlacement(Side::Ours), duty, (x, 0.0));
-    assert_eq!((ours(Duty::Taker, 2.0), ours(Duty::Player, 2.5), ours(Duty::Player, 1.0)), {
+    let ours = |rule_role, x| why(&field, Phase::BallPlacement(Side::Ours), rule_role, (x, 0.0));
+    assert_eq!((ours(RuleRole::Taker, 2.0), ours(RuleRole::Player, 2.5), ours(RuleRole::Player, 1.0)), {
         (None, Some(Why::Target), None)
     });
 }
 
 #[test]
-fn walls_end_the_carpet_in_every_phase() {
+fn walls_end_the_surface_in_every_phase() {
     let field = League::DivisionA.field();
     for phase in phases() {
         // Division A has 0.6 m behind the goal lines, 0.3 m beside the touch lines.
-        let keeper = |x, y| why(&field, phase, Duty::Keeper, (x, y));
+        let keeper = |x, y| why(&field, phase, RuleRole::Keeper, (x, y));
         assert!(keeper(-6.52, 0.0).is_some(), "{phase:?}");
         assert!(keeper(-3.0, 4.72).is_some(), "{phase:?}");
     }
-    assert_eq!(why(&field, Phase::Run, Duty::Keeper, (-6.50, 0.0)), None);
-    assert_eq!(why(&field, Phase::Run, Duty::Keeper, (-3.0, 4.70)), None);
+    assert_eq!(why(&field, Phase::Run, RuleRole::Keeper, (-6.50, 0.0)), None);
+    assert_eq!(why(&field, Phase::Run, RuleRole::Keeper, (-3.0, 4.70)), None);
 }
 
 #[test]
@@ -167,9 +171,9 @@ fn no_situation_has_more_regions_than_the_list_holds() {
     for league in [League::Ssl2013, League::DivisionB] {
         let field = &league.field();
         for phase in phases() {
-            for duty in DUTIES {
+            for rule_role in DUTIES {
                 for own in [GoalEnd::Negative, GoalEnd::Positive] {
-                    let s = Situation { field, own, phase, duty, ball, placement, ball_in_play: false };
+                    let s = Situation { field, own, phase, rule_role, ball, placement, ball_in_play: false };
                     // `List::add` asserts in tests; here: capacity is left.
                     assert!(keep_out(&s).forbidden.len() < FORBIDDEN_MAX, "{s:?}");
                 }
@@ -187,12 +191,12 @@ fn both_ends_are_mirror_images() {
     for (x, y) in grid {
         let at = Point::new(x, y);
         for phase in phases() {
-            for duty in DUTIES {
+            for rule_role in DUTIES {
                 let mut s = Situation {
                     field,
                     own: GoalEnd::Negative,
                     phase,
-                    duty,
+                    rule_role,
                     ball: Some(ball),
                     placement: Some(placement),
                     ball_in_play: false,
@@ -201,7 +205,7 @@ fn both_ends_are_mirror_images() {
                 (s.own, s.ball, s.placement) =
                     (GoalEnd::Positive, Some(turned(ball)), Some(turned(placement)));
                 let there = keep_out(&s).offence(turned(at), ROBOT_RADIUS);
-                assert_eq!(here, there, "{phase:?} {duty:?} {at:?}");
+                assert_eq!(here, there, "{phase:?} {rule_role:?} {at:?}");
             }
         }
     }
@@ -222,33 +226,33 @@ fn halt_stops_stop_slows_and_only_that() {
 #[test]
 fn the_ball_is_touched_by_who_may() {
     let field = &League::DivisionB.field();
-    let touch = |phase, duty, x: f32| {
+    let touch = |phase, rule_role, x: f32| {
         let (own, ball, placement) = (GoalEnd::Negative, None, None);
-        let s = Situation { field, own, phase, duty, ball, placement, ball_in_play: true };
+        let s = Situation { field, own, phase, rule_role, ball, placement, ball_in_play: true };
         may_touch_ball(&s, Point::new(x, 0.0))
     };
     for phase in phases() {
-        for duty in DUTIES {
+        for rule_role in DUTIES {
             let may = match phase {
                 Phase::Run => true,
-                Phase::Penalty(Side::Theirs) => duty == Duty::Keeper,
+                Phase::Penalty(Side::Theirs) => rule_role == RuleRole::Keeper,
                 Phase::BallPlacement(Side::Ours)
                 | Phase::Kickoff(Side::Ours)
                 | Phase::FreeKick(Side::Ours)
-                | Phase::Penalty(Side::Ours) => duty == Duty::Taker,
+                | Phase::Penalty(Side::Ours) => rule_role == RuleRole::Taker,
                 _ => false,
             };
             let expected = if may { Touch::Allowed } else { Touch::NotNow };
-            assert_eq!(touch(phase, duty, 0.0), expected, "{phase:?} {duty:?}");
+            assert_eq!(touch(phase, rule_role, 0.0), expected, "{phase:?} {rule_role:?}");
         }
     }
     // Areas start at 3.495: partly in theirs from 3.405, entirely in ours from −3.585.
-    assert_eq!(touch(Phase::Run, Duty::Player, 3.42), Touch::InOpponentArea);
-    assert_eq!(touch(Phase::Run, Duty::Player, 3.40), Touch::Allowed);
-    assert_eq!(touch(Phase::Run, Duty::Player, -3.60), Touch::InOwnArea);
-    assert_eq!(touch(Phase::Run, Duty::Player, -3.58), Touch::Allowed);
-    assert_eq!(touch(Phase::Run, Duty::Keeper, -4.0), Touch::Allowed);
-    assert_eq!(touch(Phase::BallPlacement(Side::Ours), Duty::Taker, 4.0), Touch::Allowed);
+    assert_eq!(touch(Phase::Run, RuleRole::Player, 3.42), Touch::InOpponentArea);
+    assert_eq!(touch(Phase::Run, RuleRole::Player, 3.40), Touch::Allowed);
+    assert_eq!(touch(Phase::Run, RuleRole::Player, -3.60), Touch::InOwnArea);
+    assert_eq!(touch(Phase::Run, RuleRole::Player, -3.58), Touch::Allowed);
+    assert_eq!(touch(Phase::Run, RuleRole::Keeper, -4.0), Touch::Allowed);
+    assert_eq!(touch(Phase::BallPlacement(Side::Ours), RuleRole::Taker, 4.0), Touch::Allowed);
 }
 
 #[test]
@@ -261,9 +265,9 @@ fn what_keep_out_forbids_is_what_the_referee_whistles() {
     for (x, y) in grid {
         let at = Point::new(x, y);
         let found = |phase, why| {
-            let (own, duty) = (GoalEnd::Negative, Duty::Player);
+            let (own, rule_role) = (GoalEnd::Negative, RuleRole::Player);
             let (ball, placement) = (Some(ball), Some(target));
-            let s = Situation { field, own, phase, duty, ball, placement, ball_in_play: false };
+            let s = Situation { field, own, phase, rule_role, ball, placement, ball_in_play: false };
             let list = keep_out(&s).forbidden;
             list.iter().any(|region| region.why == why && region.shape.distance_to(at) < ROBOT_RADIUS)
         };

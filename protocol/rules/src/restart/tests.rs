@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::keep_out::{Situation, keep_out};
-use crate::{Duty, League, Phase, Side};
+use crate::{League, Phase, RuleRole, Side};
 
 const N: GoalEnd = GoalEnd::Negative;
 const P: GoalEnd = GoalEnd::Positive;
@@ -138,7 +138,7 @@ fn a_ball_that_lies_well_needs_no_placement() {
 }
 
 #[test]
-fn kick_off_places_are_lawful_and_apart() {
+fn kick_off_places_are_legal_and_apart() {
     for league in [League::Ssl2013, League::DivisionB, League::DivisionA] {
         let field = league.field();
         for own in [N, P] {
@@ -146,17 +146,17 @@ fn kick_off_places_are_lawful_and_apart() {
                 let places = kickoff_places(&field, own, ours);
                 let robots = league.limits().unwrap().robots as usize;
                 for (i, place) in places.iter().enumerate().take(robots) {
-                    let duty = match i {
-                        0 => Duty::Keeper,
-                        1 if ours => Duty::Taker,
-                        _ => Duty::Player,
+                    let rule_role = match i {
+                        0 => RuleRole::Keeper,
+                        1 if ours => RuleRole::Taker,
+                        _ => RuleRole::Player,
                     };
                     let (phase, ball) = (Phase::PrepareKickoff(side), Some(Point::new(0.0, 0.0)));
                     let s = Situation {
                         field: &field,
                         own,
                         phase,
-                        duty,
+                        rule_role,
                         ball,
                         placement: None,
                         ball_in_play: false,

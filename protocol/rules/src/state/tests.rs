@@ -26,7 +26,7 @@ fn after(commands: &[Command]) -> (GameState, u64) {
     let mut now = 0;
     for command in commands {
         now += S;
-        state.hear(*command, now, at(0.0, 0.0));
+        state.receive(*command, now, at(0.0, 0.0));
     }
     (state, now)
 }
@@ -74,8 +74,8 @@ fn every_phase_is_reached_over_edges_of_the_graph() {
     for (phase, way) in ways() {
         let mut state = GameState::new();
         for (i, command) in way.iter().enumerate() {
-            let heard = state.hear(*command, i as u64 * S, None);
-            assert_eq!(heard, Heard::Followed, "{phase:?}: {command:?}");
+            let received = state.receive(*command, i as u64 * S, None);
+            assert_eq!(received, Received::Followed, "{phase:?}: {command:?}");
         }
         assert_eq!(state.phase(), phase);
     }
@@ -98,25 +98,25 @@ fn every_command_in_every_phase_has_a_safe_reading() {
     for (phase, way) in ways() {
         for command in commands() {
             let (mut state, now) = after(&way);
-            let heard = state.hear(command, now + S, at(0.0, 0.0));
+            let received = state.receive(command, now + S, at(0.0, 0.0));
             let got = state.phase();
-            match heard {
-                Heard::Followed => {
+            match received {
+                Received::Followed => {
                     assert!(follows(phase, got), "{phase:?} → {command:?} → {got:?}");
                     counts[0] += 1;
                 }
-                Heard::Repeated => {
+                Received::Repeated => {
                     assert_eq!(got, phase, "{phase:?} → {command:?}");
                     assert_eq!(way.last(), Some(&command));
                     counts[1] += 1;
                 }
-                Heard::OffGraph { from } => {
+                Received::OffGraph { from } => {
                     assert_eq!(from, phase);
                     assert!(!follows(phase, got), "{phase:?} → {command:?} → {got:?}");
                     assert!(freedom(phase) > 0 || freedom(got) == 0, "{phase:?} → {command:?} → {got:?}");
                     counts[2] += 1;
                 }
-                Heard::AsStop { from, then, at } => {
+                Received::AsStop { from, then, at } => {
                     assert_eq!((from, got), (phase, Phase::Stop));
                     assert!(freedom(then) > 1 && at >= now + 2 * S);
                     counts[3] += 1;
@@ -124,11 +124,11 @@ fn every_command_in_every_phase_has_a_safe_reading() {
             }
             // After any command, HALT and STOP work at once.
             assert_eq!(
-                state.hear(Command::Halt, now + 2 * S, None) == Heard::Repeated,
+                state.receive(Command::Halt, now + 2 * S, None) == Received::Repeated,
                 command == Command::Halt
             );
             assert_eq!(state.phase(), Phase::Halt);
-            state.hear(Command::Stop, now + 3 * S, None);
+            state.receive(Command::Stop, now + 3 * S, None);
             assert_eq!(state.phase(), Phase::Stop);
         }
     }
@@ -164,7 +164,7 @@ fn a_free_kick_is_in_play_after_5_s_in_division_a_and_10_s_in_b() {
 #[test]
 fn a_ball_that_was_not_seen_at_the_command_is_measured_from_where_it_shows_up() {
     let mut state = GameState::new();
-    state.hear(Command::FreeKick(Y), S, None);
+    state.receive(Command::FreeKick(Y), S, None);
     assert_eq!(state.tick(2 * S, None, &limits()), Ticked::Same);
     assert_eq!(state.tick(2 * S, at(f32::NAN, 0.0), &limits()), Ticked::Same);
     assert_eq!(state.tick(3 * S, at(2.0, 1.0), &limits()), Ticked::Same);
@@ -198,9 +198,9 @@ fn a_start_out_of_halt_is_read_as_stop_for_two_seconds() {
 #[test]
 fn a_kick_off_prepared_out_of_halt_is_still_a_kick_off() {
     let mut state = after(&[Command::Stop, Command::Halt]).0;
-    let heard = state.hear(Command::PrepareKickoff(B), 10 * S, None);
-    assert_eq!(heard, Heard::AsStop { from: Phase::Halt, then: Phase::PrepareKickoff(B), at: 12 * S });
-    state.hear(Command::NormalStart, 11 * S, None);
+    let received = state.receive(Command::PrepareKickoff(B), 10 * S, None);
+    assert_eq!(received, Received::AsStop { from: Phase::Halt, then: Phase::PrepareKickoff(B), at: 12 * S });
+    state.receive(Command::NormalStart, 11 * S, None);
     assert_eq!((state.phase(), state.tick(12 * S, None, &limits())), (Phase::Stop, Ticked::Released));
     assert_eq!(state.phase(), Phase::Kickoff(B));
 }
@@ -209,18 +209,18 @@ fn a_kick_off_prepared_out_of_halt_is_still_a_kick_off() {
 fn who_joins_a_game_after_normal_start_waits_until_the_ball_must_be_in_play() {
     let mut state = GameState::new();
     assert_eq!(state.phase(), Phase::Halt);
-    let heard = state.hear(Command::NormalStart, 100 * S, None);
-    assert_eq!(heard, Heard::AsStop { from: Phase::Halt, then: Phase::Run, at: 110 * S });
+    let received = state.receive(Command::NormalStart, 100 * S, None);
+    assert_eq!(received, Received::AsStop { from: Phase::Halt, then: Phase::Run, at: 110 * S });
     assert_eq!(state.tick(109 * S, None, &limits()), Ticked::Same);
     assert_eq!((state.phase(), state.tick(111 * S, None, &limits())), (Phase::Stop, Ticked::Released));
     // A command that is a minute old requires no wait.
     let mut state = GameState::new();
-    state.hear(Command::NormalStart, 40 * S, None);
+    state.receive(Command::NormalStart, 40 * S, None);
     assert_eq!(state.tick(100 * S, None, &limits()), Ticked::Released);
     assert_eq!(state.phase(), Phase::Run);
     // A program that joins in a standing phase takes it as it is.
     let mut state = GameState::new();
-    assert_eq!(state.hear(Command::FreeKick(B), S, None), Heard::Followed);
+    assert_eq!(state.receive(Command::FreeKick(B), S, None), Received::Followed);
     assert_eq!(state.phase(), Phase::FreeKick(B));
 }
 
@@ -229,13 +229,13 @@ fn trap_04_the_same_command_again_is_no_new_command() {
     // NORMAL_START after the kick-off is in play.
     let (mut state, now) = after(&[Command::Stop, Command::PrepareKickoff(B), Command::NormalStart]);
     state.tick(now + S, at(1.0, 0.0), &limits());
-    assert_eq!(state.hear(Command::NormalStart, now + 2 * S, at(1.0, 0.0)), Heard::Repeated);
+    assert_eq!(state.receive(Command::NormalStart, now + 2 * S, at(1.0, 0.0)), Received::Repeated);
     assert_eq!(state.phase(), Phase::Run);
     // HALT and BALL_PLACEMENT twice.
     for command in [Command::Halt, Command::BallPlacement(Y)] {
         let (mut state, now) = after(&[Command::Stop, command]);
         let before = state;
-        assert_eq!(state.hear(command, now + S, None), Heard::Repeated);
+        assert_eq!(state.receive(command, now + S, None), Received::Repeated);
         assert_eq!(state, before);
     }
 }
@@ -243,7 +243,7 @@ fn trap_04_the_same_command_again_is_no_new_command() {
 #[test]
 fn a_restart_that_is_ordered_again_before_it_is_in_play_gets_its_time_again() {
     let (mut state, now) = after(&[Command::Stop, Command::FreeKick(B)]);
-    assert_eq!(state.hear(Command::FreeKick(B), now + 4 * S, at(0.01, 0.0)), Heard::Repeated);
+    assert_eq!(state.receive(Command::FreeKick(B), now + 4 * S, at(0.01, 0.0)), Received::Repeated);
     assert_eq!(state.tick(now + 10 * S, at(0.0, 0.0), &limits()), Ticked::Same);
     assert_eq!(state.tick(now + 14 * S, at(0.0, 0.0), &limits()), Ticked::TimeUp);
 }
@@ -253,7 +253,7 @@ fn a_free_kick_that_is_ordered_again_after_it_was_in_play_is_a_new_one() {
     let (mut state, now) = after(&[Command::Stop, Command::FreeKick(B)]);
     state.tick(now + 11 * S, at(0.0, 0.0), &limits());
     assert_eq!(state.phase(), Phase::Run);
-    state.hear(Command::FreeKick(B), now + 12 * S, at(0.0, 0.0));
+    state.receive(Command::FreeKick(B), now + 12 * S, at(0.0, 0.0));
     assert_eq!(state.phase(), Phase::FreeKick(B));
     // A ball that rolls puts it back into play at once.
     assert_eq!(state.tick(now + 12 * S + 20_000, at(0.06, 0.0), &limits()), Ticked::BallMoved);
@@ -286,7 +286,7 @@ fn whatever_is_said_nobody_starts_from_a_standstill_within_two_seconds_without_s
         state.tick(now, at(random(100) as f32 * 0.001, 0.0), &limits());
         if random(3) == 0 {
             let command = all[random(all.len() as u64) as usize];
-            state.hear(command, now, at(0.0, 0.0));
+            state.receive(command, now, at(0.0, 0.0));
             match command {
                 Command::Halt | Command::Timeout(_) => (stands, called) = (true, None),
                 Command::Stop => stands = false,

@@ -60,8 +60,9 @@ impl<W: Write> LogWriter<W> {
     /// Writes a message received at `timestamp_ns` (ns, Unix time).
     pub fn write(&mut self, timestamp_ns: i64, kind: MessageKind, payload: &[u8]) -> io::Result<()> {
         if payload.len() > PAYLOAD_MAX {
-            let words = format!("a message of {} bytes; a datagram has at most {PAYLOAD_MAX}", payload.len());
-            return Err(io::Error::new(io::ErrorKind::InvalidInput, words));
+            let description =
+                format!("a message of {} bytes; a datagram has at most {PAYLOAD_MAX}", payload.len());
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, description));
         }
         if let Some(offsets) = &mut self.offsets {
             offsets.push(self.at);

@@ -136,7 +136,7 @@ impl fmt::Display for NetError {
                 for (name, error) in tried {
                     write!(f, "; {name}: {error}")?;
                 }
-                write!(f, "; is a network up? On this machine alone: `{LOOPBACK_MEND}`")
+                write!(f, "; is a network up? On this machine alone: `{LOOPBACK_HINT}`")
             }
             Self::NotMulticast(group) => {
                 write!(f, "{group} is no multicast address; vision is 224.5.23.2, the referee 224.5.23.1")
@@ -147,7 +147,7 @@ impl fmt::Display for NetError {
                     write!(f, " by {by}")?;
                 }
                 if is_multicast(to) {
-                    write!(f, "; choose an interface, or on this machine alone: `{LOOPBACK_MEND}`")
+                    write!(f, "; choose an interface, or on this machine alone: `{LOOPBACK_HINT}`")
                 } else {
                     write!(f, "; is the network up, and the address right?")
                 }
@@ -185,7 +185,7 @@ impl std::error::Error for NetError {
 }
 
 /// Gives a machine's loopback what the league's programs need there. Until the next boot.
-pub(super) const LOOPBACK_MEND: &str =
+pub(super) const LOOPBACK_HINT: &str =
     "sudo ip link set lo multicast on && sudo ip route add 224.0.0.0/4 dev lo";
 
 pub(super) fn multicast_group(group: SocketAddrV4) -> Result<Ipv4Addr, NetError> {

@@ -7,7 +7,7 @@
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
 use std::time::Duration;
 
-use super::error::LOOPBACK_MEND;
+use super::error::LOOPBACK_HINT;
 use super::{Interfaces, NetError, Receiver, Sender, addresses, interfaces};
 
 /// Result of a packet sent by loopback.
@@ -37,10 +37,10 @@ impl std::fmt::Display for LoopbackProbe {
                     Some(by) => write!(f, "send by {by}")?,
                     None => write!(f, "find no way")?,
                 }
-                write!(f, "; to keep them on this machine: `{LOOPBACK_MEND}`")
+                write!(f, "; to keep them on this machine: `{LOOPBACK_HINT}`")
             }
             Self::Silent => {
-                write!(f, "multicast on this machine is swallowed; a firewall? Otherwise: `{LOOPBACK_MEND}`")
+                write!(f, "multicast on this machine is swallowed; a firewall? Otherwise: `{LOOPBACK_HINT}`")
             }
             Self::Refused(error) => write!(f, "multicast on this machine: {error}"),
         }
@@ -84,8 +84,8 @@ fn send_and_wait(group: Ipv4Addr, wait: Duration) -> Result<bool, NetError> {
     };
     let mut receiver = Receiver::join(to, &Interfaces::These(vec![loopback.name.clone()]))?;
     Sender::multicast(to, Some(&loopback.name))?.send(PROBE)?;
-    let heard = receiver.receive(wait)?;
-    Ok(heard.is_some_and(|datagram| datagram.bytes == PROBE))
+    let received = receiver.receive(wait)?;
+    Ok(received.is_some_and(|datagram| datagram.bytes == PROBE))
 }
 
 const PROBE: &[u8] = b"onetwo: does loopback carry multicast?";

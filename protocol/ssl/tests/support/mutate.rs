@@ -10,7 +10,7 @@ use crate::messages::{Decode, decoder};
 
 /// Counters of a run.
 #[derive(Debug, Default, PartialEq, Eq)]
-pub(crate) struct Tally {
+pub(crate) struct Counters {
     /// Packets broken and read.
     pub packets: u64,
     /// Number of those that still decode as their original message.
@@ -27,22 +27,22 @@ pub(crate) struct Tally {
 
 /// Breaks `count` packets and reads each; the same seed breaks the same ones. Panics where a decoder does, or
 /// where a message does not survive being encoded.
-pub(crate) fn run(seeds: &[Seed], count: u64, seed: u64) -> Tally {
+pub(crate) fn run(seeds: &[Seed], count: u64, seed: u64) -> Counters {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
-    let mut tally = Tally::default();
+    let mut counters = Counters::default();
     for _ in 0..count {
         let (own, packet) = mutated(seeds, &mut random);
-        tally.packets += 1;
-        let read = if survives(own, &packet) { &mut tally.decoded } else { &mut tally.refused };
+        counters.packets += 1;
+        let read = if survives(own, &packet) { &mut counters.decoded } else { &mut counters.refused };
         *read += 1;
         for (package, name) in DATAGRAMS {
             survives(decoder(package, name), &packet);
         }
-        tally.guessed += u64::from(guess(&packet).is_some());
-        tally.logged += log(&packet, &mut random);
-        tally.framed += stream(&packet, &mut random);
+        counters.guessed += u64::from(guess(&packet).is_some());
+        counters.logged += log(&packet, &mut random);
+        counters.framed += stream(&packet, &mut random);
     }
-    tally
+    counters
 }
 
 /// What comes from outside as a whole: each packet is read as each of these too.

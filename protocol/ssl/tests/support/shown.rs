@@ -126,9 +126,9 @@ impl Reader<'_> {
         match self.text[self.at] {
             b'"' => self.string(),
             b'[' => Shown::List(self.list(b']', Self::value)),
-            b'-' | b'0'..=b'9' => Shown::Number(self.word()),
+            b'-' | b'0'..=b'9' => Shown::Number(self.label()),
             _ => {
-                let name = self.word();
+                let name = self.label();
                 match self.text.get(self.at..self.at + 2) {
                     Some(b" {") => {
                         self.at += 1;
@@ -147,7 +147,7 @@ impl Reader<'_> {
     }
 
     fn field(&mut self) -> (String, Shown) {
-        let name = self.word();
+        let name = self.label();
         self.eat(b':');
         self.eat(b' ');
         (name.trim_start_matches("r#").to_owned(), self.value())
@@ -169,10 +169,10 @@ impl Reader<'_> {
         }
     }
 
-    fn word(&mut self) -> String {
+    fn label(&mut self) -> String {
         let rest = &self.text[self.at..];
-        let in_word = |byte: &u8| byte.is_ascii_alphanumeric() || b"_#.-+".contains(byte);
-        let length = rest.iter().position(|byte| !in_word(byte)).unwrap_or(rest.len());
+        let in_label = |byte: &u8| byte.is_ascii_alphanumeric() || b"_#.-+".contains(byte);
+        let length = rest.iter().position(|byte| !in_label(byte)).unwrap_or(rest.len());
         assert!(length > 0, "no word at {}: {}", self.at, String::from_utf8_lossy(rest));
         self.at += length;
         String::from_utf8_lossy(&rest[..length]).into_owned()

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use geometry::{Field, GoalEnd, Point};
 use protocol::Who;
 use rules::keep_out::{Forbidden, Situation, Why, keep_out};
-use rules::{Colour, Duty, FieldSpec, Phase, Side, limits};
+use rules::{Colour, FieldSpec, Phase, RuleRole, Side, limits};
 
 /// Grace before being in a region counts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,22 +95,22 @@ impl Moment<'_> {
         robots.iter().all(|(_, at)| at.distance(self.ball) > limits::ROBOT_RADIUS + 2.0 * limits::BALL_RADIUS)
     }
 
-    fn situation(&self, who: Who, duty: Duty) -> Situation<'_> {
+    fn situation(&self, who: Who, rule_role: RuleRole) -> Situation<'_> {
         Situation {
             field: self.field,
             own: self.own[who.colour as usize],
             phase: self.phase.seen_by(who.colour),
-            duty,
+            rule_role,
             ball: Some(self.ball),
             placement: self.placement,
             ball_in_play: self.in_play,
         }
     }
 
-    fn regions(&self, who: Who, duty: Duty, at: Point<Field>) -> Vec<Within> {
+    fn regions(&self, who: Who, rule_role: RuleRole, at: Point<Field>) -> Vec<Within> {
         let phase = self.phase.seen_by(who.colour);
         let depth = |region: &Forbidden| limits::ROBOT_RADIUS - region.shape.distance_to(at);
-        let regions = keep_out(&self.situation(who, duty)).forbidden;
+        let regions = keep_out(&self.situation(who, rule_role)).forbidden;
         let offends = |region: &&Forbidden| region.why.offends(phase) && depth(region) > TOLERANCE;
         regions.iter().filter(offends).map(|r| Within { who, why: r.why, depth: depth(r) }).collect()
     }
@@ -123,12 +123,12 @@ impl Moment<'_> {
             // excuses.
             let mut excused: Option<(f32, Vec<Within>)> = None;
             for &(who, at) in robots.iter().filter(|(who, _)| who.colour == team) {
-                let duty = if self.keepers.contains(&who) { Duty::Keeper } else { Duty::Player };
-                let found = self.regions(who, duty, at);
+                let rule_role = if self.keepers.contains(&who) { RuleRole::Keeper } else { RuleRole::Player };
+                let found = self.regions(who, rule_role, at);
                 if found.is_empty() {
                     continue;
                 }
-                if !self.regions(who, Duty::Taker, at).is_empty() {
+                if !self.regions(who, RuleRole::Taker, at).is_empty() {
                     all.extend(found);
                     continue;
                 }

@@ -51,7 +51,7 @@ impl Broken {
             Self::Frozen(frozen, _) => format!("frozen in {}", bare(phase) + must(frozen.must)),
             Self::MovedInHalt(..) => "moved in halt".into(),
             Self::FastInStop(..) => "fast in stop".into(),
-            Self::Blocked(obstacle) => format!("blocked in {} by {}", bare(phase), obstacle.reason.word()),
+            Self::Blocked(obstacle) => format!("blocked in {} by {}", bare(phase), obstacle.reason.label()),
             Self::Ended(_) => "not played".into(),
         }
     }
@@ -68,8 +68,8 @@ fn must(must: Must) -> &'static str {
 
 /// The phase without its team.
 fn bare(phase: Phase<Colour>) -> String {
-    let words = format!("{phase:?}");
-    words.split('(').next().unwrap_or_default().to_owned()
+    let description = format!("{phase:?}");
+    description.split('(').next().unwrap_or_default().to_owned()
 }
 
 /// A violated property, with time and phase.
@@ -93,7 +93,7 @@ impl Found {
 impl fmt::Display for Found {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:.2} s, {:?}: ", f64::from(self.ms) / 1000.0, self.phase)?;
-        let name = |who: &Who| format!("{} {}", who.colour.word(), who.id);
+        let name = |who: &Who| format!("{} {}", who.colour.label(), who.id);
         match &self.broken {
             Broken::KeepOut(keep_out::Broken { within, beyond }) => write!(
                 f,
@@ -108,7 +108,7 @@ impl fmt::Display for Found {
             Broken::MovedInHalt(who, speed) => write!(f, "{} moves at {speed:.2} m/s", name(who)),
             Broken::FastInStop(who, speed) => write!(f, "{} goes {speed:.2} m/s", name(who)),
             Broken::Blocked(obstacle) => write!(f, "the match stands: {obstacle}"),
-            Broken::Ended(words) => f.write_str(words),
+            Broken::Ended(description) => f.write_str(description),
         }
     }
 }
@@ -165,7 +165,7 @@ impl Sum {
 }
 
 /// The lines that report a match with violations; the last one repeats it.
-pub fn words(plan: &Plan, outcome: &Outcome) -> String {
+pub fn description(plan: &Plan, outcome: &Outcome) -> String {
     let mut lines = String::new();
     for found in &outcome.found {
         let _ = writeln!(lines, "seed {}: {found}", plan.seed);

@@ -43,17 +43,17 @@ impl fmt::Display for Act {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let at = |f: &mut fmt::Formatter<'_>, p: &Point<Field>| write!(f, " ({:.2}, {:.2})", p.x(), p.y());
         match self {
-            Self::Yellow(team, ms) => write!(f, "yellow card for {} of {ms} ms", team.word()),
-            Self::Red(team) => write!(f, "red card for {}", team.word()),
-            Self::Keeper(team, robot) => write!(f, "keeper of {}: {robot}", team.word()),
-            Self::Penalty(team) => write!(f, "penalty for {}", team.word()),
-            Self::Kickoff(team) => write!(f, "kick-off for {}", team.word()),
-            Self::FreeKick(team, p) => write!(f, "free kick for {}", team.word()).and_then(|()| at(f, p)),
+            Self::Yellow(team, ms) => write!(f, "yellow card for {} of {ms} ms", team.label()),
+            Self::Red(team) => write!(f, "red card for {}", team.label()),
+            Self::Keeper(team, robot) => write!(f, "keeper of {}: {robot}", team.label()),
+            Self::Penalty(team) => write!(f, "penalty for {}", team.label()),
+            Self::Kickoff(team) => write!(f, "kick-off for {}", team.label()),
+            Self::FreeKick(team, p) => write!(f, "free kick for {}", team.label()).and_then(|()| at(f, p)),
             Self::ForceStart(p) => f.write_str("force start").and_then(|()| at(f, p)),
             Self::Halt => f.write_str("halt"),
             Self::Stop => f.write_str("stop"),
             Self::GoOn => f.write_str("go on"),
-            Self::Timeout(team, ms) => write!(f, "timeout for {} of {ms} ms", team.word()),
+            Self::Timeout(team, ms) => write!(f, "timeout for {} of {ms} ms", team.label()),
             Self::Ball(p) => f.write_str("ball put").and_then(|()| at(f, p)),
             Self::Roll(p, v) => {
                 f.write_str("ball rolls").and_then(|()| at(f, p))?;

@@ -70,8 +70,8 @@ pub fn play(plan: &Plan, watcher: &mut dyn Watcher) -> Outcome {
     watch.end(&game)
 }
 
-fn ended(words: String) -> Outcome {
-    let found = Found { ms: 0, phase: Phase::Halt, broken: Broken::Ended(words) };
+fn ended(description: String) -> Outcome {
+    let found = Found { ms: 0, phase: Phase::Halt, broken: Broken::Ended(description) };
     Outcome { found: vec![found], ..Outcome::default() }
 }
 
@@ -229,8 +229,8 @@ impl Watch {
             })
             .collect();
         for frozen in self.stands.look(time, &must) {
-            let words = wanted(game, own, frozen.who);
-            self.find(time, Broken::Frozen(frozen, words));
+            let description = wanted(game, own, frozen.who);
+            self.find(time, Broken::Frozen(frozen, description));
         }
         self.look_at_blocks(time, game);
     }
@@ -339,7 +339,7 @@ impl Watch {
 fn wanted(game: &Game<'_>, own: [GoalEnd; 2], who: Who) -> String {
     let order = game.host(who.colour).orders().iter().find(|order| order.robot == who.id);
     let flip = Flip::defending(own[who.colour as usize]);
-    let mut words = order.map_or_else(
+    let mut description = order.map_or_else(
         || "no order".to_owned(),
         |order| format!("{:?} {:?}", order.role, order.task.directive(flip)),
     );
@@ -347,9 +347,9 @@ fn wanted(game: &Game<'_>, own: [GoalEnd; 2], who: Who) -> String {
     let others = game.world().robots().iter().filter(|robot| robot.present && robot.who != who);
     let near = others.filter_map(|robot| Some((robot.who, robot.pose.position.distance(at(who)?))));
     if let Some((next, distance)) = near.min_by(|a, b| a.1.total_cmp(&b.1)) {
-        let _ = write!(words, "; {} {} is {distance:.2} m away", next.colour.word(), next.id);
+        let _ = write!(description, "; {} {} is {distance:.2} m away", next.colour.label(), next.id);
     }
-    words
+    description
 }
 
 const fn first() -> protocol::RobotId {

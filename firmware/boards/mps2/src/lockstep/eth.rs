@@ -31,7 +31,7 @@ pub(crate) fn start() -> Option<(Inlet, Outlet)> {
     IRQ_CFG.write(IRQ_CFG_ENABLE | IRQ_CFG_ACTIVE_HIGH | IRQ_CFG_PUSH_PULL);
     // SAFETY: the interrupt only runs `acknowledge`; no other code relies on it being masked.
     unsafe { NVIC::unmask(EthernetIrq) }
-    Some((Inlet { frame: [0; FRAME_WORDS] }, Outlet { frame: [0; FRAME_WORDS] }))
+    Some((Inlet { frame: [0; FRAME_DESCRIPTION] }, Outlet { frame: [0; FRAME_DESCRIPTION] }))
 }
 
 /// Handles the controller's interrupt; the frame itself is fetched outside.
@@ -44,7 +44,7 @@ pub(crate) static STRANGE_FRAMES: AtomicU32 = AtomicU32::new(0);
 
 /// Takes frames from the controller.
 pub(crate) struct Inlet {
-    frame: [u32; FRAME_WORDS],
+    frame: [u32; FRAME_DESCRIPTION],
 }
 
 impl Inlet {
@@ -66,9 +66,9 @@ impl Inlet {
         sleep_until(|| RX_FIFO_INF.read() >> 16 & 0xff != 0);
         let len = (RX_STATUS_FIFO.read() >> 16 & 0x3fff) as usize;
         for index in 0..len.div_ceil(4) {
-            let word = RX_DATA_FIFO.read();
+            let label = RX_DATA_FIFO.read();
             if let Some(place) = self.frame.get_mut(index) {
-                *place = word;
+                *place = label;
             }
         }
         len.saturating_sub(CHECKSUM_LEN)
@@ -86,7 +86,7 @@ fn message_in(frame: Option<&[u8]>) -> Option<core::ops::Range<usize>> {
 
 /// Passes frames to the controller.
 pub(crate) struct Outlet {
-    frame: [u32; FRAME_WORDS],
+    frame: [u32; FRAME_DESCRIPTION],
 }
 
 impl Outlet {
@@ -102,8 +102,8 @@ impl Outlet {
         let frame_len = (MESSAGE_AT + written).max(FRAME_LEN_MIN);
         TX_DATA_FIFO.write(frame_len as u32 | TX_FIRST | TX_LAST);
         TX_DATA_FIFO.write(frame_len as u32);
-        for word in self.frame.iter().take(frame_len.div_ceil(4)) {
-            TX_DATA_FIFO.write(*word);
+        for label in self.frame.iter().take(frame_len.div_ceil(4)) {
+            TX_DATA_FIFO.write(*label);
         }
         // Transmission status is not used; the status queue must not fill up.
         while TX_FIFO_INF.read() >> 16 & 0xff != 0 {
@@ -141,7 +141,7 @@ const MESSAGE_AT: usize = HEADER_LEN + 2;
 /// Ethernet's shortest frame, without the checksum.
 const FRAME_LEN_MIN: usize = 60;
 const CHECKSUM_LEN: usize = 4;
-const FRAME_WORDS: usize = (MESSAGE_AT + MESSAGE_LEN_MAX + CHECKSUM_LEN).div_ceil(4);
+const FRAME_DESCRIPTION: usize = (MESSAGE_AT + MESSAGE_LEN_MAX + CHECKSUM_LEN).div_ceil(4);
 
 /// A register of the controller.
 const fn register(offset: usize) -> Register {

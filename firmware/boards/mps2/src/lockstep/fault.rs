@@ -28,11 +28,11 @@ fn ended(how: Ending<'_>) -> ! {
 }
 
 /// Writes the text and a line's end on stderr.
-fn say(words: &[&[u8]]) {
+fn say(description: &[&[u8]]) {
     // If that fails too, no output is left.
     if let Ok(mut stderr) = hio::hstderr() {
-        for word in words.iter().chain([&&b"\n"[..]]) {
-            let _ = stderr.write_all(word);
+        for label in description.iter().chain([&&b"\n"[..]]) {
+            let _ = stderr.write_all(label);
         }
     }
 }

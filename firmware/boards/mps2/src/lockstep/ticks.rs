@@ -76,7 +76,7 @@ fn live(clock: &Clock, tick: TickIn<'_>) {
             clock.settle();
         }
         // A packet longer than any frame is invalid; a radio would not have received it either.
-        if !Packet::from_slice(packet).is_ok_and(|packet| BOXES.hear(packet)) {
+        if !Packet::from_slice(packet).is_ok_and(|packet| BOXES.receive(packet)) {
             STRANGE.fetch_add(1, Ordering::Relaxed);
         }
     }
@@ -120,15 +120,15 @@ struct Done {
     actuators: Option<ActuatorFrame>,
 }
 
-struct Eyes;
-impl Senses for Eyes {
+struct Sensors;
+impl Senses for Sensors {
     async fn sense(&mut self) -> SensorFrame {
         SEEN.receive().await
     }
 }
 
-struct Mouth;
-impl RadioSender for Mouth {
+struct UartSender;
+impl RadioSender for UartSender {
     async fn send(&mut self, packet: Packet) {
         critical_section::with(|cs| {
             if DONE.borrow_ref_mut(cs).air.push(packet).is_err() {
@@ -138,8 +138,8 @@ impl RadioSender for Mouth {
     }
 }
 
-struct Limbs;
-impl Body for Limbs {
+struct Actuators;
+impl Body for Actuators {
     async fn act(&mut self, wanted: ActuatorFrame) {
         critical_section::with(|cs| DONE.borrow_ref_mut(cs).actuators = Some(wanted));
     }
@@ -162,15 +162,15 @@ async fn brain(config: BrainConfig, base: CaseBase<'static>) -> ! {
 
 #[embassy_executor::task]
 async fn radio_send() -> ! {
-    tasks::radio_send(Mouth, &BOXES).await
+    tasks::radio_send(UartSender, &BOXES).await
 }
 
 #[embassy_executor::task]
 async fn sensors() -> ! {
-    tasks::sensors(Eyes, &BOXES).await
+    tasks::sensors(Sensors, &BOXES).await
 }
 
 #[embassy_executor::task]
 async fn body() -> ! {
-    tasks::body(Limbs, &BOXES).await
+    tasks::body(Actuators, &BOXES).await
 }

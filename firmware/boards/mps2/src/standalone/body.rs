@@ -32,11 +32,11 @@ impl Wheels for Motors {
         SPEEDS.each_ref().map(|speed| f32::from_bits(speed.load(Ordering::Relaxed)))
     }
 
-    fn drive(&mut self, duty: [f32; WHEELS], _dribbler: f32) {
+    fn drive(&mut self, rule_role: [f32; WHEELS], _dribbler: f32) {
         DRIVEN.store(true, Ordering::Relaxed);
-        for (speed, duty) in SPEEDS.iter().zip(duty) {
+        for (speed, rule_role) in SPEEDS.iter().zip(rule_role) {
             let now = f32::from_bits(speed.load(Ordering::Relaxed));
-            speed.store((now + (duty * FREE_SPEED - now) * FOLLOWS).to_bits(), Ordering::Relaxed);
+            speed.store((now + (rule_role * FREE_SPEED - now) * FOLLOWS).to_bits(), Ordering::Relaxed);
         }
     }
 

@@ -16,7 +16,7 @@ use super::console::say;
 
 /// Record of this boot epoch and the last.
 #[derive(Clone, Copy)]
-pub(crate) struct Life {
+pub(crate) struct CrashContext {
     /// Starts since power-on, this one included.
     pub(crate) boots: u32,
     /// Panics since then.
@@ -29,7 +29,7 @@ pub(crate) struct Life {
     magic: u32,
 }
 
-impl Life {
+impl CrashContext {
     const FIRST: Self =
         Self { boots: 0, panics: 0, place: [0; PLACE_LEN], place_len: 0, bitten: 0, magic: MAGIC };
 
@@ -40,10 +40,10 @@ impl Life {
 }
 
 /// Counts this start; must be called once, before anything else.
-pub(crate) fn life() -> Life {
+pub(crate) fn life() -> CrashContext {
     let mut life = with(|life| *life);
     if life.magic != MAGIC {
-        life = Life::FIRST;
+        life = CrashContext::FIRST;
     }
     life.boots = life.boots.wrapping_add(1);
     BITTEN.store(life.bitten != 0, Ordering::Relaxed);
@@ -96,12 +96,12 @@ fn ended(how: Ending<'_>) -> ! {
 
 /// Access to the record. A panic never interrupts another access: the record is used at the start, in the
 /// watchdog's NMI, and here.
-fn with<T>(work: impl FnOnce(&mut Life) -> T) -> T {
+fn with<T>(work: impl FnOnce(&mut CrashContext) -> T) -> T {
     #[unsafe(link_section = ".uninit.life")]
-    static mut LIFE: MaybeUninit<Life> = MaybeUninit::uninit();
+    static mut LIFE: MaybeUninit<CrashContext> = MaybeUninit::uninit();
     // SAFETY: one processor, and no two of its users run at the same time. The record consists of integers,
     // for which every bit pattern is valid; a start whose `magic` is wrong replaces all of it.
-    unsafe { work(&mut *(&raw mut LIFE).cast::<Life>()) }
+    unsafe { work(&mut *(&raw mut LIFE).cast::<CrashContext>()) }
 }
 
 /// Bytes of a place that are kept.

@@ -7,7 +7,6 @@
 mod body;
 mod clock;
 mod console;
-mod dog;
 mod fault;
 #[path = "../register.rs"]
 mod register;
@@ -15,6 +14,7 @@ mod register;
 mod stack;
 mod trial;
 mod uart;
+mod watchdog;
 
 use casebase::CaseBase;
 use embassy_executor::{SpawnError, Spawner};
@@ -33,7 +33,7 @@ fn main() -> ! {
     let life = fault::life();
     if life.panics > 0 {
         say(&[b"awake after a panic at ", life.place()]);
-    } else if dog::has_bitten() {
+    } else if watchdog::has_bitten() {
         say(&[b"awake after the watchdog's bite"]);
     }
     let who = match provision::read(page(), false) {
@@ -107,17 +107,17 @@ async fn senses() -> ! {
 
 #[embassy_executor::task]
 async fn radio_receive() -> ! {
-    hardware::radio_receive(uart::Ear::new(), &BOXES).await
+    hardware::radio_receive(uart::UartReceiver::new(), &BOXES).await
 }
 
 #[embassy_executor::task]
 async fn radio_send() -> ! {
-    tasks::radio_send(uart::Mouth, &BOXES).await
+    tasks::radio_send(uart::UartSender, &BOXES).await
 }
 
 #[embassy_executor::task]
 async fn watchdog() -> ! {
-    hardware::watchdog(dog::start(), &BOXES).await
+    hardware::watchdog(watchdog::start(), &BOXES).await
 }
 
 #[embassy_executor::task]

@@ -14,8 +14,8 @@ use super::stack;
 /// reports the deepest use of the stack every second.
 pub(crate) async fn run() {
     // SAFETY: plain memory of the board above the firmware (build.rs), never written after the start.
-    let word = unsafe { (protocol::slot::TRIAL_ADDRESS as *const u32).read_volatile() };
-    if word == 3 {
+    let label = unsafe { (protocol::slot::TRIAL_ADDRESS as *const u32).read_volatile() };
+    if label == 3 {
         loop {
             Timer::after(Duration::from_secs(1)).await;
             say(&[b"stack ", &digits(stack::used())]);
@@ -23,7 +23,7 @@ pub(crate) async fn run() {
     }
     Timer::after(Duration::from_millis(300)).await;
     if fault::is_first_life() {
-        match word {
+        match label {
             1 => panic!(),
             2 => {
                 while !NEVER.load(Ordering::Relaxed) {

@@ -53,15 +53,15 @@ unsafe fn DefaultHandler(number: i16) {
 }
 
 /// Receives frames.
-pub(crate) struct Ear(Lines);
+pub(crate) struct UartReceiver(Lines);
 
-impl Ear {
+impl UartReceiver {
     pub(crate) fn new() -> Self {
         Self(Lines::new())
     }
 }
 
-impl RadioReceiver for Ear {
+impl RadioReceiver for UartReceiver {
     async fn receive(&mut self) -> Packet {
         loop {
             let mut byte = [0];
@@ -74,9 +74,9 @@ impl RadioReceiver for Ear {
 }
 
 /// Sends frames.
-pub(crate) struct Mouth;
+pub(crate) struct UartSender;
 
-impl RadioSender for Mouth {
+impl RadioSender for UartSender {
     async fn send(&mut self, packet: Packet) {
         for byte in &line(&packet) {
             poll_fn(|context| {

@@ -5,13 +5,13 @@
 //! control step may be late by this time.
 
 use board_stm32::analog::Analog;
-use board_stm32::dog::Watchdog;
 use board_stm32::encoders::Encoders;
-use board_stm32::fault::{self, Life};
+use board_stm32::fault::{self, CrashContext};
 use board_stm32::imu::Imu;
 use board_stm32::kicker::Kicker;
-use board_stm32::radio::{self, Ear, Mouth};
+use board_stm32::radio::{self, UartReceiver, UartSender};
 use board_stm32::sampling::{self, Probes};
+use board_stm32::watchdog::Watchdog;
 use board_stm32::wheels::{Drivers, Wheels};
 use board_stm32::{flash, off};
 use case_library::division_b;
@@ -39,7 +39,7 @@ fn main() -> ! {
         .inspect_err(|error| defmt::error!("no epoch ({}): nobody commands this robot", error))
         .ok();
     let radio = radio::open(parts.radio);
-    let (Some(who), Some(epoch), Some((mouth, ear))) = (who, epoch, radio) else {
+    let (Some(who), Some(epoch), Some((sender, receiver))) = (who, epoch, radio) else {
         alarm.set_high();
         off::everything();
         loop {
@@ -51,11 +51,11 @@ fn main() -> ! {
     let wheels = Wheels::new(drivers, Encoders::new(parts.encoders));
     let (imu, analog) = (Imu::new(parts.imu), Analog::new(parts.analog));
     // The last step that may take long is over.
-    let dog = Watchdog::start(parts.keeper.watchdog);
+    let watchdog = Watchdog::start(parts.keeper.watchdog);
     static EXECUTOR: StaticCell<Executor> = StaticCell::new();
     EXECUTOR.init(Executor::new()).run(|spawner| {
         let brain = (config, division_b(), who.keys);
-        start(spawner, brain, wheels, kicker, imu, analog, mouth, ear, dog, alive)
+        start(spawner, brain, wheels, kicker, imu, analog, sender, receiver, watchdog, alive)
             .expect("every task is started once");
     })
 }
@@ -71,19 +71,19 @@ fn start(
     kicker: Kicker,
     imu: Imu,
     analog: Analog,
-    mouth: Mouth,
-    ear: Ear,
-    dog: Watchdog,
+    sender: UartSender,
+    receiver: UartReceiver,
+    watchdog: Watchdog,
     alive: Output<'static>,
 ) -> Result<(), SpawnError> {
     spawner.spawn(control(wheels)?);
     spawner.spawn(kick(kicker)?);
     spawner.spawn(sample(imu, analog)?);
     spawner.spawn(senses()?);
-    spawner.spawn(radio_send(mouth)?);
-    spawner.spawn(radio_receive(ear)?);
+    spawner.spawn(radio_send(sender)?);
+    spawner.spawn(radio_receive(receiver)?);
     spawner.spawn(brain(config, base, keys)?);
-    spawner.spawn(watchdog(dog)?);
+    spawner.spawn(watchdog(watchdog)?);
     spawner.spawn(report(alive)?);
     Ok(())
 }
@@ -114,18 +114,18 @@ async fn senses() -> ! {
 }
 
 #[embassy_executor::task]
-async fn radio_receive(ear: Ear) -> ! {
-    hardware::radio_receive(ear, &BOXES).await
+async fn radio_receive(receiver: UartReceiver) -> ! {
+    hardware::radio_receive(receiver, &BOXES).await
 }
 
 #[embassy_executor::task]
-async fn radio_send(mouth: Mouth) -> ! {
-    tasks::radio_send(mouth, &BOXES).await
+async fn radio_send(sender: UartSender) -> ! {
+    tasks::radio_send(sender, &BOXES).await
 }
 
 #[embassy_executor::task]
-async fn watchdog(dog: Watchdog) -> ! {
-    hardware::watchdog(dog, &BOXES).await
+async fn watchdog(watchdog: Watchdog) -> ! {
+    hardware::watchdog(watchdog, &BOXES).await
 }
 
 /// Blinks, and reports the board's state each second.
@@ -148,7 +148,7 @@ async fn report(mut alive: Output<'static>) -> ! {
 }
 
 /// Reports what ended the last boot epoch.
-fn tell(life: &Life) {
+fn tell(life: &CrashContext) {
     if life.panics > 0 {
         defmt::warn!(
             "start {=u32}; {=u32} panics, the last at {=str}",

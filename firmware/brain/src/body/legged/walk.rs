@@ -10,11 +10,11 @@ use protocol::robot_io::{ActuatorFrame, LeggedKick, LeggedPrimitive};
 
 use crate::belief::Belief;
 use crate::body::Intent;
-use crate::mates::Mates;
+use crate::teammates::Teammates;
 use protocol::Instant;
 
 /// The frame that makes the body do `intent`.
-pub fn actuate(now: Instant, belief: &Belief, mates: &Mates, intent: Intent) -> ActuatorFrame {
+pub fn actuate(now: Instant, belief: &Belief, teammates: &Teammates, intent: Intent) -> ActuatorFrame {
     let pose = belief.pose;
     match intent {
         Intent::Stand { face: None } => walk(Twist::default()),
@@ -22,11 +22,11 @@ pub fn actuate(now: Instant, belief: &Belief, mates: &Mates, intent: Intent) -> 
             let limit = if belief.holds_ball { CARRY_TURN_RATE } else { TURN_RATE };
             walk(Twist { linear: Vector::default(), angular: turn(pose, heading, limit) })
         }
-        Intent::Walk { to, face, shy_of_ball } => {
+        Intent::Walk { to, face, avoiding_of_ball } => {
             // Adapted positions may lie outside (they are never clamped): the body stays on the field
             // surface.
-            let to = belief.league().field().clamp(to, CARPET);
-            let way_point = around(now, belief, mates, to, shy_of_ball);
+            let to = belief.league().field().clamp(to, SURFACE);
+            let way_point = around(now, belief, teammates, to, avoiding_of_ball);
             let far = pose.position.distance(to) > FACE_END_WITHIN;
             let heading = if far { pose.position.direction_to(way_point) } else { face };
             walk(Twist { linear: step_to(pose, way_point, to), angular: turn(pose, heading, TURN_RATE) })
@@ -40,7 +40,7 @@ pub fn actuate(now: Instant, belief: &Belief, mates: &Mates, intent: Intent) -> 
         Intent::Grab => primitive(LeggedPrimitive::Grab),
         Intent::Kick(kick) => primitive(LeggedPrimitive::Kick(kick)),
         // Legs have no wheels.
-        Intent::Drive(_) | Intent::Onwards => walk(Twist::default()),
+        Intent::Drive(_) | Intent::KeepPath => walk(Twist::default()),
     }
 }
 
@@ -82,9 +82,15 @@ fn step_to(pose: Pose<Field>, way_point: Point<Field>, end: Point<Field>) -> Vec
 
 /// The next point to walk to on the path to `to`: `to` itself, or a point beside the first obstacle on the
 /// path.
-fn around(now: Instant, belief: &Belief, mates: &Mates, to: Point<Field>, shy_of_ball: bool) -> Point<Field> {
+fn around(
+    now: Instant,
+    belief: &Belief,
+    teammates: &Teammates,
+    to: Point<Field>,
+    avoiding_of_ball: bool,
+) -> Point<Field> {
     let way = Segment::new(belief.pose.position, to);
-    let others = mates.present(now).map(|(_, mate)| mate.pose().position);
+    let others = teammates.present(now).map(|(_, teammate)| teammate.pose().position);
     let robots = belief
         .opponents
         .iter()
@@ -93,7 +99,7 @@ fn around(now: Instant, belief: &Belief, mates: &Mates, to: Point<Field>, shy_of
         // A robot on the target itself cannot be walked around.
         .filter(|robot| robot.distance(to) > ROBOT_CLEARANCE)
         .map(|robot| (robot, ROBOT_CLEARANCE));
-    let ball = belief.ball.filter(|_| shy_of_ball).map(|ball| (ball.position, BALL_CLEARANCE));
+    let ball = belief.ball.filter(|_| avoiding_of_ball).map(|ball| (ball.position, BALL_CLEARANCE));
     let first = robots
         .chain(ball)
         .map(|(at, clearance)| (at, clearance, way.share_of(at)))
@@ -115,7 +121,7 @@ fn beside(way: Segment<Field>, obstacle: Point<Field>, offset: f32) -> Point<Fie
 
 /// How far within the lines a walk may end, m: negative, half a body outside on the edge of the field
 /// surface.
-const CARPET: f32 = -0.1;
+const SURFACE: f32 = -0.1;
 /// The robot is near enough to turn to its final heading, m: the distance walked during half a turn.
 const FACE_END_WITHIN: f32 = 0.4;
 /// Heading is near enough to walk ahead with the ball, rad.
@@ -145,7 +151,7 @@ mod tests {
     }
 
     fn walking(belief: &Belief, intent: Intent) -> Twist<Body> {
-        match actuate(Instant(0), belief, &Mates::default(), intent) {
+        match actuate(Instant(0), belief, &Teammates::default(), intent) {
             ActuatorFrame::Legged { walk, primitive: LeggedPrimitive::None } => walk,
             other => panic!("{other:?}"),
         }
@@ -154,10 +160,11 @@ mod tests {
     #[test]
     fn straight_ahead_is_walked_at_full_speed_and_no_faster() {
         let to = Point::new(2.0, 0.0);
-        let twist = walking(&at(0.0, 0.0), Intent::Walk { to, face: Angle::ZERO, shy_of_ball: false });
+        let twist = walking(&at(0.0, 0.0), Intent::Walk { to, face: Angle::ZERO, avoiding_of_ball: false });
         assert!((twist.linear.x() - WALK_FORWARD).abs() < 1e-6);
         let side = Point::new(0.0, 0.3);
-        let twist = walking(&at(0.0, 0.0), Intent::Walk { to: side, face: Angle::ZERO, shy_of_ball: false });
+        let twist =
+            walking(&at(0.0, 0.0), Intent::Walk { to: side, face: Angle::ZERO, avoiding_of_ball: false });
         assert!((twist.linear.y() - WALK_SIDEWAYS).abs() < 1e-6);
     }
 
@@ -166,7 +173,7 @@ mod tests {
         let mut belief = at(0.0, 0.0);
         let _ = belief.opponents.push(Point::new(0.5, 0.1));
         let to = Point::new(2.0, 0.0);
-        let twist = walking(&belief, Intent::Walk { to, face: Angle::ZERO, shy_of_ball: false });
+        let twist = walking(&belief, Intent::Walk { to, face: Angle::ZERO, avoiding_of_ball: false });
         assert!(twist.linear.y() < -0.05, "{twist:?}");
     }
 
@@ -175,7 +182,7 @@ mod tests {
         let mut belief = at(0.0, 0.0);
         let _ = belief.opponents.push(Point::new(1.0, 0.1));
         let to = Point::new(1.0, 0.0);
-        let twist = walking(&belief, Intent::Walk { to, face: Angle::ZERO, shy_of_ball: false });
+        let twist = walking(&belief, Intent::Walk { to, face: Angle::ZERO, avoiding_of_ball: false });
         assert!(twist.linear.y().abs() < 1e-6);
     }
 

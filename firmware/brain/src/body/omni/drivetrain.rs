@@ -3,17 +3,17 @@
 //!
 //! Every step plans again, from the robot's position and the velocity ordered last (wheels follow within a
 //! step; where they do not, from the measured one); a step without time to plan reuses the last path
-//! ([`Intent::Onwards`]). SI, body frame out.
+//! ([`Intent::KeepPath`]). SI, body frame out.
 
 use geometry::{Angle, Body, Field, Point, Twist, Vector, math};
 use motion::avoid::{self, Course, Restraint, Verdict};
 use motion::trajectory::{CalcMotion, FreeLimits, Motion, TurnLimits};
 use protocol::Instant;
 use protocol::robot_io::{OmniKick, WHEELED_STEP};
-use rules::{Duty, FieldSpec, Phase, RobotSpec, Side};
+use rules::{FieldSpec, Phase, RobotSpec, RuleRole, Side};
 
 use super::surroundings::Surroundings;
-use super::{Drive, Manner};
+use super::{Drive, DriveMode};
 use crate::belief::Belief;
 use crate::body::Intent;
 use crate::governor::{STOP_SPEED, Wanted};
@@ -28,12 +28,12 @@ pub struct Drivetrain {
     /// Length of the present step, s.
     step: f32,
     /// The path in use; `None` while the robot stands or brakes.
-    under_way: Option<UnderWay>,
+    under_way: Option<CurrentPath>,
 }
 
 /// Result of the last path planning.
 #[derive(Clone, Copy, Debug)]
-struct UnderWay {
+struct CurrentPath {
     drive: Drive,
     /// The goal, or a point past the first corner of the path to it.
     towards: Point<Field>,
@@ -56,18 +56,21 @@ impl Drivetrain {
         let under_way = self.under_way.take();
         match intent {
             Intent::Stand { face } => self.stand(belief, step, face),
-            Intent::Onwards => match under_way {
+            Intent::KeepPath => match under_way {
                 Some(way) => self.onwards(belief, step, way),
                 None => self.stand(belief, step, None),
             },
             Intent::Turn { heading } => {
                 let here = belief.pose.position;
-                let drive =
-                    if belief.holds_ball { Drive::holding(here, heading) } else { Drive::shy(here, heading) };
+                let drive = if belief.holds_ball {
+                    Drive::holding(here, heading)
+                } else {
+                    Drive::avoiding(here, heading)
+                };
                 self.follow(belief, step, &drive)
             }
-            Intent::Walk { to, face, shy_of_ball } => {
-                let drive = if shy_of_ball { Drive::shy(to, face) } else { Drive::bold(to, face) };
+            Intent::Walk { to, face, avoiding_of_ball } => {
+                let drive = if avoiding_of_ball { Drive::avoiding(to, face) } else { Drive::bold(to, face) };
                 self.follow(belief, step, &drive)
             }
             Intent::Drive(drive) => self.follow(belief, step, &drive),
@@ -95,9 +98,9 @@ impl Drivetrain {
     }
 
     /// Follows the same path without planning.
-    fn onwards(&mut self, belief: &Belief, step: f32, way: UnderWay) -> Wanted {
+    fn onwards(&mut self, belief: &Belief, step: f32, way: CurrentPath) -> Wanted {
         self.under_way = Some(way);
-        let UnderWay { drive, towards, .. } = way;
+        let CurrentPath { drive, towards, .. } = way;
         let motion = limits(belief, &drive).plan(belief.pose.position, self.velocity, towards);
         self.wanted(belief, step, motion.at(step).velocity, Some(drive.face), &drive)
     }
@@ -112,7 +115,7 @@ impl Drivetrain {
         let field = belief.league().field();
         let (effort, effort_to_leave) = efforts(belief, &field);
         let mut around = Surroundings::none(&field);
-        around.look(belief, &field, drive.to, drive.manner);
+        around.look(belief, &field, drive.to, drive.mode);
         let way = avoid::plan(&Course {
             from,
             velocity: self.velocity,
@@ -127,7 +130,7 @@ impl Drivetrain {
         });
         if way.restraint == Restraint::None {
             let winds = way.verdict != Verdict::Direct;
-            self.under_way = Some(UnderWay { drive: *drive, towards: way.motion.to(), winds });
+            self.under_way = Some(CurrentPath { drive: *drive, towards: way.motion.to(), winds });
         }
         let there = rests && from.distance(way.goal) < THERE;
         let velocity = if there { Vector::default() } else { way.next.velocity };
@@ -143,9 +146,9 @@ impl Drivetrain {
         drive: &Drive,
     ) -> Wanted {
         let pose = belief.pose;
-        let mut turning = match drive.manner {
-            Manner::Holding if belief.is_placing() => PLACING_TURN,
-            Manner::Holding => HOLDING_TURN,
+        let mut turning = match drive.mode {
+            DriveMode::Holding if belief.is_placing() => PLACING_TURN,
+            DriveMode::Holding => HOLDING_TURN,
             _ => TURN,
         };
         let angular = match face {
@@ -182,7 +185,7 @@ fn efforts(belief: &Belief, field: &FieldSpec) -> (u32, u32) {
         // From behind a goal the path into its opening is long.
         _ if belief.pose.position.x().abs() > 0.5 * field.length => EFFORT_BEHIND_GOAL,
         Phase::BallPlacement(Side::Ours) => EFFORT_TAKING,
-        _ if stopped && belief.game.duty == Duty::Taker => EFFORT_TAKING,
+        _ if stopped && belief.game.rule_role == RuleRole::Taker => EFFORT_TAKING,
         _ if stopped => EFFORT_STOPPED,
         _ if ball_moves => EFFORT_BALL_MOVES,
         _ => EFFORT_BALL_RESTS,
@@ -216,12 +219,12 @@ fn is_moved_by_the_rules(phase: Phase<Side>) -> bool {
 
 /// A standing robot with the ball keeps it.
 fn held_or_free(belief: &Belief) -> Drive {
-    let drive = if belief.holds_ball { Drive::holding } else { Drive::shy };
+    let drive = if belief.holds_ball { Drive::holding } else { Drive::avoiding };
     Drive { kick: OmniKick::None, ..drive(belief.pose.position, belief.pose.heading) }
 }
 
 fn limits(belief: &Belief, drive: &Drive) -> FreeLimits {
-    let limits = if drive.manner == Manner::Holding {
+    let limits = if drive.mode == DriveMode::Holding {
         let speed = if belief.is_placing() { PLACING_SPEED } else { HOLDING.speed };
         FreeLimits { speed, acceleration: HOLDING.acceleration * drive.gentle, ..HOLDING }
     } else {

@@ -37,7 +37,7 @@ pub struct Drive {
     /// Speed limit, m/s.
     pub speed: f32,
     /// How the ball is treated on the path.
-    pub manner: Manner,
+    pub mode: DriveMode,
     /// Share of the dribbler's full speed, 0–1.
     pub dribbler: f32,
     /// Kick to fire as soon as the ball touches the kicker, once it is armed.
@@ -50,9 +50,9 @@ pub struct Drive {
 
 /// How a robot treats the ball on its path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Manner {
+pub enum DriveMode {
     /// An obstacle to go around.
-    Shy,
+    Avoiding,
     /// It is no obstacle: it may be touched.
     Bold,
     /// It is held and must stay held: gentle accelerations.
@@ -61,12 +61,12 @@ pub enum Manner {
 
 impl Drive {
     /// Drives to a place, around the ball, at full speed.
-    pub fn shy(to: Point<Field>, face: Angle) -> Self {
+    pub fn avoiding(to: Point<Field>, face: Angle) -> Self {
         Self {
             to,
             face,
             speed: f32::INFINITY,
-            manner: Manner::Shy,
+            mode: DriveMode::Avoiding,
             dribbler: 0.0,
             kick: OmniKick::None,
             armed: true,
@@ -76,12 +76,12 @@ impl Drive {
 
     /// Drives to a place; the ball may be touched.
     pub fn bold(to: Point<Field>, face: Angle) -> Self {
-        Self { manner: Manner::Bold, ..Self::shy(to, face) }
+        Self { mode: DriveMode::Bold, ..Self::avoiding(to, face) }
     }
 
     /// Drives to a place with the ball.
     pub fn holding(to: Point<Field>, face: Angle) -> Self {
-        Self { manner: Manner::Holding, dribbler: 1.0, ..Self::shy(to, face) }
+        Self { mode: DriveMode::Holding, dribbler: 1.0, ..Self::avoiding(to, face) }
     }
 }
 
@@ -113,7 +113,7 @@ impl Body for Wheeled {
     }
 
     fn pass(&self, belief: &Belief, place: Point<Field>) -> Intent {
-        let speed = skills::pass_speed(belief.mouth().distance(place));
+        let speed = skills::pass_speed(belief.dribbler_point().distance(place));
         skills::kick_held(belief, place, OmniKick::Flat(speed))
     }
 

@@ -8,9 +8,9 @@ use geometry::{Field, GoalEnd, Point, Segment, Shape, Vector};
 use motion::avoid::{OBSTACLES_MAX, Obstacle};
 use rules::keep_out::{Forbidden, KeepOut, Situation, Why, keep_out};
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
-use rules::{Duty, FieldSpec, Phase, Side};
+use rules::{FieldSpec, Phase, RuleRole, Side};
 
-use super::Manner;
+use super::DriveMode;
 use crate::belief::Belief;
 
 /// Obstacles around the robot, and the region it must stay in.
@@ -25,15 +25,15 @@ pub struct Surroundings {
 impl Surroundings {
     /// An empty value to be filled by [`Surroundings::look`]; it is too large to be moved around.
     pub fn none(field: &FieldSpec) -> Self {
-        Self { obstacles: heapless::Vec::new(), within: field.carpet().grown(-BODY - BORDER) }
+        Self { obstacles: heapless::Vec::new(), within: field.surface().grown(-BODY - BORDER) }
     }
 
     /// Collects what matters to this robot on its path to `to`.
-    pub fn look(&mut self, belief: &Belief, field: &FieldSpec, to: Point<Field>, manner: Manner) {
+    pub fn look(&mut self, belief: &Belief, field: &FieldSpec, to: Point<Field>, mode: DriveMode) {
         let KeepOut { forbidden, within } = keep_out(&situation(belief, field));
         // A robot that goes for the ball may touch the boards: a ball in a corner cannot be reached
         // otherwise.
-        self.within = within.grown(if manner == Manner::Shy { -BODY - BORDER } else { -BODY });
+        self.within = within.grown(if mode == DriveMode::Avoiding { -BODY - BORDER } else { -BODY });
         let me = belief.pose.position;
         // The planned path, and the one on which it could stop.
         let way = Segment::new(me, to);
@@ -63,11 +63,11 @@ impl Surroundings {
         if let Some(lane) = kicking_lane(belief).filter(|lane| !lane.contains(to)) {
             self.add(Obstacle::region(lane));
         }
-        if manner == Manner::Shy
+        if mode == DriveMode::Avoiding
             && let Some(ball) = belief.ball.filter(|_| !belief.ball_flies())
         {
-            let shy = if belief.is_placing() { SHY_PLACING } else { SHY };
-            let shape = Shape::Disc { center: ball.position, radius: BODY + BALL_RADIUS + shy };
+            let avoiding = if belief.is_placing() { AVOIDING_PLACING } else { AVOIDING };
+            let shape = Shape::Disc { center: ball.position, radius: BODY + BALL_RADIUS + avoiding };
             self.add(Obstacle::moving(shape, ball.velocity));
         }
         for goal in [GoalEnd::Negative, GoalEnd::Positive] {
@@ -78,7 +78,7 @@ impl Surroundings {
             }
         }
         // Close to the ball bodies touch: a robot that went around every opponent there would never have it.
-        let margin = if manner == Manner::Shy { ROBOTS } else { ROBOTS_AT_BALL };
+        let margin = if mode == DriveMode::Avoiding { ROBOTS } else { ROBOTS_AT_BALL };
         let radius = 2.0 * BODY + margin;
         for other in &belief.others {
             let at = other.pose.position;
@@ -128,7 +128,7 @@ fn kicking_lane(belief: &Belief) -> Option<Shape<Field>> {
         phase,
         Phase::Kickoff(Side::Ours) | Phase::FreeKick(Side::Ours) | Phase::Penalty(Side::Ours)
     );
-    if !ours || belief.game.duty == Duty::Taker {
+    if !ours || belief.game.rule_role == RuleRole::Taker {
         return None;
     }
     let ball = belief.ball?.position;
@@ -147,7 +147,7 @@ pub fn situation<'f>(belief: &Belief, field: &'f FieldSpec) -> Situation<'f> {
         field,
         own: game.defending,
         phase: game.phase,
-        duty: game.duty,
+        rule_role: game.rule_role,
         ball: belief.ball.map(|ball| ball.position),
         placement: game.placement,
         ball_in_play: matches!(game.phase, Phase::Run),
@@ -176,9 +176,9 @@ const BORDER: f32 = 0.02;
 /// Distance kept from goal walls, m.
 const WALL: f32 = 0.01;
 /// Distance kept from a ball that must not be touched, m.
-const SHY: f32 = 0.03;
+const AVOIDING: f32 = 0.03;
 /// The same while it is placed: a ball that is touched then rolls away.
-const SHY_PLACING: f32 = 0.055;
+const AVOIDING_PLACING: f32 = 0.055;
 /// Distance kept from other robots, m.
 const ROBOTS: f32 = 0.03;
 /// Distance kept from other robots beside the ball, m.

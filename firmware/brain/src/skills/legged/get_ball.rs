@@ -23,19 +23,19 @@ pub fn get_ball(belief: &Belief, onwards: Option<Angle>) -> Step {
     if distance < GRAB_REACH && off < GRAB_HALF_ANGLE && belief.may_grab() {
         return Step::Running(Intent::Grab);
     }
-    let (meeting, in_time) = meeting(&ball, pose.position);
-    let direct = pose.position.direction_to(meeting);
+    let (interception_point, in_time) = interception_point(&ball, pose.position);
+    let direct = pose.position.direction_to(interception_point);
     if let Some(onwards) = onwards
         && distance > STAND_OFF
         && let Some(to) =
             place_behind(belief, &ball, onwards, in_time + (onwards - direct).abs() / CARRY_TURN_RATE)
     {
-        return Step::Running(Intent::Walk { to, face: onwards, shy_of_ball: true });
+        return Step::Running(Intent::Walk { to, face: onwards, avoiding_of_ball: true });
     }
     // No slowing down before the ball is in reach: the walk would end beyond that.
-    let to = meeting - Vector::polar(WALK_UP_TO, direct);
+    let to = interception_point - Vector::polar(WALK_UP_TO, direct);
     let face = if distance < NEAR { pose.position.direction_to(ball.position) } else { direct };
-    Step::Running(Intent::Walk { to, face, shy_of_ball: false })
+    Step::Running(Intent::Walk { to, face, avoiding_of_ball: false })
 }
 
 /// Where to stand for a ball that will stop, so as to face `onwards` with it at once; `None` where
@@ -57,7 +57,7 @@ fn place_behind(belief: &Belief, ball: &Ball, onwards: Angle, by: f32) -> Option
 
 /// Where a robot that now stands at `from` can have the ball, and in how many seconds: the earliest point on
 /// the ball's path that it reaches no later than the ball, else the ball's stop position.
-pub fn meeting(ball: &Ball, from: Point<Field>) -> (Point<Field>, f32) {
+pub fn interception_point(ball: &Ball, from: Point<Field>) -> (Point<Field>, f32) {
     let walk = |to: Point<Field>| from.distance(to) / WALK_FORWARD;
     if ball.is_at_rest() {
         return (ball.position, walk(ball.position));
@@ -65,8 +65,8 @@ pub fn meeting(ball: &Ball, from: Point<Field>) -> (Point<Field>, f32) {
     let way = ball.rest - ball.position;
     // An evenly slowing ball: at share 1 − (1 − τ)² of its path after share τ of its time.
     let duration = ball.rolls_for();
-    for step in 1..MEETING_STEPS {
-        let tau = step as f32 / MEETING_STEPS as f32;
+    for step in 1..INTERCEPTION_POINT_STEPS {
+        let tau = step as f32 / INTERCEPTION_POINT_STEPS as f32;
         let point = ball.position + way * (1.0 - (1.0 - tau) * (1.0 - tau));
         if walk(point) <= tau * duration {
             return (point, tau * duration);
@@ -86,12 +86,12 @@ const WORTH_TURNING: f32 = 0.3;
 /// Distance from the ball at which a robot walks around it, m.
 const BALL_CLEARANCE: f32 = 0.2;
 /// Points tried on the ball's path.
-const MEETING_STEPS: u32 = 16;
+const INTERCEPTION_POINT_STEPS: u32 = 16;
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mates::Mates;
+    use crate::teammates::Teammates;
     use geometry::{Pose, Twist};
     use protocol::robot_io::{BallSight, Health, SensorFrame};
     use protocol::{Duration, Instant, RobotId};
@@ -119,7 +119,7 @@ mod tests {
                 odometry: Twist::default(),
                 health: Health::default(),
             };
-            b.update(Instant(ms * 1000), RobotId::new(1).unwrap(), &sensors, &Mates::default());
+            b.update(Instant(ms * 1000), RobotId::new(1).unwrap(), &sensors, &Teammates::default());
         }
     }
 
@@ -138,20 +138,21 @@ mod tests {
         // 1 m ahead, rolling to the left at 0.7 m/s, stopping after 0.7 m and 2 s: the robot needs more than
         // 3 s.
         let b = belief((1.0, 0.0), (0.0, 0.7), (1.0, 0.7));
-        assert_eq!(meeting(&b.ball.unwrap(), b.pose.position).0, Point::new(1.0, 0.7));
+        assert_eq!(interception_point(&b.ball.unwrap(), b.pose.position).0, Point::new(1.0, 0.7));
         // Rolling towards the robot it is intercepted.
         let b = belief((1.0, 0.0), (-0.7, 0.0), (0.3, 0.0));
-        let met = meeting(&b.ball.unwrap(), b.pose.position).0;
+        let met = interception_point(&b.ball.unwrap(), b.pose.position).0;
         assert!(met.x() > 0.3 && met.x() < 0.7, "{met:?}");
     }
 
     #[test]
     fn with_time_it_walks_around_to_face_onwards() {
         let b = belief((0.6, 0.0), (0.0, 0.0), (0.6, 0.0));
-        let Step::Running(Intent::Walk { to, shy_of_ball, .. }) = get_ball(&b, Some(Angle::HALF_TURN)) else {
+        let Step::Running(Intent::Walk { to, avoiding_of_ball, .. }) = get_ball(&b, Some(Angle::HALF_TURN))
+        else {
             panic!("walks")
         };
-        assert!(shy_of_ball && to.x() > 0.7);
+        assert!(avoiding_of_ball && to.x() > 0.7);
         // With an opponent at the ball it walks straight to it.
         let mut contested = b.clone();
         let _ = contested.opponents.push(Point::new(1.0, 0.0));

@@ -5,7 +5,7 @@ mod kick;
 mod receive;
 mod shot;
 
-pub use get_ball::{get_ball, meeting};
+pub use get_ball::{get_ball, interception_point};
 pub use kick::{aim, carry_to, pass, shoot};
 pub use receive::receive;
 pub use shot::{attempt, push_on};

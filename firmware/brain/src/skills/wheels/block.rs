@@ -6,7 +6,7 @@
 
 use geometry::{Field, Point, Pose, Segment};
 use motion::ball::BallModel;
-use motion::intercept::{Interception, Verdict, Wish};
+use motion::intercept::{Interception, Request, Verdict};
 use rules::limits::ROBOT_RADIUS;
 use rules::{Phase, Side};
 
@@ -20,14 +20,14 @@ pub fn block(belief: &Belief, stretch: Segment<Field>) -> Intent {
     let me = belief.pose.position;
     let Some(ball) = belief.ball else {
         let middle = stretch.from + stretch.vector() * 0.5;
-        return Drive::shy(middle, belief.pose.heading).into();
+        return Drive::avoiding(middle, belief.pose.heading).into();
     };
     let face = me.direction_to(ball.position);
     if let Some(crossing) = coming(&ball, stretch) {
         let place = stop(belief, &ball, crossing);
         return Drive { dribbler: 1.0, ..Drive::bold(place, face) }.into();
     }
-    Drive::shy(threatened(belief, &ball, stretch), face).into()
+    Drive::avoiding(threatened(belief, &ball, stretch), face).into()
 }
 
 /// Point at which an approaching ball crosses the stretch.
@@ -51,8 +51,8 @@ fn stop(belief: &Belief, ball: &Ball, crossing: Point<Field>) -> Point<Field> {
         reach: BALL_AT,
         until,
     };
-    match question.find(&LIMITS, Wish::Safest) {
-        Verdict::Meets(meeting) if meeting.slack() > 0.0 => meeting.place,
+    match question.find(&LIMITS, Request::Safest) {
+        Verdict::Meets(interception_point) if interception_point.slack() > 0.0 => interception_point.place,
         // Too late to stop there: go where it crosses, as fast as possible; a body on the ball's path is
         // enough.
         _ => crossing,

@@ -10,7 +10,7 @@ use rules::League;
 
 use crate::belief::Belief;
 use crate::body::Intent;
-use crate::body::omni::{BALL_AT, Drive, Manner};
+use crate::body::omni::{BALL_AT, Drive, DriveMode};
 use crate::skills::Step;
 use crate::skills::wheels::get_ball::get_ball;
 use crate::skills::wheels::kick::kick_held;
@@ -30,8 +30,8 @@ pub fn dribble(belief: &Belief, pose: Pose<Field>) -> Intent {
 
 /// The case language's `dribble_to`: the ball comes within `tolerance` of the place.
 pub fn carry_to(belief: &Belief, to: Point<Field>, tolerance: f32) -> Step {
-    let mouth = belief.mouth();
-    if mouth.distance(to) <= tolerance {
+    let dribbler_point = belief.dribbler_point();
+    if dribbler_point.distance(to) <= tolerance {
         return Step::Done;
     }
     let me = belief.pose.position;
@@ -75,7 +75,7 @@ pub fn let_go_in_time(belief: &mut Belief, intent: Intent) -> Intent {
         None => intent,
     };
     let Intent::Drive(drive) = intent else { return intent };
-    if drive.manner != Manner::Holding || intent.lets_go() {
+    if drive.mode != DriveMode::Holding || intent.lets_go() {
         return intent;
     }
     let left = limit(belief.league()) - SPARE - belief.carried();
@@ -99,7 +99,7 @@ fn break_free(belief: &Belief, drive: Drive) -> Drive {
 
 /// Whether the robot turns towards the ball's target.
 fn aims(intent: &Intent) -> bool {
-    matches!(intent, Intent::Drive(drive) if drive.manner == Manner::Holding && drive.kick != OmniKick::None)
+    matches!(intent, Intent::Drive(drive) if drive.mode == DriveMode::Holding && drive.kick != OmniKick::None)
 }
 
 /// Distance over which that league's rules let a robot dribble, m.
@@ -145,8 +145,8 @@ const TURNS_FROM: f32 = 0.2;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::picture::Picture;
     use crate::skills::wheels::testing::belief;
+    use crate::snapshot::HostSnapshot;
     use geometry::Twist;
     use protocol::robot_io::{Health, SensorFrame};
     use protocol::{Instant, RobotId};
@@ -167,9 +167,9 @@ mod tests {
     fn holding(ms: u64) -> Belief {
         let mut b = belief((0.0, 0.0, 0.0), (BALL_AT, 0.0));
         let sensors = holding_sensors();
-        let picture = Picture::new(RobotId::new(1).unwrap());
+        let snapshot = HostSnapshot::new(RobotId::new(1).unwrap());
         for at in [0, ms] {
-            b.show(Instant(at * 1000), &picture, &sensors);
+            b.show(Instant(at * 1000), &snapshot, &sensors);
         }
         b
     }
@@ -224,10 +224,10 @@ mod tests {
     fn a_ball_that_two_robots_dispute_is_kicked_as_it_is_touched_but_not_at_the_own_goal() {
         let disputed = |heading: f32, ms: u64| {
             let mut b = belief((0.0, 0.0, heading), (BALL_AT, 0.0));
-            let picture = Picture::new(RobotId::new(1).unwrap());
+            let snapshot = HostSnapshot::new(RobotId::new(1).unwrap());
             let sensors = holding_sensors();
-            b.show(Instant(0), &picture, &sensors);
-            let _ = b.opponents.push(b.mouth() + Vector::polar(0.1, b.pose.heading));
+            b.show(Instant(0), &snapshot, &sensors);
+            let _ = b.opponents.push(b.dribbler_point() + Vector::polar(0.1, b.pose.heading));
             for at in [0, ms] {
                 b.dispute(Instant(at * 1000));
             }

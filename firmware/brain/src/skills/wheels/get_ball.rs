@@ -65,7 +65,7 @@ pub fn approach(belief: &Belief, ball: &Ball, face: Angle, speed: f32) -> Approa
     }
     let stand_off = if belief.is_placing() { PLACING_STAND_OFF } else { STAND_OFF };
     let behind = ball.position - ahead * (BALL_AT + stand_off) + ball.velocity * LEAD;
-    let drive = Drive::shy(behind, face);
+    let drive = Drive::avoiding(behind, face);
     // Slow at its end where there is time, or what the robot is behind in time takes it past.
     let settles = SETTLES * belief.pose.position.distance(behind) + SIDESTEP;
     Approach::Around(Drive { speed: if belief.is_placing() { settles } else { drive.speed }, ..drive })
@@ -97,7 +97,7 @@ pub(super) fn meet(belief: &Belief, ball: &Ball) -> Drive {
         until,
     };
     let place = match question.find_within(&LIMITS, LOOKS_MAX) {
-        Verdict::Meets(meeting) => meeting.place,
+        Verdict::Meets(interception_point) => interception_point.place,
         Verdict::Chase { place, .. } => place,
     };
     receive_at(belief, ball, place)

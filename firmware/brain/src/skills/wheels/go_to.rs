@@ -8,7 +8,7 @@ use crate::body::omni::Drive;
 
 /// Drives there, around all obstacles and around the ball.
 pub fn go_to(pose: Pose<Field>) -> Intent {
-    Drive::shy(pose.position, pose.heading).into()
+    Drive::avoiding(pose.position, pose.heading).into()
 }
 
 /// Stays away from the ball, facing it: backs off where it is near.
@@ -21,7 +21,7 @@ pub fn keep_off(belief: &Belief) -> Intent {
     if me.distance(ball.position) > OFF {
         return Intent::Stand { face: Some(face) };
     }
-    Drive::shy(ball.position + away * (OFF + 0.1), face).into()
+    Drive::avoiding(ball.position + away * (OFF + 0.1), face).into()
 }
 
 /// At this distance from the ball a robot does not touch it by accident, m.

@@ -157,7 +157,7 @@ pub fn place_ball(now: Instant, placement: &mut Placement, belief: &Belief, at: 
         }
         Placing::Leaving { facing } => {
             let straight = ball.position - Vector::polar(OFF, facing);
-            let room = belief.league().field().carpet().grown(-ROBOT_RADIUS);
+            let room = belief.league().field().surface().grown(-ROBOT_RADIUS);
             if room.contains(straight) {
                 return Drive { speed: LEAVE, ..Drive::bold(straight, facing) }.into();
             }
@@ -168,7 +168,7 @@ pub fn place_ball(now: Instant, placement: &mut Placement, belief: &Belief, at: 
                 return Drive { speed: LEAVE, ..Drive::bold(back, facing) }.into();
             }
             let inwards = (Point::new(0.0, 0.0) - ball.position).clamped(OFF);
-            Drive::shy(ball.position + inwards, facing).into()
+            Drive::avoiding(ball.position + inwards, facing).into()
         }
         Placing::Done => Intent::Stand { face: Some(me.direction_to(ball.position)) },
     }
@@ -185,7 +185,7 @@ fn next(
     let off = ball.position.distance(at);
     let slow = ball.velocity.norm() < AT_REST;
     let clear = belief.pose.position.distance(ball.position) - BALL_AT;
-    let at_front = belief.mouth().distance(ball.position) < AT_FRONT;
+    let at_front = belief.dribbler_point().distance(ball.position) < AT_FRONT;
     let age = now.since(placement.since);
     let heading = belief.pose.heading;
     let aligned = kicks.is_none_or(|face| (face - heading).abs() < KICKS_WITHIN);
@@ -219,7 +219,7 @@ fn next(
         }
         Placing::Pulling { felt, out, loose } => {
             let gone = now.since(felt);
-            let arrived = belief.mouth().distance(at) < THERE && belief.velocity.norm() < AT_REST;
+            let arrived = belief.dribbler_point().distance(at) < THERE && belief.velocity.norm() < AT_REST;
             let free = placement.wall(belief, ball, at).is_none();
             if arrived {
                 return Placing::Letting;

@@ -22,7 +22,7 @@ pub fn receive(belief: &Belief, at: Point<Field>, then: Option<Point<Field>>) ->
             None => Intent::Stand { face: None },
         };
     }
-    let Some(ball) = belief.ball else { return Drive::shy(at, belief.pose.heading).into() };
+    let Some(ball) = belief.ball else { return Drive::avoiding(at, belief.pose.heading).into() };
     if !comes(belief, &ball, at) {
         let resting = ball.velocity.norm() < RESTS;
         if resting && ball.position.distance(at) < FETCHED {
@@ -33,7 +33,7 @@ pub fn receive(belief: &Belief, at: Point<Field>, then: Option<Point<Field>>) ->
         }
         // Its dribbler opening waits where the ball shall come.
         let face = at.direction_to(ball.position);
-        return Drive::shy(at - Vector::polar(BALL_AT, face), face).into();
+        return Drive::avoiding(at - Vector::polar(BALL_AT, face), face).into();
     }
     let line = Segment::new(ball.position, ball.rest);
     // The ordered place, or where the line passes it.
@@ -78,7 +78,7 @@ fn onwards(belief: &Belief, then: Point<Field>) -> (OmniKick, f32) {
     let goal = field.goal_center(belief.game.defending.opposite());
     // At their goal at full speed, else as a pass.
     let shot = then.distance(goal) < 0.5 * field.goal_width + 0.1;
-    let speed = if shot { SHOT } else { pass_speed(belief.mouth().distance(then)) };
+    let speed = if shot { SHOT } else { pass_speed(belief.dribbler_point().distance(then)) };
     (OmniKick::Flat(speed), speed)
 }
 
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn before_the_pass_its_mouth_waits_at_the_meeting_point_facing_the_ball() {
+    fn before_the_pass_its_mouth_waits_at_the_interception_point_point_facing_the_ball() {
         let waiting = drive(receive(&belief((1.0, 1.0, 0.0), (-1.0, 0.0)), Point::new(1.0, 0.0), None));
         assert!(waiting.to.distance(Point::new(1.0 + BALL_AT, 0.0)) < 1e-5, "{waiting:?}");
         assert!((waiting.face - Angle::HALF_TURN).abs() < 1e-5);

@@ -15,7 +15,7 @@ use crate::skills::wheels::kick::kick_held;
 
 /// With the ball held: shoots as soon as a gap is wide enough, or time is up.
 pub fn shoot(belief: &Belief, attacked: GoalEnd, patient: bool) -> Intent {
-    let (at, room) = target(belief, belief.mouth(), attacked);
+    let (at, room) = target(belief, belief.dribbler_point(), attacked);
     let open = room > GAP || !patient;
     kick_held(belief, at, if open { OmniKick::Flat(SHOT) } else { OmniKick::None })
 }
@@ -109,7 +109,7 @@ mod tests {
     fn the_shot_goes_where_the_keeper_is_not() {
         let mut b = belief((2.5, 0.0, 0.0), (2.6, 0.0));
         let _ = b.opponents.push(Point::new(4.3, 0.2));
-        let (at, room) = target(&b, b.mouth(), GoalEnd::Positive);
+        let (at, room) = target(&b, b.dribbler_point(), GoalEnd::Positive);
         assert!(at.y() < -0.2 && room > 0.1, "{at:?} {room}");
     }
 
@@ -117,6 +117,6 @@ mod tests {
     fn who_stands_behind_the_ball_is_in_nobodys_way() {
         let mut b = belief((2.5, 0.0, 0.0), (2.6, 0.0));
         let _ = b.opponents.push(Point::new(2.3, 0.0));
-        assert_eq!(target(&b, b.mouth(), GoalEnd::Positive).1, ROOM_ENOUGH);
+        assert_eq!(target(&b, b.dribbler_point(), GoalEnd::Positive).1, ROOM_ENOUGH);
     }
 }

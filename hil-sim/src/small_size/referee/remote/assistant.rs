@@ -12,8 +12,8 @@ use rules::{Colour, Phase, limits};
 use ssl::event::GameEventType;
 
 use super::super::event::Restart;
+use super::super::field_staff::WorldOrder;
 use super::super::flow::is_reachable;
-use super::super::people::WorldOrder;
 use super::super::scene::COLOURS;
 use super::{RemoteMatch, places};
 use crate::small_size::{Robot, World};

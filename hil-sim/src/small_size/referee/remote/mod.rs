@@ -36,7 +36,7 @@ pub struct RemoteMatch {
     stage: Stage,
     command: Option<Command>,
     newest: Option<packet::Referee>,
-    heard: Instant,
+    received: Instant,
     now: Instant,
     accounts: Accounts,
     ball_at_command: Point<Field>,
@@ -63,7 +63,7 @@ impl RemoteMatch {
             stage: Stage::FirstHalfPre,
             command: None,
             newest: None,
-            heard: Instant(0),
+            received: Instant(0),
             now: Instant(0),
             accounts: Accounts { yellow: account(), blue: account() },
             ball_at_command: Point::default(),
@@ -73,14 +73,14 @@ impl RemoteMatch {
 
     /// A packet received at `now`, with the ball here; true where it brings a new command. A packet of
     /// another sender than the followed one is ignored until that one has been silent for [`SILENCE`].
-    pub fn hear(&mut self, packet: packet::Referee, now: Instant, ball: Point<Field>) -> bool {
+    pub fn receive(&mut self, packet: packet::Referee, now: Instant, ball: Point<Field>) -> bool {
         let before = self.newest.as_ref();
         if before.is_some_and(|before| before.source_identifier != packet.source_identifier)
             && !self.is_silent(now)
         {
             return false;
         }
-        self.heard = now;
+        self.received = now;
         if let Some(stage) = Stage::ALL.into_iter().find(|stage| wire::stage(*stage) as i32 == packet.stage) {
             self.stage = stage;
         }
@@ -98,7 +98,7 @@ impl RemoteMatch {
                 0 => 0,
                 given => packet.packet_timestamp.saturating_sub(given),
             };
-            self.state.hear(command, now.0.saturating_sub(age), Some(ball));
+            self.state.receive(command, now.0.saturating_sub(age), Some(ball));
             self.ball_at_command = ball;
             self.command = Some(command);
             self.commands += 1;
@@ -130,7 +130,7 @@ impl RemoteMatch {
 
     /// Whether nothing was received for [`SILENCE`], or ever.
     pub fn is_silent(&self, now: Instant) -> bool {
-        self.newest.is_none() || now.since(self.heard) > SILENCE
+        self.newest.is_none() || now.since(self.received) > SILENCE
     }
 
     /// The end at which that team's own goal stands now.
@@ -180,7 +180,7 @@ impl RemoteMatch {
         let told = self.newest.as_ref()?.designated_position?;
         let place = Point::new(told.x * 0.001, told.y * 0.001);
         // A position outside the field surface is refused, whatever the packet contains.
-        (place.is_finite() && self.field.carpet().contains(place)).then_some(place)
+        (place.is_finite() && self.field.surface().contains(place)).then_some(place)
     }
 
     /// Number of robots that team may have on the field now; `None` until the controller has sent it.

@@ -50,7 +50,7 @@ fn a_shot_goes_towards_the_goal_and_a_chance_between_the_posts() {
 }
 
 #[test]
-fn a_pass_arrives_at_a_mate_half_a_metre_away_and_a_loss_at_an_opponent() {
+fn a_pass_arrives_at_a_teammate_half_a_metre_away_and_a_loss_at_an_opponent() {
     let mut stage = in_play();
     // Yellow's kick-off that blue's robot 1 got.
     let metrics = stage.referee.metrics();
@@ -94,5 +94,5 @@ fn offences_are_counted_by_team_and_kind() {
     let offences = &stage.referee.metrics().offences;
     assert_eq!(offences.team(Colour::Yellow).collect::<Vec<_>>(), [(Kind::BallTooFast, 2)]);
     assert_eq!(offences.team(Colour::Blue).count(), 0);
-    assert_eq!(Kind::BallTooFast.word(), "bot_kicked_ball_too_fast");
+    assert_eq!(Kind::BallTooFast.label(), "bot_kicked_ball_too_fast");
 }

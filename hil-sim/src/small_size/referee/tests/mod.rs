@@ -4,14 +4,14 @@
 //! commit no offence unless a test moves them; the ball keeps its velocity. Steps of 10 ms.
 
 mod areas;
-mod calm;
-mod desk;
+mod event_loop;
 mod goals;
 mod metrics;
 mod penalties;
 mod play;
 mod robust;
 mod run;
+mod stop_rules;
 mod wire;
 mod world;
 
@@ -36,7 +36,7 @@ struct Stage {
     obedient: bool,
     orders: Vec<WorldOrder>,
     /// A game state that is updated by the packets alone.
-    heard: GameState,
+    received: GameState,
     counter: Option<u32>,
     action_left: i64,
     packets: Vec<ssl::referee::Referee>,
@@ -77,7 +77,7 @@ fn stage_with(settings: RefereeSettings) -> Stage {
         obeyed: true,
         obedient: false,
         orders: Vec::new(),
-        heard: GameState::new(),
+        received: GameState::new(),
         counter: None,
         action_left: 0,
         packets: Vec::new(),
@@ -196,12 +196,12 @@ impl Stage {
                 self.obey(order);
             }
         }
-        self.hear_packets();
+        self.receive_packets();
         let after = self.referee.limits;
-        self.heard.tick(self.now.0, self.ball.map(|ball| ball.position), &after);
+        self.received.tick(self.now.0, self.ball.map(|ball| ball.position), &after);
         assert_eq!(self.referee.off_graph(), 0, "off the graph at {:?}", self.now);
         assert_eq!(
-            self.heard.phase(),
+            self.received.phase(),
             self.phase(),
             "who hears the packets alone disagrees at {:?}",
             self.now
@@ -257,23 +257,26 @@ impl Stage {
     }
 
     /// Follows the commands of the packets, each once.
-    fn hear_packets(&mut self) {
+    fn receive_packets(&mut self) {
         while let Some(packet) = self.referee.poll_packet() {
             let new = self.counter != Some(packet.command_counter);
             self.counter = Some(packet.command_counter);
             if let Some(command) = wire::from_wire(packet.command).filter(|_| new) {
                 let ball = self.ball.map(|ball| ball.position);
-                let heard = self.heard.hear(command, packet.command_timestamp, ball);
-                use rules::state::Heard;
-                assert!(matches!(heard, Heard::Followed | Heard::Repeated), "{heard:?} for {command:?}");
+                let received = self.received.receive(command, packet.command_timestamp, ball);
+                use rules::state::Received;
+                assert!(
+                    matches!(received, Received::Followed | Received::Repeated),
+                    "{received:?} for {command:?}"
+                );
             }
             // More time than before: the kicker was disturbed and has its time again.
             let action_left = packet.current_action_time_remaining.unwrap();
             if !new
                 && action_left > self.action_left
-                && let Some(command) = self.heard.command()
+                && let Some(command) = self.received.command()
             {
-                self.heard.hear(command, packet.packet_timestamp, None);
+                self.received.receive(command, packet.packet_timestamp, None);
             }
             self.action_left = action_left;
             self.packets.push(packet);

@@ -54,11 +54,11 @@ fn the_penalty_begins_when_keeper_and_others_stand_right_and_no_sooner() {
     stage.until(Phase::PreparePenalty(Colour::Yellow), 20.0);
     // One after the other; the ball lies at (−1.5, 0), the goal line is at 4.5.
     stage.put(blue(0), at(4.40, 0.0));
-    let waits_for = |stage: &mut Stage, who: Who, word: &str| {
+    let waits_for = |stage: &mut Stage, who: Who, label: &str| {
         stage.run(30.0);
         assert_eq!(stage.phase(), Phase::PreparePenalty(Colour::Yellow));
         let obstacle = stage.referee.blocked().unwrap().obstacle;
-        assert_eq!((obstacle.who(), obstacle.reason.word()), (Some(who), word));
+        assert_eq!((obstacle.who(), obstacle.reason.label()), (Some(who), label));
     };
     stage.put(blue(2), at(-3.0, -1.0));
     stage.put(yellow(2), at(-3.0, -2.0));

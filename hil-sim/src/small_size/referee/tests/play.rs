@@ -282,7 +282,7 @@ fn a_team_that_failed_five_times_places_no_more() {
     stage.referee.accounts.yellow.placement_failures = 4;
     stage.run(30.1);
     let yellow = &stage.referee.accounts().yellow;
-    assert!(yellow.placement_barred && !yellow.places());
+    assert!(yellow.placement_double_touch_blocked && !yellow.places());
 }
 
 #[test]

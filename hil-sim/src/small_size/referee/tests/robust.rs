@@ -62,7 +62,7 @@ fn robots_where_they_must_not_be_hold_the_match_up_for_ever_and_the_referee_says
     assert_eq!(metrics.running_s, 0.0);
     assert!(metrics.blocked_s() > 280.0, "{:?}", metrics.blocks);
     let block = &metrics.blocks[0];
-    assert_eq!((block.phase, block.obstacle.reason.word()), (Phase::Stop, "robot_near_ball"));
+    assert_eq!((block.phase, block.obstacle.reason.label()), (Phase::Stop, "robot_near_ball"));
     assert!(stage.orders.is_empty(), "{:?}", stage.orders);
 }
 
@@ -87,7 +87,7 @@ fn a_ball_that_has_to_be_put_down_holds_the_match_up_until_a_person_does_it() {
     stage.move_ball(at(2.0, 1.0));
     let mut stage = ends_in_time(stage);
     assert_eq!(stage.referee.metrics().running_s, 0.0);
-    assert_eq!(stage.referee.metrics().blocks[0].obstacle.reason.word(), "ball_not_put");
+    assert_eq!(stage.referee.metrics().blocks[0].obstacle.reason.label(), "ball_not_put");
     // Repeated until it succeeds: the first order was lost.
     stage.orders.clear();
     stage.obeyed = true;

@@ -200,7 +200,7 @@ fn every_event_is_told_by_the_leagues_type_with_its_evidence_but_our_own_three()
         assert_eq!(told.created_timestamp, Some(1_009));
         // The league's name of the type, in lower case, is ours.
         let name = format!("{:?}", GameEventType::try_from(number).unwrap()).to_lowercase();
-        assert_eq!(name, kind.word().replace('_', ""), "{kind:?}");
+        assert_eq!(name, kind.label().replace('_', ""), "{kind:?}");
         // The event is the one that the type names: both have the same name.
         let event = format!("{:?}", told.event.unwrap());
         let event = event.split('(').next().unwrap().to_lowercase();

@@ -100,9 +100,10 @@ fn rough(game: &Match, who: Who, home: Point<Field>) -> Order {
         Phase::Kickoff(team) | Phase::FreeKick(team) | Phase::Penalty(team) => team == who.colour,
         _ => false,
     };
-    let mates = game.world.robots().iter().filter(|robot| robot.present && robot.who.colour == who.colour);
+    let teammates =
+        game.world.robots().iter().filter(|robot| robot.present && robot.who.colour == who.colour);
     let nearest =
-        mates.min_by(|a, b| a.pose.position.distance(ball).total_cmp(&b.pose.position.distance(ball)));
+        teammates.min_by(|a, b| a.pose.position.distance(ball).total_cmp(&b.pose.position.distance(ball)));
     if !plays || nearest.is_none_or(|robot| robot.who != who) {
         return global(((home - place) * 2.0).clamped(1.2), 0.0);
     }

@@ -50,7 +50,7 @@ impl Lines {
         if touched || scene.now.since(at).as_secs_f32() > FLIGHT {
             return None;
         }
-        if scene.game.field.carpet().distance_to(scene.ball.position) > limits::BALL_RADIUS {
+        if scene.game.field.surface().distance_to(scene.ball.position) > limits::BALL_RADIUS {
             return Some(Event { at: scene.now, ..event });
         }
         self.sent_out = Some((event, at));

@@ -5,10 +5,10 @@
 mod areas;
 mod ball;
 mod bodies;
-mod calm;
 mod episodes;
 mod lines;
 mod penalty;
+mod stop_rules;
 mod touches;
 
 use geometry::{Field, Point};
@@ -18,11 +18,11 @@ use super::scene::Scene;
 use areas::Areas;
 use ball::BallWatch;
 use bodies::Bodies;
-use calm::Calm;
 use episodes::Episodes;
 use lines::Lines;
 use penalty::PenaltyWatch;
 use protocol::Who;
+use stop_rules::StopRules;
 use touches::Touches;
 
 /// All monitors.
@@ -32,7 +32,7 @@ pub(super) struct Watch {
     lines: Lines,
     ball: BallWatch,
     areas: Areas,
-    calm: Calm,
+    stop_rules: StopRules,
     bodies: Bodies,
     penalty: PenaltyWatch,
 }
@@ -45,7 +45,7 @@ impl Watch {
         self.lines.look(scene, &self.touches, events);
         self.ball.look(scene, &self.touches, events);
         self.areas.look(scene, events);
-        self.calm.look(scene, events);
+        self.stop_rules.look(scene, events);
         self.bodies.look(scene, events);
     }
 
@@ -53,7 +53,7 @@ impl Watch {
     pub(super) fn command_given(&mut self) {
         self.ball.command_given();
         self.areas.command_given();
-        self.calm.command_given();
+        self.stop_rules.command_given();
         self.penalty.command_given();
     }
 

@@ -12,7 +12,7 @@ fn codes_of(errors: &[SimulatorError]) -> Vec<&str> {
 }
 
 #[test]
-fn every_code_of_robots_commands_has_its_cause_and_a_message_with_the_mend() {
+fn every_code_of_robots_commands_has_its_cause_and_a_message_with_the_hint() {
     let kick =
         |speed, angle| RobotCommand { kick_speed: Some(speed), kick_angle: Some(angle), ..ahead(1, 0.0) };
     let dribble = |rpm| RobotCommand { dribbler_speed: Some(rpm), ..ahead(1, 0.0) };
@@ -201,7 +201,7 @@ fn no_two_refusals_share_a_code() {
         Refusal::KickBackwards(0),
         Refusal::KickAngle { id: 0, asked: 0.0 },
         Refusal::DribblerBackwards(0),
-        Refusal::OutsideHall(""),
+        Refusal::OutsideServerLoop(""),
         Refusal::Pace(0.0),
         Refusal::Specs(range.clone()),
         Refusal::Geometry(fault),

@@ -113,7 +113,7 @@ fn the_document_tells_every_quantity_with_its_bounds_and_law() {
     let document = include_str!("../../../../../docs/fields.md");
     for quantity in DRAWS {
         let [low, high] = quantity.bounds;
-        let row = format!("| `{}` | {low}–{high} | {} |", quantity.name, quantity.law.word());
+        let row = format!("| `{}` | {low}–{high} | {} |", quantity.name, quantity.law.label());
         assert!(document.contains(&row), "docs/fields.md lacks: {row}");
     }
     for name in WorldChoice::names() {

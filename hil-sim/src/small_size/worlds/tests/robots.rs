@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::small_size::camera::Cameras;
-use crate::small_size::quirks::Profile;
+use crate::small_size::compatibility::Profile;
 use crate::small_size::referee::{InternalReferee, RefereeSettings};
 use rules::Colour;
 
@@ -190,7 +190,7 @@ fn cameras_see_bystanders_and_the_referee_does_not_count_them() {
     }
     let metrics = referee.metrics();
     for team in [Colour::Blue, Colour::Yellow] {
-        let many = metrics.offences.team(team).any(|(kind, _)| kind.word() == "too_many_robots");
+        let many = metrics.offences.team(team).any(|(kind, _)| kind.label() == "too_many_robots");
         assert!(!many, "{team:?}");
     }
     assert!(world.robots().iter().filter(|robot| robot.bystander).all(|robot| robot.present));

@@ -6,7 +6,7 @@ use ssl::vision::DetectionFrame;
 
 use super::*;
 use crate::small_size::camera::Cameras;
-use crate::small_size::quirks::Profile;
+use crate::small_size::compatibility::Profile;
 use crate::small_size::tests::six_a_side;
 
 /// Six robots a side, the ball, one camera over all.

@@ -35,7 +35,7 @@ pub struct Claim {
     pub paper: Judgement,
 }
 
-hil_sim::words! {
+hil_sim::labels! {
     /// Do numbers bear it out?
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
     #[serde(rename_all = "lowercase")]

@@ -10,7 +10,7 @@ use serde::Serialize;
 use crate::evaluation::comparison::Measure;
 use crate::evaluation::statistics::{Count, Sample, Test, against, normal, two_proportions, welch};
 use crate::evaluation::tables::{Extent, TableRow};
-use crate::trial::approach_word;
+use crate::trial::approach_label;
 
 /// Two numbers of a claim.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -172,7 +172,7 @@ impl<'a> Rows<'a> {
     ) -> Option<Point> {
         let (a, b) = (self.row(table, scenario, first)?, self.row(table, scenario, second)?);
         let values = (measure.value(a)?, measure.value(b)?);
-        let (first, second) = (approach_word(first), approach_word(second));
+        let (first, second) = (approach_label(first), approach_label(second));
         let of = format!("scenario {scenario}");
         let point = Point::new(of, (first, values.0), (second, values.1), measure.test(a, b), wanted);
         Some(point.with_decimals(decimals(measure)))
@@ -189,7 +189,7 @@ impl<'a> Rows<'a> {
         let (a, b) = (self.row(table, first, approach)?, self.row(table, second, approach)?);
         let [first, second] = [first, second].map(|scenario| format!("scenario {scenario}"));
         let values = (measure.value(a)?, measure.value(b)?);
-        let of = approach_word(approach);
+        let of = approach_label(approach);
         let point =
             Point::new(of, (first, values.0), (second, values.1), measure.test(a, b), Wanted::Greater);
         Some(point.with_decimals(decimals(measure)))
@@ -207,7 +207,7 @@ impl<'a> Rows<'a> {
         let (a, b) = (self.effect(first, approaches)?, self.effect(second, approaches)?);
         let test = a.1.zip(b.1).and_then(|(x, y)| normal(a.0 - b.0, x + y));
         let [x, y] = names;
-        let [greater, less] = approaches.map(approach_word);
+        let [greater, less] = approaches.map(approach_label);
         let of = format!("{greater} - {less}");
         Some(Point::new(of, (x, a.0), (y, b.0), test, Wanted::Greater).with_decimals(decimals(first.2)))
     }
@@ -242,9 +242,9 @@ impl<'a> Rows<'a> {
         let (a, b) = (self.row(table, scenario, first)?, self.row(table, scenario, second)?);
         let (a, b) = (measure.sample(a)?, measure.sample(b)?);
         let b = Sample { mean: factor * b.mean, sd: b.sd.map(|sd| factor * sd), ..b };
-        let second = format!("{factor} x {}", approach_word(second));
+        let second = format!("{factor} x {}", approach_label(second));
         let of = format!("scenario {scenario}");
-        Some(Point::new(of, (approach_word(first), a.mean), (second, b.mean), welch(a, b), Wanted::Greater))
+        Some(Point::new(of, (approach_label(first), a.mean), (second, b.mean), welch(a, b), Wanted::Greater))
     }
 
     /// Robot B's backing up against robot A's.
@@ -295,7 +295,7 @@ impl<'a> Rows<'a> {
         };
         let (a, b) = (of(first)?, of(second)?);
         let share = |count: Count| Some(100.0 * count.share()?);
-        let [x, y] = [first, second].map(approach_word);
+        let [x, y] = [first, second].map(approach_label);
         let (x, y) = ((x, share(a)?), (y, share(b)?));
         let name = format!("scenario {scenario}");
         Some(Point::new(name, x, y, two_proportions(a, b), Wanted::Greater).with_decimals(1))

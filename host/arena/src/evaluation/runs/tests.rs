@@ -13,14 +13,14 @@ use crate::evaluation::plan::{Cell, Profile};
 use crate::evaluation::row::{csv_hash, to_csv};
 
 /// A directory of a test's own, removed at the end of the test.
-struct Folder(PathBuf);
+struct Directory(PathBuf);
 
-impl Folder {
+impl Directory {
     fn new(name: &str) -> Self {
-        let folder = std::env::temp_dir().join(format!("onetwo-evaluation-{name}-{}", std::process::id()));
-        let _ = fs::remove_dir_all(&folder);
-        fs::create_dir_all(&folder).unwrap();
-        Self(folder)
+        let directory = std::env::temp_dir().join(format!("onetwo-evaluation-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&directory);
+        fs::create_dir_all(&directory).unwrap();
+        Self(directory)
     }
 
     fn file(&self, shard: Shard) -> PathBuf {
@@ -28,7 +28,7 @@ impl Folder {
     }
 }
 
-impl Drop for Folder {
+impl Drop for Directory {
     fn drop(&mut self) {
         let _ = fs::remove_dir_all(&self.0);
     }
@@ -61,21 +61,21 @@ fn hash(rows: &[TrialRow]) -> String {
 
 const GO_ON: &(dyn Fn(Progress) -> ControlFlow<()> + Sync) = &|_| ControlFlow::Continue(());
 
-fn played(folder: &Folder, shard: Shard, threads: usize) -> Vec<TrialRow> {
+fn played(directory: &Directory, shard: Shard, threads: usize) -> Vec<TrialRow> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| evaluation().play_shard(shard, &folder.file(shard), GO_ON)).unwrap()
+    pool.install(|| evaluation().play_shard(shard, &directory.file(shard), GO_ON)).unwrap()
 }
 
 #[test]
 fn threads_shards_and_interrupts_change_no_byte() {
-    let folder = Folder::new("same");
-    let one = played(&folder, Shard::WHOLE, 1);
+    let directory = Directory::new("same");
+    let one = played(&directory, Shard::WHOLE, 1);
     assert_eq!(one.iter().map(|row| row.trial).collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5]);
     assert_eq!((one[0].seed, one[1].seed), (one[2].seed, one[3].seed), "common random numbers");
     let expected = hash(&one);
-    assert_eq!(hash(&played(&Folder::new("two"), Shard::WHOLE, 2)), expected);
+    assert_eq!(hash(&played(&Directory::new("two"), Shard::WHOLE, 2)), expected);
 
-    let thirds = Folder::new("thirds");
+    let thirds = Directory::new("thirds");
     let shards = [1, 2, 3].map(|i| Shard::new(i, 3).unwrap());
     let files = shards.map(|shard| {
         assert_eq!(played(&thirds, shard, 2).len(), 2);
@@ -87,7 +87,7 @@ fn threads_shards_and_interrupts_change_no_byte() {
     assert!(lacking.starts_with("2 of 6 trials are missing, the first is 2;"), "{lacking}");
 
     // Stopped after two trials, killed in the middle of a line, continued.
-    let torn = Folder::new("torn");
+    let torn = Directory::new("torn");
     let file = torn.file(Shard::WHOLE);
     let stop = |progress: Progress| {
         if progress.done < 2 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
@@ -113,8 +113,8 @@ fn threads_shards_and_interrupts_change_no_byte() {
 
 #[test]
 fn another_evaluation_is_not_mixed_in() {
-    let folder = Folder::new("another");
-    let file = folder.file(Shard::WHOLE);
+    let directory = Directory::new("another");
+    let file = directory.file(Shard::WHOLE);
     let small = |seed| {
         let mut small = evaluation();
         small.plan.cells.truncate(1);

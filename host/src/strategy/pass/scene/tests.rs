@@ -29,7 +29,7 @@ fn all_close(are: &[f32], by_hand: &[f64]) {
 }
 
 #[test]
-fn a_pass_beside_an_opponent_and_a_mate_by_hand() {
+fn a_pass_beside_an_opponent_and_a_teammate_by_hand() {
     let ours = [(-0.1, 0.0), (2.5, -2.0), (3.5, -1.5)];
     let rating = rated((0.0, 0.0), (2.9, -1.5), &ours, &[(4.3, -0.1), (2.0, 0.5)]);
     // The ball leaves with 3.367840 m/s and is there after 1.405585 s; the receiver drives 0.640312 m: 2
@@ -38,12 +38,12 @@ fn a_pass_beside_an_opponent_and_a_mate_by_hand() {
     all_close(&[speed, rating.ball_time, rating.receiver_time], &[3.367_840, 1.405_585, 0.855_445]);
     // No opponent is there within 0.6 s more (likely(6) = 0.997527); number 0, their keeper, is 0.155686 s
     // late for the ball.
-    assert_eq!(rating.rival, None);
+    assert_eq!(rating.model, None);
     let interceptor = rating.interceptor.unwrap();
     assert_eq!(interceptor.id.number(), 0);
     all_close(&[interceptor.margin], &[0.155_686]);
     // The teammate is 0.6 m off: 0.1 m more than its margin.
-    assert_eq!(rating.spoiler.0, Spoiler::Mate);
+    assert_eq!(rating.spoiler.0, Spoiler::Teammate);
     all_close(&rating.receive_factors, &[0.997_527, 0.825_902, 0.999_984, 0.999_991, 0.660_756]);
     // The gap beside the keeper: 9.216°, its middle 0.274680 m below the goal's; 2.015 m at 6.24 m/s take
     // 0.364477 s.

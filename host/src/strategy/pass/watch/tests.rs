@@ -90,10 +90,10 @@ fn a_ball_that_stops_at_the_receivers_mouth_is_received_in_time() {
 }
 
 #[test]
-fn a_ball_that_a_mate_stops_is_the_teams_but_not_the_receivers() {
+fn a_ball_that_a_teammate_stops_is_the_teams_but_not_the_receivers() {
     let play = Play::new(rolling((1.0, 0.0), 1.2)).with(who(Colour::Blue, 4), (1.31, 0.0));
     let verdict = play.verdict();
-    let Verdict::ByMate { by, off } = verdict else { panic!("{verdict:?}") };
+    let Verdict::ByTeammate { by, off } = verdict else { panic!("{verdict:?}") };
     assert!(by.number() == 4 && (off - 0.8).abs() < 0.03 && verdict.is_success());
 }
 

@@ -43,11 +43,11 @@ pub(super) fn fetch(
 
 /// On the way to behind a ball at a wall: past it on the side that lies farther from the wall.
 fn around(belief: &Belief, ball: Point<Field>, face: Angle, drive: Drive) -> Drive {
-    let carpet = belief.league().field().carpet();
+    let surface = belief.league().field().surface();
     let ahead = Vector::<Field>::polar(1.0, face);
     let left = Vector::new(-ahead.y(), ahead.x());
     let (one, other) = (ball + left * ASIDE, ball - left * ASIDE);
-    let (near, far) = (carpet.distance_to(one), carpet.distance_to(other));
+    let (near, far) = (surface.distance_to(one), surface.distance_to(other));
     let past = belief.pose.position - ball;
     let inwards = if near < far { left } else { -left };
     if near.max(far) < -NARROW || past.dot(ahead) < 0.0 || past.dot(inwards) > GOES_BY {
@@ -66,7 +66,7 @@ pub(super) fn pull(belief: &Belief, at: Point<Field>, out: Option<Angle>, gentle
     let me = belief.pose.position;
     let Some(out) = out else {
         // Facing away from the place; at the end the heading stays.
-        let far = belief.mouth().distance(at) > KEEPS_HEADING;
+        let far = belief.dribbler_point().distance(at) > KEEPS_HEADING;
         let face = if far { at.direction_to(me) } else { belief.pose.heading };
         // Sideways a roller holds less than towards the robot.
         let share = if (face - belief.pose.heading).abs() > TURNS { SIDEWAYS } else { 1.0 };
@@ -162,7 +162,7 @@ fn stands(field: &FieldSpec, spot: Point<Field>, room: f32) -> bool {
     let body = BODY + room;
     let goal = spot.x().abs() > 0.5 * field.length - body
         && spot.y().abs() < 0.5 * field.goal_width + field.goal_wall + body;
-    !goal && field.carpet().grown(-body).contains(spot)
+    !goal && field.surface().grown(-body).contains(spot)
 }
 
 /// From ball to the centre of who goes past it, m, and from where on it is past.

@@ -1,0 +1,145 @@
+//! `actuation`: actuation: turns an intent into actuator orders; legs directly, wheels through drivetrain,
+//! governor and kinematics.
+
+use geometry::Twist;
+use motion::omni::Omni;
+use protocol::Instant;
+use protocol::robot_io::{ActuatorFrame, SensorFrame};
+use rules::League;
+
+use crate::belief::Belief;
+use crate::body::kind::{self, Kind};
+use crate::body::omni::Drivetrain;
+use crate::body::{Intent, legged};
+use crate::governor::{Circumstances, Governor, Reasons, Ruling, Why};
+use crate::hosted::Hosted;
+use crate::teammates::Teammates;
+
+/// Actuation of one body, with its state.
+#[allow(clippy::large_enum_variant, reason = "one value a robot, and no heap to box it on")]
+#[derive(Clone, Debug)]
+pub enum Actuation {
+    /// Actuation of four legs.
+    Legs(kind::Legs),
+    /// Actuation of four wheels.
+    Wheels(kind::Wheels, Wheels),
+}
+
+/// Drivetrain of the wheels with the governor that limits it.
+#[derive(Clone, Debug)]
+pub struct Wheels {
+    drivetrain: Drivetrain,
+    governor: Governor,
+    kinematics: Omni,
+    ruling: Ruling,
+}
+
+impl Actuation {
+    /// Actuation for that league's robots.
+    pub fn of(league: League) -> Self {
+        match Kind::of(league) {
+            Kind::Legged(built) => Self::Legs(built),
+            Kind::Wheeled(built) => {
+                let wheels = Wheels {
+                    drivetrain: Drivetrain::default(),
+                    governor: Governor::new(league),
+                    kinematics: Omni::default(),
+                    ruling: Ruling::Allowed,
+                };
+                Self::Wheels(built, wheels)
+            }
+        }
+    }
+
+    /// Counts a frame of the host as received at `received`.
+    pub fn receive_host(&mut self, received: Instant) {
+        if let Self::Wheels(_, wheels) = self {
+            wheels.governor.receive_host(received);
+        }
+    }
+
+    /// Whether its steps are short (10 ms, docs/architecture.md §2.3), so that work is spread over several.
+    pub fn has_short_steps(&self) -> bool {
+        matches!(self, Self::Wheels(..))
+    }
+
+    /// On wheels: whether the last path led around something.
+    pub fn winds(&self) -> bool {
+        match self {
+            Self::Legs(_) => false,
+            Self::Wheels(_, wheels) => wheels.drivetrain.winds(),
+        }
+    }
+
+    /// Number of steps between two beacons of this body's robots (docs/architecture.md §5.1).
+    pub fn beacon_steps(&self) -> u8 {
+        match self {
+            Self::Legs(_) => 1,
+            Self::Wheels(..) => BEACON_STEPS,
+        }
+    }
+
+    /// The governor's decision on the motion wanted in the last step.
+    pub fn ruling(&self) -> Ruling {
+        match self {
+            Self::Legs(_) => Ruling::Allowed,
+            Self::Wheels(_, wheels) => wheels.ruling,
+        }
+    }
+
+    /// Why it brakes or is limited.
+    pub fn reasons(&self) -> Reasons {
+        match self.ruling() {
+            Ruling::Allowed => Reasons::default(),
+            Ruling::Limited(reasons) | Ruling::Braking(reasons) => reasons,
+        }
+    }
+
+    /// Whether the battery is too low to play.
+    pub fn is_battery_low(&self) -> bool {
+        self.reasons().has(Why::Battery)
+    }
+
+    /// The order that makes the body do `intent`, within its limits.
+    pub fn act(
+        &mut self,
+        now: Instant,
+        belief: &Belief,
+        teammates: &Teammates,
+        host: Option<&Hosted>,
+        sensors: &SensorFrame,
+        intent: Intent,
+    ) -> ActuatorFrame {
+        let wheels = match self {
+            Self::Legs(_) => return legged::actuate(now, belief, teammates, intent),
+            Self::Wheels(_, wheels) => wheels,
+        };
+        let wanted = wheels.drivetrain.actuate(now, belief, intent);
+        let circumstances = Circumstances {
+            now,
+            host: host.map(Hosted::hearing),
+            phase: host.and_then(Hosted::phase),
+            placed: host.map_or(sensors.pose.is_some(), |host| host.shows_me(now)),
+            health: &sensors.health,
+            odometry: sensors.odometry,
+        };
+        let (mut given, ruling) = wheels.governor.rule(&circumstances, &wanted);
+        wheels.ruling = ruling;
+        if wheels.governor.has_let_go() {
+            wheels.drivetrain.told(belief, Twist::default());
+            return ActuatorFrame::Released;
+        }
+        given.twist = wheels.kinematics.saturated(given.twist, RIM_MAX).0;
+        wheels.drivetrain.told(belief, given.twist);
+        ActuatorFrame::Omni {
+            wheels: wheels.kinematics.rims(given.twist),
+            dribbler: given.dribbler,
+            kick: given.kick,
+        }
+    }
+}
+
+/// 20 beacons a second, in steps of 10 ms (docs/architecture.md §2.3, §5.1).
+const BEACON_STEPS: u8 = 5;
+/// Largest rim speed ordered, m/s: below what wheels run free (the simulator's 6).
+const RIM_MAX: f32 = 5.0;

@@ -1,0 +1,96 @@
+//! Tests: drawn situations are those of their cases, and attempts are repeatable and reported correctly.
+
+use casebase::{PointMm, Symmetry};
+use hil_sim::Role;
+use rules::League;
+
+use super::*;
+
+fn case_trial(trials: u32) -> CaseTrial<'static> {
+    let config = TrialConfig::new(Scenario::Random, Configuration::DefenderGoalie, Approach::Cases, 0);
+    CaseTrial { base: config.base, names: config.names, settings: Settings::default(), trials, seed: 5 }
+}
+
+/// Authored case number of that name.
+fn number(case_trial: &CaseTrial<'_>, name: &str) -> usize {
+    (0..case_trial.base.len() / 4)
+        .find(|&n| case_trial.names.of(case_trial.case(n).unwrap().id()) == name)
+        .unwrap()
+}
+
+#[test]
+fn a_drawn_situation_lies_in_the_cores_of_its_scopes_and_nobody_touches_anybody() {
+    let case_trial = case_trial(0);
+    let (field, parameters) = (League::FourLegged.field(), Parameters::four_legged());
+    for case in case_trial.base.cases().filter(|case| case.symmetry() == Symmetry::Identity) {
+        for seed in 0..20 {
+            let layout = situation::draw(&case, Opposition::Playing, parameters, seed);
+            let away = PointMm::from(layout.ball);
+            assert!(case.ball_scope().exponent(away.minus(case.ball())) <= 0.2232 + 0.002, "{away:?}");
+            let opponents: Vec<_> = layout.opponents.iter().map(|placed| placed.pose.position).collect();
+            let places: Vec<_> =
+                layout.attackers.iter().map(|pose| pose.position).chain(opponents.clone()).collect();
+            for (i, a) in places.iter().enumerate() {
+                assert!(field.contains(*a) && a.distance(layout.ball) > 0.17, "{a:?}");
+                assert!(places[..i].iter().all(|b| a.distance(*b) > 0.25), "{places:?}");
+            }
+            for placed in layout.opponents {
+                let home = match placed.conduct {
+                    hil_sim::Conduct::Within(region) => region,
+                    _ => placed.role.home(parameters),
+                };
+                assert!(home.contains(placed.pose.position), "{:?}", placed.role);
+            }
+        }
+    }
+}
+
+#[test]
+fn opponents_have_the_role_whose_home_they_stand_in() {
+    let case_trial = case_trial(0);
+    let case = case_trial.case(number(&case_trial, "center/wing-switch")).unwrap();
+    let layout = situation::draw(&case, Opposition::Standing, Parameters::four_legged(), 1);
+    let roles: Vec<_> = layout.opponents.iter().map(|placed| placed.role).collect();
+    assert_eq!(roles, [Role::Midfield, Role::Defender]);
+    assert!(layout.opponents.iter().all(|placed| placed.conduct == hil_sim::Conduct::Standing));
+}
+
+#[test]
+fn an_attempt_is_its_seed_and_its_number_whoever_else_plays() {
+    let case_trial = case_trial(6);
+    let case = case_trial.case(number(&case_trial, "front/shot")).unwrap();
+    let all = case_trial.play(&case, Opposition::Playing, &|| ()).unwrap();
+    let fifth = case_trial.attempt(&case, Opposition::Playing, 5, &mut []).unwrap();
+    assert_eq!(all[5], fifth);
+    let other = CaseTrial { seed: 6, ..case_trial.clone() };
+    assert_ne!(other.play(&case, Opposition::Playing, &|| ()).unwrap(), all);
+}
+
+#[test]
+fn a_free_shot_is_retrieved_played_and_brings_the_ball_forward() {
+    let case_trial = case_trial(20);
+    let case = case_trial.case(number(&case_trial, "front/shot")).unwrap();
+    let attempts = case_trial.play(&case, Opposition::Standing, &|| ()).unwrap();
+    let score = Score::of("front/shot".to_owned(), "standing", &attempts);
+    assert_eq!(score.retrieved + score.instead.values().sum::<usize>(), 20, "{score:?}");
+    assert!(score.completed >= 12 && score.progress_m.unwrap() > 0.5, "{score:?}");
+    assert_eq!(score.outcomes.values().sum::<usize>(), score.completed);
+    assert_eq!(score.completed + score.aborted.values().sum::<usize>(), score.retrieved);
+}
+
+#[test]
+fn a_score_counts_what_was_retrieved_instead_and_why_gameplays_ended() {
+    let attempt = |retrieved, end| Attempt { retrieved, end, duration: 2.0, outcome: None, progress: 0.5 };
+    let finished = CycleEnd::Closed(protocol::team::Closure::Finished);
+    let attempts = [
+        attempt(Retrieved::Own, Some(finished)),
+        attempt(Retrieved::Own, Some(CycleEnd::Superseded)),
+        attempt(Retrieved::Other("side/draw-out".to_owned()), None),
+        attempt(Retrieved::None, None),
+    ];
+    let score = Score::of("front/shot".to_owned(), "playing", &attempts);
+    assert_eq!((score.retrieved, score.completed, score.completed_percent()), (2, 1, 25.0));
+    let row =
+        "| front/shot | playing | 50 | 25 | none 1, side/draw-out 1, superseded 1 | 2.0 | 0.5 | play 1 |";
+    assert!(markdown(&[score]).ends_with(&format!("{row}\n")));
+}

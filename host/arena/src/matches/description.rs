@@ -1,0 +1,269 @@
+//! `description`: match results as Markdown tables. Markdown tables, for terminals and documents alike: ours beside
+//! the paper's Tables 1 and 2 (Biswas et al. 2014 §6), passes, fouls, and what each part is worth.
+
+use std::fmt::Write as _;
+
+use super::effect::{Change, Effect};
+use super::match_team::MatchTeam;
+use super::outcome::{Estimate, Outcome};
+use super::paper::{PAPER, PAPER_PASSES};
+use super::passes::{Passes, Share};
+
+/// All tables; `ours` are the passes of our team.
+pub fn markdown(outcomes: &[Outcome], effects: &[Effect], ours: &Passes) -> String {
+    let mut text = String::new();
+    worth(&mut text, effects);
+    standings(&mut text, outcomes);
+    scores(&mut text, outcomes);
+    play(&mut text, outcomes);
+    passes(&mut text, outcomes);
+    planned(&mut text, outcomes);
+    calibration(&mut text, ours);
+    fouls(&mut text, outcomes);
+    text.trim_start().to_owned()
+}
+
+/// Writing to a String cannot fail.
+macro_rules! say {
+    ($text:expr, $($description:tt)*) => {{ let _ = writeln!($text, $($description)*); }};
+}
+
+/// Whether these are our matches against others, as the paper's tables are.
+fn as_the_papers(outcomes: &[Outcome]) -> bool {
+    let ours = MatchTeam::ours().team;
+    outcomes.iter().all(|o| o.own.team == ours && o.opponent.team != ours)
+}
+
+fn worth(text: &mut String, effects: &[Effect]) {
+    if effects.is_empty() {
+        return;
+    }
+    *text += "\n| part | with it | without | matches | goals a match, difference | p | shots a match, difference | p | offence ratio | p | attack ratio | p |\n\
+              |---|---|---|---|---|---|---|---|---|---|---|---|\n";
+    for e in effects {
+        let cells = [e.goals, e.shots, e.offence_ratio, e.attack_ratio].map(changed).join(" | ");
+        say!(text, "| {} | {} | {} | {} | {cells} |", e.part, e.with, e.without, e.matches);
+    }
+}
+
+/// Standings over all matches of each team, where one plays several opponents.
+fn standings(text: &mut String, outcomes: &[Outcome]) {
+    let mut teams: Vec<(MatchTeam, [u32; 3], [u32; 2])> = Vec::new();
+    for o in outcomes {
+        let [won, drawn, lost] = o.won_drawn_lost;
+        let [goals, against] = o.goals;
+        for (who, ends, goals) in [
+            (o.own, [won, drawn, lost], [goals, against]),
+            (o.opponent, [lost, drawn, won], [against, goals]),
+        ] {
+            let known = teams.iter().position(|(team, ..)| *team == who).unwrap_or(teams.len());
+            if known == teams.len() {
+                teams.push((who, [0; 3], [0; 2]));
+            }
+            for (sum, n) in teams[known].1.iter_mut().zip(ends) {
+                *sum += n;
+            }
+            for (sum, n) in teams[known].2.iter_mut().zip(goals) {
+                *sum += n;
+            }
+        }
+    }
+    // Each against each: the number of pairs is that of a round robin.
+    if teams.len() < 3 || outcomes.len() != teams.len() * (teams.len() - 1) / 2 {
+        return;
+    }
+    let points = |[won, drawn, _]: [u32; 3]| 3 * won + drawn;
+    // The sort keeps the plan's order among equals.
+    teams.sort_by_key(|(_, ends, [goals, against])| {
+        std::cmp::Reverse((points(*ends), i64::from(*goals) - i64::from(*against)))
+    });
+    *text += "\n| team | matches | won, drawn, lost | goals | points |\n|---|---|---|---|---|\n";
+    for (team, [won, drawn, lost], [goals, against]) in teams {
+        let (matches, points) = (won + drawn + lost, points([won, drawn, lost]));
+        say!(text, "| {team} | {matches} | {won}, {drawn}, {lost} | {goals} : {against} | {points} |");
+    }
+}
+
+fn scores(text: &mut String, outcomes: &[Outcome]) {
+    *text += "\n| team | against | matches | won, drawn, lost | goals | goals a match | against a match | p | offence ratio | attack ratio | of all shots |\n\
+              |---|---|---|---|---|---|---|---|---|---|---|\n";
+    for o in outcomes {
+        let [won, drawn, lost] = o.won_drawn_lost;
+        let [goals, against] = o.goals;
+        let cells = [o.goals_for, o.goals_against].map(told).join(" | ");
+        let ratios = [o.offence_ratio, o.attack_ratio].map(told).join(" | ");
+        let all = o.attack_ratio_of_all.map_or_else(|| "–".to_owned(), |ratio| format!("{ratio:.2}"));
+        say!(
+            text,
+            "| {} | {} | {} | {won}, {drawn}, {lost} | {goals} : {against} | {cells} | {} | {ratios} | {all} |",
+            o.own,
+            o.opponent,
+            o.matches,
+            chance(o.goals_p),
+        );
+    }
+    if as_the_papers(outcomes) {
+        for game in PAPER {
+            let [goals, against] = game.goals;
+            say!(
+                text,
+                "| the paper's, Table 2 | Team {} ({}) | 1 | | {goals} : {against} | | | | {:.2} | {:.2} | {:.2} |",
+                game.opponent,
+                game.stage,
+                game.offence_ratio,
+                game.attack_ratio,
+                game.attack_ratio
+            );
+        }
+    }
+}
+
+fn play(text: &mut String, outcomes: &[Outcome]) {
+    *text += "\n| team | against | shots | theirs | chances | theirs | possession | passes that arrived | theirs | balls lost | theirs | ball in play |\n\
+              |---|---|---|---|---|---|---|---|---|---|---|---|\n";
+    for o in outcomes {
+        let [shots, chances] = [o.shots, o.chances].map(|both| both.map(told).join(" | "));
+        let [passes, losses] = [o.passes, o.losses].map(|both| both.map(told).join(" | "));
+        let [possession, in_play] = [o.possession, o.ball_in_play].map(told);
+        say!(
+            text,
+            "| {} | {} | {shots} | {chances} | {possession} | {passes} | {losses} | {in_play} |",
+            o.own,
+            o.opponent
+        );
+    }
+}
+
+/// Each side of each pair, with its passes.
+fn sides(outcomes: &[Outcome]) -> impl Iterator<Item = (MatchTeam, MatchTeam, &Passes)> {
+    outcomes.iter().flat_map(|o| [(o.own, o.opponent, &o.restarts[0]), (o.opponent, o.own, &o.restarts[1])])
+}
+
+fn passes(text: &mut String, outcomes: &[Outcome]) {
+    *text += "\n| passes of | against | kick | begun | kicked | arrived | share | by another mate | intercepted | missed | late | out |\n\
+              |---|---|---|---|---|---|---|---|---|---|---|---|\n";
+    for (who, against, passes) in sides(outcomes) {
+        for kick in passes.kinds.iter().filter(|kick| kick.ordered > 0) {
+            let (fates, arrived) = (&kick.fates, kick.arrived);
+            say!(
+                text,
+                "| {who} | {against} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
+                kick.kick,
+                kick.ordered,
+                arrived.of,
+                arrived.hits,
+                share(arrived),
+                fates.by_teammate,
+                fates.intercepted,
+                fates.missed,
+                fates.late,
+                fates.out
+            );
+        }
+    }
+}
+
+fn planned(text: &mut String, outcomes: &[Outcome]) {
+    *text += "\n| planned free kicks of | against | matches | passes tried | arrived | share | coercing robots re-used | arrived |\n\
+              |---|---|---|---|---|---|---|---|\n";
+    let matches = |who: MatchTeam, against: MatchTeam| {
+        let met = |o: &&Outcome| [(o.own, o.opponent), (o.opponent, o.own)].contains(&(who, against));
+        outcomes.iter().find(met).map_or(0, |o| o.matches)
+    };
+    let ours = MatchTeam::ours().team;
+    // Beside the paper's also where no plan was made; else only for teams that plan.
+    let all = as_the_papers(outcomes);
+    for (who, against, passes) in sides(outcomes) {
+        if who.team != ours || !(all || who.tactics.coerce || passes.cap.attempts > 0) {
+            continue;
+        }
+        let (cap, arrived) = (&passes.cap, share(passes.cap_arrived));
+        say!(
+            text,
+            "| {who} | {against} | {} | {} | {} | {arrived} | {} | {} |",
+            matches(who, against),
+            cap.attempts,
+            cap.successes,
+            cap.reuses,
+            cap.reuse_successes
+        );
+    }
+    if all {
+        for row in PAPER_PASSES {
+            let arrived = share(Share::new(row.successes, row.attempts));
+            say!(
+                text,
+                "| the paper's, Table 1 | Team {} | 1 | {} | {} | {arrived} | {} | |",
+                row.opponent,
+                row.attempts,
+                row.successes,
+                row.reuses
+            );
+        }
+    }
+}
+
+fn calibration(text: &mut String, ours: &Passes) {
+    *text += "\n| P(receive) | passes | predicted | received | share |\n|---|---|---|---|---|\n";
+    for tenth in &ours.calibration {
+        let from = tenth.tenth as f64 / 10.0;
+        say!(
+            text,
+            "| {from:.1} to {:.1} | {} | {:.2} | {} | {} |",
+            from + 0.1,
+            tenth.seen.of,
+            tenth.predicted,
+            tenth.seen.hits,
+            share(tenth.seen)
+        );
+    }
+    if let Some(error) = ours.calibration_error {
+        say!(text, "| mean distance | | | | {error:.3} |");
+    }
+}
+
+fn fouls(text: &mut String, outcomes: &[Outcome]) {
+    *text += "\n| team | against | own fouls, all matches | theirs |\n|---|---|---|---|\n";
+    for o in outcomes {
+        let [own, theirs] = [0, 1].map(|side: usize| {
+            let kinds = o.fouls[side].iter().map(|(kind, n)| format!("{n} {}", kind.replace('_', " ")));
+            kinds.collect::<Vec<_>>().join(", ")
+        });
+        say!(text, "| {} | {} | {own} | {theirs} |", o.own, o.opponent);
+    }
+}
+
+/// `1.32 (1.10 to 1.54)`.
+fn told(estimate: Option<Estimate>) -> String {
+    estimate.map_or_else(|| "–".to_owned(), |e| within(e.mean, e.low, e.high))
+}
+
+/// The same of a share.
+fn share(share: Share) -> String {
+    share.share.map_or_else(|| "–".to_owned(), |mean| within(mean, share.low, share.high))
+}
+
+/// The same with its p.
+fn changed(change: Option<Change>) -> String {
+    let description = change.map_or_else(|| "–".to_owned(), |c| within(c.mean, c.low, c.high));
+    format!("{description} | {}", chance(change.and_then(|change| change.p)))
+}
+
+fn within(mean: f64, low: Option<f64>, high: Option<f64>) -> String {
+    // Zero has no sign.
+    let [mean, low, high] =
+        [Some(mean), low, high].map(|end| end.map(|x| if x.abs() < 0.005 { 0.0 } else { x }));
+    let mean = mean.unwrap_or_default();
+    match (low, high) {
+        (Some(low), Some(high)) => format!("{mean:.2} ({low:.2} to {high:.2})"),
+        _ => format!("{mean:.2}"),
+    }
+}
+
+fn chance(p: Option<f64>) -> String {
+    match p {
+        None => "–".to_owned(),
+        Some(p) if p < 0.001 => "< 0.001".to_owned(),
+        Some(p) => format!("{p:.3}"),
+    }
+}

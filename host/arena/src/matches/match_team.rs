@@ -1,0 +1,171 @@
+//! `match_team`: team configuration in a match. A team, and of the second paper's tactics those that its host
+//! plays: an ablation is a team (docs/papers.md D24).
+
+use std::collections::BTreeSet;
+use std::fmt;
+
+use host::strategy::{Tactics, Team};
+use serde::{Deserialize, Serialize};
+
+/// A team with its tactics, written as one label: `zone`, `ours`, `ours-without-second-level`,
+/// `ours-with-coerce+pass-ahead`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
+pub struct MatchTeam {
+    /// What decides its open play.
+    pub team: Team,
+    /// Tactics of the second paper that its host plays.
+    pub tactics: Tactics,
+}
+
+impl MatchTeam {
+    /// Our team with the usual tactics.
+    pub fn ours() -> Self {
+        Self::from(Team::Ours)
+    }
+
+    /// Our team once for each part of the second paper, without it where it is usual and with it where it is
+    /// not.
+    pub fn ablations() -> Vec<Self> {
+        let usual = parts(Tactics::default());
+        let flipped = |part: &String| {
+            let mut parts = usual.clone();
+            if !parts.remove(part) {
+                parts.insert(part.clone());
+            }
+            Some(Self { team: Team::Ours, tactics: with_parts(&parts).ok()? })
+        };
+        parts(Tactics::ALL).iter().filter_map(flipped).collect()
+    }
+
+    /// Parses its label.
+    pub fn parse(label: &str) -> Result<Self, String> {
+        let wrong = || {
+            let teams = Team::ALL.map(Team::label).join(", ");
+            format!(
+                "no team `{label}`; take {teams}, or ours with other tactics: ours-with-A+B, ours-without-A+B, \
+                 of {}",
+                joined(&parts(Tactics::ALL), ", ")
+            )
+        };
+        let Some(changes) = label.strip_prefix("ours-") else {
+            return Team::from_label(label).map(Self::from).ok_or_else(wrong);
+        };
+        let mut parts = parts(Tactics::default());
+        let (with, without) = match changes.split_once("without-") {
+            Some((with, without)) => (with.trim_end_matches('-'), Some(without)),
+            None => (changes, None),
+        };
+        if !with.is_empty() || without.is_none() {
+            let with = with.strip_prefix("with-").ok_or_else(wrong)?;
+            parts.extend(with.split('+').map(str::to_owned));
+        }
+        for part in without.into_iter().flat_map(|without| without.split('+')) {
+            // The parts after `without` are checked too: a typing error must not be read as the usual team.
+            with_parts(&BTreeSet::from([part.to_owned()])).map_err(|_| wrong())?;
+            parts.remove(part);
+        }
+        let tactics = with_parts(&parts).map_err(|_| wrong())?;
+        Ok(Self { team: Team::Ours, tactics })
+    }
+
+    /// The parts of the second paper that this one plays and the other does not; empty between different
+    /// teams.
+    pub(super) fn beyond(self, other: Self) -> Vec<String> {
+        if self.team != other.team {
+            return Vec::new();
+        }
+        parts(self.tactics).difference(&parts(other.tactics)).cloned().collect()
+    }
+}
+
+impl From<Team> for MatchTeam {
+    fn from(team: Team) -> Self {
+        Self { team, tactics: Tactics::default() }
+    }
+}
+
+impl fmt::Display for MatchTeam {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (own, usual) = (parts(self.tactics), parts(Tactics::default()));
+        let change = |parts: Vec<&String>| parts.into_iter().cloned().collect::<BTreeSet<_>>();
+        f.write_str(self.team.label())?;
+        for (label, parts) in [
+            ("-with-", change(own.difference(&usual).collect())),
+            ("-without-", change(usual.difference(&own).collect())),
+        ] {
+            if !parts.is_empty() {
+                write!(f, "{label}{}", joined(&parts, "+"))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl From<MatchTeam> for String {
+    fn from(match_team: MatchTeam) -> Self {
+        match_team.to_string()
+    }
+}
+
+impl TryFrom<String> for MatchTeam {
+    type Error = String;
+
+    fn try_from(label: String) -> Result<Self, String> {
+        Self::parse(&label)
+    }
+}
+
+/// Names of the enabled parts, from [`Tactics::description`]: a part that is added there is listed here too.
+fn parts(tactics: Tactics) -> BTreeSet<String> {
+    let description = tactics.description();
+    description.split(',').filter(|label| *label != "none").map(str::to_owned).collect()
+}
+
+fn with_parts(parts: &BTreeSet<String>) -> Result<Tactics, String> {
+    if parts.is_empty() { Ok(Tactics::NONE) } else { Tactics::parse(&joined(parts, ",")) }
+}
+
+fn joined(parts: &BTreeSet<String>, between: &str) -> String {
+    parts.iter().map(String::as_str).collect::<Vec<_>>().join(between)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_team_is_read_from_the_label_it_is_written_as() {
+        let ablations = MatchTeam::ablations();
+        assert_eq!(ablations.len(), parts(Tactics::ALL).len());
+        let none = MatchTeam { team: Team::Ours, tactics: Tactics::NONE };
+        let all = MatchTeam { team: Team::Ours, tactics: Tactics::ALL };
+        let teams = Team::ALL.map(MatchTeam::from);
+        for match_team in ablations.iter().chain(&teams).chain([&none, &all]) {
+            assert_eq!(MatchTeam::parse(&match_team.to_string()).as_ref(), Ok(match_team), "{match_team}");
+        }
+        assert!(ablations.iter().all(|ablation| *ablation != MatchTeam::ours()));
+        assert!(MatchTeam::ours().beyond(none).contains(&"threats".to_owned()));
+        assert_eq!(MatchTeam::ours().beyond(Team::Zone.into()), Vec::<String>::new());
+    }
+
+    #[test]
+    fn a_label_says_what_differs_from_the_usual_team() {
+        let changed = Tactics { second_level: !Tactics::default().second_level, ..Tactics::default() };
+        let label = MatchTeam { team: Team::Ours, tactics: changed }.to_string();
+        assert!(matches!(&*label, "ours-without-second-level" | "ours-with-second-level"), "{label}");
+        let both = MatchTeam::parse("ours-with-coerce-without-threats+second-level").unwrap();
+        assert!(both.tactics.coerce && !both.tactics.threats && !both.tactics.second_level);
+    }
+
+    #[test]
+    fn no_team_of_that_name_is_told_with_those_there_are() {
+        for label in
+            ["", "best", "ours-", "ours-with-", "ours-with-luck", "ours-without-luck", "zone-with-coerce"]
+        {
+            let told = MatchTeam::parse(label).unwrap_err();
+            assert!(told.contains(&format!("`{label}`")) && told.contains("reactive"), "{told}");
+            assert!(told.contains("second-level"), "{told}");
+        }
+    }
+}

@@ -1,0 +1,369 @@
+//! `match_runner`: match runner with page and user controls. At the clock's pace, with the page beside it.
+//!
+//! The match itself is [`arena::game::Game`], tick by tick as without a page: observing changes nothing.
+//! Where the machine is too slow for the speed ordered, the match runs slower and the page displays that.
+
+mod situation;
+
+use std::sync::atomic::Ordering;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use arena::game::{Game, GameConfig, GameReport, TICK_US, Watcher, Watchers};
+use casebase::CaseBase;
+use foreign::excerpt;
+use geometry::Point;
+use hil_sim::NativeBackend;
+use page::{Happening, Kind, Page, Request};
+use protocol::{RobotId, Who};
+use rules::Colour;
+use rules::state::Command;
+
+use self::situation::{Sides, of_case};
+use super::gauges::{gauge, tick};
+use super::{Composer, Moment, SCENE_EVERY_S, colour};
+use crate::Failure;
+use crate::library::LibraryHandle;
+use crate::stop::stopped_by_hand;
+
+/// If the match is farther behind the clock than this, s, the clock is reset: the match does not run faster
+/// to catch up.
+const BEHIND_MAX_S: f64 = 0.25;
+/// At every speed, simulated time between two scenes is at most this, s, for viewers that seek back.
+const SCENE_EVERY_MAX_S: f64 = 0.2;
+/// Longest part of a name sent by a viewer that is quoted in an answer, characters.
+const NAME_LEN: usize = 60;
+/// Period of polling for requests while paused.
+const IDLE: Duration = Duration::from_millis(10);
+
+/// A match and its page.
+pub(crate) struct MatchRunner<'s> {
+    config: GameConfig,
+    library_handle: Option<&'s LibraryHandle>,
+    page: Page,
+    speed: f32,
+    /// It is recorded: it cannot be restarted.
+    recorded: bool,
+}
+
+/// State of the viewers' controls.
+struct UserControls {
+    paused: bool,
+    steps: u32,
+    speed: f32,
+    anew: Option<u64>,
+    /// The clock, and the match at that time.
+    clock: (Instant, f64),
+    took: Duration,
+    /// Simulated seconds per second of wall time, as reached.
+    reached: f32,
+}
+
+/// How a run ends.
+pub(crate) enum End {
+    /// The match is over; its report.
+    Over(GameReport),
+    /// The operator ended the program.
+    ByHand(GameReport),
+}
+
+impl<'s> MatchRunner<'s> {
+    pub(crate) fn new(
+        config: GameConfig,
+        library_handle: Option<&'s LibraryHandle>,
+        page: Page,
+        speed: f32,
+        recorded: bool,
+    ) -> Self {
+        Self { config, library_handle, page, speed, recorded }
+    }
+
+    /// Plays until the match is over; `watch` gives the watchers of a match that starts.
+    pub(crate) fn play(&mut self, watcher: &mut dyn RestartWatcher) -> Result<End, Failure> {
+        loop {
+            let mut controls = UserControls {
+                paused: false,
+                steps: 0,
+                speed: self.speed,
+                anew: None,
+                clock: (Instant::now(), 0.0),
+                took: Duration::ZERO,
+                reached: self.speed,
+            };
+            let report = self.one(&mut controls, watcher)?;
+            self.speed = controls.speed;
+            match controls.anew {
+                Some(seed) => {
+                    self.config.seed = seed;
+                    self.page.clear();
+                    watcher.anew();
+                }
+                None if stopped_by_hand().load(Ordering::Relaxed) => return Ok(End::ByHand(report)),
+                None => return Ok(End::Over(report)),
+            }
+        }
+    }
+
+    /// Keeps the page open after the match until the operator ends the program; the seed if another match is
+    /// requested.
+    pub(crate) fn linger(&mut self) -> Option<u64> {
+        while !stopped_by_hand().load(Ordering::Relaxed) {
+            if let Some(Request::Restart { seed }) = self.page.next_request()
+                && !self.recorded
+            {
+                return Some(seed.unwrap_or(self.config.seed));
+            }
+            thread::sleep(IDLE);
+        }
+        None
+    }
+
+    /// Restarts with another seed.
+    pub(crate) fn anew(&mut self, seed: u64) {
+        self.config.seed = seed;
+        self.page.clear();
+    }
+
+    fn one(
+        &mut self,
+        controls: &mut UserControls,
+        watcher: &mut dyn RestartWatcher,
+    ) -> Result<GameReport, Failure> {
+        let config = self.config.clone();
+        let base = self.library_handle.map_or_else(CaseBase::default, LibraryHandle::lasting_base);
+        let mut backend = NativeBackend::new(base);
+        let mut game = Game::new(&config, &mut backend).map_err(Failure::Game)?;
+        let mut feed = Feed { composer: Composer::new(self.library_handle), t: 0.0 };
+        let ticks = (config.duration_s * 1e6 / TICK_US as f64) as u64;
+        let mut shown = f64::NEG_INFINITY;
+        let stopped = stopped_by_hand();
+        while game.now().0 / TICK_US < ticks && !game.is_over() && !stopped.load(Ordering::Relaxed) {
+            while let Some(request) = self.page.next_request() {
+                self.obey(&request, controls, &mut game, &mut backend).map_err(Failure::Game)?;
+            }
+            if controls.anew.is_some() {
+                break;
+            }
+            if controls.paused && controls.steps == 0 {
+                self.show(&game, &mut feed, controls);
+                thread::sleep(Duration::from_secs_f64(SCENE_EVERY_S));
+                continue;
+            }
+            controls.steps = controls.steps.saturating_sub(1);
+            let begun = Instant::now();
+            feed.t = game.time();
+            game.step(&mut Watchers(vec![&mut feed, watcher.watcher()])).map_err(Failure::Game)?;
+            controls.took = (controls.took * 15 + begun.elapsed()) / 16;
+            let every = (SCENE_EVERY_S * f64::from(controls.speed)).min(SCENE_EVERY_MAX_S);
+            if game.time() - shown >= every - 1e-6 || controls.paused {
+                shown = game.time();
+                self.show(&game, &mut feed, controls);
+            }
+            if !controls.paused {
+                controls.wait(game.time());
+            }
+        }
+        self.show(&game, &mut feed, controls);
+        Ok(GameReport::of(&config, &game))
+    }
+
+    fn show(&mut self, game: &Game<'_>, feed: &mut Feed, controls: &UserControls) {
+        let hosts = [game.host(Colour::Blue), game.host(Colour::Yellow)];
+        let gauges =
+            vec![tick(controls.took), gauge("program", "speed reached", controls.reached, "×", None)];
+        let mut deferred_scene = feed.composer.compose(Moment {
+            t: game.time(),
+            now: game.now(),
+            feed: hosts[0],
+            hosts: &hosts,
+            truth: Some(game.world()),
+            referee: Some(game.referee()),
+            gauges,
+        });
+        for happening in feed.composer.take_happenings() {
+            self.page.tell(happening);
+        }
+        deferred_scene.scene.paused = controls.paused;
+        deferred_scene.scene.speed = controls.speed;
+        deferred_scene.scene.seed = Some(self.config.seed);
+        self.page.show(deferred_scene);
+    }
+
+    fn obey<'b>(
+        &mut self,
+        request: &Request,
+        controls: &mut UserControls,
+        game: &mut Game<'b>,
+        backend: &mut NativeBackend<'b>,
+    ) -> Result<(), arena::game::GameError> {
+        let t = game.time();
+        let (mut noted, mut refused) = (None, None);
+        let playing = |team: page::Team, id: u8| {
+            let who = RobotId::new(id).map(|id| Who { colour: colour(team), id });
+            who.filter(|who| game.world().robot(*who).is_some_and(|robot| robot.present))
+                .ok_or_else(|| format!("{} has no robot {id} on the field", colour(team).label()))
+        };
+        match request {
+            Request::Pause { on } => {
+                (controls.paused, controls.steps) = (*on, 0);
+                controls.clock = (Instant::now(), t);
+            }
+            Request::Step { ticks } => (controls.paused, controls.steps) = (true, *ticks),
+            Request::Speed { factor } => {
+                controls.speed = *factor;
+                controls.clock = (Instant::now(), t);
+            }
+            Request::Restart { .. } if self.recorded => {
+                refused = Some("a match that is recorded cannot begin anew".into());
+            }
+            Request::Restart { seed } => controls.anew = Some(seed.unwrap_or(self.config.seed)),
+            Request::Situation { name } => {
+                if !situate(game, self.library_handle, name) {
+                    refused = Some(format!(
+                        "no situation of the name {} can be set up now",
+                        excerpt(name, NAME_LEN)
+                    ));
+                }
+            }
+            Request::Ball { at } => game.move_ball(Point::new(at[0], at[1]), controls.paused),
+            Request::Robot { team, id, at } => match playing(*team, *id) {
+                Ok(who) => game.move_robot(who, Point::new(at[0], at[1]), controls.paused),
+                Err(description) => refused = Some(description),
+            },
+            Request::Power { team, id, on } => match playing(*team, *id) {
+                Ok(who) => {
+                    let name = format!("{} {}", who.colour.label(), who.id.number());
+                    if game.power(who, *on, backend)? {
+                        let what = if *on { "boots, by hand" } else { "crashes, by hand" };
+                        noted = Some(format!("{name} {what}"));
+                    } else {
+                        refused = Some(format!("{name} is {} already", if *on { "on" } else { "off" }));
+                    }
+                }
+                Err(description) => refused = Some(description),
+            },
+            Request::Loss { share } => {
+                game.lose(*share);
+                noted = Some(format!("the radio loses {:.0} % of all packets, by hand", share * 100.0));
+            }
+            Request::Halt {} => {
+                game.command(Command::Halt);
+            }
+            Request::Referee { command } => {
+                let done = command_of(command).is_some_and(|command| game.command(command));
+                if !done {
+                    let name = command.to_lowercase().replace('_', " ");
+                    refused = Some(format!("{} makes no sense now", excerpt(&name, NAME_LEN)));
+                }
+            }
+        }
+        if let Some(description) = noted {
+            self.page.tell(Happening {
+                t,
+                kind: Kind::Fault,
+                team: None,
+                description,
+                at: None,
+                problem: None,
+            });
+        }
+        if let Some(description) = refused {
+            self.page.refuse(description);
+        }
+        Ok(())
+    }
+}
+
+/// Puts ball and robots as the case's author drew them, and forces a start; false where that is not possible
+/// now.
+fn situate(game: &mut Game<'_>, library_handle: Option<&LibraryHandle>, name: &str) -> bool {
+    let field = game.config().league.field();
+    let present: Vec<Who> =
+        game.world().robots().iter().filter(|robot| robot.present).map(|robot| robot.who).collect();
+    let keepers = [Colour::Blue, Colour::Yellow].map(|team| game.config().referee.team(team).keeper);
+    let blue_goal = game.host(Colour::Blue).game().own_goal(Colour::Blue);
+    let Some((library_handle, blue_goal)) = library_handle.zip(blue_goal) else { return false };
+    let sides = Sides { field: &field, blue_goal, present: &present, keepers };
+    let Some(situation) = of_case(library_handle, name, &sides) else { return false };
+    if !game.command(Command::ForceStart) {
+        return false;
+    }
+    for (who, pose) in situation.robots {
+        game.put_robot(who, pose);
+    }
+    game.move_ball(situation.ball, true);
+    true
+}
+
+impl UserControls {
+    /// Waits until the clock reaches the match time.
+    fn wait(&mut self, t: f64) {
+        let (began, from) = self.clock;
+        let due = (t - from) / f64::from(self.speed);
+        let passed = began.elapsed().as_secs_f64();
+        if due > passed {
+            thread::sleep(Duration::from_secs_f64(due - passed));
+        }
+        let passed = began.elapsed().as_secs_f64();
+        if passed > 1.0 || passed - due > BEHIND_MAX_S {
+            self.reached = ((t - from) / passed.max(1e-6)) as f32;
+            self.clock = (Instant::now(), t);
+        }
+    }
+}
+
+/// The watcher of a match, which can be restarted with it.
+pub(crate) trait RestartWatcher {
+    /// The watcher of the running match.
+    fn watcher(&mut self) -> &mut dyn Watcher;
+    /// Another match starts.
+    fn anew(&mut self);
+}
+
+/// Takes the packets that both teams receive.
+struct Feed {
+    composer: Composer,
+    t: f64,
+}
+
+impl Watcher for Feed {
+    fn vision(&mut self, _now: protocol::Instant, bytes: &[u8]) {
+        self.composer.vision(bytes);
+    }
+    fn referee(&mut self, _now: protocol::Instant, bytes: &[u8]) {
+        self.composer.referee(bytes, self.t, true);
+    }
+}
+
+/// A command by its name in the league.
+pub(crate) fn command_of(name: &str) -> Option<Command> {
+    let of = |begin: &str| match name.strip_prefix(begin)? {
+        "BLUE" => Some(Colour::Blue),
+        "YELLOW" => Some(Colour::Yellow),
+        _ => None,
+    };
+    Some(match name {
+        "HALT" => Command::Halt,
+        "STOP" => Command::Stop,
+        "NORMAL_START" => Command::NormalStart,
+        "FORCE_START" => Command::ForceStart,
+        _ => of("PREPARE_KICKOFF_")
+            .map(Command::PrepareKickoff)
+            .or_else(|| of("PREPARE_PENALTY_").map(Command::PreparePenalty))
+            .or_else(|| of("DIRECT_FREE_").map(Command::FreeKick))?,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn commands_go_by_their_names_in_the_league() {
+        assert_eq!(command_of("HALT"), Some(Command::Halt));
+        assert_eq!(command_of("DIRECT_FREE_BLUE"), Some(Command::FreeKick(Colour::Blue)));
+        assert_eq!(command_of("PREPARE_KICKOFF_YELLOW"), Some(Command::PrepareKickoff(Colour::Yellow)));
+        assert_eq!(command_of("PREPARE_KICKOFF_RED"), None);
+        assert_eq!(command_of("GOAL_BLUE"), None);
+    }
+}

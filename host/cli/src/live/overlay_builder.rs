@@ -1,0 +1,72 @@
+//! `overlay_builder`: deferred overlays. Planned paths, maps of passes, threats, the tactics that opponents are
+//! believed to play: computed from a snapshot, on the page's own thread, so that the match thread pays for
+//! the snapshot only. m, s, field frame.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use host::referee::Game;
+use host::world::World;
+use page::{DeferredScene, Scene};
+use protocol::Who;
+use rules::{Colour, FieldSpec, League, RuleRole};
+
+use super::paths::Paths;
+use super::tactics::Tactics;
+
+/// A robot and the position it is ordered to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Aim {
+    pub(super) who: Who,
+    pub(super) to: [f32; 2],
+    pub(super) rule_role: RuleRole,
+}
+
+/// Snapshot of a moment, with all inputs of the overlays.
+#[derive(Clone, Debug)]
+pub(super) struct Picture {
+    /// Seconds since the start.
+    pub(super) t: f64,
+    pub(super) world: World,
+    pub(super) game: Game,
+    pub(super) field: FieldSpec,
+    pub(super) league: League,
+    /// The one team whose host is ours; `None` where both are, or neither.
+    pub(super) us: Option<Colour>,
+    pub(super) aims: Vec<Aim>,
+}
+
+/// Paints one moment after the other; state between moments is shared by its sketches.
+#[derive(Clone, Debug, Default)]
+pub(super) struct OverlayBuilder {
+    tactics: Arc<Mutex<Tactics>>,
+}
+
+impl OverlayBuilder {
+    /// The scene as it is, with the overlays deferred to the page's thread.
+    pub(super) fn deferred_scene(&self, scene: Scene, picture: Picture) -> DeferredScene {
+        let tactics = self.tactics.clone();
+        DeferredScene::new(scene, move |scene| {
+            // After a panic of another thread the stored state is still usable.
+            let mut tactics = tactics.lock().unwrap_or_else(PoisonError::into_inner);
+            paint(scene, &picture, &mut tactics);
+        })
+    }
+}
+
+fn paint(scene: &mut Scene, picture: &Picture, tactics: &mut Tactics) {
+    let Picture { world, game, field, .. } = picture;
+    for Aim { who, to, rule_role } in &picture.aims {
+        let (Some(robot), Some(own)) = (world.robot(*who), game.own_goal(who.colour)) else { continue };
+        let paths = Paths { world, phase: game.phase, placement: game.placement, field, own };
+        let shown = scene
+            .robots
+            .iter_mut()
+            .find(|shown| shown.team == super::team(who.colour) && shown.id == who.id.number());
+        if let Some(mind) = shown.and_then(|shown| shown.mind.as_mut()) {
+            mind.intent.path = paths.to(robot, *to, *rule_role);
+        }
+    }
+    let [maps, above] = tactics.layers(picture);
+    scene.layers.splice(0..0, maps);
+    scene.layers.extend(above);
+}

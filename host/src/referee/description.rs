@@ -1,0 +1,80 @@
+//! `description`: decodes the referee's commands and stages into the types of [`rules`].
+
+use rules::Colour::{self, Blue, Yellow};
+use rules::state::{Command, Stage};
+use ssl::referee as wire;
+
+/// A command's meaning; none for a number that no program of the league sends. Indirect free kicks are free
+/// kicks since 2020; GOAL is obsolete too, and implied a stop.
+pub fn command_of(number: i32) -> Option<Command> {
+    let command = wire::Command::try_from(number).ok()?;
+    Some(match command {
+        wire::Command::Halt => Command::Halt,
+        wire::Command::Stop | wire::Command::GoalYellow | wire::Command::GoalBlue => Command::Stop,
+        wire::Command::NormalStart => Command::NormalStart,
+        wire::Command::ForceStart => Command::ForceStart,
+        wire::Command::PrepareKickoffYellow => Command::PrepareKickoff(Yellow),
+        wire::Command::PrepareKickoffBlue => Command::PrepareKickoff(Blue),
+        wire::Command::PreparePenaltyYellow => Command::PreparePenalty(Yellow),
+        wire::Command::PreparePenaltyBlue => Command::PreparePenalty(Blue),
+        wire::Command::DirectFreeYellow | wire::Command::IndirectFreeYellow => Command::FreeKick(Yellow),
+        wire::Command::DirectFreeBlue | wire::Command::IndirectFreeBlue => Command::FreeKick(Blue),
+        wire::Command::TimeoutYellow => Command::Timeout(Yellow),
+        wire::Command::TimeoutBlue => Command::Timeout(Blue),
+        wire::Command::BallPlacementYellow => Command::BallPlacement(Yellow),
+        wire::Command::BallPlacementBlue => Command::BallPlacement(Blue),
+    })
+}
+
+/// A stage's meaning; none for a number that no program of the league sends.
+pub fn stage_of(number: i32) -> Option<Stage> {
+    let index = usize::try_from(number).ok()?;
+    Stage::ALL.get(index).copied()
+}
+
+/// The wire's name of a team.
+pub(super) const fn team_of(colour: Colour) -> ssl::common::Team {
+    match colour {
+        Yellow => ssl::common::Team::Yellow,
+        Blue => ssl::common::Team::Blue,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stages_have_the_wires_numbers() {
+        let pairs = [
+            (wire::Stage::NormalFirstHalfPre, Stage::FirstHalfPre),
+            (wire::Stage::NormalFirstHalf, Stage::FirstHalf),
+            (wire::Stage::NormalHalfTime, Stage::HalfTime),
+            (wire::Stage::NormalSecondHalfPre, Stage::SecondHalfPre),
+            (wire::Stage::NormalSecondHalf, Stage::SecondHalf),
+            (wire::Stage::ExtraTimeBreak, Stage::ExtraTimeBreak),
+            (wire::Stage::ExtraFirstHalfPre, Stage::ExtraFirstHalfPre),
+            (wire::Stage::ExtraFirstHalf, Stage::ExtraFirstHalf),
+            (wire::Stage::ExtraHalfTime, Stage::ExtraHalfTime),
+            (wire::Stage::ExtraSecondHalfPre, Stage::ExtraSecondHalfPre),
+            (wire::Stage::ExtraSecondHalf, Stage::ExtraSecondHalf),
+            (wire::Stage::PenaltyShootoutBreak, Stage::ShootOutBreak),
+            (wire::Stage::PenaltyShootout, Stage::ShootOut),
+            (wire::Stage::PostGame, Stage::PostGame),
+        ];
+        for (number, stage) in pairs {
+            assert_eq!(stage_of(number as i32), Some(stage));
+        }
+        assert_eq!((stage_of(14), stage_of(-1)), (None, None));
+    }
+
+    #[test]
+    fn every_command_of_the_wire_has_a_meaning_and_no_other_number() {
+        for number in 0..=17 {
+            assert!(command_of(number).is_some(), "{number}");
+        }
+        assert_eq!((command_of(18), command_of(-1)), (None, None));
+        assert_eq!(command_of(9), Some(Command::FreeKick(Blue)));
+        assert_eq!(command_of(16), Some(Command::BallPlacement(Yellow)));
+    }
+}

@@ -1,0 +1,184 @@
+//! `counters`: counters of passes and calibration. Counts that add up over matches: the passes of the second
+//! paper's Table 1, and the calibration of its equation 5, predicted against observed.
+
+use serde::{Deserialize, Serialize};
+
+use super::watch::{Ordered, Verdict};
+
+/// Passes of one kind of kick, by outcome.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Fates {
+    /// The receiver received it.
+    pub received: u32,
+    /// Another teammate received it.
+    #[serde(rename = "by_mate")]
+    pub by_teammate: u32,
+    /// An opponent intercepted it.
+    pub intercepted: u32,
+    /// It passed the receiver.
+    pub missed: u32,
+    /// The receiver came too late.
+    pub late: u32,
+    /// It left the field.
+    pub out: u32,
+    /// It was never kicked.
+    pub no_kick: u32,
+}
+
+/// Passes whose P(receive) lay in one tenth.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Bin {
+    /// Number of passes kicked.
+    pub passes: u32,
+    /// Sum of their P(receive).
+    pub predicted: f64,
+    /// Number of them received.
+    pub received: u32,
+}
+
+/// All passes of a team.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PassCounters {
+    /// Passes along the ground.
+    pub flat: Fates,
+    /// Passes through the air.
+    pub chip: Fates,
+    /// By predicted P(receive): 0–0.1, …, 0.9–1. Passes that were never kicked are in no bin.
+    pub calibration: [Bin; BINS],
+}
+
+/// Number of calibration bins: tenths of P(receive).
+pub const BINS: usize = 10;
+
+impl Fates {
+    /// Number of all passes.
+    pub fn ordered(&self) -> u32 {
+        self.kicked() + self.no_kick
+    }
+
+    /// Those that left the passer: "attempted" in the paper's Table 1.
+    pub fn kicked(&self) -> u32 {
+        let Self { received, by_teammate, intercepted, missed, late, out, .. } = self;
+        received + by_teammate + intercepted + missed + late + out
+    }
+
+    /// Those that the team received.
+    pub fn successful(&self) -> u32 {
+        self.received + self.by_teammate
+    }
+
+    fn count(&mut self, verdict: &Verdict) -> &mut u32 {
+        match verdict {
+            Verdict::Received { .. } => &mut self.received,
+            Verdict::ByTeammate { .. } => &mut self.by_teammate,
+            Verdict::Intercepted { .. } => &mut self.intercepted,
+            Verdict::Missed { .. } => &mut self.missed,
+            Verdict::Late { .. } => &mut self.late,
+            Verdict::Out { .. } => &mut self.out,
+            Verdict::NoKick { .. } => &mut self.no_kick,
+        }
+    }
+
+    fn add(&mut self, other: &Self) {
+        self.received += other.received;
+        self.by_teammate += other.by_teammate;
+        self.intercepted += other.intercepted;
+        self.missed += other.missed;
+        self.late += other.late;
+        self.out += other.out;
+        self.no_kick += other.no_kick;
+    }
+}
+
+impl PassCounters {
+    /// Counts one pass.
+    pub fn record(&mut self, pass: &Ordered, verdict: &Verdict) {
+        let fates = if pass.chip { &mut self.chip } else { &mut self.flat };
+        *fates.count(verdict) += 1;
+        if matches!(verdict, Verdict::NoKick { .. }) {
+            return;
+        }
+        // NaN counts as 0.
+        let bin = ((pass.likely * BINS as f32) as usize).min(BINS - 1);
+        let bin = &mut self.calibration[bin];
+        bin.passes += 1;
+        bin.predicted += f64::from(pass.likely);
+        bin.received += u32::from(matches!(verdict, Verdict::Received { .. }));
+    }
+
+    /// Adds the passes of another match.
+    pub fn add(&mut self, other: &Self) {
+        self.flat.add(&other.flat);
+        self.chip.add(&other.chip);
+        for (bin, more) in self.calibration.iter_mut().zip(&other.calibration) {
+            bin.passes += more.passes;
+            bin.predicted += more.predicted;
+            bin.received += more.received;
+        }
+    }
+
+    /// Difference between P(receive) and the observed share: the mean over the bins of |predicted −
+    /// observed|, each by its passes (expected calibration error); `None` without passes.
+    pub fn calibration_error(&self) -> Option<f64> {
+        let passes: u32 = self.calibration.iter().map(|bin| bin.passes).sum();
+        let off: f64 =
+            self.calibration.iter().map(|bin| (bin.predicted - f64::from(bin.received)).abs()).sum();
+        (passes > 0).then(|| off / f64::from(passes))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geometry::Point;
+    use protocol::{Instant, RobotId};
+    use rules::Colour;
+
+    fn pass(likely: f32, chip: bool) -> Ordered {
+        Ordered {
+            at: Instant(0),
+            us: Colour::Blue,
+            passer: RobotId::ZERO,
+            receiver: RobotId::ZERO,
+            from: Point::default(),
+            to: Point::default(),
+            flight: 1.0,
+            chip,
+            likely,
+        }
+    }
+
+    const RECEIVED: Verdict = Verdict::Received { off: 0.0, late: 0.0 };
+
+    #[test]
+    fn passes_are_counted_by_kick_and_fate_and_those_never_kicked_predict_nothing() {
+        let mut counters = PassCounters::default();
+        counters.record(&pass(0.95, false), &RECEIVED);
+        counters.record(&pass(1.0, false), &Verdict::Late { receiver_off: 1.0 });
+        counters
+            .record(&pass(0.2, true), &Verdict::Intercepted { by: RobotId::ZERO, along: 1.0, after: 0.5 });
+        counters.record(&pass(0.2, true), &Verdict::NoKick { after: 5.0, lost_to: None });
+        assert_eq!((counters.flat.kicked(), counters.flat.successful(), counters.flat.late), (2, 1, 1));
+        assert_eq!((counters.chip.ordered(), counters.chip.kicked(), counters.chip.intercepted), (2, 1, 1));
+        let last = counters.calibration[9];
+        assert_eq!((last.passes, last.received), (2, 1));
+        assert_eq!(counters.calibration[2].passes, 1);
+    }
+
+    #[test]
+    fn the_calibration_error_by_hand_and_over_two_matches() {
+        let mut one = PassCounters::default();
+        assert_eq!(one.calibration_error(), None);
+        // Predicted 0.75 + 0.75, one received: |1.5 − 1| / 2.
+        one.record(&pass(0.75, false), &RECEIVED);
+        one.record(&pass(0.75, false), &Verdict::Missed { by: 1.0 });
+        assert!((one.calibration_error().unwrap() - 0.25).abs() < 1e-9);
+        let mut other = PassCounters::default();
+        // Predicted 0.25 + 0.25, none received: with the above (0.5 + 0.5) / 4.
+        other.record(&pass(0.25, true), &Verdict::Out { at: Point::default() });
+        other.record(&pass(0.25, true), &Verdict::Out { at: Point::default() });
+        one.add(&other);
+        assert!((one.calibration_error().unwrap() - 0.25).abs() < 1e-9);
+        assert_eq!((one.chip.out, one.flat.kicked()), (2, 2));
+    }
+}

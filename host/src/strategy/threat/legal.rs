@@ -1,0 +1,166 @@
+//! `legal`: moves a place to where `rules::keep_out` allows a robot's body in this phase. Attack frame, m.
+
+use geometry::{Attack, Field, GoalEnd, Point, Vector};
+use rules::keep_out::{KeepOut, Situation, keep_out};
+use rules::limits::{OPPONENT_AREA_DISTANCE, ROBOT_RADIUS};
+use rules::{Phase, RuleRole};
+
+use super::super::restart;
+use super::super::view::View;
+use super::Settings;
+use super::edge::Edge;
+
+/// The nearest place to `at` where a field player may stand: within the lines, out of our area (at its edge),
+/// and off everything else that the phase forbids.
+pub fn legal(view: &View, at: Point<Attack>, settings: &Settings) -> Point<Attack> {
+    legal_for(view, RuleRole::Player, at, &[], settings)
+}
+
+/// The same for a robot of that role under the rules (a keeper may stay in our area, a taker near the ball),
+/// a body clear of the `taken` places.
+pub fn legal_for(
+    view: &View,
+    rule_role: RuleRole,
+    at: Point<Attack>,
+    taken: &[Point<Attack>],
+    settings: &Settings,
+) -> Point<Attack> {
+    let ours = Edge::of(&view.field, settings.off_area);
+    let more =
+        if matches!(view.phase, Phase::Stop | Phase::FreeKick(_)) { OPPONENT_AREA_DISTANCE } else { 0.0 };
+    let theirs = Edge::of(&view.field, settings.off_area + more);
+    let out = |at: Point<Attack>| {
+        if rule_role != RuleRole::Player {
+            return at;
+        }
+        let inside = view.clamp(at, ROBOT_RADIUS);
+        let (back, ahead) = (ours.distance_to(inside), theirs.distance_to(turned(inside)));
+        match (back < 0.0, ahead < 0.0) {
+            (true, _) => ours.nearest(inside),
+            (_, true) => turned(theirs.nearest(turned(inside))),
+            _ => inside,
+        }
+    };
+    let mut place = out(at);
+    if view.phase != Phase::Run {
+        place = out(restart::kept_off(view, place));
+    }
+    let margin = if view.phase == Phase::Run { MARGIN } else { MARGIN_STOPPED };
+    let rules = forbidden_to(view, rule_role);
+    let free = |place: &Point<Attack>| {
+        let body = Point::new(place.x(), place.y());
+        rules.offence(body, ROBOT_RADIUS + margin).is_none()
+            && taken.iter().all(|other| other.distance(*place) >= SIDE_BY_SIDE)
+    };
+    if free(&place) {
+        return place;
+    }
+    // Rare: where areas, lines and the ball leave little room. Tries rings around it, the nearest free place
+    // first.
+    let around = (1..=RINGS).flat_map(|ring| {
+        (0..SPOKES).map(move |spoke| {
+            let turn = geometry::Angle::new(geometry::math::TAU * spoke as f32 / SPOKES as f32);
+            Vector::polar(RING * ring as f32, turn)
+        })
+    });
+    around.map(|by| out(place + by)).find(free).unwrap_or(place)
+}
+
+/// Half a turn: maps their end to ours.
+fn turned(at: Point<Attack>) -> Point<Attack> {
+    Point::new(-at.x(), -at.y())
+}
+
+/// Where a body of that role must not be, in the attack frame: we defend −x in it, as a team of that end does
+/// on the field.
+fn forbidden_to(view: &View, rule_role: RuleRole) -> KeepOut {
+    let on_field = |at: Point<Attack>| Point::<Field>::new(at.x(), at.y());
+    keep_out(&Situation {
+        field: &view.field,
+        own: GoalEnd::Negative,
+        phase: view.phase,
+        rule_role,
+        ball: view.ball.map(|ball| on_field(ball.position)),
+        placement: view.placement.map(on_field),
+        ball_in_play: false,
+    })
+}
+
+/// Margin of bodies to forbidden areas in play, m: the overshoot of control; less than that of `off_area`.
+const MARGIN: f32 = 0.01;
+/// The same while the ball is not in play, m: the robots' own margin (0.04, `brain`'s surroundings), less
+/// rounding. Robots would not go to a nearer place.
+const MARGIN_STOPPED: f32 = 0.038;
+/// Least distance of two places, m: two bodies and the gap between two defenders of one line (`defence`,
+/// `SHOULDER`).
+const SIDE_BY_SIDE: f32 = 0.2;
+/// Spacing of the rings, m.
+const RING: f32 = 0.1;
+const RINGS: u32 = 15;
+const SPOKES: u32 = 24;
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::view::tests::view;
+    use super::*;
+    use rules::{League, Side};
+
+    #[test]
+    fn a_place_is_moved_to_where_the_rules_let_a_player_be() {
+        let settings = Settings::default();
+        let phases = [
+            Phase::Run,
+            Phase::Stop,
+            Phase::FreeKick(Side::Theirs),
+            Phase::FreeKick(Side::Ours),
+            Phase::BallPlacement(Side::Theirs),
+            Phase::Kickoff(Side::Theirs),
+        ];
+        let (mut moved, mut asked) = (0, 0);
+        for league in [League::DivisionB, League::Ssl2013, League::DivisionA] {
+            for phase in phases {
+                for (ball, placement) in [((-3.1, 0.4), (0.0, 0.0)), ((-2.0, -1.9), (-1.0, -1.5))] {
+                    let mut view = view(ball, &[], &[]);
+                    view.field = league.field();
+                    view.phase = phase;
+                    view.placement = Some(Point::new(placement.0, placement.1));
+                    let rules = forbidden_to(&view, RuleRole::Player);
+                    for i in 0..400 {
+                        let (column, row) = ((i % 20) as f32 / 19.0 - 0.5, (i / 20) as f32 / 19.0 - 0.5);
+                        let at = Point::new(column * view.field.length, row * view.field.width);
+                        let place = legal(&view, at, &settings);
+                        let body = Point::<Field>::new(place.x(), place.y());
+                        let offence = rules.offence(body, ROBOT_RADIUS);
+                        // Their own half at a kick-off is far from some of these places: so only our half is
+                        // searched.
+                        let ours = !matches!(phase, Phase::Kickoff(_)) || at.x() < 0.9;
+                        assert!(
+                            !ours || offence.is_none(),
+                            "{league:?} {phase:?} {at:?} → {place:?}: {offence:?}"
+                        );
+                        moved += usize::from(place.distance(at) > 0.01);
+                        asked += 1;
+                    }
+                }
+            }
+        }
+        assert!(moved > asked / 20 && moved < asked / 2, "{moved} of {asked}");
+    }
+
+    #[test]
+    fn a_place_that_a_teammate_is_sent_to_is_taken() {
+        let mut view = view((-3.1, 0.4), &[], &[]);
+        view.phase = Phase::Stop;
+        let settings = Settings::default();
+        let mut taken = Vec::new();
+        // Seven robots are sent between the ball and the goal, where its circle overlaps our area.
+        for _ in 0..7 {
+            let place = legal_for(&view, RuleRole::Player, Point::new(-3.4, 0.2), &taken, &settings);
+            let near = taken.iter().map(|other| place.distance(*other)).fold(f32::MAX, f32::min);
+            assert!(near >= 2.0 * ROBOT_RADIUS, "{place:?} is {near} m from one of {taken:?}");
+            let body = Point::<Field>::new(place.x(), place.y());
+            assert_eq!(forbidden_to(&view, RuleRole::Player).offence(body, ROBOT_RADIUS), None, "{place:?}");
+            taken.push(place);
+        }
+    }
+}

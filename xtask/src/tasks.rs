@@ -1,0 +1,207 @@
+//! `tasks`: table of xtask commands. One row per command: its name, its arguments, its effect, and its
+//! function.
+
+use crate::context::{Context, Failure};
+use crate::{bench, cost, emulate, evaluation, example_cost, game_cost, page, pictures, trial_cost};
+
+/// An xtask command other than `test`.
+#[derive(Debug)]
+pub(crate) struct Task {
+    /// Its name on the command line.
+    pub(crate) name: &'static str,
+    /// The arguments after the name, as the usage prints them; empty where it takes none.
+    pub(crate) takes: &'static str,
+    /// Its effect, for the usage.
+    pub(crate) what: &'static str,
+    /// Runs it; the arguments are those after its name.
+    pub(crate) run: fn(&Context, &[String]) -> Result<(), Failure>,
+    /// Whether another program checks its arguments.
+    free: bool,
+}
+
+impl Task {
+    /// The command named by these arguments, and its remaining arguments.
+    pub(crate) fn asked(description: &[String]) -> Result<(&'static Self, Vec<String>), String> {
+        let named = |task: &&Self| {
+            let name = task.name.split(' ');
+            let count = name.clone().count();
+            description.len() >= count && name.zip(description).all(|(name, label)| name == label)
+        };
+        let Some(task) = TASKS.iter().find(named) else {
+            let first = description.first().map_or("", String::as_str);
+            let names: Vec<_> = TASKS.iter().filter_map(|task| task.name.strip_prefix("bench ")).collect();
+            return Err(match first {
+                "bench" => format!("bench needs a name: {}", names.join(", ")),
+                _ => format!("no verb `{first}`"),
+            });
+        };
+        let rest = description[task.name.split(' ').count()..].to_vec();
+        let known = |label: &String| task.takes.split(['[', ']', '|', ' ']).any(|known| known == label);
+        match rest.iter().find(|label| !task.free && !known(label)) {
+            Some(label) => Err(format!("unknown argument `{label}`; `{}` takes {}", task.name, task.taken())),
+            None => Ok((task, rest)),
+        }
+    }
+
+    fn taken(&self) -> &str {
+        if self.takes.is_empty() { "none" } else { self.takes }
+    }
+}
+
+/// The usage of all commands.
+pub(crate) fn usage() -> String {
+    let line = |task: &Task| {
+        let head = format!("{} {}", task.name, task.takes);
+        format!("  {}\n                 {}\n", head.trim_end(), task.what)
+    };
+    TASKS.iter().map(line).collect()
+}
+
+/// Whether `--write` is among the arguments.
+fn writes(description: &[String]) -> bool {
+    description.iter().any(|label| label == "--write")
+}
+
+const fn task(
+    name: &'static str,
+    takes: &'static str,
+    what: &'static str,
+    run: fn(&Context, &[String]) -> Result<(), Failure>,
+) -> Task {
+    Task { name, takes, what, run, free: false }
+}
+
+/// A command whose arguments another program checks.
+const fn handed_on(
+    name: &'static str,
+    takes: &'static str,
+    what: &'static str,
+    run: fn(&Context, &[String]) -> Result<(), Failure>,
+) -> Task {
+    Task { name, takes, what, run, free: true }
+}
+
+static TASKS: [Task; 19] = [
+    handed_on(
+        "swarm",
+        "[--plan faults|referee] [--seeds N] [--first N] [--jobs J] [--record STEM]",
+        "play N runs (100 if not said) drawn from their seeds, and hold them to what is promised: a team with faults of radio,\n\
+        \x20                clocks and sensors, or matches of 60 s with cards, keeper changes, penalties, halts and restarts;\n\
+         \x20                --record plays the match of --first alone and records it for `onetwo replay`",
+        |context, description| bench::start_example(context, "swarm", description),
+    ),
+    handed_on(
+        "faults",
+        "[--seeds N] [--write]",
+        "what loss costs a team; --write puts table and picture into docs/faults.md",
+        |context, description| bench::start_example(context, "faults", description),
+    ),
+    handed_on(
+        "on-target",
+        "[NAME]...",
+        "run the tests that run on the robot's processor, in QEMU; names choose among them",
+        emulate::on_target,
+    ),
+    handed_on(
+        "emulate",
+        "IMAGE [NAME]...",
+        "run a program for the robot's processor in QEMU; what `cargo run` and `cargo test` for that target call",
+        |_, description| emulate::emulate(description),
+    ),
+    task("pictures", "", "draw the documentation's pictures anew", |context, _| pictures::draw(context)),
+    task(
+        "screenshots",
+        "",
+        "take the page's pictures anew, in a browser; they lie in docs/page",
+        |context, _| page::pictures(context),
+    ),
+    task(
+        "evaluation",
+        "",
+        "play the paper's evaluation and write docs/evaluation.md's figures; the report lies in out/evaluation",
+        |context, _| evaluation::write(context),
+    ),
+    task(
+        "matches",
+        "[--fresh]",
+        "play our team against each other, each against each, and without each part, and write docs/matches.md; the rest\n\
+        \x20                lies in out/matches. Some 490 matches, 45 minutes of one core; goes on where it was stopped, --fresh\n\
+        \x20                begins anew (another commit's matches are refused)",
+        |context, description| {
+            evaluation::write_matches(context, description.iter().any(|label| label == "--fresh"))
+        },
+    ),
+    task(
+        "skills",
+        "",
+        "try single skills in the nominal world and in random worlds, and write docs/skills.md; some minutes of one core",
+        |context, _| evaluation::write_skills(context),
+    ),
+    task(
+        "budgets",
+        "",
+        "count trial, game, strategy and simulator as below, and write docs/budgets.md",
+        |context, _| cost::write(context),
+    ),
+    handed_on(
+        "bench retrieval",
+        "[--write | --guest | --verify]",
+        "count a retrieval's instructions on the robot's processor and here, and hold them to the budgets; --write puts\n\
+        \x20                the table into casebase/README.md, --guest leaves this machine out, --verify holds 10^6 answers to a\n\
+        \x20                plain scan's instead",
+        |context, description| bench::start(context, "retrieval", description),
+    ),
+    handed_on(
+        "bench motion",
+        "[--write | --guest | --verify]",
+        "likewise for planned motions, interception and ways around others; the table is firmware/motion/README.md's,\n\
+        \x20                --verify holds 10^6 times to the best of all shares between the axes instead",
+        |context, description| bench::start(context, "motion", description),
+    ),
+    handed_on(
+        "bench radio",
+        "[--write]",
+        "likewise for radio frames on the robot's processor; the table is protocol/README.md's",
+        |context, description| bench::start(context, "radio", description),
+    ),
+    handed_on(
+        "bench hil",
+        "[--seconds N] [--seed N]",
+        "play a match with six robots as images under QEMU and with native ones in one run; compare hashes and wall speed",
+        |context, description| bench::start_example(context, "hil", description),
+    ),
+    task(
+        "bench page",
+        "[--write]",
+        "measure what a frame costs the page's script, full over empty, and count what five viewers cost a match; --write puts\n\
+        \x20                both into host/page/README.md",
+        |context, description| page::bench(context, writes(description)),
+    ),
+    task(
+        "bench trial",
+        "",
+        "count the instructions of a simulated second of the paper's trials and hold them to the budget",
+        |context, _| cost::judge(&trial_cost::rows(context)?),
+    ),
+    task(
+        "bench game",
+        "",
+        "likewise of a host with eleven robots, per packet of vision, and of a match of two whole teams",
+        |context, _| cost::judge(&game_cost::rows(context)?),
+    ),
+    task("bench strategy", "", "likewise of one decision of strategy's, of each kind", |context, _| {
+        cost::judge(&example_cost::STRATEGY.rows(context)?)
+    }),
+    task(
+        "bench simulator",
+        "[--write]",
+        "likewise of a second of eleven against eleven on wheels; --write puts the table into hil-sim/README.md",
+        |context, description| {
+            let rows = example_cost::SIMULATOR.rows(context)?;
+            if writes(description) {
+                cost::write_between("hil-sim/README.md", "simulator table", &cost::table(&rows))?;
+            }
+            cost::judge(&rows)
+        },
+    ),
+];
