@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn the_description_of_primitives_lead_back() {
+    fn the_words_of_primitives_lead_back() {
         for primitive in Primitive::ALL.into_iter().skip(1) {
             assert_eq!(Primitive::from_label(primitive.label()), Some(primitive));
         }

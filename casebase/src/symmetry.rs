@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn description_lead_back_to_their_goals() {
+    fn words_lead_back_to_their_goals() {
         for goal in [GoalEnd::Negative, GoalEnd::Positive] {
             assert_eq!(GoalEnd::from_label(goal.label()), Some(goal));
         }

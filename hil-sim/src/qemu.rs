@@ -439,7 +439,7 @@ mod tests {
     }
 
     #[test]
-    fn an_emulator_that_ends_tells_its_last_description() {
+    fn an_emulator_that_ends_tells_its_last_words() {
         let (mut robot, _board) = quiet("sh", &["-c", "echo no such machine >&2; exit 3"]);
         let error = robot.set_up(&config()).unwrap_err().to_string();
         assert!(error.contains("exit status: 3; no such machine"), "{error}");

@@ -314,8 +314,7 @@ fn in_stop_nobody_is_faster_than_1_5_m_per_s_nor_within_half_a_metre_of_the_ball
 }
 
 #[test]
-fn when_the_host_falls_silent_a_robot_stands_within_a_second_and_moves_again_after_half_a_second_of_description()
- {
+fn when_the_host_falls_silent_a_robot_stands_within_a_second_and_moves_again_after_half_a_second_of_words() {
     let mut surface = surface((0.0, 2.5), &[(1, -3.0, -1.0, 0.0)]);
     surface.tell(1, RuleRole::Player, go_to(3.0, -1.0, 0.0));
     surface.until(3.0, |c| c.ours(1).velocity.norm() > 2.8).expect("gets fast");
@@ -348,20 +347,37 @@ fn gameplay(surface: &mut Surface<'_>, robots: &[u8]) {
 
 #[test]
 fn three_robots_play_cases_on_wheels_and_score_against_nobody() {
-    let mut scored = 0;
+    let (mut scored, mut starts) = (0, 0);
     let mut ends = Vec::new();
-    for ball in [(-0.2, 0.1), (0.8, 1.0), (2.2, -0.2), (-1.5, 0.5), (2.6, 1.8)] {
+    for ball in [
+        (-0.2, 0.1),
+        (0.8, 1.0),
+        (2.2, -0.2),
+        (-1.5, 0.5),
+        (2.6, 1.8),
+        (0.0, -1.5),
+        (1.2, -2.0),
+        (1.5, 0.4),
+        (-0.8, 1.7),
+        (2.8, -1.0),
+        (0.4, 2.2),
+        (-1.2, -1.2),
+        (3.0, 0.5),
+        (1.9, -1.6),
+        (-0.5, -0.6),
+    ] {
         let (x, y) = ball;
         let mut surface =
             surface(ball, &[(1, x - 0.6, y, 0.0), (2, x + 0.5, y + 1.0, 0.0), (3, x, y - 1.3, 0.0)]);
         gameplay(&mut surface, &[1, 2, 3]);
         let goal = surface.until(15.0, |c| c.ball().x() > 4.5 && c.ball().y().abs() < 0.5);
+        starts += 1;
         scored += usize::from(goal.is_some());
         ends.extend(surface.ends.iter().map(|(_, end)| *end));
     }
     let finished = ends.iter().filter(|end| **end == Closure::Finished).count();
     let broken = ends.iter().filter(|end| matches!(end, Closure::Aborted { .. })).count();
-    assert!(scored >= 4, "{scored} of 5");
+    assert!(scored * 5 >= starts * 4, "{scored} of {starts}");
     assert!(finished > broken, "{finished} finished, {broken} aborted: {ends:?}");
 }
 
@@ -433,7 +449,7 @@ fn a_robot_tells_the_host_ten_times_a_second_how_it_is_and_that_it_lost_the_link
 }
 
 #[test]
-fn without_any_label_of_a_host_a_robot_does_nothing_at_all() {
+fn without_any_word_of_a_host_a_robot_does_nothing_at_all() {
     let mut surface = Surface::new(League::DivisionB, base(), (0.3, 0.0), &[(1, 0.0, 0.0, 0.0)]);
     surface.silent = true;
     surface.during(2.0, |c| {

@@ -85,7 +85,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn description_choose_by_a_part_of_the_name_and_options_choose_nothing() {
+    fn words_choose_by_a_part_of_the_name_and_options_choose_nothing() {
         let description = |list: &[&str]| list.iter().map(|label| (*label).to_owned()).collect::<Vec<_>>();
         assert!(
             is_chosen("frames::a", &description(&[]))

@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn tasks_are_found_by_all_their_description_and_get_the_rest() {
+    fn tasks_are_found_by_all_their_words_and_get_the_rest() {
         let description = |list: &[&str]| list.iter().map(|label| (*label).to_owned()).collect::<Vec<_>>();
         assert_eq!(task("pictures"), Some(("pictures", description(&[]))));
         assert_eq!(task("budgets"), Some(("budgets", description(&[]))));

@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn description_from_outside_cannot_break_the_snapshot() {
+    fn words_from_outside_cannot_break_the_snapshot() {
         let mut svg = Svg::default();
         let font = Font { size: 10.0, fill: "black", bold: false, halo: None };
         svg.text([0.0, 0.0], "a<b & c>d\u{7}", Anchor::Start, font);

@@ -59,7 +59,7 @@ mod tests {
     use crate::codes::code;
 
     #[test]
-    fn a_finding_reads_as_file_line_kind_description_and_hint() {
+    fn a_finding_reads_as_file_line_kind_words_and_hint() {
         let finding = Finding {
             code: code::BAD_SCOPE,
             severity: Severity::Error,

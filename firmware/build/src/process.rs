@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_label_of_a_failed_command_is_kept() {
+    fn the_last_line_of_a_failed_command_is_kept() {
         let error =
             output_of(Command::new("sh").args(["-c", "echo first >&2; echo 'no such thing' >&2; exit 3"]));
         let error = error.unwrap_err();

@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn a_world_at_rest_hashes_to_the_bytes_the_description_lists() {
+    fn a_world_at_rest_hashes_to_the_bytes_the_words_lists() {
         let world = World::new(Parameters::four_legged(), 0, Point::new(1.0, -2.0), Vec::new());
         let mut by_hand = Fnv::default();
         by_hand.add(&[7, 0, 0, 0]);

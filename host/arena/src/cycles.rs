@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn the_list_of_description_has_every_end_of_a_play() {
+    fn the_list_of_words_has_every_end_of_a_play() {
         use AbortReason as Why;
         let by = robot(1);
         let aborted = [

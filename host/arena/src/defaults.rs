@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn a_spell_lasts_from_the_first_label_to_the_next_case() {
+    fn a_spell_lasts_from_the_first_word_to_the_next_case() {
         let problem = Problem { ball: at(60_000, 0), ..problem_of_nobody() };
         let (base, settings) = (case_library::four_legged(), Settings::default());
         let mut watch = DefaultWatch::default();

@@ -71,7 +71,9 @@ mod tests {
         sources(&root, &mut files);
         assert!(files.len() > 50, "{}", root.display());
         let prints = ["println!(", "print!(", "io::stdout()", " stdout()", "io::stderr()", "&mut stdout()"];
-        for file in files.iter().filter(|file| !file.ends_with("output.rs")) {
+        for file in
+            files.iter().filter(|file| !["output.rs", "progress.rs"].iter().any(|own| file.ends_with(own)))
+        {
             for (number, line) in (1..).zip(fs::read_to_string(file).unwrap().lines()) {
                 let found =
                     prints.iter().find(|print| line.contains(*print) && !line.contains("is_terminal"));

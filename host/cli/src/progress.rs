@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn work_without_an_end_tells_its_steps_or_its_description() {
+    fn work_without_an_end_tells_its_steps_or_its_words() {
         let progress = Progress::open();
         progress.line().shown = false;
         progress.add(7);

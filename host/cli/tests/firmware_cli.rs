@@ -107,7 +107,7 @@ fn without_probe_rs_flashing_says_what_to_install() {
 }
 
 #[test]
-fn wrong_description_are_wrong_usage() {
+fn wrong_words_are_wrong_usage() {
     for description in [
         &["firmware"][..],
         &["firmware", "flash", "--elf", "image"],

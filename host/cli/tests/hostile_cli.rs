@@ -405,7 +405,7 @@ fn special_files_are_refused_by_what_they_are_wherever_a_file_is_read() {
 }
 
 #[test]
-fn a_bad_line_of_fifty_megabytes_is_refused_in_a_few_description() {
+fn a_bad_line_of_fifty_megabytes_is_refused_in_a_few_words() {
     let config = scratch("long.toml");
     fs::write(&config, format!("name = \"a\"\n{}\n", "x".repeat(900_000))).unwrap();
     let control = ["control", "--headless", "--duration", "1", "--config", text(&config)];

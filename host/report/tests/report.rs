@@ -133,7 +133,7 @@ fn the_page_stands_alone() {
 }
 
 #[test]
-fn description_from_outside_cannot_break_the_page() {
+fn words_from_outside_cannot_break_the_page() {
     let html = Made::new().report().html();
     assert!(html.contains("&lt;script&gt;alert('&amp;')&lt;/script&gt;"));
     assert!(html.contains("more &lt; less") && html.contains("Program &amp; options"));

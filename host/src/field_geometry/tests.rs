@@ -199,7 +199,7 @@ fn numbers_of_the_area_come_before_lines_and_lines_before_the_division() {
 }
 
 #[test]
-fn a_field_without_any_label_of_the_area_has_its_divisions() {
+fn a_field_without_any_word_of_the_area_has_its_divisions() {
     let area = |length, width| {
         let geometry = received(plain(length, width)).unwrap();
         let field = *geometry.field().unwrap();

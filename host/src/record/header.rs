@@ -291,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_host_began_with_is_read_again_from_the_description() {
+    fn what_a_host_began_with_is_read_again_from_the_words() {
         let written = header();
         let read = RecordingHeader::from_json(&written.to_json()).unwrap();
         assert_eq!(read, written);

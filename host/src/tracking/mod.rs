@@ -31,7 +31,7 @@
 //!     let packet = WrapperPacket { detection: Some(image), ..WrapperPacket::default() };
 //!     tracker.handle(&packet, Instant(5_000_000 + (t * 1e6) as u64));
 //! }
-//! let ball = tracker.picture().ball.unwrap();
+//! let ball = tracker.snapshot().ball.unwrap();
 //! assert!((ball.velocity.x() - 1.0).abs() < 0.1);
 //! // What it will be when our commands arrive.
 //! let later = tracker.world(Instant(5_200_000)).ball.unwrap();

@@ -120,7 +120,7 @@ fn frames_of_an_earlier_life_are_refused() {
 }
 
 #[test]
-fn a_host_is_a_unauthenticated_until_it_welcomes_this_life_of_this_robot() {
+fn a_host_is_a_stranger_until_it_welcomes_this_life_of_this_robot() {
     let (mut a, mut host) = (link(2, 9), host(70));
     let unauthenticated = Err(Refusal::Unauthenticated { epoch: 70 });
     assert_eq!(a.open(NOW, &host.seal(NOW, &stand(2))), unauthenticated);

@@ -96,7 +96,7 @@ fn the_example_of_the_agreement_is_answered_as_printed() {
 }
 
 #[test]
-fn the_four_descriptions_mirror_goal_points_and_kicks() {
+fn the_four_words_mirror_goal_points_and_kicks() {
     let kick = |kind: &str| {
         format!(
             r#"

@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn variants_are_description_of_the_command_line() {
+    fn variants_are_words_of_the_command_line() {
         let text = "enum Verb {\n    /// A.\n    Play(A),\n    Cases {\n        Verb: B,\n    },\n    VirtualRobot(C),\n}\nenum X {\n    Y,\n}\n";
         assert_eq!(
             variants(text, "Verb").into_iter().collect::<Vec<_>>(),

@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mark_that_is_not_there_is_found_and_other_description_are_none() {
+    fn a_mark_that_is_not_there_is_found_and_other_words_are_none() {
         let marks = Marks(BTreeSet::from(["R1".to_owned(), "D24".to_owned()]));
         let text = "// (docs/papers.md R1, D24)\nlet r99 = PD12; // pin PD12, R100\n/// R2 (D3)\n";
         assert_eq!(lines(&marks.dangling(&source(text))), [3, 3]);

@@ -84,7 +84,7 @@ mod tests {
     };
 
     #[test]
-    fn each_area_is_where_its_label_says_for_both_teams() {
+    fn each_area_is_where_its_word_says_for_both_teams() {
         let table = [
             ([0, 0], Area::Center),
             ([-2000, 300], Area::Back),

@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn every_end_has_its_label_in_the_list() {
+    fn every_end_has_its_word_in_the_list() {
         let reactive = TrialRow { approach: Approach::Reactive, plays: "a/x:finished".to_owned(), ..row() };
         assert!(uses(&[reactive], &["a/x".to_owned()]).is_empty());
         for label in CycleEnd::DESCRIPTION {

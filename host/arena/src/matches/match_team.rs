@@ -135,7 +135,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_team_is_read_from_the_label_it_is_written_as() {
+    fn every_team_is_read_from_the_word_it_is_written_as() {
         let ablations = MatchTeam::ablations();
         assert_eq!(ablations.len(), parts(Tactics::ALL).len());
         let none = MatchTeam { team: Team::Ours, tactics: Tactics::NONE };
@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn a_label_says_what_differs_from_the_usual_team() {
+    fn a_word_says_what_differs_from_the_usual_team() {
         let changed = Tactics { second_level: !Tactics::default().second_level, ..Tactics::default() };
         let label = MatchTeam { team: Team::Ours, tactics: changed }.to_string();
         assert!(matches!(&*label, "ours-without-second-level" | "ours-with-second-level"), "{label}");

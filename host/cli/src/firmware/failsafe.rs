@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn a_host_that_forgets_a_robot_brakes_it_after_100_ms_and_moves_it_with_its_first_label() {
+    fn a_host_that_forgets_a_robot_brakes_it_after_100_ms_and_moves_it_with_its_first_word() {
         let found = ends_well(Cause::NoCommand, 100);
         // Motors hold: the host commands the team.
         assert_eq!((found.brakes, found.released), (Some(100), None));

@@ -199,7 +199,7 @@ fn the_built_in_leagues_pass_the_check() {
 }
 
 #[test]
-fn a_directory_that_is_not_there_fails_the_check_in_description() {
+fn a_directory_that_is_not_there_fails_the_check_in_words() {
     let run = onetwo(&["cases", "check", "--library", "no/such/folder"]);
     assert_eq!((run.code, run.stdout.as_str()), (1, ""));
     assert!(run.stderr.contains("no/such/folder"), "{}", run.stderr);

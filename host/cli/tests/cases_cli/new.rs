@@ -43,7 +43,7 @@ fn a_file_s_problem_may_be_spread_over_lines_and_what_is_left_out_is_told() {
 }
 
 #[test]
-fn what_is_no_single_problem_is_refused_in_description() {
+fn what_is_no_single_problem_is_refused_in_words() {
     let directory = library("new-refused", &[]);
     let refused = |input: &str, description: &str| {
         let run = cases("new", &directory, &["--from", "-"], input);

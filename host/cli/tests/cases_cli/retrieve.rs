@@ -10,7 +10,7 @@ const ANSWER: &str = r#"{"case":"center/pass-around","id":0,"symmetry":"identity
 const NOTHING: &str = r#"{"case":null,"candidates":0}"#;
 
 #[test]
-fn the_worked_example_is_answered_label_for_label() {
+fn the_worked_example_is_answered_word_for_word() {
     let run = cases("retrieve", &worked_example("worked"), &[], format!("{PROBLEM}\n"));
     assert_eq!((run.stdout.as_str(), run.code), (format!("{ANSWER}\n").as_str(), 0));
     assert_eq!(run.stderr, "");
@@ -27,7 +27,7 @@ fn an_opponent_inside_a_leg_leaves_no_case() {
 }
 
 #[test]
-fn the_other_three_quarters_of_the_field_are_answered_by_the_symmetric_descriptions() {
+fn the_other_three_quarters_of_the_field_are_answered_by_the_symmetric_words() {
     let quarter = |sx: i32, sy: i32, goal: &str| {
         format!(
             r#"{{"ball":[{},{}],"defending":"{goal}","teammates":{{"1":[{},0],"3":[{},{}]}},"opponents":[[{},{}]]}}"#,

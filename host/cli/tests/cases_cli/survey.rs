@@ -68,7 +68,7 @@ fn cells_add_up_to_the_whole_in_snapshot_and_table() {
 }
 
 #[test]
-fn what_cannot_be_counted_is_refused_in_description() {
+fn what_cannot_be_counted_is_refused_in_words() {
     let directory = worked_example("refused");
     let empty = library("empty", &[]);
     let recorded = directory.join("broken.jsonl");

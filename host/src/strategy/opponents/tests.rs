@@ -35,7 +35,7 @@ fn every_robot_has_one_order_and_nobody_but_the_keeper_is_sent_into_an_area_or_o
 }
 
 #[test]
-fn nobody_but_the_keeper_goes_for_a_ball_in_an_area_and_the_double_touch_blocked_never_does() {
+fn nobody_but_the_keeper_goes_for_a_ball_in_an_area_and_the_barred_never_does() {
     for team in Team::OPPONENTS {
         for ball in [(-4.2, 0.3), (4.2, 0.3)] {
             let orders = orders(team, &view(ball, &OURS, &THEIRS));
@@ -98,7 +98,7 @@ fn the_wall_stands_across_the_line_from_ball_to_goal_and_moves_with_the_ball() {
 }
 
 #[test]
-fn a_team_is_read_by_the_label_it_is_written_with() {
+fn a_team_is_read_by_the_word_it_is_written_with() {
     for team in Team::ALL {
         assert_eq!(Team::from_label(team.label()), Some(team));
         assert_eq!(serde_json::to_string(&team).unwrap(), format!("\"{}\"", team.label()));

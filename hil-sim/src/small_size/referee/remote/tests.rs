@@ -203,7 +203,7 @@ fn where_the_controller_wants_the_ball_decides_and_the_mark_when_it_prepares() {
 }
 
 #[test]
-fn packets_of_nonsense_move_nothing_out_of_the_server_loop() {
+fn packets_of_nonsense_move_nothing_out_of_the_server() {
     let mut chance = crate::rng::Stream::new(8, "remote match");
     let mut server_loop = server_loop();
     server_loop.ball(at(-2.0, 3.1), Vector::default());
