@@ -174,7 +174,7 @@ impl Coach {
             Phase::Halt | Phase::Timeout(_) => plan.everybody(Role::Player, Task::Stand, Why::Referee),
             Phase::Run => match &mut self.model {
                 Some(model) => {
-                    plan.orders.extend(model.open_play(view, &mut plan.free, self.double_touch_blocked))
+                    plan.orders.extend(model.open_play(view, &mut plan.free, self.double_touch_blocked));
                 }
                 None => self.open_play(&mut plan),
             },
