@@ -7,6 +7,7 @@
 //!
 //! Registers: r0 to, r1 from, r2 length in bytes; r3 and r12 are free, r4 is kept. Nothing is returned
 //! (`__aeabi_…`), or r0 (`memcpy`).
+#![allow(unsafe_code, reason = "replaces the compiler's memcpy by assembly")]
 
 // `__aeabi_memcpy4` and `8` are promised 4-byte alignment, so load and store multiple may be used: 4
 // instructions for 16 bytes. The others take what comes: this processor loads and stores 4 bytes at any

@@ -7,9 +7,9 @@ use protocol::Duration;
 use runtime::ports::Watchdog;
 
 /// The watchdog, running.
-pub struct Watchdog(IndependentWatchdog<'static, IWDG1>);
+pub struct BoardWatchdog(IndependentWatchdog<'static, IWDG1>);
 
-impl Watchdog {
+impl BoardWatchdog {
     /// Starts it; from now on it must be fed, and only a reset ends it.
     pub fn start(watchdog: Peri<'static, IWDG1>) -> Self {
         let mut watchdog = IndependentWatchdog::new(watchdog, PATIENCE.0 as u32);
@@ -18,7 +18,7 @@ impl Watchdog {
     }
 }
 
-impl Watchdog for Watchdog {
+impl Watchdog for BoardWatchdog {
     const PATIENCE: Duration = PATIENCE;
 
     fn feed(&mut self) {

@@ -98,7 +98,7 @@ pub(super) fn run(
         whistle.listen(server.world(), running, &mut description);
         match &mut sync {
             Some(sync) => {
-                sync.serve(&mut server, &mut description, |world, lines| whistle.look(world, lines))
+                sync.serve(&mut server, &mut description, |world, lines| whistle.look(world, lines));
             }
             None => advance(&mut server, running.as_micros() as u64, &mut whistle, &mut description),
         }
@@ -230,7 +230,7 @@ impl Referee {
         match &mut self.who {
             RefereeSource::Ours(ours) => *ours = internal(args, unix_us, seed)?,
             RefereeSource::Elsewhere(crew) => {
-                crew.restart().map_err(|error| Failure::Network(error.to_string()))?
+                crew.restart().map_err(|error| Failure::Network(error.to_string()))?;
             }
             RefereeSource::NoWatcher => {}
         }

@@ -8,17 +8,17 @@ use runtime::ports::Watchdog;
 use super::{body, console::say, fault};
 
 /// The watchdog, running.
-pub(crate) struct Watchdog(());
+pub(crate) struct BoardWatchdog(());
 
 /// Starts it; from now on it must be fed.
-pub(crate) fn start() -> Watchdog {
+pub(crate) fn start() -> BoardWatchdog {
     LOCK.write(UNLOCKED);
     LOAD.write(PATIENCE_TICKS);
     CONTROL.write(INTERRUPT | RESET);
-    Watchdog(())
+    BoardWatchdog(())
 }
 
-impl Watchdog for Watchdog {
+impl Watchdog for BoardWatchdog {
     const PATIENCE: Duration = PATIENCE;
 
     fn feed(&mut self) {

@@ -11,7 +11,7 @@ use board_stm32::imu::Imu;
 use board_stm32::kicker::Kicker;
 use board_stm32::radio::{self, UartReceiver, UartSender};
 use board_stm32::sampling::{self, Probes};
-use board_stm32::watchdog::Watchdog;
+use board_stm32::watchdog::BoardWatchdog;
 use board_stm32::wheels::{Drivers, Wheels};
 use board_stm32::{flash, off};
 use case_library::division_b;
@@ -51,7 +51,7 @@ fn main() -> ! {
     let wheels = Wheels::new(drivers, Encoders::new(parts.encoders));
     let (imu, analog) = (Imu::new(parts.imu), Analog::new(parts.analog));
     // The last step that may take long is over.
-    let watchdog = Watchdog::start(parts.keeper.watchdog);
+    let watchdog = BoardWatchdog::start(parts.keeper.watchdog);
     static EXECUTOR: StaticCell<Executor> = StaticCell::new();
     EXECUTOR.init(Executor::new()).run(|spawner| {
         let brain = (config, division_b(), who.keys);
@@ -73,7 +73,7 @@ fn start(
     analog: Analog,
     sender: UartSender,
     receiver: UartReceiver,
-    watchdog: Watchdog,
+    watchdog: BoardWatchdog,
     alive: Output<'static>,
 ) -> Result<(), SpawnError> {
     spawner.spawn(control(wheels)?);
@@ -124,7 +124,7 @@ async fn radio_send(sender: UartSender) -> ! {
 }
 
 #[embassy_executor::task]
-async fn watchdog(watchdog: Watchdog) -> ! {
+async fn watchdog(watchdog: BoardWatchdog) -> ! {
     hardware::watchdog(watchdog, &BOXES).await
 }
 
