@@ -287,7 +287,7 @@ mod tests {
 
     #[test]
     fn the_body_holds_together() {
-        assert!(OURS.hull.front < OURS.hull.radius && OURS.wheels.distance < OURS.hull.radius);
+        const { assert!(OURS.hull.front < OURS.hull.radius && OURS.wheels.distance < OURS.hull.radius) };
         let slope = geometry::math::sin_cos(OURS.kicker.chip_degrees * (geometry::math::PI / 180.0));
         assert!((slope.0 / slope.1 - OURS.kicker.chip_slope).abs() < 1e-5);
     }

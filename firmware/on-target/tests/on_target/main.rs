@@ -4,6 +4,7 @@
 //! the same program runs on hardware with `probe-rs run`. It does not repeat the PC's tests, but covers a
 //! little of each part: retrieval, a robot's cycle, frames, timers, what the governor does when something
 //! breaks. On the PC this is empty.
+#![allow(unsafe_code, reason = "the board's clock reaches registers by address")]
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

@@ -73,7 +73,7 @@ fn start(
     analog: Analog,
     sender: UartSender,
     receiver: UartReceiver,
-    watchdog: BoardWatchdog,
+    fed: BoardWatchdog,
     alive: Output<'static>,
 ) -> Result<(), SpawnError> {
     spawner.spawn(control(wheels)?);
@@ -83,7 +83,7 @@ fn start(
     spawner.spawn(radio_send(sender)?);
     spawner.spawn(radio_receive(receiver)?);
     spawner.spawn(brain(config, base, keys)?);
-    spawner.spawn(watchdog(watchdog)?);
+    spawner.spawn(watchdog(fed)?);
     spawner.spawn(report(alive)?);
     Ok(())
 }
@@ -124,8 +124,8 @@ async fn radio_send(sender: UartSender) -> ! {
 }
 
 #[embassy_executor::task]
-async fn watchdog(watchdog: BoardWatchdog) -> ! {
-    hardware::watchdog(watchdog, &BOXES).await
+async fn watchdog(fed: BoardWatchdog) -> ! {
+    hardware::watchdog(fed, &BOXES).await
 }
 
 /// Blinks, and reports the board's state each second.
