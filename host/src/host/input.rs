@@ -17,7 +17,7 @@ pub enum Input<'a> {
     Robot(&'a [u8]),
     /// The operator halts our robots until the end of the program.
     Halt,
-    /// A deadline that [`Host::poll_timeout`] announced.
+    /// A deadline that [`Host::poll_timeout`](crate::Host::poll_timeout) announced.
     Timeout,
 }
 
