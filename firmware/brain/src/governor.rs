@@ -14,7 +14,7 @@
 //! held to everything but the host's silence. A frame of the host counts as received on arrival while it is
 //! at most [`LATENCY_MAX`] old, and earlier by its excess age otherwise: with nothing but withheld frames of
 //! a dead host the robot slows down from an age of 150 ms on and brakes at 200 ms. After a gap of less than
-//! [`LONG_SILENCE`] it continues with the first fresh frame. Body frame, SI.
+//! `LONG_SILENCE` it continues with the first fresh frame. Body frame, SI.
 
 use geometry::{Body, Twist, Vector, math};
 use protocol::robot_io::{Health, OmniKick};

@@ -42,8 +42,8 @@ pub fn carry_to(belief: &Belief, to: Point<Field>, tolerance: f32) -> Step {
 /// Any skill's intent, but with the ball let go before it was held too long or carried too far.
 ///
 /// Host, case and reactive behaviour may all change their target while the opponents move with it. So the
-/// ball's target is fixed after [`SETTLES`] to the one wanted then, or after [`ACTS`] where there is none;
-/// [`kick_held`] tolerates more aiming error from then on, and after [`LASTS`] the robot leaves the ball.
+/// ball's target is fixed after `SETTLES` to the one wanted then, or after `ACTS` where there is none;
+/// [`kick_held`] tolerates more aiming error from then on, and after `LASTS` the robot leaves the ball.
 pub fn let_go_in_time(belief: &mut Belief, intent: Intent) -> Intent {
     let held = belief.held();
     if belief.disputed() > TURNS && belief.holds_ball {

@@ -1,6 +1,6 @@
 //! `wheels`: skills of the wheeled robot, one file each; belief in, intent and verdict out.
 //!
-//! They keep no state but that of their types ([`Placing`], [`Reception`](crate::skills::Reception)). Their
+//! They keep no state but that of their types (`Placing`, [`Reception`](crate::skills::Reception)). Their
 //! intents pass the governor; the drivetrain keeps them out of forbidden regions. Field frame, SI.
 
 mod block;
