@@ -264,7 +264,7 @@ fn moved<F: Copy>(course: &Course<'_, F>, velocity: Vector<F>) -> State<F> {
 }
 
 /// Most obstacles that are used: 21 other robots, the rules' 12 shapes, and a reserve.
-pub const OBSTACLES_MAX: usize = 38;
+pub const OBSTACLES_MAX: usize = 36;
 /// Most straight pieces that a search tests.
 pub const CHECKS_MAX: u32 = 12;
 /// The largest useful effort: twelve pieces among forty obstacles.

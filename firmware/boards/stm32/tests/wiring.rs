@@ -96,7 +96,7 @@ fn every_example_is_in_the_readme_and_says_what_to_connect_and_what_to_see() {
         let (name, text) =
             (path.file_stem().unwrap().to_str().unwrap(), std::fs::read_to_string(&path).unwrap());
         assert!(README.contains(&format!("| [`{name}`](examples/{name}.rs) |")), "{name}");
-        assert!(text.contains("Connect: ") && text.contains("See: "), "{name}");
+        assert!(text.contains("Connect: ") && text.contains(" See:"), "{name}");
         seen += 1;
     }
     assert_eq!(seen, 8);
