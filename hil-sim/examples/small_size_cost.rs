@@ -17,8 +17,8 @@ use rules::{Colour, League};
 use ssl::Message;
 
 fn main() -> ExitCode {
-    let description: Vec<String> = std::env::args().skip(1).collect();
-    let [part, seconds] = &description[..] else { return usage() };
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [part, seconds] = &arguments[..] else { return usage() };
     let (Ok(seconds), Some(part)) = (seconds.parse::<u32>(), PARTS.iter().position(|name| name == part))
     else {
         return usage();

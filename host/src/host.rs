@@ -291,7 +291,7 @@ impl Host {
             .allowing(self.allowed(us))
             .allowing_them(self.allowed(us.other()))
             .proposing(self.proposed(now, Flip::defending(game.defending)));
-        let view = View { unauthenticated: self.unauthenticated(&view.field, game.defending), ..view };
+        let view = View { never_answered: self.never_answered(&view.field, game.defending), ..view };
         self.orders = self.coach.decide(&view);
         if !self.halted {
             self.requests.look(&view, self.listener.game().team(us).substitutions_left);
@@ -325,7 +325,7 @@ impl Host {
     }
 
     /// Number of robots of our colour on the field that have not reported since this host started.
-    fn unauthenticated(&self, field: &FieldSpec, defending: GoalEnd) -> usize {
+    fn never_answered(&self, field: &FieldSpec, defending: GoalEnd) -> usize {
         let stands = |robot: &&crate::world::Robot| field.counts(defending, robot.pose.position);
         let silent = |robot: &&crate::world::Robot| {
             let known = &self.robots[robot.who.id.index()];

@@ -125,11 +125,11 @@ mod tests {
             // A robot that the host called away, or that has ended, is not a passer of any case.
             assert_eq!(find(&told(Progress::Idle)), None);
             // Cycles of robots with another case base are ignored.
-            let mut unauthenticated = told(Progress::Execute { done: 1 });
-            for (_, beacon) in &mut unauthenticated {
+            let mut others = told(Progress::Execute { done: 1 });
+            for (_, beacon) in &mut others {
                 beacon.case_base ^= 1;
             }
-            assert_eq!(find(&unauthenticated), None);
+            assert_eq!(find(&others), None);
         }
         assert!(seen > 4, "{seen} such cases");
     }

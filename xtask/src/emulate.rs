@@ -12,14 +12,14 @@ use firmware_build::{Install, MACHINE, ensure_qemu};
 use crate::context::{Context, Failure, line_of, run};
 
 /// The tests that run on the robot's processor; arguments select among them.
-pub(crate) fn on_target(context: &Context, description: &[String]) -> Result<(), Failure> {
+pub(crate) fn on_target(context: &Context, arguments: &[String]) -> Result<(), Failure> {
     let mut command = context.cargo_thumb("test --profile firmware --package on-target")?;
-    run(command.arg("--").args(description))
+    run(command.arg("--").args(arguments))
 }
 
 /// Runs the program that the first argument names.
-pub(crate) fn emulate(description: &[String]) -> Result<(), Failure> {
-    let Some((image, description)) = description.split_first() else {
+pub(crate) fn emulate(arguments: &[String]) -> Result<(), Failure> {
+    let Some((image, arguments)) = arguments.split_first() else {
         return Err(Failure::Firmware(vec!["emulate needs an image".into()]));
     };
     let image = Path::new(image);
@@ -27,7 +27,7 @@ pub(crate) fn emulate(description: &[String]) -> Result<(), Failure> {
     let qemu = ensure_qemu(Install::ForUser).map_err(Failure::Qemu)?;
     let bytes = fs::read(image).map_err(|error| unreadable(error.to_string()))?;
     if let Some(tests) = tests_in(&bytes).map_err(|error| unreadable(error.to_string()))? {
-        return run_tests(&qemu, image, &tests, description);
+        return run_tests(&qemu, image, &tests, arguments);
     }
     let mut command = Command::new(qemu);
     command.args(["-machine", MACHINE, "-display", "none", "-monitor", "none", "-serial", "stdio"]);
@@ -40,9 +40,9 @@ pub(crate) fn emulate(description: &[String]) -> Result<(), Failure> {
     }
 }
 
-fn run_tests(qemu: &Path, image: &Path, tests: &[OnTarget], description: &[String]) -> Result<(), Failure> {
+fn run_tests(qemu: &Path, image: &Path, tests: &[OnTarget], arguments: &[String]) -> Result<(), Failure> {
     // Options of Rust's own runner (`--nocapture`) select no test.
-    let chosen: Vec<&OnTarget> = tests.iter().filter(|test| is_chosen(&test.name, description)).collect();
+    let chosen: Vec<&OnTarget> = tests.iter().filter(|test| is_chosen(&test.name, arguments)).collect();
     println!("\nrunning {} tests", chosen.len());
     let mut failures = Vec::new();
     let mut ignored = 0;
@@ -75,9 +75,9 @@ fn run_tests(qemu: &Path, image: &Path, tests: &[OnTarget], description: &[Strin
 }
 
 /// Whether an argument names it, or none is given.
-fn is_chosen(name: &str, description: &[String]) -> bool {
-    let mut description = description.iter().filter(|label| !label.starts_with('-')).peekable();
-    description.peek().is_none() || description.any(|label| name.contains(label.as_str()))
+fn is_chosen(name: &str, arguments: &[String]) -> bool {
+    let mut arguments = arguments.iter().filter(|label| !label.starts_with('-')).peekable();
+    arguments.peek().is_none() || arguments.any(|label| name.contains(label.as_str()))
 }
 
 #[cfg(test)]
@@ -86,14 +86,14 @@ mod tests {
 
     #[test]
     fn words_choose_by_a_part_of_the_name_and_options_choose_nothing() {
-        let description = |list: &[&str]| list.iter().map(|label| (*label).to_owned()).collect::<Vec<_>>();
+        let arguments = |list: &[&str]| list.iter().map(|label| (*label).to_owned()).collect::<Vec<_>>();
         assert!(
-            is_chosen("frames::a", &description(&[]))
-                && is_chosen("frames::a", &description(&["--nocapture"]))
+            is_chosen("frames::a", &arguments(&[]))
+                && is_chosen("frames::a", &arguments(&["--nocapture"]))
         );
         assert!(
-            is_chosen("frames::a", &description(&["timers", "fram"]))
-                && !is_chosen("frames::a", &description(&["timers"]))
+            is_chosen("frames::a", &arguments(&["timers", "fram"]))
+                && !is_chosen("frames::a", &arguments(&["timers"]))
         );
     }
 }

@@ -32,8 +32,8 @@ use steps::{STEPS, Step};
 use tasks::Task;
 
 fn main() -> ExitCode {
-    let description: Vec<String> = env::args().skip(1).collect();
-    match Request::from_description(&description) {
+    let arguments: Vec<String> = env::args().skip(1).collect();
+    match Request::from_arguments(&arguments) {
         Ok(Request::Test(steps)) => test(&steps),
         Ok(Request::List) => {
             for step in &STEPS {
@@ -41,7 +41,7 @@ fn main() -> ExitCode {
             }
             ExitCode::SUCCESS
         }
-        Ok(Request::Task(task, description)) => match (task.run)(&Context::new(), &description) {
+        Ok(Request::Task(task, arguments)) => match (task.run)(&Context::new(), &arguments) {
             Ok(()) => ExitCode::SUCCESS,
             Err(failure) => {
                 eprintln!("xtask: {failure}");
@@ -84,22 +84,22 @@ enum Request {
 }
 
 impl Request {
-    fn from_description(description: &[String]) -> Result<Self, String> {
-        match description.first().map(String::as_str) {
+    fn from_arguments(arguments: &[String]) -> Result<Self, String> {
+        match arguments.first().map(String::as_str) {
             None | Some("help" | "--help" | "-h") => return Ok(Self::Help),
             Some("test") => {}
             Some(_) => {
-                return Task::asked(description).map(|(task, description)| Self::Task(task, description));
+                return Task::asked(arguments).map(|(task, arguments)| Self::Task(task, arguments));
             }
         }
         let mut chosen = Vec::new();
-        let mut description = description[1..].iter().map(String::as_str);
-        while let Some(label) = description.next() {
+        let mut arguments = arguments[1..].iter().map(String::as_str);
+        while let Some(label) = arguments.next() {
             match label {
                 "--list" => return Ok(Self::List),
                 "--help" | "-h" => return Ok(Self::Help),
                 "--only" => {
-                    let name = description.next().ok_or("--only needs the name of a step")?;
+                    let name = arguments.next().ok_or("--only needs the name of a step")?;
                     let step = STEPS.iter().find(|step| step.name == name);
                     chosen.push(step.ok_or_else(|| {
                         format!("no step `{name}`; `cargo xtask test --list` has them all")
@@ -124,13 +124,13 @@ mod tests {
     use super::*;
 
     fn ask(line: &str) -> Result<Request, String> {
-        Request::from_description(&line.split_whitespace().map(String::from).collect::<Vec<_>>())
+        Request::from_arguments(&line.split_whitespace().map(String::from).collect::<Vec<_>>())
     }
 
     /// The command that a line names, and its arguments.
     fn task(line: &str) -> Option<(&'static str, Vec<String>)> {
         match ask(line) {
-            Ok(Request::Task(task, description)) => Some((task.name, description)),
+            Ok(Request::Task(task, arguments)) => Some((task.name, arguments)),
             _ => None,
         }
     }
@@ -150,13 +150,13 @@ mod tests {
 
     #[test]
     fn tasks_are_found_by_all_their_words_and_get_the_rest() {
-        let description = |list: &[&str]| list.iter().map(|label| (*label).to_owned()).collect::<Vec<_>>();
-        assert_eq!(task("pictures"), Some(("pictures", description(&[]))));
-        assert_eq!(task("budgets"), Some(("budgets", description(&[]))));
-        assert_eq!(task("bench game"), Some(("bench game", description(&[]))));
-        assert_eq!(task("bench simulator --write"), Some(("bench simulator", description(&["--write"]))));
-        assert_eq!(task("bench retrieval --guest"), Some(("bench retrieval", description(&["--guest"]))));
-        assert_eq!(task("swarm --seeds 9"), Some(("swarm", description(&["--seeds", "9"]))));
+        let arguments = |list: &[&str]| list.iter().map(|label| (*label).to_owned()).collect::<Vec<_>>();
+        assert_eq!(task("pictures"), Some(("pictures", arguments(&[]))));
+        assert_eq!(task("budgets"), Some(("budgets", arguments(&[]))));
+        assert_eq!(task("bench game"), Some(("bench game", arguments(&[]))));
+        assert_eq!(task("bench simulator --write"), Some(("bench simulator", arguments(&["--write"]))));
+        assert_eq!(task("bench retrieval --guest"), Some(("bench retrieval", arguments(&["--guest"]))));
+        assert_eq!(task("swarm --seeds 9"), Some(("swarm", arguments(&["--seeds", "9"]))));
         assert!(tasks::usage().contains("bench hil [--seconds N]"));
     }
 

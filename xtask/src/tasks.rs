@@ -21,21 +21,21 @@ pub(crate) struct Task {
 
 impl Task {
     /// The command named by these arguments, and its remaining arguments.
-    pub(crate) fn asked(description: &[String]) -> Result<(&'static Self, Vec<String>), String> {
+    pub(crate) fn asked(arguments: &[String]) -> Result<(&'static Self, Vec<String>), String> {
         let named = |task: &&Self| {
             let name = task.name.split(' ');
             let count = name.clone().count();
-            description.len() >= count && name.zip(description).all(|(name, label)| name == label)
+            arguments.len() >= count && name.zip(arguments).all(|(name, label)| name == label)
         };
         let Some(task) = TASKS.iter().find(named) else {
-            let first = description.first().map_or("", String::as_str);
+            let first = arguments.first().map_or("", String::as_str);
             let names: Vec<_> = TASKS.iter().filter_map(|task| task.name.strip_prefix("bench ")).collect();
             return Err(match first {
                 "bench" => format!("bench needs a name: {}", names.join(", ")),
                 _ => format!("no verb `{first}`"),
             });
         };
-        let rest = description[task.name.split(' ').count()..].to_vec();
+        let rest = arguments[task.name.split(' ').count()..].to_vec();
         let known = |label: &String| task.takes.split(['[', ']', '|', ' ']).any(|known| known == label);
         match rest.iter().find(|label| !task.free && !known(label)) {
             Some(label) => Err(format!("unknown argument `{label}`; `{}` takes {}", task.name, task.taken())),
@@ -58,8 +58,8 @@ pub(crate) fn usage() -> String {
 }
 
 /// Whether `--write` is among the arguments.
-fn writes(description: &[String]) -> bool {
-    description.iter().any(|label| label == "--write")
+fn writes(arguments: &[String]) -> bool {
+    arguments.iter().any(|label| label == "--write")
 }
 
 const fn task(
@@ -88,13 +88,13 @@ static TASKS: [Task; 19] = [
         "play N runs (100 if not said) drawn from their seeds, and hold them to what is promised: a team with faults of radio,\n\
         \x20                clocks and sensors, or matches of 60 s with cards, keeper changes, penalties, halts and restarts;\n\
          \x20                --record plays the match of --first alone and records it for `onetwo replay`",
-        |context, description| bench::start_example(context, "swarm", description),
+        |context, arguments| bench::start_example(context, "swarm", arguments),
     ),
     handed_on(
         "faults",
         "[--seeds N] [--write]",
         "what loss costs a team; --write puts table and picture into docs/faults.md",
-        |context, description| bench::start_example(context, "faults", description),
+        |context, arguments| bench::start_example(context, "faults", arguments),
     ),
     handed_on(
         "on-target",
@@ -106,7 +106,7 @@ static TASKS: [Task; 19] = [
         "emulate",
         "IMAGE [NAME]...",
         "run a program for the robot's processor in QEMU; what `cargo run` and `cargo test` for that target call",
-        |_, description| emulate::emulate(description),
+        |_, arguments| emulate::emulate(arguments),
     ),
     task("pictures", "", "draw the documentation's pictures anew", |context, _| pictures::draw(context)),
     task(
@@ -127,8 +127,8 @@ static TASKS: [Task; 19] = [
         "play our team against each other, each against each, and without each part, and write docs/matches.md; the rest\n\
         \x20                lies in out/matches. Some 490 matches, 45 minutes of one core; goes on where it was stopped, --fresh\n\
         \x20                begins anew (another commit's matches are refused)",
-        |context, description| {
-            evaluation::write_matches(context, description.iter().any(|label| label == "--fresh"))
+        |context, arguments| {
+            evaluation::write_matches(context, arguments.iter().any(|label| label == "--fresh"))
         },
     ),
     task(
@@ -149,33 +149,33 @@ static TASKS: [Task; 19] = [
         "count a retrieval's instructions on the robot's processor and here, and hold them to the budgets; --write puts\n\
         \x20                the table into casebase/README.md, --guest leaves this machine out, --verify holds 10^6 answers to a\n\
         \x20                plain scan's instead",
-        |context, description| bench::start(context, "retrieval", description),
+        |context, arguments| bench::start(context, "retrieval", arguments),
     ),
     handed_on(
         "bench motion",
         "[--write | --guest | --verify]",
         "likewise for planned motions, interception and ways around others; the table is firmware/motion/README.md's,\n\
         \x20                --verify holds 10^6 times to the best of all shares between the axes instead",
-        |context, description| bench::start(context, "motion", description),
+        |context, arguments| bench::start(context, "motion", arguments),
     ),
     handed_on(
         "bench radio",
         "[--write]",
         "likewise for radio frames on the robot's processor; the table is protocol/README.md's",
-        |context, description| bench::start(context, "radio", description),
+        |context, arguments| bench::start(context, "radio", arguments),
     ),
     handed_on(
         "bench hil",
         "[--seconds N] [--seed N]",
         "play a match with six robots as images under QEMU and with native ones in one run; compare hashes and wall speed",
-        |context, description| bench::start_example(context, "hil", description),
+        |context, arguments| bench::start_example(context, "hil", arguments),
     ),
     task(
         "bench page",
         "[--write]",
         "measure what a frame costs the page's script, full over empty, and count what five viewers cost a match; --write puts\n\
         \x20                both into host/page/README.md",
-        |context, description| page::bench(context, writes(description)),
+        |context, arguments| page::bench(context, writes(arguments)),
     ),
     task(
         "bench trial",
@@ -196,9 +196,9 @@ static TASKS: [Task; 19] = [
         "bench simulator",
         "[--write]",
         "likewise of a second of eleven against eleven on wheels; --write puts the table into hil-sim/README.md",
-        |context, description| {
+        |context, arguments| {
             let rows = example_cost::SIMULATOR.rows(context)?;
-            if writes(description) {
+            if writes(arguments) {
                 cost::write_between("hil-sim/README.md", "simulator table", &cost::table(&rows))?;
             }
             cost::judge(&rows)

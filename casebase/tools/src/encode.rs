@@ -18,21 +18,21 @@ use crate::league::League;
 /// A table that starts at a multiple of 4, as required of a case base.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Table {
-    description: Vec<u32>,
+    words: Vec<u32>,
     length: usize,
 }
 
 impl Table {
     /// From bytes of any alignment.
     pub fn aligned(bytes: &[u8]) -> Self {
-        let mut description = vec![0_u32; bytes.len().div_ceil(4)];
-        description.as_mut_bytes()[..bytes.len()].copy_from_slice(bytes);
-        Self { description, length: bytes.len() }
+        let mut words = vec![0_u32; bytes.len().div_ceil(4)];
+        words.as_mut_bytes()[..bytes.len()].copy_from_slice(bytes);
+        Self { words, length: bytes.len() }
     }
 
     /// The table's bytes.
     pub fn bytes(&self) -> &[u8] {
-        &self.description.as_bytes()[..self.length]
+        &self.words.as_bytes()[..self.length]
     }
 }
 
@@ -191,8 +191,8 @@ impl Pools {
         });
         // The order in which `Gate` reads them.
         for records in [opponents.as_bytes(), legs.as_bytes(), positions.as_bytes()] {
-            let (description, _) = records.as_chunks();
-            self.places.extend(description.iter().map(|label| u32::from_ne_bytes(*label)));
+            let (words, _) = records.as_chunks();
+            self.places.extend(words.iter().map(|word| u32::from_ne_bytes(*word)));
         }
     }
 

@@ -43,19 +43,19 @@ impl CountingImage {
         if output.status.success() && lines.len() == count {
             return Ok(lines);
         }
-        let description = String::from_utf8_lossy(&output.stderr);
+        let arguments = String::from_utf8_lossy(&output.stderr);
         let of = format!("{} of {count} lines", lines.len());
-        Err(format!("the image ended with {} after {of}: {description}", output.status))
+        Err(format!("the image ended with {} after {of}: {arguments}", output.status))
     }
 }
 
 /// Instructions of the calling program, started again with these words, in all.
-pub fn callgrind(description: &[&str]) -> Result<u64, String> {
+pub fn callgrind(arguments: &[&str]) -> Result<u64, String> {
     let program = env::current_exe().map_err(|error| format!("which program is this? {error}"))?;
     let output = Command::new("valgrind")
         .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
         .arg(program)
-        .args(description)
+        .args(arguments)
         .stdin(Stdio::null())
         .output()
         .map_err(|error| format!("valgrind does not start: {error}; install the package valgrind"))?;

@@ -26,8 +26,8 @@ impl Ending<'_> {
     }
 }
 
-fn fill(text: &mut [u8], description: &[&[u8]]) -> usize {
-    let bytes = description.iter().flat_map(|label| label.iter());
+fn fill(text: &mut [u8], pieces: &[&[u8]]) -> usize {
+    let bytes = pieces.iter().flat_map(|label| label.iter());
     text.iter_mut().zip(bytes).map(|(to, from)| *to = *from).count()
 }
 

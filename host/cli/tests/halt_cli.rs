@@ -69,28 +69,28 @@ impl Field {
             .stdout(Stdio::null())
             .spawn()
             .expect("the program starts");
-        let description = process.stderr.take().expect("a pipe");
+        let arguments = process.stderr.take().expect("a pipe");
         let (send, lines) = channel();
         thread::spawn(move || {
-            for line in BufReader::new(description).lines().map_while(Result::ok) {
+            for line in BufReader::new(arguments).lines().map_while(Result::ok) {
                 let _ = send.send(line);
             }
         });
         Self { process, lines, said: Vec::new(), vision, referee }
     }
 
-    /// Waits for a line that contains all of `description`.
-    fn says(&mut self, description: &[&str]) -> String {
+    /// Waits for a line that contains all of `arguments`.
+    fn says(&mut self, arguments: &[&str]) -> String {
         let until = Instant::now() + PATIENCE;
         loop {
             match self.lines.recv_timeout(until.saturating_duration_since(Instant::now())) {
                 Ok(line) => {
                     self.said.push(line.clone());
-                    if description.iter().all(|label| line.contains(label)) {
+                    if arguments.iter().all(|label| line.contains(label)) {
                         return line;
                     }
                 }
-                Err(error) => panic!("{description:?} is not said ({error}); said is: {:#?}", self.said),
+                Err(error) => panic!("{arguments:?} is not said ({error}); said is: {:#?}", self.said),
             }
         }
     }
@@ -446,8 +446,8 @@ fn finding_10_on_a_slow_line_halt_comes_before_what_is_stale_and_the_rate_is_rep
     let controller = Controller::start("gc", "127.0.0.1:0", field.referee, Wire::Stop);
     field.says(&["the referee is heard"]);
     controller.say(Wire::ForceStart);
-    let description = field.says(&["robots' line", "is too slow", "bit/s"]);
-    eprintln!("{description}");
+    let arguments = field.says(&["robots' line", "is too slow", "bit/s"]);
+    eprintln!("{arguments}");
     thread::sleep(Duration::from_secs(3));
     let mut stale = Vec::new();
     for _ in 0..5 {

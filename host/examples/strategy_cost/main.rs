@@ -13,8 +13,8 @@ use std::process::ExitCode;
 use rules::League;
 
 fn main() -> ExitCode {
-    let description: Vec<String> = std::env::args().skip(1).collect();
-    let [part, count] = &description[..] else { return usage() };
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [part, count] = &arguments[..] else { return usage() };
     let Ok(count) = count.parse::<u32>() else { return usage() };
     let (six, eleven) = (League::DivisionB, League::DivisionA);
     let said = match part.as_str() {

@@ -16,8 +16,8 @@ use std::path::Path;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let description: Vec<String> = std::env::args().skip(1).collect();
-    let [directory] = &description[..] else {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [directory] = &arguments[..] else {
         eprintln!("usage: strategy_pictures FOLDER");
         return ExitCode::from(2);
     };

@@ -13,8 +13,8 @@ use tungstenite::{Message, WebSocket};
 type Viewer = WebSocket<MaybeTlsStream<TcpStream>>;
 
 fn main() -> ExitCode {
-    let description: Vec<String> = std::env::args().skip(1).collect();
-    let [address, ways] = &description[..] else {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [address, ways] = &arguments[..] else {
         eprintln!("usage: viewers ADDRESS WAYS, where WAYS is a letter of r, s, d, v for each");
         return ExitCode::from(2);
     };

@@ -33,7 +33,7 @@ impl Bench {
         self.off.retain(|id| *id != view.keeper && view.our(*id).is_some());
         // Robots that never answered cannot leave, and sending others in their place does not help: staff
         // placed them there and must remove them.
-        let silent = view.uncommanded.saturating_sub(view.unauthenticated);
+        let silent = view.uncommanded.saturating_sub(view.never_answered);
         let surplus = (view.ours.len() + silent).saturating_sub(view.allowed);
         while self.off.len() < surplus {
             let Some(id) = self.next(view, first) else { break };

@@ -130,7 +130,7 @@ pub struct View {
     /// Number of further robots of ours that count on the field although they cannot be commanded.
     pub uncommanded: usize,
     /// Number of those that have never answered since this start of the host.
-    pub unauthenticated: usize,
+    pub never_answered: usize,
     /// Their robots, by id.
     pub theirs: heapless::Vec<Robot, ROBOTS_MAX>,
     /// Our keeper's number, by the referee.
@@ -182,7 +182,7 @@ impl View {
                 .ours(us)
                 .filter(|robot| !fit.has(robot.who.id) && field.counts(game.defending, robot.pose.position))
                 .count(),
-            unauthenticated: 0,
+            never_answered: 0,
             theirs: world.theirs(us).map(robot).collect(),
             keeper: game.keeper,
             their_keeper: game.their_keeper,
@@ -211,7 +211,7 @@ impl View {
             ball: Some(Ball::at_rest(ball)),
             ours: RobotId::all().zip(ours).map(robot).collect(),
             uncommanded: 0,
-            unauthenticated: 0,
+            never_answered: 0,
             theirs: RobotId::all().zip(theirs).map(robot).collect(),
             keeper: RobotId::ZERO,
             their_keeper: RobotId::ZERO,

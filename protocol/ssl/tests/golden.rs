@@ -47,8 +47,8 @@ fn every_field_of_every_message_is_set_in_some_packet() {
     let mut message = String::new();
     let mut missing = Vec::new();
     for line in FACTS.lines() {
-        let description: Vec<_> = line.split(' ').collect();
-        match description[..] {
+        let fields: Vec<_> = line.split(' ').collect();
+        match fields[..] {
             ["message", package, name] => message = format!("{package} {name}"),
             ["enum", ..] => message.clear(),
             ["", "", _, field, _, ..] if !message.is_empty() => {

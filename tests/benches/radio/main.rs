@@ -9,10 +9,10 @@ use std::process::ExitCode;
 use firmware_build::count::write_between;
 
 fn main() -> ExitCode {
-    let description: Vec<String> = std::env::args().skip(1).collect();
-    let description: Vec<&str> =
-        description.iter().map(String::as_str).filter(|label| *label != "--bench").collect();
-    let done = match description[..] {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<&str> =
+        arguments.iter().map(String::as_str).filter(|label| *label != "--bench").collect();
+    let done = match arguments[..] {
         [] => report(false),
         ["--write"] => report(true),
         _ => {

@@ -22,10 +22,10 @@ use firmware_build::count::write_between;
 use guest::Board;
 
 fn main() -> ExitCode {
-    let description: Vec<String> = std::env::args().skip(1).collect();
-    let description: Vec<&str> =
-        description.iter().map(String::as_str).filter(|label| *label != "--bench").collect();
-    let done = match description[..] {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<&str> =
+        arguments.iter().map(String::as_str).filter(|label| *label != "--bench").collect();
+    let done = match arguments[..] {
         ["--work", directory, way, rounds] => rounds
             .parse()
             .map_err(|_| "rounds".into())

@@ -11,9 +11,9 @@ use page_browser::{Browser, BrowserError, Tab};
 type Told<T> = Result<T, BrowserError>;
 
 fn main() -> ExitCode {
-    let description: Vec<String> = std::env::args().skip(1).collect();
-    let description: Vec<&str> = description.iter().map(String::as_str).collect();
-    let done = match description[..] {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let done = match arguments[..] {
         [program, "pictures", directory] => pictures(program, Path::new(directory)),
         [program, "frames"] => frames(program),
         _ => {
@@ -37,10 +37,10 @@ struct Shown {
 }
 
 impl Shown {
-    fn start(program: &str, description: &[&str]) -> Told<Self> {
-        let failed = |description: String| BrowserError::Start(format!("{program}: {description}"));
+    fn start(program: &str, arguments: &[&str]) -> Told<Self> {
+        let failed = |arguments: String| BrowserError::Start(format!("{program}: {arguments}"));
         let mut child = Command::new(program)
-            .args(description)
+            .args(arguments)
             .args(["--listen", "127.0.0.1:0"])
             .stdin(Stdio::null())
             .stdout(Stdio::null())

@@ -65,9 +65,9 @@ impl Known {
     /// What is wrong with a command; `None` for a valid one, and for text that is no command.
     fn fault(&self, command: &str) -> Option<String> {
         let ends = |label: &&str| !matches!(*label, "|" | ">" | "<" | "&&" | ";" | "#" | "\\" | "…");
-        let description: Vec<_> =
+        let arguments: Vec<_> =
             command.split_whitespace().skip_while(|label| *label == "$").take_while(ends).collect();
-        match description.as_slice() {
+        match arguments.as_slice() {
             ["onetwo", rest @ ..] => self.of_program(rest),
             // A command that continues with `…` names several.
             ["cargo", "xtask", rest @ ..] if command.contains('…') && self.begins(&rest.join(" ")) => None,
@@ -78,17 +78,17 @@ impl Known {
                     None => (rest, None),
                 };
                 let fault = self.of_cargo(own);
-                let runs_program = description[1] == "run" && !own.contains(&"-p");
+                let runs_program = arguments[1] == "run" && !own.contains(&"-p");
                 fault.or_else(|| {
-                    program.filter(|_| runs_program).and_then(|description| self.of_program(description))
+                    program.filter(|_| runs_program).and_then(|arguments| self.of_program(arguments))
                 })
             }
             _ => None,
         }
     }
 
-    fn of_program(&self, description: &[&str]) -> Option<String> {
-        let (verb, rest) = description.split_first()?;
+    fn of_program(&self, arguments: &[&str]) -> Option<String> {
+        let (verb, rest) = arguments.split_first()?;
         if verb.starts_with('-') {
             return (!matches!(*verb, "--version" | "--help")).then(|| format!("no flag `{verb}`"));
         }
@@ -108,8 +108,8 @@ impl Known {
         self.tasks.iter().any(|task| task.starts_with(&format!("{line} ")))
     }
 
-    fn of_xtask(&self, description: &[&str]) -> Option<String> {
-        match description {
+    fn of_xtask(&self, arguments: &[&str]) -> Option<String> {
+        match arguments {
             [] => None,
             ["test", rest @ ..] => {
                 let chosen = rest.windows(2).filter(|pair| pair[0] == "--only").map(|pair| pair[1]);
@@ -120,7 +120,7 @@ impl Known {
                 unknown.or_else(|| unknown_flag(rest, |flag| matches!(flag, "only" | "list")))
             }
             _ => {
-                let line = description.join(" ");
+                let line = arguments.join(" ");
                 let named = |task: &&String| {
                     line.strip_prefix(task.as_str())
                         .is_some_and(|rest| rest.is_empty() || rest.starts_with(' '))
@@ -128,15 +128,15 @@ impl Known {
                 let Some(task) = self.tasks.iter().find(named) else {
                     return Some(format!("no command `{line}`"));
                 };
-                let rest = &description[task.split(' ').count()..];
+                let rest = &arguments[task.split(' ').count()..];
                 unknown_flag(rest, |flag| self.xtask.contains(&format!("--{flag}")))
             }
         }
     }
 
     /// Packages, tests and examples of cargo's own arguments.
-    fn of_cargo(&self, description: &[&str]) -> Option<String> {
-        let value = |flag: &str| description.windows(2).find(|pair| pair[0] == flag).map(|pair| pair[1]);
+    fn of_cargo(&self, arguments: &[&str]) -> Option<String> {
+        let value = |flag: &str| arguments.windows(2).find(|pair| pair[0] == flag).map(|pair| pair[1]);
         let placeholder = |name: &str| name.chars().all(|c| c.is_ascii_uppercase());
         let package = value("-p").or_else(|| value("--package")).filter(|name| !placeholder(name));
         let package = package?;
@@ -156,8 +156,8 @@ impl Known {
     }
 }
 
-fn unknown_flag(description: &[&str], known: impl Fn(&str) -> bool) -> Option<String> {
-    let flags = description.iter().filter_map(|label| label.strip_prefix("--"));
+fn unknown_flag(arguments: &[&str], known: impl Fn(&str) -> bool) -> Option<String> {
+    let flags = arguments.iter().filter_map(|label| label.strip_prefix("--"));
     let names = flags.map(|flag| flag.split(|c: char| !c.is_ascii_alphanumeric() && c != '-').next());
     let mut names = names.map(Option::unwrap_or_default).filter(|flag| !flag.is_empty());
     names.find(|flag| !known(flag)).map(|flag| format!("no flag `--{flag}`"))

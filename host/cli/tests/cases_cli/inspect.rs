@@ -35,11 +35,11 @@ fn the_list_is_one_json_list_of_every_stored_case() {
 #[test]
 fn the_table_has_a_line_for_every_stored_case() {
     let run = cases("list", &worked_example("table"), &[], "");
-    let description: Vec<Vec<&str>> =
+    let arguments: Vec<Vec<&str>> =
         run.lines().into_iter().map(|line| line.split_whitespace().collect()).collect();
-    assert_eq!(description[0], ["league", "id", "case", "symmetry", "defending", "teammates", "opponents"]);
-    assert_eq!(description[3], ["table", "2", "center/pass-around", "across-y", "cyan", "2", "1"]);
-    assert_eq!(description.len(), 5);
+    assert_eq!(arguments[0], ["league", "id", "case", "symmetry", "defending", "teammates", "opponents"]);
+    assert_eq!(arguments[3], ["table", "2", "center/pass-around", "across-y", "cyan", "2", "1"]);
+    assert_eq!(arguments.len(), 5);
 }
 
 #[test]
@@ -140,8 +140,8 @@ fn an_error_fails_the_check_with_file_line_code_and_hint() {
         line.unwrap_or_else(|| panic!("{place} is not in\n{}", run.stdout))
     };
     for place in ["center/pass-around.toml:7: error[", "front/shot.toml:1: error["] {
-        let (_, description) = at(place).split_once("]: ").unwrap();
-        assert!(description.contains("; "), "no mend: {description}");
+        let (_, arguments) = at(place).split_once("]: ").unwrap();
+        assert!(arguments.contains("; "), "no mend: {arguments}");
     }
 }
 
@@ -168,10 +168,10 @@ fn a_case_that_no_drawn_problem_retrieves_is_doubtful_for_any_number_of_threads(
     let candidate = shot_at(0, 0) + "[[opponents]]\nat = [0, 1500]\nscope = [9000, 9000]\n";
     let directory =
         library("shadowed", &[("front/rival.toml", &candidate), ("front/shot.toml", &shot_at(0, 0))]);
-    let check = |jobs: &str, description: &[&str]| {
+    let check = |jobs: &str, arguments: &[&str]| {
         let mut command = command(&["cases", "check"]);
         let command =
-            command.arg("--library").arg(&directory).args(description).env("RAYON_NUM_THREADS", jobs);
+            command.arg("--library").arg(&directory).args(arguments).env("RAYON_NUM_THREADS", jobs);
         let output = command.output().unwrap();
         (String::from_utf8(output.stdout).unwrap(), output.status.code())
     };

@@ -4,17 +4,17 @@ use serde_json::Value;
 
 use crate::common::{cases, library, onetwo, shot_at};
 
-fn play(description: &[&str]) -> Vec<Value> {
-    let run = onetwo(&[&["cases", "play", "--json"], description].concat());
+fn play(arguments: &[&str]) -> Vec<Value> {
+    let run = onetwo(&[&["cases", "play", "--json"], arguments].concat());
     assert_eq!((run.code, run.stderr.as_str()), (0, ""));
     serde_json::from_str(&run.stdout).unwrap()
 }
 
 #[test]
 fn every_score_counts_its_attempts_and_any_number_of_jobs_gives_the_same() {
-    let description = ["front-side", "side/draw-out", "--trials", "6", "--seed", "3"];
-    let scores = play(&[&description[..], &["--jobs", "1"]].concat());
-    assert_eq!(scores, play(&[&description[..], &["--jobs", "3"]].concat()));
+    let arguments = ["front-side", "side/draw-out", "--trials", "6", "--seed", "3"];
+    let scores = play(&[&arguments[..], &["--jobs", "1"]].concat());
+    assert_eq!(scores, play(&[&arguments[..], &["--jobs", "3"]].concat()));
     assert!(scores.len() >= 4);
     for score in &scores {
         let sum =

@@ -9,8 +9,8 @@ use crate::common::{LEAGUE, PASS_AROUND, onetwo};
 struct Schema(Schemas, SchemaIndex);
 
 impl Schema {
-    fn of(description: &[&str]) -> Self {
-        let run = onetwo(&[&["cases", "schema"], description].concat());
+    fn of(arguments: &[&str]) -> Self {
+        let run = onetwo(&[&["cases", "schema"], arguments].concat());
         assert_eq!((run.code, run.stderr.as_str()), (0, ""));
         let (mut schemas, mut compiler) = (Schemas::new(), Compiler::new());
         compiler.add_resource("schema.json", serde_json::from_str(&run.stdout).unwrap()).unwrap();

@@ -16,9 +16,9 @@ pub(crate) struct Program {
 
 impl Program {
     /// Starts it and waits for the page's address.
-    pub(crate) fn start(description: &[&str]) -> Self {
+    pub(crate) fn start(arguments: &[&str]) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_onetwo"))
-            .args(description)
+            .args(arguments)
             .stdin(Stdio::null())
             .stdout(Stdio::null())
             .stderr(Stdio::piped())
@@ -59,15 +59,15 @@ impl Program {
         self.token.as_deref()
     }
 
-    /// Waits for a line on stderr that contains `description`.
+    /// Waits for a line on stderr that contains `arguments`.
     #[allow(dead_code, reason = "one of the two tests that share this file listens")]
-    pub(crate) fn says(&self, description: &str) {
+    pub(crate) fn says(&self, arguments: &str) {
         while let Ok(line) = self.lines.recv_timeout(Duration::from_secs(40)) {
-            if line.contains(description) {
+            if line.contains(arguments) {
                 return;
             }
         }
-        panic!("`{description}` is not said");
+        panic!("`{arguments}` is not said");
     }
 
     #[allow(dead_code, reason = "the browser's tests ask for it")]
@@ -85,9 +85,9 @@ impl Drop for Program {
 
 #[allow(dead_code, reason = "the browser's tests run it")]
 /// Runs the program with that input, to its end.
-pub(crate) fn onetwo(description: &[&str], input: &str) -> String {
+pub(crate) fn onetwo(arguments: &[&str], input: &str) -> String {
     let mut child = Command::new(env!("CARGO_BIN_EXE_onetwo"))
-        .args(description)
+        .args(arguments)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .spawn()

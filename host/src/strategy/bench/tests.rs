@@ -154,8 +154,8 @@ fn they_keep_off_the_ball_and_out_of_the_way_of_a_placement_wherever_that_is() {
 #[test]
 fn a_team_does_not_leave_the_field_to_robots_that_never_answered() {
     // Six of ours, six allowed, five of our colour without contact: one of those had answered before.
-    let view = View { uncommanded: 5, unauthenticated: 5, ..division_a() }.allowing(6);
+    let view = View { uncommanded: 5, never_answered: 5, ..division_a() }.allowing(6);
     assert!(Bench::default().choose(&view, None).is_empty());
-    let view = View { uncommanded: 5, unauthenticated: 4, ..division_a() }.allowing(6);
+    let view = View { uncommanded: 5, never_answered: 4, ..division_a() }.allowing(6);
     assert_eq!(Bench::default().choose(&view, None).len(), 1);
 }

@@ -28,10 +28,10 @@ fn ended(how: Ending<'_>) -> ! {
 }
 
 /// Writes the text and a line's end on stderr.
-fn say(description: &[&[u8]]) {
+fn say(pieces: &[&[u8]]) {
     // If that fails too, no output is left.
     if let Ok(mut stderr) = hio::hstderr() {
-        for label in description.iter().chain([&&b"\n"[..]]) {
+        for label in pieces.iter().chain([&&b"\n"[..]]) {
             let _ = stderr.write_all(label);
         }
     }

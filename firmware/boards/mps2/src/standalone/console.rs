@@ -3,10 +3,10 @@
 use cortex_m_semihosting::hio;
 
 /// Writes the text and a line's end.
-pub(crate) fn say(description: &[&[u8]]) {
+pub(crate) fn say(pieces: &[&[u8]]) {
     // Without a console the text is dropped.
     if let Ok(mut stderr) = hio::hstderr() {
-        for label in [&b"robot: "[..]].iter().chain(description).chain([&&b"\n"[..]]) {
+        for label in [&b"robot: "[..]].iter().chain(pieces).chain([&&b"\n"[..]]) {
             let _ = stderr.write_all(label);
         }
     }

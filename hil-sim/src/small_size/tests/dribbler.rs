@@ -1,4 +1,4 @@
-//! `mouth`: tests: dribbler, kicker and break-beam sensor.
+//! `dribbler`: tests: dribbler, kicker and break-beam sensor.
 
 use super::*;
 
