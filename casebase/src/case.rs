@@ -3,11 +3,11 @@
 use protocol::CaseId;
 
 use crate::action::{Action, CaseRobot, KickId, TurnTarget};
-use crate::path::{Leg, RelativeLeg, Tube};
+use crate::path::{Corridor, Leg, RelativeLeg};
+use crate::plan_simulation::{HandOver, Script, plan_simulation};
 use crate::settings::SCOPE_EXPONENT;
 use crate::stored::Stored;
-use crate::table::{CaseBase, Gate, Group, Opponent, RawAction, RawLeg, part};
-use crate::walk::{HandOver, Script, walk};
+use crate::table::{CaseBase, Group, Opponent, RawAction, RawLeg, RecordHeader, part};
 use crate::{GoalEnd, PointMm, Scope, Symmetry};
 
 /// A stored case: case = (P, A, K). Cheap to copy: it contains only references.
@@ -15,16 +15,16 @@ use crate::{GoalEnd, PointMm, Scope, Symmetry};
 pub struct Case<'a> {
     base: CaseBase<'a>,
     id: CaseId,
-    gate: &'a Gate,
+    record_header: &'a RecordHeader,
     group: &'a Group,
 }
 
 impl<'a> Case<'a> {
     #[inline]
     pub(crate) fn new(base: CaseBase<'a>, id: CaseId) -> Option<Self> {
-        let gate = base.gates.get(usize::from(id.0))?;
+        let record_header = base.gates.get(usize::from(id.0))?;
         let group = base.groups.get(usize::from(id.0 / 4))?;
-        Some(Self { base, id, gate, group })
+        Some(Self { base, id, record_header, group })
     }
 
     /// Its number in the base: 4 × authored + symmetry.
@@ -50,17 +50,17 @@ impl<'a> Case<'a> {
 
     /// B_c.
     pub const fn ball(&self) -> PointMm {
-        PointMm { x: self.gate.ball[0] as i32, y: self.gate.ball[1] as i32 }
+        PointMm { x: self.record_header.ball[0] as i32, y: self.record_header.ball[1] as i32 }
     }
 
     /// The ball's scope.
     pub fn ball_scope(&self) -> Scope {
-        scope(self.gate.inverse_scope)
+        scope(self.record_header.inverse_scope)
     }
 
     /// Number of robots.
     pub const fn teammates(&self) -> usize {
-        self.gate.teammates as usize
+        self.record_header.teammates as usize
     }
 
     /// Its robots, in their order.
@@ -122,7 +122,7 @@ impl<'a> Case<'a> {
         let here = (robot, action);
         // A stored case was simulated without an error when it was built; steps before an error would still
         // be right.
-        let _ = walk(self, &self.base, |step| {
+        let _ = plan_simulation(self, &self.base, |step| {
             if let Some(HandOver { from, to, by_pass }) = step.hand_over() {
                 if to == here {
                     partner = Some(from);
@@ -147,7 +147,7 @@ impl<'a> Case<'a> {
     /// (Δx/τx)² + (Δy/τy)² of the ball in its scope.
     #[inline]
     pub(crate) fn ball_exponent(&self, ball: PointMm) -> f32 {
-        self.gate.exponent(ball.to_f32())
+        self.record_header.exponent(ball.to_f32())
     }
 
     /// The robot's position relative to the case's ball.
@@ -158,28 +158,28 @@ impl<'a> Case<'a> {
 
     #[inline]
     pub(crate) fn relative_positions(&self) -> &'a [[i16; 2]] {
-        self.gate.positions(self.base.places).unwrap_or(&[])
+        self.record_header.positions(self.base.places).unwrap_or(&[])
     }
 
     #[inline]
     pub(crate) fn raw_opponents(&self) -> &'a [Opponent] {
-        self.gate.opponents(self.base.places).unwrap_or(&[])
+        self.record_header.opponents(self.base.places).unwrap_or(&[])
     }
 
     /// The stored legs relative to a ball at `ball`.
     pub(crate) fn relative_legs(&self, ball: PointMm) -> impl Iterator<Item = RelativeLeg> + use<'a> {
         let case = *self;
         self.raw_legs().iter().scan([0.0; 2], move |rest, raw| {
-            let tube = Tube::decode(&case.stored()?, raw, *rest, ball.to_f32());
-            *rest = tube.to();
-            RelativeLeg::decode(&case, raw, tube)
+            let corridor = Corridor::decode(&case.stored()?, raw, *rest, ball.to_f32());
+            *rest = corridor.to();
+            RelativeLeg::decode(&case, raw, corridor)
         })
     }
 
     /// The stored legs as records; each begins where the one before ends.
     #[inline]
     pub(crate) fn raw_legs(&self) -> &'a [RawLeg] {
-        self.gate.legs(self.base.places).unwrap_or(&[])
+        self.record_header.legs(self.base.places).unwrap_or(&[])
     }
 
     /// A point of the case by its number.

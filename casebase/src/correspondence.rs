@@ -74,7 +74,7 @@ pub(crate) fn nearest(robots: &[(RobotId, [f32; 2])], places: &[[i16; 2]], limit
         if distance > limit {
             return None;
         }
-        let next = distance + TOLD_APART_MM;
+        let next = distance + DISTINCT_MM;
         let bit = 1 << player.index();
         distinct &= second > next * next && taken & bit == 0;
         taken |= bit;
@@ -216,7 +216,7 @@ fn digit(packed: u16, part: usize) -> u8 {
 
 /// Difference of distances, mm, that is above the 1/256 mm within which distances count as equal, and above
 /// the rounding error of distances that can matter.
-const TOLD_APART_MM: f32 = 0.02;
+const DISTINCT_MM: f32 = 0.02;
 /// Above every sum; five times this value still fits.
 const NEVER: u64 = 1 << 60;
 /// Number of sets of parts.

@@ -100,7 +100,7 @@ pub fn explain(
 fn judge(base: &CaseBase<'_>, query: &Query<'_>, case: &Case<'_>, stored: &Stored<'_, '_>) -> Verdict {
     let (problem, settings) = (query.problem, query.settings);
     let exponent = case.ball_exponent(problem.ball);
-    if exponent >= query.door.limit {
+    if exponent >= query.key.limit {
         let similarity = math::exp(-exponent);
         return Verdict::Ball { similarity, margin: (settings.threshold - similarity).max(0.0) };
     }

@@ -20,6 +20,7 @@ mod correspondence;
 mod explain;
 mod index;
 mod path;
+pub mod plan_simulation;
 mod point;
 mod problem;
 mod query;
@@ -31,7 +32,6 @@ mod symmetry;
 pub mod table;
 #[cfg(test)]
 mod testing;
-pub mod walk;
 
 pub use action::{
     Action, CaseRobot, FieldMm, Kick, KickAim, KickId, OPPONENTS_MAX, Pass, Primitive, TEAMMATES_MAX,

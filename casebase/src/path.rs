@@ -10,11 +10,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::action::{Action, CaseRobot, KickId};
 use crate::case::Case;
+use crate::plan_simulation::{Script, Spot, Step, plan_simulation};
 use crate::point::gauss_exponent;
 use crate::settings::{FreePathRule, OutOfField, Settings};
 use crate::stored::Stored;
 use crate::table::{self, CaseBase, RawLeg};
-use crate::walk::{Script, Spot, Step, walk};
 use crate::{GoalEnd, PointMm};
 
 /// One straight part of the ball's path, mm, field frame.
@@ -59,16 +59,16 @@ impl Leg {
     /// Distance of `point` along the leg and across it (left > 0), and the leg's radius there; `None` where
     /// it is not abreast of the leg. No point is abreast of a leg of length 0.
     pub fn abreast(&self, point: [f32; 2]) -> Option<Abreast> {
-        let tube = self.tube();
-        let Products { along, cross, radius } = tube.products(point)?;
-        let length = math::sqrt(tube.squared);
+        let corridor = self.corridor();
+        let Products { along, cross, radius } = corridor.products(point)?;
+        let length = math::sqrt(corridor.squared);
         Some(Abreast { along: along / length, across: cross / length, radius })
     }
 
     /// Depth of an opponent inside the leg, mm from its edge at the settings' threshold; `None` outside.
     pub fn blocked_by(&self, opponent: PointMm, settings: &Settings) -> Option<f32> {
         let point = opponent.to_f32();
-        let exponent = self.tube().exponent(point).filter(|exponent| is_blocking(*exponent, settings))?;
+        let exponent = self.corridor().exponent(point).filter(|exponent| is_blocking(*exponent, settings))?;
         let abreast = self.abreast(point)?;
         let edge = abreast.radius * math::sqrt(settings.limit());
         // With its own threshold a fuzzy path may be blocked by less than the crisp trapezoid: then the depth
@@ -76,14 +76,14 @@ impl Leg {
         Some(if exponent < settings.limit() { (edge - abreast.across.abs()).max(0.0) } else { 0.0 })
     }
 
-    fn tube(&self) -> Tube {
-        Tube::new(self.from, self.to, [self.r_min, self.r_max])
+    fn corridor(&self) -> Corridor {
+        Corridor::new(self.from, self.to, [self.r_min, self.r_max])
     }
 }
 
 /// The fuzzy set around a leg, without its robot, action and kind: the part that retrieval uses.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Tube {
+pub(crate) struct Corridor {
     from: [f32; 2],
     to: [f32; 2],
     r_min: f32,
@@ -94,7 +94,7 @@ pub(crate) struct Tube {
     squared: f32,
 }
 
-impl Tube {
+impl Corridor {
     fn new(from: [f32; 2], to: [f32; 2], [r_min, r_max]: [f32; 2]) -> Self {
         let axis = minus(to, from);
         Self { from, to, r_min, r_max, axis, squared: axis[0] * axis[0] + axis[1] * axis[1] }
@@ -183,7 +183,7 @@ pub fn blocked_leg(
     each_leg(case, base, ball, settings, |relative| {
         if found.is_none() {
             let blocks = |(_, opponent): &(usize, &PointMm)| {
-                let exponent = relative.0.tube().exponent(opponent.minus(ball).to_f32());
+                let exponent = relative.0.corridor().exponent(opponent.minus(ball).to_f32());
                 exponent.is_some_and(|exponent| is_blocking(exponent, settings))
             };
             if let Some((opponent, place)) = opponents.iter().enumerate().find(blocks) {
@@ -206,9 +206,9 @@ pub(crate) fn least_exponent(
     settings: &Settings,
 ) -> Option<f32> {
     let mut least: Option<f32> = None;
-    let mut look = |tube: &Tube| {
+    let mut look = |corridor: &Corridor| {
         for opponent in opponents {
-            if let Some(exponent) = tube.exponent(*opponent) {
+            if let Some(exponent) = corridor.exponent(*opponent) {
                 least = Some(least.map_or(exponent, |least| least.min(exponent)));
             }
         }
@@ -217,18 +217,18 @@ pub(crate) fn least_exponent(
     if settings.out_of_field == OutOfField::Clamp {
         if let Some(case) = stored.case() {
             each_leg(&case, case.base(), ball, settings, |leg| {
-                look(&leg.0.tube());
+                look(&leg.0.corridor());
             });
         }
         return least;
     }
     let mut rest = [0.0; 2];
     for raw in stored.legs().unwrap_or(&[]) {
-        let tube = Tube::decode(stored, raw, rest, ball.to_f32());
-        if look(&tube) {
+        let corridor = Corridor::decode(stored, raw, rest, ball.to_f32());
+        if look(&corridor) {
             break;
         }
-        rest = tube.to;
+        rest = corridor.to;
     }
     least
 }
@@ -245,11 +245,11 @@ pub(crate) fn is_crisply_blocked(
     let Some(legs) = case.legs() else { return true };
     let mut rest = [0.0; 2];
     for raw in legs {
-        let tube = Tube::decode(case, raw, rest, ball);
-        rest = tube.to;
+        let corridor = Corridor::decode(case, raw, rest, ball);
+        rest = corridor.to;
         let stands_in =
-            |opponent: &[f32; 2]| tube.exponent(*opponent).is_some_and(|exponent| exponent < limit);
-        if tube.squared > 0.0 && opponents.iter().any(stands_in) {
+            |opponent: &[f32; 2]| corridor.exponent(*opponent).is_some_and(|exponent| exponent < limit);
+        if corridor.squared > 0.0 && opponents.iter().any(stands_in) {
             return true;
         }
     }
@@ -288,7 +288,7 @@ fn each_leg(
         return case.relative_legs(ball).for_each(sink);
     }
     // A stored case was simulated without an error when it was built, and clamping moves positions only.
-    let _ = walk(&Clamped { case, base, ball }, base, |step| {
+    let _ = plan_simulation(&Clamped { case, base, ball }, base, |step| {
         if let Step::Leg { robot, action, from, to, radii, kind, .. } = step {
             let relative = |spot: Spot| if spot.on_field { minus(spot.at, ball.to_f32()) } else { spot.at };
             let [r_min, r_max] = radii.map(|radius| radius as f32);
@@ -311,7 +311,7 @@ pub(crate) struct RelativeLeg(Leg);
 
 impl RelativeLeg {
     /// From the table: a stored leg with its robot, action and kind.
-    pub(crate) fn decode(case: &Case<'_>, raw: &RawLeg, tube: Tube) -> Option<Self> {
+    pub(crate) fn decode(case: &Case<'_>, raw: &RawLeg, corridor: Corridor) -> Option<Self> {
         let robot = CaseRobot::new(usize::from(raw.robot))?;
         let action = usize::from(raw.action);
         let kind = match case.action(robot, action)? {
@@ -319,7 +319,7 @@ impl RelativeLeg {
             Action::Kick(id) => LegKind::Kick(id),
             _ => return None,
         };
-        let Tube { from, to, r_min, r_max, .. } = tube;
+        let Corridor { from, to, r_min, r_max, .. } = corridor;
         Some(Self(Leg { from, to, r_min, r_max, robot, action, kind }))
     }
 

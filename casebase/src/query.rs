@@ -16,14 +16,14 @@ use crate::problem::{PROBLEM_OPPONENTS_MAX, PROBLEM_TEAMMATES_MAX, Problem};
 use crate::rank::{Correspondence, Key, Match};
 use crate::settings::{CorrespondenceRule, CostRule, FreePathRule, OutOfField, ScopeRule, Settings};
 use crate::stored::Stored;
-use crate::table::{Gate, Opponent};
+use crate::table::{Opponent, RecordHeader};
 use crate::{CaseRobot, PointMm};
 
 /// A prepared problem: everything relative to the ball.
 pub(crate) struct Query<'p> {
     pub(crate) problem: &'p Problem,
     pub(crate) settings: &'p Settings,
-    pub(crate) door: Door,
+    pub(crate) key: QueryKey,
     teammates: &'p [(RobotId, [f32; 2])],
     opponents: &'p [[f32; 2]],
     /// The squares around the ball that contain opponents.
@@ -32,7 +32,7 @@ pub(crate) struct Query<'p> {
 
 /// The part of a problem that is tested against a case's record header.
 #[derive(Clone, Copy)]
-pub(crate) struct Door {
+pub(crate) struct QueryKey {
     /// Position of the ball, mm, field frame.
     pub(crate) ball: [f32; 2],
     /// The exponent at the end of scopes.
@@ -41,14 +41,14 @@ pub(crate) struct Door {
     robots: usize,
 }
 
-impl Door {
+impl QueryKey {
     /// The ball's exponent in the case's scope, where it lies inside and there are enough robots.
     #[inline]
-    pub(crate) fn exponent(&self, gate: &Gate) -> Option<f32> {
-        if usize::from(gate.teammates) > self.robots {
+    pub(crate) fn exponent(&self, record_header: &RecordHeader) -> Option<f32> {
+        if usize::from(record_header.teammates) > self.robots {
             return None;
         }
-        let exponent = gate.exponent(self.ball);
+        let exponent = record_header.exponent(self.ball);
         (exponent < self.limit).then_some(exponent)
     }
 }
@@ -74,8 +74,8 @@ impl Query<'_> {
                 break;
             }
         }
-        let door = Door { ball: ball.to_f32(), limit: settings.limit(), robots: teammates.len() };
-        work(&Query { problem, settings, door, teammates: &teammates, opponents: &opponents, cells })
+        let key = QueryKey { ball: ball.to_f32(), limit: settings.limit(), robots: teammates.len() };
+        work(&Query { problem, settings, key, teammates: &teammates, opponents: &opponents, cells })
     }
 
     /// Number of the case's opponent scopes that contain an opponent.
@@ -86,21 +86,21 @@ impl Query<'_> {
         };
         let scopes = case.opponents().unwrap_or(&[]);
         let (moved_by, all) = (moved_by.to_f32(), u32::MAX);
-        let empty = empty_scopes(scopes, moved_by, self.opponents, all, self.door.limit, u32::MAX);
-        case.gate.opponents.saturating_sub(empty.unwrap_or(0) as u8)
+        let empty = empty_scopes(scopes, moved_by, self.opponents, all, self.key.limit, u32::MAX);
+        case.record_header.opponents.saturating_sub(empty.unwrap_or(0) as u8)
     }
 
     /// Number of those that contain none, where scopes move with the ball; `None` once they are more than
     /// `most`.
     #[inline(always)]
     pub(crate) fn empty_scopes(&self, scopes: &[Opponent], most: u32) -> Option<u32> {
-        empty_scopes(scopes, [0.0; 2], self.opponents, self.cells, self.door.limit, most)
+        empty_scopes(scopes, [0.0; 2], self.opponents, self.cells, self.key.limit, most)
     }
 
     /// Whether an opponent stands in a leg as it is stored.
     #[inline(always)]
     pub(crate) fn is_crisply_blocked(&self, case: &Stored<'_, '_>) -> bool {
-        is_crisply_blocked(case, self.door.ball, self.opponents, self.door.limit)
+        is_crisply_blocked(case, self.key.ball, self.opponents, self.key.limit)
     }
 
     /// Freedom of the ball's path; `None` where it is blocked.

@@ -16,7 +16,7 @@ use crate::settings::{
     CorrespondenceRule, CostRule, Criterion, FreePathRule, OutOfField, ScopeRule, Settings,
 };
 use crate::stored::Stored;
-use crate::table::{CaseBase, Gate};
+use crate::table::{CaseBase, RecordHeader};
 
 /// Result of a retrieval.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,8 +50,8 @@ pub fn retrieve(base: &CaseBase<'_>, problem: &Problem, settings: &Settings) -> 
 fn each_near<'q, 'a>(base: &'q CaseBase<'a>, query: &Query<'_>, visit: impl FnMut(Stored<'q, 'a>)) {
     let goal = query.problem.defending;
     let listed = |id: usize| Stored::new(base, CaseId(id as u16));
-    if CaseBase::index_serves(query.door.limit) {
-        let (list, flip) = base.near(query.door.ball, goal);
+    if CaseBase::index_serves(query.key.limit) {
+        let (list, flip) = base.near(query.key.ball, goal);
         list.iter().filter_map(|id| listed(usize::from(*id) ^ flip)).for_each(visit);
     } else {
         let under_goal = base.cases().filter(|case| case.defending() == goal);
@@ -61,7 +61,7 @@ fn each_near<'q, 'a>(base: &'q CaseBase<'a>, query: &Query<'_>, visit: impl FnMu
 
 /// The case as a candidate with its ranking key; `None` where it is none.
 fn candidate(query: &Query<'_>, case: &Stored<'_, '_>) -> Option<Found> {
-    let exponent = query.door.exponent(case.gate)?;
+    let exponent = query.key.exponent(case.record_header)?;
     if query.robot_outside(case).is_some() {
         return None;
     }
@@ -77,17 +77,17 @@ pub fn retrieve_best(base: &CaseBase<'_>, problem: &Problem, settings: &Settings
         return retrieve(base, problem, settings).best;
     }
     Query::with(problem, settings, |query| {
-        if !CaseBase::index_serves(query.door.limit) {
+        if !CaseBase::index_serves(query.key.limit) {
             return retrieve(base, problem, settings).best;
         }
         let mut race = Race { base, query, class: Class(0), best: None };
-        let door = query.door;
-        let (list, flip) = base.near(door.ball, problem.defending);
+        let key = query.key;
+        let (list, flip) = base.near(key.ball, problem.defending);
         for id in list {
             let id = usize::from(*id) ^ flip;
-            let Some(gate) = base.gates.get(id) else { continue };
-            let Some(exponent) = door.exponent(gate) else { continue };
-            if race.enter(CaseId(id as u16), gate, exponent).is_break() {
+            let Some(record_header) = base.gates.get(id) else { continue };
+            let Some(exponent) = key.exponent(record_header) else { continue };
+            if race.enter(CaseId(id as u16), record_header, exponent).is_break() {
                 break;
             }
         }
@@ -135,8 +135,8 @@ struct Class(u32);
 impl Class {
     /// Upper bound of a case's class, for any position of the ball.
     #[inline]
-    fn promise(gate: &Gate) -> Self {
-        Self(u32::from(u16::from_le_bytes([gate.teammates, gate.opponents])) << 2 | 3)
+    fn promise(record_header: &RecordHeader) -> Self {
+        Self(u32::from(u16::from_le_bytes([record_header.teammates, record_header.opponents])) << 2 | 3)
     }
 
     /// The same with the ball in the interval of that exponent.
@@ -177,18 +177,18 @@ impl<'a> Race<'_, 'a> {
     /// Tests a case whose bound reaches the class of the best candidate. Breaks where neither it nor any case
     /// with no higher bound can.
     #[inline(always)]
-    fn enter(&mut self, case: CaseId, gate: &'a Gate, exponent: f32) -> ControlFlow<()> {
+    fn enter(&mut self, case: CaseId, record_header: &'a RecordHeader, exponent: f32) -> ControlFlow<()> {
         // Lists are sorted by falling bound.
-        let promise = Class::promise(gate);
+        let promise = Class::promise(record_header);
         if promise < self.class {
             return ControlFlow::Break(());
         }
         let allowed = promise.in_interval_of(exponent);
         if allowed >= self.class
-            && let Some(scopes) = gate.opponents(self.base.places)
+            && let Some(scopes) = record_header.opponents(self.base.places)
             && let Some(empty) = self.query.empty_scopes(scopes, allowed.conditions_above(self.class))
         {
-            self.look_at(case, gate, exponent, allowed.without(empty));
+            self.look_at(case, record_header, exponent, allowed.without(empty));
         }
         ControlFlow::Continue(())
     }
@@ -196,9 +196,9 @@ impl<'a> Race<'_, 'a> {
     /// Tests a case whose class is at least the best candidate's, and replaces that candidate if this one is
     /// better.
     #[inline(never)]
-    fn look_at(&mut self, id: CaseId, gate: &'a Gate, exponent: f32, class: Class) {
+    fn look_at(&mut self, id: CaseId, record_header: &'a RecordHeader, exponent: f32, class: Class) {
         let Self { base, query, .. } = *self;
-        let case = &Stored { base, id, gate };
+        let case = &Stored { base, id, record_header };
         if query.is_crisply_blocked(case) {
             return;
         }

@@ -8,22 +8,22 @@ use protocol::CaseId;
 use crate::PointMm;
 use crate::action::FieldMm;
 use crate::case::Case;
-use crate::table::{CaseBase, Gate, Opponent, RawLeg};
+use crate::table::{CaseBase, Opponent, RawLeg, RecordHeader};
 
 /// The records of a stored case.
 #[derive(Clone, Copy)]
 pub(crate) struct Stored<'q, 'a> {
     pub(crate) base: &'q CaseBase<'a>,
     pub(crate) id: CaseId,
-    pub(crate) gate: &'a Gate,
+    pub(crate) record_header: &'a RecordHeader,
 }
 
 impl<'q, 'a> Stored<'q, 'a> {
     /// By its number; `None` beyond the last case.
     #[inline]
     pub(crate) fn new(base: &'q CaseBase<'a>, id: CaseId) -> Option<Self> {
-        let gate = base.gates.get(usize::from(id.0))?;
-        Some(Self { base, id, gate })
+        let record_header = base.gates.get(usize::from(id.0))?;
+        Some(Self { base, id, record_header })
     }
 
     /// The same case as [`Case`].
@@ -40,32 +40,32 @@ impl<'q, 'a> Stored<'q, 'a> {
     /// B_c.
     #[inline]
     pub(crate) fn ball(&self) -> PointMm {
-        let [x, y] = self.gate.ball;
+        let [x, y] = self.record_header.ball;
         PointMm::new(x as i32, y as i32)
     }
 
     /// Number of robots.
     #[inline]
     pub(crate) fn teammates(&self) -> u8 {
-        self.gate.teammates
+        self.record_header.teammates
     }
 
     /// Positions of the robots relative to the case's ball, mm.
     #[inline]
     pub(crate) fn positions(&self) -> Option<&'a [[i16; 2]]> {
-        self.gate.positions(self.base.places)
+        self.record_header.positions(self.base.places)
     }
 
     /// The opponents.
     #[inline]
     pub(crate) fn opponents(&self) -> Option<&'a [Opponent]> {
-        self.gate.opponents(self.base.places)
+        self.record_header.opponents(self.base.places)
     }
 
     /// The legs; each starts where the one before ends.
     #[inline]
     pub(crate) fn legs(&self) -> Option<&'a [RawLeg]> {
-        self.gate.legs(self.base.places)
+        self.record_header.legs(self.base.places)
     }
 
     /// A point of the case by its number, mm, relative to the case's ball. Used by few legs.

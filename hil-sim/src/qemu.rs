@@ -168,15 +168,15 @@ impl Qemu {
     /// How the process ended, if it did.
     fn ended(&mut self) -> Option<McuError> {
         let status = self.child.try_wait().ok()??;
-        let mut said = String::new();
+        let mut reported = String::new();
         for pipe in
             [self.child.stderr.take().map(boxed), self.child.stdout.take().map(boxed)].into_iter().flatten()
         {
             // An unreadable pipe counts as empty; the exit status is reported anyway.
-            let _ = pipe.take(SAID_LEN_MAX).read_to_string(&mut said);
+            let _ = pipe.take(TEXT_LEN_MAX).read_to_string(&mut reported);
         }
-        let hint = if said.contains("dgram") { " (QEMU 7.2 or newer is needed)" } else { "" };
-        Some(McuError::Ended { how: format!("{status}; {}{hint}", said.trim()) })
+        let hint = if reported.contains("dgram") { " (QEMU 7.2 or newer is needed)" } else { "" };
+        Some(McuError::Ended { how: format!("{status}; {}{hint}", reported.trim()) })
     }
 }
 
@@ -318,7 +318,7 @@ const MACHINE_ARGS: [&str; 16] = [
     "nic,netdev=air",
 ];
 /// Maximum length of the output kept of an ended emulator, bytes.
-const SAID_LEN_MAX: u64 = 4_096;
+const TEXT_LEN_MAX: u64 = 4_096;
 
 /// Destination (broadcast), source (a locally administered address), type.
 const HEADER: [u8; 14] = {
@@ -348,7 +348,7 @@ mod tests {
         (Qemu::start(command, ours, theirs, patience).unwrap(), board)
     }
 
-    fn says(board: &UnixDatagram, message: &FromRobot<'_>) {
+    fn send_message(board: &UnixDatagram, message: &FromRobot<'_>) {
         let mut payload = [0; 1_400];
         let payload = postcard::to_slice(message, &mut payload).unwrap();
         let mut frame = vec![0xff; 12];
@@ -359,7 +359,7 @@ mod tests {
         board.send(&frame).unwrap();
     }
 
-    fn hears(board: &UnixDatagram) -> Vec<u8> {
+    fn receive_message(board: &UnixDatagram) -> Vec<u8> {
         let mut frame = [0; 1_514];
         let len = board.recv(&mut frame).unwrap();
         assert!(len >= 60 && frame[12..14] == [0x88, 0xb5]);
@@ -391,19 +391,22 @@ mod tests {
     #[test]
     fn set_up_and_ticks_go_there_and_back() {
         let (mut robot, board) = quiet("sleep", &["30"]);
-        says(&board, &FromRobot::Hello);
-        says(&board, &FromRobot::Ready);
+        send_message(&board, &FromRobot::Hello);
+        send_message(&board, &FromRobot::Ready);
         robot.set_up(&config()).unwrap();
-        let received = hears(&board);
+        let received = receive_message(&board);
         let ToRobot::Setup { config: bytes } = postcard::from_bytes(&received).unwrap() else { panic!() };
         assert_eq!(postcard::from_bytes::<BrainConfig>(bytes).unwrap(), config());
 
         robot.post(&tick(7)).unwrap();
-        assert_eq!(postcard::from_bytes::<ToRobot<'_>>(&hears(&board)).unwrap(), ToRobot::Tick(tick(7)));
+        assert_eq!(
+            postcard::from_bytes::<ToRobot<'_>>(&receive_message(&board)).unwrap(),
+            ToRobot::Tick(tick(7))
+        );
         let order = ActuatorFrame::Omni { wheels: [0.5; 4], dribbler: 0.0, kick: OmniKick::None };
         let air = [&b"three"[..]].into_iter().collect();
         let answer = TickOut { seq: 7, actuators: Some(order), air, instructions: 4_711, stack: 815 };
-        says(&board, &FromRobot::Tick(answer));
+        send_message(&board, &FromRobot::Tick(answer));
         let reply = robot.collect().unwrap();
         assert_eq!((reply.actuators, reply.instructions, reply.stack), (Some(order), 4_711, 815));
         assert_eq!((reply.packets.len(), &reply.packets[0][..]), (1, &b"three"[..]));
@@ -413,7 +416,7 @@ mod tests {
     fn an_answer_to_another_tick_and_a_broken_frame_are_malformed() {
         let (mut robot, board) = quiet("sleep", &["30"]);
         robot.post(&tick(7)).unwrap();
-        says(
+        send_message(
             &board,
             &FromRobot::Tick(TickOut {
                 seq: 6,
@@ -433,8 +436,8 @@ mod tests {
     #[test]
     fn a_refusal_is_told() {
         let (mut robot, board) = quiet("sleep", &["30"]);
-        says(&board, &FromRobot::Hello);
-        says(&board, &FromRobot::Unusable);
+        send_message(&board, &FromRobot::Hello);
+        send_message(&board, &FromRobot::Unusable);
         assert!(matches!(robot.set_up(&config()), Err(McuError::Unusable)));
     }
 

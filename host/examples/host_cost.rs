@@ -42,8 +42,8 @@ fn feed(file: &str) -> Result<String, Box<dyn std::error::Error>> {
     for record in reader.by_ref().filter(|record| record.host == 0 && record.kind.is_input()) {
         let next = record.kind == Kind::Vision && image.is_none_or(|at| record.at > at);
         if next {
-            let (said, long) = count_this_round(&mut host, &round);
-            (rounds, packets, bytes) = (rounds + u32::from(image.is_some()), packets + said, bytes + long);
+            let (sent, long) = count_this_round(&mut host, &round);
+            (rounds, packets, bytes) = (rounds + u32::from(image.is_some()), packets + sent, bytes + long);
             round.clear();
             image = Some(record.at);
         }

@@ -108,15 +108,15 @@ impl VisionGeometry {
     /// Takes a geometry packet. An implausible field refuses the whole packet.
     pub fn receive(&mut self, data: &GeometryData) -> Result<GeometryChange, GeometryFault> {
         let field = field_of(&data.field).map_err(GeometryFault::Field)?;
-        let mut news = GeometryChange { field: self.field != Some(field), ..GeometryChange::default() };
+        let mut change = GeometryChange { field: self.field != Some(field), ..GeometryChange::default() };
         self.field = Some(field);
         for calibration in &data.calib {
             let possible = calibration.camera_id < CAMERAS_MAX;
             match Camera::from_wire(calibration).filter(|_| possible) {
-                None => news.cameras_refused += 1,
+                None => change.cameras_refused += 1,
                 Some(camera) => {
                     if self.cameras.insert(calibration.camera_id, camera) != Some(camera) {
-                        news.cameras += 1;
+                        change.cameras += 1;
                     }
                 }
             }
@@ -124,16 +124,16 @@ impl VisionGeometry {
         let models = data.models.unwrap_or_default();
         if let Some(model) = models.straight_two_phase {
             match BallModel::from_wire(model.acc_slide, model.acc_roll, model.k_switch) {
-                None => news.models_refused += 1,
-                Some(model) => news.models |= self.ground.replace(model) != Some(model),
+                None => change.models_refused += 1,
+                Some(model) => change.models |= self.ground.replace(model) != Some(model),
             }
         }
         if let Some(model) = models.chip_fixed_loss {
             let (first, other, z) =
                 (model.damping_xy_first_hop, model.damping_xy_other_hops, model.damping_z);
             match ChipModel::from_wire(first, other, z) {
-                None => news.models_refused += 1,
-                Some(model) => news.models |= self.chip.replace(model) != Some(model),
+                None => change.models_refused += 1,
+                Some(model) => change.models |= self.chip.replace(model) != Some(model),
             }
         }
         // Radii that are sent are used within what is possible on the field.
@@ -142,7 +142,7 @@ impl VisionGeometry {
         };
         self.ball_radius = radius(data.field.ball_radius, 0.01, 0.1).or(self.ball_radius);
         self.robot_radius = radius(data.field.max_robot_radius, 0.03, 0.3).or(self.robot_radius);
-        Ok(news)
+        Ok(change)
     }
 }
 
@@ -156,7 +156,7 @@ fn nearest_division(length: f32) -> League {
 fn field_of(size: &GeometryFieldSize) -> Result<(FieldSpec, AreaSource), FieldFault> {
     // Sizes of int32 in mm are whole numbers up to 2³¹; as f32 they lose less than the rules' tolerance.
     let metres = |mm: i32| mm as f32 / 1000.0;
-    let told = |mm: Option<i32>| mm.filter(|mm| *mm > 0).map(metres);
+    let announced = |mm: Option<i32>| mm.filter(|mm| *mm > 0).map(metres);
     let (length, width) = (metres(size.field_length), metres(size.field_width));
     let default = nearest_division(length).field();
     let margin = metres(size.boundary_width);
@@ -169,22 +169,22 @@ fn field_of(size: &GeometryFieldSize) -> Result<(FieldSpec, AreaSource), FieldFa
         width,
         margin,
         // The newest message has both; older programs send 0 for "not set".
-        goal_line_margin: told(size.boundary_width_goal_line).unwrap_or(margin),
+        goal_line_margin: announced(size.boundary_width_goal_line).unwrap_or(margin),
         // Here 0 is a value: no such area. If it is not sent, the game controller takes its own default, the
         // same in both divisions.
         goal_substitution: size.goal_substitution_area_width.map_or(SUBSTITUTION_UNTOLD, metres),
         goal_width: metres(size.goal_width),
         goal_depth: metres(size.goal_depth),
-        goal_height: told(size.goal_height).unwrap_or(default.goal_height),
+        goal_height: announced(size.goal_height).unwrap_or(default.goal_height),
         goal_wall: default.goal_wall,
         penalty_depth: area.depth,
         penalty_width: area.width,
         penalty_form: area.form,
         // In both divisions the mark is two thirds of the field from the goal.
-        penalty_mark: told(size.goal_center_to_penalty_mark)
+        penalty_mark: announced(size.goal_center_to_penalty_mark)
             .unwrap_or(length * (default.penalty_mark / default.length)),
-        center_radius: told(size.center_circle_radius).or(circle).unwrap_or(default.center_radius),
-        line_width: told(size.line_thickness).or(thickness).unwrap_or(default.line_width),
+        center_radius: announced(size.center_circle_radius).or(circle).unwrap_or(default.center_radius),
+        line_width: announced(size.line_thickness).or(thickness).unwrap_or(default.line_width),
     };
     Ok((field.checked()?, source))
 }

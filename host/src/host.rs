@@ -225,11 +225,11 @@ impl Host {
             let _told = self.geometry.receive(data);
         }
         let received = self.tracker.handle(&packet, now);
-        let news = !matches!(received, tracking::Received::NoImage | tracking::Received::Repeated);
-        if news {
+        let changes = !matches!(received, tracking::Received::NoImage | tracking::Received::Repeated);
+        if changes {
             self.imaged = Some(now);
         }
-        if news && self.planned.is_none_or(|last| now.since(last) >= PLAN_EVERY) {
+        if changes && self.planned.is_none_or(|last| now.since(last) >= PLAN_EVERY) {
             self.plan(now);
         }
         Verdict::Vision(received)
@@ -337,9 +337,9 @@ impl Host {
     /// Estimates the place of a ball that no camera sees.
     fn remember_ball(&mut self, now: Instant) {
         let feels = |robot: RobotId| {
-            let told = &self.robots[robot.index()].telemetry;
-            told.as_ref().is_some_and(|(at, told)| {
-                now.since(*at) < TELEMETRY_LEASE && told.condition.has(Condition::BALL_CONTACT)
+            let reported = &self.robots[robot.index()].telemetry;
+            reported.as_ref().is_some_and(|(at, reported)| {
+                now.since(*at) < TELEMETRY_LEASE && reported.condition.has(Condition::BALL_CONTACT)
             })
         };
         self.hidden.fill(now, &mut self.world, self.settings.us, self.listener.game(), feels);
@@ -366,7 +366,8 @@ impl Host {
     fn fit(&self, now: Instant) -> RobotSet {
         let mut fit = RobotSet::default();
         for robot in self.radio.present(now) {
-            let lies = self.telemetry(robot).is_some_and(|told| told.condition.has(Condition::TIPPED));
+            let lies =
+                self.telemetry(robot).is_some_and(|reported| reported.condition.has(Condition::TIPPED));
             if !lies {
                 fit.insert(robot);
             }
@@ -398,8 +399,8 @@ impl Host {
             let (received, beacon) = self.robots[robot.index()].beacon.as_ref()?;
             (now.since(*received) < PRESENCE_LEASE).then_some((robot, beacon))
         });
-        let told: heapless::Vec<_, { RobotId::COUNT }> = fresh.collect();
-        proposal(&self.cases, &told, flip)
+        let reported: heapless::Vec<_, { RobotId::COUNT }> = fresh.collect();
+        proposal(&self.cases, &reported, flip)
     }
 }
 

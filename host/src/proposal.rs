@@ -17,14 +17,14 @@ pub fn cases_of(league: League) -> CaseBase<'static> {
 
 /// The pass of the newest cycle that robots with this case base report. `None` where they play no case, where
 /// its next leg is no pass, or where its passer is not, or no longer, at it.
-pub(crate) fn proposal(base: &CaseBase<'_>, told: &[(RobotId, &Beacon)], flip: Flip) -> Option<CasePass> {
-    let told = || told.iter().copied().filter(|(_, beacon)| beacon.case_base == base.hash());
-    let newest = told().filter_map(|(_, beacon)| beacon.cycle.as_ref()).fold(None, newer)?;
+pub(crate) fn proposal(base: &CaseBase<'_>, reported: &[(RobotId, &Beacon)], flip: Flip) -> Option<CasePass> {
+    let reported = || reported.iter().copied().filter(|(_, beacon)| beacon.case_base == base.hash());
+    let newest = reported().filter_map(|(_, beacon)| beacon.cycle.as_ref()).fold(None, newer)?;
     let play = newest.play()?;
     let case = base.case(play.case)?;
     let progress = |robot: RobotId| {
         let (_, beacon) =
-            told().find(|(id, beacon)| *id == robot && beacon.cycle.as_ref() == Some(newest))?;
+            reported().find(|(id, beacon)| *id == robot && beacon.cycle.as_ref() == Some(newest))?;
         Some(beacon.progress)
     };
     // A robot that has not received the cycle yet has done nothing in it.
@@ -104,16 +104,16 @@ mod tests {
             let of = |part: casebase::CaseRobot| RobotId::new([3, 1, 2, 4][part.index()]).unwrap();
             let state = cycle(7, id, case.robots().count());
             let old = cycle(6, id, 0);
-            let told = |done| {
+            let reported = |done| {
                 let mine = beacon(base.hash(), state.clone(), done);
                 let late = beacon(base.hash(), old.clone(), Progress::Execute { done: 9 });
                 [(of(getter), mine), (of(to), late)]
             };
-            let find = |told: &[(RobotId, Beacon)]| {
-                let told: Vec<_> = told.iter().map(|(id, beacon)| (*id, beacon)).collect();
-                proposal(&base, &told, Flip::defending(GoalEnd::Positive))
+            let find = |reported: &[(RobotId, Beacon)]| {
+                let reported: Vec<_> = reported.iter().map(|(id, beacon)| (*id, beacon)).collect();
+                proposal(&base, &reported, Flip::defending(GoalEnd::Positive))
             };
-            let found = find(&told(Progress::Execute { done: 1 })).unwrap();
+            let found = find(&reported(Progress::Execute { done: 1 })).unwrap();
             assert_eq!(found.case, CaseId(id));
             assert_eq!((found.passer, found.receiver), ((of(getter), getter), (of(to), to)), "case {id}");
             let at = case.adapted(to, casebase::PointMm { x: 0, y: 0 });
@@ -121,11 +121,14 @@ mod tests {
             let by_hand = Point::<Attack>::new(at.x as f32 * -0.001, at.y as f32 * -0.001);
             assert!(found.at.distance(by_hand) < 1e-3, "case {id}: {found:?}, by hand {by_hand:?}");
             // Once it is done the proposal is another one, or none.
-            assert!(find(&told(Progress::Execute { done: 2 })).is_none_or(|next| next != found), "case {id}");
+            assert!(
+                find(&reported(Progress::Execute { done: 2 })).is_none_or(|next| next != found),
+                "case {id}"
+            );
             // A robot that the host called away, or that has ended, is not a passer of any case.
-            assert_eq!(find(&told(Progress::Idle)), None);
+            assert_eq!(find(&reported(Progress::Idle)), None);
             // Cycles of robots with another case base are ignored.
-            let mut others = told(Progress::Execute { done: 1 });
+            let mut others = reported(Progress::Execute { done: 1 });
             for (_, beacon) in &mut others {
                 beacon.case_base ^= 1;
             }

@@ -32,8 +32,8 @@ fn defended(name: &str, field: FieldSpec, remembers: bool) -> Seen {
     let teams = [(Colour::Yellow, GoalEnd::Negative), (Colour::Blue, GoalEnd::Positive)];
     let mut memories = [Memory::default(), Memory::default()];
     let mut before = [[None; ROBOTS_MAX]; 2];
-    let mut everybody = RobotSet::default();
-    RobotId::all().for_each(|id| everybody.insert(id));
+    let mut all_robots = RobotSet::default();
+    RobotId::all().for_each(|id| all_robots.insert(id));
     for record in ssl::log::open(&path).unwrap() {
         let since = (record.timestamp_ns - *first.get_or_insert(record.timestamp_ns)).max(0) as u64;
         let Ok(Some(Packet::Vision(packet))) = record.decode() else { continue };
@@ -50,11 +50,11 @@ fn defended(name: &str, field: FieldSpec, remembers: bool) -> Seen {
                 keeper: RobotId::ZERO,
                 their_keeper: RobotId::ZERO,
             };
-            let view = View::of(&world, us, &game, field, everybody, RobotSet::default());
+            let view = View::of(&world, us, &game, field, all_robots, RobotSet::default());
             if !remembers {
                 memories[team] = Memory::default();
             }
-            let defence = defend(&view, everybody, &mut memories[team], &Settings::default());
+            let defence = defend(&view, all_robots, &mut memories[team], &Settings::default());
             count(&view, &defence, &mut before[team], &mut seen);
         }
     }

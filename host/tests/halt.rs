@@ -72,7 +72,7 @@ fn robot() -> Link {
 /// Telemetry of that robot.
 fn telemetry(robot: &mut Link, now: u64) -> Vec<u8> {
     let mut telemetry = Telemetry::default();
-    robot.tell(Instant(now), &mut telemetry);
+    robot.report(Instant(now), &mut telemetry);
     robot.seal(&TeamMessage::Telemetry(telemetry)).to_vec()
 }
 
@@ -208,11 +208,12 @@ fn from_a_trace_with_two_referees_a_host_decides_the_same_again() {
     let pinned = HostSettings { referee: Some(SourcePin::of("10.0.0.1")), ..settings() };
     let records = [recorded(settings()), recorded(pinned.clone())];
     let halts = |records: &[Record]| {
-        let said = records
+        let reported = records
             .iter()
             .filter(|record| record.kind == Kind::Sent)
             .filter_map(|record| read(&record.bytes[1..]));
-        said.filter(|message| matches!(message, HostMessage::World(part) if part.phase == Phase::Halt))
+        reported
+            .filter(|message| matches!(message, HostMessage::World(part) if part.phase == Phase::Halt))
             .count()
     };
     assert!(halts(&records[0]) > 50 && halts(&records[1]) == 0);

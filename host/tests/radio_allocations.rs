@@ -49,7 +49,7 @@ fn eleven_robots_at_a_hundred_snapshots_a_second_need_no_heap() {
             radio.offer(now, &world, situation, &commands);
             let mut out: heapless::Vec<Packet, 400> = heapless::Vec::new();
             for (i, robot) in robots.iter_mut().enumerate() {
-                let packet = say(robot, now, (n + i as u64).is_multiple_of(2));
+                let packet = send(robot, now, (n + i as u64).is_multiple_of(2));
                 received += u64::from(radio.handle_packet(now, &packet).is_ok());
                 while let Some((_, packet)) = radio.poll_packet() {
                     sent += 1;
@@ -72,7 +72,7 @@ fn eleven_robots_at_a_hundred_snapshots_a_second_need_no_heap() {
     assert_eq!(during, 0, "allocations in nine seconds");
 }
 
-fn say(robot: &mut Link, now: Instant, beacon: bool) -> Packet {
+fn send(robot: &mut Link, now: Instant, beacon: bool) -> Packet {
     let message = if beacon {
         TeamMessage::Beacon(Beacon {
             pose: WirePose::default(),
@@ -85,7 +85,7 @@ fn say(robot: &mut Link, now: Instant, beacon: bool) -> Packet {
         })
     } else {
         let mut telemetry = Telemetry::default();
-        robot.tell(now, &mut telemetry);
+        robot.report(now, &mut telemetry);
         TeamMessage::Telemetry(telemetry)
     };
     robot.seal(&message)

@@ -21,9 +21,9 @@ fn main() -> ExitCode {
         }
     }
     let counters = forgery::tries(count, seed);
-    let [said, flipped, counter, epoch, length, name, made] = counters.kinds;
+    let [sent, flipped, counter, epoch, length, name, made] = counters.kinds;
     println!(
-        "{count} frames (seed {seed}), none believed: {said} as they were said, {flipped} with flipped bits, {counter} with a newer \
+        "{count} frames (seed {seed}), none believed: {sent} as they were said, {flipped} with flipped bits, {counter} with a newer \
          counter, {epoch} with a newer epoch, {length} cut or stretched, {name} in another's name, {made} made with guessed keys; \
          and {} recordings right after {} boots, {} to hosts that had just started",
         counters.after_boots, counters.boots, counters.to_fresh_hosts

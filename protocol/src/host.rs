@@ -70,7 +70,7 @@ pub struct Welcome {
     pub to: RobotId,
     /// The epoch of that robot's frames.
     #[serde(with = "postcard::fixint::le")]
-    pub life: u32,
+    pub boot_epoch: u32,
     /// The host's clock when the robot's newest telemetry came, less the clock in it; ticks of 64 µs,
     /// wrapping ([`crate::host_clock`]).
     #[serde(with = "postcard::fixint::le")]
@@ -380,7 +380,7 @@ mod tests {
                 to: id,
                 defending: GoalEnd::Positive,
                 phase,
-                rule_role: RuleRole::Taker,
+                rule_role: RuleRole::Kicker,
                 directive,
             });
             assert!(len(&command) <= COMMAND_LEN_MAX, "{} bytes: {command:?}", len(&command));

@@ -111,12 +111,12 @@ impl HostLink {
 
     /// The welcome for that robot, by its newest telemetry.
     pub fn welcome(&self, robot: RobotId) -> Option<Welcome> {
-        let (life, offset) = self.newest[robot.index()]?;
-        Some(Welcome { to: robot, life, offset })
+        let (boot_epoch, offset) = self.newest[robot.index()]?;
+        Some(Welcome { to: robot, boot_epoch, offset })
     }
 
     /// The boot epoch in which that robot is trusted.
-    pub fn life(&self, robot: RobotId) -> Option<u32> {
+    pub fn boot_epoch(&self, robot: RobotId) -> Option<u32> {
         self.own.epoch(Sender::Robot(robot))
     }
 

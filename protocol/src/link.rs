@@ -122,7 +122,7 @@ impl Link {
     }
 
     /// Fills in the link's counters; all but condition, battery and silence.
-    pub fn tell(&self, now: Instant, telemetry: &mut Telemetry) {
+    pub fn report(&self, now: Instant, telemetry: &mut Telemetry) {
         telemetry.host = self.host_epoch().unwrap_or(0);
         telemetry.clock = ticks(now);
         telemetry.received = self.snapshots.received as u16;
@@ -177,7 +177,7 @@ impl Link {
         self.peer_table.receive(teammate, frame.epoch);
         let message = decode::<TeamMessage>(frame.payload);
         if let Some(TeamMessage::Handshake(Handshake { teammates })) = &message
-            && let Some(own) = teammates.iter().find(|own| own.who == self.me && own.life == self.epoch)
+            && let Some(own) = teammates.iter().find(|own| own.who == self.me && own.boot_epoch == self.epoch)
         {
             self.peer_table.believe(teammate, frame.epoch, own.bond);
         } else if self.sessions.epoch(frame.sender) != Some(frame.epoch) {
@@ -192,7 +192,7 @@ impl Link {
         let known = self.sessions.epoch(Sender::Host) == Some(frame.epoch);
         let mut clock = if known { self.clock } else { None };
         if let Some(HostMessage::Welcome(welcome)) = &message
-            && (welcome.to, welcome.life) == (self.me, self.epoch)
+            && (welcome.to, welcome.boot_epoch) == (self.me, self.epoch)
         {
             clock = Some(HostClock::learned(clock, now, welcome.offset));
         }

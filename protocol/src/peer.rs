@@ -24,7 +24,7 @@ pub struct PeerTable {
 #[derive(Clone, Copy, Debug)]
 struct Peer {
     /// The newest boot epoch received.
-    life: u32,
+    boot_epoch: u32,
     /// It has named our boot epoch: we trust it.
     believed: bool,
     /// It has reported that we named its boot epoch: it trusts us.
@@ -38,24 +38,26 @@ const fn bit(teammate: RobotId) -> u16 {
 }
 
 impl PeerTable {
-    /// Handles a frame with the team's tag from that boot epoch (`life`) of a teammate.
-    pub fn receive(&mut self, teammate: RobotId, life: u32) {
+    /// Handles a frame with the team's tag from that boot epoch (`boot_epoch`) of a teammate.
+    pub fn receive(&mut self, teammate: RobotId, boot_epoch: u32) {
         let slot = &mut self.teammates[teammate.index()];
         match slot {
-            Some(known) if known.life > life => return,
-            Some(known) if known.life == life => {
+            Some(known) if known.boot_epoch > boot_epoch => return,
+            Some(known) if known.boot_epoch == boot_epoch => {
                 if known.believed && known.believes {
                     return;
                 }
             }
-            _ => *slot = Some(Peer { life, believed: false, believes: false }),
+            _ => *slot = Some(Peer { boot_epoch, believed: false, believes: false }),
         }
         self.owed |= bit(teammate);
     }
 
     /// That boot epoch of a teammate, received already, has named our present one.
-    pub fn believe(&mut self, teammate: RobotId, life: u32, bond: Bond) {
-        let Some(known) = self.teammates[teammate.index()].as_mut().filter(|known| known.life == life) else {
+    pub fn believe(&mut self, teammate: RobotId, boot_epoch: u32, bond: Bond) {
+        let Some(known) =
+            self.teammates[teammate.index()].as_mut().filter(|known| known.boot_epoch == boot_epoch)
+        else {
             return;
         };
         known.believed = true;
@@ -84,7 +86,7 @@ impl PeerTable {
                 (true, true) => Bond::Mutual,
             };
             // The capacity suffices: checked above.
-            let _ = teammates.push(Greeted { who, life: teammate.life, bond });
+            let _ = teammates.push(Greeted { who, boot_epoch: teammate.boot_epoch, bond });
             self.next = (number + 1) % RobotId::COUNT as u8;
         }
         if teammates.is_empty() {
@@ -110,7 +112,7 @@ mod tests {
     fn greeted(peer_table: &mut PeerTable, ms: u64) -> heapless::Vec<(u8, u32, Bond), 8> {
         let handshake = peer_table.poll(Instant(ms * 1000));
         let teammates = handshake.iter().flat_map(|handshake| &handshake.teammates);
-        teammates.map(|teammate| (teammate.who.number(), teammate.life, teammate.bond)).collect()
+        teammates.map(|teammate| (teammate.who.number(), teammate.boot_epoch, teammate.bond)).collect()
     }
 
     #[test]

@@ -60,7 +60,7 @@ pub struct Greeted {
     pub who: RobotId,
     /// The epoch of its frames.
     #[serde(with = "postcard::fixint::le")]
-    pub life: u32,
+    pub boot_epoch: u32,
     /// State of the handshake between the two.
     pub bond: Bond,
 }
@@ -337,7 +337,7 @@ mod tests {
 
     #[test]
     fn the_longest_handshake_fits_its_budget() {
-        let teammate = Greeted { who: robot(15), life: u32::MAX, bond: Bond::Mutual };
+        let teammate = Greeted { who: robot(15), boot_epoch: u32::MAX, bond: Bond::Mutual };
         let teammates = [teammate; GREETED_MAX].into_iter().collect();
         let mut out = [0; 128];
         let n = postcard::to_slice(&TeamMessage::Handshake(Handshake { teammates }), &mut out).unwrap().len();

@@ -134,7 +134,7 @@ fn commands() -> [(&'static str, Phase<Side>, RuleRole, Directive); 11] {
     [
         ("stand", Phase::Halt, player, Stand),
         ("go-to", run, player, GoTo { pose: pose(-720, 0, 1571) }),
-        ("get-ball", Phase::FreeKick(ours), RuleRole::Taker, GetBall { face: Some(goal) }),
+        ("get-ball", Phase::FreeKick(ours), RuleRole::Kicker, GetBall { face: Some(goal) }),
         ("kick", run, player, Kick { at: point(4500, -200), kick: KickOrder::Flat(630) }),
         (
             "pass",
@@ -145,7 +145,7 @@ fn commands() -> [(&'static str, Phase<Side>, RuleRole, Directive); 11] {
         ("receive", run, player, Receive { at: interception_point, then: Some(goal) }),
         ("dribble", run, player, Dribble { pose: pose(0, -1, -3142) }),
         ("block", Phase::Stop, RuleRole::Keeper, Block { from: point(-4400, 400), to: point(-4400, -400) }),
-        ("place-ball", Phase::BallPlacement(ours), RuleRole::Taker, PlaceBall { at: point(-3000, 2000) }),
+        ("place-ball", Phase::BallPlacement(ours), RuleRole::Kicker, PlaceBall { at: point(-3000, 2000) }),
         ("gameplay", run, player, Gameplay { hint: Some(hint) }),
         ("gameplay-free", run, player, Gameplay { hint: None }),
     ]
@@ -184,7 +184,7 @@ fn robots_messages_have_the_bytes_of_the_specification() {
         clock: 0x0001_e848,
     };
     both_ways("telemetry", &TeamMessage::Telemetry(telemetry));
-    let teammate = |who, life, bond| Greeted { who: robot(who), life, bond };
+    let teammate = |who, boot_epoch, bond| Greeted { who: robot(who), boot_epoch, bond };
     let teammates =
         [teammate(1, 9, Bond::Received), teammate(3, 258, Bond::Believed), teammate(12, 1, Bond::Mutual)];
     both_ways("greeting", &TeamMessage::Handshake(Handshake { teammates: teammates.into_iter().collect() }));
@@ -207,7 +207,7 @@ fn the_hosts_messages_have_the_bytes_of_the_specification() {
             }),
         );
     }
-    both_ways("welcome", &HostMessage::Welcome(Welcome { to: robot(3), life: 9, offset: 0xffff_ff38 }));
+    both_ways("welcome", &HostMessage::Welcome(Welcome { to: robot(3), boot_epoch: 9, offset: 0xffff_ff38 }));
 }
 
 /// Robot 3's keys of the team key 00 01 02 … 0f.

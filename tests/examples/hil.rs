@@ -23,17 +23,17 @@ fn main() -> ExitCode {
         }
     }
     let image = firmware_build::build_image(&firmware_build::workspace_root(), firmware_build::Body::Omni);
-    let told = match image {
+    let reported = match image {
         Ok(image) => Pair::new(seed, seconds, &image).and_then(|mut pair| pair.play(|_, _| {})),
         Err(error) => {
             eprintln!("{error}");
             return ExitCode::FAILURE;
         }
     };
-    match told {
-        Ok(told) => {
-            println!("{told}");
-            if told.hashes[0] == told.hashes[1] { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    match reported {
+        Ok(reported) => {
+            println!("{reported}");
+            if reported.hashes[0] == reported.hashes[1] { ExitCode::SUCCESS } else { ExitCode::FAILURE }
         }
         Err(error) => {
             eprintln!("{error}");

@@ -109,13 +109,13 @@ fn referee(runs: Runs) -> ExitCode {
 
 /// Runs of a team under faults.
 fn faults(runs: Runs) -> ExitCode {
-    let (begin, shown) = (Instant::now(), std::io::stderr().is_terminal());
+    let (begin, visible) = (Instant::now(), std::io::stderr().is_terminal());
     let (counters, broken) = watch(runs, |done| {
-        if shown && done.is_multiple_of(50) {
+        if visible && done.is_multiple_of(50) {
             eprint!("\r{done} of {} runs", runs.seeds);
         }
     });
-    if shown {
+    if visible {
         eprintln!();
     }
     for (seed, found) in broken.iter().take(SHOWN) {

@@ -29,7 +29,7 @@ pub struct Pair {
 
 /// Results of the two.
 #[derive(Clone, Debug)]
-pub struct Told {
+pub struct Reported {
     /// Ticks of 10 ms played.
     pub ticks: u32,
     /// The hash of each at its end.
@@ -42,14 +42,14 @@ pub struct Told {
     pub worst_stack: u32,
 }
 
-impl Told {
+impl Reported {
     /// Speed of a side relative to real time.
     pub fn speed(&self, side: Side) -> f64 {
         f64::from(self.ticks) * 0.01 / self.took[side as usize].as_secs_f64().max(1e-9)
     }
 }
 
-impl fmt::Display for Told {
+impl fmt::Display for Reported {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let seconds = f64::from(self.ticks) * 0.01;
         let [native, emulated] = &self.hashes;
@@ -83,7 +83,7 @@ impl Pair {
     }
 
     /// Plays both; `look` gets both hashes after every tick.
-    pub fn play(&mut self, mut look: impl FnMut(u32, [&str; 2])) -> Result<Told, GameError> {
+    pub fn play(&mut self, mut look: impl FnMut(u32, [&str; 2])) -> Result<Reported, GameError> {
         let mut took = [Duration::ZERO; 2];
         let mut hashes = [String::new(), String::new()];
         for tick in 0..self.ticks {
@@ -97,6 +97,6 @@ impl Pair {
         }
         let (_, worst_instructions) = self.meter.median_and_worst();
         let worst_stack = self.meter.stack();
-        Ok(Told { ticks: self.ticks, hashes, took, worst_instructions, worst_stack })
+        Ok(Reported { ticks: self.ticks, hashes, took, worst_instructions, worst_stack })
     }
 }

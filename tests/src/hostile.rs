@@ -92,21 +92,21 @@ fn drawn(seeds: &[Vec<u8>], chance: &mut Stream) -> Vec<u8> {
 struct Minds {
     brain: Brain<'static>,
     now: Instant,
-    told: u32,
+    reported: u32,
 }
 
 impl Minds {
     fn new() -> Self {
         let config = BrainConfig::hosted(RobotId::ZERO, TeamId(1), League::DivisionB);
         let now = Instant(0);
-        Self { brain: Brain::new(now, &config, case_library::division_b()), now, told: 0 }
+        Self { brain: Brain::new(now, &config, case_library::division_b()), now, reported: 0 }
     }
 
     fn think(&mut self, bytes: &[u8]) {
         let (brain, now) = (&mut self.brain, self.now);
         if let Ok(message) = postcard::from_bytes::<HostMessage>(bytes) {
             brain.handle_host_message(now, Duration(0), &message);
-            self.told += 1;
+            self.reported += 1;
         }
         if let Ok(message) = postcard::from_bytes::<TeamMessage>(bytes) {
             brain.handle_team_message(
@@ -114,12 +114,12 @@ impl Minds {
                 RobotId::new((now.0 % 16) as u8).unwrap_or(RobotId::ZERO),
                 &message,
             );
-            self.told += 1;
+            self.reported += 1;
         }
-        if self.told < MESSAGES_A_STEP {
+        if self.reported < MESSAGES_A_STEP {
             return;
         }
-        (self.now, self.told) = (Instant(now.0 + 10_000), 0);
+        (self.now, self.reported) = (Instant(now.0 + 10_000), 0);
         let sensors = SensorFrame {
             pose: None,
             ball: None,

@@ -67,7 +67,7 @@ pub struct Watcher {
 struct Watched {
     beacon: Option<Beacon>,
     /// The newest cycle it has received, and since when.
-    told: Option<(CycleState, Instant)>,
+    reported: Option<(CycleState, Instant)>,
 }
 
 /// The content of all beacons of a cycle together.
@@ -142,10 +142,10 @@ impl Watcher {
             .robots
             .iter()
             .filter_map(|(id, watched)| {
-                let (active, (told, _)) = (active_in(*id, watched)?, watched.told.as_ref()?);
-                let closed = told.id == active && matches!(told.decision, Decision::Closed(_));
-                (told.id > active || closed)
-                    .then(|| format!("robot {id} plays on in {active} after hearing of {told:?}"))
+                let (active, (reported, _)) = (active_in(*id, watched)?, watched.reported.as_ref()?);
+                let closed = reported.id == active && matches!(reported.decision, Decision::Closed(_));
+                (reported.id > active || closed)
+                    .then(|| format!("robot {id} plays on in {active} after hearing of {reported:?}"))
             })
             .collect();
         for what in stubborn {
@@ -206,8 +206,8 @@ impl Watcher {
             (pending.since, pending.received_since) = (now, true);
         }
         let (Some(watched), Some(cycle)) = (self.robots.get_mut(&id), &beacon.cycle) else { return };
-        if cycle.is_newer_than(watched.told.as_ref().map(|(state, _)| state)) {
-            watched.told = Some((cycle.clone(), now));
+        if cycle.is_newer_than(watched.reported.as_ref().map(|(state, _)| state)) {
+            watched.reported = Some((cycle.clone(), now));
         }
     }
 

@@ -180,16 +180,16 @@ fn correspondence(
     rules: &Rules,
     close: &Close,
 ) -> Option<(Vec<u8>, f64)> {
-    let ways: Vec<Vec<f64>> =
+    let moves: Vec<Vec<f64>> =
         adapted.iter().map(|&place| present.iter().map(|&(_, at)| distance(at, place)).collect()).collect();
-    let all = |chosen: &[usize]| chosen.iter().zip(&ways).map(|(&robot, ways)| ways[robot]).collect();
-    let reachable = |ways: &Vec<f64>| ways.iter().all(|&way| !close.less("thr_c", rules.furthest, way));
+    let all = |chosen: &[usize]| chosen.iter().zip(&moves).map(|(&robot, moves)| moves[robot]).collect();
+    let reachable = |moves: &Vec<f64>| moves.iter().all(|&moved| !close.less("thr_c", rules.furthest, moved));
     let mut best: Option<(Vec<usize>, f64)> = None;
     let mut second = f64::INFINITY;
     // In ascending order, so that of equal costs the lexicographically smallest list of ids is kept.
     injections(adapted.len(), present.len(), &mut Vec::new(), &mut |chosen| {
-        let ways = chosen.iter().zip(&ways).map(|(&robot, ways)| ways[robot]);
-        let cost = if rules.longest { ways.fold(0.0, f64::max) } else { ways.sum() };
+        let moves = chosen.iter().zip(&moves).map(|(&robot, moves)| moves[robot]);
+        let cost = if rules.longest { moves.fold(0.0, f64::max) } else { moves.sum() };
         if rules.constrained && !reachable(&all(chosen)) {
             return;
         }
@@ -233,8 +233,8 @@ fn inside(leg: &Leg, opponent: Point, rules: &Rules, close: &Close) -> bool {
     let (px, py) = (opponent.x as f64 - leg.from.0, opponent.y as f64 - leg.from.1);
     let along = (px * dx + py * dy) / length;
     let across = (py * dx - px * dy) / length;
-    let r_min = leg.tube.r_min as f64;
-    let radius = r_min + (leg.tube.r_max as f64 - r_min) * along / length;
+    let r_min = leg.corridor.r_min as f64;
+    let radius = r_min + (leg.corridor.r_max as f64 - r_min) * along / length;
     if close.less_by("leg start", along, 0.0, length) || close.less("leg end", length, along) {
         return false;
     }

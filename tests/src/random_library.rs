@@ -111,7 +111,7 @@ impl League {
 
     /// Adds a kind, and its partner of the same radii.
     fn kick(&mut self, dice: &mut Dice, name: &str, aim: &str, partner: Option<&str>) {
-        let radii = tube(dice);
+        let radii = corridor(dice);
         let primitive = if dice.chance(0.3) { "primitive = \"forward_hard\"\n" } else { "" };
         for (suffix, aim) in [("", Some(aim)), ("-mirrored", partner)] {
             if let Some(aim) = aim {
@@ -128,13 +128,13 @@ impl League {
              penalty_area = {{ depth = 650, width = 1300 }}\n\n[pass]\n{}\n{}",
             self.length,
             self.width,
-            tube(dice),
+            corridor(dice),
             self.kinds.join("\n"),
         )
     }
 }
 
-fn tube(dice: &mut Dice) -> String {
+fn corridor(dice: &mut Dice) -> String {
     format!("r_min = {}\nr_max = {}\n", dice.between(1, 200), dice.between(50, 500))
 }
 

@@ -92,7 +92,7 @@ impl<'a> Surface<'a> {
     }
 
     /// Sets the command of robot `number`.
-    pub fn tell(&mut self, number: u8, rule_role: RuleRole, directive: Directive) {
+    pub fn give_order(&mut self, number: u8, rule_role: RuleRole, directive: Directive) {
         self.commands.insert(RobotId::new(number).expect("an id"), (rule_role, directive));
     }
 
@@ -149,7 +149,7 @@ impl<'a> Surface<'a> {
     }
 
     /// Messages of our robots in the last step.
-    pub fn said(&self) -> &[(RobotId, TeamMessage)] {
+    pub fn sent_messages(&self) -> &[(RobotId, TeamMessage)] {
         &self.air
     }
 

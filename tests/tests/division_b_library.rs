@@ -62,8 +62,8 @@ fn nobody_plays_the_ball_in_their_defence_area_or_dribbles_for_a_metre() {
             for action in &robot.gameplay {
                 match *action {
                     Action::DribbleTo(to) => {
-                        let way = ((to.x - case.ball.x) as f64).hypot((to.y - case.ball.y) as f64);
-                        assert!(way < DRIBBLE_MAX, "{}: {way} mm", case.name);
+                        let distance = ((to.x - case.ball.x) as f64).hypot((to.y - case.ball.y) as f64);
+                        assert!(distance < DRIBBLE_MAX, "{}: {distance} mm", case.name);
                         assert!(!in_their_area(to), "{}: a dribble", case.name);
                     }
                     Action::GoTo(to) => assert!(!in_their_area(to), "{}: a run", case.name),

@@ -59,11 +59,15 @@ fn explain_and_retrieve_agree_on_10_000_problems_of_the_built_in_libraries() {
 fn a_library_of_2_500_files_loads_and_retrieves_as_the_plain_scan() {
     let directory = std::env::temp_dir().join(format!("large-library-{}", std::process::id()));
     RandomLibrary::new(11, 2_500).write(&directory).expect("written");
-    let mut told = Vec::new();
-    let loaded = case_tools::load_telling(&directory, |done, all| told.push((done, all)));
+    let mut reported = Vec::new();
+    let loaded = case_tools::load_telling(&directory, |done, all| reported.push((done, all)));
     std::fs::remove_dir_all(&directory).expect("removed");
     let library = loaded.expect("sound");
-    assert!(told.is_sorted() && told.first() == Some(&(0, 5_000)) && told.last() == Some(&(5_000, 5_000)));
+    assert!(
+        reported.is_sorted()
+            && reported.first() == Some(&(0, 5_000))
+            && reported.last() == Some(&(5_000, 5_000))
+    );
     let base = library.base();
     assert_eq!((library.names.len(), base.len()), (2_500, 10_000));
     let won = agree(&base, 2, 2_000);

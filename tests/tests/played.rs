@@ -63,15 +63,15 @@ fn a_case_completed_by_less_than_sixty_in_a_hundred_says_why_in_its_file() {
             let row = file.lines().find(|line| line.starts_with(&format!("| {name} | {opponents} |")));
             let completed: f64 =
                 row.and_then(|row| row.split('|').nth(4)?.trim().parse().ok()).expect("a share");
-            let says =
+            let message =
                 format!("# Completed by fewer than 60 in 100 against {opponents} opponents (played.md):");
             let reason =
-                text.lines().skip_while(|line| *line != says).nth(1).filter(|line| line.starts_with("# "));
+                text.lines().skip_while(|line| *line != message).nth(1).filter(|line| line.starts_with("# "));
             assert_eq!(
                 completed < 60.0,
                 reason.is_some(),
                 "{name}: {completed} % completed against {opponents} opponents; the file has to say why just where it is \
-                 below 60: `{says}` and the reason in the next line"
+                 below 60: `{message}` and the reason in the next line"
             );
         }
     }

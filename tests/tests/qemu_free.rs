@@ -45,17 +45,17 @@ const SPEAKS_EVERY: Duration = Duration::from_millis(20);
 #[test]
 fn a_robot_obeys_its_own_host_while_it_speaks_and_nobody_elses() {
     let mut robot = Robot::start(Some(&PAGE), 0);
-    robot.hears_itself_say("robot: ready");
+    robot.wait_for_line("robot: ready");
     let mut ours = HostLink::new(TEAM, key(), 7);
     assert!(robot.until(&mut ours, false, lost), "before the host speaks");
-    assert!(robot.until(&mut ours, true, |told| !lost(told)), "the host speaks");
+    assert!(robot.until(&mut ours, true, |reported| !lost(reported)), "the host speaks");
     assert!(robot.until(&mut ours, false, lost), "the host falls silent");
     // Another key: its frames have no effect in a second and a half, while half a second of genuine ones
     // would.
     let mut theirs = HostLink::new(TEAM, TeamKey([9; 16]), 8);
     let began = Instant::now();
     while began.elapsed() < Duration::from_millis(1_500) {
-        robot.say(&mut theirs, ours.welcome(id()));
+        robot.send_welcome(&mut theirs, ours.welcome(id()));
         thread::sleep(Duration::from_millis(5));
     }
     robot.received.try_iter().for_each(drop);
@@ -66,30 +66,30 @@ fn a_robot_obeys_its_own_host_while_it_speaks_and_nobody_elses() {
 #[test]
 fn a_serial_line_that_corrupts_bytes_makes_a_robot_brake_at_worst_and_it_obeys_again_when_the_line_is_good() {
     let mut robot = Robot::start(Some(&PAGE), 0);
-    robot.hears_itself_say("ready");
+    robot.wait_for_line("ready");
     let mut link = HostLink::new(TEAM, key(), 7);
-    assert!(robot.until(&mut link, true, |told| !lost(told)), "the line is good");
+    assert!(robot.until(&mut link, true, |reported| !lost(reported)), "the line is good");
     // Of frames of some forty bytes three in four are still received intact; the others are rejected by their
     // tag.
     robot.trouble(Trouble::of_each(2.0));
-    let refuses = |told: &Telemetry| told.refused.iter().any(|count| *count > 0);
+    let refuses = |reported: &Telemetry| reported.refused.iter().any(|count| *count > 0);
     assert!(
-        robot.until(&mut link, true, |told| refuses(told) && !lost(told)),
+        robot.until(&mut link, true, |reported| refuses(reported) && !lost(reported)),
         "it is commanded in spite of it"
     );
     // Hardly one in a thousand reaches the robot; its own frames are still received.
     robot.down.trouble = Trouble::of_each(60.0);
     assert!(robot.until(&mut link, true, lost), "a line of nonsense must not drive it");
     robot.trouble(Trouble::default());
-    assert!(robot.until(&mut link, true, |told| !lost(told)), "the line is good again");
-    assert!(!robot.said.contains("awake after a panic"), "{}", robot.said);
+    assert!(robot.until(&mut link, true, |reported| !lost(reported)), "the line is good again");
+    assert!(!robot.output.contains("awake after a panic"), "{}", robot.output);
 }
 
 #[test]
 fn a_robot_without_a_key_or_with_a_damaged_page_says_nothing_on_the_air() {
     for (page, description) in [(None, "no page"), (Some(damaged()), "a damaged page")] {
         let mut robot = Robot::start(page.as_ref(), 0);
-        robot.hears_itself_say(description);
+        robot.wait_for_line(description);
         thread::sleep(Duration::from_millis(500));
         assert!(robot.received.try_recv().is_err(), "it speaks");
     }
@@ -98,50 +98,54 @@ fn a_robot_without_a_key_or_with_a_damaged_page_says_nothing_on_the_air() {
 #[test]
 fn a_panic_takes_the_current_off_tells_its_place_and_starts_anew_in_a_new_life() {
     let mut robot = Robot::start(Some(&PAGE), 1);
-    robot.hears_itself_say("trial.rs");
-    robot.hears_itself_say("motors off, starting anew");
-    robot.hears_itself_say("awake after a panic at");
+    robot.wait_for_line("trial.rs");
+    robot.wait_for_line("motors off, starting anew");
+    robot.wait_for_line("awake after a panic at");
     let mut link = HostLink::new(TEAM, key(), 7);
     let began = Instant::now();
     // A robot is accepted once it names this host's epoch: it must have received a welcome.
-    while link.life(id()).is_none_or(|life| life < 2) && began.elapsed() < PATIENCE {
+    while link.boot_epoch(id()).is_none_or(|boot_epoch| boot_epoch < 2) && began.elapsed() < PATIENCE {
         robot.until(&mut link, true, |_| true);
     }
     // On a machine too busy for real time the watchdog may have reset the robot since: later epochs count
     // too.
-    assert!(link.life(id()) >= Some(2), "the second life has an epoch of its own: {:?}", link.life(id()));
+    assert!(
+        link.boot_epoch(id()) >= Some(2),
+        "the second life has an epoch of its own: {:?}",
+        link.boot_epoch(id())
+    );
 }
 
 #[test]
 fn a_task_that_hangs_is_ended_by_the_watchdog() {
     let mut robot = Robot::start(Some(&PAGE), 2);
-    robot.hears_itself_say("watchdog: a task hangs; motors off");
-    robot.hears_itself_say("awake after the watchdog's bite");
-    robot.hears_itself_say("ready");
+    robot.wait_for_line("watchdog: a task hangs; motors off");
+    robot.wait_for_line("awake after the watchdog's bite");
+    robot.wait_for_line("ready");
 }
 
 #[test]
 fn a_robot_under_a_host_keeps_its_stack_within_the_budget() {
     let mut robot = Robot::start(Some(&PAGE), 3);
-    robot.hears_itself_say("ready");
+    robot.wait_for_line("ready");
     let mut link = HostLink::new(TEAM, key(), 7);
     assert!(robot.until(&mut link, false, |_| true), "it tells of its life");
-    assert!(robot.until(&mut link, true, |told| !lost(told)), "it obeys");
+    assert!(robot.until(&mut link, true, |reported| !lost(reported)), "it obeys");
     // Output before it was commanded does not count.
-    robot.said.clear();
-    robot.hears_itself_say("stack ");
+    robot.output.clear();
+    robot.wait_for_line("stack ");
     // The end of this line, not of one before it.
-    robot.said = robot.said.split_off(robot.said.find("stack ").unwrap_or_default());
-    robot.hears_itself_say("\n");
-    let told = robot.said.split("stack ").nth(1).and_then(|rest| rest.get(..10)?.parse().ok());
-    println!("deepest stack of the robot that runs by its own clock: {} B", told.unwrap_or(0));
-    assert!(told.is_some_and(|bytes| (1..=STACK_BUDGET).contains(&bytes)), "{told:?}");
+    robot.output = robot.output.split_off(robot.output.find("stack ").unwrap_or_default());
+    robot.wait_for_line("\n");
+    let reported = robot.output.split("stack ").nth(1).and_then(|rest| rest.get(..10)?.parse().ok());
+    println!("deepest stack of the robot that runs by its own clock: {} B", reported.unwrap_or(0));
+    assert!(reported.is_some_and(|bytes| (1..=STACK_BUDGET).contains(&bytes)), "{reported:?}");
 }
 
 /// The firmware image in an emulator.
 struct Robot {
     child: Child,
-    said: String,
+    output: String,
     console: Receiver<Vec<u8>>,
     received: Receiver<Vec<u8>>,
     lines: Lines,
@@ -177,7 +181,7 @@ impl Robot {
         let console = pumped(child.stderr.take().expect("piped"));
         Self {
             child,
-            said: String::new(),
+            output: String::new(),
             console,
             received,
             lines: Lines::new(),
@@ -196,13 +200,13 @@ impl Robot {
     }
 
     /// Waits for a text on the console.
-    fn hears_itself_say(&mut self, description: &str) {
+    fn wait_for_line(&mut self, description: &str) {
         let began = Instant::now();
-        while !self.said.contains(description) {
+        while !self.output.contains(description) {
             if let Ok(more) = self.console.recv_timeout(Duration::from_millis(100)) {
-                self.said += &String::from_utf8_lossy(&more);
+                self.output += &String::from_utf8_lossy(&more);
             }
-            assert!(began.elapsed() < PATIENCE, "`{description}` was not said: {}", self.said);
+            assert!(began.elapsed() < PATIENCE, "`{description}` was not said: {}", self.output);
         }
     }
 
@@ -212,7 +216,7 @@ impl Robot {
     }
 
     /// Sends a welcome and a command of that host.
-    fn say(&mut self, link: &mut HostLink, welcome: Option<Welcome>) {
+    fn send_welcome(&mut self, link: &mut HostLink, welcome: Option<Welcome>) {
         let command = Command {
             to: id(),
             defending: geometry::GoalEnd::Negative,
@@ -238,7 +242,7 @@ impl Robot {
         while began.elapsed() < PATIENCE {
             if speaking && self.spoke.elapsed() >= SPEAKS_EVERY {
                 self.spoke = Instant::now();
-                self.say(link, link.welcome(id()));
+                self.send_welcome(link, link.welcome(id()));
             }
             let Ok(bytes) = self.received.recv_timeout(Duration::from_millis(5)) else { continue };
             let carried: Vec<u8> = bytes.iter().flat_map(|byte| self.up.carry(*byte)).collect();
@@ -284,8 +288,8 @@ fn pumped(mut pipe: impl Read + Send + 'static) -> Receiver<Vec<u8>> {
     receiver
 }
 
-fn lost(told: &Telemetry) -> bool {
-    told.condition.has(Condition::LINK_LOST)
+fn lost(reported: &Telemetry) -> bool {
+    reported.condition.has(Condition::LINK_LOST)
 }
 
 fn key() -> TeamKey {

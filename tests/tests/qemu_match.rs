@@ -22,12 +22,12 @@ fn six_images_in_lockstep_play_the_match_that_six_native_brains_play() {
         .unwrap_or_else(|error| panic!("{error}"));
     let mut pair = Pair::new(5, seconds.unwrap_or(SECONDS), &image).unwrap_or_else(|error| panic!("{error}"));
     let played = pair.play(|tick, hashes| assert_eq!(hashes[0], hashes[1], "tick {tick}"));
-    let told = played.unwrap_or_else(|error| panic!("{error}"));
-    println!("{told}");
-    assert!(told.ticks as f64 >= 100.0 * seconds.unwrap_or(SECONDS) - 1.0, "{told}");
-    let worst = told.worst_instructions;
+    let reported = played.unwrap_or_else(|error| panic!("{error}"));
+    println!("{reported}");
+    assert!(reported.ticks as f64 >= 100.0 * seconds.unwrap_or(SECONDS) - 1.0, "{reported}");
+    let worst = reported.worst_instructions;
     let budget = if seconds.is_none() { STEP_BUDGET } else { WORST_OF_LONG };
     assert!((1..=budget).contains(&worst), "the worst step took {worst} instructions");
-    let stack = told.worst_stack;
+    let stack = reported.worst_stack;
     assert!((1..=STACK_BUDGET).contains(&stack), "{stack} B of stack");
 }

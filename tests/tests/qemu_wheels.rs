@@ -141,7 +141,7 @@ impl Table {
         for ((robot, computers), directive) in robots.iter_mut().zip(directives) {
             let mut packets: Vec<Packet> = Vec::new();
             if seq % 100 == 1 {
-                let welcome = Welcome { to: *robot, life: 1, offset: 0 };
+                let welcome = Welcome { to: *robot, boot_epoch: 1, offset: 0 };
                 packets.push(self.link.seal(now, &HostMessage::Welcome(welcome)));
             }
             packets.extend(parts.iter().cloned());
@@ -150,7 +150,7 @@ impl Table {
                 defending: GoalEnd::Negative,
                 phase,
                 rule_role: match robot.number() {
-                    1 => RuleRole::Taker,
+                    1 => RuleRole::Kicker,
                     3 => RuleRole::Keeper,
                     _ => RuleRole::Player,
                 },

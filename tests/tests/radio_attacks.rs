@@ -34,14 +34,14 @@ fn radio(epoch: u32) -> Radio {
 }
 
 /// One direction of the radio link: packets with the time at which they are due.
-struct Way {
+struct Route {
     chance: Stream,
     packets: VecDeque<(u64, Packet)>,
     latency_ms: (u32, u32),
     loss: f32,
 }
 
-impl Way {
+impl Route {
     fn new(name: &str, latency_ms: (u32, u32), loss: f32) -> Self {
         Self { chance: Stream::new(7, name), packets: VecDeque::new(), latency_ms, loss }
     }
@@ -104,7 +104,7 @@ impl Body {
             health: Health { battery: Some(16.0), tipped: false, kicker_ready: true },
         };
         self.station.handle_sensors(clock, &sensors);
-        let said = std::iter::from_fn(|| self.station.poll_packet(clock)).collect();
+        let output = std::iter::from_fn(|| self.station.poll_packet(clock)).collect();
         self.speed = match self.station.poll_actuators(clock) {
             Some(ActuatorFrame::Omni { wheels, .. }) => {
                 motion::omni::Omni::default().twist(wheels).linear.norm()
@@ -112,7 +112,7 @@ impl Body {
             Some(ActuatorFrame::Released) | None => 0.0,
             Some(order) => panic!("no wheels: {order:?}"),
         };
-        said
+        output
     }
 
     fn refused(&self, refusal: Refusal) -> u32 {
@@ -146,15 +146,15 @@ fn fetch(radio: &mut Radio) -> Vec<Packet> {
 struct Match {
     radio: Radio,
     body: Body,
-    down: Way,
-    up: Way,
+    down: Route,
+    up: Route,
     now: u64,
 }
 
 impl Match {
     fn new(body: Body, latency_ms: (u32, u32), loss: f32) -> Self {
-        let way = |name| Way::new(name, latency_ms, loss);
-        Self { radio: radio(70), body, down: way("down"), up: way("up"), now: 0 }
+        let route = |name| Route::new(name, latency_ms, loss);
+        Self { radio: radio(70), body, down: route("down"), up: route("up"), now: 0 }
     }
 
     /// 10 ms in which the host sends, or not.
@@ -189,8 +189,8 @@ fn withheld_frames_of_a_dead_host_neither_start_nor_keep_a_robot() {
     let mut withheld = Vec::new();
     for _ in 0..500 {
         game.now += TICK_MS;
-        let said = game.body.step(game.now, &[]);
-        for packet in said {
+        let output = game.body.step(game.now, &[]);
+        for packet in output {
             let _ = game.radio.handle_packet(ms(game.now), &packet);
         }
         withheld.push(offer(&mut game.radio, game.now));
@@ -302,13 +302,13 @@ fn a_host_with_an_earlier_epoch_is_told_within_two_seconds_which_robot_refuses_i
     // The second computer's clock is behind.
     game.radio = radio(69);
     let start = game.now;
-    let mut told = None;
+    let mut reported = None;
     for _ in 0..300 {
         game.step(true);
-        told = told
+        reported = reported
             .or_else(|| game.radio.warnings(ms(game.now)).next().map(|warning| (game.now - start, warning)));
     }
-    let (after, warning) = told.expect("told");
+    let (after, warning) = reported.expect("told");
     assert_eq!(warning, RadioWarning::LaterHost(id(), 70));
     assert!(after <= 2_000, "{after} ms");
     assert_eq!((game.radio.present(ms(game.now)).count(), game.body.speed), (0, 0.0));

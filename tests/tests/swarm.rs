@@ -10,8 +10,8 @@ const SEEDS: u64 = 100;
 #[test]
 fn a_hundred_runs_with_faults_of_their_own_keep_every_promise() {
     let (counters, broken) = watch(Runs { first: 0, seeds: SEEDS, jobs: 2 }, |_| {});
-    let told: Vec<String> = broken.iter().map(|(seed, found)| description(*seed, found)).collect();
-    assert!(told.is_empty(), "\n{}", told.join("\n"));
+    let reported: Vec<String> = broken.iter().map(|(seed, found)| description(*seed, found)).collect();
+    assert!(reported.is_empty(), "\n{}", reported.join("\n"));
     assert_eq!(u64::from(counters.runs), SEEDS);
     // The runs are not trivial: teams play, forged packets are sent, robots brake.
     assert!(u64::from(counters.gameplays) > SEEDS && counters.unbelievable > 10_000, "{counters:?}");

@@ -56,7 +56,7 @@ impl Uart {
 
 /// Results of a run.
 #[derive(Debug, Default)]
-struct Told {
+struct Reported {
     frames: u32,
     believed: u32,
     dropped: u32,
@@ -65,7 +65,7 @@ struct Told {
 }
 
 /// Ten seconds: good, bad from the second to the sixth, good.
-fn run(seed: u64, bad: Trouble, late: u32) -> Told {
+fn run(seed: u64, bad: Trouble, late: u32) -> Reported {
     let id = RobotId::new(3).unwrap();
     let config = BrainConfig { epoch: 7, ..BrainConfig::hosted(id, TEAM, League::DivisionB) };
     let mut station = Station::with_keys(Instant(0), &config, case_library::division_b(), KEY.of_robot(id));
@@ -73,7 +73,7 @@ fn run(seed: u64, bad: Trouble, late: u32) -> Told {
     let (mut down, mut up) = (Uart::new(seed, "uart down"), Uart::new(seed, "uart up"));
     let (mut robots_lines, mut hosts_lines) = (Lines::new(), Lines::new());
     let (mut guard, mut sayings) = (Guard::new(id, 7, 0), Sayings::default());
-    let mut told = Told::default();
+    let mut reported = Reported::default();
     let mut kicks = Vec::new();
     for tick in 0..1_000 {
         let (ms, now) = (tick * TICK, Instant(u64::from(tick * TICK) * 1000));
@@ -100,9 +100,9 @@ fn run(seed: u64, bad: Trouble, late: u32) -> Told {
             down.send(tick, &packet);
         }
         for packet in down.receive(tick, &mut robots_lines) {
-            told.frames += 1;
+            reported.frames += 1;
             if let Some(believed) = guard.honest.receive(&packet, &sayings) {
-                told.believed += 1;
+                reported.believed += 1;
                 guard.receive(ms, &believed);
             }
             station.handle_packet(now, &packet);
@@ -132,8 +132,8 @@ fn run(seed: u64, bad: Trouble, late: u32) -> Told {
         };
         kicks.push((ms, kick));
         if trouble {
-            told.braked += u32::from(kick == OmniKick::Discharge);
-            told.drove += u32::from(wheels.iter().any(|rim| rim.abs() > 0.1));
+            reported.braked += u32::from(kick == OmniKick::Discharge);
+            reported.drove += u32::from(wheels.iter().any(|rim| rim.abs() > 0.1));
         }
     }
     // After receiving for half a second it is armed, as it was before the trouble.
@@ -141,8 +141,8 @@ fn run(seed: u64, bad: Trouble, late: u32) -> Told {
         kicks.iter().filter(|(ms, _)| (from..to).contains(ms)).all(|(_, kick)| *kick != OmniKick::Discharge)
     };
     assert!(armed(1_000, 2_000) && armed(7_000, 10_000), "seed {seed}");
-    told.dropped = robots_lines.dropped() + hosts_lines.dropped();
-    told
+    reported.dropped = robots_lines.dropped() + hosts_lines.dropped();
+    reported
 }
 
 /// It stands in the middle; no other robot is there.
@@ -170,9 +170,9 @@ fn a_line_that_drops_doubles_and_corrupts_a_byte_in_a_hundred_slows_a_robot_and_
             Trouble { doubled: 10.0, ..good },
             Trouble::of_each(4.0),
         ] {
-            let told = run(seed, bad, 2);
-            assert!(told.believed < told.frames && told.dropped > 0, "{told:?}");
-            assert!(told.drove > 0, "{told:?}");
+            let reported = run(seed, bad, 2);
+            assert!(reported.believed < reported.frames && reported.dropped > 0, "{reported:?}");
+            assert!(reported.drove > 0, "{reported:?}");
         }
     }
 }
@@ -180,15 +180,15 @@ fn a_line_that_drops_doubles_and_corrupts_a_byte_in_a_hundred_slows_a_robot_and_
 #[test]
 fn a_line_so_bad_that_hardly_a_frame_survives_makes_it_brake() {
     for seed in 0..8 {
-        let told = run(seed, Trouble::of_each(60.0), 5);
-        assert!(told.braked > 300 && told.drove < 100, "{told:?}");
+        let reported = run(seed, Trouble::of_each(60.0), 5);
+        assert!(reported.braked > 300 && reported.drove < 100, "{reported:?}");
     }
 }
 
 #[test]
 fn bytes_that_come_late_but_whole_are_no_trouble_up_to_three_ticks() {
     for seed in 0..8 {
-        let told = run(seed, Trouble::default(), 3);
-        assert_eq!((told.braked, told.dropped), (0, 0), "{told:?}");
+        let reported = run(seed, Trouble::default(), 3);
+        assert_eq!((reported.braked, reported.dropped), (0, 0), "{reported:?}");
     }
 }

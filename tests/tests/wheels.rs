@@ -18,7 +18,7 @@ fn base() -> CaseBase<'static> {
 fn surface(ball: (f32, f32), ours: &[(u8, f32, f32, f32)]) -> Surface<'static> {
     let mut surface = Surface::new(League::DivisionB, base(), ball, ours);
     for &(number, ..) in ours {
-        surface.tell(number, RuleRole::Player, Directive::Stand);
+        surface.give_order(number, RuleRole::Player, Directive::Stand);
     }
     // The link must have been good for half a second.
     surface.during(0.6, |_| {});
@@ -36,7 +36,7 @@ fn go_to(x: f32, y: f32, degrees: f32) -> Directive {
 #[test]
 fn three_metres_across_the_field_take_less_than_2_2_s_and_end_within_a_centimetre_at_rest() {
     let mut surface = surface((0.0, 2.5), &[(1, -1.0, -1.0, 0.0)]);
-    surface.tell(1, RuleRole::Player, go_to(1.0, 1.236, 135.0));
+    surface.give_order(1, RuleRole::Player, go_to(1.0, 1.236, 135.0));
     let goal = Point::new(1.0, 1.236);
     let there = |surface: &Surface<'_>| {
         let robot = surface.ours(1);
@@ -57,9 +57,9 @@ fn a_robot_that_hears_much_in_a_step_stays_on_its_way_and_plans_in_the_next() {
     let turns = |chatter: &[u8]| {
         let [on, back] = [go_to(1.0, 1.236, 135.0), go_to(-1.0, -1.0, 0.0)].map(|second| {
             let mut surface = surface((0.0, 2.5), &[(1, -1.0, -1.0, 0.0)]);
-            surface.tell(1, RuleRole::Player, go_to(1.0, 1.236, 135.0));
+            surface.give_order(1, RuleRole::Player, go_to(1.0, 1.236, 135.0));
             surface.during(0.3, |_| {});
-            surface.tell(1, RuleRole::Player, second);
+            surface.give_order(1, RuleRole::Player, second);
             for teammates in chatter {
                 surface.chatter = *teammates;
                 surface.step();
@@ -77,7 +77,7 @@ fn on_an_air_that_is_always_full_a_robot_arrives_an_eighth_of_a_second_later_at_
     let [quiet, full] = [0, 9].map(|chatter| {
         let mut surface = surface((0.0, 2.5), &[(1, -1.0, -1.0, 0.0)]);
         surface.chatter = chatter;
-        surface.tell(1, RuleRole::Player, go_to(1.0, 1.236, 135.0));
+        surface.give_order(1, RuleRole::Player, go_to(1.0, 1.236, 135.0));
         surface.until(4.0, |c| c.ours(1).pose.position.distance(goal) < 0.01).expect("arrives")
     });
     // In the first ten steps it keeps standing; after that every second step plans.
@@ -91,7 +91,8 @@ fn teammates_speak_twenty_times_a_second_and_no_more_than_two_of_six_in_a_step()
     let mut beacons = [0; 6];
     surface.during(1.0, |surface| {
         let speaks = |(_, message): &&_| matches!(message, TeamMessage::Beacon(_));
-        let speakers: Vec<_> = surface.said().iter().filter(speaks).map(|(id, _)| id.index()).collect();
+        let speakers: Vec<_> =
+            surface.sent_messages().iter().filter(speaks).map(|(id, _)| id.index()).collect();
         assert!(speakers.len() <= 2, "{speakers:?}");
         for id in speakers {
             beacons[id] += 1;
@@ -105,7 +106,7 @@ fn a_robot_in_the_way_is_passed_without_touching_it() {
     let mut surface = surface((0.0, 2.5), &[(1, -1.5, 0.0, 0.0)]);
     surface.opponent(1, 0.0, 0.02, 0.0);
     surface.opponent(2, 0.3, -0.3, 0.0);
-    surface.tell(1, RuleRole::Player, go_to(1.5, 0.0, 0.0));
+    surface.give_order(1, RuleRole::Player, go_to(1.5, 0.0, 0.0));
     let took = surface.until(4.0, |c| c.ours(1).pose.position.distance(Point::new(1.5, 0.0)) < 0.02);
     assert!(took.is_some_and(|took| took < 3.2), "{took:?}");
     assert!(surface.events.is_empty(), "{:?}", surface.events);
@@ -115,7 +116,7 @@ fn a_robot_in_the_way_is_passed_without_touching_it() {
 fn a_resting_ball_is_had_facing_the_way_asked() {
     for (x, y) in [(0.8, 0.0), (-0.8, 0.3), (0.0, 1.0)] {
         let mut surface = surface((0.0, 0.0), &[(1, x, y, 30.0)]);
-        surface.tell(1, RuleRole::Player, Directive::GetBall { face: Some(at(4.5, 0.0)) });
+        surface.give_order(1, RuleRole::Player, Directive::GetBall { face: Some(at(4.5, 0.0)) });
         let took = surface.until(5.0, |c| {
             c.ours(1).ball_contact && (c.ours(1).pose.turn_to(Point::new(4.5, 0.0))).abs() < 0.05
         });
@@ -131,7 +132,7 @@ fn a_rolling_ball_is_met_and_had() {
     {
         let mut surface = surface((0.0, 2.9), &[(1, 0.0, 0.0, 0.0)]);
         surface.roll(from, velocity);
-        surface.tell(1, RuleRole::Player, Directive::GetBall { face: None });
+        surface.give_order(1, RuleRole::Player, Directive::GetBall { face: None });
         let took = surface.until(6.0, |c| c.brain(1).belief().holds_ball);
         assert!(took.is_some(), "{from:?} {velocity:?}: ball at {:?}", surface.ball());
         surface.during(0.5, |_| {});
@@ -143,7 +144,7 @@ fn a_rolling_ball_is_met_and_had() {
 fn a_kick_goes_where_it_was_aimed_with_the_speed_asked() {
     for (target, speed) in [((4.5, 0.3), 600), ((0.0, -2.0), 300), ((-3.0, 2.0), 450)] {
         let mut surface = surface((0.5, 0.2), &[(1, -0.5, -0.4, 0.0)]);
-        surface.tell(
+        surface.give_order(
             1,
             RuleRole::Player,
             Directive::Kick { at: at(target.0, target.1), kick: KickOrder::Flat(speed) },
@@ -160,7 +161,7 @@ fn a_kick_goes_where_it_was_aimed_with_the_speed_asked() {
 #[test]
 fn a_chip_flies() {
     let mut surface = surface((0.5, 0.2), &[(1, -0.5, -0.4, 0.0)]);
-    surface.tell(1, RuleRole::Player, Directive::Kick { at: at(3.5, 0.3), kick: KickOrder::Chip(400) });
+    surface.give_order(1, RuleRole::Player, Directive::Kick { at: at(3.5, 0.3), kick: KickOrder::Chip(400) });
     assert!(surface.until(6.0, |c| c.world.ball.height > 0.2).is_some());
 }
 
@@ -168,7 +169,7 @@ fn a_chip_flies() {
 fn a_free_kick_is_taken_with_one_touch_and_the_taker_leaves_the_ball_alone_afterwards() {
     let mut surface = surface((-1.0, 1.0), &[(1, -1.5, 0.6, 0.0)]);
     surface.phase = Phase::FreeKick(Side::Ours);
-    surface.tell(1, RuleRole::Taker, Directive::Kick { at: at(1.0, 1.0), kick: KickOrder::Flat(150) });
+    surface.give_order(1, RuleRole::Kicker, Directive::Kick { at: at(1.0, 1.0), kick: KickOrder::Flat(150) });
     assert!(surface.until(6.0, |c| !c.kicks().is_empty()).is_some());
     let touches = |c: &Surface<'_>| {
         c.events.iter().filter(|(_, e)| matches!(e, hil_sim::small_size::Event::Touched { .. })).count()
@@ -186,9 +187,9 @@ fn a_pass_waits_behind_the_ball_until_it_is_ready() {
     surface.phase = Phase::FreeKick(Side::Ours);
     let receiver = RobotId::new(2).unwrap();
     let order = |ready| Directive::Pass { at: at(2.0, 1.0), receiver, kick: KickOrder::Flat(350), ready };
-    surface.tell(1, RuleRole::Taker, order(false));
+    surface.give_order(1, RuleRole::Kicker, order(false));
     surface.during(3.0, |c| assert!(!c.ours(1).touching));
-    surface.tell(1, RuleRole::Taker, order(true));
+    surface.give_order(1, RuleRole::Kicker, order(true));
     let took = surface.until(2.0, |c| !c.kicks().is_empty()).expect("passes");
     assert!(took < 1.0, "{took}");
 }
@@ -197,7 +198,7 @@ fn a_pass_waits_behind_the_ball_until_it_is_ready() {
 fn a_pass_is_received() {
     for speed in [2.0, 3.5, 4.5] {
         let mut surface = surface((0.0, 0.0), &[(2, 2.3, 0.3, 0.0)]);
-        surface.tell(2, RuleRole::Player, Directive::Receive { at: at(2.0, 0.0), then: None });
+        surface.give_order(2, RuleRole::Player, Directive::Receive { at: at(2.0, 0.0), then: None });
         surface.during(1.0, |_| {});
         surface.roll((-1.0, 0.1), (speed, 0.0));
         let took = surface.until(4.0, |c| c.brain(2).belief().holds_ball);
@@ -215,7 +216,11 @@ fn a_pass_is_received() {
 #[test]
 fn a_pass_is_shot_at_the_goal_at_first_touch() {
     let mut surface = surface((0.0, 0.0), &[(2, 2.5, 0.0, 0.0)]);
-    surface.tell(2, RuleRole::Player, Directive::Receive { at: at(2.5, 0.0), then: Some(at(4.5, 0.0)) });
+    surface.give_order(
+        2,
+        RuleRole::Player,
+        Directive::Receive { at: at(2.5, 0.0), then: Some(at(4.5, 0.0)) },
+    );
     surface.during(1.0, |_| {});
     // From the front left: the goal lies 45° to the right of the ball's origin.
     surface.roll((4.0, 1.5), (-2.1, -2.1));
@@ -226,7 +231,7 @@ fn a_pass_is_shot_at_the_goal_at_first_touch() {
 #[test]
 fn the_ball_is_dribbled_for_less_than_a_metre_at_a_time() {
     let mut surface = surface((0.0, 0.0), &[(1, -0.4, 0.0, 0.0)]);
-    surface.tell(1, RuleRole::Player, Directive::Dribble { pose: WirePose::from(pose(2.5, 0.0, 0.0)) });
+    surface.give_order(1, RuleRole::Player, Directive::Dribble { pose: WirePose::from(pose(2.5, 0.0, 0.0)) });
     let mut longest = 0.0_f32;
     surface.during(10.0, |c| {
         if let Some(from) = c.ours(1).dribbling_from {
@@ -243,7 +248,11 @@ fn a_keeper_on_its_stretch_stops_shots() {
     let shots = [(1.0, -0.35, 4.0), (0.5, 0.3, 5.0), (-0.8, 0.0, 5.5), (1.5, 0.25, 4.5), (-1.2, -0.3, 4.0)];
     for (y, aim, speed) in shots {
         let mut surface = surface((-2.0, y), &[(0, -4.3, 0.0, 0.0)]);
-        surface.tell(0, RuleRole::Keeper, Directive::Block { from: at(-4.35, -0.5), to: at(-4.35, 0.5) });
+        surface.give_order(
+            0,
+            RuleRole::Keeper,
+            Directive::Block { from: at(-4.35, -0.5), to: at(-4.35, 0.5) },
+        );
         surface.during(1.5, |_| {});
         let (from, to) = (Point::<Field>::new(-1.5, y), Point::new(-4.5, aim));
         let v = (to - from).unit().unwrap() * speed;
@@ -262,7 +271,7 @@ fn the_ball_is_placed_from_everywhere_and_left_alone() {
         let mut surface = surface(spot, &[(1, 0.5, 0.5, 0.0)]);
         surface.phase = Phase::BallPlacement(Side::Ours);
         surface.placement = Some(target);
-        surface.tell(1, RuleRole::Taker, Directive::PlaceBall { at: target.into() });
+        surface.give_order(1, RuleRole::Kicker, Directive::PlaceBall { at: target.into() });
         let done = surface.until(28.0, |c| {
             c.ball().distance(target) < 0.15
                 && c.world.ball.velocity.norm() < 0.01
@@ -282,7 +291,7 @@ fn the_ball_is_placed_from_everywhere_and_left_alone() {
 #[test]
 fn on_halt_a_robot_at_full_speed_stands_within_a_second_and_stays() {
     let mut surface = surface((0.0, 2.5), &[(1, -3.0, -1.0, 0.0)]);
-    surface.tell(1, RuleRole::Player, go_to(3.0, -1.0, 0.0));
+    surface.give_order(1, RuleRole::Player, go_to(3.0, -1.0, 0.0));
     surface.until(3.0, |c| c.ours(1).velocity.norm() > 2.8).expect("gets fast");
     surface.phase = Phase::Halt;
     let took = surface.until(2.0, |c| c.ours(1).velocity.norm() < 0.02).expect("stands");
@@ -298,8 +307,8 @@ fn on_halt_a_robot_at_full_speed_stands_within_a_second_and_stays() {
 fn in_stop_nobody_is_faster_than_1_5_m_per_s_nor_within_half_a_metre_of_the_ball() {
     let mut surface = surface((0.0, 0.0), &[(1, -2.0, 0.0, 0.0), (2, -0.3, 0.2, 0.0)]);
     surface.phase = Phase::Stop;
-    surface.tell(1, RuleRole::Player, go_to(2.0, 0.0, 0.0));
-    surface.tell(2, RuleRole::Player, go_to(-0.2, 0.2, 0.0));
+    surface.give_order(1, RuleRole::Player, go_to(2.0, 0.0, 0.0));
+    surface.give_order(2, RuleRole::Player, go_to(-0.2, 0.2, 0.0));
     surface.during(1.5, |_| {});
     let mut fastest = 0.0_f32;
     surface.during(3.0, |c| {
@@ -316,7 +325,7 @@ fn in_stop_nobody_is_faster_than_1_5_m_per_s_nor_within_half_a_metre_of_the_ball
 #[test]
 fn when_the_host_falls_silent_a_robot_stands_within_a_second_and_moves_again_after_half_a_second_of_words() {
     let mut surface = surface((0.0, 2.5), &[(1, -3.0, -1.0, 0.0)]);
-    surface.tell(1, RuleRole::Player, go_to(3.0, -1.0, 0.0));
+    surface.give_order(1, RuleRole::Player, go_to(3.0, -1.0, 0.0));
     surface.until(3.0, |c| c.ours(1).velocity.norm() > 2.8).expect("gets fast");
     surface.silent = true;
     let took = surface.until(2.0, |c| c.ours(1).velocity.norm() < 0.02).expect("stands");
@@ -329,8 +338,8 @@ fn when_the_host_falls_silent_a_robot_stands_within_a_second_and_moves_again_aft
 #[test]
 fn a_field_player_sent_into_its_own_area_stays_out_and_the_keeper_does_not() {
     let mut surface = surface((0.0, 2.5), &[(0, -3.0, 1.5, 0.0), (1, -3.0, -1.5, 0.0)]);
-    surface.tell(0, RuleRole::Keeper, go_to(-4.2, 0.2, 0.0));
-    surface.tell(1, RuleRole::Player, go_to(-4.2, -0.3, 0.0));
+    surface.give_order(0, RuleRole::Keeper, go_to(-4.2, 0.2, 0.0));
+    surface.give_order(1, RuleRole::Player, go_to(-4.2, -0.3, 0.0));
     surface.during(4.0, |c| {
         let p = c.ours(1).pose.position;
         let area = League::DivisionB.field().defence_area(GoalEnd::Negative);
@@ -341,7 +350,7 @@ fn a_field_player_sent_into_its_own_area_stays_out_and_the_keeper_does_not() {
 
 fn gameplay(surface: &mut Surface<'_>, robots: &[u8]) {
     for &robot in robots {
-        surface.tell(robot, RuleRole::Player, Directive::Gameplay { hint: None });
+        surface.give_order(robot, RuleRole::Player, Directive::Gameplay { hint: None });
     }
 }
 
@@ -389,7 +398,7 @@ fn a_robot_that_is_led_elsewhere_leaves_its_gameplay_and_the_others_choose_anew_
     let plays =
         |c: &Surface<'_>, n| c.brain(1).cycle().play().is_some_and(|play| play.part_of(id(n)).is_some());
     surface.until(3.0, |c| plays(c, 2)).expect("a gameplay with robot 2");
-    surface.tell(2, RuleRole::Player, go_to(-2.0, 2.0, 0.0));
+    surface.give_order(2, RuleRole::Player, go_to(-2.0, 2.0, 0.0));
     let took = surface.until(1.0, |c| !plays(c, 2)).expect("leaves");
     assert!(took <= 0.1, "{took}");
     surface.during(4.0, |c| assert!(!plays(c, 2)));
@@ -413,7 +422,7 @@ fn the_hosts_proposal_is_played_while_it_is_fresh_and_only_if_it_can_be() {
     let mut surface = surface(problem, &places);
     let hint = |ids: &[u8]| Some(Hint { case, robots: robots(ids), pass_point: None });
     for robot in [1, 2, 3] {
-        surface.tell(robot, RuleRole::Player, Directive::Gameplay { hint: hint(&[3, 1]) });
+        surface.give_order(robot, RuleRole::Player, Directive::Gameplay { hint: hint(&[3, 1]) });
     }
     let proposed = |c: &Surface<'_>, ids: &[u8]| {
         c.brain(1).cycle().play().is_some_and(|play| play.case == case && play.robots == robots(ids))
@@ -422,7 +431,7 @@ fn the_hosts_proposal_is_played_while_it_is_fresh_and_only_if_it_can_be() {
     // Robot 7 is absent: the robots play the case that they retrieve themselves.
     let mut alone = self::surface(problem, &places);
     for robot in [1, 2, 3] {
-        alone.tell(robot, RuleRole::Player, Directive::Gameplay { hint: hint(&[7, 1]) });
+        alone.give_order(robot, RuleRole::Player, Directive::Gameplay { hint: hint(&[7, 1]) });
     }
     alone.during(2.0, |c| assert!(!proposed(c, &[7, 1])));
     assert!(

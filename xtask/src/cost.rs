@@ -74,8 +74,8 @@ pub(crate) fn counted<'a>(
         .stdin(Stdio::null())
         .output()
         .map_err(|error| Failure::Start { line: format!("{line} (is valgrind installed?)"), error })?;
-    let said = String::from_utf8_lossy(&output.stderr);
-    let instructions = said.lines().find_map(|line| line.split_once("Collected :")?.1.trim().parse().ok());
+    let printed = String::from_utf8_lossy(&output.stderr);
+    let instructions = printed.lines().find_map(|line| line.split_once("Collected :")?.1.trim().parse().ok());
     match instructions.filter(|_| output.status.success()) {
         Some(instructions) => Ok((instructions, String::from_utf8_lossy(&output.stdout).into_owned())),
         None => Err(Failure::Command { line, status: output.status }),

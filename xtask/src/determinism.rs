@@ -40,7 +40,7 @@ pub(crate) fn run(context: &Context) -> Result<(), Failure> {
             Some(hash) => {
                 hashes.insert(hash.to_string());
             }
-            None => differing.push(format!("{trial}: {}", told(&players, &played))),
+            None => differing.push(format!("{trial}: {}", difference_text(&players, &played))),
         }
     }
     // A hash that never changes would always agree.
@@ -62,7 +62,7 @@ fn play(root: &Path, players: &[Player; 3]) -> Vec<(Trial, Played)> {
     let some = || {
         let one = |trial: &Trial| {
             let played = players.each_ref().map(|player| player.trace_hash(root, *trial));
-            println!("xtask: {trial}: {}", told(players, &played));
+            println!("xtask: {trial}: {}", difference_text(players, &played));
             (*trial, played)
         };
         std::iter::from_fn(take).map(one).collect::<Vec<_>>()
@@ -118,11 +118,11 @@ impl Player {
         let line = line_of(&command);
         let output = command.output().map_err(|error| format!("`{line}` does not start: {error}"))?;
         if !output.status.success() {
-            let said = String::from_utf8_lossy(&output.stderr);
+            let printed = String::from_utf8_lossy(&output.stderr);
             return Err(format!(
                 "`{line}` failed ({}): {}",
                 output.status,
-                said.lines().last().unwrap_or("")
+                printed.lines().last().unwrap_or("")
             ));
         }
         let report = String::from_utf8_lossy(&output.stdout);
@@ -136,7 +136,7 @@ fn same(played: &[Result<String, String>]) -> Option<&str> {
     played.iter().all(|hash| hash.as_ref() == Ok(first)).then_some(first)
 }
 
-fn told(players: &[Player], played: &[Result<String, String>]) -> String {
+fn difference_text(players: &[Player], played: &[Result<String, String>]) -> String {
     if let Some(hash) = same(played) {
         return hash.to_string();
     }

@@ -56,9 +56,9 @@ fn run_tests(qemu: &Path, image: &Path, tests: &[OnTarget], arguments: &[String]
             run_test(qemu, image, test).map_err(|error| Failure::Start { line: test.name.clone(), error })?;
         match verdict {
             Verdict::Passed => println!("test {} ... ok", test.name),
-            Verdict::Failed(said) => {
-                println!("test {} ... FAILED\n{said}", test.name);
-                failures.push(format!("{}: {}", test.name, said.lines().next().unwrap_or("nothing said")));
+            Verdict::Failed(output) => {
+                println!("test {} ... FAILED\n{output}", test.name);
+                failures.push(format!("{}: {}", test.name, output.lines().next().unwrap_or("nothing said")));
             }
         }
     }
@@ -88,8 +88,7 @@ mod tests {
     fn words_choose_by_a_part_of_the_name_and_options_choose_nothing() {
         let arguments = |list: &[&str]| list.iter().map(|label| (*label).to_owned()).collect::<Vec<_>>();
         assert!(
-            is_chosen("frames::a", &arguments(&[]))
-                && is_chosen("frames::a", &arguments(&["--nocapture"]))
+            is_chosen("frames::a", &arguments(&[])) && is_chosen("frames::a", &arguments(&["--nocapture"]))
         );
         assert!(
             is_chosen("frames::a", &arguments(&["timers", "fram"]))

@@ -42,8 +42,12 @@ fn frames(context: &Context, program: &Path) -> Result<String, Failure> {
     tour.arg(program).arg("frames").stderr(Stdio::inherit());
     let failed = |error| Failure::Start { line: "tour frames".to_owned(), error };
     let out = tour.output().map_err(failed)?;
-    let said = String::from_utf8_lossy(&out.stdout).trim().to_owned();
-    if out.status.success() && !said.is_empty() { Ok(said) } else { Err(failed(io::Error::other(said))) }
+    let printed = String::from_utf8_lossy(&out.stdout).trim().to_owned();
+    if out.status.success() && !printed.is_empty() {
+        Ok(printed)
+    } else {
+        Err(failed(io::Error::other(printed)))
+    }
 }
 
 /// The path of the built program.
@@ -80,14 +84,14 @@ pub(crate) fn bench(context: &Context, write: bool) -> Result<(), Failure> {
         let list = format!("\n- {ratio};\n- {viewers}.\n\n");
         write_between("host/page/README.md", "page figures", &list)?;
     }
-    for (ways, with) in [(READING, &watched), (SLOW, &slow)] {
+    for (paths, with) in [(READING, &watched), (SLOW, &slow)] {
         if with.taken == 0 {
-            return Err(Failure::Budget(format!("viewers {ways} took no scene: nothing was measured")));
+            return Err(Failure::Budget(format!("viewers {paths} took no scene: nothing was measured")));
         }
         if more(with) > SLACK {
             let (with, alone) = (with.instructions, alone.instructions);
             return Err(Failure::Budget(format!(
-                "with viewers {ways} the match takes {with}, alone {alone}"
+                "with viewers {paths} the match takes {with}, alone {alone}"
             )));
         }
     }
@@ -113,8 +117,8 @@ struct Counted {
 }
 
 /// A match under callgrind with viewers of these kinds.
-fn count(program: &Path, ways: &str) -> Result<Counted, Failure> {
-    let directory = program.with_file_name(format!("page-{ways}"));
+fn count(program: &Path, paths: &str) -> Result<Counted, Failure> {
+    let directory = program.with_file_name(format!("page-{paths}"));
     let _ = fs::remove_dir_all(&directory);
     fs::create_dir_all(&directory)
         .map_err(|error| Failure::Start { line: directory.display().to_string(), error })?;
@@ -136,10 +140,10 @@ fn count(program: &Path, ways: &str) -> Result<Counted, Failure> {
         BufReader::new(child.stderr.take().into_iter().next().ok_or_else(|| failed(silent()))?).lines();
     for line in lines.map_while(Result::ok) {
         if let Some(address) = line.strip_prefix("page     http://")
-            && !ways.is_empty()
+            && !paths.is_empty()
         {
             let mut viewing = Command::new(program.with_file_name("examples/viewers"));
-            let viewing = viewing.args([address, ways]).stdin(Stdio::null()).stdout(Stdio::piped());
+            let viewing = viewing.args([address, paths]).stdin(Stdio::null()).stdout(Stdio::piped());
             looking = Some(viewing.spawn().map_err(failed)?);
         }
         if line.starts_with("the match is over") {
@@ -152,8 +156,8 @@ fn count(program: &Path, ways: &str) -> Result<Counted, Failure> {
     let mut taken = 0;
     if let Some(looking) = looking {
         // They end with the page.
-        let said = looking.wait_with_output().map_err(failed)?;
-        taken = String::from_utf8_lossy(&said.stdout).trim().parse().unwrap_or(0);
+        let printed = looking.wait_with_output().map_err(failed)?;
+        taken = String::from_utf8_lossy(&printed.stdout).trim().parse().unwrap_or(0);
     }
     let main = fs::read_to_string(directory.join("out-01")).map_err(failed)?;
     let totals = main.lines().find_map(|line| line.strip_prefix("totals: "));

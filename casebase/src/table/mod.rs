@@ -3,7 +3,7 @@
 //!
 //! Sections follow the [`Header`] in the order of [`CaseBase`]'s fields, those of the widest alignment first,
 //! native byte order. The four symmetric copies of an authored case are stored in full, one after the other;
-//! records used by retrieval belong to each copy's [`Gate`], those used by its players to their common
+//! records used by retrieval belong to each copy's [`RecordHeader`], those used by its players to their common
 //! [`Group`]. Positions and opponents are stored relative to the case's ball, legs computed to their ends:
 //! nothing is derived twice at run time. The index is a grid over the ball's position for cases that defend
 //! the negative goal; a mirrored look-up serves the others.
@@ -13,10 +13,10 @@
 use protocol::CaseId;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-mod gate;
+mod record_header;
 mod validate;
 
-pub use gate::{Gate, Opponent, RawLeg};
+pub use record_header::{Opponent, RawLeg, RecordHeader};
 pub use validate::TableError;
 
 use crate::action::{FieldMm, Kick, KickAim, KickId, Pass, Primitive, TEAMMATES_MAX};
@@ -29,7 +29,7 @@ pub struct CaseBase<'a> {
     bytes: &'a [u8],
     pub(crate) header: &'a Header,
     pub(crate) groups: &'a [Group],
-    pub(crate) gates: &'a [Gate],
+    pub(crate) gates: &'a [RecordHeader],
     pub(crate) points: &'a [[i32; 2]],
     kicks: &'a [RawKick],
     pub(crate) cell_starts: &'a [u32],

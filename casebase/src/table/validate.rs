@@ -5,7 +5,8 @@ use core::fmt;
 use zerocopy::{FromBytes, Immutable, KnownLayout};
 
 use super::{
-    CaseBase, GRID_MAX, Gate, Group, HASHED_FROM, Header, MAGIC, RawAction, RawLeg, content_hash, part,
+    CaseBase, GRID_MAX, Group, HASHED_FROM, Header, MAGIC, RawAction, RawLeg, RecordHeader, content_hash,
+    part,
 };
 use crate::Grid;
 use crate::action::{KICKS_MAX, OPPONENTS_MAX, Primitive, TEAMMATES_MAX};
@@ -110,19 +111,21 @@ impl<'a> CaseBase<'a> {
 
     /// Whether one of the four copies is valid: records within their pools, values a case can have.
     fn copy_is_sound(&self, authored: usize, group: &Group, copy: u16) -> bool {
-        let Some(gate) = self.gates.get(4 * authored + usize::from(copy)) else {
+        let Some(record_header) = self.gates.get(4 * authored + usize::from(copy)) else {
             return false;
         };
-        let teammates = usize::from(gate.teammates);
-        if !(1..=TEAMMATES_MAX).contains(&teammates) || usize::from(gate.opponents) > OPPONENTS_MAX {
+        let teammates = usize::from(record_header.teammates);
+        if !(1..=TEAMMATES_MAX).contains(&teammates) || usize::from(record_header.opponents) > OPPONENTS_MAX {
             return false;
         }
         let ends = group.list_ends.get(..teammates).unwrap_or(&[]);
         let end = |robot: usize| ends.get(robot).copied().unwrap_or(0);
         let actions_count = end(teammates - 1);
-        let (Some(opponents), Some(legs), Some(_)) =
-            (gate.opponents(self.places), gate.legs(self.places), gate.positions(self.places))
-        else {
+        let (Some(opponents), Some(legs), Some(_)) = (
+            record_header.opponents(self.places),
+            record_header.legs(self.places),
+            record_header.positions(self.places),
+        ) else {
             return false;
         };
         let actions = part(self.actions, group.actions_at, actions_count, copy);
@@ -130,7 +133,7 @@ impl<'a> CaseBase<'a> {
             && actions.len() == usize::from(actions_count)
             && never_falls(ends)
             && group.defending <= 1
-            && group.getter < gate.teammates;
+            && group.getter < record_header.teammates;
         let scope_is_sound = |inverse: &[f32; 2]| inverse.iter().all(|i| i.is_finite() && *i > 0.0);
         let list = |robot: usize| {
             let from = robot.checked_sub(1).map_or(0, end);
@@ -151,15 +154,15 @@ impl<'a> CaseBase<'a> {
             || list(usize::from(group.getter)).first().map(|a| a.kind) == Some(RawAction::GET_BALL);
         let is_whole_mm = |coordinate: &f32| f32::from(*coordinate as i16) == *coordinate;
         whole
-            && gate.ball.iter().all(is_whole_mm)
-            && scope_is_sound(&gate.inverse_scope)
+            && record_header.ball.iter().all(is_whole_mm)
+            && scope_is_sound(&record_header.inverse_scope)
             && opponents.iter().all(|opponent| scope_is_sound(&opponent.inverse_scope))
-            && actions.iter().all(|action| self.action_is_sound(gate, group, *action))
+            && actions.iter().all(|action| self.action_is_sound(record_header, group, *action))
             && legs_are_sound()
             && begins_with_the_ball()
     }
 
-    fn action_is_sound(&self, gate: &Gate, group: &Group, action: RawAction) -> bool {
+    fn action_is_sound(&self, record_header: &RecordHeader, group: &Group, action: RawAction) -> bool {
         let argument = action.argument;
         match action.kind {
             RawAction::WAIT | RawAction::GET_BALL => true,
@@ -167,7 +170,7 @@ impl<'a> CaseBase<'a> {
             | RawAction::TURN_HEADING
             | RawAction::TURN_FACE
             | RawAction::DRIBBLE_TO => argument < group.points,
-            RawAction::PASS_BALL | RawAction::RECEIVE_BALL => argument < gate.teammates,
+            RawAction::PASS_BALL | RawAction::RECEIVE_BALL => argument < record_header.teammates,
             RawAction::KICK => usize::from(argument) < self.kicks.len(),
             _ => false,
         }

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use casebase::walk::Script;
+use casebase::plan_simulation::Script;
 use casebase::{
     Action, CaseRobot, GoalEnd, OPPONENTS_MAX, PointMm, Scope, Symmetry, TEAMMATES_MAX, TurnTarget,
 };

@@ -1,6 +1,6 @@
 //! `check`: errors that make a case unplayable, beyond the syntax of its file (docs/case-format.md §1.2).
 
-use casebase::walk::{Script, WalkError, walk};
+use casebase::plan_simulation::{PlanError, Script, plan_simulation};
 use casebase::{Action, CaseRobot, Symmetry};
 
 use crate::authored::Authored;
@@ -41,26 +41,26 @@ pub(crate) fn errors(file: &SourceFile, case: &Authored, league: &League) -> Vec
     }
 
     let script = case.mirrored(Symmetry::Identity, league);
-    if let Err(problem) = walk(&script, league, |_| {}) {
+    if let Err(problem) = plan_simulation(&script, league, |_| {}) {
         let (code, at, hint) = match problem {
             // The one getter was found above.
-            WalkError::NoGetter => return findings,
-            WalkError::NotHolding(robot, index) => (
+            PlanError::NoGetter => return findings,
+            PlanError::NotHolding(robot, index) => (
                 code::NOT_HOLDING,
                 (robot, index),
                 "give it the ball first: a pass it receives, or a get_ball after a kick",
             ),
-            WalkError::PassUnanswered(robot, index) => (
+            PlanError::PassUnanswered(robot, index) => (
                 code::PASS_UNANSWERED,
                 (robot, index),
                 "let the other robot's next ball action be the receive_ball of this pass",
             ),
-            WalkError::ReceiveUnanswered(robot, index) => (
+            PlanError::ReceiveUnanswered(robot, index) => (
                 code::RECEIVE_UNANSWERED,
                 (robot, index),
                 "let the other robot pass to it, or take the receive_ball out",
             ),
-            WalkError::UnknownKick(robot, index) => {
+            PlanError::UnknownKick(robot, index) => {
                 (code::UNKNOWN_KICK, (robot, index), "add the kind to league.toml")
             }
         };

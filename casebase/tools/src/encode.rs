@@ -4,10 +4,10 @@
 //! The code that will read the table computes its content: `casebase`'s symmetry, plan simulation and
 //! records.
 
+use casebase::plan_simulation::{Script, Step, plan_simulation};
 use casebase::table::{
-    Gate, Group, HASHED_FROM, Header, MAGIC, Opponent, RawAction, RawKick, RawLeg, content_hash,
+    Group, HASHED_FROM, Header, MAGIC, Opponent, RawAction, RawKick, RawLeg, RecordHeader, content_hash,
 };
-use casebase::walk::{Script, Step, walk};
 use casebase::{Action, CaseRobot, GoalEnd, PointMm, Scope, Symmetry, TurnTarget, cells_of};
 use zerocopy::IntoBytes;
 
@@ -45,7 +45,7 @@ pub(crate) fn encode(league: &League, cases: &[Authored], symmetry: bool) -> Tab
     }
     if !symmetry {
         let images = pools.gates.iter_mut().enumerate().filter(|(id, _)| !id.is_multiple_of(4));
-        images.for_each(|(_, gate)| (gate.ball, gate.inverse_scope) = NOWHERE);
+        images.for_each(|(_, record_header)| (record_header.ball, record_header.inverse_scope) = NOWHERE);
     }
     let kicks: Vec<_> = league.kicks.iter().map(|(_, kick)| RawKick::encode(*kick)).collect();
     let others = size_of::<Header>() + pools.bytes() + kicks.as_bytes().len();
@@ -94,7 +94,7 @@ const NOWHERE: ([f32; 2], [f32; 2]) = ([32_767.0; 2], [1.0; 2]);
 #[derive(Default)]
 struct Pools {
     groups: Vec<Group>,
-    gates: Vec<Gate>,
+    gates: Vec<RecordHeader>,
     points: Vec<[i32; 2]>,
     places: Vec<u32>,
     actions: Vec<RawAction>,
@@ -167,7 +167,7 @@ impl Pools {
                 .map_or(RawLeg::NOT_CARRIED, |(_, point)| *point)
         };
         let mut legs = Vec::new();
-        let walked = walk(copy, league, |step| {
+        let walked = plan_simulation(copy, league, |step| {
             if let Step::Leg { robot, action, to, radii, carried_by, .. } = step {
                 legs.push(RawLeg {
                     to: to.at,
@@ -180,7 +180,7 @@ impl Pools {
             }
         });
         debug_assert!(walked.is_ok(), "only cases that can be walked are encoded: {walked:?}");
-        self.gates.push(Gate {
+        self.gates.push(RecordHeader {
             ball: narrow(ball).map(f32::from),
             inverse_scope: inverse(copy.case.ball_scope),
             places_at: self.places.len() as u32,
@@ -189,7 +189,7 @@ impl Pools {
             legs: legs.len() as u8,
             reserved: 0,
         });
-        // The order in which `Gate` reads them.
+        // The order in which `RecordHeader` reads them.
         for records in [opponents.as_bytes(), legs.as_bytes(), positions.as_bytes()] {
             let (words, _) = records.as_chunks();
             self.places.extend(words.iter().map(|word| u32::from_ne_bytes(*word)));

@@ -2,7 +2,7 @@
 //! degrees.
 
 use casebase::action::KICKS_MAX;
-use casebase::walk::Kicks;
+use casebase::plan_simulation::Kicks;
 use casebase::{FieldMm, Kick, KickAim, KickId, Pass, Primitive};
 
 use crate::codes::code;

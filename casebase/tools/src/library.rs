@@ -56,9 +56,9 @@ pub fn load(directory: &Path) -> Result<Library, Vec<Finding>> {
     load_telling(directory, |_, _| {})
 }
 
-/// The same; `tell` is called with the number of completed steps and the total: two a case file.
-pub fn load_telling(directory: &Path, tell: impl FnMut(usize, usize)) -> Result<Library, Vec<Finding>> {
-    build_telling(&Files::read(directory)?, Reduction::NONE, tell)
+/// The same; `report` is called with the number of completed steps and the total: two a case file.
+pub fn load_telling(directory: &Path, report: impl FnMut(usize, usize)) -> Result<Library, Vec<Finding>> {
+    build_telling(&Files::read(directory)?, Reduction::NONE, report)
 }
 
 /// Which parts of its cases a library keeps: for measuring the value of each.
@@ -89,13 +89,13 @@ pub fn build(files: &Files) -> Result<Library, Vec<Finding>> {
 fn build_telling(
     files: &Files,
     reduction: Reduction,
-    mut tell: impl FnMut(usize, usize),
+    mut report: impl FnMut(usize, usize),
 ) -> Result<Library, Vec<Finding>> {
     let steps = 2 * files.cases.len();
     let (league, mut findings) = League::read(&files.rules);
     let mut cases = Vec::new();
     for (done, file) in files.cases.iter().enumerate() {
-        tell(done, steps);
+        report(done, steps);
         let (case, read) = Authored::read(file, league.as_ref());
         findings.extend(read);
         if let (Some(case), Some(league)) = (case, &league) {
@@ -132,7 +132,7 @@ fn build_telling(
     };
     if reduction == Reduction::NONE {
         let doubts =
-            warnings(files, &cases, &library.base(), &league, |done| tell(files.cases.len() + done, steps));
+            warnings(files, &cases, &library.base(), &league, |done| report(files.cases.len() + done, steps));
         library.note(doubts);
     }
     Ok(library)

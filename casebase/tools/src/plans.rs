@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use casebase::walk::walk;
+use casebase::plan_simulation::plan_simulation;
 use casebase::{Action, Case, CaseRobot, Leg, LegKind, PointMm, Symmetry};
 
 use crate::authored::Authored;
@@ -72,7 +72,7 @@ fn leg_doubts(notes: &mut Notes<'_>, leg: &Leg, span: &Range<usize>, league: &Le
 fn teammates_on(notes: &mut Notes<'_>, case: &Authored, leg: &Leg, league: &League) {
     let mut takers = vec![leg.robot];
     // The case passed the same simulation among the checks.
-    let _ = walk(&case.mirrored(Symmetry::Identity, league), league, |step| {
+    let _ = plan_simulation(&case.mirrored(Symmetry::Identity, league), league, |step| {
         takers.extend(step.hand_over().map(|hand_over| hand_over.to.0));
     });
     for (robot, teammate) in CaseRobot::first(case.teammates.len()).zip(&case.teammates) {

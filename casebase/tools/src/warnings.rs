@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use casebase::walk::{Step, walk};
+use casebase::plan_simulation::{Step, plan_simulation};
 use casebase::{
     Action, Case, CaseBase, CaseRobot, PointMm, Problem, Scope, Settings, Symmetry, TurnTarget, blocked_leg,
     retrieve_best,
@@ -18,13 +18,13 @@ use crate::finding::{Finding, Severity};
 use crate::league::League;
 use crate::plans;
 
-/// Every warning about cases that passed all checks; `tell` is called with the number of cases done.
+/// Every warning about cases that passed all checks; `report` is called with the number of cases done.
 pub(crate) fn warnings(
     files: &Files,
     cases: &[Authored],
     base: &CaseBase<'_>,
     league: &League,
-    mut tell: impl FnMut(usize),
+    mut report: impl FnMut(usize),
 ) -> Vec<Finding> {
     let mut findings = Vec::new();
     if cases.is_empty() {
@@ -40,7 +40,7 @@ pub(crate) fn warnings(
     let twins = twins(base);
     for (authored, (file, case)) in files.cases.iter().zip(cases).enumerate() {
         let Some(stored) = base.case(CaseId(4 * authored as u16)) else { continue };
-        tell(authored + 1);
+        report(authored + 1);
         let mut notes = Notes { file, findings: &mut findings };
         names(&mut notes, case);
         big_scopes(&mut notes, case);
@@ -135,7 +135,7 @@ fn gameplays(notes: &mut Notes<'_>, case: &Authored, league: &League) {
         }
     }
     // The case passed the same simulation among the checks.
-    let _ = walk(&case.mirrored(Symmetry::Identity, league), league, |step| {
+    let _ = plan_simulation(&case.mirrored(Symmetry::Identity, league), league, |step| {
         if let Step::NeverReached { robot, action } = step {
             let (_, span) = &case.teammates[robot.index()].gameplay[action];
             let message = format!("no kick ever leaves the ball to this get_ball of {robot}");

@@ -161,8 +161,8 @@ fn doubts_do_not_refuse() {
     );
     let waits_for_ever = "[[teammates]]\nat = [0, 500]\ngameplay = [\"wait\", \"get_ball\"]\n";
     let dribbles = single("[0, 0]", "[400, 400]", ", { dribble_to = [90, 0] }") + waits_for_ever;
-    let told = vec![(code::IDLE_BALL, 9), (code::NEVER_REACHED, 9)];
-    assert_eq!(findings(LEAGUE, &[("a/a", &dribbles)]), (told, false));
+    let reported = vec![(code::IDLE_BALL, 9), (code::NEVER_REACHED, 9)];
+    assert_eq!(findings(LEAGUE, &[("a/a", &dribbles)]), (reported, false));
     let league = LEAGUE.replace("forward_soft", "bicycle");
     assert_eq!(findings(&league, &[("a/a", PASS_AROUND)]), (vec![(code::UNKNOWN_PRIMITIVE, 18)], false));
     assert_eq!(findings(LEAGUE, &[]), (vec![(code::EMPTY, 1)], false));

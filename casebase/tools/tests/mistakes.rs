@@ -27,7 +27,7 @@ fn only(rules: &str, cases: &[(&str, &str)]) -> Finding {
 }
 
 #[track_caller]
-fn told(finding: &Finding, file: &str, line: u32, code: &str, hint: &str) {
+fn assert_finding(finding: &Finding, file: &str, line: u32, code: &str, hint: &str) {
     let place = (finding.code, finding.file.as_path(), finding.line);
     assert_eq!(place, (code, Path::new(file), line), "{finding}");
     assert!(finding.hint.contains(hint), "{finding}");
@@ -47,7 +47,7 @@ macro_rules! mistakes {
             fn $name() {
                 let finding = mistakes!(@$place $old, $new);
                 let file = mistakes!(@file $place);
-                told(&finding, file, $line, code::$code, $hint);
+                assert_finding(&finding, file, $line, code::$code, $hint);
             }
         )*
         const IN_TEXTS: &[(&str, &str)] = &[$((stringify!($name), code::$code)),*];
@@ -144,23 +144,29 @@ fn appended(more: &str) -> Finding {
 #[test]
 fn no_robot_is_told() {
     let text = "intent = \"x\"\ndefending = \"cyan\"\nball = { at = [0, 0], scope = [9, 9] }\n";
-    told(&only(LEAGUE, &[("center/a", text)]), "test/center/a.toml", 1, code::NO_TEAMMATE, "[[teammates]]");
+    assert_finding(
+        &only(LEAGUE, &[("center/a", text)]),
+        "test/center/a.toml",
+        1,
+        code::NO_TEAMMATE,
+        "[[teammates]]",
+    );
 }
 
 #[test]
 fn a_fifth_robot_and_a_fifth_opponent_are_told() {
     let robots = "\n[[teammates]]\nat = [0, 0]\ngameplay = [\"wait\"]\n".repeat(3);
-    told(&appended(&robots), "test/center/a.toml", 25, code::TOO_MANY_TEAMMATES, "leave out");
+    assert_finding(&appended(&robots), "test/center/a.toml", 25, code::TOO_MANY_TEAMMATES, "leave out");
     let opponents = "\n[[opponents]]\nat = [0, 1500]\nscope = [9, 9]\n".repeat(4);
-    told(&appended(&opponents), "test/center/a.toml", 29, code::TOO_MANY_OPPONENTS, "justify");
+    assert_finding(&appended(&opponents), "test/center/a.toml", 29, code::TOO_MANY_OPPONENTS, "justify");
 }
 
 #[test]
 fn a_bystander_is_doubtful_and_more_so_on_the_ball_s_way() {
     let far = "[[teammates]]\nat = [0, -900]\ngameplay = [\"wait\"]\n";
-    told(&appended(far), "test/center/a.toml", 16, code::BYSTANDER, "leave it out");
+    assert_finding(&appended(far), "test/center/a.toml", 16, code::BYSTANDER, "leave it out");
     let turns = "[[teammates]]\nat = [-150, 450]\ngameplay = [{ turn = { heading_deg = 0 } }]\n";
-    told(&appended(turns), "test/center/a.toml", 17, code::TEAMMATE_IN_PATH, "move it aside");
+    assert_finding(&appended(turns), "test/center/a.toml", 17, code::TEAMMATE_IN_PATH, "move it aside");
 }
 
 #[test]
@@ -169,25 +175,25 @@ fn a_get_ball_no_kick_leads_to_is_doubtful() {
         + "[[teammates]]\nat = [0, 500]\ngameplay = [\"wait\", \"get_ball\"]\n";
     let library = build(&Files::from_texts("test", LEAGUE, &[("center/a", &text)])).expect("sound");
     let [idle, never] = library.findings.as_slice() else { panic!("{:?}", library.findings) };
-    told(idle, "test/center/a.toml", 9, code::IDLE_BALL, "dribble_to");
-    told(never, "test/center/a.toml", 9, code::NEVER_REACHED, "let a kick come before it");
+    assert_finding(idle, "test/center/a.toml", 9, code::IDLE_BALL, "dribble_to");
+    assert_finding(never, "test/center/a.toml", 9, code::NEVER_REACHED, "let a kick come before it");
 }
 
 #[test]
 fn the_same_case_twice_is_doubtful() {
     let finding = only(LEAGUE, &[("center/a", PASS_AROUND), ("center/b", PASS_AROUND)]);
-    told(&finding, "test/center/b.toml", 1, code::TWIN, "take one of the two out");
+    assert_finding(&finding, "test/center/b.toml", 1, code::TWIN, "take one of the two out");
 }
 
 #[test]
 fn a_library_without_a_case_is_doubtful() {
-    told(&only(LEAGUE, &[]), "test/league.toml", 1, code::EMPTY, "<region>/<name>.toml");
+    assert_finding(&only(LEAGUE, &[]), "test/league.toml", 1, code::EMPTY, "<region>/<name>.toml");
 }
 
 #[test]
 fn a_name_with_a_blank_is_doubtful() {
     let finding = only(LEAGUE, &[("center/pass around", PASS_AROUND)]);
-    told(&finding, "test/center/pass around.toml", 1, code::FILE_NAME, "rename it");
+    assert_finding(&finding, "test/center/pass around.toml", 1, code::FILE_NAME, "rename it");
 }
 
 #[test]
@@ -217,5 +223,5 @@ fn what_editors_of_other_systems_leave_behind_is_no_mistake() {
     // Lines are counted equally with either line ending.
     let windows = replaced(PASS_AROUND, "[300, 300]", "[300, 0]").replace('\n', "\r\n");
     let finding = only(LEAGUE, &[("center/a", &windows)]);
-    told(&finding, "test/center/a.toml", 15, code::BAD_SCOPE, "above 0");
+    assert_finding(&finding, "test/center/a.toml", 15, code::BAD_SCOPE, "above 0");
 }

@@ -3,9 +3,9 @@
 //!
 //! SI units, field frame. Own sight of the ball comes first; when it is missing or stale, the report of the
 //! teammate nearest the ball is used (its information is the most accurate, paper §4.1). A fresh snapshot of
-//! the host overrides both ([`shown`]).
+//! the host overrides both ([`received`]).
 
-pub mod shown;
+pub mod received;
 
 use geometry::{Field, GoalEnd, Point, Pose, Vector, math};
 use motion::rolling::RollingBall;
@@ -14,7 +14,7 @@ use protocol::robot_io::{OPPONENTS_MAX, OmniKick, SensorFrame};
 use protocol::{Duration, Instant, RobotId};
 use rules::{League, Phase, Side};
 
-use crate::belief::shown::Handling;
+use crate::belief::received::Handling;
 use crate::body::{self, BodySpec};
 use crate::teammates::Teammates;
 
@@ -238,14 +238,14 @@ impl Belief {
         let mut ball = rolling(sight.position, sight.velocity, self.league);
         // An opponent on its path stops it.
         let within = self.spec.opponent_holds_within;
-        let way = geometry::Segment::new(ball.position, ball.rest);
+        let path = geometry::Segment::new(ball.position, ball.rest);
         let stops =
-            |o: &Point<Field>| way.distance_to(*o) < within && (*o - ball.position).dot(way.vector()) > 0.0;
-        let first = self.opponents.iter().filter(|o| stops(o)).map(|o| way.share_of(*o)).reduce(f32::min);
+            |o: &Point<Field>| path.distance_to(*o) < within && (*o - ball.position).dot(path.vector()) > 0.0;
+        let first = self.opponents.iter().filter(|o| stops(o)).map(|o| path.share_of(*o)).reduce(f32::min);
         if let Some(share) = first {
-            let length = way.vector().norm();
+            let length = path.vector().norm();
             let free = math::clamp(share * length - within, 0.0, length);
-            ball.rest = ball.position + way.vector() * (free / length.max(f32::MIN_POSITIVE));
+            ball.rest = ball.position + path.vector() * (free / length.max(f32::MIN_POSITIVE));
         }
         Some(ball)
     }

@@ -5,7 +5,7 @@
 
 mod act;
 mod coordinate;
-mod tell;
+mod telemeter;
 
 use casebase::{CaseBase, Problem};
 use protocol::host::HostMessage;
@@ -25,7 +25,7 @@ use crate::team::monitor::Monitor;
 use crate::team::{Cycle, retrieval};
 use crate::teammates::Teammates;
 use crate::timer::{Timer, TimerTable};
-use tell::Spoken;
+use telemeter::Spoken;
 
 /// Inputs since the last step, besides time.
 #[derive(Clone, Copy, Debug, Default)]
@@ -52,7 +52,7 @@ pub struct Brain<'a> {
     timers: TimerTable,
     awake: bool,
     /// The closed cycle whose end this robot has announced to its teammates.
-    told_end_of: Option<CycleId>,
+    reported_end_of: Option<CycleId>,
     actuation: Actuation,
     host: Option<Hosted>,
     task_state: TaskState,
@@ -63,7 +63,7 @@ pub struct Brain<'a> {
     /// Inputs since its last step.
     since: Since,
     /// Number of steps that may still reuse the path before a step must plan: up to [`ONWARDS_MOST`].
-    onwards: u8,
+    exit_heading: u8,
     spoken: Spoken,
 }
 
@@ -84,7 +84,7 @@ impl<'a> Brain<'a> {
             reactive: Reactive::of(config.league),
             timers,
             awake: false,
-            told_end_of: None,
+            reported_end_of: None,
             actuation: Actuation::of(config.league),
             host: config.hosted.then(|| Hosted::new(config.robot)),
             task_state: TaskState::default(),
@@ -92,7 +92,7 @@ impl<'a> Brain<'a> {
             actuators: None,
             beacon_due: false,
             since: Since::default(),
-            onwards: ONWARDS_MOST,
+            exit_heading: ONWARDS_MOST,
             spoken: Spoken::default(),
         }
     }
@@ -158,11 +158,11 @@ impl<'a> Brain<'a> {
             self.act(now)
         } else if since.turned {
             Intent::Stand { face: None }
-        } else if is_busy && self.onwards > 0 {
-            self.onwards -= 1;
+        } else if is_busy && self.exit_heading > 0 {
+            self.exit_heading -= 1;
             Intent::KeepPath
         } else {
-            self.onwards = ONWARDS_MOST.min(self.onwards + 1);
+            self.exit_heading = ONWARDS_MOST.min(self.exit_heading + 1);
             self.act(now)
         }
     }
@@ -185,10 +185,10 @@ impl<'a> Brain<'a> {
         }
         self.spoken.beacon(now);
         let beacon = self.beacon();
-        if self.cycle.closure().is_some() && self.told_end_of != self.cycle.id() {
+        if self.cycle.closure().is_some() && self.reported_end_of != self.cycle.id() {
             // The end is announced before the next cycle starts: a teammate that receives only the start
             // would not know why.
-            self.told_end_of = self.cycle.id();
+            self.reported_end_of = self.cycle.id();
             // One message a step where steps are short: sealing costs time, and the next step comes soon.
             if !self.has_short_steps() {
                 self.coordinate(now);

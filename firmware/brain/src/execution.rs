@@ -272,8 +272,10 @@ impl Execution {
                 }
                 Verdict::Running(Intent::Turn { heading })
             }
-            Action::GetBall => Self::take(scene, timers, scene.body.get_ball(belief, self.onwards(scene))),
-            Action::ReceiveBall(_) => match scene.body.receive(belief, self.onwards(scene)) {
+            Action::GetBall => {
+                Self::take(scene, timers, scene.body.get_ball(belief, self.exit_heading(scene)))
+            }
+            Action::ReceiveBall(_) => match scene.body.receive(belief, self.exit_heading(scene)) {
                 Reception::Going(step) => Self::take(scene, timers, step),
                 Reception::Missed => Verdict::Failed(AbortReason::ActionFailed),
             },
@@ -356,7 +358,7 @@ impl Execution {
     }
 
     /// Heading that the action after getting the ball needs.
-    fn onwards(&self, scene: &Scene<'_>) -> Option<Angle> {
+    fn exit_heading(&self, scene: &Scene<'_>) -> Option<Angle> {
         let next = self.done + 1;
         match scene.case.action(self.part, next)? {
             Action::PassBall(_) => scene.leg_of(self.part, next).map(|(_, along)| along),

@@ -139,7 +139,7 @@ impl Hosted {
             })
         };
         let ours = matches!(phase, Phase::FreeKick(Side::Ours) | Phase::Kickoff(Side::Ours))
-            && rule_role == RuleRole::Taker;
+            && rule_role == RuleRole::Kicker;
         self.restart = match (phase, self.restart) {
             (Phase::Run, Restart::Touched(_)) if belief.contact() => self.restart,
             (Phase::Run, Restart::Touched(_)) => Restart::DoubleTouchBlocked,
@@ -245,9 +245,9 @@ mod tests {
         let free_kick = Phase::FreeKick(Side::Ours);
         hosted.watch_touches(free_kick, RuleRole::Player, &held);
         assert_eq!(hosted.restart, Restart::None, "only the taker's touch counts");
-        hosted.watch_touches(free_kick, RuleRole::Taker, &held);
+        hosted.watch_touches(free_kick, RuleRole::Kicker, &held);
         assert!(matches!(hosted.restart, Restart::Touched(_)));
-        hosted.watch_touches(free_kick, RuleRole::Taker, &with_ball(0.5));
+        hosted.watch_touches(free_kick, RuleRole::Kicker, &with_ball(0.5));
         assert_eq!(hosted.restart, Restart::DoubleTouchBlocked);
         hosted.watch_touches(Phase::Run, RuleRole::Player, &with_ball(1.0));
         assert_eq!(hosted.restart, Restart::DoubleTouchBlocked, "in play it may still not");
@@ -262,7 +262,7 @@ mod tests {
     #[test]
     fn a_stop_ends_the_bar() {
         let mut hosted = Hosted { restart: Restart::DoubleTouchBlocked, ..Hosted::new(id(3)) };
-        hosted.watch_touches(Phase::Stop, RuleRole::Taker, &with_ball(1.0));
+        hosted.watch_touches(Phase::Stop, RuleRole::Kicker, &with_ball(1.0));
         assert_eq!(hosted.restart, Restart::None);
     }
 }

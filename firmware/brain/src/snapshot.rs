@@ -76,7 +76,7 @@ pub struct HostSnapshot {
 #[derive(Clone, Copy, Debug)]
 struct Own {
     pose: Pose<Field>,
-    shown: Instant,
+    received_at: Instant,
     carried_to: Instant,
 }
 
@@ -113,7 +113,7 @@ impl HostSnapshot {
         self.phase = Some(part.phase);
         self.placement = part.placement.map(Into::into);
         if taken == Taken::Begun {
-            self.ball = part.ball.map(|ball| shown_ball(now, ball));
+            self.ball = part.ball.map(|ball| received_ball(now, ball));
         }
         for robot in &part.robots {
             self.show(now, part.snapshot, robot);
@@ -157,7 +157,7 @@ impl HostSnapshot {
 
     /// The own pose; `None` where the host has not sent it for too long.
     pub fn own(&self, now: Instant) -> Option<Pose<Field>> {
-        self.own.filter(|own| now.since(own.shown) <= OWN_LEASE).map(|own| own.pose)
+        self.own.filter(|own| now.since(own.received_at) <= OWN_LEASE).map(|own| own.pose)
     }
 
     /// The ball, where it will be `now`; `None` where the host sends none.
@@ -168,9 +168,9 @@ impl HostSnapshot {
             return Some(ReceivedBall { position: ball.position + ball.velocity * time, ..ball });
         }
         let path = BallModel::default().rolling(ball.position, ball.velocity);
-        let (way, speed) = path.progress(time);
+        let (travelled, speed) = path.progress(time);
         Some(ReceivedBall {
-            position: path.from() + path.along() * way,
+            position: path.from() + path.along() * travelled,
             velocity: path.along() * speed,
             ..ball
         })
@@ -206,34 +206,34 @@ impl HostSnapshot {
 
     fn show(&mut self, now: Instant, snapshot: u8, robot: &WireRobot) {
         let velocity = Vector::new(from_mm(i32::from(robot.vx)), from_mm(i32::from(robot.vy)));
-        let shown = Received { who: robot.who, pose: robot.pose.into(), velocity, at: now, snapshot };
+        let received_at = Received { who: robot.who, pose: robot.pose.into(), velocity, at: now, snapshot };
         if self.is_me(robot.who) {
-            self.correct_own(now, shown.pose);
+            self.correct_own(now, received_at.pose);
         }
-        self.robots[(robot.who.side == Side::Theirs) as usize][robot.who.id.index()] = Some(shown);
+        self.robots[(robot.who.side == Side::Theirs) as usize][robot.who.id.index()] = Some(received_at);
     }
 
     /// Weighted mean of the host's pose and odometry: the host's noise is a millimetre, the odometry's drift
     /// grows.
-    fn correct_own(&mut self, now: Instant, shown: Pose<Field>) {
+    fn correct_own(&mut self, now: Instant, received_at: Pose<Field>) {
         self.carry_own_to(now);
         // A part that waited holds the pose of its time: the pose has moved since.
         let carried_to = self.own.map_or(now, |own| own.carried_to.max(now));
-        let shown = self.carried(shown, carried_to.since(now).as_secs_f32());
+        let received_at = self.carried(received_at, carried_to.since(now).as_secs_f32());
         let near = |own: &Own| {
-            own.pose.position.distance(shown.position) < JUMP
-                && (own.pose.heading - shown.heading).abs() < JUMP_TURN
-                && now.since(own.shown) <= OWN_LEASE
+            own.pose.position.distance(received_at.position) < JUMP
+                && (own.pose.heading - received_at.heading).abs() < JUMP_TURN
+                && now.since(own.received_at) <= OWN_LEASE
         };
         let pose = match self.own.filter(near) {
             Some(Own { pose, .. }) => Pose {
-                position: pose.position + (shown.position - pose.position) * SHARE,
+                position: pose.position + (received_at.position - pose.position) * SHARE,
                 heading: pose.heading
-                    + geometry::Angle::new((shown.heading - pose.heading).radians() * SHARE),
+                    + geometry::Angle::new((received_at.heading - pose.heading).radians() * SHARE),
             },
-            None => shown,
+            None => received_at,
         };
-        self.own = Some(Own { pose, shown: now, carried_to });
+        self.own = Some(Own { pose, received_at: now, carried_to });
     }
 
     fn carry_own_to(&mut self, now: Instant) {
@@ -256,7 +256,7 @@ impl HostSnapshot {
     }
 }
 
-fn shown_ball(now: Instant, ball: WireBall) -> ReceivedBall {
+fn received_ball(now: Instant, ball: WireBall) -> ReceivedBall {
     ReceivedBall {
         position: ball.at.into(),
         velocity: Vector::new(from_mm(i32::from(ball.vx)), from_mm(i32::from(ball.vy))),

@@ -94,7 +94,7 @@ impl<'a> Station<'a> {
         };
         self.spoke = Some(now);
         if let TeamMessage::Telemetry(telemetry) = &mut message {
-            self.link.tell(now, telemetry);
+            self.link.report(now, telemetry);
         }
         Some(self.link.seal(&message))
     }

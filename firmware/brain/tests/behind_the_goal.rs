@@ -28,7 +28,7 @@ fn last_second(phase: Phase<Side>, from: Point<Field>, to: Point<Field>) -> Vec<
         belief.angular = wanted.twist.angular;
         belief.pose.position += belief.velocity * STEP;
         belief.pose.heading = midway.heading + half;
-        drivetrain.told(&belief, wanted.twist);
+        drivetrain.set_speed_order(&belief, wanted.twist);
         if step >= 900 && step % 10 == 0 {
             places.push(belief.pose.position);
         }

@@ -21,7 +21,7 @@ fn left(gap: f32, held: bool, phase: Phase<Side>) -> f32 {
         let wanted = drivetrain.actuate(Instant(step * 10_000), &belief, drive.into());
         belief.velocity = belief.pose.vector_to_field(wanted.twist.linear);
         belief.pose.position += belief.velocity * 0.01;
-        drivetrain.told(&belief, wanted.twist);
+        drivetrain.set_speed_order(&belief, wanted.twist);
         if belief.pose.position.distance(ball) > 0.12 {
             belief.holds_ball = false;
         }

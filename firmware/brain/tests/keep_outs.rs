@@ -12,7 +12,7 @@ use rules::limits::ROBOT_RADIUS;
 use rules::{League, Phase, RuleRole, Side};
 
 const LEAGUES: [League; 3] = [League::Ssl2013, League::DivisionB, League::DivisionA];
-const DUTIES: [RuleRole; 3] = [RuleRole::Keeper, RuleRole::Taker, RuleRole::Player];
+const DUTIES: [RuleRole; 3] = [RuleRole::Keeper, RuleRole::Kicker, RuleRole::Player];
 const STEP: f32 = 0.01;
 /// Time that the controller gives teams to prepare, s.
 const TIME: f32 = 10.0;
@@ -113,7 +113,7 @@ impl Player {
         belief.angular = wanted.twist.angular;
         belief.pose.position += belief.velocity * STEP;
         belief.pose.heading = midway.heading + half;
-        self.drivetrain.told(&self.belief, wanted.twist);
+        self.drivetrain.set_speed_order(&self.belief, wanted.twist);
         let stands = self.belief.velocity.norm() < STANDING && self.offence().is_some();
         self.stood = if stands { self.stood + STEP } else { 0.0 };
         self.longest = self.longest.max(self.stood);

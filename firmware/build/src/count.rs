@@ -38,8 +38,8 @@ impl CountingImage {
             .stdin(Stdio::null())
             .output()
             .map_err(|error| format!("{} does not start: {error}", self.qemu.display()))?;
-        let said = String::from_utf8_lossy(&output.stdout);
-        let lines: Vec<T> = said.lines().filter_map(read).collect();
+        let printed = String::from_utf8_lossy(&output.stdout);
+        let lines: Vec<T> = printed.lines().filter_map(read).collect();
         if output.status.success() && lines.len() == count {
             return Ok(lines);
         }
@@ -59,9 +59,9 @@ pub fn callgrind(arguments: &[&str]) -> Result<u64, String> {
         .stdin(Stdio::null())
         .output()
         .map_err(|error| format!("valgrind does not start: {error}; install the package valgrind"))?;
-    let said = String::from_utf8_lossy(&output.stderr);
-    let count = said.lines().find_map(|line| line.split_once("Collected :")?.1.trim().parse().ok());
-    count.filter(|_| output.status.success()).ok_or_else(|| format!("callgrind counted nothing: {said}"))
+    let printed = String::from_utf8_lossy(&output.stderr);
+    let count = printed.lines().find_map(|line| line.split_once("Collected :")?.1.trim().parse().ok());
+    count.filter(|_| output.status.success()).ok_or_else(|| format!("callgrind counted nothing: {printed}"))
 }
 
 /// Puts the text between the marks `<!-- NAME -->` and `<!-- end of NAME -->` of a file of the workspace.

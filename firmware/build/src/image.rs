@@ -201,14 +201,14 @@ fn run_cargo(build: &mut Command) -> Result<(), BuildError> {
     let lost = |error| BuildError::Cargo { command: command.clone(), error };
     let mut child = build.spawn().map_err(lost)?;
     if let Some(description) = child.stderr.take() {
-        let mut told = false;
+        let mut reported = false;
         for line in BufReader::new(description).split(b'\n').map_while(Result::ok) {
             let line = String::from_utf8_lossy(&line).into_owned();
-            if told || !line.contains("Finished") {
-                if !told {
+            if reported || !line.contains("Finished") {
+                if !reported {
                     eprintln!("firmware: building the image ({command})");
                 }
-                told = true;
+                reported = true;
                 eprintln!("{line}");
             }
         }

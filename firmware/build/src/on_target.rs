@@ -58,8 +58,9 @@ pub fn tests_in(elf: &[u8]) -> Result<Option<Vec<OnTarget>>, NoTests> {
     let mut tests = Vec::new();
     for symbol in file.symbols().filter(|symbol| symbol.section_index() == Some(section.index())) {
         // The others are the section's own, such as the version of its form.
-        let Some(told) = symbol.name().ok().filter(|name| name.starts_with('{')) else { continue };
-        let told: Value = serde_json::from_str(told).map_err(|_| NoTests("a test's name is no JSON"))?;
+        let Some(reported) = symbol.name().ok().filter(|name| name.starts_with('{')) else { continue };
+        let reported: Value =
+            serde_json::from_str(reported).map_err(|_| NoTests("a test's name is no JSON"))?;
         let at = symbol.address().checked_sub(section.address()).and_then(|at| usize::try_from(at).ok());
         let label = |n: usize| {
             let bytes = table.get(at? + 4 * n..)?.first_chunk()?;
@@ -71,14 +72,14 @@ pub fn tests_in(elf: &[u8]) -> Result<Option<Vec<OnTarget>>, NoTests> {
         let module = text_at(&file, path, len).unwrap_or_default();
         // Without the crate's name, and without the module that every file has.
         let module = module.split_once("::").map_or("", |(_, path)| path).trim_end_matches("::tests");
-        let name = told["name"].as_str().ok_or(NoTests("a test has no name"))?;
-        let flag = |key: &str| told[key].as_bool().unwrap_or(false);
+        let name = reported["name"].as_str().ok_or(NoTests("a test has no name"))?;
+        let flag = |key: &str| reported[key].as_bool().unwrap_or(false);
         tests.push(OnTarget {
             name: format!("{module}::{name}"),
             address,
             should_panic: flag("should_panic"),
             ignored: flag("ignored"),
-            timeout: told["timeout"].as_u64().map_or(TIMEOUT, Duration::from_secs),
+            timeout: reported["timeout"].as_u64().map_or(TIMEOUT, Duration::from_secs),
         });
     }
     tests.sort_by(|a, b| a.name.cmp(&b.name));
@@ -115,24 +116,24 @@ pub fn run_test(qemu: &Path, image: &Path, test: &OnTarget) -> std::io::Result<V
         }
         std::thread::sleep(LOOK);
     };
-    let mut said = String::new();
+    let mut output = String::new();
     // Output that is not text is dropped; the status is reported anyway.
     if let Some(mut stdout) = child.stdout.take() {
-        let _ = stdout.read_to_string(&mut said);
+        let _ = stdout.read_to_string(&mut output);
     }
     if let Some(mut stderr) = child.stderr.take() {
-        let _ = stderr.read_to_string(&mut said);
+        let _ = stderr.read_to_string(&mut output);
     }
-    Ok(judged(test, status.map(|status| status.success()), said.trim()))
+    Ok(judged(test, status.map(|status| status.success()), output.trim()))
 }
 
 /// The verdict for an exit status; `None` is no exit within the test's time.
-fn judged(test: &OnTarget, well: Option<bool>, said: &str) -> Verdict {
+fn judged(test: &OnTarget, well: Option<bool>, output: &str) -> Verdict {
     match (well, test.should_panic) {
         (Some(true), false) | (Some(false), true) => Verdict::Passed,
-        (Some(false), false) => Verdict::Failed(said.to_owned()),
+        (Some(false), false) => Verdict::Failed(output.to_owned()),
         (Some(true), true) => Verdict::Failed("it should have panicked".to_owned()),
-        (None, _) => Verdict::Failed(format!("it did not end within {} s; {said}", test.timeout.as_secs())),
+        (None, _) => Verdict::Failed(format!("it did not end within {} s; {output}", test.timeout.as_secs())),
     }
 }
 

@@ -15,8 +15,8 @@ pub(crate) fn output_of(command: &mut Command) -> Result<String, String> {
     if output.status.success() {
         Ok(String::from_utf8_lossy(&output.stdout).into_owned())
     } else {
-        let said = String::from_utf8_lossy(&output.stderr);
-        let last = said.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("nothing said");
+        let printed = String::from_utf8_lossy(&output.stderr);
+        let last = printed.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("nothing said");
         Err(format!("`{}` failed ({}): {}", line_of(command), output.status, last.trim()))
     }
 }

@@ -44,7 +44,7 @@ pub enum Request {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict<F> {
     /// The robot can intercept in time.
-    Meets(InterceptionPoint<F>),
+    Intercepts(InterceptionPoint<F>),
     /// No point is reached in time: go to the ball's stop position, or to where it is no longer of interest.
     Chase {
         /// Position of the ball then, m.
@@ -94,7 +94,7 @@ impl<F: Copy> Interception<'_, F> {
             Request::Soonest => self.soonest(limits, u32::MAX),
             Request::Safest => self.safest(limits),
         };
-        best.map_or_else(|| self.chase(limits, self.horizon()), Verdict::Meets)
+        best.map_or_else(|| self.chase(limits, self.horizon()), Verdict::Intercepts)
     }
 
     /// As [`Interception::find`] with [`Request::Soonest`], in bounded time: after `most` points without an
@@ -102,7 +102,7 @@ impl<F: Copy> Interception<'_, F> {
     /// back by bisection.
     pub fn find_within<L: CalcMotion>(&self, limits: &L, most: u32) -> Verdict<F> {
         let best = self.soonest(limits, most);
-        best.map_or_else(|| self.chase(limits, self.horizon()), Verdict::Meets)
+        best.map_or_else(|| self.chase(limits, self.horizon()), Verdict::Intercepts)
     }
 
     fn horizon(&self) -> f32 {
@@ -129,7 +129,7 @@ impl<F: Copy> Interception<'_, F> {
                 let mut step = first;
                 while step <= last {
                     match self.look(limits, step as f32 * STEP, 0.0) {
-                        Look::Meets(interception_point) => {
+                        Look::Intercepts(interception_point) => {
                             return Some(self.sooner(limits, late, step, interception_point));
                         }
                         Look::TooLate | Look::OutOfReach => vain += 1,
@@ -177,7 +177,7 @@ impl<F: Copy> Interception<'_, F> {
         let mut least = best.as_ref().map_or(0.0, InterceptionPoint::slack);
         for probe in 1..PROBES {
             let step = steps * probe / PROBES;
-            if let Look::Meets(interception_point) = self.look(limits, step as f32 * STEP, least) {
+            if let Look::Intercepts(interception_point) = self.look(limits, step as f32 * STEP, least) {
                 least = interception_point.slack();
             }
         }
@@ -193,7 +193,7 @@ impl<F: Copy> Interception<'_, F> {
             }
             for step in (first..=last).rev() {
                 // The first of equal ones.
-                if let Look::Meets(interception_point) = self.look(limits, step as f32 * STEP, least) {
+                if let Look::Intercepts(interception_point) = self.look(limits, step as f32 * STEP, least) {
                     least = interception_point.slack();
                     best = Some(interception_point);
                 }
@@ -202,9 +202,9 @@ impl<F: Copy> Interception<'_, F> {
         best
     }
 
-    /// Whether no point with the ball's distances in `ways` is reached within this time.
-    fn is_out_of_reach<L: CalcMotion>(&self, limits: &L, ways: [f32; 2], within: f32) -> bool {
-        let [begins, ends] = ways;
+    /// Whether no point with the ball's distances in `offsets` is reached within this time.
+    fn is_out_of_reach<L: CalcMotion>(&self, limits: &L, offsets: [f32; 2], within: f32) -> bool {
+        let [begins, ends] = offsets;
         let middle = self.ball.from() + self.ball.along() * (0.5 * (begins + ends));
         let radius = 0.5 * (ends - begins) + self.reach;
         limits.is_surely_longer(self.robot, self.velocity, middle, radius, within)
@@ -223,7 +223,7 @@ impl<F: Copy> Interception<'_, F> {
             return Look::TooLate;
         };
         let interception_point = InterceptionPoint { ball, place, ball_time: time, robot_time };
-        if interception_point.slack() >= least { Look::Meets(interception_point) } else { Look::TooLate }
+        if interception_point.slack() >= least { Look::Intercepts(interception_point) } else { Look::TooLate }
     }
 
     fn chase<L: CalcMotion>(&self, limits: &L, horizon: f32) -> Verdict<F> {
@@ -236,7 +236,7 @@ impl<F: Copy> Interception<'_, F> {
 /// Result of testing one point.
 enum Look<F> {
     /// The robot intercepts the ball there.
-    Meets(InterceptionPoint<F>),
+    Intercepts(InterceptionPoint<F>),
     /// It does not intercept, by a planned motion.
     TooLate,
     /// It cannot intercept; no motion was planned.
@@ -246,7 +246,7 @@ enum Look<F> {
 impl<F> Look<F> {
     fn interception_point(self) -> Option<InterceptionPoint<F>> {
         match self {
-            Self::Meets(interception_point) => Some(interception_point),
+            Self::Intercepts(interception_point) => Some(interception_point),
             Self::TooLate | Self::OutOfReach => None,
         }
     }
@@ -294,7 +294,7 @@ mod tests {
                 best = Some(interception_point);
             }
         }
-        best.map_or_else(|| asked.chase(limits, horizon), Verdict::Meets)
+        best.map_or_else(|| asked.chase(limits, horizon), Verdict::Intercepts)
     }
 
     #[test]
@@ -316,8 +316,8 @@ mod tests {
             };
             let limits = FreeLimits::default();
             match (asked.find(&limits, Request::Soonest), asked.find_within(&limits, 4)) {
-                (Verdict::Meets(best), Verdict::Meets(found)) if best == found => same += 1,
-                (Verdict::Meets(best), Verdict::Meets(found)) => {
+                (Verdict::Intercepts(best), Verdict::Intercepts(found)) if best == found => same += 1,
+                (Verdict::Intercepts(best), Verdict::Intercepts(found)) => {
                     let by = found.ball_time - best.ball_time;
                     assert!(by > 0.0 && by < (BLOCK as f32 - 0.5) * STEP, "{by} s later: {asked:?}");
                     later += 1;
@@ -357,7 +357,7 @@ mod tests {
                 let found = asked.find(&FreeLimits::default(), request);
                 assert_eq!(found, linear(&asked, &FreeLimits::default(), request), "{asked:?}");
                 match found {
-                    Verdict::Meets(_) => interception_points += 1,
+                    Verdict::Intercepts(_) => interception_points += 1,
                     Verdict::Chase { .. } => chases += 1,
                 }
             }
@@ -378,12 +378,14 @@ mod tests {
     fn a_ball_that_comes_by_is_met_soonest_where_the_robot_is_just_in_time() {
         let ball = BallModel::default().rolling(Point::new(-2.0, 1.0), Vector::new(2.0, 0.0));
         let question = asked(&ball, Point::new(0.0, 0.0));
-        let Verdict::Meets(soonest) = question.find(&FreeLimits::default(), Request::Soonest) else {
+        let Verdict::Intercepts(soonest) = question.find(&FreeLimits::default(), Request::Soonest) else {
             panic!()
         };
         // One step earlier the robot would be late.
         assert!(soonest.slack() >= 0.0 && soonest.slack() < 0.1, "{soonest:?}");
-        let Verdict::Meets(safest) = question.find(&FreeLimits::default(), Request::Safest) else { panic!() };
+        let Verdict::Intercepts(safest) = question.find(&FreeLimits::default(), Request::Safest) else {
+            panic!()
+        };
         assert!(safest.slack() > soonest.slack() && safest.ball_time > soonest.ball_time);
         // It stands 0.1 m behind the ball, seen from the target.
         assert!((soonest.place.distance(soonest.ball) - 0.1).abs() < 1e-5);
@@ -407,7 +409,7 @@ mod tests {
         let ball = BallModel::default().rolling(Point::new(1.0, 0.0), Vector::default());
         let behind = asked(&ball, Point::new(0.9, 0.0));
         assert!(
-            matches!(behind.find(&FreeLimits::default(), Request::Safest), Verdict::Meets(m) if m.ball_time == 0.0)
+            matches!(behind.find(&FreeLimits::default(), Request::Safest), Verdict::Intercepts(m) if m.ball_time == 0.0)
         );
         let away = asked(&ball, Point::new(0.0, 0.0));
         assert!(matches!(away.find(&FreeLimits::default(), Request::Safest), Verdict::Chase { .. }));

@@ -152,8 +152,8 @@ fn out_of_reach<F>(offset: Vector<F>, velocity: Vector<F>, radius: f32, time: f3
     least += if squared <= speed * speed {
         (2.0 * math::sqrt(squared) - ahead) * per_acceleration
     } else {
-        let ways = (speed * speed - 0.5 * ahead * ahead) * per_acceleration;
-        (2.0 * speed - ahead) * per_acceleration + (distance - ways) / speed
+        let ramps = (speed * speed - 0.5 * ahead * ahead) * per_acceleration;
+        (2.0 * speed - ahead) * per_acceleration + (distance - ramps) / speed
     };
     least > time * BOUND_SLACK
 }

@@ -98,7 +98,7 @@ fn over_a_socket_it_is_received_by_its_host_and_its_simulator_and_ends_when_aske
         let mut bytes = [0; 1024];
         let (len, from) = host.recv_from(&mut bytes).unwrap();
         assert!(matches!(link.open(Instant(0), &bytes[..len]), Ok(Opened::Unauthenticated(..))));
-        assert_eq!(link.welcome(id()).map(|welcome| welcome.life), Some(77));
+        assert_eq!(link.welcome(id()).map(|welcome| welcome.boot_epoch), Some(77));
         let began = Clock::now();
         for _ in 0..20 {
             let (len, sender) = simulator.recv_from(&mut bytes).unwrap();

@@ -122,12 +122,12 @@ impl Tilt {
 
 /// A break-beam sensor whose lamp toggles with every step, so that daylight is distinguished from the lamp.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct Barrier {
+pub struct BreakBeam {
     dark: Option<f32>,
     broken: bool,
 }
 
-impl Barrier {
+impl BreakBeam {
     /// A sensor without readings.
     pub const fn new() -> Self {
         Self { dark: None, broken: false }
@@ -261,7 +261,7 @@ mod tests {
 
     #[test]
     fn a_ball_is_told_from_daylight_and_a_blinded_receiver_sees_none() {
-        let mut barrier = Barrier::new();
+        let mut barrier = BreakBeam::new();
         assert!(!barrier.step(true, 0.5), "nothing to compare with yet");
         for daylight in [0.0, 0.3, 0.6] {
             barrier.step(false, daylight);

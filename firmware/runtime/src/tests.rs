@@ -92,10 +92,10 @@ fn a_station_says_and_does_the_same_through_the_tasks() {
     for tick in 1..=500_u64 {
         let now = tick * 40_000;
         let sight = snapshot(random.below(1_000) as f32 * 0.001);
-        let said = teammate.sent.len();
+        let reported = teammate.sent.len();
         teammate.tick(now, &[], &sight);
         let received: Vec<_> =
-            teammate.sent[said..].iter().filter(|_| random.below(5) > 0).cloned().collect();
+            teammate.sent[reported..].iter().filter(|_| random.below(5) > 0).cloned().collect();
         robot.tick(now, &received, &sight);
         twin.tick(now, &received, &sight);
         assert_eq!(robot.sent.borrow()[..], twin.sent[..], "tick {tick}");

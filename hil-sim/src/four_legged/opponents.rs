@@ -120,11 +120,11 @@ fn walk_to(
     parameters: &Parameters,
 ) -> Twist<Body> {
     let p = &parameters.walk;
-    let way = pose.vector_to_body(target - pose.position);
-    let distance = way.norm();
+    let offset = pose.vector_to_body(target - pose.position);
+    let distance = offset.norm();
     // Half of the maximum deceleration of the legs, so that the order of the next step is never too late.
     let speed = math::sqrt(p.acceleration * distance).min(p.forward);
-    let linear = way.unit().map_or(Vector::default(), |direction| direction * speed);
+    let linear = offset.unit().map_or(Vector::default(), |direction| direction * speed);
     let turn = pose.turn_to(gaze).radians();
     Twist { linear, angular: (GAZE_GAIN * turn).clamp(-p.turn, p.turn) }
 }

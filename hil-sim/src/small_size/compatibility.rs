@@ -53,7 +53,7 @@ pub struct Compatibility {
     /// Lines are drawn this far inside the field's edge, m, and goals are drawn too.
     pub drawn_goals: bool,
     /// The ball model on the wire, if it is not that of the physics.
-    pub told_ball: Option<ReportedBall>,
+    pub reported_ball: Option<ReportedBall>,
     /// Which robots' states an answer contains.
     pub feedback: Feedback,
     /// A control message is answered even where nothing was refused.
@@ -125,7 +125,7 @@ impl Profile {
             staggered: true,
             full_geometry: true,
             drawn_goals: false,
-            told_ball: None,
+            reported_ball: None,
             feedback: Feedback::Present,
             answers_control: true,
             answer_loss: 0.0,
@@ -147,7 +147,7 @@ impl Profile {
                 staggered: false,
                 full_geometry: false,
                 drawn_goals: true,
-                told_ball: Some(ReportedBall {
+                reported_ball: Some(ReportedBall {
                     slide: -14.0,
                     roll: -0.7,
                     switch: 0.7,
@@ -167,7 +167,7 @@ impl Profile {
                 geometry: GeometryStyle::EveryFrame,
                 staggered: false,
                 full_geometry: false,
-                told_ball: Some(ReportedBall {
+                reported_ball: Some(ReportedBall {
                     slide: -3.9,
                     roll: -0.35,
                     switch: 0.69,

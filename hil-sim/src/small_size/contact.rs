@@ -27,22 +27,22 @@ impl World {
             self.events.push(Event::Landed { at: self.ball.position });
         }
         let near = self.robots_near_ball(&before);
-        let (from, mut way) = (before.position, self.ball.position - before.position);
+        let (from, mut motion) = (before.position, self.ball.position - before.position);
         let at_goal = self.ball.position.x().abs() > self.goal_zone && !self.over_the_goal(&self.ball);
         if !near.is_empty() || at_goal {
             self.ball.position = from;
             let mut left = 1.0;
             for _ in 0..BOUNCES_PER_STEP {
-                let Some((share, obstacle, nearest)) = self.first_hit(&near, at_goal, way, left) else {
+                let Some((share, obstacle, nearest)) = self.first_hit(&near, at_goal, motion, left) else {
                     break;
                 };
-                self.ball.position += way * share;
+                self.ball.position += motion * share;
                 // Robots have already moved for the whole step: the ball collides with them there.
                 left *= 1.0 - share;
                 self.hit(obstacle, nearest);
-                way = self.ball.velocity * (STEP * left);
+                motion = self.ball.velocity * (STEP * left);
             }
-            self.ball.position += way;
+            self.ball.position += motion;
             self.push_ball_out(&near, at_goal);
         }
         self.land_on_robots(&before, &near);
@@ -63,10 +63,10 @@ impl World {
             return near;
         }
         let p = self.ball.position;
-        let way = (p - before.position).norm();
+        let motion = (p - before.position).norm();
         for &i in &self.near_ball {
             let robot = &self.robots[usize::from(i)];
-            let reach = robot.body.radius + self.parameters.ball.radius + way + ROBOT_STEP;
+            let reach = robot.body.radius + self.parameters.ball.radius + motion + ROBOT_STEP;
             let (dx, dy) = (p.x() - robot.pose.position.x(), p.y() - robot.pose.position.y());
             if dx * dx + dy * dy < reach * reach && near.push(usize::from(i)).is_err() {
                 break;
@@ -93,12 +93,12 @@ impl World {
         }
     }
 
-    /// The first obstacle on the ball's displacement `way`, and the share of `way` before the contact.
+    /// The first obstacle on the ball's displacement `motion`, and the share of `motion` before the contact.
     fn first_hit(
         &self,
         near: &[usize],
         at_goal: bool,
-        way: Vector<Field>,
+        motion: Vector<Field>,
         left: f32,
     ) -> Option<(f32, Obstacle, Nearest)> {
         let walls = if at_goal { self.goal_walls.len() } else { 0 };
@@ -117,9 +117,9 @@ impl World {
             let (start, relative) = match obstacle {
                 Obstacle::Robot(i) => {
                     let gone = self.robots[i].velocity * (STEP * left);
-                    (self.ball.position + gone, way - gone)
+                    (self.ball.position + gone, motion - gone)
                 }
-                Obstacle::GoalWall(_) => (self.ball.position, way),
+                Obstacle::GoalWall(_) => (self.ball.position, motion),
             };
             let limit = first.map_or(1.0, |(share, ..)| share);
             if let Some((share, nearest)) = self.sweep(obstacle, start, relative, limit) {
@@ -129,22 +129,22 @@ impl World {
         first
     }
 
-    /// The share of `way` from `start` after which the ball touches this obstacle, moving towards it.
+    /// The share of `motion` from `start` after which the ball touches this obstacle, moving towards it.
     fn sweep(
         &self,
         obstacle: Obstacle,
         start: Point<Field>,
-        way: Vector<Field>,
+        motion: Vector<Field>,
         limit: f32,
     ) -> Option<(f32, Nearest)> {
-        let length = way.norm();
+        let length = motion.norm();
         let mut share = 0.0;
         for _ in 0..SWEEP_STEPS {
-            let nearest = self.nearest(obstacle, start + way * share);
+            let nearest = self.nearest(obstacle, start + motion * share);
             let gap = nearest.distance - self.parameters.ball.radius;
             if gap <= TOUCH {
                 let normal = Vector::new(nearest.normal[0], nearest.normal[1]);
-                return (way.dot(normal) < 0.0).then_some((share, nearest));
+                return (motion.dot(normal) < 0.0).then_some((share, nearest));
             }
             if length <= 0.0 {
                 return None;
@@ -323,14 +323,14 @@ impl World {
     pub(super) fn touch(&mut self, i: usize) {
         let (now, at) = (self.step, self.ball.position);
         let robot = &mut self.robots[i];
-        let anew = robot.touched_at.is_none_or(|before| now - before > super::TOUCH_GAP_STEPS);
+        let is_new_touch = robot.touched_at.is_none_or(|before| now - before > super::TOUCH_GAP_STEPS);
         robot.touched_at = Some(now);
         robot.touching = true;
         if robot.dribbling_from.is_none() {
             robot.dribbling_from = Some(at);
         }
         self.last_touch = Some((robot.who, now));
-        if anew {
+        if is_new_touch {
             self.events.push(Event::Touched { robot: robot.who, at });
         }
     }

@@ -315,12 +315,12 @@ impl World {
 
     fn follow_drag(&mut self) {
         let Some(drag) = self.ball_drag else { return };
-        let way = drag.to - self.ball.position;
-        let arrived = way.dot(way) < ARRIVED * ARRIVED;
+        let offset = drag.to - self.ball.position;
+        let arrived = offset.dot(offset) < ARRIVED * ARRIVED;
         if drag.until.is_some_and(|until| arrived || until <= self.step) {
             self.ball_drag = None;
         }
-        let velocity = if arrived { Vector::default() } else { (way * DRAG_RATE).clamped(DRAG_SPEED) };
+        let velocity = if arrived { Vector::default() } else { (offset * DRAG_RATE).clamped(DRAG_SPEED) };
         self.ball = Ball::rolling(self.ball.position, velocity);
     }
 

@@ -26,8 +26,8 @@ impl Senses {
 
     /// The sensor frame of the robot; speeds are means since the last one.
     pub(super) fn look(&mut self, robot: &mut Robot, now: u64, battery: &BatteryParameters) -> SensorFrame {
-        let anew = Odometer { asked: now, ..Odometer::default() };
-        let odometer = std::mem::replace(&mut robot.odometer, anew);
+        let restarted = Odometer { asked: now, ..Odometer::default() };
+        let odometer = std::mem::replace(&mut robot.odometer, restarted);
         let mean = 1.0 / (now - odometer.asked).max(1) as f32;
         let [x, y] = odometer.along.map(|sum| sum * mean);
         let scale = self.deviation(self.noise.odometry);

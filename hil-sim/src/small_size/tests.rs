@@ -2,8 +2,8 @@
 //! give equal worlds.
 
 mod ball;
+mod dribbler;
 mod drive;
-mod mouth;
 
 use geometry::{Point, Pose, Twist, Vector};
 use protocol::RobotId;

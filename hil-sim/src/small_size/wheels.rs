@@ -53,7 +53,7 @@ impl Wheels {
         }
         let [x, y, turn] = system;
         Some(Self {
-            rims: [0, 1, 2].map(|way| rows.map(|row| row[way])),
+            rims: [0, 1, 2].map(|axis| rows.map(|row| row[axis])),
             motions: [3, 4, 5, 6].map(|wheel| [x[wheel], y[wheel], turn[wheel], 0.0]),
         })
     }
@@ -72,11 +72,11 @@ impl Wheels {
     #[inline]
     pub(super) fn motion(&self, [p, q, r, s]: [f32; 4]) -> [f32; 3] {
         let [a, b, c, d] = &self.motions;
-        let mut ways = [0.0; 4];
-        for (lane, way) in ways.iter_mut().enumerate() {
-            *way = a[lane] * p + b[lane] * q + c[lane] * r + d[lane] * s;
+        let mut rolled = [0.0; 4];
+        for (lane, axis) in rolled.iter_mut().enumerate() {
+            *axis = a[lane] * p + b[lane] * q + c[lane] * r + d[lane] * s;
         }
-        [ways[0], ways[1], ways[2]]
+        [rolled[0], rolled[1], rolled[2]]
     }
 }
 

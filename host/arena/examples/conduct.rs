@@ -43,7 +43,7 @@ fn main() -> Result<(), String> {
         })
         .collect::<Result<_, String>>()?;
     for (report, account) in &played {
-        tell(report, account);
+        print_conduct(report, account);
     }
     sum(&played);
     Ok(())
@@ -113,7 +113,7 @@ fn fouls(report: &GameReport) -> BTreeMap<&'static str, u32> {
     all
 }
 
-fn tell(report: &GameReport, account: &Account) {
+fn print_conduct(report: &GameReport, account: &Account) {
     let (blue, yellow) = (&report.metrics.blue, &report.metrics.yellow);
     println!(
         "seed {}: {:.0} % in play, {}:{} goals, shots {}:{}, placed {} of {}, longest hold {:.1} s, {} over 2.5 s, {} reversals, \

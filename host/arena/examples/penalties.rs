@@ -16,7 +16,7 @@ fn main() -> Result<(), String> {
     let number = |text: &str| text.parse::<u64>().map_err(|error| format!("{text}: {error}; {usage}"));
     let (first, count) = (number(first)?, number(count)?);
     let of = |keeper| saves(league, first..first + count, keeper).map_err(|error| error.to_string());
-    let told = |name: &str, count: Count| {
+    let reported = |name: &str, count: Count| {
         let interval = wilson(count, CONFIDENCE);
         let percent =
             |share: Option<f64>| share.map_or("–".into(), |share| format!("{:.1}", 100.0 * share));
@@ -32,8 +32,8 @@ fn main() -> Result<(), String> {
     };
     println!("{} penalties of {}, seeds {first} to {}", count, league.name(), first + count - 1);
     let (plays, stands) = (of(Keeper::Plays)?, of(Keeper::Stands)?);
-    told("our keeper", plays);
-    told("one that stands", stands);
+    reported("our keeper", plays);
+    reported("one that stands", stands);
     if let Some(more) = newcombe(plays, stands, CONFIDENCE) {
         println!("more: {:.1} points at least, {:.1} at most", 100.0 * more.low, 100.0 * more.high);
     }

@@ -76,8 +76,8 @@ impl Watcher for Recording {
         if self.samples.is_empty() {
             self.cast = moment.cast.clone();
         }
-        for news in moment.news {
-            let CycleEvent::Decided(cycle) = *news else { continue };
+        for cycle_event in moment.events {
+            let CycleEvent::Decided(cycle) = *cycle_event else { continue };
             let Some(play) = moment.cycles.cycles().get(cycle).and_then(|cycle| cycle.play.as_ref()) else {
                 continue;
             };

@@ -32,7 +32,7 @@ impl TextLog {
         std::mem::take(&mut self.lines)
     }
 
-    fn tell(&mut self, time: f32, text: impl AsRef<str>) {
+    fn add(&mut self, time: f32, text: impl AsRef<str>) {
         self.lines.push(format!("{time:7.2} s  {}", text.as_ref()));
     }
 
@@ -62,7 +62,7 @@ impl TextLog {
             .iter()
             .map(|id| format!("{} is robot {id}", moment.cast.name_of(*id)))
             .collect();
-        self.tell(0.0, format!("{what}, seed {seed}; {}", names.join(", ")));
+        self.add(0.0, format!("{what}, seed {seed}; {}", names.join(", ")));
     }
 
     fn fault(&mut self, moment: &Moment<'_>, fault: &Fault) {
@@ -73,23 +73,23 @@ impl TextLog {
             Fault::Air(air) => format!("the air changes: {:.0} % loss", air.loss * 100.0),
             Fault::FlipOrderBit { robot, bit } => format!("bit {bit} of {}'s next order flips", name(*robot)),
         };
-        self.tell(moment.tick.time, text);
+        self.add(moment.tick.time, text);
     }
 
-    fn news(&mut self, moment: &Moment<'_>, news: CycleEvent) {
-        let (CycleEvent::Began(i) | CycleEvent::Decided(i) | CycleEvent::Ended(i)) = news else { return };
+    fn on_event(&mut self, moment: &Moment<'_>, event: CycleEvent) {
+        let (CycleEvent::Began(i) | CycleEvent::Decided(i) | CycleEvent::Ended(i)) = event else { return };
         let Some(cycle) = moment.cycles.cycles().get(i) else { return };
-        match (news, &cycle.play) {
+        match (event, &cycle.play) {
             (CycleEvent::Decided(_), Some(play)) => self.decided(moment, cycle, play),
             (CycleEvent::Ended(_), Some(_)) => {
                 let end = cycle.end.map_or("", |(_, end)| end.label());
-                self.tell(moment.tick.time, format!("cycle {} is over: {end}", cycle.id));
+                self.add(moment.tick.time, format!("cycle {} is over: {end}", cycle.id));
             }
             _ if cycle.no_case && !self.without_case => {
                 self.without_case = true;
                 let coordinator = moment.cast.name_of(cycle.coordinator);
                 let text = format!("no case fits, says {coordinator}: everybody plays reactively");
-                self.tell(moment.tick.time, text);
+                self.add(moment.tick.time, text);
             }
             _ => {}
         }
@@ -107,7 +107,7 @@ impl TextLog {
                 .collect();
             let _ = write!(text, "\n             {} plays: {}", moment.cast.name_of(*id), actions.join(", "));
         }
-        self.tell(moment.tick.time, text);
+        self.add(moment.tick.time, text);
     }
 
     fn progress(&mut self, moment: &Moment<'_>, id: RobotId, now: Progress, play: Option<&Play>) {
@@ -135,7 +135,7 @@ impl TextLog {
             },
             Progress::WaitEnd { finished: true } => format!("{name} has done its part"),
         };
-        self.tell(moment.tick.time, text);
+        self.add(moment.tick.time, text);
     }
 
     fn event(&mut self, moment: &Moment<'_>, time: f32, event: &WorldEvent) {
@@ -156,7 +156,7 @@ impl TextLog {
                 format!("{} {verb}, {:.1} m", name(robot), from.distance(rest))
             }
         };
-        self.tell(time, text);
+        self.add(time, text);
     }
 }
 
@@ -168,8 +168,8 @@ impl Watcher for TextLog {
         for fault in &moment.tick.faults {
             self.fault(moment, fault);
         }
-        for news in moment.news {
-            self.news(moment, *news);
+        for event in moment.events {
+            self.on_event(moment, *event);
         }
         for (id, beacon) in moment.beacons {
             let play = beacon.cycle.as_ref().and_then(|cycle| cycle.play());
@@ -182,7 +182,7 @@ impl Watcher for TextLog {
             moment.referee.possessions(Role::Defender) + moment.referee.possessions(Role::Midfield);
         if possessions > self.possessions {
             let who = moment.referee.last_touch().map_or("an opponent", hil_sim::Party::label);
-            self.tell(moment.tick.time, format!("possession {possessions} of the opponents ({who})"));
+            self.add(moment.tick.time, format!("possession {possessions} of the opponents ({who})"));
             self.possessions = possessions;
         }
     }
@@ -199,8 +199,8 @@ impl Watcher for TextLog {
             (Outcome::Timeout, _) => "time is up".to_owned(),
         };
         let counts = report.cases;
-        self.tell(report.time_s as f32, text);
-        self.tell(
+        self.add(report.time_s as f32, text);
+        self.add(
             report.time_s as f32,
             format!(
                 "{} individual and {} cooperative cases, {} times none; the opponents had the ball {} times",
@@ -249,7 +249,7 @@ mod tests {
     use super::*;
     use crate::trial::{TrialConfig, run};
 
-    fn told(config: &TrialConfig<'static>) -> (Vec<String>, TrialReport) {
+    fn reported(config: &TrialConfig<'static>) -> (Vec<String>, TrialReport) {
         let mut story = TextLog::default();
         let report = run(config, Box::new(NativeBackend::new(config.base)), &mut [&mut story]).unwrap();
         (story.take_lines(), report)
@@ -261,7 +261,7 @@ mod tests {
             TrialConfig::new(Scenario::DefenderClose, Configuration::DefenderGoalie, Approach::Cases, 1);
         let robot = RobotId::new(2).unwrap();
         config.faults.push(ScheduledFault { tick: 100, fault: Fault::Crash(robot) });
-        let (lines, report) = told(&config);
+        let (lines, report) = reported(&config);
         assert!(lines[0].contains("scenario 4") && lines[0].contains("A is robot 1, B is robot 2"));
         let played = report.cycles.iter().find_map(|cycle| cycle.case.clone()).unwrap();
         let retrieval = lines.iter().find(|line| line.contains("coordinates and retrieves")).unwrap();
@@ -276,7 +276,7 @@ mod tests {
     #[test]
     fn a_reactive_team_has_a_story_without_cases() {
         let config = TrialConfig::new(Scenario::Random, Configuration::TwoDefenders, Approach::Reactive, 1);
-        let (lines, _) = told(&config);
+        let (lines, _) = reported(&config);
         assert!(lines[0].contains("random scenario 1 against a midfield defender and a defender"));
         assert!(lines.iter().all(|line| !line.contains("retrieves")));
     }

@@ -139,7 +139,7 @@ pub struct Moment<'a> {
     /// The cycles so far, these beacons included.
     pub cycles: &'a CycleLog,
     /// Changes of the cycles by these beacons.
-    pub news: &'a [CycleEvent],
+    pub events: &'a [CycleEvent],
 }
 
 /// Plays a trial to its end.
@@ -168,7 +168,7 @@ pub(crate) struct Game<'c, 'a> {
     cycles: CycleLog,
     defaults: DefaultWatch,
     beacons: Vec<(RobotId, Beacon)>,
-    news: Vec<CycleEvent>,
+    events: Vec<CycleEvent>,
     keys: TeamKeys,
 }
 
@@ -193,7 +193,7 @@ impl<'c, 'a> Game<'c, 'a> {
             cycles: CycleLog::default(),
             defaults: DefaultWatch::default(),
             beacons: Vec::new(),
-            news: Vec::new(),
+            events: Vec::new(),
             keys: TeamKey::ZERO.of_team(),
         })
     }
@@ -202,14 +202,14 @@ impl<'c, 'a> Game<'c, 'a> {
     pub(crate) fn step(&mut self, watchers: &mut [&mut dyn Watcher]) -> Result<(), SimulationError> {
         let tick = self.simulation.step()?;
         self.beacons.clear();
-        self.news.clear();
+        self.events.clear();
         for sent in &tick.sent {
             let Ok((from, TeamMessage::Beacon(beacon))) = overhear(&sent.packet, TEAM, &self.keys) else {
                 continue;
             };
             self.backups.receive(tick.time, from, beacon.role);
             if let Some(state) = &beacon.cycle {
-                self.news.push(self.cycles.receive(tick.time, state));
+                self.events.push(self.cycles.receive(tick.time, state));
             }
             self.beacons.push((from, beacon));
         }
@@ -223,9 +223,9 @@ impl<'c, 'a> Game<'c, 'a> {
 
     /// Tracks whether the team plays by a case, and if not, why.
     fn watch_defaults(&mut self) {
-        let Self { config, simulation, cast, cycles, defaults, news, .. } = self;
-        for news in news.iter() {
-            let (CycleEvent::Decided(i) | CycleEvent::Ended(i)) = *news else { continue };
+        let Self { config, simulation, cast, cycles, defaults, events, .. } = self;
+        for events in events.iter() {
+            let (CycleEvent::Decided(i) | CycleEvent::Ended(i)) = *events else { continue };
             // Late reports of an older cycle have no effect any more.
             if let [cycle] = &cycles.cycles()[i..] {
                 let deceleration = config.parameters.ball.deceleration;
@@ -246,7 +246,7 @@ impl<'c, 'a> Game<'c, 'a> {
             referee: self.simulation.referee(),
             beacons: &self.beacons,
             cycles: &self.cycles,
-            news: &self.news,
+            events: &self.events,
         }
     }
 

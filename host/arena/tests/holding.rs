@@ -51,14 +51,19 @@ impl Stage<'_> {
         self.game.put_ball(Ball::at(at));
     }
 
-    /// Plays on; the seconds until the ball is farther than `way` from where it lay, if that comes within
+    /// Plays on; the seconds until the ball is farther than `at_least` from where it lay, if that comes within
     /// `seconds`.
-    fn until_moved(&mut self, seconds: f64, way: f32, mut meanwhile: impl FnMut(&mut Self)) -> Option<f64> {
+    fn until_moved(
+        &mut self,
+        seconds: f64,
+        at_least: f32,
+        mut meanwhile: impl FnMut(&mut Self),
+    ) -> Option<f64> {
         let (from, begin) = (self.game.world().ball.position, self.game.time());
         while self.game.time() - begin < seconds {
             meanwhile(self);
             self.game.step(&mut NoWatcher).unwrap();
-            if self.game.world().ball.position.distance(from) > way {
+            if self.game.world().ball.position.distance(from) > at_least {
                 return Some(self.game.time() - begin);
             }
         }
@@ -86,9 +91,9 @@ fn mirror(stage: &mut Stage<'_>, number: u8, off: f32) {
     let goal = stage.at(4.5, 0.0);
     let me = who(Colour::Yellow, number);
     let Some(robot) = stage.game.world().robot(me) else { return };
-    let way: Vector<Field> = (goal - ball).unit().unwrap_or_default();
+    let at_least: Vector<Field> = (goal - ball).unit().unwrap_or_default();
     let here = robot.pose.position;
-    let position = here + (ball + way * off - here).clamped(0.015);
+    let position = here + (ball + at_least * off - here).clamped(0.015);
     stage.game.put_robot(me, Pose { position, heading: position.direction_to(ball) });
 }
 

@@ -49,7 +49,7 @@ fn offence(game: &Game<'_>, league: League, who: Who) -> Option<Why> {
     let field = league.field();
     let host = game.host(who.colour);
     let order = host.orders().iter().find(|order| order.robot == who.id);
-    let taker = order.is_some_and(|order| order.role == host::strategy::Role::Taker);
+    let kicker = order.is_some_and(|order| order.role == host::strategy::Role::Kicker);
     let keeper = game.referee().accounts().is_keeper(who);
     let phase = game.referee().phase().seen_by(who.colour);
     let situation = Situation {
@@ -58,8 +58,8 @@ fn offence(game: &Game<'_>, league: League, who: Who) -> Option<Why> {
         phase,
         rule_role: if keeper {
             RuleRole::Keeper
-        } else if taker {
-            RuleRole::Taker
+        } else if kicker {
+            RuleRole::Kicker
         } else {
             RuleRole::Player
         },
@@ -106,13 +106,13 @@ fn prepare(league: League, command: Command, seed: u64) -> Vec<String> {
     let mut wrong = Vec::new();
     for (who, (_, longest)) in all.iter().zip(&stood) {
         let at = game.world().robot(*who).map(|robot| robot.pose.position);
-        let told = || {
+        let reported = || {
             format!("{} {command:?}, seed {seed}: {} {} at {at:?}", league.name(), who.colour.label(), who.id)
         };
         if let Some(why) = offence(&game, league, *who).filter(|_| ended) {
-            wrong.push(format!("{} ends in {why:?}", told()));
+            wrong.push(format!("{} ends in {why:?}", reported()));
         } else if *longest > STANDS {
-            wrong.push(format!("{} stood for {longest:.2} s where it must not be", told()));
+            wrong.push(format!("{} stood for {longest:.2} s where it must not be", reported()));
         }
     }
     wrong

@@ -14,7 +14,7 @@ use foreign::printable;
 use hil_sim::SimulationError;
 
 use crate::cases::new::DraftError;
-use crate::output::{note, shown};
+use crate::output::{note, printable_path};
 use crate::picture::SnapshotError;
 use crate::virtual_robot::RobotError;
 
@@ -155,11 +155,11 @@ impl fmt::Display for Failure {
             Self::NoDirectory(directory) => write!(
                 f,
                 "no library at {}: no such folder; --library takes one league's folder, the one that holds league.toml",
-                shown(directory)
+                printable_path(directory)
             ),
             Self::FaultyLibrary { directory, findings } => {
                 let errors = findings.iter().filter(|finding| finding.severity == Severity::Error);
-                writeln!(f, "the library at {} is refused:", shown(directory))?;
+                writeln!(f, "the library at {} is refused:", printable_path(directory))?;
                 for finding in errors {
                     writeln!(f, "  {finding}")?;
                 }
@@ -200,14 +200,14 @@ impl fmt::Display for Failure {
             Self::Firmware(description) => f.write_str(description),
             Self::Game(error) => write!(f, "{error}"),
             Self::Recording { stem: Some(stem), error } => {
-                write!(f, "cannot keep the recording: {}: {error}", shown(stem))
+                write!(f, "cannot keep the recording: {}: {error}", printable_path(stem))
             }
             Self::Recording { stem: None, error } => {
                 write!(f, "cannot keep the recording: it is not whole: {error}")
             }
-            Self::Markdown { file, error } => write!(f, "{}: {error}", shown(file)),
+            Self::Markdown { file, error } => write!(f, "{}: {error}", printable_path(file)),
             Self::Picture { file, error } => {
-                write!(f, "cannot write the picture {}: {error}", shown(file))
+                write!(f, "cannot write the picture {}: {error}", printable_path(file))
             }
             Self::UnknownName { asked, league } => write!(
                 f,
@@ -225,7 +225,7 @@ impl fmt::Display for Failure {
             ),
             Self::Threads(error) => write!(f, "cannot start threads: {error}; try --jobs 1"),
             Self::Recorded { file, description } => {
-                let file = shown(file);
+                let file = printable_path(file);
                 // The reason may quote the file's own text.
                 let description = printable(description);
                 // Some reasons name the file already.

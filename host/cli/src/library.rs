@@ -147,7 +147,7 @@ pub(crate) fn load(directory: &Path) -> Result<Library, Vec<Finding>> {
         if all >= MANY {
             let line = progress.get_or_init(|| {
                 let line = Progress::open();
-                line.say("reading the library");
+                line.set_text("reading the library");
                 line
             });
             line.set(done as u64, all as u64);

@@ -19,25 +19,25 @@ pub(crate) fn lines() -> BufWriter<Printable<StdoutLock<'static>>> {
 }
 
 /// Prints on stdout, whole or not at all; a reader that closed it has read enough.
-pub(crate) fn say(description: &str) -> Result<(), Failure> {
+pub(crate) fn print_text(description: &str) -> Result<(), Failure> {
     let mut out = Printable::new(io::stdout().lock());
     out.write_all(description.as_bytes()).and_then(|()| out.flush()).map_err(Failure::Output)
 }
 
 /// Prints a line on stderr. If stderr is closed the line is lost.
-pub(crate) fn say_aside(description: Arguments<'_>) {
+pub(crate) fn print_aside(description: Arguments<'_>) {
     let mut out = Printable::new(io::stderr().lock());
     let _ = writeln!(out, "{description}");
 }
 
 /// Prints a line on stderr, as `eprintln!` would.
 macro_rules! note {
-    ($($description:tt)*) => { $crate::output::say_aside(format_args!($($description)*)) };
+    ($($description:tt)*) => { $crate::output::print_aside(format_args!($($description)*)) };
 }
 pub(crate) use note;
 
 /// A file's name as it can stand in a line.
-pub(crate) fn shown(file: &Path) -> String {
+pub(crate) fn printable_path(file: &Path) -> String {
     printable(&file.to_string_lossy()).into_owned()
 }
 
@@ -50,7 +50,7 @@ mod tests {
 
     #[test]
     fn a_file_s_name_stays_within_its_line() {
-        let name = shown(Path::new("a\u{1b}]0;pwn\u{7}\n0.00 s  GOAL"));
+        let name = printable_path(Path::new("a\u{1b}]0;pwn\u{7}\n0.00 s  GOAL"));
         assert_eq!(name, "a\\u001b]0;pwn\\u0007\\n0.00 s  GOAL");
     }
 

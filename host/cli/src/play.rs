@@ -145,7 +145,7 @@ pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
         let json = serde_json::to_string(&report).map_err(|error| Failure::Output(error.into()))?;
         writeln!(out, "{json}").map_err(Failure::Output)?;
     } else {
-        tell(&mut out, args, &report).map_err(Failure::Output)?;
+        write_report(&mut out, args, &report).map_err(Failure::Output)?;
     }
     out.flush().map_err(Failure::Output)?;
     let Some((signal, code)) = signal() else { return Ok(ExitCode::SUCCESS) };
@@ -182,14 +182,14 @@ fn on_page(
             recording.finish().map_err(|error| Failure::Recording { stem: None, error })?;
         }
         let mut out = output::lines();
-        tell(&mut out, args, &report).and_then(|()| out.flush()).map_err(Failure::Output)?;
+        write_report(&mut out, args, &report).and_then(|()| out.flush()).map_err(Failure::Output)?;
         if !over {
             return Ok(ExitCode::SUCCESS);
         }
         note!("the match is over; the page stays until Ctrl-C");
         let Some(seed) = match_runner.linger() else { return Ok(ExitCode::SUCCESS) };
-        match_runner.anew(seed);
-        watched.anew();
+        match_runner.restart(seed);
+        watched.restart();
     }
 }
 
@@ -204,7 +204,7 @@ impl RestartWatcher for Watched {
         self
     }
 
-    fn anew(&mut self) {
+    fn restart(&mut self) {
         self.teller.story = self.teller.story.is_some().then(MatchLog::default);
     }
 }
@@ -252,7 +252,7 @@ fn record(stem: &std::path::Path, config: &GameConfig) -> Result<Recorder, Failu
     Recorder::begin(stem, &header).map_err(|error| Failure::Recording { stem: Some(stem.to_owned()), error })
 }
 
-fn tell(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> io::Result<()> {
+fn write_report(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> io::Result<()> {
     let percent = report.ball_in_play * 100.0;
     writeln!(
         out,

@@ -16,7 +16,7 @@ pub(crate) struct Progress(Mutex<Line>);
 
 #[derive(Debug)]
 struct Line {
-    shown: bool,
+    visible: bool,
     description: String,
     unit: &'static str,
     done: u64,
@@ -38,12 +38,12 @@ impl Progress {
     }
 
     fn new(unit: &'static str, of: Option<u64>) -> Self {
-        let (shown, start) = (io::stderr().is_terminal(), (Instant::now(), 0));
-        Self(Mutex::new(Line { shown, description: String::new(), unit, done: 0, of, start, drawn: None }))
+        let (visible, start) = (io::stderr().is_terminal(), (Instant::now(), 0));
+        Self(Mutex::new(Line { visible, description: String::new(), unit, done: 0, of, start, drawn: None }))
     }
 
     /// The words before the bar, or all of the line where the end is not known.
-    pub(crate) fn say(&self, description: impl Into<String>) {
+    pub(crate) fn set_text(&self, description: impl Into<String>) {
         let mut line = self.line();
         line.description = description.into();
         line.draw();
@@ -96,7 +96,7 @@ impl Drop for Progress {
 impl Line {
     fn draw(&mut self) {
         let now = Instant::now();
-        if !self.shown || self.drawn.is_some_and(|drawn| now.duration_since(drawn) < REDRAW) {
+        if !self.visible || self.drawn.is_some_and(|drawn| now.duration_since(drawn) < REDRAW) {
             return;
         }
         self.drawn = Some(now);
@@ -143,7 +143,7 @@ mod tests {
     fn a_line_tells_how_much_is_done_and_how_long_the_rest_takes() {
         let progress = Progress::of(8, "problems");
         let mut line = progress.line();
-        line.shown = false;
+        line.visible = false;
         line.done = 4;
         line.start.1 = 2;
         let text = line.text(line.start.0 + Duration::from_secs(10));
@@ -155,10 +155,10 @@ mod tests {
     #[test]
     fn work_without_an_end_tells_its_steps_or_its_words() {
         let progress = Progress::open();
-        progress.line().shown = false;
+        progress.line().visible = false;
         progress.add(7);
         assert_eq!(progress.line().text(Instant::now()), "7");
-        progress.say("80 packets a second");
+        progress.set_text("80 packets a second");
         assert_eq!(progress.line().text(Instant::now()), "80 packets a second");
         let nothing = Progress::of(0, "");
         assert!(nothing.line().text(Instant::now()).ends_with("0/0"));

@@ -106,7 +106,7 @@ pub(crate) fn run(args: &TrialArgs) -> Result<ExitCode, Failure> {
     writeln!(out, "trace {}, to see it again: {}", report.trace_hash, args.again(&report))
         .map_err(Failure::Output)?;
     if let Some(file) = svg {
-        writeln!(out, "picture: {}", output::shown(file)).map_err(Failure::Output)?;
+        writeln!(out, "picture: {}", output::printable_path(file)).map_err(Failure::Output)?;
     }
     out.flush().map_err(Failure::Output)?;
     drop(out);

@@ -50,15 +50,18 @@ fn the_page_that_is_written_is_the_one_a_robot_reads_and_its_owner_alone_may() {
         ["firmware", "provision", "--robot", "5", "--team", "2", "--key-file", &key, "--out", &page];
     // An existing file that is open to all is closed to others.
     fs::write(&page, "old").expect("a file");
-    let told = onetwo(&description);
-    assert!(told.status.success(), "{}", String::from_utf8_lossy(&told.stderr));
+    let reported = onetwo(&description);
+    assert!(reported.status.success(), "{}", String::from_utf8_lossy(&reported.stderr));
     let who = read(&fs::read(&page).expect("the page"), false).expect("a robot can read it");
     assert_eq!((Some(who.robot), who.team, who.league), (RobotId::new(5), TeamId(2), League::DivisionB));
     let team = TeamKey(std::array::from_fn(|n| n as u8));
     assert_eq!(who.keys, team.of_robot(who.robot));
     let bytes = fs::read(&page).expect("the page");
     assert!(!bytes.windows(16).any(|window| window == team.0), "the team's key stays at home");
-    assert!(!String::from_utf8_lossy(&told.stdout).contains("0001020304"), "the key is nobody's business");
+    assert!(
+        !String::from_utf8_lossy(&reported.stdout).contains("0001020304"),
+        "the key is nobody's business"
+    );
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt as _;
@@ -76,7 +79,7 @@ fn what_no_robot_could_use_is_refused_with_a_hint() {
     for (robot, key, description) in
         [("5", &key, "32 hexadecimal digits"), ("5", &zeros, "all zeros"), ("16", &zeros, "none of 0–15")]
     {
-        let told = onetwo(&[
+        let reported = onetwo(&[
             "firmware",
             "provision",
             "--robot",
@@ -88,21 +91,21 @@ fn what_no_robot_could_use_is_refused_with_a_hint() {
             "--out",
             &page,
         ]);
-        assert_eq!(told.status.code(), Some(1));
-        let said = String::from_utf8_lossy(&told.stderr).into_owned();
-        assert!(said.contains(description), "{said}");
+        assert_eq!(reported.status.code(), Some(1));
+        let printed = String::from_utf8_lossy(&reported.stderr).into_owned();
+        assert!(printed.contains(description), "{printed}");
         assert!(!fs::exists(&page).expect("a folder"), "a page of {description}");
     }
 }
 
 #[test]
 fn without_probe_rs_flashing_says_what_to_install() {
-    let told = onetwo(&["firmware", "flash", "--chip", "STM32H743ZITx", "--elf", "image"]);
-    assert_eq!(told.status.code(), Some(1));
-    let said = String::from_utf8_lossy(&told.stderr).into_owned();
+    let reported = onetwo(&["firmware", "flash", "--chip", "STM32H743ZITx", "--elf", "image"]);
+    assert_eq!(reported.status.code(), Some(1));
+    let printed = String::from_utf8_lossy(&reported.stderr).into_owned();
     assert!(
-        said.contains("probe-rs is not installed") && said.contains("cargo install probe-rs-tools"),
-        "{said}"
+        printed.contains("probe-rs is not installed") && printed.contains("cargo install probe-rs-tools"),
+        "{printed}"
     );
 }
 

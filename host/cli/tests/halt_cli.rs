@@ -39,7 +39,7 @@ const KEY: [u8; 16] = [0x5a; 16];
 struct Field {
     process: Child,
     lines: Receiver<String>,
-    said: Vec<String>,
+    output: Vec<String>,
     vision: SocketAddr,
     referee: SocketAddr,
 }
@@ -76,21 +76,21 @@ impl Field {
                 let _ = send.send(line);
             }
         });
-        Self { process, lines, said: Vec::new(), vision, referee }
+        Self { process, lines, output: Vec::new(), vision, referee }
     }
 
     /// Waits for a line that contains all of `arguments`.
-    fn says(&mut self, arguments: &[&str]) -> String {
+    fn wait_for_line(&mut self, arguments: &[&str]) -> String {
         let until = Instant::now() + PATIENCE;
         loop {
             match self.lines.recv_timeout(until.saturating_duration_since(Instant::now())) {
                 Ok(line) => {
-                    self.said.push(line.clone());
+                    self.output.push(line.clone());
                     if arguments.iter().all(|label| line.contains(label)) {
                         return line;
                     }
                 }
-                Err(error) => panic!("{arguments:?} is not said ({error}); said is: {:#?}", self.said),
+                Err(error) => panic!("{arguments:?} is not said ({error}); said is: {:#?}", self.output),
             }
         }
     }
@@ -140,11 +140,11 @@ impl Controller {
     }
 
     /// Sends a command, at once.
-    fn say(&self, command: Wire) -> Instant {
+    fn send_command(&self, command: Wire) -> Instant {
         let counter = {
-            let mut said = self.command.lock().expect("no panic");
-            *said = (command, said.1 + 1);
-            said.1
+            let mut output = self.command.lock().expect("no panic");
+            *output = (command, output.1 + 1);
+            output.1
         };
         let at = Instant::now();
         self.socket.send_to(&packet(self.identifier, command, counter), self.to).expect("loopback");
@@ -253,12 +253,12 @@ impl Robots {
         }
         self.reported = Some(Instant::now());
         let now = self.now();
-        let tell = |link: &mut Link| {
+        let report = |link: &mut Link| {
             let mut telemetry = Telemetry::default();
-            link.tell(now, &mut telemetry);
+            link.report(now, &mut telemetry);
             link.seal(&TeamMessage::Telemetry(telemetry))
         };
-        self.links.iter_mut().map(tell).collect()
+        self.links.iter_mut().map(report).collect()
     }
 }
 
@@ -289,7 +289,7 @@ fn wait_for(frames: &Receiver<(Instant, bool)>, halt: bool, since: Instant) -> D
     loop {
         let left = until.saturating_duration_since(Instant::now());
         match frames.recv_timeout(left) {
-            Ok((at, says)) if says == halt && at >= since => return at - since,
+            Ok((at, wait_for_line)) if wait_for_line == halt && at >= since => return at - since,
             Ok(_) => {}
             Err(error) => panic!("no frame with halt = {halt} comes: {error}"),
         }
@@ -325,22 +325,22 @@ fn halts_under(flooded: Vec<Vec<u8>>, alarm: &str) {
     let end = Arc::new(AtomicBool::new(false));
     camera(field.vision, &end);
     let controller = Controller::start("gc", "127.0.0.1:0", field.referee, Wire::Stop);
-    field.says(&["the referee is heard"]);
-    controller.say(Wire::ForceStart);
+    field.wait_for_line(&["the referee is heard"]);
+    controller.send_command(Wire::ForceStart);
     wait_for(&frames, false, Instant::now());
     let before = field.memory();
     let sent = flood(field.vision, flooded, &end);
     thread::sleep(Duration::from_secs(2));
     let (mut took, mut most) = (Vec::new(), before);
     for _ in 0..8 {
-        let since = controller.say(Wire::Halt);
+        let since = controller.send_command(Wire::Halt);
         took.push(wait_for(&frames, true, since));
         thread::sleep(Duration::from_millis(100));
-        controller.say(Wire::Stop);
+        controller.send_command(Wire::Stop);
         wait_for(&frames, false, Instant::now());
         most = most.max(field.memory());
     }
-    field.says(&[alarm]);
+    field.wait_for_line(&[alarm]);
     end.store(true, Ordering::Relaxed);
     took.sort();
     let (median, worst) = (took[took.len() / 2], took[took.len() - 1]);
@@ -377,8 +377,12 @@ fn finding_2_two_referees_that_disagree_are_reported_with_both_addresses() {
     let genuine = Controller::start("gc\u{1b}[31m", "127.0.0.1:0", field.referee, Wire::ForceStart);
     wait_for(&frames, false, Instant::now());
     let other = Controller::start("other", "127.0.0.2:0", field.referee, Wire::Halt);
-    let line =
-        field.says(&["two referees disagree", "127.0.0.1:", "127.0.0.2:", "--referee-source 127.0.0.1"]);
+    let line = field.wait_for_line(&[
+        "two referees disagree",
+        "127.0.0.1:",
+        "127.0.0.2:",
+        "--referee-source 127.0.0.1",
+    ]);
     assert!(!line.contains('\u{1b}'), "{line:?}");
     wait_for(&frames, true, Instant::now());
     drop(other);
@@ -395,9 +399,9 @@ fn a_pinned_referee_is_obeyed_and_the_other_one_reported() {
     camera(field.vision, &end);
     let _other = Controller::start("other", "127.0.0.1:0", field.referee, Wire::Halt);
     let pinned = Controller::start("gc", "127.0.0.2:0", field.referee, Wire::ForceStart);
-    field.says(&["\"other\" at 127.0.0.1:", "is ignored", "127.0.0.2"]);
+    field.wait_for_line(&["\"other\" at 127.0.0.1:", "is ignored", "127.0.0.2"]);
     wait_for(&frames, false, Instant::now());
-    let since = pinned.say(Wire::Halt);
+    let since = pinned.send_command(Wire::Halt);
     wait_for(&frames, true, since);
     end.store(true, Ordering::Relaxed);
 }
@@ -444,16 +448,16 @@ fn finding_10_on_a_slow_line_halt_comes_before_what_is_stale_and_the_rate_is_rep
     });
     camera(field.vision, &end);
     let controller = Controller::start("gc", "127.0.0.1:0", field.referee, Wire::Stop);
-    field.says(&["the referee is heard"]);
-    controller.say(Wire::ForceStart);
-    let arguments = field.says(&["robots' line", "is too slow", "bit/s"]);
+    field.wait_for_line(&["the referee is heard"]);
+    controller.send_command(Wire::ForceStart);
+    let arguments = field.wait_for_line(&["robots' line", "is too slow", "bit/s"]);
     eprintln!("{arguments}");
     thread::sleep(Duration::from_secs(3));
     let mut stale = Vec::new();
     for _ in 0..5 {
         while frames.try_recv().is_ok() {}
         let before = read.load(Ordering::Relaxed);
-        controller.say(Wire::Halt);
+        controller.send_command(Wire::Halt);
         let until = Instant::now() + PATIENCE;
         let at = loop {
             match frames.recv_timeout(until.saturating_duration_since(Instant::now())) {
@@ -463,7 +467,7 @@ fn finding_10_on_a_slow_line_halt_comes_before_what_is_stale_and_the_rate_is_rep
             }
         };
         stale.push(at - before);
-        controller.say(Wire::Stop);
+        controller.send_command(Wire::Stop);
         thread::sleep(Duration::from_millis(500));
     }
     end.store(true, Ordering::Relaxed);

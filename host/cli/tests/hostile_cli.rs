@@ -155,18 +155,19 @@ fn a_recording_cut_between_any_two_records_is_cut_and_never_other_decisions() {
             );
             assert_eq!(report["same_decisions"], true, "after {kind:?} at byte {at}: {}", report["hosts"]);
             let out = onetwo(&["replay", text(&file)]);
-            let (told, why) = (String::from_utf8_lossy(&out.stdout), String::from_utf8_lossy(&out.stderr));
+            let (reported, why) =
+                (String::from_utf8_lossy(&out.stdout), String::from_utf8_lossy(&out.stderr));
             assert!(
-                told.contains("the file is damaged: cut at byte") && why.contains("cut at byte"),
-                "{told}{why}"
+                reported.contains("the file is damaged: cut at byte") && why.contains("cut at byte"),
+                "{reported}{why}"
             );
-            assert!(!told.contains("other decisions"), "{told}");
+            assert!(!reported.contains("other decisions"), "{reported}");
             // Without gzip's end mark only missing packets reveal that it was truncated; in both cases no
             // other decisions.
             fs::write(&file, &whole[..*at]).unwrap();
-            let told = onetwo(&["replay", text(&file)]).stdout;
+            let reported = onetwo(&["replay", text(&file)]).stdout;
             assert!(
-                !String::from_utf8_lossy(&told).contains("other decisions"),
+                !String::from_utf8_lossy(&reported).contains("other decisions"),
                 "after {kind:?} at byte {at}"
             );
             tried += 1;
@@ -213,9 +214,12 @@ fn a_match_that_is_ended_by_a_signal_ends_in_order_and_its_recording_is_whole() 
         let (child, stem) = under_way(&format!("ended-{name}"));
         signal(&child, name);
         let out = child.wait_with_output().unwrap();
-        let (told, why) = (String::from_utf8_lossy(&out.stdout), String::from_utf8_lossy(&out.stderr));
+        let (reported, why) = (String::from_utf8_lossy(&out.stdout), String::from_utf8_lossy(&out.stderr));
         assert_eq!(out.status.code(), Some(code), "{why}");
-        assert!(told.contains("ball in play") && told.contains("to see it again"), "the summary: {told}");
+        assert!(
+            reported.contains("ball in play") && reported.contains("to see it again"),
+            "the summary: {reported}"
+        );
         assert!(why.contains("ended by ") && why.contains(name), "{why}");
         let log = json(&["replay", text(&stem.with_extension("log.gz"))], 0);
         assert!(log["damage"].is_null() && log["span_s"].as_f64().is_some_and(|s| s > 1.0), "{log}");
@@ -287,13 +291,13 @@ fn a_log_cannot_speak_to_the_terminal_nor_write_lines_of_its_own() {
     let file = scratch("\u{1b}]0;name\u{7}\nforged: all is well.log");
     log(&file, &referee, 0);
     let out = onetwo(&["replay", text(&file)]);
-    let told = String::from_utf8(out.stdout).unwrap();
-    assert_eq!(obeyed(&told), None, "{told:?}");
+    let reported = String::from_utf8(out.stdout).unwrap();
+    assert_eq!(obeyed(&reported), None, "{reported:?}");
     assert!(
-        told.contains("\\u001b[31mEVIL\\u001b]0;pwn\\u0007\\n     0.00 s  GOAL\\r\\u009b2J\\u202e"),
-        "{told}"
+        reported.contains("\\u001b[31mEVIL\\u001b]0;pwn\\u0007\\n     0.00 s  GOAL\\r\\u009b2J\\u202e"),
+        "{reported}"
     );
-    for line in told.lines() {
+    for line in reported.lines() {
         assert!(!line.starts_with("forged") && !line.ends_with("  GOAL"), "a line of its own: {line}");
     }
     let report = json(&["replay", text(&file)], 0);
@@ -349,17 +353,17 @@ fn field_names_cards_robots_and_places_of_a_recording_are_told() {
     let cards: u64 =
         ["blue", "yellow"].iter().filter_map(|team| report["teams"][team]["yellow_cards"].as_u64()).sum();
     assert_eq!(cards, 1, "README of the recordings: one yellow card");
-    let happenings = report["happenings"].as_array().unwrap();
-    let named = |name: &str| happenings.iter().filter(|h| h["name"] == name).collect::<Vec<_>>();
+    let match_events = report["happenings"].as_array().unwrap();
+    let named = |name: &str| match_events.iter().filter(|h| h["name"] == name).collect::<Vec<_>>();
     assert_eq!(named("YELLOW_CARD").len(), 1);
     assert!(!named("MAX_BOTS").is_empty(), "a card takes a robot off");
-    let placed: Vec<_> = happenings
+    let placed: Vec<_> = match_events
         .iter()
         .filter(|h| h["words"].as_str().is_some_and(|description| description.contains("the ball to (")))
         .collect();
     assert!(!placed.is_empty());
-    let told = String::from_utf8(onetwo(&["replay", text(&data)]).stdout).unwrap();
-    assert!(told.contains("field: 9.000 x 6.000 m") && told.contains("max bots"), "{told}");
+    let reported = String::from_utf8(onetwo(&["replay", text(&data)]).stdout).unwrap();
+    assert!(reported.contains("field: 9.000 x 6.000 m") && reported.contains("max bots"), "{reported}");
     assert_eq!(json(&["replay", text(&data), "--event", "yellow_card"], 0)["event"], "YELLOW_CARD");
 }
 

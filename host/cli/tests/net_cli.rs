@@ -81,7 +81,7 @@ fn a_taken_port_is_told_and_the_rest_goes_on() {
     let port = taken.local_addr().expect("an address").port().min(65_000).to_string();
     let simulate = ["simulate", "--ports", &port, "--listen", "127.0.0.1", "--referee", "none"];
     let mut simulator = Running::start(&[&simulate[..], &["--vision", &to, "--duration", "60"]].concat());
-    let (_, line) = simulator.says("is taken");
+    let (_, line) = simulator.wait_for("is taken");
     assert!(line.contains(&port) && line.contains("tried again"), "{line}");
     image(&vision);
 }
@@ -95,7 +95,7 @@ fn the_internal_referee_speaks_and_the_simulator_ends_in_order() {
     let mut bytes = [0; 8192];
     let (length, _) = referee.recv_from(&mut bytes).expect("the referee speaks");
     ssl::referee::Referee::decode(&bytes[..length]).expect("a packet of the referee");
-    simulator.says("ended after");
+    simulator.wait_for("ended after");
     assert!(simulator.process.wait().expect("it ends").success());
 }
 
@@ -117,7 +117,7 @@ fn control_says_what_it_waits_for_and_goes_on_when_it_comes() {
     let mut waits: Vec<String> = Vec::new();
     let mut latest = Duration::ZERO;
     for _ in 0..3 {
-        let (at, line) = control.says("waiting for");
+        let (at, line) = control.wait_for("waiting for");
         latest = latest.max(at);
         waits.push(line);
     }
@@ -132,9 +132,9 @@ fn control_says_what_it_waits_for_and_goes_on_when_it_comes() {
     let arguments = ["simulate", "--ports", "0", "--listen", "127.0.0.1", "--duration", "60"];
     let _simulator =
         Running::start(&[&arguments[..], &["--vision", &vision, "--referee-to", &referee]].concat());
-    let mut came = [control.says("vision comes").1, String::new()];
+    let mut came = [control.wait_for("vision comes").1, String::new()];
     if !control.received.iter().any(|(_, line)| line.contains("the referee is heard")) {
-        came[1] = control.says("the referee is heard").1;
+        came[1] = control.wait_for("the referee is heard").1;
     }
     assert!(came[0].contains(&vision), "{came:?}");
 }
@@ -149,7 +149,7 @@ fn brains_of_our_own_take_their_places_for_the_kickoff() {
     let to = tracked.local_addr().expect("an address").to_string();
     let control = ["control", "--robots", &robots, "--tracker", &to, "--duration", "60"];
     let mut control = Running::start(&[&control[..], &["--vision", &vision, "--referee", &referee]].concat());
-    control.says("robots are heard");
+    control.wait_for("robots are heard");
     // Blue starts within 1.5 m of the halfway line; the keeper has 3 m to go to its goal at −x.
     let (until, mut bytes) = (Instant::now() + PATIENCE, [0; 8192]);
     let mut places = Vec::new();

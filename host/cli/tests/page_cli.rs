@@ -78,8 +78,8 @@ fn a_match_is_shown_stopped_and_begun_anew() {
     assert!(anew["t"].as_f64().unwrap() < t.max(3.0));
     // Paths of more than two points: planned ones.
     viewer.until(|scene| {
-        let ways = scene["robots"].as_array().unwrap().iter().map(|robot| &robot["mind"]["intent"]["path"]);
-        ways.filter_map(Value::as_array).any(|way| way.len() > 3)
+        let paths = scene["robots"].as_array().unwrap().iter().map(|robot| &robot["mind"]["intent"]["path"]);
+        paths.filter_map(Value::as_array).any(|line| line.len() > 3)
     });
     viewer.ask(r#"{"ask":"fly"}"#);
     let refused = viewer.until(|label| label.get("refused").is_some());
@@ -184,7 +184,7 @@ fn a_real_field_is_halted_from_the_page_and_nothing_else() {
     let refused = viewer.until(|label| label.get("refused").is_some());
     assert!(refused["refused"].as_str().unwrap().contains("nothing but HALT"), "{refused}");
     viewer.ask(r#"{"ask":"halt"}"#);
-    control.says("HALT was asked for on the page");
+    control.wait_for("HALT was asked for on the page");
 }
 
 #[test]
@@ -231,17 +231,17 @@ fn a_recording_that_breaks_off_says_so() {
     let cut = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("cut.log.gz");
     std::fs::write(&cut, &whole[..whole.len() / 2]).unwrap();
     let replay = Program::start(&["replay", cut.to_str().unwrap(), "--watch", "--listen", "127.0.0.1:0"]);
-    replay.says("the file breaks off: ");
+    replay.wait_for("the file breaks off: ");
     // A viewer has it among the events.
     Viewer::of(&replay).until(|scene| scene["t"].as_f64().is_some_and(|t| t > 5.0));
     let begun = Instant::now();
-    while !happenings(&replay).contains("the file breaks off: ") {
+    while !match_events(&replay).contains("the file breaks off: ") {
         assert!(begun.elapsed() < PATIENCE, "waited in vain");
         std::thread::sleep(Duration::from_millis(20));
     }
 }
 
-fn happenings(program: &Program) -> String {
+fn match_events(program: &Program) -> String {
     let mut stream = TcpStream::connect(program.address()).unwrap();
     let host = program.address();
     write!(stream, "GET /api/happenings HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n").unwrap();

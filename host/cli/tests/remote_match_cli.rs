@@ -39,10 +39,10 @@ impl Controller {
             ..Referee::default()
         };
         let packet = Arc::new(Mutex::new(Some(packet)));
-        let (said, to) = (packet.clone(), to.to_owned());
+        let (printed, to) = (packet.clone(), to.to_owned());
         let (socket, began) = (UdpSocket::bind("127.0.0.1:0").expect("a port"), Instant::now());
         thread::spawn(move || {
-            while let Some(packet) = &mut *said.lock().expect("the script") {
+            while let Some(packet) = &mut *printed.lock().expect("the script") {
                 packet.packet_timestamp = 1_000_000 + began.elapsed().as_micros() as u64;
                 // The receiver may not be open yet.
                 let _ = socket.send_to(&packet.encode_to_vec(), &to);
@@ -52,7 +52,7 @@ impl Controller {
         Self { packet }
     }
 
-    fn says(&self, change: impl FnOnce(&mut Referee)) {
+    fn wait_for(&self, change: impl FnOnce(&mut Referee)) {
         let mut packet = self.packet.lock().expect("the script");
         let packet = packet.as_mut().expect("still running");
         change(packet);
@@ -100,24 +100,24 @@ fn the_assistant_puts_the_ball_takes_a_robot_off_and_brings_it_back() {
     let more = ["--referee", &referee, "--vision", &to, "--ideal", "--cameras", "1", "--speed", "4"];
     let mut simulator = Running::start(&[&simulate[..], &more[..]].concat());
     let control = SocketAddr::from(([127, 0, 0, 1], simulator.control_port()));
-    simulator.says("a game controller is heard at");
+    simulator.wait_for("a game controller is heard at");
     teleport(control, TeleportBall { x: Some(1.0), y: Some(-1.0), ..TeleportBall::default() });
     image(&vision, "the ball is moved", |frame| ball_at(frame, 1_000.0, -1_000.0));
-    controller.says(|packet| {
+    controller.wait_for(|packet| {
         packet.command = Command::Stop as i32;
         packet.next_command = Some(Command::PrepareKickoffYellow as i32);
         packet.designated_position = Some(Point { x: 0.0, y: 0.0 });
     });
-    let (_, line) = simulator.says("assistant  puts the ball");
+    let (_, line) = simulator.wait_for("assistant  puts the ball");
     assert!(line.contains("(0.00, 0.00) m: for yellow's kick-off"), "{line}");
     image(&vision, "the ball is in the middle", |frame| ball_at(frame, 0.0, 0.0));
     // A yellow card: no robot leaves by itself, and after 10 s one is taken off.
-    controller.says(|packet| packet.blue.max_allowed_bots = Some(5));
-    let (_, line) = simulator.says("assistant  takes blue");
+    controller.wait_for(|packet| packet.blue.max_allowed_bots = Some(5));
+    let (_, line) = simulator.wait_for("assistant  takes blue");
     assert!(line.contains("too many robots for 10 s"), "{line}");
     image(&vision, "five are left", |frame| frame.robots_blue.len() == 5);
-    controller.says(|packet| packet.blue.max_allowed_bots = Some(6));
-    let (_, line) = simulator.says("assistant  puts blue");
+    controller.wait_for(|packet| packet.blue.max_allowed_bots = Some(6));
+    let (_, line) = simulator.wait_for("assistant  puts blue");
     assert!(line.contains("may have another robot"), "{line}");
     image(&vision, "six again", |frame| frame.robots_blue.len() == 6);
 }
@@ -141,10 +141,10 @@ fn the_automatic_referee_registers_and_reports_what_it_sees() {
     let registration: Option<AutoRefRegistration> = talk.receive(PATIENCE).expect("no error");
     assert_eq!(registration.expect("a registration").identifier, "onetwo");
     talk.send(&reply).expect("accepted");
-    simulator.says("a game controller is heard at");
-    controller.says(|packet| packet.command = Command::Stop as i32);
+    simulator.wait_for("a game controller is heard at");
+    controller.wait_for(|packet| packet.command = Command::Stop as i32);
     thread::sleep(Duration::from_millis(300));
-    controller.says(|packet| packet.command = Command::ForceStart as i32);
+    controller.wait_for(|packet| packet.command = Command::ForceStart as i32);
     thread::sleep(Duration::from_millis(300));
     for (x, y, vx, vy, kind) in [
         (0.0, 2.5, 0.0, 4.0, GameEventType::BallLeftFieldTouchLine),
@@ -158,9 +158,9 @@ fn the_automatic_referee_registers_and_reports_what_it_sees() {
         assert_eq!((event.created_timestamp, event.id), (None, None), "both are the controller's to give");
         talk.send(&reply).expect("accepted");
         // The controller stops the game, and it goes on.
-        controller.says(|packet| packet.command = Command::Stop as i32);
+        controller.wait_for(|packet| packet.command = Command::Stop as i32);
         thread::sleep(Duration::from_millis(300));
-        controller.says(|packet| packet.command = Command::ForceStart as i32);
+        controller.wait_for(|packet| packet.command = Command::ForceStart as i32);
         thread::sleep(Duration::from_millis(300));
     }
 }

@@ -232,17 +232,17 @@ fn a_moment_of_a_match_says_what_each_robot_has_to_do_and_why() {
         let robots = moment[team].as_array().expect("a list");
         assert_eq!(robots.len(), 6, "{moment}");
         for robot in robots {
-            for said in ["role", "directive", "why"] {
+            for printed in ["role", "directive", "why"] {
                 assert!(
-                    robot[said].as_str().is_some_and(|description| !description.is_empty()),
-                    "{said} of {robot}"
+                    robot[printed].as_str().is_some_and(|description| !description.is_empty()),
+                    "{printed} of {robot}"
                 );
             }
         }
         assert_eq!(robots.iter().filter(|robot| robot["role"] == "keeper").count(), 1, "{moment}");
     }
-    let told = onetwo(&[&file, "--at", "11"]);
-    assert!(String::from_utf8_lossy(&told.stdout).contains("keeper: go to ("));
+    let reported = onetwo(&[&file, "--at", "11"]);
+    assert!(String::from_utf8_lossy(&reported.stdout).contains("keeper: go to ("));
 }
 
 /// Plays with the bridge between the papers and records it.

@@ -37,7 +37,7 @@ fn target(robot: RobotId) -> Point<Field> {
 }
 
 /// The simulator behind a socket, in real time; publishes its truth as a tracker would.
-fn simulate(profile: Profile, socket: &UdpSocket, shown: &Mutex<World>, end: &AtomicBool) {
+fn simulate(profile: Profile, socket: &UdpSocket, displayed: &Mutex<World>, end: &AtomicBool) {
     let settings = ServerSettings::of(League::DivisionB, profile, 7, 0.0).unwrap();
     let mut server = Server::new(&settings);
     // Robots without a host are removed; grSim's answers still name them.
@@ -73,7 +73,7 @@ fn simulate(profile: Profile, socket: &UdpSocket, shown: &Mutex<World>, end: &At
                 seen: now,
             });
         }
-        *shown.lock().unwrap() = world;
+        *displayed.lock().unwrap() = world;
     }
 }
 
@@ -108,14 +108,14 @@ impl Team {
     }
 
     /// One turn: receives the robots' reports, sends a snapshot every 10 ms.
-    fn turn(&mut self, shown: &Mutex<World>) {
+    fn turn(&mut self, displayed: &Mutex<World>) {
         if let Some(frame) = self.link.receive(Duration::from_millis(1)).unwrap() {
             let _refused = self.radio.handle_packet(self.now(), &frame);
         }
         let now = self.now();
         if now.since(self.offered).0 >= 10_000 {
             self.offered = now;
-            let mut world = shown.lock().unwrap().clone();
+            let mut world = displayed.lock().unwrap().clone();
             world.time = now;
             let situation = Situation { us: US, phase: Phase::Run, placement: None };
             let commands = ROBOTS.map(|robot| {
@@ -134,10 +134,15 @@ impl Team {
     }
 
     /// Turns until `done`, for at most `seconds`; a busy machine needs longer than the robots.
-    fn until(&mut self, shown: &Mutex<World>, seconds: u64, mut done: impl FnMut(&mut Self) -> bool) -> bool {
+    fn until(
+        &mut self,
+        displayed: &Mutex<World>,
+        seconds: u64,
+        mut done: impl FnMut(&mut Self) -> bool,
+    ) -> bool {
         let end = Clock::now() + Duration::from_secs(seconds);
         while Clock::now() < end {
-            self.turn(shown);
+            self.turn(displayed);
             if done(self) {
                 return true;
             }
@@ -146,8 +151,8 @@ impl Team {
     }
 }
 
-fn arrived(shown: &Mutex<World>) -> bool {
-    let world = shown.lock().unwrap();
+fn arrived(displayed: &Mutex<World>) -> bool {
+    let world = displayed.lock().unwrap();
     ROBOTS.iter().all(|robot| {
         world.robot(Who { colour: US, id: id(*robot) }).is_some_and(|robot| {
             robot.pose.position.distance(target(robot.who.id)) < 0.1 && robot.velocity.norm() < 0.1
@@ -161,22 +166,22 @@ fn lives(process: u32) -> bool {
 
 fn play(profile: Profile) {
     let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
-    let shown = Mutex::new(World::empty(Instant(0), BallModels::default()));
+    let displayed = Mutex::new(World::empty(Instant(0), BallModels::default()));
     let end = AtomicBool::new(false);
     std::thread::scope(|scope| {
-        scope.spawn(|| simulate(profile, &socket, &shown, &end));
+        scope.spawn(|| simulate(profile, &socket, &displayed, &end));
         let mut team = Team::start(&socket);
-        let there = team.until(&shown, 60, |_| arrived(&shown));
+        let there = team.until(&displayed, 60, |_| arrived(&displayed));
         let rows = ROBOTS.iter().filter_map(|n| Some((id(*n), team.radio.quality(id(*n))?)));
         println!("{}", host::radio::table(rows, team.radio.foreign()));
-        assert!(there, "{:?}", shown.lock().unwrap());
+        assert!(there, "{:?}", displayed.lock().unwrap());
         assert_eq!(team.radio.present(team.now()).collect::<Vec<_>>(), ROBOTS.map(id));
 
         // One is killed: it is reported, started again, and welcomed again.
         let (robot, process) = team.link.processes().next().unwrap();
         let before = team.radio.quality(robot).unwrap().lives();
         assert!(Process::new("kill").args(["-9", &process.to_string()]).status().unwrap().success());
-        let back = team.until(&shown, 30, |team| {
+        let back = team.until(&displayed, 30, |team| {
             let quality = team.radio.quality(robot).unwrap();
             quality.lives() > before && quality.start_up().is_some()
         });

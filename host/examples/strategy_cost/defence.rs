@@ -38,7 +38,7 @@ pub(crate) fn plans(league: League, robots: u8, count: u32) -> String {
     for i in 0..count {
         let view = &scenes[(i % SCENES) as usize];
         let mut planner = Planner::new(coerce::Settings::of(league), Models::default());
-        if let Some(plan) = planner.plan(view, &value, TAKER, u64::from(i)) {
+        if let Some(plan) = planner.plan(view, &value, KICKER, u64::from(i)) {
             coercers += plan.coerce.coercers.len();
             worth += f64::from(plan.optimistic.worth.value());
         }
@@ -56,14 +56,14 @@ pub(crate) fn watches(count: u32, attack: bool) -> String {
     let (mut view, mut planner) = loop {
         let view = random.free_kick(league, 6);
         let mut planner = Planner::new(coerce::Settings::of(league), Models::default());
-        if planner.plan(&view, &value, TAKER, 1).is_some() {
+        if planner.plan(&view, &value, KICKER, 1).is_some() {
             break (view, planner);
         }
     };
     let (mut attacks, mut planned, mut coercing) = (0, 1, 0);
     for i in 0..count {
         if attack {
-            planned += u32::from(planner.plan(&view, &value, TAKER, u64::from(i)).is_some());
+            planned += u32::from(planner.plan(&view, &value, KICKER, u64::from(i)).is_some());
             planner.watch(&view, &value);
             view.now += Duration::millis(5_000);
         } else {
@@ -80,7 +80,7 @@ pub(crate) fn watches(count: u32, attack: bool) -> String {
 }
 
 /// Number of the robot that takes the free kick.
-const TAKER: RobotId = match RobotId::new(1) {
+const KICKER: RobotId = match RobotId::new(1) {
     Some(id) => id,
     None => RobotId::ZERO,
 };

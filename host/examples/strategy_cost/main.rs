@@ -17,7 +17,7 @@ fn main() -> ExitCode {
     let [part, count] = &arguments[..] else { return usage() };
     let Ok(count) = count.parse::<u32>() else { return usage() };
     let (six, eleven) = (League::DivisionB, League::DivisionA);
-    let said = match part.as_str() {
+    let sent = match part.as_str() {
         "pass-location" => passes::locations(eleven, 11, count),
         "pass-location-six" => passes::locations(six, 6, count),
         "pass-search" => passes::searches(eleven, 11, count),
@@ -30,7 +30,7 @@ fn main() -> ExitCode {
         "cap-attack" => defence::watches(count, true),
         _ => return usage(),
     };
-    println!("{count} {part}: {said}");
+    println!("{count} {part}: {sent}");
     ExitCode::SUCCESS
 }
 

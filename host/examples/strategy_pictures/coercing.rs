@@ -19,11 +19,11 @@ use crate::{scenes, tactics};
 pub(crate) fn draw() -> String {
     let league = League::Ssl2013;
     let view = scenes::free_kick();
-    let taker = view.ours[1].id;
+    let kicker = view.ours[1].id;
     let kicks = Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default());
     let mut planner = Planner::new(Settings::of(league), Models::default());
-    planner.observe(&view, taker);
-    let Some(plan) = planner.plan(&view, &ByPassLocation::new(&kicks), taker, SEED) else {
+    planner.observe(&view, kicker);
+    let Some(plan) = planner.plan(&view, &ByPassLocation::new(&kicks), kicker, SEED) else {
         return String::new();
     };
     let left = optimistic(&view, plan);
@@ -129,7 +129,7 @@ fn attack(panel: &mut Panel, view: &View, plan: &CapPlan) {
 fn robots(panel: &mut Panel, view: &View, plan: &CapPlan) {
     for robot in &view.ours {
         let name = match robot.id {
-            id if id == plan.taker => "T".into(),
+            id if id == plan.kicker => "T".into(),
             id if id == plan.optimistic.receiver => "R".into(),
             id => id.number().to_string(),
         };

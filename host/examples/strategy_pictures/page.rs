@@ -84,10 +84,10 @@ impl Panel {
                 border.iter().map(|p| self.at(Point::new(p.x() * sign, p.y() * sign))).collect();
             svg.polyline(&area, style.replace(r#"fill="none" "#, ""));
             let half = field.goal_width * 0.5;
-            let mouth = [Point::new(-x * sign, -half), Point::new((-x - 0.18) * sign, half)];
+            let opening = [Point::new(-x * sign, -half), Point::new((-x - 0.18) * sign, half)];
             svg.rect(
-                self.at(mouth[0]),
-                self.at(mouth[1]),
+                self.at(opening[0]),
+                self.at(opening[1]),
                 r##"fill="#ffffff" stroke="#5c5c5c" stroke-width="1.5""##,
             );
         }

@@ -12,9 +12,9 @@ use crate::scenes;
 /// SVG text of the figure.
 pub(crate) fn draw() -> String {
     let view = scenes::free_kick();
-    let taker = view.ours[1].id;
+    let kicker = view.ours[1].id;
     let mut panel = Panel::whole(view.field, [GAP, 118.0], 120.0);
-    let situation = Situation::new(&view, Models::default(), Some(taker));
+    let situation = Situation::new(&view, Models::default(), Some(kicker));
     for tactic in [Tactic::Mark, Tactic::Wall, Tactic::PrimaryDefence, Tactic::Goalkeeper] {
         let which = Tactic::ALL.iter().position(|other| *other == tactic).unwrap_or(0);
         for level in LEVELS {
@@ -24,12 +24,12 @@ pub(crate) fn draw() -> String {
     }
     panel.lines();
     let mut detector = Detector::new(Models::default());
-    detector.watch(&view, Some(taker));
+    detector.watch(&view, Some(kicker));
     for robot in &view.ours {
-        let name = if robot.id == taker { "T".into() } else { robot.id.number().to_string() };
+        let name = if robot.id == kicker { "T".into() } else { robot.id.number().to_string() };
         panel.ours(robot.position, &name, YELLOW);
     }
-    for known in detector.read(&view, Some(taker)) {
+    for known in detector.read(&view, Some(kicker)) {
         let fill = known.tactic.map_or("#bbbbbb", colour);
         panel.theirs(known.at, fill, "#1b1b1b");
         let most = known.likelihoods.iter().copied().fold(0.0, f32::max);

@@ -14,15 +14,15 @@ type Viewer = WebSocket<MaybeTlsStream<TcpStream>>;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [address, ways] = &arguments[..] else {
+    let [address, modes] = &arguments[..] else {
         eprintln!("usage: viewers ADDRESS WAYS, where WAYS is a letter of r, s, d, v for each");
         return ExitCode::from(2);
     };
     let url = format!("ws://{address}/socket");
     let mut viewers = Vec::new();
-    for way in ways.chars() {
+    for path in modes.chars() {
         match tungstenite::connect(&url) {
-            Ok((viewer, _)) => viewers.push((way, viewer)),
+            Ok((viewer, _)) => viewers.push((path, viewer)),
             Err(error) => {
                 eprintln!("{url}: {error}");
                 return ExitCode::FAILURE;
@@ -31,9 +31,9 @@ fn main() -> ExitCode {
     }
     eprintln!("{} viewers look on", viewers.len());
     // A viewer that never reads does not notice the page's end: it stays until the others are done.
-    let (deaf, others): (Vec<_>, Vec<_>) = viewers.into_iter().partition(|(way, _)| *way == 'd');
+    let (deaf, others): (Vec<_>, Vec<_>) = viewers.into_iter().partition(|(path, _)| *path == 'd');
     let threads: Vec<_> =
-        others.into_iter().map(|(way, viewer)| thread::spawn(move || look(way, viewer))).collect();
+        others.into_iter().map(|(path, viewer)| thread::spawn(move || look(path, viewer))).collect();
     let taken: u64 = threads.into_iter().filter_map(|thread| thread.join().ok()).sum();
     drop(deaf);
     println!("{taken}");
@@ -41,8 +41,8 @@ fn main() -> ExitCode {
 }
 
 /// Reads until the page ends or the viewer is gone; returns the number of scenes taken.
-fn look(way: char, mut viewer: Viewer) -> u64 {
-    if way == 'v' {
+fn look(path: char, mut viewer: Viewer) -> u64 {
+    if path == 'v' {
         thread::sleep(Duration::from_secs(1));
         if let MaybeTlsStream::Plain(stream) = viewer.get_ref() {
             let _ = stream.shutdown(std::net::Shutdown::Both);
@@ -52,7 +52,7 @@ fn look(way: char, mut viewer: Viewer) -> u64 {
     let mut taken = 0;
     while viewer.read().is_ok_and(|message| message.is_text()) && viewer.send(Message::text(".")).is_ok() {
         taken += 1;
-        if way == 's' {
+        if path == 's' {
             thread::sleep(Duration::from_secs(1));
         }
     }

@@ -14,7 +14,7 @@ use flate2::write::GzEncoder;
 use serde::Serialize;
 
 use crate::deferred_scene::DeferredScene;
-use crate::happening::Happening;
+use crate::match_event::MatchEvent;
 use crate::scene::Scene;
 use crate::viewers::Viewers;
 
@@ -24,7 +24,7 @@ const WAITING_MAX: usize = 8;
 /// Number of seconds that are kept, an hour: some 25 kB each.
 const SECONDS_MAX: usize = 3_600;
 /// Number of newest events that are kept: a match has some thousand.
-const HAPPENINGS_MAX: usize = 100_000;
+const MATCH_EVENTS_MAX: usize = 100_000;
 
 /// Values of one second, for plots.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -42,18 +42,18 @@ type Encoded = (f64, Arc<str>);
 pub(crate) struct Kept {
     seconds: BTreeMap<u32, Arc<[u8]>>,
     open: Option<(u32, Vec<Encoded>)>,
-    pub(crate) happenings: Vec<Happening>,
+    pub(crate) match_events: Vec<MatchEvent>,
     pub(crate) samples: Vec<Sample>,
     /// Time of the first and the last scene, s.
     pub(crate) span: Option<(f64, f64)>,
     /// Number of restarts.
-    pub(crate) life: u32,
+    pub(crate) generation: u32,
 }
 
 /// A message to the archive's thread.
 enum Mail {
     DeferredScene(Box<DeferredScene>),
-    Happening(Box<Happening>),
+    MatchEvent(Box<MatchEvent>),
     Clear,
 }
 
@@ -99,8 +99,8 @@ impl Archive {
     }
 
     /// Takes an event.
-    pub(crate) fn tell(&self, happening: Happening) {
-        let _ = self.mail.send(Mail::Happening(Box::new(happening)));
+    pub(crate) fn keep_event(&self, match_event: MatchEvent) {
+        let _ = self.mail.send(Mail::MatchEvent(Box::new(match_event)));
     }
 
     /// Drops everything: another match starts.
@@ -137,13 +137,15 @@ impl Worker {
                     self.viewers.show(&text);
                     self.waiting.fetch_sub(1, Ordering::Relaxed);
                 }
-                Mail::Happening(happening) => look(&self.kept, |kept| {
-                    if kept.happenings.len() < HAPPENINGS_MAX {
-                        kept.happenings.push(*happening);
+                Mail::MatchEvent(match_event) => look(&self.kept, |kept| {
+                    if kept.match_events.len() < MATCH_EVENTS_MAX {
+                        kept.match_events.push(*match_event);
                     }
                 }),
                 Mail::Clear => {
-                    look(&self.kept, |kept| *kept = Kept { life: kept.life + 1, ..Kept::default() });
+                    look(&self.kept, |kept| {
+                        *kept = Kept { generation: kept.generation + 1, ..Kept::default() }
+                    });
                 }
             }
         }

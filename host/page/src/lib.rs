@@ -22,9 +22,9 @@ mod archive;
 mod deferred_scene;
 mod files;
 mod guard;
-mod happening;
 mod http;
 mod limits;
+mod match_event;
 mod page;
 mod problem;
 mod request;
@@ -38,13 +38,14 @@ mod viewers;
 
 pub use archive::Sample;
 pub use deferred_scene::DeferredScene;
-pub use happening::{Happening, Kind};
 pub use limits::Limits;
+pub use match_event::{Kind, MatchEvent};
 pub use page::{ExplanationService, Page, PageError, Settings};
 pub use problem::{Freeze, problem, skeleton};
 pub use request::{Powers, Refused, Request, Team};
 pub use scene::{
-    Ball, Cycle, Field, Gauge, Intent, Match, Mind, PerTeam, Raw, Robot, Scene, TeamSheet, Timer, Vitals,
+    Ball, Cycle, Field, Gauge, Intent, Match, PerTeam, Raw, Robot, RobotDetail, Scene, TeamSheet, Timer,
+    Vitals,
 };
 pub use shape::{Heat, Layer, Shape, Tone};
 pub use token::{NoToken, Token};

@@ -11,8 +11,8 @@ use std::sync::mpsc::{Receiver, sync_channel};
 
 use crate::archive::Archive;
 use crate::deferred_scene::DeferredScene;
-use crate::happening::Happening;
 use crate::limits::Limits;
+use crate::match_event::MatchEvent;
 use crate::request::{Powers, Request};
 use crate::server::{Ask, Server, Shared};
 use crate::token::Token;
@@ -88,7 +88,7 @@ pub struct Page {
     /// To the viewer whose request was taken last.
     asker: RefCell<Option<Arc<Mailbox>>>,
     seats: Arc<AtomicUsize>,
-    told: u64,
+    pushed: u64,
     left_out: u64,
     _server: Server,
 }
@@ -123,7 +123,7 @@ impl Page {
             requests,
             asker: RefCell::default(),
             seats,
-            told: 0,
+            pushed: 0,
             left_out: 0,
             _server: server,
         })
@@ -148,19 +148,19 @@ impl Page {
     }
 
     fn dated(&self, mut deferred_scene: DeferredScene) -> DeferredScene {
-        deferred_scene.scene.happened = self.told;
+        deferred_scene.scene.happened = self.pushed;
         deferred_scene
     }
 
     /// Passes an event to the page. Never waits.
-    pub fn tell(&mut self, happening: Happening) {
-        self.told += 1;
-        self.archive.tell(happening);
+    pub fn push(&mut self, match_event: MatchEvent) {
+        self.pushed += 1;
+        self.archive.keep_event(match_event);
     }
 
     /// Drops the history: another match starts.
     pub fn clear(&mut self) {
-        self.told = 0;
+        self.pushed = 0;
         self.archive.clear();
     }
 

@@ -153,7 +153,7 @@ pub(crate) mod tests {
                     heading: 0.0,
                     velocity: [0.0; 2],
                     confidence: 1.0,
-                    mind: None,
+                    detail: None,
                     vitals: None,
                 });
             }

@@ -13,7 +13,7 @@ use crate::request::Team;
 use crate::server::Shared;
 
 /// Happenings in one answer.
-const HAPPENINGS_A_TIME: usize = 5_000;
+const MATCH_EVENTS_A_TIME: usize = 5_000;
 const JSON: &str = "application/json";
 
 /// The answer to anything but a viewer's socket, worked out `within` that time.
@@ -24,7 +24,7 @@ pub(crate) fn answer(shared: &Shared, head: &Head, body: Vec<u8>, within: Durati
     };
     match &*head.path {
         "/api/state" => allowed("GET, HEAD", reads, &|| state(shared, head)),
-        "/api/happenings" => allowed("GET, HEAD", reads, &|| happenings(shared, head)),
+        "/api/happenings" => allowed("GET, HEAD", reads, &|| match_events(shared, head)),
         "/api/plots" => allowed("GET, HEAD", reads, &|| plots(shared)),
         "/api/freeze" => allowed("POST", head.method == "POST", &|| freeze(shared, &body)),
         "/api/explain" if head.method == "POST" => explain(shared, body, within),
@@ -44,7 +44,7 @@ fn file(path: &str) -> Answer {
 }
 
 fn state(shared: &Shared, head: &Head) -> Answer {
-    let (span, life) = look(&shared.kept, |kept| (kept.span, kept.life));
+    let (span, generation) = look(&shared.kept, |kept| (kept.span, kept.generation));
     let settings = &shared.settings;
     let state = json!({
         "title": settings.title,
@@ -53,7 +53,7 @@ fn state(shared: &Shared, head: &Head) -> Answer {
         "may_ask": shared.may_ask(head.asked("token")),
         "situations": shared.explanations.situations(),
         "span": span,
-        "life": life,
+        "life": generation,
     });
     Answer::of(JSON, state.to_string().into_bytes())
 }
@@ -68,13 +68,13 @@ fn second(shared: &Shared, digits: &str) -> Answer {
     }
 }
 
-fn happenings(shared: &Shared, head: &Head) -> Answer {
+fn match_events(shared: &Shared, head: &Head) -> Answer {
     let Ok(from) = head.asked("from").unwrap_or("0").parse::<usize>() else {
         return Answer::description(Status::BAD_REQUEST, "from: expected a whole number");
     };
     let text = look(&shared.kept, |kept| {
-        let all = &kept.happenings;
-        let until = all.len().min(from.saturating_add(HAPPENINGS_A_TIME));
+        let all = &kept.match_events;
+        let until = all.len().min(from.saturating_add(MATCH_EVENTS_A_TIME));
         serde_json::to_string(&all[from.min(until)..until]).unwrap_or_default()
     });
     Answer::of(JSON, text.into_bytes())

@@ -104,7 +104,8 @@ pub struct Robot {
     pub confidence: f32,
     /// State of its decisions, where its host is ours.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub mind: Option<Mind>,
+    #[serde(rename = "mind")]
+    pub detail: Option<RobotDetail>,
     /// Its hardware state, if it reports it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vitals: Option<Vitals>,
@@ -112,7 +113,7 @@ pub struct Robot {
 
 /// Why a robot does what it does.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Mind {
+pub struct RobotDetail {
     /// Its role in the team: "keeper", "defender 1", "taker".
     pub role: String,
     /// Its order: "go to (1.2, 0.4)".

@@ -8,7 +8,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use page::{
-    DeferredScene, ExplanationService, Happening, Kind, Layer, Limits, Page, PageError, Powers, Request,
+    DeferredScene, ExplanationService, Kind, Layer, Limits, MatchEvent, Page, PageError, Powers, Request,
     Scene, Settings, Team,
 };
 use tungstenite::client::IntoClientRequest;
@@ -67,7 +67,7 @@ fn wait_for(what: impl Fn() -> bool) {
 }
 
 /// Passes a scene to the page and waits until it is encoded.
-fn shown(page: &mut Page, t: f64) {
+fn show_scene(page: &mut Page, t: f64) {
     page.keep(scene(t));
     wait_for(|| get(page.address(), "/api/state", "").1.contains(&format!(",{t:?}]")));
 }
@@ -116,8 +116,8 @@ fn the_page_and_its_files_are_served_from_the_program() {
 #[test]
 fn a_viewer_that_comes_late_has_the_newest_scene_at_once() {
     let mut page = open(Powers::None);
-    shown(&mut page, 1.5);
-    shown(&mut page, 2.5);
+    show_scene(&mut page, 1.5);
+    show_scene(&mut page, 2.5);
     assert!((next(&mut viewer(&page)) - 2.5).abs() < 1e-9);
 }
 
@@ -129,7 +129,7 @@ fn a_viewer_that_takes_nothing_for_a_while_goes_on_with_what_is_newest_then() {
     for i in 0..500 {
         page.keep(scene(f64::from(i)));
     }
-    shown(&mut page, 777.5);
+    show_scene(&mut page, 777.5);
     // Two may have been sent already; the next one is the newest.
     let seen: Vec<f64> = (0..3).map(|_| next(&mut slow)).collect();
     assert!((seen[2] - 777.5).abs() < 1e-9, "{seen:?}");
@@ -151,7 +151,7 @@ fn showing_never_waits_whoever_looks_on() {
     }
     // Far more was passed to the page than any viewer took: it was left out, not waited for.
     assert!(page.left_out() > 0, "{}", page.left_out());
-    shown(&mut page, 30_000.5);
+    show_scene(&mut page, 30_000.5);
     wait_for(|| page.viewers() == 5);
     let last = (0..5).map(|_| next(&mut reader)).find(|t| (t - 30_000.5).abs() < 1e-9);
     assert!(last.is_some());
@@ -178,7 +178,7 @@ fn a_deferred_scene_is_finished_after_the_match_has_gone_on() {
 #[test]
 fn what_has_passed_is_asked_for_by_the_second() {
     let mut page = open(Powers::None);
-    page.tell(Happening {
+    page.push(MatchEvent {
         t: 0.2,
         kind: Kind::Goal,
         team: Some(Team::Blue),
@@ -189,7 +189,7 @@ fn what_has_passed_is_asked_for_by_the_second() {
     for i in 0..50 {
         page.keep(scene(f64::from(i) * 0.04));
     }
-    shown(&mut page, 2.5);
+    show_scene(&mut page, 2.5);
     assert!(get(page.address(), "/api/happenings?from=0", "").1.contains("\"kind\":\"goal\""));
     assert!(get(page.address(), "/api/happenings?from=1", "").1.contains("[]"));
     assert_eq!(get(page.address(), "/api/second/0", "").0, 200);
@@ -254,7 +254,7 @@ fn a_problem_is_explained_and_a_moment_frozen() {
     let mut page = open(Powers::None);
     let ball = page::Ball { at: [0.5, -0.25], ..page::Ball::default() };
     page.keep(Scene { ball: Some(ball), ..scene(3.0) });
-    shown(&mut page, 4.0);
+    show_scene(&mut page, 4.0);
     let at = page.address();
     assert_eq!(post(at, "/api/explain", "{\"ball\":[0,0]}", "").1, r#"{"asked":{"ball":[0,0]}}"#);
     assert_eq!(post(at, "/api/explain", "x", "").0, 422);
@@ -277,7 +277,7 @@ fn a_taken_port_is_told_with_what_to_do() {
 #[test]
 fn the_page_ends_with_the_match() {
     let mut page = open(Powers::None);
-    shown(&mut page, 1.0);
+    show_scene(&mut page, 1.0);
     let mut viewer = viewer(&page);
     next(&mut viewer);
     drop(page);

@@ -113,7 +113,7 @@ impl Ablation<'_> {
     }
 
     /// The unchanged team's numbers, then every arm's differences.
-    fn lines(&self, cell: Option<Place<'_>>) -> Vec<(&Arm, Vec<Said<'_>>)> {
+    fn lines(&self, cell: Option<Place<'_>>) -> Vec<(&Arm, Vec<Verdicts<'_>>)> {
         let lines = self.arms.iter().filter_map(|arm| {
             let cells = LOOKS.iter().map(|(label, _, _, decimals, _)| {
                 let own = |effect: &&Effect| {
@@ -195,7 +195,7 @@ impl Ablation<'_> {
 }
 
 /// A number as it is written, and the effect that it belongs to.
-type Said<'a> = (String, Option<&'a Effect>);
+type Verdicts<'a> = (String, Option<&'a Effect>);
 
 /// Opponents and scenario of a cell.
 type Place<'a> = (&'static str, &'a str);

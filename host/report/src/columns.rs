@@ -18,7 +18,7 @@ pub(crate) enum Kind {
     /// A measure that is tested.
     Measured(Measure),
     /// A number without a test.
-    Told(fn(&TableRow) -> Option<f64>),
+    Described(fn(&TableRow) -> Option<f64>),
 }
 
 impl Column {
@@ -30,20 +30,20 @@ impl Column {
         Self { head, unit, decimals: 2, kind: Kind::Measured(measure) }
     }
 
-    const fn told(
+    const fn described(
         head: &'static str,
         unit: &'static str,
         decimals: usize,
         of: fn(&TableRow) -> Option<f64>,
     ) -> Self {
-        Self { head, unit, decimals, kind: Kind::Told(of) }
+        Self { head, unit, decimals, kind: Kind::Described(of) }
     }
 
     /// Its value in a row.
     pub(crate) fn value(&self, row: &TableRow) -> Option<f64> {
         match self.kind {
             Kind::Measured(measure) => measure.value(row),
-            Kind::Told(of) => of(row),
+            Kind::Described(of) => of(row),
         }
     }
 
@@ -96,11 +96,11 @@ pub(crate) fn columns(table: u8, rows: &[&TableRow]) -> Vec<Column> {
         5 => &TABLE_5,
         _ => &TABLE_6,
     };
-    let told = |column: &&Column| {
+    let described = |column: &&Column| {
         let least = if column.head == "timeout" && table != 4 { 0.0 } else { -1.0 };
         rows.iter().any(|row| column.value(row).is_some_and(|value| value > least))
     };
-    all.iter().filter(told).copied().collect()
+    all.iter().filter(described).copied().collect()
 }
 
 /// B's share of all backing up, percent.
@@ -135,17 +135,17 @@ const TIME: Column = Column::mean("time", "s", Measure::Time);
 
 const TABLE_1: [Column; 8] = [GOAL, CLOSE, BLOCK, OUT, TIMEOUT, TO_GOAL, POSSESSION, TIME];
 const TABLE_2: [Column; 3] = [
-    Column::told("A backs up", "a trial", 1, |row| row.backups_a),
-    Column::told("B backs up", "a trial", 1, |row| row.backups_b),
-    Column::told("B's share", "%", 0, share_b),
+    Column::described("A backs up", "a trial", 1, |row| row.backups_a),
+    Column::described("B backs up", "a trial", 1, |row| row.backups_b),
+    Column::described("B's share", "%", 0, share_b),
 ];
 const TABLE_3: [Column; 6] = [
-    Column::told("individual", "a trial", 1, |row| row.individual),
-    Column::told("cooperative", "a trial", 1, |row| row.cooperative),
-    Column::told("all", "a trial", 1, used),
-    Column::told("cooperative's share", "%", 0, cooperative),
-    Column::told("no case found", "a trial", 1, |row| row.none),
-    Column::told("time without a case", "%", 1, |row| row.default_time),
+    Column::described("individual", "a trial", 1, |row| row.individual),
+    Column::described("cooperative", "a trial", 1, |row| row.cooperative),
+    Column::described("all", "a trial", 1, used),
+    Column::described("cooperative's share", "%", 0, cooperative),
+    Column::described("no case found", "a trial", 1, |row| row.none),
+    Column::described("time without a case", "%", 1, |row| row.default_time),
 ];
 const TABLE_4: [Column; 3] = [TO_GOAL, OUT, TIMEOUT];
 const TABLE_5: [Column; 3] = [MIDFIELD, DEFENDER, TIME];
@@ -156,7 +156,7 @@ const TABLE_6: [Column; 9] = [
     OUT,
     TIMEOUT,
     TO_GOAL,
-    Column::told("out by opponents", "trials", 0, |row| row.out_by_opponents.map(f64::from)),
-    Column::told("out by attackers", "trials", 0, |row| row.out_by_attackers.map(f64::from)),
+    Column::described("out by opponents", "trials", 0, |row| row.out_by_opponents.map(f64::from)),
+    Column::described("out by attackers", "trials", 0, |row| row.out_by_attackers.map(f64::from)),
     POSSESSION,
 ];

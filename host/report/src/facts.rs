@@ -70,9 +70,9 @@ fn flatten(name: &str, value: &Value, entries: &mut Vec<(String, String)>) {
                 match part {
                     // One line for each element: its members belong together.
                     Value::Object(part) => {
-                        let said: Vec<_> =
+                        let verdict_text: Vec<_> =
                             part.iter().map(|(key, value)| format!("{key} {}", label(value))).collect();
-                        entries.push((below(&(i + 1).to_string()), said.join(", ")));
+                        entries.push((below(&(i + 1).to_string()), verdict_text.join(", ")));
                     }
                     part => flatten(&below(&(i + 1).to_string()), part, entries),
                 }
@@ -94,7 +94,11 @@ mod tests {
         let mut entries = Vec::new();
         let value = json!({"a": 1.5, "b": {"c": "x", "d": [1, 2]}, "e": [{"f": "1", "g": 2}], "h": null});
         flatten("", &value, &mut entries);
-        let said: Vec<_> = entries.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect();
-        assert_eq!(said, [("a", "1.5"), ("b.c", "x"), ("b.d", "1, 2"), ("e.1", "f 1, g 2"), ("h", "null")]);
+        let verdict_text: Vec<_> =
+            entries.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect();
+        assert_eq!(
+            verdict_text,
+            [("a", "1.5"), ("b.c", "x"), ("b.d", "1, 2"), ("e.1", "f 1, g 2"), ("h", "null")]
+        );
     }
 }

@@ -15,13 +15,13 @@ pub(crate) fn markdown(report: &Report<'_>, pictures: &str) -> String {
     let mut text = String::new();
     let facts = || report.facts.iter().flat_map(|facts| &facts.entries);
     let known = [("program", "onetwo"), ("plan.seed", "seed"), ("seed", "seed"), (HASH, HASH)];
-    let said = known.into_iter().filter_map(|(name, label)| {
+    let verdict_text = known.into_iter().filter_map(|(name, label)| {
         let (_, value) = facts().find(|(own, _)| own == name)?;
         Some(format!("{label} {value}"))
     });
-    let said: Vec<_> = said.collect();
-    if !said.is_empty() {
-        let _ = writeln!(text, "Played by {}.\n", said.join(", "));
+    let verdict_text: Vec<_> = verdict_text.collect();
+    if !verdict_text.is_empty() {
+        let _ = writeln!(text, "Played by {}.\n", verdict_text.join(", "));
     }
     let figures = crate::plot::figures(report);
     for figure in figures.iter().filter(|figure| figure.table == 0) {
@@ -38,7 +38,7 @@ pub(crate) fn markdown(report: &Report<'_>, pictures: &str) -> String {
         }
     }
     for picture in
-        map::sheets(report.maps).into_iter().filter(|picture| SHOWN.contains(&picture.name.as_str()))
+        map::sheets(report.maps).into_iter().filter(|picture| INCLUDED.contains(&picture.name.as_str()))
     {
         let _ = writeln!(text, "![Passes and ends; where the ball was]({pictures}{}.svg)\n", picture.name);
     }
@@ -113,12 +113,13 @@ fn claims(text: &mut String, claims: &[Claim]) {
         let few =
             ours_as_paper.as_ref().map(|few| format!(" (its first 30 trials: {})", few.verdict.label()));
         let (claim, few) = (cell(sentence), few.unwrap_or_default());
-        let _ = writeln!(text, "| {section} | {claim} | {}{few} | {} |", said(ours), said(paper));
+        let _ =
+            writeln!(text, "| {section} | {claim} | {}{few} | {} |", verdict_text(ours), verdict_text(paper));
     }
     text.push('\n');
 }
 
-fn said(judgement: &Judgement) -> String {
+fn verdict_text(judgement: &Judgement) -> String {
     let label = judgement.verdict.label();
     if judgement.evidence.is_empty() {
         return format!("**{label}**");
@@ -194,7 +195,7 @@ impl fmt::Display for MarkerError {
 impl std::error::Error for MarkerError {}
 
 /// Maps in the documentation: the scenarios that the paper describes play by play (§5.3).
-const SHOWN: [&str; 2] = ["maps-dg-3", "maps-dg-4"];
+const INCLUDED: [&str; 2] = ["maps-dg-3", "maps-dg-4"];
 
 #[cfg(test)]
 mod tests {

@@ -132,10 +132,10 @@ fn judgement(judgement: &Judgement) -> Markup {
 
 /// The verdict; its numbers on demand, because they are many.
 fn verdict(sign: &str, label: &str, evidence: &str) -> Markup {
-    let said = html! { span class={ "verdict " (label) } { (sign) " " (label) } };
+    let verdict_text = html! { span class={ "verdict " (label) } { (sign) " " (label) } };
     html! {
-        @if evidence.is_empty() { (said) } @else {
-            details { summary { (said) } small { (evidence) } }
+        @if evidence.is_empty() { (verdict_text) } @else {
+            details { summary { (verdict_text) } small { (evidence) } }
         }
     }
 }

@@ -9,7 +9,7 @@ use super::nearest_division;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AreaSource {
     /// From the packet's own numbers.
-    Told,
+    Announced,
     /// From the packet's penalty stretches.
     Lines,
     /// The packet has none: this division's, scaled down with the field where that is smaller. To be reported
@@ -47,9 +47,11 @@ const ARCS: [&str; 4] = [
 
 /// The defence area of a field.
 pub(super) fn of(size: &GeometryFieldSize) -> (Area, AreaSource) {
-    let told = |mm: Option<i32>| mm.filter(|mm| *mm > 0).map(|mm| mm as f32 / 1000.0);
-    if let (Some(depth), Some(width)) = (told(size.penalty_area_depth), told(size.penalty_area_width)) {
-        return (Area { depth, width, form: AreaForm::Box }, AreaSource::Told);
+    let announced = |mm: Option<i32>| mm.filter(|mm| *mm > 0).map(|mm| mm as f32 / 1000.0);
+    if let (Some(depth), Some(width)) =
+        (announced(size.penalty_area_depth), announced(size.penalty_area_width))
+    {
+        return (Area { depth, width, form: AreaForm::Box }, AreaSource::Announced);
     }
     if let Some(area) = from_lines(size) {
         return (area, AreaSource::Lines);

@@ -15,7 +15,7 @@ pub struct Camera {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CameraSource {
     /// The packet contains it.
-    Told,
+    Announced,
     /// Computed from the calibration's rotation and translation.
     Calibration,
 }
@@ -28,9 +28,9 @@ const QUATERNION_TOLERANCE: f32 = 0.02;
 impl Camera {
     /// From a calibration; `None` where it gives no place, or none above the ground.
     pub(super) fn from_wire(c: &GeometryCameraCalibration) -> Option<Self> {
-        let told = [c.derived_camera_world_tx, c.derived_camera_world_ty, c.derived_camera_world_tz];
-        let camera = if let [Some(x), Some(y), Some(z)] = told {
-            Self { position: [x, y, z].map(|mm| mm / 1000.0), source: CameraSource::Told }
+        let announced = [c.derived_camera_world_tx, c.derived_camera_world_ty, c.derived_camera_world_tz];
+        let camera = if let [Some(x), Some(y), Some(z)] = announced {
+            Self { position: [x, y, z].map(|mm| mm / 1000.0), source: CameraSource::Announced }
         } else {
             Self { position: from_rotation(c)?, source: CameraSource::Calibration }
         };

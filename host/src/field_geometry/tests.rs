@@ -54,13 +54,13 @@ fn trap_02_calibrations_of_one_camera_a_packet_become_four_cameras() {
         let packets = recorded(name);
         assert!(packets.iter().all(|data| data.calib.len() == 1), "{name} shows the trap");
         let mut geometry = VisionGeometry::default();
-        let mut news = 0;
+        let mut changes = 0;
         for data in &packets {
-            let told = geometry.receive(data).unwrap();
-            news += told.cameras;
-            assert_eq!((told.cameras_refused, told.models_refused), (0, 0));
+            let announced = geometry.receive(data).unwrap();
+            changes += announced.cameras;
+            assert_eq!((announced.cameras_refused, announced.models_refused), (0, 0));
         }
-        assert_eq!((geometry.cameras().len(), news), (cameras, cameras), "{name}");
+        assert_eq!((geometry.cameras().len(), changes), (cameras, cameras), "{name}");
     }
     let mut geometry = VisionGeometry::default();
     for data in recorded("grsim_divB_22s.log.gz") {
@@ -75,7 +75,7 @@ fn trap_02_calibrations_of_one_camera_a_packet_become_four_cameras() {
 
 #[test]
 fn trap_08_the_defence_area_comes_from_the_lines_in_any_order() {
-    let told = League::DivisionB.field();
+    let announced = League::DivisionB.field();
     for (name, lines, circle) in
         [("grsim_divB_22s.log.gz", 18, 0.495), ("erforce_divB_realistic_22s.log.gz", 12, 0.5)]
     {
@@ -90,15 +90,15 @@ fn trap_08_the_defence_area_comes_from_the_lines_in_any_order() {
             let field = geometry.field().unwrap();
             assert_eq!(geometry.area_source(), Some(AreaSource::Lines));
             for (got, expected) in [
-                (field.length, told.length),
-                (field.width, told.width),
+                (field.length, announced.length),
+                (field.width, announced.width),
                 (field.margin, 0.3),
                 (field.goal_line_margin, 0.3),
-                (field.goal_width, told.goal_width),
-                (field.goal_depth, told.goal_depth),
-                (field.penalty_depth, told.penalty_depth),
-                (field.penalty_width, told.penalty_width),
-                (field.penalty_mark, told.penalty_mark),
+                (field.goal_width, announced.goal_width),
+                (field.goal_depth, announced.goal_depth),
+                (field.penalty_depth, announced.penalty_depth),
+                (field.penalty_width, announced.penalty_width),
+                (field.penalty_mark, announced.penalty_mark),
                 (field.center_radius, circle),
                 (field.line_width, 0.01),
             ] {
@@ -130,8 +130,8 @@ fn finding_21_invented_cameras_take_no_place_of_genuine_ones() {
     let camera = |camera_id| GeometryCameraCalibration { camera_id, ..real };
     let invented =
         GeometryData { calib: (16..2_000).chain([u32::MAX]).map(camera).collect(), ..data.clone() };
-    let news = geometry.receive(&invented).unwrap();
-    assert_eq!((news.cameras, news.cameras_refused, geometry.cameras().len()), (0, 1_985, 0));
+    let changes = geometry.receive(&invented).unwrap();
+    assert_eq!((changes.cameras, changes.cameras_refused, geometry.cameras().len()), (0, 1_985, 0));
     let genuine = GeometryData { calib: (0..16).map(camera).collect(), ..data };
     assert_eq!(geometry.receive(&genuine).unwrap().cameras, 16);
 }
@@ -143,8 +143,8 @@ fn trap_08_a_cameras_dummy_rotation_is_not_believed() {
     let mut geometry = VisionGeometry::default();
     let mut data = recorded("grsim_divB_22s.log.gz")[0].clone();
     data.calib[0].derived_camera_world_tx = None;
-    let news = geometry.receive(&data).unwrap();
-    assert_eq!((news.cameras, news.cameras_refused), (0, 1));
+    let changes = geometry.receive(&data).unwrap();
+    assert_eq!((changes.cameras, changes.cameras_refused), (0, 1));
     // A valid rotation: half a turn about x looks straight down (quaternion (1, 0, 0, 0)): p ↦ (x, −y, −z).
     let real = GeometryCameraCalibration {
         q0: 1.0,
@@ -185,7 +185,7 @@ fn numbers_of_the_area_come_before_lines_and_lines_before_the_division() {
     };
     assert_eq!(area(&size), (0.8, 1.8, AreaSource::Lines));
     (size.penalty_area_depth, size.penalty_area_width) = (Some(1100), Some(2100));
-    assert_eq!(area(&size), (1.1, 2.1, AreaSource::Told));
+    assert_eq!(area(&size), (1.1, 2.1, AreaSource::Announced));
     // 0 means "not set".
     (size.penalty_area_depth, size.penalty_area_width) = (Some(0), Some(0));
     assert_eq!(area(&size), (0.8, 1.8, AreaSource::Lines));
@@ -277,8 +277,8 @@ fn nonsense_is_refused_by_name_and_what_was_known_stands() {
         (nonsense(|size| size.line_thickness = Some(i32::MAX)), "line_width"),
     ] {
         let fault = geometry.receive(&GeometryData { field, calib: vec![], models: None }).unwrap_err();
-        let GeometryFault::Field(told) = fault;
-        assert_eq!(told.field, name);
+        let GeometryFault::Field(announced) = fault;
+        assert_eq!(announced.field, name);
         assert!(fault.to_string().contains(name), "{fault}");
         assert_eq!(geometry, before);
     }

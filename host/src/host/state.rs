@@ -51,7 +51,7 @@ impl Host {
     }
 
     /// The field that vision sent, once it did.
-    pub fn told_field(&self) -> Option<&FieldSpec> {
+    pub fn announced_field(&self) -> Option<&FieldSpec> {
         self.geometry.field()
     }
 

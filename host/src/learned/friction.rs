@@ -24,7 +24,7 @@ struct Roll {
     newest: Instant,
     /// Sums of tᵏ for k = 0–4, of s·tᵏ for k = 0–2, and of s².
     times: [f64; 5],
-    ways: [f64; 3],
+    distances: [f64; 3],
     squares: f64,
 }
 
@@ -56,7 +56,7 @@ impl Friction {
             along,
             newest: ball.seen,
             times: [0.0; 5],
-            ways: [0.0; 3],
+            distances: [0.0; 3],
             squares: 0.0,
         });
         roll.newest = ball.seen;
@@ -81,7 +81,7 @@ impl Roll {
         for k in 0..5 {
             self.times[k] += power;
             if k < 3 {
-                self.ways[k] += s * power;
+                self.distances[k] += s * power;
             }
             power *= t;
         }
@@ -94,7 +94,7 @@ impl Roll {
             return None;
         }
         let [n, t1, t2, t3, t4] = self.times;
-        let [s0, s1, s2] = self.ways;
+        let [s0, s1, s2] = self.distances;
         // Cramer's rule for s = a + b t + c t².
         let det = n * (t2 * t4 - t3 * t3) - t1 * (t1 * t4 - t2 * t3) + t2 * (t1 * t3 - t2 * t2);
         if det.abs() < 1e-9 {
@@ -152,10 +152,10 @@ mod tests {
             for frame in 0..100_u64 {
                 let at = Instant(n * 10_000_000 + frame * 13_333);
                 let t = (frame as f32 * 0.013_333).min(2.0 / deceleration);
-                let way = 2.0 * t - 0.5 * deceleration * t * t;
+                let distance = 2.0 * t - 0.5 * deceleration * t * t;
                 noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
                 let jitter = 0.003 * ((noise >> 16) as f32 / 32_768.0 - 1.0);
-                let place = Point::new(-3.0 + way + jitter, 1.0);
+                let place = Point::new(-3.0 + distance + jitter, 1.0);
                 let velocity = Vector::new((2.0 - deceleration * t).max(0.0), 0.0);
                 let mut world = World::empty(at, BallModels::default());
                 world.ball = Some(Ball { velocity, ..Ball::at_rest(place, at) });

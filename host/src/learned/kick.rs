@@ -71,9 +71,9 @@ impl Kicks {
         } else if ball.seen > watched.newest && age.0 >= FROM.0 {
             watched.newest = ball.seen;
             let t = age.as_secs_f32();
-            let way =
+            let distance =
                 (ball.position - watched.from).dot(watched.along) + 0.5 * world.models.ground.slide * t * t;
-            watched.add(t, way);
+            watched.add(t, distance);
         }
     }
 
@@ -113,8 +113,8 @@ impl Kicks {
 }
 
 impl Watched {
-    fn add(&mut self, t: f32, way: f32) {
-        let terms = [1.0, t, t * t, way, t * way, way * way];
+    fn add(&mut self, t: f32, distance: f32) {
+        let terms = [1.0, t, t * t, distance, t * distance, distance * distance];
         for (sum, term) in self.sums.iter_mut().zip(terms) {
             *sum += term;
         }

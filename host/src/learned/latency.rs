@@ -77,14 +77,14 @@ impl Robot {
     /// It was seen there at that time.
     fn follow(&mut self, at: Instant, place: Point<Field>) {
         if let Some(mut start) = self.start.take() {
-            let (way, t) = (start.from.distance(place), signed(start.ordered, at));
+            let (travelled, t) = (start.from.distance(place), signed(start.ordered, at));
             let crossing = |mark: f32| {
-                let ((w0, t0), (w1, t1)) = (start.newest, (way, t));
+                let ((w0, t0), (w1, t1)) = (start.newest, (travelled, t));
                 (w0 < mark && w1 >= mark).then(|| t0 + (t1 - t0) * (mark - w0) / (w1 - w0))
             };
             start.near = start.near.or(crossing(NEAR));
             let far = crossing(FAR);
-            start.newest = (way, t);
+            start.newest = (travelled, t);
             if let (Some(near), Some(far)) = (start.near, far) {
                 let onset = 0.5 * (3.0 * near - far);
                 if (ONSET_MIN..=ONSET_MAX).contains(&onset) {
@@ -166,13 +166,13 @@ mod tests {
                 let now = begin + frame * 16_667;
                 let captured = now.saturating_sub(20_000);
                 let moving = (captured as f32 - ordered as f32) * 1e-6 - latency;
-                let way = if moving > 0.0 { 0.5 * acceleration * moving * moving } else { 0.0 };
+                let travelled = if moving > 0.0 { 0.5 * acceleration * moving * moving } else { 0.0 };
                 noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
                 let jitter = 0.002 * ((noise >> 16) as f32 / 32_768.0 - 1.0);
                 let robot = world::Robot {
                     who: Who { colour: US, id: id() },
                     pose: geometry::Pose {
-                        position: Point::new(way + jitter, 0.0),
+                        position: Point::new(travelled + jitter, 0.0),
                         ..geometry::Pose::default()
                     },
                     velocity: geometry::Vector::default(),

@@ -216,12 +216,12 @@ impl Radio {
         let (robot, message) = match opened? {
             Opened::Believed(robot, message) => (robot, message),
             Opened::Unauthenticated(robot, telemetry) => {
-                self.refusals.tell(now, robot, &telemetry);
+                self.refusals.report(now, robot, &telemetry);
                 if self.robots[robot.index()].wants_welcome(now, UNAUTHENTICATED_EVERY) {
                     self.welcome(now, robot);
                 }
                 return Err(Refusal::Unauthenticated {
-                    epoch: self.link.welcome(robot).map_or(0, |known| known.life),
+                    epoch: self.link.welcome(robot).map_or(0, |known| known.boot_epoch),
                 });
             }
         };
@@ -238,8 +238,8 @@ impl Radio {
             }
             TeamMessage::Telemetry(telemetry) => {
                 let departed = self.departures[usize::from(telemetry.snapshot)];
-                self.refusals.tell(now, robot, &telemetry);
-                self.robots[robot.index()].tell(now, telemetry, departed);
+                self.refusals.report(now, robot, &telemetry);
+                self.robots[robot.index()].report(now, telemetry, departed);
                 Ok(Received::Telemetry(robot, telemetry))
             }
         }
@@ -299,10 +299,10 @@ impl Radio {
         for part in
             snapshot::parts(self.snapshot, audience.len(), &there, &latest.situation).into_iter().take(most)
         {
-            self.say(now, To::All, &HostMessage::World(part));
+            self.send_message(now, To::All, &HostMessage::World(part));
         }
         for command in latest.commands.iter().filter(|command| audience.has(command.to)) {
-            self.say(now, To::One(command.to), &HostMessage::Command(command.clone()));
+            self.send_message(now, To::One(command.to), &HostMessage::Command(command.clone()));
         }
         for robot in audience.robots() {
             if self.robots[robot.index()].wants_welcome(now, WELCOME_EVERY) {
@@ -316,11 +316,11 @@ impl Radio {
     fn welcome(&mut self, now: Instant, robot: RobotId) {
         if let Some(welcome) = self.link.welcome(robot) {
             self.robots[robot.index()].welcomed(now);
-            self.say(now, To::One(robot), &HostMessage::Welcome(welcome));
+            self.send_message(now, To::One(robot), &HostMessage::Welcome(welcome));
         }
     }
 
-    fn say(&mut self, now: Instant, to: To, message: &HostMessage) {
+    fn send_message(&mut self, now: Instant, to: To, message: &HostMessage) {
         let packet = self.link.seal(now, message);
         for robot in RobotId::all() {
             if matches!(to, To::All) || to == To::One(robot) {

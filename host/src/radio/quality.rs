@@ -31,7 +31,7 @@ pub struct Quality {
     /// When the last telemetry came that named our epoch.
     present_at: Option<Instant>,
     telemetry: Option<(Instant, Telemetry)>,
-    life: Option<Session>,
+    session: Option<Session>,
     welcomed: Option<Instant>,
     lives: u32,
     trip: Counters,
@@ -147,19 +147,19 @@ impl Quality {
     /// A genuine frame of it came.
     pub(super) fn receive(&mut self, now: Instant, len: usize, epoch: u32, counter: u32) {
         self.received_at = Some(now);
-        match &mut self.life {
-            Some(life) if life.epoch == epoch => {
+        match &mut self.session {
+            Some(session) if session.epoch == epoch => {
                 self.up.came += 1;
                 // Telemetry and beacons may overtake each other; a late frame was counted as lost.
-                if let Some(ahead) = counter.checked_sub(life.counter) {
+                if let Some(ahead) = counter.checked_sub(session.counter) {
                     self.up.lost += u64::from(ahead.saturating_sub(1));
-                    life.counter = counter;
+                    session.counter = counter;
                 } else {
                     self.up.lost = self.up.lost.saturating_sub(1);
                 }
             }
-            life => {
-                *life = Some(Session { epoch, counter, since: now });
+            session => {
+                *session = Some(Session { epoch, counter, since: now });
                 self.lives = self.lives.saturating_add(1);
                 (self.telemetry, self.start_up) = (None, None);
                 self.up.came += 1;
@@ -171,17 +171,17 @@ impl Quality {
     }
 
     /// Takes its telemetry; `departed` is when the snapshot that it names went out.
-    pub(super) fn tell(&mut self, now: Instant, telemetry: Telemetry, departed: Option<Instant>) {
+    pub(super) fn report(&mut self, now: Instant, telemetry: Telemetry, departed: Option<Instant>) {
         self.present_at = Some(now);
         if telemetry.received > 0
-            && let (Some(departed), Some(life)) = (departed, self.life)
+            && let (Some(departed), Some(session)) = (departed, self.session)
         {
             let held = Duration(u64::from(telemetry.silence) * 100);
             let trip = now.since(departed + held);
             let overdue = now.since(departed) > TRIP_MAX;
             if telemetry.silence < u16::MAX && !overdue {
                 self.trip.add(trip.0 as f64 * 1e-3);
-                self.start_up = self.start_up.or(Some(now.since(life.since)));
+                self.start_up = self.start_up.or(Some(now.since(session.since)));
             }
         }
         if let Some((_, before)) = self.telemetry {

@@ -72,18 +72,18 @@ fn robot(n: u8) -> Link {
     Link::new(TEAM, id(n), TeamKey::ZERO.of_robot(id(n)), 100 + u32::from(n))
 }
 
-fn tell(link: &mut Link, now: Instant) -> Packet {
+fn report(link: &mut Link, now: Instant) -> Packet {
     let mut telemetry = Telemetry::default();
-    link.tell(now, &mut telemetry);
+    link.report(now, &mut telemetry);
     link.seal(&TeamMessage::Telemetry(telemetry))
 }
 
 /// Makes the robot present: telemetry, welcome, telemetry.
 fn join(radio: &mut Radio, link: &mut Link, n: u8, now: Instant) {
-    assert!(matches!(radio.handle_packet(now, &tell(link, now)), Err(Refusal::Unauthenticated { .. })));
+    assert!(matches!(radio.handle_packet(now, &report(link, now)), Err(Refusal::Unauthenticated { .. })));
     let welcome = fetch(radio);
     assert!(matches!(deliver(link, n, now, &welcome)[..], [HostMessage::Welcome(_)]));
-    assert!(radio.handle_packet(now, &tell(link, now)).is_ok());
+    assert!(radio.handle_packet(now, &report(link, now)).is_ok());
     assert!(radio.present(now).any(|robot| robot == id(n)) && fetch(radio).is_empty());
 }
 
@@ -128,11 +128,11 @@ fn eleven_robots_are_shown_twenty_two_in_parts_that_fit() {
     assert!(packets.iter().all(|(_, packet)| packet.len() <= 120));
     for (n, link) in (0..).zip(&mut links) {
         let received = deliver(link, n, ms(6), &packets);
-        let shown: usize = received
+        let poses: usize = received
             .iter()
             .map(|message| if let HostMessage::World(part) = message { part.robots.len() } else { 0 })
             .sum();
-        assert_eq!((received.len(), shown), (5, 22), "robot {n}");
+        assert_eq!((received.len(), poses), (5, 22), "robot {n}");
     }
 }
 
@@ -159,7 +159,7 @@ fn a_robot_is_welcomed_when_its_telemetry_is_first_received_and_hears_everything
     // A new boot epoch is welcomed within 20 ms, again and again until it names us.
     let mut booted = Link::new(TEAM, id(2), TeamKey::ZERO.of_robot(id(2)), 999);
     let welcomes = |radio: &mut Radio, link: &mut Link, at| {
-        assert!(radio.handle_packet(ms(at), &tell(link, ms(at))).is_err());
+        assert!(radio.handle_packet(ms(at), &report(link, ms(at))).is_err());
         fetch(radio)
     };
     assert!(welcomes(&mut radio, &mut booted, 110).is_empty());
@@ -167,7 +167,7 @@ fn a_robot_is_welcomed_when_its_telemetry_is_first_received_and_hears_everything
     assert!(welcomes(&mut radio, &mut booted, 130).is_empty());
     let welcome = welcomes(&mut radio, &mut booted, 143);
     assert_eq!(deliver(&mut booted, 2, ms(143), &welcome).len(), 1);
-    assert!(radio.handle_packet(ms(150), &tell(&mut booted, ms(150))).is_ok());
+    assert!(radio.handle_packet(ms(150), &report(&mut booted, ms(150))).is_ok());
     assert_eq!(radio.quality(id(2)).unwrap().lives(), 2);
 }
 
@@ -177,7 +177,7 @@ fn recorded_frames_of_a_robot_make_a_fresh_host_send_welcomes_and_nothing_else()
     join(&mut before, &mut link, 2, ms(0));
     let mut recorded = Vec::new();
     for n in 0..60 {
-        recorded.extend([tell(&mut link, ms(10 * n)), link.seal(&beacon())]);
+        recorded.extend([report(&mut link, ms(10 * n)), link.seal(&beacon())]);
     }
     for relay in [Relay::ToEach, Relay::ToAll] {
         let mut fresh = Radio::new(RadioSettings { relay, ..RadioSettings::new(TEAM, 71) });
@@ -187,7 +187,7 @@ fn recorded_frames_of_a_robot_make_a_fresh_host_send_welcomes_and_nothing_else()
         for (n, packet) in (0..).zip(&recorded) {
             let now = ms(5 * n);
             assert!(fresh.handle_packet(now, packet).is_err(), "frame {n}");
-            assert!(fresh.handle_packet(now, &tell(&mut other, now)).is_ok());
+            assert!(fresh.handle_packet(now, &report(&mut other, now)).is_ok());
             fresh.offer(now, &world(now, 4, 4), situation(), &[stand(2), stand(3)]);
             for (to, packet) in fetch(&mut fresh) {
                 assert!(!recorded.contains(&packet), "relayed");
@@ -216,7 +216,7 @@ fn departures(times: impl Iterator<Item = u64>, until: u64) -> Vec<u64> {
     let mut radio = radio(Relay::No);
     let mut link = robot(0);
     join(&mut radio, &mut link, 0, ms(0));
-    let mut told = 0;
+    let mut reported = 0;
     let mut out = Vec::new();
     let mut times = times.peekable();
     loop {
@@ -227,9 +227,9 @@ fn departures(times: impl Iterator<Item = u64>, until: u64) -> Vec<u64> {
             return out;
         }
         // Telemetry keeps it present.
-        while told + 100_000 <= now.0 {
-            told += 100_000;
-            assert!(radio.handle_packet(Instant(told), &tell(&mut link, Instant(told))).is_ok());
+        while reported + 100_000 <= now.0 {
+            reported += 100_000;
+            assert!(radio.handle_packet(Instant(reported), &report(&mut link, Instant(reported))).is_ok());
         }
         if due <= offer {
             radio.handle_timeout(now);
@@ -299,7 +299,7 @@ fn beacons_are_passed_on_unchanged_and_telemetry_is_not() {
             Relay::ToAll => &[To::All],
         };
         assert_eq!(to, expected);
-        let telemetry = tell(&mut one, ms(2));
+        let telemetry = report(&mut one, ms(2));
         assert!(radio.handle_packet(ms(2), &telemetry).is_ok());
         assert!(fetch(&mut radio).is_empty());
         assert_eq!(radio.handle_packet(ms(3), &telemetry), Err(Refusal::Counter { seen: 5, last: 5 }));
@@ -329,7 +329,7 @@ fn round_trip_loss_rate_and_start_up_are_those_of_the_link() {
         deliver(&mut link, 4, now, &packets);
         let mut telemetry =
             Telemetry { battery: 1580, silence: (held.0 / 100) as u16, ..Telemetry::default() };
-        link.tell(now, &mut telemetry);
+        link.report(now, &mut telemetry);
         let packet = link.seal(&TeamMessage::Telemetry(telemetry));
         // Of ten of its own frames one is lost.
         if n % 10 != 1 {
@@ -379,7 +379,7 @@ fn a_robot_that_falls_silent_is_not_present_and_foreign_frames_are_interference(
     let mut second = Radio::new(RadioSettings::new(TEAM, 71));
     join(&mut second, &mut robot(1), 1, ms(0));
     second.offer(ms(0), &world(ms(0), 1, 0), situation(), &[]);
-    for packet in [foreign.seal(&beacon()), tell(&mut forged, ms(1)), fetch(&mut second)[0].1.clone()] {
+    for packet in [foreign.seal(&beacon()), report(&mut forged, ms(1)), fetch(&mut second)[0].1.clone()] {
         assert!(radio.handle_packet(ms(1), &packet).is_err());
     }
     assert_eq!(radio.foreign(), 3);

@@ -162,7 +162,7 @@ impl Rising {
 /// What is known of one robot's refusals.
 #[derive(Clone, Copy, Debug, Default)]
 struct OfRobot {
-    told: Option<[u16; Refusal::KINDS]>,
+    last_refused: Option<[u16; Refusal::KINDS]>,
     rising: [Rising; Why::ALL.len()],
     forged: Rising,
     follows: Option<(u32, Instant)>,
@@ -179,10 +179,10 @@ pub(super) struct Refusals {
 
 impl Refusals {
     /// Genuine telemetry came, of a robot that follows that host.
-    pub(super) fn tell(&mut self, now: Instant, robot: RobotId, telemetry: &Telemetry) {
+    pub(super) fn report(&mut self, now: Instant, robot: RobotId, telemetry: &Telemetry) {
         let known = &mut self.robots[robot.index()];
         known.follows = Some((telemetry.host, now));
-        let before = known.told.replace(telemetry.refused).unwrap_or(telemetry.refused);
+        let before = known.last_refused.replace(telemetry.refused).unwrap_or(telemetry.refused);
         for (why, rising) in Why::ALL.into_iter().zip(&mut known.rising) {
             let of = |counts: &[u16; Refusal::KINDS]| counts.get(why.kind()).copied().unwrap_or(0);
             // After a boot the counts restart from 0.
@@ -245,7 +245,7 @@ mod tests {
         RobotId::new(3).unwrap()
     }
 
-    fn told(refused: [u16; Refusal::KINDS], host: u32) -> Telemetry {
+    fn last_refused(refused: [u16; Refusal::KINDS], host: u32) -> Telemetry {
         Telemetry { refused, host, ..Telemetry::default() }
     }
 
@@ -256,7 +256,7 @@ mod tests {
     #[test]
     fn a_robot_that_follows_a_later_host_is_reported_at_once_with_the_remedy() {
         let mut refusals = Refusals::default();
-        refusals.tell(ms(0), id(), &told([0; Refusal::KINDS], 71));
+        refusals.report(ms(0), id(), &last_refused([0; Refusal::KINDS], 71));
         let warnings: Vec<_> = refusals.warnings(ms(10), 70).collect();
         assert_eq!(warnings, [RadioWarning::LaterHost(id(), 71)]);
         let description = warnings[0].to_string();
@@ -277,7 +277,7 @@ mod tests {
             let mut reported = None;
             for n in 0..50_u64 {
                 counts[why.kind()] += 1;
-                refusals.tell(ms(100 * n), id(), &told(counts, 70));
+                refusals.report(ms(100 * n), id(), &last_refused(counts, 70));
                 if refusals
                     .warnings(ms(100 * n), 70)
                     .any(|warning| warning == RadioWarning::Refuses(id(), why))
@@ -291,7 +291,7 @@ mod tests {
             let mut refusals = Refusals::default();
             for n in 0..60_u64 {
                 counts[why.kind()] = if n < 30 { (n / 10) as u16 } else { 0 };
-                refusals.tell(ms(100 * n), id(), &told(counts, 70));
+                refusals.report(ms(100 * n), id(), &last_refused(counts, 70));
                 assert_eq!(refusals.warnings(ms(100 * n), 70).count(), 0, "{why:?}");
             }
         }

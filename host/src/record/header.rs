@@ -318,11 +318,11 @@ mod tests {
     fn hosts_of_old_recordings_played_no_tactics_and_those_of_new_ones_are_told() {
         let mut settings = HostSettings::new(Colour::Blue, League::DivisionB, 1);
         settings.tactics = Tactics { threats: true, ..Tactics::NONE };
-        let told = serde_json::to_string(&HostHeader::of(&settings, Instant(0))).unwrap();
-        let read: HostHeader = serde_json::from_str(&told).unwrap();
+        let reported = serde_json::to_string(&HostHeader::of(&settings, Instant(0))).unwrap();
+        let read: HostHeader = serde_json::from_str(&reported).unwrap();
         assert_eq!(read.settings(League::DivisionB, TeamKey::ZERO).unwrap().tactics, settings.tactics);
-        let tactics = told.find(",\"tactics\"").unwrap();
-        let old: HostHeader = serde_json::from_str(&format!("{}}}", &told[..tactics])).unwrap();
+        let tactics = reported.find(",\"tactics\"").unwrap();
+        let old: HostHeader = serde_json::from_str(&format!("{}}}", &reported[..tactics])).unwrap();
         assert_eq!(old.tactics, Tactics::NONE);
     }
 
@@ -332,11 +332,11 @@ mod tests {
         settings.tactics = Tactics { bridge: false, ..Tactics::ALL };
         assert_eq!(HostHeader::of(&settings, Instant(0)).cases, None);
         settings.tactics.bridge = true;
-        let mut told = HostHeader::of(&settings, Instant(0));
-        assert_eq!(told.cases, Some(format!("{:08x}", case_library::division_b().hash())));
-        assert!(told.settings(League::DivisionB, TeamKey::ZERO).is_ok());
-        told.cases = Some("01234567".to_owned());
-        let description = told.settings(League::DivisionB, TeamKey::ZERO).unwrap_err().to_string();
+        let mut reported = HostHeader::of(&settings, Instant(0));
+        assert_eq!(reported.cases, Some(format!("{:08x}", case_library::division_b().hash())));
+        assert!(reported.settings(League::DivisionB, TeamKey::ZERO).is_ok());
+        reported.cases = Some("01234567".to_owned());
+        let description = reported.settings(League::DivisionB, TeamKey::ZERO).unwrap_err().to_string();
         assert!(description.contains("01234567"), "{description}");
     }
 

@@ -22,7 +22,7 @@ pub struct Recheck {
 #[derive(Debug)]
 struct Checked {
     host: Host,
-    said: VecDeque<(Instant, Vec<u8>)>,
+    sent_bytes: VecDeque<(Instant, Vec<u8>)>,
     counts: Counts,
     difference: Option<Difference>,
 }
@@ -48,7 +48,7 @@ pub enum Difference {
         /// The packet recorded: the robot it is for (255: all), then the frame.
         recorded: Vec<u8>,
         /// The host's packet, and when it sent it.
-        said: (Instant, Vec<u8>),
+        sent_bytes: (Instant, Vec<u8>),
     },
     /// The record has a packet that the host does not send.
     Missing {
@@ -87,11 +87,11 @@ impl fmt::Display for Difference {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let seconds = self.at().0 as f64 * 1e-6;
         match self {
-            Self::Other { after, recorded, said: (at, said), .. } => {
-                let byte = recorded.iter().zip(said).take_while(|(a, b)| a == b).count();
+            Self::Other { after, recorded, sent_bytes: (at, sent_bytes), .. } => {
+                let byte = recorded.iter().zip(sent_bytes).take_while(|(a, b)| a == b).count();
                 let to = whom(recorded.first().copied().unwrap_or(u8::MAX));
                 write!(f, "at {seconds:.6} s, after {after} packets that are the same: the packet to {to} ")?;
-                if byte == recorded.len() && byte == said.len() {
+                if byte == recorded.len() && byte == sent_bytes.len() {
                     write!(f, "is said at {:.6} s", at.0 as f64 * 1e-6)
                 } else {
                     write!(
@@ -99,7 +99,7 @@ impl fmt::Display for Difference {
                         "differs from byte {} on ({} bytes recorded, {} said)",
                         byte.max(1) - 1,
                         recorded.len() - 1,
-                        said.len() - 1
+                        sent_bytes.len() - 1
                     )
                 }
             }
@@ -125,7 +125,7 @@ impl Recheck {
             let settings = host.settings(league, if host.keyed { key } else { TeamKey::ZERO })?;
             Ok(Checked {
                 host: Host::new(settings, host.began()),
-                said: VecDeque::new(),
+                sent_bytes: VecDeque::new(),
                 counts: Counts::default(),
                 difference: None,
             })
@@ -138,11 +138,11 @@ impl Recheck {
         let Some(checked) = self.hosts.get_mut(usize::from(record.host)) else { return false };
         match record.kind {
             Kind::Sent => checked.compare(record),
-            Kind::Vision => checked.tell(record.at, Input::Vision(&record.bytes)),
-            Kind::Referee => checked.tell(record.at, Input::Referee(&record.bytes, record.from)),
-            Kind::Robot => checked.tell(record.at, Input::Robot(&record.bytes)),
-            Kind::Timeout => checked.tell(record.at, Input::Timeout),
-            Kind::Halt => checked.tell(record.at, Input::Halt),
+            Kind::Vision => checked.feed_input(record.at, Input::Vision(&record.bytes)),
+            Kind::Referee => checked.feed_input(record.at, Input::Referee(&record.bytes, record.from)),
+            Kind::Robot => checked.feed_input(record.at, Input::Robot(&record.bytes)),
+            Kind::Timeout => checked.feed_input(record.at, Input::Timeout),
+            Kind::Halt => checked.feed_input(record.at, Input::Halt),
             Kind::Lost => {}
         }
         true
@@ -158,7 +158,7 @@ impl Recheck {
     /// Whether a host sent packets that are not in the record after its last input, and at no earlier time:
     /// the record of a match that was cut there.
     pub fn is_unfinished(&self) -> bool {
-        self.hosts.iter().any(|checked| checked.difference.is_none() && !checked.said.is_empty())
+        self.hosts.iter().any(|checked| checked.difference.is_none() && !checked.sent_bytes.is_empty())
     }
 
     /// Host by host, in the header's order: the numbers of its inputs and packets, and where it differs from
@@ -174,7 +174,7 @@ impl Recheck {
 }
 
 impl Checked {
-    fn tell(&mut self, at: Instant, input: Input<'_>) {
+    fn feed_input(&mut self, at: Instant, input: Input<'_>) {
         self.expect_nothing_left();
         self.counts.inputs += 1;
         self.host.handle(at, input);
@@ -184,20 +184,21 @@ impl Checked {
                 To::One(robot) => robot.number(),
             }];
             bytes.extend_from_slice(&packet);
-            self.said.push_back((at, bytes));
+            self.sent_bytes.push_back((at, bytes));
         }
     }
 
     fn compare(&mut self, record: &Record) {
-        let said = self.said.pop_front();
+        let sent_bytes = self.sent_bytes.pop_front();
         if self.difference.is_some() {
             return;
         }
         let (at, after) = (record.at, self.counts.same);
-        match said {
+        match sent_bytes {
             Some((when, bytes)) if when == at && bytes == record.bytes => self.counts.same += 1,
-            Some(said) => {
-                self.difference = Some(Difference::Other { at, after, recorded: record.bytes.clone(), said });
+            Some(sent_bytes) => {
+                self.difference =
+                    Some(Difference::Other { at, after, recorded: record.bytes.clone(), sent_bytes });
             }
             None => {
                 let to = record.bytes.first().copied().unwrap_or(u8::MAX);
@@ -207,8 +208,8 @@ impl Checked {
     }
 
     fn expect_nothing_left(&mut self) {
-        if let Some((at, bytes)) = self.said.pop_front() {
-            self.said.clear();
+        if let Some((at, bytes)) = self.sent_bytes.pop_front() {
+            self.sent_bytes.clear();
             let to = bytes.first().copied().unwrap_or(u8::MAX);
             self.difference.get_or_insert(Difference::Extra { at, after: self.counts.same, to });
         }

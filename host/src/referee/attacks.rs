@@ -196,7 +196,7 @@ fn finding_2_who_speaks_first_every_2_8_s_does_not_keep_halt_out() {
 }
 
 /// A source's newest packet, all at one time.
-fn say(listener: &mut Listener, program: &mut Program, now: u64, command: Wire) {
+fn send_packet(listener: &mut Listener, program: &mut Program, now: u64, command: Wire) {
     program.counter += 1;
     listener.receive(&program.packet(now, 0, command), program.address, Instant(now), None);
 }
@@ -217,9 +217,9 @@ fn of_two_sources_the_stricter_is_obeyed_at_once_whoever_came_first() {
             let mut listener = listener(None);
             let (mut one, mut two) = (Program::new("a", 1), Program::new("b", 2));
             let (first, second) = if strict_first { (strict, loose) } else { (loose, strict) };
-            say(&mut listener, &mut one, 0, Wire::Stop);
-            say(&mut listener, &mut one, S, first);
-            say(&mut listener, &mut two, S + 1, second);
+            send_packet(&mut listener, &mut one, 0, Wire::Stop);
+            send_packet(&mut listener, &mut one, S, first);
+            send_packet(&mut listener, &mut two, S + 1, second);
             let phase = listener.game().phase;
             // A timeout that is followed is one; that of another source is read as STOP.
             let timeout = first == Wire::TimeoutBlue && second == Wire::ForceStart;
@@ -234,16 +234,16 @@ fn two_that_differ_and_neither_is_stricter_are_read_as_stop_after_the_window() {
     let mut listener = listener(None);
     let (mut one, mut two) = (Program::new("a", 1), Program::new("b", 2));
     for program in [&mut one, &mut two] {
-        say(&mut listener, program, 0, Wire::PrepareKickoffBlue);
+        send_packet(&mut listener, program, 0, Wire::PrepareKickoffBlue);
     }
     // One controller on two networks: the second packet comes later, and nothing happens in between.
-    say(&mut listener, &mut one, S, Wire::NormalStart);
+    send_packet(&mut listener, &mut one, S, Wire::NormalStart);
     assert_eq!(listener.game().phase, Phase::Kickoff(Colour::Blue));
     listener.tick(Instant(S + WINDOW.0 - 1), None);
     assert_eq!(listener.game().phase, Phase::Kickoff(Colour::Blue));
     listener.tick(Instant(S + WINDOW.0), None);
     assert_eq!(listener.game().phase, Phase::Stop);
-    say(&mut listener, &mut two, 2 * S, Wire::NormalStart);
+    send_packet(&mut listener, &mut two, 2 * S, Wire::NormalStart);
     assert_eq!(listener.game().phase, Phase::Kickoff(Colour::Blue), "they agree again");
     assert!(listener.warnings(Instant(2 * S)).iter().all(|warning| !warning.is_urgent()));
 }
@@ -341,8 +341,8 @@ fn a_pinned_referee_is_obeyed_alone_and_the_other_is_reported() {
     for (pin, evil) in [("10.0.0.1", Program::new("gc", 66)), ("gc", Program::new("evil", 1))] {
         let mut listener = listener(Some(pin));
         let mut genuine = Program::new("gc", 1);
-        say(&mut listener, &mut genuine, 0, Wire::Stop);
-        say(&mut listener, &mut genuine, S, Wire::ForceStart);
+        send_packet(&mut listener, &mut genuine, 0, Wire::Stop);
+        send_packet(&mut listener, &mut genuine, S, Wire::ForceStart);
         let packet = evil.packet(S, 0, Wire::Halt);
         let verdict = listener.receive(&packet, evil.address, Instant(S), None);
         assert!(matches!(verdict, Verdict::Excluded { .. }), "{verdict:?}");
@@ -353,10 +353,10 @@ fn a_pinned_referee_is_obeyed_alone_and_the_other_is_reported() {
     }
     // A controller that was restarted on the pinned machine is taken: another port, another identifier.
     let mut listener = listener(Some("10.0.0.1"));
-    say(&mut listener, &mut Program::new("before", 1), 0, Wire::Stop);
+    send_packet(&mut listener, &mut Program::new("before", 1), 0, Wire::Stop);
     let mut restarted = Program::new("after", 1);
     restarted.address = SenderAddress::new(([10, 0, 0, 1], 50_000).into());
-    say(&mut listener, &mut restarted, 500 * MS, Wire::Halt);
+    send_packet(&mut listener, &mut restarted, 500 * MS, Wire::Halt);
     assert_eq!(listener.game().phase, Phase::Halt, "the stricter of the two, at once");
 }
 
@@ -364,13 +364,13 @@ fn a_pinned_referee_is_obeyed_alone_and_the_other_is_reported() {
 fn a_second_source_that_halts_for_ever_halts_us_is_reported_and_leaves_through_stop() {
     let mut listener = listener(None);
     let (mut genuine, mut other) = (Program::new("gc", 1), Program::new("forgotten", 2));
-    say(&mut listener, &mut genuine, 0, Wire::Stop);
-    say(&mut listener, &mut genuine, 100 * MS, Wire::ForceStart);
+    send_packet(&mut listener, &mut genuine, 0, Wire::Stop);
+    send_packet(&mut listener, &mut genuine, 100 * MS, Wire::ForceStart);
     let mut now = 100 * MS;
     for _ in 0..200 {
         now += PERIOD;
         listener.receive(&genuine.packet(now, 0, Wire::ForceStart), genuine.address, Instant(now), None);
-        say(&mut listener, &mut other, now, Wire::Halt);
+        send_packet(&mut listener, &mut other, now, Wire::Halt);
         assert_eq!(listener.game().phase, Phase::Halt);
         assert!(listener.warnings(Instant(now)).iter().any(Warning::is_urgent));
     }

@@ -11,7 +11,7 @@ use std::fmt;
 use std::net::{IpAddr, Ipv6Addr, SocketAddr};
 
 /// Longest part of a foreign identifier that is printed, characters: a controller's own is a UUID of 36.
-const SHOWN_MAX: usize = 48;
+const DISPLAYED_MAX: usize = 48;
 
 /// The network address of a packet's sender. IPv4-mapped IPv6 addresses are stored as IPv4; scope and flow
 /// are dropped.
@@ -87,7 +87,7 @@ impl fmt::Display for SourceKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.identifier {
             Some(identifier) => {
-                write!(f, "\"{}\" at {}", foreign::excerpt(identifier, SHOWN_MAX), self.address)
+                write!(f, "\"{}\" at {}", foreign::excerpt(identifier, DISPLAYED_MAX), self.address)
             }
             None => write!(f, "a referee without identifier at {}", self.address),
         }
@@ -181,8 +181,8 @@ mod tests {
             identifier: Some(format!("gc\x1b]0;pwn\x07\x1b[31m\u{202e}RED\n{}", "x".repeat(5_000))),
             address: address("10.0.0.1:5"),
         };
-        let shown = key.to_string();
-        assert!(shown.chars().all(|c| !c.is_control() && c != '\u{202e}'), "{shown:?}");
-        assert!(shown.len() < 200 && shown.ends_with("at 10.0.0.1:5"), "{shown}");
+        let printed = key.to_string();
+        assert!(printed.chars().all(|c| !c.is_control() && c != '\u{202e}'), "{printed:?}");
+        assert!(printed.len() < 200 && printed.ends_with("at 10.0.0.1:5"), "{printed}");
     }
 }

@@ -79,9 +79,9 @@ fn a_pause_of_less_than_two_seconds_changes_nothing() {
 fn where_it_is_configured_the_last_command_stands_and_the_silence_is_reported_all_the_same() {
     let seen = play(OnSilence::GoOn, 3 * S..8 * S, false);
     assert!(seen.iter().all(|(_, phase, _)| *phase == Phase::Run));
-    let told: Vec<_> = seen.iter().filter(|(_, _, description)| !description.is_empty()).collect();
-    assert_eq!((told[0].0, told.last().unwrap().0), (4_980 * MS, 7_990 * MS));
-    assert!(told[0].2[0].contains("its last command stands"), "{:?}", told[0].2);
+    let reported: Vec<_> = seen.iter().filter(|(_, _, description)| !description.is_empty()).collect();
+    assert_eq!((reported[0].0, reported.last().unwrap().0), (4_980 * MS, 7_990 * MS));
+    assert!(reported[0].2[0].contains("its last command stands"), "{:?}", reported[0].2);
 }
 
 #[test]

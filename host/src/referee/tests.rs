@@ -197,21 +197,21 @@ fn trap_03_a_designated_position_counts_in_ball_placement_only() {
 fn trap_04_a_rising_counter_is_no_changed_command() {
     let mut listener = listener();
     let mut now = S;
-    let mut say = |command, counter| {
+    let mut send = |command, counter| {
         now += S;
         let received = listener.hears(&packet(now, command, counter), Instant(now), None);
         (super::tests::command(received), listener.game().phase)
     };
-    say(Wire::Stop, 1);
-    say(Wire::PrepareKickoffYellow, 2);
-    assert_eq!(say(Wire::NormalStart, 3), (Some(Received::Followed), Phase::Kickoff(Y)));
-    assert_eq!(say(Wire::NormalStart, 4), (Some(Received::Repeated), Phase::Kickoff(Y)));
-    assert_eq!(say(Wire::NormalStart, 4), (None, Phase::Kickoff(Y)), "the same packet again is no command");
-    say(Wire::Stop, 5);
-    say(Wire::BallPlacementBlue, 6);
-    assert_eq!(say(Wire::BallPlacementBlue, 7), (Some(Received::Repeated), Phase::BallPlacement(B)));
-    say(Wire::Halt, 8);
-    assert_eq!(say(Wire::Halt, 9), (Some(Received::Repeated), Phase::Halt));
+    send(Wire::Stop, 1);
+    send(Wire::PrepareKickoffYellow, 2);
+    assert_eq!(send(Wire::NormalStart, 3), (Some(Received::Followed), Phase::Kickoff(Y)));
+    assert_eq!(send(Wire::NormalStart, 4), (Some(Received::Repeated), Phase::Kickoff(Y)));
+    assert_eq!(send(Wire::NormalStart, 4), (None, Phase::Kickoff(Y)), "the same packet again is no command");
+    send(Wire::Stop, 5);
+    send(Wire::BallPlacementBlue, 6);
+    assert_eq!(send(Wire::BallPlacementBlue, 7), (Some(Received::Repeated), Phase::BallPlacement(B)));
+    send(Wire::Halt, 8);
+    assert_eq!(send(Wire::Halt, 9), (Some(Received::Repeated), Phase::Halt));
 }
 
 #[test]
@@ -333,9 +333,9 @@ fn a_keeper_no_robot_can_be_is_none() {
 fn a_side_once_told_stands_when_a_packet_leaves_it_out() {
     let mut listener = listener();
     assert_eq!(listener.game().own_goal(B), None);
-    let mut told = packet(0, Wire::Stop, 1);
-    told.blue_team_on_positive_half = Some(true);
-    listener.hears(&told, Instant(S), None);
+    let mut reported = packet(0, Wire::Stop, 1);
+    reported.blue_team_on_positive_half = Some(true);
+    listener.hears(&reported, Instant(S), None);
     listener.hears(&packet(S, Wire::Stop, 1), Instant(2 * S), None);
     assert_eq!(listener.game().own_goal(B), Some(GoalEnd::Positive));
     assert_eq!(listener.game().own_goal(Y), Some(GoalEnd::Negative));

@@ -74,14 +74,14 @@ pub struct OtherField {
     /// The league that was chosen.
     pub league: League,
     /// Length and width by vision, m.
-    pub told: [f32; 2],
+    pub announced: [f32; 2],
     /// The league whose field it is, if it fits one.
     pub fits: Option<League>,
 }
 
 impl fmt::Display for OtherField {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let ([length, width], own) = (self.told, self.league.field());
+        let ([length, width], own) = (self.announced, self.league.field());
         write!(
             f,
             "vision tells of a field of {length:.1} × {width:.1} m, {} has {:.1} × {:.1} m: ",
@@ -101,15 +101,15 @@ impl fmt::Display for OtherField {
 }
 
 /// Compares the field that vision sent with that league's.
-pub(super) fn other_field(league: League, told: &FieldSpec) -> Option<OtherField> {
+pub(super) fn other_field(league: League, announced: &FieldSpec) -> Option<OtherField> {
     let is = |league: League| {
         let field = league.field();
-        let near = |told: f32, own: f32| (told - own).abs() <= own * TOLERANCE;
-        near(told.length, field.length) && near(told.width, field.width)
+        let near = |announced: f32, own: f32| (announced - own).abs() <= own * TOLERANCE;
+        near(announced.length, field.length) && near(announced.width, field.width)
     };
     let other = || OtherField {
         league,
-        told: [told.length, told.width],
+        announced: [announced.length, announced.width],
         fits: [League::DivisionB, League::DivisionA, League::Ssl2013].into_iter().find(|other| is(*other)),
     };
     (!is(league)).then(other)
@@ -129,9 +129,9 @@ mod tests {
     fn every_league_has_its_own_field_and_the_right_one_is_named_for_another() {
         let leagues = [League::DivisionA, League::DivisionB, League::Ssl2013];
         for league in leagues {
-            for told in leagues {
-                let found = other_field(league, &told.field());
-                assert_eq!(found.map(|found| found.fits), (league != told).then_some(Some(told)));
+            for announced in leagues {
+                let found = other_field(league, &announced.field());
+                assert_eq!(found.map(|found| found.fits), (league != announced).then_some(Some(announced)));
             }
         }
         let found = other_field(League::DivisionB, &League::DivisionA.field()).unwrap();

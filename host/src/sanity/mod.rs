@@ -129,8 +129,9 @@ impl Sanity {
         self.looked = Some(now);
         let mut found = Vec::new();
         let sees = host.imaged().is_some_and(|at| now.since(at) < SEES);
-        let told = host.told_field().and_then(|told| field::other_field(host.settings().league, told));
-        found.extend(told.map(Finding::Field));
+        let reported =
+            host.announced_field().and_then(|reported| field::other_field(host.settings().league, reported));
+        found.extend(reported.map(Finding::Field));
         found.extend(self.crowd.look(now, host, sees).map(Finding::Robots));
         found.extend(self.side.look(now, host, sees).map(Finding::Side));
         found.extend(second_host::look(now, host).map(Finding::SecondHost));

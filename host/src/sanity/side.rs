@@ -16,7 +16,7 @@ pub struct WrongSide {
     /// The goal that our host defends.
     pub defending: GoalEnd,
     /// The referee has named it; else it is the default of a host of that colour.
-    pub told: bool,
+    pub reported: bool,
     /// Evidence that it is the other.
     pub evidence: SideEvidence,
 }
@@ -36,7 +36,7 @@ impl fmt::Display for WrongSide {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let side = |goal: GoalEnd| if goal == GoalEnd::Positive { "+x" } else { "−x" };
         let (ours, other) = (side(self.defending), side(self.defending.opposite()));
-        let who = if self.told { "the referee says" } else { "no referee says otherwise" };
+        let who = if self.reported { "the referee says" } else { "no referee says otherwise" };
         write!(f, "we defend the goal at {ours} ({who}), but ")?;
         match self.evidence {
             SideEvidence::OurKeeper(id) => write!(f, "our keeper {id} stands in the area at {other}")?,
@@ -58,7 +58,7 @@ impl fmt::Display for WrongSide {
 #[derive(Clone, Debug)]
 struct Seen {
     defending: GoalEnd,
-    told: bool,
+    reported: bool,
     phase: Phase<rules::Colour>,
     /// Our and their keeper, where they are on the field.
     keepers: [Option<(RobotId, Point<Field>)>; 2],
@@ -79,15 +79,15 @@ pub(super) struct Sides {
 impl Sides {
     pub(super) fn look(&mut self, now: Instant, host: &Host, sees: bool) -> Option<WrongSide> {
         let (us, game, world) = (host.settings().us, host.game(), host.world());
-        let told = game.own_goal(us);
+        let reported = game.own_goal(us);
         let keeper = |number: Option<RobotId>, colour| {
             let id = number?;
             world.robot(protocol::Who { colour, id }).map(|robot| (id, robot.pose.position))
         };
         let places = |colour| world.team(colour).map(|robot| robot.pose.position).collect();
         let seen = Seen {
-            defending: told.unwrap_or(host.settings().defending),
-            told: told.is_some(),
+            defending: reported.unwrap_or(host.settings().defending),
+            reported: reported.is_some(),
             phase: game.phase,
             keepers: [
                 keeper(game.team(us).keeper.or(Some(host.settings().keeper)), us),
@@ -124,7 +124,7 @@ impl Sides {
         let wrong = self.lasting.see(now, evidence.is_some() && self.changed.is_none());
         evidence.filter(|_| wrong).map(|evidence| WrongSide {
             defending: seen.defending,
-            told: seen.told,
+            reported: seen.reported,
             evidence,
         })
     }
@@ -182,7 +182,7 @@ mod tests {
         };
         let robots = [team(sign), team(-sign)];
         let keepers = [Some((id(0), robots[0][0])), Some((id(1), robots[1][0]))];
-        Seen { defending, told: true, phase, keepers, robots }
+        Seen { defending, reported: true, phase, keepers, robots }
     }
 
     /// The first time at which something is found, ms, and the finding.

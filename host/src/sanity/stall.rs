@@ -86,7 +86,7 @@ pub(super) struct Stalls {
     /// Since when snapshots have gone out without a pause.
     sends_since: Option<Instant>,
     /// The last stall, and until when it is reported.
-    shown: Option<(Stall, Instant)>,
+    current: Option<(Stall, Instant)>,
 }
 
 /// Times of the newest frames.
@@ -116,9 +116,9 @@ impl Last {
 }
 
 fn unheard(radio: &Radio, now: Instant) -> Option<Duration> {
-    let told = radio.present(now).filter_map(|id| radio.quality(id)?.telemetry());
-    let new = told.filter(|(at, told)| now.since(*at) < TELEMETRY_NEW && told.received > 0);
-    new.map(|(at, told)| Duration(u64::from(told.silence) * 100 + now.since(*at).0)).min()
+    let reported = radio.present(now).filter_map(|id| radio.quality(id)?.telemetry());
+    let new = reported.filter(|(at, reported)| now.since(*at) < TELEMETRY_NEW && reported.received > 0);
+    new.map(|(at, reported)| Duration(u64::from(reported.silence) * 100 + now.since(*at).0)).min()
 }
 
 impl Stalls {
@@ -139,9 +139,9 @@ impl Stalls {
         let sends = last.sent.is_some_and(|at| now.since(at) < SENDS) && self.runs_again(now);
         self.sends_since = sends.then(|| self.sends_since.unwrap_or(now));
         if let Some(stall) = self.goes_on(now, last) {
-            self.shown = Some((stall, now + SHOWN));
+            self.current = Some((stall, now + SHOWN));
         }
-        self.shown.filter(|(_, until)| now < *until).map(|(stall, _)| stall)
+        self.current.filter(|(_, until)| now < *until).map(|(stall, _)| stall)
     }
 
     /// Whether the computer runs, and for long enough after its last stall.
@@ -201,10 +201,10 @@ mod tests {
     use super::*;
 
     /// The stall reported every 100 ms of 20 s, if the given part stalls from 5 s to `until`, ms.
-    fn shown(until: u64, still: &str) -> Vec<(u64, Option<Stall>)> {
+    fn current(until: u64, still: &str) -> Vec<(u64, Option<Stall>)> {
         let mut stalls = Stalls::default();
-        let mut shown = Vec::new();
-        let (mut last, mut said) = (Last::default(), 0);
+        let mut current = Vec::new();
+        let (mut last, mut count) = (Last::default(), 0);
         for ms in (0..20_000).step_by(10) {
             let now = Instant(ms * 1_000);
             let stands = |what: &str| still == what && (5_000..until).contains(&ms);
@@ -226,16 +226,16 @@ mod tests {
             let silent = last.sent.map_or(0, |at| now.since(at).0) / 1_000;
             let silent = if stands("down") { ms - 5_000 } else { silent };
             if ms.is_multiple_of(100) {
-                said = silent;
+                count = silent;
             } else {
-                said += 10;
+                count += 10;
             }
-            last.unheard = (!stands("up") && !stands("radio")).then_some(Duration::millis(said));
+            last.unheard = (!stands("up") && !stands("radio")).then_some(Duration::millis(count));
             if ms.is_multiple_of(100) {
-                shown.push((ms, stalls.see(now, &last)));
+                current.push((ms, stalls.see(now, &last)));
             }
         }
-        shown
+        current
     }
 
     #[test]
@@ -247,32 +247,32 @@ mod tests {
             ("radio", "radio", "no robot is received"),
             ("down", "radio", "none receives us"),
         ] {
-            let shown = shown(7_000, still);
-            let said: Vec<_> = shown.iter().filter_map(|(ms, stall)| Some((*ms, (*stall)?))).collect();
-            let first = said[0].0;
+            let current = current(7_000, still);
+            let count: Vec<_> = current.iter().filter_map(|(ms, stall)| Some((*ms, (*stall)?))).collect();
+            let first = count[0].0;
             let latest = if still == "host" { 7_000 } else { 5_500 };
             assert!((5_000..=latest).contains(&first), "{still}: {first} ms");
-            for (ms, stall) in &said {
+            for (ms, stall) in &count {
                 assert!(
                     stall.place() == place && stall.to_string().contains(description),
                     "{still}, {ms}: {stall}"
                 );
             }
-            assert!(said.last().unwrap().0 <= 10_500, "{still}: it is over");
+            assert!(count.last().unwrap().0 <= 10_500, "{still}: it is over");
         }
     }
 
     #[test]
     fn gaps_of_150_ms_are_no_stall() {
         for still in ["host", "vision", "up", "radio", "down"] {
-            assert!(shown(5_150, still).iter().all(|(_, stall)| stall.is_none()), "{still}");
+            assert!(current(5_150, still).iter().all(|(_, stall)| stall.is_none()), "{still}");
         }
     }
 
     #[test]
     fn robots_that_are_switched_off_are_no_stall_for_ever() {
-        let shown = shown(20_000, "radio");
-        assert!(shown.iter().any(|(ms, stall)| *ms < 6_000 && stall.is_some()));
-        assert!(shown.iter().all(|(ms, stall)| *ms < 18_500 || stall.is_none()));
+        let current = current(20_000, "radio");
+        assert!(current.iter().any(|(ms, stall)| *ms < 6_000 && stall.is_some()));
+        assert!(current.iter().all(|(ms, stall)| *ms < 18_500 || stall.is_none()));
     }
 }

@@ -22,12 +22,12 @@ fn host() -> Host {
     Host::new(HostSettings::new(Colour::Blue, League::DivisionB, EPOCH), Instant(0))
 }
 
-/// The first time at which a second host is found, ms, with its evidence; every 100 ms `tell` feeds the host
+/// The first time at which a second host is found, ms, with its evidence; every 100 ms `report` feeds the host
 /// its inputs.
-fn second_host(mut tell: impl FnMut(u64, &mut Host)) -> Option<(u64, SecondHost)> {
+fn second_host(mut report: impl FnMut(u64, &mut Host)) -> Option<(u64, SecondHost)> {
     let (mut host, mut sanity) = (host(), Sanity::default());
     (0..8_000).step_by(100).find_map(|ms| {
-        tell(ms, &mut host);
+        report(ms, &mut host);
         sanity.look(Instant(ms * 1_000), &host).into_iter().find_map(|found| match found {
             Finding::SecondHost(found) => Some((ms, found)),
             _ => None,
@@ -54,7 +54,8 @@ fn frames_of_a_second_host_are_told_within_two_seconds_and_our_own_echo_is_none(
             // It starts after a second, with ten frames every 100 ms.
             for n in 0..10 {
                 let now = Instant((ms + n) * 1_000);
-                let packet = other.seal(now, &HostMessage::Welcome(Welcome { to: id(), life: 1, offset: 0 }));
+                let packet =
+                    other.seal(now, &HostMessage::Welcome(Welcome { to: id(), boot_epoch: 1, offset: 0 }));
                 if ms >= 1_000 {
                     host.handle(now, Input::Robot(&packet));
                 }

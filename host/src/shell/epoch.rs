@@ -147,16 +147,16 @@ mod tests {
         let directory = Directory::new("bad");
         fs::create_dir_all(&directory.0).unwrap();
         fs::write(directory.0.join(FILE), "yesterday").unwrap();
-        let told = |directory| {
+        let reported = |directory| {
             let Epoch { epoch, warning } = next(directory, 1_000);
             assert_eq!(epoch, 1_000);
             warning.unwrap()
         };
-        assert!(told(Some(&directory.0)).contains("it holds no epoch; delete it"));
+        assert!(reported(Some(&directory.0)).contains("it holds no epoch; delete it"));
         let no_directory = directory.0.join(FILE);
-        assert!(told(Some(&no_directory)).contains("cannot be kept"));
-        assert!(told(None).contains("XDG_STATE_HOME"));
+        assert!(reported(Some(&no_directory)).contains("cannot be kept"));
+        assert!(reported(None).contains("XDG_STATE_HOME"));
         fs::write(directory.0.join(FILE), u32::MAX.to_string()).unwrap();
-        assert!(told(Some(&directory.0)).contains("largest"));
+        assert!(reported(Some(&directory.0)).contains("largest"));
     }
 }

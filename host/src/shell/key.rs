@@ -44,14 +44,14 @@ impl fmt::Display for KeyError {
                 write!(
                     f,
                     "the key file {} cannot be read: {error}; `openssl rand -hex 16` makes a key",
-                    shown(path)
+                    printable_path(path)
                 )
             }
             Self::Malformed { path, what } => write!(
                 f,
                 "the key file {} holds {what}; it must hold 32 hexadecimal digits and nothing else, as `openssl rand -hex 16` \
                  makes them",
-                shown(path)
+                printable_path(path)
             ),
         }
     }
@@ -60,7 +60,7 @@ impl fmt::Display for KeyError {
 impl std::error::Error for KeyError {}
 
 /// A path as it can be printed.
-fn shown(path: &Path) -> String {
+fn printable_path(path: &Path) -> String {
     foreign::printable(&path.to_string_lossy()).into_owned()
 }
 
@@ -72,7 +72,7 @@ pub fn read(path: &Path) -> Result<KeyFile, KeyError> {
     let text = str::from_utf8(&bytes).map_err(|_| malformed("bytes that are no text".to_owned()))?;
     let key = parse(text).map_err(malformed)?;
     let warning = if key == TeamKey::ZERO {
-        Some(format!("the key in {} is all zeros, which everybody knows", shown(path)))
+        Some(format!("the key in {} is all zeros, which everybody knows", printable_path(path)))
     } else {
         readable_by_others(path)
     };
@@ -103,7 +103,8 @@ pub fn format(key: &TeamKey) -> String {
 fn readable_by_others(path: &Path) -> Option<String> {
     use std::os::unix::fs::PermissionsExt as _;
     let mode = std::fs::metadata(path).ok()?.permissions().mode();
-    (mode & 0o077 != 0).then(|| format!("others may read the key file {}; `chmod 600` it", shown(path)))
+    (mode & 0o077 != 0)
+        .then(|| format!("others may read the key file {}; `chmod 600` it", printable_path(path)))
 }
 
 #[cfg(not(unix))]

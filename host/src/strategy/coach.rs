@@ -170,8 +170,8 @@ impl Coach {
         self.observe(view);
         let mut plan = Plan::new(view);
         match view.phase {
-            _ if self.team == Team::Idle => plan.everybody(Role::Player, Task::Stand, Why::Idle),
-            Phase::Halt | Phase::Timeout(_) => plan.everybody(Role::Player, Task::Stand, Why::Referee),
+            _ if self.team == Team::Idle => plan.all_robots(Role::Player, Task::Stand, Why::Idle),
+            Phase::Halt | Phase::Timeout(_) => plan.all_robots(Role::Player, Task::Stand, Why::Referee),
             Phase::Run => match &mut self.model {
                 Some(model) => {
                     plan.orders.extend(model.open_play(view, &mut plan.free, self.double_touch_blocked));

@@ -79,12 +79,12 @@ pub fn clearance_beside(
     let out = (ball.position - view.our_goal()).unit().unwrap_or(Vector::new(1.0, 0.0));
     let best = (-CLEAR_TURNS..=CLEAR_TURNS)
         .filter_map(|turn| {
-            let way = out.rotated(Angle::degrees(CLEAR_STEP_DEG * turn as f32));
-            let lines_up = ball.position - way * LINES_UP;
+            let ray = out.rotated(Angle::degrees(CLEAR_STEP_DEG * turn as f32));
+            let lines_up = ball.position - ray * LINES_UP;
             if view.in_our_area(lines_up, off) {
                 return None;
             }
-            let at = view.clamp(ball.position + way * CLEAR_AHEAD, CLEAR_INSIDE);
+            let at = view.clamp(ball.position + ray * CLEAR_AHEAD, CLEAR_INSIDE);
             let room = room_along(view, ball.position, at);
             let teammates =
                 view.ours.iter().filter(|teammate| teammate.id != who.id && teammate.id != view.keeper);
@@ -108,8 +108,8 @@ fn clearing_kick(ball: &Ball, at: Point<Attack>, room: f32) -> KickOrder {
 
 /// Distance of the nearest opponent from the path of a ball, m; at most a metre.
 pub fn room_along(view: &View, from: Point<Attack>, to: Point<Attack>) -> f32 {
-    let way = geometry::Segment::new(from, to);
-    view.theirs.iter().map(|robot| way.distance_to(robot.position)).fold(ROOM_ENOUGH, f32::min)
+    let ray = geometry::Segment::new(from, to);
+    view.theirs.iter().map(|robot| ray.distance_to(robot.position)).fold(ROOM_ENOUGH, f32::min)
 }
 
 /// Places of two defenders: side by side at the edge of our area, across the line from the ball to our goal.

@@ -34,7 +34,7 @@ pub enum Role {
     /// Plays the ball in open play, with the other field players.
     Player,
     /// Takes our restart, or places the ball.
-    Taker,
+    Kicker,
     /// Receives the pass of our restart.
     Receiver,
     /// Took our restart and must not touch the ball before another robot has.
@@ -254,7 +254,7 @@ impl Role {
     pub fn rule_role(self) -> RuleRole {
         match self {
             Self::Keeper => RuleRole::Keeper,
-            Self::Taker => RuleRole::Taker,
+            Self::Kicker => RuleRole::Kicker,
             _ => RuleRole::Player,
         }
     }

@@ -15,7 +15,7 @@ use super::view::{Ball, View};
 /// and the path of a ball kicked at them before all know that it is in play (6 m/s for 20 ms).
 pub const OFF_BALL: f32 = 0.78;
 /// Distance behind the ball at which our taker waits, m.
-const TAKER_WAITS: f32 = 0.7;
+const KICKER_WAITS: f32 = 0.7;
 /// Distance behind the mark of all robots except taker and keeper at a penalty, m: the rules' 1 m, a body and
 /// a margin, and room for another robot (0.23 m) to pass in front of the row to its place, or for a ball that
 /// lies a little behind the mark.
@@ -35,9 +35,9 @@ const TURN_STEP_DEG: f32 = 15.0;
 const KICKOFF_BACK: f32 = 0.9;
 
 /// Waiting place of our taker for its restart from `ball`: behind it, as seen from their goal.
-pub fn taker_waits(view: &View, ball: Point<Attack>) -> Point<Attack> {
+pub fn kicker_waits(view: &View, ball: Point<Attack>) -> Point<Attack> {
     let back = (ball - view.their_goal()).unit().unwrap_or(Vector::new(-1.0, 0.0));
-    view.clamp(ball + back * TAKER_WAITS, -0.1)
+    view.clamp(ball + back * KICKER_WAITS, -0.1)
 }
 
 /// Our taker's task for its target; without one it waits behind the ball until its teammates have taken their
@@ -46,7 +46,7 @@ pub fn take(view: &View, ball: &Ball, target: Option<Target>) -> (Task, Why) {
     let distance = |at: Point<Attack>| at.distance(ball.position);
     match target {
         None => {
-            let at = taker_waits(view, ball.position);
+            let at = kicker_waits(view, ball.position);
             (Task::GoTo { at, face: at.direction_to(ball.position) }, Why::Referee)
         }
         Some(Target::Shot { at, room }) => (Task::Kick { at, kick: support::SHOT }, Why::BestTarget { room }),

@@ -14,9 +14,9 @@ use super::view::{Robot, View};
 /// Estimated time until `robot` could be at `place`, s: at its top speed, after the time it needs to get
 /// there.
 pub fn time_to(robot: &Robot, place: Point<Attack>) -> f32 {
-    let way = place - robot.position;
-    let distance = way.norm();
-    let closing = way.unit().map_or(0.0, |along| robot.velocity.dot(along));
+    let offset = place - robot.position;
+    let distance = offset.norm();
+    let closing = offset.unit().map_or(0.0, |along| robot.velocity.dot(along));
     // From the closing speed with constant acceleration: time gained, or time lost in turning back.
     (distance / TYPICAL_SPEED + SPEEDING_UP - closing / TYPICAL_ACCELERATION).max(0.0)
 }

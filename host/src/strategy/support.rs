@@ -38,11 +38,11 @@ pub fn places(
 /// The value of having the ball at `place` after a pass from `ball`: room on the path, room there, and a
 /// clear line to the goal.
 pub fn worth(view: &View, ball: Point<Attack>, place: Point<Attack>) -> f32 {
-    let way = room_along(view, ball, place).min(ROOM_GOOD) / ROOM_GOOD;
+    let room_share = room_along(view, ball, place).min(ROOM_GOOD) / ROOM_GOOD;
     let there = view.nearest_theirs(place).map_or(ROOM_GOOD, |(_, d)| d).min(ROOM_GOOD) / ROOM_GOOD;
     let ahead = ((place.x() - ball.x()) / view.field.length + 0.5).clamp(0.0, 1.0);
     let shot = room_along(view, place, view.their_goal()).min(ROOM_GOOD) / ROOM_GOOD;
-    way * there * (0.4 + 0.3 * ahead + 0.3 * shot)
+    room_share * there * (0.4 + 0.3 * ahead + 0.3 * shot)
 }
 
 /// The places considered: a coarse grid ahead of and beside the ball, outside the areas and inside the lines.
@@ -92,14 +92,14 @@ pub enum Target {
     },
 }
 
-/// Chooses the target for the robot `taker` with the ball at `ball`.
-pub fn target(view: &View, taker: RobotId, ball: Point<Attack>) -> Target {
+/// Chooses the target for the robot `kicker` with the ball at `ball`.
+pub fn target(view: &View, kicker: RobotId, ball: Point<Attack>) -> Target {
     let (shot, room) = best_shot(view, ball);
     if room > ROOM_TO_SHOOT && ball.distance(view.their_goal()) < SHOOT_WITHIN {
         return Target::Shot { at: shot, room };
     }
     let receivable = |teammate: &&Robot| {
-        teammate.id != taker
+        teammate.id != kicker
             && teammate.id != view.keeper
             && view.clamp(teammate.position, INSIDE) == teammate.position
             && {
@@ -148,8 +148,8 @@ pub fn best_shot(view: &View, ball: Point<Attack>) -> (Point<Attack>, f32) {
     for i in 0..SHOTS {
         let y = half * (2.0 * i as f32 / (SHOTS - 1) as f32 - 1.0);
         let at = Point::new(x, y);
-        let way = Segment::new(ball, at);
-        let room = view.theirs.iter().map(|robot| way.distance_to(robot.position)).fold(1.0, f32::min);
+        let room_share = Segment::new(ball, at);
+        let room = view.theirs.iter().map(|robot| room_share.distance_to(robot.position)).fold(1.0, f32::min);
         if room > best.1 {
             best = (at, room);
         }

@@ -44,8 +44,12 @@ impl Clock {
     pub(super) fn judge(&mut self, captured: Captured, arrived: Instant) -> Judgement {
         let Some((newest, newest_arrived)) = self.newest else { return Judgement::Ours };
         let (ahead, passed) = (captured - newest, arrived.0 as i64 - newest_arrived);
-        let told = ahead > FAR && (ahead - passed).abs() <= FAR / 4 + passed / 4;
-        if ahead.abs() <= FAR || told { Judgement::Ours } else { self.foreign(captured, passed, SILENCE_FAR) }
+        let reported = ahead > FAR && (ahead - passed).abs() <= FAR / 4 + passed / 4;
+        if ahead.abs() <= FAR || reported {
+            Judgement::Ours
+        } else {
+            self.foreign(captured, passed, SILENCE_FAR)
+        }
     }
 
     /// Whether the clock we follow still runs, for a camera frame that is too late by it.

@@ -256,8 +256,8 @@ impl Tracker {
         }
     }
 
-    fn place(&mut self, anew: bool) -> Placed {
-        if anew {
+    fn place(&mut self, restart: bool) -> Placed {
+        if restart {
             self.timeline.clear();
             self.state = State::default();
         }

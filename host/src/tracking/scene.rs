@@ -33,7 +33,7 @@ impl Scene {
 
     /// Takes a packet; refused parts keep their previous values.
     pub(super) fn receive(&mut self, data: &GeometryData) -> Result<GeometryChange, GeometryFault> {
-        let news = self.geometry.receive(data)?;
+        let changes = self.geometry.receive(data)?;
         for (number, camera) in self.geometry.cameras() {
             let [x, y, height] = camera.position;
             if let Some(place) = self.cameras.get_mut(*number as usize) {
@@ -44,7 +44,7 @@ impl Scene {
         let ground = self.geometry.ground().unwrap_or(self.models.ground);
         self.models.ground = BallModel { roll: self.roll.unwrap_or(ground.roll), ..ground };
         self.models.chip = self.geometry.chip().unwrap_or(self.models.chip);
-        Ok(news)
+        Ok(changes)
     }
 
     /// Sets the deceleration of a rolling ball, m/s².

@@ -116,7 +116,7 @@ impl Bench {
         };
         // Six robots play, as in division B.
         bench.host.set_audience(Audience(0b11_1111));
-        let welcome = HostMessage::Welcome(Welcome { to: id(2), life: 9, offset: 0 });
+        let welcome = HostMessage::Welcome(Welcome { to: id(2), boot_epoch: 9, offset: 0 });
         let _welcomed = bench.robot.open(NOW, &bench.host.seal(NOW, &welcome));
         // The teammate receives a first frame and sends a handshake; the receiver of a handshake trusts its
         // sender.

@@ -127,21 +127,21 @@ mod tests {
             assert!(matches!(printable(plain), Cow::Borrowed(same) if same == plain), "{plain}");
         }
         let hostile = "gc\u{1b}]0;pwn\u{7}\u{1b}[31mRED\n0.00 s GOAL\r\u{9b}2J\u{202e}txt\u{7f}\t\u{0}";
-        let shown = printable(hostile);
+        let printed = printable(hostile);
         assert_eq!(
-            shown,
+            printed,
             "gc\\u001b]0;pwn\\u0007\\u001b[31mRED\\n0.00 s GOAL\\r\\u009b2J\\u202etxt\\u007f\\t\\u0000"
         );
-        assert!(!shown.chars().any(is_obeyed));
+        assert!(!printed.chars().any(is_obeyed));
     }
 
     #[test]
     fn every_character_of_the_first_65536_is_either_shown_or_escaped() {
         for character in (0..=0xffff).filter_map(char::from_u32) {
             let text = character.to_string();
-            let shown = printable(&text);
-            assert!(!shown.contains(char::is_control), "{:04x}", u32::from(character));
-            assert!(shown == text || shown.starts_with('\\'), "{:04x}", u32::from(character));
+            let printed = printable(&text);
+            assert!(!printed.contains(char::is_control), "{:04x}", u32::from(character));
+            assert!(printed == text || printed.starts_with('\\'), "{:04x}", u32::from(character));
         }
     }
 

@@ -48,7 +48,7 @@ pub enum RuleRole {
     /// The robot that may be in the own defence area.
     Keeper,
     /// The robot that kicks our restart: it may come near the ball before it is in play.
-    Taker,
+    Kicker,
 }
 
 /// A node of the league's state graph; `Who` is [`Colour`] for an outside observer and [`Side`] for a team.

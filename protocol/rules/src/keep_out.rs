@@ -110,7 +110,7 @@ impl KeepOut {
 pub fn keep_out(s: &Situation) -> KeepOut {
     let mut list = List(Vec::new());
     let keeper = s.rule_role == RuleRole::Keeper;
-    let taker = s.rule_role == RuleRole::Taker;
+    let is_kicker = s.rule_role == RuleRole::Kicker;
     let disc = |center: Point<Field>, radius: f32| Shape::Disc { center, radius };
     match s.phase {
         Phase::Halt | Phase::Timeout(_) => {}
@@ -138,12 +138,12 @@ pub fn keep_out(s: &Situation) -> KeepOut {
             list.add_some(Why::Stadium, stadium);
         }
         Phase::BallPlacement(Side::Ours) => {
-            let target = s.placement.filter(|_| !taker);
+            let target = s.placement.filter(|_| !is_kicker);
             list.add_some(Why::Target, target.map(|target| disc(target, BALL_DISTANCE)));
         }
         Phase::PrepareKickoff(side) | Phase::Kickoff(side) => {
             let center = Point::new(0.0, 0.0);
-            if side == Side::Ours && taker {
+            if side == Side::Ours && is_kicker {
                 list.kicker(s);
                 let prepares = matches!(s.phase, Phase::PrepareKickoff(_));
                 let ball = s.ball.filter(|_| prepares);
@@ -156,7 +156,7 @@ pub fn keep_out(s: &Situation) -> KeepOut {
             list.add_some(Why::BallDistance, away.map(|ball| disc(ball, BALL_DISTANCE)));
             list.own_area(s);
         }
-        Phase::PreparePenalty(side) | Phase::Penalty(side) => list.penalty(s, side, keeper, taker),
+        Phase::PreparePenalty(side) | Phase::Penalty(side) => list.penalty(s, side, keeper, is_kicker),
     }
     KeepOut { forbidden: list.0, within: s.field.surface() }
 }
@@ -188,9 +188,9 @@ pub fn may_touch_ball(s: &Situation, center: Point<Field>) -> Touch {
     let may = match s.phase {
         Phase::Run => true,
         Phase::FreeKick(Side::Ours) | Phase::Kickoff(Side::Ours) | Phase::BallPlacement(Side::Ours) => {
-            s.rule_role == RuleRole::Taker
+            s.rule_role == RuleRole::Kicker
         }
-        Phase::Penalty(Side::Ours) => s.rule_role == RuleRole::Taker,
+        Phase::Penalty(Side::Ours) => s.rule_role == RuleRole::Kicker,
         Phase::Penalty(Side::Theirs) => s.rule_role == RuleRole::Keeper,
         _ => false,
     };
@@ -260,13 +260,13 @@ impl List {
         }
     }
 
-    fn penalty(&mut self, s: &Situation, side: Side, keeper: bool, taker: bool) {
+    fn penalty(&mut self, s: &Situation, side: Side, keeper: bool, is_kicker: bool) {
         let attacked = if side == Side::Ours { s.own.opposite() } else { s.own };
         if side == Side::Theirs && keeper {
             if !s.ball_in_play {
                 self.keeper_line(s);
             }
-        } else if side == Side::Ours && taker {
+        } else if side == Side::Ours && is_kicker {
             let prepares = matches!(s.phase, Phase::PreparePenalty(_));
             let ball = s.ball.filter(|_| prepares);
             let on = ball.map(|center| Shape::Disc { center, radius: BALL_RADIUS });

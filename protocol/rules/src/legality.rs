@@ -23,7 +23,7 @@ pub enum Line {
     /// A goal line beside the goal.
     Goal(GoalEnd),
     /// A goal line between the posts.
-    Mouth(GoalEnd),
+    GoalOpening(GoalEnd),
 }
 
 /// Position and line where a ball left the field.
@@ -60,9 +60,9 @@ pub fn crossing(field: &FieldSpec, before: Point<Field>, now: Point<Field>) -> O
     let (dx, dy) = (now.x() - from.x(), now.y() - from.y());
     // Share of the path at which the centre crosses a line's centre; only the lines that it goes beyond
     // count.
-    let share = |start: f32, way: f32, end: f32, limit: f32| {
-        let crossed = end.abs() > limit && way != 0.0;
-        crossed.then(|| (((if end < 0.0 { -limit } else { limit }) - start) / way).clamp(0.0, 1.0))
+    let share = |start: f32, motion: f32, end: f32, limit: f32| {
+        let crossed = end.abs() > limit && motion != 0.0;
+        crossed.then(|| (((if end < 0.0 { -limit } else { limit }) - start) / motion).clamp(0.0, 1.0))
     };
     let over_goal_line = share(from.x(), dx, now.x(), x);
     let over_touch_line = share(from.y(), dy, now.y(), y);
@@ -74,7 +74,7 @@ pub fn crossing(field: &FieldSpec, before: Point<Field>, now: Point<Field>) -> O
         let goal = if now.x() < 0.0 { GoalEnd::Negative } else { GoalEnd::Positive };
         let at = Point::new(field.goal_line(goal), from.y() + dy * over_goal_line.unwrap_or(1.0));
         let mouth = at.y().abs() < field.goal_width * 0.5;
-        let line = if mouth { Line::Mouth(goal) } else { Line::Goal(goal) };
+        let line = if mouth { Line::GoalOpening(goal) } else { Line::Goal(goal) };
         Some(Crossing { line, at })
     } else {
         let positive = now.y() > 0.0;

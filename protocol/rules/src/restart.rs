@@ -172,11 +172,11 @@ pub fn after_out(
             let spot = Point::new(math::clamp(crossing.at.x(), -x, x), if positive { y } else { -y });
             AfterOut { kind: OutKind::ThrowIn, spot }
         }
-        Line::Goal(goal) | Line::Mouth(goal) if goal == own => {
+        Line::Goal(goal) | Line::GoalOpening(goal) if goal == own => {
             let spot = Point::new(x * goal.sign() as f32, touch_line(crossing.at.y()));
             AfterOut { kind: OutKind::Corner, spot }
         }
-        Line::Goal(goal) | Line::Mouth(goal) => {
+        Line::Goal(goal) | Line::GoalOpening(goal) => {
             let aimless = kicked_from.filter(|from| {
                 // The place of the last touch decides: from the own half it has crossed the halfway line
                 // since.

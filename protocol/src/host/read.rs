@@ -97,7 +97,8 @@ mod tests {
 
     #[test]
     fn what_is_read_is_what_postcard_reads_whatever_byte_is_changed_or_cut() {
-        let welcome = HostMessage::Welcome(Welcome { to: RobotId::new(3).unwrap(), life: 9, offset: 7 });
+        let welcome =
+            HostMessage::Welcome(Welcome { to: RobotId::new(3).unwrap(), boot_epoch: 9, offset: 7 });
         let (mut read, mut refused) = (0, 0);
         for message in (0..=PART_ROBOTS_MAX as u8).map(part).chain([welcome]) {
             let mut bytes = [0; 128];

@@ -27,9 +27,9 @@ fn robot(n: u8, epoch: u32) -> Link {
     Link::new(TEAM, id(n), KEY.of_robot(id(n)), epoch)
 }
 
-fn tell(link: &mut Link, now: Instant) -> Packet {
+fn report(link: &mut Link, now: Instant) -> Packet {
     let mut telemetry = Telemetry::default();
-    link.tell(now, &mut telemetry);
+    link.report(now, &mut telemetry);
     link.seal(&TeamMessage::Telemetry(telemetry))
 }
 
@@ -57,10 +57,10 @@ fn stand(to: u8) -> HostMessage {
 
 /// Telemetry, welcome, telemetry.
 fn meet(host: &mut HostLink, link: &mut Link, n: u8, now: Instant) {
-    assert!(matches!(host.open(now, &tell(link, now)), Ok(Opened::Unauthenticated(..))));
+    assert!(matches!(host.open(now, &report(link, now)), Ok(Opened::Unauthenticated(..))));
     let welcome = HostMessage::Welcome(host.welcome(id(n)).unwrap());
     assert!(link.open(now, &host.seal(now, &welcome)).is_ok());
-    assert!(matches!(host.open(now, &tell(link, now)), Ok(Opened::Believed(..))));
+    assert!(matches!(host.open(now, &report(link, now)), Ok(Opened::Believed(..))));
 }
 
 #[test]
@@ -69,7 +69,7 @@ fn a_robot_is_believed_once_it_names_this_epoch_of_the_host() {
     assert_eq!(host.open(ms(1), &beacon(&mut link)), Err(Refusal::Unauthenticated { epoch: 9 }));
     meet(&mut host, &mut link, 2, ms(2));
     assert!(matches!(host.open(ms(3), &beacon(&mut link)), Ok(Opened::Believed(..))));
-    assert_eq!(host.life(id(2)), Some(9));
+    assert_eq!(host.boot_epoch(id(2)), Some(9));
 }
 
 #[test]
@@ -78,7 +78,7 @@ fn a_fresh_host_believes_no_recording() {
     meet(&mut old, &mut link, 2, ms(2));
     let mut recorded = Vec::new();
     for n in 0..30 {
-        recorded.extend([tell(&mut link, ms(10 * n)), beacon(&mut link)]);
+        recorded.extend([report(&mut link, ms(10 * n)), beacon(&mut link)]);
     }
     let mut fresh = HostLink::new(TEAM, KEY, 71);
     for packet in recorded.iter().chain(&recorded) {
@@ -88,7 +88,7 @@ fn a_fresh_host_believes_no_recording() {
             "{opened:?}"
         );
     }
-    assert_eq!(fresh.life(id(2)), None);
+    assert_eq!(fresh.boot_epoch(id(2)), None);
     // The robot itself is welcomed, and trusted.
     meet(&mut fresh, &mut link, 2, ms(400));
     // From then on its recordings are refused outright.
@@ -102,11 +102,11 @@ fn a_recording_of_a_greater_boot_epoch_does_not_lock_the_robot_out() {
     // Its counter of starts was erased, or its number given to a spare.
     let (mut host, mut link) = (HostLink::new(TEAM, KEY, 70), robot(2, 9));
     let mut before = robot(2, 50);
-    let recorded = tell(&mut before, ms(0));
+    let recorded = report(&mut before, ms(0));
     assert!(matches!(host.open(ms(1), &recorded), Ok(Opened::Unauthenticated(..))));
     meet(&mut host, &mut link, 2, ms(2));
     assert!(matches!(host.open(ms(3), &recorded), Ok(Opened::Unauthenticated(..))));
-    assert!(matches!(host.open(ms(4), &tell(&mut link, ms(4))), Ok(Opened::Believed(..))));
+    assert!(matches!(host.open(ms(4), &report(&mut link, ms(4))), Ok(Opened::Believed(..))));
 }
 
 #[test]
@@ -115,13 +115,13 @@ fn a_stolen_robot_cannot_speak_for_another_to_the_host() {
     meet(&mut host, &mut link, 2, ms(2));
     let stolen = KEY.of_robot(id(3));
     let mut thief = Link::new(TEAM, id(2), stolen, u32::MAX);
-    assert_eq!(host.open(ms(3), &tell(&mut thief, ms(3))), Err(Refusal::Tag));
+    assert_eq!(host.open(ms(3), &report(&mut thief, ms(3))), Err(Refusal::Tag));
     // A forged beacon of robot 2 is possible, because all robots hold that key; telemetry of the genuine one
     // is received all the same.
     let mut thief = Link::new(TEAM, id(2), stolen, 9);
     (0..100).for_each(|_| drop(beacon(&mut thief)));
     assert!(host.open(ms(4), &beacon(&mut thief)).is_ok());
-    assert!(matches!(host.open(ms(5), &tell(&mut link, ms(5))), Ok(Opened::Believed(..))));
+    assert!(matches!(host.open(ms(5), &report(&mut link, ms(5))), Ok(Opened::Believed(..))));
 }
 
 #[test]

@@ -55,26 +55,26 @@ fn world(snapshot: u8, part: u8, parts: u8) -> HostMessage {
     HostMessage::World(WorldPart { snapshot, part, parts, phase, placement: None, ball: None, robots })
 }
 
-fn welcome(to: u8, life: u32) -> HostMessage {
-    HostMessage::Welcome(Welcome { to: robot(to), life, offset: 0 })
+fn welcome(to: u8, boot_epoch: u32) -> HostMessage {
+    HostMessage::Welcome(Welcome { to: robot(to), boot_epoch, offset: 0 })
 }
 
 /// Telemetry of the robot.
-fn tell(link: &mut Link) -> Packet {
+fn report(link: &mut Link) -> Packet {
     let mut telemetry = Telemetry::default();
-    link.tell(NOW, &mut telemetry);
+    link.report(NOW, &mut telemetry);
     link.seal(&TeamMessage::Telemetry(telemetry))
 }
 
 /// A robot and its host after their handshake.
 fn acquainted() -> (Link, HostLink) {
     let (mut link, mut host) = (link(2, 9), host(70));
-    assert!(matches!(host.open(NOW, &tell(&mut link)), Ok(Opened::Unauthenticated(..))));
+    assert!(matches!(host.open(NOW, &report(&mut link)), Ok(Opened::Unauthenticated(..))));
     let welcome = host.welcome(robot(2)).unwrap();
-    assert_eq!(welcome, Welcome { to: robot(2), life: 9, offset: 0 });
+    assert_eq!(welcome, Welcome { to: robot(2), boot_epoch: 9, offset: 0 });
     assert!(link.open(NOW, &host.seal(NOW, &HostMessage::Welcome(welcome))).is_ok());
-    assert!(matches!(host.open(NOW, &tell(&mut link)), Ok(Opened::Believed(..))));
-    assert_eq!(host.life(robot(2)), Some(9));
+    assert!(matches!(host.open(NOW, &report(&mut link)), Ok(Opened::Believed(..))));
+    assert_eq!(host.boot_epoch(robot(2)), Some(9));
     (link, host)
 }
 
@@ -199,7 +199,7 @@ fn what_is_lost_of_snapshots_is_counted_by_their_numbers() {
         assert!(a.open(NOW, &host.seal(NOW, &world(snapshot, part, 2))).is_ok());
     }
     let mut telemetry = Telemetry { silence: 3, ..Telemetry::default() };
-    a.tell(NOW, &mut telemetry);
+    a.report(NOW, &mut telemetry);
     assert_eq!((telemetry.received, telemetry.lost, telemetry.snapshot), (5, 5, 2));
     assert_eq!((telemetry.refused, telemetry.silence), ([0; Refusal::KINDS], 3));
 }
@@ -250,7 +250,7 @@ fn refusals_of_every_kind_reach_the_hosts_telemetry_each_in_its_place() {
     assert_eq!(a.open(NOW, &own), Err(Refusal::Sender(2)));
     expected[3] = 1;
     let mut telemetry = Telemetry::default();
-    a.tell(NOW, &mut telemetry);
+    a.report(NOW, &mut telemetry);
     assert_eq!(telemetry.refused, expected);
     assert!(expected.iter().all(|count| *count > 0), "{expected:?}");
 }
@@ -274,7 +274,7 @@ fn a_frame_that_was_withheld_is_stale_after_200_ms_and_moves_nothing() {
 fn a_withheld_welcome_of_a_dead_host_does_not_lead_a_robot() {
     let mut a = link(2, 9);
     let mut host = host(70);
-    assert!(host.open(NOW, &tell(&mut a)).is_ok());
+    assert!(host.open(NOW, &report(&mut a)).is_ok());
     let welcome = HostMessage::Welcome(host.welcome(robot(2)).unwrap());
     let (welcome, command) = (host.seal(NOW, &welcome), host.seal(NOW, &stand(2)));
     let late = NOW + Duration::millis(5_000);
@@ -290,7 +290,7 @@ fn a_robot_whose_clock_stood_still_asks_for_a_welcome_instead_of_taking_old_fram
     let later = NOW + Duration::millis(10_000);
     assert_eq!(a.open(NOW, &host.seal(later, &stand(2))), Err(Refusal::Stale));
     assert_eq!(a.open(NOW, &host.seal(later, &stand(2))), Err(Refusal::Unauthenticated { epoch: 70 }));
-    assert!(host.open(later, &tell(&mut a)).is_ok());
+    assert!(host.open(later, &report(&mut a)).is_ok());
     let welcome = HostMessage::Welcome(host.welcome(robot(2)).unwrap());
     assert!(a.open(NOW, &host.seal(later, &welcome)).is_ok());
     assert!(a.open(NOW, &host.seal(later, &stand(2))).is_ok());

@@ -2,10 +2,10 @@
 //! league's tables by another program (`golden/assemble.py`) decode to what it put in, and encode to the same
 //! bytes.
 
+#[path = "support/debug_tree.rs"]
+mod debug_tree;
 #[path = "support/messages.rs"]
 mod messages;
-#[path = "support/shown.rs"]
-mod shown;
 
 use serde_json::Value;
 use ssl::Message;
@@ -21,9 +21,9 @@ fn every_message_decodes_to_what_was_put_in_and_encodes_to_the_same_bytes() {
             let name = line["message"].as_str().expect("a message's name");
             let what = format!("{package} {name}, {}", line["sample"]);
             let bytes = take_delimited(&mut rest);
-            let (shown, again) =
+            let (debug_tree, again) =
                 messages::decoder(package, name)(bytes).unwrap_or_else(|error| panic!("{what}: {error}"));
-            shown::agree(&shown, &line["fields"]).unwrap_or_else(|error| panic!("{what}: {error}"));
+            debug_tree::agree(&debug_tree, &line["fields"]).unwrap_or_else(|error| panic!("{what}: {error}"));
             assert_eq!(again, bytes, "{what} encodes differently");
             messages.insert((package, name.to_owned()));
         }
@@ -72,7 +72,7 @@ fn every_enum_has_the_leagues_numbers_and_names() {
         };
         let number = number.parse().expect("a number");
         let variant = variant(package, name, number).unwrap_or_else(|| panic!("{line}: unknown here"));
-        assert!(shown::same_variant(value, &variant), "{line}: here {variant}");
+        assert!(debug_tree::same_variant(value, &variant), "{line}: here {variant}");
     }
 }
 

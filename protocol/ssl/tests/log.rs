@@ -109,8 +109,8 @@ fn an_impossible_size_ends_the_file_and_takes_no_memory() {
         file[begins[2] + 12..begins[2] + 16].copy_from_slice(&size.to_be_bytes());
         let mut reader = LogReader::new(&file[..]).expect("a header");
         assert_eq!(reader.by_ref().count(), 2);
-        let Some(End::Size { at, size: told }) = reader.end() else { panic!("{:?}", reader.end()) };
-        assert_eq!((*at, *told), (begins[2] as u64, size));
+        let Some(End::Size { at, size: reported }) = reader.end() else { panic!("{:?}", reader.end()) };
+        assert_eq!((*at, *reported), (begins[2] as u64, size));
     }
     // The largest possible size: the file has fewer bytes.
     let (mut file, begins) = file_of(&recordings::records(GRSIM)[..3]);

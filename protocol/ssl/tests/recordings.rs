@@ -1,10 +1,10 @@
 //! `recordings`: tests: our messages agree with what the league's own programs sent. Every packet of the
 //! recordings decodes, and single packets agree field by field with what an independent decoder read in them.
 
+#[path = "support/debug_tree.rs"]
+mod debug_tree;
 #[path = "support/recordings.rs"]
 mod recordings;
-#[path = "support/shown.rs"]
-mod shown;
 
 use std::collections::BTreeMap;
 
@@ -28,13 +28,13 @@ fn single_packets_agree_field_by_field_with_an_independent_decoder() {
         let bytes = std::fs::read(&path).expect("a packet");
         let json = std::fs::read_to_string(path.with_extension("json")).expect("its JSON");
         let json = serde_json::from_str(&json).expect("JSON");
-        let (shown, again) = match name.split('_').next() {
+        let (debug_tree, again) = match name.split('_').next() {
             Some("referee") => both::<Referee>(&bytes),
             Some("tracker") => both::<TrackerWrapperPacket>(&bytes),
             Some("vision" | "erforce") => both::<WrapperPacket>(&bytes),
             _ => panic!("{name}: which message is it?"),
         };
-        shown::agree(&shown, &json).unwrap_or_else(|error| panic!("{name}: {error}"));
+        debug_tree::agree(&debug_tree, &json).unwrap_or_else(|error| panic!("{name}: {error}"));
         // Nothing is lost: no field is left out. (Go writes a oneof behind the other fields, so the order may
         // differ.)
         assert_eq!(sorted(&again), sorted(&bytes), "{name}");

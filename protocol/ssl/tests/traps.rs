@@ -91,13 +91,13 @@ fn trap_02_the_field_comes_with_one_camera_a_packet_from_grsim_and_always_whole_
 #[test]
 fn trap_03_a_place_for_the_ball_is_told_where_none_is_to_be_placed() {
     let packets = recordings::referee(GRSIM_NOISY);
-    let told: BTreeSet<_> = packets
+    let reported: BTreeSet<_> = packets
         .iter()
         .filter(|(_, packet)| packet.designated_position.is_some())
         .map(|(_, packet)| packet.command())
         .collect();
     let beside = [Command::Halt, Command::Stop, Command::NormalStart, Command::PrepareKickoffYellow];
-    assert!(beside.iter().all(|command| told.contains(command)), "{told:?}");
+    assert!(beside.iter().all(|command| reported.contains(command)), "{reported:?}");
     // In mm, where all other values of the referee are in m.
     let place = packets.iter().find(|(_, packet)| packet.command() == Command::BallPlacementBlue);
     let place = place.and_then(|(_, packet)| packet.designated_position).expect("a placement");

@@ -16,7 +16,7 @@ use rules::Phase;
 const TEAM: TeamId = TeamId(1);
 const KEY: TeamKey = TeamKey([0x5a; 16]);
 /// First boot epoch of the robot.
-const FIRST_LIFE: u32 = 9;
+const FIRST_BOOT_EPOCH: u32 = 9;
 /// First epoch of the host.
 const FIRST_HOST: u32 = 70;
 
@@ -64,7 +64,7 @@ fn beacon(n: u32) -> TeamMessage {
 
 fn telemetry(link: &mut Link, now: Instant) -> Packet {
     let mut telemetry = Telemetry::default();
-    link.tell(now, &mut telemetry);
+    link.report(now, &mut telemetry);
     link.seal(&TeamMessage::Telemetry(telemetry))
 }
 
@@ -76,8 +76,8 @@ struct Team {
     host: HostLink,
     recorded: Vec<Packet>,
     /// The robot's boot epoch, and the host's.
-    life: u32,
-    host_life: u32,
+    boot_epoch: u32,
+    host_boot_epoch: u32,
     /// Clock of the team.
     now: Instant,
 }
@@ -86,12 +86,12 @@ impl Team {
     fn new() -> Self {
         let link = |n, epoch| Link::new(TEAM, robot(n), KEY.of_robot(robot(n)), epoch);
         let mut team = Self {
-            robot: link(2, FIRST_LIFE),
+            robot: link(2, FIRST_BOOT_EPOCH),
             teammate: link(3, 4),
             host: host(FIRST_HOST),
             recorded: Vec::new(),
-            life: FIRST_LIFE,
-            host_life: FIRST_HOST,
+            boot_epoch: FIRST_BOOT_EPOCH,
+            host_boot_epoch: FIRST_HOST,
             now: Instant(0),
         };
         team.meet_host();
@@ -134,8 +134,8 @@ impl Team {
     /// The robot boots, then the host restarts: each time every recording is tried, then the handshakes are
     /// made.
     fn boot(&mut self, counters: &mut Counters) {
-        (self.life, self.host_life) = (self.life + 1, self.host_life + 1);
-        self.robot = Link::new(TEAM, robot(2), KEY.of_robot(robot(2)), self.life);
+        (self.boot_epoch, self.host_boot_epoch) = (self.boot_epoch + 1, self.host_boot_epoch + 1);
+        self.robot = Link::new(TEAM, robot(2), KEY.of_robot(robot(2)), self.boot_epoch);
         for packet in &self.recorded {
             let opened = self.robot.open(self.now, packet);
             assert!(
@@ -146,7 +146,7 @@ impl Team {
         counters.after_boots += self.recorded.len() as u64;
         self.meet_host();
         self.shake_hands();
-        self.host = host(self.host_life);
+        self.host = host(self.host_boot_epoch);
         for packet in &self.recorded {
             let opened = self.host.open(self.now, packet);
             assert!(!matches!(opened, Ok(Opened::Believed(..))), "a fresh host: {packet:02x?}");
@@ -160,8 +160,8 @@ impl Team {
         self.now.0 += 10_000;
         let now = self.now;
         let welcome = self.host.welcome(robot(2)).unwrap();
-        let said = messages(n, welcome).map(|message| self.host.seal(now, &message));
-        for packet in &said {
+        let sent = messages(n, welcome).map(|message| self.host.seal(now, &message));
+        for packet in &sent {
             assert!(matches!(self.robot.open(now, packet), Ok(Received::Host(..))));
         }
         let (own, teammates) = (telemetry(&mut self.robot, now), self.teammate.seal(&beacon(n)));
@@ -169,7 +169,7 @@ impl Team {
             assert!(matches!(self.host.open(now, packet), Ok(Opened::Believed(..))));
         }
         assert!(matches!(self.robot.open(now, &teammates), Ok(Received::Teammate(..))));
-        self.recorded.extend(said);
+        self.recorded.extend(sent);
         self.recorded.extend([own, teammates]);
     }
 
@@ -246,7 +246,8 @@ pub(crate) fn tries(count: u64, seed: u64) -> Counters {
 }
 
 fn forged(draw: &mut impl FnMut(usize) -> usize) -> Vec<u8> {
-    let message = messages(0, Welcome { to: robot(2), life: FIRST_LIFE, offset: 0 })[draw(3)].clone();
+    let message =
+        messages(0, Welcome { to: robot(2), boot_epoch: FIRST_BOOT_EPOCH, offset: 0 })[draw(3)].clone();
     let mut payload = [0; 101];
     let payload = &*postcard::to_slice(&message, &mut payload).unwrap();
     let sender = Sender::new(draw(Sender::COUNT) as u8).unwrap();

@@ -59,9 +59,9 @@ impl Figures {
                 text,
                 "| {} | {mean} / {p99} / {worst} | {} / {} | {host} | {} |",
                 what(*work),
-                told(limits.mean),
-                told(limits.worst),
-                told(limits.host),
+                limit_text(limits.mean),
+                limit_text(limits.worst),
+                limit_text(limits.host),
             );
         }
         text + &format!(
@@ -91,7 +91,7 @@ fn limits(work: Work) -> Limits {
     }
 }
 
-fn told(limit: u64) -> String {
+fn limit_text(limit: u64) -> String {
     if limit == u64::MAX { "–".into() } else { limit.to_string() }
 }
 

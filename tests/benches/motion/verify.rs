@@ -8,8 +8,8 @@ use motion_bench::{Task, Tasks};
 pub(crate) fn run(tasks: usize) -> Result<(), String> {
     let free = FreeLimits::default();
     let drag = DragLimits::default();
-    told("without drag", tasks, |task| task_excess(task, &free, |share| free_alone(free, share)))?;
-    told("with drag", tasks, |task| task_excess(task, &drag, |share| drag_alone(drag, share)))
+    print_excess("without drag", tasks, |task| task_excess(task, &free, |share| free_alone(free, share)))?;
+    print_excess("with drag", tasks, |task| task_excess(task, &drag, |share| drag_alone(drag, share)))
 }
 
 fn free_alone(limits: FreeLimits, share: f32) -> FreeLimits {
@@ -22,7 +22,11 @@ fn drag_alone(limits: DragLimits, share: f32) -> DragLimits {
     DragLimits { speed: limits.speed * share, acceleration: limits.acceleration * share }
 }
 
-fn told(what: &str, tasks: usize, excess: impl Fn(&Task) -> Option<f32> + Sync) -> Result<(), String> {
+fn print_excess(
+    what: &str,
+    tasks: usize,
+    excess: impl Fn(&Task) -> Option<f32> + Sync,
+) -> Result<(), String> {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let excess = &excess;
     let mut all: Vec<Option<f32>> = std::thread::scope(|scope| {
@@ -56,8 +60,8 @@ fn told(what: &str, tasks: usize, excess: impl Fn(&Task) -> Option<f32> + Sync) 
 fn task_excess<L: CalcMotion>(task: &Task, limits: &L, alone: impl Fn(f32) -> L) -> Option<f32> {
     let (offset, velocity) = (task.to - task.from, task.velocity);
     let origin = Point::<Field>::new(0.0, 0.0);
-    let axis = |way: f32, speed: f32, share: f32| {
-        alone(share).time(origin, Vector::new(speed, 0.0), Point::new(way, 0.0))
+    let axis = |distance: f32, speed: f32, share: f32| {
+        alone(share).time(origin, Vector::new(speed, 0.0), Point::new(distance, 0.0))
     };
     let slower = |angle: f32| {
         let (s, c) = math::sin_cos(angle);

@@ -59,7 +59,8 @@ impl Figures {
                 sum as f64 / problems.len().max(1) as f64,
                 gated.iter().copied().max().unwrap_or(0) as f64,
             ],
-            guest: [0, 1, 2].map(|way| Spread::of(answers.iter().map(|answer| answer.instructions[way]))),
+            guest: [0, 1, 2]
+                .map(|method| Spread::of(answers.iter().map(|answer| answer.instructions[method]))),
             host,
         }
     }

@@ -26,10 +26,10 @@ fn main() -> ExitCode {
     let arguments: Vec<&str> =
         arguments.iter().map(String::as_str).filter(|label| *label != "--bench").collect();
     let done = match arguments[..] {
-        ["--work", directory, way, rounds] => rounds
+        ["--work", directory, method, rounds] => rounds
             .parse()
             .map_err(|_| "rounds".into())
-            .and_then(|rounds| callgrind::work(Path::new(directory), way, rounds)),
+            .and_then(|rounds| callgrind::work(Path::new(directory), method, rounds)),
         [] => report(false, true),
         ["--write"] => report(true, true),
         ["--guest"] => report(false, false),

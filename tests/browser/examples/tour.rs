@@ -8,7 +8,7 @@ use std::thread;
 
 use page_browser::{Browser, BrowserError, Tab};
 
-type Told<T> = Result<T, BrowserError>;
+type Reported<T> = Result<T, BrowserError>;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -31,13 +31,13 @@ fn main() -> ExitCode {
 }
 
 /// The program and its page.
-struct Shown {
+struct LayerState {
     child: Child,
     address: String,
 }
 
-impl Shown {
-    fn start(program: &str, arguments: &[&str]) -> Told<Self> {
+impl LayerState {
+    fn start(program: &str, arguments: &[&str]) -> Reported<Self> {
         let failed = |arguments: String| BrowserError::Start(format!("{program}: {arguments}"));
         let mut child = Command::new(program)
             .args(arguments)
@@ -49,16 +49,16 @@ impl Shown {
             .map_err(|error| failed(error.to_string()))?;
         let Some(stderr) = child.stderr.take() else { return Err(failed("says nothing".to_owned())) };
         let mut lines = BufReader::new(stderr).lines();
-        let mut told = Vec::new();
+        let mut reported = Vec::new();
         for line in lines.by_ref().map_while(Result::ok) {
             if let Some(address) = line.strip_prefix("page     http://") {
                 let address = address.to_owned();
                 thread::spawn(move || lines.for_each(drop));
                 return Ok(Self { child, address });
             }
-            told.push(line);
+            reported.push(line);
         }
-        Err(failed(told.join("\n")))
+        Err(failed(reported.join("\n")))
     }
 
     fn url(&self, more: &str) -> String {
@@ -66,7 +66,7 @@ impl Shown {
     }
 }
 
-impl Drop for Shown {
+impl Drop for LayerState {
     fn drop(&mut self) {
         let _ = self.child.kill();
         let _ = self.child.wait();
@@ -77,17 +77,17 @@ impl Drop for Shown {
 const SEED: &str = "1";
 const PLAYED_S: u32 = 90;
 
-fn pictures(program: &str, directory: &Path) -> Told<()> {
+fn pictures(program: &str, directory: &Path) -> Reported<()> {
     std::fs::create_dir_all(directory).map_err(|error| BrowserError::Answer(error.to_string()))?;
-    let shown = Shown::start(program, &["play", "--seed", SEED, "--speed", "20"])?;
+    let displayed = LayerState::start(program, &["play", "--seed", SEED, "--speed", "20"])?;
     let mut browser = Browser::start()?;
-    let mut tab = browser.open(&shown.url("?theme=dark&tab=why"), 1440, 900)?;
+    let mut tab = browser.open(&displayed.url("?theme=dark&tab=why"), 1440, 900)?;
     tab.wait(&format!("window.onetwo?.store.latest?.t > {PLAYED_S}"), 240)?;
     tab.eval("fetch('/api/state')")?;
     // A moment in which a case is executed and robots move: the middle of the first such play.
     tab.wait("onetwo.store.happenings.some((h) => h.kind === 'case')", 60)?;
     let at = tab.eval(BUSY)?.as_f64().unwrap_or(30.0);
-    let here = |tab: &mut Tab<'_>, at: f64| -> Told<()> {
+    let here = |tab: &mut Tab<'_>, at: f64| -> Reported<()> {
         tab.eval(&format!("location.hash = '#t={at:.2}'"))?;
         tab.wait(&format!("Math.abs(onetwo.store.scene.t - {at}) < 0.25"), 30)?;
         thread::sleep(std::time::Duration::from_millis(400));
@@ -135,22 +135,23 @@ const BUSY: &str = "(async () => {
   return long[0] + long[1] * 0.4;
 })()";
 
-fn take(tab: &mut Tab<'_>, file: &Path) -> Told<()> {
+fn take(tab: &mut Tab<'_>, file: &Path) -> Reported<()> {
     thread::sleep(std::time::Duration::from_millis(700));
     tab.picture(file)?;
     println!("{}", file.display());
     Ok(())
 }
 
-fn frames(program: &str) -> Told<()> {
+fn frames(program: &str) -> Reported<()> {
     // Eleven a side, so that there are 22 robots.
-    let shown = Shown::start(program, &["play", "--seed", SEED, "--league", "division-a", "--speed", "20"])?;
+    let displayed =
+        LayerState::start(program, &["play", "--seed", SEED, "--league", "division-a", "--speed", "20"])?;
     let mut browser = Browser::start()?;
-    let mut tab = browser.open(&shown.url(""), 1440, 900)?;
+    let mut tab = browser.open(&displayed.url(""), 1440, 900)?;
     tab.wait(BUSY_FRAME, 300)?;
     tab.eval(&format!("({FILL})()"))?;
-    let told = tab.eval("onetwo.bench(onetwo.full)")?;
-    let number = |key: &str| told[key].as_f64().unwrap_or_default();
+    let reported = tab.eval("onetwo.bench(onetwo.full)")?;
+    let number = |key: &str| reported[key].as_f64().unwrap_or_default();
     println!(
         "a frame with {} robots and {} layers of {} shapes, two maps among them, costs {:.1} times an empty field's: {:.3} ms and {:.3} ms \
          here, median of 15 rounds",
@@ -161,7 +162,7 @@ fn frames(program: &str) -> Told<()> {
         number("full_ms"),
         number("empty_ms")
     );
-    let parts = told["parts"].as_array().into_iter().flatten();
+    let parts = reported["parts"].as_array().into_iter().flatten();
     let parts = parts.filter_map(|part| Some(format!("{} {:.1}", part[0].as_str()?, part[1].as_f64()?)));
     eprintln!("each alone, in empty frames: {}", parts.collect::<Vec<_>>().join(", "));
     Ok(())

@@ -49,8 +49,8 @@ impl std::error::Error for BrowserError {}
 
 /// The browser of this machine.
 pub fn find() -> Result<PathBuf, BrowserError> {
-    if let Some(told) = env::var_os("ONETWO_BROWSER") {
-        return Ok(told.into());
+    if let Some(reported) = env::var_os("ONETWO_BROWSER") {
+        return Ok(reported.into());
     }
     let paths: Vec<PathBuf> =
         env::var_os("PATH").map(|paths| env::split_paths(&paths).collect()).unwrap_or_default();
@@ -99,7 +99,7 @@ impl Browser {
             .stderr(Stdio::piped())
             .spawn()
             .map_err(|error| start(&error))?;
-        let mut said = Vec::new();
+        let mut reported = Vec::new();
         let mut address = None;
         if let Some(stderr) = child.stderr.take() {
             let mut lines = BufReader::new(stderr).lines();
@@ -108,14 +108,14 @@ impl Browser {
                     address = Some(found.trim().to_owned());
                     break;
                 }
-                said.push(line);
+                reported.push(line);
             }
             // A full pipe would block it.
             std::thread::spawn(move || lines.for_each(drop));
         }
         let Some(address) = address else {
             let _ = child.kill();
-            return Err(BrowserError::Start(said.join("\n")));
+            return Err(BrowserError::Start(reported.join("\n")));
         };
         let (socket, _) = tungstenite::connect(&address).map_err(|error| start(&error))?;
         if let MaybeTlsStream::Plain(stream) = socket.get_ref() {

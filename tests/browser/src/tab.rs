@@ -124,13 +124,13 @@ impl<'b> Tab<'b> {
     /// Errors that the page has written to its console so far: exceptions, `console.error`, failed loads.
     pub fn errors(&mut self) -> Vec<String> {
         let mine = self.browser.events.iter().filter(|(session, ..)| *session == self.session);
-        let told = |(_, method, what): &(String, String, Value)| match method.as_str() {
+        let reported = |(_, method, what): &(String, String, Value)| match method.as_str() {
             "Runtime.exceptionThrown" => Some(what["exceptionDetails"].to_string()),
             "Runtime.consoleAPICalled" if what["type"] == "error" => Some(what["args"].to_string()),
             "Log.entryAdded" if what["entry"]["level"] == "error" => Some(what["entry"].to_string()),
             _ => None,
         };
-        mine.filter_map(told).collect()
+        mine.filter_map(reported).collect()
     }
 }
 

@@ -22,7 +22,7 @@ pub struct Library {
     /// Width of the field, mm.
     pub width: i64,
     /// Radii of a pass.
-    pub pass: Tube,
+    pub pass: Corridor,
     /// Stored cases; the index is the id.
     pub cases: Vec<Case>,
 }
@@ -80,7 +80,7 @@ pub struct Kick {
     /// Its aim.
     pub aim: Aim,
     /// Its radii.
-    pub tube: Tube,
+    pub corridor: Corridor,
 }
 
 /// Aim of a kick.
@@ -102,7 +102,7 @@ pub enum Aim {
 
 /// Radii of a leg at its start and at its end, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tube {
+pub struct Corridor {
     /// At the start.
     pub r_min: i64,
     /// At the end.
@@ -246,8 +246,8 @@ impl Case {
         let action = |action: Action| match action {
             Action::GoTo(p) => Action::GoTo(point(p)),
             Action::DribbleTo(p) => Action::DribbleTo(point(p)),
-            Action::Kick(Kick { aim, tube }) => Action::Kick(Kick {
-                tube,
+            Action::Kick(Kick { aim, corridor }) => Action::Kick(Kick {
+                corridor,
                 aim: match aim {
                     Aim::Heading { degrees, length } => Aim::Heading { degrees: turned * degrees, length },
                     Aim::Goal { offset } => Aim::Goal { offset: turned * offset },
@@ -273,7 +273,7 @@ impl Case {
 
 type Kinds = BTreeMap<String, Kick>;
 
-fn read_league(league: &Table) -> Result<(Point, Tube, Kinds), String> {
+fn read_league(league: &Table) -> Result<(Point, Corridor, Kinds), String> {
     let field = table(league, "field")?;
     let mut kinds = Kinds::new();
     for (kind, value) in table(league, "kicks")? {
@@ -283,10 +283,10 @@ fn read_league(league: &Table) -> Result<(Point, Tube, Kinds), String> {
         } else {
             Aim::Heading { degrees: integer(value, "heading_deg")?, length: integer(value, "length")? }
         };
-        kinds.insert(kind.clone(), Kick { aim, tube: tube(value)? });
+        kinds.insert(kind.clone(), Kick { aim, corridor: corridor(value)? });
     }
     let field = Point { x: integer(field, "length")?, y: integer(field, "width")? };
-    Ok((field, tube(table(league, "pass")?)?, kinds))
+    Ok((field, corridor(table(league, "pass")?)?, kinds))
 }
 
 fn read_case(name: &str, case: &Table, kinds: &Kinds) -> Result<Case, String> {
@@ -374,6 +374,6 @@ fn radii(table: &Table) -> Result<Radii, String> {
     pair(table, "scope").map(|(x, y)| Radii { x, y })
 }
 
-fn tube(table: &Table) -> Result<Tube, String> {
-    Ok(Tube { r_min: integer(table, "r_min")?, r_max: integer(table, "r_max")? })
+fn corridor(table: &Table) -> Result<Corridor, String> {
+    Ok(Corridor { r_min: integer(table, "r_min")?, r_max: integer(table, "r_max")? })
 }

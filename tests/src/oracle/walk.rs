@@ -3,7 +3,7 @@
 //! The symbolic simulation of docs/case-format.md §3.1 (paper §3.3.1), played one ball action after the
 //! other. Field frame, mm.
 
-use super::library::{Action, Aim, Case, Kick, Library, Point, Tube};
+use super::library::{Action, Aim, Case, Corridor, Kick, Library, Point};
 
 /// One leg of the ball path; its ends are not rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,7 +13,7 @@ pub struct Leg {
     /// Its intended end, mm.
     pub to: (f64, f64),
     /// Radii at either end.
-    pub tube: Tube,
+    pub corridor: Corridor,
 }
 
 /// The legs of `case` with its ball moved to `ball`; an error where the gameplays cannot be played to their
@@ -49,14 +49,14 @@ pub fn legs(library: &Library, case: &Case, ball: Point) -> Result<Vec<Leg>, Str
                 }
                 let place = receiver.place;
                 receiver.take_ball(place);
-                legs.push(Leg { from: at, to: place, tube: library.pass });
+                legs.push(Leg { from: at, to: place, corridor: library.pass });
                 at = place;
                 holder = Some(to);
             }
             Some(Action::Kick(kick)) => {
                 walkers[robot].rest = &walkers[robot].rest[1..];
                 let end = kicked(library, case, kick, at);
-                legs.push(Leg { from: at, to: end, tube: kick.tube });
+                legs.push(Leg { from: at, to: end, corridor: kick.corridor });
                 at = end;
                 holder = None;
                 for (next, walker) in walkers.iter_mut().enumerate() {

@@ -14,7 +14,7 @@ use protocol::{CaseId, CycleId, Instant, RobotId, TeamId};
 use rules::Phase;
 
 use super::honest::Sayings;
-use super::plan::{FIRST_LIFE, Plan, TEAM};
+use super::plan::{FIRST_BOOT_EPOCH, Plan, TEAM};
 
 /// An attacker on one robot's radio.
 #[derive(Debug)]
@@ -80,7 +80,8 @@ impl Adversary {
         let written = match (sender, chance.chance(0.5)) {
             (Sender::Host, true) => postcard::to_slice(&go_away(self.me), &mut payload),
             (Sender::Host, false) => {
-                let welcome = Welcome { to: self.me, life: FIRST_LIFE + chance.whole(0, 4), offset: 0 };
+                let welcome =
+                    Welcome { to: self.me, boot_epoch: FIRST_BOOT_EPOCH + chance.whole(0, 4), offset: 0 };
                 postcard::to_slice(&HostMessage::Welcome(welcome), &mut payload)
             }
             (Sender::Robot(robot), _) => {
@@ -98,12 +99,13 @@ impl Adversary {
 pub fn earlier_match(plan: &Plan) -> Vec<Packet> {
     let mut chance = Stream::new(plan.seed, "swarm earlier match");
     let (mut recorded, now) = (Vec::new(), Instant(0));
-    for life in 1..FIRST_LIFE {
-        let mut host = HostLink::new(TEAM, plan.key, life);
+    for boot_epoch in 1..FIRST_BOOT_EPOCH {
+        let mut host = HostLink::new(TEAM, plan.key, boot_epoch);
         // More robots than play today.
         for robot in [0, 1, 2, 3, 5, 9].into_iter().filter_map(RobotId::new) {
-            recorded.push(host.seal(now, &HostMessage::Welcome(Welcome { to: robot, life, offset: 0 })));
-            let mut link = Link::new(TEAM, robot, plan.key.of_robot(robot), life);
+            recorded
+                .push(host.seal(now, &HostMessage::Welcome(Welcome { to: robot, boot_epoch, offset: 0 })));
+            let mut link = Link::new(TEAM, robot, plan.key.of_robot(robot), boot_epoch);
             for _ in 0..6 {
                 recorded.push(link.seal(&TeamMessage::Beacon(boast(robot, &mut chance))));
                 recorded.push(host.seal(now, &go_away(robot)));

@@ -80,11 +80,11 @@ struct Clock {
 }
 
 impl Clock {
-    fn drawn(plan: &Plan, robot: RobotId, life: u32) -> Self {
+    fn drawn(plan: &Plan, robot: RobotId, boot_epoch: u32) -> Self {
         if !plan.on.contains(&Fault::Skew) {
             return Self { start: 0, ppm: 0 };
         }
-        let mut chance = Stream::new(plan.seed ^ u64::from(life), &format!("swarm clock {robot}"));
+        let mut chance = Stream::new(plan.seed ^ u64::from(boot_epoch), &format!("swarm clock {robot}"));
         let ppm = i64::from(chance.whole(0, 2)) * 100 - 100;
         // From zero, just before 32 bits of µs overflow, or after a month.
         let start = [0, (1 << 32) - 4_000_000, 30 * 86_400_000_000][chance.whole(0, 2) as usize];

@@ -104,10 +104,10 @@ impl fmt::Display for Danger {
 
 impl Guard {
     /// A robot that boots at that moment, ms.
-    pub fn new(me: RobotId, life: u32, born: u32) -> Self {
+    pub fn new(me: RobotId, boot_epoch: u32, born: u32) -> Self {
         Self {
             me,
-            honest: Honest::new(me, life),
+            honest: Honest::new(me, boot_epoch),
             born,
             kinematics: Omni::default(),
             frame: None,

@@ -28,11 +28,11 @@ impl Sayings {
     /// Adds a packet sent by a member of the team.
     pub fn add(&mut self, packet: &Packet) {
         let readers = RobotId::all().filter_map(|reader| seen_by(packet, reader));
-        let mut news = false;
+        let mut changed = false;
         for seen in readers {
-            news |= self.all.insert(seen);
+            changed |= self.all.insert(seen);
         }
-        if news {
+        if changed {
             self.in_order.push(packet.clone());
         }
     }
@@ -66,15 +66,15 @@ pub enum Believed {
 #[derive(Clone, Debug)]
 pub struct Honest {
     me: RobotId,
-    life: u32,
+    boot_epoch: u32,
     /// Epoch and counter of the newest accepted packet, by sender; 16 is the host.
     newest: [Option<(u32, u32)>; 17],
 }
 
 impl Honest {
     /// A receiver that has received nothing in this epoch.
-    pub fn new(me: RobotId, life: u32) -> Self {
-        Self { me, life, newest: [None; 17] }
+    pub fn new(me: RobotId, boot_epoch: u32) -> Self {
+        Self { me, boot_epoch, newest: [None; 17] }
     }
 
     /// Takes a received packet; returns its message if it may be accepted.
@@ -109,7 +109,7 @@ impl Honest {
                 TeamMessage::Handshake(handshake) => handshake
                     .teammates
                     .iter()
-                    .any(|teammate| (teammate.who, teammate.life) == (self.me, self.life)),
+                    .any(|teammate| (teammate.who, teammate.boot_epoch) == (self.me, self.boot_epoch)),
                 TeamMessage::Beacon(_) | TeamMessage::Telemetry(_) => false,
             };
             if !known && !names_me {
@@ -119,7 +119,7 @@ impl Honest {
             return Some(Believed::Teammate(RobotId::new(packet[2])?, message));
         }
         let message: HostMessage = postcard::from_bytes(payload).ok()?;
-        let welcomes = |welcome: &Welcome| (welcome.to, welcome.life) == (self.me, self.life);
+        let welcomes = |welcome: &Welcome| (welcome.to, welcome.boot_epoch) == (self.me, self.boot_epoch);
         if !known && !matches!(&message, HostMessage::Welcome(welcome) if welcomes(welcome)) {
             return None;
         }

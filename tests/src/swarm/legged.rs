@@ -51,11 +51,11 @@ pub(super) fn run(plan: Plan) -> Result<Counters, Found> {
         let handed = std::mem::take(&mut shared.handed);
         shared.sensed.clear();
         for (to, packet) in handed {
-            let believed = lives.get_mut(&to).and_then(|life| life.receive(&packet, &shared.sayings));
+            let believed = lives.get_mut(&to).and_then(|boot| boot.receive(&packet, &shared.sayings));
             watch.received(ms, to, believed.as_ref());
         }
         for sent in &tick.sent {
-            watch.said(ms, &plan, &sent.packet);
+            watch.note_sent(ms, &plan, &sent.packet);
         }
         for (id, order) in &tick.orders {
             if !is_sane(order) {

@@ -297,7 +297,7 @@ fn team(seed: u64, squad: Squad, chance: &mut Stream) -> Vec<BrainConfig> {
             Squad::Wheels => BrainConfig::hosted(id, TEAM, League::DivisionB),
         };
         // Epochs before this one were recorded.
-        let epoch = FIRST_LIFE + (seed % 3) as u32;
+        let epoch = FIRST_BOOT_EPOCH + (seed % 3) as u32;
         BrainConfig { epoch, retriever: lone.is_none_or(|lone| lone == i), ..base }
     };
     numbers.enumerate().map(brain).collect()
@@ -341,7 +341,7 @@ fn mad(fault: Fault, chance: &mut Stream) -> Madness {
 /// The team of the run.
 pub const TEAM: TeamId = TeamId(1);
 /// Epochs before this one were recorded, and the recordings are replayed.
-pub const FIRST_LIFE: u32 = 5;
+pub const FIRST_BOOT_EPOCH: u32 = 5;
 /// Share of the runs in which each fault is on: five of fifteen in a typical one.
 const ON: f32 = 0.35;
 /// Time for which the team is checked after everything has healed, ms.

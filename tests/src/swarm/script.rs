@@ -86,7 +86,7 @@ impl Headquarters {
                 to: *to,
                 defending: self.defending,
                 phase,
-                rule_role: if i == 0 && phase != Phase::Run { RuleRole::Taker } else { RuleRole::Player },
+                rule_role: if i == 0 && phase != Phase::Run { RuleRole::Kicker } else { RuleRole::Player },
                 directive: self.script.at(ms, i).1,
             })
             .collect();
@@ -97,11 +97,11 @@ impl Headquarters {
     }
 
     /// Sends the queued packets.
-    pub(super) fn speak(&mut self, mut say: impl FnMut(Option<RobotId>, &Packet)) {
+    pub(super) fn speak(&mut self, mut send: impl FnMut(Option<RobotId>, &Packet)) {
         while let Some((to, packet)) = self.radio.poll_packet() {
             match to {
-                To::All => say(None, &packet),
-                To::One(robot) => say(Some(robot), &packet),
+                To::All => send(None, &packet),
+                To::One(robot) => send(Some(robot), &packet),
             }
         }
     }

@@ -72,7 +72,7 @@ impl TeamWatch {
     }
 
     /// A robot sent this packet.
-    pub(super) fn said(&mut self, ms: u32, plan: &Plan, packet: &Packet) {
+    pub(super) fn note_sent(&mut self, ms: u32, plan: &Plan, packet: &Packet) {
         let Ok((from, TeamMessage::Beacon(beacon))) = overhear(packet, TEAM, &plan.key.of_team()) else {
             return;
         };

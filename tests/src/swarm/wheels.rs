@@ -17,7 +17,7 @@ use rules::{Colour, League};
 use super::adversary::earlier_match;
 use super::computer::{Barracks, Shared};
 use super::guard::Guard;
-use super::plan::{FIRST_LIFE, Plan, TEAM};
+use super::plan::{FIRST_BOOT_EPOCH, Plan, TEAM};
 use super::script::{Headquarters, Script};
 use super::team::TeamWatch;
 use super::{Broken, Counters, Found};
@@ -88,7 +88,7 @@ impl Run<'_> {
         let air = Air::with_host(plan.air_at(0), plan.seed, &ids);
         let watch = TeamWatch::new(&plan);
         let script = if plan.on.is_empty() { Script::stop_rules() } else { Script::drawn(&plan) };
-        let hosts = vec![headquarters(&plan, FIRST_LIFE + 10, script)];
+        let hosts = vec![headquarters(&plan, FIRST_BOOT_EPOCH + 10, script)];
         Self { plan, shared, barracks, world, air, players, hosts, watch }
     }
 
@@ -130,7 +130,7 @@ impl Run<'_> {
         }
         if let Some((span, later)) = plan.second_host {
             if round_up(span.from) == ms {
-                let epoch = if later { FIRST_LIFE + 20 } else { FIRST_LIFE + 5 };
+                let epoch = if later { FIRST_BOOT_EPOCH + 20 } else { FIRST_BOOT_EPOCH + 5 };
                 let script = Script::drawn_for_second(&plan);
                 self.hosts.push(headquarters(&plan, epoch, script));
             }
@@ -141,7 +141,7 @@ impl Run<'_> {
         if round_up(plan.trouble.to) == ms && plan.second_host.is_some_and(|(_, later)| later) {
             // The robots follow the second host; the remaining one restarts with a newer epoch to be
             // accepted.
-            self.hosts = vec![headquarters(&plan, FIRST_LIFE + 30, Script::stop_rules())];
+            self.hosts = vec![headquarters(&plan, FIRST_BOOT_EPOCH + 30, Script::stop_rules())];
         }
     }
 
@@ -190,7 +190,7 @@ impl Run<'_> {
                 watch.received(ms, id, believed.as_ref());
             }
             for packet in &reply.packets {
-                watch.said(ms, plan, packet);
+                watch.note_sent(ms, plan, packet);
                 air.send(number, id, packet);
             }
             let sensed = shared.sensed.pop().map_or(tick.sensors, |(_, sensors)| sensors);

@@ -69,7 +69,7 @@ fn scene<'p>(picture: &'p CasePicture<'p>, zoom: f64) -> Pen {
     scene.ball_scope(&mut pen);
     scene.opponents(&mut pen);
     scene.legs(&mut pen);
-    scene.ways(&mut pen);
+    scene.robot_paths(&mut pen);
     scene.robots(&mut pen);
     if let Some(overlay) = &picture.overlay {
         scene.situation(&mut pen, overlay);
@@ -221,7 +221,7 @@ impl Scene<'_, '_> {
     }
 
     /// Movements without the ball and with it.
-    fn ways(&self, pen: &mut Pen) {
+    fn robot_paths(&self, pen: &mut Pen) {
         let case = &self.picture.case;
         let shift = case.shift(self.ball);
         for robot in case.robots() {

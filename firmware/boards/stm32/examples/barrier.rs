@@ -1,4 +1,4 @@
-//! `barrier`: bench test of the break-beam sensor.
+//! `break_beam`: bench test of the break-beam sensor.
 //!
 //! Connect: lamp and receiver of the break-beam sensor. See: `free`, and what the receiver sees with the lamp
 //! lit and dark; with a ball, or a hand, in the beam `ball`, as long as it is there. Lit and dark are alike
@@ -12,19 +12,19 @@
 async fn main(spawner: embassy_executor::Spawner) {
     use board_stm32::analog::Analog;
     use embassy_time::Timer;
-    use runtime::sense::Barrier;
+    use runtime::sense::BreakBeam;
 
     // One task is enough.
     let _ = spawner;
     let mut analog = Analog::new(board_stm32::start().analog);
-    let mut barrier = Barrier::new();
+    let mut break_beam = BreakBeam::new();
     loop {
         let (mut ball, mut seen) = (false, [0.0; 2]);
         for (lit, seen) in [false, true].into_iter().zip(&mut seen) {
             analog.light(lit);
             Timer::after_millis(1).await;
-            *seen = analog.barrier();
-            ball = barrier.step(lit, *seen);
+            *seen = analog.break_beam();
+            ball = break_beam.step(lit, *seen);
         }
         let [dark, lit] = seen;
         defmt::info!("{=str} (dark {=f32}, lit {=f32})", if ball { "ball" } else { "free" }, dark, lit);

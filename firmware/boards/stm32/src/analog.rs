@@ -12,7 +12,7 @@ pub struct Analog {
     converter: Adc<'static, ADC1>,
     battery: AnyAdcChannel<'static, ADC1>,
     capacitor: AnyAdcChannel<'static, ADC1>,
-    barrier: AnyAdcChannel<'static, ADC1>,
+    break_beam: AnyAdcChannel<'static, ADC1>,
     lamp: Output<'static>,
 }
 
@@ -23,7 +23,7 @@ impl Analog {
             converter: Adc::new(parts.converter),
             battery: parts.battery.degrade_adc(),
             capacitor: parts.capacitor.degrade_adc(),
-            barrier: parts.barrier.degrade_adc(),
+            break_beam: parts.break_beam.degrade_adc(),
             lamp: Output::new(parts.lamp, Level::Low, Speed::Low),
         }
     }
@@ -39,8 +39,8 @@ impl Analog {
     }
 
     /// Light at the receiver of the break-beam sensor, 0 to 1.
-    pub fn barrier(&mut self) -> f32 {
-        share(self.converter.blocking_read(&mut self.barrier, TIME))
+    pub fn break_beam(&mut self) -> f32 {
+        share(self.converter.blocking_read(&mut self.break_beam, TIME))
     }
 
     /// Switches the lamp of the break-beam sensor; visible with the next step, because a receiver needs some

@@ -35,7 +35,7 @@ impl CrashContext {
 }
 
 /// Counts this start; must be called once, after the clocks are started.
-pub fn life() -> CrashContext {
+pub fn crash_context() -> CrashContext {
     let reset = pac::RCC.rsr().read();
     pac::RCC.rsr().modify(|flags| flags.set_rmvf(true));
     open();

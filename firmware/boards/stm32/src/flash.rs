@@ -4,14 +4,14 @@
 //! | address | what |
 //! |---|---|
 //! | 0x0800_0000 | the firmware |
-//! | 0x081a_0000, 0x081c_0000 | the two halves that count starts (`runtime::ledger`), a sector each |
+//! | 0x081a_0000, 0x081c_0000 | the two halves that count starts (`runtime::persistent_counter`), a sector each |
 //! | 0x081e_0000 | the key page (`protocol::provision`), the last sector |
 
 use embassy_stm32::Peri;
 use embassy_stm32::flash::{Blocking, Flash};
 use embassy_stm32::peripherals::FLASH;
 use protocol::provision::PAGE_LEN;
-use runtime::ledger::{self, CELL_LEN, Cell, Place};
+use runtime::persistent_counter::{self, CELL_LEN, Cell, Place};
 
 /// The provisioned page.
 pub fn page() -> &'static [u8] {
@@ -21,7 +21,7 @@ pub fn page() -> &'static [u8] {
 
 /// Why no epoch is available.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]
-pub enum LedgerError {
+pub enum CounterError {
     /// All 2³² epochs are used.
     Full,
     /// The flash did not keep the written value in three attempts.
@@ -30,10 +30,10 @@ pub enum LedgerError {
 
 /// Records this start: its epoch, larger than all before. Up to two seconds where a half has to be erased,
 /// once in 4,096 starts.
-pub fn begin(flash: Peri<'static, FLASH>) -> Result<u32, LedgerError> {
+pub fn begin(flash: Peri<'static, FLASH>) -> Result<u32, CounterError> {
     let mut flash = Flash::new_blocking(flash);
     for _ in 0..TRIES {
-        let plan = ledger::plan(CELLS, read).ok_or(LedgerError::Full)?;
+        let plan = persistent_counter::plan(CELLS, read).ok_or(CounterError::Full)?;
         if plan.erase {
             let from = HALVES + SECTOR * plan.at.half as u32;
             if flash.blocking_erase(from, from + SECTOR).is_err() {
@@ -45,7 +45,7 @@ pub fn begin(flash: Peri<'static, FLASH>) -> Result<u32, LedgerError> {
         }
         defmt::warn!("cell {=usize} of the ledger does not keep what is written", plan.at.index);
     }
-    Err(LedgerError::Worn)
+    Err(CounterError::Worn)
 }
 
 fn write(
@@ -53,7 +53,7 @@ fn write(
     at: Place,
     epoch: u32,
 ) -> Result<(), embassy_stm32::flash::Error> {
-    flash.blocking_write(offset(at), &ledger::cell(epoch))
+    flash.blocking_write(offset(at), &persistent_counter::cell(epoch))
 }
 
 /// The content of a cell. A cell that was written while the power went may have wrong check bits, and reading

@@ -90,7 +90,7 @@ parts! {
         converter: ADC1, "reads them";
         battery: PA3, "in: battery, divided by 11";
         capacitor: PC0, "in: kicker's capacitor, divided by 101";
-        barrier: PB1, "in: receiver of the light barrier, brighter is higher";
+        break_beam: PB1, "in: receiver of the light barrier, brighter is higher";
         lamp: PD7, "out: high lights the light barrier";
     }
 

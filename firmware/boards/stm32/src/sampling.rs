@@ -10,7 +10,7 @@ use embassy_sync::blocking_mutex::CriticalSectionMutex;
 use embassy_time::{Duration, Instant, Ticker};
 use runtime::kicker::FULL_VOLTS;
 use runtime::ports::{self, Seen};
-use runtime::sense::{Barrier, Tilt, Turn};
+use runtime::sense::{BreakBeam, Tilt, Turn};
 
 use crate::analog::Analog;
 use crate::imu::Imu;
@@ -45,7 +45,7 @@ pub fn newest() -> Sample {
 /// Reads everything, for ever. A sensor that does not answer is reported and tried again each second; until
 /// then the turning rate comes from the wheels.
 pub async fn run(mut imu: Imu, mut analog: Analog) -> ! {
-    let (mut turn, mut tilt, mut barrier) = (Turn::new(), Tilt::new(), Barrier::new());
+    let (mut turn, mut tilt, mut break_beam) = (Turn::new(), Tilt::new(), BreakBeam::new());
     let mut answers = false;
     let mut lit = false;
     let mut ticker = Ticker::every(STEP);
@@ -72,7 +72,7 @@ pub async fn run(mut imu: Imu, mut analog: Analog) -> ! {
                 protocol::Instant(now.as_micros()),
                 reading.map_or(f32::NAN, |reading| reading.acceleration[UP]),
             ),
-            ball: barrier.step(lit, analog.barrier()),
+            ball: break_beam.step(lit, analog.break_beam()),
             battery: analog.battery(),
             capacitor: analog.capacitor(),
         };

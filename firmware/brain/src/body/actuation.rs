@@ -126,11 +126,11 @@ impl Actuation {
         let (mut given, ruling) = wheels.governor.rule(&circumstances, &wanted);
         wheels.ruling = ruling;
         if wheels.governor.has_let_go() {
-            wheels.drivetrain.told(belief, Twist::default());
+            wheels.drivetrain.set_speed_order(belief, Twist::default());
             return ActuatorFrame::Released;
         }
         given.twist = wheels.kinematics.saturated(given.twist, RIM_MAX).0;
-        wheels.drivetrain.told(belief, given.twist);
+        wheels.drivetrain.set_speed_order(belief, given.twist);
         ActuatorFrame::Omni {
             wheels: wheels.kinematics.rims(given.twist),
             dribbler: given.dribbler,

@@ -108,11 +108,11 @@ pub trait Body: Sync {
     /// Properties of this body.
     fn spec(&self) -> &'static BodySpec;
 
-    /// Moves to the ball and takes it; faces `onwards` afterwards unless that loses a race.
-    fn get_ball(&self, belief: &Belief, onwards: Option<Angle>) -> Step;
+    /// Moves to the ball and takes it; faces `exit_heading` afterwards unless that loses a race.
+    fn get_ball(&self, belief: &Belief, exit_heading: Option<Angle>) -> Step;
 
     /// Receives a ball that has been passed to this robot.
-    fn receive(&self, belief: &Belief, onwards: Option<Angle>) -> Reception;
+    fn receive(&self, belief: &Belief, exit_heading: Option<Angle>) -> Reception;
 
     /// Brings the ball held to a place.
     fn carry_to(&self, belief: &Belief, to: Point<Field>) -> Step;

@@ -20,8 +20,8 @@ use rules::Phase;
 impl Brain<'_> {
     /// Adopts a newer state, and sets this robot's own part accordingly.
     pub(super) fn adopt(&mut self, now: Instant, state: &CycleState) {
-        let news = self.cycle.adopt(state, self.awake);
-        if news == CycleEvent::Known {
+        let changed = self.cycle.adopt(state, self.awake);
+        if changed == CycleEvent::Known {
             return;
         }
         self.beacon_due = true;
@@ -39,7 +39,7 @@ impl Brain<'_> {
             }
             Decision::Play(_) | Decision::Closed(_) => {}
         }
-        if news == CycleEvent::Gameplay {
+        if changed == CycleEvent::Gameplay {
             self.since.turned = true;
             self.begin_part(now);
         }
@@ -114,8 +114,8 @@ impl Brain<'_> {
             None | Some(Decision::Closed(_)) => {
                 let paused = !self.timers.is_idle(Timer::Pause) && !self.timers.has_fired(Timer::Pause);
                 let settled = self.timers.has_fired(Timer::Settle);
-                let told = self.cycle.closure().is_none() || self.told_end_of == self.cycle.id();
-                if elects && settled && told && !paused { self.propose(now) } else { None }
+                let reported = self.cycle.closure().is_none() || self.reported_end_of == self.cycle.id();
+                if elects && settled && reported && !paused { self.propose(now) } else { None }
             }
             Some(Decision::Undecided) if self.cycle.is_mine_to_decide() => {
                 self.since.retrieved = true;
@@ -211,7 +211,7 @@ impl Brain<'_> {
         }
         // Restarted since: this boot epoch does not know what the earlier one did.
         let lost = |id: RobotId| {
-            if id == me { self.cycle.is_of_an_earlier_life() } else { self.teammates.get(now, id).is_none() }
+            if id == me { self.cycle.is_of_an_earlier_epoch() } else { self.teammates.get(now, id).is_none() }
         };
         let players = state.play().map_or(&[][..], |play| &play.robots[..]);
         if lost(state.coordinator) || players.iter().any(|&id| lost(id)) {

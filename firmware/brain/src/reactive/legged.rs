@@ -76,8 +76,8 @@ impl Reactive {
                 _ => Intent::Stand { face: None },
             };
         }
-        let onwards = ball.position.direction_to(goal);
-        match skills::get_ball(belief, Some(onwards)) {
+        let exit_heading = ball.position.direction_to(goal);
+        match skills::get_ball(belief, Some(exit_heading)) {
             // Between two gameplays a ball is taken only if an opponent is about to take it.
             Step::Running(Intent::Grab) if freedom != Freedom::Full && !disputed(belief, &ball) => {
                 Intent::Stand { face: None }
@@ -244,8 +244,8 @@ fn blocker(belief: &Belief, ball: &Ball, to_goal: Angle) -> Option<Point<Field>>
 
 /// Smallest distance of any opponent from a kick's path, m.
 fn clearance(belief: &Belief, from: Point<Field>, direction: Angle, length: f32) -> f32 {
-    let way = geometry::Segment::new(from, from + Vector::polar(length, direction));
-    belief.opponents.iter().map(|&o| way.distance_to(o)).fold(f32::INFINITY, f32::min)
+    let path = geometry::Segment::new(from, from + Vector::polar(length, direction));
+    belief.opponents.iter().map(|&o| path.distance_to(o)).fold(f32::INFINITY, f32::min)
 }
 
 /// The direction in which a kick passes `opponent` on its left or right.

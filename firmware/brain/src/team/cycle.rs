@@ -64,7 +64,7 @@ impl Cycle {
     }
 
     /// Whether an earlier boot epoch of this robot took part in the running gameplay.
-    pub fn is_of_an_earlier_life(&self) -> bool {
+    pub fn is_of_an_earlier_epoch(&self) -> bool {
         self.learned_asleep
     }
 

@@ -23,12 +23,12 @@ pub fn coordinator(now: Instant, me: RobotId, own: &Beacon, teammates: &Teammate
         .map(|(id, _)| id)
 }
 
-/// The next cycle, as proposed in that boot epoch (`life`) of this robot. Each epoch counts in a residue
+/// The next cycle, as proposed in that boot epoch (`boot_epoch`) of this robot. Each epoch counts in a residue
 /// class of its own: a robot that has booted cannot know which cycles its earlier epochs proposed to
 /// teammates it does not receive, and cycle ids must be unique.
-pub fn proposal(known: Option<CycleId>, me: RobotId, coordinator: RobotId, life: u32) -> CycleState {
+pub fn proposal(known: Option<CycleId>, me: RobotId, coordinator: RobotId, boot_epoch: u32) -> CycleState {
     let successor = known.map_or(0, |id| id.counter).saturating_add(1);
-    let ahead = life.wrapping_sub(successor) % LIVES;
+    let ahead = boot_epoch.wrapping_sub(successor) % LIVES;
     let counter = successor.saturating_add(ahead);
     CycleState { id: CycleId { counter, proposer: me }, coordinator, decision: Decision::Undecided }
 }
@@ -75,14 +75,14 @@ mod tests {
     #[test]
     fn no_life_proposes_what_another_has_proposed_whatever_it_has_received() {
         let mut proposed = [0_u32; 4];
-        for (life, newest) in (5..9).zip(&mut proposed) {
+        for (boot_epoch, newest) in (5..9).zip(&mut proposed) {
             let mut known = None;
             for received in [0, 1, 40, 63, 64, 65, 200] {
                 let before = known.map_or(0, |id: CycleId| id.counter).max(received);
                 let id = CycleId { counter: before, proposer: robot(3) };
-                let next = proposal(Some(id), robot(1), robot(1), life).id;
+                let next = proposal(Some(id), robot(1), robot(1), boot_epoch).id;
                 assert!(next.counter > before && next.counter <= before + 64, "{before} {next}");
-                assert_eq!(next.counter % 64, life % 64);
+                assert_eq!(next.counter % 64, boot_epoch % 64);
                 (known, *newest) = (Some(next), next.counter);
             }
         }

@@ -25,10 +25,10 @@ pub fn reactive_shoots_sooner(scene: &Scene<'_>) -> bool {
         .chain([scene.belief.pose.position])
         .map(|robot| robot.distance(ball))
         .fold(f32::INFINITY, f32::min);
-    let way = Segment::new(ball, goal);
+    let path = Segment::new(ball, goal);
     let stands_in_it = |robot: &Point<Field>| {
-        let at = way.closest_to(*robot).distance(ball);
-        at < DUEL_AHEAD && way.distance_to(*robot) < DUEL_BESIDE
+        let at = path.closest_to(*robot).distance(ball);
+        at < DUEL_AHEAD && path.distance_to(*robot) < DUEL_BESIDE
     };
     let duel = if scene.belief.opponents.iter().any(stands_in_it) { DUEL } else { 0.0 };
     let alone = nearest / scene.body.spec().speed + until_shot(scene, ball) + duel;

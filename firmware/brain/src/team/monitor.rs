@@ -57,8 +57,8 @@ fn after_touch(scene: &Scene<'_>) -> Option<AbortReason> {
         return None;
     }
     let expected = scene.case.legs(scene.ball_used()).into_iter().any(|leg| {
-        let way = Segment::new(leg.start(), leg.end());
-        way.distance_to(ball.position) < leg.r_max * 0.001 + STRAY
+        let path = Segment::new(leg.start(), leg.end());
+        path.distance_to(ball.position) < leg.r_max * 0.001 + STRAY
     });
     let at_start = ball.position.distance(scene.ball_used().into()) < STRAY;
     (!expected && !at_start).then_some(AbortReason::BallAtRest)

@@ -115,7 +115,9 @@ impl Task {
             until: 5.0,
         };
         match asked.find(&FreeLimits::default(), request) {
-            motion::intercept::Verdict::Meets(interception_point) => interception_point.robot_time.to_bits(),
+            motion::intercept::Verdict::Intercepts(interception_point) => {
+                interception_point.robot_time.to_bits()
+            }
             motion::intercept::Verdict::Chase { robot_time, .. } => robot_time.to_bits() ^ 1,
         }
     }

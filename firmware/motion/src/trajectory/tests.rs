@@ -198,22 +198,22 @@ fn both_take_hardly_longer_than_the_best_of_all_angles() {
 
 #[test]
 fn what_is_surely_longer_is_longer_wherever_in_the_circle_it_goes() {
-    let mut told = 0;
+    let mut reported = 0;
     for (i, (from, velocity, centre)) in tasks(20_000).enumerate() {
         let (within, radius) = ((i % 40) as f32 * 0.1, (i % 3) as f32 * 0.2);
         let to = centre + Vector::polar(radius * 0.999, geometry::Angle::new(i as f32));
         let free = FreeLimits { speed: 2.5, acceleration: 3.0, braking: 4.0 };
         if free.is_surely_longer(from, velocity, centre, radius, within) {
             assert!(free.time(from, velocity, to) >= within, "{from:?} {velocity:?} {to:?} {within}");
-            told += 1;
+            reported += 1;
         }
         let drag = DragLimits::default();
         if drag.is_surely_longer(from, velocity, centre, radius, within) {
             assert!(drag.time(from, velocity, to) >= within, "{from:?} {velocity:?} {to:?} {within}");
-            told += 1;
+            reported += 1;
         }
     }
-    assert!(told > 10_000, "{told}");
+    assert!(reported > 10_000, "{reported}");
 }
 
 #[test]

@@ -63,15 +63,15 @@ fn trap_09_every_command_holds_motion_and_dribbler_also_where_nothing_turns() {
 #[test]
 fn a_kick_speed_is_said_only_while_a_kick_is_wanted() {
     let mut body = SimulatedBody::new(id(0));
-    let mut said = |kick| {
+    let mut reported = |kick| {
         body.obey(order(Twist::default(), 0.0, kick));
         let command = command(&body);
         (command.kick_speed, command.kick_angle)
     };
-    assert_eq!(said(OmniKick::Flat(6.0)), (Some(6.0), Some(0.0)));
-    assert_eq!(said(OmniKick::Chip(4.0)), (Some(4.0), Some(45.0)));
+    assert_eq!(reported(OmniKick::Flat(6.0)), (Some(6.0), Some(0.0)));
+    assert_eq!(reported(OmniKick::Chip(4.0)), (Some(4.0), Some(45.0)));
     for quiet in [OmniKick::None, OmniKick::Discharge, OmniKick::Flat(0.0), OmniKick::Chip(f32::NAN)] {
-        assert_eq!(said(quiet), (None, None), "{quiet:?}");
+        assert_eq!(reported(quiet), (None, None), "{quiet:?}");
     }
 }
 
@@ -158,8 +158,8 @@ fn trap_09_the_answers_that_er_forces_simulator_really_gave_are_felt() {
             let before = body.sensors(now).ball_contact;
             body.handle_response(now, &RobotControlResponse::decode(&bytes[..]).unwrap());
             let feels = body.sensors(now).ball_contact;
-            let says = |contact: u8| hex.contains(&format!("120408{robot:02x}10{contact:02x}"));
-            match (says(1), says(0)) {
+            let reports_contact = |contact: u8| hex.contains(&format!("120408{robot:02x}10{contact:02x}"));
+            match (reports_contact(1), reports_contact(0)) {
                 (true, _) => assert!(feels, "{name} at {at} µs"),
                 (_, true) => assert!(!feels, "{name} at {at} µs"),
                 _ => {

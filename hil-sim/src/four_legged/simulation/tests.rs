@@ -58,9 +58,9 @@ impl Mcu for Script {
             now: tick.now.0,
             air: tick.air.iter().map(|packet| packet.to_vec()).collect(),
         });
-        let said = Packet::from_slice(&[robot, tick.seq as u8]).unwrap();
+        let reported = Packet::from_slice(&[robot, tick.seq as u8]).unwrap();
         self.reply = Reply { actuators: Some(self.order(&tick.sensors)), ..Reply::default() };
-        self.reply.packets.push(said).unwrap();
+        self.reply.packets.push(reported).unwrap();
         Ok(())
     }
 
@@ -82,7 +82,7 @@ impl Script {
         self.ticks += 1;
         let (mut walk, mut primitive) = (Twist::default(), LeggedPrimitive::None);
         let (pose, ball) = (sensors.pose.unwrap(), sensors.ball.unwrap().position);
-        let way = pose.to_body(ball);
+        let offset = pose.to_body(ball);
         let turn = pose.turn_to(ball).radians();
         self.held = if sensors.ball_contact { self.held + 1 } else { 0 };
         if self.held > 20 {
@@ -93,11 +93,12 @@ impl Script {
         } else if self.config.robot.number() != 1 {
             // Now and then into the ball, sideways on.
             let to_ball = if self.ticks % 500 < 100 { 1.0 } else { -1.0 };
-            walk = Twist { linear: Vector::new(way.x(), way.y()) * to_ball, angular: 4.0 * (turn - 1.5) };
-        } else if way.x() > 0.0 && way.x() < 0.165 && turn.abs() < 0.38 {
+            walk =
+                Twist { linear: Vector::new(offset.x(), offset.y()) * to_ball, angular: 4.0 * (turn - 1.5) };
+        } else if offset.x() > 0.0 && offset.x() < 0.165 && turn.abs() < 0.38 {
             primitive = LeggedPrimitive::Grab;
         } else {
-            walk = Twist { linear: Vector::new(way.x(), way.y()), angular: 4.0 * turn };
+            walk = Twist { linear: Vector::new(offset.x(), offset.y()), angular: 4.0 * turn };
         }
         ActuatorFrame::Legged { walk, primitive }
     }

@@ -15,7 +15,7 @@ use crate::small_size::compatibility::{Compatibility, ReportedBall};
 /// The geometry packet of `world`'s field with these cameras.
 pub(super) fn geometry(world: &World, compatibility: &Compatibility, views: &[View]) -> GeometryData {
     let field = &world.pitch().field;
-    let told = compatibility.told_ball.unwrap_or_else(|| ReportedBall::of(&world.parameters().ball));
+    let announced = compatibility.reported_ball.unwrap_or_else(|| ReportedBall::of(&world.parameters().ball));
     let mm = |m: f32| geometry::math::round_to_i32(m * 1000.0);
     let full = |value: i32| compatibility.full_geometry.then_some(value);
     let newer =
@@ -52,14 +52,14 @@ pub(super) fn geometry(world: &World, compatibility: &Compatibility, views: &[Vi
         calib: views.iter().map(|view| view.calibration(compatibility.full_geometry)).collect(),
         models: Some(GeometryModels {
             straight_two_phase: Some(BallModelStraightTwoPhase {
-                acc_slide: told.slide,
-                acc_roll: told.roll,
-                k_switch: told.switch,
+                acc_slide: announced.slide,
+                acc_roll: announced.roll,
+                k_switch: announced.switch,
             }),
             chip_fixed_loss: Some(BallModelChipFixedLoss {
-                damping_xy_first_hop: told.hops[0],
-                damping_xy_other_hops: told.hops[1],
-                damping_z: told.hops[2],
+                damping_xy_first_hop: announced.hops[0],
+                damping_xy_other_hops: announced.hops[1],
+                damping_z: announced.hops[2],
             }),
         }),
     }

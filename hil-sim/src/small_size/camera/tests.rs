@@ -213,11 +213,11 @@ fn trap_02_grsim_sends_four_frames_a_tick_and_one_calibration_a_packet() {
     assert!(ticks.chunks_exact(4).all(|four| four.iter().all(|tick| *tick == four[0])));
     let frames: Vec<_> = packets.iter().filter_map(|(_, p)| p.detection.as_ref()).collect();
     assert!(frames.iter().any(|f| f.balls.is_empty()), "frames without anything are sent too");
-    let told: Vec<_> = packets.iter().filter_map(|(_, p)| p.geometry.as_ref()).collect();
-    assert!(told.iter().all(|geometry| geometry.calib.len() == 1));
-    assert_eq!(told.iter().map(|g| g.calib[0].camera_id).collect::<BTreeSet<_>>().len(), 4);
-    assert_eq!(told.len(), 8, "four at frame 0 and four at frame 120");
-    assert_eq!(told[0].field.field_lines.len(), 18);
+    let announced: Vec<_> = packets.iter().filter_map(|(_, p)| p.geometry.as_ref()).collect();
+    assert!(announced.iter().all(|geometry| geometry.calib.len() == 1));
+    assert_eq!(announced.iter().map(|g| g.calib[0].camera_id).collect::<BTreeSet<_>>().len(), 4);
+    assert_eq!(announced.len(), 8, "four at frame 0 and four at frame 120");
+    assert_eq!(announced[0].field.field_lines.len(), 18);
 
     let mut moving = world(League::DivisionB);
     let mut cameras = Cameras::of(Profile::ErForce, 0.0, &moving, 1);

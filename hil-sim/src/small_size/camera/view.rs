@@ -125,10 +125,10 @@ impl View {
             if !robot.present || !self.sees(p) || self.chance.chance(settings.noise.missing_robot) {
                 continue;
             }
-            let told = self.robot(robot, settings);
+            let announced = self.robot(robot, settings);
             match robot.who.colour {
-                Colour::Yellow => frame.robots_yellow.push(told),
-                Colour::Blue => frame.robots_blue.push(told),
+                Colour::Yellow => frame.robots_yellow.push(announced),
+                Colour::Blue => frame.robots_blue.push(announced),
             }
         }
         frame
@@ -158,8 +158,8 @@ impl View {
 
     fn ball(&mut self, world: &World, settings: &CameraSettings) -> Option<DetectionBall> {
         let (ball, radius) = (&world.ball, world.parameters().ball.radius);
-        let told_height = settings.compatibility.ball_height;
-        let seen = if told_height { ball.position } else { self.apparent(ball) };
+        let reported_height = settings.compatibility.ball_height;
+        let seen = if reported_height { ball.position } else { self.apparent(ball) };
         if !self.sees(seen) || self.chance.chance(settings.noise.missing_ball) {
             return None;
         }
@@ -177,7 +177,7 @@ impl View {
             x: p.x() * 1000.0,
             y: p.y() * 1000.0,
             // Height of its centre.
-            z: told_height.then_some((ball.height + radius) * 1000.0),
+            z: reported_height.then_some((ball.height + radius) * 1000.0),
             pixel_x,
             pixel_y,
         })
@@ -259,7 +259,7 @@ impl View {
     /// The camera's pose, as geometry packets contain it.
     pub(super) fn calibration(&self, full: bool) -> GeometryCameraCalibration {
         let [x, y, z] = [self.at.x(), self.at.y(), self.height].map(|m| m * 1000.0);
-        let told = GeometryCameraCalibration {
+        let announced = GeometryCameraCalibration {
             camera_id: self.id,
             focal_length: self.focal,
             principal_point_x: IMAGE[0] as f32 * 0.5,
@@ -280,7 +280,7 @@ impl View {
             pixel_image_height: Some(IMAGE[1]),
         };
         if full {
-            return told;
+            return announced;
         }
         // What both other simulators send.
         GeometryCameraCalibration {
@@ -297,7 +297,7 @@ impl View {
             tz: 3500.0,
             pixel_image_width: None,
             pixel_image_height: None,
-            ..told
+            ..announced
         }
     }
 }

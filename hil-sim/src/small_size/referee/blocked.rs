@@ -37,13 +37,13 @@ pub(super) struct Waiting {
     /// Since when there is an obstacle.
     since: Option<Instant>,
     /// Whether it exceeded the patience and was reported.
-    said: bool,
+    reported: bool,
 }
 
 impl InternalReferee {
     /// What has prevented the match from continuing for longer than `patience`, if it still does.
     pub fn blocked(&self) -> Option<&Blocked> {
-        self.metrics.blocks.last().filter(|_| self.waiting.said)
+        self.metrics.blocks.last().filter(|_| self.waiting.reported)
     }
 
     pub(super) fn wait_ends(&mut self) {
@@ -74,10 +74,10 @@ impl InternalReferee {
             return;
         }
         let blocked = Blocked { since, lasted, phase: self.phase(), obstacle: *first };
-        if let Some(last) = self.metrics.blocks.last_mut().filter(|_| self.waiting.said) {
+        if let Some(last) = self.metrics.blocks.last_mut().filter(|_| self.waiting.reported) {
             *last = blocked;
         } else {
-            self.waiting.said = true;
+            self.waiting.reported = true;
             self.metrics.blocks.push(blocked);
             let place = first.who().and_then(|who| robots.iter().find(|robot| robot.who == who));
             let place = place.map_or(self.ball.position, |robot| robot.pose.position);

@@ -208,11 +208,11 @@ impl InternalReferee {
         if leg.shot || !away || speed < SHOT_SPEED || forward <= 0.0 || leg.from.x() * sign < 0.0 {
             return;
         }
-        let way = self.field.length * 0.5 - ball.position.x() * sign;
-        if way < 0.0 {
+        let to_goal_line = self.field.length * 0.5 - ball.position.x() * sign;
+        if to_goal_line < 0.0 {
             return;
         }
-        let time = way / forward;
+        let time = to_goal_line / forward;
         let across = ball.position.y() + ball.velocity.y() * time;
         let half = self.field.goal_width * 0.5;
         if across.abs() > half + self.field.goal_width {

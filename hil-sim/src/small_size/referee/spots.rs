@@ -55,7 +55,7 @@ impl InternalReferee {
         // No known touch: as if the attackers had touched it.
         let own = match (touched, line) {
             (Some(team), _) => self.own_end(team),
-            (None, Line::Goal(end) | Line::Mouth(end)) => end.opposite(),
+            (None, Line::Goal(end) | Line::GoalOpening(end)) => end.opposite(),
             (None, Line::Touch { .. }) => GoalEnd::Negative,
         };
         let spot = after_out(&self.field, &self.limits, crossing, own, None, false).spot;

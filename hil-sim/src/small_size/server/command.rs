@@ -26,7 +26,7 @@ impl Server {
             }
             self.command(Who { colour, id }, command, &mut refused);
         }
-        RobotControlResponse { errors: self.told(&refused), feedback: self.feedback(colour, &commanded) }
+        RobotControlResponse { errors: self.reported(&refused), feedback: self.feedback(colour, &commanded) }
     }
 
     fn command(&mut self, who: Who, command: &RobotCommand, refused: &mut Vec<Refusal>) {

@@ -29,9 +29,8 @@ impl Server {
                 (config.realism_config.is_some(), "realism_config"),
                 (config.vision_port.is_some(), "vision_port"),
             ];
-            refused.extend(
-                others.into_iter().find(|(set, _)| *set).map(|(_, what)| Refusal::MannersConfig(what)),
-            );
+            refused
+                .extend(others.into_iter().find(|(set, _)| *set).map(|(_, what)| Refusal::ModesConfig(what)));
             return;
         }
         if let Some(geometry) = &config.geometry {
@@ -242,28 +241,31 @@ fn shape(robot: &mut Robot, specs: &RobotSpecs) {
 }
 
 /// Applies the field of a geometry packet to the present one.
-fn field_of(told: &GeometryFieldSize, before: FieldSpec) -> FieldSpec {
+fn field_of(reported: &GeometryFieldSize, before: FieldSpec) -> FieldSpec {
     // Divided, not multiplied by 0.001: 180 mm are the 0.18 m that the league's files have.
     let m = |mm: i32| mm as f32 / 1000.0;
     let or = |value: Option<i32>, before: f32| value.map_or(before, m);
-    let stretch = told.field_lines.iter().find(|line| line.name == "LeftPenaltyStretch");
+    let stretch = reported.field_lines.iter().find(|line| line.name == "LeftPenaltyStretch");
     let drawn = stretch.map(|line| {
-        [(told.field_length as f32 * 0.5 - line.p1.x.abs()) / 1000.0, (line.p2.y - line.p1.y).abs() / 1000.0]
+        [
+            (reported.field_length as f32 * 0.5 - line.p1.x.abs()) / 1000.0,
+            (line.p2.y - line.p1.y).abs() / 1000.0,
+        ]
     });
     FieldSpec {
-        length: m(told.field_length),
-        width: m(told.field_width),
-        margin: m(told.boundary_width),
-        goal_line_margin: m(told.boundary_width_goal_line.unwrap_or(told.boundary_width)),
-        goal_substitution: or(told.goal_substitution_area_width, before.goal_substitution),
-        goal_width: m(told.goal_width),
-        goal_depth: m(told.goal_depth),
-        goal_height: or(told.goal_height, before.goal_height),
-        penalty_depth: told.penalty_area_depth.map_or(drawn.map_or(before.penalty_depth, |d| d[0]), m),
-        penalty_width: told.penalty_area_width.map_or(drawn.map_or(before.penalty_width, |d| d[1]), m),
-        penalty_mark: or(told.goal_center_to_penalty_mark, before.penalty_mark),
-        center_radius: or(told.center_circle_radius, before.center_radius),
-        line_width: or(told.line_thickness, before.line_width),
+        length: m(reported.field_length),
+        width: m(reported.field_width),
+        margin: m(reported.boundary_width),
+        goal_line_margin: m(reported.boundary_width_goal_line.unwrap_or(reported.boundary_width)),
+        goal_substitution: or(reported.goal_substitution_area_width, before.goal_substitution),
+        goal_width: m(reported.goal_width),
+        goal_depth: m(reported.goal_depth),
+        goal_height: or(reported.goal_height, before.goal_height),
+        penalty_depth: reported.penalty_area_depth.map_or(drawn.map_or(before.penalty_depth, |d| d[0]), m),
+        penalty_width: reported.penalty_area_width.map_or(drawn.map_or(before.penalty_width, |d| d[1]), m),
+        penalty_mark: or(reported.goal_center_to_penalty_mark, before.penalty_mark),
+        center_radius: or(reported.center_circle_radius, before.center_radius),
+        line_width: or(reported.line_thickness, before.line_width),
         ..before
     }
 }

@@ -87,8 +87,8 @@ impl Server {
         }
         // A simulator that does not support these reports it even where they are false.
         if !compatibility.safe_teleport {
-            refused.extend(asked.teleport_safely.map(|_| Refusal::MannersSafely));
-            refused.extend(asked.roll.map(|_| Refusal::MannersRoll));
+            refused.extend(asked.teleport_safely.map(|_| Refusal::ModesSafely));
+            refused.extend(asked.roll.map(|_| Refusal::ModesRoll));
         }
         let moved = asked.vx.is_some() || asked.vy.is_some();
         let placed = asked.x.is_some() || asked.y.is_some() || asked.z.is_some();

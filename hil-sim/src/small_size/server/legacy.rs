@@ -20,7 +20,7 @@ use super::{Destination, Server, Transmit};
 use crate::small_size::{Drive, Kick, Order};
 
 /// The last reported state of each robot.
-pub(super) type Told = BTreeMap<Who, RobotStatus>;
+pub(super) type ReportedStates = BTreeMap<Who, RobotStatus>;
 
 impl Server {
     /// A datagram for port 20011. It is never answered with an error: the protocol has none.
@@ -128,7 +128,7 @@ impl Server {
                 flat_kick: kicked.is_some_and(|(_, chip)| !chip),
                 chip_kick: kicked.is_some_and(|(_, chip)| chip),
             };
-            let before = self.told.insert(robot.who, status);
+            let before = self.reported.insert(robot.who, status);
             let untold = RobotStatus { robot_id: status.robot_id, ..RobotStatus::default() };
             if before.unwrap_or(untold) != status {
                 changed.push(status);

@@ -149,7 +149,7 @@ pub struct Server {
     /// Robots that were placed far outside the walls: off the field surface, but not removed.
     parked: BTreeSet<Who>,
     /// Robots' last reported states in grSim's older protocol.
-    told: legacy::Told,
+    reported: legacy::ReportedStates,
     out: VecDeque<Transmit>,
     counts: Counts,
 }
@@ -194,7 +194,7 @@ impl Server {
             owed: 0.0,
             coming: VecDeque::new(),
             parked: BTreeSet::new(),
-            told: legacy::Told::default(),
+            reported: legacy::ReportedStates::default(),
             out: VecDeque::new(),
             counts: Counts::default(),
         }
@@ -236,7 +236,7 @@ impl Server {
                     }
                     Err(_) => self.undecodable(),
                 };
-                let errors = self.told(&errors);
+                let errors = self.reported(&errors);
                 if !errors.is_empty() || self.cameras.settings().compatibility.answers_control {
                     self.reply(port, from, SimulatorResponse { errors }.encode_to_vec());
                 }
@@ -247,7 +247,7 @@ impl Server {
                     self.lead(colour, &control)
                 } else {
                     let errors = self.undecodable();
-                    RobotControlResponse { errors: self.told(&errors), feedback: Vec::new() }
+                    RobotControlResponse { errors: self.reported(&errors), feedback: Vec::new() }
                 };
                 self.answer(port, from, answer);
             }
@@ -346,7 +346,7 @@ impl Server {
         } else {
             refused.push(Refusal::SyncStep(step));
         }
-        response.errors.extend(self.told(&refused));
+        response.errors.extend(self.reported(&refused));
         response.feedback = self.feedback(colour, &commanded);
         SimulationSyncResponse {
             detection: self.cameras.snapshot(&self.world),
@@ -359,10 +359,10 @@ impl Server {
         vec![Refusal::Undecodable]
     }
 
-    fn told(&mut self, refusals: &[Refusal]) -> Vec<ssl::simulation::SimulatorError> {
+    fn reported(&mut self, refusals: &[Refusal]) -> Vec<ssl::simulation::SimulatorError> {
         self.counts.refused += refusals.len() as u64;
         let profile = self.profile;
-        refusals.iter().filter_map(|refusal| refusal.told(profile)).collect()
+        refusals.iter().filter_map(|refusal| refusal.reported(profile)).collect()
     }
 }
 

@@ -100,11 +100,11 @@ pub enum Refusal {
     /// A step that is not a positive duration, or is longer than [`super::SYNC_MAX`].
     SyncStep(f32),
     /// The active profile has no such setting.
-    MannersConfig(&'static str),
+    ModesConfig(&'static str),
     /// The active profile has no safe teleport.
-    MannersSafely,
+    ModesSafely,
     /// The active profile cannot make a ball roll.
-    MannersRoll,
+    ModesRoll,
 }
 
 impl Refusal {
@@ -143,9 +143,9 @@ impl Refusal {
             Self::Unsupported(_) => "UNSUPPORTED",
             Self::VisionPort(_) => "VISION_PORT",
             Self::SyncStep(_) => "SYNC_STEP",
-            Self::MannersConfig(_) => "UNSUPPORTED_CONFIG",
-            Self::MannersSafely => "UNSUPPORTED_TELEPORT_SAFELY",
-            Self::MannersRoll => "UNSUPPORTED_ROLL_BALL",
+            Self::ModesConfig(_) => "UNSUPPORTED_CONFIG",
+            Self::ModesSafely => "UNSUPPORTED_TELEPORT_SAFELY",
+            Self::ModesRoll => "UNSUPPORTED_ROLL_BALL",
         }
     }
 
@@ -156,7 +156,7 @@ impl Refusal {
             Profile::Grsim => {
                 let known = matches!(
                     self,
-                    Self::MannersConfig(_) | Self::MannersSafely | Self::MannersRoll | Self::EmptyMove(_)
+                    Self::ModesConfig(_) | Self::ModesSafely | Self::ModesRoll | Self::EmptyMove(_)
                 );
                 let code =
                     if matches!(self, Self::EmptyMove(_)) { "UNSUPPORTED_MOVE_COMMAND" } else { self.code() };
@@ -180,7 +180,7 @@ impl Refusal {
     }
 
     /// The error message of the protocol, where it is reported.
-    pub fn told(&self, profile: Profile) -> Option<SimulatorError> {
+    pub fn reported(&self, profile: Profile) -> Option<SimulatorError> {
         Some(SimulatorError { code: Some(self.code_of(profile)?), message: Some(self.to_string()) })
     }
 }
@@ -260,9 +260,9 @@ impl fmt::Display for Refusal {
             Self::SyncStep(asked) => {
                 write!(f, "sim_step {asked} s: more than 0 and at most {} s", super::SYNC_MAX)
             }
-            Self::MannersConfig(what) => write!(f, "{what} cannot be set in this simulator; start it otherwise"),
-            Self::MannersSafely => f.write_str("teleport_safely is not known to this simulator; the rest of the teleport was done"),
-            Self::MannersRoll => f.write_str("roll is not known to this simulator; the rest of the teleport was done"),
+            Self::ModesConfig(what) => write!(f, "{what} cannot be set in this simulator; start it otherwise"),
+            Self::ModesSafely => f.write_str("teleport_safely is not known to this simulator; the rest of the teleport was done"),
+            Self::ModesRoll => f.write_str("roll is not known to this simulator; the rest of the teleport was done"),
         }
     }
 }

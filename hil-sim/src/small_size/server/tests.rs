@@ -308,14 +308,15 @@ fn specifications_change_a_robot_and_only_it() {
 fn another_field_is_told_by_vision_and_holds_robots() {
     let mut server = server();
     let a = World::new(League::DivisionA, Parameters::of(League::DivisionA).unwrap(), 0);
-    let told = Cameras::of(Profile::Ours, 0.0, &a, 0).geometry(&a, None);
-    let codes = config(&mut server, SimulatorConfig { geometry: Some(told.clone()), ..Default::default() });
+    let reported = Cameras::of(Profile::Ours, 0.0, &a, 0).geometry(&a, None);
+    let codes =
+        config(&mut server, SimulatorConfig { geometry: Some(reported.clone()), ..Default::default() });
     assert_eq!(codes, ["ONETWO_UNSUPPORTED"], "where cameras hang is the simulator's business");
     assert_eq!(server.world().pitch().field, League::DivisionA.field());
     steps(&mut server, 30);
     let vision = sent(&mut server).0;
     let received = vision.into_iter().find_map(|packet| packet.geometry).unwrap();
-    assert_eq!(received.field, told.field);
+    assert_eq!(received.field, reported.field);
 }
 
 #[test]

@@ -115,8 +115,8 @@ fn a_chip_of_45_degrees_first_lands_where_its_speed_says() {
         }
     }
     // v²·sin 90°/g = 25/9.81 = 2.548 m.
-    let way = landed.unwrap().x() - start;
-    assert!((way - 2.548).abs() < 0.01, "{way}");
+    let length = landed.unwrap().x() - start;
+    assert!((length - 2.548).abs() < 0.01, "{length}");
 }
 
 #[test]

@@ -29,15 +29,15 @@ fn from_three_metres_a_second_it_stops_within_what_brakes_and_motors_say() {
 
 #[test]
 fn to_the_side_it_is_slower_to_start() {
-    let way = |x, y| {
+    let length = |x, y| {
         let mut world = world();
         world.put(yellow(1), Pose::from_mm_deg(0.0, 0.0, 0.0));
         lead(&mut world, yellow(1), local(x, y, 0.0), 500);
         world.robot(yellow(1)).unwrap().pose.position.distance(Point::new(0.0, 0.0))
     };
     // ½·4.5·0.25 = 0.5625 m and ½·3.5·0.25 = 0.4375 m.
-    assert!((way(3.0, 0.0) - 0.5625).abs() < 0.01, "{}", way(3.0, 0.0));
-    assert!((way(0.0, 3.0) - 0.4375).abs() < 0.01, "{}", way(0.0, 3.0));
+    assert!((length(3.0, 0.0) - 0.5625).abs() < 0.01, "{}", length(3.0, 0.0));
+    assert!((length(0.0, 3.0) - 0.4375).abs() < 0.01, "{}", length(0.0, 3.0));
 }
 
 #[test]

@@ -144,12 +144,12 @@ fn a_perfect_dribbler_loses_nothing_at_full_grip_in_any_direction_and_turning() 
         (model.parameters.drive.forward, model.parameters.drive.side) = (7.0, 7.0);
         model.parameters.drive.brake = 7.0;
     };
-    for way in [local(-2.5, 0.0, 0.0), local(2.5, 0.0, 0.0), local(0.0, 2.0, 0.0), local(0.0, 0.0, 12.0)] {
+    for twist in [local(-2.5, 0.0, 0.0), local(2.5, 0.0, 0.0), local(0.0, 2.0, 0.0), local(0.0, 0.0, 12.0)] {
         let mut world = with_ball(perfect);
-        lead(&mut world, dribbling(way), 500);
-        assert!(has_ball(&world), "{way:?}: {:?}", world.ball);
+        lead(&mut world, dribbling(twist), 500);
+        assert!(has_ball(&world), "{twist:?}: {:?}", world.ball);
         lead(&mut world, dribbling(local(0.0, 0.0, 0.0)), 500);
-        assert!(has_ball(&world), "{way:?}, braking: {:?}", world.ball);
+        assert!(has_ball(&world), "{twist:?}, braking: {:?}", world.ball);
         let gap = world.robot(yellow(1)).unwrap().pose.to_body(world.ball.position).x() - 0.0945;
         assert!(gap.abs() < 0.002, "{gap}");
     }

@@ -88,27 +88,31 @@ impl From<csv::Error> for EvaluationError {
 }
 
 /// A file's name in printable form.
-fn shown(file: &Path) -> String {
+fn printable_path(file: &Path) -> String {
     printable(&file.to_string_lossy()).into_owned()
 }
 
 impl fmt::Display for EvaluationError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::File { file, error } => write!(f, "{}: {error}", shown(file)),
+            Self::File { file, error } => write!(f, "{}: {error}", printable_path(file)),
             Self::Row { file, line, what } => {
                 let what = printable(what);
-                write!(f, "{}:{line}: {what}; take the line out, or begin in an empty folder", shown(file))
+                write!(
+                    f,
+                    "{}:{line}: {what}; take the line out, or begin in an empty folder",
+                    printable_path(file)
+                )
             }
             Self::Another { file, differences } => write!(
                 f,
                 "{}: holds trials of another evaluation (other {}); name an empty folder, begin anew with \
                  --fresh, or give the options it was begun with",
-                shown(file),
+                printable_path(file),
                 differences.join(", ")
             ),
             Self::InUse(file) => {
-                write!(f, "{}: another process writes to it; wait for it, or stop it", shown(file))
+                write!(f, "{}: another process writes to it; wait for it, or stop it", printable_path(file))
             }
             Self::Nothing => f.write_str("no trials there; name the folders that shards were written to"),
             Self::Unlike { trial } => write!(

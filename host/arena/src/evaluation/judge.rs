@@ -68,14 +68,14 @@ const LINES: &[Entry] = &[
     ("b", "to goal: more with cases in scenarios 3 and 4, p < 0.01", |r| {
         let cells = [1, 4].into_iter().flat_map(|table| [(table, DefenderAhead), (table, DefenderClose)]);
         let found = compare(r, cells, Measure::ToGoal, [Cases, Reactive])?;
-        Some((found.iter().all(|cell| cell.difference > 0.0 && cell.p < SURE), told(&found)))
+        Some((found.iter().all(|cell| cell.difference > 0.0 && cell.p < SURE), evidence_text(&found)))
     }),
     ("c", "possession: less against cases in all 8 cells (defender; of two, the midfield defender)", |r| {
         let dg = compare(r, Scenario::PAPER.map(|s| (1, s)), Measure::Possession, [Cases, Reactive])?;
         let two =
             compare(r, Scenario::PAPER.map(|s| (5, s)), Measure::MidfieldPossession, [Cases, Reactive])?;
         let found = [dg, two].concat();
-        Some((found.iter().all(|cell| cell.difference < 0.0), told(&found)))
+        Some((found.iter().all(|cell| cell.difference < 0.0), evidence_text(&found)))
     }),
     (
         "d",
@@ -115,7 +115,7 @@ const LINES: &[Entry] = &[
     ("to-goal", "to goal: more with cases, p < 0.01, in at least 6 of 8 cells", |r| {
         let found = compare(r, cells(), Measure::ToGoal, [Cases, Reactive])?;
         let sure = found.iter().filter(|cell| cell.difference > 0.0 && cell.p < SURE).count();
-        Some((sure >= 6, format!("{sure} of 8; {}", told(&found))))
+        Some((sure >= 6, format!("{sure} of 8; {}", evidence_text(&found))))
     }),
     ("out", "out: fewer with cases in all 8 cells", out),
     (
@@ -125,7 +125,7 @@ const LINES: &[Entry] = &[
             let found = compare(r, cells(), Measure::ToGoal, [hybrid()?, Cases])?;
             let corrected = holm(&found.iter().map(|cell| cell.p).collect::<Vec<_>>());
             let below = |(cell, p): (&Cell, &f64)| cell.difference < 0.0 && *p < 0.05;
-            Some((!found.iter().zip(&corrected).any(below), told(&found)))
+            Some((!found.iter().zip(&corrected).any(below), evidence_text(&found)))
         },
     ),
     (
@@ -133,7 +133,7 @@ const LINES: &[Entry] = &[
         "to goal: the hybrid approach exceeds cases in scenario 4 with the robots' noise, p < 0.05",
         |r| {
             let found = compare(r, [(6, DefenderClose)], Measure::ToGoal, [hybrid()?, Cases])?;
-            Some((found.iter().all(|cell| cell.difference > 0.0 && cell.p < 0.05), told(&found)))
+            Some((found.iter().all(|cell| cell.difference > 0.0 && cell.p < 0.05), evidence_text(&found)))
         },
     ),
     (
@@ -145,7 +145,7 @@ const LINES: &[Entry] = &[
             let out = compare(r, [(1, Random), (4, Random)], Measure::Out, order)?;
             let holds = goal.iter().all(|cell| cell.difference > 0.0 && cell.p < SURE)
                 && out.iter().all(|cell| cell.difference < 0.0 && cell.p < SURE);
-            Some((holds, format!("to goal {}; out {}", told(&goal), told(&out))))
+            Some((holds, format!("to goal {}; out {}", evidence_text(&goal), evidence_text(&out))))
         },
     ),
     (
@@ -174,7 +174,7 @@ const LINES: &[Entry] = &[
 /// Line a: the paper's own direction, for any p.
 fn out(r: Rows<'_>) -> Finding {
     let found = compare(r, cells(), Measure::Out, [Cases, Reactive])?;
-    Some((found.iter().all(|cell| cell.difference < 0.0), told(&found)))
+    Some((found.iter().all(|cell| cell.difference < 0.0), evidence_text(&found)))
 }
 
 /// The eight cells of simulated trials, by table.
@@ -218,7 +218,7 @@ fn each<T, V>(items: impl IntoIterator<Item = T>, of: impl FnMut(T) -> Option<V>
     items.into_iter().map(of).collect()
 }
 
-fn told(cells: &[Cell]) -> String {
+fn evidence_text(cells: &[Cell]) -> String {
     let description = cells.iter().map(|Cell { name, first, second, difference, p }| {
         format!("{name}: {first:.1} - {second:.1} = {difference:+.1}, {}", p_text(*p))
     });

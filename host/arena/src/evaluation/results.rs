@@ -21,10 +21,10 @@ use super::claims::{Claim, claims};
 use super::comparison::{Comparison, compare, with_paper};
 use super::error::EvaluationError;
 use super::judge::{Line, judge};
-use super::ledger::Identity;
 use super::paper::paper;
 use super::row::{TrialRow, csv_hash, to_csv};
 use super::tables::{TableRow, tables};
+use super::trial_store::Identity;
 use super::uses::{CaseUse, uses, uses_to_csv};
 use crate::trial::APPROACHES;
 

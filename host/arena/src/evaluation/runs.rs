@@ -15,10 +15,10 @@ use hil_sim::{NativeBackend, Parameters};
 use rayon::prelude::*;
 
 use super::error::EvaluationError;
-use super::ledger::{Entry as Row, Identity, Kept, Ledger};
 use super::plan::{Plan, Planned, Shard};
 use super::row::TrialRow;
 use super::setup::Setup;
+use super::trial_store::{Entry as Row, Identity, Kept, TrialStore};
 use crate::names::CaseNames;
 use crate::trial::{TrialConfig, positioning_label, run};
 
@@ -111,7 +111,7 @@ pub(crate) fn play_open<R: Row>(
     progress: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),
     play: impl Fn(usize) -> Result<R, EvaluationError> + Sync,
 ) -> Result<Vec<R>, EvaluationError> {
-    let (ledger, kept) = Ledger::open::<R>(file, identity)?;
+    let (trial_store, kept) = TrialStore::open::<R>(file, identity)?;
     let mut rows: BTreeMap<usize, R> = BTreeMap::new();
     for row in kept {
         insert(&mut rows, row)?;
@@ -119,22 +119,22 @@ pub(crate) fn play_open<R: Row>(
     let numbers = || (0..R::planned(identity)).filter(|number| shard.has(*number));
     let open: Vec<_> = numbers().filter(|number| !rows.contains_key(number)).collect();
     let of = numbers().count();
-    let told = |done: usize| match progress(Progress { done, of }) {
+    let on_progress = |done: usize| match progress(Progress { done, of }) {
         ControlFlow::Continue(()) => Ok(()),
         ControlFlow::Break(()) => Err(EvaluationError::Stopped),
     };
     let before = of - open.len();
-    told(before)?;
-    let keeper = Mutex::new((ledger, rows, before));
+    on_progress(before)?;
+    let keeper = Mutex::new((trial_store, rows, before));
     open.par_iter().try_for_each(|number| {
         let row = play(*number)?;
         // A thread that panicked while it stored a trial stops the run anyway.
         let mut keeper = keeper.lock().unwrap_or_else(PoisonError::into_inner);
-        let (ledger, rows, done) = &mut *keeper;
-        ledger.keep(&row)?;
+        let (trial_store, rows, done) = &mut *keeper;
+        trial_store.keep(&row)?;
         rows.insert(row.number(), row);
         *done += 1;
-        told(*done)
+        on_progress(*done)
     })?;
     let (_, rows, _) = keeper.into_inner().unwrap_or_else(PoisonError::into_inner);
     Ok(rows.into_values().filter(|row| shard.has(row.number())).collect())

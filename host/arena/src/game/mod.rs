@@ -212,7 +212,7 @@ impl<'a> Game<'a> {
                 let bytes = packet.encode_to_vec();
                 watcher.vision(now, &bytes);
                 for team in &mut self.teams {
-                    team.tell(tick, now, host::Input::Vision(&bytes), watcher);
+                    team.feed(tick, now, host::Input::Vision(&bytes), watcher);
                 }
             }
         }
@@ -243,7 +243,7 @@ impl<'a> Game<'a> {
         watcher.referee(now, &bytes);
         for team in &mut self.teams {
             let input = host::Input::Referee(&bytes, host::referee::SenderAddress::INTERNAL);
-            team.tell(self.tick, now, input, watcher);
+            team.feed(self.tick, now, input, watcher);
         }
     }
 

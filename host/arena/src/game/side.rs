@@ -68,7 +68,7 @@ impl<'a> Team<'a> {
     }
 
     /// Feeds an input to the host; its packets are sent by radio.
-    pub(super) fn tell(&mut self, tick: u32, now: Instant, input: Input<'_>, watcher: &mut dyn Watcher) {
+    pub(super) fn feed(&mut self, tick: u32, now: Instant, input: Input<'_>, watcher: &mut dyn Watcher) {
         watcher.input(now, self.colour, input);
         self.host.handle(now, input);
         while let Some((to, packet)) = self.host.poll_packet() {
@@ -84,14 +84,14 @@ impl<'a> Team<'a> {
     /// Delivers the robots' frames to the host.
     pub(super) fn receive(&mut self, tick: u32, now: Instant, watcher: &mut dyn Watcher) {
         for packet in self.air.deliver_to_host(tick) {
-            self.tell(tick, now, Input::Robot(&packet), watcher);
+            self.feed(tick, now, Input::Robot(&packet), watcher);
         }
     }
 
     /// Feeds the host's deadline if it is due: a host wakes up for it and does not wait for robots' steps.
     pub(super) fn deadline(&mut self, tick: u32, now: Instant, watcher: &mut dyn Watcher) {
         if self.host.poll_timeout().is_some_and(|due| due <= now) {
-            self.tell(tick, now, Input::Timeout, watcher);
+            self.feed(tick, now, Input::Timeout, watcher);
         }
     }
 

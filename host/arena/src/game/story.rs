@@ -21,7 +21,7 @@ impl MatchLog {
         std::mem::take(&mut self.lines)
     }
 
-    fn say(&mut self, time: f64, description: &str) {
+    fn add(&mut self, time: f64, description: &str) {
         self.lines.push(format!("{time:7.2} s  {description}"));
     }
 }
@@ -30,20 +30,20 @@ impl Watcher for MatchLog {
     fn tick(&mut self, game: &Game<'_>) {
         let referee = game.referee();
         for event in referee.events().iter().skip(self.events) {
-            self.say(game.time(), &sentence(event));
+            self.add(game.time(), &sentence(event));
         }
         self.events = referee.events().len();
         let phase = referee.phase();
         if self.phase != Some(phase) {
             self.phase = Some(phase);
             if let Some(description) = announcement(phase) {
-                self.say(game.time(), &description);
+                self.add(game.time(), &description);
             }
         }
         let score = [Colour::Blue, Colour::Yellow].map(|team| referee.accounts().of(team).score);
         if score != self.score {
             self.score = score;
-            self.say(game.time(), &format!("blue {} : {} yellow", score[0], score[1]));
+            self.add(game.time(), &format!("blue {} : {} yellow", score[0], score[1]));
         }
     }
 }

@@ -24,7 +24,7 @@ pub fn markdown(outcomes: &[Outcome], effects: &[Effect], ours: &Passes) -> Stri
 }
 
 /// Writing to a String cannot fail.
-macro_rules! say {
+macro_rules! print {
     ($text:expr, $($description:tt)*) => {{ let _ = writeln!($text, $($description)*); }};
 }
 
@@ -42,7 +42,7 @@ fn worth(text: &mut String, effects: &[Effect]) {
               |---|---|---|---|---|---|---|---|---|---|---|---|\n";
     for e in effects {
         let cells = [e.goals, e.shots, e.offence_ratio, e.attack_ratio].map(changed).join(" | ");
-        say!(text, "| {} | {} | {} | {} | {cells} |", e.part, e.with, e.without, e.matches);
+        print!(text, "| {} | {} | {} | {} | {cells} |", e.part, e.with, e.without, e.matches);
     }
 }
 
@@ -80,7 +80,7 @@ fn standings(text: &mut String, outcomes: &[Outcome]) {
     *text += "\n| team | matches | won, drawn, lost | goals | points |\n|---|---|---|---|---|\n";
     for (team, [won, drawn, lost], [goals, against]) in teams {
         let (matches, points) = (won + drawn + lost, points([won, drawn, lost]));
-        say!(text, "| {team} | {matches} | {won}, {drawn}, {lost} | {goals} : {against} | {points} |");
+        print!(text, "| {team} | {matches} | {won}, {drawn}, {lost} | {goals} : {against} | {points} |");
     }
 }
 
@@ -90,10 +90,10 @@ fn scores(text: &mut String, outcomes: &[Outcome]) {
     for o in outcomes {
         let [won, drawn, lost] = o.won_drawn_lost;
         let [goals, against] = o.goals;
-        let cells = [o.goals_for, o.goals_against].map(told).join(" | ");
-        let ratios = [o.offence_ratio, o.attack_ratio].map(told).join(" | ");
+        let cells = [o.goals_for, o.goals_against].map(estimate_text).join(" | ");
+        let ratios = [o.offence_ratio, o.attack_ratio].map(estimate_text).join(" | ");
         let all = o.attack_ratio_of_all.map_or_else(|| "–".to_owned(), |ratio| format!("{ratio:.2}"));
-        say!(
+        print!(
             text,
             "| {} | {} | {} | {won}, {drawn}, {lost} | {goals} : {against} | {cells} | {} | {ratios} | {all} |",
             o.own,
@@ -105,7 +105,7 @@ fn scores(text: &mut String, outcomes: &[Outcome]) {
     if as_the_papers(outcomes) {
         for game in PAPER {
             let [goals, against] = game.goals;
-            say!(
+            print!(
                 text,
                 "| the paper's, Table 2 | Team {} ({}) | 1 | | {goals} : {against} | | | | {:.2} | {:.2} | {:.2} |",
                 game.opponent,
@@ -122,10 +122,10 @@ fn play(text: &mut String, outcomes: &[Outcome]) {
     *text += "\n| team | against | shots | theirs | chances | theirs | possession | passes that arrived | theirs | balls lost | theirs | ball in play |\n\
               |---|---|---|---|---|---|---|---|---|---|---|---|\n";
     for o in outcomes {
-        let [shots, chances] = [o.shots, o.chances].map(|both| both.map(told).join(" | "));
-        let [passes, losses] = [o.passes, o.losses].map(|both| both.map(told).join(" | "));
-        let [possession, in_play] = [o.possession, o.ball_in_play].map(told);
-        say!(
+        let [shots, chances] = [o.shots, o.chances].map(|both| both.map(estimate_text).join(" | "));
+        let [passes, losses] = [o.passes, o.losses].map(|both| both.map(estimate_text).join(" | "));
+        let [possession, in_play] = [o.possession, o.ball_in_play].map(estimate_text);
+        print!(
             text,
             "| {} | {} | {shots} | {chances} | {possession} | {passes} | {losses} | {in_play} |",
             o.own,
@@ -145,7 +145,7 @@ fn passes(text: &mut String, outcomes: &[Outcome]) {
     for (who, against, passes) in sides(outcomes) {
         for kick in passes.kinds.iter().filter(|kick| kick.ordered > 0) {
             let (fates, arrived) = (&kick.fates, kick.arrived);
-            say!(
+            print!(
                 text,
                 "| {who} | {against} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
                 kick.kick,
@@ -178,7 +178,7 @@ fn planned(text: &mut String, outcomes: &[Outcome]) {
             continue;
         }
         let (cap, arrived) = (&passes.cap, share(passes.cap_arrived));
-        say!(
+        print!(
             text,
             "| {who} | {against} | {} | {} | {} | {arrived} | {} | {} |",
             matches(who, against),
@@ -191,7 +191,7 @@ fn planned(text: &mut String, outcomes: &[Outcome]) {
     if all {
         for row in PAPER_PASSES {
             let arrived = share(Share::new(row.successes, row.attempts));
-            say!(
+            print!(
                 text,
                 "| the paper's, Table 1 | Team {} | 1 | {} | {} | {arrived} | {} | |",
                 row.opponent,
@@ -207,7 +207,7 @@ fn calibration(text: &mut String, ours: &Passes) {
     *text += "\n| P(receive) | passes | predicted | received | share |\n|---|---|---|---|---|\n";
     for tenth in &ours.calibration {
         let from = tenth.tenth as f64 / 10.0;
-        say!(
+        print!(
             text,
             "| {from:.1} to {:.1} | {} | {:.2} | {} | {} |",
             from + 0.1,
@@ -218,7 +218,7 @@ fn calibration(text: &mut String, ours: &Passes) {
         );
     }
     if let Some(error) = ours.calibration_error {
-        say!(text, "| mean distance | | | | {error:.3} |");
+        print!(text, "| mean distance | | | | {error:.3} |");
     }
 }
 
@@ -229,12 +229,12 @@ fn fouls(text: &mut String, outcomes: &[Outcome]) {
             let kinds = o.fouls[side].iter().map(|(kind, n)| format!("{n} {}", kind.replace('_', " ")));
             kinds.collect::<Vec<_>>().join(", ")
         });
-        say!(text, "| {} | {} | {own} | {theirs} |", o.own, o.opponent);
+        print!(text, "| {} | {} | {own} | {theirs} |", o.own, o.opponent);
     }
 }
 
 /// `1.32 (1.10 to 1.54)`.
-fn told(estimate: Option<Estimate>) -> String {
+fn estimate_text(estimate: Option<Estimate>) -> String {
     estimate.map_or_else(|| "–".to_owned(), |e| within(e.mean, e.low, e.high))
 }
 

@@ -29,13 +29,13 @@ pub struct Change {
 }
 
 impl Change {
-    fn of(values: impl Iterator<Item = f64> + Clone, shown: fn(f64) -> f64) -> Option<Self> {
+    fn of(values: impl Iterator<Item = f64> + Clone, transform: fn(f64) -> f64) -> Option<Self> {
         let sample = Sample::of(values)?;
         let interval = student(sample, CONFIDENCE);
         Some(Self {
-            mean: shown(sample.mean),
-            low: interval.map(|interval| shown(interval.low)),
-            high: interval.map(|interval| shown(interval.high)),
+            mean: transform(sample.mean),
+            low: interval.map(|interval| transform(interval.low)),
+            high: interval.map(|interval| transform(interval.high)),
             p: paired(sample).map(|test| test.p),
             matches: sample.n,
         })

@@ -163,9 +163,9 @@ mod tests {
         for label in
             ["", "best", "ours-", "ours-with-", "ours-with-luck", "ours-without-luck", "zone-with-coerce"]
         {
-            let told = MatchTeam::parse(label).unwrap_err();
-            assert!(told.contains(&format!("`{label}`")) && told.contains("reactive"), "{told}");
-            assert!(told.contains("second-level"), "{told}");
+            let reported = MatchTeam::parse(label).unwrap_err();
+            assert!(reported.contains(&format!("`{label}`")) && reported.contains("reactive"), "{reported}");
+            assert!(reported.contains("second-level"), "{reported}");
         }
     }
 }

@@ -206,15 +206,15 @@ mod tests {
     fn shares_and_their_intervals_are_those_counted_by_hand() {
         let cap = CapCounters { attempts: 10, successes: 9, reuses: 4, reuse_successes: 3 };
         let mut play = PlayCounters { passes: passes(), cap, role_changes: 7 };
-        let told = Passes::of(&play);
+        let reported = Passes::of(&play);
         // Wilson's interval of 9/10, from any table: 0.5958 to 0.9821.
-        let share = told.cap_arrived;
+        let share = reported.cap_arrived;
         assert!((share.low.unwrap() - 0.5958).abs() < 1e-4 && (share.high.unwrap() - 0.9821).abs() < 1e-4);
-        let flat = &told.kinds[0];
+        let flat = &reported.kinds[0];
         assert_eq!((flat.kick, flat.ordered, flat.arrived.hits, flat.arrived.of), ("flat", 4, 2, 3));
-        let tenths: Vec<_> = told.calibration.iter().map(|tenth| (tenth.tenth, tenth.seen.of)).collect();
+        let tenths: Vec<_> = reported.calibration.iter().map(|tenth| (tenth.tenth, tenth.seen.of)).collect();
         assert_eq!(tenths, [(2, 1), (9, 3)]);
-        assert!((told.calibration[1].predicted - 0.95).abs() < 1e-9);
+        assert!((reported.calibration[1].predicted - 0.95).abs() < 1e-9);
         add(&mut play, &PlayCounters { passes: passes(), cap, role_changes: 7 });
         assert_eq!((Passes::of(&play).cap_arrived.of, play.role_changes), (20, 14));
     }

@@ -47,7 +47,7 @@ fn entry(page: &mut Page, recording: &Recording, start: &Start, n: usize, at: Px
 /// One line of signs.
 fn signs(page: &mut Page, y: f32) {
     let mut x = SIDE + 8.0;
-    let say = |page: &mut Page, x: &mut f32, after: f32, description: &str| {
+    let print = |page: &mut Page, x: &mut f32, after: f32, description: &str| {
         page.text(Px::new(*x + after, y + 4.5), description, Anchor::Start, font(13.0, FAINT));
         // The mean advance of a wide sans-serif at 13 px.
         *x += after + description.chars().count() as f32 * 7.2 + 22.0;
@@ -55,23 +55,23 @@ fn signs(page: &mut Page, y: f32) {
     let (blue, grey) = (ATTACKERS[0], OPPONENTS[0]);
     page.circle(Px::new(x, y), 7.0, &format!(r#"fill="white" stroke="{blue}" stroke-width="2""#));
     page.circle(Px::new(x + 20.0, y), 7.0, &format!(r#"fill="{blue}" stroke="{blue}" stroke-width="2""#));
-    say(page, &mut x, 33.0, "attacker: start, end");
+    print(page, &mut x, 33.0, "attacker: start, end");
     let square = |fill| format!(r#"fill="{fill}" stroke="{grey}" stroke-width="2" rx="2""#);
     page.rect(Px::new(x - 7.0, y - 7.0), 13.0, 13.0, &square("white"));
     page.rect(Px::new(x + 13.0, y - 7.0), 13.0, 13.0, &square(grey));
-    say(page, &mut x, 33.0, "opponent");
+    print(page, &mut x, 33.0, "opponent");
     page.circle(Px::new(x, y), 6.0, &format!(r#"fill="{BALL}" stroke="{INK}" stroke-width="2""#));
-    say(page, &mut x, 13.0, "ball at the end");
+    print(page, &mut x, 13.0, "ball at the end");
     let (from, to) = (Px::new(x - 4.0, y), Px::new(x + 24.0, y));
     page.line(from, to, &format!(r#"stroke="{blue}" stroke-width="6" stroke-linecap="round""#));
-    say(page, &mut x, 34.0, "ball carried");
+    print(page, &mut x, 34.0, "ball carried");
     let (from, to) = (Px::new(x - 4.0, y), Px::new(x + 26.0, y));
     let dotted = r#"stroke-width="4.5" stroke-linecap="round" stroke-dasharray="0.1 9""#;
     page.line(from, to, &format!(r#"stroke="{blue}" {dotted}"#));
     page.arrowhead(to.moved(9.0, 0.0), (1.0, 0.0), 13.0, blue);
-    say(page, &mut x, 42.0, "ball kicked, by whom");
+    print(page, &mut x, 42.0, "ball kicked, by whom");
     number(page, Px::new(x, y), 1);
-    say(page, &mut x, 16.0, "a gameplay begins");
+    print(page, &mut x, 16.0, "a gameplay begins");
 }
 
 /// Gameplays in the list; more would make it longer than the field is high.

@@ -23,7 +23,7 @@ use page::{Page, Px, SCALE, bold, font};
 /// The figure of a trial that has ended; an empty field for an empty recording.
 pub fn picture(recording: &Recording) -> String {
     let mut page = Page::new(Px::new(WIDTH * 0.5, HEADER + HALF_HEIGHT));
-    let starts = shown_starts(recording);
+    let starts = displayed_starts(recording);
     let Some((first, last)) = recording.samples.first().zip(recording.samples.last()) else {
         return page.finish(WIDTH, HEADER + 2.0 * HALF_HEIGHT, "a trial");
     };
@@ -57,7 +57,7 @@ pub fn picture(recording: &Recording) -> String {
 }
 
 /// The gameplays that lasted long enough to be visible.
-fn shown_starts(recording: &Recording) -> Vec<&Start> {
+fn displayed_starts(recording: &Recording) -> Vec<&Start> {
     let lived = |start: &&Start| {
         let cycles = recording.report.as_ref().map(|report| &report.cycles);
         cycles.and_then(|cycles| cycles.get(start.cycle)).is_none_or(|c| c.end_s - c.start_s >= SHORTEST)

@@ -51,7 +51,7 @@ fn a_trial_with_gameplays_lists_each_that_could_be_seen() {
     let mut recording = Recording::default();
     let report = run(&config, Box::new(NativeBackend::new(config.base)), &mut [&mut recording]).unwrap();
     let svg = picture(&recording);
-    let starts = shown_starts(&recording);
+    let starts = displayed_starts(&recording);
     assert!(!starts.is_empty());
     for start in starts.iter().take(LISTED) {
         assert!(svg.contains(&start.case), "{}", start.case);

@@ -5,7 +5,7 @@ use hil_sim::small_size::Ball;
 use protocol::host::{Directive, RuleRole};
 use rules::League;
 
-use super::drill::{Judge, Moment, Says, Start, State, player, pose};
+use super::drill::{Judge, Moment, RefereeOrder, Start, State, player, pose};
 use super::places::Places;
 
 /// Our robot in all of these.
@@ -69,7 +69,8 @@ impl GetBall {
         let at = ball.position;
         let description = format!("ball {kind} at ({:.2}, {:.2})", at.x(), at.y());
         let ours = vec![(ROBOT, pose(robot, places.direction()))];
-        let start = Start { description, ours, theirs, ball, says: Says::Run, limit: GET_LIMIT };
+        let start =
+            Start { description, ours, theirs, ball, referee_order: RefereeOrder::Run, limit: GET_LIMIT };
         Self { start, had: Had::default() }
     }
 }
@@ -116,8 +117,14 @@ impl Receive {
             format!("pass of {speed:.1} m/s over {:.1} m, {askew:.0}° askew", from.distance(at));
         let ball = Ball { velocity, ..Ball::at(from) };
         let ours = vec![(ROBOT, robot)];
-        let start =
-            Start { description, ours, theirs: Vec::new(), ball, says: Says::Run, limit: RECEIVE_LIMIT };
+        let start = Start {
+            description,
+            ours,
+            theirs: Vec::new(),
+            ball,
+            referee_order: RefereeOrder::Run,
+            limit: RECEIVE_LIMIT,
+        };
         Self { start, at, had: Had::default() }
     }
 }
@@ -162,7 +169,7 @@ impl Dribble {
             ours,
             theirs: Vec::new(),
             ball: Ball::at(ball),
-            says: Says::Run,
+            referee_order: RefereeOrder::Run,
             limit: LIMIT,
         };
         Self { start, to, heading: ball.direction_to(to) }
@@ -216,7 +223,7 @@ impl Turn {
             ours,
             theirs: Vec::new(),
             ball: Ball::at(lay),
-            says: Says::Run,
+            referee_order: RefereeOrder::Run,
             limit: LIMIT,
         };
         Self { start, lay, heading, had: Had::default(), turns: None }
@@ -229,8 +236,8 @@ impl Judge for Turn {
     }
 
     fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, RuleRole, Directive)>> {
-        let way = if self.turns.is_some() { self.heading + Angle::HALF_TURN } else { self.heading };
-        let face = self.lay + Vector::polar(FAR, way);
+        let facing = if self.turns.is_some() { self.heading + Angle::HALF_TURN } else { self.heading };
+        let face = self.lay + Vector::polar(FAR, facing);
         Some(player(ROBOT, Directive::GetBall { face: Some(face.into()) }))
     }
 

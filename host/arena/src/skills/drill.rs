@@ -19,7 +19,7 @@ pub(super) const US: Colour = Colour::Yellow;
 
 /// What the referee says.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Says {
+pub(super) enum RefereeOrder {
     /// STOP.
     Stop,
     /// The ball is in play.
@@ -40,7 +40,7 @@ pub(super) struct Start {
     /// The ball at the beginning.
     pub(super) ball: Ball,
     /// What the referee says from the beginning on.
-    pub(super) says: Says,
+    pub(super) referee_order: RefereeOrder,
     /// It has failed after so many s.
     pub(super) limit: f32,
 }
@@ -97,7 +97,7 @@ pub(super) trait Judge {
     /// What is wrong when time is up.
     fn lacks(&self, moment: &Moment<'_>) -> String;
     /// What another hand does in the world, and what the referee says from now on.
-    fn happens(&mut self, _time: f32, _world: &mut World) -> Option<Says> {
+    fn happens(&mut self, _time: f32, _world: &mut World) -> Option<RefereeOrder> {
         None
     }
 }
@@ -147,7 +147,7 @@ fn config(tried: &Try, seed: u64, robots: u8) -> GameConfig {
 pub(super) fn play(
     tried: Try,
     backend: &mut dyn Backend<'_>,
-    told: &mut Vec<String>,
+    lines: &mut Vec<String>,
 ) -> Result<TryResult, GameError> {
     let seed = seed_of(&tried);
     let mut judge = judge_of(&tried, seed);
@@ -164,12 +164,12 @@ pub(super) fn play(
     }
     place(&mut game, &start, robots);
     game.world_mut().put_ball(start.ball);
-    referee.say(&game, start.says);
+    referee.send(&game, start.referee_order);
     let began = game.time();
     let end = loop {
         let time = (game.time() - began) as f32;
-        if let Some(says) = judge.happens(time, game.world_mut()) {
-            referee.say(&game, says);
+        if let Some(referee_order) = judge.happens(time, game.world_mut()) {
+            referee.send(&game, referee_order);
         }
         let moment = Moment { time, world: game.world(), events: game.events() };
         match judge.judge(&moment) {
@@ -184,7 +184,7 @@ pub(super) fn play(
                 .map(|(number, rule_role, directive)| (id(number), rule_role, directive))
                 .collect()
         });
-        story::tell(told, time, &game);
+        story::note_events(lines, time, &game);
         game.drill(US, orders);
         referee.speak(&mut game);
         game.advance(&mut NoWatcher)?;
@@ -219,7 +219,7 @@ fn place(game: &mut Game<'_>, start: &Start, robots: u8) {
     let mut needed: Vec<Point<Field>> = start.ours.iter().map(|(_, pose)| pose.position).collect();
     needed.extend(start.theirs.iter().map(|pose| pose.position));
     needed.push(start.ball.position);
-    if let Says::Place(at) = start.says {
+    if let RefereeOrder::Place(at) = start.referee_order {
         needed.push(at);
     }
     let in_the_way = |robot: &&Robot| {
@@ -252,16 +252,16 @@ impl Whistle {
         Self { first_stamp: packet.packet_timestamp, packet, next: 0 }
     }
 
-    fn say(&mut self, game: &Game<'_>, says: Says) {
-        let command = match says {
-            Says::Stop => Command::Stop,
-            Says::Run => Command::ForceStart,
-            Says::Place(_) => Command::BallPlacementYellow,
+    fn send(&mut self, game: &Game<'_>, referee_order: RefereeOrder) {
+        let command = match referee_order {
+            RefereeOrder::Stop => Command::Stop,
+            RefereeOrder::Run => Command::ForceStart,
+            RefereeOrder::Place(_) => Command::BallPlacementYellow,
         };
         self.packet.command = command as i32;
         self.packet.command_counter += 1;
         self.packet.command_timestamp = self.first_stamp + game.now().0;
-        if let Says::Place(at) = says {
+        if let RefereeOrder::Place(at) = referee_order {
             let at = ssl::referee::Point { x: at.x() * 1000.0, y: at.y() * 1000.0 };
             self.packet.designated_position = Some(at);
             self.packet.next_command = Some(Command::DirectFreeYellow as i32);

@@ -5,7 +5,7 @@ use hil_sim::small_size::{Ball, Event};
 use protocol::host::{Directive, KickOrder, RuleRole};
 use rules::{Colour, League};
 
-use super::drill::{Judge, Moment, Says, Start, State, US, player, pose};
+use super::drill::{Judge, Moment, RefereeOrder, Start, State, US, player, pose};
 use super::places::Places;
 
 /// A ball that lies, and a point to kick it past.
@@ -48,7 +48,14 @@ impl Kick {
         let description =
             format!("ball at ({:.2}, {:.2}) to ({:.2}, {:.2})", from.x(), from.y(), target.x(), target.y());
         let ours = vec![(1, pose(robot, places.direction()))];
-        let start = Start { description, ours, theirs, ball: Ball::at(from), says: Says::Run, limit: LIMIT };
+        let start = Start {
+            description,
+            ours,
+            theirs,
+            ball: Ball::at(from),
+            referee_order: RefereeOrder::Run,
+            limit: LIMIT,
+        };
         Self { start, from, target, order, within, kicked: None }
     }
 }
@@ -79,14 +86,14 @@ impl Judge for Kick {
         }
         let Some(kicked) = self.kicked else { return State::Going };
         let ball = &moment.world.ball;
-        let way = Segment::new(self.from, self.target);
-        let along = (ball.position - self.from).dot(way.vector()) / way.vector().norm().max(0.01);
-        if along < way.vector().norm() {
+        let line = Segment::new(self.from, self.target);
+        let along = (ball.position - self.from).dot(line.vector()) / line.vector().norm().max(0.01);
+        if along < line.vector().norm() {
             let stopped = ball.speed() < 0.05;
-            let description = || format!("the ball stopped {:.2} m short", way.vector().norm() - along);
+            let description = || format!("the ball stopped {:.2} m short", line.vector().norm() - along);
             return if stopped { State::Failed(description()) } else { State::Going };
         }
-        let beside = way.vector().cross(ball.position - self.from).abs() / way.vector().norm().max(0.01);
+        let beside = line.vector().cross(ball.position - self.from).abs() / line.vector().norm().max(0.01);
         if beside <= self.within {
             State::Succeeded(kicked)
         } else {

@@ -7,7 +7,7 @@ use rules::League;
 use rules::limits::PLACEMENT_TIME_MIN;
 use rules::restart::{AfterPlacement, PlacementLack, placement_lack};
 
-use super::drill::{Judge, Moment, Says, Start, State, team_size};
+use super::drill::{Judge, Moment, RefereeOrder, Start, State, team_size};
 use super::places::Places;
 
 /// A ball, a place, both teams somewhere.
@@ -47,7 +47,7 @@ impl Placement {
             ours: (0..).zip(ours).collect(),
             theirs,
             ball: Ball::at(ball),
-            says: Says::Place(target),
+            referee_order: RefereeOrder::Place(target),
             limit: LIMIT,
         };
         Self { start, target }

@@ -6,7 +6,7 @@ use protocol::host::{Directive, RuleRole};
 use rules::League;
 use rules::limits::BALL_RADIUS;
 
-use super::drill::{Judge, Moment, Says, Start, State, pose};
+use super::drill::{Judge, Moment, RefereeOrder, Start, State, pose};
 use super::places::Places;
 
 /// A ball at rest, and from [`SHOT_AT`] on a shot.
@@ -34,7 +34,7 @@ impl Save {
             ours: vec![(0, keeper)],
             theirs: Vec::new(),
             ball: Ball::at(ball),
-            says: Says::Stop,
+            referee_order: RefereeOrder::Stop,
             limit: SHOT_AT + LASTS,
         };
         Self { start, velocity: Vector::polar(speed, ball.direction_to(aim)), shot: false }
@@ -50,13 +50,13 @@ impl Judge for Save {
         None
     }
 
-    fn happens(&mut self, time: f32, world: &mut World) -> Option<Says> {
+    fn happens(&mut self, time: f32, world: &mut World) -> Option<RefereeOrder> {
         if self.shot || time < SHOT_AT {
             return None;
         }
         self.shot = true;
         world.put_ball(Ball { velocity: self.velocity, ..Ball::at(world.ball.position) });
-        Some(Says::Run)
+        Some(RefereeOrder::Run)
     }
 
     fn judge(&mut self, moment: &Moment<'_>) -> State {

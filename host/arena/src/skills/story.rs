@@ -11,7 +11,7 @@ use super::drill::US;
 use crate::game::Game;
 
 /// A line, when one is due.
-pub(super) fn tell(told: &mut Vec<String>, time: f32, game: &Game<'_>) {
+pub(super) fn note_events(lines: &mut Vec<String>, time: f32, game: &Game<'_>) {
     if !((time * 100.0).round() as u32).is_multiple_of(EVERY) {
         return;
     }
@@ -59,7 +59,7 @@ pub(super) fn tell(told: &mut Vec<String>, time: f32, game: &Game<'_>) {
             let _ = write!(line, "; {:?}", given.task.directive(Flip::defending(GoalEnd::Negative)));
         }
     }
-    told.push(line);
+    lines.push(line);
 }
 
 /// Ticks of 10 ms between two lines.

@@ -51,13 +51,13 @@ pub(super) fn find(library_handle: &LibraryHandle, stored: usize, asked: &str) -
 }
 
 impl<'a> Difference<'a> {
-    /// `told` are both cases with their verdicts and texts; a case for the other goal has none.
+    /// `reported` are both cases with their verdicts and texts; a case for the other goal has none.
     pub(super) fn new(
         library_handle: &'a LibraryHandle,
-        told: [(CaseId, Option<&Verdict>, String); 2],
+        reported: [(CaseId, Option<&Verdict>, String); 2],
         settings: &Settings,
     ) -> Self {
-        let found = told.each_ref().map(|(_, verdict, _)| match verdict {
+        let found = reported.each_ref().map(|(_, verdict, _)| match verdict {
             Some(Verdict::Candidate(found)) => Some(found),
             _ => None,
         });
@@ -69,7 +69,7 @@ impl<'a> Difference<'a> {
             [Some(only), None] | [None, Some(only)] => (Some(only.case.0), "verdict"),
             [None, None] => (None, "neither"),
         };
-        let cases = told.map(|(id, verdict, why)| Side {
+        let cases = reported.map(|(id, verdict, why)| Side {
             id: id.0,
             case: library_handle.name(id),
             symmetry: Symmetry::from_bits(id.0).label(),

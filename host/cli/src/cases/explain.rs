@@ -70,21 +70,21 @@ pub(super) fn run(args: &ExplainArgs) -> Result<ExitCode, Failure> {
                 };
             }
             let mut explanation = Explanation::new(&library_handle, &base, &problem, &chosen);
-            let told = explanation.told_first(args.all);
+            let chosen_rows = explanation.listed_first(args.all);
             // A table is read by the operator, a few problems at a time: it has these lines by default, for a
             // handful of cases.
             let asked = match (args.what_if, args.json) {
-                (true, _) => told.len(),
-                (false, false) => told.len().min(explanation.candidates + NEAREST),
+                (true, _) => chosen_rows.len(),
+                (false, false) => chosen_rows.len().min(explanation.candidates + NEAREST),
                 (false, true) => 0,
             };
             if asked > 0 || args.what_if {
-                explanation.ask_what_if(&library_handle, &base, &problem, &chosen, &told[..asked]);
+                explanation.ask_what_if(&library_handle, &base, &problem, &chosen, &chosen_rows[..asked]);
             }
             if args.json {
                 write_line(output, &explanation)
             } else {
-                explanation.write_table(output, number, &told)
+                explanation.write_table(output, number, &chosen_rows)
             }
         }
         Err(error) if args.json => write_line(output, &Answer::Malformed { error }),
@@ -203,7 +203,7 @@ impl<'a> Explanation<'a> {
     }
 
     /// Rows in the order of the table: candidates by rank, then misses, the nearest first.
-    fn told_first(&self, all: bool) -> Vec<usize> {
+    fn listed_first(&self, all: bool) -> Vec<usize> {
         let mut order: Vec<_> = (0..self.cases.len()).collect();
         let place = |at: &usize| self.cases[*at].evidence.place();
         order.sort_by(|a, b| place(a).0.cmp(&place(b).0).then(place(a).1.total_cmp(&place(b).1)));
@@ -219,17 +219,17 @@ impl<'a> Explanation<'a> {
         base: &CaseBase<'_>,
         problem: &Problem,
         chosen: &Chosen,
-        told: &[usize],
+        chosen_rows: &[usize],
     ) {
         let what_if = |at: &usize| {
             let id = self.cases[*at].id;
             let found = case_tools::counterfactual(base, problem, &chosen.settings, CaseId(id))?;
             WhatIf::new(library_handle, id, &found)
         };
-        self.counterfactuals = Some(told.iter().filter_map(what_if).collect());
+        self.counterfactuals = Some(chosen_rows.iter().filter_map(what_if).collect());
     }
 
-    fn write_table(&self, output: &mut impl Write, line: u64, told: &[usize]) -> io::Result<()> {
+    fn write_table(&self, output: &mut impl Write, line: u64, chosen_rows: &[usize]) -> io::Result<()> {
         let candidates = counted(self.candidates, "candidate");
         match self.cases.iter().find(|row| Some(row.id) == self.winner) {
             Some(row) => writeln!(
@@ -244,17 +244,17 @@ impl<'a> Explanation<'a> {
         }
         let what_ifs = self.counterfactuals.as_deref().unwrap_or_default();
         let what_ifs: HashMap<u16, &WhatIf> = what_ifs.iter().map(|one| (one.id(), one)).collect();
-        let shown: Vec<_> = told.iter().map(|at| &self.cases[*at]).collect();
-        let width = shown.iter().map(|row| row.case.chars().count()).fold("case".len(), usize::max);
+        let printable_path: Vec<_> = chosen_rows.iter().map(|at| &self.cases[*at]).collect();
+        let width = printable_path.iter().map(|row| row.case.chars().count()).fold("case".len(), usize::max);
         writeln!(output, "{:>5}  {:width$}  {:8}  {:9}  why", "id", "case", "symmetry", "verdict")?;
-        for row in &shown {
-            let (id, case, why) = (row.id, row.case, row.evidence.told());
+        for row in &printable_path {
+            let (id, case, why) = (row.id, row.case, row.evidence.chosen_rows());
             writeln!(output, "{id:>5}  {case:width$}  {:8}  {:9}  {why}", row.symmetry, row.verdict)?;
             if let Some(what_if) = what_ifs.get(&id) {
-                writeln!(output, "{:>5}  {}", "", what_if.told())?;
+                writeln!(output, "{:>5}  {}", "", what_if.text())?;
             }
         }
-        if let Some(rest) = self.cases.len().checked_sub(shown.len()).filter(|rest| *rest > 0) {
+        if let Some(rest) = self.cases.len().checked_sub(printable_path.len()).filter(|rest| *rest > 0) {
             writeln!(output, "and {} farther off; --all tells of them", counted(rest, "case"))?;
         }
         writeln!(output)
@@ -273,15 +273,15 @@ fn difference<'a>(
     casebase::explain(base, problem, &chosen.settings, |id, verdict| verdicts.push((id, verdict)));
     let mut ranking: Vec<&Match> = verdicts.iter().filter_map(|(_, verdict)| candidate(verdict)).collect();
     ranking.sort_by(|a, b| rank_order(a, b, &chosen.settings));
-    let told = pair.map(|id| {
+    let chosen_rows = pair.map(|id| {
         let verdict = verdicts.iter().find(|(other, _)| *other == id).map(|(_, verdict)| verdict);
         let rank = ranking.iter().position(|found| found.case == id).map_or(0, |before| before + 1);
         let description = verdict
             .zip(base.case(id))
-            .map(|(verdict, case)| Evidence::of(verdict, rank, &case, problem, chosen).told());
+            .map(|(verdict, case)| Evidence::of(verdict, rank, &case, problem, chosen).chosen_rows());
         (id, verdict, description.unwrap_or_else(|| "it defends the other goal".to_owned()))
     });
-    Difference::new(library_handle, told, &chosen.settings)
+    Difference::new(library_handle, chosen_rows, &chosen.settings)
 }
 
 fn candidate(verdict: &Verdict) -> Option<&Match> {
@@ -332,7 +332,7 @@ impl Evidence {
         }
     }
 
-    fn told(&self) -> String {
+    fn chosen_rows(&self) -> String {
         match self {
             Self::Candidate { rank, similarity, cost, conditions, teammates, roles } => {
                 let counts =

@@ -16,7 +16,7 @@ use super::lines::LINE_MAX;
 use super::problem::{self, Malformed};
 use crate::Failure;
 use crate::args::LibraryArgs;
-use crate::output::{note, say, shown};
+use crate::output::{note, print_text, printable_path};
 
 /// Arguments of `cases new`.
 #[derive(Debug, Args)]
@@ -46,7 +46,7 @@ pub(super) fn run(args: &NewArgs) -> Result<ExitCode, Failure> {
     })?;
     match &args.out {
         Some(file) => write(file, args.force, &draft.text)?,
-        None => say(&draft.text)?,
+        None => print_text(&draft.text)?,
     }
     for note in &draft.notes {
         note!("note: {note}");
@@ -83,7 +83,7 @@ fn read(from: &Path) -> Result<Problem, Failure> {
         let read = stdin().lock().take(most + 1).read_to_end(&mut bytes);
         ("stdin".to_owned(), read.map(|_| bytes))
     } else {
-        (shown(from), foreign::read(from, most))
+        (printable_path(from), foreign::read(from, most))
     };
     let fail = |error| Failure::Draft(DraftError::Problem { from: name.clone(), error });
     let bytes = read.map_err(|error| fail(ProblemError::Read(error)))?;
@@ -167,7 +167,7 @@ impl fmt::Display for DraftError {
             Self::Rules { file, error } => write!(
                 f,
                 "cannot read {}: {error}; --library takes one league's folder, the one that holds league.toml",
-                shown(file)
+                printable_path(file)
             ),
             Self::Problem { from, error } => write!(f, "{from}: {error}"),
             Self::Write { file, error } => {
@@ -176,7 +176,7 @@ impl fmt::Display for DraftError {
                     io::ErrorKind::NotFound => "make its folder first",
                     _ => "choose another --out",
                 };
-                write!(f, "cannot write {}: {error}; {hint}", shown(file))
+                write!(f, "cannot write {}: {error}; {hint}", printable_path(file))
             }
         }
     }

@@ -16,7 +16,7 @@ use clap::Args;
 use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs};
 use crate::library::LibraryHandle;
-use crate::output::{self, say};
+use crate::output::{self, print_text};
 use crate::progress::Progress;
 use crate::setup::refuse_other_fields;
 
@@ -70,7 +70,7 @@ pub(super) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
         .filter(|kind| args.opponents.is_none_or(|wanted| wanted == *kind))
         .collect();
     if args.story {
-        return tell(&case_trial, &cases, &oppositions);
+        return write_story(&case_trial, &cases, &oppositions);
     }
     let scores = play(args, &case_trial, &cases, &oppositions)?;
     let description = if args.json {
@@ -80,7 +80,7 @@ pub(super) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
     } else {
         arena::markdown(&scores)
     };
-    say(&description)?;
+    print_text(&description)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -122,7 +122,7 @@ fn play(
     let mut scores = Vec::new();
     for case in cases {
         let name = case_trial.names.of(case.id());
-        bar.say(name.clone());
+        bar.set_text(name.clone());
         for kind in oppositions {
             let attempts = pool.install(|| case_trial.play(case, *kind, &|| bar.add(1)));
             let attempts = attempts.map_err(Failure::Trial)?;
@@ -133,7 +133,7 @@ fn play(
 }
 
 /// Attempts as text, one after the other.
-fn tell(
+fn write_story(
     case_trial: &CaseTrial<'_>,
     cases: &[Case<'_>],
     oppositions: &[Opposition],

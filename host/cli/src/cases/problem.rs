@@ -72,8 +72,8 @@ fn not_an_object(error: &serde_json::Error) -> Malformed {
     }
     // serde_json counts lines too; ours is always its first.
     let column = error.column();
-    let said = error.to_string();
-    let what = said.strip_suffix(&format!(" at line 1 column {column}")).unwrap_or(&said);
+    let message = error.to_string();
+    let what = message.strip_suffix(&format!(" at line 1 column {column}")).unwrap_or(&message);
     Malformed::at(&format!("column {column}"), format!("not JSON: {what}"))
 }
 

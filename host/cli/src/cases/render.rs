@@ -14,7 +14,7 @@ use super::{counted, problem};
 use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs};
 use crate::library::LibraryHandle;
-use crate::output::{say, shown};
+use crate::output::{print_text, printable_path};
 use crate::picture::{self, SnapshotError};
 
 /// Arguments of `cases render`.
@@ -73,7 +73,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
             .map_err(|error| Failure::Picture { file: file.clone(), error })?;
         picture::write(file, &svg)?;
     } else {
-        say(&svg)?;
+        print_text(&svg)?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -166,7 +166,7 @@ fn read(argument: &str) -> Result<Problem, Failure> {
     } else {
         let file = Path::new(argument);
         foreign::read_text(file, LINE_MAX as u64)
-            .map_err(|error| Failure::Problem(format!("cannot read {}: {error}", shown(file))))?
+            .map_err(|error| Failure::Problem(format!("cannot read {}: {error}", printable_path(file))))?
     };
     if text.len() > LINE_MAX {
         return Err(Failure::Problem(format!("--problem: more than {LINE_MAX} bytes; give one problem")));

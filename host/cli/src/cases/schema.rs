@@ -64,7 +64,7 @@ fn teammate() -> Value {
 fn action() -> Value {
     let tables = keys::ACTIONS.iter().map(|label| {
         object(&[label], |key| match key {
-            "turn" => any(keys::TURN.iter().map(|way| object(&[way], turn))),
+            "turn" => any(keys::TURN.iter().map(|side| object(&[side], turn))),
             "pass_ball" | "receive_ball" => {
                 json!({ "type": "integer", "minimum": 1, "maximum": TEAMMATES_MAX, "description": "Robot of the case." })
             }
@@ -75,8 +75,8 @@ fn action() -> Value {
     any(std::iter::once(json!({ "enum": keys::DESCRIPTION })).chain(tables))
 }
 
-fn turn(way: &str) -> Value {
-    match way {
+fn turn(side: &str) -> Value {
+    match side {
         "face" => point("[x, y] in mm, field frame."),
         _ => integer(&keys::COORDINATES, "Degrees from the direction of attack, left > 0."),
     }
@@ -139,14 +139,14 @@ fn list(items: &Value, least: usize, most: usize) -> Value {
     json!({ "type": "array", "items": items, "minItems": least, "maxItems": most })
 }
 
-fn point(told: &str) -> Value {
-    pair(&keys::COORDINATES, told)
+fn point(meaning: &str) -> Value {
+    pair(&keys::COORDINATES, meaning)
 }
 
-fn pair(range: &RangeInclusive<i32>, told: &str) -> Value {
-    json!({ "type": "array", "items": integer(range, "mm"), "minItems": 2, "maxItems": 2, "description": told })
+fn pair(range: &RangeInclusive<i32>, meaning: &str) -> Value {
+    json!({ "type": "array", "items": integer(range, "mm"), "minItems": 2, "maxItems": 2, "description": meaning })
 }
 
-fn integer(range: &RangeInclusive<i32>, told: &str) -> Value {
-    json!({ "type": "integer", "minimum": range.start(), "maximum": range.end(), "description": told })
+fn integer(range: &RangeInclusive<i32>, meaning: &str) -> Value {
+    json!({ "type": "integer", "minimum": range.start(), "maximum": range.end(), "description": meaning })
 }

@@ -84,7 +84,7 @@ fn write_case(output: &mut impl Write, library_handle: &LibraryHandle, case: &Ca
     writeln!(output, "\n{:5} {:>14}  scope {} x {}", "ball", at(ball), scope.x, scope.y)?;
     for robot in case.robots() {
         let gameplay: Vec<_> =
-            case.gameplay(robot).map(|action| told(action, library_handle, &base)).collect();
+            case.gameplay(robot).map(|action| action_text(action, library_handle, &base)).collect();
         writeln!(
             output,
             "{:5} {:>14}  {}",
@@ -105,15 +105,15 @@ fn write_case(output: &mut impl Write, library_handle: &LibraryHandle, case: &Ca
     }
     writeln!(output, "\npath of the ball")?;
     for (number, leg) in (1..).zip(case.legs(ball)) {
-        writeln!(output, "leg {number} {}", told_leg(&leg, library_handle, &base))?;
+        writeln!(output, "leg {number} {}", reported_leg(&leg, library_handle, &base))?;
     }
     Ok(())
 }
 
-fn told_leg(leg: &Leg, library_handle: &LibraryHandle, base: &CaseBase<'_>) -> String {
+fn reported_leg(leg: &Leg, library_handle: &LibraryHandle, base: &CaseBase<'_>) -> String {
     let kind = match leg.kind {
         LegKind::Pass(receiver) => format!("{} passes to {receiver}", leg.robot),
-        LegKind::Kick(kind) => format!("{} kicks {}", leg.robot, told_kick(library_handle, base, kind)),
+        LegKind::Kick(kind) => format!("{} kicks {}", leg.robot, reported_kick(library_handle, base, kind)),
     };
     let ([x, y], [to_x, to_y]) = (leg.from.map(f64::from), leg.to.map(f64::from));
     let length = (to_x - x).hypot(to_y - y);
@@ -121,7 +121,7 @@ fn told_leg(leg: &Leg, library_handle: &LibraryHandle, base: &CaseBase<'_>) -> S
     format!("{kind}: ({x:.0}, {y:.0}) to ({to_x:.0}, {to_y:.0}), {length:.0} mm, {radii}")
 }
 
-fn told(action: Action, library_handle: &LibraryHandle, base: &CaseBase<'_>) -> String {
+fn action_text(action: Action, library_handle: &LibraryHandle, base: &CaseBase<'_>) -> String {
     let label = action.label();
     match action {
         Action::Wait | Action::GetBall => label.to_owned(),
@@ -130,12 +130,12 @@ fn told(action: Action, library_handle: &LibraryHandle, base: &CaseBase<'_>) -> 
         Action::Turn(TurnTarget::Face(point)) => format!("{label} to face {}", at(point)),
         Action::PassBall(other) => format!("{label} to {other}"),
         Action::ReceiveBall(other) => format!("{label} from {other}"),
-        Action::Kick(kind) => format!("{label} {}", told_kick(library_handle, base, kind)),
+        Action::Kick(kind) => format!("{label} {}", reported_kick(library_handle, base, kind)),
     }
 }
 
 /// The kind's name in the league and what it does in this case: a mirrored case plays the kind's partner.
-fn told_kick(library_handle: &LibraryHandle, base: &CaseBase<'_>, kind: KickId) -> String {
+fn reported_kick(library_handle: &LibraryHandle, base: &CaseBase<'_>, kind: KickId) -> String {
     let does = base.kick(kind).map(|kick| match kick.aim {
         KickAim::Goal { offset_mm: 0 } => "at the goal".to_owned(),
         KickAim::Goal { offset_mm } => format!("at the goal, {} mm {}", offset_mm.abs(), side(offset_mm)),

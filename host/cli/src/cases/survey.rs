@@ -15,7 +15,7 @@ use super::lines::for_each_problem;
 use crate::Failure;
 use crate::args::{Chosen, LibraryArgs, SettingsArgs};
 use crate::library::LibraryHandle;
-use crate::output::shown;
+use crate::output::printable_path;
 use crate::progress::Progress;
 
 /// Arguments of both verbs.
@@ -175,7 +175,8 @@ pub(crate) fn class(library_handle: &LibraryHandle, authored: usize) -> (&'stati
 }
 
 fn recorded(file: &Path) -> Result<Vec<Problem>, Failure> {
-    let fail = |description: String| Failure::Survey(format!("--from {}: {description}", shown(file)));
+    let fail =
+        |description: String| Failure::Survey(format!("--from {}: {description}", printable_path(file)));
     let input = foreign::open(file).map_err(|error| fail(error.to_string()))?;
     let mut problems = Vec::new();
     let (mut first_fault, mut faults) = (None, 0_u64);

@@ -11,12 +11,12 @@ use crate::library::LibraryHandle;
 pub(super) struct WhatIf {
     id: u16,
     #[serde(flatten)]
-    answer: Told,
+    answer: WhatIfLine,
 }
 
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
-enum Told {
+enum WhatIfLine {
     Move {
         moved: &'static str,
         /// Robot id, or number of the opponent from 1.
@@ -46,11 +46,11 @@ impl WhatIf {
                     Entity::Opponent(index) => ("opponent", Some(index + 1)),
                 };
                 let [from, to] = [found.from, found.to].map(|point| [point.x, point.y]);
-                Told::Move { moved, number, from, to, distance_mm: rounded(found.distance_mm, 1.0) }
+                WhatIfLine::Move { moved, number, from, to, distance_mm: rounded(found.distance_mm, 1.0) }
             }
             Counterfactual::NoSingleMove(obstacle) => {
-                let (no_single_move, description) = told_obstacle(library_handle, obstacle);
-                Told::Nothing { no_single_move, description }
+                let (no_single_move, description) = reported_obstacle(library_handle, obstacle);
+                WhatIfLine::Nothing { no_single_move, description }
             }
         };
         Some(Self { id, answer })
@@ -61,19 +61,19 @@ impl WhatIf {
     }
 
     /// `would win if …` or `cannot win …`.
-    pub(super) fn told(&self) -> String {
+    pub(super) fn text(&self) -> String {
         match &self.answer {
-            Told::Move { moved, number, to: [x, y], distance_mm, .. } => {
+            WhatIfLine::Move { moved, number, to: [x, y], distance_mm, .. } => {
                 let number = number.map_or(String::new(), |number| format!(" {number}"));
                 let article = if number.is_empty() { "the " } else { "" };
                 format!("would win if {article}{moved}{number} moved by {distance_mm} mm, to ({x}, {y})")
             }
-            Told::Nothing { description, .. } => description.clone(),
+            WhatIfLine::Nothing { description, .. } => description.clone(),
         }
     }
 }
 
-fn told_obstacle(library_handle: &LibraryHandle, obstacle: Obstacle) -> (&'static str, String) {
+fn reported_obstacle(library_handle: &LibraryHandle, obstacle: Obstacle) -> (&'static str, String) {
     match obstacle {
         Obstacle::Robots { needed, present } => {
             ("robots", format!("cannot win: it needs {needed} robots, {present} are present"))

@@ -84,7 +84,7 @@ impl Alarms {
 
     fn drops(&mut self, now: Instant, dropped: Dropped) -> Vec<Alarm> {
         let before = std::mem::replace(&mut self.dropped, dropped);
-        let news = [
+        let changes = [
             (
                 "vision packets came faster than they can be used; the oldest were dropped",
                 dropped.vision,
@@ -111,7 +111,7 @@ impl Alarms {
                 before.referee_oversized,
             ),
         ];
-        for (what, after, before) in news.into_iter().filter(|(_, after, before)| after > before) {
+        for (what, after, before) in changes.into_iter().filter(|(_, after, before)| after > before) {
             match self.drops.iter_mut().find(|(known, ..)| *known == what) {
                 Some((_, number, at)) => (*number, *at) = (*number + (after - before), now),
                 None => self.drops.push((what, after - before, now)),

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use host::Host;
-use page::{Happening, Kind, Page, Powers, Request};
+use page::{Kind, MatchEvent, Page, Powers, Request};
 
 use crate::library::LibraryHandle;
 use crate::live::{CaseExplanations, Composer, Moment, PageArgs, SCENE_EVERY_S, tick};
@@ -13,7 +13,7 @@ use crate::output::note;
 pub(super) struct Board {
     page: Page,
     composer: Composer,
-    shown: Option<Instant>,
+    drawn_at: Option<Instant>,
     /// Time an input takes, as a sliding mean.
     took: Duration,
 }
@@ -30,7 +30,7 @@ impl Board {
             let composer = Composer::new(library_handle.as_ref());
             let page =
                 args.open(title, false, Powers::Halt, CaseExplanations::new(library_handle, settings))?;
-            Ok::<_, crate::Failure>(Self { page, composer, shown: None, took: Duration::ZERO })
+            Ok::<_, crate::Failure>(Self { page, composer, drawn_at: None, took: Duration::ZERO })
         };
         open().map_err(|failure| note!("page     there is none: {failure}")).ok()
     }
@@ -46,7 +46,7 @@ impl Board {
     /// Adds a fault to the page's events.
     pub(super) fn fault(&mut self, now: protocol::Instant, description: String) {
         let t = now.0 as f64 * 1e-6;
-        self.page.tell(Happening { t, kind: Kind::Fault, team: None, description, at: None, problem: None });
+        self.page.push(MatchEvent { t, kind: Kind::Fault, team: None, description, at: None, problem: None });
     }
 
     /// Records how long an input took.
@@ -57,15 +57,15 @@ impl Board {
     /// Sends the scene to the page if it is due; true: a viewer asks for HALT.
     pub(super) fn look(&mut self, now: protocol::Instant, host: &Host, alarms: Vec<String>) -> bool {
         let every = Duration::from_secs_f64(SCENE_EVERY_S);
-        if self.shown.is_none_or(|shown| shown.elapsed() >= every) {
-            self.shown = Some(Instant::now());
+        if self.drawn_at.is_none_or(|drawn_at| drawn_at.elapsed() >= every) {
+            self.drawn_at = Some(Instant::now());
             let t = now.0 as f64 * 1e-6;
             let gauges = vec![tick(self.took)];
             let moment = Moment { t, now, feed: host, hosts: &[host], truth: None, referee: None, gauges };
             let mut deferred_scene = self.composer.compose(moment);
             deferred_scene.scene.alarms = alarms;
-            for happening in self.composer.take_happenings() {
-                self.page.tell(happening);
+            for match_event in self.composer.take_match_events() {
+                self.page.push(match_event);
             }
             self.page.show(deferred_scene);
         }

@@ -40,7 +40,7 @@ use super::{Cases, identity, port_for_teams, simulator};
 use crate::Failure;
 use crate::live::PageArgs;
 use crate::net::NetSender;
-use crate::output::{note, shown};
+use crate::output::{note, printable_path};
 use crate::stop::stopped_by_hand;
 
 /// Longest time between two checks for missing sources and Ctrl-C.
@@ -195,8 +195,8 @@ fn keep_learned(path: &Path, learned: &Learned) -> String {
         std::fs::rename(&beside, path)
     };
     match write() {
-        Ok(()) => format!("learned  what is known of kickers and ball is in {}", shown(path)),
-        Err(error) => format!("learned  {}: {error}; nothing is kept", shown(path)),
+        Ok(()) => format!("learned  what is known of kickers and ball is in {}", printable_path(path)),
+        Err(error) => format!("learned  {}: {error}; nothing is kept", printable_path(path)),
     }
 }
 
@@ -281,7 +281,7 @@ impl EventLoop {
         let now = self.now();
         self.alarms.ran(now);
         if self.host.poll_timeout().is_some_and(|due| due <= now) {
-            self.tell(now, Input::Timeout);
+            self.feed(now, Input::Timeout);
         }
     }
 
@@ -291,7 +291,7 @@ impl EventLoop {
             Mail::Vision(bytes) => {
                 self.counts.vision += 1;
                 if matches!(
-                    self.tell(now, Input::Vision(&bytes)),
+                    self.feed(now, Input::Vision(&bytes)),
                     Verdict::Vision(Received::Newest | Received::Restarted)
                 ) {
                     self.publish(now);
@@ -299,13 +299,13 @@ impl EventLoop {
             }
             Mail::Referee(bytes, from) => {
                 self.counts.referee += 1;
-                self.tell(now, Input::Referee(&bytes, from));
+                self.feed(now, Input::Referee(&bytes, from));
             }
             Mail::Robot(packet) => {
                 self.counts.robots += 1;
-                self.tell(now, Input::Robot(&packet));
+                self.feed(now, Input::Robot(&packet));
             }
-            Mail::Open(source, way) => self.watch.open(source, &way),
+            Mail::Open(source, description_of_path) => self.watch.open(source, &description_of_path),
             Mail::Trouble(source, description) => {
                 let description = self.watch.trouble(source, &description);
                 self.description.push(description);
@@ -316,7 +316,7 @@ impl EventLoop {
     }
 
     /// Feeds one input to the host, then handles its output.
-    fn tell(&mut self, now: protocol::Instant, input: Input<'_>) -> Verdict {
+    fn feed(&mut self, now: protocol::Instant, input: Input<'_>) -> Verdict {
         if let Some(recorder) = &mut self.recorder {
             let received = match input {
                 Input::Vision(bytes) => Some((MessageKind::Vision2014, bytes)),
@@ -366,7 +366,7 @@ impl EventLoop {
         if board.look(now, &self.host, alarms) {
             self.description
                 .push("HALT was asked for on the page: the robots stand until the end".to_owned());
-            self.tell(now, Input::Halt);
+            self.feed(now, Input::Halt);
         }
     }
 
@@ -391,8 +391,8 @@ impl EventLoop {
     }
 
     fn look_at_alarms(&mut self, now: protocol::Instant, config: &TeamConfig, inbox: &Inbox) {
-        let way = self.watch.vision_way();
-        let vision = || format!("{}, {way}", config.vision);
+        let description_of_path = self.watch.vision_path();
+        let vision = || format!("{}, {description_of_path}", config.vision);
         self.description.extend(self.alarms.look(now, &self.host, inbox.dropped(), vision));
     }
 

@@ -32,7 +32,7 @@ use crate::Failure;
 use crate::args::{DirectoryArgs, SettingsArgs};
 use crate::library::LibraryHandle;
 use crate::live::{PageArgs, library_handle_of};
-use crate::output::shown;
+use crate::output::printable_path;
 use crate::simulate::seconds;
 
 /// Our team, and the addresses to receive from and send to. What is not given here is taken from the file,
@@ -180,9 +180,9 @@ const CONFIG_LEN_MAX: u64 = 1 << 20;
 
 /// A file of settings.
 fn read(path: &Path) -> Result<TeamSettings, Failure> {
-    let said = |description: String| Failure::Network(format!("{}: {description}", shown(path)));
-    let text = foreign::read_text(path, CONFIG_LEN_MAX).map_err(|error| said(error.to_string()))?;
-    TeamSettings::from_toml(&text).map_err(|error| said(error.to_string()))
+    let message = |description: String| Failure::Network(format!("{}: {description}", printable_path(path)));
+    let text = foreign::read_text(path, CONFIG_LEN_MAX).map_err(|error| message(error.to_string()))?;
+    TeamSettings::from_toml(&text).map_err(|error| message(error.to_string()))
 }
 
 /// Flags override the file, which overrides the defaults.
@@ -215,9 +215,9 @@ fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
         ball: BallSettings::default(),
     };
     let settings = flags.over(file);
-    let told = settings.vision.is_some();
+    let reported = settings.vision.is_some();
     let mut config = settings.complete().map_err(|error| Failure::Network(error.to_string()))?;
-    if !told && matches!(config.robots, RobotLink::Simulator(_)) {
+    if !reported && matches!(config.robots, RobotLink::Simulator(_)) {
         config.vision = addresses::VISION_SIMULATED.into();
     }
     Ok(config)

@@ -10,20 +10,20 @@ const AGAIN: Duration = Duration::millis(10_000);
 /// What was reported, and when.
 #[derive(Debug, Default)]
 pub(super) struct RadioAlarms {
-    said: Vec<(RadioWarning, Instant)>,
+    message: Vec<(RadioWarning, Instant)>,
 }
 
 impl RadioAlarms {
     /// The lines to print now.
     pub(super) fn look(&mut self, now: Instant, radio: &Radio) -> Vec<String> {
         let current: Vec<RadioWarning> = radio.warnings(now).collect();
-        self.said.retain(|(warning, at)| current.contains(warning) || now.since(*at) < AGAIN);
+        self.message.retain(|(warning, at)| current.contains(warning) || now.since(*at) < AGAIN);
         let mut lines = Vec::new();
         for warning in current {
-            match self.said.iter_mut().find(|(known, _)| *known == warning) {
+            match self.message.iter_mut().find(|(known, _)| *known == warning) {
                 Some((_, at)) if now.since(*at) < AGAIN => continue,
                 Some((_, at)) => *at = now,
-                None => self.said.push((warning, now)),
+                None => self.message.push((warning, now)),
             }
             lines.push(format!("radio    {warning}"));
         }
@@ -46,17 +46,17 @@ mod tests {
         let (team, id) = (TeamId(2), RobotId::new(3).unwrap());
         let mut radio = Radio::new(RadioSettings::new(team, 70));
         let mut robot = Link::new(team, id, TeamKey::ZERO.of_robot(id), 5);
-        let (mut alarms, mut said) = (RadioAlarms::default(), Vec::new());
+        let (mut alarms, mut message) = (RadioAlarms::default(), Vec::new());
         for n in 0..250_u64 {
             let now = Instant(n * 100_000);
             let telemetry = Telemetry { host: 71, ..Telemetry::default() };
             assert!(radio.handle_packet(now, &robot.seal(&TeamMessage::Telemetry(telemetry))).is_err());
-            said.extend(alarms.look(now, &radio).into_iter().map(|description| (n, description)));
+            message.extend(alarms.look(now, &radio).into_iter().map(|description| (n, description)));
         }
-        assert_eq!(said.iter().map(|(n, _)| *n).collect::<Vec<_>>(), [0, 100, 200]);
+        assert_eq!(message.iter().map(|(n, _)| *n).collect::<Vec<_>>(), [0, 100, 200]);
         assert!(
-            said[0].1.contains("robot 3 refuses this host")
-                && said[0].1.contains("set this computer's clock")
+            message[0].1.contains("robot 3 refuses this host")
+                && message[0].1.contains("set this computer's clock")
         );
     }
 }

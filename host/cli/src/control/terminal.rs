@@ -66,7 +66,7 @@ fn print(waiting: &Receiver<Print>) {
     for print in waiting {
         match print {
             Print::Line(description) => bar.aside(|| note!("{description}")),
-            Print::Status(description) => bar.say(description),
+            Print::Status(description) => bar.set_text(description),
         }
     }
 }

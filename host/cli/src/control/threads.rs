@@ -60,21 +60,21 @@ pub(super) fn receive(
     end: Arc<AtomicBool>,
 ) -> JoinHandle<()> {
     thread::spawn(move || {
-        let mut told = None;
+        let mut reported = None;
         while !end.load(Ordering::Relaxed) {
             let mut receiver = match NetReceiver::open(address, &by) {
                 Ok(receiver) => receiver,
                 Err(error) => {
                     let description = error.to_string();
-                    if told.as_ref() != Some(&description) {
+                    if reported.as_ref() != Some(&description) {
                         mail.put(Mail::Trouble(source, description.clone()));
-                        told = Some(description);
+                        reported = Some(description);
                     }
                     sleep(AGAIN, &end);
                     continue;
                 }
             };
-            told = None;
+            reported = None;
             mail.put(Mail::Open(source, receiver.description()));
             while !end.load(Ordering::Relaxed) {
                 match receiver.receive(LOOK) {
@@ -112,12 +112,12 @@ pub(super) fn carry(
     end: Arc<AtomicBool>,
 ) -> JoinHandle<()> {
     thread::spawn(move || {
-        let mut told: Option<Instant> = None;
+        let mut reported: Option<Instant> = None;
         let mut note = |result: Result<(), String>| {
             if let Err(description) = result
-                && told.is_none_or(|told| told.elapsed() >= TROUBLE_EVERY)
+                && reported.is_none_or(|reported| reported.elapsed() >= TROUBLE_EVERY)
             {
-                told = Some(Instant::now());
+                reported = Some(Instant::now());
                 mail.put(Mail::Trouble(Source::Robots, description));
             }
         };

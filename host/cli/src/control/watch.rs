@@ -31,10 +31,10 @@ pub(super) struct Watch {
 /// A source that may be missing.
 #[derive(Debug, Default)]
 struct Waiting {
-    told: bool,
+    announced: bool,
     ever: bool,
     /// How it is received, or why it cannot be.
-    way: String,
+    via: String,
 }
 
 impl Waiting {
@@ -46,11 +46,11 @@ impl Waiting {
         here: impl FnOnce() -> String,
     ) -> Option<String> {
         if missing {
-            return (!std::mem::replace(&mut self.told, true)).then(|| wait(self));
+            return (!std::mem::replace(&mut self.announced, true)).then(|| wait(self));
         }
-        let news = std::mem::take(&mut self.told) || !self.ever;
+        let changed = std::mem::take(&mut self.announced) || !self.ever;
         self.ever = true;
-        news.then(here)
+        changed.then(here)
     }
 }
 
@@ -60,20 +60,20 @@ impl Watch {
         Self { vision, referee, robots, missing: Vec::new(), link_advice }
     }
 
-    /// A source is now received on `way`.
-    pub(super) fn open(&mut self, source: Source, way: &str) {
-        self.of(source).way = format!("heard on {way}");
+    /// A source is now received on `via`.
+    pub(super) fn open(&mut self, source: Source, via: &str) {
+        self.of(source).via = format!("heard on {via}");
     }
 
     /// A source cannot be received, with the reason.
     pub(super) fn trouble(&mut self, source: Source, description: &str) -> String {
-        description.clone_into(&mut self.of(source).way);
+        description.clone_into(&mut self.of(source).via);
         format!("{}: {description}; it is tried again", source.name())
     }
 
     /// How vision is received, or why it cannot be.
-    pub(super) fn vision_way(&self) -> &str {
-        &self.vision.way
+    pub(super) fn vision_path(&self) -> &str {
+        &self.vision.via
     }
 
     /// What is missing now, each in a sentence.
@@ -109,7 +109,7 @@ impl Watch {
         let waits = format!(
             "waiting for the referee at {} ({}): robots halt until then; is the game controller running, and publishes it there \
              (--referee)?",
-            config.referee, self.referee.way
+            config.referee, self.referee.via
         );
         let never = matches!(silence, Silence::Never(_));
         self.missing.extend(never.then(|| waits.clone()));

@@ -74,7 +74,7 @@ pub(super) fn run(args: &AblationsArgs) -> Result<ExitCode, Failure> {
     )?;
     let (trials, seed) = (default.len() * arms.len(), args.seed);
     let table = ablation_table(&effects);
-    work::say(&format!("{table}\n{trials} trials, seed {seed}, in {}\n", directory.display()))?;
+    work::print_text(&format!("{table}\n{trials} trials, seed {seed}, in {}\n", directory.display()))?;
     Ok(ExitCode::SUCCESS)
 }
 

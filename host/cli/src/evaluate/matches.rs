@@ -102,12 +102,13 @@ pub(super) fn run(args: &MatchesArgs) -> Result<ExitCode, Failure> {
     let directory = args.work.directory()?;
     let file = directory.join(args.shard.file_name());
     let pool = args.work.pool()?;
-    let rows = work::with_bar(&pool, "playing", |told| matches.play_shard(args.shard, &file, told))?;
+    let rows =
+        work::with_bar(&pool, "playing", |on_progress| matches.play_shard(args.shard, &file, on_progress))?;
     if args.shard == Shard::WHOLE {
         return args.finish(&Made::new(&matches.identity(), &rows)?, directory);
     }
     let (kept, out) = (file.display(), directory.display());
-    work::say(&format!(
+    work::print_text(&format!(
         "{} matches in {kept}; when all shards are played: onetwo evaluate matches --merge {out} --out {out}\n",
         rows.len()
     ))?;
@@ -151,7 +152,7 @@ impl MatchesArgs {
             insert(file, ("matches", &self.section), figures, made.pictures(&format!("{}-", self.section)))?;
         }
         let (matches, seed) = (made.matches, made.identity.plan.seed);
-        work::say(&format!(
+        work::print_text(&format!(
             "{}\n{matches} matches, seed {seed}, csv hash {}, in {}\n",
             made.tables(),
             made.hash,

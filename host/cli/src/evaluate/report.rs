@@ -18,7 +18,7 @@ use super::{merge as shards, work};
 use crate::Failure;
 use crate::args::{DirectoryArgs, LibraryArgs, VERSION};
 use crate::library::LibraryHandle;
-use crate::output::{note, say, shown};
+use crate::output::{note, print_text, printable_path};
 use crate::{picture, setup};
 
 /// Contents of a report.
@@ -85,7 +85,7 @@ pub(super) fn run(args: &AgainArgs) -> Result<ExitCode, Failure> {
     if let Some(file) = &args.markdown {
         made.write_markdown(&results, file)?;
     }
-    say(&format!("{}\n", shown(&args.directory.join(PAGE))))?;
+    print_text(&format!("{}\n", printable_path(&args.directory.join(PAGE))))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -74,7 +74,7 @@ pub(super) fn run(args: &SkillsArgs) -> Result<ExitCode, Failure> {
     let table = rows(&plan, &results);
     if args.json {
         let json = serde_json::to_string(&table).map_err(|error| Failure::Output(error.into()))?;
-        work::say(&format!("{json}\n"))?;
+        work::print_text(&format!("{json}\n"))?;
         return Ok(ExitCode::SUCCESS);
     }
     let mut text = description(&table);
@@ -84,7 +84,7 @@ pub(super) fn run(args: &SkillsArgs) -> Result<ExitCode, Failure> {
     if args.failures {
         text += &failures(&results);
     }
-    work::say(&text)?;
+    work::print_text(&text)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -158,7 +158,7 @@ fn story(plan: &SkillPlan) -> Result<ExitCode, Failure> {
         };
         let TryResult { tried, start, .. } = &result;
         let head = format!("{} {} in {}: {start}", tried.skill.label(), tried.number, tried.world);
-        work::say(&format!("{head}\n{}\n{end}\n", lines.join("\n")))?;
+        work::print_text(&format!("{head}\n{}\n{end}\n", lines.join("\n")))?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -94,7 +94,7 @@ pub(super) fn play(
     pool: &rayon::ThreadPool,
     title: &str,
 ) -> Result<Vec<TrialRow>, Failure> {
-    with_bar(pool, title, |told| evaluation.play_shard(shard, file, told))
+    with_bar(pool, title, |on_progress| evaluation.play_shard(shard, file, on_progress))
 }
 
 /// Plays on a pool of threads, with `title` before a bar; Ctrl-C ends it in order.
@@ -107,12 +107,12 @@ pub(super) fn with_bar<R: Send>(
     let stopped = stopped_by_hand();
     // Drawn on a terminal's stderr, and nowhere else.
     let line = progress::Progress::open();
-    line.say(title);
-    let told = |progress: Progress| {
+    line.set_text(title);
+    let on_progress = |progress: Progress| {
         line.set(progress.done as u64, progress.of as u64);
         if stopped.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    let played = pool.install(|| play(&told));
+    let played = pool.install(|| play(&on_progress));
     drop(line);
     Ok(played?)
 }
@@ -139,7 +139,7 @@ pub(super) fn run(
         return Ok(ExitCode::SUCCESS);
     }
     let (kept, out) = (file.display(), directory.display());
-    say(&format!(
+    print_text(&format!(
         "{} trials in {kept}; when all shards are played: onetwo evaluate merge {out} --out {out}\n",
         rows.len()
     ))?;
@@ -151,15 +151,15 @@ pub(super) fn finish(results: &Results, directory: &Path) -> Result<(), Failure>
     results.write(directory)?;
     let (trials, seed, hash) = (results.rows.len(), results.identity.plan.seed, &results.hash);
     let (tables, verdicts) = (summary(results), verdicts(results));
-    say(&format!(
+    print_text(&format!(
         "{tables}{verdicts}{trials} trials, seed {seed}, csv hash {hash}, in {}\n",
         directory.display()
     ))
 }
 
 /// Prints on stdout.
-pub(super) fn say(description: &str) -> Result<(), Failure> {
-    output::say(description)
+pub(super) fn print_text(description: &str) -> Result<(), Failure> {
+    output::print_text(description)
 }
 
 /// A shard on the command line.

@@ -22,7 +22,7 @@ use firmware_build::inspect::{Image, Sizes};
 use firmware_build::{Body, Program, build_program, workspace_root};
 
 use crate::Failure;
-use crate::output::say;
+use crate::output::print_text;
 
 /// What to do with the firmware.
 #[derive(Debug, Subcommand)]
@@ -85,13 +85,13 @@ impl ImagesArgs {
 pub(crate) fn run(verb: &FirmwareVerb) -> Result<ExitCode, Failure> {
     match verb {
         FirmwareVerb::Build(args) => {
-            let mut told = String::new();
+            let mut text = String::new();
             for program in args.programs() {
                 let path = build(program)?;
                 let sizes = sizes_of(&path)?;
-                let _ = writeln!(told, "{}: {} B flash, {} B RAM", path.display(), sizes.flash, sizes.ram);
+                let _ = writeln!(text, "{}: {} B flash, {} B RAM", path.display(), sizes.flash, sizes.ram);
             }
-            say(&told)?;
+            print_text(&text)?;
         }
         FirmwareVerb::Size(args) => size::run(args)?,
         FirmwareVerb::Run(args) => run::run(args)?,

@@ -13,7 +13,7 @@ use rules::League;
 
 use super::{at, failed};
 use crate::Failure;
-use crate::output::{note, say};
+use crate::output::{note, print_text};
 
 /// The robot's identity.
 #[derive(Debug, Args)]
@@ -78,7 +78,7 @@ pub(super) fn run(args: &ProvisionArgs) -> Result<(), Failure> {
     // The page is read back as by the robot: a key of zeros is refused here already.
     read(&bytes, false).map_err(failed)?;
     write_for_owner(&args.out, &bytes).map_err(|error| at(&args.out, error))?;
-    say(&format!(
+    print_text(&format!(
         "{}: robot {robot} of team {}; it holds this robot's keys, not the team's\n",
         args.out.display(),
         args.team

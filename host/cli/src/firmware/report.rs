@@ -12,7 +12,7 @@ use super::at;
 use super::failsafe;
 use super::size::{Known, POOL_LEAST, Share};
 use crate::Failure;
-use crate::output::say;
+use crate::output::print_text;
 
 /// Output of the report.
 #[derive(Debug, Args)]
@@ -33,7 +33,7 @@ pub(super) fn run(args: &ReportArgs) -> Result<(), Failure> {
         .collect::<Result<_, Failure>>()?;
     let text = text(&all, args.seconds);
     if !args.write {
-        return say(&text);
+        return print_text(&text);
     }
     let path = workspace_root().join(FILE);
     fs::write(&path, text).map_err(|error| at(&path, error))

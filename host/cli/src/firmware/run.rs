@@ -78,8 +78,8 @@ mod tests {
     fn a_page_that_no_robot_could_read_is_refused_before_anything_starts() {
         let file = std::env::temp_dir().join(format!("onetwo-no-page-{}", std::process::id()));
         std::fs::write(&file, [0xff; 64]).expect("a temporary file");
-        let said = check(&file).map_err(|error| error.to_string());
+        let message = check(&file).map_err(|error| error.to_string());
         std::fs::remove_file(&file).expect("our own file");
-        assert!(said.is_err_and(|description| description.contains("firmware provision")));
+        assert!(message.is_err_and(|description| description.contains("firmware provision")));
     }
 }

@@ -12,7 +12,7 @@ use serde::Serialize;
 use super::measure::{Measured, measure};
 use super::{ImagesArgs, build, failed, sizes_of};
 use crate::Failure;
-use crate::output::say;
+use crate::output::print_text;
 
 /// Output format of the sizes.
 #[derive(Debug, Args)]
@@ -142,13 +142,13 @@ pub(super) fn run(args: &SizeArgs) -> Result<(), Failure> {
         images.into_iter().map(|program| Known::of(program, seconds)).collect::<Result<_, Failure>>()?;
     if args.json {
         let data: Vec<_> = all.iter().map(|known| json(known, args.largest)).collect();
-        return say(&(serde_json::to_string_pretty(&data).map_err(failed)? + "\n"));
+        return print_text(&(serde_json::to_string_pretty(&data).map_err(failed)? + "\n"));
     }
-    let mut told = String::new();
+    let mut text = String::new();
     for known in &all {
-        tell(known, args.largest, &mut told);
+        write_sizes(known, args.largest, &mut text);
     }
-    say(&told)
+    print_text(&text)
 }
 
 fn json(known: &Known, largest: usize) -> SizeJson<'_> {
@@ -176,35 +176,35 @@ fn json(known: &Known, largest: usize) -> SizeJson<'_> {
     }
 }
 
-fn tell(known: &Known, largest: usize, told: &mut String) {
+fn write_sizes(known: &Known, largest: usize, text: &mut String) {
     let Known { program, sizes, measured } = known;
     let Budget { flash, ram } = Budget::IMAGE;
     let name = program.name();
     let _ = writeln!(
-        told,
+        text,
         "{name}: {} of {flash} B flash, {} of {ram} B RAM before the stack",
         sizes.flash, sizes.ram
     );
     if let Some(Measured { stack, median, worst, steps }) = measured {
-        let _ = writeln!(told, "  deepest stack {stack} of {STACK_BUDGET} B");
+        let _ = writeln!(text, "  deepest stack {stack} of {STACK_BUDGET} B");
         let _ =
-            writeln!(told, "  worst of {steps} steps {worst} of {STEP_BUDGET} instructions, median {median}");
+            writeln!(text, "  worst of {steps} steps {worst} of {STEP_BUDGET} instructions, median {median}");
     }
     for chip in &Chip::ALL {
         let Share { name, flash, ram, step } = known.share(chip);
         let of = |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |share| format!("{share:.2} %"));
         let (flash, step) = (of(flash), of(step));
-        let _ = writeln!(told, "  {name:<12} flash {flash:>8}, RAM {ram:6.2} %, time {step:>8}");
+        let _ = writeln!(text, "  {name:<12} flash {flash:>8}, RAM {ram:6.2} %, time {step:>8}");
     }
     for (title, parts) in [("crate", &sizes.crates), ("symbol", &sizes.symbols)] {
-        let _ = writeln!(told, "  {:>7} {:>6}  {title}", "flash", "RAM");
+        let _ = writeln!(text, "  {:>7} {:>6}  {title}", "flash", "RAM");
         for part in parts.iter().take(largest) {
-            let _ = writeln!(told, "  {:7} {:6}  {}", part.flash, part.ram, part.name);
+            let _ = writeln!(text, "  {:7} {:6}  {}", part.flash, part.ram, part.name);
         }
     }
-    let _ = writeln!(told, "  {:>7} {:>6}  static of {POOL_LEAST} B or more, and its owner", "", "RAM");
+    let _ = writeln!(text, "  {:>7} {:>6}  static of {POOL_LEAST} B or more, and its owner", "", "RAM");
     for (owner, part) in sizes.pools(POOL_LEAST) {
-        let _ = writeln!(told, "  {:7} {:6}  {} ({owner})", "", part.ram, part.name);
+        let _ = writeln!(text, "  {:7} {:6}  {} ({owner})", "", part.ram, part.name);
     }
 }
 

@@ -31,13 +31,13 @@ impl Default for Beliefs {
 impl Beliefs {
     /// Takes the current view of `us`.
     pub(super) fn watch(&mut self, us: Colour, view: &View) {
-        self.of[us as usize].watch(view, taker(view));
+        self.of[us as usize].watch(view, kicker(view));
     }
 
     /// The opponents of `us`, labelled.
     pub(super) fn layer(&self, us: Colour, view: Option<(&View, Flip)>) -> Layer {
         let shapes = view.map_or_else(Vec::new, |(view, flip)| {
-            let read = self.of[us as usize].read(view, taker(view));
+            let read = self.of[us as usize].read(view, kicker(view));
             read.iter().flat_map(|opponent| shapes(opponent, us, view, flip)).collect()
         });
         Layer { name: "believed".into(), label: "what opponents seem to play".into(), on: false, shapes }
@@ -45,7 +45,7 @@ impl Beliefs {
 }
 
 /// Our robot at the ball.
-fn taker(view: &View) -> Option<RobotId> {
+fn kicker(view: &View) -> Option<RobotId> {
     let ball = view.ball?.position;
     let far = |robot: &&host::strategy::view::Robot| robot.position.distance(ball);
     let nearest = view.ours.iter().min_by(|a, b| far(a).total_cmp(&far(b)))?;

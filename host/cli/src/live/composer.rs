@@ -11,7 +11,7 @@ use host::referee::Game;
 use host::sanity::Sanity;
 use host::world::{Ball, World};
 use page::{
-    DeferredScene, Field, Gauge, Happening, Kind, Layer, Match, Robot, Scene, Shape, TeamSheet, milli,
+    DeferredScene, Field, Gauge, Kind, Layer, Match, MatchEvent, Robot, Scene, Shape, TeamSheet, milli,
 };
 use protocol::{CaseId, Instant};
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
@@ -19,8 +19,8 @@ use rules::{AreaForm, Colour, FieldSpec};
 
 use super::cycles::TeamCycles;
 use super::gauges::{self, Rate};
-use super::happenings::EventFeed;
 use super::layers;
+use super::match_events::EventFeed;
 use super::minds::{self, Clocks, Faults};
 use super::overlay_builder::{OverlayBuilder, Picture};
 use super::possession::Possession;
@@ -87,14 +87,14 @@ pub(crate) struct Composer {
     images: Images,
     rate: Rate,
     trail: VecDeque<(f64, [f32; 2])>,
-    news: EventFeed,
+    events: EventFeed,
     cycles: [TeamCycles; 2],
     clocks: Clocks,
     faults: Faults,
     sanity: [Sanity; 2],
     possession: Possession,
     overlay_builder: OverlayBuilder,
-    happenings: Vec<Happening>,
+    match_events: Vec<MatchEvent>,
 }
 
 impl Composer {
@@ -106,14 +106,14 @@ impl Composer {
             images: Images::default(),
             rate: Rate::default(),
             trail: VecDeque::new(),
-            news: EventFeed::default(),
+            events: EventFeed::default(),
             cycles: Default::default(),
             clocks: Clocks::default(),
             faults: Faults::default(),
             sanity: Default::default(),
             possession: Possession::default(),
             overlay_builder: OverlayBuilder::default(),
-            happenings: Vec::new(),
+            match_events: Vec::new(),
         }
     }
 
@@ -124,12 +124,12 @@ impl Composer {
 
     /// A datagram of the referee; `own` where the simulation's referee is part of the moment too.
     pub(crate) fn referee(&mut self, bytes: &[u8], t: f64, own: bool) {
-        self.news.packet(bytes, t, own, &mut self.happenings);
+        self.events.packet(bytes, t, own, &mut self.match_events);
     }
 
     /// Events since the last call.
-    pub(crate) fn take_happenings(&mut self) -> Vec<Happening> {
-        std::mem::take(&mut self.happenings)
+    pub(crate) fn take_match_events(&mut self) -> Vec<MatchEvent> {
+        std::mem::take(&mut self.match_events)
     }
 
     /// The scene of a moment: what is known at once, and what the page's thread computes from a snapshot.
@@ -137,10 +137,10 @@ impl Composer {
         let Moment { t, now, feed, .. } = moment;
         let (world, game, field) = (feed.world(), feed.game(), feed.field());
         for host in moment.hosts {
-            self.cycles[host.settings().us as usize].receive(host, t, &self.names, &mut self.happenings);
+            self.cycles[host.settings().us as usize].receive(host, t, &self.names, &mut self.match_events);
             for description in self.faults.look(host, now) {
                 let team = Some(team(host.settings().us));
-                self.happenings.push(Happening {
+                self.match_events.push(MatchEvent {
                     t,
                     kind: Kind::Fault,
                     team,
@@ -159,9 +159,9 @@ impl Composer {
             );
         }
         if let Some(referee) = moment.referee {
-            self.news.referee(referee, t, &mut self.happenings);
+            self.events.referee(referee, t, &mut self.match_events);
         }
-        self.news.kick(world.ball.and_then(|ball| ball.kicked), t, &mut self.happenings);
+        self.events.kick(world.ball.and_then(|ball| ball.kicked), t, &mut self.match_events);
         let defends = |team: Colour| game.own_goal(team).map(|goal| goal.sign() as i8);
         self.possession.look(t, world, game.phase, defends(Colour::Blue));
 
@@ -179,8 +179,8 @@ impl Composer {
                 let host = moment.hosts.iter().find(|host| host.settings().us == colour);
                 let played = plays.iter().find(|(team, _)| *team == colour).map(|(_, played)| played);
                 let at = robot.pose.position;
-                let mind = host.and_then(|host| minds::mind(host, robot, played, names, clocks, t));
-                let (mind, aim) = mind.unzip();
+                let detail = host.and_then(|host| minds::detail(host, robot, played, names, clocks, t));
+                let (detail, aim) = detail.unzip();
                 aims.extend(aim.flatten());
                 Robot {
                     team: team(colour),
@@ -189,7 +189,7 @@ impl Composer {
                     heading: milli(robot.pose.heading.radians()),
                     velocity: [milli(robot.velocity.x()), milli(robot.velocity.y())],
                     confidence: milli(robot.confidence),
-                    mind,
+                    detail,
                     vitals: host.and_then(|host| minds::vitals(host, robot, now)),
                 }
             })
@@ -198,11 +198,11 @@ impl Composer {
         let ball = world.ball.map(|ball| ball.position);
         layers.push(layers::keep_outs(&field, game.phase, ball, game.placement, game.own_goal(Colour::Blue)));
         layers.extend(moment.truth.map(truth));
-        let shown = |host: &&Host| {
+        let rows = |host: &&Host| {
             let us = host.settings().us;
-            cycles[us as usize].shown(us, t, base.as_ref(), names)
+            cycles[us as usize].rows(us, t, base.as_ref(), names)
         };
-        let cycles = moment.hosts.iter().filter_map(shown).collect();
+        let cycles = moment.hosts.iter().filter_map(rows).collect();
         let mut gauges = gauges::of_hosts(
             if moment.hosts.is_empty() { std::slice::from_ref(&feed) } else { moment.hosts },
             now,

@@ -3,7 +3,7 @@
 use arena::{CycleEvent, CycleLog};
 use casebase::CaseBase;
 use host::Host;
-use page::{Cycle, Happening, Kind};
+use page::{Cycle, Kind, MatchEvent};
 use protocol::team::{CycleState, Status};
 use protocol::{Instant, RobotId};
 use rules::Colour;
@@ -20,12 +20,12 @@ pub(super) struct TeamCycles {
     newest: Option<(CycleState, f64)>,
     /// In open play a team without a fitting case retries again and again: reported once until a case is
     /// played.
-    told_none: bool,
+    reported_none: bool,
 }
 
 impl TeamCycles {
     /// Takes the newest reports of the robots; new events go to `into`.
-    pub(super) fn receive(&mut self, host: &Host, t: f64, names: &Names, into: &mut Vec<Happening>) {
+    pub(super) fn receive(&mut self, host: &Host, t: f64, names: &Names, into: &mut Vec<MatchEvent>) {
         for robot in RobotId::all() {
             let Some(state) = host.beacon(robot).and_then(|beacon| beacon.cycle.as_ref()) else { continue };
             if state.is_newer_than(self.newest.as_ref().map(|(state, _)| state)) {
@@ -33,44 +33,44 @@ impl TeamCycles {
                 let began = same.map_or(t, |(_, began)| *began);
                 self.newest = Some((state.clone(), began));
             }
-            let news = self.log.receive(t as f32, state);
-            self.tell(news, host, t, names, into);
+            let event = self.log.receive(t as f32, state);
+            self.report(event, host, t, names, into);
         }
     }
 
-    fn tell(&mut self, news: CycleEvent, host: &Host, t: f64, names: &Names, into: &mut Vec<Happening>) {
+    fn report(&mut self, event: CycleEvent, host: &Host, t: f64, names: &Names, into: &mut Vec<MatchEvent>) {
         let us = host.settings().us;
-        let mut say = |kind, description: String, at, problem| {
-            into.push(Happening { t, kind, team: Some(team(us)), description, at, problem });
+        let mut add = |kind, description: String, at, problem| {
+            into.push(MatchEvent { t, kind, team: Some(team(us)), description, at, problem });
         };
         let of = |i: usize| self.log.cycles().get(i);
-        match news {
+        match event {
             CycleEvent::Decided(i) => {
                 let Some(cycle) = of(i) else { return };
                 if let Some(play) = &cycle.play {
-                    self.told_none = false;
+                    self.reported_none = false;
                     let players: Vec<_> = play.robots.iter().map(|id| id.number().to_string()).collect();
                     let description =
                         format!("{}: {} by {}", us.label(), names.of(play.case), players.join(", "));
                     let ball: geometry::Point<geometry::Field> = play.ball.into();
-                    say(
+                    add(
                         Kind::Case,
                         description,
                         Some([ball.x(), ball.y()]),
                         Some(problem(host, play.ball.into())),
                     );
-                } else if cycle.no_case && !self.told_none {
-                    self.told_none = true;
+                } else if cycle.no_case && !self.reported_none {
+                    self.reported_none = true;
                     let ball = host.world().ball.map(|ball| ball.position);
                     let problem =
                         ball.map(|ball| problem(host, protocol::quantized::WirePoint::from(ball).into()));
-                    say(Kind::Cycle, format!("{}: no case fits", us.label()), None, problem);
+                    add(Kind::Cycle, format!("{}: no case fits", us.label()), None, problem);
                 }
             }
             CycleEvent::Ended(i) => {
                 let Some(cycle) = of(i).filter(|cycle| cycle.play.is_some()) else { return };
                 if let Some((_, end)) = cycle.end {
-                    say(
+                    add(
                         Kind::Cycle,
                         format!("{}: case {}", us.label(), end.label().replace('-', " ")),
                         None,
@@ -83,7 +83,7 @@ impl TeamCycles {
     }
 
     /// The newest cycle, for the page.
-    pub(super) fn shown(
+    pub(super) fn rows(
         &self,
         us: Colour,
         t: f64,

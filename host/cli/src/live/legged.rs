@@ -3,7 +3,9 @@
 
 use arena::{CycleEvent, Moment, TrialReport, Watcher};
 use casebase::CaseBase;
-use page::{Cycle, Happening, Intent, Kind, Match, Mind, Page, Robot, Scene, Shape, Team, Tone, milli};
+use page::{
+    Cycle, Intent, Kind, Match, MatchEvent, Page, Robot, RobotDetail, Scene, Shape, Team, Tone, milli,
+};
 use protocol::RobotId;
 use protocol::team::{Beacon, CycleState, Role};
 use rules::{Colour, League};
@@ -43,11 +45,11 @@ impl Legged {
         }
     }
 
-    fn tell(&mut self, moment: &Moment<'_>, t: f64) {
-        for news in moment.news {
-            let (CycleEvent::Decided(i) | CycleEvent::Ended(i)) = *news else { continue };
+    fn add_events(&mut self, moment: &Moment<'_>, t: f64) {
+        for event in moment.events {
+            let (CycleEvent::Decided(i) | CycleEvent::Ended(i)) = *event else { continue };
             let Some(cycle) = moment.cycles.cycles().get(i) else { continue };
-            let (kind, description) = match (news, &cycle.play) {
+            let (kind, description) = match (event, &cycle.play) {
                 (CycleEvent::Decided(_), Some(play)) => (Kind::Case, moment.config.names.of(play.case)),
                 (CycleEvent::Ended(_), Some(_)) => {
                     let end = cycle.end.map_or("", |(_, end)| end.label());
@@ -56,17 +58,17 @@ impl Legged {
                 _ => continue,
             };
             let problem = (kind == Kind::Case).then(|| problem(moment));
-            self.page.tell(Happening { t, kind, team: Some(Team::Blue), description, at: None, problem });
+            self.page.push(MatchEvent { t, kind, team: Some(Team::Blue), description, at: None, problem });
         }
     }
 
-    fn mind(
+    fn detail(
         &self,
         id: RobotId,
         at: [f32; 2],
         played: Option<&Played<'_>>,
         moment: &Moment<'_>,
-    ) -> Option<Mind> {
+    ) -> Option<RobotDetail> {
         let (_, beacon) = self.beacons.iter().find(|(known, _)| *known == id)?;
         let part = played.and_then(|played| Some((played, played.place_of(id)?)));
         let (state, step) = description::progress(
@@ -79,7 +81,7 @@ impl Legged {
             Role::Supporter => "backs up",
             Role::None => "",
         };
-        Some(Mind {
+        Some(RobotDetail {
             role: format!("robot {}", moment.cast.name_of(id)),
             directive: if part.is_some() { "plays a case".into() } else { "plays by itself".into() },
             state,
@@ -89,7 +91,7 @@ impl Legged {
             }),
             reactive: reactive.to_owned(),
             intent: Intent { path: to.map_or_else(Vec::new, |to| vec![at, to]), ball_to: None },
-            ..Mind::default()
+            ..RobotDetail::default()
         })
     }
 
@@ -107,7 +109,7 @@ impl Legged {
                 heading: milli(walker.pose.heading.radians()),
                 velocity: [0.0; 2],
                 confidence: 1.0,
-                mind: id.and_then(|id| self.mind(*id, at, played.as_ref(), moment)),
+                detail: id.and_then(|id| self.detail(*id, at, played.as_ref(), moment)),
                 vitals: None,
             }
         });
@@ -166,7 +168,7 @@ impl Watcher for Legged {
     fn watch(&mut self, moment: &Moment<'_>) {
         let t = f64::from(moment.tick.time);
         self.receive(moment);
-        self.tell(moment, t);
+        self.add_events(moment, t);
         let scene = self.scene(moment, t);
         self.page.keep(scene);
     }
@@ -175,7 +177,7 @@ impl Watcher for Legged {
         let t = f64::from(moment.tick.time);
         let kind = if report.outcome == hil_sim::Outcome::Goal { Kind::Goal } else { Kind::Event };
         let description = format!("the trial ends: {}", report.outcome.label());
-        self.page.tell(Happening { t, kind, team: Some(Team::Blue), description, at: None, problem: None });
+        self.page.push(MatchEvent { t, kind, team: Some(Team::Blue), description, at: None, problem: None });
         let mut scene = self.scene(moment, t + 0.04);
         scene.layers.push(page::Layer {
             name: "outcome".into(),

@@ -14,7 +14,7 @@ use casebase::CaseBase;
 use foreign::excerpt;
 use geometry::Point;
 use hil_sim::NativeBackend;
-use page::{Happening, Kind, Page, Request};
+use page::{Kind, MatchEvent, Page, Request};
 use protocol::{RobotId, Who};
 use rules::Colour;
 use rules::state::Command;
@@ -51,7 +51,7 @@ struct UserControls {
     paused: bool,
     steps: u32,
     speed: f32,
-    anew: Option<u64>,
+    restart: Option<u64>,
     /// The clock, and the match at that time.
     clock: (Instant, f64),
     took: Duration,
@@ -85,18 +85,18 @@ impl<'s> MatchRunner<'s> {
                 paused: false,
                 steps: 0,
                 speed: self.speed,
-                anew: None,
+                restart: None,
                 clock: (Instant::now(), 0.0),
                 took: Duration::ZERO,
                 reached: self.speed,
             };
             let report = self.one(&mut controls, watcher)?;
             self.speed = controls.speed;
-            match controls.anew {
+            match controls.restart {
                 Some(seed) => {
                     self.config.seed = seed;
                     self.page.clear();
-                    watcher.anew();
+                    watcher.restart();
                 }
                 None if stopped_by_hand().load(Ordering::Relaxed) => return Ok(End::ByHand(report)),
                 None => return Ok(End::Over(report)),
@@ -119,7 +119,7 @@ impl<'s> MatchRunner<'s> {
     }
 
     /// Restarts with another seed.
-    pub(crate) fn anew(&mut self, seed: u64) {
+    pub(crate) fn restart(&mut self, seed: u64) {
         self.config.seed = seed;
         self.page.clear();
     }
@@ -135,13 +135,13 @@ impl<'s> MatchRunner<'s> {
         let mut game = Game::new(&config, &mut backend).map_err(Failure::Game)?;
         let mut feed = Feed { composer: Composer::new(self.library_handle), t: 0.0 };
         let ticks = (config.duration_s * 1e6 / TICK_US as f64) as u64;
-        let mut shown = f64::NEG_INFINITY;
+        let mut displayed = f64::NEG_INFINITY;
         let stopped = stopped_by_hand();
         while game.now().0 / TICK_US < ticks && !game.is_over() && !stopped.load(Ordering::Relaxed) {
             while let Some(request) = self.page.next_request() {
                 self.obey(&request, controls, &mut game, &mut backend).map_err(Failure::Game)?;
             }
-            if controls.anew.is_some() {
+            if controls.restart.is_some() {
                 break;
             }
             if controls.paused && controls.steps == 0 {
@@ -155,8 +155,8 @@ impl<'s> MatchRunner<'s> {
             game.step(&mut Watchers(vec![&mut feed, watcher.watcher()])).map_err(Failure::Game)?;
             controls.took = (controls.took * 15 + begun.elapsed()) / 16;
             let every = (SCENE_EVERY_S * f64::from(controls.speed)).min(SCENE_EVERY_MAX_S);
-            if game.time() - shown >= every - 1e-6 || controls.paused {
-                shown = game.time();
+            if game.time() - displayed >= every - 1e-6 || controls.paused {
+                displayed = game.time();
                 self.show(&game, &mut feed, controls);
             }
             if !controls.paused {
@@ -180,8 +180,8 @@ impl<'s> MatchRunner<'s> {
             referee: Some(game.referee()),
             gauges,
         });
-        for happening in feed.composer.take_happenings() {
-            self.page.tell(happening);
+        for match_event in feed.composer.take_match_events() {
+            self.page.push(match_event);
         }
         deferred_scene.scene.paused = controls.paused;
         deferred_scene.scene.speed = controls.speed;
@@ -216,7 +216,7 @@ impl<'s> MatchRunner<'s> {
             Request::Restart { .. } if self.recorded => {
                 refused = Some("a match that is recorded cannot begin anew".into());
             }
-            Request::Restart { seed } => controls.anew = Some(seed.unwrap_or(self.config.seed)),
+            Request::Restart { seed } => controls.restart = Some(seed.unwrap_or(self.config.seed)),
             Request::Situation { name } => {
                 if !situate(game, self.library_handle, name) {
                     refused = Some(format!(
@@ -258,7 +258,7 @@ impl<'s> MatchRunner<'s> {
             }
         }
         if let Some(description) = noted {
-            self.page.tell(Happening {
+            self.page.push(MatchEvent {
                 t,
                 kind: Kind::Fault,
                 team: None,
@@ -317,7 +317,7 @@ pub(crate) trait RestartWatcher {
     /// The watcher of the running match.
     fn watcher(&mut self) -> &mut dyn Watcher;
     /// Another match starts.
-    fn anew(&mut self);
+    fn restart(&mut self);
 }
 
 /// Takes the packets that both teams receive.

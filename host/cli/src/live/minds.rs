@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use host::Host;
 use host::world::Robot;
-use page::{Intent, Mind, Timer, Vitals, milli};
+use page::{Intent, RobotDetail, Timer, Vitals, milli};
 use protocol::host::Condition;
 use protocol::team::{Progress, Role};
 use protocol::{Instant, RobotId};
@@ -32,14 +32,14 @@ fn since(of: &mut BTreeMap<(bool, u8), (String, f64)>, who: (bool, u8), descript
 }
 
 /// The state of a robot of that host's team, and the position it is ordered to.
-pub(super) fn mind(
+pub(super) fn detail(
     host: &Host,
     robot: &Robot,
     played: Option<&Played<'_>>,
     names: &Names,
     clocks: &mut Clocks,
     t: f64,
-) -> Option<(Mind, Option<Aim>)> {
+) -> Option<(RobotDetail, Option<Aim>)> {
     let id = robot.who.id;
     let order = host.orders().iter().find(|order| order.robot == id)?;
     let directive = order.task.directive(description::flip(host));
@@ -55,7 +55,7 @@ pub(super) fn mind(
     let place = part.as_ref().filter(|_| matches!(progress, Progress::Adapt { .. })).map(|(_, (_, at))| *at);
     let rule_role = match order.role {
         host::strategy::Role::Keeper => RuleRole::Keeper,
-        host::strategy::Role::Taker => RuleRole::Taker,
+        host::strategy::Role::Kicker => RuleRole::Kicker,
         _ => RuleRole::Player,
     };
     let aim = place.or(to).map(|to| Aim { who: robot.who, to, rule_role });
@@ -67,7 +67,7 @@ pub(super) fn mind(
         Timer { name: format!("as {role}"), seconds: since(&mut clocks.roles, who, &role, t) },
         Timer { name: format!("in {state}"), seconds: since(&mut clocks.states, who, &state, t) },
     ];
-    let mind = Mind {
+    let detail = RobotDetail {
         role,
         directive: description::directive(&directive),
         why: description::why(&order.why),
@@ -84,7 +84,7 @@ pub(super) fn mind(
         intent: Intent { path, ball_to },
         timers,
     };
-    Some((mind, aim))
+    Some((detail, aim))
 }
 
 /// State of a robot and its link.
@@ -133,7 +133,7 @@ pub(super) struct Faults {
 impl Faults {
     pub(super) fn look(&mut self, host: &Host, now: Instant) -> Vec<String> {
         let us = host.settings().us;
-        let mut told = Vec::new();
+        let mut reported = Vec::new();
         for id in RobotId::all() {
             let Some(quality) = host.quality(id).filter(|quality| quality.received_at().is_some()) else {
                 continue;
@@ -142,14 +142,14 @@ impl Faults {
             let name = format!("{} {}", us.label(), id.number());
             let (lives, here) = (quality.lives(), quality.is_present(now));
             if self.lives.insert(who, lives).is_some_and(|before| lives > before) {
-                told.push(format!("{name} booted again"));
+                reported.push(format!("{name} booted again"));
             }
             match self.present.insert(who, here) {
-                Some(true) if !here => told.push(format!("{name} is silent")),
-                Some(false) if here => told.push(format!("{name} is heard again")),
+                Some(true) if !here => reported.push(format!("{name} is silent")),
+                Some(false) if here => reported.push(format!("{name} is heard again")),
                 _ => {}
             }
         }
-        told
+        reported
     }
 }

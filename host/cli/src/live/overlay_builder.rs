@@ -58,12 +58,12 @@ fn paint(scene: &mut Scene, picture: &Picture, tactics: &mut Tactics) {
     for Aim { who, to, rule_role } in &picture.aims {
         let (Some(robot), Some(own)) = (world.robot(*who), game.own_goal(who.colour)) else { continue };
         let paths = Paths { world, phase: game.phase, placement: game.placement, field, own };
-        let shown = scene
+        let displayed = scene
             .robots
             .iter_mut()
-            .find(|shown| shown.team == super::team(who.colour) && shown.id == who.id.number());
-        if let Some(mind) = shown.and_then(|shown| shown.mind.as_mut()) {
-            mind.intent.path = paths.to(robot, *to, *rule_role);
+            .find(|displayed| displayed.team == super::team(who.colour) && displayed.id == who.id.number());
+        if let Some(detail) = displayed.and_then(|displayed| displayed.detail.as_mut()) {
+            detail.intent.path = paths.to(robot, *to, *rule_role);
         }
     }
     let [maps, above] = tactics.layers(picture);

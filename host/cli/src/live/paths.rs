@@ -65,10 +65,10 @@ impl Paths<'_> {
                 effort_to_leave: EFFORT_MAX,
                 checks: CHECKS_LONG,
             };
-            let way = plan(&course);
-            (from, velocity) = (way.next.position, way.next.velocity);
+            let path = plan(&course);
+            (from, velocity) = (path.next.position, path.next.velocity);
             points.push(from);
-            if from.distance(way.goal) < THERE {
+            if from.distance(path.goal) < THERE {
                 break;
             }
             for other in &mut obstacles[standing..] {
@@ -108,7 +108,7 @@ mod tests {
         }
     }
 
-    fn way(others: &[[f32; 2]], to: [f32; 2]) -> Vec<[f32; 2]> {
+    fn path(others: &[[f32; 2]], to: [f32; 2]) -> Vec<[f32; 2]> {
         let field = League::DivisionB.field();
         let mut world = World::default();
         let own = robot(Colour::Blue, [0.0, 0.0]);
@@ -123,23 +123,23 @@ mod tests {
 
     #[test]
     fn a_free_way_is_straight_and_ends_there() {
-        let way = way(&[[1.0, 2.0]], [1.0, 0.0]);
-        assert!(way.iter().all(|[_, y]| y.abs() < 1e-3), "{way:?}");
-        let [x, _] = *way.last().unwrap();
-        assert!((x - 1.0).abs() < THERE && way.len() > 5, "{way:?}");
+        let path = path(&[[1.0, 2.0]], [1.0, 0.0]);
+        assert!(path.iter().all(|[_, y]| y.abs() < 1e-3), "{path:?}");
+        let [x, _] = *path.last().unwrap();
+        assert!((x - 1.0).abs() < THERE && path.len() > 5, "{path:?}");
     }
 
     #[test]
     fn a_way_leads_around_whoever_stands_in_it() {
-        let way = way(&[[0.8, 0.02]], [1.6, 0.0]);
-        let nearest = way.iter().map(|[x, y]| ((x - 0.8).powi(2) + (y - 0.02).powi(2)).sqrt());
-        assert!(nearest.fold(f32::INFINITY, f32::min) > 2.0 * ROBOT_RADIUS, "{way:?}");
-        assert!(way.iter().any(|[_, y]| y.abs() > 0.15), "{way:?}");
+        let path = path(&[[0.8, 0.02]], [1.6, 0.0]);
+        let nearest = path.iter().map(|[x, y]| ((x - 0.8).powi(2) + (y - 0.02).powi(2)).sqrt());
+        assert!(nearest.fold(f32::INFINITY, f32::min) > 2.0 * ROBOT_RADIUS, "{path:?}");
+        assert!(path.iter().any(|[_, y]| y.abs() > 0.15), "{path:?}");
     }
 
     #[test]
     fn a_way_that_takes_longer_than_is_looked_ahead_goes_on_straight() {
-        let way = way(&[], [4.0, 0.0]);
-        assert_eq!((way.len(), *way.last().unwrap()), (STEPS + 2, [4.0, 0.0]));
+        let path = path(&[], [4.0, 0.0]);
+        assert_eq!((path.len(), *path.last().unwrap()), (STEPS + 2, [4.0, 0.0]));
     }
 }

@@ -130,10 +130,10 @@ fn view(picture: &Picture, us: Colour) -> Option<View> {
         keeper: game.team(us).keeper.unwrap_or(RobotId::ZERO),
         their_keeper: game.team(us.other()).keeper.unwrap_or(RobotId::ZERO),
     };
-    Some(View::of(&picture.world, us, &sheet, picture.field, everybody(), RobotSet::default()))
+    Some(View::of(&picture.world, us, &sheet, picture.field, all_robots(), RobotSet::default()))
 }
 
-fn everybody() -> RobotSet {
+fn all_robots() -> RobotSet {
     let mut all = RobotSet::default();
     RobotId::all().for_each(|robot| all.insert(robot));
     all
@@ -204,7 +204,7 @@ fn maps(view: &View, flip: Flip, kicks: &Kicks) -> [Vec<Shape>; 2] {
 
 /// The open angle of the nearest threat, then of every robot that could receive the ball next.
 fn threat_shapes(view: &View, flip: Flip, memory: &mut Memory) -> Vec<Shape> {
-    let defence = defend(view, everybody(), memory, &Settings::default());
+    let defence = defend(view, all_robots(), memory, &Settings::default());
     let on_field = |at: Point<Attack>| {
         let at = flip.to_field(at);
         [milli(at.x()), milli(at.y())]

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use arena::game::{Game, GameConfig, Watcher, Watchers};
 use casebase::Settings;
 use hil_sim::NativeBackend;
-use page::{Happening, Kind, Scene, Shape, Team};
+use page::{Kind, MatchEvent, Scene, Shape, Team};
 use rules::{Colour, League};
 
 use super::{Composer, Moment, library_handle_of};
@@ -29,7 +29,7 @@ impl Watcher for Feed {
 struct Played {
     /// Its last scene.
     scene: Scene,
-    happenings: Vec<Happening>,
+    match_events: Vec<MatchEvent>,
     /// The most bytes that a scene took.
     most: usize,
     /// Robots that cameras saw in its last second: one camera frame in a hundred lacks one.
@@ -57,8 +57,10 @@ impl Played {
                 .any(|shape| matches!(shape, Shape::Ellipse { at: place, .. } if *place == at));
             ring.then_some(label.unwrap_or_default())
         };
-        let keepers =
-            scene.robots.iter().filter(|robot| robot.mind.as_ref().is_some_and(|mind| mind.role == "keeper"));
+        let keepers = scene
+            .robots
+            .iter()
+            .filter(|robot| robot.detail.as_ref().is_some_and(|detail| detail.role == "keeper"));
         for label in keepers.filter_map(|keeper| labelled(keeper.at)) {
             self.keepers.0 += u32::from(label.starts_with("goalkeeper"));
             self.keepers.1 += 1;
@@ -91,7 +93,7 @@ fn played(seconds: u32) -> Played {
             });
             let scene = deferred_scene.finished();
             out.most = out.most.max(serde_json::to_string(&scene).unwrap().len());
-            out.happenings.extend(feed.0.take_happenings());
+            out.match_events.extend(feed.0.take_match_events());
             if tick + 100 > ticks {
                 out.seen.extend(scene.raw.robots.iter().map(|robot| (robot.0, robot.1)));
             }
@@ -107,11 +109,11 @@ fn played(seconds: u32) -> Played {
 
 #[test]
 fn a_match_fills_scenes_that_hold_against_the_truth() {
-    let Played { scene, happenings, most, seen, maps, keepers } = played(45);
+    let Played { scene, match_events, most, seen, maps, keepers } = played(45);
     assert_eq!(scene.robots.len(), 12);
     let truth = scene.layers.iter().find(|layer| layer.name == "truth").unwrap();
     for robot in &scene.robots {
-        assert!(robot.mind.is_some() && robot.vitals.is_some(), "{robot:?}");
+        assert!(robot.detail.is_some() && robot.vitals.is_some(), "{robot:?}");
         let near = truth.shapes.iter().any(|shape| match shape {
             Shape::Ellipse { at, .. } => (at[0] - robot.at[0]).abs() + (at[1] - robot.at[1]).abs() < 0.15,
             _ => false,
@@ -132,26 +134,26 @@ fn a_match_fills_scenes_that_hold_against_the_truth() {
     assert!(keepers.1 > 500 && keepers.0 * 10 > keepers.1 * 8, "{keepers:?}");
     // 25 of them a second have to go through any network and a browser's parser.
     assert!(most < 40_000, "{most} bytes");
-    assert!(happenings.iter().any(|happening| happening.kind == Kind::Command));
-    assert!(happenings.windows(2).all(|pair| pair[0].t <= pair[1].t + 0.05), "in order");
+    assert!(match_events.iter().any(|match_event| match_event.kind == Kind::Command));
+    assert!(match_events.windows(2).all(|pair| pair[0].t <= pair[1].t + 0.05), "in order");
 }
 
 #[test]
 fn a_retrieval_that_is_told_can_be_explained_and_mostly_comes_to_the_same_case() {
-    let happenings = played(90).happenings;
+    let match_events = played(90).match_events;
     let library_handle = library_handle_of(League::DivisionB, None).unwrap().unwrap();
     let chosen = Chosen { settings: Settings::default(), changed: Vec::new() };
-    let (mut told, mut same) = (0, 0);
-    for happening in happenings.iter().filter(|happening| happening.kind == Kind::Case) {
-        let problem = happening.problem.as_ref().unwrap().to_string();
+    let (mut reported, mut same) = (0, 0);
+    for match_event in match_events.iter().filter(|match_event| match_event.kind == Kind::Case) {
+        let problem = match_event.problem.as_ref().unwrap().to_string();
         let answer: serde_json::Value =
             serde_json::from_str(&explained(&library_handle, &chosen, &problem).unwrap()).unwrap();
         let winner = answer["cases"].as_array().unwrap().iter().find(|row| row["id"] == answer["winner"]);
         let name = winner.and_then(|row| row["case"].as_str()).unwrap_or("none");
-        told += 1;
-        same += u32::from(happening.description.contains(name));
+        reported += 1;
+        same += u32::from(match_event.description.contains(name));
     }
     // The coordinator retrieved by its own belief of a moment before: where two cases are similar it may
     // differ.
-    assert!(told >= 5 && same * 2 > told, "{same} of {told}");
+    assert!(reported >= 5 && same * 2 > reported, "{same} of {reported}");
 }

@@ -14,12 +14,12 @@ use rules::Colour;
 use ssl::log::{MessageKind, Packet, Record};
 
 use super::clock::LogClock;
-use super::happening::{Finder, is_meant};
+use super::match_event::{Finder, is_meant};
 use super::moment::{Moment, Score};
 use super::report::{self, Gap, Report};
 use super::{ReplayArgs, failed};
 use crate::Failure;
-use crate::output::say;
+use crate::output::print_text;
 use crate::progress::Progress;
 
 /// Vision that is silent longer than this is a gap: robots are blind after three missed periods at 60 Hz, and
@@ -32,17 +32,17 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     let mut reader = ssl::log::open(&args.file).map_err(|error| failed(&args.file, &error))?;
     let mut pass = Pass::new(args)?;
     let bar = Progress::open();
-    let mut shown = None;
+    let mut at_moment = None;
     for (number, record) in (0_u64..).zip(reader.by_ref()) {
         bar.add(1);
         if let Some(moment) = pass.read(number, &record) {
-            shown = Some(moment);
+            at_moment = Some(moment);
             break;
         }
     }
     drop(bar);
-    if let Some(moment) = shown {
-        say(&if args.json { json(&moment)? } else { moment.tell() })?;
+    if let Some(moment) = at_moment {
+        print_text(&if args.json { json(&moment)? } else { moment.text() })?;
         return Ok(ExitCode::SUCCESS);
     }
     let damage = reader.end().filter(|end| !end.is_whole()).map(ToString::to_string);
@@ -54,7 +54,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         });
     }
     let report = pass.finish(damage, back_steps);
-    say(&if args.json { json(&report)? } else { report.tell() })?;
+    print_text(&if args.json { json(&report)? } else { report.text() })?;
     let nothing = report.messages.is_empty().then(|| "holds no message".to_owned());
     match report.damage.or(nothing) {
         // What could be read is printed above; the exit code reports that it is not the whole file.
@@ -83,7 +83,7 @@ struct Pass<'a> {
 
 struct Team {
     host: Host,
-    told: report::Host,
+    host_report: report::Host,
     hash: u64,
 }
 
@@ -95,7 +95,7 @@ impl<'a> Pass<'a> {
         let report = Report { kind: "log", file: args.file.display().to_string(), ..Report::default() };
         let team = args.team.map(|colour| Team {
             host: Host::new(HostSettings::new(colour, args.league, 1), Instant(0)),
-            told: report::Host { colour: colour.label().to_owned(), ..report::Host::default() },
+            host_report: report::Host { colour: colour.label().to_owned(), ..report::Host::default() },
             hash: FNV_BASIS,
         });
         Ok(Self {
@@ -154,8 +154,8 @@ impl<'a> Pass<'a> {
                 let ball = self.tracker.world(self.now).ball.map(|ball| ball.position);
                 // A log file does not record the sender of its packets.
                 self.listener.receive(&packet, SenderAddress::INTERNAL, self.now, ball);
-                let before = self.report.happenings.len();
-                self.finder.read(&packet, at_s, &mut self.report.happenings);
+                let before = self.report.match_events.len();
+                self.finder.read(&packet, at_s, &mut self.report.match_events);
                 self.report.sheet.referee(&packet);
                 self.report.score = Score { blue: packet.blue.score, yellow: packet.yellow.score };
                 self.feed(Input::Referee(&record.payload, SenderAddress::INTERNAL));
@@ -169,11 +169,11 @@ impl<'a> Pass<'a> {
     /// The moment of the requested event, if it is among the newest.
     fn asked_for(&mut self, since: usize) -> Option<Moment> {
         let label = self.args.event.as_deref()?;
-        for place in since..self.report.happenings.len() {
-            if is_meant(&self.report.happenings[place], label) {
+        for place in since..self.report.match_events.len() {
+            if is_meant(&self.report.match_events[place], label) {
                 self.met += 1;
                 if self.met == self.args.nth {
-                    let name = self.report.happenings[place].name.clone();
+                    let name = self.report.match_events[place].name.clone();
                     return Some(self.moment(self.now, Some(name)));
                 }
             }
@@ -191,7 +191,7 @@ impl<'a> Pass<'a> {
         let damage = damage.map(|damage| format!("; the file is damaged: {damage}")).unwrap_or_default();
         match (&args.event, args.at) {
             (Some(label), _) => {
-                let mut known: Vec<_> = self.report.happenings.iter().map(|h| h.name.as_str()).collect();
+                let mut known: Vec<_> = self.report.match_events.iter().map(|h| h.name.as_str()).collect();
                 known.sort_unstable();
                 known.dedup();
                 let known = if known.is_empty() { "no event".to_owned() } else { known.join(", ") };
@@ -245,13 +245,13 @@ impl<'a> Pass<'a> {
     fn feed(&mut self, input: Input<'_>) {
         let Some(team) = &mut self.team else { return };
         while let Some(due) = team.host.poll_timeout().filter(|due| *due < self.now) {
-            team.tell(due, Input::Timeout);
+            team.feed_input(due, Input::Timeout);
             // A deadline that is not moved after it was met would never end.
             if team.host.poll_timeout().is_some_and(|next| next <= due) {
                 break;
             }
         }
-        team.tell(self.now, input);
+        team.feed_input(self.now, input);
     }
 
     fn seconds(&self) -> f64 {
@@ -272,19 +272,20 @@ impl<'a> Pass<'a> {
         for camera in self.report.cameras.values_mut() {
             camera.rate_hz = camera.rate.hz();
         }
-        self.report.host =
-            self.team.map(|team| report::Host { packets_hash: format!("{:016x}", team.hash), ..team.told });
+        self.report.host = self
+            .team
+            .map(|team| report::Host { packets_hash: format!("{:016x}", team.hash), ..team.host_report });
         self.report
     }
 }
 
 impl Team {
-    fn tell(&mut self, at: Instant, input: Input<'_>) {
-        self.told.inputs += 1;
+    fn feed_input(&mut self, at: Instant, input: Input<'_>) {
+        self.host_report.inputs += 1;
         self.host.handle(at, input);
         while let Some((_, packet)) = self.host.poll_packet() {
-            self.told.packets += 1;
-            self.told.bytes += packet.len() as u64;
+            self.host_report.packets += 1;
+            self.host_report.bytes += packet.len() as u64;
             for byte in &packet[..] {
                 self.hash = (self.hash ^ u64::from(*byte)).wrapping_mul(FNV_PRIME);
             }

@@ -6,8 +6,8 @@
 
 mod clock;
 mod decided;
-pub(crate) mod happening;
 mod league_log;
+pub(crate) mod match_event;
 mod moment;
 mod report;
 mod sheet;

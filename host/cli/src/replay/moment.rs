@@ -96,7 +96,7 @@ impl Moment {
     }
 
     /// A few lines of text.
-    pub(super) fn tell(&self) -> String {
+    pub(super) fn text(&self) -> String {
         let mut lines = vec![match &self.event {
             Some(event) => format!("{:.3} s: {event}", self.at_s),
             None => format!("{:.3} s", self.at_s),
@@ -129,7 +129,7 @@ impl Moment {
                     robot.speed
                 ));
                 if let Some(decided) = &robot.decided {
-                    lines.push(format!("{:<8} {}", "", decided.tell()));
+                    lines.push(format!("{:<8} {}", "", decided.text()));
                 }
             }
         }

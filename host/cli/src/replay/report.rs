@@ -8,7 +8,7 @@ use host::{referee, tracking};
 use serde::Serialize;
 
 use super::clock::{ClockStep, Rate};
-use super::happening::Happening;
+use super::match_event::MatchEvent;
 use super::moment::Score;
 use super::sheet::Sheet;
 
@@ -42,7 +42,8 @@ pub(super) struct Report {
     /// The highest ball speed of the tracker, m/s.
     pub(super) ball_speed_max: f32,
     pub(super) score: Score,
-    pub(super) happenings: Vec<Happening>,
+    #[serde(rename = "happenings")]
+    pub(super) match_events: Vec<MatchEvent>,
     pub(super) gaps: Vec<Gap>,
     /// Gaps beyond those that are listed.
     pub(super) gaps_more: u64,
@@ -155,7 +156,7 @@ impl Report {
     }
 
     /// As text.
-    pub(super) fn tell(&self) -> String {
+    pub(super) fn text(&self) -> String {
         let mut lines = vec![format!("{}: a league log file of {:.1} s", printable(&self.file), self.span_s)];
         for (name, messages) in &self.messages {
             let bad = if messages.undecodable > 0 {
@@ -182,7 +183,7 @@ impl Report {
         if self.clock_steps_more > 0 {
             lines.push(format!("  and {} such steps more", self.clock_steps_more));
         }
-        lines.extend(self.sheet.tell());
+        lines.extend(self.sheet.text());
         for (id, camera) in &self.cameras {
             lines.push(format!("camera {id}: {} images, {:.1} a second", camera.images, camera.rate_hz));
         }
@@ -223,7 +224,7 @@ impl Report {
         }
         let Score { blue, yellow } = self.score;
         lines.push(format!("score: blue {blue} : {yellow} yellow"));
-        lines.extend(self.happenings.iter().map(Happening::tell));
+        lines.extend(self.match_events.iter().map(MatchEvent::line));
         if let Some(damage) = &self.damage {
             lines.push(format!("the file is damaged: {}", printable(damage)));
         }

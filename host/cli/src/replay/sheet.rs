@@ -75,7 +75,7 @@ impl Sheet {
     }
 
     /// As text, a line each.
-    pub(super) fn tell(&self) -> Vec<String> {
+    pub(super) fn text(&self) -> Vec<String> {
         let mut lines = Vec::new();
         if let Some(field) = &self.field {
             let FieldSize { length, width, goal_width, boundary, .. } = field;
@@ -87,8 +87,8 @@ impl Sheet {
             lines.push(line);
         }
         if let Some(Teams { blue, yellow }) = &self.teams {
-            lines.push(blue.tell("blue"));
-            lines.push(yellow.tell("yellow"));
+            lines.push(blue.text("blue"));
+            lines.push(yellow.text("yellow"));
         }
         lines
     }
@@ -106,7 +106,7 @@ impl Team {
         }
     }
 
-    fn tell(&self, colour: &str) -> String {
+    fn text(&self, colour: &str) -> String {
         let name =
             if self.name.is_empty() { "without a name".to_owned() } else { excerpt(&self.name, NAME_LEN) };
         let cards = |n: u32, kind: &str| format!("{n} {kind} card{}", if n == 1 { "" } else { "s" });
@@ -129,7 +129,7 @@ mod tests {
     #[test]
     fn field_and_teams_are_told_as_they_were_at_last() {
         let mut sheet = Sheet::default();
-        assert!(sheet.tell().is_empty());
+        assert!(sheet.text().is_empty());
         let field = GeometryFieldSize {
             field_length: 12_000,
             field_width: 9_000,
@@ -151,7 +151,7 @@ mod tests {
         packet.blue.goalkeeper = 3;
         sheet.referee(&packet);
         assert_eq!(
-            sheet.tell(),
+            sheet.text(),
             [
                 "field: 12.000 x 9.000 m, goals 1.800 m, defence areas 1.800 x 3.600 m, 0.300 m beyond its lines",
                 "blue: A\\u001b[31m\\nB, keeper 3, 2 yellow cards (1 active), 1 red card, max bots 9",
@@ -170,6 +170,6 @@ mod tests {
         };
         let geometry = Some(GeometryData { field, ..GeometryData::default() });
         sheet.vision(&WrapperPacket { geometry, ..WrapperPacket::default() });
-        assert!(sheet.tell()[0].starts_with("field: -2147483.648 x 2147483.647 m"));
+        assert!(sheet.text()[0].starts_with("field: -2147483.648 x 2147483.647 m"));
     }
 }

@@ -13,7 +13,7 @@ use host::record::recheck::Recheck;
 use host::record::trace::{Kind, Reader};
 use host::referee::SenderAddress;
 use host::{Host, HostSettings, Input};
-use page::{Happening, Kind as Told, Page, Powers};
+use page::{Kind as PageKind, MatchEvent, Page, Powers};
 use protocol::Instant;
 use rules::{Colour, League};
 use ssl::log::MessageKind;
@@ -58,8 +58,8 @@ impl Projector {
         self.due = t + SCENE_EVERY_S;
         let moment = Moment { t, now, feed, hosts, truth: None, referee: None, gauges: Vec::new() };
         let deferred_scene = self.composer.compose(moment);
-        for happening in self.composer.take_happenings() {
-            self.page.tell(happening);
+        for match_event in self.composer.take_match_events() {
+            self.page.push(match_event);
         }
         self.page.keep(deferred_scene);
     }
@@ -70,7 +70,14 @@ impl Projector {
         let description = format!("the file breaks off: {damage}");
         note!("{}", printable(&description));
         self.broken = true;
-        self.page.tell(Happening { t, kind: Told::Fault, team: None, description, at: None, problem: None });
+        self.page.push(MatchEvent {
+            t,
+            kind: PageKind::Fault,
+            team: None,
+            description,
+            at: None,
+            problem: None,
+        });
         self.due = f64::NEG_INFINITY;
         self.look(now, feed, hosts);
     }

@@ -19,12 +19,12 @@ use ssl::Message;
 use ssl::referee::Referee;
 use ssl::vision::WrapperPacket;
 
-use super::happening::{Finder, Happening, is_meant};
+use super::match_event::{Finder, MatchEvent, is_meant};
 use super::moment::Moment;
 use super::sheet::Sheet;
 use super::{ReplayArgs, failed, is_gzipped, open};
 use crate::Failure;
-use crate::output::{note, say};
+use crate::output::{note, print_text};
 use crate::progress::Progress;
 
 #[derive(Debug, Serialize)]
@@ -42,7 +42,8 @@ struct Report<'a> {
     sheet: Sheet,
     #[serde(skip_serializing_if = "Option::is_none")]
     damage: Option<String>,
-    happenings: &'a [Happening],
+    #[serde(rename = "happenings")]
+    match_events: &'a [MatchEvent],
     hosts: Vec<Outcome>,
     same_decisions: bool,
 }
@@ -62,19 +63,19 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     let header = RecordingHeader::from_json(reader.header()).map_err(|error| failed(file, &error))?;
     let key = key(args, &header)?;
     let mut recheck = Recheck::new(&header, key).map_err(|error| failed(file, &error))?;
-    let (mut finder, mut happenings, mut sheet) = (Finder::default(), Vec::new(), Sheet::default());
+    let (mut finder, mut match_events, mut sheet) = (Finder::default(), Vec::new(), Sheet::default());
     let (mut records, mut strays, mut met) = (BTreeMap::new(), 0, 0);
     let mut span: Option<(Instant, Instant)> = None;
     // Every host receives the same referee; events are taken from the host that is displayed.
-    let shown =
+    let first_shown =
         header.hosts.iter().position(|host| Some(&*host.colour) == args.team.map(rules::Colour::label));
-    let shown = shown.unwrap_or(0);
+    let first_shown = first_shown.unwrap_or(0);
     let bar = Progress::open();
     for record in reader.by_ref() {
         bar.add(1);
         if let Some(at) = args.at
             && record.at.0 as f64 * 1e-6 > at
-            && let Some(host) = recheck.host(shown)
+            && let Some(host) = recheck.host(first_shown)
         {
             drop(bar);
             return show(args, host, &all(&recheck), Instant((at * 1e6) as u64), None);
@@ -84,25 +85,25 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         *records.entry(label(record.kind)).or_insert(0) += 1;
         strays += u64::from(!recheck.feed(&record));
         if record.kind == Kind::Vision
-            && usize::from(record.host) == shown
+            && usize::from(record.host) == first_shown
             && let Ok(packet) = WrapperPacket::decode(&record.bytes[..])
         {
             sheet.vision(&packet);
         }
-        if record.kind == Kind::Referee && usize::from(record.host) == shown {
-            let before = happenings.len();
+        if record.kind == Kind::Referee && usize::from(record.host) == first_shown {
+            let before = match_events.len();
             if let Ok(packet) = Referee::decode(&record.bytes[..]) {
                 sheet.referee(&packet);
-                finder.read(&packet, record.at.0 as f64 * 1e-6, &mut happenings);
+                finder.read(&packet, record.at.0 as f64 * 1e-6, &mut match_events);
             }
-            let asked = |h: &&Happening| args.event.as_deref().is_some_and(|label| is_meant(h, label));
-            for happening in happenings[before..].iter().filter(asked) {
+            let asked = |h: &&MatchEvent| args.event.as_deref().is_some_and(|label| is_meant(h, label));
+            for match_event in match_events[before..].iter().filter(asked) {
                 met += 1;
                 if met == args.nth
-                    && let Some(host) = recheck.host(shown)
+                    && let Some(host) = recheck.host(first_shown)
                 {
                     drop(bar);
-                    return show(args, host, &all(&recheck), record.at, Some(happening.name.clone()));
+                    return show(args, host, &all(&recheck), record.at, Some(match_event.name.clone()));
                 }
             }
         }
@@ -137,16 +138,16 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         strays,
         sheet,
         damage,
-        happenings: &happenings,
+        match_events: &match_events,
         same_decisions: hosts.iter().all(|host| host.difference.is_none()) && strays == 0,
         hosts,
     };
     let description = if args.json {
         serde_json::to_string(&report).map_err(|error| Failure::Output(error.into()))? + "\n"
     } else {
-        report.tell()
+        report.text()
     };
-    say(&description)?;
+    print_text(&description)?;
     match report.damage {
         // What could be read is printed above.
         Some(description) => Err(failed(file, &description)),
@@ -181,9 +182,9 @@ fn show(
     let description = if args.json {
         serde_json::to_string(&moment).map_err(|error| Failure::Output(error.into()))? + "\n"
     } else {
-        moment.tell()
+        moment.text()
     };
-    say(&description)?;
+    print_text(&description)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -219,7 +220,7 @@ fn label(kind: Kind) -> &'static str {
 }
 
 impl Report<'_> {
-    fn tell(&self) -> String {
+    fn text(&self) -> String {
         let (first, last) = self.span_s;
         let header = self.header;
         let file = printable(&self.file);
@@ -238,7 +239,7 @@ impl Report<'_> {
         for (name, n) in &self.records {
             let _ = writeln!(out, "  {n:>8} {name}");
         }
-        for line in self.sheet.tell().into_iter().chain(self.happenings.iter().map(Happening::tell)) {
+        for line in self.sheet.text().into_iter().chain(self.match_events.iter().map(MatchEvent::line)) {
             let _ = writeln!(out, "{line}");
         }
         if self.strays > 0 {

@@ -29,7 +29,7 @@ pub(super) struct TeamRequest {
     /// Number of further ticks of 10 ms, after which it stands still.
     pub(super) ticks: u32,
     /// A restart with this seed.
-    pub(super) anew: Option<u64>,
+    pub(super) restart: Option<u64>,
 }
 
 /// A page, its composer, and the host whose world is displayed, which commands no robot.
@@ -37,7 +37,7 @@ pub(super) struct Board {
     page: Page,
     composer: Composer,
     feed: Host,
-    shown: Option<Instant>,
+    drawn_at: Option<Instant>,
     /// The speed after a pause.
     speed: f32,
     seed: u64,
@@ -58,7 +58,7 @@ impl Board {
                 page,
                 composer: Composer::new(None),
                 feed,
-                shown: None,
+                drawn_at: None,
                 speed,
                 seed,
                 t: 0.0,
@@ -80,9 +80,9 @@ impl Board {
     }
 
     /// Another game starts.
-    pub(super) fn anew(&mut self, league: League, seed: u64) {
+    pub(super) fn restart(&mut self, league: League, seed: u64) {
         self.feed = Host::new(HostSettings::new(Colour::Blue, league, 1), protocol::Instant(0));
-        (self.composer, self.shown, self.seed, self.t) = (Composer::new(None), None, seed, 0.0);
+        (self.composer, self.drawn_at, self.seed, self.t) = (Composer::new(None), None, seed, 0.0);
         self.page.clear();
     }
 
@@ -100,7 +100,7 @@ impl Board {
             match request {
                 Request::Pause { on } => wanted.pace = Some(if on { 0.0 } else { self.speed }),
                 Request::Step { ticks } => (wanted.pace, wanted.ticks) = (Some(0.0), wanted.ticks + ticks),
-                Request::Restart { seed } => wanted.anew = Some(seed.unwrap_or(self.seed)),
+                Request::Restart { seed } => wanted.restart = Some(seed.unwrap_or(self.seed)),
                 Request::Speed { factor } => {
                     self.speed = factor;
                     wanted.pace = Some(factor);
@@ -134,8 +134,8 @@ impl Board {
             }
         }
         let every = Duration::from_secs_f64(SCENE_EVERY_S);
-        if self.shown.is_none_or(|shown| shown.elapsed() >= every) {
-            self.shown = Some(Instant::now());
+        if self.drawn_at.is_none_or(|drawn_at| drawn_at.elapsed() >= every) {
+            self.drawn_at = Some(Instant::now());
             let moment = Moment {
                 t: self.t,
                 now: protocol::Instant(running.as_micros() as u64),
@@ -146,8 +146,8 @@ impl Board {
                 gauges: Vec::new(),
             };
             let mut deferred_scene = self.composer.compose(moment);
-            for happening in self.composer.take_happenings() {
-                self.page.tell(happening);
+            for match_event in self.composer.take_match_events() {
+                self.page.push(match_event);
             }
             let speed = wanted.pace.unwrap_or(server.pace());
             deferred_scene.scene.paused = speed == 0.0;

@@ -29,7 +29,7 @@ struct Commanded {
 #[derive(Debug, Default)]
 pub(super) struct Commanders {
     robots: BTreeMap<(Colour, u32), Commanded>,
-    said: BTreeMap<Colour, Duration>,
+    message: BTreeMap<Colour, Duration>,
 }
 
 impl Commanders {
@@ -60,10 +60,10 @@ impl Commanders {
             }
         }
         let (id, other) = contested?;
-        if self.said.get(&team).is_some_and(|at| now.saturating_sub(*at) < AGAIN) {
+        if self.message.get(&team).is_some_and(|at| now.saturating_sub(*at) < AGAIN) {
             return None;
         }
-        self.said.insert(team, now);
+        self.message.insert(team, now);
         Some(format!(
             "two programs command {} robot {id}: {other} and {from}; end one of them, or give it the other --colour",
             team.label()
@@ -82,7 +82,7 @@ mod tests {
     }
 
     /// The messages of 25 s in which robot 3 is commanded 60 times a second from these ports by turns.
-    fn said(ports: impl Fn(u64) -> u16) -> Vec<(u128, String)> {
+    fn message(ports: impl Fn(u64) -> u16) -> Vec<(u128, String)> {
         let mut commanders = Commanders::default();
         let one = |n: u64| {
             let now = Duration::from_millis(n * 1000 / 60);
@@ -94,15 +94,18 @@ mod tests {
 
     #[test]
     fn two_programs_that_command_one_robot_are_told_within_two_seconds_and_every_ten() {
-        let said = said(|n| 4_000 + (n % 2) as u16);
-        assert_eq!(said.len(), 3, "{said:?}");
-        assert!(said[0].0 < 2_000 && said[0].1.contains("blue robot 3"), "{said:?}");
-        assert!(said[0].1.contains("127.0.0.1:4000") && said[0].1.contains("127.0.0.1:4001"), "{said:?}");
+        let message = message(|n| 4_000 + (n % 2) as u16);
+        assert_eq!(message.len(), 3, "{message:?}");
+        assert!(message[0].0 < 2_000 && message[0].1.contains("blue robot 3"), "{message:?}");
+        assert!(
+            message[0].1.contains("127.0.0.1:4000") && message[0].1.contains("127.0.0.1:4001"),
+            "{message:?}"
+        );
     }
 
     #[test]
     fn one_program_and_one_that_starts_anew_are_in_order() {
-        assert!(said(|_| 4_000).is_empty());
-        assert!(said(|n| 4_000 + (n / 300) as u16).is_empty());
+        assert!(message(|_| 4_000).is_empty());
+        assert!(message(|n| 4_000 + (n / 300) as u16).is_empty());
     }
 }

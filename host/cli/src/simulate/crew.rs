@@ -88,12 +88,12 @@ impl Crew {
         }
     }
 
-    /// Receives waiting packets; they go to `said`, lines for the operator to `lines`.
+    /// Receives waiting packets; they go to `message`, lines for the operator to `lines`.
     pub(super) fn listen(
         &mut self,
         world: &World,
         running: Duration,
-        said: &mut Vec<Vec<u8>>,
+        message: &mut Vec<Vec<u8>>,
         lines: &mut Vec<String>,
     ) {
         if self.receiver.is_none() && self.tried.is_none_or(|tried| running.saturating_sub(tried) >= AGAIN) {
@@ -115,7 +115,7 @@ impl Crew {
                 match receiver.receive(Duration::ZERO) {
                     Ok(Some(datagram)) => {
                         if let Ok(packet) = ssl::referee::Referee::decode(datagram.bytes) {
-                            said.push(datagram.bytes.to_vec());
+                            message.push(datagram.bytes.to_vec());
                             self.game.receive(packet, now, ball);
                         }
                     }
@@ -148,10 +148,10 @@ impl Crew {
         if let Some((autoref, reporter)) = &mut self.autoref {
             for event in autoref.look(&self.game, world, events) {
                 // Time and identifier are the controller's: its clock is not the simulation's.
-                let Some(mut told) = event.to_wire(0) else { continue };
-                (told.created_timestamp, told.id) = (None, None);
+                let Some(mut reported) = event.to_wire(0) else { continue };
+                (reported.created_timestamp, reported.id) = (None, None);
                 lines.push(format!("autoref  {}", line_of(&event)));
-                reporter.report(told);
+                reporter.report(reported);
             }
         }
         if let Some(assistant) = &mut self.assistant {

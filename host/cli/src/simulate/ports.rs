@@ -40,13 +40,13 @@ impl Ports {
         legacy: Option<u16>,
         description: &mut Vec<String>,
     ) -> Self {
-        let door = |offset: u16, port| {
+        let group = |offset: u16, port| {
             let number = if base == 0 { 0 } else { base + offset };
             Group { port, address: SocketAddr::new(listen, number), socket: None, troubled: false }
         };
         let teams = [Colour::Blue, Colour::Yellow].map(server::Port::Team);
         let mut ports = Self {
-            doors: vec![door(0, server::Port::Simulator), door(1, teams[0]), door(2, teams[1])],
+            doors: vec![group(0, server::Port::Simulator), group(1, teams[0]), group(2, teams[1])],
             tried: Instant::now(),
             commanders: Commanders::default(),
             began: Instant::now(),
@@ -74,9 +74,9 @@ impl Ports {
                 base.checked_add(offset).and_then(|port| Port::bind(SocketAddr::new(listen, port)).ok())
             };
             if let (Some(second), Some(third)) = (next(1), next(2)) {
-                for (door, socket) in self.doors.iter_mut().zip([first, second, third]) {
-                    door.address = socket.address();
-                    door.socket = Some(socket);
+                for (group, socket) in self.doors.iter_mut().zip([first, second, third]) {
+                    group.address = socket.address();
+                    group.socket = Some(socket);
                 }
                 return;
             }
@@ -84,18 +84,18 @@ impl Ports {
     }
 
     fn take(&mut self, description: &mut Vec<String>) {
-        for door in self.doors.iter_mut().filter(|door| door.socket.is_none()) {
-            match Port::bind(door.address) {
+        for group in self.doors.iter_mut().filter(|group| group.socket.is_none()) {
+            match Port::bind(group.address) {
                 Ok(socket) => {
-                    door.address = socket.address();
-                    door.socket = Some(socket);
-                    if std::mem::take(&mut door.troubled) {
-                        description.push(format!("{} is free and taken now", door.address));
+                    group.address = socket.address();
+                    group.socket = Some(socket);
+                    if std::mem::take(&mut group.troubled) {
+                        description.push(format!("{} is free and taken now", group.address));
                     }
                 }
-                Err(error) if !door.troubled => {
-                    door.troubled = true;
-                    description.push(format!("{}: {error}; it is tried again every second", door.name()));
+                Err(error) if !group.troubled => {
+                    group.troubled = true;
+                    description.push(format!("{}: {error}; it is tried again every second", group.name()));
                 }
                 Err(_) => {}
             }
@@ -104,12 +104,12 @@ impl Ports {
 
     /// Passes received datagrams to the simulator.
     pub(super) fn listen(&mut self, server: &mut Server, description: &mut Vec<String>) {
-        for door in &mut self.doors {
-            let Some(socket) = &mut door.socket else { continue };
+        for group in &mut self.doors {
+            let Some(socket) = &mut group.socket else { continue };
             for _ in 0..AT_ONCE {
                 match socket.receive(Duration::ZERO) {
                     Ok(Some(datagram)) => {
-                        if let server::Port::Team(team) = door.port {
+                        if let server::Port::Team(team) = group.port {
                             let now = self.began.elapsed();
                             description.extend(self.commanders.receive(
                                 now,
@@ -118,12 +118,12 @@ impl Ports {
                                 datagram.bytes,
                             ));
                         }
-                        server.handle(door.port, datagram.from, datagram.bytes);
+                        server.handle(group.port, datagram.from, datagram.bytes);
                     }
                     Ok(None) => break,
                     Err(error) => {
-                        description.push(format!("{}: {error}; it is opened again", door.name()));
-                        door.socket = None;
+                        description.push(format!("{}: {error}; it is opened again", group.name()));
+                        group.socket = None;
                         break;
                     }
                 }
@@ -138,7 +138,7 @@ impl Ports {
     /// Answers a request. An answer that cannot be sent is lost, as any datagram may be.
     pub(super) fn answer(&self, from: server::Port, to: SocketAddr, bytes: &[u8]) {
         if let Some(socket) =
-            self.doors.iter().find(|door| door.port == from).and_then(|door| door.socket.as_ref())
+            self.doors.iter().find(|group| group.port == from).and_then(|group| group.socket.as_ref())
         {
             let _ = socket.send(to, bytes);
         }
@@ -146,15 +146,15 @@ impl Ports {
 
     /// Sends robots' states, in grSim's older protocol. One that cannot be sent is lost, as any datagram may
     /// be.
-    pub(super) fn tell(&self, to: SocketAddr, bytes: &[u8]) {
+    pub(super) fn send_to(&self, to: SocketAddr, bytes: &[u8]) {
         self.answer(server::Port::Legacy, to, bytes);
     }
 
     /// The addresses that clients send to, for the operator.
     pub(super) fn description(&self) -> String {
         let mut doors = self.doors.iter();
-        let first = doors.next().map(|door| door.address.to_string());
-        let others = doors.map(|door| format!("{} {}", door.name(), door.address.port()));
+        let first = doors.next().map(|group| group.address.to_string());
+        let others = doors.map(|group| format!("{} {}", group.name(), group.address.port()));
         first.into_iter().chain(others).collect::<Vec<_>>().join(", ")
     }
 }

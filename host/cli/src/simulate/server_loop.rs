@@ -53,7 +53,7 @@ pub(super) fn run(
     let mut description = Vec::new();
     let mut ports = Ports::open(args.listen, args.ports, args.legacy_port(), &mut description);
     let mut vision = NetSender::new(args.vision, args.interface.as_deref());
-    let mut whistle = Referee::new(args, unix_us)?;
+    let mut game_referee = Referee::new(args, unix_us)?;
     let mut tracker = args.tracker.map(|to| Tracked::new(to, args));
     note!(
         "simulating {}, {} v {} robots, world {}, seed {}; Ctrl-C ends it",
@@ -77,7 +77,7 @@ pub(super) fn run(
         note!("{}", sync.line());
     }
     note!("vision   to {}", vision.to());
-    whistle.lines().iter().for_each(|line| note!("{line}"));
+    game_referee.lines().iter().for_each(|line| note!("{line}"));
     if let Some(tracked) = &tracker {
         note!("tracker  to {}", tracked.sender.to());
     }
@@ -95,38 +95,38 @@ pub(super) fn run(
             break;
         }
         ports.listen(&mut server, &mut description);
-        whistle.listen(server.world(), running, &mut description);
+        game_referee.listen(server.world(), running, &mut description);
         match &mut sync {
             Some(sync) => {
-                sync.serve(&mut server, &mut description, |world, lines| whistle.look(world, lines));
+                sync.serve(&mut server, &mut description, |world, lines| game_referee.look(world, lines));
             }
-            None => advance(&mut server, running.as_micros() as u64, &mut whistle, &mut description),
+            None => advance(&mut server, running.as_micros() as u64, &mut game_referee, &mut description),
         }
         if let Some(board) = &mut board {
-            whistle.said.drain(..).for_each(|bytes| board.referee(&bytes, running));
-            let request = board.look(running, &mut server, whistle.ours());
+            game_referee.sent_packets.drain(..).for_each(|bytes| board.referee(&bytes, running));
+            let request = board.look(running, &mut server, game_referee.ours());
             if let Some(pace) = request.pace {
                 set_pace(&mut server, pace);
             }
             for _ in 0..request.ticks {
                 (0..REFEREE_EVERY).for_each(|_| server.step());
-                whistle.look(server.world_mut(), &mut description);
+                game_referee.look(server.world_mut(), &mut description);
             }
-            if let Some(seed) = request.anew {
+            if let Some(seed) = request.restart {
                 let pace = server.pace();
                 server = Server::new(&ServerSettings { seed, ..settings.clone() });
                 set_pace(&mut server, pace);
-                whistle.anew(args, unix_us, seed)?;
+                game_referee.anew(args, unix_us, seed)?;
                 tracker = args.tracker.map(|to| Tracked::new(to, args));
-                board.anew(args.league, seed);
+                board.restart(args.league, seed);
                 skipped = 0;
             }
         }
-        whistle.said.clear();
+        game_referee.sent_packets.clear();
         while let Some(transmit) = server.poll_transmit() {
             match transmit.to {
                 Destination::Reply { from, to } => ports.answer(from, to, &transmit.bytes),
-                Destination::Status(to) => ports.tell(to, &transmit.bytes),
+                Destination::Status(to) => ports.send_to(to, &transmit.bytes),
                 Destination::Vision(port) => {
                     if let Some(board) = &mut board {
                         board.vision(&transmit.bytes, running);
@@ -148,7 +148,7 @@ pub(super) fn run(
                     server.pace()
                 ));
             }
-            bar.say(status(&server, &whistle, &vision));
+            bar.set_text(status(&server, &game_referee, &vision));
         }
         for description in description.drain(..) {
             bar.aside(|| note!("{description}"));
@@ -171,9 +171,9 @@ pub(super) fn run(
 }
 
 /// Advances the world to `now`, µs; the referee observes it in between.
-fn advance(server: &mut Server, now: u64, whistle: &mut Referee, description: &mut Vec<String>) {
+fn advance(server: &mut Server, now: u64, game_referee: &mut Referee, description: &mut Vec<String>) {
     let step = (REFEREE_EVERY as f32 * 1000.0 / server.pace().max(1.0)) as u64;
-    let mut at = whistle.advanced;
+    let mut at = game_referee.advanced;
     // The simulator itself skips the time of a pause of this program that was too long.
     if now.saturating_sub(at) > 1_000_000 {
         at = now - 1_000_000;
@@ -181,9 +181,9 @@ fn advance(server: &mut Server, now: u64, whistle: &mut Referee, description: &m
     while at < now {
         at = (at + step.max(100)).min(now);
         server.advance(protocol::Instant(at));
-        whistle.look(server.world_mut(), description);
+        game_referee.look(server.world_mut(), description);
     }
-    whistle.advanced = at;
+    game_referee.advanced = at;
 }
 
 /// The referee source, and what it published.
@@ -196,7 +196,7 @@ struct Referee {
     /// Time that the world has been advanced to, µs.
     advanced: u64,
     /// Packets it sent since the page last took them.
-    said: Vec<Vec<u8>>,
+    sent_packets: Vec<Vec<u8>>,
 }
 
 enum RefereeSource {
@@ -221,7 +221,7 @@ impl Referee {
             RefereeKind::Received(from) => RefereeSource::Elsewhere(crew(from)?),
         };
         let sender = NetSender::new(args.referee_to, args.interface.as_deref());
-        Ok(Self { who, sender, events: Vec::new(), looked: 0, advanced: 0, said: Vec::new() })
+        Ok(Self { who, sender, events: Vec::new(), looked: 0, advanced: 0, sent_packets: Vec::new() })
     }
 
     /// Another game starts; the internal referee starts again with it, an external game controller does not
@@ -279,7 +279,7 @@ impl Referee {
                 while let Some(packet) = ours.poll_packet() {
                     let bytes = packet.encode_to_vec();
                     lines.extend(self.sender.send(&bytes));
-                    self.said.push(bytes);
+                    self.sent_packets.push(bytes);
                 }
             }
             RefereeSource::Elsewhere(crew) => crew.look(world, &self.events, lines),
@@ -291,7 +291,7 @@ impl Referee {
     /// Receives an external game controller, if there is one.
     fn listen(&mut self, world: &World, running: Duration, lines: &mut Vec<String>) {
         if let RefereeSource::Elsewhere(crew) = &mut self.who {
-            crew.listen(world, running, &mut self.said, lines);
+            crew.listen(world, running, &mut self.sent_packets, lines);
         }
     }
 }
@@ -350,12 +350,12 @@ fn multicast_advice(to: SocketAddr) -> Option<String> {
     }
 }
 
-fn status(server: &Server, whistle: &Referee, vision: &NetSender) -> String {
+fn status(server: &Server, game_referee: &Referee, vision: &NetSender) -> String {
     let counts = server.counts();
     format!(
         "{:.0} s, {}, {} vision packets out, {} robot messages in, {} refusals",
         server.world().time(),
-        whistle.state(),
+        game_referee.state(),
         vision.sent,
         counts.control,
         counts.refused

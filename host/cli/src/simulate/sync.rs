@@ -33,7 +33,7 @@ struct Group {
 impl SyncPorts {
     /// Blue's port, and yellow's at the next one. With port 0 any two that are free.
     pub(super) fn open(blue: SocketAddr) -> io::Result<Self> {
-        let door = |colour, address: SocketAddr| {
+        let group = |colour, address: SocketAddr| {
             let listener = TcpListener::bind(address)?;
             listener.set_nonblocking(true)?;
             Ok::<_, io::Error>(Group { colour, listener, clients: Vec::new() })
@@ -43,12 +43,12 @@ impl SyncPorts {
             let next = blue.port().checked_add(1).ok_or(io::ErrorKind::InvalidInput)?;
             yellow.set_port(next);
         }
-        Ok(Self { doors: [door(Colour::Blue, blue)?, door(Colour::Yellow, yellow)?] })
+        Ok(Self { doors: [group(Colour::Blue, blue)?, group(Colour::Yellow, yellow)?] })
     }
 
     /// The address that clients connect to, for the operator.
     pub(super) fn line(&self) -> String {
-        let [blue, yellow] = self.doors.each_ref().map(|door| match door.listener.local_addr() {
+        let [blue, yellow] = self.doors.each_ref().map(|group| match group.listener.local_addr() {
             Ok(address) => address.to_string(),
             Err(error) => error.to_string(),
         });
@@ -64,9 +64,9 @@ impl SyncPorts {
         lines: &mut Vec<String>,
         mut each: impl FnMut(&mut World, &mut Vec<String>),
     ) {
-        for door in &mut self.doors {
-            while let Ok((stream, from)) = door.listener.accept() {
-                if door.clients.len() >= CLIENTS_MAX {
+        for group in &mut self.doors {
+            while let Ok((stream, from)) = group.listener.accept() {
+                if group.clients.len() >= CLIENTS_MAX {
                     lines.push(format!(
                         "sync     {from} turned away: {CLIENTS_MAX} clients are connected already"
                     ));
@@ -74,12 +74,12 @@ impl SyncPorts {
                 }
                 // On some systems a connection inherits the listener's mode.
                 match stream.set_nonblocking(false).map_err(ssl_io).and_then(|()| Connection::over(stream)) {
-                    Ok(client) => door.clients.push(client),
+                    Ok(client) => group.clients.push(client),
                     Err(error) => lines.push(format!("sync     {error}")),
                 }
             }
-            let colour = door.colour;
-            door.clients.retain_mut(|client| match answer(client, colour, server, lines, &mut each) {
+            let colour = group.colour;
+            group.clients.retain_mut(|client| match answer(client, colour, server, lines, &mut each) {
                 Ok(()) => true,
                 Err(error) => {
                     lines.push(format!("sync     {error}"));
@@ -142,7 +142,7 @@ mod tests {
             ServerSettings::of(League::DivisionB, Profile::Ours, 3, 0.0).expect("a league on wheels");
         let mut server = Server::new(&settings);
         let mut ports = SyncPorts::open(SocketAddr::from(([127, 0, 0, 1], 0))).expect("free ports");
-        let addresses = ports.doors.each_ref().map(|door| door.listener.local_addr().expect("an address"));
+        let addresses = ports.doors.each_ref().map(|group| group.listener.local_addr().expect("an address"));
         let clients = thread::spawn(move || {
             let wait = Duration::from_secs(20);
             let mut talks = addresses.map(|address| Connection::open(address, wait).expect("connected"));

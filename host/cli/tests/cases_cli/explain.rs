@@ -98,9 +98,9 @@ fn people_get_a_table() {
         description[description.iter().position(|other| other.starts_with(line)).unwrap() + 1].clone()
     };
     assert!(after("4 front/shot").starts_with("would win if "), "{description:#?}");
-    let told = |line: &str| description.iter().any(|other| other == line);
-    assert!(told("line 3: ball: missing; the keys are ball, defending, teammates and opponents"));
-    assert!(told("line 4: no case fits"));
+    let reported = |line: &str| description.iter().any(|other| other == line);
+    assert!(reported("line 3: ball: missing; the keys are ball, defending, teammates and opponents"));
+    assert!(reported("line 4: no case fits"));
     assert_eq!(run.code, 0);
 }
 

@@ -170,21 +170,20 @@ fn a_case_that_no_drawn_problem_retrieves_is_doubtful_for_any_number_of_threads(
         library("shadowed", &[("front/rival.toml", &candidate), ("front/shot.toml", &shot_at(0, 0))]);
     let check = |jobs: &str, arguments: &[&str]| {
         let mut command = command(&["cases", "check"]);
-        let command =
-            command.arg("--library").arg(&directory).args(arguments).env("RAYON_NUM_THREADS", jobs);
+        let command = command.arg("--library").arg(&directory).args(arguments).env("RAYON_NUM_THREADS", jobs);
         let output = command.output().unwrap();
         (String::from_utf8(output.stdout).unwrap(), output.status.code())
     };
-    let (told, code) = check("1", &[]);
-    let line = told.lines().find(|line| line.contains("warning[never-retrieved]")).expect(&told);
+    let (reported, code) = check("1", &[]);
+    let line = reported.lines().find(|line| line.contains("warning[never-retrieved]")).expect(&reported);
     assert!(line.contains("front/shot.toml:3: ") && line.contains("in 20000 drawn problems"), "{line}");
     assert!(
         line.contains("beaten most often by front/rival (") && line.contains("; tell them apart"),
         "{line}"
     );
-    assert_eq!((told.matches("never-retrieved").count(), code), (1, Some(0)), "{told}");
-    assert_eq!(check("3", &[]).0, told);
-    assert_ne!(check("3", &["--seed", "2"]).0, told);
+    assert_eq!((reported.matches("never-retrieved").count(), code), (1, Some(0)), "{reported}");
+    assert_eq!(check("3", &[]).0, reported);
+    assert_ne!(check("3", &["--seed", "2"]).0, reported);
     assert!(!check("1", &["--problems", "0"]).0.contains("never-retrieved"));
 }
 
@@ -237,8 +236,8 @@ fn findings_are_told_as_data_and_their_codes_are_explained() {
     assert!(findings[0]["file"].as_str().unwrap().ends_with("center/a.toml"));
     assert_eq!(cases("check", &worked_example("no-findings"), &["--json"], "").stdout, "[]\n");
 
-    let told = onetwo(&["cases", "check", "--explain", "bad-scope"]);
-    assert!(told.code == 0 && told.stdout.starts_with("error[bad-scope]: "), "{}", told.stdout);
+    let reported = onetwo(&["cases", "check", "--explain", "bad-scope"]);
+    assert!(reported.code == 0 && reported.stdout.starts_with("error[bad-scope]: "), "{}", reported.stdout);
     assert_eq!(onetwo(&["cases", "check", "--explain", "all"]).lines().len(), case_tools::CODES.len());
     assert_eq!(onetwo(&["cases", "check", "--explain", "nonsense"]).code, 2);
 }

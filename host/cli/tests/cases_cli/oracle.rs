@@ -49,7 +49,7 @@ fn a_thousand_lines_are_answered_as_the_oracle_answers() {
 
 /// The answers of both verbs to a problem.
 #[derive(Deserialize)]
-struct Told {
+struct Reported {
     #[serde(alias = "winner")]
     id: Option<u16>,
     candidates: usize,
@@ -83,7 +83,7 @@ fn explain_agrees_with_retrieve_on_10_000_problems_of_the_built_in_and_of_a_rand
             for ((explained, retrieved), line) in explained.lines().iter().zip(retrieved.lines()).zip(&lines)
             {
                 let [why, what] = [*explained, retrieved].map(|text| {
-                    serde_json::from_str::<Told>(text).unwrap_or_else(|error| panic!("{error}: {text}"))
+                    serde_json::from_str::<Reported>(text).unwrap_or_else(|error| panic!("{error}: {text}"))
                 });
                 assert_eq!((why.id, why.candidates), (what.id, what.candidates), "{part}: {line}");
                 let candidates: Vec<_> = why.cases.iter().filter(|row| row.verdict == "candidate").collect();

@@ -13,7 +13,7 @@ pub(crate) fn onetwo(arguments: &[&str]) -> Command {
 }
 
 /// The output of a run that must not fail.
-pub(crate) fn said(arguments: &[&str]) -> String {
+pub(crate) fn stdout_of(arguments: &[&str]) -> String {
     let out = onetwo(arguments).output().expect("the program starts");
     assert_eq!(out.status.code(), Some(0), "{arguments:?}: {}", String::from_utf8_lossy(&out.stderr));
     assert!(out.stderr.is_empty(), "no progress in a pipe");

@@ -10,7 +10,7 @@ use std::path::Path;
 use std::thread::sleep;
 use std::time::Duration;
 
-use common::{json, onetwo, refused, said, scratch, table, text};
+use common::{json, onetwo, refused, scratch, stdout_of, table, text};
 
 /// Short trials: against two defenders they end after 60 s.
 const SHORT: [&str; 6] = ["evaluate", "--opponents", "2d", "--scenario", "4", "--seed"];
@@ -26,7 +26,8 @@ fn rows_kept(file: &Path) -> usize {
 #[test]
 fn tables_json_has_the_rows_and_fields_of_the_agreement() {
     let out = scratch("tables");
-    let said = said(&["evaluate", "--trials", "2", "--scenario", "3", "--random", "--out", text(&out)]);
+    let output =
+        stdout_of(&["evaluate", "--trials", "2", "--scenario", "3", "--random", "--out", text(&out)]);
     let tables = json(&out.join("tables.json"));
     let rows = tables.as_array().expect("a list");
     for key in [
@@ -60,7 +61,7 @@ fn tables_json_has_the_rows_and_fields_of_the_agreement() {
     };
     for table in ["1", "4"] {
         assert!(of(table, 3.into()) >= 2 && of(table, "random".into()) >= 2, "table {table}");
-        assert!(said.contains(&format!("Table {table}: ")), "{said}");
+        assert!(output.contains(&format!("Table {table}: ")), "{output}");
     }
     assert!(of("2", 3.into()) >= 1 && of("3", 3.into()) >= 1 && of("6", 3.into()) >= 2);
     assert_eq!((of("6", "random".into()), of("1", 1.into())), (0, 0));
@@ -75,7 +76,7 @@ fn tables_json_has_the_rows_and_fields_of_the_agreement() {
     assert_eq!(run["cases"].as_array().map(Vec::len), Some(34));
     assert!(run["program"].as_str().is_some_and(|program| program.contains("commit")));
     assert!(run["parameters"]["grab"]["success"].is_number());
-    assert!(said.contains(run["csv_hash"].as_str().expect("a hash")), "{said}");
+    assert!(output.contains(run["csv_hash"].as_str().expect("a hash")), "{output}");
     let cases = table(&out.join("cases.csv"));
     let retrieved: u32 = cases.iter().map(|case| case["retrieved"].parse::<u32>().expect("a number")).sum();
     let trials = table(&out.join("trials.csv"));
@@ -90,18 +91,18 @@ fn tables_json_has_the_rows_and_fields_of_the_agreement() {
 fn jobs_shards_and_a_kill_change_no_byte() {
     let whole = scratch("whole");
     let options = [&SHORT[..], &["3", "--trials", "12"]].concat();
-    let run = |more: &[&str]| said(&[&options, more].concat());
+    let run = |more: &[&str]| stdout_of(&[&options, more].concat());
     run(&["--jobs", "1", "--out", text(&whole)]);
     let (expected, bytes) = (hash(&whole), fs::read(whole.join("trials.csv")).expect("written"));
 
     let (here, there, merged) = (scratch("here"), scratch("there"), scratch("merged"));
-    let told = run(&["--shard", "1/3", "--jobs", "2", "--out", text(&here)]);
-    assert!(told.contains("onetwo evaluate merge"), "{told}");
+    let reported = run(&["--shard", "1/3", "--jobs", "2", "--out", text(&here)]);
+    assert!(reported.contains("onetwo evaluate merge"), "{reported}");
     run(&["--shard", "3/3", "--out", text(&here)]);
     let lacking = refused(&["evaluate", "merge", text(&here), "--out", text(&merged)], 1);
     assert!(lacking.contains("trials are missing"), "{lacking}");
     run(&["--shard", "2/3", "--out", text(&there)]);
-    said(&["evaluate", "merge", text(&here), text(&there), "--out", text(&merged)]);
+    stdout_of(&["evaluate", "merge", text(&here), text(&there), "--out", text(&merged)]);
     assert_eq!((hash(&merged), fs::read(merged.join("trials.csv")).ok()), (expected.clone(), Some(bytes)));
     for file in ["tables.json", "comparisons.json", "cases.csv", "run.json"] {
         assert_eq!(fs::read(merged.join(file)).ok(), fs::read(whole.join(file)).ok(), "{file}");
@@ -151,13 +152,13 @@ fn ctrl_c_keeps_what_is_over_and_says_how_to_go_on() {
 #[test]
 fn any_row_is_played_again_alone() {
     let out = scratch("again");
-    said(&["evaluate", "--trials", "2", "--scenario", "4", "--seed", "9", "--out", text(&out)]);
+    stdout_of(&["evaluate", "--trials", "2", "--scenario", "4", "--seed", "9", "--out", text(&out)]);
     let rows = table(&out.join("trials.csv"));
     let worlds = |profile: &str| rows.iter().filter(|row| row["profile"] == profile).count();
     assert!(worlds("simulated") >= 8 && worlds("robots") >= 4);
     for row in rows {
         let picture = out.join("trial.svg");
-        let again = said(&[
+        let again = stdout_of(&[
             "trial",
             "--json",
             "--scenario",
@@ -184,7 +185,7 @@ fn a_change_to_the_team_is_recorded_and_reaches_the_robots() {
     let out = scratch("changed");
     let base = |flags: &[&str]| {
         let directory = out.join(flags.concat());
-        said(
+        stdout_of(
             &[&SHORT[..], &["2", "--trials", "2", "--approach", "cbr"], flags, &["--out", text(&directory)]]
                 .concat(),
         );
@@ -215,11 +216,11 @@ fn what_cannot_be_done_is_told_with_its_hint() {
         let own = [seed, "--loss", loss, "--trials", "1", "--approach", "cbr", "--out", text(&out)];
         [&SHORT[..], &own].concat()
     };
-    said(&short("1", "0"));
+    stdout_of(&short("1", "0"));
     let description = refused(&short("2", "0.1"), 1);
     assert!(description.contains("loss, seed") && description.contains("trials-1-of-1.csv"), "{description}");
     assert!(description.contains("--fresh"), "{description}");
-    said(&[&short("2", "0.1")[..], &["--fresh"]].concat());
+    stdout_of(&[&short("2", "0.1")[..], &["--fresh"]].concat());
     assert_eq!(json(&out.join("run.json"))["plan"]["seed"], 2);
 
     let empty = scratch("empty");
@@ -241,7 +242,7 @@ fn what_cannot_be_done_is_told_with_its_hint() {
 #[test]
 fn every_claim_of_the_paper_is_judged_on_our_trials_and_on_its_own_tables() {
     let out = scratch("claims");
-    let said = said(&["evaluate", "--trials", "2", "--seed", "4", "--out", text(&out)]);
+    let output = stdout_of(&["evaluate", "--trials", "2", "--seed", "4", "--out", text(&out)]);
     let claims = json(&out.join("claims.json"));
     let claims = claims.as_array().expect("a list");
     assert!(claims.len() >= 30);
@@ -252,7 +253,7 @@ fn every_claim_of_the_paper_is_judged_on_our_trials_and_on_its_own_tables() {
             assert!(["supported", "contradicted", "undecided", "unmeasured"].contains(&verdict), "{verdict}");
             assert_eq!(evidence.is_empty(), verdict == "unmeasured", "{claim}");
         }
-        assert!(said.contains(claim["sentence"].as_str().expect("words")), "{said}");
+        assert!(output.contains(claim["sentence"].as_str().expect("words")), "{output}");
     }
     let verdicts =
         |side: &str, verdict: &str| claims.iter().filter(|c| c[side]["verdict"] == verdict).count();
@@ -262,12 +263,12 @@ fn every_claim_of_the_paper_is_judged_on_our_trials_and_on_its_own_tables() {
 #[test]
 fn judge_tells_every_line_with_numbers_and_misses_are_no_error() {
     let out = scratch("judge");
-    let said = said(&["evaluate", "judge", "--trials", "1", "--out", text(&out)]);
+    let output = stdout_of(&["evaluate", "judge", "--trials", "1", "--out", text(&out)]);
     let lines = json(&out.join("judge.json"));
     for line in lines.as_array().expect("a list") {
         let verdict = line["verdict"].as_str().expect("a word");
         assert!(["held", "missed", "unmeasured"].contains(&verdict), "{line}");
-        assert!(said.contains(line["line"].as_str().expect("words")), "{said}");
+        assert!(output.contains(line["line"].as_str().expect("words")), "{output}");
     }
     let run = json(&out.join("run.json"));
     assert_eq!(run["plan"]["seed"], 2009);
@@ -281,13 +282,13 @@ fn an_ablation_compares_pairs_and_goes_on_with_more_arms() {
     let run = |arms: &[&str]| {
         let arms: Vec<_> = arms.iter().flat_map(|arm| ["--arm", arm]).collect();
         let options = ["evaluate", "ablations", "--trials", "1", "--out", text(&out)];
-        said(&[&options[..], &arms].concat())
+        stdout_of(&[&options[..], &arms].concat())
     };
     run(&["loss-50"]);
     let kept = |arm: &str| fs::read(out.join(format!("arms/{arm}.csv"))).expect("kept");
     let before = (kept("default"), kept("loss-50"));
-    let said = run(&["loss-50", "no-symmetry"]);
-    assert!(said.contains("no-symmetry") && said.contains("to_goal"), "{said}");
+    let output = run(&["loss-50", "no-symmetry"]);
+    assert!(output.contains("no-symmetry") && output.contains("to_goal"), "{output}");
     assert_eq!((kept("default"), kept("loss-50")), before, "nothing is played twice");
     let effects = json(&out.join("ablations.json"));
     let effects = effects.as_array().expect("a list");

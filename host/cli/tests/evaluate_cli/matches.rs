@@ -4,7 +4,7 @@ use std::fs;
 use std::thread::sleep;
 use std::time::Duration;
 
-use super::common::{json, onetwo, refused, said, scratch, table, text};
+use super::common::{json, onetwo, refused, scratch, stdout_of, table, text};
 
 const MATCHES: [&str; 2] = ["evaluate", "matches"];
 
@@ -16,9 +16,9 @@ fn of<'a>(duration: &'a str, more: &[&'a str]) -> Vec<&'a str> {
 #[test]
 fn jobs_shards_and_a_kill_change_no_byte_of_matches() {
     let plan = of("3", &["--matches", "2", "--seed", "3", "--opponents", "zone,ours-with-coerce"]);
-    let run = |more: &[&str]| said(&[&plan[..], more].concat());
+    let run = |more: &[&str]| stdout_of(&[&plan[..], more].concat());
     let whole = scratch("matches-whole");
-    let told = run(&["--jobs", "1", "--out", text(&whole)]);
+    let reported = run(&["--jobs", "1", "--out", text(&whole)]);
     let rows = table(&whole.join("matches.csv"));
     let teams: Vec<_> = rows.iter().map(|row| (&*row["own"], &*row["opponent"])).collect();
     assert_eq!(
@@ -26,18 +26,18 @@ fn jobs_shards_and_a_kill_change_no_byte_of_matches() {
         [("ours", "zone"), ("ours", "zone"), ("ours", "ours-with-coerce"), ("ours", "ours-with-coerce")]
     );
     let data = json(&whole.join("matches.json"));
-    assert!(told.contains(data["csv_hash"].as_str().expect("a hash")), "{told}");
+    assert!(reported.contains(data["csv_hash"].as_str().expect("a hash")), "{reported}");
     for picture in ["ratios.svg", "calibration.svg"] {
         assert!(fs::read_to_string(whole.join(picture)).expect("drawn").starts_with("<svg"), "{picture}");
     }
 
     let (parts, merged) = (scratch("matches-parts"), scratch("matches-merged"));
-    let told = run(&["--shard", "1/2", "--jobs", "2", "--out", text(&parts)]);
-    assert!(told.contains("--merge"), "{told}");
+    let reported = run(&["--shard", "1/2", "--jobs", "2", "--out", text(&parts)]);
+    assert!(reported.contains("--merge"), "{reported}");
     let merge = [&MATCHES[..], &["--merge", text(&parts), "--out", text(&merged)]].concat();
     assert!(refused(&merge, 1).contains("missing"));
     run(&["--shard", "2/2", "--out", text(&parts)]);
-    said(&merge);
+    stdout_of(&merge);
     for file in ["matches.csv", "matches.json", "ratios.svg", "calibration.svg"] {
         assert_eq!(fs::read(merged.join(file)).ok(), fs::read(whole.join(file)).ok(), "{file}");
     }
@@ -61,7 +61,7 @@ fn jobs_shards_and_a_kill_change_no_byte_of_matches() {
 #[test]
 fn every_part_is_played_against_the_usual_team_and_told_with_its_effect() {
     let out = scratch("matches-ablations");
-    let told = said(&of("2", &["--matches", "2", "--ablations", "--out", text(&out)]));
+    let reported = stdout_of(&of("2", &["--matches", "2", "--ablations", "--out", text(&out)]));
     let data = json(&out.join("matches.json"));
     let effects = data["effects"].as_array().expect("a list");
     for part in ["threats", "second-level", "pass-ahead", "coerce"] {
@@ -70,14 +70,14 @@ fn every_part_is_played_against_the_usual_team_and_told_with_its_effect() {
         assert!(sides.contains(&"ours") && sides[0] != sides[1], "{sides:?}");
         assert!(effect["goals"]["low"].is_number() && effect["goals"]["p"].is_number(), "{effect}");
         assert_eq!(effect["matches"], 2);
-        assert!(told.contains(&format!("| {part} | {} | {} | 2 |", sides[0], sides[1])), "{told}");
+        assert!(reported.contains(&format!("| {part} | {} | {} | 2 |", sides[0], sides[1])), "{reported}");
     }
     let robin = scratch("matches-robin");
     let teams = ["--round-robin", "--opponents", "marking,idle", "--matches", "1", "--out", text(&robin)];
-    let told = said(&of("1", &teams));
+    let reported = stdout_of(&of("1", &teams));
     let pairs = table(&robin.join("matches.csv"));
     assert_eq!(pairs.len(), 3, "each of three against each");
-    assert!(told.contains("| points |"), "{told}");
+    assert!(reported.contains("| points |"), "{reported}");
 }
 
 #[test]
@@ -112,21 +112,21 @@ fn a_document_takes_the_tables_between_its_markers_in_both_leagues() {
 #[test]
 fn matches_that_cannot_be_played_are_told_with_their_hint() {
     let out = scratch("matches-refused");
-    let told = |description: &[&str], code| {
+    let reported = |description: &[&str], code| {
         refused(&[&MATCHES[..], description, &["--out", text(&out)]].concat(), code)
     };
-    let unknown = told(&["--opponents", "reactive,best"], 2);
+    let unknown = reported(&["--opponents", "reactive,best"], 2);
     assert!(
         unknown.contains("`best`") && unknown.contains("marking") && unknown.contains("ours-with-A+B"),
         "{unknown}"
     );
-    assert!(told(&["--opponents", "ours-without-luck"], 2).contains("second-level"));
-    assert!(told(&["--shard", "4/3"], 2).contains("2/3"));
-    assert!(told(&["--shard", "1/2", "--merge", "x"], 2).contains("--merge"));
-    assert!(told(&["--league", "four-legged"], 2).contains("division-b"));
-    assert!(told(&["--section", "x"], 2).contains("--markdown"));
-    assert!(told(&["--merge", "no-such-folder"], 1).contains("no-such-folder"));
-    said(&of("1", &["--matches", "1", "--opponents", "idle", "--out", text(&out)]));
-    let other = told(&["--duration", "1", "--matches", "1", "--opponents", "zone"], 1);
+    assert!(reported(&["--opponents", "ours-without-luck"], 2).contains("second-level"));
+    assert!(reported(&["--shard", "4/3"], 2).contains("2/3"));
+    assert!(reported(&["--shard", "1/2", "--merge", "x"], 2).contains("--merge"));
+    assert!(reported(&["--league", "four-legged"], 2).contains("division-b"));
+    assert!(reported(&["--section", "x"], 2).contains("--markdown"));
+    assert!(reported(&["--merge", "no-such-folder"], 1).contains("no-such-folder"));
+    stdout_of(&of("1", &["--matches", "1", "--opponents", "idle", "--out", text(&out)]));
+    let other = reported(&["--duration", "1", "--matches", "1", "--opponents", "zone"], 1);
     assert!(other.contains("teams") && other.contains("--fresh"), "{other}");
 }

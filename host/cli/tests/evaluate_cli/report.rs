@@ -2,13 +2,13 @@
 
 use std::fs;
 
-use super::common::{refused, said, scratch, text};
+use super::common::{refused, scratch, stdout_of, text};
 
 #[test]
 fn an_evaluation_has_a_report_with_maps_plots_and_every_parameter() {
     let out = scratch("report");
     let asked = ["evaluate", "--trials", "2", "--scenario", "3", "--maps", "1", "--out", text(&out)];
-    said(&[&asked[..], PNG].concat());
+    stdout_of(&[&asked[..], PNG].concat());
     let page = fs::read_to_string(out.join("report.html")).expect("a report");
     assert!(page.starts_with("<!DOCTYPE html>") && page.ends_with("</html>"));
     for part in
@@ -26,12 +26,12 @@ fn an_evaluation_has_a_report_with_maps_plots_and_every_parameter() {
     }
 
     fs::remove_file(out.join("report.html")).expect("it was there");
-    let again = said(&["evaluate", "report", text(&out), "--maps", "1"]);
+    let again = stdout_of(&["evaluate", "report", text(&out), "--maps", "1"]);
     assert_eq!(again.trim(), out.join("report.html").display().to_string());
     assert_eq!(fs::read_to_string(out.join("report.html")).expect("a report"), page);
 
     let merged = out.join("merged");
-    said(&["evaluate", "merge", text(&out), "--maps", "1", "--out", text(&merged)]);
+    stdout_of(&["evaluate", "merge", text(&out), "--maps", "1", "--out", text(&merged)]);
     assert_eq!(fs::read_to_string(merged.join("report.html")).expect("a report"), page);
 }
 
@@ -39,7 +39,7 @@ fn an_evaluation_has_a_report_with_maps_plots_and_every_parameter() {
 fn figures_go_between_the_markers_of_a_document() {
     let out = scratch("markdown");
     let asked = ["evaluate", "--trials", "2", "--opponents", "2d", "--maps", "0", "--out", text(&out)];
-    said(&asked);
+    stdout_of(&asked);
     let document = out.join("figures.md");
     let again = ["evaluate", "report", text(&out), "--maps", "0", "--markdown", text(&document)];
     assert!(refused(&again, 1).contains("figures.md"), "there is no such file");
@@ -50,7 +50,7 @@ fn figures_go_between_the_markers_of_a_document() {
         "before\n<!-- figures: written by `cargo xtask evaluation` -->\nold\n<!-- end of figures -->\nafter\n",
     )
     .expect("a file");
-    said(&again);
+    stdout_of(&again);
     let written = fs::read_to_string(&document).expect("a file");
     assert!(
         written.starts_with("before\n") && written.ends_with("\nafter\n") && !written.contains("\nold\n")
@@ -80,7 +80,7 @@ fn an_ablation_has_its_page_and_its_table_in_a_document() {
     )
     .expect("a file");
     let asked = ["evaluate", "ablations", "--arm", "no-opponents", "--trials", "1"];
-    said(&[&asked[..], PNG, &["--out", text(&out), "--markdown", text(&document)]].concat());
+    stdout_of(&[&asked[..], PNG, &["--out", text(&out), "--markdown", text(&document)]].concat());
     let page = fs::read_to_string(out.join("report.html")).expect("a page");
     assert!(
         page.contains("--no-opponents") && page.contains("In every cell") && page.contains("grab.success")

@@ -2,13 +2,13 @@
 
 use serde_json::Value;
 
-use super::common::{refused, said};
+use super::common::{refused, stdout_of};
 
 const SKILLS: [&str; 8] =
     ["placement", "get-ball", "receive", "dribble", "turn-with-ball", "kick", "chip", "save"];
 
 fn rows(more: &[&str]) -> (String, Vec<Value>) {
-    let text = said(&[&["evaluate", "skills", "--tries", "1", "--json"], more].concat());
+    let text = stdout_of(&[&["evaluate", "skills", "--tries", "1", "--json"], more].concat());
     let rows: Value = serde_json::from_str(&text).expect("JSON");
     (text, rows.as_array().expect("a list").clone())
 }
@@ -39,9 +39,9 @@ fn random_worlds_are_counted_and_failures_tell_how_to_repeat_them() {
     for row in &list {
         assert_eq!((row["worlds"].as_u64(), row["tries"].as_u64()), (Some(3), Some(3)));
     }
-    let told = said(&["evaluate", "skills", "--skill", "get-ball", "--tries", "4", "--failures"]);
-    assert!(told.starts_with("| skill |"), "{told}");
-    assert_eq!(told.contains("--story"), told.contains(" in nominal: "), "{told}");
+    let reported = stdout_of(&["evaluate", "skills", "--skill", "get-ball", "--tries", "4", "--failures"]);
+    assert!(reported.starts_with("| skill |"), "{reported}");
+    assert_eq!(reported.contains("--story"), reported.contains(" in nominal: "), "{reported}");
     assert!(refused(&["evaluate", "skills", "--skill", "luck"], 2).contains("turn-with-ball"));
     assert!(refused(&["evaluate", "skills", "--world", "mars"], 2).contains("nominal"));
 }

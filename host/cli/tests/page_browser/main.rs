@@ -87,7 +87,7 @@ fn explained_on_the_field(tab: &mut Tab<'_>) {
     tab.wait("onetwo.layers().filter((l) => ['pass-receive', 'believed'].includes(l.name)).every((l) => l.shown && l.count > 0)", 60)
         .unwrap();
     // The best place of the map that is free of robots: over a robot the pointer selects the robot.
-    let told = "(() => {
+    let reported = "(() => {
       const { layers, robots, ball } = onetwo.store.scene;
       const heat = layers.find((l) => l.name === 'pass-receive').shapes[0];
       const free = (at) => [...robots.map((r) => r.at), ball.at].every((b) => Math.hypot(at[0] - b[0], at[1] - b[1]) > 0.5);
@@ -99,7 +99,7 @@ fn explained_on_the_field(tab: &mut Tab<'_>) {
       document.getElementById('field').dispatchEvent(new PointerEvent('pointermove', { clientX: box.x + x, clientY: box.y + y, pointerId: 9 }));
       return document.getElementById('note').textContent;
     })()";
-    onetwo_says(tab, told, "a pass to here arrives: ");
+    onetwo_prints(tab, reported, "a pass to here arrives: ");
     let pointed = "(() => {
       const { layers } = onetwo.store.scene;
       const ring = layers.find((l) => l.name === 'believed').shapes.find((s) => s.is === 'ellipse');
@@ -108,21 +108,21 @@ fn explained_on_the_field(tab: &mut Tab<'_>) {
       document.getElementById('field').dispatchEvent(new PointerEvent('pointermove', { clientX: box.x + x, clientY: box.y + y, pointerId: 9 }));
       return document.getElementById('note').textContent;
     })()";
-    onetwo_says(tab, pointed, "by its places of the last half second: goalkeeper ");
+    onetwo_prints(tab, pointed, "by its places of the last half second: goalkeeper ");
     tab.eval("['pass-receive', 'believed'].forEach((name) => onetwo.setLayer(name, false))").unwrap();
 }
 
 /// Retries a few times: everything moves.
-fn onetwo_says(tab: &mut Tab<'_>, script: &str, description: &str) {
-    let mut said = String::new();
+fn onetwo_prints(tab: &mut Tab<'_>, script: &str, description: &str) {
+    let mut output = String::new();
     for _ in 0..40 {
-        tab.eval(script).unwrap().as_str().unwrap_or_default().clone_into(&mut said);
-        if said.contains(description) {
+        tab.eval(script).unwrap().as_str().unwrap_or_default().clone_into(&mut output);
+        if output.contains(description) {
             return;
         }
         std::thread::sleep(Duration::from_millis(100));
     }
-    panic!("{description}: not in {said}");
+    panic!("{description}: not in {output}");
 }
 
 /// Pause, single step, drag the ball, restart.
@@ -218,6 +218,7 @@ fn a_lost_connection_is_shown_and_heals() {
     tab.wait("document.getElementById('lost').hidden && document.getElementById('connection').dataset.state === 'live'", 30).unwrap();
     tab.wait("onetwo.store.scene.t > 0.5", 20).unwrap();
     // A socket without an answer is reported by the browser itself; any other error would be ours.
-    let told: Vec<_> = tab.errors().into_iter().filter(|error| !error.contains("ERR_CONNECTION")).collect();
-    assert_eq!(told, Vec::<String>::new());
+    let reported: Vec<_> =
+        tab.errors().into_iter().filter(|error| !error.contains("ERR_CONNECTION")).collect();
+    assert_eq!(reported, Vec::<String>::new());
 }

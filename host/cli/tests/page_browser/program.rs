@@ -25,14 +25,14 @@ impl Program {
             .spawn()
             .unwrap();
         let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
-        let mut told = Vec::new();
+        let mut reported = Vec::new();
         let address = loop {
             match lines.next() {
                 Some(Ok(line)) => match line.strip_prefix("page     http://") {
                     Some(address) => break address.to_owned(),
-                    None => told.push(line),
+                    None => reported.push(line),
                 },
-                _ => panic!("no page: {told:?}"),
+                _ => panic!("no page: {reported:?}"),
             }
         };
         let (address, token) = match address.split_once("/?token=") {
@@ -61,7 +61,7 @@ impl Program {
 
     /// Waits for a line on stderr that contains `arguments`.
     #[allow(dead_code, reason = "one of the two tests that share this file listens")]
-    pub(crate) fn says(&self, arguments: &str) {
+    pub(crate) fn wait_for(&self, arguments: &str) {
         while let Ok(line) = self.lines.recv_timeout(Duration::from_secs(40)) {
             if line.contains(arguments) {
                 return;

@@ -54,7 +54,7 @@ impl Running {
     }
 
     /// Waits for a line that contains `description`.
-    pub(crate) fn says(&mut self, description: &str) -> (Duration, String) {
+    pub(crate) fn wait_for(&mut self, description: &str) -> (Duration, String) {
         let until = Instant::now() + PATIENCE;
         loop {
             let left = until.saturating_duration_since(Instant::now());
@@ -72,7 +72,7 @@ impl Running {
 
     /// The control port that the simulator prints.
     pub(crate) fn control_port(&mut self) -> u16 {
-        let (_, line) = self.says("control  ");
+        let (_, line) = self.wait_for("control  ");
         let address = line.split_whitespace().nth(1).expect("an address").trim_end_matches(',');
         address.parse::<SocketAddr>().expect("an address").port()
     }

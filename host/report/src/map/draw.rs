@@ -22,7 +22,7 @@ pub(crate) fn html(maps: &[Map]) -> Markup {
             div.maps { @for map in &row {
                 figure {
                     figcaption style=(description::css(map.cell.approach)) {
-                        (description::approach(map.cell.approach)) small { (told(map)) }
+                        (description::approach(map.cell.approach)) small { (caption(map)) }
                     }
                     (PreEscaped(alone(&passes(map), map, "Passes and ends")))
                     (PreEscaped(alone(&heat(map), map, "The ball")))
@@ -52,7 +52,7 @@ pub(crate) fn sheets(maps: &[Map]) -> Vec<Picture> {
             svg.text([-x, down - size], name, Anchor::Start, font);
             let after = -x + drawing::width(name, size) * 1.15 + size;
             let font = Font { size: size * 0.8, fill: colors.faint, bold: false, halo: None };
-            svg.text([after, down - size], &told(map), Anchor::Start, font);
+            svg.text([after, down - size], &caption(map), Anchor::Start, font);
             let middle = down - size * 1.6 - y;
             svg.inset(&passes(map), [0.0, middle]);
             svg.inset(&heat(map), [2.0 * x + gap, middle]);
@@ -88,7 +88,7 @@ fn rows(maps: &[Map]) -> Vec<(Configuration, Scenario, Vec<&Map>)> {
 }
 
 /// `61 of 140 passes completed, 12 by chance`.
-fn told(map: &Map) -> String {
+fn caption(map: &Map) -> String {
     let count = |kind| map.passes.iter().filter(|pass| pass.kind == kind).count();
     let [completed, lost, chance] = [PassKind::Completed, PassKind::Lost, PassKind::Chance].map(count);
     match completed + lost {
@@ -147,13 +147,13 @@ fn passes(map: &Map) -> Svg {
     }
     for kind in [PassKind::Lost, PassKind::Chance, PassKind::Completed] {
         let own = map.passes.iter().filter(|pass| pass.kind == kind);
-        let ways: Vec<_> = own.map(|pass| (millimetres(pass.from), millimetres(pass.to))).collect();
+        let segments: Vec<_> = own.map(|pass| (millimetres(pass.from), millimetres(pass.to))).collect();
         // Overlapping arrows add up to a darker colour.
-        arrows(&mut svg, &ways, kind, "0.4");
+        arrows(&mut svg, &segments, kind, "0.4");
     }
     for outcome in [Outcome::Timeout, Outcome::Out, Outcome::Block, Outcome::Close, Outcome::Goal] {
         for (place, _) in map.ends.iter().filter(|(_, own)| *own == outcome) {
-            end(&mut svg, shown(&map.field, millimetres(*place)), outcome);
+            end(&mut svg, on_field(&map.field, millimetres(*place)), outcome);
         }
     }
     svg
@@ -172,14 +172,14 @@ fn kick_off(svg: &mut Svg, [x, y]: [f64; 2], attacker: bool) {
 }
 
 /// Arrows of a kind, each one short element: there are hundreds.
-fn arrows(svg: &mut Svg, ways: &[([f64; 2], [f64; 2])], kind: PassKind, opacity: &str) {
+fn arrows(svg: &mut Svg, segments: &[([f64; 2], [f64; 2])], kind: PassKind, opacity: &str) {
     let (color, style) = match kind {
         PassKind::Completed => (COMPLETED, r#"stroke-width="14""#),
         PassKind::Lost => (LOST, r#"stroke-width="11" stroke-dasharray="34 26""#),
         PassKind::Chance => (CHANCE, r#"stroke-width="11""#),
     };
     let (mut lines, mut heads) = (Svg::default(), Svg::default());
-    for (from, to) in ways {
+    for (from, to) in segments {
         let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
         let length = dx.hypot(dy);
         if length <= 0.0 {
@@ -197,7 +197,7 @@ fn arrows(svg: &mut Svg, ways: &[([f64; 2], [f64; 2])], kind: PassKind, opacity:
             at(back[0] - side[0], back[1] - side[1])
         ));
     }
-    if !ways.is_empty() {
+    if !segments.is_empty() {
         svg.group(&lines, format_args!(r#"stroke="{color}" stroke-opacity="{opacity}" {style}"#));
         svg.group(&heads, format_args!(r#"fill="{color}" fill-opacity="{opacity}""#));
     }
@@ -230,7 +230,7 @@ fn end(svg: &mut Svg, [x, y]: [f64; 2], outcome: Outcome) {
 }
 
 /// A place on the figure: what lies farther out is drawn at its edge.
-fn shown(field: &FieldMm, [x, y]: [f64; 2]) -> [f64; 2] {
+fn on_field(field: &FieldMm, [x, y]: [f64; 2]) -> [f64; 2] {
     let [right, top] = half_extent(field).map(|half| half - 50.0);
     [x.clamp(-right, right), y.clamp(-top, top)]
 }

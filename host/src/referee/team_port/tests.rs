@@ -152,8 +152,11 @@ fn a_port_that_speaks_something_else_is_told() {
         // "HTTP" reads as a length of 72: the remaining bytes have to come, or the deadline passes.
         port.receive(garbage, Instant(0));
         port.receive(&[b'x'; 100], Instant(0));
-        let told = port.poll_event();
-        assert!(matches!(told, Some(Event::GivenUp(Trouble::NotTheTeamPort(_)))), "{garbage:?}: {told:?}");
+        let reported = port.poll_event();
+        assert!(
+            matches!(reported, Some(Event::GivenUp(Trouble::NotTheTeamPort(_)))),
+            "{garbage:?}: {reported:?}"
+        );
     }
 }
 

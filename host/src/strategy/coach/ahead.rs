@@ -49,14 +49,14 @@ impl Ahead {
 impl Coach {
     /// What our restart is aimed at: a shot with room, else the likeliest pass ahead, else the best remaining
     /// target.
-    pub(super) fn target(&mut self, view: &View, taker: RobotId, ball: &Ball) -> Target {
-        let usual = support::target(view, taker, ball.position);
+    pub(super) fn target(&mut self, view: &View, kicker: RobotId, ball: &Ball) -> Target {
+        let usual = support::target(view, kicker, ball.position);
         let free_kick = view.phase == Phase::FreeKick(Side::Ours);
         if !self.tactics.pass_ahead || !free_kick || self.gave_up || matches!(usual, Target::Shot { .. }) {
             return usual;
         }
         self.searches.forget();
-        let offers = self.searches.offers(view, &self.kicks, ball.position, taker, SAMPLES);
+        let offers = self.searches.offers(view, &self.kicks, ball.position, kicker, SAMPLES);
         let best = offers.iter().find(|offer| offer.rating.receive() > LIKELY);
         let Some(best) = best else { return usual };
         self.ahead = Some(Ahead::new(best.receiver, best.rating, view.now, None));
@@ -65,11 +65,11 @@ impl Coach {
     }
 
     /// The taker's task for its pass ahead, if it has one.
-    pub(super) fn pass_ahead(&mut self, view: &View, taker: RobotId, ball: &Ball) -> Option<(Task, Why)> {
+    pub(super) fn pass_ahead(&mut self, view: &View, kicker: RobotId, ball: &Ball) -> Option<(Task, Why)> {
         let mut ahead = self.ahead?;
-        let passer = view.our(taker)?;
+        let passer = view.our(kicker)?;
         let Some(receiver) = view.our(ahead.receiver) else { return self.give_up(view) };
-        let now = Scene::of(view, &self.kicks, ball.position, Some(taker), receiver).rate(ahead.rating.at);
+        let now = Scene::of(view, &self.kicks, ball.position, Some(kicker), receiver).rate(ahead.rating.at);
         let planned = ahead.planned.is_some();
         let least = if planned { SURE } else { ahead.rating.receive() * STILL_LIKELY };
         if ahead.steps.shot().is_none() && now.receive() < least {
@@ -81,7 +81,7 @@ impl Coach {
         let task = match moves.passer {
             PasserMove::GivesUp { .. } => return self.give_up(view),
             PasserMove::Waits if !planned => {
-                let at = restart::taker_waits(view, ball.position);
+                let at = restart::kicker_waits(view, ball.position);
                 Task::GoTo { at, face: at.direction_to(ball.position) }
             }
             PasserMove::Waits | PasserMove::Goes | PasserMove::Shoots => Task::Pass {

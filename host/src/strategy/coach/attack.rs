@@ -105,7 +105,7 @@ impl Coach {
         let Some((receiver, rating)) = what.pass() else { return };
         let Some(passer) = view.our(who) else { return };
         let speed = ball.velocity.norm();
-        let along = (rating.at - from).unit().map_or(0.0, |way| ball.velocity.dot(way));
+        let along = (rating.at - from).unit().map_or(0.0, |direction| ball.velocity.dot(direction));
         if speed < LEFT_WITH || along < speed * LEFT_ALONG || ball.position.distance(passer.position) < LEFT {
             return;
         }

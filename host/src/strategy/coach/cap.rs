@@ -47,15 +47,20 @@ impl Coach {
         if self.tactics.coerce
             && before
             && view.next.is_none_or(|next| next == Phase::FreeKick(Side::Ours))
-            && let Some(taker) = self.first
+            && let Some(kicker) = self.first
         {
-            self.cap.planner.observe(view, taker);
+            self.cap.planner.observe(view, kicker);
         }
     }
 
     /// The taker's task while others coerce; orders for those. When they have finished, the attack becomes
     /// the pass ahead.
-    pub(super) fn coerce(&mut self, plan: &mut Plan<'_>, taker: RobotId, ball: &Ball) -> Option<(Task, Why)> {
+    pub(super) fn coerce(
+        &mut self,
+        plan: &mut Plan<'_>,
+        kicker: RobotId,
+        ball: &Ball,
+    ) -> Option<(Task, Why)> {
         let view = plan.view;
         if !self.tactics.coerce || self.gave_up || view.phase != Phase::FreeKick(Side::Ours) {
             return None;
@@ -64,10 +69,10 @@ impl Coach {
         if !self.cap.asked {
             self.cap.asked = true;
             self.cap.seed += 1;
-            let shot = matches!(support::target(view, taker, ball.position), Target::Shot { .. });
+            let shot = matches!(support::target(view, kicker, ball.position), Target::Shot { .. });
             self.gave_up = shot
                 || ball.position.x() < FROM
-                || self.cap.planner.plan(view, &value, taker, self.cap.seed).is_none();
+                || self.cap.planner.plan(view, &value, kicker, self.cap.seed).is_none();
             if self.gave_up {
                 return None;
             }
@@ -76,7 +81,7 @@ impl Coach {
         if let Progress::Attacking(attack) = progress
             && self.ahead.is_none()
         {
-            self.ahead = begin(view, &self.kicks, taker, ball, &attack);
+            self.ahead = begin(view, &self.kicks, kicker, ball, &attack);
             self.aim = self.ahead.map(|ahead| {
                 let (id, at) = (ahead.receiver, ahead.rating.at);
                 (view.now, Target::Teammate { id, at, room: defence::room_along(view, ball.position, at) })
@@ -101,9 +106,9 @@ impl Coach {
     }
 }
 
-fn begin(view: &View, kicks: &Kicks, taker: RobotId, ball: &Ball, attack: &FinalAttack) -> Option<Ahead> {
+fn begin(view: &View, kicks: &Kicks, kicker: RobotId, ball: &Ball, attack: &FinalAttack) -> Option<Ahead> {
     let receiver = view.our(attack.plan.receiver)?;
-    let scene = Scene::of(view, kicks, ball.position, Some(taker), receiver);
+    let scene = Scene::of(view, kicks, ball.position, Some(kicker), receiver);
     Some(Ahead::new(receiver.id, scene.rate(attack.plan.at), view.now, Some(attack.reused)))
 }
 

@@ -43,10 +43,10 @@ impl Coach {
         }
     }
 
-    fn against_threats(&mut self, plan: &mut Plan<'_>, everybody: bool) {
+    fn against_threats(&mut self, plan: &mut Plan<'_>, all_robots: bool) {
         let view = plan.view;
         let mut team = self.primaries(plan);
-        if everybody {
+        if all_robots {
             plan.free.iter().for_each(|id| team.insert(*id));
         }
         let defence = threat::defend(view, team, &mut self.threats, &threat::Settings::default());

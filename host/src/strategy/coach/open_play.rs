@@ -33,7 +33,7 @@ impl Coach {
             let why = Why::BestTarget { room: support::worth(view, ball.position, pass.at) };
             plan.order(pass.receiver, Role::Receiver, Task::Receive { at: pass.at, then: pass.then }, why);
             self.defend(plan, false);
-            return plan.everybody(Role::Player, Task::Gameplay, Why::OpenPlay);
+            return plan.all_robots(Role::Player, Task::Gameplay, Why::OpenPlay);
         }
         let forbidden = view.in_their_area(ball.position, THEIRS) || view.in_our_area(ball.position, 0.0);
         if forbidden || keepers || is_shot_at_us(view, &ball) {
@@ -69,7 +69,7 @@ impl Coach {
             }
         }
         self.defend(plan, self.attacked);
-        plan.everybody(Role::Player, Task::Gameplay, Why::OpenPlay);
+        plan.all_robots(Role::Player, Task::Gameplay, Why::OpenPlay);
     }
 
     /// Updates whether the ball is theirs: one of them is clearly sooner at it than ours, `ours` s from now.

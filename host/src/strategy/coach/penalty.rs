@@ -17,7 +17,7 @@ impl Coach {
         let ours = side == Side::Ours;
         let spot = restart::penalty_spot(view, ours);
         if ours {
-            self.taker(plan, started, Some(spot));
+            self.kicker(plan, started, Some(spot));
             plan.keeper_guards();
         } else if plan.take(view.keeper) {
             plan.order(view.keeper, Role::Keeper, defence::keeper_on_goal_line(view), Why::Referee);

@@ -26,7 +26,7 @@ impl<'v> Plan<'v> {
     /// it stand, nor to another robot's place: it would not get there.
     pub(super) fn order(&mut self, robot: RobotId, role: Role, task: Task, why: Why) {
         let rule_role = match role {
-            Role::Taker => RuleRole::Taker,
+            Role::Kicker => RuleRole::Kicker,
             _ if robot == self.view.keeper => RuleRole::Keeper,
             _ => RuleRole::Player,
         };
@@ -71,7 +71,7 @@ impl<'v> Plan<'v> {
         }
     }
 
-    pub(super) fn everybody(&mut self, role: Role, task: Task, why: Why) {
+    pub(super) fn all_robots(&mut self, role: Role, task: Task, why: Why) {
         for id in core::mem::take(&mut self.free) {
             self.order(id, role, task, why);
         }
@@ -82,7 +82,7 @@ impl<'v> Plan<'v> {
     pub(super) fn stay_legal(&mut self) {
         let view = self.view;
         if view.phase == Phase::Run {
-            return self.everybody(Role::Player, Task::Stand, Why::NoBall);
+            return self.all_robots(Role::Player, Task::Stand, Why::NoBall);
         }
         for id in core::mem::take(&mut self.free) {
             let here = |robot: &Robot| Task::GoTo { at: robot.position, face: robot.heading };

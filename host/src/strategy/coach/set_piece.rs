@@ -29,7 +29,7 @@ impl Coach {
             if let Some((id, seconds)) = first
                 && plan.take(id)
             {
-                plan.order(id, Role::Taker, Task::PlaceBall { at }, Why::SoonestAtBall { seconds });
+                plan.order(id, Role::Kicker, Task::PlaceBall { at }, Why::SoonestAtBall { seconds });
             }
         }
         self.defend(plan, false);
@@ -52,7 +52,7 @@ impl Coach {
     pub(super) fn kickoff(&mut self, plan: &mut Plan<'_>, side: Side) {
         let view = plan.view;
         if side == Side::Ours {
-            self.taker(plan, matches!(view.phase, Phase::Kickoff(_)), Some(restart::kickoff_spot(view)));
+            self.kicker(plan, matches!(view.phase, Phase::Kickoff(_)), Some(restart::kickoff_spot(view)));
             self.receiver(plan);
         }
         self.defend(plan, false);
@@ -65,7 +65,7 @@ impl Coach {
         let view = plan.view;
         let Some(ball) = view.ball else { return self.defend(plan, false) };
         if side == Side::Ours {
-            self.taker(plan, matches!(view.phase, Phase::FreeKick(_)), None);
+            self.kicker(plan, matches!(view.phase, Phase::FreeKick(_)), None);
             self.receiver(plan);
             self.defend(plan, false);
             return self.spread(plan);
@@ -91,12 +91,12 @@ impl Coach {
     }
 
     /// Our taker: behind the ball until it may kick, then the kick; behind the `mark` of a kick-off or a penalty.
-    pub(super) fn taker(&mut self, plan: &mut Plan<'_>, started: bool, mark: Option<Point<Attack>>) {
+    pub(super) fn kicker(&mut self, plan: &mut Plan<'_>, started: bool, mark: Option<Point<Attack>>) {
         let view = plan.view;
         let penalty = matches!(view.phase, Phase::Penalty(_));
         let Some(ball) = view.ball else { return };
         let field_players = view.ours.iter().filter(|robot| robot.id != view.keeper);
-        let chosen = roles::choose(field_players, self.first, TAKER_WORTH, |robot| {
+        let chosen = roles::choose(field_players, self.first, KICKER_WORTH, |robot| {
             roles::time_to(robot, ball.position)
         });
         self.first = chosen.map(|(id, _)| id);
@@ -106,12 +106,12 @@ impl Coach {
         }
         if !started {
             let spot = mark.or(view.placement).unwrap_or(ball.position);
-            let at = plan.kept_off(restart::taker_waits(view, spot));
-            return plan.order(id, Role::Taker, plan.facing_ball(at), Why::SoonestAtBall { seconds });
+            let at = plan.kept_off(restart::kicker_waits(view, spot));
+            return plan.order(id, Role::Kicker, plan.facing_ball(at), Why::SoonestAtBall { seconds });
         }
         self.ball_lay = Some(ball.position);
         if let Some((task, why)) = self.coerce(plan, id, &ball) {
-            return plan.order(id, Role::Taker, task, why);
+            return plan.order(id, Role::Kicker, task, why);
         }
         let wait = if penalty { Duration(0) } else { TEAMMATES_GET_READY };
         let stands =
@@ -126,10 +126,10 @@ impl Coach {
             self.aim = Some((view.now, target));
         }
         if let Some((task, why)) = self.pass_ahead(view, id, &ball) {
-            return plan.order(id, Role::Taker, task, why);
+            return plan.order(id, Role::Kicker, task, why);
         }
         let (task, why) = restart::take(view, &ball, self.aim.map(|(_, target)| target));
-        plan.order(id, Role::Taker, task, why);
+        plan.order(id, Role::Kicker, task, why);
     }
 
     /// The mate that our restart is aimed at; of a pass ahead, as soon as it is its time.
@@ -170,7 +170,7 @@ impl Coach {
 }
 
 /// How much sooner another robot must be at the ball to become the taker, s: more than in play, the ball lies.
-const TAKER_WORTH: f32 = 1.0;
+const KICKER_WORTH: f32 = 1.0;
 /// Mates are given this long to take their places before a restart is aimed, of the 5 s (A) that the rules give: they are there since
 /// the ball was placed, and run on while the taker goes around it.
 const TEAMMATES_GET_READY: Duration = Duration::millis(200);

@@ -88,8 +88,8 @@ fn who_took_our_free_kick_leaves_the_ball_to_others_until_somebody_touched_it() 
     let mut coach = coach();
     let mut view = view((-0.35, 0.0), &OURS, &THEIRS);
     view.phase = Phase::FreeKick(Side::Ours);
-    let taker = coach.decide(&view).iter().find(|order| order.role == Role::Taker).unwrap().robot;
-    assert_eq!(taker.number(), 3);
+    let kicker = coach.decide(&view).iter().find(|order| order.role == Role::Kicker).unwrap().robot;
+    assert_eq!(kicker.number(), 3);
     view.phase = Phase::Run;
     let orders = coach.decide(&view);
     assert_eq!(orders[3].role, Role::DoubleTouchBlocked);
@@ -172,21 +172,21 @@ fn a_pass_ahead_leaves_when_its_receiver_will_be_there_and_whoever_receives_it_i
     let (mut went, mut left) = (None, None);
     for ms in (0..3_500).step_by(20) {
         let mut view = free_kick(ms, receiver, &theirs);
-        let taker = view.ours[3].id;
+        let kicker = view.ours[3].id;
         if let Some((at, _)) = went {
             // The taker faces x*, the receiver moves there at 2 m/s.
             let at: Point<Attack> = at;
             let ball = Point::new(1.0, 0.0);
             view.ours[3].heading = ball.direction_to(at);
             view.ours[3].position = ball - (at - ball).unit().unwrap() * 0.14;
-            let way = at - Point::new(receiver.0, receiver.1);
-            let step = way.unit().unwrap_or_default() * 0.04_f32.min(way.norm());
+            let offset = at - Point::new(receiver.0, receiver.1);
+            let step = offset.unit().unwrap_or_default() * 0.04_f32.min(offset.norm());
             receiver = (receiver.0 + step.x(), receiver.1 + step.y());
         }
         let orders = coach.decide(&view);
         for order in &orders {
             if let Task::Pass { at, ready, receiver, .. } = order.task {
-                assert_eq!(order.robot, taker);
+                assert_eq!(order.robot, kicker);
                 assert!(
                     matches!(order.why, Why::Chances { receive, .. } if receive > 0.3),
                     "{:?}",
@@ -195,8 +195,11 @@ fn a_pass_ahead_leaves_when_its_receiver_will_be_there_and_whoever_receives_it_i
                 went.get_or_insert((at, receiver));
                 if ready && left.is_none() {
                     left = Some(ms);
-                    let told = orders.iter().find(|order| order.robot == receiver).unwrap();
-                    assert!(matches!(told.task, Task::Receive { at: there, .. } if there == at), "{told:?}");
+                    let reported = orders.iter().find(|order| order.robot == receiver).unwrap();
+                    assert!(
+                        matches!(reported.task, Task::Receive { at: there, .. } if there == at),
+                        "{reported:?}"
+                    );
                 }
             }
         }
@@ -207,8 +210,8 @@ fn a_pass_ahead_leaves_when_its_receiver_will_be_there_and_whoever_receives_it_i
     view.phase = Phase::Run;
     let (at, id) = went.unwrap();
     let orders = coach.decide(&view);
-    let told = orders.iter().find(|order| order.robot == id).unwrap();
-    assert!(matches!(told.task, Task::Receive { at: there, .. } if there == at), "{told:?}");
+    let reported = orders.iter().find(|order| order.robot == id).unwrap();
+    assert!(matches!(reported.task, Task::Receive { at: there, .. } if there == at), "{reported:?}");
     let sent = coach.take_sent().unwrap();
     assert_eq!((sent.to, sent.receiver, sent.planned), (at, id, None));
     assert_eq!(coach.take_sent(), None);
@@ -319,10 +322,10 @@ fn where_a_case_is_played_its_pass_goes_near_its_place_to_its_receiver_if_the_br
     assert!(there.distance(at) <= RADIUS);
     assert!(matches!(orders[5].task, Task::Receive { at, .. } if at == there), "{:?}", orders[5]);
     for (robot, part) in [(3, 0), (5, 1)] {
-        let Why::OfCase { case, part: told, moved, receive, .. } = orders[robot].why else {
+        let Why::OfCase { case, part: reported, moved, receive, .. } = orders[robot].why else {
             panic!("{:?}", orders[robot])
         };
-        assert_eq!((case, told.index()), (CaseId(12), part));
+        assert_eq!((case, reported.index()), (CaseId(12), part));
         assert!((moved - there.distance(at)).abs() < 1e-6 && receive > 0.5, "{:?}", orders[robot]);
     }
     // Another robot's pass is not this one's, and without the bridge the case is played as it is.
@@ -338,9 +341,9 @@ fn a_pass_of_open_play_that_has_left_is_its_receivers_and_is_told_to_the_books_o
     let (mut coach, mut view, orders) = attack([(3.0, 1.8), (-2.0, -2.0)], &wall, Tactics::default());
     let Task::Pass { at, .. } = orders[3].task else { panic!("{:?}", orders[3]) };
     assert_eq!(coach.take_sent(), None);
-    let way = (at - Point::new(2.0, 0.0)).unit().unwrap();
-    let position = Point::new(2.0, 0.0) + way * 0.2;
-    view.ball = Some(Ball { position, velocity: way * 3.0, rest: at + way, height: 0.0 });
+    let offset = (at - Point::new(2.0, 0.0)).unit().unwrap();
+    let position = Point::new(2.0, 0.0) + offset * 0.2;
+    view.ball = Some(Ball { position, velocity: offset * 3.0, rest: at + offset, height: 0.0 });
     view.now = Instant(view.now.0 + 50_000);
     let orders = coach.decide(&view);
     assert!(matches!(orders[4].task, Task::Receive { at: there, .. } if there == at), "{:?}", orders[4]);

@@ -32,13 +32,13 @@ impl Worth {
 
 /// Values passes and shots: section 3.1, as the planner needs it.
 pub trait PassValue {
-    /// Values of passes from `from`, played by `taker` to `receiver`, to each of these places, against all
+    /// Values of passes from `from`, played by `kicker` to `receiver`, to each of these places, against all
     /// opponents of the view and with all our robots in it.
     fn worths(
         &self,
         view: &View,
         from: Point<Attack>,
-        taker: RobotId,
+        kicker: RobotId,
         receiver: &Robot,
         places: &mut dyn Iterator<Item = Point<Attack>>,
         take: &mut dyn FnMut(Point<Attack>, Worth),
@@ -92,7 +92,7 @@ impl Least {
 pub fn best_attack(
     view: &View,
     value: &dyn PassValue,
-    taker: RobotId,
+    kicker: RobotId,
     receivers: &[RobotId],
     least: Least,
     seed: u64,
@@ -104,7 +104,7 @@ pub fn best_attack(
         let Some(receiver) = view.our(*id) else { continue };
         let mut cells = Cell::all();
         let mut middles = Cell::all().map(|cell| cell.middle(&view.field));
-        value.worths(view, ball.position, taker, receiver, &mut middles, &mut |at, worth| {
+        value.worths(view, ball.position, kicker, receiver, &mut middles, &mut |at, worth| {
             let Some(cell) = cells.next() else { return };
             values[cell.index()] = values[cell.index()].max(worth.value());
             if least.allows(&worth) && best.is_none_or(|best| worth.value() > best.worth.value()) {
@@ -122,7 +122,7 @@ pub fn best_attack(
         let cut = |x: f32, side: f32| (x * side * SPREAD).clamp(-0.5 * side, 0.5 * side);
         middle + Vector::new(cut(by.x(), size.x()), cut(by.y(), size.y()))
     });
-    value.worths(view, ball.position, taker, receiver, &mut around, &mut |at, worth| {
+    value.worths(view, ball.position, kicker, receiver, &mut around, &mut |at, worth| {
         if least.allows(&worth) && worth.value() > found.worth.value() {
             (found.at, found.worth) = (at, worth);
         }

@@ -25,18 +25,18 @@ impl<'k> ByPassLocation<'k> {
     }
 
     /// 1 − P(c2) of one opponent alone.
-    fn meets(self, opponent: &Robot, from: Point<Attack>, to: Point<Attack>, kick: &FlatKick) -> f32 {
+    fn intercepts(self, opponent: &Robot, from: Point<Attack>, to: Point<Attack>, kick: &FlatKick) -> f32 {
         let c = self.kicks.constants();
-        let way = to - from;
-        let way = BallPath {
+        let path = to - from;
+        let path = BallPath {
             from,
-            along: way.unit().unwrap_or(Vector::new(1.0, 0.0)),
-            length: way.norm(),
+            along: path.unit().unwrap_or(Vector::new(1.0, 0.0)),
+            length: path.norm(),
             body: rules::limits::ROBOT_RADIUS + rules::limits::BALL_RADIUS,
             reaction: c.reaction,
         };
         let mover = Mover::new(opponent.position, opponent.velocity, &c.opponent);
-        let found = way.flat(kick, &[Opponent { id: opponent.id, mover }]);
+        let found = path.flat(kick, &[Opponent { id: opponent.id, mover }]);
         1.0 - not_intercepted(found.map_or(SAFE, |found| found.margin), false, c)
     }
 }
@@ -46,12 +46,12 @@ impl PassValue for ByPassLocation<'_> {
         &self,
         view: &View,
         from: Point<Attack>,
-        taker: RobotId,
+        kicker: RobotId,
         receiver: &Robot,
         places: &mut dyn Iterator<Item = Point<Attack>>,
         take: &mut dyn FnMut(Point<Attack>, Worth),
     ) {
-        let scene = Scene::of(view, self.kicks, from, Some(taker), receiver);
+        let scene = Scene::of(view, self.kicks, from, Some(kicker), receiver);
         for at in places {
             let rating = scene.rate(at);
             let (receive, goal) = (rating.receive(), rating.goal());
@@ -60,11 +60,11 @@ impl PassValue for ByPassLocation<'_> {
     }
 
     fn meets_pass(&self, opponent: &Robot, from: Point<Attack>, to: Point<Attack>) -> f32 {
-        self.meets(opponent, from, to, &self.kicks.flat(from.distance(to)))
+        self.intercepts(opponent, from, to, &self.kicks.flat(from.distance(to)))
     }
 
     fn meets_shot(&self, opponent: &Robot, from: Point<Attack>, to: Point<Attack>) -> f32 {
-        self.meets(opponent, from, to, &self.kicks.shot())
+        self.intercepts(opponent, from, to, &self.kicks.shot())
     }
 }
 
@@ -105,11 +105,11 @@ mod tests {
         let direct = Scene::of(&scene, &kicks, from, Some(scene.ours[1].id), &scene.ours[2]);
         let mut places = Cell::all().map(|cell| cell.middle(&scene.field));
         let mut count = 0;
-        let taker = scene.ours[1].id;
+        let kicker = scene.ours[1].id;
         ByPassLocation::new(&kicks).worths(
             &scene,
             from,
-            taker,
+            kicker,
             &scene.ours[2],
             &mut places,
             &mut |at, worth| {
@@ -145,9 +145,9 @@ mod tests {
             // The values are compared here, whatever their size.
             let settings = Settings { least: Least::default(), ..Settings::of(league) };
             let mut planner = Planner::new(settings, Models::default());
-            let taker = scene.ours[1].id;
-            planner.observe(&scene, taker);
-            let plan = planner.plan(&scene, &value, taker, 1).unwrap();
+            let kicker = scene.ours[1].id;
+            planner.observe(&scene, kicker);
+            let plan = planner.plan(&scene, &value, kicker, 1).unwrap();
             assert_eq!(plan.coerce.coercers.len(), 3, "{league:?}");
             // An opponent on the path is drawn off it.
             for coercer in &plan.coerce.coercers {
@@ -157,13 +157,14 @@ mod tests {
             let receiver = *scene.our(plan.optimistic.receiver).unwrap();
             let worth = |theirs: &dyn Fn(&mut Robot)| {
                 let mut then = scene.clone();
-                then.ours.retain(|robot| robot.id == taker || robot.id == receiver.id);
+                then.ours.retain(|robot| robot.id == kicker || robot.id == receiver.id);
                 then.theirs.iter_mut().for_each(theirs);
                 let mut found = 0.0;
                 let mut place = [plan.optimistic.at].into_iter();
                 let from = Point::new(ball.0, ball.1);
-                value
-                    .worths(&then, from, taker, &receiver, &mut place, &mut |_, worth| found = worth.value());
+                value.worths(&then, from, kicker, &receiver, &mut place, &mut |_, worth| {
+                    found = worth.value()
+                });
                 found
             };
             let now = worth(&|_| {});

@@ -59,11 +59,11 @@ impl Detector {
     }
 
     /// Takes a snapshot; older ones count less and less, half of them after 0.35 s.
-    pub fn watch(&mut self, view: &View, taker: Option<RobotId>) {
+    pub fn watch(&mut self, view: &View, kicker: Option<RobotId>) {
         let since = self.seen.map_or(f32::INFINITY, |seen| view.now.since(seen).as_secs_f32());
         self.seen = Some(view.now);
         let keeps = if since < FORGOTTEN { geometry::math::exp(-since / MEMORY) } else { 0.0 };
-        let situation = Situation::new(view, self.models, taker);
+        let situation = Situation::new(view, self.models, kicker);
         let mut known = [None; ROBOTS_MAX];
         for robot in &view.theirs {
             let new = situation.likelihoods(robot.position);
@@ -84,8 +84,8 @@ impl Detector {
     }
 
     /// Estimates for each opponent of the view, by number; one never watched is judged by its present place.
-    pub fn read(&self, view: &View, taker: Option<RobotId>) -> heapless::Vec<Detected, ROBOTS_MAX> {
-        let situation = Situation::new(view, self.models, taker);
+    pub fn read(&self, view: &View, kicker: Option<RobotId>) -> heapless::Vec<Detected, ROBOTS_MAX> {
+        let situation = Situation::new(view, self.models, kicker);
         let read = |robot: &super::super::view::Robot| {
             let known = self.known[robot.id.index()];
             let now = || situation.likelihoods(robot.position);
@@ -135,15 +135,15 @@ mod tests {
     #[test]
     fn a_robot_that_keeps_to_ours_follows_it_and_one_passing_by_does_not() {
         let mut detector = Detector::new(Models::default());
-        let taker = RobotId::new(1);
+        let kicker = RobotId::new(1);
         for tick in 0..150_u64 {
             // 0 stands 0.4 m goal-side of our 2; 1 runs through our 3's mark and is far behind 0.8 s later.
             let y = (-3.0 + 0.05 * tick as f32).min(1.95);
             let view = snapshot(tick * 10, &[(1.358, -0.821), (1.3, y)]);
-            detector.watch(&view, taker);
+            detector.watch(&view, kicker);
         }
         let view = snapshot(1_500, &[(1.358, -0.821), (1.3, 1.95)]);
-        let read = detector.read(&view, taker);
+        let read = detector.read(&view, kicker);
         assert_eq!((read[0].tactic, read[0].follows), (Some(Tactic::Mark), RobotId::new(2)));
         assert!(!read[0].ball_side && (read[0].stand_off - 0.4).abs() < 0.02, "{:?}", read[0]);
         assert_eq!(read[1].tactic, None, "{:?}", read[1]);
@@ -152,17 +152,17 @@ mod tests {
     #[test]
     fn half_a_second_of_places_outweighs_one_snapshot() {
         let mut detector = Detector::new(Models::default());
-        let taker = RobotId::new(1);
+        let kicker = RobotId::new(1);
         for tick in 0..60 {
-            detector.watch(&snapshot(tick * 10, &[(2.7, 0.1)]), taker);
+            detector.watch(&snapshot(tick * 10, &[(2.7, 0.1)]), kicker);
         }
         // One snapshot in which the keeper is taken for another robot at our robot 2.
         let off = snapshot(600, &[(1.25, -0.9)]);
-        detector.watch(&off, taker);
-        assert_eq!(detector.read(&off, taker)[0].tactic, Some(Tactic::Goalkeeper));
+        detector.watch(&off, kicker);
+        assert_eq!(detector.read(&off, kicker)[0].tactic, Some(Tactic::Goalkeeper));
         // After a gap all estimates restart.
         let later = snapshot(5_000, &[(1.25, -0.9)]);
-        detector.watch(&later, taker);
-        assert_eq!(detector.read(&later, taker)[0].tactic, Some(Tactic::Mark));
+        detector.watch(&later, kicker);
+        assert_eq!(detector.read(&later, kicker)[0].tactic, Some(Tactic::Mark));
     }
 }

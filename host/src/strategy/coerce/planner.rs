@@ -15,7 +15,7 @@ use super::tactics::{Models, Situation};
 #[derive(Clone, Debug, PartialEq)]
 pub struct CapPlan {
     /// The robot that takes the kick.
-    pub taker: RobotId,
+    pub kicker: RobotId,
     /// The estimated tactic of each opponent (step 1).
     pub detected: heapless::Vec<Detected, ROBOTS_MAX>,
     /// The attack against the opponents that follow the ball only (step 2).
@@ -171,43 +171,43 @@ impl Planner {
     }
 
     /// Takes a snapshot for step 1; from some time before the plan is requested, on STOP for instance.
-    pub fn observe(&mut self, view: &View, taker: RobotId) {
-        self.detector.watch(view, Some(taker));
+    pub fn observe(&mut self, view: &View, kicker: RobotId) {
+        self.detector.watch(view, Some(kicker));
     }
 
-    /// Steps 1 to 3, for our free kick with `taker` at the ball. `None` where no attack is possible.
+    /// Steps 1 to 3, for our free kick with `kicker` at the ball. `None` where no attack is possible.
     pub fn plan(
         &mut self,
         view: &View,
         value: &dyn PassValue,
-        taker: RobotId,
+        kicker: RobotId,
         seed: u64,
     ) -> Option<&CapPlan> {
         (self.seed, self.begun, self.arrived, self.attack, self.over) = (seed, None, None, None, None);
-        self.plan = self.make(view, value, taker);
+        self.plan = self.make(view, value, kicker);
         if self.plan.is_none() {
             self.over = Some(End::NoAttack);
         }
         self.plan.as_ref()
     }
 
-    fn make(&self, view: &View, value: &dyn PassValue, taker: RobotId) -> Option<CapPlan> {
-        let detected = self.detector.read(view, Some(taker));
+    fn make(&self, view: &View, value: &dyn PassValue, kicker: RobotId) -> Option<CapPlan> {
+        let detected = self.detector.read(view, Some(kicker));
         let players: heapless::Vec<RobotId, ROBOTS_MAX> =
-            view.ours.iter().map(|robot| robot.id).filter(|id| *id != view.keeper && *id != taker).collect();
+            view.ours.iter().map(|robot| robot.id).filter(|id| *id != view.keeper && *id != kicker).collect();
         let pairs = pairs(view, &detected, &players);
         let coerces = |id: &RobotId| pairs.iter().any(|pair: &Pair| pair.robot == *id);
         let attackers: heapless::Vec<RobotId, ROBOTS_MAX> =
             players.iter().copied().filter(|id| !coerces(id)).collect();
         // All of them coerce: one will be used again.
         let receivers = if attackers.is_empty() { &players } else { &attackers };
-        let imagined = optimistic(view, &detected, taker, receivers);
+        let imagined = optimistic(view, &detected, kicker, receivers);
         let (attack, values) =
-            best_attack(&imagined, value, taker, receivers, self.settings.least, self.seed);
+            best_attack(&imagined, value, kicker, receivers, self.settings.least, self.seed);
         let attack = attack?;
-        let situation = Situation::new(view, *self.detector.models(), Some(taker));
+        let situation = Situation::new(view, *self.detector.models(), Some(kicker));
         let coerce = coerce(view, value, &situation, &pairs, &attack, &self.settings);
-        Some(CapPlan { taker, detected, optimistic: attack, values, coerce, attackers })
+        Some(CapPlan { kicker, detected, optimistic: attack, values, coerce, attackers })
     }
 
     /// Handles an attack that has become unlikely before the ball left: another one is searched while there
@@ -226,13 +226,13 @@ impl Planner {
             return Progress::Over(end);
         }
         let Some(plan) = &self.plan else { return Progress::Idle };
-        self.detector.watch(view, Some(plan.taker));
+        self.detector.watch(view, Some(plan.kicker));
         let end = match view.phase {
             Phase::FreeKick(Side::Ours) | Phase::Stop | Phase::BallPlacement(Side::Ours) => None,
             Phase::Run => Some(End::InPlay),
             _ => Some(End::Stopped),
         };
-        let gone = view.our(plan.taker).is_none()
+        let gone = view.our(plan.kicker).is_none()
             || self.attack.is_some_and(|attack| view.our(attack.plan.receiver).is_none());
         if let Some(end) = end.or(gone.then_some(End::NoAttack)) {
             self.over = Some(end);
@@ -293,7 +293,7 @@ impl Planner {
         if receivers.is_empty() {
             receivers.extend(coercers());
         }
-        let (attack, _) = best_attack(view, value, plan.taker, &receivers, self.settings.least, self.seed);
+        let (attack, _) = best_attack(view, value, plan.kicker, &receivers, self.settings.least, self.seed);
         attack.map(|attack| FinalAttack { plan: attack, followed, reused: coerced(attack.receiver) })
     }
 
@@ -323,7 +323,7 @@ impl Planner {
         let mut worth: Option<Worth> = None;
         if let (Some(ball), Some(receiver)) = (view.ball, view.our(receiver)) {
             let mut place = [plan.optimistic.at].into_iter();
-            value.worths(view, ball.position, plan.taker, receiver, &mut place, &mut |_, now| {
+            value.worths(view, ball.position, plan.kicker, receiver, &mut place, &mut |_, now| {
                 worth = Some(now);
             });
         }
@@ -347,7 +347,7 @@ impl Planner {
         };
         let post = |robot: &super::super::view::Robot| {
             let id = robot.id;
-            let (at, part) = if id == plan.taker {
+            let (at, part) = if id == plan.kicker {
                 (view.ball.map_or(robot.position, |ball| ball.position), Part::Takes)
             } else if let Some(attack) = self.attack.filter(|attack| attack.plan.receiver == id) {
                 (attack.plan.at, Part::Receives)
@@ -365,12 +365,12 @@ impl Planner {
 
 /// The view without the opponents that follow robots, and of ours only with keeper, taker and the receivers
 /// (§4.2: "only … ball-following tactics" count; and coercers will have left).
-fn optimistic(view: &View, detected: &[Detected], taker: RobotId, receivers: &[RobotId]) -> View {
+fn optimistic(view: &View, detected: &[Detected], kicker: RobotId, receivers: &[RobotId]) -> View {
     let mut imagined = view.clone();
     let follows = |id| detected.iter().any(|known| known.opponent == id && known.follows_robots());
     imagined.theirs.retain(|robot| !follows(robot.id));
     imagined
         .ours
-        .retain(|robot| robot.id == view.keeper || robot.id == taker || receivers.contains(&robot.id));
+        .retain(|robot| robot.id == view.keeper || robot.id == kicker || receivers.contains(&robot.id));
     imagined
 }

@@ -81,10 +81,10 @@ pub struct Situation<'v> {
 }
 
 impl<'v> Situation<'v> {
-    /// The situation in this snapshot, with `taker` at the ball.
-    pub fn new(view: &'v View, models: Models, taker: Option<protocol::RobotId>) -> Self {
+    /// The situation in this snapshot, with `kicker` at the ball.
+    pub fn new(view: &'v View, models: Models, kicker: Option<protocol::RobotId>) -> Self {
         let ball = view.ball.map_or(Point::new(0.0, 0.0), |ball| ball.position);
-        let marked = |robot: &super::super::view::Robot| robot.id != view.keeper && Some(robot.id) != taker;
+        let marked = |robot: &super::super::view::Robot| robot.id != view.keeper && Some(robot.id) != kicker;
         let marked = view.ours.iter().enumerate().filter(|(_, robot)| marked(robot)).map(|(i, _)| i);
         let goal = view.their_goal();
         let keeper_front =
@@ -100,8 +100,8 @@ impl<'v> Situation<'v> {
     /// Within the defence area, on the ball's path to the goal.
     fn goalkeeper(&self, at: Point<Attack>) -> f32 {
         let out = Edge::of(&self.view.field, 0.0).distance_to(turned(at)).max(0.0);
-        let way = Segment::new(self.view.their_goal(), self.keeper_front);
-        bell(way.distance_to(at), self.models.spread) * bell(out, self.models.outside)
+        let path = Segment::new(self.view.their_goal(), self.keeper_front);
+        bell(path.distance_to(at), self.models.spread) * bell(out, self.models.outside)
     }
 
     /// At the edge of the defence area, within the angle from the ball to the goal's posts.
@@ -201,9 +201,9 @@ mod tests {
     #[test]
     fn every_model_gives_the_values_computed_by_hand() {
         let view = scene();
-        let taker = Some(view.ours[1].id);
+        let kicker = Some(view.ours[1].id);
         let models = Models::default();
-        let situation = Situation::new(&view, models, taker);
+        let situation = Situation::new(&view, models, kicker);
         let at = |x: f32, y: f32| situation.likelihoods(Point::new(x, y));
         // Goalkeeper: in the area, 0.1 m beside the line from (3, 0) to (0, 1): exp(−0.5 · 0.4²).
         let line = Segment::new(Point::<Attack>::new(3.0, 0.0), Point::new(0.0, 1.0));

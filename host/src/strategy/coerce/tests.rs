@@ -37,8 +37,8 @@ impl PassValue for ByDistance {
         take: &mut dyn FnMut(Point<Attack>, Worth),
     ) {
         for at in places {
-            let product = |way: Segment<Attack>| {
-                view.theirs.iter().map(|robot| Self::free(way.distance_to(robot.position))).product::<f32>()
+            let product = |path: Segment<Attack>| {
+                view.theirs.iter().map(|robot| Self::free(path.distance_to(robot.position))).product::<f32>()
             };
             let goal = view.their_goal();
             let legal = !view.in_their_area(at, 0.3) && at.distance(from) > 0.8;
@@ -124,9 +124,9 @@ fn the_optimistic_attack_sees_ball_followers_only() {
     assert_eq!(plan.optimistic.against, 3);
     // Its value is above that against all opponents, and the best of all cells by hand.
     let mut seen = view.clone();
-    let (_, everybody) = attack::best_attack(&seen, &ByDistance, id(1), &[id(5)], ANY, 1);
-    assert!(everybody.iter().zip(&plan.values).all(|(all, some)| all <= some));
-    assert!(everybody.iter().zip(&plan.values).any(|(all, some)| all < some));
+    let (_, all_robots) = attack::best_attack(&seen, &ByDistance, id(1), &[id(5)], ANY, 1);
+    assert!(all_robots.iter().zip(&plan.values).all(|(all, some)| all <= some));
+    assert!(all_robots.iter().zip(&plan.values).any(|(all, some)| all < some));
     seen.theirs.truncate(3);
     let mut best = (0.0, None);
     let receiver = *seen.our(id(5)).unwrap();
@@ -157,7 +157,7 @@ fn coercers_go_where_their_followers_are_least_in_the_way() {
         let goal = view.their_goal();
         let expected = coercer.at + (goal - coercer.at).unit().unwrap() * 0.3;
         assert!(expected.distance(coercer.expected) < 0.05, "{coercer:?}");
-        let free = |way: Segment<Attack>| ByDistance::free(way.distance_to(coercer.expected));
+        let free = |path: Segment<Attack>| ByDistance::free(path.distance_to(coercer.expected));
         let by_hand = 1.0 - free(pass) * free(shot);
         assert!((coercer.interference - by_hand).abs() < 1e-5 && by_hand < 0.01, "{coercer:?}");
         assert!(pass.distance_to(coercer.at) >= 0.5 && shot.distance_to(coercer.at) >= 0.5);
@@ -346,12 +346,12 @@ impl PassValue for Counting {
         &self,
         view: &View,
         from: Point<Attack>,
-        taker: RobotId,
+        kicker: RobotId,
         receiver: &Robot,
         places: &mut dyn Iterator<Item = Point<Attack>>,
         take: &mut dyn FnMut(Point<Attack>, Worth),
     ) {
-        ByDistance.worths(view, from, taker, receiver, places, &mut |at, worth| {
+        ByDistance.worths(view, from, kicker, receiver, places, &mut |at, worth| {
             self.worths.set(self.worths.get() + 1);
             take(at, worth);
         });

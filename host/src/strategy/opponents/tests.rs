@@ -71,8 +71,8 @@ fn a_marker_stands_between_each_opponent_and_the_goal() {
             .find(|order| matches!(order.why, Why::Marks { opponent } if opponent == them.id))
             .unwrap();
         let Task::GoTo { at, .. } = marker.task else { panic!("{marker:?}") };
-        let (way, goal) = (view.our_goal() - them.position, at - them.position);
-        assert!(goal.norm() < 0.31 && way.unit().unwrap().dot(goal) > 0.29, "{marker:?}");
+        let (to_goal, goal) = (view.our_goal() - them.position, at - them.position);
+        assert!(goal.norm() < 0.31 && to_goal.unit().unwrap().dot(goal) > 0.29, "{marker:?}");
     }
 }
 

@@ -41,10 +41,10 @@ impl Places {
     /// For a pass from `from` as rated.
     pub fn of(from: Point<Attack>, rating: &Rating) -> Self {
         let reach = kick_reach(ROBOT_RADIUS, BALL_RADIUS);
-        let onwards = if rating.shot.one_touch { rating.shot.aim } else { from };
+        let heading_after = if rating.shot.one_touch { rating.shot.aim } else { from };
         Self {
             passer: (kick_place(from, rating.at, reach), from.direction_to(rating.at)),
-            receiver: (kick_place(rating.at, onwards, reach), rating.at.direction_to(onwards)),
+            receiver: (kick_place(rating.at, heading_after, reach), rating.at.direction_to(heading_after)),
         }
     }
 }

@@ -56,8 +56,8 @@ pub fn refine(scene: &Scene<'_>, place: Point<Attack>, radius: f32) -> Refined {
     };
     for i in 1..=SEEDS {
         // Even in area: √ of the share; the golden angle apart.
-        let way = radius * math::sqrt(i as f32 * (1.0 / SEEDS as f32)) * INSIDE;
-        look(&mut best, place + Vector::polar(way, Angle::new(i as f32 * GOLDEN_ANGLE)));
+        let path = radius * math::sqrt(i as f32 * (1.0 / SEEDS as f32)) * INSIDE;
+        look(&mut best, place + Vector::polar(path, Angle::new(i as f32 * GOLDEN_ANGLE)));
     }
     let mut step = radius * FIRST_STEP;
     for _ in 0..ROUNDS {

@@ -193,7 +193,7 @@ mod tests {
         Opponent { id: RobotId::new(id).unwrap(), mover }
     }
 
-    fn way(length: f32) -> BallPath {
+    fn path(length: f32) -> BallPath {
         let (from, along) = (Point::new(0.0, 0.0), Vector::new(1.0, 0.0));
         BallPath { from, along, length, body: 0.1115, reaction: 0.1 }
     }
@@ -205,10 +205,10 @@ mod tests {
     #[test]
     fn a_body_on_the_way_has_the_ball_and_one_far_off_never() {
         let kick = kicks().flat(3.0);
-        let on_it = way(3.0).flat(&kick, &[opponent(4, (1.5, 0.05), (0.0, 0.0))]).unwrap();
+        let on_it = path(3.0).flat(&kick, &[opponent(4, (1.5, 0.05), (0.0, 0.0))]).unwrap();
         // It covers every place up to 1.5 + √(0.1115² − 0.05²); the end it has to drive to.
         assert!(on_it.id.number() == 4 && on_it.margin < -0.4, "{on_it:?}");
-        assert_eq!(way(3.0).flat(&kick, &[opponent(4, (1.5, 4.0), (0.0, 0.0))]), None);
+        assert_eq!(path(3.0).flat(&kick, &[opponent(4, (1.5, 4.0), (0.0, 0.0))]), None);
     }
 
     #[test]
@@ -217,7 +217,7 @@ mod tests {
         // 0.1115 = 0.745192 m from touching a ball at the end: 2 √(0.745192 / 3.5) + 0.1 = 1.022853 s, which
         // is 0.276890 s sooner than the ball.
         let kick = kicks().flat(3.0);
-        let found = way(3.0).flat(&kick, &[opponent(2, (2.4, 0.6115), (0.0, 0.0))]).unwrap();
+        let found = path(3.0).flat(&kick, &[opponent(2, (2.4, 0.6115), (0.0, 0.0))]).unwrap();
         assert!((found.margin + 0.276_890).abs() < 1e-4 && found.along == 3.0, "{found:?}");
     }
 
@@ -226,12 +226,12 @@ mod tests {
         let kicks = kicks();
         let chip = kicks.chip(3.0).unwrap();
         let under_the_arch = [opponent(1, (1.0, 0.0), (0.0, 0.0))];
-        let over = way(3.0).chip(&chip, &under_the_arch).map_or(SAFE, |found| found.margin);
-        let flat = way(3.0).flat(&kicks.flat(3.0), &under_the_arch).unwrap().margin;
+        let over = path(3.0).chip(&chip, &under_the_arch).map_or(SAFE, |found| found.margin);
+        let flat = path(3.0).flat(&kicks.flat(3.0), &under_the_arch).unwrap().margin;
         assert!(over > 0.0 && flat < -0.1, "{over} {flat}");
         // Where it comes down it is stopped.
         let where_it_lands = [opponent(1, (chip.lands + 0.2, 0.0), (0.0, 0.0))];
-        assert!(way(3.0).chip(&chip, &where_it_lands).unwrap().margin < -0.5);
+        assert!(path(3.0).chip(&chip, &where_it_lands).unwrap().margin < -0.5);
     }
 
     #[test]
@@ -242,7 +242,7 @@ mod tests {
         let (mut counted, mut far, mut sum, mut worst) = (0, 0, 0.0_f32, 0.0_f32);
         for round in 0..2_000 {
             let length = 2.6 + within(2.0);
-            let way = way(length);
+            let path = path(length);
             let speed = if round % 2 == 0 { 0.0 } else { 1.5 };
             let opponents: Vec<_> = (0..4)
                 .map(|i| {
@@ -253,9 +253,9 @@ mod tests {
             for chip in [None, kicks.chip(length)] {
                 let flat = kicks.flat(length);
                 let (found, touchable): (_, Box<dyn Fn(f32) -> Option<f32>>) = match chip {
-                    None => (way.flat(&flat, &opponents), Box::new(|s| Some(flat.at(s).0))),
+                    None => (path.flat(&flat, &opponents), Box::new(|s| Some(flat.at(s).0))),
                     Some(chip) => (
-                        way.chip(&chip, &opponents),
+                        path.chip(&chip, &opponents),
                         Box::new(move |s| (s < chip.over.0 || s > chip.over.1).then(|| chip.at(s).0)),
                     ),
                 };
@@ -265,7 +265,7 @@ mod tests {
                     let Some(ball) = touchable(s) else { continue };
                     for opponent in &opponents {
                         let place = Point::new(s, 0.0);
-                        truth = truth.min(way.touch_time(&opponent.mover, place) - ball);
+                        truth = truth.min(path.touch_time(&opponent.mover, place) - ball);
                     }
                 }
                 let found = found.map_or(SAFE, |found| found.margin).max(-SAFE);

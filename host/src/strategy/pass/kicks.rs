@@ -76,18 +76,18 @@ impl FlatKick {
     /// and 0.
     #[inline]
     pub fn at(&self, distance: f32) -> (f32, f32) {
-        let (start, way, deceleration, before) = if distance <= self.slide_distance {
+        let (start, ball_path, deceleration, before) = if distance <= self.slide_distance {
             (self.speed, distance, self.slide, 0.0)
         } else {
             (self.roll_speed, distance - self.slide_distance, self.roll, self.slide_time)
         };
-        let squared = start * start - 2.0 * deceleration * way;
+        let squared = start * start - 2.0 * deceleration * ball_path;
         if squared < 0.0 {
             return (NEVER, 0.0);
         }
         let speed = math::sqrt(squared);
         // (start − speed) / deceleration, without cancellation.
-        (before + 2.0 * way / (start + speed).max(1e-6), speed)
+        (before + 2.0 * ball_path / (start + speed).max(1e-6), speed)
     }
 }
 

@@ -83,12 +83,12 @@ impl Mover {
     /// Distance, speed towards the place, speed across.
     #[inline]
     fn towards(&self, to: Point<Attack>) -> (f32, f32, f32) {
-        let way = to - self.position;
-        let distance = way.norm();
+        let path = to - self.position;
+        let distance = path.norm();
         if distance < ON_THE_SPOT {
             return (0.0, 0.0, self.running);
         }
-        let along = way * (1.0 / distance);
+        let along = path * (1.0 / distance);
         (distance, self.velocity.dot(along), along.cross(self.velocity))
     }
 
@@ -108,8 +108,8 @@ impl Mover {
         if squared <= self.speed * self.speed || ahead > self.speed {
             return first + (2.0 * math::sqrt(squared) - ahead) * self.per_acceleration;
         }
-        let ways = (self.speed * self.speed - 0.5 * ahead * ahead) * self.per_acceleration;
-        first + (2.0 * self.speed - ahead) * self.per_acceleration + (distance - ways) * self.per_speed
+        let paths = (self.speed * self.speed - 0.5 * ahead * ahead) * self.per_acceleration;
+        first + (2.0 * self.speed - ahead) * self.per_acceleration + (distance - paths) * self.per_speed
     }
 }
 

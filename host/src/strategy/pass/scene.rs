@@ -171,15 +171,16 @@ impl<'k> Scene<'k> {
 
     /// P(c2) of a flat pass and of a chip to `at`, each by itself; 0 where no such chip can be kicked.
     pub fn not_intercepted(&self, at: Point<Attack>) -> [f32; 2] {
-        let (way, c) = (self.way(at - self.from), self.kicks.constants());
+        let (path, c) = (self.path(at - self.from), self.kicks.constants());
         let of = |found: Option<Interceptor>, chip: bool| {
             given::not_intercepted(found.map_or(SAFE, |found| found.margin), chip, c)
         };
-        let chip = self.kicks.chip(way.length).map_or(0.0, |chip| of(way.chip(&chip, &self.opponents), true));
-        [of(way.flat(&self.kicks.flat(way.length), &self.opponents), false), chip]
+        let chip =
+            self.kicks.chip(path.length).map_or(0.0, |chip| of(path.chip(&chip, &self.opponents), true));
+        [of(path.flat(&self.kicks.flat(path.length), &self.opponents), false), chip]
     }
 
-    fn way(&self, off: Vector<Attack>) -> BallPath {
+    fn path(&self, off: Vector<Attack>) -> BallPath {
         let length = off.norm();
         let along = if length > ON_THE_SPOT { off * (1.0 / length) } else { Vector::new(1.0, 0.0) };
         let reaction = self.kicks.constants().reaction;
@@ -195,8 +196,8 @@ impl<'k> Scene<'k> {
     /// 1.
     fn weigh(&self, at: Point<Attack>, floor: f32) -> Rating {
         let c = self.kicks.constants();
-        let way = self.way(at - self.from);
-        let BallPath { along, length, .. } = way;
+        let path = self.path(at - self.from);
+        let BallPath { along, length, .. } = path;
         let spoiler = self.spoiler(at, c);
         let goal = Point::new(self.opening.x, 0.0);
         let mut rating = Rating {
@@ -249,10 +250,10 @@ impl<'k> Scene<'k> {
         rating.ball_time = flat.at(length).0;
         rating.receive_factors[2] = given::time_to_react(rating.ball_time, c);
         rating.interceptor =
-            way.flat_until(&flat, &self.opponents, enough(floor, first * rating.receive_factors[2], c));
+            path.flat_until(&flat, &self.opponents, enough(floor, first * rating.receive_factors[2], c));
         let margin = rating.interceptor.map_or(SAFE, |found| found.margin);
         rating.receive_factors[1] = given::not_intercepted(margin, false, c);
-        self.chip_if_better(&way, &mut rating, floor, c);
+        self.chip_if_better(&path, &mut rating, floor, c);
         rating
     }
 
@@ -267,7 +268,7 @@ impl<'k> Scene<'k> {
 
     /// A chip instead, where it is likelier to end in a goal. It gives more time (c3) and passes over
     /// opponents (c2), but bounces: no one-touch shot follows (c3').
-    fn chip_if_better(&self, way: &BallPath, rating: &mut Rating, floor: f32, c: &PassConstants) {
+    fn chip_if_better(&self, path: &BallPath, rating: &mut Rating, floor: f32, c: &PassConstants) {
         let flat = rating.receive_factors[1] * rating.receive_factors[2] * rating.goal_factors[2];
         let most = c.chip_prior * c.turn_prior;
         let others = rating.value() / flat.max(f32::MIN_POSITIVE);
@@ -275,9 +276,9 @@ impl<'k> Scene<'k> {
         if flat >= most || others * most <= floor.max(WORTH_A_CHIP) {
             return;
         }
-        let Some(kick) = self.kicks.chip(way.length) else { return };
-        let interceptor = way.chip(&kick, &self.opponents);
-        let ball_time = kick.at(way.length).0;
+        let Some(kick) = self.kicks.chip(path.length) else { return };
+        let interceptor = path.chip(&kick, &self.opponents);
+        let ball_time = kick.at(path.length).0;
         let c2 = given::not_intercepted(interceptor.map_or(SAFE, |found| found.margin), true, c);
         let c3 = given::time_to_react(ball_time, c);
         let in_time = given::shot_in_time(false, c);
@@ -295,9 +296,9 @@ impl<'k> Scene<'k> {
     fn model(&self, at: Point<Attack>, receiver_time: f32) -> Option<(RobotId, f32)> {
         let mut soonest = (None, receiver_time + SAFE);
         for opponent in &self.opponents {
-            let way = at - opponent.mover.position;
+            let path = at - opponent.mover.position;
             let reach = opponent.mover.farthest(soonest.1);
-            if way.dot(way) > reach * reach {
+            if path.dot(path) > reach * reach {
                 continue;
             }
             let time = opponent.mover.time_to(at);
@@ -349,10 +350,10 @@ impl<'k> Scene<'k> {
     /// The shot that follows a pass which comes along `along`.
     fn shot(&self, at: Point<Attack>, along: Vector<Attack>, c: &PassConstants) -> ShotFrom {
         let open = self.opening.open_from(at, self.opponents.iter().map(|opponent| opponent.mover.position));
-        let way = open.aim - at;
-        let distance = way.norm();
+        let path = open.aim - at;
+        let distance = path.norm();
         // Angle between the incoming and the outgoing path of the ball, at the receiver.
-        let one_touch = -along.dot(way) >= c.one_touch_cos * distance;
+        let one_touch = -along.dot(path) >= c.one_touch_cos * distance;
         ShotFrom { aim: open.aim, angle: open.angle, time: self.shot.at(distance).0, one_touch }
     }
 }

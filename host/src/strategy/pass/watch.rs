@@ -166,8 +166,8 @@ impl PassWatch {
         let after = world.time.since(flight.since).as_secs_f32();
         let off = ball.position.distance(to);
         flight.nearest = flight.nearest.min(off);
-        let way = to - from;
-        let passed = (ball.position - to).dot(way) >= 0.0;
+        let path = to - from;
+        let passed = (ball.position - to).dot(path) >= 0.0;
         if passed && flight.receiver_off.is_none() {
             let robot = world.robot(Who { colour: us, id: receiver });
             flight.receiver_off = Some(robot.map_or(f32::INFINITY, |robot| robot.pose.position.distance(to)));
@@ -177,7 +177,7 @@ impl PassWatch {
                 (true, id) if id == receiver => Verdict::Received { off, late: after - self.ordered.flight },
                 (true, by) => Verdict::ByTeammate { by, off },
                 (false, by) => {
-                    let along = way.unit().map_or(0.0, |along| (ball.position - from).dot(along));
+                    let along = path.unit().map_or(0.0, |along| (ball.position - from).dot(along));
                     Verdict::Intercepted { by, along, after }
                 }
             });

@@ -162,11 +162,11 @@ mod tests {
             let (mut free, rays) = (0, 20_000);
             for ray in 0..rays {
                 let y = -0.5 + (ray as f32 + 0.5) / rays as f32;
-                let way = geometry::Segment::new(opening.from, Point::new(-4.5, y));
+                let path = geometry::Segment::new(opening.from, Point::new(-4.5, y));
                 // Bodies behind the line do not occur here, so the segment to the goal line decides.
-                if bodies.iter().all(|body| way.distance_to(*body) > BODY) {
+                if bodies.iter().all(|body| path.distance_to(*body) > BODY) {
                     free += 1;
-                    let off = (way.vector().angle() - opening.middle).radians();
+                    let off = (path.vector().angle() - opening.middle).radians();
                     assert!(
                         gaps.iter().any(|gap| gap.right - 1e-3 < off && off < gap.left + 1e-3),
                         "{i} {y}"

@@ -212,11 +212,11 @@ impl Giving<'_> {
             let candidates = self.free.iter().chain(on_edge.as_ref().map(|(robot, _)| robot));
             let chosen = roles::choose(candidates, had, self.settings.worth, |robot| {
                 let place = on_edge.filter(|(spare, _)| spare.id == robot.id).map(|(_, place)| place);
-                let way = robot.position.distance(place.unwrap_or(position.at));
+                let to_go = robot.position.distance(place.unwrap_or(position.at));
                 // A robot with another task that is still wanted keeps that, or one new task would move all
                 // robots.
                 let has_other = had != Some(robot.id) && wanted.contains(&robot.id);
-                if has_other { way + self.settings.worth } else { way }
+                if has_other { to_go + self.settings.worth } else { to_go }
             });
             let Some((robot, _)) = chosen else { continue };
             let place = on_edge.filter(|(spare, _)| spare.id == robot).map(|(_, place)| place);

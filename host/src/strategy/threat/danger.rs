@@ -115,9 +115,9 @@ fn danger(
 /// Passing time plus shot time, s: a pass that arrives with 2.5 m/s, a shot of 6.2 m/s.
 pub fn time_to_shoot(pass: f32, shot: f32) -> f32 {
     let model = BallModel::default();
-    let time = |speed: f32, way: f32| {
+    let time = |speed: f32, travel: f32| {
         let velocity = geometry::Vector::<Attack>::new(speed, 0.0);
-        model.kicked(Point::default(), velocity).time_to(way).unwrap_or(f32::INFINITY)
+        model.kicked(Point::default(), velocity).time_to(travel).unwrap_or(f32::INFINITY)
     };
     time(model.kick_speed(pass, ARRIVES).min(SHOT), pass) + time(SHOT, shot)
 }
@@ -125,15 +125,15 @@ pub fn time_to_shoot(pass: f32, shot: f32) -> f32 {
 /// On the line from our goal's middle to the opponent, as far out as our robot can react to its start in time
 /// ([`share`]), off its body, and out of our area. With it the share of the distance.
 pub fn block_shot(view: &View, opponent: Point<Attack>, settings: &Settings) -> (Point<Attack>, f32) {
-    let (goal, way) = (view.our_goal(), opponent - view.our_goal());
-    let length = way.norm().max(settings.clear);
+    let (goal, travel) = (view.our_goal(), opponent - view.our_goal());
+    let length = travel.norm().max(settings.clear);
     let share = share(settings).min(1.0 - settings.clear / length).max(0.0);
-    let at = goal + way * share;
+    let at = goal + travel * share;
     let edge = Edge::of(&view.field, settings.off_area);
     if edge.distance_to(at) >= 0.0 {
         return (legal(view, at, settings), share);
     }
-    let at = edge.crossing(goal, way);
+    let at = edge.crossing(goal, travel);
     (legal(view, at, settings), at.distance(goal) / length)
 }
 

@@ -54,14 +54,14 @@ impl Edge {
         let along = along.clamp(0.0, self.length());
         let middle = 0.5 * self.length();
         // From the middle of the front, the same to either side.
-        let (side, way) = if along < middle { (-1.0, middle - along) } else { (1.0, along - middle) };
-        let (out, y) = if way <= self.beside {
-            (self.ahead + self.radius, way)
-        } else if way <= self.beside + self.arc() {
-            let (s, c) = math::sin_cos((way - self.beside) / self.radius);
+        let (side, from_middle) = if along < middle { (-1.0, middle - along) } else { (1.0, along - middle) };
+        let (out, y) = if from_middle <= self.beside {
+            (self.ahead + self.radius, from_middle)
+        } else if from_middle <= self.beside + self.arc() {
+            let (s, c) = math::sin_cos((from_middle - self.beside) / self.radius);
             (self.ahead + self.radius * c, self.beside + self.radius * s)
         } else {
-            (self.ahead - (way - self.beside - self.arc()), self.beside + self.radius)
+            (self.ahead - (from_middle - self.beside - self.arc()), self.beside + self.radius)
         };
         Point::new(self.goal.x() + out, side * y)
     }
@@ -69,7 +69,7 @@ impl Edge {
     /// Distance along the edge of its point nearest to a place, m.
     pub fn along(&self, place: Point<Attack>) -> f32 {
         let (x, y) = self.corner(place);
-        let way = if x > 0.0 && y > 0.0 {
+        let from_middle = if x > 0.0 && y > 0.0 {
             self.beside + self.radius * math::atan2(y, x)
         } else if x >= y {
             (self.beside + y).max(0.0)
@@ -77,7 +77,7 @@ impl Edge {
             self.beside + self.arc() + (-x).min(self.ahead)
         };
         let side = if place.y() < 0.0 { -1.0 } else { 1.0 };
-        0.5 * self.length() + side * way
+        0.5 * self.length() + side * from_middle
     }
 
     /// Its point nearest to a place.

@@ -14,7 +14,7 @@ fn id(n: u8) -> RobotId {
     RobotId::new(n).unwrap()
 }
 
-fn everybody(view: &View) -> RobotSet {
+fn all_robots(view: &View) -> RobotSet {
     let mut team = RobotSet::default();
     view.ours.iter().for_each(|robot| team.insert(robot.id));
     team
@@ -54,7 +54,7 @@ fn whatever_the_snapshot_every_robot_has_one_legal_place_at_most() {
             if let Some(ball) = &mut view.ball {
                 ball.velocity = Vector::new(noise.within(4.0), noise.within(4.0));
             }
-            let defence = defend(&view, everybody(&view), &mut memory, &settings);
+            let defence = defend(&view, all_robots(&view), &mut memory, &settings);
             let mut seen = RobotSet::default();
             for assignment in &defence.assignments {
                 assert!(!seen.has(assignment.robot), "twice: {assignment:?}");
@@ -87,7 +87,7 @@ fn the_nearest_defenders_take_the_best_ranked_positions() {
     let theirs = [(4.4, 0.0), (-1.0, -0.1), (-2.4, 2.0), (-1.8, -1.5)];
     let view = view((-0.9, 0.0), &ours, &theirs);
     let mut memory = Memory::default();
-    let defence = defend(&view, everybody(&view), &mut memory, &Settings::default());
+    let defence = defend(&view, all_robots(&view), &mut memory, &Settings::default());
     assert_eq!(defence.threat.because, receiving::Because::Ball);
     // The holder (1) and their keeper (0) are no second-level threats.
     let dangers: Vec<_> = defence.dangers.iter().map(|danger| danger.opponent.number()).collect();
@@ -105,7 +105,7 @@ fn a_blocked_shot_stays_blocked_until_the_primaries_have_come_over() {
     let theirs = [(4.4, 0.0), (-1.5, -1.7), (-2.0, 2.0)];
     let mut scene = view((-1.4, -1.6), &ours, &theirs);
     let mut memory = Memory::default();
-    let before = defend(&scene, everybody(&scene), &mut memory, &settings);
+    let before = defend(&scene, all_robots(&scene), &mut memory, &settings);
     let of = |defence: &Defence, n: u8| defence.assignments.iter().find(|a| a.robot == id(n)).unwrap().guards;
     assert!(
         matches!(of(&before, 3), Guards::SecondLevel { opponent, blocks: Blocks::Shot, .. } if opponent == id(2))
@@ -113,18 +113,18 @@ fn a_blocked_shot_stays_blocked_until_the_primaries_have_come_over() {
     // 1 passes to 2: (−0.6, 3.6) away, at 4 m/s.
     scene.ball.as_mut().unwrap().velocity = Vector::new(-0.657, 3.945);
     scene.ball.as_mut().unwrap().position = Point::new(-1.5, -1.0);
-    let during = defend(&scene, everybody(&scene), &mut memory, &settings);
+    let during = defend(&scene, all_robots(&scene), &mut memory, &settings);
     assert_eq!(during.threat.receiver(), Some(id(2)));
     let Guards::Held { opponent, primaries_off } = of(&during, 3) else { panic!("{during:#?}") };
     assert!(opponent == id(2) && primaries_off > 0.5);
-    let again = defend(&scene, everybody(&scene), &mut memory, &settings);
+    let again = defend(&scene, all_robots(&scene), &mut memory, &settings);
     assert!(matches!(of(&again, 3), Guards::Held { .. }), "it holds from tick to tick");
     // The primaries arrive.
     let places: Vec<_> =
         [1, 2].map(|n| again.assignments.iter().find(|a| a.robot == id(n)).unwrap().at).into_iter().collect();
     scene.ours[1].position = places[0];
     scene.ours[2].position = places[1];
-    let after = defend(&scene, everybody(&scene), &mut memory, &settings);
+    let after = defend(&scene, all_robots(&scene), &mut memory, &settings);
     assert!(!matches!(of(&after, 3), Guards::Held { .. }), "{after:#?}");
 }
 
@@ -158,7 +158,7 @@ fn changes_over_a_sequence(sigma: f32, settings: &Settings, forgetful: bool) -> 
         if forgetful {
             memory = Memory::default();
         }
-        let defence = defend(&seen, everybody(&seen), &mut memory, settings);
+        let defence = defend(&seen, all_robots(&seen), &mut memory, settings);
         for assignment in &defence.assignments {
             let n = assignment.robot.index();
             let same = |a: Guards, b: Guards| match (a, b) {
@@ -198,7 +198,7 @@ fn at_their_free_kick_places_keep_off_the_ball() {
     let ours = [(-4.4, 0.0), (-3.3, 0.3), (-3.3, -0.3), (-2.0, 1.6)];
     let mut view = view((-3.0, 1.2), &ours, &[(4.4, 0.0), (-2.9, 1.3), (-2.4, 2.0)]);
     view.phase = Phase::FreeKick(Side::Theirs);
-    let defence = defend(&view, everybody(&view), &mut Memory::default(), &Settings::default());
+    let defence = defend(&view, all_robots(&view), &mut Memory::default(), &Settings::default());
     let ball = view.ball.unwrap().position;
     for assignment in defence.assignments.iter().skip(1) {
         assert!(assignment.at.distance(ball) > 0.59, "{assignment:?}");

@@ -43,14 +43,14 @@ impl HiddenBall {
         }
         if let Some(ball) = world.ball {
             self.last = Some(ball);
-            let hides = |robot: &&Robot| mouth(robot).distance(ball.position) < HIDES;
+            let hides = |robot: &&Robot| dribbler_point(robot).distance(ball.position) < HIDES;
             self.by = world.theirs(us).find(hides).map(|robot| robot.who);
             return;
         }
         let holder = world.ours(us).find(|robot| feels(robot.who.id));
         if let (Some(robot), Some(last)) = (holder, &mut self.last) {
             // Where it lies if it is released: a ball released at speed is soon visible.
-            (last.position, last.velocity) = (mouth(robot), Vector::default());
+            (last.position, last.velocity) = (dribbler_point(robot), Vector::default());
             (last.height, last.climb) = (0.0, 0.0);
             self.by = None;
         }
@@ -58,7 +58,7 @@ impl HiddenBall {
         let hider = holder.or_else(|| world.theirs(us).find(theirs));
         let lies = matches!(game.phase, Phase::Stop | Phase::FreeKick(_));
         let (position, velocity) = match (hider, self.placed, &self.last) {
-            (Some(robot), ..) => (mouth(robot), robot.velocity),
+            (Some(robot), ..) => (dribbler_point(robot), robot.velocity),
             (None, Some(placed), _) if lies => (placed, Vector::default()),
             (None, _, Some(last)) => (last.rest(&world.models), Vector::default()),
             (None, _, None) => return,
@@ -69,7 +69,7 @@ impl HiddenBall {
 }
 
 /// The middle of a robot's front, where a ball at the dribbler is.
-fn mouth(robot: &Robot) -> Point<Field> {
+fn dribbler_point(robot: &Robot) -> Point<Field> {
     robot.pose.to_field(Point::new(rules::limits::ROBOT_RADIUS, 0.0))
 }
 
@@ -82,7 +82,7 @@ mod tests {
     use super::*;
     use geometry::Pose;
 
-    const NOBODY: fn(RobotId) -> bool = |_| false;
+    const NO_ROBOT: fn(RobotId) -> bool = |_| false;
 
     fn robot(who: Who, x: f32) -> Robot {
         Robot {
@@ -120,17 +120,17 @@ mod tests {
         let mut world = World::default();
         world.put(robot(ours, 1.0));
         world.put(robot(theirs, 2.0));
-        assert_eq!(x_of(&mut hidden, &world, Phase::Run, NOBODY), None, "nobody has ever seen it");
+        assert_eq!(x_of(&mut hidden, &world, Phase::Run, NO_ROBOT), None, "nobody has ever seen it");
         world.ball = Some(ball(3.0));
-        assert_eq!(x_of(&mut hidden, &world, Phase::Run, NOBODY), Some(3.0));
+        assert_eq!(x_of(&mut hidden, &world, Phase::Run, NO_ROBOT), Some(3.0));
         world.ball = None;
-        assert_eq!(x_of(&mut hidden, &world, Phase::Run, NOBODY), Some(3.0));
+        assert_eq!(x_of(&mut hidden, &world, Phase::Run, NO_ROBOT), Some(3.0));
         assert_eq!(x_of(&mut hidden, &world, Phase::Run, |_| true), Some(1.09));
-        assert_eq!(x_of(&mut hidden, &world, Phase::Run, NOBODY), Some(1.09), "let go, and still hidden");
+        assert_eq!(x_of(&mut hidden, &world, Phase::Run, NO_ROBOT), Some(1.09), "let go, and still hidden");
         world.ball = Some(ball(2.1));
-        x_of(&mut hidden, &world, Phase::Run, NOBODY);
+        x_of(&mut hidden, &world, Phase::Run, NO_ROBOT);
         world.ball = None;
-        assert_eq!(x_of(&mut hidden, &world, Phase::Run, NOBODY), Some(2.09));
+        assert_eq!(x_of(&mut hidden, &world, Phase::Run, NO_ROBOT), Some(2.09));
     }
 
     #[test]
@@ -138,12 +138,12 @@ mod tests {
         let (mut hidden, mut world) = (HiddenBall::default(), World::default());
         let (placement, free_kick) = (Phase::BallPlacement(Colour::Blue), Phase::FreeKick(Colour::Blue));
         world.ball = Some(ball(3.0));
-        x_of(&mut hidden, &world, placement, NOBODY);
+        x_of(&mut hidden, &world, placement, NO_ROBOT);
         world.ball = None;
-        assert_eq!(x_of(&mut hidden, &world, placement, NOBODY), Some(3.0), "it is still on its way");
-        assert_eq!(x_of(&mut hidden, &world, Phase::Stop, NOBODY), Some(-4.0));
-        assert_eq!(x_of(&mut hidden, &world, free_kick, NOBODY), Some(-4.0));
-        assert_eq!(x_of(&mut hidden, &world, Phase::Run, NOBODY), Some(3.0));
-        assert_eq!(x_of(&mut hidden, &world, free_kick, NOBODY), Some(3.0), "another restart, not placed");
+        assert_eq!(x_of(&mut hidden, &world, placement, NO_ROBOT), Some(3.0), "it is still on its way");
+        assert_eq!(x_of(&mut hidden, &world, Phase::Stop, NO_ROBOT), Some(-4.0));
+        assert_eq!(x_of(&mut hidden, &world, free_kick, NO_ROBOT), Some(-4.0));
+        assert_eq!(x_of(&mut hidden, &world, Phase::Run, NO_ROBOT), Some(3.0));
+        assert_eq!(x_of(&mut hidden, &world, free_kick, NO_ROBOT), Some(3.0), "another restart, not placed");
     }
 }

@@ -60,7 +60,7 @@ impl Balls {
             && near.is_none()
         {
             // No robot was there to turn it: a ball in the air appears to turn.
-            for glimpse in turn.shown {
+            for glimpse in turn.sightings {
                 launch.add(glimpse.apparent, glimpse.at, around.scene.camera(glimpse.camera));
             }
             return;
@@ -93,7 +93,7 @@ impl Balls {
         // front is watched.
         if kicked || in_front {
             let mut launch = Launch::new(turn.at, turn.from, by, SHARP);
-            for glimpse in turn.shown {
+            for glimpse in turn.sightings {
                 launch.add(glimpse.apparent, glimpse.at, around.scene.camera(glimpse.camera));
             }
             self.air = Air::Watched(launch);
@@ -114,7 +114,7 @@ impl Balls {
         }
         self.kick(Some(contact.who), from, turn.after, contact.until, &around.scene.models);
         let mut launch = Launch::new(contact.until, from, Some(contact.who), VAGUE);
-        for glimpse in turn.shown {
+        for glimpse in turn.sightings {
             launch.add(glimpse.apparent, glimpse.at, around.scene.camera(glimpse.camera));
         }
         self.air = Air::Watched(launch);
@@ -264,9 +264,9 @@ impl Balls {
         if speed < REST_SPEED {
             self.kicked = None;
         } else if kicked.climb == 0.0 && (REFINE_FROM..REFINE_TO).contains(&time) {
-            let way = track.plane.position - kicked.from;
-            let along = way.unit().unwrap_or_default();
-            let velocity = along * launch_speed(way.norm(), time, models);
+            let travelled = track.plane.position - kicked.from;
+            let along = travelled.unit().unwrap_or_default();
+            let velocity = along * launch_speed(travelled.norm(), time, models);
             self.kicked = Some(Kicked { velocity, ..kicked });
             self.set_rolls_below(models.ground.switch * velocity.norm());
         }
@@ -275,8 +275,8 @@ impl Balls {
 
 /// Speed of a flat kick that covered this distance in that time: d = v t − a t² / 2 while it slides, from the
 /// switch on as configured.
-fn launch_speed(way: f32, time: f32, models: &BallModels) -> f32 {
-    let sliding = way / time + 0.5 * models.ground.slide * time;
+fn launch_speed(travelled: f32, time: f32, models: &BallModels) -> f32 {
+    let sliding = travelled / time + 0.5 * models.ground.slide * time;
     let slides_for = sliding * (1.0 - models.ground.switch) / models.ground.slide;
     if time <= slides_for {
         return sliding;
@@ -284,10 +284,10 @@ fn launch_speed(way: f32, time: f32, models: &BallModels) -> f32 {
     // Slid for t_s = v (1 − c) / a, then rolled with c v: d = v² (1 − c²) / (2 a) + c v (t − t_s), solved for
     // v by two steps of Newton's starting from the speed of a ball without losses.
     let (c, a) = (models.ground.switch, models.ground.slide);
-    let mut speed = way / time;
+    let mut speed = travelled / time;
     for _ in 0..NEWTON_STEPS {
         let slid = speed * (1.0 - c) / a;
-        let off = speed * speed * (1.0 - c * c) / (2.0 * a) + c * speed * (time - slid) - way;
+        let off = speed * speed * (1.0 - c * c) / (2.0 * a) + c * speed * (time - slid) - travelled;
         let slope = speed * (1.0 - c * c) / a + c * time - 2.0 * c * slid;
         speed -= off / slope.max(c * time * 0.1);
     }

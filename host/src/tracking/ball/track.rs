@@ -32,7 +32,7 @@ pub(super) struct Turn {
     pub(super) before: Vector<Field>,
     pub(super) after: Vector<Field>,
     /// The two detections that revealed it.
-    pub(super) shown: [Glimpse; 2],
+    pub(super) sightings: [Glimpse; 2],
     /// Distance between the old path and the new one, m; large where the ball was placed elsewhere.
     pub(super) gap: f32,
 }
@@ -146,7 +146,7 @@ impl Track {
         let from = start + before * met;
         let gap = from.distance(begin + after * met);
         let at = self.at + (met * 1e6) as Captured;
-        Turn { at, from, before, after, shown: [*first, *second], gap }
+        Turn { at, from, before, after, sightings: [*first, *second], gap }
     }
 
     pub(super) fn confidence(&self, at: Captured, patience: f32) -> f32 {

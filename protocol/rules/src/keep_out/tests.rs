@@ -4,7 +4,7 @@ use super::*;
 use crate::League;
 
 const SIDES: [Side; 2] = [Side::Ours, Side::Theirs];
-const DUTIES: [RuleRole; 3] = [RuleRole::Player, RuleRole::Keeper, RuleRole::Taker];
+const DUTIES: [RuleRole; 3] = [RuleRole::Player, RuleRole::Keeper, RuleRole::Kicker];
 
 fn phases() -> impl Iterator<Item = Phase<Side>> {
     let with = SIDES.into_iter().flat_map(|side| {
@@ -42,7 +42,7 @@ fn why_with_ball(
 #[test]
 fn on_stop_a_robots_side_is_half_a_metre_from_the_ball() {
     let field = League::DivisionB.field();
-    let at = |x| why(&field, Phase::Stop, RuleRole::Taker, (x, 0.0));
+    let at = |x| why(&field, Phase::Stop, RuleRole::Kicker, (x, 0.0));
     assert_eq!((at(0.58), at(0.60)), (Some(Why::BallDistance), None));
 }
 
@@ -64,7 +64,7 @@ fn only_the_keeper_is_in_its_own_area() {
     let field = League::DivisionB.field();
     for phase in [Phase::Stop, Phase::Run, Phase::FreeKick(Side::Ours), Phase::Kickoff(Side::Theirs)] {
         assert_eq!(why(&field, phase, RuleRole::Player, (-3.58, 0.0)), Some(Why::OwnArea));
-        assert_eq!(why(&field, phase, RuleRole::Taker, (-3.58, 0.0)), Some(Why::OwnArea));
+        assert_eq!(why(&field, phase, RuleRole::Kicker, (-3.58, 0.0)), Some(Why::OwnArea));
         assert_eq!(why(&field, phase, RuleRole::Player, (-3.40, 0.0)), None);
         assert_eq!(why(&field, phase, RuleRole::Keeper, (-4.3, 0.0)), None);
     }
@@ -88,18 +88,18 @@ fn at_a_kick_off_only_the_kicker_is_in_the_circle() {
         assert_eq!(player(-0.10, 1.0), None);
         assert_eq!(player(-0.58, 0.0), Some(Why::CentreCircle));
         assert_eq!(player(-0.60, 0.0), None);
-        let taker = |x, y| why(&field, phase, RuleRole::Taker, (x, y));
-        assert_eq!(taker(-0.12, 0.0), None);
-        assert_eq!(taker(0.12, 0.0), None, "the whole circle is the kicker's");
-        assert_eq!(taker(0.5, 0.0), Some(Why::OtherHalf));
-        assert_eq!(taker(0.0, 0.6), Some(Why::OtherHalf));
+        let kicker = |x, y| why(&field, phase, RuleRole::Kicker, (x, y));
+        assert_eq!(kicker(-0.12, 0.0), None);
+        assert_eq!(kicker(0.12, 0.0), None, "the whole circle is the kicker's");
+        assert_eq!(kicker(0.5, 0.0), Some(Why::OtherHalf));
+        assert_eq!(kicker(0.0, 0.6), Some(Why::OtherHalf));
     }
-    let touch = |phase| why(&field, phase, RuleRole::Taker, (-0.1, 0.0));
+    let touch = |phase| why(&field, phase, RuleRole::Kicker, (-0.1, 0.0));
     assert_eq!(touch(Phase::PrepareKickoff(Side::Ours)), Some(Why::BallTouch));
     assert_eq!(touch(Phase::Kickoff(Side::Ours)), None);
     let theirs = |rule_role, x| why(&field, Phase::Kickoff(Side::Theirs), rule_role, (x, 0.0));
     assert_eq!(
-        (theirs(RuleRole::Taker, -0.3), theirs(RuleRole::Player, -0.6)),
+        (theirs(RuleRole::Kicker, -0.3), theirs(RuleRole::Player, -0.6)),
         (Some(Why::CentreCircle), None)
     );
 }
@@ -115,7 +115,7 @@ fn at_a_penalty_all_others_are_a_metre_behind_the_ball() {
         let carried = |x| why(&field, phase, RuleRole::Player, (x, 2.0));
         assert_eq!((carried(-2.58), carried(-2.60)), (Some(Why::BehindBall), None));
         assert_eq!(why(&field, phase, RuleRole::Keeper, (-4.4, 0.0)), None);
-        assert_eq!(why(&field, phase, RuleRole::Taker, (-0.3, 0.0)), None);
+        assert_eq!(why(&field, phase, RuleRole::Kicker, (-0.3, 0.0)), None);
     }
     for phase in [Phase::PreparePenalty(Side::Theirs), Phase::Penalty(Side::Theirs)] {
         // They attack −x: behind the ball is x > 2.6.
@@ -147,7 +147,7 @@ fn who_does_not_place_keeps_out_of_the_stadium() {
     assert_eq!((theirs(1.0, 0.58), theirs(1.0, 0.60)), (Some(Why::Stadium), None));
     assert_eq!((theirs(2.58, 0.0), theirs(2.60, 0.0)), (Some(Why::Stadium), None));
     let ours = |rule_role, x| why(&field, Phase::BallPlacement(Side::Ours), rule_role, (x, 0.0));
-    assert_eq!((ours(RuleRole::Taker, 2.0), ours(RuleRole::Player, 2.5), ours(RuleRole::Player, 1.0)), {
+    assert_eq!((ours(RuleRole::Kicker, 2.0), ours(RuleRole::Player, 2.5), ours(RuleRole::Player, 1.0)), {
         (None, Some(Why::Target), None)
     });
 }
@@ -239,7 +239,7 @@ fn the_ball_is_touched_by_who_may() {
                 Phase::BallPlacement(Side::Ours)
                 | Phase::Kickoff(Side::Ours)
                 | Phase::FreeKick(Side::Ours)
-                | Phase::Penalty(Side::Ours) => rule_role == RuleRole::Taker,
+                | Phase::Penalty(Side::Ours) => rule_role == RuleRole::Kicker,
                 _ => false,
             };
             let expected = if may { Touch::Allowed } else { Touch::NotNow };
@@ -252,7 +252,7 @@ fn the_ball_is_touched_by_who_may() {
     assert_eq!(touch(Phase::Run, RuleRole::Player, -3.60), Touch::InOwnArea);
     assert_eq!(touch(Phase::Run, RuleRole::Player, -3.58), Touch::Allowed);
     assert_eq!(touch(Phase::Run, RuleRole::Keeper, -4.0), Touch::Allowed);
-    assert_eq!(touch(Phase::BallPlacement(Side::Ours), RuleRole::Taker, 4.0), Touch::Allowed);
+    assert_eq!(touch(Phase::BallPlacement(Side::Ours), RuleRole::Kicker, 4.0), Touch::Allowed);
 }
 
 #[test]

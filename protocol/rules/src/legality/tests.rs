@@ -35,7 +35,7 @@ fn the_crossing_is_on_the_line_that_was_crossed_first() {
     assert_eq!(got.line, Line::Goal(P));
     assert!(got.at.distance(p(4.5, 2.95)) < 1e-5);
     let got = crossing(&field, p(-4.4, 0.2), p(-4.6, 0.3)).unwrap();
-    assert_eq!(got.line, Line::Mouth(N));
+    assert_eq!(got.line, Line::GoalOpening(N));
     assert!(got.at.distance(p(-4.5, 0.25)) < 1e-5);
     // First observed outside: straight over the nearest line.
     let got = crossing(&field, p(9.0, -3.2), p(2.0, -3.2)).unwrap();

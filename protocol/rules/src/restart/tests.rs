@@ -148,7 +148,7 @@ fn kick_off_places_are_legal_and_apart() {
                 for (i, place) in places.iter().enumerate().take(robots) {
                     let rule_role = match i {
                         0 => RuleRole::Keeper,
-                        1 if ours => RuleRole::Taker,
+                        1 if ours => RuleRole::Kicker,
                         _ => RuleRole::Player,
                     };
                     let (phase, ball) = (Phase::PrepareKickoff(side), Some(Point::new(0.0, 0.0)));

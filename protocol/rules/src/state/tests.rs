@@ -46,9 +46,9 @@ fn commands() -> Vec<Command> {
 }
 
 /// For every phase a path that leads to it, over edges of the graph only.
-fn ways() -> Vec<(Phase<Colour>, Vec<Command>)> {
+fn sequences() -> Vec<(Phase<Colour>, Vec<Command>)> {
     let stop = Command::Stop;
-    let mut ways = vec![
+    let mut sequences = vec![
         (Phase::Halt, vec![stop, Command::Halt]),
         (Phase::Stop, vec![Command::Halt, stop]),
         (Phase::Run, vec![stop, Command::ForceStart]),
@@ -56,7 +56,7 @@ fn ways() -> Vec<(Phase<Colour>, Vec<Command>)> {
     for who in COLOURS {
         let kickoff = Command::PrepareKickoff(who);
         let penalty = Command::PreparePenalty(who);
-        ways.extend([
+        sequences.extend([
             (Phase::Timeout(who), vec![stop, Command::Timeout(who)]),
             (Phase::BallPlacement(who), vec![stop, Command::BallPlacement(who)]),
             (Phase::PrepareKickoff(who), vec![stop, kickoff]),
@@ -66,14 +66,14 @@ fn ways() -> Vec<(Phase<Colour>, Vec<Command>)> {
             (Phase::FreeKick(who), vec![stop, Command::FreeKick(who)]),
         ]);
     }
-    ways
+    sequences
 }
 
 #[test]
 fn every_phase_is_reached_over_edges_of_the_graph() {
-    for (phase, way) in ways() {
+    for (phase, path) in sequences() {
         let mut state = GameState::new();
-        for (i, command) in way.iter().enumerate() {
+        for (i, command) in path.iter().enumerate() {
             let received = state.receive(*command, i as u64 * S, None);
             assert_eq!(received, Received::Followed, "{phase:?}: {command:?}");
         }
@@ -95,9 +95,9 @@ fn freedom(phase: Phase<Colour>) -> u32 {
 #[test]
 fn every_command_in_every_phase_has_a_safe_reading() {
     let mut counts = [0; 4];
-    for (phase, way) in ways() {
+    for (phase, path) in sequences() {
         for command in commands() {
-            let (mut state, now) = after(&way);
+            let (mut state, now) = after(&path);
             let received = state.receive(command, now + S, at(0.0, 0.0));
             let got = state.phase();
             match received {
@@ -107,7 +107,7 @@ fn every_command_in_every_phase_has_a_safe_reading() {
                 }
                 Received::Repeated => {
                     assert_eq!(got, phase, "{phase:?} → {command:?}");
-                    assert_eq!(way.last(), Some(&command));
+                    assert_eq!(path.last(), Some(&command));
                     counts[1] += 1;
                 }
                 Received::OffGraph { from } => {
@@ -138,13 +138,13 @@ fn every_command_in_every_phase_has_a_safe_reading() {
 
 #[test]
 fn a_kick_off_is_in_play_when_the_ball_has_moved_5_cm_or_after_10_s() {
-    let way = [Command::Stop, Command::PrepareKickoff(B), Command::NormalStart];
-    let (mut state, now) = after(&way);
+    let path = [Command::Stop, Command::PrepareKickoff(B), Command::NormalStart];
+    let (mut state, now) = after(&path);
     assert_eq!(state.tick(now + S, at(0.049, 0.0), &limits()), Ticked::Same);
     assert_eq!(state.phase(), Phase::Kickoff(B));
     assert_eq!(state.tick(now + S, at(0.03, 0.041), &limits()), Ticked::BallMoved); // 0.0508 m
     assert_eq!((state.phase(), state.ball_in_play()), (Phase::Run, true));
-    let (mut state, now) = after(&way);
+    let (mut state, now) = after(&path);
     assert_eq!(state.tick(now + 10 * S - 1, None, &limits()), Ticked::Same);
     assert_eq!(state.tick(now + 10 * S, None, &limits()), Ticked::TimeUp);
     assert_eq!(state.phase(), Phase::Run);

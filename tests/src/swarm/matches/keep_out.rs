@@ -128,7 +128,7 @@ impl Moment<'_> {
                 if found.is_empty() {
                     continue;
                 }
-                if !self.regions(who, RuleRole::Taker, at).is_empty() {
+                if !self.regions(who, RuleRole::Kicker, at).is_empty() {
                     all.extend(found);
                     continue;
                 }

@@ -135,7 +135,7 @@ struct Watch {
     /// Since when each robot moves in HALT or is too fast in STOP, s.
     moves: std::collections::BTreeMap<Who, (f32, bool)>,
     places: std::collections::BTreeMap<Who, Point<Field>>,
-    blocks_told: usize,
+    blocks_reported: usize,
     events: usize,
 }
 
@@ -156,7 +156,7 @@ impl Watch {
             stands: Stands::default(),
             moves: std::collections::BTreeMap::new(),
             places: std::collections::BTreeMap::new(),
-            blocks_told: 0,
+            blocks_reported: 0,
             events: 0,
         }
     }
@@ -285,11 +285,11 @@ impl Watch {
             self.moves.remove(&who);
             return;
         }
-        let (since, told) = self.moves.entry(who).or_insert((time, false));
-        if time - *since < PUSHED || *told {
+        let (since, reported) = self.moves.entry(who).or_insert((time, false));
+        if time - *since < PUSHED || *reported {
             return;
         }
-        *told = true;
+        *reported = true;
         let stop = self.phase == Phase::Stop;
         self.find(time, if stop { Broken::FastInStop(who, speed) } else { Broken::MovedInHalt(who, speed) });
     }
@@ -297,8 +297,8 @@ impl Watch {
     fn look_at_blocks(&mut self, time: f32, game: &Game<'_>) {
         let blocks = &game.referee().metrics().blocks;
         let last = blocks.last().filter(|block| block.lasted.as_secs_f32() > BLOCKED_LONGEST);
-        if let Some(block) = last.filter(|_| self.blocks_told < blocks.len()) {
-            self.blocks_told = blocks.len();
+        if let Some(block) = last.filter(|_| self.blocks_reported < blocks.len()) {
+            self.blocks_reported = blocks.len();
             self.find(time, Broken::Blocked(block.obstacle));
         }
     }

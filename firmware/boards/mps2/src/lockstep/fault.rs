@@ -23,12 +23,12 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
 fn ended(how: Ending<'_>) -> ! {
     let mut place = [0; PLACE_LEN];
     let len = how.write(&mut place);
-    say(&[b"panic at ", place.get(..len).unwrap_or_default()]);
+    print(&[b"panic at ", place.get(..len).unwrap_or_default()]);
     end()
 }
 
 /// Writes the text and a line's end on stderr.
-fn say(pieces: &[&[u8]]) {
+fn print(pieces: &[&[u8]]) {
     // If that fails too, no output is left.
     if let Ok(mut stderr) = hio::hstderr() {
         for label in pieces.iter().chain([&&b"\n"[..]]) {

@@ -31,11 +31,11 @@ pub(crate) fn run() -> ! {
     instructions::start(core.SYST);
     let (mut inlet, mut outlet) = eth::start().expect("the machine has a LAN9118: mps2-an386");
     let clock = Clock::new();
-    tell(&mut outlet, &FromRobot::Hello);
+    report(&mut outlet, &FromRobot::Hello);
     let (config, base) = wait_for_setup(&mut inlet, &mut outlet);
     start_tasks(clock.spawner(), config, base).expect("every task is started once");
     clock.settle();
-    tell(&mut outlet, &FromRobot::Ready);
+    report(&mut outlet, &FromRobot::Ready);
     let mut stack = stack::used();
     loop {
         let Some(ToRobot::Tick(tick)) = read(inlet.receive()) else {
@@ -50,7 +50,7 @@ pub(crate) fn run() -> ! {
         let done = critical_section::with(|cs| DONE.borrow(cs).take());
         let air = done.air.iter().map(|packet| &packet[..]).collect();
         let answer = TickOut { seq, actuators: done.actuators, air, instructions, stack };
-        tell(&mut outlet, &FromRobot::Tick(answer));
+        report(&mut outlet, &FromRobot::Tick(answer));
     }
 }
 
@@ -64,7 +64,7 @@ fn wait_for_setup(inlet: &mut Inlet, outlet: &mut Outlet) -> (BrainConfig, CaseB
         if let (Ok(config), Ok(base)) = (setup::read(config), library::case_base()) {
             return (config, base);
         }
-        tell(outlet, &FromRobot::Unusable);
+        report(outlet, &FromRobot::Unusable);
     }
 }
 
@@ -95,7 +95,7 @@ fn read(message: &[u8]) -> Option<ToRobot<'_>> {
     }
 }
 
-fn tell(outlet: &mut Outlet, message: &FromRobot<'_>) {
+fn report(outlet: &mut Outlet, message: &FromRobot<'_>) {
     // Every message fits: `MESSAGE_LEN_MAX` is above six packets and an order.
     outlet.send(|buffer| postcard::to_slice(message, buffer).map_or(0, |bytes| bytes.len()));
 }

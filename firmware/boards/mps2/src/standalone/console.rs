@@ -3,7 +3,7 @@
 use cortex_m_semihosting::hio;
 
 /// Writes the text and a line's end.
-pub(crate) fn say(pieces: &[&[u8]]) {
+pub(crate) fn print(pieces: &[&[u8]]) {
     // Without a console the text is dropped.
     if let Ok(mut stderr) = hio::hstderr() {
         for label in [&b"robot: "[..]].iter().chain(pieces).chain([&&b"\n"[..]]) {

@@ -12,7 +12,7 @@ use cortex_m_rt::{ExceptionFrame, exception};
 use runtime::ending::Ending;
 
 use super::body;
-use super::console::say;
+use super::console::print;
 
 /// Record of this boot epoch and the last.
 #[derive(Clone, Copy)]
@@ -40,23 +40,23 @@ impl CrashContext {
 }
 
 /// Counts this start; must be called once, before anything else.
-pub(crate) fn life() -> CrashContext {
-    let mut life = with(|life| *life);
-    if life.magic != MAGIC {
-        life = CrashContext::FIRST;
+pub(crate) fn crash_context() -> CrashContext {
+    let mut crash_context = with(|crash_context| *crash_context);
+    if crash_context.magic != MAGIC {
+        crash_context = CrashContext::FIRST;
     }
-    life.boots = life.boots.wrapping_add(1);
-    BITTEN.store(life.bitten != 0, Ordering::Relaxed);
-    let told = life;
+    crash_context.boots = crash_context.boots.wrapping_add(1);
+    BITTEN.store(crash_context.bitten != 0, Ordering::Relaxed);
+    let reported = crash_context;
     // Reported once: the next boot epoch has its own end.
-    life.bitten = 0;
-    with(|kept| *kept = life);
-    told
+    crash_context.bitten = 0;
+    with(|kept| *kept = crash_context);
+    reported
 }
 
 /// Whether this is the first boot epoch since power-on.
-pub(crate) fn is_first_life() -> bool {
-    with(|life| life.boots) == 1
+pub(crate) fn is_first_epoch() -> bool {
+    with(|crash_context| crash_context.boots) == 1
 }
 
 /// Whether the watchdog ended the last boot epoch.
@@ -66,7 +66,7 @@ pub(crate) fn was_bitten() -> bool {
 
 /// Records that the watchdog's time-out has passed.
 pub(crate) fn remember_bite() {
-    with(|life| life.bitten = 1);
+    with(|crash_context| crash_context.bitten = 1);
 }
 
 static BITTEN: AtomicBool = AtomicBool::new(false);
@@ -86,11 +86,11 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
 
 /// Keeps and prints the place, then restarts.
 fn ended(how: Ending<'_>) -> ! {
-    with(|life| {
-        life.panics = life.panics.wrapping_add(1);
-        life.place_len = how.write(&mut life.place);
+    with(|crash_context| {
+        crash_context.panics = crash_context.panics.wrapping_add(1);
+        crash_context.place_len = how.write(&mut crash_context.place);
     });
-    say(&[b"panic at ", with(|life| *life).place(), b"; motors off, starting anew"]);
+    print(&[b"panic at ", with(|crash_context| *crash_context).place(), b"; motors off, starting anew"]);
     SCB::sys_reset()
 }
 
@@ -98,10 +98,10 @@ fn ended(how: Ending<'_>) -> ! {
 /// watchdog's NMI, and here.
 fn with<T>(work: impl FnOnce(&mut CrashContext) -> T) -> T {
     #[unsafe(link_section = ".uninit.life")]
-    static mut LIFE: MaybeUninit<CrashContext> = MaybeUninit::uninit();
+    static mut BOOT_EPOCH: MaybeUninit<CrashContext> = MaybeUninit::uninit();
     // SAFETY: one processor, and no two of its users run at the same time. The record consists of integers,
     // for which every bit pattern is valid; a start whose `magic` is wrong replaces all of it.
-    unsafe { work(&mut *(&raw mut LIFE).cast::<CrashContext>()) }
+    unsafe { work(&mut *(&raw mut BOOT_EPOCH).cast::<CrashContext>()) }
 }
 
 /// Bytes of a place that are kept.

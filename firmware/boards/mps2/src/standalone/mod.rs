@@ -23,18 +23,18 @@ use protocol::provision::{self, PAGE_LEN};
 use runtime::hardware::{self, Wires};
 use runtime::{BrainConfig, Mailboxes, tasks};
 
-use console::say;
+use console::print;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
     let core = cortex_m::Peripherals::take().expect("nobody took them before");
     clock::start(core.SYST);
     uart::start();
-    let life = fault::life();
-    if life.panics > 0 {
-        say(&[b"awake after a panic at ", life.place()]);
+    let crash_context = fault::crash_context();
+    if crash_context.panics > 0 {
+        print(&[b"awake after a panic at ", crash_context.place()]);
     } else if watchdog::has_bitten() {
-        say(&[b"awake after the watchdog's bite"]);
+        print(&[b"awake after the watchdog's bite"]);
     }
     let who = match provision::read(page(), false) {
         Ok(who) => who,
@@ -45,15 +45,15 @@ fn main() -> ! {
                 provision::ProvisionError::Damaged => b"a damaged page",
                 provision::ProvisionError::OpenKey => b"a key of zeros",
             };
-            say(&[why, b": nobody commands this robot; run `onetwo firmware provision`"]);
+            print(&[why, b": nobody commands this robot; run `onetwo firmware provision`"]);
             clock::run(|_| ())
         }
     };
     // Rises with every boot: recorded frames of an earlier boot epoch are refused in this one
     // (docs/architecture.md §6.1).
-    let epoch = life.boots;
+    let epoch = crash_context.boots;
     let config = BrainConfig { epoch, ..BrainConfig::hosted(who.robot, who.team, who.league) };
-    say(&[b"ready"]);
+    print(&[b"ready"]);
     clock::run(|spawner| {
         start(spawner, config, case_library::division_b(), who.keys).expect("every task is started once");
     })

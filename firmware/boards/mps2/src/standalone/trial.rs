@@ -6,7 +6,7 @@ use core::sync::atomic::{AtomicBool, Ordering};
 use embassy_time::{Duration, Timer};
 use runtime::ending::digits;
 
-use super::console::say;
+use super::console::print;
 use super::fault;
 use super::stack;
 
@@ -18,11 +18,11 @@ pub(crate) async fn run() {
     if label == 3 {
         loop {
             Timer::after(Duration::from_secs(1)).await;
-            say(&[b"stack ", &digits(stack::used())]);
+            print(&[b"stack ", &digits(stack::used())]);
         }
     }
     Timer::after(Duration::from_millis(300)).await;
-    if fault::is_first_life() {
+    if fault::is_first_epoch() {
         match label {
             1 => panic!(),
             2 => {

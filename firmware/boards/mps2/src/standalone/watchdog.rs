@@ -5,7 +5,7 @@ use cortex_m_rt::exception;
 use protocol::Duration;
 use runtime::ports::Watchdog;
 
-use super::{body, console::say, fault};
+use super::{body, console::print, fault};
 
 /// The watchdog, running.
 pub(crate) struct BoardWatchdog(());
@@ -37,7 +37,7 @@ pub(crate) fn has_bitten() -> bool {
 unsafe fn NonMaskableInt() {
     body::stop();
     fault::remember_bite();
-    say(&[b"watchdog: a task hangs; motors off"]);
+    print(&[b"watchdog: a task hangs; motors off"]);
     // The interrupt stays pending until it is cleared, and clearing would feed the watchdog: wait for the
     // reset here.
     loop {

@@ -33,7 +33,7 @@ fn main() -> ! {
     let kicker = Kicker::new(parts.kicker);
     let mut alarm = Output::new(parts.lamps.alarm, Level::Low, Speed::Low);
     let alive = Output::new(parts.lamps.alive, Level::Low, Speed::Low);
-    tell(&fault::life());
+    log_crash(&fault::crash_context());
     let who = provision::read(flash::page(), false).inspect_err(|error| refuse(*error)).ok();
     let epoch = flash::begin(parts.keeper.flash)
         .inspect_err(|error| defmt::error!("no epoch ({}): nobody commands this robot", error))
@@ -148,16 +148,16 @@ async fn report(mut alive: Output<'static>) -> ! {
 }
 
 /// Reports what ended the last boot epoch.
-fn tell(life: &CrashContext) {
-    if life.panics > 0 {
+fn log_crash(crash_context: &CrashContext) {
+    if crash_context.panics > 0 {
         defmt::warn!(
             "start {=u32}; {=u32} panics, the last at {=str}",
-            life.boots,
-            life.panics,
-            life.place()
+            crash_context.boots,
+            crash_context.panics,
+            crash_context.place()
         );
     }
-    if life.bitten {
+    if crash_context.bitten {
         defmt::warn!("awake after the watchdog's bite");
     }
 }

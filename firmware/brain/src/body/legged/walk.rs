@@ -89,7 +89,7 @@ fn around(
     to: Point<Field>,
     avoiding_of_ball: bool,
 ) -> Point<Field> {
-    let way = Segment::new(belief.pose.position, to);
+    let path = Segment::new(belief.pose.position, to);
     let others = teammates.present(now).map(|(_, teammate)| teammate.pose().position);
     let robots = belief
         .opponents
@@ -102,20 +102,20 @@ fn around(
     let ball = belief.ball.filter(|_| avoiding_of_ball).map(|ball| (ball.position, BALL_CLEARANCE));
     let first = robots
         .chain(ball)
-        .map(|(at, clearance)| (at, clearance, way.share_of(at)))
-        .filter(|&(at, clearance, share)| (0.0..1.0).contains(&share) && way.distance_to(at) < clearance)
+        .map(|(at, clearance)| (at, clearance, path.share_of(at)))
+        .filter(|&(at, clearance, share)| (0.0..1.0).contains(&share) && path.distance_to(at) < clearance)
         .reduce(|a, b| if b.2 < a.2 { b } else { a });
     match first {
-        Some((at, clearance, _)) => beside(way, at, clearance + SIDE_STEP),
+        Some((at, clearance, _)) => beside(path, at, clearance + SIDE_STEP),
         None => to,
     }
 }
 
 /// The point `offset` beside `obstacle`, on the side on which the path already runs.
-fn beside(way: Segment<Field>, obstacle: Point<Field>, offset: f32) -> Point<Field> {
-    let Some(along) = way.vector().unit() else { return way.to };
+fn beside(path: Segment<Field>, obstacle: Point<Field>, offset: f32) -> Point<Field> {
+    let Some(along) = path.vector().unit() else { return path.to };
     let left = Vector::new(-along.y(), along.x());
-    let side = if along.cross(obstacle - way.from) > 0.0 { -1.0 } else { 1.0 };
+    let side = if along.cross(obstacle - path.from) > 0.0 { -1.0 } else { 1.0 };
     obstacle + left * (side * offset)
 }
 

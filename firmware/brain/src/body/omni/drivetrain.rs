@@ -57,7 +57,7 @@ impl Drivetrain {
         match intent {
             Intent::Stand { face } => self.stand(belief, step, face),
             Intent::KeepPath => match under_way {
-                Some(way) => self.onwards(belief, step, way),
+                Some(path) => self.exit_heading(belief, step, path),
                 None => self.stand(belief, step, None),
             },
             Intent::Turn { heading } => {
@@ -81,7 +81,7 @@ impl Drivetrain {
 
     /// Records the motion that the governor allowed: the next plan starts from it. The body turns in the
     /// step, and `twist` is meant for the heading in the middle of it.
-    pub fn told(&mut self, belief: &Belief, twist: Twist<Body>) {
+    pub fn set_speed_order(&mut self, belief: &Belief, twist: Twist<Body>) {
         let half = half_turn(twist.angular, self.step);
         self.velocity = belief.pose.vector_to_field(twist.linear.rotated(half));
         self.angular = twist.angular;
@@ -89,7 +89,7 @@ impl Drivetrain {
 
     /// Whether the last path led around something: planning such a path takes longer.
     pub fn winds(&self) -> bool {
-        self.under_way.is_some_and(|way| way.winds)
+        self.under_way.is_some_and(|path| path.winds)
     }
 
     fn stand(&mut self, belief: &Belief, step: f32, face: Option<Angle>) -> Wanted {
@@ -98,9 +98,9 @@ impl Drivetrain {
     }
 
     /// Follows the same path without planning.
-    fn onwards(&mut self, belief: &Belief, step: f32, way: CurrentPath) -> Wanted {
-        self.under_way = Some(way);
-        let CurrentPath { drive, towards, .. } = way;
+    fn exit_heading(&mut self, belief: &Belief, step: f32, path: CurrentPath) -> Wanted {
+        self.under_way = Some(path);
+        let CurrentPath { drive, towards, .. } = path;
         let motion = limits(belief, &drive).plan(belief.pose.position, self.velocity, towards);
         self.wanted(belief, step, motion.at(step).velocity, Some(drive.face), &drive)
     }
@@ -116,7 +116,7 @@ impl Drivetrain {
         let (effort, effort_to_leave) = efforts(belief, &field);
         let mut around = Surroundings::none(&field);
         around.look(belief, &field, drive.to, drive.mode);
-        let way = avoid::plan(&Course {
+        let path = avoid::plan(&Course {
             from,
             velocity: self.velocity,
             to: drive.to,
@@ -128,12 +128,12 @@ impl Drivetrain {
             effort_to_leave,
             checks: if effort >= EFFORT_TAKING { avoid::CHECKS_LONG } else { avoid::CHECKS_MAX },
         });
-        if way.restraint == Restraint::None {
-            let winds = way.verdict != Verdict::Direct;
-            self.under_way = Some(CurrentPath { drive: *drive, towards: way.motion.to(), winds });
+        if path.restraint == Restraint::None {
+            let winds = path.verdict != Verdict::Direct;
+            self.under_way = Some(CurrentPath { drive: *drive, towards: path.motion.to(), winds });
         }
-        let there = rests && from.distance(way.goal) < THERE;
-        let velocity = if there { Vector::default() } else { way.next.velocity };
+        let there = rests && from.distance(path.goal) < THERE;
+        let velocity = if there { Vector::default() } else { path.next.velocity };
         self.wanted(belief, step, velocity, Some(drive.face), drive)
     }
 
@@ -185,7 +185,7 @@ fn efforts(belief: &Belief, field: &FieldSpec) -> (u32, u32) {
         // From behind a goal the path into its opening is long.
         _ if belief.pose.position.x().abs() > 0.5 * field.length => EFFORT_BEHIND_GOAL,
         Phase::BallPlacement(Side::Ours) => EFFORT_TAKING,
-        _ if stopped && belief.game.rule_role == RuleRole::Taker => EFFORT_TAKING,
+        _ if stopped && belief.game.rule_role == RuleRole::Kicker => EFFORT_TAKING,
         _ if stopped => EFFORT_STOPPED,
         _ if ball_moves => EFFORT_BALL_MOVES,
         _ => EFFORT_BALL_RESTS,

@@ -100,12 +100,12 @@ impl Body for Wheeled {
         &SPEC
     }
 
-    fn get_ball(&self, belief: &Belief, onwards: Option<Angle>) -> Step {
-        skills::get_ball(belief, onwards)
+    fn get_ball(&self, belief: &Belief, exit_heading: Option<Angle>) -> Step {
+        skills::get_ball(belief, exit_heading)
     }
 
-    fn receive(&self, belief: &Belief, onwards: Option<Angle>) -> Reception {
-        skills::take_pass(belief, onwards)
+    fn receive(&self, belief: &Belief, exit_heading: Option<Angle>) -> Reception {
+        skills::take_pass(belief, exit_heading)
     }
 
     fn carry_to(&self, belief: &Belief, to: Point<Field>) -> Step {

@@ -36,7 +36,7 @@ impl Surroundings {
         self.within = within.grown(if mode == DriveMode::Avoiding { -BODY - BORDER } else { -BODY });
         let me = belief.pose.position;
         // The planned path, and the one on which it could stop.
-        let way = Segment::new(me, to);
+        let path = Segment::new(me, to);
         let stops = Segment::new(me, me + belief.velocity * STOPS_IN);
         // A robot at a ball that lies beside an area may be as near as the rules allow.
         let rolls = belief.ball.map_or(0.0, |ball| ball.velocity.norm());
@@ -56,7 +56,7 @@ impl Surroundings {
         let covers = |shape: Shape<Field>| shape.contains(me) || shape.contains(to);
         let leaves = forbidden.iter().any(|region| covers(grown(region)));
         for shape in forbidden.iter().map(grown) {
-            if leaves || is_near(&shape, way) || is_near(&shape, stops) {
+            if leaves || is_near(&shape, path) || is_near(&shape, stops) {
                 self.add(Obstacle::region(shape));
             }
         }
@@ -84,7 +84,7 @@ impl Surroundings {
             let at = other.pose.position;
             let speed = other.velocity.x().abs() + other.velocity.y().abs();
             let reach = radius + ASIDE + ASIDE_FOR * speed;
-            if leaves || way.distance_to(at) < reach || stops.distance_to(at) < reach {
+            if leaves || path.distance_to(at) < reach || stops.distance_to(at) < reach {
                 self.add(Obstacle::robot(at, other.velocity, radius + STRAYS_FOR * speed));
             }
         }
@@ -112,12 +112,12 @@ impl Surroundings {
 }
 
 /// Whether a region comes near the path: tested at three points of it, each for its stretch.
-fn is_near(shape: &Shape<Field>, way: Segment<Field>) -> bool {
-    let along = way.vector();
+fn is_near(shape: &Shape<Field>, path: Segment<Field>) -> bool {
+    let along = path.vector();
     let stretch = SIXTH * (along.x().abs() + along.y().abs());
     [SIXTH, 0.5, 1.0 - SIXTH]
         .iter()
-        .any(|share| shape.distance_to(way.from + along * *share) < stretch + ASIDE)
+        .any(|share| shape.distance_to(path.from + along * *share) < stretch + ASIDE)
 }
 
 /// The path of a ball that a teammate is about to kick at our restart: a teammate behind the ball faces along
@@ -128,7 +128,7 @@ fn kicking_lane(belief: &Belief) -> Option<Shape<Field>> {
         phase,
         Phase::Kickoff(Side::Ours) | Phase::FreeKick(Side::Ours) | Phase::Penalty(Side::Ours)
     );
-    if !ours || belief.game.rule_role == RuleRole::Taker {
+    if !ours || belief.game.rule_role == RuleRole::Kicker {
         return None;
     }
     let ball = belief.ball?.position;

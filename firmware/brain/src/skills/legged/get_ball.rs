@@ -7,8 +7,8 @@ use crate::belief::{Ball, Belief};
 use crate::body::Intent;
 use crate::skills::Step;
 
-/// Takes the ball; facing `onwards` afterwards if that costs no race against an opponent.
-pub fn get_ball(belief: &Belief, onwards: Option<Angle>) -> Step {
+/// Takes the ball; facing `exit_heading` afterwards if that costs no race against an opponent.
+pub fn get_ball(belief: &Belief, exit_heading: Option<Angle>) -> Step {
     if belief.holds_ball {
         return Step::Done;
     }
@@ -25,12 +25,16 @@ pub fn get_ball(belief: &Belief, onwards: Option<Angle>) -> Step {
     }
     let (interception_point, in_time) = interception_point(&ball, pose.position);
     let direct = pose.position.direction_to(interception_point);
-    if let Some(onwards) = onwards
+    if let Some(exit_heading) = exit_heading
         && distance > STAND_OFF
-        && let Some(to) =
-            place_behind(belief, &ball, onwards, in_time + (onwards - direct).abs() / CARRY_TURN_RATE)
+        && let Some(to) = place_behind(
+            belief,
+            &ball,
+            exit_heading,
+            in_time + (exit_heading - direct).abs() / CARRY_TURN_RATE,
+        )
     {
-        return Step::Running(Intent::Walk { to, face: onwards, avoiding_of_ball: true });
+        return Step::Running(Intent::Walk { to, face: exit_heading, avoiding_of_ball: true });
     }
     // No slowing down before the ball is in reach: the walk would end beyond that.
     let to = interception_point - Vector::polar(WALK_UP_TO, direct);
@@ -38,14 +42,14 @@ pub fn get_ball(belief: &Belief, onwards: Option<Angle>) -> Step {
     Step::Running(Intent::Walk { to, face, avoiding_of_ball: false })
 }
 
-/// Where to stand for a ball that will stop, so as to face `onwards` with it at once; `None` where
+/// Where to stand for a ball that will stop, so as to face `exit_heading` with it at once; `None` where
 /// intercepting it and turning with it, ready `by` seconds from now, is quicker, or an opponent is there
 /// first.
-fn place_behind(belief: &Belief, ball: &Ball, onwards: Angle, by: f32) -> Option<Point<Field>> {
+fn place_behind(belief: &Belief, ball: &Ball, exit_heading: Angle, by: f32) -> Option<Point<Field>> {
     let from = belief.pose.position;
-    let behind = ball.rest - Vector::polar(STAND_OFF, onwards);
+    let behind = ball.rest - Vector::polar(STAND_OFF, exit_heading);
     // Around the ball the path is an arc about it, not through it.
-    let astray = (onwards - from.direction_to(ball.rest)).abs();
+    let astray = (exit_heading - from.direction_to(ball.rest)).abs();
     let arc = BALL_CLEARANCE * (astray - math::FRAC_PI_2).max(0.0);
     let walk = (from.distance(behind) + arc) / WALK_FORWARD;
     let ready = walk.max(ball.rolls_for());
@@ -62,12 +66,12 @@ pub fn interception_point(ball: &Ball, from: Point<Field>) -> (Point<Field>, f32
     if ball.is_at_rest() {
         return (ball.position, walk(ball.position));
     }
-    let way = ball.rest - ball.position;
+    let offset = ball.rest - ball.position;
     // An evenly slowing ball: at share 1 − (1 − τ)² of its path after share τ of its time.
     let duration = ball.rolls_for();
     for step in 1..INTERCEPTION_POINT_STEPS {
         let tau = step as f32 / INTERCEPTION_POINT_STEPS as f32;
-        let point = ball.position + way * (1.0 - (1.0 - tau) * (1.0 - tau));
+        let point = ball.position + offset * (1.0 - (1.0 - tau) * (1.0 - tau));
         if walk(point) <= tau * duration {
             return (point, tau * duration);
         }

@@ -7,11 +7,11 @@ use crate::skills::legged::get_ball;
 use crate::skills::{Reception, Step};
 
 /// Receives a ball that has been passed to this robot.
-pub fn receive(belief: &Belief, onwards: Option<Angle>) -> Reception {
+pub fn receive(belief: &Belief, exit_heading: Option<Angle>) -> Reception {
     if belief.holds_ball {
         return Reception::Going(Step::Done);
     }
-    let Some(ball) = belief.ball else { return Reception::Going(get_ball(belief, onwards)) };
+    let Some(ball) = belief.ball else { return Reception::Going(get_ball(belief, exit_heading)) };
     let me = belief.pose.position;
     let missed = if ball.is_at_rest() {
         ball.position.distance(me) > FETCH_WITHIN
@@ -19,7 +19,7 @@ pub fn receive(belief: &Belief, onwards: Option<Angle>) -> Reception {
         // Rolling away, and its path to the stop position comes no nearer than can be fetched.
         Segment::new(ball.position, ball.rest).distance_to(me) > FETCH_WITHIN
     };
-    if missed { Reception::Missed } else { Reception::Going(get_ball(belief, onwards)) }
+    if missed { Reception::Missed } else { Reception::Going(get_ball(belief, exit_heading)) }
 }
 
 /// A pass that ends within this distance is still fetched, m: 3 s of walking, one case's typical time.

@@ -35,8 +35,8 @@ fn coming(ball: &Ball, stretch: Segment<Field>) -> Option<Point<Field>> {
     if ball.velocity.norm() < COMING {
         return None;
     }
-    let way = Segment::new(ball.position, ball.rest);
-    crossing(way, stretch, BESIDE)
+    let ball_path = Segment::new(ball.position, ball.rest);
+    crossing(ball_path, stretch, BESIDE)
 }
 
 /// The point with the most slack on the ball's path to `crossing`.
@@ -52,7 +52,9 @@ fn stop(belief: &Belief, ball: &Ball, crossing: Point<Field>) -> Point<Field> {
         until,
     };
     match question.find(&LIMITS, Request::Safest) {
-        Verdict::Meets(interception_point) if interception_point.slack() > 0.0 => interception_point.place,
+        Verdict::Intercepts(interception_point) if interception_point.slack() > 0.0 => {
+            interception_point.place
+        }
         // Too late to stop there: go where it crosses, as fast as possible; a body on the ball's path is
         // enough.
         _ => crossing,
@@ -80,13 +82,13 @@ fn threatened(belief: &Belief, ball: &Ball, stretch: Segment<Field>) -> Point<Fi
 
 /// Intersection of two stretches; the second one is longer by `beyond` at either end, and a crossing there is
 /// moved onto it.
-fn crossing(way: Segment<Field>, stretch: Segment<Field>, beyond: f32) -> Option<Point<Field>> {
-    let (v, w) = (way.vector(), stretch.vector());
+fn crossing(ball_path: Segment<Field>, stretch: Segment<Field>, beyond: f32) -> Option<Point<Field>> {
+    let (v, w) = (ball_path.vector(), stretch.vector());
     let across = v.cross(w);
     if across.abs() < f32::MIN_POSITIVE {
         return None;
     }
-    let between = stretch.from - way.from;
+    let between = stretch.from - ball_path.from;
     let (along, share) = (between.cross(w) / across, between.cross(v) / across);
     let slack = beyond / w.norm().max(f32::MIN_POSITIVE);
     let crosses = (0.0..=1.0).contains(&along) && (-slack..=1.0 + slack).contains(&share);

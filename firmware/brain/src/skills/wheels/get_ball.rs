@@ -29,7 +29,7 @@ pub fn get_ball(belief: &Belief, face: Option<Angle>) -> Step {
     let Some(ball) = belief.ball else { return Step::Running(Intent::Stand { face: None }) };
     let speed = ball.velocity.norm();
     if speed > ROLLING {
-        return Step::Running(meet(belief, &ball).into());
+        return Step::Running(intercept_ball(belief, &ball).into());
     }
     let face = match face {
         // With an opponent at it there is no time to go around.
@@ -72,7 +72,7 @@ pub fn approach(belief: &Belief, ball: &Ball, face: Angle, speed: f32) -> Approa
 }
 
 /// Goes for a ball that rolls: from behind where it rolls away before the robot, else beyond it on its way, facing it.
-pub(super) fn meet(belief: &Belief, ball: &Ball) -> Drive {
+pub(super) fn intercept_ball(belief: &Belief, ball: &Ball) -> Drive {
     let to_ball = ball.position - belief.pose.position;
     let (gap, speed) = (to_ball.norm() - BALL_AT, ball.velocity.norm());
     let away = ball.velocity.dot(to_ball) > ROLLS_AWAY * speed * to_ball.norm();
@@ -97,7 +97,7 @@ pub(super) fn meet(belief: &Belief, ball: &Ball) -> Drive {
         until,
     };
     let place = match question.find_within(&LIMITS, LOOKS_MAX) {
-        Verdict::Meets(interception_point) => interception_point.place,
+        Verdict::Intercepts(interception_point) => interception_point.place,
         Verdict::Chase { place, .. } => place,
     };
     receive_at(belief, ball, place)
@@ -110,11 +110,11 @@ pub(super) fn receive_at(belief: &Belief, ball: &Ball, place: Point<Field>) -> D
     let gap = me.distance(ball.position) - BALL_AT;
     let near = gap < speed * CUSHION_TIME + 0.1;
     let face = me.direction_to(ball.position);
-    let way = ball.velocity * (1.0 / speed.max(f32::MIN_POSITIVE));
-    let line = Segment::new(ball.position, ball.position + way * FAR_BACK);
-    if near && line.distance_to(me) < ON_LINE && (me - ball.position).dot(way) > 0.0 {
+    let direction = ball.velocity * (1.0 / speed.max(f32::MIN_POSITIVE));
+    let line = Segment::new(ball.position, ball.position + direction * FAR_BACK);
+    if near && line.distance_to(me) < ON_LINE && (me - ball.position).dot(direction) > 0.0 {
         let back = (speed * YIELD * YIELD_TIME).min(YIELD_MOST);
-        let to = line.closest_to(me) + way * back;
+        let to = line.closest_to(me) + direction * back;
         return Drive { dribbler: 1.0, ..Drive::bold(to, face) };
     }
     Drive { dribbler: if near { 1.0 } else { 0.0 }, ..Drive::bold(place, face) }
@@ -221,7 +221,7 @@ mod tests {
     #[test]
     fn a_ball_that_comes_is_met_beyond_it_on_its_line_facing_it() {
         let b = rolling(belief((0.0, 0.3, 0.0), (2.0, 0.0)), (-2.0, 0.0));
-        let drive = meet(&b, &b.ball.unwrap());
+        let drive = intercept_ball(&b, &b.ball.unwrap());
         assert!(drive.to.y().abs() < 1e-3 && drive.to.x() < 1.5, "{drive:?}");
         assert!(drive.face.abs() < 0.3);
     }

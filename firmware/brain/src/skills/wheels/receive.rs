@@ -18,7 +18,7 @@ use crate::skills::{Reception, Step};
 pub fn receive(belief: &Belief, at: Point<Field>, then: Option<Point<Field>>) -> Intent {
     if belief.holds_ball {
         return match then {
-            Some(then) => kick_held(belief, then, onwards(belief, then).0),
+            Some(then) => kick_held(belief, then, exit_heading(belief, then).0),
             None => Intent::Stand { face: None },
         };
     }
@@ -37,31 +37,31 @@ pub fn receive(belief: &Belief, at: Point<Field>, then: Option<Point<Field>>) ->
     }
     let line = Segment::new(ball.position, ball.rest);
     // The ordered place, or where the line passes it.
-    let meets = line.closest_to(at);
-    let way = ball.velocity.unit().unwrap_or_default();
+    let meeting_point = line.closest_to(at);
+    let direction = ball.velocity.unit().unwrap_or_default();
     if let Some(then) = then
-        && let (kick, speed) = onwards(belief, then)
-        && let Some(face) = deflection(&ball, meets, then, speed)
+        && let (kick, speed) = exit_heading(belief, then)
+        && let Some(face) = deflection(&ball, meeting_point, then, speed)
     {
-        let place = meets - Vector::polar(BALL_AT, face);
+        let place = meeting_point - Vector::polar(BALL_AT, face);
         return Drive { kick, ..Drive::bold(place, face) }.into();
     }
-    receive_at(belief, &ball, meets + way * BALL_AT).into()
+    receive_at(belief, &ball, meeting_point + direction * BALL_AT).into()
 }
 
 /// The case language's `receive_ball`: takes a ball that was passed to this robot, anywhere near.
-pub fn take_pass(belief: &Belief, onwards: Option<Angle>) -> Reception {
+pub fn take_pass(belief: &Belief, exit_heading: Option<Angle>) -> Reception {
     if belief.holds_ball {
         return Reception::Going(Step::Done);
     }
-    let Some(ball) = belief.ball else { return Reception::Going(get_ball(belief, onwards)) };
+    let Some(ball) = belief.ball else { return Reception::Going(get_ball(belief, exit_heading)) };
     let me = belief.pose.position;
     let missed = if ball.velocity.norm() < RESTS {
         ball.position.distance(me) > FETCHED
     } else {
         Segment::new(ball.position, ball.rest).distance_to(me) > FETCHED
     };
-    if missed { Reception::Missed } else { Reception::Going(get_ball(belief, onwards)) }
+    if missed { Reception::Missed } else { Reception::Going(get_ball(belief, exit_heading)) }
 }
 
 /// Whether the ball comes towards the robot: past `at` or this robot within a metre.
@@ -73,7 +73,7 @@ fn comes(belief: &Belief, ball: &Ball, at: Point<Field>) -> bool {
 }
 
 /// The kick that redirects it, and its speed, m/s.
-fn onwards(belief: &Belief, then: Point<Field>) -> (OmniKick, f32) {
+fn exit_heading(belief: &Belief, then: Point<Field>) -> (OmniKick, f32) {
     let field = belief.league().field();
     let goal = field.goal_center(belief.game.defending.opposite());
     // At their goal at full speed, else as a pass.

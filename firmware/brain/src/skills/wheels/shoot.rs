@@ -57,16 +57,16 @@ pub fn clear_or_shoot(belief: &Belief, attacked: GoalEnd) -> Intent {
 /// Distance that opponents leave free beside a ball's path, m; what no opponent can reach counts as
 /// [`ROOM_ENOUGH`].
 fn room(belief: &Belief, from: Point<Field>, to: Point<Field>) -> f32 {
-    let way = Segment::new(from, to);
+    let line = Segment::new(from, to);
     let mut room = ROOM_ENOUGH;
     for &opponent in &belief.opponents {
-        let share = way.share_of(opponent);
+        let share = line.share_of(opponent);
         if share <= 0.0 {
             continue;
         }
-        let time = (way.closest_to(opponent).distance(from) / (FAIR_SPEED) - REACTION).max(0.0);
+        let time = (line.closest_to(opponent).distance(from) / (FAIR_SPEED) - REACTION).max(0.0);
         let reach = BODY + 0.5 * OPPONENT_ACCELERATION * time * time;
-        room = room.min(way.distance_to(opponent) - reach);
+        room = room.min(line.distance_to(opponent) - reach);
     }
     room
 }

@@ -15,7 +15,7 @@ use geometry::{Field, GoalEnd, Point};
 use protocol::{Duration, Instant, RobotId};
 use rules::state::{Command, GameState, Stage};
 use rules::{Colour, FieldSpec, League, Limits, Phase};
-use ssl::event::{Event as Told, GameEvent, GameEventType};
+use ssl::event::{Event as Reported, GameEvent, GameEventType};
 use ssl::referee as packet;
 
 pub use assistant::{Assistant, Deed, Why};
@@ -177,8 +177,8 @@ impl RemoteMatch {
     }
 
     fn designated(&self) -> Option<Point<Field>> {
-        let told = self.newest.as_ref()?.designated_position?;
-        let place = Point::new(told.x * 0.001, told.y * 0.001);
+        let reported = self.newest.as_ref()?.designated_position?;
+        let place = Point::new(reported.x * 0.001, reported.y * 0.001);
         // A position outside the field surface is refused, whatever the packet contains.
         (place.is_finite() && self.field.surface().contains(place)).then_some(place)
     }
@@ -210,7 +210,7 @@ impl RemoteMatch {
     /// The teams whose placement failed in this stoppage, one item each.
     fn failed_placements(&self) -> impl Iterator<Item = Option<Colour>> + '_ {
         self.events().iter().filter_map(|event| match &event.event {
-            Some(Told::PlacementFailed(failed)) => Some(colour_of(failed.by_team)),
+            Some(Reported::PlacementFailed(failed)) => Some(colour_of(failed.by_team)),
             _ => None,
         })
     }

@@ -123,7 +123,7 @@ fn failed(by: Colour) -> GameEvent {
     let failed = PlacementFailed { by_team: team as i32, ..PlacementFailed::default() };
     GameEvent {
         r#type: Some(GameEventType::PlacementFailed as i32),
-        event: Some(Told::PlacementFailed(failed)),
+        event: Some(Reported::PlacementFailed(failed)),
         ..GameEvent::default()
     }
 }

@@ -194,15 +194,15 @@ fn every_event_is_told_by_the_leagues_type_with_its_evidence_but_our_own_three()
         assert_eq!(what.kind(), *kind);
         let event =
             Event { at: Instant(9), by: Some(Colour::Blue), robot: Some(id(2)), place: at(-1.0, 2.0), what };
-        let told = event.to_wire(1_000);
-        assert_eq!(told.as_ref().map_or(0, |told| told.r#type.unwrap()), number, "{kind:?}");
-        let Some(told) = told else { continue };
-        assert_eq!(told.created_timestamp, Some(1_009));
+        let reported = event.to_wire(1_000);
+        assert_eq!(reported.as_ref().map_or(0, |reported| reported.r#type.unwrap()), number, "{kind:?}");
+        let Some(reported) = reported else { continue };
+        assert_eq!(reported.created_timestamp, Some(1_009));
         // The league's name of the type, in lower case, is ours.
         let name = format!("{:?}", GameEventType::try_from(number).unwrap()).to_lowercase();
         assert_eq!(name, kind.label().replace('_', ""), "{kind:?}");
         // The event is the one that the type names: both have the same name.
-        let event = format!("{:?}", told.event.unwrap());
+        let event = format!("{:?}", reported.event.unwrap());
         let event = event.split('(').next().unwrap().to_lowercase();
         assert_eq!(event, name);
     }

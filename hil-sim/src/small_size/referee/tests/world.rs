@@ -108,11 +108,11 @@ fn rough(game: &Match, who: Who, home: Point<Field>) -> Order {
         return global(((home - place) * 2.0).clamped(1.2), 0.0);
     }
     let goal = game.referee.own_end(who.colour.other()).sign() as f32 * 4.5;
-    let way = (at(goal, 0.0) - ball).unit().unwrap_or_default();
-    let behind = ball - way * 0.25;
-    let turn = (way.angle() - robot.pose.heading).radians() * 5.0;
-    let lined_up = (ball - place).unit().is_some_and(|to| to.dot(way) > 0.95);
-    let target = if lined_up { ball + way * 0.2 } else { behind };
+    let direction = (at(goal, 0.0) - ball).unit().unwrap_or_default();
+    let behind = ball - direction * 0.25;
+    let turn = (direction.angle() - robot.pose.heading).radians() * 5.0;
+    let lined_up = (ball - place).unit().is_some_and(|to| to.dot(direction) > 0.95);
+    let target = if lined_up { ball + direction * 0.2 } else { behind };
     let kick = Some(Kick { speed: 5.0, angle: 0.0 });
     Order { kick, ..global(((target - place) * 3.0).clamped(1.5), turn) }
 }

@@ -29,8 +29,8 @@ impl Areas {
     pub(super) fn look(&mut self, scene: &Scene<'_>, events: &mut Vec<Event>) {
         // Teams that change ends drive through each other's areas; on a real field their robots are carried.
         if matches!(scene.game.phase, Phase::Stop | Phase::FreeKick(_)) && !scene.game.before_half {
-            for (team, told) in COLOURS.into_iter().zip(&mut self.too_close) {
-                events.extend(too_close(scene, team, told));
+            for (team, raised) in COLOURS.into_iter().zip(&mut self.too_close) {
+                events.extend(too_close(scene, team, raised));
             }
         }
         if !scene.game.is_running() {
@@ -43,12 +43,12 @@ impl Areas {
                 robot.touches_ball && legality::in_area(field, end, place) >= least
             };
             let attacks = touches(own.opposite(), InArea::Partly);
-            if self.attackers.tell(robot.who, attacks, scene.now) {
+            if self.attackers.raise(robot.who, attacks, scene.now) {
                 let depth = depth_in(field, own.opposite(), place);
                 events.push(scene.by(robot.who, place, What::AttackerTouchedBall { depth }));
             }
             let defends = !scene.game.accounts.is_keeper(robot.who) && touches(own, InArea::Entirely);
-            if self.defenders.tell(robot.who, defends, scene.now) {
+            if self.defenders.raise(robot.who, defends, scene.now) {
                 let depth = depth_in(field, own, place);
                 events.push(scene.by(robot.who, place, What::DefenderInArea { depth }));
             }
@@ -58,8 +58,8 @@ impl Areas {
 
 /// The team's robot that is nearest to the opponents' area, where it is too near and the team's grace is
 /// over.
-fn too_close(scene: &Scene<'_>, team: Colour, told: &mut Option<Instant>) -> Option<Event> {
-    let grace_began = told.map_or(scene.game.since, |told| told.max(scene.game.since));
+fn too_close(scene: &Scene<'_>, team: Colour, raised: &mut Option<Instant>) -> Option<Event> {
+    let grace_began = raised.map_or(scene.game.since, |raised| raised.max(scene.game.since));
     if scene.now.since(grace_began).as_secs_f32() <= limits::GRACE {
         return None;
     }
@@ -72,7 +72,7 @@ fn too_close(scene: &Scene<'_>, team: Colour, told: &mut Option<Instant>) -> Opt
     let distance = distance(nearest);
     let close = legality::too_close_to_area(scene.game.field, end, nearest.pose.position);
     close.then(|| {
-        *told = Some(scene.now);
+        *raised = Some(scene.now);
         let what = What::AttackerTooClose { distance: distance.max(0.0), ball: scene.ball.position };
         scene.by(nearest.who, nearest.pose.position, what)
     })

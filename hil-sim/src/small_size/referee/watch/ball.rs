@@ -16,7 +16,7 @@ use super::{Episodes, Touches};
 pub(super) struct BallWatch {
     too_fast: Episodes<Who>,
     dribbled: Episodes<(Who, [u32; 2])>,
-    taker: Taker,
+    kicker: Kicker,
     /// The team whose defence area holds the ball, and since when.
     held: Option<(Colour, Instant)>,
     /// Where the ball stays, and since when.
@@ -25,7 +25,7 @@ pub(super) struct BallWatch {
 
 /// The kicker of the kick-off or free kick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-enum Taker {
+enum Kicker {
     /// No double touch is possible: no such restart, or another robot has touched the ball since.
     #[default]
     None,
@@ -37,7 +37,7 @@ enum Taker {
 
 impl BallWatch {
     pub(super) fn command_given(&mut self) {
-        self.taker = Taker::Awaited;
+        self.kicker = Kicker::Awaited;
         self.held = None;
         self.rests = None;
         self.dribbled.clear();
@@ -60,8 +60,8 @@ impl BallWatch {
         let speed = scene.fastest;
         let chipped = scene.ball.climb > 0.0 || scene.ball.height > limits::BALL_RADIUS;
         let holds = legality::kicked_too_fast(scene.game.limits, speed - ROUNDING);
-        let told = self.too_fast.tell(touch.who, holds, scene.now);
-        told.then(|| scene.by(touch.who, touch.ball, What::BallTooFast { speed, chipped }))
+        let raised = self.too_fast.raise(touch.who, holds, scene.now);
+        raised.then(|| scene.by(touch.who, touch.ball, What::BallTooFast { speed, chipped }))
     }
 
     fn dribbling(&mut self, scene: &Scene<'_>, touches: &Touches) -> Option<Event> {
@@ -69,7 +69,7 @@ impl BallWatch {
         for (who, contact) in touches.contacts() {
             let far = legality::dribbled_too_far(scene.game.limits, contact.start, end);
             let start = [contact.start.x().to_bits(), contact.start.y().to_bits()];
-            if self.dribbled.tell((who, start), far, scene.now) {
+            if self.dribbled.raise((who, start), far, scene.now) {
                 return Some(scene.by(who, contact.start, What::DribbledTooFar { end }));
             }
         }
@@ -78,32 +78,32 @@ impl BallWatch {
 
     fn double_touch(&mut self, scene: &Scene<'_>, touches: &Touches) -> Option<Event> {
         let mut touching = scene.robots.iter().filter(|robot| robot.touches_ball).map(|robot| robot.who);
-        match (self.taker, scene.game.phase) {
-            (Taker::Awaited, Phase::FreeKick(team) | Phase::Kickoff(team)) => {
+        match (self.kicker, scene.game.phase) {
+            (Kicker::Awaited, Phase::FreeKick(team) | Phase::Kickoff(team)) => {
                 let first = touching.next()?;
                 let alone = first.colour == team && touching.next().is_none();
-                self.taker = if alone { Taker::Is(first) } else { Taker::None };
+                self.kicker = if alone { Kicker::Is(first) } else { Kicker::None };
                 None
             }
-            (Taker::Awaited, _) => {
-                self.taker = Taker::None;
+            (Kicker::Awaited, _) => {
+                self.kicker = Kicker::None;
                 None
             }
-            (Taker::Is(taker), _) => {
-                if touching.any(|who| who != taker) {
-                    self.taker = Taker::None;
+            (Kicker::Is(kicker), _) => {
+                if touching.any(|who| who != kicker) {
+                    self.kicker = Kicker::None;
                     return None;
                 }
                 let (place, ball) = (scene.game.ball_at_command, scene.ball.position);
-                let again = scene.robot(taker).is_some_and(|robot| robot.touches_ball)
-                    && touches.has_contact(taker)
+                let again = scene.robot(kicker).is_some_and(|robot| robot.touches_ball)
+                    && touches.has_contact(kicker)
                     && legality::double_touch(place, ball, false);
                 again.then(|| {
-                    self.taker = Taker::None;
-                    scene.by(taker, scene.ball.position, What::DoubleTouch)
+                    self.kicker = Kicker::None;
+                    scene.by(kicker, scene.ball.position, What::DoubleTouch)
                 })
             }
-            (Taker::None, _) => None,
+            (Kicker::None, _) => None,
         }
     }
 

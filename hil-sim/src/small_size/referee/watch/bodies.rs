@@ -64,7 +64,7 @@ impl Bodies {
         let (places, velocities) = ([one, other].map(|robot| robot.pose.position), crash.velocities);
         let fault = legality::crash((places[0], velocities[0]), (places[1], velocities[1]));
         let pair = if a < b { [a, b] } else { [b, a] };
-        if !self.crashes.tell(pair, fault.is_some(), scene.now) {
+        if !self.crashes.raise(pair, fault.is_some(), scene.now) {
             return None;
         }
         let fault = fault?;
@@ -108,9 +108,9 @@ impl Bodies {
         push.at = scene.now;
         let before = push.distance;
         push.distance += pushed * dt;
-        let told = before <= PUSH_DISTANCE && push.distance > PUSH_DISTANCE;
+        let raised = before <= PUSH_DISTANCE && push.distance > PUSH_DISTANCE;
         let what = What::Pushed { victim: to.who.id, distance: push.distance };
-        told.then(|| scene.by(from.who, from.pose.position, what))
+        raised.then(|| scene.by(from.who, from.pose.position, what))
     }
 }
 

@@ -12,7 +12,7 @@ pub(super) struct Episodes<K>(BTreeMap<K, Episode>);
 
 #[derive(Clone, Copy, Debug)]
 struct Episode {
-    told: Instant,
+    raised: Instant,
     seen: Instant,
 }
 
@@ -24,10 +24,10 @@ impl<K> Default for Episodes<K> {
 
 impl<K: Ord> Episodes<K> {
     /// Whether the present offence has to be reported.
-    pub(super) fn tell(&mut self, who: K, holds: bool, now: Instant) -> bool {
+    pub(super) fn raise(&mut self, who: K, holds: bool, now: Instant) -> bool {
         let Some(episode) = self.0.get_mut(&who) else {
             if holds {
-                self.0.insert(who, Episode { told: now, seen: now });
+                self.0.insert(who, Episode { raised: now, seen: now });
             }
             return holds;
         };
@@ -38,9 +38,9 @@ impl<K: Ord> Episodes<K> {
             return false;
         }
         episode.seen = now;
-        let again = now.since(episode.told) >= Duration::from_secs_f32(limits::FOUL_REPEAT);
+        let again = now.since(episode.raised) >= Duration::from_secs_f32(limits::FOUL_REPEAT);
         if again {
-            episode.told = now;
+            episode.raised = now;
         }
         again
     }
@@ -61,18 +61,18 @@ mod tests {
     #[test]
     fn an_offence_is_told_at_its_beginning_and_every_two_seconds() {
         let mut episodes = Episodes::default();
-        let told: Vec<u64> =
-            (0..500).filter(|step| episodes.tell((), true, Instant(step * 10_000))).collect();
-        assert_eq!(told, [0, 200, 400]);
+        let raised: Vec<u64> =
+            (0..500).filter(|step| episodes.raise((), true, Instant(step * 10_000))).collect();
+        assert_eq!(raised, [0, 200, 400]);
     }
 
     #[test]
     fn a_short_pause_makes_no_new_offence_a_longer_one_does() {
         let mut episodes = Episodes::default();
-        assert!(episodes.tell((), true, Instant(0)));
-        assert!(!episodes.tell((), false, Instant(100_000)));
-        assert!(!episodes.tell((), true, Instant(150_000)));
-        assert!(!episodes.tell((), false, Instant(400_000)));
-        assert!(episodes.tell((), true, Instant(410_000)));
+        assert!(episodes.raise((), true, Instant(0)));
+        assert!(!episodes.raise((), false, Instant(100_000)));
+        assert!(!episodes.raise((), true, Instant(150_000)));
+        assert!(!episodes.raise((), false, Instant(400_000)));
+        assert!(episodes.raise((), true, Instant(410_000)));
     }
 }

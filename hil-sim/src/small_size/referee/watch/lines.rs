@@ -60,7 +60,7 @@ impl Lines {
 
 fn judge(scene: &Scene<'_>, touches: &Touches, crossing: Crossing) -> Event {
     let (game, place, last) = (scene.game, crossing.at, touches.last());
-    if let Line::Mouth(end) = crossing.line
+    if let Line::GoalOpening(end) = crossing.line
         && scene.ball.height < game.field.goal_height
     {
         let scorer = if game.own_end(Colour::Blue) == end { Colour::Yellow } else { Colour::Blue };
@@ -83,7 +83,7 @@ fn judge(scene: &Scene<'_>, touches: &Touches, crossing: Crossing) -> Event {
     };
     let what = match crossing.line {
         Line::Touch { .. } => What::LeftTouchLine,
-        Line::Goal(end) | Line::Mouth(end) => goal_line(end),
+        Line::Goal(end) | Line::GoalOpening(end) => goal_line(end),
     };
     match last {
         Some(touch) => scene.by(touch.who, place, what),

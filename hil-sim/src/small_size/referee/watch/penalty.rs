@@ -17,7 +17,7 @@ pub(super) struct PenaltyWatch {
     farthest: Option<f32>,
     /// Its velocity before the keeper touched it.
     incoming: Option<Vector<Field>>,
-    told: bool,
+    raised: bool,
 }
 
 impl PenaltyWatch {
@@ -27,9 +27,9 @@ impl PenaltyWatch {
 
     pub(super) fn look(&mut self, scene: &Scene<'_>, touches: &Touches, events: &mut Vec<Event>) {
         let Phase::Penalty(team) = scene.game.phase else { return };
-        let failed = self.failed(scene, touches, team).filter(|_| !self.told);
+        let failed = self.failed(scene, touches, team).filter(|_| !self.raised);
         if let Some(reason) = failed {
-            self.told = true;
+            self.raised = true;
             events.push(scene.of(Some(team), scene.ball.position, What::PenaltyFailed { reason }));
         }
     }
@@ -48,10 +48,10 @@ impl PenaltyWatch {
         {
             return Some(PenaltyEnd::Saved);
         }
-        let way = scene.ball.position.x() * goal;
-        let farthest = self.farthest.map_or(way, |farthest| farthest.max(way));
+        let advance = scene.ball.position.x() * goal;
+        let farthest = self.farthest.map_or(advance, |farthest| farthest.max(advance));
         self.farthest = Some(farthest);
         // Within the distance that the ball may move before it is in play.
-        (farthest - way > limits::IN_PLAY_DISTANCE).then_some(PenaltyEnd::MovedBack)
+        (farthest - advance > limits::IN_PLAY_DISTANCE).then_some(PenaltyEnd::MovedBack)
     }
 }

@@ -67,7 +67,7 @@ impl StopRules {
         for robot in scene.robots {
             let speed = robot.velocity.norm();
             let new = legality::too_fast_in_stop(robot.velocity) && self.fast.insert(robot.who);
-            if new && self.fast_teams.tell(robot.who.colour, true, scene.now) {
+            if new && self.fast_teams.raise(robot.who.colour, true, scene.now) {
                 events.push(scene.by(robot.who, robot.pose.position, What::TooFastInStop { speed }));
             }
         }
@@ -90,9 +90,9 @@ impl StopRules {
         let nearest = nearest(scene, team)?;
         let distance = scene.distance_to_ball(nearest);
         let holds = legality::too_close_to_ball(nearest.pose.position, scene.ball.position);
-        let told = self.kick_point.tell(team, holds, scene.now);
+        let raised = self.kick_point.raise(team, holds, scene.now);
         let what = What::DefenderTooClose { distance: distance.max(0.0) };
-        told.then(|| scene.by(nearest.who, nearest.pose.position, what))
+        raised.then(|| scene.by(nearest.who, nearest.pose.position, what))
     }
 
     /// A robot of the team that does not place, too near the line from ball to target for longer than the
@@ -106,9 +106,9 @@ impl StopRules {
                 first = Some(robot);
             }
         }
-        let told = self.placement.tell(team, first.is_some(), scene.now);
+        let raised = self.placement.raise(team, first.is_some(), scene.now);
         first
-            .filter(|_| told)
+            .filter(|_| raised)
             .map(|robot| scene.by(robot.who, robot.pose.position, What::InterferedPlacement))
     }
 

@@ -80,10 +80,10 @@ fn every_code_of_the_simulators_port_has_its_cause() {
 
 fn geometry(of: fn(&mut GeometryData)) -> SimulatorConfig {
     let server = server();
-    let mut told = server.cameras.geometry(server.world(), None);
-    told.calib.clear();
-    of(&mut told);
-    SimulatorConfig { geometry: Some(told), ..Default::default() }
+    let mut reported = server.cameras.geometry(server.world(), None);
+    reported.calib.clear();
+    of(&mut reported);
+    SimulatorConfig { geometry: Some(reported), ..Default::default() }
 }
 
 fn specs(of: fn(&mut RobotSpecs)) -> SimulatorConfig {
@@ -147,14 +147,14 @@ fn every_code_of_settings_has_its_cause_and_a_refused_setting_changes_nothing() 
 
 #[test]
 fn a_ball_models_switch_that_is_not_simulated_is_told_and_the_rest_holds() {
-    for (k_switch, told) in [(5.0 / 7.0, false), (0.7143, false), (0.69, true), (0.7, true)] {
+    for (k_switch, reported) in [(5.0 / 7.0, false), (0.7143, false), (0.69, true), (0.7, true)] {
         let mut server = server();
         let mut geometry = server.cameras.geometry(server.world(), None);
         geometry.calib.clear();
         let flat = BallModelStraightTwoPhase { acc_slide: -4.5, acc_roll: -0.31, k_switch };
         geometry.models = Some(GeometryModels { straight_two_phase: Some(flat), chip_fixed_loss: None });
         let codes = config(&mut server, SimulatorConfig { geometry: Some(geometry), ..Default::default() });
-        let expected: &[&str] = if told { &["ONETWO_BALL_SWITCH"] } else { &[] };
+        let expected: &[&str] = if reported { &["ONETWO_BALL_SWITCH"] } else { &[] };
         assert_eq!(codes, expected, "{k_switch}");
         let ball = server.world().parameters().ball;
         assert_eq!((ball.slide, ball.roll), (4.5, 0.31));
@@ -212,9 +212,9 @@ fn no_two_refusals_share_a_code() {
         Refusal::Unsupported(""),
         Refusal::VisionPort(0),
         Refusal::SyncStep(0.0),
-        Refusal::MannersConfig(""),
-        Refusal::MannersSafely,
-        Refusal::MannersRoll,
+        Refusal::ModesConfig(""),
+        Refusal::ModesSafely,
+        Refusal::ModesRoll,
         Refusal::EmptyMove(0),
         Refusal::VelocityForm(0),
         Refusal::TooFast { what: "", asked: 0.0, most: 0.0 },

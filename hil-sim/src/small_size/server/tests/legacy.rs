@@ -60,18 +60,18 @@ fn grsims_older_protocol_drives_kicks_and_puts_things() {
     let replacement = Some(GrsimReplacement { ball: Some(ball), robots: vec![robot_at] });
     states(&mut grsim, &GrsimPacket { commands: None, replacement });
     steps(&mut grsim, 1);
-    let told = states(&mut grsim, &command(|_| {}));
-    let [(30011, status)] = &told[..] else { panic!("{told:?}") };
+    let reported = states(&mut grsim, &command(|_| {}));
+    let [(30011, status)] = &reported[..] else { panic!("{reported:?}") };
     assert!(status.robots_status.len() == 1 && status.robots_status[0].infrared);
     states(&mut grsim, &command(|c| (c.kickspeedx, c.kickspeedz) = (3.0, 2.0)));
     steps(&mut grsim, 5);
-    let told = states(&mut grsim, &command(|_| {}));
-    assert!(told[0].1.robots_status[0].chip_kick, "{told:?}");
+    let reported = states(&mut grsim, &command(|_| {}));
+    assert!(reported[0].1.robots_status[0].chip_kick, "{reported:?}");
     let ball = grsim.world().ball;
     assert!(ball.height > 0.0 && ball.velocity.y() > 2.0, "{ball:?}");
     steps(&mut grsim, 200);
-    let told = states(&mut grsim, &command(|_| {}));
-    let state = told[0].1.robots_status[0];
+    let reported = states(&mut grsim, &command(|_| {}));
+    let state = reported[0].1.robots_status[0];
     assert!(!state.chip_kick && !state.infrared);
     // Switched off: gone from the field, and back.
     let replace = |turnon| {

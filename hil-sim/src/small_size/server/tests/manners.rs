@@ -46,16 +46,16 @@ fn trap_09_answers_name_the_robots_that_were_commanded() {
     let both = [ahead(0, 0.0), ahead(3, 0.0)];
     let mut grsim = server_like(Profile::Grsim);
     control(&mut grsim, gone.clone());
-    let told = answers(&mut grsim, &both);
-    assert_eq!((told.len(), ids(&told[0])), (1, vec![0, 3]), "robot 0 is still named");
-    assert!(told[0].errors.is_empty());
+    let reported = answers(&mut grsim, &both);
+    assert_eq!((reported.len(), ids(&reported[0])), (1, vec![0, 3]), "robot 0 is still named");
+    assert!(reported[0].errors.is_empty());
     assert_eq!(ids(&answers(&mut grsim, &[])[0]), [0_u32; 0]);
 
     let mut erforce = server_like(Profile::ErForce);
     erforce.radio.answer_loss = 0.0;
     assert_eq!(codes(&mut erforce, &SimulatorCommand { control: Some(gone), config: None }), None);
-    let told = answers(&mut erforce, &both);
-    assert_eq!((told.len(), ids(&told[0])), (1, vec![3]), "robot 0 is gone and says nothing");
+    let reported = answers(&mut erforce, &both);
+    assert_eq!((reported.len(), ids(&reported[0])), (1, vec![3]), "robot 0 is gone and says nothing");
     assert!(answers(&mut erforce, &[]).is_empty(), "nobody was commanded");
 }
 
@@ -63,10 +63,10 @@ fn trap_09_answers_name_the_robots_that_were_commanded() {
 fn trap_09_a_tenth_of_er_forces_answers_is_lost() {
     let mut erforce = server_like(Profile::ErForce);
     let all: Vec<_> = (0..6).map(|id| ahead(id, 0.0)).collect();
-    let told: usize =
-        (0..500).flat_map(|_| answers(&mut erforce, &all)).map(|told| told.feedback.len()).sum();
+    let reported: usize =
+        (0..500).flat_map(|_| answers(&mut erforce, &all)).map(|reported| reported.feedback.len()).sum();
     // 3,000 draws of 0.9: deviation 16.
-    assert!(told.abs_diff(2_700) < 66, "{told}");
+    assert!(reported.abs_diff(2_700) < 66, "{reported}");
 }
 
 #[test]
@@ -131,10 +131,10 @@ fn er_force_tells_errors_alone_and_by_its_own_codes() {
         front_left: 1.0,
     };
     let wheels = RobotMoveCommand { command: Some(MoveCommand::WheelVelocity(wheels)) };
-    let told = answers(&mut erforce, &[RobotCommand { move_command: Some(wheels), ..ahead(2, 0.0) }]);
-    assert_eq!(told.len(), 2);
-    assert_eq!(told[0].errors[0].code.as_deref(), Some("VELOCITY_TYPE"));
-    assert_eq!((ids(&told[1]), told[1].errors.len()), (vec![2], 0));
+    let reported = answers(&mut erforce, &[RobotCommand { move_command: Some(wheels), ..ahead(2, 0.0) }]);
+    assert_eq!(reported.len(), 2);
+    assert_eq!(reported[0].errors[0].code.as_deref(), Some("VELOCITY_TYPE"));
+    assert_eq!((ids(&reported[1]), reported[1].errors.len()), (vec![2], 0));
     assert!(
         answers(&mut erforce, &[RobotCommand { kick_speed: Some(99.0), ..ahead(2, 0.0) }])[0]
             .errors
@@ -254,8 +254,8 @@ fn grsims_dribbler_turns_above_0_and_a_robot_without_a_velocity_goes_on() {
     let silent = RobotCommand { id: 1, ..Default::default() };
     assert!(lead(&mut grsim, Colour::Blue, &[silent]).errors.is_empty());
     let empty = RobotCommand { move_command: Some(RobotMoveCommand { command: None }), ..silent };
-    let told = lead(&mut grsim, Colour::Blue, &[empty]);
-    assert_eq!(told.errors[0].code.as_deref(), Some("GRSIM_UNSUPPORTED_MOVE_COMMAND"));
+    let reported = lead(&mut grsim, Colour::Blue, &[empty]);
+    assert_eq!(reported.errors[0].code.as_deref(), Some("GRSIM_UNSUPPORTED_MOVE_COMMAND"));
     steps(&mut grsim, 5);
     let order = *grsim.world().robot(own(1)).unwrap().order();
     assert_eq!((order.drive, order.dribbler), (drive_ahead(0.7), 1.0));

@@ -73,9 +73,12 @@ fn wheels_that_slip_a_tenth_tell_one_metre_a_second_and_go_nine_tenths() {
     lead(&mut world, local(1.0, 0.0, 2.0), 800);
     world.sensors(yellow(1));
     lead(&mut world, local(1.0, 0.0, 0.0), 800);
-    let told = world.sensors(yellow(1)).unwrap().odometry.linear;
+    let reported = world.sensors(yellow(1)).unwrap().odometry.linear;
     let true_speed = world.robot(yellow(1)).unwrap().velocity.norm();
-    assert!((told.norm() - 1.0).abs() < 0.02 && (true_speed - 0.9).abs() < 1e-3, "{told:?} {true_speed}");
+    assert!(
+        (reported.norm() - 1.0).abs() < 0.02 && (true_speed - 0.9).abs() < 1e-3,
+        "{reported:?} {true_speed}"
+    );
 }
 
 /// The step after which the robot first moves, commanded from the first step on.

@@ -8,9 +8,9 @@ use brain::Approach;
 use hil_sim::{Configuration, Scenario};
 
 use super::*;
-use crate::evaluation::ledger::read;
 use crate::evaluation::plan::{Cell, Profile};
 use crate::evaluation::row::{csv_hash, to_csv};
+use crate::evaluation::trial_store::read;
 
 /// A directory of a test's own, removed at the end of the test.
 struct Directory(PathBuf);
@@ -100,14 +100,14 @@ fn threads_shards_and_interrupts_change_no_byte() {
     let whole = fs::read(&file).unwrap();
     fs::write(&file, &whole[..whole.len() - 7]).unwrap();
     assert_eq!(read::<TrialRow>(&file).unwrap().unwrap().rows, kept[..1]);
-    let told = AtomicUsize::new(0);
+    let reported = AtomicUsize::new(0);
     let count = |_| {
-        told.fetch_add(1, Ordering::Relaxed);
+        reported.fetch_add(1, Ordering::Relaxed);
         ControlFlow::Continue(())
     };
     let resumed = evaluation().play_shard(Shard::WHOLE, &file, &count).unwrap();
     assert_eq!(hash(&resumed), expected);
-    assert_eq!(told.into_inner(), 1 + 5, "one trial of six was kept");
+    assert_eq!(reported.into_inner(), 1 + 5, "one trial of six was kept");
     assert_eq!(read::<TrialRow>(&file).unwrap().unwrap().rows.len(), 6);
 }
 

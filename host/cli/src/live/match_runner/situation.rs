@@ -108,7 +108,7 @@ mod tests {
     use crate::live::library_handle_of;
     use rules::League;
 
-    fn everybody() -> Vec<Who> {
+    fn all_robots() -> Vec<Who> {
         let ids = || (0..6).filter_map(RobotId::new);
         let of = |colour| ids().map(move |id| Who { colour, id });
         of(Colour::Blue).chain(of(Colour::Yellow)).collect()
@@ -118,7 +118,7 @@ mod tests {
     fn every_case_of_division_b_is_set_up_with_nobody_in_somebodys_place() {
         let library_handle = library_handle_of(League::DivisionB, None).unwrap().unwrap();
         let field = League::DivisionB.field();
-        let present = everybody();
+        let present = all_robots();
         for blue_goal in [GoalEnd::Negative, GoalEnd::Positive] {
             let sides = Sides { field: &field, blue_goal, present: &present, keepers: [RobotId::ZERO; 2] };
             for (i, name) in library_handle.names().iter().enumerate() {

@@ -73,10 +73,10 @@ impl Play {
 fn rolling(direction: (f32, f32), stops: f32) -> impl Fn(f32) -> Seen {
     move |time| {
         let along = Vector::new(direction.0, direction.1);
-        let way = (2.5 * (time - 0.2)).clamp(0.0, stops);
-        let moves = time > 0.2 && way < stops;
+        let path = (2.5 * (time - 0.2)).clamp(0.0, stops);
+        let moves = time > 0.2 && path < stops;
         let velocity = if moves { along * 2.5 } else { Vector::default() };
-        (Point::new(0.0, 0.0) + along * way, velocity, 0.0)
+        (Point::new(0.0, 0.0) + along * path, velocity, 0.0)
     }
 }
 
@@ -101,12 +101,12 @@ fn a_ball_that_a_teammate_stops_is_the_teams_but_not_the_receivers() {
 fn a_ball_that_an_opponent_turns_aside_is_intercepted_where_it_was() {
     // At 1 m it is deflected to the side.
     let play = Play::new(|time| {
-        let way = (2.5 * (time - 0.2)).max(0.0);
-        if way <= 1.0 {
+        let path = (2.5 * (time - 0.2)).max(0.0);
+        if path <= 1.0 {
             let speed = if time > 0.2 { 2.5 } else { 0.0 };
-            return (Point::new(way, 0.0), Vector::new(speed, 0.0), 0.0);
+            return (Point::new(path, 0.0), Vector::new(speed, 0.0), 0.0);
         }
-        (Point::new(1.0, way - 1.0), Vector::new(0.0, 2.0), 0.0)
+        (Point::new(1.0, path - 1.0), Vector::new(0.0, 2.0), 0.0)
     });
     let verdict = play.with(who(Colour::Yellow, 5), (1.1, -0.06)).verdict();
     let Verdict::Intercepted { by, along, after } = verdict else { panic!("{verdict:?}") };
@@ -119,9 +119,9 @@ fn a_ball_that_rolls_past_an_opponent_or_over_it_is_not_intercepted() {
     let beside = Play::new(rolling((1.0, 0.0), 2.0)).with(who(Colour::Yellow, 5), (1.0, 0.125));
     assert!(matches!(beside.verdict(), Verdict::Received { .. }), "near, but its way does not change");
     let chip = Play::new(|time| {
-        let way = (2.5 * (time - 0.2)).clamp(0.0, 2.0);
-        let speed = if time > 0.2 && way < 2.0 { 2.5 } else { 0.0 };
-        (Point::new(way, 0.0), Vector::new(speed, 0.0), (way * (2.0 - way)).max(0.0))
+        let path = (2.5 * (time - 0.2)).clamp(0.0, 2.0);
+        let speed = if time > 0.2 && path < 2.0 { 2.5 } else { 0.0 };
+        (Point::new(path, 0.0), Vector::new(speed, 0.0), (path * (2.0 - path)).max(0.0))
     });
     assert!(matches!(chip.with(who(Colour::Yellow, 5), (1.0, 0.0)).verdict(), Verdict::Received { .. }));
 }

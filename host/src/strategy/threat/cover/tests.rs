@@ -19,8 +19,8 @@ fn free_rays(view: &View, cover: &Cover) -> f32 {
     let bodies: Vec<_> = cover.primaries.iter().copied().chain([cover.keeper]).collect();
     let free = (0..2_000).filter(|i| {
         let y = width * ((*i as f32 + 0.5) / 2_000.0 - 0.5);
-        let way = Segment::new(from, Point::new(goal.x(), y));
-        bodies.iter().all(|body| way.distance_to(*body) > BODY)
+        let path = Segment::new(from, Point::new(goal.x(), y));
+        bodies.iter().all(|body| path.distance_to(*body) > BODY)
     });
     free.count() as f32 / 2_000.0
 }

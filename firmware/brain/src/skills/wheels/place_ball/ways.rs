@@ -9,7 +9,7 @@ use super::{ASKEW, FOLLOWS, GAP, Placement};
 use crate::belief::{Ball, Belief};
 use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive};
-use crate::skills::wheels::get_ball::{Approach, approach, meet};
+use crate::skills::wheels::get_ball::{Approach, approach, intercept_ball};
 
 /// To the ball from the side of the place, or from behind it; at a wall from the field, at right angles to it, or as it is kicked.
 pub(super) fn fetch(
@@ -21,7 +21,7 @@ pub(super) fn fetch(
 ) -> Intent {
     let rolls = ball.velocity.norm() > ROLLING;
     if rolls && placement.grip > FOLLOWS {
-        return meet(belief, ball).into();
+        return intercept_ball(belief, ball).into();
     }
     // Chased, a ball that the dribbler does not hold is only driven on: it is waited for where it will rest.
     let resting = Ball { position: ball.rest, velocity: Vector::default(), rest: ball.rest };

@@ -1,4 +1,4 @@
-//! `gate`: record headers: positions of the records that retrieval reads. Each stored case has a [`Gate`],
+//! `gate`: record headers: positions of the records that retrieval reads. Each stored case has a [`RecordHeader`],
 //! and behind it, in one run of the table's places, its opponents, its legs and its robots' positions.
 //! Lengths in mm.
 
@@ -9,7 +9,7 @@ use crate::point::gauss_exponent;
 /// Record header of a stored case: its ball scope, the numbers of its records and the start of its records.
 #[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(C)]
-pub struct Gate {
+pub struct RecordHeader {
     /// B_c, whole mm.
     pub ball: [f32; 2],
     /// 1/τx, 1/τy, 1/mm.
@@ -64,7 +64,7 @@ impl RawLeg {
     pub const TO_FIELD: u8 = 1;
 }
 
-impl Gate {
+impl RecordHeader {
     /// (Δx/τx)² + (Δy/τy)² of a ball at `ball`.
     #[inline]
     pub(crate) fn exponent(&self, ball: [f32; 2]) -> f32 {

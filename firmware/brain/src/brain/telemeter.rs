@@ -96,10 +96,10 @@ impl Brain<'_> {
         // One message a step: sealing costs time, and the next step comes soon.
         let spoke_now = spoken.beacon == Some(now);
         let due = !spoke_now
-            && spoken.telemetry.is_none_or(|(last, said)| {
+            && spoken.telemetry.is_none_or(|(last, reported)| {
                 let since = now.since(last);
-                let news = said != condition || spoken.new_host;
-                since >= TELEMETRY_PERIOD || (news && since >= TELEMETRY_LEAST)
+                let changed = reported != condition || spoken.new_host;
+                since >= TELEMETRY_PERIOD || (changed && since >= TELEMETRY_LEAST)
             });
         if !due {
             return None;

@@ -1,4 +1,4 @@
-//! `shown`: comparison of messages by their `Debug` text, read back as a tree and compared with JSON.
+//! `debug_tree`: comparison of messages by their `Debug` text, read back as a tree and compared with JSON.
 //!
 //! `Debug` names the Rust fields and the enums' variants, so this sees a field under a wrong name or with a
 //! wrong enum, which a round trip of bytes does not.
@@ -7,41 +7,43 @@ use serde_json::Value;
 
 /// A value as `Debug` prints it.
 #[derive(Debug, PartialEq)]
-enum Shown {
+enum DebugTree {
     Number(String),
     Text(String),
     /// A unit variant, `true`, `false` or `None`.
     Name(String),
-    Fields(Vec<(String, Shown)>),
+    Fields(Vec<(String, DebugTree)>),
     /// `Some(…)` or a variant with a value.
-    Holds(String, Box<Shown>),
-    List(Vec<Shown>),
+    Holds(String, Box<DebugTree>),
+    List(Vec<DebugTree>),
 }
 
 /// Whether the message's `Debug` text equals the JSON; otherwise where they differ.
 pub(crate) fn agree(debug: &str, expected: &Value) -> Result<(), String> {
     let mut reader = Reader { text: debug.as_bytes(), at: 0 };
-    let shown = reader.value();
+    let debug_tree = reader.value();
     assert_eq!(reader.at, debug.len(), "not read to the end: {debug}");
-    compare(expected, &shown, "")
+    compare(expected, &debug_tree, "")
 }
 
-fn compare(expected: &Value, shown: &Shown, path: &str) -> Result<(), String> {
-    let differs = || Err(format!("{path}: expected {expected}, is {shown:?}"));
-    let same = match (expected, shown) {
-        (_, Shown::Holds(name, inner)) if name == "Some" => return compare(expected, inner, path),
-        (Value::Object(fields), Shown::Fields(shown)) => return compare_fields(fields, shown, path),
-        (Value::Array(values), Shown::List(shown)) if values.len() == shown.len() => {
-            return values.iter().zip(shown).enumerate().try_for_each(|(index, (expected, shown))| {
-                compare(expected, shown, &format!("{path}[{index}]"))
-            });
+fn compare(expected: &Value, debug_tree: &DebugTree, path: &str) -> Result<(), String> {
+    let differs = || Err(format!("{path}: expected {expected}, is {debug_tree:?}"));
+    let same = match (expected, debug_tree) {
+        (_, DebugTree::Holds(name, inner)) if name == "Some" => return compare(expected, inner, path),
+        (Value::Object(fields), DebugTree::Fields(debug_tree)) => {
+            return compare_fields(fields, debug_tree, path);
         }
-        (Value::Bool(value), Shown::Name(name)) => value.to_string() == *name,
-        (Value::String(value), Shown::Text(text)) => value == text,
-        (Value::String(value), Shown::Name(name)) => same_variant(value, name),
+        (Value::Array(values), DebugTree::List(debug_tree)) if values.len() == debug_tree.len() => {
+            return values.iter().zip(debug_tree).enumerate().try_for_each(
+                |(index, (expected, debug_tree))| compare(expected, debug_tree, &format!("{path}[{index}]")),
+            );
+        }
+        (Value::Bool(value), DebugTree::Name(name)) => value.to_string() == *name,
+        (Value::String(value), DebugTree::Text(text)) => value == text,
+        (Value::String(value), DebugTree::Name(name)) => same_variant(value, name),
         // JSON gives 64-bit integers as strings.
-        (Value::String(value), Shown::Number(number)) => value == number,
-        (Value::Number(value), Shown::Number(number)) => same_number(value, number),
+        (Value::String(value), DebugTree::Number(number)) => value == number,
+        (Value::Number(value), DebugTree::Number(number)) => same_number(value, number),
         _ => false,
     };
     if same { Ok(()) } else { differs() }
@@ -49,37 +51,37 @@ fn compare(expected: &Value, shown: &Shown, path: &str) -> Result<(), String> {
 
 fn compare_fields(
     expected: &serde_json::Map<String, Value>,
-    shown: &[(String, Shown)],
+    debug_tree: &[(String, DebugTree)],
     path: &str,
 ) -> Result<(), String> {
-    let mut shown: Vec<(String, &Shown)> =
-        shown.iter().filter_map(|(name, value)| set(name, value)).collect();
+    let mut debug_tree: Vec<(String, &DebugTree)> =
+        debug_tree.iter().filter_map(|(name, value)| set(name, value)).collect();
     for (name, value) in expected {
         // Required bytes that are empty look like a list that is: here both are nothing, the encoded bytes
         // differ.
         if value.as_array().is_some_and(Vec::is_empty) {
             continue;
         }
-        let Some(at) = shown.iter().position(|(own, _)| own == name) else {
+        let Some(at) = debug_tree.iter().position(|(own, _)| own == name) else {
             return Err(format!("{path}.{name}: expected {value}, is not there"));
         };
-        let (_, own) = shown.remove(at);
+        let (_, own) = debug_tree.remove(at);
         compare(value, own, &format!("{path}.{name}"))?;
     }
-    match shown.first() {
+    match debug_tree.first() {
         Some((name, value)) => Err(format!("{path}.{name}: is {value:?}, expected nothing")),
         None => Ok(()),
     }
 }
 
 /// A field that is there, under the league's name: a oneof under its member's.
-fn set<'a>(name: &str, value: &'a Shown) -> Option<(String, &'a Shown)> {
+fn set<'a>(name: &str, value: &'a DebugTree) -> Option<(String, &'a DebugTree)> {
     match value {
-        Shown::Name(none) if none == "None" => None,
-        Shown::List(values) if values.is_empty() => None,
-        Shown::Holds(some, inner) if some == "Some" => match &**inner {
-            Shown::Holds(variant, inner) => Some((snake(variant), inner)),
-            Shown::List(values) if values.is_empty() => None,
+        DebugTree::Name(none) if none == "None" => None,
+        DebugTree::List(values) if values.is_empty() => None,
+        DebugTree::Holds(some, inner) if some == "Some" => match &**inner {
+            DebugTree::Holds(variant, inner) => Some((snake(variant), inner)),
+            DebugTree::List(values) if values.is_empty() => None,
             inner => Some((name.to_owned(), inner)),
         },
         value => Some((name.to_owned(), value)),
@@ -108,12 +110,12 @@ pub(crate) fn same_variant(league: &str, variant: &str) -> bool {
     bare.replace('_', "").eq_ignore_ascii_case(variant)
 }
 
-fn same_number(value: &serde_json::Number, shown: &str) -> bool {
-    if value.to_string() == shown {
+fn same_number(value: &serde_json::Number, debug_tree: &str) -> bool {
+    if value.to_string() == debug_tree {
         return true;
     }
     // An f32 is printed with its shortest digits, the same in both.
-    !value.is_i64() && !value.is_u64() && value.as_f64() == shown.parse().ok()
+    !value.is_i64() && !value.is_u64() && value.as_f64() == debug_tree.parse().ok()
 }
 
 struct Reader<'a> {
@@ -122,31 +124,31 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn value(&mut self) -> Shown {
+    fn value(&mut self) -> DebugTree {
         match self.text[self.at] {
             b'"' => self.string(),
-            b'[' => Shown::List(self.list(b']', Self::value)),
-            b'-' | b'0'..=b'9' => Shown::Number(self.label()),
+            b'[' => DebugTree::List(self.list(b']', Self::value)),
+            b'-' | b'0'..=b'9' => DebugTree::Number(self.label()),
             _ => {
                 let name = self.label();
                 match self.text.get(self.at..self.at + 2) {
                     Some(b" {") => {
                         self.at += 1;
-                        Shown::Fields(self.list(b'}', Self::field))
+                        DebugTree::Fields(self.list(b'}', Self::field))
                     }
                     Some([b'(', _]) => {
                         self.at += 1;
                         let inner = self.value();
                         self.eat(b')');
-                        Shown::Holds(name, Box::new(inner))
+                        DebugTree::Holds(name, Box::new(inner))
                     }
-                    _ => Shown::Name(name),
+                    _ => DebugTree::Name(name),
                 }
             }
         }
     }
 
-    fn field(&mut self) -> (String, Shown) {
+    fn field(&mut self) -> (String, DebugTree) {
         let name = self.label();
         self.eat(b':');
         self.eat(b' ');
@@ -178,7 +180,7 @@ impl Reader<'_> {
         String::from_utf8_lossy(&rest[..length]).into_owned()
     }
 
-    fn string(&mut self) -> Shown {
+    fn string(&mut self) -> DebugTree {
         let start = self.at;
         self.at += 1;
         while self.text[self.at] != b'"' {
@@ -187,7 +189,7 @@ impl Reader<'_> {
         self.at += 1;
         let quoted = std::str::from_utf8(&self.text[start..self.at]).expect("whole letters");
         // Rust's escapes in these texts are JSON's.
-        Shown::Text(serde_json::from_str(quoted).expect("a string with simple escapes"))
+        DebugTree::Text(serde_json::from_str(quoted).expect("a string with simple escapes"))
     }
 
     fn eat(&mut self, byte: u8) {

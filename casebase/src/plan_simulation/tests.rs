@@ -79,9 +79,9 @@ fn written(robots: &[Part<'_>]) -> Written {
     Written { defending: GoalEnd::Negative, robots }
 }
 
-fn steps(script: &Written) -> Result<Vec<Step>, WalkError> {
+fn steps(script: &Written) -> Result<Vec<Step>, PlanError> {
     let mut steps = Vec::new();
-    walk(script, &League, |step| steps.push(step)).map(|()| steps)
+    plan_simulation(script, &League, |step| steps.push(step)).map(|()| steps)
 }
 
 /// From and to of every leg, relative to the ball, whole mm; `true` where the end is a point of the field.
@@ -191,38 +191,38 @@ fn the_place_of_who_got_the_ball_is_the_ball_s() {
 #[test]
 fn what_cannot_be_walked_names_the_robot_and_its_action() {
     let get: &[Action] = &[Action::GetBall];
-    let cases: &[(&[Part<'_>], WalkError)] = &[
-        (&[((0, 0), &[Action::Wait])], WalkError::NoGetter),
-        (&[((0, 0), get), ((0, 0), &[AHEAD])], WalkError::NotHolding(tm(2), 0)),
-        (&[((0, 0), &[Action::GetBall, AHEAD, AHEAD])], WalkError::NotHolding(tm(1), 2)),
+    let cases: &[(&[Part<'_>], PlanError)] = &[
+        (&[((0, 0), &[Action::Wait])], PlanError::NoGetter),
+        (&[((0, 0), get), ((0, 0), &[AHEAD])], PlanError::NotHolding(tm(2), 0)),
+        (&[((0, 0), &[Action::GetBall, AHEAD, AHEAD])], PlanError::NotHolding(tm(1), 2)),
         (
             &[((0, 0), &[Action::GetBall, AHEAD, Action::DribbleTo(point(0, 0))])],
-            WalkError::NotHolding(tm(1), 2),
+            PlanError::NotHolding(tm(1), 2),
         ),
         (
             &[((0, 0), &[Action::GetBall, Action::PassBall(tm(2))]), ((0, 0), &[Action::Wait])],
-            WalkError::PassUnanswered(tm(1), 1),
+            PlanError::PassUnanswered(tm(1), 1),
         ),
         (
             &[
                 ((0, 0), &[Action::GetBall, Action::PassBall(tm(2))]),
                 ((0, 0), &[Action::Wait, AHEAD, Action::ReceiveBall(tm(1))]),
             ],
-            WalkError::NotHolding(tm(2), 1),
+            PlanError::NotHolding(tm(2), 1),
         ),
         (
             &[((0, 0), get), ((0, 0), &[Action::Wait, Action::ReceiveBall(tm(1))])],
-            WalkError::ReceiveUnanswered(tm(2), 1),
+            PlanError::ReceiveUnanswered(tm(2), 1),
         ),
         (
             &[((0, 0), &[Action::GetBall, Action::ReceiveBall(tm(2))]), ((0, 0), &[])],
-            WalkError::ReceiveUnanswered(tm(1), 1),
+            PlanError::ReceiveUnanswered(tm(1), 1),
         ),
-        (&[((0, 0), &[Action::GetBall, Action::Kick(KickId(9))])], WalkError::UnknownKick(tm(1), 1)),
+        (&[((0, 0), &[Action::GetBall, Action::Kick(KickId(9))])], PlanError::UnknownKick(tm(1), 1)),
         // A get_ball that is never reached holds no ball to kick.
         (
             &[((0, 0), get), ((0, 0), &[Action::Wait, Action::GetBall, AHEAD])],
-            WalkError::NotHolding(tm(2), 2),
+            PlanError::NotHolding(tm(2), 2),
         ),
     ];
     for (robots, expected) in cases {

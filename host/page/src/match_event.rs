@@ -6,7 +6,7 @@ use crate::request::Team;
 
 /// An event of the time line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Happening {
+pub struct MatchEvent {
     /// Seconds since the start.
     pub t: f64,
     /// Kind of event.

@@ -1,4 +1,4 @@
-//! `walk`: simulation of a case's plan: the ball's path when its gameplays are played as written
+//! `plan_simulation`: simulation of a case's plan: the ball's path when its gameplays are played as written
 //! (docs/case-format.md §3.1; paper §3.3.1).
 //!
 //! The gameplays are simulated symbolically: which robot holds the ball, where each robot is, which legs the
@@ -52,10 +52,14 @@ impl Kicks for CaseBase<'_> {
 }
 
 /// Simulates the gameplays and passes every step to `sink`, in the order of play.
-pub fn walk(script: &impl Script, kicks: &impl Kicks, sink: impl FnMut(Step)) -> Result<(), WalkError> {
+pub fn plan_simulation(
+    script: &impl Script,
+    kicks: &impl Kicks,
+    sink: impl FnMut(Step),
+) -> Result<(), PlanError> {
     let getter = CaseRobot::first(script.teammates())
         .find(|robot| script.action(*robot, 0) == Some(Action::GetBall))
-        .ok_or(WalkError::NoGetter)?;
+        .ok_or(PlanError::NoGetter)?;
     let places = core::array::from_fn(|i| {
         let position = CaseRobot::new(i).map_or(PointMm::new(0, 0), |robot| script.position(robot));
         Spot::relative(position.minus(script.ball()))
@@ -135,7 +139,7 @@ pub struct HandOver {
 
 /// Why gameplays cannot be simulated, with the robot and its action (from 0).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WalkError {
+pub enum PlanError {
     /// No robot's first action is `get_ball`.
     NoGetter,
     /// A robot without the ball should dribble, pass or kick it.
@@ -148,7 +152,7 @@ pub enum WalkError {
     UnknownKick(CaseRobot, usize),
 }
 
-impl fmt::Display for WalkError {
+impl fmt::Display for PlanError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (what, robot, action) = match self {
             Self::NoGetter => return f.write_str("no robot begins with get_ball"),
@@ -162,7 +166,7 @@ impl fmt::Display for WalkError {
         write!(f, "{robot} {what} at its action {}", action + 1)
     }
 }
-impl core::error::Error for WalkError {}
+impl core::error::Error for PlanError {}
 
 /// The state of a simulation: each robot's progress in its list and position, and the ball's position.
 struct Walker<'s, S, K, F> {
@@ -178,7 +182,7 @@ struct Walker<'s, S, K, F> {
 impl<S: Script, K: Kicks, F: FnMut(Step)> Walker<'_, S, K, F> {
     /// Plays the holder's actions until the ball leaves it; returns the next holder, `None` where there is
     /// none.
-    fn play(&mut self, robot: CaseRobot) -> Result<Option<CaseRobot>, WalkError> {
+    fn play(&mut self, robot: CaseRobot) -> Result<Option<CaseRobot>, PlanError> {
         let mine = robot.index();
         while let Some(action) = self.script.action(robot, self.next[mine]) {
             let index = self.next[mine];
@@ -192,10 +196,10 @@ impl<S: Script, K: Kicks, F: FnMut(Step)> Walker<'_, S, K, F> {
                     self.places[mine] = self.ball;
                     self.carried = Some((robot, index));
                 }
-                Action::ReceiveBall(_) => return Err(WalkError::ReceiveUnanswered(robot, index)),
+                Action::ReceiveBall(_) => return Err(PlanError::ReceiveUnanswered(robot, index)),
                 Action::PassBall(receiver) => return self.pass(robot, index, receiver).map(Some),
                 Action::Kick(id) => {
-                    let kick = self.kicks.kick(id).ok_or(WalkError::UnknownKick(robot, index))?;
+                    let kick = self.kicks.kick(id).ok_or(PlanError::UnknownKick(robot, index))?;
                     let end = self.kick_end(kick.aim);
                     self.leg(robot, index, end, [kick.r_min, kick.r_max], LegKind::Kick(id));
                     return Ok(self.chaser((robot, index)));
@@ -206,19 +210,19 @@ impl<S: Script, K: Kicks, F: FnMut(Step)> Walker<'_, S, K, F> {
     }
 
     /// The receiver advances to the `receive_ball` that answers this pass; the ball runs to it.
-    fn pass(&mut self, robot: CaseRobot, index: usize, receiver: CaseRobot) -> Result<CaseRobot, WalkError> {
+    fn pass(&mut self, robot: CaseRobot, index: usize, receiver: CaseRobot) -> Result<CaseRobot, PlanError> {
         let theirs = receiver.index();
         if receiver == robot || theirs >= self.script.teammates() {
-            return Err(WalkError::PassUnanswered(robot, index));
+            return Err(PlanError::PassUnanswered(robot, index));
         }
         let action = self.walk_on(receiver);
         let there = self.next[theirs];
         match action {
             Some(Action::ReceiveBall(from)) if from == robot => {}
             Some(Action::DribbleTo(_) | Action::PassBall(_) | Action::Kick(_)) => {
-                return Err(WalkError::NotHolding(receiver, there));
+                return Err(PlanError::NotHolding(receiver, there));
             }
-            _ => return Err(WalkError::PassUnanswered(robot, index)),
+            _ => return Err(PlanError::PassUnanswered(robot, index)),
         }
         let Pass { r_min, r_max } = self.kicks.pass();
         self.leg(robot, index, self.places[theirs], [r_min, r_max], LegKind::Pass(receiver));
@@ -282,7 +286,7 @@ impl<S: Script, K: Kicks, F: FnMut(Step)> Walker<'_, S, K, F> {
     }
 
     /// Checks the remaining actions when the ball has stopped for the last time: none may need it.
-    fn leftovers(&mut self) -> Result<(), WalkError> {
+    fn leftovers(&mut self) -> Result<(), PlanError> {
         for robot in CaseRobot::first(self.script.teammates()) {
             let first = self.next[robot.index()];
             for index in first.. {
@@ -290,9 +294,9 @@ impl<S: Script, K: Kicks, F: FnMut(Step)> Walker<'_, S, K, F> {
                     None => break,
                     Some(Action::Wait | Action::Turn(_) | Action::GoToPoint(_)) => {}
                     Some(Action::GetBall) => (self.sink)(Step::NeverReached { robot, action: index }),
-                    Some(Action::ReceiveBall(_)) => return Err(WalkError::ReceiveUnanswered(robot, index)),
+                    Some(Action::ReceiveBall(_)) => return Err(PlanError::ReceiveUnanswered(robot, index)),
                     Some(Action::DribbleTo(_) | Action::PassBall(_) | Action::Kick(_)) => {
-                        return Err(WalkError::NotHolding(robot, index));
+                        return Err(PlanError::NotHolding(robot, index));
                     }
                 }
             }

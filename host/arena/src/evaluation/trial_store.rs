@@ -1,4 +1,4 @@
-//! `ledger`: crash-safe file of finished trials. Every trial is a line, appended to its shard's file when it
+//! `trial_store`: crash-safe file of finished trials. Every trial is a line, appended to its shard's file when it
 //! is over.
 //!
 //! The first line identifies the evaluation, the second names the columns. A last line without its end was
@@ -166,14 +166,14 @@ fn not_finite<R: Entry>(columns: &csv::StringRecord, row: &R) -> Option<String> 
 
 /// A file of trials that is appended to.
 #[derive(Debug)]
-pub(super) struct Ledger {
+pub(super) struct TrialStore {
     file: File,
     path: PathBuf,
     /// Whether the line with the columns' names is written; it comes with the first trial.
     headed: bool,
 }
 
-impl Ledger {
+impl TrialStore {
     /// Opens or creates a file of `identity`; returns it with the trials that it already holds.
     pub(super) fn open<R: Entry>(
         path: &Path,
@@ -193,19 +193,19 @@ impl Ledger {
         }
         let bytes = foreign::read_from(&file, LEDGER_LEN_MAX).map_err(EvaluationError::file(path))?;
         let kept = parse::<R>(path, &bytes)?;
-        let mut ledger = Self { file, path: path.to_owned(), headed: kept.is_some() };
+        let mut trial_store = Self { file, path: path.to_owned(), headed: kept.is_some() };
         let Some(kept) = kept else {
-            ledger.cut(0)?;
-            let json = serde_json::to_string(identity).map_err(|error| ledger.unwritten(error))?;
-            ledger.write(format!("{}{json}\n", R::MARK).as_bytes())?;
-            return Ok((ledger, Vec::new()));
+            trial_store.cut(0)?;
+            let json = serde_json::to_string(identity).map_err(|error| trial_store.unwritten(error))?;
+            trial_store.write(format!("{}{json}\n", R::MARK).as_bytes())?;
+            return Ok((trial_store, Vec::new()));
         };
         let differences = R::differences(&kept.identity, identity);
         if !differences.is_empty() {
             return Err(EvaluationError::Another { file: path.to_owned(), differences });
         }
-        ledger.cut(kept.whole)?;
-        Ok((ledger, kept.rows))
+        trial_store.cut(kept.whole)?;
+        Ok((trial_store, kept.rows))
     }
 
     /// Stores a trial: once this returns, killing the process does not lose it.

@@ -1,4 +1,4 @@
-//! `happening`: referee events of a recorded match. Commands, stages, goals, game events, cards, and what
+//! `match_event`: referee events of a recorded match. Commands, stages, goals, game events, cards, and what
 //! else changed: names, robots allowed, places for the ball; each once.
 
 use std::collections::BTreeSet;
@@ -11,7 +11,7 @@ use ssl::referee::{Command, Referee, Stage, TeamInfo};
 
 /// An event that the referee reported for the first time.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Happening {
+pub(crate) struct MatchEvent {
     /// Seconds since the start of the file.
     pub(crate) at_s: f64,
     /// Kind of event.
@@ -87,7 +87,7 @@ impl Account {
 
 impl Finder {
     /// Events in a packet that came at `at_s`.
-    pub(crate) fn read(&mut self, packet: &Referee, at_s: f64, into: &mut Vec<Happening>) {
+    pub(crate) fn read(&mut self, packet: &Referee, at_s: f64, into: &mut Vec<MatchEvent>) {
         let now = Last {
             command: packet.command,
             counter: packet.command_counter,
@@ -96,9 +96,9 @@ impl Finder {
             teams: [Account::of(&packet.yellow), Account::of(&packet.blue)],
         };
         let before = self.last.replace(now.clone());
-        let mut tell = |kind, name, description| into.push(Happening { at_s, kind, name, description });
+        let mut line = |kind, name, description| into.push(MatchEvent { at_s, kind, name, description });
         if before.as_ref().is_none_or(|before| before.stage != now.stage) {
-            tell(Kind::Stage, number_name(packet.stage, Stage::try_from(packet.stage).ok()), String::new());
+            line(Kind::Stage, number_name(packet.stage, Stage::try_from(packet.stage).ok()), String::new());
         }
         let same = |before: &Last| (before.command, before.counter) == (now.command, now.counter);
         let commanded = !before.as_ref().is_some_and(same);
@@ -107,11 +107,11 @@ impl Finder {
             let again = before.as_ref().is_some_and(|before| before.command == now.command);
             let again = if again { ", once more" } else { "" };
             let at = now.place.map(|place| format!(", the ball to {}", in_metres(place))).unwrap_or_default();
-            tell(Kind::Command, name, format!("number {}{again}{at}", now.counter));
+            line(Kind::Command, name, format!("number {}{again}{at}", now.counter));
         } else if let Some(place) = now.place
             && before.as_ref().is_some_and(|before| before.place != now.place)
         {
-            tell(
+            line(
                 Kind::DesignatedPosition,
                 "DESIGNATED_POSITION".to_owned(),
                 format!("the ball to {}", in_metres(place)),
@@ -122,26 +122,26 @@ impl Finder {
             if self.events.len() < EVENTS_MAX && self.events.insert(identity) {
                 let kind = event.r#type.unwrap_or_default();
                 let name = number_name(kind, GameEventType::try_from(kind).ok());
-                tell(Kind::GameEvent, name, event.origin.join(", "));
+                line(Kind::GameEvent, name, event.origin.join(", "));
             }
         }
         let Some(before) = before else { return };
         let [yellow, blue] = [now.teams[0].score, now.teams[1].score];
         for (colour, (before, now)) in ["yellow", "blue"].iter().zip(before.teams.iter().zip(&now.teams)) {
             if now.score > before.score {
-                tell(Kind::Goal, "GOAL".to_owned(), format!("{colour}, blue {blue} : {yellow} yellow"));
+                line(Kind::Goal, "GOAL".to_owned(), format!("{colour}, blue {blue} : {yellow} yellow"));
             }
             if now.yellow_cards > before.yellow_cards {
-                tell(Kind::Card, "YELLOW_CARD".to_owned(), format!("{colour}, {} in all", now.yellow_cards));
+                line(Kind::Card, "YELLOW_CARD".to_owned(), format!("{colour}, {} in all", now.yellow_cards));
             }
             if now.red_cards > before.red_cards {
-                tell(Kind::Card, "RED_CARD".to_owned(), format!("{colour}, {} in all", now.red_cards));
+                line(Kind::Card, "RED_CARD".to_owned(), format!("{colour}, {} in all", now.red_cards));
             }
             if let Some(max_bots) = now.max_bots.filter(|_| now.max_bots != before.max_bots) {
-                tell(Kind::MaxBots, "MAX_BOTS".to_owned(), format!("{colour}, {max_bots}"));
+                line(Kind::MaxBots, "MAX_BOTS".to_owned(), format!("{colour}, {max_bots}"));
             }
             if now.name != before.name {
-                tell(Kind::TeamName, "TEAM_NAME".to_owned(), format!("{colour}, {}", now.name));
+                line(Kind::TeamName, "TEAM_NAME".to_owned(), format!("{colour}, {}", now.name));
             }
         }
     }
@@ -162,9 +162,9 @@ fn in_metres([x, y]: [i32; 2]) -> String {
     format!("({:.2}, {:.2}) m", f64::from(x) * 1e-3, f64::from(y) * 1e-3)
 }
 
-impl Happening {
+impl MatchEvent {
     /// A line for the operator; text of the referee's program is quoted in it.
-    pub(super) fn tell(&self) -> String {
+    pub(super) fn line(&self) -> String {
         let description = if self.description.is_empty() {
             String::new()
         } else {
@@ -195,9 +195,9 @@ fn screaming(name: &str) -> String {
 }
 
 /// Whether a search text matches an event: the start of its name, without regard to case and dashes.
-pub(crate) fn is_meant(happening: &Happening, label: &str) -> bool {
+pub(crate) fn is_meant(match_event: &MatchEvent, label: &str) -> bool {
     let plain = |text: &str| text.replace(['-', ' '], "_").to_ascii_uppercase();
-    happening.name.starts_with(&plain(label))
+    match_event.name.starts_with(&plain(label))
 }
 
 #[cfg(test)]
@@ -223,9 +223,10 @@ mod tests {
         ] {
             finder.read(&packet, at, &mut found);
         }
-        let told: Vec<_> = found.iter().map(|h| (h.at_s, h.name.as_str(), h.description.as_str())).collect();
+        let reported: Vec<_> =
+            found.iter().map(|h| (h.at_s, h.name.as_str(), h.description.as_str())).collect();
         assert_eq!(
-            told,
+            reported,
             [
                 (0.0, "NORMAL_FIRST_HALF_PRE", ""),
                 (0.0, "HALT", "number 1"),
@@ -254,9 +255,9 @@ mod tests {
         (stop.blue, stop.yellow) = (moved.blue.clone(), moved.yellow.clone());
         stop.designated_position = moved.designated_position;
         finder.read(&stop, 3.0, &mut found);
-        let told: Vec<_> = found.iter().skip(1).map(Happening::tell).collect();
+        let reported: Vec<_> = found.iter().skip(1).map(MatchEvent::line).collect();
         assert_eq!(
-            told,
+            reported,
             [
                 "     0.00 s  BALL_PLACEMENT_BLUE (number 5, the ball to (1.20, -0.45) m)",
                 "     1.00 s  DESIGNATED_POSITION (the ball to (0.00, 2147483.65) m)",

@@ -3,11 +3,11 @@
 use arena::game::sentence;
 use hil_sim::small_size::referee::InternalReferee;
 use host::world::Kick;
-use page::{Happening, Kind, Team, milli};
+use page::{Kind, MatchEvent, Team, milli};
 use ssl::Message;
 use ssl::referee::Referee;
 
-use crate::replay::happening::{self, Finder};
+use crate::replay::match_event::{self, Finder};
 
 /// Detects new events.
 #[derive(Debug, Default)]
@@ -19,45 +19,45 @@ pub(super) struct EventFeed {
 
 impl EventFeed {
     /// A packet of the referee. Where our own referee reports its events itself, the packet's are left out.
-    pub(super) fn packet(&mut self, bytes: &[u8], t: f64, own: bool, into: &mut Vec<Happening>) {
+    pub(super) fn packet(&mut self, bytes: &[u8], t: f64, own: bool, into: &mut Vec<MatchEvent>) {
         let Ok(packet) = Referee::decode(bytes) else { return };
         let mut found = Vec::new();
         self.finder.read(&packet, t, &mut found);
         for found in found {
             let name = found.name.replace('_', " ").to_lowercase();
             let kind = match found.kind {
-                happening::Kind::Command => Kind::Command,
-                happening::Kind::Stage => Kind::Stage,
-                happening::Kind::Goal => Kind::Goal,
-                happening::Kind::GameEvent if own => continue,
-                happening::Kind::GameEvent => foul_or_event(&found.name),
-                happening::Kind::Card => Kind::Foul,
-                happening::Kind::MaxBots
-                | happening::Kind::TeamName
-                | happening::Kind::DesignatedPosition => Kind::Event,
+                match_event::Kind::Command => Kind::Command,
+                match_event::Kind::Stage => Kind::Stage,
+                match_event::Kind::Goal => Kind::Goal,
+                match_event::Kind::GameEvent if own => continue,
+                match_event::Kind::GameEvent => foul_or_event(&found.name),
+                match_event::Kind::Card => Kind::Foul,
+                match_event::Kind::MaxBots
+                | match_event::Kind::TeamName
+                | match_event::Kind::DesignatedPosition => Kind::Event,
             };
             // Numbers are stored in the record and left out of the label.
             let description = match found.kind {
-                happening::Kind::Goal => format!("goal, {}", found.description),
-                happening::Kind::GameEvent if !found.description.is_empty() => {
+                match_event::Kind::Goal => format!("goal, {}", found.description),
+                match_event::Kind::GameEvent if !found.description.is_empty() => {
                     format!("{name} ({})", found.description)
                 }
-                happening::Kind::Card
-                | happening::Kind::MaxBots
-                | happening::Kind::TeamName
-                | happening::Kind::DesignatedPosition => format!("{name}, {}", found.description),
+                match_event::Kind::Card
+                | match_event::Kind::MaxBots
+                | match_event::Kind::TeamName
+                | match_event::Kind::DesignatedPosition => format!("{name}, {}", found.description),
                 _ => name,
             };
             let team = whose(&description);
-            into.push(Happening { t, kind, team, description, at: None, problem: None });
+            into.push(MatchEvent { t, kind, team, description, at: None, problem: None });
         }
     }
 
     /// Events of the simulation's own referee since the last call.
-    pub(super) fn referee(&mut self, referee: &InternalReferee, t: f64, into: &mut Vec<Happening>) {
+    pub(super) fn referee(&mut self, referee: &InternalReferee, t: f64, into: &mut Vec<MatchEvent>) {
         for event in referee.events().iter().skip(self.events) {
             let kind = event.what.kind();
-            into.push(Happening {
+            into.push(MatchEvent {
                 t,
                 kind: if kind.is_offence() { Kind::Foul } else { Kind::Event },
                 team: event.by.map(super::team),
@@ -70,14 +70,14 @@ impl EventFeed {
     }
 
     /// A detected kick.
-    pub(super) fn kick(&mut self, kick: Option<Kick>, t: f64, into: &mut Vec<Happening>) {
+    pub(super) fn kick(&mut self, kick: Option<Kick>, t: f64, into: &mut Vec<MatchEvent>) {
         let Some(kick) = kick else { return };
         let same =
             self.kick.is_some_and(|known| known.at == kick.at || kick.at.since(known.at).0 < SAME_KICK_US);
         self.kick = Some(kick);
         let Some(by) = kick.by.filter(|_| !same) else { return };
         let how = if kick.is_chip() { "chips" } else { "kicks" };
-        into.push(Happening {
+        into.push(MatchEvent {
             t,
             kind: Kind::Kick,
             team: Some(super::team(by.colour)),

@@ -1,4 +1,4 @@
-//! `shown`: belief of a wheeled robot, from the host's snapshot, its break-beam sensor and its wheels
+//! `received`: belief of a wheeled robot, from the host's snapshot, its break-beam sensor and its wheels
 //! (docs/architecture.md §3.2).
 //!
 //! Field frame, SI. The ball is held while the break-beam sensor sees it; gaps of the sensor signal, as a
@@ -52,9 +52,13 @@ impl Belief {
         self.busy = sensors.busy;
         self.others.clear();
         self.opponents.clear();
-        for shown in snapshot.others(now) {
-            let other =
-                Other { side: shown.who.side, id: shown.who.id, pose: shown.pose, velocity: shown.velocity };
+        for received in snapshot.others(now) {
+            let other = Other {
+                side: received.who.side,
+                id: received.who.id,
+                pose: received.pose,
+                velocity: received.velocity,
+            };
             // Sixteen robots per team can be received, eleven play: robots over the capacity are dropped.
             let _ = self.others.push(other);
             if other.side == Side::Theirs {
@@ -123,8 +127,8 @@ impl Belief {
         if contact {
             self.handling.touched = Some(now);
         }
-        let shown = self.ball.map(|ball| ball.position);
-        let at_dribbler = shown.is_some_and(|at| is_at_dribbler(self.pose, at));
+        let received = self.ball.map(|ball| ball.position);
+        let at_dribbler = received.is_some_and(|at| is_at_dribbler(self.pose, at));
         let recent = self.handling.touched.is_some_and(|last| now.since(last) <= BRIDGED);
         self.holds_ball = contact || (recent && at_dribbler);
         let dribbler_point = self.dribbler_point();
@@ -137,7 +141,7 @@ impl Belief {
                 self.ball =
                     Some(Ball { position: dribbler_point, velocity: self.velocity, rest: dribbler_point });
             }
-        } else if shown.is_none_or(|at| at.distance(dribbler_point) > VISIBLE_GAP) {
+        } else if received.is_none_or(|at| at.distance(dribbler_point) > VISIBLE_GAP) {
             (self.handling.from, self.handling.since, self.handling.held) = (None, None, 0.0);
             self.resolved = None;
         }
@@ -147,15 +151,18 @@ impl Belief {
 /// A ball that rolls freely, its path cut just beyond the lines; whether it still slides is unknown.
 fn rolling(position: Point<Field>, velocity: Vector<Field>, field: &FieldSpec) -> Ball {
     let rest = BallModel::default().rolling(position, velocity).rest();
-    let way = rest - position;
+    let offset = rest - position;
     // The share of the path that stays between two lines; 1 for a ball that is outside already.
     let share = |at: f32, by: f32, line: f32| {
         let (line, at) = (line + BEYOND, if by < 0.0 { -at } else { at });
         if at < line && at + by.abs() > line { (line - at) / by.abs() } else { 1.0 }
     };
-    let inside =
-        share(position.x(), way.x(), 0.5 * field.length).min(share(position.y(), way.y(), 0.5 * field.width));
-    Ball { position, velocity, rest: position + way * inside }
+    let inside = share(position.x(), offset.x(), 0.5 * field.length).min(share(
+        position.y(),
+        offset.y(),
+        0.5 * field.width,
+    ));
+    Ball { position, velocity, rest: position + offset * inside }
 }
 
 /// Whether the ball is in front of the flat front, within the noise of the snapshot.
