@@ -222,7 +222,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn robots_are_told_from_one() {
+    fn robots_are_distinguished_from_one() {
         assert_eq!(CaseRobot::first(9).map(CaseRobot::number).collect::<heapless::Vec<_, 8>>(), [1, 2, 3, 4]);
         assert_eq!(CaseRobot::new(4), None);
     }

@@ -316,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn by_default_everybody_but_the_speaker_hears_it_a_tick_later() {
+    fn by_default_everyone_but_the_speaker_receives_it_a_tick_later() {
         let mut air = air(AirSettings::default());
         air.send(5, id(2), &packet(1));
         assert!(air.deliver(5, id(1)).is_empty());
@@ -406,7 +406,7 @@ mod tests {
     }
 
     #[test]
-    fn a_host_speaks_to_all_or_to_one_and_hears_everybody() {
+    fn a_host_speaks_to_all_or_to_one_and_receives_everyone() {
         let mut air = Air::with_host(AirSettings::default(), 9, &[id(2), id(1)]);
         air.send_from_host(0, None, &packet(7));
         air.send_from_host(0, Some(id(1)), &packet(8));

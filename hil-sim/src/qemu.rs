@@ -434,7 +434,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_is_told() {
+    fn a_refusal_is_reported() {
         let (mut robot, board) = quiet("sleep", &["30"]);
         send_message(&board, &FromRobot::Hello);
         send_message(&board, &FromRobot::Unusable);
@@ -442,7 +442,7 @@ mod tests {
     }
 
     #[test]
-    fn an_emulator_that_ends_tells_its_last_words() {
+    fn an_emulator_that_ends_reports_its_last_words() {
         let (mut robot, _board) = quiet("sh", &["-c", "echo no such machine >&2; exit 3"]);
         let error = robot.set_up(&config()).unwrap_err().to_string();
         assert!(error.contains("exit status: 3; no such machine"), "{error}");

@@ -387,7 +387,7 @@ mod tests {
     }
 
     #[test]
-    fn a_broken_line_is_told_with_its_place_and_without_its_length() {
+    fn a_broken_line_is_reported_with_its_place_and_without_its_length() {
         let refused = |text: &str| TeamSettings::from_toml(text).unwrap_err().description;
         let description = refused(&format!("colour = \"blue\"\nname = {}\n", "x".repeat(1_000_000)));
         assert!(description.starts_with("line 2: "), "{description}");

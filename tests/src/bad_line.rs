@@ -52,7 +52,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_good_line_changes_nothing_and_a_bad_one_does_to_bytes_as_often_as_it_is_told() {
+    fn a_good_line_changes_nothing_and_a_bad_one_does_to_bytes_as_often_as_it_is_reported() {
         let mut line = BadLine::new(1, "line");
         let text: Vec<u8> = (0..=255).cycle().take(10_000).collect();
         let carried =

@@ -52,7 +52,7 @@ fn every_case_in_every_symmetry_is_retrieved_from_its_own_situation() {
 }
 
 #[test]
-fn nobody_plays_the_ball_in_their_defence_area_or_dribbles_for_a_metre() {
+fn no_one_plays_the_ball_in_their_defence_area_or_dribbles_for_a_metre() {
     for case in division_b().cases {
         let attack = case.defending.attack();
         let in_their_area = |at: Point| at.x * attack > 3500 && at.y.abs() < 1000;

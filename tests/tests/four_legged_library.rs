@@ -95,7 +95,7 @@ fn every_case_in_every_symmetry_retrieves_itself_or_its_twin_from_its_own_situat
 }
 
 #[test]
-fn a_robot_behind_a_ball_that_nobody_blocks_has_a_case_on_95_percent_of_the_field() {
+fn a_robot_behind_a_ball_that_no_one_blocks_has_a_case_on_95_percent_of_the_field() {
     let library = four_legged();
     for defending in [Goal::Yellow, Goal::Cyan] {
         let (mut places, mut covered) = (0, 0);

@@ -51,7 +51,7 @@ fn a_pass_is_played_from_its_election_to_its_end() {
 }
 
 #[test]
-fn independent_positioning_waits_for_everybody() {
+fn independent_positioning_waits_for_everyone() {
     let library = library();
     for (positioning, waits) in [(Positioning::Dependent, false), (Positioning::Independent, true)] {
         let mut table = table(&library, &[1, 3], positioning);

@@ -43,7 +43,7 @@ const PATIENCE: Duration = Duration::from_mins(1);
 const SPEAKS_EVERY: Duration = Duration::from_millis(20);
 
 #[test]
-fn a_robot_obeys_its_own_host_while_it_speaks_and_nobody_elses() {
+fn a_robot_obeys_its_own_host_while_it_speaks_and_no_one_elses() {
     let mut robot = Robot::start(Some(&PAGE), 0);
     robot.wait_for_line("robot: ready");
     let mut ours = HostLink::new(TEAM, key(), 7);
@@ -96,7 +96,7 @@ fn a_robot_without_a_key_or_with_a_damaged_page_says_nothing_on_the_air() {
 }
 
 #[test]
-fn a_panic_takes_the_current_off_tells_its_place_and_starts_anew_in_a_new_life() {
+fn a_panic_takes_the_current_off_reports_its_place_and_starts_again_in_a_new_life() {
     let mut robot = Robot::start(Some(&PAGE), 1);
     robot.wait_for_line("trial.rs");
     robot.wait_for_line("motors off, starting anew");

@@ -296,7 +296,7 @@ fn sixty_milliseconds_each_way_a_third_lost_and_clocks_that_drift_apart_do_not_s
 }
 
 #[test]
-fn a_host_with_an_earlier_epoch_is_told_within_two_seconds_which_robot_refuses_it() {
+fn a_host_with_an_earlier_epoch_is_reported_within_two_seconds_which_robot_refuses_it() {
     let mut game = Match::new(Body::new(5), (3, 3), 0.0);
     game.drive();
     // The second computer's clock is behind.
@@ -320,7 +320,7 @@ fn a_host_with_an_earlier_epoch_is_told_within_two_seconds_which_robot_refuses_i
 }
 
 #[test]
-fn a_robot_with_another_key_is_told_of_within_two_seconds() {
+fn a_robot_with_another_key_is_reported_of_within_two_seconds() {
     let mut game = Match::new(Body::new(5), (3, 3), 0.0);
     game.radio = Radio::new(RadioSettings { key: TeamKey([9; 16]), ..RadioSettings::new(TEAM, 70) });
     (0..200).for_each(|_| game.step(true));

@@ -51,7 +51,7 @@ fn three_metres_across_the_field_take_less_than_2_2_s_and_end_within_a_centimetr
 }
 
 #[test]
-fn a_robot_that_hears_much_in_a_step_stays_on_its_way_and_plans_in_the_next() {
+fn a_robot_that_receives_much_in_a_step_stays_on_its_way_and_plans_in_the_next() {
     let robot = RobotId::new(1).unwrap();
     // Whether its order of that step changes when it is ordered back, with or without messages of teammates.
     let turns = |chatter: &[u8]| {
@@ -166,7 +166,7 @@ fn a_chip_flies() {
 }
 
 #[test]
-fn a_free_kick_is_taken_with_one_touch_and_the_taker_leaves_the_ball_alone_afterwards() {
+fn a_free_kick_is_taken_with_one_touch_and_the_kicker_leaves_the_ball_alone_afterwards() {
     let mut surface = surface((-1.0, 1.0), &[(1, -1.5, 0.6, 0.0)]);
     surface.phase = Phase::FreeKick(Side::Ours);
     surface.give_order(1, RuleRole::Kicker, Directive::Kick { at: at(1.0, 1.0), kick: KickOrder::Flat(150) });
@@ -304,7 +304,7 @@ fn on_halt_a_robot_at_full_speed_stands_within_a_second_and_stays() {
 }
 
 #[test]
-fn in_stop_nobody_is_faster_than_1_5_m_per_s_nor_within_half_a_metre_of_the_ball() {
+fn in_stop_no_one_is_faster_than_1_5_m_per_s_nor_within_half_a_metre_of_the_ball() {
     let mut surface = surface((0.0, 0.0), &[(1, -2.0, 0.0, 0.0), (2, -0.3, 0.2, 0.0)]);
     surface.phase = Phase::Stop;
     surface.give_order(1, RuleRole::Player, go_to(2.0, 0.0, 0.0));
@@ -355,7 +355,7 @@ fn gameplay(surface: &mut Surface<'_>, robots: &[u8]) {
 }
 
 #[test]
-fn three_robots_play_cases_on_wheels_and_score_against_nobody() {
+fn three_robots_play_cases_on_wheels_and_score_against_no_one() {
     let (mut scored, mut starts) = (0, 0);
     let mut ends = Vec::new();
     for ball in [
@@ -391,7 +391,7 @@ fn three_robots_play_cases_on_wheels_and_score_against_nobody() {
 }
 
 #[test]
-fn a_robot_that_is_led_elsewhere_leaves_its_gameplay_and_the_others_choose_anew_without_it() {
+fn a_robot_that_is_led_elsewhere_leaves_its_gameplay_and_the_others_choose_again_without_it() {
     let mut surface = surface((-0.2, 0.1), &[(1, -0.8, 0.1, 0.0), (2, 0.3, 1.1, 0.0), (3, -0.2, -1.2, 0.0)]);
     gameplay(&mut surface, &[1, 2, 3]);
     let id = |n| RobotId::new(n).unwrap();
@@ -440,7 +440,7 @@ fn the_hosts_proposal_is_played_while_it_is_fresh_and_only_if_it_can_be() {
 }
 
 #[test]
-fn a_robot_tells_the_host_ten_times_a_second_how_it_is_and_that_it_lost_the_link() {
+fn a_robot_reports_the_host_ten_times_a_second_how_it_is_and_that_it_lost_the_link() {
     let mut surface = surface((0.0, 2.5), &[(1, -1.0, 0.0, 0.0)]);
     let one = RobotId::new(1).unwrap();
     // The kicker was discharged until the link was good, and charging takes half a second.

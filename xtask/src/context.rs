@@ -140,7 +140,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_command_is_told_as_it_is_typed() {
+    fn a_command_is_reported_as_it_is_typed() {
         let context = Context::new();
         assert_eq!(line_of(&context.cargo("fmt --all --check")), "cargo fmt --all --check");
     }

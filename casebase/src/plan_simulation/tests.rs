@@ -231,7 +231,7 @@ fn what_cannot_be_walked_names_the_robot_and_its_action() {
 }
 
 #[test]
-fn a_get_ball_that_no_kick_serves_is_told() {
+fn a_get_ball_that_no_kick_serves_is_reported() {
     let case = written(&[((0, 0), &[Action::GetBall]), ((0, 0), &[Action::Wait, Action::GetBall])]);
     assert_eq!(steps(&case).unwrap(), [Step::NeverReached { robot: tm(2), action: 1 }]);
 }

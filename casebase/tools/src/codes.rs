@@ -85,7 +85,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn codes_are_told_apart_and_errors_come_first() {
+    fn codes_are_distinguished_and_errors_come_first() {
         let mut seen: Vec<_> = CODES.iter().map(|entry| entry.code).collect();
         seen.sort_unstable();
         seen.dedup();

@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn everybody_stands_in_the_area_the_line_up_gives_and_clear_of_others() {
+    fn everyone_stands_in_the_area_the_line_up_gives_and_clear_of_others() {
         let lineup = Lineup::guess(FIELD, 2);
         let mut crowded = 0;
         for number in 0..2000 {

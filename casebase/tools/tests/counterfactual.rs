@@ -9,7 +9,7 @@ use common::{Dice, PASS_AROUND, library, problem, single};
 use protocol::{CaseId, RobotId};
 
 #[test]
-fn every_move_told_makes_the_case_win_in_thousands_of_problems() {
+fn every_move_reported_makes_the_case_win_in_thousands_of_problems() {
     let settings = Settings::default();
     let (mut moves, mut kinds, mut asked) = (0, [0; 3], 0);
     for seed in 0..8 {
@@ -84,7 +84,7 @@ fn an_opponent_in_the_leg_is_to_move_by_what_it_stands_inside() {
 }
 
 #[test]
-fn what_no_single_move_mends_is_told_with_its_reason() {
+fn what_no_single_move_mends_is_reported_with_its_reason() {
     let library = library(&[("x/pass", PASS_AROUND)]);
     let base = library.base();
     let alone = problem((-600, 0), &[(1, (-700, 0))], &[]);

@@ -132,7 +132,7 @@ fn the_league() {
 }
 
 #[test]
-fn every_fault_is_told_at_once() {
+fn every_fault_is_reported_at_once() {
     let text = PASS_AROUND
         .replace("\"yellow\"", "\"blue\"")
         .replace("[300, 300]", "[0, 0]")
@@ -194,7 +194,7 @@ fn twins_and_beaten_cases_are_doubtful() {
 }
 
 #[test]
-fn files_out_of_place_or_missing_are_told() {
+fn files_out_of_place_or_missing_are_reported() {
     let root = std::env::temp_dir().join(format!("case-tools-{}", std::process::id()));
     let write = |name: &str, text: &[u8]| {
         let path = root.join(name);

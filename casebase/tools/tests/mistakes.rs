@@ -142,7 +142,7 @@ fn appended(more: &str) -> Finding {
 }
 
 #[test]
-fn no_robot_is_told() {
+fn no_robot_is_reported() {
     let text = "intent = \"x\"\ndefending = \"cyan\"\nball = { at = [0, 0], scope = [9, 9] }\n";
     assert_finding(
         &only(LEAGUE, &[("center/a", text)]),
@@ -154,7 +154,7 @@ fn no_robot_is_told() {
 }
 
 #[test]
-fn a_fifth_robot_and_a_fifth_opponent_are_told() {
+fn a_fifth_robot_and_a_fifth_opponent_are_reported() {
     let robots = "\n[[teammates]]\nat = [0, 0]\ngameplay = [\"wait\"]\n".repeat(3);
     assert_finding(&appended(&robots), "test/center/a.toml", 25, code::TOO_MANY_TEAMMATES, "leave out");
     let opponents = "\n[[opponents]]\nat = [0, 1500]\nscope = [9, 9]\n".repeat(4);
@@ -197,7 +197,7 @@ fn a_name_with_a_blank_is_doubtful() {
 }
 
 #[test]
-fn more_kicks_than_fit_are_told() {
+fn more_kicks_than_fit_are_reported() {
     let kind = |i| format!("[kicks.k{i}]\nheading_deg = 0\nlength = 9\nr_min = 1\nr_max = 1\n");
     let kinds = (0..256).map(kind).collect::<Vec<_>>().concat();
     let result = build(&Files::from_texts("test", &format!("{LEAGUE}{kinds}"), &[]));

@@ -222,7 +222,7 @@ fn no_byte_of_a_table_can_make_it_panic() {
 }
 
 #[test]
-fn a_damaged_table_is_told_from_a_foreign_one() {
+fn a_damaged_table_is_distinguished_from_a_foreign_one() {
     let library = Dice::new(3).library(3);
     let good = library.table.bytes();
     let read = |bytes: &[u8]| CaseBase::from_bytes(Table::aligned(bytes).bytes()).err();

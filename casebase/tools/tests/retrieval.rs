@@ -71,7 +71,7 @@ fn a_robot_may_travel_exactly_thr_c() {
 }
 
 #[test]
-fn fewer_robots_than_the_case_needs_are_told() {
+fn fewer_robots_than_the_case_needs_are_reported() {
     let library = library(&[("center/pass-around", PASS_AROUND)]);
     let alone = problem((-600, 0), &[(1, (-700, 0))], &[]);
     assert_eq!(winner(&library, &alone), None);
@@ -120,7 +120,7 @@ fn a_leg_blocks_abreast_of_it_within_its_trapezoid_only() {
 }
 
 #[test]
-fn a_blocked_path_tells_the_leg_the_opponent_and_how_deep_it_stands() {
+fn a_blocked_path_reports_the_leg_the_opponent_and_how_deep_it_stands() {
     let library = library(&[("a/a", &single("[0, 0]", "[400, 400]", ", { kick = \"forward\" }"))]);
     let blocked = problem((0, 0), &[(1, (0, 0))], &[(0, 900), (500, 150)]);
     let mut verdicts = Vec::new();
@@ -132,7 +132,7 @@ fn a_blocked_path_tells_the_leg_the_opponent_and_how_deep_it_stands() {
 }
 
 #[test]
-fn a_leg_of_no_length_blocks_nobody() {
+fn a_leg_of_no_length_blocks_no_one() {
     let text = "intent = \"hand over\"\ndefending = \"yellow\"\nball = { at = [0, 0], scope = [400, 400] }\n\
         [[teammates]]\nat = [-100, 0]\ngameplay = [\"get_ball\", { pass_ball = 2 }]\n\
         [[teammates]]\nat = [0, 0]\ngameplay = [{ receive_ball = 1 }]\n";

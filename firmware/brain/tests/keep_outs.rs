@@ -359,7 +359,7 @@ fn crossing(phase: Phase<Side>, rule_role: RuleRole) -> (f32, f32) {
 }
 
 #[test]
-fn nobody_crosses_in_front_of_a_teammate_that_is_about_to_kick() {
+fn no_one_crosses_in_front_of_a_teammate_that_is_about_to_kick() {
     let touches = ROBOT_RADIUS + rules::limits::BALL_RADIUS;
     for phase in [Phase::FreeKick(Side::Ours), Phase::Kickoff(Side::Ours)] {
         let (nearest, left) = crossing(phase, RuleRole::Player);

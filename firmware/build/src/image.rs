@@ -264,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn a_build_that_fails_tells_its_command() {
+    fn a_build_that_fails_reports_its_command() {
         let error = run_cargo(Command::new(cargo_program()).args(["build", "--package", "no-such-board"]))
             .unwrap_err();
         let BuildError::Failed { command, status } = &error else { panic!("{error}") };

@@ -97,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_reason_is_told_and_what_to_install() {
+    fn the_reason_is_reported_and_what_to_install() {
         let text = TargetError::NoTarget { why: "no answer within 120 s".into() }.to_string();
         let expected = "nothing here compiles for thumbv7em-none-eabihf (no answer within 120 s); \
             install it with `rustup target add thumbv7em-none-eabihf`";

@@ -29,7 +29,7 @@ fn base() -> CaseBase<'static> {
 }
 
 #[test]
-fn a_robot_nobody_speaks_to_commands_its_body_a_hundred_times_a_second_and_stands() {
+fn a_robot_no_one_speaks_to_commands_its_body_a_hundred_times_a_second_and_stands() {
     let mut robot = VirtualRobot::new(Instant(0), &config(), base(), KEY.of_robot(id()));
     let (mut commands, mut frames) = (0, 0);
     while robot.poll_timeout() < Instant(1_000_000) {

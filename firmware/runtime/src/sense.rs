@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wheel_that_is_driven_hard_and_does_not_move_is_told_and_heals_when_it_moves() {
+    fn a_wheel_that_is_driven_hard_and_does_not_move_is_reported_and_heals_when_it_moves() {
         let mut encoder = Encoder::new(0.0001);
         // One channel is broken: the count fluctuates.
         for t in 0..200 {
@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wheel_that_moves_is_never_told() {
+    fn a_wheel_that_moves_is_never_reported() {
         let mut encoder = Encoder::new(0.0001);
         for t in 0..5_000 {
             let rule_role = if t % 700 < 350 { 1.0 } else { -1.0 };
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn lying_is_told_after_a_while_and_blows_are_not() {
+    fn lying_is_reported_after_a_while_and_blows_are_not() {
         let mut tilt = Tilt::new();
         assert!(!tilt.step(ms(0), 1.0));
         assert!(!tilt.step(ms(1), -8.0) && !tilt.step(ms(200), -1.0) && !tilt.step(ms(250), 1.0));
@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_is_told_from_daylight_and_a_blinded_receiver_sees_none() {
+    fn a_ball_is_distinguished_from_daylight_and_a_blinded_receiver_sees_none() {
         let mut barrier = BreakBeam::new();
         assert!(!barrier.step(true, 0.5), "nothing to compare with yet");
         for daylight in [0.0, 0.3, 0.6] {

@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_leaves_home_whatever_the_ball_does() {
+    fn no_one_leaves_home_whatever_the_ball_does() {
         let p = Parameters::four_legged();
         for (role, at) in [(Role::Defender, 1500.0), (Role::Midfield, 500.0), (Role::Goalie, 2400.0)] {
             let mut game = game(role, (at, 0.0), (0.0, 0.0));

@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn everybody_stands_on_the_field_at_home_and_clear_of_each_other() {
+    fn everyone_stands_on_the_field_at_home_and_clear_of_each_other() {
         let (field, p) = (League::FourLegged.field(), Parameters::four_legged());
         for (scenario, configuration, layout) in layouts() {
             let robots = layout.attackers.iter().chain(layout.opponents.iter().map(|placed| &placed.pose));

@@ -146,7 +146,7 @@ fn who_was_put_down_first_decides_nothing() {
 }
 
 #[test]
-fn in_a_crowd_nobody_stays_in_anybody_and_kicks_and_crashes_are_told() {
+fn in_a_crowd_no_one_stays_in_anybody_and_kicks_and_crashes_are_reported() {
     let mut world = busy(3, 0..22);
     let mut kicks = 0;
     for _ in 0..40 {

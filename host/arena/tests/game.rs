@@ -47,7 +47,7 @@ impl Watcher for Conduct {
 }
 
 #[test]
-fn nobody_is_fast_in_stop_or_moves_in_halt_and_no_ball_is_faster_than_the_rules_allow() {
+fn no_one_is_fast_in_stop_or_moves_in_halt_and_no_ball_is_faster_than_the_rules_allow() {
     let mut conduct = Conduct::default();
     let report = short(5, 120.0, &mut conduct);
     assert!(conduct.fastest_in_stop < 1.5, "{} m/s in STOP", conduct.fastest_in_stop);

@@ -75,7 +75,7 @@ fn first(
 }
 
 #[test]
-fn a_robot_more_than_the_league_allows_is_told_by_both_hosts_within_two_seconds() {
+fn a_robot_more_than_the_league_allows_is_reported_by_both_hosts_within_two_seconds() {
     for league in DIVISIONS {
         let config = GameConfig::new(league, 1, 12.0);
         let number = league.limits().unwrap().robots as u8;
@@ -99,7 +99,7 @@ fn a_robot_more_than_the_league_allows_is_told_by_both_hosts_within_two_seconds(
 }
 
 #[test]
-fn teams_that_stand_at_each_others_goals_at_the_start_are_told_within_two_seconds() {
+fn teams_that_stand_at_each_others_goals_at_the_start_are_reported_within_two_seconds() {
     for league in DIVISIONS {
         let config = GameConfig::new(league, 1, 12.0);
         let field = league.field();

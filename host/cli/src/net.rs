@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_sent_is_told_once() {
+    fn what_cannot_be_sent_is_reported_once() {
         let mut sender = NetSender::new(([127, 0, 0, 1], 9).into(), None);
         let too_large = vec![0; 70_000];
         assert!(sender.send(&too_large).is_some_and(|description| description.contains("70000")));

@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_snapshot_has_a_name_that_tells_its_kind() {
+    fn a_snapshot_has_a_name_that_reports_its_kind() {
         assert!(named("a.svg", &["svg", "png"]).is_ok());
         assert_eq!(named("a.PNG", &["svg", "png"]).is_ok(), cfg!(feature = "png"));
         let refused = named("a.jpg", &["svg", "png"]).unwrap_err().to_string();

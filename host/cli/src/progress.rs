@@ -140,7 +140,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_tells_how_much_is_done_and_how_long_the_rest_takes() {
+    fn a_line_reports_how_much_is_done_and_how_long_the_rest_takes() {
         let progress = Progress::of(8, "problems");
         let mut line = progress.line();
         line.visible = false;
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn work_without_an_end_tells_its_steps_or_its_words() {
+    fn work_without_an_end_reports_its_steps_or_its_words() {
         let progress = Progress::open();
         progress.line().visible = false;
         progress.add(7);

@@ -338,7 +338,7 @@ fn a_recorder_s_clock_that_is_set_changes_no_rate() {
 }
 
 #[test]
-fn field_names_cards_robots_and_places_of_a_recording_are_told() {
+fn field_names_cards_robots_and_places_of_a_recording_are_reported() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../protocol/ssl/tests/data/grsim_divB_noisy_64s.log.gz");
     let report = json(&["replay", text(&data)], 0);

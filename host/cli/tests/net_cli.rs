@@ -38,7 +38,7 @@ fn order(id: u32, forward: f32) -> Vec<u8> {
 }
 
 #[test]
-fn a_client_sees_its_robot_move_and_is_told_what_is_wrong() {
+fn a_client_sees_its_robot_move_and_is_informed_what_is_wrong() {
     let vision = socket();
     let to = vision.local_addr().expect("an address").to_string();
     let simulate = ["simulate", "--ports", "0", "--listen", "127.0.0.1", "--referee", "none"];
@@ -74,7 +74,7 @@ fn a_client_sees_its_robot_move_and_is_told_what_is_wrong() {
 }
 
 #[test]
-fn a_taken_port_is_told_and_the_rest_goes_on() {
+fn a_taken_port_is_reported_and_the_rest_goes_on() {
     let vision = socket();
     let to = vision.local_addr().expect("an address").to_string();
     let taken = socket();

@@ -63,7 +63,7 @@ fn played() -> Program {
 }
 
 #[test]
-fn a_match_is_shown_stopped_and_begun_anew() {
+fn a_match_is_displayed_stopped_and_begun_again() {
     let play = played();
     let mut viewer = Viewer::of(&play);
     viewer.until(|scene| robots(scene) == 12 && scene["seed"] == 5);
@@ -188,7 +188,7 @@ fn a_real_field_is_halted_from_the_page_and_nothing_else() {
 }
 
 #[test]
-fn a_simulated_field_for_others_is_shown_with_its_truth() {
+fn a_simulated_field_for_others_is_displayed_with_its_truth() {
     let quiet = ["--vision", "127.0.0.1:9", "--referee-to", "127.0.0.1:9", "--ports", "0"];
     let simulate = ["simulate", "--page", "127.0.0.1:0", "--duration", "60"];
     let simulate = Program::start(&[&simulate[..], &quiet[..]].concat());

@@ -75,7 +75,7 @@ fn gzipped_and_indexed_tell_the_same() {
 }
 
 #[test]
-fn an_event_is_found_and_the_field_shown_as_it_was() {
+fn an_event_is_found_and_the_field_displayed_as_it_was() {
     let file = recording("grsim_divB_noisy_64s.log.gz");
     let report = json(&[&file], 0);
     let stops: Vec<f64> = (report["happenings"].as_array().expect("a list").iter())
@@ -92,7 +92,7 @@ fn an_event_is_found_and_the_field_shown_as_it_was() {
 }
 
 #[test]
-fn a_moment_is_shown_and_one_after_the_end_refused() {
+fn a_moment_is_displayed_and_one_after_the_end_refused() {
     let file = recording("erforce_divB_realistic_22s.log.gz");
     let moment = json(&[&file, "--at", "10"], 0);
     assert_eq!(moment["at_s"].as_f64(), Some(10.0));
@@ -113,7 +113,7 @@ fn a_host_fed_twice_sends_the_same() {
 }
 
 #[test]
-fn cut_and_foreign_files_are_told_with_their_place() {
+fn cut_and_foreign_files_are_reported_with_their_place() {
     let bytes = fs::read(recording("grsim_divB_22s_indexed.log")).expect("the recording");
     let cut = scratch("cut.log");
     fs::write(&cut, &bytes[..100_001]).expect("a file");

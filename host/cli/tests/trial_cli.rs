@@ -97,7 +97,7 @@ fn a_setting_reaches_the_robots() {
 }
 
 #[test]
-fn a_trial_is_told_as_a_story_and_drawn() {
+fn a_trial_is_reported_as_a_story_and_drawn() {
     let picture = scratch("play.svg");
     let out = onetwo(&["trial", "--seed", "3", "--svg", picture.to_str().expect("UTF-8")]);
     assert_eq!(out.status.code(), Some(0));
@@ -110,7 +110,7 @@ fn a_trial_is_told_as_a_story_and_drawn() {
 }
 
 #[test]
-fn wrong_usage_is_told_and_ends_with_two() {
+fn wrong_usage_is_reported_and_ends_with_two() {
     assert!(refused(&["trial", "--scenario", "5"], 2).contains("1, 2, 3, 4 or random"));
     assert!(refused(&["trial", "--opponents", "3d"], 2).contains("dg or 2d"));
     assert!(refused(&["trial", "--loss", "2"], 2).contains("0 to 1"));
@@ -118,7 +118,7 @@ fn wrong_usage_is_told_and_ends_with_two() {
 }
 
 #[test]
-fn what_cannot_be_done_is_told_with_its_hint_and_ends_with_one() {
+fn what_cannot_be_done_is_reported_with_its_hint_and_ends_with_one() {
     assert!(refused(&["trial", "--library", "no/such/folder"], 1).contains("league.toml"));
     assert!(refused(&["trial", "--set", "thr_c=far"], 1).contains("thr_c"));
     let nowhere = scratch("no-folder").join("x.svg");
@@ -126,7 +126,7 @@ fn what_cannot_be_done_is_told_with_its_hint_and_ends_with_one() {
 }
 
 #[test]
-fn a_missing_emulator_is_told_with_what_to_install() {
+fn a_missing_emulator_is_reported_with_what_to_install() {
     let out = Command::new(env!("CARGO_BIN_EXE_onetwo"))
         .args(["trial", "--backend", "qemu"])
         .env("PATH", scratch("empty-path"))

@@ -234,7 +234,7 @@ fn a_robot_whose_parent_is_gone_ends() {
 }
 
 #[test]
-fn a_key_that_is_none_and_a_host_nobody_knows_are_told() {
+fn a_key_that_is_none_and_a_host_no_one_knows_are_reported() {
     let robot = |more: &[&str]| {
         let out = Process::new(env!("CARGO_BIN_EXE_onetwo"))
             .args(["virtual-robot", "--id", "1", "--team", "blue", "--host", "127.0.0.1:9"])

@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn a_token_is_never_shown_by_accident() {
+    fn a_token_is_never_displayed_by_accident() {
         let token = Token::random().unwrap();
         assert!(!format!("{token:?}").contains(token.as_str()));
     }

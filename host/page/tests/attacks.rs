@@ -171,7 +171,7 @@ fn a_place_is_free_again_where_the_upgrade_never_happens() {
 }
 
 #[test]
-fn without_the_token_everybody_looks_on_and_nobody_asks() {
+fn without_the_token_everyone_looks_on_and_no_one_asks() {
     let token = Token::random().unwrap();
     let page = open(Limits::default(), Some(token.clone()));
     let at = page.address();
@@ -200,7 +200,7 @@ fn without_the_token_everybody_looks_on_and_nobody_asks() {
 }
 
 #[test]
-fn what_the_match_does_not_do_is_told_to_the_viewer_that_asked() {
+fn what_the_match_does_not_do_is_reported_to_the_viewer_that_asked() {
     let page = open(Limits::default(), None);
     let (mut other, mut asking) = (viewer(&page, "").unwrap(), viewer(&page, "").unwrap());
     asking.send(Message::text(r#"{"ask":"robot","team":"blue","id":15,"at":[0,0]}"#)).unwrap();

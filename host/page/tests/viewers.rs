@@ -266,7 +266,7 @@ fn a_problem_is_explained_and_a_moment_frozen() {
 }
 
 #[test]
-fn a_taken_port_is_told_with_what_to_do() {
+fn a_taken_port_is_reported_with_what_to_do() {
     let page = open(Powers::None);
     let settings = Settings { listen: page.address(), ..settings(Powers::None) };
     let Err(error) = Page::open(settings, Arc::new(Echo)) else { panic!("the port is taken") };

@@ -315,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn hosts_of_old_recordings_played_no_tactics_and_those_of_new_ones_are_told() {
+    fn hosts_of_old_recordings_played_no_tactics_and_those_of_new_ones_are_reported() {
         let mut settings = HostSettings::new(Colour::Blue, League::DivisionB, 1);
         settings.tactics = Tactics { threats: true, ..Tactics::NONE };
         let reported = serde_json::to_string(&HostHeader::of(&settings, Instant(0))).unwrap();

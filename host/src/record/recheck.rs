@@ -306,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn a_packet_too_few_or_too_many_is_told() {
+    fn a_packet_too_few_or_too_many_is_reported() {
         let records = recorded();
         let place = records.iter().rposition(|record| record.kind == Kind::Sent).unwrap();
         let mut fewer = records.clone();

@@ -305,7 +305,7 @@ fn who_joins_in_the_middle_knows_the_age_of_the_command() {
 }
 
 #[test]
-fn what_follows_is_told_in_phases() {
+fn what_follows_is_reported_in_phases() {
     let mut listener = listener();
     let mut stop = packet(0, Wire::Stop, 1);
     stop.next_command = Some(Wire::DirectFreeBlue as i32);
@@ -330,7 +330,7 @@ fn a_keeper_no_robot_can_be_is_none() {
 }
 
 #[test]
-fn a_side_once_told_stands_when_a_packet_leaves_it_out() {
+fn a_side_once_reported_stands_when_a_packet_leaves_it_out() {
     let mut listener = listener();
     assert_eq!(listener.game().own_goal(B), None);
     let mut reported = packet(0, Wire::Stop, 1);

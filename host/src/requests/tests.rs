@@ -63,7 +63,7 @@ fn a_substitution_is_wanted_when_a_robot_too_many_stays_on_the_field_and_not_whi
 }
 
 #[test]
-fn a_substitution_that_nobody_carries_out_is_asked_for_once_and_never_where_it_is_a_foul() {
+fn a_substitution_that_no_one_carries_out_is_asked_for_once_and_never_where_it_is_a_foul() {
     let mut view = stopped().allowing(3);
     let mut requests = Requests::default();
     assert_eq!(asked(&mut requests, &mut view, 13.0), [Request::Substitute(true)]);

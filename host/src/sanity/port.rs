@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn no_packet_other_packets_and_geometry_alone_are_told_apart_within_two_seconds() {
+    fn no_packet_other_packets_and_geometry_alone_are_distinguished_within_two_seconds() {
         for (foreign, others, expected) in [
             (0, false, VisionPort::Nothing),
             (100, false, VisionPort::Foreign { packets: 0 }),

@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_ends_again_and_again_is_given_up_and_told_of() {
+    fn a_robot_that_ends_again_and_again_is_given_up_and_reported_of() {
         let mut link = SimLink::start(settings("false", &[0])).unwrap();
         let mut error = None;
         for _ in 0..200 {

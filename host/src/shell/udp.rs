@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_listening_is_no_error_and_an_unknown_host_says_what_to_give() {
+    fn no_one_listening_is_no_error_and_an_unknown_host_says_what_to_give() {
         // A port that was just closed: no socket listens there.
         let free = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
         let mut link = UdpLink::open(&free.to_string()).unwrap();

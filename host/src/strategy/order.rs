@@ -267,7 +267,7 @@ mod tests {
     use protocol::quantized::WirePoint;
 
     #[test]
-    fn a_reason_is_told_with_its_numbers() {
+    fn a_reason_is_reported_with_its_numbers() {
         let marker = RobotId::new(3).unwrap();
         assert_eq!(Why::Coerces { marker }.to_string(), "opponent 3 follows it, out of the way");
         let chances = Why::Chances { receive: 0.75, goal: 0.2 };

@@ -177,7 +177,7 @@ mod tests {
     use rules::{League, Side};
 
     #[test]
-    fn nobody_is_sent_into_the_circle_around_the_ball_nor_over_the_line_for_it() {
+    fn no_one_is_sent_into_the_circle_around_the_ball_nor_over_the_line_for_it() {
         let view = view((4.3, 2.8), &[(0.0, 0.0)], &[]);
         for place in [(4.3, 2.8), (4.2, 2.9), (4.0, 2.5), (4.45, 2.95)] {
             let at = kept_off(&view, Point::new(place.0, place.1));
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn at_kick_off_everybody_stands_on_the_own_half_outside_the_circle() {
+    fn at_kick_off_everyone_stands_on_the_own_half_outside_the_circle() {
         let view = view((0.0, 0.0), &[], &[]);
         for place in kickoff_places(&view) {
             assert!(place.x() < -0.1 && place.distance(Point::new(0.0, 0.0)) > 0.6, "{place:?}");
@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn at_a_penalty_everybody_else_is_a_metre_behind_the_mark_and_no_two_of_both_teams_in_one_place() {
+    fn at_a_penalty_everyone_else_is_a_metre_behind_the_mark_and_no_two_of_both_teams_in_one_place() {
         for league in [League::Ssl2013, League::DivisionB, League::DivisionA] {
             let field = league.field();
             // The ball still lies at another place.

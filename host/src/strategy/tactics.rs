@@ -112,7 +112,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tactics_are_named_one_by_one_and_a_wrong_name_is_told() {
+    fn tactics_are_named_one_by_one_and_a_wrong_name_is_reported() {
         assert_eq!(Tactics::parse("none"), Ok(Tactics::NONE));
         let some = Tactics::parse("threats,coerce").unwrap();
         assert_eq!(some, Tactics { threats: true, coerce: true, ..Tactics::NONE });

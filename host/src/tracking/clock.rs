@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn the_quickest_packet_tells_how_the_clocks_lie() {
+    fn the_quickest_packet_reports_how_the_clocks_lie() {
         for start in [0, 1_795_220_511_000_000] {
             let mut clock = Clock::default();
             run(&mut clock, start, 1.0, 10..60, |i| 2_000 + (i * 7_919) % 9_000);
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn a_clock_that_begins_anew_is_followed_after_a_fifth_of_a_second() {
+    fn a_clock_that_begins_again_is_followed_after_a_fifth_of_a_second() {
         let mut clock = Clock::default();
         run(&mut clock, 50_000_000, 1.0, 0..100, |_| 0);
         let mut followed = None;

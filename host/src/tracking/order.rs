@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn a_copy_is_told_and_changes_nothing() {
+    fn a_copy_is_reported_and_changes_nothing() {
         let (seen, placed) = feed(&[(0, 0), (0, 1), (16_000, 0), (0, 1), (16_000, 0), (16_000, 1)]);
         assert_eq!(seen[..], [(0, 0), (0, 1), (16_000, 0), (16_000, 1)]);
         let expected = [Placed::Newest, Placed::Newest, Placed::Newest, Placed::Repeated, Placed::Repeated];

@@ -134,7 +134,7 @@ fn chip(mut stadium: Stadium, from: Point<Field>, velocity: Vector<Field>, climb
 }
 
 #[test]
-fn a_chip_is_told_from_a_flat_kick_and_its_landing_is_known_within_0_2_m() {
+fn a_chip_is_distinguished_from_a_flat_kick_and_its_landing_is_known_within_0_2_m() {
     // Kicks that a camera sees from the side; two of three on a field with four cameras.
     let kicks = [
         ([-3.0, -1.5], [0.6, 2.8], 2.8),

@@ -51,7 +51,7 @@ fn run(tracker: &mut Tracker, epoch: f64, from: f64, to: f64) -> Vec<Received> {
 }
 
 #[test]
-fn a_simulator_that_begins_anew_is_followed_within_a_quarter_of_a_second() {
+fn a_simulator_that_begins_again_is_followed_within_a_quarter_of_a_second() {
     for epoch in [-2.9, -1.5, 3_600.0, 1_795_220_511.0] {
         let mut tracker = Tracker::default();
         run(&mut tracker, 100.0, 0.0, 3.0);

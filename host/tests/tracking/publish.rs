@@ -11,7 +11,7 @@ use ssl::tracker::{Capability, TeamColor, TrackerWrapperPacket};
 use crate::stadium::{Stadium, Truth, play, who};
 
 #[test]
-fn a_tracker_packet_tells_robots_ball_and_kick_in_metres_on_visions_clock() {
+fn a_tracker_packet_reports_robots_ball_and_kick_in_metres_on_visions_clock() {
     let mut stadium = Stadium { epoch: 1_795_220_511.0, ..Stadium::one_camera(41) };
     let from = Point::<geometry::Field>::new(-2.0, 0.0);
     let path = BallModel::default().kicked(from, Vector::new(4.0, 0.0));

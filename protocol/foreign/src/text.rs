@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn every_character_of_the_first_65536_is_either_shown_or_escaped() {
+    fn every_character_of_the_first_65536_is_either_displayed_or_escaped() {
         for character in (0..=0xffff).filter_map(char::from_u32) {
             let text = character.to_string();
             let printed = printable(&text);

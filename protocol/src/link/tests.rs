@@ -133,7 +133,7 @@ fn a_host_is_a_stranger_until_it_welcomes_this_life_of_this_robot() {
 }
 
 #[test]
-fn after_a_boot_a_recording_of_the_host_moves_nobody() {
+fn after_a_boot_a_recording_of_the_host_moves_no_one() {
     let (mut before, mut host) = acquainted();
     let recorded =
         [host.seal(NOW, &welcome(2, 9)), host.seal(NOW, &stand(2)), host.seal(NOW, &world(0, 0, 1))];
@@ -158,7 +158,7 @@ fn a_host_that_starts_again_takes_over_and_the_old_one_is_refused() {
 }
 
 #[test]
-fn a_host_hears_robots_and_refuses_hosts() {
+fn a_host_receives_robots_and_refuses_hosts() {
     let (mut a, mut host) = acquainted();
     let telemetry = TeamMessage::Telemetry(Telemetry { battery: 1640, host: 70, ..Telemetry::default() });
     assert_eq!(host.open(NOW, &a.seal(&telemetry)), Ok(Opened::Believed(robot(2), telemetry)));

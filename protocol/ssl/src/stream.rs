@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn a_length_without_an_end_is_told() {
+    fn a_length_without_an_end_is_reported() {
         for bytes in [[0x80; 11], [0xff; 11]] {
             let mut reader = FrameReader::new(MESSAGE_MAX);
             reader.push(&bytes);

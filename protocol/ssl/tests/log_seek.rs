@@ -60,7 +60,7 @@ fn our_files_have_an_index_and_gzipped_ones_have_none() {
 }
 
 #[test]
-fn a_broken_index_is_told_and_the_headers_are_read_instead() {
+fn a_broken_index_is_reported_and_the_headers_are_read_instead() {
     let records = recordings::records(GRSIM);
     let scratch = Scratch::new("broken");
     let file = std::fs::read(recordings::path(GRSIM_INDEXED)).expect("the recording");

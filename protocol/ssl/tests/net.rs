@@ -42,7 +42,7 @@ fn by_all_interfaces_a_packet_is_received_once() {
 }
 
 #[test]
-fn a_receive_waits_as_long_as_it_is_told() {
+fn a_receive_waits_as_long_as_it_is_reported() {
     let mut port = Port::bind(localhost(0)).expect("a port");
     for wait in [0, 30, 0, 60] {
         let wait = Duration::from_millis(wait);
@@ -79,7 +79,7 @@ fn a_client_gets_its_answer() {
 }
 
 #[test]
-fn a_port_that_is_not_shared_is_told_with_the_command_that_finds_it() {
+fn a_port_that_is_not_shared_is_reported_with_the_command_that_finds_it() {
     let taken = Port::bind(localhost(0)).expect("a port");
     let error = Port::bind(taken.address()).expect_err("taken");
     assert!(matches!(error, NetError::Busy { shared: false, .. }), "{error}");
@@ -92,7 +92,7 @@ fn a_port_that_is_not_shared_is_told_with_the_command_that_finds_it() {
 }
 
 #[test]
-fn an_interface_that_is_not_there_is_told_with_those_that_are() {
+fn an_interface_that_is_not_there_is_reported_with_those_that_are() {
     let there_is = interfaces().expect("interfaces")[0].to_string();
     let by = Interfaces::These(vec!["wlan77".into()]);
     let from_receiver = Receiver::join(free_group(), &by).map(|_| ()).expect_err("no such interface");
@@ -108,7 +108,7 @@ fn an_interface_that_is_not_there_is_told_with_those_that_are() {
 }
 
 #[test]
-fn an_address_that_is_no_group_is_told() {
+fn an_address_that_is_no_group_is_reported() {
     let address = SocketAddrV4::new(Ipv4Addr::new(192, 168, 0, 1), 10006);
     let error = Receiver::join(address, &Interfaces::All).map(|_| ()).expect_err("no group");
     assert!(error.to_string().contains("192.168.0.1 is no multicast address"), "{error}");
@@ -116,14 +116,14 @@ fn an_address_that_is_no_group_is_told() {
 }
 
 #[test]
-fn a_datagram_that_udp_cannot_carry_is_told() {
+fn a_datagram_that_udp_cannot_carry_is_reported() {
     let sender = Sender::unicast(localhost(9)).expect("a sender");
     let error = sender.send(&vec![0; 70_000]).expect_err("too large");
     assert!(matches!(error, NetError::TooLarge { bytes: 70_000 }), "{error}");
 }
 
 #[test]
-fn no_way_to_a_group_is_told_with_the_command_that_makes_one() {
+fn no_way_to_a_group_is_reported_with_the_command_that_makes_one() {
     let to = SocketAddr::from((GROUP, 10006));
     let description = NetError::NoRoute { to, by: None }.to_string();
     assert!(

@@ -89,7 +89,7 @@ fn trap_02_the_field_comes_with_one_camera_a_packet_from_grsim_and_always_whole_
 }
 
 #[test]
-fn trap_03_a_place_for_the_ball_is_told_where_none_is_to_be_placed() {
+fn trap_03_a_place_for_the_ball_is_reported_where_none_is_to_be_placed() {
     let packets = recordings::referee(GRSIM_NOISY);
     let reported: BTreeSet<_> = packets
         .iter()
@@ -167,7 +167,7 @@ fn trap_07_unicast_to_shared_listeners_reaches_one_of_them_and_multicast_all() {
 }
 
 #[test]
-fn trap_08_neither_simulator_tells_the_defence_area_but_its_lines() {
+fn trap_08_neither_simulator_reports_the_defence_area_but_its_lines() {
     for (name, lines) in [(GRSIM, 18), (ERFORCE, 12)] {
         for geometry in geometries(name) {
             let field = &geometry.field;

@@ -328,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_drives_on_without_its_host_is_told() {
+    fn a_robot_that_drives_on_without_its_host_is_reported() {
         let mut guard = driving();
         let mut found = None;
         for ms in (1_000..1_300).step_by(10) {
@@ -345,7 +345,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_moves_at_once_after_a_long_silence_is_told_and_one_that_does_after_a_gap_is_not() {
+    fn a_robot_that_moves_at_once_after_a_long_silence_is_reported_and_one_that_does_after_a_gap_is_not() {
         let moves = order(0.5, OmniKick::None);
         for (silence, judged) in [(210, Ok(())), (600, Err(Danger::Unbraked(RuleRole::NotArmed, moves)))] {
             let mut guard = driving();
@@ -357,7 +357,7 @@ mod tests {
     }
 
     #[test]
-    fn growing_faster_endless_braking_and_absurd_orders_are_told() {
+    fn growing_faster_endless_braking_and_absurd_orders_are_reported() {
         let mut mad = sensors();
         mad.odometry.angular = f32::NAN;
         let mut guard = driving();

@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn beside_a_gameplay_of_others_nobody_goes_for_the_ball() {
+    fn beside_a_gameplay_of_others_no_one_goes_for_the_ball() {
         let b = belief((0.0, 0.0, 0.0), (0.2, 0.0));
         assert_eq!(step(&b, &Teammates::default(), Freedom::KeepNear).1, Role::Supporter);
         let (Intent::Drive(waits), _) = step(&b, &Teammates::default(), Freedom::Approach) else { panic!() };

@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_retriever_nobody_is_named() {
+    fn without_a_retriever_no_one_is_named() {
         assert_eq!(coordinator(Instant(0), robot(1), &beacon(Some(1), false), &Teammates::default()), None);
     }
 

@@ -188,7 +188,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_source_file_tells_its_crate() {
+    fn a_source_file_reports_its_crate() {
         for (path, name) in [
             ("/rustc/59807616/library/core/src/num/f32.rs", "core"),
             ("/x/.cargo/registry/src/index-1949/embassy-sync-0.8.0/src/signal.rs", "embassy-sync"),

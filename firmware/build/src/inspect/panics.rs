@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn a_function_is_told_without_its_types() {
+    fn a_function_is_reported_without_its_types() {
         assert_eq!(plain("embassy_sync::channel::Channel<M,T,N>::lock"), "Channel::lock");
         assert_eq!(plain("runtime::tasks::brain::{{closure}}"), "tasks::brain");
     }

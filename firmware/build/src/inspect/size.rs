@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_tells_its_crate() {
+    fn a_value_reports_its_crate() {
         assert_eq!(crate_of_symbol("case_library::FOUR_LEGGED_TABLE"), "case_library");
         assert_eq!(crate_of_symbol("<&brain::X as core::fmt::Debug>::fmt"), "brain");
         assert_eq!(crate_of_symbol(".Lanon.88b9"), CONSTANTS);

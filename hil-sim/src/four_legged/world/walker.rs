@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn the_surface_edge_stops_everybody() {
+    fn the_surface_edge_stops_everyone() {
         let field = League::FourLegged.field();
         let mut walker = Walker::at(Side::Attackers, Pose::from_mm_deg(5000.0, -5000.0, 0.0));
         walker.stay_on_surface(&field, 0.12);

@@ -39,7 +39,7 @@ fn watched(cameras: &mut Cameras, world: &mut World, steps: u32) -> Vec<(u64, Wr
 }
 
 #[test]
-fn without_noise_everything_is_told_where_it_is_in_millimetres() {
+fn without_noise_everything_is_reported_where_it_is_in_millimetres() {
     let mut world = world(League::DivisionB);
     let mut cameras = Cameras::new(clear(&world), &world, 1);
     world.step();
@@ -139,7 +139,7 @@ fn a_ball_behind_a_robot_is_hidden_and_one_before_its_front_is_seen() {
 }
 
 #[test]
-fn a_flying_ball_is_told_where_its_ray_meets_the_ground() {
+fn a_flying_ball_is_reported_where_its_ray_meets_the_ground() {
     let mut world = world(League::DivisionB);
     let mut cameras = Cameras::new(clear(&world), &world, 1);
     world.put_ball(Ball { height: 1.0, ..Ball::at(Point::new(3.4, 0.5)) });
@@ -171,7 +171,7 @@ fn pixels_and_calibration_lead_back_to_the_field() {
 }
 
 #[test]
-fn geometry_tells_the_field_of_the_rules_and_our_ball() {
+fn geometry_reports_the_field_of_the_rules_and_our_ball() {
     let world = world(League::DivisionA);
     let geometry = Cameras::new(clear(&world), &world, 1).geometry(&world, None);
     let field = &geometry.field;

@@ -106,7 +106,7 @@ fn a_commanded_robot_drives_and_the_answer_names_who_is_there() {
 }
 
 #[test]
-fn the_light_barrier_is_told() {
+fn the_light_barrier_is_reported() {
     let mut server = server();
     let robot = server.world().robot(own(1)).unwrap();
     let (p, reach) = (robot.pose.position, robot.body.front + 0.0215);
@@ -122,7 +122,7 @@ fn the_light_barrier_is_told() {
 }
 
 #[test]
-fn time_runs_at_its_pace_stands_still_and_skips_what_nobody_waited_for() {
+fn time_runs_at_its_pace_stands_still_and_skips_what_no_one_waited_for() {
     let mut server = server();
     let (sec, mut now) = (1_000_000, Instant(5_000_000));
     let run = |server: &mut Server, now: &mut Instant, us: u64| {
@@ -305,7 +305,7 @@ fn specifications_change_a_robot_and_only_it() {
 }
 
 #[test]
-fn another_field_is_told_by_vision_and_holds_robots() {
+fn another_field_is_reported_by_vision_and_holds_robots() {
     let mut server = server();
     let a = World::new(League::DivisionA, Parameters::of(League::DivisionA).unwrap(), 0);
     let reported = Cameras::of(Profile::Ours, 0.0, &a, 0).geometry(&a, None);

@@ -130,7 +130,7 @@ fn boards_hold_a_rolling_ball_and_a_flying_one_leaves() {
 }
 
 #[test]
-fn a_ball_between_two_robots_is_squeezed_and_nobody_explodes() {
+fn a_ball_between_two_robots_is_squeezed_and_no_one_explodes() {
     let mut world = world();
     world.put(yellow(1), Pose::from_mm_deg(-200.0, 0.0, 0.0));
     world.put(blue(1), Pose::from_mm_deg(200.0, 3.0, 180.0));

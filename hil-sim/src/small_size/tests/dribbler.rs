@@ -176,7 +176,7 @@ fn dribbling_counts_from_the_first_touch_to_visible_separation() {
 }
 
 #[test]
-fn a_discharged_kicker_kicks_only_after_charging_anew() {
+fn a_discharged_kicker_kicks_only_after_charging_again() {
     let mut world = with_ball();
     let frame = ActuatorFrame::Omni {
         wheels: [0.0; 4],

@@ -102,7 +102,7 @@ fn without_orders_for_a_tenth_of_a_second_it_brakes() {
 }
 
 #[test]
-fn a_crash_is_told_once_with_the_projected_difference_of_speeds() {
+fn a_crash_is_reported_once_with_the_projected_difference_of_speeds() {
     let mut world = world();
     world.put(yellow(1), Pose::from_mm_deg(-300.0, 0.0, 0.0)).push(Vector::new(2.0, 0.0), 0.0);
     world.put(blue(1), Pose::from_mm_deg(300.0, 90.0, 180.0)).push(Vector::new(-1.0, 0.0), 0.0);

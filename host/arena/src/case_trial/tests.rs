@@ -19,7 +19,7 @@ fn number(case_trial: &CaseTrial<'_>, name: &str) -> usize {
 }
 
 #[test]
-fn a_drawn_situation_lies_in_the_cores_of_its_scopes_and_nobody_touches_anybody() {
+fn a_drawn_situation_lies_in_the_cores_of_its_scopes_and_no_one_touches_anybody() {
     let case_trial = case_trial(0);
     let (field, parameters) = (League::FourLegged.field(), Parameters::four_legged());
     for case in case_trial.base.cases().filter(|case| case.symmetry() == Symmetry::Identity) {

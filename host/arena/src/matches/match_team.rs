@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn no_team_of_that_name_is_told_with_those_there_are() {
+    fn no_team_of_that_name_is_reported_with_those_there_are() {
         for label in
             ["", "best", "ours-", "ours-with-", "ours-with-luck", "ours-without-luck", "zone-with-coerce"]
         {

@@ -299,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_object_is_told_apart_from_what_is_no_json() {
+    fn what_is_no_object_is_distinguished_from_what_is_no_json() {
         for line in ["[]", "1", "null", "\"x\""] {
             assert_eq!(reason(line), format!("expected an object with {KEYS}"));
         }

@@ -185,7 +185,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_faulty_problem_is_told_with_its_place() {
+    fn a_faulty_problem_is_reported_with_its_place() {
         let error = read(r#"{"ball":[0]}"#).unwrap_err().to_string();
         assert!(error.starts_with("--problem: ball"), "{error}");
     }

@@ -167,7 +167,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_slip_of_the_pen_is_told_the_name_meant() {
+    fn a_slip_of_the_pen_is_reported_the_name_meant() {
         let names = ["center/pass-around", "front/shot"].map(str::to_owned);
         assert_eq!(near(&names, "center/pas-around").as_deref(), Some("center/pass-around"));
         assert_eq!(near(&names, "shto").as_deref(), Some("front/shot"));
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn left_is_told_as_left() {
+    fn left_is_reported_as_left() {
         assert_eq!(heading(45), "45 deg left");
         assert_eq!(heading(-45), "45 deg right");
         assert_eq!(heading(0), "straight ahead");

@@ -271,7 +271,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn robots_in_a_simulator_are_told_of_cases_and_settings_in_their_own_words() {
+    fn robots_in_a_simulator_are_reported_of_cases_and_settings_in_their_own_words() {
         #[derive(Debug, clap::Parser)]
         struct Line {
             #[command(flatten)]

@@ -143,7 +143,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_missing_is_told_once_and_so_is_that_it_came() {
+    fn what_is_missing_is_reported_once_and_so_is_that_it_came() {
         let mut waiting = Waiting::default();
         let mut see = |missing| waiting.see(missing, |_| "waits".to_owned(), || "came".to_owned());
         assert_eq!(see(true).as_deref(), Some("waits"));
@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_there_from_the_start_is_told_too() {
+    fn what_is_there_from_the_start_is_reported_too() {
         let mut waiting = Waiting::default();
         assert_eq!(waiting.see(false, |_| String::new(), || "came".to_owned()).as_deref(), Some("came"));
     }

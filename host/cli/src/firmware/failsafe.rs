@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_nobody_sees_brakes_at_once_and_goes_on_when_it_is_seen() {
+    fn a_robot_that_no_one_sees_brakes_at_once_and_goes_on_when_it_is_seen() {
         let found = ends_well(Cause::Lost, 1);
         assert_eq!((found.released, found.again), (None, Some(1)));
     }

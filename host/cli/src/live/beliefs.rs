@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn a_keeper_a_marker_and_one_that_nothing_explains_are_told_apart() {
+    fn a_keeper_a_marker_and_one_that_nothing_explains_are_distinguished() {
         let shapes = labels(GoalEnd::Negative);
         let notes = notes(&shapes);
         assert!(notes[0].starts_with("yellow 0 plays goalkeeper\n"), "{notes:?}");

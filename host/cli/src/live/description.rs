@@ -175,7 +175,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_told_in_words() {
+    fn names_are_reported_in_words() {
         assert_eq!(spaced("FirstHalfPre"), "first half pre");
         assert_eq!(role(Role::Defender(0)), "defender 1");
         assert_eq!(role(Role::Keeper), "keeper");

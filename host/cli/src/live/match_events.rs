@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn offences_are_told_from_other_events() {
+    fn offences_are_distinguished_from_other_events() {
         assert_eq!(foul_or_event("BOT_CRASH_UNIQUE"), Kind::Foul);
         assert_eq!(foul_or_event("PLACEMENT_SUCCEEDED"), Kind::Event);
     }

@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn the_newest_image_of_each_camera_is_shown_and_a_dead_camera_is_not() {
+    fn the_newest_image_of_each_camera_is_displayed_and_a_dead_camera_is_not() {
         let mut images = Images::default();
         for (camera, t, x) in [(2, 0.5, 900.0), (0, 1.0, 100.0), (1, 1.0, 200.0), (0, 1.02, 110.0)] {
             images.receive(&image(camera, t, x));

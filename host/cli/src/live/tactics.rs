@@ -300,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn maps_are_there_in_a_halt_too_but_nobody_is_judged_by_where_he_stands() {
+    fn maps_are_there_in_a_halt_too_but_no_one_is_judged_by_where_he_stands() {
         let layers = Tactics::default().layers(&picture(0.0, (0.2, 0.0), Phase::Halt));
         assert!(!shapes(&layers, "pass-receive").is_empty());
         assert!(shapes(&layers, "threats").is_empty() && shapes(&layers, "believed").is_empty());

@@ -139,7 +139,7 @@ fn a_match_fills_scenes_that_hold_against_the_truth() {
 }
 
 #[test]
-fn a_retrieval_that_is_told_can_be_explained_and_mostly_comes_to_the_same_case() {
+fn a_retrieval_that_is_reported_can_be_explained_and_mostly_comes_to_the_same_case() {
     let match_events = played(90).match_events;
     let library_handle = library_handle_of(League::DivisionB, None).unwrap().unwrap();
     let chosen = Chosen { settings: Settings::default(), changed: Vec::new() };

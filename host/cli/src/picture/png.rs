@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn a_faulty_svg_is_told() {
+    fn a_faulty_svg_is_reported() {
         assert!(png("<svg").is_err());
     }
 }

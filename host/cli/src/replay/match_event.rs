@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn each_thing_is_told_once() {
+    fn each_thing_is_reported_once() {
         let (mut finder, mut found) = (Finder::default(), Vec::new());
         for (at, packet) in [
             (0.0, packet(Command::Halt, 1, 0)),
@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn cards_names_robots_allowed_and_places_are_told_when_they_change() {
+    fn cards_names_robots_allowed_and_places_are_reported_when_they_change() {
         let (mut finder, mut found) = (Finder::default(), Vec::new());
         let mut placing = packet(Command::BallPlacementBlue, 5, 0);
         placing.designated_position = Some(Point { x: 1200.0, y: -450.0 });

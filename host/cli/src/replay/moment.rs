@@ -155,7 +155,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn phases_and_stages_are_told_in_words() {
+    fn phases_and_stages_are_reported_in_words() {
         assert_eq!(phase_description(Phase::FreeKick(Colour::Blue)), "free kick, blue");
         assert_eq!(phase_description(Phase::Halt), "halt");
         assert_eq!(spaced("ExtraFirstHalfPre"), "extra first half pre");

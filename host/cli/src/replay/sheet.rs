@@ -127,7 +127,7 @@ mod tests {
     use ssl::vision::{GeometryData, GeometryFieldSize};
 
     #[test]
-    fn field_and_teams_are_told_as_they_were_at_last() {
+    fn field_and_teams_are_reported_as_they_were_at_last() {
         let mut sheet = Sheet::default();
         assert!(sheet.text().is_empty());
         let field = GeometryFieldSize {
@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn a_field_of_any_numbers_is_told() {
+    fn a_field_of_any_numbers_is_reported() {
         let mut sheet = Sheet::default();
         let field = GeometryFieldSize {
             field_length: i32::MIN,

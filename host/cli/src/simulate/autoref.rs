@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn a_controller_that_wants_a_signature_is_told_of_with_the_remedy() {
+    fn a_controller_that_wants_a_signature_is_reported_of_with_the_remedy() {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         let mut reporter = Reporter::new(&listener.local_addr().expect("an address").to_string());
         let _talk = shake_hands(&listener, StatusCode::Rejected);

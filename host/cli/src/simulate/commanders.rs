@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn two_programs_that_command_one_robot_are_told_within_two_seconds_and_every_ten() {
+    fn two_programs_that_command_one_robot_are_reported_within_two_seconds_and_every_ten() {
         let message = message(|n| 4_000 + (n % 2) as u16);
         assert_eq!(message.len(), 3, "{message:?}");
         assert!(message[0].0 < 2_000 && message[0].1.contains("blue robot 3"), "{message:?}");
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn one_program_and_one_that_starts_anew_are_in_order() {
+    fn one_program_and_one_that_starts_again_are_in_order() {
         assert!(message(|_| 4_000).is_empty());
         assert!(message(|n| 4_000 + (n / 300) as u16).is_empty());
     }

@@ -175,7 +175,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_taken_port_is_told_and_the_others_serve() {
+    fn a_taken_port_is_reported_and_the_others_serve() {
         let home: IpAddr = [127, 0, 0, 1].into();
         let mut description = Vec::new();
         let first = Ports::open(home, 0, None, &mut description);

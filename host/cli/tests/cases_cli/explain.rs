@@ -30,7 +30,7 @@ fn every_case_under_the_goal_has_its_verdict_and_its_evidence() {
 }
 
 #[test]
-fn a_missing_robot_and_a_blocked_leg_are_told_apart() {
+fn a_missing_robot_and_a_blocked_leg_are_distinguished() {
     let alone = PROBLEM.replace(",\"3\":[200,800]", "");
     // On the line from (-600, 10) to (300, 910), at its middle: ρ = 200 mm, its edge at 200 mm · √1.002393.
     let blocked = PROBLEM.replace("[-150,40]", "[2000,1700],[-150,460]");
@@ -105,7 +105,7 @@ fn people_get_a_table() {
 }
 
 #[test]
-fn malformed_lines_are_told_as_retrieval_tells_them() {
+fn malformed_lines_are_reported_as_retrieval_reports_them() {
     let run = cases("explain", &directory("explain-malformed"), &["--json"], "x\n");
     assert_eq!(run.stdout, "{\"error\":\"line 1: column 1: not JSON: expected value\"}\n");
     assert_eq!(run.code, 0);

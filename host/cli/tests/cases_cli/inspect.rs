@@ -54,7 +54,7 @@ fn without_a_directory_every_built_in_league_is_listed() {
 }
 
 #[test]
-fn a_case_is_shown_with_its_intent_its_gameplays_and_the_balls_path() {
+fn a_case_is_displayed_with_its_intent_its_gameplays_and_the_balls_path() {
     let directory = worked_example("show");
     let run = cases("show", &directory, &["center/pass-around"], "");
     assert_eq!(
@@ -84,7 +84,7 @@ fn a_case_is_shown_with_its_intent_its_gameplays_and_the_balls_path() {
 }
 
 #[test]
-fn kicks_and_turns_are_told_by_side_and_mirrored() {
+fn kicks_and_turns_are_reported_by_side_and_mirrored() {
     let text = PASS_AROUND
         .replace(
             "\"get_ball\", ",
@@ -104,7 +104,7 @@ fn kicks_and_turns_are_told_by_side_and_mirrored() {
 }
 
 #[test]
-fn a_case_that_is_not_there_is_told_with_those_that_are() {
+fn a_case_that_is_not_there_is_reported_with_those_that_are() {
     let directory = worked_example("no-case");
     for asked in ["center/pass", "4", "99999999"] {
         let run = cases("show", &directory, &[asked], "");
@@ -146,7 +146,7 @@ fn an_error_fails_the_check_with_file_line_code_and_hint() {
 }
 
 #[test]
-fn a_refused_library_is_named_by_its_directory_even_where_that_is_told_as_a_dot() {
+fn a_refused_library_is_named_by_its_directory_even_where_that_is_reported_as_a_dot() {
     let directory = library("dotted", &[("front/shot.toml", "")]);
     let output = command(&["cases", "check", "--library", "."]).current_dir(directory).output().unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
@@ -205,7 +205,7 @@ fn a_directory_that_is_not_there_fails_the_check_in_words() {
 }
 
 #[test]
-fn the_version_names_the_commit_and_wrong_usage_is_told_from_failure() {
+fn the_version_names_the_commit_and_wrong_usage_is_distinguished_from_failure() {
     let version = onetwo(&["--version"]);
     let commit =
         version.stdout.trim().strip_prefix(&format!("onetwo {} (commit ", env!("CARGO_PKG_VERSION")));
@@ -221,7 +221,7 @@ fn the_version_names_the_commit_and_wrong_usage_is_told_from_failure() {
 }
 
 #[test]
-fn findings_are_told_as_data_and_their_codes_are_explained() {
+fn findings_are_reported_as_data_and_their_codes_are_explained() {
     let faulty = PASS_AROUND.replacen("[300, 300]", "[0, 300]", 1);
     let directory = library("findings-as-data", &[("center/a.toml", &faulty)]);
     let run = cases("check", &directory, &["--json"], "");

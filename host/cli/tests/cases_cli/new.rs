@@ -27,7 +27,7 @@ fn a_draft_of_a_problem_is_checked_and_retrieved_from_it() {
 }
 
 #[test]
-fn a_file_s_problem_may_be_spread_over_lines_and_what_is_left_out_is_told() {
+fn a_file_s_problem_may_be_spread_over_lines_and_what_is_left_out_is_reported() {
     let directory = library("new-file", &[]);
     let robots: Vec<_> = (1..=6).map(|id| format!("\"{id}\": [{}, 0]", -650 - 200 * id)).collect();
     let problem = format!(

@@ -40,7 +40,7 @@ fn one_kind_of_opponents_gives_one_row_a_case_and_the_file_names_its_command() {
 }
 
 #[test]
-fn a_story_tells_each_attempt() {
+fn a_story_reports_each_attempt() {
     let run = onetwo(&["cases", "play", "front/shot", "--trials", "2", "--opponents", "playing", "--story"]);
     assert_eq!(run.code, 0);
     assert!(run.stdout.contains("front/shot, opponents playing, attempt 1"));

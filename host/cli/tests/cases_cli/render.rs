@@ -18,14 +18,14 @@ fn a_library_is_drawn_as_files_and_on_one_page() {
 }
 
 #[test]
-fn a_problem_over_its_case_tells_the_rank() {
+fn a_problem_over_its_case_reports_the_rank() {
     let run = cases("render", &worked_example("render-rank"), &["--problem", PROBLEM], "");
     assert_eq!(run.code, 0, "{}", run.stderr);
     assert!(run.stdout.contains("Candidate, rank 1 of 1: occupied opponent scopes 1, teammates 2"));
 }
 
 #[test]
-fn what_cannot_be_drawn_is_told_with_the_hint() {
+fn what_cannot_be_drawn_is_reported_with_the_hint() {
     let directory = worked_example("render-wrong");
     let out = directory.with_extension("jpg");
     for (arguments, description) in [

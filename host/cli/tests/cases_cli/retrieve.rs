@@ -70,7 +70,7 @@ fn whole_numbers_are_rounded_as_all_others() {
 }
 
 #[test]
-fn malformed_lines_are_told_with_their_place_and_the_rest_go_on() {
+fn malformed_lines_are_reported_with_their_place_and_the_rest_go_on() {
     let table: &[(&str, &str)] = &[
         (&PROBLEM.replace("[200,800]", "[200]"), "teammates.3: expected [x, y] in mm"),
         (&PROBLEM.replace("[200,800]", "[200,800.0]"), "teammates.3: expected [x, y] in mm"),

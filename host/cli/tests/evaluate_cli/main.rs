@@ -210,7 +210,7 @@ fn a_change_to_the_team_is_recorded_and_reaches_the_robots() {
 }
 
 #[test]
-fn what_cannot_be_done_is_told_with_its_hint() {
+fn what_cannot_be_done_is_reported_with_its_hint() {
     let out = scratch("refused");
     let short = |seed: &'static str, loss: &'static str| {
         let own = [seed, "--loss", loss, "--trials", "1", "--approach", "cbr", "--out", text(&out)];
@@ -261,7 +261,7 @@ fn every_claim_of_the_paper_is_judged_on_our_trials_and_on_its_own_tables() {
 }
 
 #[test]
-fn judge_tells_every_line_with_numbers_and_misses_are_no_error() {
+fn judge_reports_every_line_with_numbers_and_misses_are_no_error() {
     let out = scratch("judge");
     let output = stdout_of(&["evaluate", "judge", "--trials", "1", "--out", text(&out)]);
     let lines = json(&out.join("judge.json"));

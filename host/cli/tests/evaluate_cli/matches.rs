@@ -59,7 +59,7 @@ fn jobs_shards_and_a_kill_change_no_byte_of_matches() {
 }
 
 #[test]
-fn every_part_is_played_against_the_usual_team_and_told_with_its_effect() {
+fn every_part_is_played_against_the_usual_team_and_reported_with_its_effect() {
     let out = scratch("matches-ablations");
     let reported = stdout_of(&of("2", &["--matches", "2", "--ablations", "--out", text(&out)]));
     let data = json(&out.join("matches.json"));
@@ -110,7 +110,7 @@ fn a_document_takes_the_tables_between_its_markers_in_both_leagues() {
 }
 
 #[test]
-fn matches_that_cannot_be_played_are_told_with_their_hint() {
+fn matches_that_cannot_be_played_are_reported_with_their_hint() {
     let out = scratch("matches-refused");
     let reported = |description: &[&str], code| {
         refused(&[&MATCHES[..], description, &["--out", text(&out)]].concat(), code)

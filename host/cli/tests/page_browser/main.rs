@@ -202,7 +202,7 @@ fn a_recording_seeks_to_its_goal_and_to_the_moment_of_an_address() {
 }
 
 #[test]
-fn a_lost_connection_is_shown_and_heals() {
+fn a_lost_connection_is_displayed_and_heals() {
     let description = ["play", "--duration", "600", "--seed", "3", "--listen"];
     let first = Program::start(&[&description[..], &["127.0.0.1:0"]].concat());
     let mut browser = Browser::start().unwrap();

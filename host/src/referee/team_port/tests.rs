@@ -61,7 +61,7 @@ fn replies_may_come_in_pieces() {
 }
 
 #[test]
-fn a_name_the_controller_does_not_know_is_told_and_tried_again() {
+fn a_name_the_controller_does_not_know_is_reported_and_tried_again() {
     let mut port = TeamPort::new("twoone", Colour::Blue);
     port.connected(Instant(0));
     port.receive(&ok("t"), Instant(0));
@@ -145,7 +145,7 @@ fn an_unanswered_request_is_asked_again_on_the_next_connection() {
 }
 
 #[test]
-fn a_port_that_speaks_something_else_is_told() {
+fn a_port_that_speaks_something_else_is_reported() {
     for garbage in [&b"HTTP/1.1 400 Bad Request\r\n\r\n"[..], &[0xff; 12], &[3, 8, 1, 16]] {
         let mut port = TeamPort::new("onetwo", Colour::Blue);
         port.connected(Instant(0));

@@ -59,7 +59,7 @@ fn every_robot_has_exactly_one_order_in_every_phase_with_and_without_a_ball() {
 }
 
 #[test]
-fn in_halt_everybody_stands() {
+fn in_halt_everyone_stands() {
     let mut view = view((0.0, 0.0), &OURS, &THEIRS);
     view.phase = Phase::Halt;
     assert!(coach().decide(&view).iter().all(|order| order.task == Task::Stand));
@@ -100,7 +100,7 @@ fn who_took_our_free_kick_leaves_the_ball_to_others_until_somebody_touched_it() 
 }
 
 #[test]
-fn nobody_is_sent_near_the_ball_in_stop_nor_to_a_ball_in_their_area() {
+fn no_one_is_sent_near_the_ball_in_stop_nor_to_a_ball_in_their_area() {
     for ball in [(0.0, 0.0), (-3.2, 0.3), (4.2, 2.7), (-4.3, -2.8)] {
         let mut view = view(ball, &OURS, &THEIRS);
         view.phase = Phase::Stop;
@@ -163,7 +163,7 @@ fn free_kick(ms: u64, receiver: (f32, f32), theirs: &[(f32, f32)]) -> View {
 }
 
 #[test]
-fn a_pass_ahead_leaves_when_its_receiver_will_be_there_and_whoever_receives_it_is_told_where() {
+fn a_pass_ahead_leaves_when_its_receiver_will_be_there_and_whoever_receives_it_is_reported_where() {
     let tactics = Tactics { pass_ahead: true, ..Tactics::NONE };
     let mut coach = Coach::new(Team::Ours, tactics, League::DivisionB);
     // Six of them before their goal: no shot.
@@ -218,7 +218,7 @@ fn a_pass_ahead_leaves_when_its_receiver_will_be_there_and_whoever_receives_it_i
 }
 
 #[test]
-fn a_shot_at_our_goal_makes_nobody_leave_its_place_and_the_keeper_stays_one() {
+fn a_shot_at_our_goal_makes_no_one_leave_its_place_and_the_keeper_stays_one() {
     let mut coach = coach();
     let mut view = view((-1.5, 0.2), &OURS, &[(4.4, 0.0), (-1.3, 0.2)]);
     let before: Vec<_> = coach.decide(&view).iter().map(|order| order.role).collect();
@@ -336,7 +336,7 @@ fn where_a_case_is_played_its_pass_goes_near_its_place_to_its_receiver_if_the_br
 const WORTH: f32 = 0.1;
 
 #[test]
-fn a_pass_of_open_play_that_has_left_is_its_receivers_and_is_told_to_the_books_once() {
+fn a_pass_of_open_play_that_has_left_is_its_receivers_and_is_reported_to_the_books_once() {
     let wall = [(4.4, 0.0), (2.4, 0.0), (2.45, 0.2), (2.45, -0.2)];
     let (mut coach, mut view, orders) = attack([(3.0, 1.8), (-2.0, -2.0)], &wall, Tactics::default());
     let Task::Pass { at, .. } = orders[3].task else { panic!("{:?}", orders[3]) };
@@ -355,7 +355,7 @@ fn a_pass_of_open_play_that_has_left_is_its_receivers_and_is_told_to_the_books_o
 }
 
 #[test]
-fn a_placement_that_gets_nowhere_is_given_up_and_everybody_keeps_away() {
+fn a_placement_that_gets_nowhere_is_given_up_and_everyone_keeps_away() {
     let mut coach = coach();
     let mut view = view((2.0, 2.0), &OURS, &THEIRS);
     view.phase = Phase::BallPlacement(Side::Ours);
@@ -398,7 +398,7 @@ fn a_ball_behind_the_goal_that_no_robot_gets_at_is_given_up_at_once() {
 }
 
 #[test]
-fn who_is_left_without_a_ball_is_told_to_be_where_it_may_rather_than_to_stand() {
+fn who_is_left_without_a_ball_is_reported_to_be_where_it_may_rather_than_to_stand() {
     for phase in [Phase::Stop, Phase::PreparePenalty(Side::Theirs), Phase::PrepareKickoff(Side::Ours)] {
         let mut view = view((0.0, 0.0), &OURS, &THEIRS);
         (view.phase, view.ball) = (phase, None);

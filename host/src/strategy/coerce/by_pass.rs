@@ -163,7 +163,7 @@ mod tests {
                 let mut place = [plan.optimistic.at].into_iter();
                 let from = Point::new(ball.0, ball.1);
                 value.worths(&then, from, kicker, &receiver, &mut place, &mut |_, worth| {
-                    found = worth.value()
+                    found = worth.value();
                 });
                 found
             };

@@ -216,7 +216,7 @@ fn who_is_followed_as_expected_attacks_as_planned_after_the_followers_came() {
 }
 
 #[test]
-fn who_does_not_follow_makes_a_new_attack_against_everybody() {
+fn who_does_not_follow_makes_a_new_attack_against_everyone() {
     let (mut planner, _, mut view) = run(&TEAMMATES, &[0, 1, 2]);
     let Progress::Attacking(attack) = play(&mut planner, &mut view, false, 5.0) else { panic!() };
     let Followed::Otherwise { off, .. } = attack.followed else { panic!("{attack:?}") };
@@ -229,7 +229,7 @@ fn who_does_not_follow_makes_a_new_attack_against_everybody() {
 }
 
 #[test]
-fn where_all_coerce_one_whom_nobody_follows_is_used_again() {
+fn where_all_coerce_one_whom_no_one_follows_is_used_again() {
     let (mut planner, plan, mut view) = run(&TEAMMATES, &[0, 1, 2, 3]);
     let marked = plan.optimistic.receiver;
     let Progress::Attacking(attack) = play(&mut planner, &mut view, true, 5.0) else { panic!() };

@@ -15,7 +15,7 @@ fn orders(team: Team, view: &View) -> Orders {
 }
 
 #[test]
-fn every_robot_has_one_order_and_nobody_but_the_keeper_is_sent_into_an_area_or_over_a_line() {
+fn every_robot_has_one_order_and_no_one_but_the_keeper_is_sent_into_an_area_or_over_a_line() {
     for team in Team::OPPONENTS {
         for ball in [(0.3, 0.2), (-4.2, 0.0), (4.3, 0.1), (4.4, 2.9), (-2.9, -2.8), (-3.3, 0.0)] {
             for robots in 0..=OURS.len() {
@@ -35,7 +35,7 @@ fn every_robot_has_one_order_and_nobody_but_the_keeper_is_sent_into_an_area_or_o
 }
 
 #[test]
-fn nobody_but_the_keeper_goes_for_a_ball_in_an_area_and_the_barred_never_does() {
+fn no_one_but_the_keeper_goes_for_a_ball_in_an_area_and_the_barred_never_does() {
     for team in Team::OPPONENTS {
         for ball in [(-4.2, 0.3), (4.2, 0.3)] {
             let orders = orders(team, &view(ball, &OURS, &THEIRS));

@@ -104,7 +104,7 @@ fn speeds_and_ways_have_their_limits() {
 }
 
 #[test]
-fn a_taker_may_bump_the_ball_within_5_cm() {
+fn a_kicker_may_bump_the_ball_within_5_cm() {
     assert!(!double_touch(p(0.0, 0.0), p(0.04, 0.0), false));
     assert!(double_touch(p(0.0, 0.0), p(0.06, 0.0), false));
     assert!(!double_touch(p(0.0, 0.0), p(2.0, 0.0), true));

@@ -269,7 +269,7 @@ fn stages_are_played_or_breaks_or_before() {
 }
 
 #[test]
-fn whatever_is_said_nobody_starts_from_a_standstill_within_two_seconds_without_stop() {
+fn whatever_is_said_no_one_starts_from_a_standstill_within_two_seconds_without_stop() {
     let mut bits = 0x9E37_79B9_7F4A_7C15_u64;
     let mut random = move |below: u64| {
         bits ^= bits << 13;

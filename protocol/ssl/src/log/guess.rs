@@ -93,7 +93,7 @@ mod tests {
     use crate::vision::{DetectionFrame, FieldLineSegment, GeometryData, GeometryFieldSize};
 
     #[test]
-    fn each_message_is_told_from_the_others() {
+    fn each_message_is_distinguished_from_the_others() {
         let detection =
             vision::WrapperPacket { detection: Some(DetectionFrame::default()), ..Default::default() };
         assert_eq!(guess(&detection.encode_to_vec()), Some(MessageKind::Vision2014));

@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn at_a_penalty_the_keeper_goes_where_the_taker_lines_up_to_shoot() {
+    fn at_a_penalty_the_keeper_goes_where_the_kicker_lines_up_to_shoot() {
         let mut b = belief((-4.5, 0.0, 0.0), (1.5, 0.0));
         b.game.defending = GoalEnd::Negative;
         let goal_line = Segment::new(Point::new(-4.5, -0.5), Point::new(-4.5, 0.5));

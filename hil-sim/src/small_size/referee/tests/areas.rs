@@ -4,7 +4,7 @@
 use super::*;
 
 #[test]
-fn an_attacker_that_touches_the_ball_partly_in_the_area_is_told_once_in_two_seconds() {
+fn an_attacker_that_touches_the_ball_partly_in_the_area_is_reported_once_in_two_seconds() {
     let mut stage = in_play();
     stage.move_ball(at(3.55, 0.0));
     stage.put(yellow(2), at(3.4, 0.0));
@@ -42,7 +42,7 @@ fn a_defender_entirely_in_its_area_that_touches_the_ball_is_a_penalty() {
 }
 
 #[test]
-fn the_keeper_may_touch_the_ball_in_its_area_and_nobody_commits_anything_without_touching_it() {
+fn the_keeper_may_touch_the_ball_in_its_area_and_no_one_commits_anything_without_touching_it() {
     let mut stage = in_play();
     stage.move_ball(at(4.2, 0.0));
     stage.put(blue(1), at(3.9, 0.5));
@@ -98,7 +98,7 @@ fn in_stop_attackers_have_two_seconds_to_leave_the_20_cm_around_the_area() {
 }
 
 #[test]
-fn at_20_cm_nobody_is_too_close() {
+fn at_20_cm_no_one_is_too_close() {
     let mut stage = stopped();
     stage.put(yellow(2), at(3.20, 0.0));
     stage.put(blue(1), at(1.1, 2.5));

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn time_is_told_apart_by_what_the_ball_does() {
+fn time_is_distinguished_by_what_the_ball_does() {
     let mut stage = stage();
     stage.until(Phase::Kickoff(Colour::Yellow), 30.0);
     let before = stage.referee.metrics().match_s;

@@ -4,7 +4,7 @@
 use super::*;
 
 #[test]
-fn a_kick_over_the_limit_is_told_once_and_the_game_goes_on() {
+fn a_kick_over_the_limit_is_reported_once_and_the_game_goes_on() {
     let mut stage = in_play();
     stage.kick_from(at(-3.0, 1.0), yellow(1), [6.6, 0.0]);
     stage.run(0.5);
@@ -59,7 +59,7 @@ fn dribbling_further_than_a_metre_is_a_free_kick_from_where_it_began() {
 }
 
 #[test]
-fn a_ball_that_is_let_go_in_between_is_dribbled_anew() {
+fn a_ball_that_is_let_go_in_between_is_dribbled_again() {
     let mut stage = dribble(0.8);
     // 3 cm between hull (0.09 m) and ball (0.0215 m).
     stage.move_ball(at(-0.1085, 1.0));
@@ -86,7 +86,7 @@ fn kicked_off(x: f32) -> Stage {
 }
 
 #[test]
-fn the_taker_may_not_touch_the_ball_again() {
+fn the_kicker_may_not_touch_the_ball_again() {
     let mut stage = kicked_off(0.1);
     stage.put(yellow(1), at(0.0, 0.0));
     stage.touch(yellow(1));
@@ -108,7 +108,7 @@ fn bumping_the_ball_within_5_cm_is_no_double_touch() {
 }
 
 #[test]
-fn after_another_robots_touch_the_taker_may() {
+fn after_another_robots_touch_the_kicker_may() {
     let mut stage = kicked_off(0.1);
     stage.touch(yellow(2));
     stage.put(yellow(1), at(0.0, 0.0));

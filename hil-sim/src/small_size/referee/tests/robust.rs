@@ -231,7 +231,7 @@ fn steps_of_1_and_of_20_ms_see_the_same_offences() {
 }
 
 #[test]
-fn a_ball_that_nobody_fetches_from_the_goal_does_not_score_again() {
+fn a_ball_that_no_one_fetches_from_the_goal_does_not_score_again() {
     let mut stage = in_play();
     stage.obeyed = false;
     stage.put(blue(0), at(4.45, 0.8));

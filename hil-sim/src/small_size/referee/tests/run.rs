@@ -115,7 +115,7 @@ fn half_time_ends_in_the_other_half_and_with_the_other_teams_kick_off() {
 }
 
 #[test]
-fn playing_time_stands_still_while_nobody_may_play() {
+fn playing_time_stands_still_while_no_one_may_play() {
     let mut stage = stage();
     stage.until(Phase::Kickoff(Colour::Yellow), 30.0);
     assert_eq!(stage.referee.packet().stage_time_left, Some(300_000_000));

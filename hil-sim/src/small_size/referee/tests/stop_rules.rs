@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn who_moves_two_seconds_after_halt_is_told_once() {
+fn who_moves_two_seconds_after_halt_is_reported_once() {
     let mut stage = stage();
     stage.drive(blue(1), 1.0, 0.0);
     stage.run(1.9);
@@ -26,7 +26,7 @@ fn stopped() -> Stage {
 }
 
 #[test]
-fn who_is_too_fast_in_stop_after_two_seconds_is_told_once_a_stop() {
+fn who_is_too_fast_in_stop_after_two_seconds_is_reported_once_a_stop() {
     let mut stage = stopped();
     stage.drive(blue(1), 0.0, 1.6);
     stage.run(1.9);
@@ -39,7 +39,7 @@ fn who_is_too_fast_in_stop_after_two_seconds_is_told_once_a_stop() {
 }
 
 #[test]
-fn of_two_of_a_team_that_are_too_fast_at_once_one_is_told() {
+fn of_two_of_a_team_that_are_too_fast_at_once_one_is_reported() {
     let mut stage = stopped();
     stage.drive(blue(1), 0.0, 1.6);
     stage.drive(blue(2), 0.0, 1.6);
@@ -91,7 +91,7 @@ fn a_stop_in_which_a_robot_stays_at_the_ball_does_not_end_and_after_ten_seconds_
 }
 
 #[test]
-fn a_defender_within_half_a_metre_of_the_ball_gives_the_taker_its_time_again() {
+fn a_defender_within_half_a_metre_of_the_ball_gives_the_kicker_its_time_again() {
     let mut stage = stage();
     stage.until(Phase::Kickoff(Colour::Yellow), 30.0);
     stage.run(5.0);
@@ -112,7 +112,7 @@ fn a_defender_within_half_a_metre_of_the_ball_gives_the_taker_its_time_again() {
 }
 
 #[test]
-fn a_defender_that_stays_too_close_is_told_every_two_seconds() {
+fn a_defender_that_stays_too_close_is_reported_every_two_seconds() {
     let mut stage = stage();
     stage.until(Phase::Kickoff(Colour::Yellow), 30.0);
     stage.put(blue(1), at(0.3, 0.0));

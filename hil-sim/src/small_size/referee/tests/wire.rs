@@ -101,7 +101,7 @@ fn a_goal_is_announced_once_by_the_old_command() {
 }
 
 #[test]
-fn what_happened_is_told_until_the_ball_may_move_again() {
+fn what_happened_is_reported_until_the_ball_may_move_again() {
     let mut stage = in_play();
     stage.touch(blue(1));
     stage.kick(0.0, 6.0);
@@ -127,7 +127,7 @@ fn in_preparation_the_next_command_is_normal_start() {
 }
 
 #[test]
-fn every_event_is_told_by_the_leagues_type_with_its_evidence_but_our_own_three() {
+fn every_event_is_reported_by_the_leagues_type_with_its_evidence_but_our_own_three() {
     let shot = Shot {
         kicker: Some(yellow(3)),
         from: at(1.0, 0.0),

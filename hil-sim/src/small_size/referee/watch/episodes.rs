@@ -59,7 +59,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_offence_is_told_at_its_beginning_and_every_two_seconds() {
+    fn an_offence_is_reported_at_its_beginning_and_every_two_seconds() {
         let mut episodes = Episodes::default();
         let raised: Vec<u64> =
             (0..500).filter(|step| episodes.raise((), true, Instant(step * 10_000))).collect();

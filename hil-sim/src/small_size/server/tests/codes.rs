@@ -146,7 +146,7 @@ fn every_code_of_settings_has_its_cause_and_a_refused_setting_changes_nothing() 
 }
 
 #[test]
-fn a_ball_models_switch_that_is_not_simulated_is_told_and_the_rest_holds() {
+fn a_ball_models_switch_that_is_not_simulated_is_reported_and_the_rest_holds() {
     for (k_switch, reported) in [(5.0 / 7.0, false), (0.7143, false), (0.69, true), (0.7, true)] {
         let mut server = server();
         let mut geometry = server.cameras.geometry(server.world(), None);
@@ -162,7 +162,7 @@ fn a_ball_models_switch_that_is_not_simulated_is_told_and_the_rest_holds() {
 }
 
 #[test]
-fn a_datagram_of_another_kind_is_told_so_on_each_port() {
+fn a_datagram_of_another_kind_is_reported_so_on_each_port() {
     let mut server = server();
     server.handle(Port::Simulator, from(), b"\xff\xff\xff");
     server.handle(Port::Team(Colour::Yellow), from(), b"\xff\xff\xff");

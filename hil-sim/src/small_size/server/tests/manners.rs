@@ -70,7 +70,7 @@ fn trap_09_a_tenth_of_er_forces_answers_is_lost() {
 }
 
 #[test]
-fn er_force_tells_errors_alone_and_by_its_own_codes() {
+fn er_force_reports_errors_alone_and_by_its_own_codes() {
     let mut erforce = server_like(Profile::ErForce);
     erforce.radio.answer_loss = 0.0;
     let ball = |teleport| SimulatorCommand {
@@ -231,7 +231,7 @@ fn trap_10_grsim_takes_nothing_but_robots_specifications() {
 }
 
 #[test]
-fn trap_11_a_ball_may_be_put_far_outside_and_vision_tells_it() {
+fn trap_11_a_ball_may_be_put_far_outside_and_vision_reports_it() {
     let mut server = server();
     let ball = TeleportBall { x: Some(6.5), y: Some(0.2), ..Default::default() };
     assert!(

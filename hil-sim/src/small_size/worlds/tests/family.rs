@@ -109,7 +109,7 @@ fn the_nominal_world_is_the_leagues_to_the_bit() {
 }
 
 #[test]
-fn the_document_tells_every_quantity_with_its_bounds_and_law() {
+fn the_document_reports_every_quantity_with_its_bounds_and_law() {
     let document = include_str!("../../../../../docs/fields.md");
     for quantity in DRAWS {
         let [low, high] = quantity.bounds;

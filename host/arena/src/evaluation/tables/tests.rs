@@ -81,7 +81,7 @@ fn every_trial_stands_in_the_tables_of_its_kind() {
 }
 
 #[test]
-fn more_trials_of_robots_than_the_papers_are_told_apart() {
+fn more_trials_of_robots_than_the_papers_are_distinguished() {
     let mut robots = trial(Approach::Cases, Configuration::DefenderGoalie, Outcome::Goal, 9.0);
     robots.profile = Profile::Robots;
     let out = TrialRow { outcome: Outcome::Out, ..robots.clone() };

@@ -109,7 +109,7 @@ fn the_network_of_a_pass_by_hand() {
 }
 
 #[test]
-fn everybody_starts_when_the_network_says() {
+fn everyone_starts_when_the_network_says() {
     let mut rng = Xoshiro128PlusPlus::seed_from_u64(9);
     let mut up_to = |most: f32| (rng.next_u32() >> 8) as f32 / 16_777_216.0 * most;
     // At most a tick late, each; and the kick may be early by the tolerance of the algorithm.

@@ -105,7 +105,7 @@ fn our_area_is_worthless_in_every_league() {
 }
 
 #[test]
-fn every_factor_is_a_probability_wherever_everybody_stands() {
+fn every_factor_is_a_probability_wherever_everyone_stands() {
     let kicks = kicks(League::DivisionB);
     let mut rng = Xoshiro128PlusPlus::seed_from_u64(8);
     let mut within = |range: f32| ((rng.next_u32() >> 8) as f32 / 8_388_608.0 - 1.0) * range;

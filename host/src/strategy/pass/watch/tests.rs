@@ -81,7 +81,7 @@ fn rolling(direction: (f32, f32), stops: f32) -> impl Fn(f32) -> Seen {
 }
 
 #[test]
-fn a_ball_that_stops_at_the_receivers_mouth_is_received_in_time() {
+fn a_ball_that_stops_at_the_receivers_dribbler_is_received_in_time() {
     let verdict = Play::new(rolling((1.0, 0.0), 2.0)).verdict();
     let Verdict::Received { off, late } = verdict else { panic!("{verdict:?}") };
     // 2 m take 0.8 s; the kick is known by the snapshot in which the ball has left the passer.
@@ -155,7 +155,7 @@ fn a_ball_over_the_line_is_out_there() {
 }
 
 #[test]
-fn a_pass_that_never_leaves_is_no_kick_and_a_stolen_ball_tells_by_whom() {
+fn a_pass_that_never_leaves_is_no_kick_and_a_stolen_ball_reports_by_whom() {
     let lies = |_: f32| (Point::new(0.0, 0.0), Vector::default(), 0.0);
     let verdict = Play::new(lies).verdict();
     assert!(matches!(verdict, Verdict::NoKick { after, lost_to: None } if after > 5.0), "{verdict:?}");
