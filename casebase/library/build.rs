@@ -26,13 +26,13 @@ fn main() {
         let (library, rules) = read(directory);
         let constant = library.league.to_uppercase().replace(|c: char| !c.is_ascii_alphanumeric(), "_");
         let blob = out.join(format!("{}.table", library.league));
-        fs::write(&blob, library.table.bytes()).expect("the output folder is writable");
+        fs::write(&blob, library.table.bytes()).expect("the output directory is writable");
         write_league(&mut code, &constant, &blob, &library, &rules);
         write!(names, "{constant}, ").expect("a string takes everything");
     }
     writeln!(code, "/// Every built-in league.\npub static LEAGUES: &[League] = &[{names}];")
         .expect("a string takes everything");
-    fs::write(out.join("leagues.rs"), code).expect("the output folder is writable");
+    fs::write(out.join("leagues.rs"), code).expect("the output directory is writable");
 }
 
 /// A league's library and the text of its `league.toml`; a failure ends the build.

@@ -2,7 +2,7 @@
 //! [`crate::host_link`] is the other.
 //!
 //! A robot receives its teammates and its host, and trusts neither before they have answered its present boot
-//! epoch: the host with a [`Welcome`](crate::host::Welcome), teammates with a [`Handshake`] (handshake). A
+//! epoch: the host with a [`Welcome`](crate::host::Welcome), teammates with a [`Handshake`]. A
 //! recording cannot, because it was made before the robot's epoch was known. Until then, and again when a
 //! host or teammate with a newer epoch sends, its frames are refused as [`Refusal::Unauthenticated`]
 //! (unauthenticated peer). The host's frames are refused as [`Refusal::Stale`] when they are older than

@@ -1,12 +1,12 @@
 //! `peer`: replay protection between robots: a peer is trusted after it has echoed our boot epoch.
 //! Prevents recordings of teammates from being trusted after a boot.
 //!
-//! A teammate is trusted once it has named this robot's present boot epoch in a [`Handshake`] (handshake): no
+//! A teammate is trusted once it has named this robot's present boot epoch in a [`Handshake`]: no
 //! recording can, because it was made before that epoch started. So a robot that receives a new epoch of a
 //! teammate sends it a handshake, and again every 40 ms, until both know of each other that they trust; then
 //! handshakes cease.
 
-use crate::team::{Bond, GREETED_MAX, Greeted, Handshake};
+use crate::team::{Bond, Handshake, KNOWN_EPOCHS_MAX, KnownEpoch};
 use crate::{Duration, Instant, RobotId};
 
 /// Handshake state of every teammate.
@@ -31,7 +31,7 @@ struct Peer {
     believes: bool,
 }
 
-const _: () = assert!(RobotId::COUNT <= u16::BITS as usize, "a bit for each mate");
+const _: () = assert!(RobotId::COUNT <= u16::BITS as usize, "a bit for each teammate");
 
 const fn bit(teammate: RobotId) -> u16 {
     1 << teammate.number()
@@ -72,7 +72,7 @@ impl PeerTable {
         if self.owed == 0 || self.greeted.is_some_and(|last| now.since(last) < SHAKE_HANDS_EVERY) {
             return None;
         }
-        let mut teammates: heapless::Vec<Greeted, GREETED_MAX> = heapless::Vec::new();
+        let mut teammates: heapless::Vec<KnownEpoch, KNOWN_EPOCHS_MAX> = heapless::Vec::new();
         let first = usize::from(self.next);
         for number in (first..first + RobotId::COUNT).map(|n| (n % RobotId::COUNT) as u8) {
             let Some(who) = RobotId::new(number).filter(|_| !teammates.is_full()) else { break };
@@ -86,7 +86,7 @@ impl PeerTable {
                 (true, true) => Bond::Mutual,
             };
             // The capacity suffices: checked above.
-            let _ = teammates.push(Greeted { who, boot_epoch: teammate.boot_epoch, bond });
+            let _ = teammates.push(KnownEpoch { who, boot_epoch: teammate.boot_epoch, bond });
             self.next = (number + 1) % RobotId::COUNT as u8;
         }
         if teammates.is_empty() {

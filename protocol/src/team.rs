@@ -4,7 +4,7 @@
 //! knows it, and the robot's own progress. Nothing is sent once: a lost packet only delays. What a robot
 //! knows of the cycle is a value that only grows ([`CycleState::is_newer_than`]), so that packets may be
 //! lost, doubled and reordered, and any robot may pass on the coordinator's announcements. [`Telemetry`] is
-//! for the host; teammates ignore it. A [`Handshake`] is the handshake by which teammates trust each other
+//! for the host; teammates ignore it. A [`Handshake`] is how teammates come to trust each other
 //! after a boot ([`crate::peer`]).
 
 use serde::{Deserialize, Serialize};
@@ -47,15 +47,15 @@ impl TeamMessage {
 #[derive(Clone, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Handshake {
     /// Teammates and their boot epochs.
-    pub teammates: heapless::Vec<Greeted, GREETED_MAX>,
+    pub teammates: heapless::Vec<KnownEpoch, KNOWN_EPOCHS_MAX>,
 }
 
 /// Teammates in one handshake: as many as its frame holds.
-pub const GREETED_MAX: usize = 7;
+pub const KNOWN_EPOCHS_MAX: usize = 7;
 
 /// A teammate named in a handshake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Greeted {
+pub struct KnownEpoch {
     /// The teammate's number.
     pub who: RobotId,
     /// The epoch of its frames.
@@ -337,8 +337,8 @@ mod tests {
 
     #[test]
     fn the_longest_handshake_fits_its_budget() {
-        let teammate = Greeted { who: robot(15), boot_epoch: u32::MAX, bond: Bond::Mutual };
-        let teammates = [teammate; GREETED_MAX].into_iter().collect();
+        let teammate = KnownEpoch { who: robot(15), boot_epoch: u32::MAX, bond: Bond::Mutual };
+        let teammates = [teammate; KNOWN_EPOCHS_MAX].into_iter().collect();
         let mut out = [0; 128];
         let n = postcard::to_slice(&TeamMessage::Handshake(Handshake { teammates }), &mut out).unwrap().len();
         assert!(n <= TEAM_MESSAGE_LEN_MAX, "{n} bytes");

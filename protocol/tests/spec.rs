@@ -10,8 +10,8 @@ use protocol::host::{
 use protocol::quantized::{WirePoint, WirePose};
 use protocol::serial::{Lines, line};
 use protocol::team::{
-    AbortReason, BallReport, Beacon, Bond, Closure, CycleState, Decision, Greeted, Handshake, Play, Progress,
-    Role, Status, TeamMessage,
+    AbortReason, BallReport, Beacon, Bond, Closure, CycleState, Decision, Handshake, KnownEpoch, Play,
+    Progress, Role, Status, TeamMessage,
 };
 use protocol::{CaseId, CycleId, RobotId, TeamId};
 use rules::{Phase, Side};
@@ -184,7 +184,7 @@ fn robots_messages_have_the_bytes_of_the_specification() {
         clock: 0x0001_e848,
     };
     both_ways("telemetry", &TeamMessage::Telemetry(telemetry));
-    let teammate = |who, boot_epoch, bond| Greeted { who: robot(who), boot_epoch, bond };
+    let teammate = |who, boot_epoch, bond| KnownEpoch { who: robot(who), boot_epoch, bond };
     let teammates =
         [teammate(1, 9, Bond::Received), teammate(3, 258, Bond::Believed), teammate(12, 1, Bond::Mutual)];
     both_ways("greeting", &TeamMessage::Handshake(Handshake { teammates: teammates.into_iter().collect() }));

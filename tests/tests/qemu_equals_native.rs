@@ -135,7 +135,7 @@ impl Directory {
         let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("../casebase/library/cases/four-legged");
         for file in files {
             let to = directory.join(file);
-            fs::create_dir_all(to.parent().expect("a file in a folder")).expect("a temporary folder");
+            fs::create_dir_all(to.parent().expect("a file in a directory")).expect("a temporary folder");
             fs::copy(from.join(file), to).expect("a case of the built-in library");
         }
         Self(directory)

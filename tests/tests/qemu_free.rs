@@ -99,7 +99,7 @@ fn a_robot_without_a_key_or_with_a_damaged_page_says_nothing_on_the_air() {
 fn a_panic_takes_the_current_off_reports_its_place_and_starts_again_in_a_new_life() {
     let mut robot = Robot::start(Some(&PAGE), 1);
     robot.wait_for_line("trial.rs");
-    robot.wait_for_line("motors off, starting anew");
+    robot.wait_for_line("motors off, restarting");
     robot.wait_for_line("awake after a panic at");
     let mut link = HostLink::new(TEAM, key(), 7);
     let began = Instant::now();

@@ -58,7 +58,7 @@ fn run_tests(qemu: &Path, image: &Path, tests: &[OnTarget], arguments: &[String]
             Verdict::Passed => println!("test {} ... ok", test.name),
             Verdict::Failed(output) => {
                 println!("test {} ... FAILED\n{output}", test.name);
-                failures.push(format!("{}: {}", test.name, output.lines().next().unwrap_or("nothing said")));
+                failures.push(format!("{}: {}", test.name, output.lines().next().unwrap_or("no output")));
             }
         }
     }

@@ -72,7 +72,7 @@ pub(crate) const STRATEGY: Example = Example {
         part("cap-plan-six", "a free kick planned (Coerce and Attack), six against six", PLANS, None),
         part("cap-plan", "a free kick planned (Coerce and Attack), eleven against eleven", PLANS, None),
         part("cap-watch", "a tick of coercing, six against six", TICKS, None),
-        part("cap-attack", "a free kick planned and its attack planned anew, six against six", PLANS, None),
+        part("cap-attack", "a free kick planned and its attack planned again, six against six", PLANS, None),
     ],
 };
 

@@ -11,7 +11,7 @@ use firmware_build::inspect::{Allowed, Image, Sizes, panic_sites};
 
 use crate::context::{Context, Failure};
 
-pub(crate) const WHAT: &str = "the robots' images link, keep to their budgets, have no doubles, and panic only where firmware/panics.allow says";
+pub(crate) const WHAT: &str = "the robots' images link, keep to their budgets, have no doubles, and panic only where firmware/panics.allow permits";
 
 /// Builds all firmware images and checks them.
 pub(crate) fn check(context: &Context) -> Result<(), Failure> {

@@ -167,7 +167,7 @@ fn count(program: &Path, paths: &str) -> Result<Counted, Failure> {
 }
 
 fn silent() -> std::io::Error {
-    std::io::Error::other("valgrind tells nothing; is it installed?")
+    std::io::Error::other("valgrind prints nothing; is it installed?")
 }
 
 /// Finds a browser, installed first where that is possible.

@@ -108,11 +108,11 @@ static TASKS: [Task; 19] = [
         "run a program for the robot's processor in QEMU; what `cargo run` and `cargo test` for that target call",
         |_, arguments| emulate::emulate(arguments),
     ),
-    task("pictures", "", "draw the documentation's pictures anew", |context, _| pictures::draw(context)),
+    task("pictures", "", "draw the documentation's pictures again", |context, _| pictures::draw(context)),
     task(
         "screenshots",
         "",
-        "take the page's pictures anew, in a browser; they lie in docs/page",
+        "take the page's pictures again, in a browser; they lie in docs/page",
         |context, _| page::pictures(context),
     ),
     task(

@@ -160,8 +160,8 @@ impl fmt::Display for PlanError {
             Self::PassUnanswered(robot, action) => {
                 ("passes to a robot that does not receive it", robot, action)
             }
-            Self::ReceiveUnanswered(robot, action) => ("waits for a pass nobody plays", robot, action),
-            Self::UnknownKick(robot, action) => ("kicks in a way the league does not know", robot, action),
+            Self::ReceiveUnanswered(robot, action) => ("waits for a pass that no robot plays", robot, action),
+            Self::UnknownKick(robot, action) => ("uses a kick the league does not define", robot, action),
         };
         write!(f, "{robot} {what} at its action {}", action + 1)
     }

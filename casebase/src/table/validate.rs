@@ -37,7 +37,7 @@ impl fmt::Display for TableError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Misaligned => f.write_str("the table does not begin at a multiple of 4 bytes"),
-            Self::Length => f.write_str("the table is shorter or longer than its header tells"),
+            Self::Length => f.write_str("the table is shorter or longer than its header states"),
             Self::Magic => f.write_str("not a case table of this version and byte order"),
             Self::Hash => f.write_str("the table is damaged: its hash does not match"),
             Self::League => f.write_str("the table's field, pass or kick kinds make no sense"),

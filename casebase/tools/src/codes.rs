@@ -31,11 +31,11 @@ macro_rules! codes {
 }
 
 codes! {
-    UNREADABLE "unreadable" Error "A file or folder cannot be read, or a file is not UTF-8. Make it a readable text file."
+    UNREADABLE "unreadable" Error "A file or directory cannot be read, or a file is not UTF-8. Make it a readable text file."
     SYNTAX "syntax" Error "The file is not TOML (a repeated key, too). Mend the syntax at the line."
-    MISPLACED "misplaced" Error "A .toml file lies elsewhere than at <region>/<name>.toml, or its name has control characters. Move it into its region's folder, or rename it."
-    NO_LEAGUE "no-league" Error "The folder has no league.toml. Add one, or name one league's folder."
-    UNKNOWN_KEY "unknown-key" Error "A key or an action that nobody reads. Take one of those the finding lists."
+    MISPLACED "misplaced" Error "A .toml file lies elsewhere than at <region>/<name>.toml, or its name has control characters. Move it into its region's directory, or rename it."
+    NO_LEAGUE "no-league" Error "The directory has no league.toml. Add one, or name one league's directory."
+    UNKNOWN_KEY "unknown-key" Error "An unknown key or action. Use one of those the finding lists."
     MISSING_KEY "missing-key" Error "A key that must be there is missing. Add it."
     WRONG_TYPE "wrong-type" Error "A value of another type than its key takes, such as 1.0 where whole mm are meant."
     BAD_VALUE "bad-value" Error "A value outside the range its key takes. Give one within it."
@@ -50,7 +50,7 @@ codes! {
     ONE_GETTER "one-getter" Error "Not exactly one robot begins with get_ball. Let exactly one."
     NOT_HOLDING "not-holding" Error "A robot dribbles, passes or kicks when the walk of the plan has not given it the ball."
     PASS_UNANSWERED "pass-unanswered" Error "A pass that the other robot does not come to receive, or only after something that waits for the pass."
-    RECEIVE_UNANSWERED "receive-unanswered" Error "A robot waits for a pass that nobody plays."
+    RECEIVE_UNANSWERED "receive-unanswered" Error "A robot waits for a pass that no robot plays."
     UNKNOWN_KICK "unknown-kick" Error "A kind of kick that league.toml does not have. Add [kicks.KIND] or take a known one."
     OUTSIDE_FIELD "outside-field" Error "A position beyond the lines (on a line is inside). Move it inside the field."
     NO_PARTNER "no-partner" Error "A kind of kick to one side without its mirror image. Add the opposite kind, equal in length and radii."
@@ -68,7 +68,7 @@ codes! {
     UNKNOWN_PRIMITIVE "unknown-primitive" Warning "A kick asks the body for a primitive no body knows."
     NO_INTENT "no-intent" Warning "The intent is blank. Say in a sentence what the case is for."
     SAME_SPOT "same-spot" Warning "Two robots stand where only one has room. Move one of them."
-    TEAMMATE_IN_PATH "mate-in-path" Warning "A teammate that does not take the ball stands on a leg of its way. Move it aside."
+    TEAMMATE_IN_PATH "mate-in-path" Warning "A teammate that does not take the ball stands on a leg of the ball's path. Move it aside."
     SHORT_PASS "short-pass" Warning "A pass shorter than its own radius r_min. Let the robot dribble, or stand farther off."
     KICK_LEAVES "kick-leaves" Warning "A kick leaves the field in the case's own situation. Take a shorter kind, or another heading."
     IDLE_BALL "idle-ball" Warning "A robot goes for the ball and does nothing with it. Say what is done with it."

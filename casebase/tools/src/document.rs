@@ -42,7 +42,7 @@ impl<'f> Reader<'f> {
                     code::SYNTAX,
                     at,
                     format!("not TOML: {}", one_line(error.message())),
-                    "mend the syntax",
+                    "correct the syntax",
                 );
                 None
             }

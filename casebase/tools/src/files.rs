@@ -63,7 +63,7 @@ impl Files {
         let rules = at.map(|at| found.cases.remove(at));
         if rules.is_none() && !found.league_unreadable {
             let message = "the library has no league.toml";
-            let hint = "add one with [field], [pass] and [kicks.KIND], and name one league's folder";
+            let hint = "add one with [field], [pass] and [kicks.KIND], and name one league's directory";
             found.error(code::NO_LEAGUE, directory.join("league.toml"), message, hint);
         }
         let Some(rules) = rules.filter(|_| found.findings.is_empty()) else {
@@ -106,12 +106,12 @@ impl Found {
         let entries = match fs::read_dir(directory).and_then(Iterator::collect::<Result<Vec<_>, _>>) {
             Ok(entries) => entries,
             Err(error) => {
-                let message = format!("the folder cannot be read: {error}");
+                let message = format!("the directory cannot be read: {error}");
                 return self.error(
                     code::UNREADABLE,
                     directory.to_owned(),
                     message,
-                    "make it a readable folder",
+                    "make it a readable directory",
                 );
             }
         };
@@ -134,7 +134,7 @@ impl Found {
                     self.read(path, format!("{prefix}{stem}"), is_league);
                 } else {
                     let message = format!("{prefix}{name} is not at <region>/<name>.toml");
-                    let hint = "move it into the folder of its region, right below league.toml";
+                    let hint = "move it into the directory of its region, right below league.toml";
                     self.error(code::MISPLACED, path, message, hint);
                 }
             }

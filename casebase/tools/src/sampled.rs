@@ -73,7 +73,9 @@ fn reason(library: &Library, case: &CaseCounters, drawn: u64) -> (String, &'stat
             "fewer robots are drawn than it needs",
             "draw more with [problems] in league.toml, or leave robots out of the case",
         ),
-        "path" => ("an opponent stands in the ball's way", "lead the ball another way, or keep legs short"),
+        "path" => {
+            ("an opponent blocks the ball's path", "lead the ball along another path, or keep legs short")
+        }
         _ => (
             "its robots are too far away",
             "place them nearer to the ball, or say in [problems] of league.toml where robots stand",

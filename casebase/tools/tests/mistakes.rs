@@ -63,8 +63,8 @@ macro_rules! mistakes {
 }
 
 mistakes! {
-    a_brace_too_many_is_no_toml case "ball = {" => "ball = {{", SYNTAX 3 "mend the syntax";
-    a_key_given_twice_is_no_toml case "defending" => "defending = \"cyan\"\ndefending", SYNTAX 3 "mend the syntax";
+    a_brace_too_many_is_no_toml case "ball = {" => "ball = {{", SYNTAX 3 "correct the syntax";
+    a_key_given_twice_is_no_toml case "defending" => "defending = \"cyan\"\ndefending", SYNTAX 3 "correct the syntax";
     a_misspelt_key_is_told_with_the_known_ones case "at = [-720, 0]" => "at = [-720, 0]\nspeed = 3", UNKNOWN_KEY 7 "take one of: at, gameplay";
     a_misspelt_action_is_told_with_the_known_ones case "\"wait\"" => "\"sleep\"", UNKNOWN_KEY 11 "{ receive_ball = N }";
     an_action_with_an_unknown_key_is_told case "{ pass_ball = 2 }" => "{ pass = 2 }", UNKNOWN_KEY 7 "{ pass_ball = N }";

@@ -350,7 +350,7 @@ pub const STOP_SPEED: f32 = 1.3;
 const SPEED_MAX: f32 = RobotSpec::OURS.governor.speed;
 /// Nor turns faster, rad/s.
 const TURN_MAX: f32 = RobotSpec::OURS.governor.turn;
-/// Deceleration on the carpet, m/s².
+/// Deceleration on the field surface, m/s².
 pub const BRAKE: f32 = RobotSpec::OURS.governor.brake;
 /// The same for turning, rad/s².
 const BRAKE_TURN: f32 = RobotSpec::OURS.governor.brake_turn;

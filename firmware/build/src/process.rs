@@ -16,7 +16,7 @@ pub(crate) fn output_of(command: &mut Command) -> Result<String, String> {
         Ok(String::from_utf8_lossy(&output.stdout).into_owned())
     } else {
         let printed = String::from_utf8_lossy(&output.stderr);
-        let last = printed.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("nothing said");
+        let last = printed.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("no output");
         Err(format!("`{}` failed ({}): {}", line_of(command), output.status, last.trim()))
     }
 }

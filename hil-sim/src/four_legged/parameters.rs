@@ -53,7 +53,7 @@ pub struct Parameters {
 }
 
 numbers! {
-    /// The ball on the carpet.
+    /// The ball on the field surface.
     BallParameters in "ball" {
         /// m/s², constant until rest.
         deceleration: POSITIVE, LARGEST;

@@ -78,7 +78,7 @@ fn dribble(order: Order) -> Order {
 }
 
 /// Position of the ball at the front of a robot with that pose.
-fn mouth(world: &World, pose: Pose<Field>) -> Point<Field> {
+fn dribbler_point(world: &World, pose: Pose<Field>) -> Point<Field> {
     let of = world.parameters();
     pose.to_field(Point::new(of.robot.front + of.ball.radius + 0.0001, 0.0))
 }

@@ -69,7 +69,7 @@ impl TextLog {
         let name = |id| moment.cast.name_of(id);
         let text = match fault {
             Fault::Crash(id) => format!("{} crashes", name(*id)),
-            Fault::Return(id) => format!("{} starts anew", name(*id)),
+            Fault::Return(id) => format!("{} restarts", name(*id)),
             Fault::Air(air) => format!("the air changes: {:.0} % loss", air.loss * 100.0),
             Fault::FlipOrderBit { robot, bit } => format!("bit {bit} of {}'s next order flips", name(*robot)),
         };
@@ -88,7 +88,7 @@ impl TextLog {
             _ if cycle.no_case && !self.without_case => {
                 self.without_case = true;
                 let coordinator = moment.cast.name_of(cycle.coordinator);
-                let text = format!("no case fits, says {coordinator}: everybody plays reactively");
+                let text = format!("{coordinator} retrieves no case: all robots play reactively");
                 self.add(moment.tick.time, text);
             }
             _ => {}

@@ -154,7 +154,7 @@ impl fmt::Display for Failure {
         match self {
             Self::NoDirectory(directory) => write!(
                 f,
-                "no library at {}: no such folder; --library takes one league's folder, the one that holds league.toml",
+                "no library at {}: no such directory; --library takes one league's directory, the one that holds league.toml",
                 printable_path(directory)
             ),
             Self::FaultyLibrary { directory, findings } => {
@@ -163,7 +163,7 @@ impl fmt::Display for Failure {
                 for finding in errors {
                     writeln!(f, "  {finding}")?;
                 }
-                f.write_str("mend the files; `onetwo cases check --library DIR` tells again, with warnings")
+                f.write_str("correct the files; `onetwo cases check --library DIR` lists the errors again, with warnings")
             }
             Self::UnknownLeague(name) => {
                 let known: Vec<_> = case_library::LEAGUES.iter().map(|league| league.name).collect();
@@ -176,7 +176,7 @@ impl fmt::Display for Failure {
                 }
                 match stored.checked_sub(1) {
                     Some(last) => {
-                        write!(f, "take an id, 0 to {last}, or a region/name that `onetwo cases list` tells")
+                        write!(f, "take an id, 0 to {last}, or a region/name that `onetwo cases list` prints")
                     }
                     None => f.write_str("the library holds no case"),
                 }
@@ -211,7 +211,7 @@ impl fmt::Display for Failure {
             }
             Self::UnknownName { asked, league } => write!(
                 f,
-                "no case {asked:?} in {league}; take a region/name that `onetwo cases list` tells, or a region"
+                "no case {asked:?} in {league}; take a region/name that `onetwo cases list` prints, or a region"
             ),
             Self::NoSimulator { league } => write!(
                 f,

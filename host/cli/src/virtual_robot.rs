@@ -141,7 +141,7 @@ impl fmt::Display for RobotError {
             Self::NoKey(what) => write!(f, "--with-parent: standard input begins with {what}, no key"),
             Self::KeyFile(error) => write!(f, "{error}"),
             Self::UnknownSimulator(text) => {
-                write!(f, "nobody knows the host of --simulator {text}; give HOST or HOST:PORT")
+                write!(f, "unknown host in --simulator {text}; give HOST or HOST:PORT")
             }
         }
     }
@@ -149,7 +149,7 @@ impl fmt::Display for RobotError {
 
 fn address(text: &str) -> Result<SocketAddr, String> {
     let found = text.to_socket_addrs().ok().and_then(|mut found| found.next());
-    found.ok_or_else(|| "expected HOST:PORT of somebody the network knows".to_owned())
+    found.ok_or_else(|| "expected HOST:PORT that the network can resolve".to_owned())
 }
 
 fn robot_id(text: &str) -> Result<RobotId, String> {

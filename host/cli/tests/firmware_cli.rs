@@ -94,7 +94,7 @@ fn what_no_robot_could_use_is_refused_with_a_hint() {
         assert_eq!(reported.status.code(), Some(1));
         let printed = String::from_utf8_lossy(&reported.stderr).into_owned();
         assert!(printed.contains(description), "{printed}");
-        assert!(!fs::exists(&page).expect("a folder"), "a page of {description}");
+        assert!(!fs::exists(&page).expect("a directory"), "a page of {description}");
     }
 }
 

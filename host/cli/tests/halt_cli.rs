@@ -325,7 +325,7 @@ fn halts_under(flooded: Vec<Vec<u8>>, alarm: &str) {
     let end = Arc::new(AtomicBool::new(false));
     camera(field.vision, &end);
     let controller = Controller::start("gc", "127.0.0.1:0", field.referee, Wire::Stop);
-    field.wait_for_line(&["the referee is heard"]);
+    field.wait_for_line(&["the referee is received"]);
     controller.send_command(Wire::ForceStart);
     wait_for(&frames, false, Instant::now());
     let before = field.memory();
@@ -448,7 +448,7 @@ fn finding_10_on_a_slow_line_halt_comes_before_what_is_stale_and_the_rate_is_rep
     });
     camera(field.vision, &end);
     let controller = Controller::start("gc", "127.0.0.1:0", field.referee, Wire::Stop);
-    field.wait_for_line(&["the referee is heard"]);
+    field.wait_for_line(&["the referee is received"]);
     controller.send_command(Wire::ForceStart);
     let arguments = field.wait_for_line(&["robots' line", "is too slow", "bit/s"]);
     eprintln!("{arguments}");

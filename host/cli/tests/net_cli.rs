@@ -133,8 +133,8 @@ fn control_says_what_it_waits_for_and_goes_on_when_it_comes() {
     let _simulator =
         Running::start(&[&arguments[..], &["--vision", &vision, "--referee-to", &referee]].concat());
     let mut came = [control.wait_for("vision comes").1, String::new()];
-    if !control.received.iter().any(|(_, line)| line.contains("the referee is heard")) {
-        came[1] = control.wait_for("the referee is heard").1;
+    if !control.received.iter().any(|(_, line)| line.contains("the referee is received")) {
+        came[1] = control.wait_for("the referee is received").1;
     }
     assert!(came[0].contains(&vision), "{came:?}");
 }
@@ -149,7 +149,7 @@ fn brains_of_our_own_take_their_places_for_the_kickoff() {
     let to = tracked.local_addr().expect("an address").to_string();
     let control = ["control", "--robots", &robots, "--tracker", &to, "--duration", "60"];
     let mut control = Running::start(&[&control[..], &["--vision", &vision, "--referee", &referee]].concat());
-    control.wait_for("robots are heard");
+    control.wait_for("robots are received");
     // Blue starts within 1.5 m of the halfway line; the keeper has 3 m to go to its goal at −x.
     let (until, mut bytes) = (Instant::now() + PATIENCE, [0; 8192]);
     let mut places = Vec::new();

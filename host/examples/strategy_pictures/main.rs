@@ -25,7 +25,7 @@ fn main() -> ExitCode {
         let file = Path::new(directory).join(name);
         let written = std::fs::create_dir_all(directory).and_then(|()| std::fs::write(&file, draw()));
         if let Err(error) = written {
-            eprintln!("{}: {error}; name a folder that can be written to", file.display());
+            eprintln!("{}: {error}; name a writable directory", file.display());
             return ExitCode::FAILURE;
         }
         println!("{}", file.display());

@@ -92,11 +92,11 @@ impl fmt::Display for Difference {
                 let to = whom(recorded.first().copied().unwrap_or(u8::MAX));
                 write!(f, "at {seconds:.6} s, after {after} packets that are the same: the packet to {to} ")?;
                 if byte == recorded.len() && byte == sent_bytes.len() {
-                    write!(f, "is said at {:.6} s", at.0 as f64 * 1e-6)
+                    write!(f, "is sent at {:.6} s", at.0 as f64 * 1e-6)
                 } else {
                     write!(
                         f,
-                        "differs from byte {} on ({} bytes recorded, {} said)",
+                        "differs from byte {} on ({} bytes recorded, {} sent)",
                         byte.max(1) - 1,
                         recorded.len() - 1,
                         sent_bytes.len() - 1
@@ -105,12 +105,12 @@ impl fmt::Display for Difference {
             }
             Self::Missing { after, to, .. } => write!(
                 f,
-                "at {seconds:.6} s, after {after} packets that are the same: the packet to {} is not said again",
+                "at {seconds:.6} s, after {after} packets that are the same: the packet to {} is not sent again",
                 whom(*to)
             ),
             Self::Extra { after, to, .. } => write!(
                 f,
-                "at {seconds:.6} s, after {after} packets that are the same: a packet to {} is said that was not recorded",
+                "at {seconds:.6} s, after {after} packets that are the same: a packet to {} is sent that was not recorded",
                 whom(*to)
             ),
         }

@@ -221,9 +221,7 @@ impl fmt::Display for TraceError {
                     "a trace of version {seen}, this program reads {OLDEST} to {VERSION}: use the program that wrote it"
                 )
             }
-            Self::Header => {
-                f.write_str("its header is cut or damaged: the recording cannot be told from others")
-            }
+            Self::Header => f.write_str("its header is cut or damaged: the recording cannot be identified"),
         }
     }
 }

@@ -102,7 +102,7 @@ pub enum Stage {
     /// Not connected.
     Apart,
     /// Connected; the controller sends first.
-    Greeted,
+    KnownEpoch,
     /// Our registration was sent.
     Registering,
     /// The controller has accepted it.
@@ -167,7 +167,7 @@ impl TeamPort {
     /// Handles an opened connection.
     pub fn connected(&mut self, now: Instant) {
         self.forget();
-        self.stage = Stage::Greeted;
+        self.stage = Stage::KnownEpoch;
         self.deadline = Some(now + REPLY_TIME);
     }
 
@@ -242,7 +242,7 @@ impl TeamPort {
         self.deadline = None;
         match self.stage {
             Stage::Apart => {}
-            Stage::Greeted => {
+            Stage::KnownEpoch => {
                 let registration = TeamRegistration {
                     team_name: self.name.clone(),
                     signature: None,

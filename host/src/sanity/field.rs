@@ -84,7 +84,7 @@ impl fmt::Display for OtherField {
         let ([length, width], own) = (self.announced, self.league.field());
         write!(
             f,
-            "vision tells of a field of {length:.1} × {width:.1} m, {} has {:.1} × {:.1} m: ",
+            "vision announces a field of {length:.1} × {width:.1} m, {} has {:.1} × {:.1} m: ",
             self.league.name(),
             own.length,
             own.width

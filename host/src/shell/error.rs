@@ -63,10 +63,7 @@ impl fmt::Display for LinkError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::UnknownHost { address, error } => {
-                write!(
-                    f,
-                    "nobody knows the host of `{address}` ({error}); give udp://HOST:PORT of the base station"
-                )
+                write!(f, "unknown host in `{address}` ({error}); give udp://HOST:PORT of the base station")
             }
             Self::Socket { doing, error } => write!(f, "cannot {doing}: {error}"),
             Self::NoSuchLine { device, present } if present.is_empty() => {

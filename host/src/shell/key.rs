@@ -72,7 +72,7 @@ pub fn read(path: &Path) -> Result<KeyFile, KeyError> {
     let text = str::from_utf8(&bytes).map_err(|_| malformed("bytes that are no text".to_owned()))?;
     let key = parse(text).map_err(malformed)?;
     let warning = if key == TeamKey::ZERO {
-        Some(format!("the key in {} is all zeros, which everybody knows", printable_path(path)))
+        Some(format!("the key in {} is all zeros, which is public", printable_path(path)))
     } else {
         readable_by_others(path)
     };

@@ -217,7 +217,7 @@ impl Task {
 impl fmt::Display for Why {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::Referee => f.write_str("the referee's word leaves nothing else"),
+            Self::Referee => f.write_str("required by the referee's command"),
             Self::SoonestAtBall { seconds } => write!(f, "soonest at the ball, in {seconds:.2} s"),
             Self::OnBallLine { y } => {
                 write!(f, "on the line from the ball to our goal, {y:.2} m beside its middle")
@@ -236,7 +236,7 @@ impl fmt::Display for Why {
                 f,
                 "{part} of case {case}, its pass moved by {moved:.2} m: received with {receive:.2}, then a goal with {goal:.2}"
             ),
-            Self::Coerces { marker } => write!(f, "opponent {marker} follows it, out of the way"),
+            Self::Coerces { marker } => write!(f, "opponent {marker} follows it, out of the play"),
             Self::Coercing { arrived, of } => {
                 write!(f, "{arrived} of {of} are where opponents shall follow them")
             }
@@ -269,7 +269,7 @@ mod tests {
     #[test]
     fn a_reason_is_reported_with_its_numbers() {
         let marker = RobotId::new(3).unwrap();
-        assert_eq!(Why::Coerces { marker }.to_string(), "opponent 3 follows it, out of the way");
+        assert_eq!(Why::Coerces { marker }.to_string(), "opponent 3 follows it, out of the play");
         let chances = Why::Chances { receive: 0.75, goal: 0.2 };
         assert_eq!(chances.to_string(), "the best pass: received with 0.75, then a goal with 0.20");
         let part = CaseRobot::new(1).unwrap();

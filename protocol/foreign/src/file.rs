@@ -53,7 +53,7 @@ fn regular(kind: FileType) -> io::Result<()> {
 fn name(kind: FileType) -> &'static str {
     use std::os::unix::fs::FileTypeExt as _;
     match kind {
-        _ if kind.is_dir() => "folder",
+        _ if kind.is_dir() => "directory",
         _ if kind.is_fifo() => "pipe",
         _ if kind.is_socket() => "socket",
         _ if kind.is_char_device() || kind.is_block_device() => "device",
@@ -63,7 +63,7 @@ fn name(kind: FileType) -> &'static str {
 
 #[cfg(not(unix))]
 fn name(kind: FileType) -> &'static str {
-    if kind.is_dir() { "folder" } else { "special file" }
+    if kind.is_dir() { "directory" } else { "special file" }
 }
 
 #[cfg(test)]
@@ -92,7 +92,7 @@ mod tests {
 
     #[test]
     fn a_directory_is_refused_by_name() {
-        assert!(read(&std::env::temp_dir(), 8).unwrap_err().to_string().contains("a folder"));
+        assert!(read(&std::env::temp_dir(), 8).unwrap_err().to_string().contains("a directory"));
     }
 
     #[cfg(unix)]

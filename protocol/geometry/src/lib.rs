@@ -12,8 +12,8 @@
 //! ```compile_fail
 //! use geometry::{Body, Field, Point};
 //! let ball: Point<Field> = Point::new(1.0, 0.0);
-//! let mouth: Point<Body> = Point::new(0.1, 0.0);
-//! let _ = ball - mouth;
+//! let dribbler: Point<Body> = Point::new(0.1, 0.0);
+//! let _ = ball - dribbler;
 //! ```
 //!
 //! **Invariants.** No I/O, no clock, no allocation. Everything beyond `+ − × ÷` goes through [`math`], so

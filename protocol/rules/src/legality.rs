@@ -73,8 +73,8 @@ pub fn crossing(field: &FieldSpec, before: Point<Field>, now: Point<Field>) -> O
     if goal_first {
         let goal = if now.x() < 0.0 { GoalEnd::Negative } else { GoalEnd::Positive };
         let at = Point::new(field.goal_line(goal), from.y() + dy * over_goal_line.unwrap_or(1.0));
-        let mouth = at.y().abs() < field.goal_width * 0.5;
-        let line = if mouth { Line::GoalOpening(goal) } else { Line::Goal(goal) };
+        let is_opening = at.y().abs() < field.goal_width * 0.5;
+        let line = if is_opening { Line::GoalOpening(goal) } else { Line::Goal(goal) };
         Some(Crossing { line, at })
     } else {
         let positive = now.y() > 0.0;

@@ -205,7 +205,7 @@ impl RobotSpec {
             // The league's 2013 robots exceed 3 m/s (paper 2 §1); no paper prints accelerations, 3.5 m/s² lies between
             // published teams' 2 and 4.5. Opponents may have it; our own robots plan with `plan`.
             pass: DriveSpec { speed: 3.0, acceleration: 3.5, braking: 3.5 },
-            // ER-Force's simulated robot of 2020 turns with 6 rad/s; half its 60 rad/s², which no wheel on a carpet keeps.
+            // ER-Force's simulated robot of 2020 turns with 6 rad/s; half its 60 rad/s², which no wheel on a field keeps.
             turn: TurnSpec { rate: 6.0, acceleration: 30.0 },
             // Of the 3 m/s and more that teams drive, what is left on average; the weakest of the 3 to 4.7 m/s² they publish.
             role: TypicalSpec { speed: 2.0, acceleration: 3.0 },

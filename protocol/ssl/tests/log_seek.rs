@@ -140,7 +140,7 @@ struct Scratch {
 impl Scratch {
     fn new(name: &str) -> Self {
         let directory = std::env::temp_dir().join(format!("ssl-log-seek-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&directory).expect("a folder");
+        std::fs::create_dir_all(&directory).expect("a directory");
         Self { directory }
     }
 

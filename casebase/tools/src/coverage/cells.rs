@@ -85,7 +85,7 @@ impl fmt::Display for CellsError {
         match self {
             Self::NoSize => f.write_str("cells need an edge of at least 1 mm"),
             Self::TooMany { cells } => {
-                write!(f, "{cells} cells, at most {} can be told apart; take a larger edge", Cells::MAX)
+                write!(f, "{cells} cells, at most {} can be distinguished; take a larger edge", Cells::MAX)
             }
         }
     }

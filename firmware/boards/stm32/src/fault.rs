@@ -85,7 +85,7 @@ fn ended(how: Ending<'_>) -> ! {
     cortex_m::asm::dsb();
     // Last, because the log itself may be what failed.
     if let Ok(text) = core::str::from_utf8(place.get(..len).unwrap_or_default()) {
-        defmt::error!("panic at {=str}; everything off, starting anew", text);
+        defmt::error!("panic at {=str}; everything off, restarting", text);
     }
     SCB::sys_reset()
 }

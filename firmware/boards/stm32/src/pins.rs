@@ -106,7 +106,7 @@ parts! {
     /// Indicator lamps.
     Lamps lamps {
         alive: PB0, "out: green, blinks as long as the robot runs";
-        alarm: PB14, "out: red, lit when nobody can command the robot";
+        alarm: PB14, "out: red, lit when no host can command the robot";
     }
 
     /// Watchdog and backup registers.

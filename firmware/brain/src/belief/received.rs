@@ -238,7 +238,7 @@ mod tests {
         belief.show(later, &snapshot(later, (110, 0)), &sensors(false));
         assert!(belief.holds_ball && !belief.contact());
         belief.show(later, &snapshot(later, (160, 0)), &sensors(false));
-        assert!(!belief.holds_ball, "shown away from the mouth");
+        assert!(!belief.holds_ball, "seen away from the dribbler");
         let long = Instant(70_000);
         belief.show(long, &snapshot(long, (95, 0)), &sensors(false));
         assert!(!belief.holds_ball, "missed for too long");

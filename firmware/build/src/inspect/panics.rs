@@ -73,7 +73,7 @@ impl fmt::Display for AllowedError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Malformed(line) => write!(f, "line {line}: expected `crate function  # reason`"),
-            Self::Never(line) => write!(f, "line {line}: this crate may not panic at all; mend it instead"),
+            Self::Never(line) => write!(f, "line {line}: this crate may not panic at all; remove the panic"),
         }
     }
 }

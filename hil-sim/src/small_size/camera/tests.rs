@@ -135,7 +135,7 @@ fn a_ball_behind_a_robot_is_hidden_and_one_before_its_front_is_seen() {
         world.put_ball(Ball::at(Point::new(x, 0.0)));
         cameras.snapshot(&world).iter().any(|frame| !frame.balls.is_empty())
     };
-    assert!(seen(4.2 - 0.0946), "in its mouth, on the camera's side");
+    assert!(seen(4.2 - 0.0946), "in its dribbler, on the camera's side");
 }
 
 #[test]

@@ -7,7 +7,7 @@ fn with_ball() -> World {
     let mut world = world();
     let pose = Pose::from_mm_deg(0.0, 0.0, 0.0);
     world.put(yellow(1), pose);
-    world.put_ball(Ball::at(mouth(&world, pose)));
+    world.put_ball(Ball::at(dribbler_point(&world, pose)));
     world
 }
 
@@ -74,7 +74,7 @@ fn a_kick_has_the_ordered_speed_and_comes_once_a_charge() {
     let [Event::Kicked { robot, speed, chip, velocity, .. }] = kicks[..] else { panic!("{events:?}") };
     assert_eq!((*robot, *speed, *chip, *velocity), (yellow(1), 6.0, false, Vector::new(6.0, 0.0)));
     let pose = world.robots()[0].pose;
-    world.put_ball(Ball::at(mouth(&world, pose)));
+    world.put_ball(Ball::at(dribbler_point(&world, pose)));
     assert!(!world.sensors(yellow(1)).unwrap().health.kicker_ready);
     let events = lead(&mut world, yellow(1), kick(6.0, 0.0), 300);
     assert!(!events.iter().any(|event| matches!(event, Event::Kicked { .. })), "not charged yet");
@@ -94,7 +94,7 @@ fn a_kick_needs_the_ball_and_an_order_that_is_fresh() {
     world.put_ball(Ball::at(Point::new(1.0, 1.0)));
     world.order(yellow(1), kick(6.0, 0.0));
     run(&mut world, 150);
-    world.put_ball(Ball::at(mouth(&world, pose)));
+    world.put_ball(Ball::at(dribbler_point(&world, pose)));
     assert!(
         run(&mut world, 100).iter().all(|event| !matches!(event, Event::Kicked { .. })),
         "the order is old"
@@ -144,7 +144,7 @@ fn kicks_scatter_by_their_share_and_never_beyond_its_limit() {
     let (mut speeds, mut angles) = (Vec::new(), Vec::new());
     for _ in 0..300 {
         world.put(yellow(1), pose);
-        world.put_ball(Ball::at(mouth(&world, pose)));
+        world.put_ball(Ball::at(dribbler_point(&world, pose)));
         for event in lead(&mut world, yellow(1), kick(5.0, 0.0), 501) {
             if let Event::Kicked { speed, velocity, .. } = event {
                 speeds.push(speed);

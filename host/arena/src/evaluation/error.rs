@@ -100,13 +100,13 @@ impl fmt::Display for EvaluationError {
                 let what = printable(what);
                 write!(
                     f,
-                    "{}:{line}: {what}; take the line out, or begin in an empty folder",
+                    "{}:{line}: {what}; remove the line, or start in an empty directory",
                     printable_path(file)
                 )
             }
             Self::Another { file, differences } => write!(
                 f,
-                "{}: holds trials of another evaluation (other {}); name an empty folder, begin anew with \
+                "{}: holds trials of another evaluation (other {}); name an empty directory, start again with \
                  --fresh, or give the options it was begun with",
                 printable_path(file),
                 differences.join(", ")

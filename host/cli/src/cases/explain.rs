@@ -255,7 +255,7 @@ impl<'a> Explanation<'a> {
             }
         }
         if let Some(rest) = self.cases.len().checked_sub(printable_path.len()).filter(|rest| *rest > 0) {
-            writeln!(output, "and {} farther off; --all tells of them", counted(rest, "case"))?;
+            writeln!(output, "and {} farther off; list them with --all", counted(rest, "case"))?;
         }
         writeln!(output)
     }

@@ -166,14 +166,14 @@ impl fmt::Display for DraftError {
             ),
             Self::Rules { file, error } => write!(
                 f,
-                "cannot read {}: {error}; --library takes one league's folder, the one that holds league.toml",
+                "cannot read {}: {error}; --library takes one league's directory, the one that holds league.toml",
                 printable_path(file)
             ),
             Self::Problem { from, error } => write!(f, "{from}: {error}"),
             Self::Write { file, error } => {
                 let hint = match error.kind() {
                     io::ErrorKind::AlreadyExists => "--force writes over it",
-                    io::ErrorKind::NotFound => "make its folder first",
+                    io::ErrorKind::NotFound => "create its directory first",
                     _ => "choose another --out",
                 };
                 write!(f, "cannot write {}: {error}; {hint}", printable_path(file))

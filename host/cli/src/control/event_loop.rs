@@ -444,7 +444,7 @@ impl EventLoop {
         let (now, host) = (self.now(), &self.host);
         let seen = host.world().ours(host.settings().us).count();
         format!(
-            "{}, vision {} packets, {} of ours seen, {} heard, {} frames to robots",
+            "{}, vision {} packets, {} of ours seen, {} received, {} frames to robots",
             crate::replay::phase_description(host.game().phase),
             self.counts.vision,
             seen,

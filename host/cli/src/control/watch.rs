@@ -62,7 +62,7 @@ impl Watch {
 
     /// A source is now received on `via`.
     pub(super) fn open(&mut self, source: Source, via: &str) {
-        self.of(source).via = format!("heard on {via}");
+        self.of(source).via = format!("received on {via}");
     }
 
     /// A source cannot be received, with the reason.
@@ -119,7 +119,7 @@ impl Watch {
             |_| if never { waits } else { String::new() },
             || {
                 format!(
-                    "the referee is heard: {}",
+                    "the referee is received: {}",
                     host.listener().source().map_or_else(String::new, ToString::to_string)
                 )
             },
@@ -127,12 +127,12 @@ impl Watch {
         description.extend(came.filter(|description| !description.is_empty()));
         let there: Vec<_> = host.radio().present(now).map(|robot| robot.number().to_string()).collect();
         if !there.is_empty() || now.0 >= ROBOTS_BOOT.0 {
-            let waits = format!("waiting for robots: none is heard; {}", self.link_advice);
+            let waits = format!("waiting for robots: none is received; {}", self.link_advice);
             self.missing.extend(there.is_empty().then(|| waits.clone()));
             description.extend(self.robots.see(
                 there.is_empty(),
                 |_| waits,
-                || format!("robots are heard: {}", there.join(" ")),
+                || format!("robots are received: {}", there.join(" ")),
             ));
         }
     }

@@ -41,7 +41,7 @@ impl Cause {
             Self::Silence => "no authentic frame of the host",
             Self::NoCommand => "the host speaks, but not to this robot",
             Self::Halt => "HALT, or a time-out",
-            Self::Lost => "nobody shows it where it is",
+            Self::Lost => "no source reports its position",
             Self::Tipped => "it lies on its side",
             Self::Spinning => "it turns faster than 30 rad/s",
             Self::Battery => "the battery is below 14 V",

@@ -51,7 +51,7 @@ pub(super) fn run(args: &FlashArgs) -> Result<(), Failure> {
         match Command::new(PROGRAM).args(&description).status() {
             Ok(status) if status.success() => {}
             Ok(status) => {
-                return Err(failed(format!("`{line}` failed ({status}); its own words stand above")));
+                return Err(failed(format!("`{line}` failed ({status}); its output is above")));
             }
             Err(error) => return Err(failed(format!("`{line}` does not start: {error}"))),
         }

@@ -148,7 +148,7 @@ mod tests {
         let written = fs::read_to_string(&path).expect("docs/firmware.md");
         assert!(
             written.contains(&failsafe::table()),
-            "{FILE} is old; write it anew with `onetwo firmware report --write`"
+            "{FILE} is out of date; write it again with `onetwo firmware report --write`"
         );
     }
 }

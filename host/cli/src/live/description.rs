@@ -37,7 +37,7 @@ pub(crate) fn role(role: Role) -> String {
 
 pub(crate) fn why(why: &Why) -> String {
     match why {
-        Why::Referee => "the referee's word leaves nothing else".to_owned(),
+        Why::Referee => "required by the referee's command".to_owned(),
         Why::SoonestAtBall { seconds } => format!("soonest at the ball, in {seconds:.2} s"),
         Why::OnBallLine { y } => {
             format!("between the ball and our goal; the line ends {y:.2} m beside its middle")
@@ -75,7 +75,7 @@ pub(crate) fn directive(directive: &Directive) -> String {
         Directive::Dribble { pose } => format!("carry the ball to {}", at(pose.at)),
         Directive::Block { from, to } => format!("block between {} and {}", at(*from), at(*to)),
         Directive::PlaceBall { at: there } => format!("place the ball at {}", at(*there)),
-        Directive::Gameplay { hint: None } => "play cases with its mates".to_owned(),
+        Directive::Gameplay { hint: None } => "play cases with its teammates".to_owned(),
         Directive::Gameplay { hint: Some(_) } => "play the case that is proposed".to_owned(),
     }
 }
@@ -153,13 +153,13 @@ pub(super) fn decision(decision: &Decision) -> String {
 fn abort(reason: AbortReason) -> &'static str {
     match reason {
         AbortReason::BallOutOfScope => "the ball left the case's scope",
-        AbortReason::PathBlocked => "an opponent stands in the ball's way",
+        AbortReason::PathBlocked => "an opponent blocks the ball's path",
         AbortReason::RobotLost => "a robot is gone",
         AbortReason::ActionFailed => "an action failed",
         AbortReason::OpponentOnBall => "an opponent has the ball",
-        AbortReason::BallAtRest => "the ball lies where nobody expects it",
+        AbortReason::BallAtRest => "the ball lies where no robot expects it",
         AbortReason::Timeout => "it took too long",
-        AbortReason::NoDecision => "its coordinator said nothing",
+        AbortReason::NoDecision => "its coordinator is silent",
         AbortReason::UnknownCase => "a robot does not know the case",
     }
 }

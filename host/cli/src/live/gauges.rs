@@ -69,7 +69,7 @@ pub(super) fn of_hosts(hosts: &[&Host], now: Instant, vision: f32) -> Vec<Gauge>
         let worst = |of: &dyn Fn(&host::radio::Quality) -> Option<f64>| {
             links.iter().filter_map(|link| of(link)).fold(0.0_f64, f64::max) as f32
         };
-        out.push(gauge(&group, "robots heard", links.len() as f32, "", None));
+        out.push(gauge(&group, "robots received", links.len() as f32, "", None));
         out.push(gauge(
             &group,
             "worst round trip",

@@ -67,7 +67,7 @@ impl<'a> Played<'a> {
                 ],
                 tone: Tone::Case,
                 fill: true,
-                note: format!("leg {} of the ball's way: {}", i + 1, self.name),
+                note: format!("leg {} of the ball's path: {}", i + 1, self.name),
             });
             shapes.push(Shape::Line {
                 points: vec![[milli(x0 * 0.001), milli(y0 * 0.001)], [milli(x1 * 0.001), milli(y1 * 0.001)]],
@@ -120,7 +120,7 @@ pub(super) fn of_cases(plays: &[(Colour, Played<'_>)]) -> [Layer; 3] {
     };
     [
         layer("case-scopes", "case scopes", &|_, played, shapes| played.scopes(shapes)),
-        layer("ball-path", "the ball's way", &|_, played, shapes| played.legs(shapes)),
+        layer("ball-path", "the ball's path", &|_, played, shapes| played.legs(shapes)),
         layer("adapted", "adapted positions", &|team, played, shapes| played.adapted(team, shapes)),
     ]
 }

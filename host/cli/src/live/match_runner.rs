@@ -214,7 +214,7 @@ impl<'s> MatchRunner<'s> {
                 controls.clock = (Instant::now(), t);
             }
             Request::Restart { .. } if self.recorded => {
-                refused = Some("a match that is recorded cannot begin anew".into());
+                refused = Some("a match that is recorded cannot start again".into());
             }
             Request::Restart { seed } => controls.restart = Some(seed.unwrap_or(self.config.seed)),
             Request::Situation { name } => {

@@ -146,7 +146,7 @@ impl Faults {
             }
             match self.present.insert(who, here) {
                 Some(true) if !here => reported.push(format!("{name} is silent")),
-                Some(false) if here => reported.push(format!("{name} is heard again")),
+                Some(false) if here => reported.push(format!("{name} is received again")),
                 _ => {}
             }
         }

@@ -207,7 +207,7 @@ impl Report {
         ));
         let r = &self.referee;
         lines.push(format!(
-            "referee: {} packets, {} commands, {} never heard, {} old, {} copies, {} of others, {} unknown",
+            "referee: {} packets, {} commands, {} never received, {} old, {} copies, {} of others, {} unknown",
             r.taken, r.commands, r.missed, r.old, r.copies, r.other_source, r.unknown
         ));
         if let Some(host) = &self.host {

@@ -110,7 +110,7 @@ impl Team {
         let name =
             if self.name.is_empty() { "without a name".to_owned() } else { excerpt(&self.name, NAME_LEN) };
         let cards = |n: u32, kind: &str| format!("{n} {kind} card{}", if n == 1 { "" } else { "s" });
-        let bots = self.max_bots.map_or_else(|| "not said".to_owned(), |n| n.to_string());
+        let bots = self.max_bots.map_or_else(|| "unknown".to_owned(), |n| n.to_string());
         format!(
             "{colour}: {name}, keeper {}, {} ({} active), {}, max bots {bots}",
             self.goalkeeper,
@@ -155,7 +155,7 @@ mod tests {
             [
                 "field: 12.000 x 9.000 m, goals 1.800 m, defence areas 1.800 x 3.600 m, 0.300 m beyond its lines",
                 "blue: A\\u001b[31m\\nB, keeper 3, 2 yellow cards (1 active), 1 red card, max bots 9",
-                "yellow: without a name, keeper 0, 0 yellow cards (0 active), 0 red cards, max bots not said",
+                "yellow: without a name, keeper 0, 0 yellow cards (0 active), 0 red cards, max bots unknown",
             ]
         );
     }

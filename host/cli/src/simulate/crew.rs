@@ -67,7 +67,7 @@ impl Crew {
 
     /// Lines that describe its services, for the operator.
     pub(super) fn lines(&self) -> Vec<String> {
-        let mut lines = vec![format!("referee  heard at {}", self.from)];
+        let mut lines = vec![format!("referee  received at {}", self.from)];
         if self.assistant.is_some() {
             lines.push("assistant  puts the ball, takes robots off and brings them back".to_owned());
         }
@@ -131,9 +131,9 @@ impl Crew {
         let silent = self.game.is_silent(now);
         if silent != std::mem::replace(&mut self.silent, silent) {
             lines.push(if silent {
-                format!("referee  nothing heard at {}", self.from)
+                format!("referee  nothing received at {}", self.from)
             } else {
-                format!("referee  a game controller is heard at {}", self.from)
+                format!("referee  a game controller is received at {}", self.from)
             });
         }
         if let Some((_, reporter)) = &mut self.autoref {

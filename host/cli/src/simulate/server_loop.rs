@@ -158,7 +158,7 @@ pub(super) fn run(
     drop(bar);
     let counts = server.counts();
     note!(
-        "ended after {:.1} simulated s: {} vision packets out, {} control and {} robot messages in, {} undecodable, {} refusals told, {} ms left out",
+        "ended after {:.1} simulated s: {} vision packets out, {} control and {} robot messages in, {} undecodable, {} refusals reported, {} ms left out",
         server.world().time(),
         vision.sent,
         counts.simulator,

@@ -57,6 +57,6 @@ fn what_is_no_single_problem_is_refused_in_words() {
     let missing = cases("new", &directory, &["--from", "no/such.json"], "");
     assert!(missing.code == 1 && missing.stderr.contains("no/such.json"), "{}", missing.stderr);
     let nowhere = cases("new", &directory, &["--from", "-", "--out", "no/such/folder/a.toml"], PROBLEM);
-    assert!(nowhere.code == 1 && nowhere.stderr.contains("make its folder first"), "{}", nowhere.stderr);
+    assert!(nowhere.code == 1 && nowhere.stderr.contains("create its directory first"), "{}", nowhere.stderr);
     assert_eq!(command(&["cases", "new"]).output().unwrap().status.code(), Some(2));
 }

@@ -45,7 +45,7 @@ fn a_match_is_watched_asked_and_touched() {
     std::thread::sleep(Duration::from_secs(1));
     assert!(number(&mut tab, "onetwo.frames()") > before + 2.0, "frames are drawn");
     tab.eval("(() => { const c = document.getElementById('field'); return c.getContext('2d').getImageData(c.width / 2, c.height / 2, 1, 1).data[3] })()")
-        .map(|alpha| assert_eq!(alpha, 255, "the carpet is painted"))
+        .map(|alpha| assert_eq!(alpha, 255, "the field is painted"))
         .unwrap();
 
     // Why: a card for each robot, and the explanation of this moment.

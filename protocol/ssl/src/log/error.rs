@@ -38,9 +38,9 @@ impl fmt::Display for LogError {
             Self::Open { path, error } => {
                 write!(f, "{}: {error}", foreign::printable(&path.to_string_lossy()))
             }
-            Self::Read(error) => write!(f, "not readable: {error}; copy the file anew"),
+            Self::Read(error) => write!(f, "not readable: {error}; copy the file again"),
             Self::Short { bytes } => {
-                write!(f, "ends within its header, after {bytes} of 16 bytes; copy the file anew")
+                write!(f, "ends within its header, after {bytes} of 16 bytes; copy the file again")
             }
             Self::NotALog { begins } => write!(
                 f,

@@ -142,7 +142,7 @@ impl fmt::Display for NetError {
                 write!(f, "{group} is no multicast address; vision is 224.5.23.2, the referee 224.5.23.1")
             }
             Self::NoRoute { to, by } => {
-                write!(f, "no way to {to}")?;
+                write!(f, "no route to {to}")?;
                 if let Some(by) = by {
                     write!(f, " by {by}")?;
                 }

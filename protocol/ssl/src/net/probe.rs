@@ -35,7 +35,7 @@ impl std::fmt::Display for LoopbackProbe {
                 write!(f, "multicast on this machine works for onetwo; the league's programs ")?;
                 match league_sends_by {
                     Some(by) => write!(f, "send by {by}")?,
-                    None => write!(f, "find no way")?,
+                    None => write!(f, "find no route")?,
                 }
                 write!(f, "; to keep them on this machine: `{LOOPBACK_HINT}`")
             }
@@ -69,7 +69,7 @@ pub fn route(group: SocketAddrV4) -> Result<Ipv4Addr, NetError> {
     match socket.local_addr() {
         Ok(SocketAddr::V4(by)) => Ok(*by.ip()),
         Ok(SocketAddr::V6(_)) => Err(NetError::NoRoute { to, by: None }),
-        Err(error) => Err(NetError::System { doing: "ask the way to", address: to, error }),
+        Err(error) => Err(NetError::System { doing: "find the route to", address: to, error }),
     }
 }
 

@@ -48,7 +48,7 @@ messages! {
         command_delay: Option<u64> [uint64, optional] = 18;
     }
 
-    /// Measures of a robot's mouth.
+    /// Measures of a robot's dribbler opening.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct RobotSpecErForce {
         /// Centre to the kicker, m.

@@ -23,7 +23,7 @@ mod measure {
 
     #[cortex_m_rt::entry]
     fn main() -> ! {
-        let core = cortex_m::Peripherals::take().expect("nobody took them before");
+        let core = cortex_m::Peripherals::take().expect("taken once, at start");
         instructions::start(core.SYST);
         // Instructions of the counting itself.
         let ((), idle) = counted(|| ());

@@ -26,7 +26,7 @@ mod measure {
 
     #[cortex_m_rt::entry]
     fn main() -> ! {
-        let core = cortex_m::Peripherals::take().expect("nobody took them before");
+        let core = cortex_m::Peripherals::take().expect("taken once, at start");
         instructions::start(core.SYST);
         let base = CaseBase::from_bytes(behind_header(memory(TABLE_ADDRESS))).expect("a table in memory");
         let settings = Settings::default();

@@ -27,7 +27,7 @@ use super::{instructions, library, stack};
 
 /// Main loop of the board.
 pub(crate) fn run() -> ! {
-    let core = cortex_m::Peripherals::take().expect("nobody took them before");
+    let core = cortex_m::Peripherals::take().expect("taken once, at start");
     instructions::start(core.SYST);
     let (mut inlet, mut outlet) = eth::start().expect("the machine has a LAN9118: mps2-an386");
     let clock = Clock::new();

@@ -90,7 +90,7 @@ fn ended(how: Ending<'_>) -> ! {
         crash_context.panics = crash_context.panics.wrapping_add(1);
         crash_context.place_len = how.write(&mut crash_context.place);
     });
-    print(&[b"panic at ", with(|crash_context| *crash_context).place(), b"; motors off, starting anew"]);
+    print(&[b"panic at ", with(|crash_context| *crash_context).place(), b"; motors off, restarting"]);
     SCB::sys_reset()
 }
 

@@ -27,7 +27,7 @@ use console::print;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    let core = cortex_m::Peripherals::take().expect("nobody took them before");
+    let core = cortex_m::Peripherals::take().expect("taken once, at start");
     clock::start(core.SYST);
     uart::start();
     let crash_context = fault::crash_context();
@@ -45,7 +45,7 @@ fn main() -> ! {
                 provision::ProvisionError::Damaged => b"a damaged page",
                 provision::ProvisionError::OpenKey => b"a key of zeros",
             };
-            print(&[why, b": nobody commands this robot; run `onetwo firmware provision`"]);
+            print(&[why, b": no host can command this robot; run `onetwo firmware provision`"]);
             clock::run(|_| ())
         }
     };

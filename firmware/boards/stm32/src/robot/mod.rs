@@ -36,7 +36,7 @@ fn main() -> ! {
     log_crash(&fault::crash_context());
     let who = provision::read(flash::page(), false).inspect_err(|error| refuse(*error)).ok();
     let epoch = flash::begin(parts.keeper.flash)
-        .inspect_err(|error| defmt::error!("no epoch ({}): nobody commands this robot", error))
+        .inspect_err(|error| defmt::error!("no epoch ({}): no host can command this robot", error))
         .ok();
     let radio = radio::open(parts.radio);
     let (Some(who), Some(epoch), Some((sender, receiver))) = (who, epoch, radio) else {
@@ -170,7 +170,7 @@ fn refuse(error: ProvisionError) {
         ProvisionError::Damaged => "a damaged page",
         ProvisionError::OpenKey => "a key of zeros",
     };
-    defmt::error!("{=str}: nobody commands this robot; run `onetwo firmware provision`", why);
+    defmt::error!("{=str}: no host can command this robot; run `onetwo firmware provision`", why);
 }
 
 /// Half of the lamp's period of a second.

@@ -165,7 +165,7 @@ const STAND_OFF: f32 = 0.07;
 const PLACING_STAND_OFF: f32 = 0.1;
 /// How deep it presses into where the ball lies, m: until it touches for certain.
 const PRESS: f32 = 0.02;
-/// Beside the line over the ball: half of the mouth's half width, m.
+/// Beside the line over the ball: half of the opening's half width, m.
 const BESIDE: f32 = 0.015;
 /// So far beside it a robot before the ball steps aside to it, m.
 const SIDESTEPS: f32 = 0.1;
