@@ -103,20 +103,20 @@ impl Action {
 pub enum TurnTarget {
     /// A heading relative to the direction of attack, whole degrees, left > 0.
     HeadingDeg(i32),
-    /// A point.
+    /// A point to face, the case's own coordinates, mm.
     Face(PointMm),
 }
 
 /// A kick kind: its aim, its scatter and the body's kick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Kick {
-    /// The aim.
+    /// Direction of the kick: along a heading or at the goal.
     pub aim: KickAim,
     /// Radius of its trajectory at the foot, mm.
     pub r_min: i32,
     /// Radius of its trajectory at the end, mm.
     pub r_max: i32,
-    /// The body's kick.
+    /// The kick primitive that the body executes.
     pub primitive: Primitive,
 }
 
@@ -140,16 +140,16 @@ pub enum KickAim {
 /// The body's kick primitive; the league's file names it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Primitive {
-    /// The body chooses.
+    /// The file names none: the body chooses by the kick's aim.
     #[default]
     Unspecified,
-    /// Forward, short.
+    /// Forward, over a short distance.
     ForwardSoft,
-    /// Forward, long.
+    /// Forward, over a long distance.
     ForwardHard,
-    /// To the left.
+    /// To the robot's left side.
     Left,
-    /// To the right.
+    /// To the robot's right side.
     Right,
     /// With the strength of a pass.
     Pass,
@@ -183,7 +183,7 @@ impl Primitive {
 pub struct Pass {
     /// At the passer's foot.
     pub r_min: i32,
-    /// At the receiver.
+    /// Radius of the path at the receiver, mm.
     pub r_max: i32,
 }
 
@@ -196,7 +196,7 @@ pub struct FieldMm {
     pub width: i32,
     /// Field surface outside the lines.
     pub margin: i32,
-    /// Between the posts.
+    /// Distance between the insides of the goal posts.
     pub goal_width: i32,
     /// Of the penalty area, along x.
     pub penalty_depth: i32,

@@ -42,23 +42,23 @@ impl<'a> Case<'a> {
         Symmetry::from_bits(self.id.0)
     }
 
-    /// The goal defended.
+    /// G: the goal that the case's team defends, of this symmetric copy.
     pub const fn defending(&self) -> GoalEnd {
         let authored = if self.group.defending == 0 { GoalEnd::Negative } else { GoalEnd::Positive };
         self.symmetry().goal(authored)
     }
 
-    /// B_c.
+    /// B_c: the ball's position in the case, mm, field frame.
     pub const fn ball(&self) -> PointMm {
         PointMm { x: self.record_header.ball[0] as i32, y: self.record_header.ball[1] as i32 }
     }
 
-    /// The ball's scope.
+    /// The ball's scope: radii τx, τy around B_c, mm.
     pub fn ball_scope(&self) -> Scope {
         scope(self.record_header.inverse_scope)
     }
 
-    /// Number of robots.
+    /// Number of robots of the case, which is that of its gameplays.
     pub const fn teammates(&self) -> usize {
         self.record_header.teammates as usize
     }

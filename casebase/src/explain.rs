@@ -38,17 +38,17 @@ pub enum Verdict {
     },
     /// An adapted position lies outside the field, and the settings reject such cases.
     OutOfField {
-        /// The case robot.
+        /// The robot whose adapted position lies outside.
         robot: CaseRobot,
     },
     /// A robot of the cheapest correspondence exceeds the travel limit; the one with the longest distance is
     /// reported.
     TooFar {
-        /// Its part.
+        /// The case robot at whose adapted position the player would start.
         robot: CaseRobot,
         /// The player of that part.
         player: RobotId,
-        /// Its distance, mm.
+        /// The player's distance from the adapted position, mm.
         distance: f32,
         /// Distance above the limit, mm.
         margin: f32,

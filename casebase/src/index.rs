@@ -18,13 +18,13 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 #[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(C)]
 pub struct Grid {
-    /// Cells along x.
+    /// Number of cells along x.
     pub columns: u16,
-    /// Cells along y.
+    /// Number of cells along y.
     pub rows: u16,
     /// Edge of a cell, mm.
     pub cell_mm: f32,
-    /// Its inverse, 1/mm.
+    /// Inverse of `cell_mm`, 1/mm: replaces a division by a multiplication.
     pub cells_per_mm: f32,
     /// The corner of the first cell, mm: the intersection of the middle line and the field's end at −x.
     pub corner: [f32; 2],

@@ -24,15 +24,15 @@ pub struct Leg {
     pub from: [f32; 2],
     /// Where the ball stops.
     pub to: [f32; 2],
-    /// Radius at `from`.
+    /// Radius of the fuzzy set at `from`, mm.
     pub r_min: f32,
-    /// Radius at `to`.
+    /// Radius of the fuzzy set at `to`, mm.
     pub r_max: f32,
-    /// The kicking robot.
+    /// The case robot that passes or kicks.
     pub robot: CaseRobot,
     /// Number of that action in the kicker's gameplay, from 0.
     pub action: usize,
-    /// Pass or kick.
+    /// Whether the leg is a pass or a kick.
     pub kind: LegKind,
 }
 
@@ -153,7 +153,7 @@ pub struct Abreast {
     pub along: f32,
     /// v, left > 0.
     pub across: f32,
-    /// ρ(u).
+    /// Radius ρ(u) of the leg abreast of the point, mm.
     pub radius: f32,
 }
 

@@ -11,9 +11,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize)]
 #[serde(from = "(i32, i32)", into = "(i32, i32)")]
 pub struct PointMm {
-    /// Along +x.
+    /// Coordinate along +x, mm, field frame.
     pub x: i32,
-    /// Along +y.
+    /// Coordinate along +y, mm, field frame.
     pub y: i32,
 }
 
@@ -28,7 +28,7 @@ impl PointMm {
         Self { x: self.x.saturating_sub(other.x), y: self.y.saturating_sub(other.y) }
     }
 
-    /// Moved by `shift`.
+    /// The point moved by `shift`, mm; saturates.
     pub const fn plus(self, shift: Self) -> Self {
         Self { x: self.x.saturating_add(shift.x), y: self.y.saturating_add(shift.y) }
     }
@@ -76,9 +76,9 @@ impl From<PointMm> for WirePoint {
 /// The radii τx, τy of a scope: an axis-parallel ellipse around the ball or an opponent, mm, both above 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Scope {
-    /// τx.
+    /// τx: radius along x, mm.
     pub x: i32,
-    /// τy.
+    /// τy: radius along y, mm.
     pub y: i32,
 }
 

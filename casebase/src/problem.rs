@@ -15,12 +15,12 @@ pub const PROBLEM_OPPONENTS_MAX: usize = 11;
 /// The present situation. Coordinates may be any `i32`, on the field or not.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Problem {
-    /// B.
+    /// B: the ball's position, mm, field frame.
     pub ball: PointMm,
     /// G, the goal we defend.
     pub defending: GoalEnd,
     /// Tm: the robots that can play, in any order, each id once.
     pub teammates: Vec<(RobotId, PointMm), PROBLEM_TEAMMATES_MAX>,
-    /// Opp.
+    /// Opp: the opponents' positions, mm, field frame, in any order.
     pub opponents: Vec<PointMm, PROBLEM_OPPONENTS_MAX>,
 }

@@ -18,7 +18,7 @@ pub type Correspondence = Vec<RobotId, TEAMMATES_MAX>;
 /// A candidate with all its ranking criteria.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Match {
-    /// The stored case.
+    /// The stored case; each symmetric copy has an id of its own.
     pub case: CaseId,
     /// sim_B, above the threshold.
     pub similarity: f32,
@@ -33,7 +33,7 @@ pub struct Match {
     pub conditions: u8,
     /// Number of robots of the case.
     pub teammates: u8,
-    /// The players.
+    /// The player that takes the part of each case robot.
     pub correspondence: Correspondence,
 }
 

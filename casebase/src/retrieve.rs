@@ -23,7 +23,7 @@ use crate::table::{CaseBase, RecordHeader};
 pub struct Retrieval {
     /// The case that ranks first.
     pub best: Option<Match>,
-    /// Number of candidates.
+    /// Number of cases that passed every check.
     pub candidates: u16,
 }
 

@@ -33,7 +33,7 @@ pub struct Settings {
     pub scopes: ScopeRule,
     /// `free_path`: whether a path is free or not, or free to a degree.
     pub free_path: FreePathRule,
-    /// `thr_c`, mm.
+    /// `thr_c`: maximum distance of a robot to its adapted position, mm.
     pub travel_max_mm: f32,
     /// `thr`: thr_b, thr_opp and thr_t.
     pub threshold: f32,
@@ -55,7 +55,7 @@ pub enum CorrespondenceRule {
 pub enum CostRule {
     /// The sum of the distances: the paper's choice, no crossing paths.
     Sum,
-    /// The largest distance.
+    /// The largest of the distances.
     Max,
 }
 
@@ -152,9 +152,9 @@ pub enum SettingError {
     UnknownName,
     /// The setting does not accept this value.
     BadValue {
-        /// The setting.
+        /// Name of the setting, as `--set` takes it.
         name: &'static str,
-        /// The accepted values.
+        /// The accepted values, as text for the error message.
         expected: &'static str,
     },
 }

@@ -13,7 +13,7 @@ use crate::PointMm;
 /// The symmetry of a stored case; the number is the case id modulo 4.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Symmetry {
-    /// As authored.
+    /// (x, y), same goal: as authored.
     Identity,
     /// (x, −y), same goal.
     AcrossX,

@@ -55,7 +55,7 @@ pub struct Answer {
     pub best: Found,
     /// The winner of `retrieve`.
     pub counted: Found,
-    /// Number of candidates.
+    /// Number of candidates that `retrieve` found for the problem.
     pub candidates: u32,
     /// The winner of the plain scan.
     pub scanned: Found,

@@ -17,22 +17,22 @@ pub struct Svg {
 /// Position of a text's anchor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// At its start.
+    /// The text starts at its anchor (SVG `start`).
     Start,
-    /// At its middle.
+    /// The text is centred on its anchor (SVG `middle`).
     Middle,
-    /// At its end.
+    /// The text ends at its anchor (SVG `end`).
     End,
 }
 
 /// Style of a text.
 #[derive(Clone, Copy, Debug)]
 pub struct Font<'a> {
-    /// Height.
+    /// Font size in the unit of the figure: mm on fields, px in charts.
     pub size: f64,
-    /// Colour.
+    /// Colour of the letters, as SVG writes it.
     pub fill: &'a str,
-    /// Weight.
+    /// Bold letters if true, else the normal weight.
     pub bold: bool,
     /// A line of this colour around the letters, so that they can be read over anything.
     pub halo: Option<&'a str>,
@@ -53,12 +53,12 @@ impl Svg {
         self.element(format_args!(r#"<ellipse cx="{x:.1}" cy="{y:.1}" rx="{rx:.1}" ry="{ry:.1}" {style}/>"#));
     }
 
-    /// A circle.
+    /// Appends a circle around `at`; `radius` in the figure's unit, `style` as SVG attributes.
     pub fn circle(&mut self, at: At, radius: f64, style: impl Display) {
         self.ellipse(at, [radius, radius], style);
     }
 
-    /// A straight line.
+    /// Appends a straight line between two points; `style` as SVG attributes.
     pub fn line(&mut self, [x, y]: At, [to_x, to_y]: At, style: impl Display) {
         let (y, to_y) = (-y, -to_y);
         self.element(format_args!(
@@ -96,7 +96,7 @@ impl Svg {
         self.polygon(&corners, format_args!(r#"fill="{color}""#));
     }
 
-    /// A closed polygon.
+    /// Appends a closed polygon through `corners`, in their order; `style` as SVG attributes.
     pub fn polygon(&mut self, corners: &[At], style: impl Display) {
         self.element(format_args!(r#"<polygon points="{}" {style}/>"#, points(corners)));
     }

@@ -16,25 +16,25 @@ pub enum Theme {
 /// The colours of a theme, as SVG writes them.
 #[derive(Debug)]
 pub struct Colors {
-    /// The page.
+    /// Background of the whole figure.
     pub paper: &'static str,
-    /// The field.
+    /// Surface of the field.
     pub surface: &'static str,
     /// The lines on it.
     pub line: &'static str,
-    /// Text.
+    /// Main text, such as titles.
     pub ink: &'static str,
-    /// Secondary text.
+    /// Secondary text, such as captions and axis labels.
     pub faint: &'static str,
-    /// The ball.
+    /// The ball and its scope.
     pub ball: &'static str,
-    /// The attackers.
+    /// The attackers, whose case is drawn.
     pub team: &'static str,
-    /// The opponents.
+    /// The opponents and their scopes.
     pub opponent: &'static str,
-    /// The ball's path.
+    /// The ball's path: legs of passes and kicks.
     pub path: &'static str,
-    /// Faults.
+    /// Faults, such as blocked legs.
     pub warning: &'static str,
     /// The goal at −x, as the paper names it.
     pub yellow: &'static str,
@@ -45,7 +45,7 @@ pub struct Colors {
 }
 
 impl Theme {
-    /// Its colours.
+    /// The palette that belongs to this theme.
     pub const fn colors(self) -> &'static Colors {
         match self {
             Self::Light => &LIGHT,

@@ -93,17 +93,17 @@ impl Spot {
 pub enum Step {
     /// It runs along a leg.
     Leg {
-        /// The kicking robot.
+        /// The case robot that passes or kicks.
         robot: CaseRobot,
         /// Number of that action in the kicker's gameplay.
         action: usize,
-        /// Its start.
+        /// Start of the leg, mm; relative to the ball unless on the field.
         from: Spot,
-        /// Where it stops.
+        /// Stop position of the ball, mm; relative to its start unless on the field.
         to: Spot,
         /// r_min and r_max, mm.
         radii: [i32; 2],
-        /// Pass or kick.
+        /// Whether the leg is a pass or a kick.
         kind: LegKind,
         /// The `dribble_to` that carried it to `from` after the leg before.
         carried_by: Option<(CaseRobot, usize)>,
@@ -112,7 +112,7 @@ pub enum Step {
     HandOver(HandOver),
     /// No kick ever hands the ball to this `get_ball`.
     NeverReached {
-        /// The waiting robot.
+        /// The case robot that waits for the ball.
         robot: CaseRobot,
         /// Number of the `get_ball`.
         action: usize,

@@ -61,19 +61,19 @@ impl<'a> CaseBase<'a> {
         self.gates.is_empty()
     }
 
-    /// The league's field.
+    /// Dimensions of the league's field, mm.
     pub const fn field(&self) -> FieldMm {
         let [length, width, margin, goal_width, penalty_depth, penalty_width] = self.header.field;
         FieldMm { length, width, margin, goal_width, penalty_depth, penalty_width }
     }
 
-    /// Radii of passes.
+    /// Radii r_min and r_max of all passes of the league, mm.
     pub const fn pass(&self) -> Pass {
         let [r_min, r_max] = self.header.pass;
         Pass { r_min, r_max }
     }
 
-    /// A kick kind.
+    /// The kick kind with this id; `None` if the table has no such kind.
     pub fn kick(&self, id: KickId) -> Option<Kick> {
         self.kicks.get(id.0 as usize).map(RawKick::decode)
     }
@@ -83,7 +83,7 @@ impl<'a> CaseBase<'a> {
         self.kicks.len()
     }
 
-    /// A stored case.
+    /// The stored case with this id; `None` if the table has no such case.
     pub fn case(&self, id: CaseId) -> Option<Case<'a>> {
         Case::new(*self, id)
     }
@@ -94,7 +94,7 @@ impl<'a> CaseBase<'a> {
         (0..base.len() as u32).filter_map(move |id| base.case(CaseId(id as u16)))
     }
 
-    /// The table itself.
+    /// The whole table as it lies in flash, header included.
     pub const fn bytes(&self) -> &'a [u8] {
         self.bytes
     }
@@ -150,7 +150,7 @@ pub struct Header {
     pub places: u32,
     /// Number of case numbers in the cells of the index.
     pub cell_cases: u32,
-    /// Number of actions.
+    /// Number of actions in the table, over all records.
     pub actions: u32,
     /// The cells of the index.
     pub grid: Grid,
@@ -161,11 +161,11 @@ pub struct Header {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(C)]
 pub struct Group {
-    /// First point.
+    /// Index of the first of the copies' points.
     pub points_at: u32,
-    /// First action.
+    /// Index of the first of the copies' actions.
     pub actions_at: u32,
-    /// Points of actions.
+    /// Number of points of actions in each copy.
     pub points: u8,
     /// End of each robot's list of actions, counted from the copy's first action.
     pub list_ends: [u8; TEAMMATES_MAX],
@@ -173,7 +173,7 @@ pub struct Group {
     pub defending: u8,
     /// The robot whose first action is `get_ball`.
     pub getter: u8,
-    /// Zero.
+    /// Always 0; keeps the record free of padding.
     pub reserved: u8,
 }
 
@@ -200,7 +200,7 @@ impl RawAction {
     pub const KICK: u8 = 8;
 }
 
-/// A kick kind.
+/// A kick kind as the table stores it; [`RawKick::decode`] gives a [`Kick`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(C)]
 pub struct RawKick {
@@ -208,13 +208,13 @@ pub struct RawKick {
     pub degrees: i32,
     /// Length of a kick along a heading, or the offset of a kick at the goal, mm.
     pub length_or_offset: i32,
-    /// r_min, r_max, mm.
+    /// r_min and r_max, mm.
     pub radii: [i32; 2],
     /// 1 for a kick at the goal, else 0.
     pub at_goal: u8,
-    /// Position in [`Primitive::ALL`].
+    /// Index of the primitive in [`Primitive::ALL`].
     pub primitive: u8,
-    /// Zero.
+    /// Always 0; keeps the record free of padding.
     pub reserved: [u8; 2],
 }
 

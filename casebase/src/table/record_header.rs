@@ -10,23 +10,23 @@ use crate::point::gauss_exponent;
 #[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(C)]
 pub struct RecordHeader {
-    /// B_c, whole mm.
+    /// B_c: ball position, whole mm, field frame.
     pub ball: [f32; 2],
-    /// 1/τx, 1/τy, 1/mm.
+    /// 1/τx and 1/τy of the ball's scope, 1/mm.
     pub inverse_scope: [f32; 2],
     /// Index of the 32-bit unit of the places at which its records start.
     pub places_at: u32,
-    /// Number of robots.
+    /// Number of robots of the case.
     pub teammates: u8,
-    /// Number of opponents.
+    /// Number of opponents of the case.
     pub opponents: u8,
-    /// Number of legs.
+    /// Number of legs of the ball path.
     pub legs: u8,
-    /// Zero.
+    /// Always 0; keeps the record free of padding.
     pub reserved: u8,
 }
 
-/// An opponent's scope.
+/// An opponent's scope, with its centre relative to the ball.
 #[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(C)]
 pub struct Opponent {
@@ -34,7 +34,7 @@ pub struct Opponent {
     pub cells: u32,
     /// Relative to the case's ball, mm.
     pub at: [i16; 2],
-    /// 1/τx, 1/τy, 1/mm.
+    /// 1/τx and 1/τy of the opponent's scope, 1/mm.
     pub inverse_scope: [f32; 2],
 }
 
@@ -47,13 +47,13 @@ pub struct RawLeg {
     pub to: [f32; 2],
     /// r_min and r_max, mm.
     pub radii: [f32; 2],
-    /// The kicking robot.
+    /// Number of the case robot that passes or kicks, from 0.
     pub robot: u8,
     /// Number of that action in its gameplay.
     pub action: u8,
     /// [`RawLeg::NOT_CARRIED`], or the case's point to which the ball was dribbled before.
     pub carried_to: u8,
-    /// [`RawLeg::TO_FIELD`] or 0.
+    /// [`RawLeg::TO_FIELD`] or 0; no other bits.
     pub flags: u8,
 }
 

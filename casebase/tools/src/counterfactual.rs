@@ -14,22 +14,22 @@ use protocol::{CaseId, RobotId};
 pub enum Counterfactual {
     /// It is the retrieved case.
     Winner,
-    /// This move.
+    /// The shortest single move that makes it the retrieved case.
     Move(Move),
     /// No single move that was tried.
     NoSingleMove(Obstacle),
 }
 
-/// One moved object.
+/// One object moved to another position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Move {
-    /// The moved object.
+    /// The object that is moved.
     pub entity: Entity,
     /// Its old position, mm, field frame.
     pub from: PointMm,
     /// Its new position, mm, field frame.
     pub to: PointMm,
-    /// Distance, mm.
+    /// Length of the move, mm.
     pub distance_mm: f32,
 }
 
@@ -56,7 +56,7 @@ pub enum Obstacle {
     },
     /// The winner fulfils more conditions than the case has.
     Conditions {
-        /// The winner.
+        /// The case that is retrieved instead.
         winner: CaseId,
         /// Number of conditions it fulfils.
         fulfilled: u8,

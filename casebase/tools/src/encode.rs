@@ -30,7 +30,7 @@ impl Table {
         Self { words, length: bytes.len() }
     }
 
-    /// The table's bytes.
+    /// The table as robots carry it, without the padding of the last word.
     pub fn bytes(&self) -> &[u8] {
         &self.words.as_bytes()[..self.length]
     }

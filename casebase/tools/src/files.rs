@@ -15,7 +15,7 @@ pub struct SourceFile {
     pub path: PathBuf,
     /// Its path in the library, with `/`, without `.toml`.
     pub name: String,
-    /// Its text.
+    /// Its whole text, TOML.
     pub text: String,
 }
 
@@ -48,7 +48,7 @@ impl SourceFile {
 pub struct Files {
     /// The league's name: that of its directory.
     pub league: String,
-    /// `league.toml`.
+    /// The file `league.toml`, with its text.
     pub rules: SourceFile,
     /// The case files, ordered by the bytes of their names: this order is their ids.
     pub cases: Vec<SourceFile>,

@@ -15,11 +15,11 @@ pub struct Finding {
     pub code: &'static str,
     /// Whether the library is refused.
     pub severity: Severity,
-    /// The file.
+    /// Path of the file at fault.
     pub file: PathBuf,
     /// Its line, from 1.
     pub line: u32,
-    /// What is wrong.
+    /// What is wrong, one sentence.
     pub message: String,
     /// How to fix it.
     pub hint: String,

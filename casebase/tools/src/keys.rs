@@ -3,7 +3,7 @@
 
 use std::ops::RangeInclusive;
 
-/// A case file.
+/// Keys of a case file, top level.
 pub const CASE: &[&str] = &["intent", "defending", "ball", "teammates", "opponents"];
 /// `ball` of a case, and each of its opponents: a position and a scope.
 pub const SCOPED: &[&str] = &["at", "scope"];
@@ -15,19 +15,19 @@ pub const DESCRIPTION: &[&str] = &["wait", "get_ball"];
 pub const ACTIONS: &[&str] = &["go_to_point", "turn", "dribble_to", "pass_ball", "receive_ball", "kick"];
 /// Directions of a `turn`, one of them.
 pub const TURN: &[&str] = &["heading_deg", "face"];
-/// `league.toml`.
+/// Tables of `league.toml`, top level.
 pub const LEAGUE: &[&str] = &["field", "pass", "kicks", "problems"];
-/// `[field]`.
+/// Keys of `[field]` in `league.toml`.
 pub const FIELD: &[&str] = &["length", "width", "margin", "goal_width", "penalty_area"];
-/// `penalty_area` of `[field]`.
+/// Keys of `penalty_area` of `[field]`.
 pub const PENALTY_AREA: &[&str] = &["depth", "width"];
-/// `[pass]`.
+/// Keys of `[pass]` in `league.toml`.
 pub const PASS: &[&str] = &["r_min", "r_max"];
 /// `[kicks.KIND]` at the goal.
 pub const KICK_AT_GOAL: &[&str] = &["aim", "offset", "r_min", "r_max", "primitive"];
 /// `[kicks.KIND]` along a heading.
 pub const KICK_AHEAD: &[&str] = &["heading_deg", "length", "r_min", "r_max", "primitive"];
-/// `[problems]`.
+/// Keys of `[problems]` in `league.toml`.
 pub const PROBLEMS: &[&str] = &["teammates", "opponents"];
 /// A rectangle of `[problems]`.
 pub const RECTANGLE: &[&str] = &["x", "y"];

@@ -12,12 +12,12 @@ use crate::finding::Finding;
 use crate::keys::{self, COORDINATES, DEGREES, INNER, POSITIVE, SIDES};
 use crate::lineup::Lineup;
 
-/// A league's rules.
+/// A league's rules, as `league.toml` states them.
 #[derive(Clone, Debug)]
 pub struct League {
-    /// The field.
+    /// Dimensions of the field, mm.
     pub field: FieldMm,
-    /// Radii of passes.
+    /// Radii r_min and r_max of passes, mm.
     pub pass: Pass,
     /// Kick kinds by name, in the order of their names: this order is their [`KickId`]s.
     pub kicks: Vec<(String, Kick)>,

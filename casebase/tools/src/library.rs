@@ -37,14 +37,14 @@ pub struct Library {
     pub kicks: Vec<String>,
     /// Areas of the robots in the problems drawn for it.
     pub lineup: Lineup,
-    /// Warnings.
+    /// Warnings of a library that is accepted; no errors among them.
     pub findings: Vec<Finding>,
 }
 
 /// A line of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// The file.
+    /// Path of the file.
     pub file: PathBuf,
     /// Its line, from 1.
     pub line: u32,
@@ -71,7 +71,7 @@ pub struct Reduction {
 }
 
 impl Reduction {
-    /// Everything.
+    /// No reduction: every case whole, with its symmetric copies.
     pub const NONE: Self = Self { symmetry: true, opponents: true };
 }
 

@@ -26,9 +26,9 @@ pub struct Lineup {
 /// A rectangle, mm, borders included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rectangle {
-    /// From, to.
+    /// Smallest and largest x, mm.
     pub x: [i32; 2],
-    /// From, to.
+    /// Smallest and largest y, mm.
     pub y: [i32; 2],
 }
 

@@ -15,7 +15,7 @@ use rand_xoshiro::Xoshiro128PlusPlus;
 
 use crate::lineup::{Lineup, Rectangle};
 
-/// Draws problems.
+/// Seeded source of problems; the n-th draw depends on seed and n only.
 #[derive(Clone, Debug)]
 pub struct Sampler {
     lineup: Lineup,

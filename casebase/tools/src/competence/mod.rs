@@ -32,7 +32,7 @@ pub enum Role {
     Support,
     /// Within another case's coverage.
     Auxiliary,
-    /// Covers nothing.
+    /// Covers none of the problems.
     Idle,
 }
 
@@ -40,7 +40,7 @@ impl Role {
     /// All of them, the most important first.
     pub const ALL: [Self; 5] = [Self::Pivotal, Self::Spanning, Self::Support, Self::Auxiliary, Self::Idle];
 
-    /// Its label.
+    /// The role's name in tables and JSON, lower case.
     pub const fn label(self) -> &'static str {
         match self {
             Self::Pivotal => "pivotal",
@@ -112,7 +112,7 @@ pub fn groups(counters: &Counters) -> Vec<(Vec<u16>, u64)> {
 /// One step of deleting cases one after another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Deletion {
-    /// The deleted case.
+    /// Number of the authored case that is deleted, from 0.
     pub case: u16,
     /// Number of problems that this step leaves without any candidate.
     pub lost: u64,

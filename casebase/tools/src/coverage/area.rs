@@ -8,12 +8,12 @@
 
 use casebase::{FieldMm, GoalEnd, PointMm};
 
-/// A strategic area.
+/// A strategic area of the field, attack frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Area {
     /// In front of the own goal.
     Back,
-    /// Around the centre.
+    /// Around the centre of the field.
     Center,
     /// In front of the opponents' goal.
     Front,

@@ -9,9 +9,9 @@ use casebase::{FieldMm, GoalEnd, PointMm};
 /// A grid over the field. The field's middle is the grid's; the outermost cells may extend beyond the lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cells {
-    /// Cells along x.
+    /// Number of cells along x.
     pub columns: usize,
-    /// Cells along y.
+    /// Number of cells along y.
     pub rows: usize,
     /// Edge of a cell, mm.
     pub edge_mm: i32,
@@ -24,7 +24,7 @@ pub enum CellsError {
     NoSize,
     /// More cells than [`Cells::MAX`].
     TooMany {
-        /// Number of cells.
+        /// Number of cells that the grid would have.
         cells: u64,
     },
 }
@@ -52,7 +52,7 @@ impl Cells {
         (field.length / 18 / 50 * 50).max(50)
     }
 
-    /// Number of cells.
+    /// Number of cells: `columns * rows`.
     pub const fn len(&self) -> usize {
         self.columns * self.rows
     }

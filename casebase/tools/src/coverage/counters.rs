@@ -17,17 +17,17 @@ pub const COST_BINS: usize = 25;
 /// Counts over some problems.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
-    /// Number of problems.
+    /// Number of problems that were counted.
     pub problems: u64,
     /// Number of problems without a candidate.
     pub none: u64,
     /// Number of stored candidates, over all problems.
     pub candidates: u64,
-    /// By authored case.
+    /// Counters by authored case, indexed by its number.
     pub cases: Vec<CaseCounters>,
     /// By cell of the grid.
     pub cells: Vec<CellCounters>,
-    /// By [`Area`].
+    /// Counters by [`Area`], in the order of [`Area::ALL`].
     pub areas: [AreaCounters; Area::ALL.len()],
     /// Winners by similarity interval ([`RINGS`]).
     pub rings: [u64; RINGS.len()],
@@ -88,14 +88,14 @@ pub struct AreaCounters {
 /// Problems with the same candidates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reach {
-    /// Number of problems.
+    /// Number of such problems.
     pub problems: u64,
     /// The number of the first.
     pub first: u64,
 }
 
 impl Counters {
-    /// Counters at zero.
+    /// Counters at zero, for this number of authored cases and of cells.
     pub fn new(cases: usize, cells: usize) -> Self {
         Self {
             cases: vec![CaseCounters::default(); cases],

@@ -19,7 +19,7 @@ pub struct Survey<'a> {
 }
 
 impl<'a> Survey<'a> {
-    /// Over a library.
+    /// A survey of a library; fails where the widened `thr` is refused by [`Settings::set`].
     pub fn new(base: CaseBase<'a>, settings: &Settings, cells: Cells) -> Result<Self, SettingError> {
         let mut wider = settings.clone();
         // exp(−k²·e) where the threshold is exp(−e).
@@ -28,17 +28,17 @@ impl<'a> Survey<'a> {
         Ok(Self { base, settings: settings.clone(), wider, cells })
     }
 
-    /// The grid.
+    /// The grid of the heat map.
     pub const fn cells(&self) -> Cells {
         self.cells
     }
 
-    /// The library.
+    /// The library that is surveyed.
     pub const fn base(&self) -> CaseBase<'a> {
         self.base
     }
 
-    /// Counters at zero.
+    /// Counters at zero, of the size of this library and grid.
     pub fn empty(&self) -> Counters {
         Counters::new(self.base.len() / COPIES, self.cells.len())
     }

@@ -18,22 +18,22 @@ use super::labels::Labels;
 pub struct CasePicture<'a> {
     /// The case base with its field.
     pub base: CaseBase<'a>,
-    /// The case.
+    /// The case to draw.
     pub case: Case<'a>,
-    /// `region/name`.
+    /// The case's name, `region/name`, for the title.
     pub name: &'a str,
     /// Its purpose, in its author's text.
     pub intent: &'a str,
     /// The problem to draw over it, if any.
     pub overlay: Option<Overlay<'a>>,
-    /// The colours.
+    /// Palette of the figure.
     pub theme: Theme,
 }
 
 /// A problem over a case.
 #[derive(Clone, Copy, Debug)]
 pub struct Overlay<'a> {
-    /// The problem.
+    /// Ball, teammates and opponents, mm, field frame.
     pub problem: &'a Problem,
     /// The settings of the retrieval.
     pub settings: &'a Settings,

@@ -10,11 +10,11 @@ pub struct HeatMap<'a> {
     pub title: &'a str,
     /// Caption below the field; wrapped to its width.
     pub caption: &'a str,
-    /// The field.
+    /// Dimensions of the field below the map, mm.
     pub field: FieldMm,
     /// Two opposite corners of the grid: minimum x and y, maximum x and y; mm, field frame.
     pub area: [PointMm; 2],
-    /// Cells along x.
+    /// Number of cells along x.
     pub columns: usize,
     /// Cells along y.
     pub rows: usize,
