@@ -38,7 +38,7 @@ struct Since {
     turned: bool,
 }
 
-/// A robot's brain.
+/// A robot's brain: sans-IO, all times are arguments.
 pub struct Brain<'a> {
     config: BrainConfig,
     body: &'static dyn Body,
@@ -167,7 +167,7 @@ impl<'a> Brain<'a> {
         }
     }
 
-    /// Handles a deadline.
+    /// Handles a deadline of [`Brain::poll_timeout`].
     pub fn handle_timeout(&mut self, now: Instant) {
         self.timers.advance(now);
         // Its consequences follow in the next step where that is near.
@@ -212,7 +212,7 @@ impl<'a> Brain<'a> {
         self.actuation.has_short_steps()
     }
 
-    /// The robot's belief.
+    /// The robot's world model as of its last step.
     pub fn belief(&self) -> &Belief {
         &self.belief
     }

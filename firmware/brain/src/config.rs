@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 pub struct BrainConfig {
     /// The robot's number in its team.
     pub robot: RobotId,
-    /// The robot's team.
+    /// The team that the robot plays for.
     pub team: TeamId,
     /// Boot epoch: rises with every boot.
     pub epoch: u32,
@@ -24,7 +24,7 @@ pub struct BrainConfig {
     pub positioning: Positioning,
     /// How it chooses its actions.
     pub approach: Approach,
-    /// Retrieval settings.
+    /// Settings of case retrieval (docs/case-format.md §3.2).
     pub settings: Settings,
     /// Whether a host leads it: without frames of one it does nothing (docs/architecture.md §6.2).
     pub hosted: bool,

@@ -20,13 +20,13 @@ use crate::timer::{Timer, TimerTable};
 /// Inputs of an execution in one step.
 #[derive(Clone, Copy)]
 pub struct Scene<'s> {
-    /// Present time.
+    /// Time of this step, the robot's own clock.
     pub now: Instant,
-    /// This robot's belief.
+    /// This robot's world model in this step.
     pub belief: &'s Belief,
-    /// Its teammates' beacons.
+    /// Newest beacon of each teammate, with its lease.
     pub teammates: &'s Teammates,
-    /// The cycle's id.
+    /// Id of the cycle to which the gameplay belongs.
     pub cycle: CycleId,
     /// The gameplay of the cycle.
     pub play: &'s Play,

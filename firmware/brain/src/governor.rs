@@ -28,12 +28,12 @@ pub struct Wanted {
     pub twist: Twist<Body>,
     /// Share of the dribbler's full speed, 0–1.
     pub dribbler: f32,
-    /// Kick order.
+    /// Kick order to the kicker.
     pub kick: OmniKick,
 }
 
 impl Wanted {
-    /// Standing still.
+    /// Standing still, without dribbler or kick.
     pub const STAND: Self = Self {
         twist: Twist { linear: Vector::new(0.0, 0.0), angular: 0.0 },
         dribbler: 0.0,
@@ -44,7 +44,7 @@ impl Wanted {
 /// Inputs of the governor about robot, host and game.
 #[derive(Clone, Copy, Debug)]
 pub struct Circumstances<'s> {
-    /// Present time.
+    /// Time of this step, the robot's own clock.
     pub now: Instant,
     /// Reception of the host's frames; `None` where no host is expected.
     pub host: Option<Hearing>,
@@ -129,7 +129,7 @@ impl Reasons {
 /// The governor's decision on a wanted motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ruling {
-    /// Passed unchanged.
+    /// Passed unchanged: no limit applied.
     Allowed,
     /// Passed with less speed or kick.
     Limited(Reasons),

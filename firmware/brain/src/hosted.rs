@@ -41,7 +41,7 @@ enum Restart {
 }
 
 impl Hosted {
-    /// Nothing received yet.
+    /// The state of robot `me` before any frame of a host.
     pub fn new(me: RobotId) -> Self {
         Self {
             me,

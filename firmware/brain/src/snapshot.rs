@@ -31,11 +31,11 @@ pub enum Taken {
 /// A robot of the snapshot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Received {
-    /// Team and number.
+    /// Team and number of the robot.
     pub who: WireWho,
     /// Position, m, and heading.
     pub pose: Pose<Field>,
-    /// Velocity, m/s.
+    /// Velocity, m/s, field frame.
     pub velocity: Vector<Field>,
     at: Instant,
     snapshot: u8,
@@ -48,7 +48,7 @@ pub struct ReceivedBall {
     pub position: geometry::Point<Field>,
     /// Velocity along the ground, m/s.
     pub velocity: Vector<Field>,
-    /// Height, m.
+    /// Height of the ball above the ground, m.
     pub height: f32,
     at: Instant,
 }
@@ -81,7 +81,7 @@ struct Own {
 }
 
 impl HostSnapshot {
-    /// Nothing received yet.
+    /// A snapshot without any part, for robot `me`.
     pub fn new(me: RobotId) -> Self {
         Self {
             me,

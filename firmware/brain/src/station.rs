@@ -109,12 +109,12 @@ impl<'a> Station<'a> {
         self.brain.poll_timeout()
     }
 
-    /// The brain, read-only.
+    /// The brain, for reading only; frames reach it through the station.
     pub fn brain(&self) -> &Brain<'a> {
         &self.brain
     }
 
-    /// The link, read-only.
+    /// The radio link, for its counters.
     pub fn link(&self) -> &Link {
         &self.link
     }

@@ -7,7 +7,7 @@ use protocol::{CycleId, Instant, RobotId};
 /// A teammate's newest beacon.
 #[derive(Clone, Debug)]
 pub struct Teammate {
-    /// Its newest beacon.
+    /// The newest beacon received from it.
     pub beacon: Beacon,
     /// When it was received.
     pub received: Instant,
@@ -37,7 +37,7 @@ pub struct Teammates {
 }
 
 impl Teammates {
-    /// Stores a beacon.
+    /// Stores `beacon` as the newest of robot `from`, received at `now`.
     pub fn receive(&mut self, now: Instant, from: RobotId, beacon: &Beacon) {
         self.table[from.index()] = Some(Teammate { beacon: beacon.clone(), received: now });
     }

@@ -46,7 +46,7 @@ enum Slot {
 }
 
 impl TimerTable {
-    /// Restarts `timer`.
+    /// Restarts `timer`, which fires at `deadline`.
     pub fn set(&mut self, timer: Timer, deadline: Instant) {
         self.put(timer, Slot::Running(deadline));
     }
@@ -58,7 +58,7 @@ impl TimerTable {
         }
     }
 
-    /// Makes `timer` idle.
+    /// Makes `timer` idle: it neither runs nor has fired.
     pub fn clear(&mut self, timer: Timer) {
         self.put(timer, Slot::Idle);
     }

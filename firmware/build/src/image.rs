@@ -111,7 +111,7 @@ pub enum Body {
 }
 
 impl Body {
-    /// Both bodies.
+    /// Both bodies: legs, then wheels.
     pub const ALL: [Self; 2] = [Self::Legged, Self::Omni];
 
     /// Its name in options, which is the feature's name.
@@ -138,7 +138,7 @@ pub enum BuildError {
     Target(TargetError),
     /// The sources or cargo are missing, and there is no earlier build.
     NothingToBuild {
-        /// The missing part.
+        /// What is missing, as text for the user.
         why: String,
         /// Where the build was looked for.
         image: PathBuf,
@@ -147,7 +147,7 @@ pub enum BuildError {
     Cargo {
         /// The command that failed.
         command: String,
-        /// The system's error.
+        /// Error with which the start of cargo failed.
         error: std::io::Error,
     },
     /// The firmware does not compile; the compiler's output is on stderr.

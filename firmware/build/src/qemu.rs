@@ -55,7 +55,7 @@ pub enum QemuError {
     },
     /// It is installed but does not run.
     Broken {
-        /// Its output.
+        /// Reason or output of its failed start.
         why: String,
     },
     /// It is there but lacks the machine our firmware is made for: too old, or built without it.

@@ -31,9 +31,9 @@ use crate::trajectory::{CalcMotion, FreeLimits, FreeMotion, Motion, State, usabl
 /// A region that the robot's centre must not enter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Obstacle<F> {
-    /// Shape, m.
+    /// Shape that the robot's centre must not enter, m.
     pub shape: Shape<F>,
-    /// Velocity, m/s.
+    /// Velocity of the whole shape, m/s.
     pub velocity: Vector<F>,
     /// Whether it is a body to collide with. A robot that leaves a region without a body may go through
     /// others.
@@ -67,9 +67,9 @@ impl<F: Copy> Obstacle<F> {
 pub struct Course<'o, F> {
     /// Position of the robot's centre, m.
     pub from: Point<F>,
-    /// Velocity, m/s.
+    /// Velocity of the robot's centre, m/s.
     pub velocity: Vector<F>,
-    /// Stop position.
+    /// Where it is to stop, m.
     pub to: Point<F>,
     /// Present limits of its motion.
     pub limits: FreeLimits,
@@ -126,7 +126,7 @@ pub enum Restraint {
 /// Result of the planner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detour<F> {
-    /// Kind of path.
+    /// Whether the path is direct, a detour or blocked.
     pub verdict: Verdict<F>,
     /// Stop position: the target, or the free point that replaces it.
     pub goal: Point<F>,

@@ -119,7 +119,7 @@ impl<F: Copy> BallPath<F> {
         self.along
     }
 
-    /// Stop position.
+    /// Where the ball stops, m.
     pub fn rest(&self) -> Point<F> {
         self.from + self.along * self.rest_distance
     }

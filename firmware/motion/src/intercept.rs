@@ -88,7 +88,7 @@ pub fn kick_place<F: Copy>(ball: Point<F>, target: Point<F>, reach: f32) -> Poin
 }
 
 impl<F: Copy> Interception<'_, F> {
-    /// Finds the interception.
+    /// Finds the interception that `request` asks for; else where to follow the ball.
     pub fn find<L: CalcMotion>(&self, limits: &L, request: Request) -> Verdict<F> {
         let best = match request {
             Request::Soonest => self.soonest(limits, u32::MAX),

@@ -36,16 +36,16 @@ pub const COORDINATE_MAX: f32 = 1_000.0;
 /// Position and velocity of a robot at one time of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<F> {
-    /// Position, m.
+    /// Position of the robot's centre, m.
     pub position: Point<F>,
-    /// Velocity, m/s.
+    /// Velocity of the robot's centre, m/s.
     pub velocity: Vector<F>,
     /// Acceleration, m/s²; at a jump, the value after it.
     pub acceleration: Vector<F>,
 }
 
 impl<F> State<F> {
-    /// Standing at `position`.
+    /// Standing at `position` (m), without velocity or acceleration.
     pub fn at_rest(position: Point<F>) -> Self {
         Self { position, velocity: Vector::default(), acceleration: Vector::default() }
     }

@@ -78,7 +78,7 @@ impl<'a> VirtualRobot<'a> {
         self.control.take()
     }
 
-    /// The body, read-only.
+    /// The simulated body, for reading only.
     pub fn body(&self) -> &SimulatedBody {
         &self.body
     }

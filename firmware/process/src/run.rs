@@ -19,7 +19,7 @@ use crate::robot::VirtualRobot;
 pub struct Options {
     /// Configuration of its brain.
     pub brain: BrainConfig,
-    /// Its radio keys.
+    /// Its radio keys: one with the host, one with the team.
     pub keys: RobotKeys,
     /// Address of the host.
     pub host: SocketAddr,

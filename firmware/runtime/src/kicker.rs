@@ -17,7 +17,7 @@ use rules::{KickerSpec, RobotSpec};
 pub enum KickerAct {
     /// Neither charge nor fire.
     Rest,
-    /// Charge the capacitor.
+    /// Charge the capacitor to its limit.
     Charge,
     /// Discharge it without a kick.
     Bleed,

@@ -26,7 +26,7 @@ pub const OUTBOX_LEN: usize = 8;
 )]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Arrival {
-    /// A received packet.
+    /// A packet received by radio.
     Packet(Packet),
     /// A sensor frame: the brain makes a step.
     Sensors(SensorFrame),
@@ -45,7 +45,7 @@ pub struct Mailboxes {
 }
 
 impl Mailboxes {
-    /// Empty mailboxes.
+    /// Mailboxes without any message; const, for a static.
     pub const fn new() -> Self {
         Self {
             inbox: Channel::new(),

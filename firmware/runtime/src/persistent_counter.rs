@@ -15,7 +15,7 @@ const MAGIC: [u8; 4] = *b"1-2B";
 /// Content of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cell {
-    /// Erased flash.
+    /// Erased flash: not written since the last erase.
     Empty,
     /// A start with this epoch.
     Epoch(u32),

@@ -19,7 +19,7 @@ pub enum Part {
 pub struct Progress(AtomicU32);
 
 impl Progress {
-    /// No part yet.
+    /// A record in which no part has reported yet.
     pub const fn new() -> Self {
         Self(AtomicU32::new(0))
     }

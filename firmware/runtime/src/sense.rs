@@ -99,7 +99,7 @@ pub struct Tilt {
 }
 
 impl Tilt {
-    /// Starts as upright.
+    /// A detector that starts with the robot upright.
     pub const fn new() -> Self {
         Self { tipped: false, otherwise_since: None }
     }

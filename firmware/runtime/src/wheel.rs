@@ -16,7 +16,7 @@ pub const CONTROL_PERIOD: Duration = Duration::millis(1);
 pub enum Motors {
     /// Duty cycle of each wheel, −1 to 1.
     Driven([f32; WHEELS]),
-    /// Motors without current.
+    /// Motors without current: the wheels roll freely.
     Released,
 }
 
@@ -27,7 +27,7 @@ pub struct Step {
     pub motors: Motors,
     /// The dribbler's share of full speed, 0–1.
     pub dribbler: f32,
-    /// Kick order.
+    /// Kick order, passed on from the brain.
     pub kick: OmniKick,
 }
 

@@ -18,7 +18,7 @@ pub struct Encoders {
 }
 
 impl Encoders {
-    /// Starts counting.
+    /// Starts the four quadrature counters at zero.
     pub fn new(parts: pins::Encoders) -> Self {
         let config = Config::default();
         Self {

@@ -13,7 +13,7 @@ use embassy_stm32::peripherals::FLASH;
 use protocol::provision::PAGE_LEN;
 use runtime::persistent_counter::{self, CELL_LEN, Cell, Place};
 
-/// The provisioned page.
+/// The provisioned page with keys and identity, unchecked; erased flash reads as 0xff.
 pub fn page() -> &'static [u8] {
     // SAFETY: flash behind the firmware (memory.x), of a sector that this program never writes.
     unsafe { core::slice::from_raw_parts((START + PAGE) as *const u8, PAGE_LEN) }

@@ -18,7 +18,7 @@ pub struct Imu {
 /// Why a reading is missing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]
 pub enum ImuError {
-    /// The bus failed.
+    /// An SPI transfer ended with an error.
     Bus,
     /// Another chip answers, or none (0x00, 0xff): this value instead of 0x47.
     Unauthenticated(u8),
@@ -35,9 +35,9 @@ impl From<Error> for ImuError {
 /// A reading, in the sensor's axes.
 #[derive(Clone, Copy, Debug, PartialEq, defmt::Format)]
 pub struct Reading {
-    /// Acceleration, g.
+    /// Acceleration with gravity, g, sensor's axes.
     pub acceleration: [f32; 3],
-    /// Turning rate, rad/s.
+    /// Turning rate, rad/s, sensor's axes.
     pub rate: [f32; 3],
 }
 

@@ -10,7 +10,7 @@ use crate::pins;
 use crate::pulse::{self, Charger, Coil, Coils};
 use crate::sampling;
 
-/// Charger, capacitor, coils.
+/// Driver of charger, capacitor and both coils.
 pub struct Kicker {
     coils: Coils,
     charger: Charger,

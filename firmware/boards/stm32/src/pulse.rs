@@ -17,9 +17,9 @@ use crate::pins;
 /// Coil to fire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coil {
-    /// The flat kicker's.
+    /// The coil of the flat kicker.
     Flat,
-    /// The chip kicker's.
+    /// The coil of the chip kicker.
     Chip,
 }
 

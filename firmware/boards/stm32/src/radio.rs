@@ -36,7 +36,7 @@ pub fn open(parts: pins::Radio) -> Option<(UartSender, UartReceiver)> {
     Some((UartSender { tx, line: LINE.init([0; LINE_LEN_MAX]) }, UartReceiver::new(rx)))
 }
 
-/// Receives frames.
+/// Receives frames by DMA into a ring, and decodes COBS lines.
 pub struct UartReceiver {
     rx: RingBufferedUartRx<'static>,
     lines: Lines,
@@ -81,7 +81,7 @@ impl RadioReceiver for UartReceiver {
     }
 }
 
-/// Sends frames.
+/// Sends frames by DMA, one COBS line at a time.
 pub struct UartSender {
     tx: UartTx<'static, Async>,
     /// Buffer from which the DMA sends.

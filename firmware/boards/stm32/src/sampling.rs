@@ -24,9 +24,9 @@ pub struct Sample {
     pub tipped: bool,
     /// The beam is interrupted.
     pub ball: bool,
-    /// Battery voltage, V.
+    /// Battery voltage, V; NaN before the first reading.
     pub battery: f32,
-    /// Capacitor voltage, V.
+    /// Voltage of the kicker's capacitor, V; NaN before the first reading.
     pub capacitor: f32,
 }
 

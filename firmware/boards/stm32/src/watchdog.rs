@@ -6,7 +6,7 @@ use embassy_stm32::wdg::IndependentWatchdog;
 use protocol::Duration;
 use runtime::ports::Watchdog;
 
-/// The watchdog, running.
+/// The chip's watchdog, once it is running.
 pub struct BoardWatchdog(IndependentWatchdog<'static, IWDG1>);
 
 impl BoardWatchdog {

@@ -15,7 +15,7 @@ use rules::League;
 pub enum Kind {
     /// A body with four legs.
     Legged(Legs),
-    /// Four omnidirectional wheels.
+    /// A body with four omnidirectional wheels.
     Wheeled(Wheels),
 }
 

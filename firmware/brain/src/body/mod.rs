@@ -28,7 +28,7 @@ pub enum Intent {
     },
     /// Go to a place, around robots, and end facing `face`.
     Walk {
-        /// Target position.
+        /// Target position, m, field frame.
         to: Point<Field>,
         /// Heading at the end.
         face: Angle,
@@ -42,7 +42,7 @@ pub enum Intent {
     },
     /// On legs: walk with the ball held.
     Carry {
-        /// Target position.
+        /// Target position, m, field frame.
         to: Point<Field>,
     },
     /// On legs: take the ball.

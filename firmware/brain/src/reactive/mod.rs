@@ -17,7 +17,7 @@ use crate::teammates::Teammates;
 /// Extent of the behaviour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Freedom {
-    /// The whole behaviour.
+    /// The whole behaviour: approach, grab, kick.
     Full,
     /// Keep near the ball, leave it to others: a robot that waits for the end of a gameplay.
     KeepNear,

@@ -44,7 +44,7 @@ impl Cycle {
         self.state.as_ref().map(|s| s.id)
     }
 
-    /// The running gameplay.
+    /// The running gameplay; `None` outside of one.
     pub fn play(&self) -> Option<&Play> {
         self.state.as_ref().and_then(CycleState::play)
     }

@@ -8,7 +8,7 @@ use super::Sizes;
 /// Limits of a firmware image, bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Budget {
-    /// Flash, bytes.
+    /// Largest size of the image in flash, bytes.
     pub flash: u64,
     /// RAM that is taken before the program starts.
     pub ram: u64,
@@ -39,9 +39,9 @@ impl Budget {
 pub struct OverBudget {
     /// The budget that is exceeded.
     pub budget: Budget,
-    /// Flash used, bytes.
+    /// Bytes of flash used.
     pub flash: u64,
-    /// RAM used, bytes.
+    /// Bytes of RAM used.
     pub ram: u64,
     /// Its largest symbols, and their bytes.
     pub largest: Vec<(String, u64)>,
@@ -64,9 +64,9 @@ pub struct Chip {
     pub name: &'static str,
     /// Flash, bytes; `None` where programs are loaded into RAM.
     pub flash: Option<u64>,
-    /// RAM, bytes.
+    /// Size of the RAM, bytes.
     pub ram: u64,
-    /// Clock frequency, Hz.
+    /// Clock frequency of the core, Hz.
     pub clock: u64,
 }
 

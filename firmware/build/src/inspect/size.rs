@@ -25,14 +25,14 @@ pub struct Sizes {
 pub struct Part {
     /// Name of the crate or symbol.
     pub name: String,
-    /// Flash, bytes.
+    /// Bytes of flash used.
     pub flash: u64,
-    /// RAM, bytes.
+    /// Bytes of RAM used.
     pub ram: u64,
 }
 
 impl Sizes {
-    /// Sizes of `image`.
+    /// Sizes of `image`, by crate and by symbol.
     pub fn of(image: &Image<'_>) -> Self {
         let (mut flash, mut ram) = (0, 0);
         for section in &image.sections {

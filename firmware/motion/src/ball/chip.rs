@@ -150,7 +150,7 @@ impl<F: Copy> ChipPath<F> {
         self.from + self.along * self.roll_distance
     }
 
-    /// Stop position.
+    /// Where the ball stops, after the hops and the roll, m.
     pub fn rest(&self) -> Point<F> {
         self.from + self.along * (self.roll_distance + self.roll.rest_distance(self.roll_speed))
     }

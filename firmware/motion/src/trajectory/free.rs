@@ -30,7 +30,7 @@ impl Default for FreeLimits {
 }
 
 impl FreeLimits {
-    /// Of that robot.
+    /// The limits of a robot's drive.
     pub const fn of(drive: &DriveSpec) -> Self {
         Self { speed: drive.speed, acceleration: drive.acceleration, braking: drive.braking }
     }

@@ -6,7 +6,7 @@ use rules::{RobotSpec, TurnSpec};
 use super::FreeLimits;
 use super::axis::{AxisLimits, Phases};
 
-/// Limits of turning.
+/// Limits of a robot's turning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TurnLimits {
     /// Turning rate, rad/s, > 0.
@@ -23,7 +23,7 @@ impl Default for TurnLimits {
 }
 
 impl TurnLimits {
-    /// Of that robot.
+    /// The limits that a robot's specification gives.
     pub const fn of(turn: &TurnSpec) -> Self {
         Self { rate: turn.rate, acceleration: turn.acceleration }
     }
@@ -44,7 +44,7 @@ impl TurnLimits {
     }
 }
 
-/// A planned turn.
+/// A planned turn, from now to rest at the target heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Turn {
     from: Angle,

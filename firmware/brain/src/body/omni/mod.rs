@@ -34,7 +34,7 @@ pub struct Drive {
     pub to: Point<Field>,
     /// Heading to turn to.
     pub face: Angle,
-    /// Speed limit, m/s.
+    /// Speed limit, m/s, of the robot's centre.
     pub speed: f32,
     /// How the ball is treated on the path.
     pub mode: DriveMode,
