@@ -7,9 +7,9 @@ use protocol::{CycleId, RobotId};
 /// A cycle as seen from outside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CycleSeen {
-    /// Its id.
+    /// Id of the cycle, as in its beacons.
     pub id: CycleId,
-    /// Its coordinator.
+    /// The robot that coordinates the cycle.
     pub coordinator: RobotId,
     /// The play, if a case was found.
     pub play: Option<Play>,
@@ -85,13 +85,13 @@ pub struct CycleLog {
 /// Change of the log by a beacon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CycleEvent {
-    /// No change.
+    /// No change: the beacon repeats known state.
     Nothing,
-    /// A cycle started.
+    /// A cycle started, by its place in [`CycleLog::cycles`].
     Began(usize),
     /// Its coordinator decided, by its place in [`CycleLog::cycles`].
     Decided(usize),
-    /// It ended.
+    /// It ended, by its place in [`CycleLog::cycles`].
     Ended(usize),
 }
 

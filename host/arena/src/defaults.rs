@@ -17,9 +17,9 @@ use crate::report::in_seconds;
 /// A trial's default behaviour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct DefaultReport {
-    /// Its duration, s.
+    /// Time of default behaviour in the trial, s.
     pub time_s: f64,
-    /// Number of spells.
+    /// Number of spells of default behaviour.
     pub spells: u32,
     /// Causes, by decision; a spell has one every quarter of a second or so.
     pub causes: Causes,

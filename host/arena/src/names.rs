@@ -43,7 +43,7 @@ impl CaseNames {
         Self(names.into_iter().map(Into::into).collect())
     }
 
-    /// All of them.
+    /// All names `region/name`, in the order of authored cases.
     pub fn all(&self) -> &[String] {
         &self.0
     }

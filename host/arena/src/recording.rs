@@ -11,12 +11,12 @@ use crate::names::{Cast, symmetry};
 use crate::report::TrialReport;
 use crate::trial::{Moment, Watcher};
 
-/// A trial's course.
+/// Course of a trial, filled as a [`Watcher`].
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
     /// Identities of the robots in [`Sample::robots`].
     pub cast: Cast,
-    /// Every tick.
+    /// One sample a tick, oldest first.
     pub samples: Vec<Sample>,
     /// Every kick, opponents' included.
     pub kicks: Vec<Kick>,
@@ -29,24 +29,24 @@ pub struct Recording {
 /// Positions of ball and robots at the end of a tick.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
-    /// Seconds from kick-off.
+    /// Simulated seconds from kick-off.
     pub time: f32,
-    /// The ball.
+    /// Position of the ball, m, field frame.
     pub ball: Point<Field>,
     /// The robot that held it, if any.
     pub holder: Option<usize>,
-    /// The robots.
+    /// Poses in the order of [`Recording::cast`], m and rad.
     pub robots: Vec<Pose<Field>>,
 }
 
-/// A kick.
+/// A kick of any robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kick {
-    /// Seconds from kick-off.
+    /// Simulated seconds from kick-off.
     pub time: f32,
     /// The robot that kicked.
     pub robot: usize,
-    /// Kind of kick.
+    /// Kind of kick, as the body executed it.
     pub kick: LeggedKick,
     /// Position of the ball.
     pub from: Point<Field>,
@@ -57,11 +57,11 @@ pub struct Kick {
 /// Start of a gameplay.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {
-    /// Seconds from kick-off.
+    /// Simulated seconds from kick-off.
     pub time: f32,
     /// Position of the ball.
     pub ball: Point<Field>,
-    /// `region/name`.
+    /// Name of the case, `region/name`.
     pub case: String,
     /// Symmetry of the stored case.
     pub symmetry: &'static str,

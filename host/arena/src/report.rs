@@ -16,13 +16,13 @@ pub struct TrialReport {
     /// 1 to 4, or `random`.
     #[serde(serialize_with = "scenario")]
     pub scenario: Scenario,
-    /// `dg` or `2d`.
+    /// Configuration of the opponents: `dg` or `2d`.
     pub opponents: Configuration,
-    /// `cbr` or `reactive`.
+    /// Approach of the attackers: `cbr` or `reactive`.
     pub approach: &'static str,
-    /// `native` or `qemu`.
+    /// Back end of the robots' computers: `native` or `qemu`.
     pub backend: &'static str,
-    /// Random seed.
+    /// Random seed of the trial.
     pub seed: u64,
     /// How it ended. Against two defenders `goal` is a ball in the penalty area (paper §5.2.2: "to goal").
     pub outcome: Outcome,
@@ -43,7 +43,7 @@ pub struct TrialReport {
     pub trace_hash: String,
     /// The named settings of retrieval (docs/case-format.md §3.2).
     pub settings: BTreeMap<&'static str, String>,
-    /// `dependent` or `independent`.
+    /// When a case's actions start: `dependent` or `independent`.
     pub positioning: &'static str,
     /// Hash of the case base, 8 hexadecimal digits.
     pub case_base: String,
@@ -54,9 +54,9 @@ pub struct TrialReport {
 /// Number of each opponent's possessions (paper §5.1.4; docs/papers.md R33); 0 where it does not play.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Possession {
-    /// The defender.
+    /// Number of the defender's possessions.
     pub defender: u32,
-    /// The midfield defender.
+    /// Number of the midfield defender's possessions.
     pub midfield: u32,
 }
 
@@ -75,7 +75,7 @@ impl Serialize for Backups {
 pub struct CaseCounts {
     /// Cases for one robot.
     pub individual: u32,
-    /// Cases for several.
+    /// Cases for several robots.
     pub cooperative: u32,
     /// Cycles in which no case fitted.
     pub none: u32,
@@ -96,10 +96,10 @@ impl CaseCounts {
     }
 }
 
-/// A retrieve–reuse cycle.
+/// One retrieve–reuse cycle of the team.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CycleReport {
-    /// `counter.proposer`.
+    /// Id of the cycle, `counter.proposer`.
     pub cycle: String,
     /// Number of the coordinator.
     pub coordinator: u8,

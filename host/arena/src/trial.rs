@@ -21,17 +21,17 @@ use crate::report::{Backups, CaseCounts, CycleReport, Possession, TrialReport, i
 /// All settings that a trial depends on except its backend.
 #[derive(Clone, Debug)]
 pub struct TrialConfig<'a> {
-    /// Start positions.
+    /// The paper's scenario, which gives the start positions.
     pub scenario: Scenario,
     /// Start positions if it is no named scenario.
     pub layout: Option<Layout>,
-    /// The opponents.
+    /// The opponents: defender and goalie, or two defenders.
     pub opponents: Configuration,
     /// Approach of the attackers.
     pub approach: Approach,
-    /// Random seed.
+    /// Random seed of the trial.
     pub seed: u64,
-    /// Settings of retrieval.
+    /// Settings of case retrieval (docs/case-format.md §3.2).
     pub settings: Settings,
     /// When a case's actions start.
     pub positioning: Positioning,
@@ -42,11 +42,11 @@ pub struct TrialConfig<'a> {
     pub retrievers: usize,
     /// Radio settings: loss, delay, duplication, reordering and bursts.
     pub air: AirSettings,
-    /// Noise of perception.
+    /// Noise of the robots' perception.
     pub noise: Noise,
     /// Time that robots stand still after every cycle.
     pub pause_after_cycle: Duration,
-    /// Scheduled faults.
+    /// Faults with their times.
     pub faults: Vec<ScheduledFault>,
     /// Parameters of the simulated world.
     pub parameters: Parameters,
@@ -87,7 +87,7 @@ impl<'a> TrialConfig<'a> {
         Self { base, names, ..self }
     }
 
-    /// The simulator's configuration.
+    /// The simulator's configuration of this trial.
     pub fn simulation(&self) -> SimulationConfig {
         let ids = (1..=self.robots).filter_map(|n| RobotId::new(u8::try_from(n).ok()?));
         let brains = ids.enumerate().map(|(i, robot)| BrainConfig {
@@ -124,13 +124,13 @@ pub trait Watcher {
 
 /// What a watcher gets each tick.
 pub struct Moment<'a> {
-    /// The trial's configuration.
+    /// Configuration of the trial being watched.
     pub config: &'a TrialConfig<'a>,
     /// Identities of the robots.
     pub cast: &'a Cast,
     /// The true state of the field at the end of the tick.
     pub world: &'a World,
-    /// The tick.
+    /// The tick's perceptions, kicks and packets.
     pub tick: &'a Tick,
     /// The referee, with its counts.
     pub referee: &'a Referee,

@@ -22,7 +22,7 @@ impl DeferredScene {
         Self { scene, finish: Some(Box::new(finish)) }
     }
 
-    /// The finished scene.
+    /// The finished scene: runs the deferred work on this thread.
     pub fn finished(self) -> Scene {
         let Self { mut scene, finish } = self;
         if let Some(finish) = finish {

@@ -9,12 +9,12 @@ use crate::request::Team;
 pub struct MatchEvent {
     /// Seconds since the start.
     pub t: f64,
-    /// Kind of event.
+    /// Kind of event, for its symbol and filter.
     pub kind: Kind,
     /// The team, if the event belongs to one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub team: Option<Team>,
-    /// A short text.
+    /// A short text for the time line.
     #[serde(rename = "words")]
     pub description: String,
     /// Place of the event, m, field frame.
@@ -29,13 +29,13 @@ pub struct MatchEvent {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
-    /// A goal.
+    /// A goal that counts.
     Goal,
     /// A command of the referee.
     Command,
     /// A part of the match started.
     Stage,
-    /// An offence.
+    /// An offence, sanctioned or not.
     Foul,
     /// Another event of the referee.
     Event,

@@ -2,13 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A team.
+/// A team, by its colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Team {
-    /// Blue.
+    /// The team in blue.
     Blue,
-    /// Yellow.
+    /// The team in yellow.
     Yellow,
 }
 
@@ -20,7 +20,7 @@ pub enum Request {
     Halt {},
     /// Pause, or go on.
     Pause {
-        /// True: pause.
+        /// True: pause; false: go on.
         on: bool,
     },
     /// Go on by this number of ticks, then pause again.
@@ -33,7 +33,7 @@ pub enum Request {
         /// Factor of real time, 0.05 to 20.
         factor: f32,
     },
-    /// Restart the match.
+    /// Restart the match from its kick-off.
     Restart {
         /// Random seed; `None`: as before.
         seed: Option<u64>,
@@ -45,25 +45,25 @@ pub enum Request {
     },
     /// Put the ball there, or move it while the match runs.
     Ball {
-        /// Target place, m.
+        /// Target place, m, field frame.
         at: [f32; 2],
     },
     /// Put a robot there, or move it while the match runs.
     Robot {
         /// Its team.
         team: Team,
-        /// Its number.
+        /// The robot's number in its team.
         id: u8,
-        /// Target place, m.
+        /// Target place, m, field frame.
         at: [f32; 2],
     },
     /// Switch a robot's computer off, or boot it.
     Power {
         /// Its team.
         team: Team,
-        /// Its number.
+        /// The robot's number in its team.
         id: u8,
-        /// True: boot.
+        /// True: boot; false: switch off.
         on: bool,
     },
     /// The radio loses this share of packets.
@@ -82,11 +82,11 @@ pub enum Request {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Powers {
-    /// Nothing: a recording.
+    /// Nothing: a recording is replayed.
     None,
     /// HALT: a real field.
     Halt,
-    /// Everything: a simulation.
+    /// Everything: the match is simulated.
     Simulation,
 }
 

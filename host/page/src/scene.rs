@@ -8,12 +8,12 @@ use serde::{Deserialize, Serialize};
 use crate::request::Team;
 use crate::shape::Layer;
 
-/// One moment.
+/// One moment of a match.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
     /// Seconds since the start.
     pub t: f64,
-    /// The lines.
+    /// The lines of the field, m.
     pub field: Field,
     /// The ball, where it is known.
     pub ball: Option<Ball>,
@@ -45,9 +45,9 @@ pub struct Scene {
 /// The lines of the field, m.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Field {
-    /// Length along x.
+    /// Length between the goal lines, along x.
     pub length: f32,
-    /// Width along y.
+    /// Width between the touch lines, along y.
     pub width: f32,
     /// Width of the surface beyond touch and goal lines.
     pub margin: f32,
@@ -70,10 +70,10 @@ pub struct Field {
     pub ball_radius: f32,
 }
 
-/// The ball.
+/// The ball, as the host's tracking estimates it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ball {
-    /// Position.
+    /// Position of its centre, m.
     pub at: [f32; 2],
     /// Above the field surface.
     pub height: f32,
@@ -87,18 +87,18 @@ pub struct Ball {
     pub ahead: Vec<[f32; 2]>,
 }
 
-/// A robot.
+/// A robot of either team, as filtered.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Robot {
     /// Its team.
     pub team: Team,
-    /// Its number.
+    /// The robot's number in its team.
     pub id: u8,
-    /// Position.
+    /// Position of its centre, m.
     pub at: [f32; 2],
-    /// Heading.
+    /// Heading, rad, counter-clockwise from +x.
     pub heading: f32,
-    /// Velocity.
+    /// Velocity of its centre, m/s.
     pub velocity: [f32; 2],
     /// 0 (lost) to 1 (seen just now).
     pub confidence: f32,
@@ -130,7 +130,7 @@ pub struct RobotDetail {
     pub reactive: String,
     /// Target and planned path.
     pub intent: Intent,
-    /// Running timers, s.
+    /// Running timers of its brain, s.
     pub timers: Vec<Timer>,
 }
 
@@ -144,12 +144,12 @@ pub struct Intent {
     pub ball_to: Option<[f32; 2]>,
 }
 
-/// A running timer.
+/// A running timer of a robot's brain.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Timer {
-    /// Its name.
+    /// The timer's name in the brain.
     pub name: String,
-    /// Elapsed time, s.
+    /// Time since it was set, s.
     pub seconds: f32,
 }
 
@@ -160,7 +160,7 @@ pub struct Vitals {
     pub battery: Option<f32>,
     /// Since its last frame was received, ms.
     pub silence_ms: Option<f32>,
-    /// Round trip, ms.
+    /// Round trip of a frame, ms.
     pub trip_ms: Option<f32>,
     /// Of our frames that it did not receive, percent.
     pub loss_down: Option<f32>,
@@ -185,7 +185,7 @@ pub struct Vitals {
 /// Detections of the cameras.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Raw {
-    /// Positions of balls.
+    /// Positions of detected balls, m.
     pub balls: Vec<[f32; 2]>,
     /// Robots: team, number, x, y, heading.
     pub robots: Vec<(Team, u8, f32, f32, f32)>,
@@ -208,39 +208,39 @@ pub struct Match {
     pub placement: Option<[f32; 2]>,
     /// Share of the time in which the ball was in play, where it is counted.
     pub in_play: Option<f32>,
-    /// Both teams.
+    /// Score and state of both teams.
     pub teams: PerTeam<TeamSheet>,
 }
 
 /// A value for both teams.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PerTeam<T> {
-    /// Blue's.
+    /// The value of team blue.
     pub blue: T,
-    /// Yellow's.
+    /// The value of team yellow.
     pub yellow: T,
 }
 
-/// One team's sheet.
+/// Score, cards and statistics of one team.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TeamSheet {
-    /// Its name.
+    /// The team's name by the game controller.
     pub name: String,
-    /// Goals.
+    /// Number of goals scored.
     pub score: u32,
     /// +1 where it defends the goal at +x, −1 at −x, 0 while unknown.
     pub defends: i8,
-    /// Its keeper's number.
+    /// Number of its keeper, by the referee.
     pub keeper: Option<u8>,
     /// Robots it may have now.
     pub allowed: Option<u32>,
     /// Seconds left of each yellow card.
     pub yellow_cards: Vec<f32>,
-    /// Red cards.
+    /// Number of red cards given.
     pub red_cards: u32,
     /// Fouls that count towards a card.
     pub fouls: u32,
-    /// Time-outs left.
+    /// Number of time-outs left.
     pub timeouts: u32,
     /// Share of the possession so far, where it is counted.
     pub possession: Option<f32>,
@@ -255,9 +255,9 @@ pub struct TeamSheet {
 /// A retrieve–reuse cycle of a team.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
-    /// Its team.
+    /// The team that plays it.
     pub team: Option<Team>,
-    /// Its number.
+    /// Its number, counted by the team.
     pub number: u32,
     /// Number of its coordinator.
     pub coordinator: u8,
@@ -280,11 +280,11 @@ pub struct Cycle {
 pub struct Gauge {
     /// Heading of its group.
     pub group: String,
-    /// Its name.
+    /// Name of the value, within its group.
     pub name: String,
-    /// Its value.
+    /// Its newest value, in `unit`.
     pub value: f32,
-    /// Its unit.
+    /// Unit, as displayed behind the value.
     pub unit: String,
     /// The value is bad above this limit; for a negative limit: below its absolute value.
     pub limit: Option<f32>,

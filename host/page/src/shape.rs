@@ -24,29 +24,29 @@ pub enum Tone {
     Blue,
     /// Of the yellow team.
     Yellow,
-    /// The ball's.
+    /// Of the ball, such as its path.
     Ball,
-    /// A case's.
+    /// Of a retrieved case, such as scopes.
     Case,
-    /// A keep-out region.
+    /// A region that robots must not enter.
     Forbidden,
-    /// Good.
+    /// Something good, such as a free path.
     Good,
-    /// Neutral.
+    /// Neutral: none of the others.
     Plain,
 }
 
-/// A shape.
+/// A shape on the field.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "is", rename_all = "lowercase")]
 pub enum Shape {
     /// An ellipse along the axes.
     Ellipse {
-        /// Its middle.
+        /// Position of its middle, m.
         at: [f32; 2],
         /// Half axes along x and y.
         radii: [f32; 2],
-        /// Its meaning.
+        /// Meaning, from which the page takes its colour.
         tone: Tone,
         /// Filled transparently; else only its outline.
         fill: bool,
@@ -54,13 +54,13 @@ pub enum Shape {
         #[serde(default, skip_serializing_if = "String::is_empty")]
         note: String,
     },
-    /// A closed region.
+    /// A closed region with straight sides.
     Polygon {
-        /// Its corners.
+        /// Its corners in order, m.
         points: Vec<[f32; 2]>,
-        /// Its meaning.
+        /// Meaning, from which the page takes its colour.
         tone: Tone,
-        /// Filled transparently.
+        /// Filled transparently; else only its outline.
         fill: bool,
         /// Displayed where the viewer points at it.
         #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -68,36 +68,36 @@ pub enum Shape {
     },
     /// All points within `radius` of a stretch.
     Capsule {
-        /// One end.
+        /// One end of the stretch, m.
         from: [f32; 2],
-        /// The other end.
+        /// The other end, m.
         to: [f32; 2],
         /// Radius of the capsule.
         radius: f32,
-        /// Its meaning.
+        /// Meaning, from which the page takes its colour.
         tone: Tone,
         /// Displayed where the viewer points at it.
         #[serde(default, skip_serializing_if = "String::is_empty")]
         note: String,
     },
-    /// A path.
+    /// A path of straight stretches.
     Line {
-        /// Its points.
+        /// Its points in order, m.
         points: Vec<[f32; 2]>,
-        /// Its meaning.
+        /// Meaning, from which the page takes its colour.
         tone: Tone,
         /// With a head at its end.
         arrow: bool,
-        /// Dashed.
+        /// Drawn dashed instead of solid.
         dashed: bool,
     },
-    /// A label.
+    /// A label on the field.
     Text {
-        /// Its middle.
+        /// Position of its middle, m.
         at: [f32; 2],
         /// The label's text.
         text: String,
-        /// Its meaning.
+        /// Meaning, from which the page takes its colour.
         tone: Tone,
     },
     /// A map of values.
@@ -111,7 +111,7 @@ pub struct Heat {
     pub low: [f32; 2],
     /// The corner with the largest x and y.
     pub high: [f32; 2],
-    /// Cells along x.
+    /// Number of cells along x.
     pub columns: u32,
     /// Row by row, least y first, 0 (nothing, not drawn) to 255.
     pub cells: Vec<u8>,

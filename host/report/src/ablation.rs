@@ -41,7 +41,7 @@ impl Ablation<'_> {
         Ok(picture)
     }
 
-    /// The whole page.
+    /// The whole page as one HTML document, plot included.
     pub fn html(&self) -> String {
         let page = html! {
             (DOCTYPE)

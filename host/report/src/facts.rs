@@ -7,9 +7,9 @@ use serde_json::Value;
 /// Settings that the trials depend on, under one heading.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Facts {
-    /// The heading.
+    /// The heading above the entries.
     pub title: String,
-    /// Name and value.
+    /// Name and value of each setting.
     pub entries: Vec<(String, String)>,
 }
 

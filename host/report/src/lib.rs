@@ -38,7 +38,7 @@ pub use markdown::{MarkerError, between_markers};
 pub struct Report<'a> {
     /// Our rows of the paper's tables.
     pub rows: &'a [TableRow],
-    /// The paper's own.
+    /// The paper's own rows of these tables.
     pub paper: &'a [TableRow],
     /// Ours compared with the paper's, measure by measure.
     pub with_paper: &'a [Comparison],
@@ -61,7 +61,7 @@ pub struct Report<'a> {
 /// A figure with the name of its file, without an extension.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
-    /// Such as `table-1-outcomes`.
+    /// Name such as `table-1-outcomes`, unique in the report.
     pub name: String,
     /// The figure as SVG.
     pub svg: String,
@@ -73,7 +73,7 @@ impl Report<'_> {
         page::page(self).into_string()
     }
 
-    /// Plots, then maps.
+    /// All figures: plots first, then maps.
     pub fn pictures(&self) -> Vec<Picture> {
         let plots = plot::figures(self).into_iter().map(|figure| figure.picture());
         plots.chain(map::sheets(self.maps)).collect()

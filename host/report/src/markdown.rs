@@ -178,9 +178,9 @@ fn markers(task: &str, name: &str) -> (String, String) {
 /// A file lacks a marker.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum MarkerError {
-    /// The missing marker.
+    /// The file has no such marker line.
     Missing {
-        /// The whole line.
+        /// The whole line that is missing.
         marker: String,
     },
 }

@@ -42,9 +42,9 @@ hil_sim::labels! {
 pub enum Retrieved {
     /// The tested case, in any of its symmetries.
     Own,
-    /// Another case.
+    /// Another case, by name `region/name`.
     Other(String),
-    /// No case fitted.
+    /// The coordinator reported that no case fits.
     None,
     /// No decision was received in time.
     Nothing,
@@ -53,7 +53,7 @@ pub enum Retrieved {
 /// Result of one attempt.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Attempt {
-    /// The first retrieval.
+    /// The first case that the robots retrieved.
     pub retrieved: Retrieved,
     /// How the gameplay ended, where the tested case was retrieved.
     pub end: Option<CycleEnd>,
@@ -80,11 +80,11 @@ pub struct CaseTrial<'a> {
     pub base: CaseBase<'a>,
     /// Names of its cases.
     pub names: CaseNames,
-    /// Settings of retrieval.
+    /// Settings of case retrieval (docs/case-format.md §3.2).
     pub settings: Settings,
-    /// Attempts a case.
+    /// Number of attempts for each case.
     pub trials: u32,
-    /// Random seed.
+    /// Random seed of all attempts; each attempt's own is derived from it.
     pub seed: u64,
 }
 
@@ -110,7 +110,7 @@ impl<'a> CaseTrial<'a> {
         (0..self.trials).into_par_iter().map(attempt).collect()
     }
 
-    /// Plays one attempt.
+    /// Plays attempt `number` of a case against `opposition`.
     pub fn attempt(
         &self,
         case: &Case<'a>,

@@ -11,11 +11,11 @@ use super::{Attempt, Retrieved};
 /// The sum of a case's attempts against one kind of opposition.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Score {
-    /// `region/name`.
+    /// Name of the case, `region/name`.
     pub case: String,
-    /// `standing` or `playing`.
+    /// Kind of opposition: `standing` or `playing`.
     pub opponents: &'static str,
-    /// Attempts.
+    /// Number of attempts played.
     pub trials: usize,
     /// Attempts in which the robots retrieved the tested case first.
     pub retrieved: usize,

@@ -21,7 +21,7 @@ use super::tables::rounded;
 /// One change to the team.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Arm {
-    /// Its short name.
+    /// Its short name, as `--arm` and the tables have it.
     pub name: &'static str,
     /// Flags that give the same team in `onetwo trial` and `onetwo evaluate`.
     pub flags: &'static str,
@@ -49,7 +49,7 @@ impl Arm {
         Self { name, flags, what, change }
     }
 
-    /// The changed team.
+    /// The set-up of the team with this change.
     pub fn setup(&self) -> Setup {
         let mut setup = Setup::default();
         match self.change {
@@ -124,7 +124,7 @@ pub const ARMS: &[Arm] = &[
 /// Effect of an arm on a measure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Effect {
-    /// The arm.
+    /// Short name of the arm.
     pub arm: &'static str,
     /// `dg` or `2d`; null over all cells.
     pub configuration: Option<Configuration>,

@@ -14,10 +14,10 @@ use super::tables::{Extent, TableRow, rounded};
 use crate::trial::approach_label;
 
 hil_sim::labels! {
-    /// What is compared.
+    /// A measure that two rows are compared in.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Measure {
-        /// Share of goals.
+        /// Share of trials that ended with a goal.
         Goal = "goal",
         /// Share of near misses.
         Close = "close",
@@ -31,9 +31,9 @@ hil_sim::labels! {
         ToGoal = "to_goal",
         /// The defender's possessions a trial.
         Possession = "possession",
-        /// The midfield defender's.
+        /// The midfield defender's possessions a trial.
         MidfieldPossession = "possession2",
-        /// Seconds a trial.
+        /// Seconds from kick-off to the end of a trial.
         Time = "time",
     }
 }
@@ -41,21 +41,21 @@ hil_sim::labels! {
 /// Comparison of a measure in two rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// The paper's table.
+    /// Number of the paper's table, 1 to 6.
     pub table: u8,
     /// Which of its trials: the paper's number, or all.
     pub sample: Extent,
-    /// Start positions.
+    /// Start positions of the trials.
     pub scenario: Scenario,
     /// The first row's approach.
     pub first_approach: Approach,
-    /// The second row's.
+    /// The second row's approach.
     pub second_approach: Approach,
-    /// What is compared.
+    /// The measure that is compared.
     pub measure: Measure,
     /// The first row's value: percent, possessions or seconds.
     pub first: f64,
-    /// The second row's.
+    /// The second row's value, in the same unit.
     pub second: f64,
     /// z or t above 0 where the first is the greater; `None` where a spread is not known.
     pub test: Option<Test>,
@@ -66,7 +66,7 @@ pub struct Comparison {
 /// A line of `comparisons.json` and `comparisons.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Flat {
-    /// `1` to `6`.
+    /// The paper's table, `1` to `6`.
     pub table: String,
     /// `paper` or `large`, as in `tables.json`.
     pub sample: Extent,
@@ -81,15 +81,15 @@ pub struct Flat {
     pub second: &'static str,
     /// Percent, possessions or seconds.
     pub first_value: f64,
-    /// As before.
+    /// As before, of the second row.
     pub second_value: f64,
-    /// First less second.
+    /// First value less the second.
     pub difference: f64,
     /// `z` of two shares or Welch's `t`; null where a spread is not known, as the next three.
     pub test: Option<&'static str>,
     /// Above 0 where the first is the greater.
     pub statistic: Option<f64>,
-    /// Two-sided.
+    /// Two-sided p of the test, before correction.
     pub p: Option<f64>,
     /// Corrected over the scenarios by Holm.
     pub p_holm: Option<f64>,

@@ -14,14 +14,14 @@ use crate::game::GameError;
 pub enum EvaluationError {
     /// A file could not be read or written.
     File {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// The reason.
+        /// The operating system's error.
         error: io::Error,
     },
     /// A line of a file is not of this evaluation's trials.
     Row {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
         /// Its line, from 1.
         line: usize,
@@ -30,18 +30,18 @@ pub enum EvaluationError {
     },
     /// The file is of another evaluation.
     Another {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
         /// Names of the settings that differ.
         differences: Vec<&'static str>,
     },
     /// Another process writes to the file.
     InUse(PathBuf),
-    /// Nothing to merge.
+    /// No file to merge was given.
     Nothing,
     /// The files contain a trial twice, with different results.
     Unlike {
-        /// Its number.
+        /// Its number in the plan, from 0.
         trial: usize,
     },
     /// Trials of the plan are missing in all files.
@@ -55,16 +55,16 @@ pub enum EvaluationError {
     },
     /// A trial could not be played.
     Trial {
-        /// Its number.
+        /// Its number in the plan, from 0.
         trial: usize,
-        /// The reason.
+        /// The simulator's error that ended it.
         error: SimulationError,
     },
     /// A match could not be played.
     Match {
-        /// Its number.
+        /// Its number in the plan, from 0.
         number: usize,
-        /// The reason.
+        /// The match's error that ended it.
         error: GameError,
     },
     /// Trials could not be written as CSV.

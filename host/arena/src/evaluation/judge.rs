@@ -19,13 +19,13 @@ use crate::trial::{APPROACHES, approach_label};
 /// A line with its verdict.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Line {
-    /// Its short name.
+    /// Its short name, such as `a`.
     pub id: &'static str,
-    /// The expected result.
+    /// The expected result, one sentence.
     pub line: &'static str,
-    /// Whether it holds.
+    /// Whether the line holds for our numbers.
     pub verdict: Held,
-    /// The numbers.
+    /// The numbers of the verdict, as text.
     pub evidence: String,
 }
 
@@ -34,9 +34,9 @@ hil_sim::labels! {
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
     #[serde(rename_all = "lowercase")]
     pub enum Held {
-        /// It does.
+        /// The numbers agree with the line.
         Held = "held",
-        /// It does not.
+        /// The numbers do not agree with the line.
         Missed = "missed",
         /// Not all trials that it needs were played.
         Unmeasured = "unmeasured",

@@ -40,17 +40,17 @@ impl Profile {
 /// Trials that differ only in their seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Cell {
-    /// The world.
+    /// The world that the trials are played in.
     pub profile: Profile,
-    /// The opponents.
+    /// The opponents: defender and goalie, or two defenders.
     pub configuration: Configuration,
-    /// Start positions.
+    /// Start positions of ball and robots.
     #[serde(with = "description::scenario")]
     pub scenario: Scenario,
     /// Approach of the attackers.
     #[serde(with = "description::approach")]
     pub approach: Approach,
-    /// Number of trials.
+    /// Number of trials in the cell.
     pub trials: u32,
 }
 
@@ -68,9 +68,9 @@ pub struct Plan {
 pub struct Planned {
     /// Its number in the plan, from 0.
     pub number: usize,
-    /// Its cell.
+    /// The cell to which it belongs.
     pub cell: Cell,
-    /// Its own seed.
+    /// Its own seed; the same for the k-th trial of every approach.
     pub seed: u64,
 }
 
@@ -135,7 +135,7 @@ impl Plan {
         self
     }
 
-    /// Number of trials.
+    /// Number of trials, over all cells.
     pub fn len(&self) -> usize {
         self.cells.iter().map(|cell| cell.trials as usize).sum()
     }
@@ -183,7 +183,7 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// The whole plan.
+    /// The whole plan as one part.
     pub const WHOLE: Self = Self { index: 1, of: 1 };
 
     /// The part `index`, from 1, of `of` parts.

@@ -31,11 +31,11 @@ use crate::trial::APPROACHES;
 /// An evaluation that was played to its end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Results {
-    /// Its identity.
+    /// Identity of the evaluation: everything that its trials depend on.
     pub identity: Identity,
     /// Its trials, in the plan's order.
     pub rows: Vec<TrialRow>,
-    /// The paper's tables.
+    /// Rows of the paper's tables, computed from our trials.
     pub tables: Vec<TableRow>,
     /// Every row compared with the paper's.
     pub with_paper: Vec<Comparison>,

@@ -12,19 +12,19 @@ use super::plan::{Planned, Profile};
 use crate::defaults::DefaultReport;
 use crate::report::{CycleReport, TrialReport};
 
-/// A trial's measures.
+/// Identity and measures of one trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TrialRow {
     /// Its number in the plan, from 0.
     pub trial: usize,
-    /// `simulated` or `robots`.
+    /// World of the trial: `simulated` or `robots`.
     pub profile: Profile,
-    /// `dg` or `2d`.
+    /// Opponents of the trial: `dg` or `2d`.
     pub configuration: Configuration,
     /// 1 to 4, or `random`.
     #[serde(with = "description::scenario")]
     pub scenario: Scenario,
-    /// `cbr` or `reactive`.
+    /// Approach of the attackers: `cbr` or `reactive`.
     #[serde(with = "description::approach")]
     pub approach: Approach,
     /// Seed that replays it.
@@ -51,7 +51,7 @@ pub struct TrialRow {
     pub none: u32,
     /// Seconds of default behaviour; empty, as the next six, where no cases are played.
     pub default_s: Option<f64>,
-    /// Number of spells.
+    /// Number of spells of default behaviour.
     pub default_spells: Option<u32>,
     /// Retrievals that failed because the ball lay in no scope.
     pub no_case_ball: Option<u32>,

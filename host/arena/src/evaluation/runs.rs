@@ -25,7 +25,7 @@ use crate::trial::{TrialConfig, positioning_label, run};
 /// All settings that the trials of an evaluation depend on.
 #[derive(Clone, Debug)]
 pub struct Evaluation<'a> {
-    /// The trials.
+    /// The trials to be played.
     pub plan: Plan,
     /// The case base in every robot.
     pub base: CaseBase<'a>,
@@ -33,7 +33,7 @@ pub struct Evaluation<'a> {
     pub names: CaseNames,
     /// The case library: a league's name, or a directory.
     pub library: String,
-    /// The attackers' set-up.
+    /// Set-up of the attackers, for all trials.
     pub setup: Setup,
     /// Version and commit of the program: trials of two programs are never mixed.
     pub program: String,
@@ -76,7 +76,7 @@ impl<'a> Evaluation<'a> {
         cell.profile.apply(self.setup.apply(config)).with_library(self.base, self.names.clone())
     }
 
-    /// Plays the trial.
+    /// Plays the trial; fails where the simulator cannot go on.
     pub fn play(&self, planned: &Planned) -> Result<TrialRow, EvaluationError> {
         let report = run(&self.config(planned), Box::new(NativeBackend::new(self.base)), &mut [])
             .map_err(|error| EvaluationError::Trial { trial: planned.number, error })?;

@@ -10,7 +10,7 @@ use crate::trial::TrialConfig;
 /// A team's set-up. The default is the paper's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setup {
-    /// Settings of retrieval.
+    /// Settings of case retrieval (docs/case-format.md §3.2).
     pub settings: Settings,
     /// When a case's actions start.
     pub positioning: Positioning,

@@ -12,7 +12,7 @@ use statrs::distribution::{Binomial, ContinuousCDF, DiscreteCDF, Normal, Student
 pub struct Count {
     /// Trials in which it happened.
     pub hits: u32,
-    /// All trials.
+    /// Number of all trials.
     pub of: u32,
 }
 
@@ -26,9 +26,9 @@ impl Count {
 /// Ends of an interval: a share from 0 to 1, a mean or a difference in its own unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
-    /// Its lower end.
+    /// Its lower end, in the value's unit.
     pub low: f64,
-    /// Its upper end.
+    /// Its upper end, in the value's unit.
     pub high: f64,
 }
 
@@ -142,9 +142,9 @@ pub fn paired(differences: Sample) -> Option<Test> {
 /// Size, mean and spread of a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Number of values.
+    /// Number of values in the sample.
     pub n: u32,
-    /// Their mean.
+    /// Arithmetic mean of the values.
     pub mean: f64,
     /// Their standard deviation (of a sample: n − 1); `None` of fewer than two, or where it was not printed.
     pub sd: Option<f64>,

@@ -33,18 +33,18 @@ hil_sim::labels! {
 /// A row of one of the paper's tables. Fields may be added at the end, never renamed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TableRow {
-    /// `1` to `6`.
+    /// The paper's table, `1` to `6`.
     #[serde(serialize_with = "table")]
     pub table: u8,
-    /// `dg` or `2d`.
+    /// Opponents of the trials: `dg` or `2d`.
     pub configuration: Configuration,
     /// 1 to 4, or `random`.
     #[serde(serialize_with = "crate::report::scenario")]
     pub scenario: Scenario,
-    /// `cbr` or `reactive`.
+    /// Approach of the attackers: `cbr` or `reactive`.
     #[serde(serialize_with = "description::approach::serialize")]
     pub approach: Approach,
-    /// Number of trials.
+    /// Number of trials in the row.
     pub trials: u32,
     /// Goals, percent; the next five are in percent too.
     pub goal: Option<f64>,
@@ -52,23 +52,23 @@ pub struct TableRow {
     pub close: Option<f64>,
     /// Stopped or kicked by the goalie.
     pub block: Option<f64>,
-    /// Out elsewhere.
+    /// Ball out elsewhere than beside a goalpost.
     pub out: Option<f64>,
-    /// Ended by timeout.
+    /// Ended by timeout, without goal or ball out.
     pub timeout: Option<f64>,
     /// Goal or close; against two defenders, in the penalty area.
     pub to_goal: Option<f64>,
     /// Mean number of the defender's possessions.
     pub possession_mean: Option<f64>,
-    /// Its standard deviation.
+    /// Standard deviation of `possession_mean`.
     pub possession_sd: Option<f64>,
     /// Mean number of the midfield defender's possessions.
     pub possession2_mean: Option<f64>,
-    /// Its standard deviation.
+    /// Standard deviation of `possession2_mean`.
     pub possession2_sd: Option<f64>,
-    /// Seconds.
+    /// Mean duration of a trial, s.
     pub time_mean: Option<f64>,
-    /// Their standard deviation.
+    /// Standard deviation of `time_mean`, s.
     pub time_sd: Option<f64>,
     /// Mean number of robot A's backups, a trial.
     pub backups_a: Option<f64>,
@@ -90,7 +90,7 @@ pub struct TableRow {
     pub default_spells: Option<f64>,
     /// Why retrievals failed, a trial: the ball lay in no scope.
     pub none_ball: Option<f64>,
-    /// Too few robots.
+    /// There were too few robots for any case.
     pub none_robots: Option<f64>,
     /// A robot had too far to go.
     pub none_thr_c: Option<f64>,
@@ -105,33 +105,33 @@ pub struct TableRow {
     pub cases_to_goal_mean: Option<f64>,
     /// Standard deviation of `backups_a`.
     pub backups_a_sd: Option<f64>,
-    /// That of `backups_b`.
+    /// Standard deviation of `backups_b`.
     pub backups_b_sd: Option<f64>,
     /// `paper`, or `large` for Table 6 of more than the paper's 30 trials.
     pub sample: Extent,
     /// Lower end of the 95 % interval (Wilson) of `goal`, percent; the next five pairs are alike.
     pub goal_low: Option<f64>,
-    /// Upper end.
+    /// Upper end of `goal`'s.
     pub goal_high: Option<f64>,
     /// Lower end of `close`'s.
     pub close_low: Option<f64>,
-    /// Upper end.
+    /// Upper end of `close`'s.
     pub close_high: Option<f64>,
     /// Lower end of `block`'s.
     pub block_low: Option<f64>,
-    /// Upper end.
+    /// Upper end of `block`'s.
     pub block_high: Option<f64>,
     /// Lower end of `out`'s.
     pub out_low: Option<f64>,
-    /// Upper end.
+    /// Upper end of `out`'s.
     pub out_high: Option<f64>,
     /// Lower end of `timeout`'s.
     pub timeout_low: Option<f64>,
-    /// Upper end.
+    /// Upper end of `timeout`'s.
     pub timeout_high: Option<f64>,
     /// Lower end of `to_goal`'s.
     pub to_goal_low: Option<f64>,
-    /// Upper end.
+    /// Upper end of `to_goal`'s.
     pub to_goal_high: Option<f64>,
 }
 

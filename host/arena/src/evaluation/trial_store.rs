@@ -69,7 +69,7 @@ pub struct Identity {
     pub case_opponents: bool,
     /// The named settings of retrieval, name and value.
     pub settings: BTreeMap<String, String>,
-    /// `dependent` or `independent`.
+    /// When a case's actions start: `dependent` or `independent`.
     pub positioning: String,
     /// How many of the two robots may retrieve.
     pub retrievers: usize,
@@ -77,7 +77,7 @@ pub struct Identity {
     pub loss: f32,
     /// Parameters of the simulated world.
     pub parameters: Parameters,
-    /// All trials.
+    /// All trials of the evaluation, of all shards.
     pub plan: Plan,
 }
 
@@ -109,7 +109,7 @@ impl Identity {
 /// Contents of a file of trials.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kept<R: Entry = TrialRow> {
-    /// Its path.
+    /// Path of the file.
     pub file: PathBuf,
     /// The identity of its evaluation.
     pub identity: R::Identity,

@@ -17,11 +17,11 @@ use crate::trial::approach_label;
 pub struct CaseUse {
     /// The world of these trials.
     pub profile: Profile,
-    /// Their opponents.
+    /// Opponents in these trials.
     pub configuration: Configuration,
     /// Approach of the attackers.
     pub approach: Approach,
-    /// `region/name`.
+    /// Name of the case, `region/name`.
     pub case: String,
     /// Number of times it was played.
     pub retrieved: u32,
@@ -84,7 +84,7 @@ impl CaseUse {
     }
 }
 
-/// Uses as `cases.csv`.
+/// The uses as the text of `cases.csv`, one line a case and kind of trial.
 pub fn uses_to_csv(uses: &[CaseUse]) -> Result<Vec<u8>, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let columns = ["profile", "configuration", "approach", "case", "retrieved"].into_iter();

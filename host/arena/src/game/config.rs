@@ -15,9 +15,9 @@ use rules::{Colour, League};
 pub struct GameConfig {
     /// Field, robots, ball and rules.
     pub league: League,
-    /// Random seed.
+    /// Random seed of the whole match.
     pub seed: u64,
-    /// Simulated seconds.
+    /// Length of the match, simulated s.
     pub duration_s: f64,
     /// Settings of the referee.
     pub referee: RefereeSettings,
@@ -29,18 +29,18 @@ pub struct GameConfig {
     pub world: WorldChoice,
 }
 
-/// One side.
+/// Configuration of one side of a match.
 #[derive(Clone, Debug)]
 pub struct TeamSetup {
-    /// Its colour.
+    /// Colour of the team.
     pub colour: Colour,
-    /// Number of robots.
+    /// Number of robots on the field at the start.
     pub robots: u8,
     /// What decides its open play.
     pub plays: Team,
     /// Approach of robots without an order of a host.
     pub approach: Approach,
-    /// Settings of retrieval.
+    /// Settings of case retrieval (docs/case-format.md §3.2).
     pub settings: Settings,
     /// Tactics of the second paper that its host plays.
     pub tactics: Tactics,

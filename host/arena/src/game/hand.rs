@@ -12,7 +12,7 @@ use rules::state::Command;
 use super::{Game, GameConfig, GameError};
 
 impl<'a> Game<'a> {
-    /// The match's configuration.
+    /// The configuration with which the match started.
     pub fn config(&self) -> &GameConfig {
         &self.config
     }

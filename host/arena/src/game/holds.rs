@@ -15,13 +15,13 @@ use super::Game;
 /// One robot's time with the ball at its front.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Hold {
-    /// Its team.
+    /// Team of the robot: `blue` or `yellow`.
     pub team: &'static str,
-    /// Its number.
+    /// The robot's number in its team.
     pub robot: u8,
-    /// Start, simulated s.
+    /// Start of the spell, simulated s.
     pub from_s: f32,
-    /// Duration, s.
+    /// Duration of the spell, s.
     pub lasted_s: f32,
     /// Number of changes of the sense in which it turns, by more than 5° each.
     pub reversals: u32,

@@ -57,7 +57,7 @@ pub trait Watcher {
     fn tick(&mut self, _game: &Game<'_>) {}
 }
 
-/// A running match.
+/// A running match, advanced tick by tick.
 pub struct Game<'a> {
     world: World,
     cameras: Cameras,
@@ -77,9 +77,9 @@ pub struct Game<'a> {
 pub enum GameError {
     /// A robot's computer failed.
     Computer {
-        /// The robot.
+        /// The robot with that computer.
         who: Who,
-        /// The error.
+        /// What the computer's back end reported.
         error: McuError,
     },
     /// The league has no such matches.
@@ -138,17 +138,17 @@ impl<'a> Game<'a> {
         Instant(u64::from(self.tick) * TICK_US)
     }
 
-    /// The true world.
+    /// True state of ball and robots.
     pub fn world(&self) -> &World {
         &self.world
     }
 
-    /// The referee.
+    /// The referee of the simulated match.
     pub fn referee(&self) -> &InternalReferee {
         &self.referee
     }
 
-    /// A team's host.
+    /// The host of one team.
     pub fn host(&self, team: Colour) -> &Host {
         &self.teams[team as usize].host
     }

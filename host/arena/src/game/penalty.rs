@@ -34,7 +34,7 @@ pub struct Shot {
     pub after: f64,
     /// Place where it crosses the goal line, m from the goal's middle.
     pub aim: f32,
-    /// Ball speed, m/s.
+    /// Speed of the ball when kicked, m/s.
     pub speed: f32,
     /// Duration before the kick in which the shooter goes up to the ball and turns to its aim, s.
     pub run_up: f64,
@@ -89,7 +89,7 @@ pub fn saves(
     Ok(count)
 }
 
-/// Plays one penalty.
+/// Plays one penalty, with the shot that `seed` draws.
 pub fn shoot(league: League, seed: u64, keeper: Keeper) -> Result<Outcome, GameError> {
     let shot = Shot::of(league, seed);
     let mut config = GameConfig::new(league, seed, MATCH).between(Team::Idle, Team::Ours);

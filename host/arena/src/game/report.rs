@@ -14,13 +14,13 @@ use super::{Game, GameConfig};
 /// Result of a match.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GameReport {
-    /// Goals.
+    /// Goals of each team.
     pub score: PerTeam<u32>,
-    /// Simulated seconds.
+    /// Length of the match, simulated s.
     pub duration_s: f64,
     /// Share of those seconds in which the ball was in play.
     pub ball_in_play: f32,
-    /// Offences by kind.
+    /// Number of offences of each kind.
     pub fouls: PerTeam<BTreeMap<&'static str, u32>>,
     /// Times at which the match was blocked for longer than the referee's patience.
     pub blocked: Vec<BlockedReport>,
@@ -36,7 +36,7 @@ pub struct GameReport {
     pub no_progress: u32,
     /// What decided each side's open play.
     pub teams: PerTeam<Team>,
-    /// Further counts.
+    /// Further counts of each team.
     pub metrics: PerTeam<TeamReport>,
     /// League, to play it again.
     pub league: &'static str,
@@ -53,9 +53,9 @@ pub struct GameReport {
 /// A time at which the match was blocked.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BlockedReport {
-    /// Start, simulated s.
+    /// Start of the block, simulated s.
     pub from_s: f32,
-    /// Duration, s.
+    /// Duration of the block, s.
     pub lasted_s: f32,
     /// Team that blocked it last; `None` for the ball's place.
     pub team: Option<&'static str>,
@@ -85,9 +85,9 @@ impl BlockedReport {
 /// A value for both teams.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PerTeam<T> {
-    /// Blue's.
+    /// The value of team blue.
     pub blue: T,
-    /// Yellow's.
+    /// The value of team yellow.
     pub yellow: T,
 }
 
@@ -100,7 +100,7 @@ impl<T> PerTeam<T> {
 /// Results of one team.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TeamReport {
-    /// Seconds of possession.
+    /// Time in which the team had the ball, s.
     pub possession_s: f32,
     /// Seconds in play with the ball in the opponents' half.
     pub ball_in_their_half_s: f32,
@@ -108,7 +108,7 @@ pub struct TeamReport {
     pub shots: u32,
     /// Shots that a keeper had to stop, that hit a post, or went in.
     pub chances: u32,
-    /// Passes that arrived.
+    /// Number of passes that arrived.
     pub passes: u32,
     /// Balls lost to the opponents.
     pub losses: u32,

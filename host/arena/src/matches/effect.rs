@@ -51,7 +51,7 @@ pub struct Effect {
     pub with: MatchTeam,
     /// The team that played without it.
     pub without: MatchTeam,
-    /// Number of matches.
+    /// Number of matches between the two.
     pub matches: u32,
     /// Goals a match with it, less those without.
     pub goals: Option<Change>,

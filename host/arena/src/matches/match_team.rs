@@ -38,7 +38,7 @@ impl MatchTeam {
         parts(Tactics::ALL).iter().filter_map(flipped).collect()
     }
 
-    /// Parses its label.
+    /// Parses its label; the error lists the accepted ones.
     pub fn parse(label: &str) -> Result<Self, String> {
         let wrong = || {
             let teams = Team::ALL.map(Team::label).join(", ");

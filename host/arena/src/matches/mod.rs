@@ -43,11 +43,11 @@ use crate::game::{GameConfig, NoWatcher, play};
 /// All settings that the matches of a plan depend on.
 #[derive(Clone, Debug)]
 pub struct Matches<'a> {
-    /// The matches.
+    /// The matches to be played.
     pub plan: Plan,
     /// The case base in every robot.
     pub base: CaseBase<'a>,
-    /// Settings of retrieval.
+    /// Settings of case retrieval (docs/case-format.md §3.2).
     pub settings: Settings,
     /// Version and commit of the program: matches of two programs are never mixed.
     pub program: String,
@@ -62,7 +62,7 @@ pub struct MatchIdentity {
     pub case_base: String,
     /// The named settings of retrieval that are not as usual, name and value.
     pub settings: Vec<(String, String)>,
-    /// All matches.
+    /// All matches of the evaluation, of all shards.
     pub plan: Plan,
 }
 

@@ -17,7 +17,7 @@ use crate::evaluation::statistics::{Sample, paired, student};
 /// there.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Estimate {
-    /// The mean.
+    /// Mean of the matches' values.
     pub mean: f64,
     /// Lower end of its 95 % interval; `None` of a single match.
     pub low: Option<f64>,
@@ -46,15 +46,15 @@ impl Estimate {
 pub struct Outcome {
     /// The team whose numbers come first.
     pub own: MatchTeam,
-    /// The opponents.
+    /// The team that it played against.
     pub opponent: MatchTeam,
     /// Number of matches played.
     pub matches: u32,
-    /// Won, drawn, lost.
+    /// Number of matches won, drawn and lost.
     pub won_drawn_lost: [u32; 3],
     /// All goals, for and against.
     pub goals: [u32; 2],
-    /// Goals a match.
+    /// Goals scored in a match.
     pub goals_for: Option<Estimate>,
     /// Goals against a match.
     pub goals_against: Option<Estimate>,

@@ -6,7 +6,7 @@ use serde::Serialize;
 /// A row of Table 2.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PaperGame {
-    /// The paper's letter.
+    /// The paper's letter for the opponents.
     pub opponent: &'static str,
     /// Round robin, quarter final, semi-final, final.
     pub stage: &'static str,
@@ -21,11 +21,11 @@ pub struct PaperGame {
 /// A row of Table 1: passes by the Coerce and Attack Planner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct PaperPasses {
-    /// The paper's letter.
+    /// The paper's letter for the opponents.
     pub opponent: &'static str,
-    /// Passes tried.
+    /// Number of passes tried.
     pub attempts: u32,
-    /// Passes that arrived.
+    /// Number of passes that arrived.
     pub successes: u32,
     /// Coercing robots that attacked.
     pub reuses: u32,
@@ -45,7 +45,7 @@ const fn passes(opponent: &'static str, attempts: u32, successes: u32, reuses: u
     PaperPasses { opponent, attempts, successes, reuses }
 }
 
-/// Table 2.
+/// Table 2: the six games, in the paper's order.
 #[allow(clippy::approx_constant, reason = "Team F's attack ratio, not a circle's")]
 pub const PAPER: [PaperGame; 6] = [
     game("G", "RR", [2, 0], 1.38, 1.82),
@@ -56,7 +56,7 @@ pub const PAPER: [PaperGame; 6] = [
     game("B", "F", [2, 2], 1.63, 1.09),
 ];
 
-/// Table 1.
+/// Table 1: passes of five games.
 pub const PAPER_PASSES: [PaperPasses; 5] = [
     passes("G", 11, 6, 0),
     passes("F", 6, 5, 4),

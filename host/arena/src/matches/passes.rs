@@ -81,15 +81,15 @@ fn named(fates: &mut Fates) -> [(&'static str, &mut u32); 7] {
 /// A share with its interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Share {
-    /// Number of hits.
+    /// Number of trials that hit.
     pub hits: u32,
-    /// Number of trials.
+    /// Number of all trials.
     pub of: u32,
     /// 0 to 1; `None` of zero trials.
     pub share: Option<f64>,
     /// Lower end of its 95 % interval.
     pub low: Option<f64>,
-    /// Upper end.
+    /// Upper end of the 95 % interval.
     pub high: Option<f64>,
 }
 
@@ -106,13 +106,13 @@ impl Share {
 /// Passes of one kind of kick, all matches.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Kicked {
-    /// `flat` or `chip`.
+    /// Kind of kick: `flat` or `chip`.
     pub kick: &'static str,
     /// Started, kicked or not.
     pub ordered: u32,
     /// Of those that were kicked, those that the receiver or another teammate received.
     pub arrived: Share,
-    /// Counts by fate.
+    /// Number of passes with each fate.
     pub fates: Fates,
 }
 
@@ -121,7 +121,7 @@ pub struct Kicked {
 pub struct Tenth {
     /// 0 for 0 to 0.1, 1 for 0.1 to 0.2, …
     pub tenth: usize,
-    /// Their mean P(receive).
+    /// Mean of their predicted P(receive).
     pub predicted: f64,
     /// Those that their receiver received.
     pub seen: Share,

@@ -8,19 +8,19 @@ use serde::{Deserialize, Serialize};
 
 use super::match_team::MatchTeam;
 
-/// Two teams.
+/// Two teams that play against each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Pairing {
     /// The team whose numbers come first.
     pub own: MatchTeam,
-    /// The opponents.
+    /// The team that it plays against.
     pub opponent: MatchTeam,
 }
 
 /// Numbers the matches: pair by pair.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
-    /// Random seed.
+    /// Seed from which the matches' seeds are derived.
     pub seed: u64,
     /// Name of the league: field, robots and rules.
     pub league: String,
@@ -29,9 +29,9 @@ pub struct Plan {
     pub world: WorldPlan,
     /// Simulated seconds of a match.
     pub duration_s: f64,
-    /// Pairs of teams.
+    /// Pairs of teams, in the order of matches.
     pub pairings: Vec<Pairing>,
-    /// Matches a pair.
+    /// Number of matches of each pair.
     pub matches: u32,
 }
 
@@ -49,7 +49,7 @@ pub struct Planned {
 }
 
 impl Planned {
-    /// Blue and yellow.
+    /// The teams of blue and yellow, in this order.
     pub fn sides(&self) -> (MatchTeam, MatchTeam) {
         let Pairing { own, opponent } = self.pairing;
         if self.own_is_blue { (own, opponent) } else { (opponent, own) }
@@ -70,7 +70,7 @@ impl Plan {
         teams.iter().enumerate().flat_map(pairs).collect()
     }
 
-    /// Number of matches.
+    /// Number of matches, over all pairs.
     pub fn len(&self) -> usize {
         self.pairings.len() * self.matches as usize
     }
@@ -80,7 +80,7 @@ impl Plan {
         self.len() == 0
     }
 
-    /// The league itself.
+    /// The league itself; `None` if its name is unknown or it has no such matches.
     pub fn league(&self) -> Option<League> {
         [League::Ssl2013, League::DivisionB, League::DivisionA]
             .into_iter()

@@ -13,22 +13,22 @@ use super::plan::Planned;
 use crate::evaluation::Entry;
 use crate::game::{GameReport, PerTeam};
 
-/// A match's measures.
+/// Identity and measures of one match.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MatchRow {
     /// Its number in the plan, from 0.
     pub number: usize,
     /// The team whose numbers come first.
     pub own: MatchTeam,
-    /// The opponents.
+    /// The team that it played against.
     pub opponent: MatchTeam,
     /// Whether the first of them played blue.
     pub own_is_blue: bool,
     /// Seed that replays it.
     pub seed: u64,
-    /// Goals.
+    /// Goals of the first team.
     pub goals: u32,
-    /// Goals against.
+    /// Goals of the opponents.
     pub goals_against: u32,
     /// Share of the match in which the ball was in play.
     pub ball_in_play: f32,
@@ -38,35 +38,35 @@ pub struct MatchRow {
     pub own_half_s: f32,
     /// Shots at the goal.
     pub shots: u32,
-    /// The opponents'.
+    /// Shots of the opponents at the goal.
     pub shots_against: u32,
     /// Shots that a keeper had to stop, that hit a post, or went in.
     pub chances: u32,
-    /// The opponents'.
+    /// Such shots of the opponents.
     pub chances_against: u32,
     /// Seconds with the ball.
     pub possession_s: f32,
-    /// The opponents'.
+    /// Seconds of the opponents with the ball.
     pub possession_against_s: f32,
-    /// Passes that arrived.
+    /// Number of passes that arrived.
     pub passes: u32,
-    /// The opponents'.
+    /// Number of the opponents' passes that arrived.
     pub passes_against: u32,
     /// Balls lost to the opponents.
     pub losses: u32,
-    /// Theirs to us.
+    /// Balls that the opponents lost.
     pub losses_against: u32,
     /// Passes of restarts as the host followed them, by kick and fate: `flat.received:3 chip.out:1`.
     pub restart_passes: String,
-    /// The opponents'.
+    /// The same of the opponents' passes.
     pub restart_passes_against: String,
     /// Their P(receive) by tenths: tenth, passes, sum of P(receive), received, as in `9:12:11.2:10`.
     pub calibration: String,
-    /// The opponents'.
+    /// The same of the opponents' passes.
     pub calibration_against: String,
     /// Passes of the Coerce and Attack Planner that left.
     pub cap_attempts: u32,
-    /// … that arrived.
+    /// … that arrived at a teammate.
     pub cap_successes: u32,
     /// … whose receiver had coerced an opponent before.
     pub cap_reuses: u32,
@@ -74,7 +74,7 @@ pub struct MatchRow {
     pub cap_reuse_successes: u32,
     /// The opponents' that left.
     pub cap_attempts_against: u32,
-    /// … that arrived.
+    /// … that arrived at a teammate.
     pub cap_successes_against: u32,
     /// … whose receiver had coerced an opponent before.
     pub cap_reuses_against: u32,
@@ -82,11 +82,11 @@ pub struct MatchRow {
     pub cap_reuse_successes_against: u32,
     /// Number of changes of a robot's role within a phase.
     pub role_changes: u32,
-    /// The opponents'.
+    /// The same of the opponents' robots.
     pub role_changes_against: u32,
     /// Offences: `kind:number`, a blank between two.
     pub fouls: String,
-    /// The opponents'.
+    /// The same of the opponents.
     pub fouls_against: String,
     /// Equal for equal matches.
     pub trace_hash: String,

@@ -56,7 +56,7 @@ pub struct SkillPlan {
     pub league: League,
     /// What the user called the worlds: a name, or `random`.
     pub world: String,
-    /// Their physics.
+    /// The physics of each world.
     pub worlds: Vec<WorldChoice>,
     /// Tries of each skill in each world.
     pub tries: u32,
@@ -64,29 +64,29 @@ pub struct SkillPlan {
     pub first: u32,
     /// Where all chance comes from.
     pub seed: u64,
-    /// Which skills.
+    /// Skills to try, in the order of the table.
     pub skills: Vec<Skill>,
 }
 
 /// One try of a plan.
 #[derive(Clone, Debug)]
 pub struct Try {
-    /// Of what.
+    /// The skill that is tried.
     pub skill: Skill,
     /// Field, robots, ball and rules.
     pub league: League,
-    /// In which physics.
+    /// The physics that it is tried in.
     pub world: WorldChoice,
     /// Which start: one number, one start, in every world.
     pub number: u32,
-    /// Of the plan.
+    /// Seed of the plan, from which the start is drawn.
     pub seed: u64,
 }
 
 /// What came of a try.
 #[derive(Clone, Debug)]
 pub struct TryResult {
-    /// Which.
+    /// The try that was made.
     pub tried: Try,
     /// How it began, in words.
     pub start: String,

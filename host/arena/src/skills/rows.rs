@@ -7,17 +7,17 @@ use super::{SkillPlan, TryResult};
 /// What a skill came to.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SkillRow {
-    /// Which.
+    /// The skill's name, as `--skill` takes it.
     pub skill: &'static str,
     /// Whose field and robots.
     pub league: String,
     /// In which worlds, as they were asked for.
     pub world: String,
-    /// How many worlds.
+    /// Number of worlds in which it was tried.
     pub worlds: usize,
     /// How many tries in all of them.
     pub tries: usize,
-    /// How many succeeded.
+    /// Number of tries that succeeded.
     pub succeeded: usize,
     /// Half of those that succeeded took no longer, simulated s; none where none did.
     pub time_median_s: Option<f64>,

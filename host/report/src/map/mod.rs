@@ -19,7 +19,7 @@ pub type MapError = SimulationError;
 /// The ball and the passes of a cell's first trials.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
-    /// The cell.
+    /// The cell whose trials are mapped.
     pub cell: Cell,
     /// Number of its trials.
     pub trials: u32,
@@ -28,7 +28,7 @@ pub struct Map {
     /// Seconds of the ball in each square of [`EDGE`], row by row from the least y, each from the least x;
     /// all trials together.
     pub seconds: Vec<f64>,
-    /// The attackers' passes.
+    /// Passes of the attackers, all trials together.
     pub passes: Vec<Pass>,
     /// Where the robots stood at kick-off; `None` where each trial has its own layout.
     pub start: Option<Layout>,
@@ -39,11 +39,11 @@ pub struct Map {
 /// A ball that one attacker intended for another, or that another one received.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pass {
-    /// Start.
+    /// Where it was kicked, m, field frame.
     pub from: Point<Field>,
     /// End: where it was received or lost.
     pub to: Point<Field>,
-    /// Its result.
+    /// Whether it arrived, and how it was lost otherwise.
     pub kind: PassKind,
 }
 
@@ -64,7 +64,7 @@ impl Map {
         squares(self.field.length)
     }
 
-    /// Squares across it.
+    /// Number of squares across the field, along y.
     pub fn rows(&self) -> usize {
         squares(self.field.width)
     }

@@ -21,7 +21,7 @@ pub(super) use point::{Rows, p_text};
 /// A claim of the paper about its results.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Claim {
-    /// Its short name.
+    /// Its short name in tables and JSON.
     pub id: &'static str,
     /// Section of the paper.
     pub section: &'static str,
@@ -40,13 +40,13 @@ hil_sim::labels! {
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
     #[serde(rename_all = "lowercase")]
     pub enum Verdict {
-        /// They do.
+        /// The numbers support it, in every point.
         Supported = "supported",
         /// They say the opposite, in one point at least.
         Contradicted = "contradicted",
-        /// They cannot tell.
+        /// Neither: at least one point is not significant or not measured.
         Undecided = "undecided",
-        /// There are none.
+        /// There are no numbers for it.
         Unmeasured = "unmeasured",
     }
 }
@@ -58,7 +58,7 @@ pub struct Judgement {
     pub verdict: Verdict,
     /// The numbers, as text.
     pub evidence: String,
-    /// The numbers.
+    /// The numbers, pair by pair.
     pub points: Vec<Point>,
 }
 

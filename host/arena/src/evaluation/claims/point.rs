@@ -19,11 +19,11 @@ pub struct Point {
     pub of: String,
     /// Description of the first number.
     pub first_name: String,
-    /// The first number.
+    /// The first number, in the measure's unit.
     pub first: f64,
     /// Description of the second number.
     pub second_name: String,
-    /// The second number.
+    /// The second number, in the measure's unit.
     pub second: f64,
     /// p: probability of a difference at least as large between equals; null where no spread is known.
     pub p: Option<f64>,
