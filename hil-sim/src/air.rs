@@ -61,9 +61,9 @@ impl Bursts {
 /// Loss of one direction between two radios.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinkLoss {
-    /// The sender.
+    /// The radio that sends.
     pub from: Sender,
-    /// The receiver.
+    /// The radio that receives.
     pub to: Sender,
     /// Probability that the receiver does not receive a packet.
     pub loss: f32,
@@ -111,9 +111,9 @@ pub struct AirCounts {
     pub sent: u64,
     /// Packets lost, or sent out of reach.
     pub lost: u64,
-    /// Packets duplicated.
+    /// Number of packets delivered twice.
     pub doubled: u64,
-    /// Packets delivered.
+    /// Number of packets delivered, copies included.
     pub delivered: u64,
 }
 
@@ -169,7 +169,7 @@ impl Air {
         self.settings = settings;
     }
 
-    /// The present settings.
+    /// The settings in force for the next packets.
     pub fn settings(&self) -> &AirSettings {
         &self.settings
     }

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// A running FNV-1a-64.
+/// Running state of an FNV-1a hash, 64 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fnv(u64);
 
@@ -13,7 +13,7 @@ impl Default for Fnv {
 }
 
 impl Fnv {
-    /// Adds `bytes`.
+    /// Continues the hash with `bytes`; the order matters.
     pub fn add(&mut self, bytes: &[u8]) {
         for &byte in bytes {
             self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);

@@ -27,7 +27,7 @@ pub trait Mcu {
     }
 }
 
-/// Boots robots' computers.
+/// Boots robots' computers of one kind: native or under QEMU.
 pub trait Backend<'a> {
     /// Its label in options and reports.
     fn name(&self) -> &'static str;
@@ -65,7 +65,7 @@ pub enum McuError {
     Io(std::io::Error),
     /// It did not answer in time.
     Silent {
-        /// The request.
+        /// The request that stayed unanswered.
         asked: &'static str,
         /// How long the simulator waited, ms.
         waited_ms: u64,

@@ -22,7 +22,7 @@ struct Taken {
 }
 
 impl Meter {
-    /// Number of steps.
+    /// Number of steps that were measured.
     pub fn steps(&self) -> usize {
         self.0.borrow().steps.len()
     }
@@ -40,7 +40,7 @@ impl Meter {
         self.0.borrow().stack
     }
 
-    /// Adds an answer.
+    /// Adds a step's instruction count and stack use.
     pub fn note(&self, reply: &Reply) {
         let mut taken = self.0.borrow_mut();
         taken.steps.push(reply.instructions);
@@ -92,11 +92,11 @@ impl Mcu for MeteredMcu<'_> {
 /// One back end for one team's computers, another for all others.
 #[derive(Debug)]
 pub struct ByTeam<A, B> {
-    /// The team.
+    /// The team with a back end of its own.
     pub team: TeamId,
-    /// Its computers.
+    /// Back end of that team's computers.
     pub its: A,
-    /// The others'.
+    /// Back end of all other computers.
     pub others: B,
 }
 

@@ -10,7 +10,7 @@ use rand_xoshiro::Xoshiro128PlusPlus;
 
 use crate::hash::Fnv;
 
-/// A random stream.
+/// The random stream of one subsystem.
 #[derive(Clone, Debug)]
 pub struct Stream(Xoshiro128PlusPlus);
 
@@ -37,7 +37,7 @@ impl Stream {
         p > 0.0 && (p >= 1.0 || self.share() < p)
     }
 
-    /// Uniform in `low..=high`.
+    /// A uniform integer in `low..=high`; `low` where the range is empty.
     pub fn whole(&mut self, low: u32, high: u32) -> u32 {
         if low >= high {
             return low;

@@ -13,13 +13,13 @@ use super::parameters::BallParameters;
 /// The ball's true state.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Ball {
-    /// Its centre, m.
+    /// Position of its centre on the ground, m.
     pub position: Point<Field>,
     /// Its lowest point above the field surface, m.
     pub height: f32,
     /// Velocity along the field surface, m/s.
     pub velocity: Vector<Field>,
-    /// Upward velocity, m/s.
+    /// Upward velocity, m/s; negative while it falls.
     pub climb: f32,
     /// The velocity at which its spin would roll, m/s.
     pub spin: Vector<Field>,

@@ -10,12 +10,12 @@ use super::parameters::{BallParameters, CameraParameters, NoiseParameters};
 /// The imitated simulator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Profile {
-    /// This simulator.
+    /// This simulator's own behaviour.
     #[default]
     Ours,
-    /// grSim.
+    /// The simulator grSim, of team Parsian.
     Grsim,
-    /// ER-Force's simulator.
+    /// The simulator of team ER-Force.
     ErForce,
 }
 
@@ -42,7 +42,7 @@ pub enum GeometryStyle {
 /// Behaviour of a simulator on the wire.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Compatibility {
-    /// The profile.
+    /// The profile that it belongs to.
     pub profile: Profile,
     /// When geometry packets are sent.
     pub geometry: GeometryStyle,

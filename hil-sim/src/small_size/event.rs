@@ -9,14 +9,14 @@ use protocol::Who;
 pub enum Event {
     /// Contact of ball and robot, after at least [`super::TOUCH_GAP_STEPS`] apart.
     Touched {
-        /// The robot.
+        /// The robot that the ball touched.
         robot: Who,
         /// The ball's position, m.
         at: Point<Field>,
     },
     /// A kicker moved the ball.
     Kicked {
-        /// The robot.
+        /// The robot whose kicker fired.
         robot: Who,
         /// The ball's position, m.
         at: Point<Field>,
@@ -29,7 +29,7 @@ pub enum Event {
     },
     /// Contact of two robots.
     Crash {
-        /// Both robots, sorted.
+        /// Both robots, in ascending order.
         robots: [Who; 2],
         /// Point between them, m.
         at: Point<Field>,

@@ -51,7 +51,7 @@ use worlds::{Latency, LinkModel, RobotSpread, WorldModel};
 /// The true state of ball and robots.
 #[derive(Clone, Debug)]
 pub struct World {
-    /// The ball.
+    /// True state of the ball.
     pub ball: Ball,
     robots: Vec<Robot>,
     /// Index of each slot's robot in that list.
@@ -352,7 +352,7 @@ impl World {
         self.step
     }
 
-    /// Seconds so far.
+    /// Simulated time since the start, s.
     pub fn time(&self) -> f64 {
         self.step as f64 * 0.001
     }

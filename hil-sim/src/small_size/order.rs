@@ -8,7 +8,7 @@ use super::parameters::Parameters;
 /// Order to a robot's wheels.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum Drive {
-    /// Brake and stand.
+    /// Brake all wheels and stand.
     #[default]
     Brake,
     /// Rim speeds, m/s: front right, back right, back left, front left; positive turns the robot

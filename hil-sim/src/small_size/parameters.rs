@@ -171,19 +171,19 @@ impl NoiseParameters {
     };
 }
 
-/// A robot's body.
+/// Dimensions and mass of a robot's body.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyParameters {
     /// m, of the hull.
     pub radius: f32,
-    /// m.
+    /// m, of the hull above the field surface.
     pub height: f32,
     /// m, centre to the flat front.
     pub front: f32,
     /// m to either side of the middle of the front: the width of the dribbler opening.
     pub mouth: f32,
-    /// kg.
+    /// kg, of the whole robot.
     pub mass: f32,
     /// Angles of the wheels, counter-clockwise from ahead: front right, back right, back left, front left.
     pub wheels_deg: [f32; 4],
@@ -197,7 +197,7 @@ pub struct BodyParameters {
 pub struct CameraParameters {
     /// 1, 2 (side by side along the length) or 4 (one a quarter).
     pub count: u32,
-    /// Frames a second.
+    /// Hz: frames per second of each camera.
     pub rate: f32,
     /// m above the field surface.
     pub height: f32,
@@ -217,25 +217,25 @@ pub struct CameraParameters {
 pub struct Parameters {
     /// Robots of a team.
     pub robots: u8,
-    /// The ball.
+    /// The ball's size and its decelerations.
     pub ball: BallParameters,
-    /// Boards and goals.
+    /// Boards and goals around the field.
     pub field: FieldParameters,
-    /// Impacts.
+    /// Impacts of the ball, and of robots.
     pub bounce: BounceParameters,
-    /// A robot's body.
+    /// Dimensions and mass of each robot.
     pub robot: BodyParameters,
-    /// Its wheels.
+    /// Limits of its wheels' drive.
     pub drive: DriveParameters,
-    /// Its kicker.
+    /// Speeds and charging of its kicker.
     pub kick: KickParameters,
-    /// Its dribbler.
+    /// The dribbler's hold on the ball.
     pub dribbler: DribblerParameters,
-    /// Its battery.
+    /// Voltages and energy of its battery.
     pub battery: BatteryParameters,
-    /// The cameras.
+    /// Number, rate and delay of the cameras.
     pub camera: CameraParameters,
-    /// Errors of measurements.
+    /// Errors of cameras and sensors.
     pub noise: NoiseParameters,
 }
 

@@ -22,9 +22,9 @@ pub struct Robot {
     pub present: bool,
     /// Its position and heading.
     pub pose: Pose<Field>,
-    /// m/s.
+    /// Velocity of its centre, m/s, field frame.
     pub velocity: Vector<Field>,
-    /// rad/s, counter-clockwise.
+    /// Turning rate, rad/s, counter-clockwise.
     pub turning: f32,
     /// Whether it lies on its side: nothing drives.
     pub tipped: bool,
@@ -175,7 +175,7 @@ impl Robot {
         &self.traits
     }
 
-    /// Its wheels' limits.
+    /// Limits of its wheels' drive, wear of this robot included.
     pub fn limits(&self) -> &DriveParameters {
         &self.limits
     }
@@ -221,12 +221,12 @@ impl Robot {
         now < self.ordered_until
     }
 
-    /// Its last order.
+    /// The order that it received last.
     pub fn order(&self) -> &Order {
         &self.order
     }
 
-    /// Battery, V.
+    /// Battery voltage, V: falls evenly from full to empty with the energy used.
     pub fn volts(&self, of: &BatteryParameters) -> f32 {
         of.full - (of.full - of.empty) * (self.used / of.energy).min(1.0)
     }

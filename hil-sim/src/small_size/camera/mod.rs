@@ -25,11 +25,11 @@ use view::View;
 pub struct CameraSettings {
     /// Number, frame rate and delay.
     pub camera: CameraParameters,
-    /// Errors of detections.
+    /// Errors of detections: noise, misses, false ones.
     pub noise: NoiseParameters,
     /// The clock of their time stamps.
     pub clock: Clock,
-    /// The compatibility profile.
+    /// Compatibility profile of the packets.
     pub compatibility: Compatibility,
 }
 
@@ -79,7 +79,7 @@ impl Cameras {
         Self { mishaps, ..Self::of(profile, unix_now, world, seed) }
     }
 
-    /// The settings.
+    /// The settings in force for the next camera frames.
     pub fn settings(&self) -> &CameraSettings {
         &self.settings
     }

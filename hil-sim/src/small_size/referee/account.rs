@@ -15,7 +15,7 @@ pub struct Account {
     pub name: String,
     /// Its keeper's shell number.
     pub keeper: RobotId,
-    /// Goals.
+    /// Number of goals that count.
     pub score: u32,
     /// Fouls that count towards cards, oldest first.
     pub(super) fouls: Vec<Event>,
@@ -23,7 +23,7 @@ pub struct Account {
     pub yellow_cards: Vec<i64>,
     /// Yellow cards ever given.
     pub yellow_cards_given: u32,
-    /// Red cards.
+    /// Number of red cards given.
     pub red_cards: u32,
     /// Whether it is able to place the ball.
     pub can_place_ball: bool,
@@ -128,14 +128,14 @@ impl Account {
 /// State of both teams.
 #[derive(Clone, Debug)]
 pub struct Accounts {
-    /// Yellow's.
+    /// Account of team yellow.
     pub yellow: Account,
-    /// Blue's.
+    /// Account of team blue.
     pub blue: Account,
 }
 
 impl Accounts {
-    /// One team's.
+    /// The account of team `colour`.
     pub fn of(&self, colour: Colour) -> &Account {
         match colour {
             Colour::Yellow => &self.yellow,

@@ -25,7 +25,7 @@ pub struct Blocked {
     pub since: Instant,
     /// Duration so far, or in total.
     pub lasted: Duration,
-    /// The phase.
+    /// Phase in which the match is blocked.
     pub phase: Phase<Colour>,
     /// The present or last obstacle.
     pub obstacle: Obstacle,

@@ -17,7 +17,7 @@ pub struct Event {
     pub by: Option<Colour>,
     /// The robot that caused it.
     pub robot: Option<RobotId>,
-    /// Position, m.
+    /// Position of the event, m, field frame.
     pub place: Point<Field>,
     /// The event with its evidence.
     pub what: What,
@@ -88,7 +88,7 @@ macro_rules! kinds {
         pub enum Kind { $($(#[$doc])* $kind),+ }
 
         impl Kind {
-            /// All kinds.
+            /// All kinds, in the order of the table.
             pub const ALL: &'static [Self] = &[$(Self::$kind),+];
 
             /// The league's name of it in lower case, as in reports; ours where the league has none.
@@ -98,7 +98,7 @@ macro_rules! kinds {
         }
 
         impl What {
-            /// Its kind.
+            /// Its kind, without the evidence.
             pub const fn kind(&self) -> Kind {
                 match self { $(Self::$kind { .. } => Kind::$kind),+ }
             }
@@ -283,13 +283,13 @@ kinds! {
 /// How the game continues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Restart {
-    /// From the centre.
+    /// From the centre, by this team.
     Kickoff(Colour),
     /// From the penalty mark.
     Penalty(Colour),
     /// From the position of the event, or the nearest valid one.
     FreeKick(Colour),
-    /// For both.
+    /// By both teams, where the ball lies.
     ForceStart,
 }
 

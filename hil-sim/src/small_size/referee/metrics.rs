@@ -65,9 +65,9 @@ pub struct Metrics {
     pub in_play_s: f32,
     /// Seconds in which a team may play the ball: in play, or before an awaited kick.
     pub running_s: f32,
-    /// Yellow's part.
+    /// Statistics of team yellow.
     pub yellow: TeamMetrics,
-    /// Blue's part.
+    /// Statistics of team blue.
     pub blue: TeamMetrics,
     /// Offences by kind, sanctioned or not.
     pub offences: FoulCounts,
@@ -98,7 +98,7 @@ impl Metrics {
         self.blocks.iter().map(|block| block.lasted.as_secs_f32()).sum()
     }
 
-    /// One team's part.
+    /// The statistics of one team.
     pub fn team(&self, team: Colour) -> &TeamMetrics {
         match team {
             Colour::Yellow => &self.yellow,

@@ -79,7 +79,7 @@ impl core::fmt::Display for NoRules {
 
 impl core::error::Error for NoRules {}
 
-/// Referees a match.
+/// Referees a match from true positions; sans-IO.
 #[derive(Clone, Debug)]
 pub struct InternalReferee {
     settings: RefereeSettings,
@@ -215,7 +215,7 @@ impl InternalReferee {
         self.send_when_due();
     }
 
-    /// The present phase.
+    /// The present phase of the game, by team colour.
     pub fn phase(&self) -> Phase<Colour> {
         self.state.phase()
     }
@@ -225,7 +225,7 @@ impl InternalReferee {
         self.stage
     }
 
-    /// The current command.
+    /// The league's command in force.
     pub fn command(&self) -> Command {
         self.command
     }

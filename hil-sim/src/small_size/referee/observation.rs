@@ -6,7 +6,7 @@
 use geometry::{Field, Point, Pose, Vector};
 use protocol::{Instant, Who};
 
-/// The observed ball.
+/// True state of the ball at the moment of an observation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallSeen {
     /// Its position projected on the ground, m.
@@ -15,7 +15,7 @@ pub struct BallSeen {
     pub height: f32,
     /// Along the ground, m/s.
     pub velocity: Vector<Field>,
-    /// Upwards, m/s.
+    /// Velocity upwards, m/s; negative while it falls.
     pub climb: f32,
 }
 
@@ -43,9 +43,9 @@ impl BallSeen {
 pub struct RobotSeen {
     /// The robot's team and number.
     pub who: Who,
-    /// Its pose.
+    /// Position of its centre, m, and heading.
     pub pose: Pose<Field>,
-    /// m/s.
+    /// Velocity of its centre, m/s.
     pub velocity: Vector<Field>,
     /// Whether it touched the ball since the last observation.
     pub touches_ball: bool,
@@ -54,7 +54,7 @@ pub struct RobotSeen {
 /// Two robots collided since the last observation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CrashSeen {
-    /// The two robots.
+    /// The two robots that collided.
     pub between: [Who; 2],
     /// Their velocities just before, in the same order, m/s.
     pub velocities: [Vector<Field>; 2],

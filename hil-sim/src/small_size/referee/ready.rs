@@ -21,9 +21,9 @@ use super::observation::RobotSeen;
 pub enum Reason {
     /// The team has more robots than allowed outside its goal substitution area.
     TooManyRobots {
-        /// Allowed number.
+        /// Number of robots allowed on the field.
         allowed: u32,
-        /// Actual number.
+        /// Number of robots on the field.
         on_field: u32,
     },
     /// The robot is too near to the ball.
@@ -33,19 +33,19 @@ pub enum Reason {
     },
     /// The ball is far from the position of the restart.
     BallOffPlace {
-        /// From that position.
+        /// From that position to the ball, m.
         distance: f32,
     },
     /// The ball is outside the lines.
     BallOut,
     /// The ball is too near to a defence area.
     BallNearArea {
-        /// From the area.
+        /// From the area to the ball, m.
         distance: f32,
     },
-    /// The ball moves.
+    /// The ball moves faster than the controller allows.
     BallMoves {
-        /// m/s.
+        /// Speed of the ball, m/s.
         speed: f32,
     },
     /// The ball has to be placed by hand, and was not.
@@ -60,7 +60,7 @@ pub enum Reason {
     },
     /// The robot is in the centre circle at a kick-off and is not the only one of the kicking team.
     CentreCircle {
-        /// From the centre.
+        /// From the centre of the field, m.
         distance: f32,
     },
     /// The penalty's keeper is not on the field.
@@ -140,9 +140,9 @@ impl fmt::Display for Reason {
 pub struct Obstacle {
     /// The team that caused it; `None` for the ball's position.
     pub team: Option<Colour>,
-    /// The robot.
+    /// The robot that caused it; `None` if no single one did.
     pub robot: Option<RobotId>,
-    /// The reason.
+    /// What is wrong, with the measured values.
     pub reason: Reason,
 }
 

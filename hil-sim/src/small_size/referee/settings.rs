@@ -74,9 +74,9 @@ pub struct RefereeSettings {
     pub patience: Duration,
     /// Minimum duration of a halt: 3 s, so that a robot still moving after the rules' grace of 2 s is seen.
     pub halt: Duration,
-    /// Settings of yellow.
+    /// Settings of team yellow.
     pub yellow: TeamSettings,
-    /// Settings of blue.
+    /// Settings of team blue.
     pub blue: TeamSettings,
 }
 

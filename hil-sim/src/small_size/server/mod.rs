@@ -41,11 +41,11 @@ pub use refusal::Refusal;
 /// Start settings of a server.
 #[derive(Clone, Debug)]
 pub struct ServerSettings {
-    /// The league.
+    /// League whose field and robots are simulated.
     pub league: League,
-    /// The world model.
+    /// World model: parameters, differences between robots, faults.
     pub model: WorldModel,
-    /// The compatibility profile.
+    /// Compatibility profile on the wire.
     pub profile: Profile,
     /// Number of robots of each team at the start.
     pub robots: u8,
@@ -69,7 +69,7 @@ impl ServerSettings {
 /// A port of the protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Port {
-    /// 10300.
+    /// 10300: control of the simulation.
     Simulator,
     /// 10301 for blue, 10302 for yellow.
     Team(Colour),
@@ -78,7 +78,7 @@ pub enum Port {
 }
 
 impl Port {
-    /// Its port number.
+    /// Its UDP port number.
     pub const fn number(self) -> u16 {
         match self {
             Self::Simulator => addresses::SIMULATOR_PORT,
@@ -92,9 +92,9 @@ impl Port {
 /// A datagram to be sent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transmit {
-    /// The destination.
+    /// Where the datagram is to be sent.
     pub to: Destination,
-    /// The payload.
+    /// Payload, a protobuf message.
     pub bytes: Vec<u8>,
 }
 
@@ -105,9 +105,9 @@ pub enum Destination {
     Vision(u16),
     /// Back to the sender of the request, from the port that received it.
     Reply {
-        /// The source port.
+        /// The port that received the request.
         from: Port,
-        /// The destination address.
+        /// The address that sent the request.
         to: SocketAddr,
     },
     /// To the machine that sent the last command, at grSim's port for robots' states.
@@ -123,7 +123,7 @@ pub struct Counts {
     pub control: u64,
     /// Datagrams that could not be decoded as a message of their port.
     pub undecodable: u64,
-    /// Refusals reported.
+    /// Number of refusals reported to senders.
     pub refused: u64,
     /// Robots' commands lost on purpose (realism).
     pub lost: u64,
@@ -200,7 +200,7 @@ impl Server {
         }
     }
 
-    /// The true state.
+    /// The true state of ball and robots.
     pub fn world(&self) -> &World {
         &self.world
     }
@@ -220,7 +220,7 @@ impl Server {
         self.pace
     }
 
-    /// The compatibility profile.
+    /// The compatibility profile in force.
     pub fn profile(&self) -> Profile {
         self.profile
     }

@@ -37,9 +37,9 @@ pub enum Refusal {
     KickTooFast {
         /// Number of the robot.
         id: u32,
-        /// Requested speed, m/s.
+        /// Speed of the order, m/s.
         asked: f32,
-        /// Maximum speed, m/s.
+        /// Maximum speed of the robot's kicker, m/s.
         most: f32,
     },
     /// A kick's speed below zero; no kick.
@@ -48,7 +48,7 @@ pub enum Refusal {
     KickAngle {
         /// Number of the robot.
         id: u32,
-        /// Requested angle, degrees.
+        /// Angle of the order, degrees.
         asked: f32,
     },
     /// A dribbler's speed below zero; the dribbler stops.
@@ -95,7 +95,7 @@ pub enum Refusal {
     BrokenCustom(String),
     /// A setting that exists in the protocol but is not supported here; it was left out.
     Unsupported(&'static str),
-    /// Not a port.
+    /// A vision port outside 1–65535; the old one stays.
     VisionPort(u32),
     /// A step that is not a positive duration, or is longer than [`super::SYNC_MAX`].
     SyncStep(f32),

@@ -12,7 +12,7 @@ pub enum WorldChoice {
     /// The league's own file, unchanged.
     #[default]
     Nominal,
-    /// A named profile.
+    /// A named profile of `hil-sim/data/worlds`.
     Named(NamedWorld),
     /// Every number drawn from its distribution, with this seed.
     Random(u64),
@@ -22,7 +22,7 @@ crate::labels! {
     /// A profile of `hil-sim/data/worlds`.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
     pub enum NamedWorld {
-        /// grSim's published defaults.
+        /// The published defaults of grSim.
         Grsim = "grsim",
         /// ER-Force's simulator with realism "Realistic".
         Erforce = "erforce",
@@ -153,7 +153,7 @@ impl From<WorldPlan> for String {
 /// The text names no world.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownWorld {
-    /// The requested name.
+    /// The name that was requested.
     pub label: String,
     /// Whether `random` alone would have been a name too.
     plan: bool,

@@ -16,7 +16,7 @@ pub struct WorldModel {
     pub name: String,
     /// Ball, field, robots, cameras.
     pub parameters: Parameters,
-    /// Differences between robots.
+    /// Differences between robots of the same design.
     pub robots: RobotSpread,
     /// Link from a robot's computer to its wheels, and packets to and from the host.
     pub link: LinkModel,

@@ -13,7 +13,7 @@ crate::labels! {
     /// How a quantity is distributed between its bounds.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Law {
-        /// Evenly.
+        /// Evenly between the bounds.
         Even = "even",
         /// Evenly in its logarithm: as often from 1 to 2 as from 2 to 4.
         Log = "log-even",
@@ -28,9 +28,9 @@ crate::labels! {
 pub struct Quantity {
     /// Its key in a profile.
     pub name: &'static str,
-    /// Minimum and maximum.
+    /// Minimum and maximum, in the key's unit.
     pub bounds: [f32; 2],
-    /// Its distribution.
+    /// Distribution between the bounds.
     pub law: Law,
     /// Sets both numbers of a pair; else the same number twice.
     set: fn(&mut WorldModel, [f32; 2]),

@@ -43,9 +43,9 @@ pub enum Why {
 /// A manual act with its reason.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deed {
-    /// The act.
+    /// The act, as the simulator carries it out.
     pub order: WorldOrder,
-    /// The reason.
+    /// The reason that the rules give for it.
     pub why: Why,
 }
 

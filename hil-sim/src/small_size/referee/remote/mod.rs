@@ -113,12 +113,12 @@ impl RemoteMatch {
         self.state.tick(now.0, Some(ball), &self.limits);
     }
 
-    /// Replaces the field.
+    /// Replaces the field's dimensions, as from a geometry packet.
     pub fn set_field(&mut self, field: FieldSpec) {
         self.field = field;
     }
 
-    /// The present phase.
+    /// The present phase of the game, by team colour.
     pub fn phase(&self) -> Phase<Colour> {
         self.state.phase()
     }
