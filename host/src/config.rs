@@ -43,7 +43,7 @@ use crate::referee::{OnSilence, SourcePin};
 pub struct TeamSettings {
     /// The team's name, as registered with the game controller.
     pub name: Option<String>,
-    /// `blue` or `yellow`.
+    /// The team's colour: `blue` or `yellow`.
     pub colour: Option<String>,
     /// The league's name: `ssl-2013`, `division-b` or `division-a`.
     pub league: Option<String>,
@@ -89,7 +89,7 @@ pub struct BallSettings {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Calibration {
-    /// Its number.
+    /// The robot's number, 0–15.
     pub robot: u8,
     /// Ball speed over speed ordered.
     #[serde(default = "one")]
@@ -151,7 +151,7 @@ pub enum RobotLink {
     Serial {
         /// The line's device, such as `/dev/ttyUSB0`.
         device: String,
-        /// Bits a second.
+        /// Rate of the line, bits/s.
         baud: u32,
     },
 }

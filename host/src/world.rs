@@ -38,7 +38,7 @@ pub struct Ball {
     pub height: f32,
     /// Velocity along the ground, m/s.
     pub velocity: Vector<Field>,
-    /// Velocity upwards, m/s.
+    /// Velocity upwards, m/s; negative while it falls.
     pub climb: f32,
     /// It rolls below this speed and slides above it, m/s; infinite where its kick was not seen.
     pub rolls_below: f32,
@@ -81,7 +81,7 @@ pub struct Robot {
     pub who: Who,
     /// Its place and heading.
     pub pose: Pose<Field>,
-    /// Its velocity, m/s.
+    /// Velocity of its centre, m/s, field frame.
     pub velocity: Vector<Field>,
     /// Its angular velocity, rad/s, counter-clockwise.
     pub angular: f32,

@@ -35,7 +35,7 @@ pub enum Kind {
     Command,
     /// A part of the match started.
     Stage,
-    /// An offence, sanctioned or not.
+    /// An offence or a card.
     Foul,
     /// Another event of the referee.
     Event,

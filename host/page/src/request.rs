@@ -50,7 +50,7 @@ pub enum Request {
     },
     /// Put a robot there, or move it while the match runs.
     Robot {
-        /// Its team.
+        /// Team of that robot.
         team: Team,
         /// The robot's number in its team.
         id: u8,
@@ -59,7 +59,7 @@ pub enum Request {
     },
     /// Switch a robot's computer off, or boot it.
     Power {
-        /// Its team.
+        /// Team of that robot.
         team: Team,
         /// The robot's number in its team.
         id: u8,

@@ -90,7 +90,7 @@ pub struct Ball {
 /// A robot of either team, as filtered.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Robot {
-    /// Its team.
+    /// Team of the robot.
     pub team: Team,
     /// The robot's number in its team.
     pub id: u8,
@@ -130,7 +130,7 @@ pub struct RobotDetail {
     pub reactive: String,
     /// Target and planned path.
     pub intent: Intent,
-    /// Running timers of its brain, s.
+    /// Timers of its role and state, s.
     pub timers: Vec<Timer>,
 }
 
@@ -144,12 +144,12 @@ pub struct Intent {
     pub ball_to: Option<[f32; 2]>,
 }
 
-/// A running timer of a robot's brain.
+/// A timer of a robot: how long a role or state lasts.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Timer {
-    /// The timer's name in the brain.
+    /// Name with the role or state.
     pub name: String,
-    /// Time since it was set, s.
+    /// Time since the last change, s.
     pub seconds: f32,
 }
 

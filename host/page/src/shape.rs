@@ -30,7 +30,7 @@ pub enum Tone {
     Case,
     /// A region that robots must not enter.
     Forbidden,
-    /// Something good, such as a free path.
+    /// A favourable place or state.
     Good,
     /// Neutral: none of the others.
     Plain,
@@ -95,7 +95,7 @@ pub enum Shape {
     Text {
         /// Position of its middle, m.
         at: [f32; 2],
-        /// The label's text.
+        /// Text of the label.
         text: String,
         /// Meaning, from which the page takes its colour.
         tone: Tone,

@@ -26,7 +26,7 @@ use crate::world::World;
 pub use file::kept;
 pub use samples::Estimate;
 
-/// The learned values.
+/// Estimates of kick gains, latencies and friction, with their samples.
 #[derive(Clone, Debug, Default)]
 pub struct Learned {
     kicks: kick::Kicks,

@@ -8,7 +8,7 @@ pub struct Estimate {
     pub value: f32,
     /// The median of their distances from it.
     pub spread: f32,
-    /// Number of samples.
+    /// Number of samples that it is the median of.
     pub samples: usize,
 }
 

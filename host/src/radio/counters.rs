@@ -11,7 +11,7 @@ pub struct Counters {
 }
 
 impl Counters {
-    /// Adds one value.
+    /// Adds one value to all four statistics.
     pub fn add(&mut self, value: f64) {
         self.max = if self.count == 0 { value } else { self.max.max(value) };
         self.count = self.count.saturating_add(1);
@@ -20,7 +20,7 @@ impl Counters {
         self.squares += off * (value - self.mean);
     }
 
-    /// Number of values.
+    /// Number of values added; saturates.
     pub fn count(&self) -> u32 {
         self.count
     }

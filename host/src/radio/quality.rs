@@ -104,7 +104,7 @@ impl Quality {
         self.telemetry.map_or(Condition::default(), |(_, telemetry)| telemetry.condition)
     }
 
-    /// Round trips, ms.
+    /// Statistics of round trips, ms.
     pub fn round_trip(&self) -> &Counters {
         &self.trip
     }

@@ -29,7 +29,7 @@ pub struct RecordingHeader {
     /// Random seed of a simulated match; none on a real field.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
-    /// The league's name.
+    /// The league's name, such as `division-b`.
     pub league: String,
     /// Name of the simulated world; none on a real field, and in recordings from before there were several.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -12,7 +12,7 @@ use crate::record::header::{HeaderError, RecordingHeader};
 use crate::record::trace::{Kind, Record};
 use crate::{Host, Input};
 
-/// Hosts under check.
+/// The hosts of a recording, fed with its inputs again.
 #[derive(Debug)]
 pub struct Recheck {
     hosts: Vec<Checked>,
@@ -56,7 +56,7 @@ pub enum Difference {
         at: Instant,
         /// How many packets were the same before.
         after: u64,
-        /// Receiver: 255 all.
+        /// Number of the receiving robot; 255 for all.
         to: u8,
     },
     /// The host sends a packet that is not in the record.
@@ -65,7 +65,7 @@ pub enum Difference {
         at: Instant,
         /// How many packets were the same before.
         after: u64,
-        /// Receiver: 255 all.
+        /// Number of the receiving robot; 255 for all.
         to: u8,
     },
 }

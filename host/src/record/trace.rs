@@ -73,11 +73,11 @@ pub struct Record {
     pub at: Instant,
     /// Number of the host, where one recording holds several teams'.
     pub host: u8,
-    /// Its kind.
+    /// Whether it is an input or output, and of what.
     pub kind: Kind,
     /// The sender, for packets of the referee; [`SenderAddress::INTERNAL`] for everything else.
     pub from: SenderAddress,
-    /// Its bytes.
+    /// Its payload without the head, at most [`RECORD_LEN_MAX`].
     pub bytes: Vec<u8>,
 }
 
@@ -97,7 +97,7 @@ impl<W: Write> Writer<W> {
         Ok(Self { out })
     }
 
-    /// Adds a record.
+    /// Adds a record at the end; fails where it exceeds [`RECORD_LEN_MAX`].
     pub fn write(&mut self, at: Instant, host: u8, kind: Kind, bytes: &[&[u8]]) -> io::Result<()> {
         let total: usize = bytes.iter().map(|part| part.len()).sum();
         if total > RECORD_LEN_MAX {
@@ -235,7 +235,7 @@ impl From<io::Error> for TraceError {
 }
 
 impl<R: Read> Reader<R> {
-    /// Reads the header.
+    /// Reads and checks the header, up to the first record.
     pub fn new(mut from: R) -> Result<Self, TraceError> {
         let mut magic = [0; 12];
         match from.read_exact(&mut magic) {

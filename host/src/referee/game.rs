@@ -60,12 +60,12 @@ impl Default for Game {
     }
 }
 
-/// One team's account.
+/// State of one team as the referee reports it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TeamAccount {
     /// Its name; empty while unknown.
     pub name: String,
-    /// Goals scored.
+    /// Number of goals scored.
     pub score: u32,
     /// The keeper's number, if it is one a robot can have.
     pub keeper: Option<RobotId>,

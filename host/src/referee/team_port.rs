@@ -41,7 +41,7 @@ pub enum Request {
         /// Whether the game continues.
         go_on: bool,
     },
-    /// Checks the connection.
+    /// Checks that the connection is alive.
     Ping,
 }
 
@@ -55,16 +55,16 @@ pub enum Event {
     },
     /// The registration is refused; we try again after [`RETRY_AFTER`].
     RegistrationRefused {
-        /// The controller's text.
+        /// The controller's reason, as text.
         reason: String,
     },
     /// A request was granted.
     Granted(Request),
     /// A request was refused.
     Refused {
-        /// The request.
+        /// The request that was refused.
         request: Request,
-        /// The controller's text.
+        /// The controller's reason, as text.
         reason: String,
     },
     /// The connection is closed; we connect again after [`RETRY_AFTER`].
@@ -99,7 +99,7 @@ impl std::fmt::Display for Trouble {
 /// State of a connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// Not connected.
+    /// Not connected to the controller.
     Apart,
     /// Connected; the controller sends first.
     KnownEpoch,

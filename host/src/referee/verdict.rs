@@ -37,11 +37,11 @@ pub struct Counts {
 /// Result of a packet.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
-    /// It was taken.
+    /// It was taken as the newest state.
     Taken(Taken),
     /// It is out of order.
     Doubted {
-        /// The reason.
+        /// The check that it failed.
         doubt: Doubt,
         /// It is HALT or STOP, and restrains for [`HOLD`](super::HOLD) nevertheless.
         restrains: bool,
@@ -50,12 +50,12 @@ pub enum Verdict {
     Copy,
     /// Another source sent it than the one that is followed; if it is stricter, it is obeyed.
     OtherSource {
-        /// That source.
+        /// The source that sent it.
         source: SourceKey,
     },
     /// `--referee-source` excludes its source.
     Excluded {
-        /// That source.
+        /// The source that sent it.
         source: SourceKey,
     },
 }

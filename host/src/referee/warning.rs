@@ -18,11 +18,11 @@ pub enum Warning {
     Disagreement {
         /// The source that is followed.
         followed: SourceKey,
-        /// Its command.
+        /// Newest command of that source.
         command: Command,
-        /// The other one.
+        /// A source that contradicts it.
         other: SourceKey,
-        /// Its command.
+        /// Newest command of the other source.
         others: Command,
         /// The phase that robots obey.
         obeyed: Phase<rules::Colour>,
@@ -31,19 +31,19 @@ pub enum Warning {
     Several {
         /// The source that is followed.
         followed: SourceKey,
-        /// The other one.
+        /// The source that agrees with it.
         other: SourceKey,
     },
     /// Packets of a source are not in order.
     OutOfOrder {
-        /// The source.
+        /// The source that sent them.
         source: SourceKey,
-        /// The reason.
+        /// The check that they failed.
         doubt: Doubt,
     },
     /// A source's clock has stepped, and the step was followed.
     ClockStepped {
-        /// The source.
+        /// The source whose clock stepped.
         source: SourceKey,
         /// The step, µs; negative: back.
         by: i64,
@@ -59,7 +59,7 @@ pub enum Warning {
     },
     /// A source is excluded by `--referee-source`.
     Excluded {
-        /// The source.
+        /// The source that is excluded.
         source: SourceKey,
         /// The source that is obeyed instead.
         pin: SourcePin,

@@ -13,7 +13,7 @@ use crate::radio::{RadioWarning, Why};
 pub enum SecondHost {
     /// Its frames reach us: it has this boot epoch.
     Received {
-        /// Its boot epoch.
+        /// Boot epoch of the second host.
         epoch: u32,
     },
     /// A robot that followed us follows it now.

@@ -14,7 +14,7 @@ use crate::radio::Radio;
 pub enum Stall {
     /// This computer did not run the host.
     Host {
-        /// Its duration.
+        /// Duration of the stall, now over.
         lasted: Duration,
     },
     /// No camera frame comes though the computer runs.

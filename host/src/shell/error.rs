@@ -10,14 +10,14 @@ pub enum LinkError {
     UnknownHost {
         /// The address as configured.
         address: String,
-        /// The system's error.
+        /// Error of the name's resolution.
         error: io::Error,
     },
     /// A socket could not be opened, or failed.
     Socket {
         /// The operation that failed.
         doing: String,
-        /// The system's error.
+        /// The operating system's error.
         error: io::Error,
     },
     /// The serial line is not there.
@@ -38,23 +38,23 @@ pub enum LinkError {
         device: String,
         /// The operation that failed.
         doing: String,
-        /// The system's error.
+        /// The operating system's error.
         error: io::Error,
     },
     /// A virtual robot could not be started.
     Start {
         /// Path of the program.
         program: String,
-        /// The system's error.
+        /// The operating system's error.
         error: io::Error,
     },
     /// A virtual robot ended again and again.
     GivesUp {
-        /// Its number.
+        /// The robot's number in our team.
         robot: u8,
         /// Its last exit status.
         how: String,
-        /// Number of exits.
+        /// Number of exits in a row.
         times: u32,
     },
 }

@@ -12,7 +12,7 @@ const KEY_FILE_LEN_MAX: u64 = 4096;
 /// A key that was read, with a warning about its file if there is one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct KeyFile {
-    /// The key read.
+    /// The team's key, 16 bytes.
     pub key: TeamKey,
     /// Other users may read the file, or the key is the public one of zeros.
     pub warning: Option<String>,
@@ -25,7 +25,7 @@ pub enum KeyError {
     Unreadable {
         /// Path of the file.
         path: PathBuf,
-        /// The system's error.
+        /// The operating system's error.
         error: std::io::Error,
     },
     /// It does not hold 32 hexadecimal digits.

@@ -62,7 +62,7 @@ pub trait Link: Send {
 /// How fast a line is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LineRate {
-    /// The line's device.
+    /// The line's device, such as `/dev/ttyUSB0`.
     pub device: String,
     /// Bits a second; a byte takes [`BITS_PER_BYTE`](Self::BITS_PER_BYTE).
     pub baud: u32,

@@ -42,13 +42,13 @@ pub struct Outbox {
 /// Counts of frames put into an outbox, and of those dropped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OutCounts {
-    /// Snapshots added.
+    /// Number of snapshots added.
     pub snapshots: u64,
     /// Of these, replaced by newer ones before their sending started.
     pub superseded: u64,
     /// Side frames replaced by newer ones, or dropped because too many waited.
     pub side_dropped: u64,
-    /// Frames added.
+    /// Number of frames added.
     pub frames: u64,
     /// Bytes of the frames added.
     pub bytes: u64,

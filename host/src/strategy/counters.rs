@@ -25,7 +25,7 @@ pub struct Sent {
     pub flight: f32,
     /// Whether it is a chip.
     pub chip: bool,
-    /// P(receive) as rated.
+    /// P(receive) as rated at the order.
     pub likely: f32,
     /// It ends a plan of the Coerce and Attack Planner; whether its receiver coerced before.
     pub planned: Option<bool>,
@@ -47,9 +47,9 @@ pub struct CapCounters {
 /// Counts of one team.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PlayCounters {
-    /// Passes of restarts.
+    /// Counts of passes from restarts.
     pub passes: PassCounters,
-    /// Planned free kicks.
+    /// Counts of free kicks by the planner.
     pub cap: CapCounters,
     /// Number of role changes of robots while the phase did not change; places within a role do not count.
     pub role_changes: u32,

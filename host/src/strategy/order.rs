@@ -14,13 +14,13 @@ use super::view::Flip;
 /// The order of one robot, with its reason.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Order {
-    /// The robot.
+    /// Our robot, by its number.
     pub robot: RobotId,
-    /// Its role.
+    /// Its role in the team.
     pub role: Role,
-    /// Its task.
+    /// Its task, in the attack frame.
     pub task: Task,
-    /// The reason.
+    /// Reason of role and task, with its numbers.
     pub why: Why,
 }
 
@@ -73,12 +73,12 @@ pub enum Why {
     },
     /// The best free place found.
     FreePlace {
-        /// Its value, 0–1.
+        /// Value of the place, 0–1.
         worth: f32,
     },
     /// This opponent is nearest to our goal and not marked.
     Marks {
-        /// The opponent.
+        /// The opponent to be marked.
         opponent: RobotId,
     },
     /// The best target found for the ball.
@@ -90,34 +90,34 @@ pub enum Why {
     Threat(Guards),
     /// The likeliest pass found, with its probabilities.
     Chances {
-        /// P(receive).
+        /// P(receive): probability that the receiver gets the ball.
         receive: f32,
-        /// P(goal | receive).
+        /// P(goal | receive): probability of a goal then.
         goal: f32,
     },
     /// The pass of a case, refined near the case's place for it.
     OfCase {
-        /// The case.
+        /// The stored case being played.
         case: CaseId,
         /// The robot's part in it.
         part: CaseRobot,
         /// Distance from the case's own place to where the pass is received, m.
         moved: f32,
-        /// P(receive).
+        /// P(receive): probability that the receiver gets the ball.
         receive: f32,
-        /// P(goal | receive).
+        /// P(goal | receive): probability of a goal then.
         goal: f32,
     },
     /// This opponent follows it and shall be drawn off the path.
     Coerces {
-        /// The opponent.
+        /// The opponent that follows the robot.
         marker: RobotId,
     },
     /// Waits until coercers are in place.
     Coercing {
-        /// Number in place.
+        /// Number of coercers in place.
         arrived: usize,
-        /// Number of coercers.
+        /// Number of coercers of the plan.
         of: usize,
     },
     /// Open play: the robots choose among themselves.
@@ -142,9 +142,9 @@ pub enum Task {
     Stand,
     /// Go to a place with a heading.
     GoTo {
-        /// The place.
+        /// Place of the robot's centre, m.
         at: Point<Attack>,
-        /// The heading.
+        /// Heading at the place, attack frame.
         face: Angle,
     },
     /// Take the ball, approaching it so as to face this point across it.
@@ -154,7 +154,7 @@ pub enum Task {
     },
     /// Kick the ball at this point.
     Kick {
-        /// The target.
+        /// Target of the ball, m.
         at: Point<Attack>,
         /// Kind and speed of the kick.
         kick: KickOrder,
@@ -163,16 +163,16 @@ pub enum Task {
     Pass {
         /// Where it will receive the ball.
         at: Point<Attack>,
-        /// The receiver.
+        /// Number of the receiving teammate.
         receiver: RobotId,
         /// Kind and speed of the kick.
         kick: KickOrder,
         /// Whether the ball may be kicked now.
         ready: bool,
     },
-    /// Receive a pass.
+    /// Receive a teammate's pass.
     Receive {
-        /// The place.
+        /// Place of the reception, m.
         at: Point<Attack>,
         /// Shoot it at this point at first touch; none: stop it.
         then: Option<Point<Attack>>,
@@ -186,7 +186,7 @@ pub enum Task {
     },
     /// Bring the ball to a place.
     PlaceBall {
-        /// The place.
+        /// Designated position of the ball, m.
         at: Point<Attack>,
     },
     /// Play cases with the teammates.

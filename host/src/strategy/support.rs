@@ -69,23 +69,23 @@ fn grid(view: &View, ball: Point<Attack>) -> impl Iterator<Item = Point<Attack>>
 pub enum Target {
     /// Shoot at this point of the goal.
     Shot {
-        /// The point.
+        /// Target point of the shot, m.
         at: Point<Attack>,
         /// Room along the path, m.
         room: f32,
     },
     /// Pass to this teammate.
     Teammate {
-        /// Its number.
+        /// Number of the teammate.
         id: RobotId,
-        /// The place.
+        /// Where it receives the ball, m.
         at: Point<Attack>,
         /// Room along the path, m.
         room: f32,
     },
     /// No teammate is free: ahead.
     Ahead {
-        /// The point.
+        /// Target point of the kick, m.
         at: Point<Attack>,
         /// Room along the path, m.
         room: f32,

@@ -30,7 +30,7 @@ pub struct Tactics {
 }
 
 impl Tactics {
-    /// No part.
+    /// No part of the paper: every tactic off.
     pub const NONE: Self = Self {
         threats: false,
         second_level: false,
@@ -39,7 +39,7 @@ impl Tactics {
         attack: false,
         bridge: false,
     };
-    /// All parts.
+    /// All parts of the paper, as our team plays.
     pub const ALL: Self = Self {
         threats: true,
         second_level: true,

@@ -60,7 +60,7 @@ impl Flip {
 pub struct Ball {
     /// Its place on the ground.
     pub position: Point<Attack>,
-    /// Its velocity, m/s.
+    /// Velocity along the ground, m/s.
     pub velocity: Vector<Attack>,
     /// Its stop position if no robot intercepts it, not cut at lines or walls.
     pub rest: Point<Attack>,
@@ -78,13 +78,13 @@ impl Ball {
 /// A robot, in the attack frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Robot {
-    /// Its number.
+    /// The robot's number in its team.
     pub id: RobotId,
-    /// Its place.
+    /// Position of its centre, m.
     pub position: Point<Attack>,
-    /// Its heading.
+    /// Heading, counter-clockwise from the attacked goal.
     pub heading: Angle,
-    /// Its velocity, m/s.
+    /// Velocity of its centre, m/s.
     pub velocity: Vector<Attack>,
 }
 
@@ -106,9 +106,9 @@ pub struct Game {
     pub placement: Option<Point<Field>>,
     /// The goal we defend.
     pub defending: GoalEnd,
-    /// Our keeper's number.
+    /// Our keeper's number, by the referee.
     pub keeper: RobotId,
-    /// Their keeper's number.
+    /// Their keeper's number, by the referee.
     pub their_keeper: RobotId,
 }
 
@@ -135,7 +135,7 @@ pub struct View {
     pub theirs: heapless::Vec<Robot, ROBOTS_MAX>,
     /// Our keeper's number, by the referee.
     pub keeper: RobotId,
-    /// Their keeper's number.
+    /// Their keeper's number, by the referee.
     pub their_keeper: RobotId,
     /// Number of robots the referee allows us on the field.
     pub allowed: usize,
@@ -313,7 +313,7 @@ pub fn nearest<'r>(
 pub struct RobotSet(u16);
 
 impl RobotSet {
-    /// Adds a robot.
+    /// Adds a robot; no effect if it is in the set.
     pub fn insert(&mut self, id: RobotId) {
         self.0 |= 1 << id.number();
     }
@@ -323,7 +323,7 @@ impl RobotSet {
         self.0 & (1 << id.number()) != 0
     }
 
-    /// Number of robots.
+    /// Number of robots in the set.
     pub fn len(self) -> usize {
         self.0.count_ones() as usize
     }

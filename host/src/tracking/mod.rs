@@ -158,9 +158,9 @@ impl Counts {
 /// Counts of the objects in camera frames, by result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Objects {
-    /// Counts of robots.
+    /// Counts of detected robots, by result.
     pub robots: RobotCounts,
-    /// Counts of balls.
+    /// Counts of detected balls, by result.
     pub balls: BallCounts,
     /// Objects without a finite place or a shell number, or too many for one camera frame.
     pub nonsense: u64,

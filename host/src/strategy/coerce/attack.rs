@@ -56,11 +56,11 @@ pub trait PassValue {
 pub struct AttackPlan {
     /// The robot that receives.
     pub receiver: RobotId,
-    /// The best cell.
+    /// The best cell of the grid.
     pub cell: Cell,
     /// The best place in that cell.
     pub at: Point<Attack>,
-    /// Its value.
+    /// P(receive) and P(goal) at that place.
     pub worth: Worth,
     /// Number of opponents taken into account.
     pub against: usize,

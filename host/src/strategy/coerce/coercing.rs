@@ -20,7 +20,7 @@ use super::{Settings, tactics};
 /// One robot of ours, the opponent that it draws, and its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coercer {
-    /// Our robot.
+    /// Our robot, which draws the opponent.
     pub robot: RobotId,
     /// The opponent that follows it.
     pub marker: RobotId,
@@ -51,9 +51,9 @@ pub struct CoercePlan {
 /// An opponent that follows robots, and the robot of ours that draws it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
-    /// The opponent.
+    /// The opponent that follows robots.
     pub marker: Detected,
-    /// Our robot.
+    /// Our robot, which draws it.
     pub robot: RobotId,
 }
 

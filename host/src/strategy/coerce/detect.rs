@@ -10,9 +10,9 @@ use super::tactics::{Likelihoods, Models, Situation, Tactic, detected};
 /// State of an opponent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detected {
-    /// Its number.
+    /// The opponent's number in its team.
     pub opponent: RobotId,
-    /// Its place.
+    /// Its place, attack frame, m.
     pub at: Point<Attack>,
     /// The tactic that explains its places best; `None` if none does: it counts as one that follows the ball.
     pub tactic: Option<Tactic>,
@@ -53,7 +53,7 @@ impl Detector {
         Self { models, seen: None, known: [None; ROBOTS_MAX] }
     }
 
-    /// The models' parameters.
+    /// Parameters of the tactics' models.
     pub fn models(&self) -> &Models {
         &self.models
     }

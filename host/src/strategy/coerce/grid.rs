@@ -8,7 +8,7 @@ use rules::FieldSpec;
 pub const COLUMNS: usize = 6;
 /// Rows across the field (§4.2).
 pub const ROWS: usize = 4;
-/// Number of cells.
+/// Number of cells on the field.
 pub const CELLS: usize = COLUMNS * ROWS;
 
 /// A cell, from our right corner along the length, row by row.

@@ -45,7 +45,7 @@ pub enum Followed {
     },
     /// One is not: a new attack against all opponents.
     Otherwise {
-        /// That opponent.
+        /// The opponent that is farthest off.
         opponent: RobotId,
         /// Distance from where it was expected, m.
         off: f32,
@@ -57,7 +57,7 @@ pub enum Followed {
     },
     /// They are, but the attack's receiver, a coercer to be used again, is marked: a new attack.
     ReceiverMarked {
-        /// The marker.
+        /// The opponent that marks the receiver.
         opponent: RobotId,
         /// Its distance to the receiver, m.
         near: f32,
@@ -69,7 +69,7 @@ pub enum Followed {
 pub struct FinalAttack {
     /// The pass and the shot after it.
     pub plan: AttackPlan,
-    /// The reaction observed.
+    /// How the opponents reacted to the coercion.
     pub followed: Followed,
     /// Whether the receiver has coerced an opponent before (the paper's Table 1 counts them).
     pub reused: bool,
@@ -78,13 +78,13 @@ pub struct FinalAttack {
 /// Progress of the plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Progress {
-    /// Nothing is planned.
+    /// Nothing is planned, as outside free kicks.
     Idle,
     /// Robots go to the places of the coerce plan (step 4).
     Coercing {
         /// Number of coercers that have arrived.
         arrived: usize,
-        /// Number of coercers.
+        /// Number of coercers of the plan.
         of: usize,
         /// Time left for coercing, s.
         left: f32,
@@ -113,7 +113,7 @@ pub enum Part {
     Takes,
     /// Draws this opponent away.
     Coerces {
-        /// The opponent.
+        /// The opponent that follows the robot.
         marker: RobotId,
         /// Where it is expected then.
         expected: Point<Attack>,
@@ -127,11 +127,11 @@ pub enum Part {
 /// The place and part of one robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Posting {
-    /// The robot.
+    /// Our robot, by its number.
     pub robot: RobotId,
-    /// Its place.
+    /// Place that it goes to, attack frame, m.
     pub at: Point<Attack>,
-    /// Its part.
+    /// Its part in the plan.
     pub part: Part,
 }
 

@@ -139,7 +139,7 @@ impl<'v> Situation<'v> {
         bell(at.distance(self.ball) - (BALL_DISTANCE + ROBOT_RADIUS + 0.02), self.models.keeps)
     }
 
-    /// The models' parameters.
+    /// Parameters of the tactics' models.
     pub fn models(&self) -> &Models {
         &self.models
     }

@@ -36,7 +36,7 @@ pub enum Team {
 }
 
 impl Team {
-    /// All of them.
+    /// All teams, ours first.
     pub const ALL: [Self; 5] = [Self::Ours, Self::Reactive, Self::Marking, Self::Zone, Self::Idle];
     /// Those that move and are not ours.
     pub const OPPONENTS: [Self; 3] = [Self::Reactive, Self::Marking, Self::Zone];

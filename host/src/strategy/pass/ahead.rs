@@ -103,7 +103,7 @@ pub enum PasserMove {
     Waits,
     /// Goes to x_p, and waits there for the receiver.
     Goes,
-    /// Kicks now.
+    /// Kicks the ball now.
     Shoots,
     /// T_f is over: the caller chooses another target.
     GivesUp {
@@ -113,7 +113,7 @@ pub enum PasserMove {
 }
 
 impl PassAhead {
-    /// Starts at `now`.
+    /// A pass requested at `now`: neither passer nor receiver has started.
     pub fn new(now: Instant) -> Self {
         Self { began: now, passer: None, receiver: None, shot: None }
     }

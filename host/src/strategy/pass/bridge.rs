@@ -10,7 +10,7 @@ use super::scene::{Rating, Scene};
 /// The next pass of a case that is being played.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CasePass {
-    /// The case.
+    /// The stored case being played.
     pub case: CaseId,
     /// The passer, and its robot in the case.
     pub passer: (RobotId, CaseRobot),

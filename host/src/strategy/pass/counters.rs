@@ -91,7 +91,7 @@ impl Fates {
 }
 
 impl PassCounters {
-    /// Counts one pass.
+    /// Counts one pass by its kick, verdict and predicted P(receive).
     pub fn record(&mut self, pass: &Ordered, verdict: &Verdict) {
         let fates = if pass.chip { &mut self.chip } else { &mut self.flat };
         *fates.count(verdict) += 1;

@@ -15,7 +15,7 @@ use super::reach::Mover;
 /// An opponent that may intercept the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Opponent {
-    /// Its number.
+    /// The opponent's number in its team.
     pub id: RobotId,
     /// Its motion and limits.
     pub mover: Mover,
@@ -24,7 +24,7 @@ pub struct Opponent {
 /// The opponent with the least margin, and its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interceptor {
-    /// Its number.
+    /// The opponent's number in its team.
     pub id: RobotId,
     /// Its time there less the ball's, s.
     pub margin: f32,

@@ -10,9 +10,9 @@ use motion::trajectory::FreeLimits;
 /// A robot with its limits; its acceleration is also used as its braking.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mover {
-    /// Its place.
+    /// Position of its centre, attack frame, m.
     pub position: Point<Attack>,
-    /// Its velocity, m/s.
+    /// Velocity of its centre, m/s.
     pub velocity: Vector<Attack>,
     /// Its speed, m/s.
     running: f32,

@@ -23,9 +23,9 @@ pub struct Rating {
     pub at: Point<Attack>,
     /// The kick that is likelier to end in a goal.
     pub kick: PassKick,
-    /// P(c1) … P(c5).
+    /// P(c1) … P(c5): their product is P(receive | x).
     pub receive_factors: [f32; 5],
-    /// P(c1') … P(c4').
+    /// P(c1') … P(c4'): their product is P(goal | receive, x).
     pub goal_factors: [f32; 4],
     /// Time of the ball's arrival, s after the kick.
     pub ball_time: f32,
@@ -59,18 +59,18 @@ pub struct ShotFrom {
 /// Obstacles that make a place unreliable (c5).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spoiler {
-    /// Our defence area.
+    /// Our own defence area.
     OurArea,
     /// Theirs, which attackers must not enter.
     TheirArea,
     /// A line of the field.
     Line,
-    /// A teammate.
+    /// A teammate at the place.
     Teammate,
 }
 
 impl Rating {
-    /// P(receive | x).
+    /// P(receive | x): the product of `receive_factors`, 0–1.
     pub fn receive(&self) -> f32 {
         self.receive_factors.iter().product()
     }

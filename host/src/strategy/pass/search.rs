@@ -98,7 +98,7 @@ fn better(best: Option<Rating>, scene: &Scene<'_>, at: Point<Attack>) -> Rating 
 /// A teammate's best place, and the rating of a pass there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Offer {
-    /// The receiver.
+    /// Number of the receiving teammate.
     pub receiver: RobotId,
     /// Its place, with the factors.
     pub rating: Rating,

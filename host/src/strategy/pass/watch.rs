@@ -16,7 +16,7 @@ use crate::world::{Ball, World};
 pub struct Ordered {
     /// Time of the order.
     pub at: Instant,
-    /// The team's colour.
+    /// Colour of the passing team.
     pub us: Colour,
     /// The robot that kicks.
     pub passer: RobotId,
@@ -30,7 +30,7 @@ pub struct Ordered {
     pub flight: f32,
     /// Whether it is a chip.
     pub chip: bool,
-    /// P(receive), as rated.
+    /// P(receive) as rated at the order.
     pub likely: f32,
 }
 
@@ -46,14 +46,14 @@ pub enum Verdict {
     },
     /// Another teammate has received it.
     ByTeammate {
-        /// The robot.
+        /// The teammate that received it.
         by: RobotId,
         /// Distance from x*, m.
         off: f32,
     },
     /// An opponent touched it first.
     Intercepted {
-        /// The robot.
+        /// The opponent that touched it.
         by: RobotId,
         /// Distance along the path from x0, m.
         along: f32,

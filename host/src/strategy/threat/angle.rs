@@ -14,7 +14,7 @@ pub const BODY: f32 = ROBOT_RADIUS + BALL_RADIUS;
 /// The goal as seen from a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Opening {
-    /// That place.
+    /// Place from which the goal is seen, m.
     pub from: Point<Attack>,
     /// Direction of the goal's bisector.
     pub middle: Angle,
@@ -32,12 +32,12 @@ pub struct Span {
 }
 
 impl Span {
-    /// Its width, rad.
+    /// Width of the span, rad.
     pub fn width(&self) -> f32 {
         self.left - self.right
     }
 
-    /// Its bisector, rad.
+    /// Direction of its bisector, rad, as measured in [`Span`].
     pub fn middle(&self) -> f32 {
         0.5 * (self.left + self.right)
     }

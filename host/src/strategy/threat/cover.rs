@@ -18,10 +18,10 @@ use super::Settings;
 use super::angle::{Opening, distance_for, half_shadow, widest};
 use super::edge::Edge;
 
-/// The three placements.
+/// The three placements of the paper, by the bodies needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Case {
-    /// One defender suffices.
+    /// One defender covers the whole open angle.
     Defender,
     /// One defender and the keeper.
     DefenderAndKeeper,
@@ -32,7 +32,7 @@ pub enum Case {
 /// The earlier decision, for hysteresis, so that small changes do not reverse it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Before {
-    /// The earlier placement.
+    /// The placement chosen before.
     pub case: Case,
     /// Whether the post at +y counted as the nearer one.
     pub upper_post: bool,
@@ -41,7 +41,7 @@ pub struct Before {
 /// Places of keeper and primary defenders.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cover {
-    /// Its case.
+    /// The placement chosen, by the bodies needed.
     pub case: Case,
     /// The goal as seen from the threat.
     pub opening: Opening,

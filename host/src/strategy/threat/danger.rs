@@ -14,12 +14,12 @@ use super::edge::Edge;
 use super::receiving::{Because, FirstLevel};
 use super::{Memory, Settings, legal};
 
-/// A second-level threat.
+/// An opponent as a second-level threat, with its two positions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Danger {
-    /// The opponent.
+    /// Number of the opponent.
     pub opponent: RobotId,
-    /// Its place.
+    /// Its place, attack frame, m.
     pub at: Point<Attack>,
     /// Whether it is near to our side.
     pub near: bool,
@@ -33,7 +33,7 @@ pub struct Danger {
     pub block_pass: Point<Attack>,
 }
 
-/// Kind of block.
+/// What a defender's position blocks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Blocks {
     /// On the line from the opponent to the middle of our goal.
@@ -45,11 +45,11 @@ pub enum Blocks {
 /// A position to be given to a defender.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Position {
-    /// The second-level threat.
+    /// The second-level threat that it blocks.
     pub danger: Danger,
     /// Its shot, or the pass to it.
     pub blocks: Blocks,
-    /// The place.
+    /// Place for the defender's centre, m.
     pub at: Point<Attack>,
     /// Bonus of a position that a robot has already, as shares of the settings' worths.
     held: f32,

@@ -32,7 +32,7 @@ impl Edge {
         Self { goal: Point::new(-field.length * 0.5, 0.0), ahead, beside, radius }
     }
 
-    /// Its length, m.
+    /// Length of the whole edge, from goal line to goal line, m.
     pub fn length(&self) -> f32 {
         2.0 * (self.ahead + self.beside + self.arc())
     }

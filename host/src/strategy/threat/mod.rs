@@ -120,7 +120,7 @@ impl Default for Settings {
 pub enum Guards {
     /// Keeper or primary defender: the first-level threat.
     FirstLevel {
-        /// Its placement.
+        /// The placement that it belongs to.
         case: Case,
         /// The open angle, rad.
         open: f32,
@@ -129,9 +129,9 @@ pub enum Guards {
     },
     /// A primary defender that is not needed, at the edge beside the one that is.
     Spare,
-    /// A second-level threat.
+    /// An opponent as a second-level threat.
     SecondLevel {
-        /// The opponent.
+        /// Number of the opponent.
         opponent: RobotId,
         /// Its shot, or the pass to it.
         blocks: Blocks,
@@ -144,7 +144,7 @@ pub enum Guards {
     },
     /// The shot of the pass receiver, until the primaries are there.
     Held {
-        /// The opponent.
+        /// The opponent that is to receive.
         opponent: RobotId,
         /// Distance that the primaries have yet to go, m.
         primaries_off: f32,
@@ -182,9 +182,9 @@ impl fmt::Display for Guards {
 /// One robot's part in the defence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Assignment {
-    /// The robot.
+    /// Our robot, by its number.
     pub robot: RobotId,
-    /// Its place.
+    /// Place for its centre, m.
     pub at: Point<Attack>,
     /// The threat it guards against.
     pub guards: Guards,
@@ -216,7 +216,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// The primary defenders.
+    /// Primary defenders of the last decision; `None` where fewer are needed.
     pub fn primaries(&self) -> [Option<RobotId>; 2] {
         self.primaries
     }

@@ -38,20 +38,20 @@ pub fn isocontour(speed: f32, c: f32, risk: f32) -> (f32, f32, f32) {
 pub struct FirstLevel {
     /// The place that keeper and primary defenders guard against.
     pub at: Point<Attack>,
-    /// The reason.
+    /// What the first-level threat is.
     pub because: Because,
 }
 
 /// What the first-level threat is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Because {
-    /// The ball itself.
+    /// The ball itself, at its place.
     Ball,
     /// A pass to this opponent is imminent.
     PassTo {
-        /// The opponent.
+        /// The opponent that is to receive.
         opponent: RobotId,
-        /// Equation 6, s.
+        /// Risk by equation 6, s.
         risk: f32,
     },
     /// The ball is not visible: its last place, or the field's middle.
