@@ -31,7 +31,7 @@ pub const AUDIENCE_LEN: usize = 2;
 pub const OVERHEAD: usize = HEADER_LEN + TAG_LEN;
 /// The longest frame on the radio (a part of the world; docs/architecture.md §6.1).
 pub const FRAME_LEN_MAX: usize = 120;
-/// A frame's bytes.
+/// The bytes of one frame, sealed.
 pub type FrameBytes = heapless::Vec<u8, FRAME_LEN_MAX>;
 /// The longest payload, in a frame with one tag.
 pub const PAYLOAD_LEN_MAX: usize = FRAME_LEN_MAX - OVERHEAD;
@@ -49,7 +49,7 @@ impl Sender {
     /// Number of senders a team can have.
     pub const COUNT: usize = RobotId::COUNT + 1;
 
-    /// `None` above 16.
+    /// The sender of that number: 16 is the host; `None` above 16.
     pub const fn new(number: u8) -> Option<Self> {
         match RobotId::new(number) {
             Some(robot) => Some(Self::Robot(robot)),
@@ -130,7 +130,7 @@ impl FromIterator<RobotId> for Audience {
 pub struct Frame<'a> {
     /// Team of the network.
     pub team: TeamId,
-    /// The sender.
+    /// The sender: a robot's number, or the host.
     pub sender: Sender,
     /// Robots for which it is sealed, if several: a short tag each. Only the host's frames have one.
     pub audience: Option<Audience>,
@@ -149,7 +149,7 @@ pub enum Refusal {
     Length(usize),
     /// Another version of the layout.
     Version(u8),
-    /// Another team's frame.
+    /// A frame of another team's network.
     Team(TeamId),
     /// No such sender, our own number, or one that does not send to us.
     Sender(u8),
@@ -181,7 +181,7 @@ pub enum Refusal {
 }
 
 impl Refusal {
-    /// Number of kinds.
+    /// Number of kinds of refusal.
     pub const KINDS: usize = 10;
 
     /// The kind's index in a table of counters.

@@ -66,7 +66,7 @@ impl HostMessage {
 /// clock to the robot's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Welcome {
-    /// Addressee.
+    /// Number of the robot addressed.
     pub to: RobotId,
     /// The epoch of that robot's frames.
     #[serde(with = "postcard::fixint::le")]
@@ -115,7 +115,7 @@ pub(crate) const WIRE_ROBOT_LEN: usize = 11;
 /// The ball on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WireBall {
-    /// Position, mm.
+    /// Position on the ground, mm, field frame.
     pub at: WirePoint,
     /// Height, mm; 0 on the ground.
     #[serde(with = "postcard::fixint::le")]
@@ -131,7 +131,7 @@ pub struct WireBall {
 /// A robot on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WireRobot {
-    /// Team and number.
+    /// Team and number of the robot.
     pub who: WireWho,
     /// Position, mm, and heading, mrad.
     pub pose: WirePose,
@@ -147,7 +147,7 @@ pub struct WireRobot {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "u8", into = "u8")]
 pub struct WireWho {
-    /// Team.
+    /// Team, from our side.
     pub side: Side,
     /// Number in the team.
     pub id: RobotId,
@@ -171,7 +171,7 @@ impl TryFrom<u8> for WireWho {
 /// Command to one robot.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Command {
-    /// Addressee.
+    /// Number of the robot addressed.
     pub to: RobotId,
     /// The goal we defend: teams change ends at half-time.
     pub defending: GoalEnd,
@@ -179,7 +179,7 @@ pub struct Command {
     pub phase: Phase<Side>,
     /// Its present role under the rules.
     pub rule_role: RuleRole,
-    /// The directive.
+    /// What the robot is to do.
     pub directive: Directive,
 }
 
@@ -187,12 +187,12 @@ pub struct Command {
 /// and governor.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Directive {
-    /// Brake and stand.
+    /// Brake, then stand without a target.
     Stand,
     /// Be at this place with this heading, around all obstacles; away from the ball too unless the kicker of
     /// a restart.
     GoTo {
-        /// Target pose.
+        /// Target pose, mm and mrad, field frame.
         pose: WirePose,
     },
     /// Get the ball to the dribbler, then face this point.
@@ -202,14 +202,14 @@ pub enum Directive {
     },
     /// Kick the ball at a point; a shot at the goal and a clearance too.
     Kick {
-        /// The target.
+        /// Target of the ball, mm, field frame.
         at: WirePoint,
         /// Kick of the pass.
         kick: KickOrder,
     },
     /// Pass to a teammate, who will have the ball at `at`; waits, facing it, until ordered to be `ready`.
     Pass {
-        /// The interception point.
+        /// The interception point, mm, field frame.
         at: WirePoint,
         /// Robot that receives the pass.
         receiver: RobotId,
@@ -220,26 +220,26 @@ pub enum Directive {
     },
     /// Receive a passed ball at this place.
     Receive {
-        /// The interception point.
+        /// The interception point, mm, field frame.
         at: WirePoint,
         /// Point to redirect the ball to at first touch; `None`: take it.
         then: Option<WirePoint>,
     },
     /// Carry the ball there, at most a metre (rules: the dribbling limit).
     Dribble {
-        /// Target pose.
+        /// Target pose with the ball, mm and mrad.
         pose: WirePose,
     },
     /// Stand on this stretch where the ball would cross it; stop a ball that comes.
     Block {
         /// One end of the stretch.
         from: WirePoint,
-        /// The other end.
+        /// Other end of the stretch.
         to: WirePoint,
     },
     /// Bring the ball to this place and leave it there, stationary.
     PlaceBall {
-        /// The designated position.
+        /// The designated position, mm, field frame.
         at: WirePoint,
     },
     /// Choose a case with the teammates under this directive, and play it.
@@ -249,7 +249,7 @@ pub enum Directive {
     },
 }
 
-/// Kick order.
+/// Kind of kick with its ball speed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum KickOrder {
     /// Along the ground; speed in cm/s.
@@ -261,7 +261,7 @@ pub enum KickOrder {
 /// A case proposed by the host.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Hint {
-    /// The stored case.
+    /// Id of the stored case.
     pub case: CaseId,
     /// Case robot i is played by entry i.
     pub robots: heapless::Vec<RobotId, CASE_ROBOTS_MAX>,

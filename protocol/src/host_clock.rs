@@ -41,9 +41,9 @@ pub struct HostClock {
 /// Age of a frame by its counter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Age {
-    /// Maximum age.
+    /// Maximum age of the frame, by both clocks.
     Within(Duration),
-    /// Older than [`AGE_MAX`].
+    /// Older than [`AGE_MAX`]: not obeyed.
     Stale,
     /// From the future: one of the clocks has stood still since the offset was learned.
     Ahead,

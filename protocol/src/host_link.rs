@@ -68,7 +68,7 @@ impl HostLink {
         self.audience = audience;
     }
 
-    /// The host's epoch.
+    /// The host's boot epoch, in every frame that it seals.
     pub fn epoch(&self) -> u32 {
         self.epoch
     }

@@ -11,17 +11,17 @@ use serde::{Deserialize, Serialize};
 pub struct RobotId(u8);
 
 impl RobotId {
-    /// The lowest number.
+    /// The lowest valid number, 0.
     pub const ZERO: Self = Self(0);
     /// Number of valid ids.
     pub const COUNT: usize = 16;
 
-    /// `None` above 15.
+    /// The id of that number, 0–15; `None` above 15.
     pub const fn new(id: u8) -> Option<Self> {
         if (id as usize) < Self::COUNT { Some(Self(id)) } else { None }
     }
 
-    /// The number, 0–15.
+    /// The number on its shell, 0–15.
     pub const fn number(self) -> u8 {
         self.0
     }
@@ -88,7 +88,7 @@ impl TeamId {
 pub struct Who {
     /// Colour of its team.
     pub colour: Colour,
-    /// Its shell number.
+    /// Its shell number, 0–15.
     pub id: RobotId,
 }
 

@@ -19,7 +19,7 @@ use crate::{Duration, Instant, RobotId, TeamId};
 /// A radio packet: one whole frame.
 pub type Packet = FrameBytes;
 
-/// An accepted frame.
+/// An accepted frame: its sender, and its message decoded.
 #[allow(clippy::large_enum_variant, reason = "one value at a time, on the stack, and no heap to box it on")]
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Received {

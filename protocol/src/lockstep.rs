@@ -31,10 +31,10 @@ pub enum ToRobot<'a> {
     /// Start a new boot epoch with this configuration (postcard of the brain's own type; this crate does not
     /// look inside).
     Setup {
-        /// The brain's configuration.
+        /// The brain's configuration, postcard of the brain's own type.
         config: &'a [u8],
     },
-    /// One brain step.
+    /// Inputs of one brain step.
     #[serde(borrow)]
     Tick(TickIn<'a>),
 }
@@ -62,7 +62,7 @@ pub enum FromRobot<'a> {
     Ready,
     /// The set-up, or the library in flash, could not be read.
     Unusable,
-    /// A tick's answer.
+    /// Outputs of one brain step.
     #[serde(borrow)]
     Tick(TickOut<'a>),
 }

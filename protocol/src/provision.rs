@@ -26,13 +26,13 @@ const VERSION: u8 = 2;
 /// Content of a robot's page.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Provision {
-    /// The robot's number.
+    /// The robot's number, 0–15.
     pub robot: RobotId,
-    /// The robot's team.
+    /// The team that the robot belongs to.
     pub team: TeamId,
     /// League it plays in.
     pub league: League,
-    /// The robot's keys.
+    /// The robot's keys: with the host, and with its team.
     pub keys: RobotKeys,
 }
 

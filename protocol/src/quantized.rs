@@ -18,7 +18,7 @@ pub struct WirePoint {
 /// A place and a heading: mm and mrad.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct WirePose {
-    /// The robot's centre.
+    /// Position of the robot's centre, mm.
     pub at: WirePoint,
     /// Heading, mrad, −3142 to 3142.
     #[serde(with = "postcard::fixint::le")]
@@ -35,7 +35,7 @@ pub fn to_mm(metres: f32) -> i16 {
     saturate(whole_mm(metres))
 }
 
-/// Millimetres to metres.
+/// Converts millimetres to metres.
 pub fn from_mm(mm: i32) -> f32 {
     mm as f32 * 0.001
 }

@@ -48,7 +48,7 @@ pub struct Health {
 /// A detection of the ball.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BallSight {
-    /// Measured position.
+    /// Measured position, m, field frame.
     pub position: Point<Field>,
     /// Standard deviation of the position, m.
     pub sigma: f32,
@@ -59,7 +59,7 @@ pub struct BallSight {
 /// Orders of the brain to its body for the coming step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ActuatorFrame {
-    /// A walking robot.
+    /// Orders to a walking robot.
     Legged {
         /// Wanted velocity in the body frame, m/s and rad/s; the body follows within its limits.
         walk: Twist<Body>,
@@ -72,7 +72,7 @@ pub enum ActuatorFrame {
         wheels: [f32; 4],
         /// Share of the dribbler's full speed, 0–1.
         dribbler: f32,
-        /// Kick order.
+        /// Kick order to the kicker.
         kick: OmniKick,
     },
     /// A robot on wheels that stands without a command: no current in the motors, dribbler off, kicker
@@ -109,7 +109,7 @@ pub enum LeggedKick {
 /// Order to the kicker.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum OmniKick {
-    /// No kick.
+    /// No kick: neither coil fires.
     None,
     /// Along the ground, ball speed in m/s.
     Flat(f32),

@@ -56,7 +56,7 @@ pub const KNOWN_EPOCHS_MAX: usize = 7;
 /// A teammate named in a handshake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct KnownEpoch {
-    /// The teammate's number.
+    /// Number of the teammate.
     pub who: RobotId,
     /// The epoch of its frames.
     #[serde(with = "postcard::fixint::le")]
@@ -116,7 +116,7 @@ impl Status {
     pub const AVAILABLE: Self = Self(1);
     /// Able to retrieve cases (paper §4.1: one of the k).
     pub const RETRIEVER: Self = Self(2);
-    /// Holds the ball.
+    /// It holds the ball: no other robot shall take it.
     pub const HOLDS_BALL: Self = Self(4);
 
     /// Union of both sets.
@@ -174,7 +174,7 @@ pub enum Decision {
 /// A retrieved case and the robots that play it.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Play {
-    /// The stored case.
+    /// Id of the stored case.
     #[serde(with = "case_id")]
     pub case: CaseId,
     /// The ball the coordinator used: adapted positions are relative to it.
@@ -240,7 +240,7 @@ pub enum Progress {
         /// Whether it has arrived.
         arrived: bool,
     },
-    /// At its actions.
+    /// At its actions, one after another.
     Execute {
         /// Number of actions done. A pass is done ("PassDone") when this has passed its place in the list.
         done: u8,
@@ -258,7 +258,7 @@ pub enum Role {
     /// Plays a case, or stands still.
     #[default]
     None,
-    /// Gets the ball.
+    /// Gets the ball, and attacks with it.
     Attacker,
     /// Backs the attacker up.
     Supporter,

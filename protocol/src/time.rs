@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 #[serde(transparent)]
 pub struct Instant(pub u64);
 
-/// A duration, µs.
+/// A duration, µs; never negative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Duration(pub u64);
@@ -29,12 +29,12 @@ impl Instant {
 }
 
 impl Duration {
-    /// Duration from milliseconds.
+    /// The duration of `ms` milliseconds.
     pub const fn millis(ms: u64) -> Self {
         Self(ms * 1000)
     }
 
-    /// Duration in seconds.
+    /// The duration in seconds, rounded to f32.
     pub fn as_secs_f32(self) -> f32 {
         // The first hour in one instruction of a robot's processor; the same number in both branches.
         let micros = u32::try_from(self.0).map_or_else(|_| self.0 as f32, |micros| micros as f32);

@@ -27,7 +27,7 @@ pub enum Work {
     SealShort,
     /// Seals the longest beacon.
     SealLong,
-    /// Seals telemetry.
+    /// Seals the robot's telemetry to the host.
     SealTelemetry,
     /// Opens the shortest command.
     OpenCommand,

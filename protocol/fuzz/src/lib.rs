@@ -22,7 +22,7 @@ use ssl::stream::FrameReader;
 /// A target: its name, which is its corpus' directory too, and its function.
 pub type Target = (&'static str, fn(&[u8]));
 
-/// All fuzz targets.
+/// All fuzz targets, one a kind of input.
 pub const TARGETS: [Target; 6] = [
     ("frame", frame),
     ("line", line),

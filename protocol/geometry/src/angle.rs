@@ -12,9 +12,9 @@ use crate::math;
 pub struct Angle(f32);
 
 impl Angle {
-    /// Direction along +x.
+    /// 0 rad: direction along +x.
     pub const ZERO: Self = Self(0.0);
-    /// Direction along −x.
+    /// π rad: direction along −x.
     pub const HALF_TURN: Self = Self(math::PI);
 
     /// Wraps `radians` into (−π, π]; NaN and infinities become 0.
@@ -36,7 +36,7 @@ impl Angle {
         Self(radians)
     }
 
-    /// Angle from degrees.
+    /// The angle of `degrees`, wrapped; NaN and infinities become 0.
     pub fn degrees(degrees: f32) -> Self {
         Self::new(degrees * (math::PI / 180.0))
     }

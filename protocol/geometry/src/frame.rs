@@ -127,7 +127,7 @@ impl<F> Vector<F> {
         self.0.x * other.0.y - self.0.y * other.0.x
     }
 
-    /// Euclidean length.
+    /// Euclidean length, in the components' unit.
     #[inline]
     pub fn norm(self) -> f32 {
         math::sqrt(self.dot(self))

@@ -54,13 +54,13 @@ pub fn atan2(y: f32, x: f32) -> f32 {
     libm::atan2f(y, x)
 }
 
-/// Exponential function, eˣ.
+/// Exponential function, eˣ, by libm.
 #[inline]
 pub fn exp(x: f32) -> f32 {
     libm::expf(x)
 }
 
-/// Natural logarithm.
+/// Natural logarithm by libm; NaN below 0.
 #[inline]
 pub fn ln(x: f32) -> f32 {
     libm::logf(x)

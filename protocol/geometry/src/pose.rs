@@ -10,7 +10,7 @@ use crate::{Angle, Body, Field, Point, Vector};
 pub struct Pose<F> {
     /// The robot's centre, m.
     pub position: Point<F>,
-    /// Direction it faces.
+    /// Direction that its front faces.
     pub heading: Angle,
 }
 
@@ -18,7 +18,7 @@ pub struct Pose<F> {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Twist<F> {
-    /// Linear velocity, m/s.
+    /// Linear velocity of the centre, m/s.
     pub linear: Vector<F>,
     /// Turning rate, rad/s, counter-clockwise.
     pub angular: f32,

@@ -5,9 +5,9 @@ use crate::{Point, Vector};
 /// The straight stretch from `from` to `to`, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment<F> {
-    /// Its start.
+    /// Start of the stretch, m.
     pub from: Point<F>,
-    /// Its end.
+    /// End of the stretch, m.
     pub to: Point<F>,
 }
 

@@ -21,7 +21,7 @@ pub enum Shape<F> {
     },
     /// All points within `radius` of a segment (the rules' "stadium").
     Capsule {
-        /// Centre line.
+        /// Centre line of the capsule, m.
         spine: Segment<F>,
         /// Radius, m, ≥ 0.
         radius: f32,

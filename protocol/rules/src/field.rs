@@ -25,7 +25,7 @@ pub struct FieldSpec {
     /// Goal substitution area: from the wall behind the own goal line towards the field; 0 where there is
     /// none.
     pub goal_substitution: f32,
-    /// Between the goalposts.
+    /// Distance between the insides of the goalposts.
     pub goal_width: f32,
     /// Distance from the goal line to the goal's back.
     pub goal_depth: f32,
@@ -61,7 +61,7 @@ pub enum AreaForm {
 pub struct FieldFault {
     /// Name of the number's field in [`FieldSpec`].
     pub field: &'static str,
-    /// Its value, m.
+    /// Value of that number, m.
     pub value: f32,
     /// Smallest valid value, m.
     pub least: f32,

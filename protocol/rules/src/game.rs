@@ -6,14 +6,14 @@ use serde::{Deserialize, Serialize};
 /// A team by its colour; not to be confused with the goals that case files call "yellow" and "cyan".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Colour {
-    /// Yellow centre dots.
+    /// The team with yellow centre dots.
     Yellow,
-    /// Blue centre dots.
+    /// The team with blue centre dots.
     Blue,
 }
 
 impl Colour {
-    /// The other team.
+    /// The team of the other colour.
     pub const fn other(self) -> Self {
         match self {
             Self::Yellow => Self::Blue,
@@ -33,9 +33,9 @@ impl Colour {
 /// A team from the side of one of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Side {
-    /// The own team's.
+    /// The team that speaks of itself.
     Ours,
-    /// The opponents' team's.
+    /// The team that it plays against.
     Theirs,
 }
 
@@ -54,7 +54,7 @@ pub enum RuleRole {
 /// A node of the league's state graph; `Who` is [`Colour`] for an outside observer and [`Side`] for a team.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Phase<Who> {
-    /// No robot moves.
+    /// No robot moves, by the rules of HALT.
     Halt,
     /// Slow, away from the ball, no robot touches it.
     Stop,

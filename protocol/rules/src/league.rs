@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 use crate::limits::{BALL_RADIUS, ROBOT_RADIUS};
 use crate::{AreaForm, FieldSpec};
 
-/// A league.
+/// A league that robots, simulator and arena can play.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum League {
     /// RoboCup Four-Legged League, 2007: AIBO ERS-7 on 5.4 × 3.6 m.
@@ -30,7 +30,7 @@ pub enum League {
     DivisionA,
 }
 
-/// A robot's footprint.
+/// A robot's extent on the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Footprint {
     /// Radius of the disc that stands for it, m.
@@ -40,7 +40,7 @@ pub struct Footprint {
 /// Properties of the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallSpec {
-    /// Radius, m.
+    /// Radius of the ball, m.
     pub radius: f32,
     /// Deceleration of a rolling ball, m/s².
     pub rolling_deceleration: f32,
@@ -131,7 +131,7 @@ impl League {
         }
     }
 
-    /// Its robots.
+    /// Footprint of the league's robots; with legs, a disc around the body.
     pub const fn robot(self) -> Footprint {
         match self {
             Self::FourLegged => Footprint { radius: 0.12 },

@@ -124,7 +124,7 @@ pub enum InArea {
     Out,
     /// A part of the robot.
     Partly,
-    /// The whole robot.
+    /// The whole robot is in the area.
     Entirely,
 }
 
@@ -195,9 +195,9 @@ pub fn double_touch(place: Point<Field>, ball: Point<Field>, touched_by_other: b
 /// Team that is responsible for a collision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Blame {
-    /// The first robot.
+    /// The team of the first robot.
     First,
-    /// The second robot.
+    /// The team of the second robot.
     Second,
     /// Both: they were about equally fast.
     Both,

@@ -197,7 +197,7 @@ pub fn after_out(
 pub enum AfterPlacement {
     /// The placing team's free kick.
     FreeKick,
-    /// A force start.
+    /// A force start, for both teams.
     ForceStart,
 }
 

@@ -13,7 +13,7 @@ use crate::limits::{BALL_RADIUS, ROBOT_RADIUS};
 /// A robot on wheels, and what is assumed of others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RobotSpec {
-    /// Its shape.
+    /// Its shape, seen from above.
     pub hull: HullSpec,
     /// What a motion is planned with: below what the wheels hold, so that a plan can be kept.
     pub plan: DriveSpec,
@@ -29,15 +29,15 @@ pub struct RobotSpec {
     pub governor: GovernorSpec,
     /// What is assumed of robots whose plans are not known: opponents, and ours as the host sees them.
     pub assumed: AssumedSpec,
-    /// Its kicker.
+    /// Its kicker and the kicker's charge.
     pub kicker: KickerSpec,
-    /// Its dribbler.
+    /// Its dribbler, by the roller's speed.
     pub dribbler: DribblerSpec,
     /// Its wheels and their speed control.
     pub wheels: WheelSpec,
 }
 
-/// A robot's shape.
+/// A robot's shape, seen from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HullSpec {
     /// Radius of the hull, m.
@@ -58,18 +58,18 @@ impl HullSpec {
 /// Limits of motion along the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveSpec {
-    /// m/s.
+    /// Greatest speed of the centre, m/s.
     pub speed: f32,
-    /// Speeding up, m/s².
+    /// Greatest acceleration when speeding up, m/s².
     pub acceleration: f32,
-    /// Slowing down, m/s².
+    /// Greatest deceleration when slowing down, m/s².
     pub braking: f32,
 }
 
-/// Limits of turning.
+/// Limits of turning about the centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TurnSpec {
-    /// rad/s.
+    /// Greatest turning rate, rad/s.
     pub rate: f32,
     /// Speeding up and slowing down, rad/s².
     pub acceleration: f32,
@@ -78,9 +78,9 @@ pub struct TurnSpec {
 /// What the governor lets through.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GovernorSpec {
-    /// m/s.
+    /// Greatest speed of the centre, m/s.
     pub speed: f32,
-    /// rad/s.
+    /// Greatest turning rate, rad/s.
     pub turn: f32,
     /// Deceleration when it brakes, m/s²; the wheel control brakes with it too when the brain is silent.
     pub brake: f32,
@@ -93,7 +93,7 @@ pub struct GovernorSpec {
 pub struct AssumedSpec {
     /// Passes, interceptions and coercion: any robot of the league, ours too.
     pub pass: DriveSpec,
-    /// The same, turning.
+    /// The same robots' limits of turning.
     pub turn: TurnSpec,
     /// Role assignment: speed and acceleration over a few metres, other bodies in the way.
     pub role: TypicalSpec,
@@ -108,9 +108,9 @@ pub struct AssumedSpec {
 /// Average motion over a few metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TypicalSpec {
-    /// m/s.
+    /// Speed on the way, m/s.
     pub speed: f32,
-    /// m/s².
+    /// Acceleration and braking, m/s².
     pub acceleration: f32,
 }
 
@@ -147,7 +147,7 @@ impl KickerSpec {
     }
 }
 
-/// A dribbler.
+/// A dribbler: its roller's speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DribblerSpec {
     /// Speed of the roller at full share, rpm.
@@ -170,7 +170,7 @@ pub struct WheelSpec {
 }
 
 impl RobotSpec {
-    /// Our robots.
+    /// The specification of our robots, each number with its source.
     pub const OURS: Self = Self {
         hull: HullSpec {
             // The rules' distances assume it.

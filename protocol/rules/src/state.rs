@@ -26,7 +26,7 @@ use crate::{Colour, Limits, Phase};
 /// A command of the referee.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Command {
-    /// No robot moves.
+    /// No robot moves, by the rules of HALT.
     Halt,
     /// Slow, away from the ball.
     Stop,
@@ -40,7 +40,7 @@ pub enum Command {
     PreparePenalty(Colour),
     /// This team's free kick.
     FreeKick(Colour),
-    /// This team's time-out.
+    /// This team's time-out, as HALT.
     Timeout(Colour),
     /// This team places the ball.
     BallPlacement(Colour),
@@ -72,29 +72,29 @@ impl Command {
 pub enum Stage {
     /// Before the first half.
     FirstHalfPre,
-    /// The first half.
+    /// The first half is played.
     FirstHalf,
     /// The break between the halves.
     HalfTime,
     /// Before the second half.
     SecondHalfPre,
-    /// The second half.
+    /// The second half is played.
     SecondHalf,
     /// The break before overtime.
     ExtraTimeBreak,
     /// Before overtime's first half.
     ExtraFirstHalfPre,
-    /// Overtime's first half.
+    /// Overtime's first half is played.
     ExtraFirstHalf,
     /// The break between overtime's halves.
     ExtraHalfTime,
     /// Before overtime's second half.
     ExtraSecondHalfPre,
-    /// Overtime's second half.
+    /// Overtime's second half is played.
     ExtraSecondHalf,
     /// The break before the shoot-out.
     ShootOutBreak,
-    /// The penalty shoot-out.
+    /// The penalty shoot-out is played.
     ShootOut,
     /// The match is over.
     PostGame,
@@ -153,14 +153,14 @@ pub enum Received {
     Repeated,
     /// It does not follow from this phase, but is accepted.
     OffGraph {
-        /// The phase before.
+        /// The phase before the command.
         from: Phase<Colour>,
     },
     /// It does not follow from this phase, and is read as STOP first.
     AsStop {
-        /// The phase before.
+        /// The phase before the command.
         from: Phase<Colour>,
-        /// Next phase.
+        /// The phase that follows STOP.
         then: Phase<Colour>,
         /// Time of the change, µs.
         at: u64,
@@ -170,7 +170,7 @@ pub enum Received {
 /// Effect of time and ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ticked {
-    /// No change.
+    /// No change of the phase.
     Same,
     /// The ball has moved [`IN_PLAY_DISTANCE`] from its place: in play.
     BallMoved,
@@ -209,7 +209,7 @@ impl GameState {
         Self { phase, command: None, since: 0, ball_at, penalty_in_play: false, later, still_until: 0 }
     }
 
-    /// The present phase.
+    /// The present phase of the game, by team colour.
     pub const fn phase(&self) -> Phase<Colour> {
         self.phase
     }

@@ -65,7 +65,7 @@ messages! {
         value: Option<Vec<u8>> [bytes = "vec", optional] = 2;
     }
 
-    /// `google.protobuf.Duration`.
+    /// `google.protobuf.Duration`: seconds and nanoseconds.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct Duration {
         /// Whole seconds.

@@ -47,7 +47,7 @@ messages! {
         status_message: Option<String> [string, optional] = 20;
     }
 
-    /// One team's account.
+    /// One team's state: score, cards, times, keeper.
     #[derive(Clone, PartialEq, Message)]
     pub struct TeamInfo {
         /// The team's name; empty while unknown.
@@ -156,7 +156,7 @@ pub enum Command {
     BallPlacementBlue = 17,
 }
 
-/// Kinds of matches.
+/// Kinds of matches of a tournament.
 #[expect(missing_docs, reason = "the league's own names")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Enumeration)]
 #[repr(i32)]

@@ -89,7 +89,7 @@ pub enum StreamError {
     TooLong {
         /// Length of the message, bytes.
         length: u64,
-        /// Accepted length, bytes.
+        /// Largest accepted length, bytes.
         limit: usize,
     },
     /// The length has ten bytes without an end.

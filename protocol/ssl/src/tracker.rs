@@ -36,7 +36,7 @@ messages! {
         capabilities: Vec<i32> [enumeration = "Capability", repeated, packed = "false"] = 6;
     }
 
-    /// A ball.
+    /// A ball as a tracker estimates it.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct TrackedBall {
         /// Where, m.
@@ -64,7 +64,7 @@ messages! {
         robot_id: Option<TrackedRobotId> [message, optional] = 6;
     }
 
-    /// A robot.
+    /// A robot as a tracker estimates it.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct TrackedRobot {
         /// Which.

@@ -16,7 +16,7 @@ messages! {
         signature: Option<Signature> [message, optional] = 2;
     }
 
-    /// What it saw.
+    /// An automatic referee's message to the controller: an event that it saw.
     #[derive(Clone, PartialEq, Message)]
     pub struct AutoRefToController {
         /// Proof.
@@ -25,7 +25,7 @@ messages! {
         game_event: Option<GameEvent> [message, optional] = 2;
     }
 
-    /// What it hears.
+    /// The controller's message to an automatic referee: a reply.
     #[derive(Clone, PartialEq, Message)]
     pub struct ControllerToAutoRef {
         /// The answer to its last message.

@@ -75,7 +75,7 @@ pub struct TeamToController {
     /// Signature of the sender.
     #[prost(message, optional, tag = "1")]
     pub signature: Option<Signature>,
-    /// The request.
+    /// The request, one of [`TeamRequest`].
     #[prost(oneof = "TeamRequest", tags = "2, 3, 4, 5")]
     pub msg: Option<TeamRequest>,
 }

@@ -182,7 +182,7 @@ pub enum Event {
     ExcessiveBotSubstitution(ExcessiveBotSubstitution),
 }
 
-/// Kinds of events.
+/// Kinds of game events, by the league's numbers.
 #[expect(missing_docs, reason = "the league's own names")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Enumeration)]
 #[repr(i32)]

@@ -23,7 +23,7 @@ pub enum LogError {
     },
     /// It does not start like a log file.
     NotALog {
-        /// Its first bytes.
+        /// Its first bytes, for the message.
         begins: Vec<u8>,
     },
     /// It is of the league's first logger, with Qt's strings and compression.

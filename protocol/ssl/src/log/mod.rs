@@ -49,15 +49,15 @@ pub enum MessageKind {
     Blank,
     /// 1: unknown message; [`guess`] detects its type.
     Unknown,
-    /// 2: [`vision::legacy::WrapperPacket`](crate::vision::legacy::WrapperPacket).
+    /// 2: vision until 2014, [`vision::legacy::WrapperPacket`](crate::vision::legacy::WrapperPacket).
     Vision2010,
-    /// 3: [`Referee`](crate::referee::Referee).
+    /// 3: referee packet, [`Referee`](crate::referee::Referee).
     Refbox2013,
-    /// 4: [`vision::WrapperPacket`](crate::vision::WrapperPacket).
+    /// 4: present vision, [`vision::WrapperPacket`](crate::vision::WrapperPacket).
     Vision2014,
-    /// 5: [`TrackerWrapperPacket`](crate::tracker::TrackerWrapperPacket).
+    /// 5: tracker packet, [`TrackerWrapperPacket`](crate::tracker::TrackerWrapperPacket).
     Tracker2020,
-    /// 6: the [`Index`].
+    /// 6: the [`Index`] at the end of a file.
     Index2021,
     /// A number not defined by the league.
     Other(i32),

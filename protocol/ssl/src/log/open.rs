@@ -12,9 +12,9 @@ use super::{Index, LogError, LogReader, MESSAGE_HEADER};
 /// The bytes of an opened file.
 #[derive(Debug)]
 pub enum Source {
-    /// An uncompressed file.
+    /// An uncompressed file, as it is.
     Plain(BufReader<File>),
-    /// A gzipped file.
+    /// A gzipped file, decompressed while it is read.
     Gzip(Box<MultiGzDecoder<BufReader<File>>>),
 }
 

@@ -8,13 +8,13 @@ use crate::{referee, tracker, vision};
 /// A message of a log file, decoded.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Packet {
-    /// Present vision packet.
+    /// Vision packet of the present format.
     Vision(vision::WrapperPacket),
     /// Vision packet until 2014.
     VisionLegacy(vision::legacy::WrapperPacket),
-    /// A referee packet.
+    /// A packet of the game controller.
     Referee(referee::Referee),
-    /// A tracker packet.
+    /// A packet of a tracker.
     Tracker(tracker::TrackerWrapperPacket),
 }
 
@@ -54,7 +54,7 @@ impl Packet {
 pub enum PacketError {
     /// It is not of its declared type.
     Broken {
-        /// Declared type.
+        /// The type that the log declares.
         kind: MessageKind,
         /// Error of the decoder.
         error: prost::DecodeError,

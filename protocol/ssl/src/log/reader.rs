@@ -124,7 +124,7 @@ impl<R: Read> LogReader<R> {
         self.end.as_ref()
     }
 
-    /// Counters so far.
+    /// Counts of the messages read so far.
     pub fn counts(&self) -> &Counts {
         &self.counts
     }

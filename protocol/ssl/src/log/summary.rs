@@ -31,7 +31,7 @@ pub struct Summary {
 /// Statistics of one kind of messages.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct KindSummary {
-    /// Number of messages.
+    /// Number of messages of that kind.
     pub messages: u64,
     /// Total length of their payloads, bytes.
     pub bytes: u64,

@@ -100,9 +100,9 @@ impl<W: Write> LogWriter<W> {
 /// A file being written.
 #[derive(Debug)]
 pub enum Sink {
-    /// An uncompressed file.
+    /// An uncompressed file, written directly.
     Plain(BufWriter<File>),
-    /// A gzipped file.
+    /// A gzipped file, compressed while it is written.
     Gzip(GzEncoder<BufWriter<File>>),
 }
 

@@ -9,7 +9,7 @@ use prost::Message;
 use super::NetError;
 use crate::stream::{FrameReader, MESSAGE_MAX, delimited};
 
-/// An open connection.
+/// An open TCP connection with a controller's port.
 #[derive(Debug)]
 pub struct Connection {
     stream: TcpStream,
@@ -19,7 +19,7 @@ pub struct Connection {
 }
 
 impl Connection {
-    /// Connects within `wait`.
+    /// Connects within `wait`; an error names the address that did not answer.
     pub fn open(peer: SocketAddr, wait: Duration) -> Result<Self, NetError> {
         let stream = TcpStream::connect_timeout(&peer, wait.max(SHORTEST_WAIT));
         let stream = stream.map_err(|error| NetError::NotConnected { to: peer, error })?;
@@ -42,7 +42,7 @@ impl Connection {
         self.peer
     }
 
-    /// Sends one message.
+    /// Sends one message after its length; fails where the peer has closed.
     pub fn send(&mut self, message: &impl Message) -> Result<(), NetError> {
         self.stream.write_all(&delimited(message)).map_err(|error| self.broken("send to", error))
     }

@@ -34,7 +34,7 @@ pub enum NetError {
     NotMulticast(Ipv4Addr),
     /// The machine has no route to that address.
     NoRoute {
-        /// Destination.
+        /// Destination of the datagram.
         to: SocketAddr,
         /// Address of the interface, if not chosen by the system.
         by: Option<Ipv4Addr>,
@@ -46,7 +46,7 @@ pub enum NetError {
     },
     /// The TCP connection was not accepted.
     NotConnected {
-        /// Destination.
+        /// Address that was to be connected.
         to: SocketAddr,
         /// Cause of the failure.
         error: io::Error,
@@ -74,9 +74,9 @@ pub enum NetError {
     },
     /// Any other error of the system.
     System {
-        /// Operation that failed.
+        /// The operation that failed, as a verb.
         doing: &'static str,
-        /// Address concerned.
+        /// Address that it concerned.
         address: SocketAddr,
         /// Cause of the failure.
         error: io::Error,

@@ -27,7 +27,7 @@ impl fmt::Display for Interface {
     }
 }
 
-/// Choice of interfaces.
+/// Choice of the interfaces on which multicast is received.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Interfaces {
     /// Every interface that can, loopback included: vision is received from any of them.
@@ -38,7 +38,7 @@ pub enum Interfaces {
 }
 
 impl Interfaces {
-    /// This machine only.
+    /// This machine only: the interface 127.0.0.1.
     pub fn loopback() -> Self {
         Self::These(vec![Ipv4Addr::LOCALHOST.to_string()])
     }

@@ -31,11 +31,11 @@ pub mod addresses {
     pub const VISION: SocketAddrV4 = SocketAddrV4::new(VISION_GROUP, 10006);
     /// The same of a simulator, so that it disturbs no tournament's network (grSim, ER-Force).
     pub const VISION_SIMULATED: SocketAddrV4 = SocketAddrV4::new(VISION_GROUP, 10020);
-    /// [`legacy::WrapperPacket`](crate::vision::legacy::WrapperPacket) until 2014.
+    /// Vision until 2014: [`legacy::WrapperPacket`](crate::vision::legacy::WrapperPacket).
     pub const VISION_LEGACY: SocketAddrV4 = SocketAddrV4::new(VISION_GROUP, 10005);
-    /// [`Referee`](crate::referee::Referee).
+    /// Packets of the game controller: [`Referee`](crate::referee::Referee).
     pub const REFEREE: SocketAddrV4 = SocketAddrV4::new(REFEREE_GROUP, 10003);
-    /// [`TrackerWrapperPacket`](crate::tracker::TrackerWrapperPacket).
+    /// Packets of trackers: [`TrackerWrapperPacket`](crate::tracker::TrackerWrapperPacket).
     pub const TRACKER: SocketAddrV4 = SocketAddrV4::new(VISION_GROUP, 10010);
     /// Game controller's TCP port for automatic referees.
     pub const AUTOREF_PORT: u16 = 10007;

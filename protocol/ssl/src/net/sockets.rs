@@ -11,7 +11,7 @@ use super::error::multicast_group;
 use super::interfaces::find;
 use super::{Interface, Interfaces, NetError, interfaces};
 
-/// A received datagram.
+/// A received datagram and its sender.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Datagram<'a> {
     /// Bytes of one message.
@@ -101,13 +101,13 @@ impl Sender {
         Ok(Self { socket, to, by: None })
     }
 
-    /// Sends one datagram.
+    /// Sends one datagram to the group; errors name the interface.
     pub fn send(&self, bytes: &[u8]) -> Result<(), NetError> {
         let sent = self.socket.send_to(bytes, self.to);
         sent.map(drop).map_err(|error| NetError::send(self.to, self.by, bytes.len(), error))
     }
 
-    /// Destination address.
+    /// Destination of every datagram.
     pub const fn to(&self) -> SocketAddr {
         self.to
     }
@@ -140,7 +140,7 @@ impl Port {
         self.inbox.receive(wait)
     }
 
-    /// Sends one datagram.
+    /// Sends one datagram from this port to `to`.
     pub fn send(&self, to: SocketAddr, bytes: &[u8]) -> Result<(), NetError> {
         let sent = self.inbox.socket.send_to(bytes, to);
         sent.map(drop).map_err(|error| NetError::send(to, None, bytes.len(), error))

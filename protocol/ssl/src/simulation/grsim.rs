@@ -100,7 +100,7 @@ messages! {
         robots_status: Vec<RobotStatus> [message, repeated] = 1;
     }
 
-    /// One robot's state.
+    /// State of one robot: contact with the ball, kicks.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct RobotStatus {
         /// Shell number, 0–15.

@@ -61,7 +61,7 @@ messages! {
         simulation_speed: Option<f32> [float, optional] = 3;
     }
 
-    /// Move the ball.
+    /// Move the ball; missing coordinates stay.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct TeleportBall {
         /// Along the field's length, m.
@@ -107,7 +107,7 @@ messages! {
         by_force: Option<bool> [bool, optional] = 9;
     }
 
-    /// The simulator's settings.
+    /// Settings that change a running simulator; missing ones stay.
     #[derive(Clone, PartialEq, Message)]
     pub struct SimulatorConfig {
         /// The field, in vision's units (mm).

@@ -33,7 +33,7 @@ messages! {
 /// Motion command, in one of three forms.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct RobotMoveCommand {
-    /// The form.
+    /// The form, with its speeds.
     #[prost(oneof = "MoveCommand", tags = "1, 2, 3")]
     pub command: Option<MoveCommand>,
 }

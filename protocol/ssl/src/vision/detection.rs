@@ -3,7 +3,7 @@
 use prost::Message;
 
 messages! {
-    /// One orange blob.
+    /// One orange blob, detected as a ball.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct DetectionBall {
         /// How sure it is a ball, 0–1.
