@@ -14,11 +14,11 @@ pub struct BadLine {
 /// Error rates of a line, per thousand bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Trouble {
-    /// Dropped.
+    /// Dropped bytes per thousand.
     pub dropped: f32,
     /// Changed in one bit.
     pub changed: f32,
-    /// Duplicated.
+    /// Duplicated bytes per thousand.
     pub doubled: f32,
 }
 

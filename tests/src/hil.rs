@@ -14,7 +14,7 @@ use rules::{Colour, League};
 /// Selects one of the two matches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// All brains native.
+    /// All brains are native.
     Native = 0,
     /// Ours in firmware images.
     Emulated = 1,
@@ -67,7 +67,7 @@ impl fmt::Display for Reported {
 }
 
 impl Pair {
-    /// Both at kick-off.
+    /// Both matches at kick-off, of the same seed; `image` is the firmware.
     pub fn new(seed: u64, seconds: f64, image: &Path) -> Result<Self, GameError> {
         let config = GameConfig::new(League::DivisionB, seed, seconds);
         let base = case_library::division_b();

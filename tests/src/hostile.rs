@@ -39,9 +39,9 @@ pub fn corpus() -> io::Result<Corpus> {
 /// A target that panicked, and the bytes that caused it.
 #[derive(Clone, Debug)]
 pub struct Panicked {
-    /// Its name.
+    /// Name of the target that panicked.
     pub target: &'static str,
-    /// The bytes.
+    /// The bytes that caused it.
     pub bytes: Vec<u8>,
 }
 

@@ -17,18 +17,18 @@ pub enum Seen {
     Sent(RobotId, Beacon),
     /// A robot received this beacon of another.
     Received(RobotId, RobotId, Beacon),
-    /// A robot crashed.
+    /// A robot crashed: its computer stands still.
     Crashed(RobotId),
-    /// A robot boots.
+    /// A robot boots into a new epoch.
     Booted(RobotId),
 }
 
-/// A violated invariant.
+/// A violated invariant with its time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Violation {
-    /// Time.
+    /// Time of the violation, µs.
     pub at: Instant,
-    /// Description, one sentence.
+    /// What was violated, one sentence.
     pub what: String,
 }
 
@@ -44,7 +44,7 @@ pub enum Air {
     Hostile,
 }
 
-/// Watches a team.
+/// Watches a team's beacons, and keeps violations and counts.
 #[derive(Debug)]
 pub struct Watcher {
     air: Air,
@@ -54,9 +54,9 @@ pub struct Watcher {
     pending: Option<Pending>,
     /// Number of times that two gameplays ran at once.
     pub overlaps: u32,
-    /// Number of cycles.
+    /// Number of cycles seen.
     pub cycles: u32,
-    /// Number of gameplays.
+    /// Number of gameplays that started.
     pub gameplays: u32,
     /// The longest time from a fault to the next cycle.
     pub slowest_recovery: Duration,

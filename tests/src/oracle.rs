@@ -33,7 +33,7 @@ pub struct Answer {
 /// A case that passes the filters, with all its ranking criteria.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
-    /// Stored id.
+    /// Id of the stored case.
     pub id: usize,
     /// Similarity of the ball.
     pub similarity: f64,

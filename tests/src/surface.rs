@@ -22,7 +22,7 @@ use rules::{Colour, League, Phase, Side};
 
 /// A field with our robots under brains, and opponents where the test places them.
 pub struct Surface<'a> {
-    /// The true state.
+    /// True state of ball and robots.
     pub world: World,
     /// The phase of the game, from our side.
     pub phase: Phase<Side>,
@@ -30,7 +30,7 @@ pub struct Surface<'a> {
     pub placement: Option<Point<Field>>,
     /// The command of each of our robots.
     pub commands: BTreeMap<RobotId, (RuleRole, Directive)>,
-    /// Our brains.
+    /// Brains of our robots, by number.
     pub brains: BTreeMap<RobotId, Brain<'a>>,
     /// Events, with the time, s.
     pub events: Vec<(f64, Event)>,
@@ -96,7 +96,7 @@ impl<'a> Surface<'a> {
         self.commands.insert(RobotId::new(number).expect("an id"), (rule_role, directive));
     }
 
-    /// The time.
+    /// Time of the present step, µs since the start.
     pub fn now(&self) -> Instant {
         Instant(self.steps * 10_000)
     }

@@ -12,14 +12,14 @@ use crate::swarm::{Counters, Found, play};
 /// Distribution of packet loss.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Each packet independently.
+    /// Each packet independently of the others.
     Independent,
     /// In bursts of [`BURST_MS`] on average, per link.
     Bursty,
 }
 
 impl Kind {
-    /// Both kinds.
+    /// Both kinds, independent first.
     pub const ALL: [Self; 2] = [Self::Independent, Self::Bursty];
 
     /// Its label in the table.
@@ -46,13 +46,13 @@ impl Kind {
 /// A row of the table: the results of one kind and share of loss.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
-    /// The robots.
+    /// Kind of the robots: legs or wheels.
     pub squad: Squad,
     /// The kind of loss.
     pub kind: Kind,
     /// The share of lost packets, percent.
     pub percent: u32,
-    /// The results.
+    /// Sums over the runs of this row.
     pub counters: Counters,
     /// Robot-seconds under loss, approximately: runs of two to four robots.
     pub seconds: f64,
@@ -212,7 +212,7 @@ const LINES: [(Squad, Kind, &str, &str); 4] = [
     (Squad::Wheels, Kind::Independent, "#d55e00", "none"),
     (Squad::Wheels, Kind::Bursty, "#d55e00", "6 4"),
 ];
-/// Percent of packets.
+/// Shares of lost packets, percent: the rows of the table.
 pub const PERCENT: [u32; 7] = [0, 5, 10, 20, 30, 40, 50];
 /// How long a run is under loss, ms: a few gameplays.
 const RUN_MS: u32 = 15_000;

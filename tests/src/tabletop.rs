@@ -13,13 +13,13 @@ use protocol::{CycleId, Duration, Instant, RobotId};
 
 /// Robots and a ball in the ideal world.
 pub struct Tabletop<'a> {
-    /// Steps taken.
+    /// Number of steps taken, 40 ms each.
     pub steps: u64,
     /// The robots, in rising order of their ids.
     pub robots: Vec<Robot<'a>>,
     /// Position of the ball, m.
     pub ball: Point<Field>,
-    /// Its velocity, m/s.
+    /// Velocity of the ball, m/s.
     pub velocity: Vector<Field>,
     /// Opponents, where the test places them.
     pub opponents: Vec<Point<Field>>,
@@ -32,15 +32,15 @@ pub struct Tabletop<'a> {
 
 /// One of our robots.
 pub struct Robot<'a> {
-    /// Its id.
+    /// Number of the robot in its team.
     pub id: RobotId,
-    /// Its brain.
+    /// The robot's brain under test.
     pub brain: Brain<'a>,
     /// Its position and heading.
     pub pose: Pose<Field>,
     /// Whether it has the ball.
     pub holds: bool,
-    /// Its newest beacon.
+    /// Its newest beacon; `None` before the first.
     pub beacon: Option<Beacon>,
     /// Switched off: it neither moves nor sends.
     pub dead: bool,
@@ -69,7 +69,7 @@ impl<'a> Tabletop<'a> {
         }
     }
 
-    /// The time.
+    /// Time of the present step, µs since the start.
     pub fn now(&self) -> Instant {
         Instant(self.steps * STEP.0)
     }

@@ -31,7 +31,7 @@ pub fn text_sources() -> Vec<Source> {
 pub struct Source {
     /// From the workspace's root, with `/`.
     pub path: String,
-    /// Its text.
+    /// Whole text of the file.
     pub text: String,
 }
 
@@ -40,7 +40,7 @@ pub struct Source {
 pub struct Finding {
     /// The file, from the workspace's root.
     pub path: String,
-    /// From 1.
+    /// Number of the line, from 1.
     pub line: usize,
     what: String,
     hint: String,

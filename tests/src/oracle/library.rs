@@ -27,7 +27,7 @@ pub struct Library {
     pub cases: Vec<Case>,
 }
 
-/// One stored case.
+/// One stored case, computed in full.
 #[derive(Clone, Debug)]
 pub struct Case {
     /// `region/name` of the authored case.
@@ -38,9 +38,9 @@ pub struct Case {
     pub defending: Goal,
     /// Position of the ball.
     pub ball: Point,
-    /// The ball's scope.
+    /// Radii of the ball's scope, mm.
     pub scope: Radii,
-    /// tm1, tm2, …
+    /// Robots of the case: tm1, tm2, …
     pub robots: Vec<Robot>,
     /// The opponents' scopes: centre and radii.
     pub opponents: Vec<(Point, Radii)>,
@@ -49,7 +49,7 @@ pub struct Case {
 /// One robot of a case.
 #[derive(Clone, Debug)]
 pub struct Robot {
-    /// Its position.
+    /// Position in the case, mm.
     pub at: Point,
     /// Its actions, in order.
     pub gameplay: Vec<Action>,
@@ -60,26 +60,26 @@ pub struct Robot {
 pub enum Action {
     /// `wait` and `turn`: no motion of ball or robot.
     Stay,
-    /// `go_to_point`.
+    /// `go_to_point`: the robot moves to this point.
     GoTo(Point),
-    /// `get_ball`.
+    /// `get_ball`: the robot gets the ball.
     GetBall,
-    /// `dribble_to`.
+    /// `dribble_to`: robot and ball move to this point.
     DribbleTo(Point),
-    /// `pass_ball`.
+    /// `pass_ball`: to the robot of this number.
     Pass(usize),
-    /// `receive_ball`.
+    /// `receive_ball`: from the robot of this number.
     Receive(usize),
-    /// `kick`.
+    /// `kick`: the ball leaves in this way.
     Kick(Kick),
 }
 
 /// A kick, as this stored case makes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kick {
-    /// Its aim.
+    /// Along a heading, or at the goal.
     pub aim: Aim,
-    /// Its radii.
+    /// Radii at the foot and at the end, mm.
     pub corridor: Corridor,
 }
 
@@ -90,12 +90,12 @@ pub enum Aim {
     Heading {
         /// Degrees relative to the direction of attack.
         degrees: i64,
-        /// mm.
+        /// Length of the kick, mm.
         length: i64,
     },
     /// To a point of the attacked goal line, mm to the left of its middle as seen in attack.
     Goal {
-        /// mm.
+        /// Offset from the goal's middle, mm.
         offset: i64,
     },
 }
@@ -103,27 +103,27 @@ pub enum Aim {
 /// Radii of a leg at its start and at its end, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corridor {
-    /// At the start.
+    /// Radius at the start, mm.
     pub r_min: i64,
-    /// At the end.
+    /// Radius at the end, mm.
     pub r_max: i64,
 }
 
 /// A point of the field, mm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Point {
-    /// Along the length.
+    /// Along the field's length, mm.
     pub x: i64,
-    /// Across.
+    /// Across the field, left > 0, mm.
     pub y: i64,
 }
 
 /// Radii of a scope, mm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Radii {
-    /// Along the length.
+    /// τx: radius along the length, mm.
     pub x: i64,
-    /// Across.
+    /// τy: radius across the field, mm.
     pub y: i64,
 }
 
@@ -176,7 +176,7 @@ impl Goal {
 pub struct Unreadable {
     /// The file or directory.
     pub file: PathBuf,
-    /// What is wrong.
+    /// What is wrong with it, as text.
     pub reason: String,
 }
 

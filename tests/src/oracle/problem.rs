@@ -20,7 +20,7 @@ pub struct Problem {
     pub defending: Goal,
     /// Robots present, by id.
     pub teammates: Vec<(u8, Point)>,
-    /// Opponents seen.
+    /// Positions of the opponents seen, mm.
     pub opponents: Vec<Point>,
 }
 

@@ -8,7 +8,7 @@ use super::library::{Action, Aim, Case, Corridor, Kick, Library, Point};
 /// One leg of the ball path; its ends are not rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Leg {
-    /// Its start, mm.
+    /// Start of the leg, mm.
     pub from: (f64, f64),
     /// Its intended end, mm.
     pub to: (f64, f64),

@@ -57,9 +57,9 @@ pub enum RuleRole {
     Halt,
     /// A measurement is NaN.
     NotANumber,
-    /// On its side.
+    /// The robot lies on its side.
     Tipped,
-    /// Turning too fast.
+    /// The robot turns too fast.
     Spinning,
     /// The battery is empty.
     Battery,

@@ -52,7 +52,7 @@ fn seen_by(packet: &[u8], reader: RobotId) -> Option<Vec<u8>> {
     addressed.then(|| [&packet[..covered], &packet[own..own + 3]].concat())
 }
 
-/// An accepted message.
+/// A message that the robot may believe.
 #[allow(clippy::large_enum_variant, reason = "one value at a time")]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Believed {

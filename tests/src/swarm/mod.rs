@@ -29,9 +29,9 @@ pub use runs::{Runs, description, watch, watch_matches};
 /// Results of a run without violations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
-    /// Number of runs.
+    /// Number of runs added.
     pub runs: u32,
-    /// Number of cycles.
+    /// Number of cycles, over all runs.
     pub cycles: u32,
     /// Number of gameplays among them.
     pub gameplays: u32,
@@ -53,7 +53,7 @@ pub struct Counters {
     pub stood_ms: u64,
     /// Number of intervals from the end of a gameplay to a newer cycle that all robots know.
     pub gaps: u32,
-    /// Their sum, ms.
+    /// Sum of these intervals, ms.
     pub gaps_ms: u64,
     /// The longest time from healing to a team that plays, ms.
     pub slowest_ms: u32,
@@ -82,7 +82,7 @@ impl Counters {
     }
 }
 
-/// A violated property.
+/// A violated property, by what violates it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Broken {
     /// By a robot's body.
@@ -100,9 +100,9 @@ pub enum Broken {
 /// A violated property, with its time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
-    /// Time, ms.
+    /// Time since the run's start, ms.
     pub ms: u32,
-    /// The violation.
+    /// The property and its evidence.
     pub broken: Broken,
 }
 

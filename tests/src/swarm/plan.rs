@@ -50,7 +50,7 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// All faults.
+    /// All faults, in the order of their draws.
     pub const ALL: [Self; 15] = [
         Self::Loss,
         Self::Bursts,
@@ -122,22 +122,22 @@ pub enum Madness {
     Contact(bool),
 }
 
-/// A run.
+/// A run: its robots, its faults and their times.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Its seed.
+    /// Seed from which everything is drawn.
     pub seed: u64,
-    /// The robots.
+    /// Kind of the robots: legs or wheels.
     pub squad: Squad,
-    /// The selected faults.
+    /// The faults that are on.
     pub on: Vec<Fault>,
     /// The team's robots, lowest number first, in their first epoch of the run.
     pub brains: Vec<BrainConfig>,
-    /// The team's key.
+    /// Key of the team's radio.
     pub key: TeamKey,
     /// The phase with all selected faults.
     pub trouble: Span,
-    /// The run's end.
+    /// End of the run, ms.
     pub end: u32,
     /// The radio settings during that phase.
     pub air: AirSettings,
@@ -248,7 +248,7 @@ impl Plan {
         }
     }
 
-    /// The team's numbers.
+    /// Numbers of the team's robots, lowest first.
     pub fn ids(&self) -> impl Iterator<Item = RobotId> + '_ {
         self.brains.iter().map(|brain| brain.robot)
     }

@@ -8,14 +8,14 @@ use arena::game::NoWatcher;
 use super::matches::{self, LENGTH, Outcome, Plan};
 use super::{Counters, Found, plan, run};
 
-/// Selection of runs.
+/// Selection of runs, by their seeds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Runs {
-    /// The first seed.
+    /// Seed of the first run.
     pub first: u64,
-    /// Their number.
+    /// Number of runs, one a seed.
     pub seeds: u64,
-    /// Number of threads.
+    /// Number of threads that play them.
     pub jobs: usize,
 }
 

@@ -21,11 +21,11 @@ pub enum Must {
 /// A robot that has to move and has not for [`LONGEST`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frozen {
-    /// The robot.
+    /// The robot that stands still.
     pub who: Who,
-    /// The reason.
+    /// Why it has to move.
     pub must: Must,
-    /// Its position, m.
+    /// Position of its centre, m.
     pub at: Point<Field>,
 }
 
@@ -36,7 +36,7 @@ const STILL: f32 = 0.04;
 /// Interval between recorded positions, s.
 const EVERY: f32 = 0.1;
 
-/// Monitors all robots.
+/// Monitors all robots of both teams; keeps their positions of the last seconds.
 #[derive(Clone, Debug, Default)]
 pub struct Stands {
     tracks: BTreeMap<Who, Track>,

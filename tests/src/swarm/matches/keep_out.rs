@@ -58,19 +58,19 @@ const BALL_QUICK: f32 = 0.5;
 pub struct Moment<'a> {
     /// s since the start.
     pub time: f32,
-    /// The field.
+    /// Dimensions of the field, m.
     pub field: &'a FieldSpec,
-    /// The phase.
+    /// Phase of the game, by team colour.
     pub phase: Phase<Colour>,
-    /// The ball.
+    /// Position of the ball, m.
     pub ball: Point<Field>,
-    /// m/s.
+    /// Speed of the ball, m/s.
     pub ball_speed: f32,
     /// Target position of its placement, m.
     pub placement: Option<Point<Field>>,
     /// Whether it has left its position since NORMAL_START.
     pub in_play: bool,
-    /// The keepers.
+    /// Keepers of yellow and blue.
     pub keepers: [Who; 2],
     /// Yellow's and blue's own goals.
     pub own: [GoalEnd; 2],
@@ -81,9 +81,9 @@ pub struct Moment<'a> {
 /// A robot in a region.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Within {
-    /// The robot.
+    /// The robot in the region.
     pub who: Who,
-    /// The region.
+    /// Rule that forbids the region.
     pub why: Why,
     /// Depth within it, m.
     pub depth: f32,
@@ -155,7 +155,7 @@ pub struct Broken {
     pub beyond: f32,
 }
 
-/// Monitors all robots.
+/// Monitors all robots of both teams, region by region.
 #[derive(Clone, Debug, Default)]
 pub struct KeepOuts {
     /// Since when each robot is in each region, s, the maximum depth, and whether it was reported.

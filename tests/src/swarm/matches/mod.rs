@@ -26,7 +26,7 @@ pub use run::{BLOCKED_LONGEST, config, play};
 /// Length of a match, ms.
 pub const LENGTH: u32 = 60_000;
 
-/// A violated property.
+/// A violated property, with its evidence.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Broken {
     /// A robot stayed at a forbidden position.
@@ -75,11 +75,11 @@ fn bare(phase: Phase<Colour>) -> String {
 /// A violated property, with time and phase.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
-    /// Time, ms.
+    /// Time since the match's start, ms.
     pub ms: u32,
-    /// The phase.
+    /// Phase in which it was found.
     pub phase: Phase<Colour>,
-    /// The violation.
+    /// The property and its evidence.
     pub broken: Broken,
 }
 
@@ -129,14 +129,14 @@ pub struct Outcome {
     /// Numbers of penalties, kick-offs and free kicks that started, and of placements that succeeded and
     /// failed.
     pub begun: [u32; 5],
-    /// The match's hash.
+    /// Trace hash of the match.
     pub trace: String,
 }
 
 /// Results of many matches.
 #[derive(Clone, Debug, Default)]
 pub struct Sum {
-    /// Number of matches.
+    /// Number of matches played.
     pub matches: u32,
     /// Number of matches with each kind of violation.
     pub kinds: BTreeMap<String, u32>,
@@ -145,7 +145,7 @@ pub struct Sum {
 }
 
 impl Sum {
-    /// Adds a match.
+    /// Adds the result of one match.
     pub fn add(&mut self, outcome: &Outcome) {
         self.matches += 1;
         let mut kinds: Vec<String> = outcome.found.iter().map(Found::kind).collect();

@@ -8,12 +8,12 @@ use hil_sim::Stream;
 use protocol::RobotId;
 use rules::{Colour, League};
 
-/// A manual act.
+/// A manual act during a match.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Act {
     /// A yellow card for this playing time, ms.
     Yellow(Colour, u32),
-    /// A red card.
+    /// A red card for that team.
     Red(Colour),
     /// The team names this robot its keeper.
     Keeper(Colour, RobotId),
@@ -25,9 +25,9 @@ pub enum Act {
     FreeKick(Colour, Point<Field>),
     /// A force start there, likewise.
     ForceStart(Point<Field>),
-    /// HALT until [`Act::GoOn`].
+    /// HALT, which lasts until [`Act::GoOn`].
     Halt,
-    /// STOP until [`Act::GoOn`].
+    /// STOP, which lasts until [`Act::GoOn`].
     Stop,
     /// The game continues by itself.
     GoOn,
@@ -63,16 +63,16 @@ impl fmt::Display for Act {
     }
 }
 
-/// A match.
+/// A match: its settings and manual acts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// Its seed.
+    /// Seed from which everything is drawn.
     pub seed: u64,
     /// Division A or B.
     pub league: League,
     /// Whether the teams change ends in the middle of it.
     pub half_time: bool,
-    /// Its length, ms.
+    /// Length of the match, ms.
     pub length: u32,
     /// The manual acts with their times, in order.
     pub acts: Vec<(u32, Act)>,

@@ -31,7 +31,7 @@ const CARRIED: f32 = 0.1;
 /// Maximum number of findings kept per match.
 const MOST: usize = 40;
 
-/// The match's settings.
+/// The settings of a plan's match.
 pub fn config(plan: &Plan) -> GameConfig {
     let mut config = GameConfig::new(plan.league, plan.seed, f64::from(plan.length) / 1000.0);
     if !plan.half_time {
