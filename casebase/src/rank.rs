@@ -24,7 +24,7 @@ pub struct Match {
     pub similarity: f32,
     /// −ln sim_B: similarities are compared by it.
     pub exponent: f32,
-    /// Adaptation cost, mm.
+    /// Adaptation cost: distances to the adapted positions, mm.
     pub cost: f32,
     /// 1 − max μ over legs and opponents: 1 where no opponent is abreast of any leg. Computed only where
     /// paths are fuzzy, else 1.

@@ -7,7 +7,7 @@
 
 use super::parameters::{BallParameters, CameraParameters, NoiseParameters};
 
-/// The imitated simulator.
+/// The simulator that is imitated on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Profile {
     /// This simulator's own behaviour.

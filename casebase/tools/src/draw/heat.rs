@@ -16,7 +16,7 @@ pub struct HeatMap<'a> {
     pub area: [PointMm; 2],
     /// Number of cells along x.
     pub columns: usize,
-    /// Cells along y.
+    /// Number of cells along y.
     pub rows: usize,
     /// One value a cell, row by row from the minimum y, each from the minimum x: `values[row * columns +
     /// column]`. A value that is `None`, not finite or missing is drawn as unknown.

@@ -14,7 +14,7 @@ use protocol::Duration;
 
 use crate::pins;
 
-/// Coil to fire.
+/// The coil that a pulse fires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coil {
     /// The coil of the flat kicker.
