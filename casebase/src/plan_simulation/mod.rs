@@ -31,11 +31,11 @@ pub trait Script {
 
 /// The league's parameters of kicked balls.
 pub trait Kicks {
-    /// A kick kind.
+    /// The kick kind with this id; `None` if unknown.
     fn kick(&self, id: KickId) -> Option<Kick>;
     /// The radii of passes.
     fn pass(&self) -> Pass;
-    /// The field.
+    /// Dimensions of the league's field, mm.
     fn field(&self) -> FieldMm;
 }
 

@@ -84,9 +84,9 @@ pub struct Seen {
 
 /// A watchdog that resets the computer unless it is fed.
 pub trait Watchdog {
-    /// Time-out.
+    /// Time without feeding after which it resets the chip.
     const PATIENCE: Duration;
 
-    /// Restarts its time-out.
+    /// Feeds it: restarts its time-out.
     fn feed(&mut self);
 }

@@ -14,15 +14,15 @@ use crate::four_legged::parameters::{ParameterError, numbers, within};
 numbers! {
     /// The ball on the field surface and in the air.
     BallParameters in "ball" {
-        /// m.
+        /// m, of the ball.
         radius: 0.005, 0.2;
-        /// kg.
+        /// kg, of the ball.
         mass: 0.001, 1.0;
         /// m/s² while it slides.
         slide: TINY, 100.0;
         /// m/s² while it rolls.
         roll: TINY, 10.0;
-        /// m/s².
+        /// m/s², downwards on a flying ball.
         gravity: 0.1, 100.0;
         /// Share of the speed along the ground that is kept at the first landing.
         hop_along: 0.0, 1.0;
@@ -65,13 +65,13 @@ numbers! {
         forward: 0.1, 100.0;
         /// m/s², speeding up to the sides.
         side: 0.1, 100.0;
-        /// m/s², slowing down.
+        /// m/s², slowing down in any direction.
         brake: 0.1, 100.0;
-        /// rad/s².
+        /// rad/s², speeding up and slowing down a turn.
         turn: 0.1, 1000.0;
-        /// m/s.
+        /// m/s, greatest speed of the centre.
         speed: 0.1, SPEED_MAX;
-        /// rad/s.
+        /// rad/s, greatest turning rate.
         turn_speed: 0.1, 100.0;
         /// m/s of a wheel that runs free.
         rim_speed: 0.1, 100.0;
@@ -80,7 +80,7 @@ numbers! {
         /// s without an order until the robot brakes.
         order_lasts: 0.001, 1e6;
     }
-    /// The kicker.
+    /// The kicker: speeds, scatter, charging.
     KickParameters in "kick" {
         /// m/s, the strongest flat kick.
         flat: 0.0, BALL_SPEED_MAX;
@@ -99,7 +99,7 @@ numbers! {
         /// m between ball and front.
         reach: 0.0, 0.1;
     }
-    /// The dribbler's roller.
+    /// The dribbler's roller and its sensor.
     DribblerParameters in "dribbler" {
         /// m between ball and front where it still touches.
         reach: 0.0, 0.1;
@@ -118,19 +118,19 @@ numbers! {
         /// m between ball and front where the break-beam sensor still detects it.
         barrier: 0.0, 0.1;
     }
-    /// The battery.
+    /// The battery: voltages and loads.
     BatteryParameters in "battery" {
-        /// V when full.
+        /// V at the terminals when full.
         full: 0.1, 1000.0;
-        /// V when empty.
+        /// V at the terminals when empty.
         empty: 0.0, 1000.0;
         /// J from full to empty.
         energy: 1.0, 1e9;
-        /// W, standing.
+        /// W of a standing robot.
         idle: 0.0, 1e4;
         /// W more at 1 m/s.
         drive: 0.0, 1e4;
-        /// J a kick.
+        /// J of a single kick.
         kick: 0.0, 1e4;
     }
     /// Errors of cameras and sensors.
@@ -151,7 +151,7 @@ numbers! {
         hidden_ball: 0.0, 1.0;
         /// Share of the measured speed.
         odometry: 0.0, 1.0;
-        /// rad/s.
+        /// rad/s, of the measured turning rate.
         gyro: 0.0, 10.0;
     }
 }

@@ -50,9 +50,9 @@ messages! {
     /// A robot by shell number and team, as the game controller and the simulation protocol name it.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct RobotId {
-        /// Shell number, 0–15.
+        /// Shell number of the robot, 0–15.
         id: Option<u32> [uint32, optional] = 1;
-        /// Its team, [`Team`].
+        /// Team of the robot, [`Team`].
         team: Option<i32> [enumeration = "Team", optional] = 2;
     }
 
@@ -61,14 +61,14 @@ messages! {
     pub struct Any {
         /// Type of `value`, `type.googleapis.com/` and the full name of the message.
         type_url: Option<String> [string, optional] = 1;
-        /// The message, encoded.
+        /// The message in protobuf's encoding.
         value: Option<Vec<u8>> [bytes = "vec", optional] = 2;
     }
 
     /// `google.protobuf.Duration`: seconds and nanoseconds.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct Duration {
-        /// Whole seconds.
+        /// Whole seconds, of either sign.
         seconds: Option<i64> [int64, optional] = 1;
         /// The rest, ns, of the same sign.
         nanos: Option<i32> [int32, optional] = 2;

@@ -23,9 +23,9 @@ messages! {
         command_counter: u32 [uint32, required] = 5;
         /// When the command was given, µs, Unix time.
         command_timestamp: u64 [uint64, required] = 6;
-        /// The yellow team.
+        /// State of the yellow team.
         yellow: TeamInfo [message, required] = 7;
-        /// The blue team.
+        /// State of the blue team.
         blue: TeamInfo [message, required] = 8;
         /// Where the ball is to be placed, mm. Only to be read in ball placement (README, trap 3).
         designated_position: Option<Point> [message, optional] = 9;
@@ -52,15 +52,15 @@ messages! {
     pub struct TeamInfo {
         /// The team's name; empty while unknown.
         name: String [string, required] = 1;
-        /// Goals.
+        /// Goals in normal play and overtime.
         score: u32 [uint32, required] = 2;
-        /// Red cards.
+        /// Red cards since the match's start.
         red_cards: u32 [uint32, required] = 3;
         /// Time left of each active yellow card, µs.
         yellow_card_times: Vec<u32> [uint32, repeated] = 4;
         /// Yellow cards ever given.
         yellow_cards: u32 [uint32, required] = 5;
-        /// Time-outs left.
+        /// Time-outs left, without the running one.
         timeouts: u32 [uint32, required] = 6;
         /// Time left for time-outs, µs.
         timeout_time: u32 [uint32, required] = 7;
@@ -100,11 +100,11 @@ messages! {
     /// The same event as several automatic referees saw it.
     #[derive(Clone, PartialEq, Message)]
     pub struct GameEventProposalGroup {
-        /// Each one's account.
+        /// The report of each automatic referee.
         game_events: Vec<GameEvent> [message, repeated] = 1;
         /// Was it accepted? Absent while open.
         accepted: Option<bool> [bool, optional] = 2;
-        /// Which group.
+        /// Identifier of the group, unique.
         id: Option<String> [string, optional] = 3;
     }
 }

@@ -15,7 +15,7 @@ messages! {
         uuid: String [string, required] = 1;
         /// The source in words.
         source_name: Option<String> [string, optional] = 2;
-        /// What it believes.
+        /// The field as this source estimates it.
         tracked_frame: Option<TrackedFrame> [message, optional] = 3;
     }
 
@@ -39,9 +39,9 @@ messages! {
     /// A ball as a tracker estimates it.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct TrackedBall {
-        /// Where, m.
+        /// Position of its centre, m.
         pos: Vector3 [message, required] = 1;
-        /// How fast, m/s.
+        /// Velocity in space, m/s.
         vel: Option<Vector3> [message, optional] = 2;
         /// How well it was seen of late, 0–1.
         visibility: Option<f32> [float, optional] = 3;
@@ -60,16 +60,16 @@ messages! {
         stop_timestamp: Option<f64> [double, optional] = 4;
         /// Where it will be at rest, m.
         stop_pos: Option<Vector2> [message, optional] = 5;
-        /// Who kicked.
+        /// The robot that kicked it.
         robot_id: Option<TrackedRobotId> [message, optional] = 6;
     }
 
     /// A robot as a tracker estimates it.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct TrackedRobot {
-        /// Which.
+        /// Robot by shell number and team.
         robot_id: TrackedRobotId [message, required] = 1;
-        /// Where, m.
+        /// Position of its centre, m.
         pos: Vector2 [message, required] = 2;
         /// Heading, rad, counter-clockwise from +x.
         orientation: f32 [float, required] = 3;
@@ -84,9 +84,9 @@ messages! {
     /// A robot by shell number and team, as trackers name it.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct TrackedRobotId {
-        /// Shell number, 0–15.
+        /// Shell number of the robot, 0–15.
         id: u32 [uint32, required] = 1;
-        /// Its team, [`TeamColor`].
+        /// Team of the robot, [`TeamColor`].
         team_color: i32 [enumeration = "TeamColor", required] = 2;
     }
 }

@@ -103,7 +103,7 @@ parts! {
         rx_dma: DMA1_CH1, "carries what comes";
     }
 
-    /// Indicator lamps.
+    /// Indicator lamps on the board.
     Lamps lamps {
         alive: PB0, "out: green, blinks as long as the robot runs";
         alarm: PB14, "out: red, lit when no host can command the robot";

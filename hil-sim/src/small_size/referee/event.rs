@@ -118,31 +118,31 @@ kinds! {
     } = "aimless_kick",
     /// The ball is in a goal; not judged yet.
     PossibleGoal {
-        /// The shot.
+        /// The shot that brought it there.
         shot: Shot,
     } = "possible_goal",
-    /// The goal counts.
+    /// The goal counts: the score rises.
     Goal {
         /// The shot; `None` where the goal is awarded for a foul in a penalty.
         shot: Option<Shot>,
     } = "goal",
     /// The goal does not count.
     InvalidGoal {
-        /// The shot.
+        /// The shot that brought it there.
         shot: Shot,
-        /// The reason.
+        /// Rule by which it does not count.
         reason: Invalid,
     } = "invalid_goal",
     /// The ball stayed where it was.
     NoProgress {
-        /// Duration, s.
+        /// Time that it stayed there, s.
         duration: f32,
     } = "no_progress_in_game",
     /// The kicker of a kick-off or free kick touched the ball again.
     DoubleTouch = "attacker_double_touched_ball",
     /// The ball stayed in a defence area, held by the keeper of its team.
     KeeperHeldBall {
-        /// Duration, s.
+        /// Time that it was held, s.
         duration: f32,
     } = "keeper_held_ball",
     /// The ball was kicked over the wall around the field surface; the place is that of the kick.
@@ -151,7 +151,7 @@ kinds! {
     BallTooFast {
         /// Speed in 3-D, m/s.
         speed: f32,
-        /// Whether it flew.
+        /// Whether the ball flew after the kick.
         chipped: bool,
     } = "bot_kicked_ball_too_fast",
     /// Dribbled farther than allowed; the place is the start of the contact.
@@ -184,7 +184,7 @@ kinds! {
     } = "defender_too_close_to_kick_point",
     /// A robot faster than 1.5 m/s during a stop.
     TooFastInStop {
-        /// Its speed, m/s.
+        /// Speed of the robot, m/s.
         speed: f32,
     } = "bot_too_fast_in_stop",
     /// A robot stood too near the line from ball to target in a placement of the other team.
@@ -202,9 +202,9 @@ kinds! {
     } = "bot_crash_unique",
     /// Two robots of different teams collided; both are at fault.
     CrashDrawn {
-        /// Yellow's robot.
+        /// Number of yellow's robot.
         yellow: RobotId,
-        /// Blue's robot.
+        /// Number of blue's robot.
         blue: RobotId,
         /// Difference of the velocities along the line between the two, m/s.
         crash_speed: f32,
@@ -217,31 +217,31 @@ kinds! {
     Pushed {
         /// The other robot's shell number.
         victim: RobotId,
-        /// Distance, m.
+        /// Distance that it was pushed, m.
         distance: f32,
     } = "bot_pushed_bot",
     /// A team's robots enclosed the ball.
     HeldBall {
-        /// Duration, s.
+        /// Time that they held it, s.
         duration: f32,
     } = "bot_held_ball_deliberately",
     /// More robots than allowed, for longer than the time for taking one off.
     TooManyRobots {
-        /// Allowed number.
+        /// Number of robots allowed.
         allowed: u32,
-        /// Actual number.
+        /// Number of robots on the field.
         on_field: u32,
         /// Position of the ball, m.
         ball: Point<Field>,
     } = "too_many_robots",
     /// A penalty gave no goal.
     PenaltyFailed {
-        /// The reason.
+        /// Why it is over without a goal.
         reason: PenaltyEnd,
     } = "penalty_kick_failed",
     /// The ball is at its target.
     PlacementSucceeded {
-        /// Duration, s.
+        /// Time from the order to the end, s.
         took: f32,
         /// Distance from ball to target, m.
         precision: f32,
@@ -257,20 +257,20 @@ kinds! {
     } = "placement_failed",
     /// Every third foul: a yellow card.
     MultipleFouls {
-        /// The three fouls.
+        /// The three fouls, oldest first.
         caused_by: Vec<Event>,
     } = "multiple_fouls",
     /// A third active yellow card: it turns red.
     MultipleCards = "multiple_cards",
     /// A robot moved more than 2 s after a halt (ours: the league's automatic referees do not check it).
     MovedInHalt {
-        /// Its speed, m/s.
+        /// Speed of the robot, m/s.
         speed: f32,
     } = "bot_moved_in_halt",
     /// The match has stood for longer than the referee's patience (ours: the league's game controller waits
     /// without a message).
     Blocked {
-        /// The obstacle.
+        /// What prevents the game from continuing.
         reason: Reason,
     } = "blocked",
     /// A robot within 0.5 m of the ball in stop after 2 s (ours: the rules leave it to the human referee).

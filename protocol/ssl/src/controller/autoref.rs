@@ -10,7 +10,7 @@ messages! {
     /// An automatic referee's first message.
     #[derive(Clone, PartialEq, Message)]
     pub struct AutoRefRegistration {
-        /// Its name.
+        /// Name of the automatic referee, unique at the controller.
         identifier: String [string, required] = 1;
         /// Proof, where the controller has its key.
         signature: Option<Signature> [message, optional] = 2;
@@ -19,9 +19,9 @@ messages! {
     /// An automatic referee's message to the controller: an event that it saw.
     #[derive(Clone, PartialEq, Message)]
     pub struct AutoRefToController {
-        /// Proof.
+        /// Proof that the sender is registered.
         signature: Option<Signature> [message, optional] = 1;
-        /// The event.
+        /// The event that it reports.
         game_event: Option<GameEvent> [message, optional] = 2;
     }
 

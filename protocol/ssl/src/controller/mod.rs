@@ -18,7 +18,7 @@ messages! {
     pub struct ControllerReply {
         /// Accepted or not, [`StatusCode`].
         status_code: Option<i32> [enumeration = "StatusCode", optional] = 1;
-        /// Why not.
+        /// Why it was not accepted, as text.
         reason: Option<String> [string, optional] = 2;
         /// What the next signature must be over.
         next_token: Option<String> [string, optional] = 3;

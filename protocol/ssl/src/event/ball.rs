@@ -22,7 +22,7 @@ messages! {
     pub struct AimlessKick {
         /// Who did it, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
-        /// Who kicked.
+        /// Shell number of the robot that touched it last.
         by_bot: Option<u32> [uint32, optional] = 2;
         /// Where it crossed the line, m.
         location: Option<Vector2> [message, optional] = 3;
@@ -35,7 +35,7 @@ messages! {
     pub struct Goal {
         /// The team that scores.
         by_team: i32 [enumeration = "Team", required] = 1;
-        /// Who kicked.
+        /// Shell number of the robot that kicked.
         kicking_bot: Option<u32> [uint32, optional] = 2;
         /// Where it crossed the line, m.
         location: Option<Vector2> [message, optional] = 3;
@@ -58,7 +58,7 @@ messages! {
     pub struct IndirectGoal {
         /// Who did it, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
-        /// Who kicked.
+        /// Shell number of the robot that kicked.
         by_bot: Option<u32> [uint32, optional] = 2;
         /// Where it crossed the line, m.
         location: Option<Vector2> [message, optional] = 3;
@@ -71,7 +71,7 @@ messages! {
     pub struct ChippedGoal {
         /// Who did it, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
-        /// Who kicked.
+        /// Shell number of the robot that kicked.
         by_bot: Option<u32> [uint32, optional] = 2;
         /// Where it crossed the line, m.
         location: Option<Vector2> [message, optional] = 3;
@@ -92,7 +92,7 @@ messages! {
         location: Option<Vector2> [message, optional] = 3;
         /// The ball's speed after the kick, in space, m/s.
         initial_ball_speed: Option<f32> [float, optional] = 4;
-        /// Did it fly?
+        /// Whether the ball flew after the kick.
         chipped: Option<bool> [bool, optional] = 5;
     }
 
@@ -116,7 +116,7 @@ messages! {
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
-        /// Where, m.
+        /// Position of the robot, m.
         location: Option<Vector2> [message, optional] = 3;
         /// How deep it was in, m.
         distance: Option<f32> [float, optional] = 4;
@@ -129,7 +129,7 @@ messages! {
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
-        /// Where, m.
+        /// Position of the ball when it was first touched, m.
         location: Option<Vector2> [message, optional] = 3;
     }
 
@@ -140,9 +140,9 @@ messages! {
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
-        /// Where, m.
+        /// Position of the ball, m.
         location: Option<Vector2> [message, optional] = 3;
-        /// How long, s.
+        /// Time that the robot held the ball, s.
         duration: Option<f32> [float, optional] = 4;
     }
 
@@ -151,9 +151,9 @@ messages! {
     pub struct KeeperHeldBall {
         /// Who did it, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
-        /// Where, m.
+        /// Position of the ball, m.
         location: Option<Vector2> [message, optional] = 2;
-        /// How long, s.
+        /// Time that the keeper held the ball, s.
         duration: Option<f32> [float, optional] = 3;
     }
 
@@ -173,7 +173,7 @@ messages! {
     pub struct NoProgressInGame {
         /// Where the ball lay, m.
         location: Option<Vector2> [message, optional] = 1;
-        /// How long, s.
+        /// Time that was waited, s.
         time: Option<f32> [float, optional] = 2;
     }
 
@@ -224,7 +224,7 @@ messages! {
         by_team: i32 [enumeration = "Team", required] = 1;
         /// Where the ball was, m.
         location: Option<Vector2> [message, optional] = 2;
-        /// Why, in words.
+        /// Why it failed, as text.
         reason: Option<String> [string, optional] = 3;
     }
 }

@@ -12,9 +12,9 @@ messages! {
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
-        /// Where, m.
+        /// Position of the robot, m.
         location: Option<Vector2> [message, optional] = 3;
-        /// Its speed, m/s.
+        /// Speed of the robot, m/s.
         speed: Option<f32> [float, optional] = 4;
     }
 
@@ -25,7 +25,7 @@ messages! {
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
-        /// Where, m.
+        /// Position of the robot, m.
         location: Option<Vector2> [message, optional] = 3;
         /// Robot to ball, without the robot's radius, m.
         distance: Option<f32> [float, optional] = 4;
@@ -34,11 +34,11 @@ messages! {
     /// Two robots crashed; the difference of speeds was small.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct BotCrashDrawn {
-        /// The yellow one.
+        /// Shell number of yellow's robot.
         bot_yellow: Option<u32> [uint32, optional] = 1;
-        /// The blue one.
+        /// Shell number of blue's robot.
         bot_blue: Option<u32> [uint32, optional] = 2;
-        /// Where, m.
+        /// Middle between the two robots, m.
         location: Option<Vector2> [message, optional] = 3;
         /// Relative speed along the line between them, m/s.
         crash_speed: Option<f32> [float, optional] = 4;
@@ -57,7 +57,7 @@ messages! {
         violator: Option<u32> [uint32, optional] = 2;
         /// The other one, of the other team.
         victim: Option<u32> [uint32, optional] = 3;
-        /// Where, m.
+        /// Middle between the two robots, m.
         location: Option<Vector2> [message, optional] = 4;
         /// Relative speed along the line between them, m/s.
         crash_speed: Option<f32> [float, optional] = 5;
@@ -74,11 +74,11 @@ messages! {
         by_team: i32 [enumeration = "Team", required] = 1;
         /// Who pushed, of `by_team`.
         violator: Option<u32> [uint32, optional] = 2;
-        /// Who was pushed.
+        /// Robot that was pushed, of the other team.
         victim: Option<u32> [uint32, optional] = 3;
-        /// Where, m.
+        /// Middle between the two robots, m.
         location: Option<Vector2> [message, optional] = 4;
-        /// How far, m.
+        /// Distance that it was pushed, m.
         pushed_distance: Option<f32> [float, optional] = 5;
     }
 
@@ -89,7 +89,7 @@ messages! {
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
-        /// Where, m.
+        /// Position of the robot, m.
         location: Option<Vector2> [message, optional] = 3;
         /// Where the ball was, m.
         ball_location: Option<Vector2> [message, optional] = 4;
@@ -102,7 +102,7 @@ messages! {
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
-        /// Where, m.
+        /// Where the parts were dropped, m.
         location: Option<Vector2> [message, optional] = 3;
         /// Where the ball was, m.
         ball_location: Option<Vector2> [message, optional] = 4;
@@ -115,7 +115,7 @@ messages! {
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
-        /// Where, m.
+        /// Position of the robot, m.
         location: Option<Vector2> [message, optional] = 3;
         /// Robot to the nearest point outside the area, m.
         distance: Option<f32> [float, optional] = 4;
@@ -128,7 +128,7 @@ messages! {
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
-        /// Where, m.
+        /// Position of the robot, m.
         location: Option<Vector2> [message, optional] = 3;
         /// How deep it was in, m.
         distance: Option<f32> [float, optional] = 4;
@@ -143,9 +143,9 @@ messages! {
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
-        /// Where, m.
+        /// Point of contact between the two robots, m.
         location: Option<Vector2> [message, optional] = 3;
-        /// Who was touched.
+        /// Robot that was touched, of the other team.
         victim: Option<u32> [uint32, optional] = 4;
     }
 
@@ -156,7 +156,7 @@ messages! {
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
-        /// Where, m.
+        /// Position of the robot, m.
         location: Option<Vector2> [message, optional] = 3;
         /// Robot to the area, m.
         distance: Option<f32> [float, optional] = 4;
@@ -171,7 +171,7 @@ messages! {
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
-        /// Where, m.
+        /// Position of the robot, m.
         location: Option<Vector2> [message, optional] = 3;
     }
 

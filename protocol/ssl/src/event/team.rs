@@ -18,7 +18,7 @@ messages! {
     pub struct MultipleFouls {
         /// Who did it, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
-        /// The fouls.
+        /// The fouls that were counted together.
         caused_game_events: Vec<GameEvent> [message, repeated] = 2;
     }
 
@@ -34,7 +34,7 @@ messages! {
     pub struct UnsportingBehaviorMinor {
         /// Who did it, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
-        /// What, in words.
+        /// What was seen, as text.
         reason: String [string, required] = 2;
     }
 
@@ -43,7 +43,7 @@ messages! {
     pub struct UnsportingBehaviorMajor {
         /// Who did it, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
-        /// What, in words.
+        /// What was seen, as text.
         reason: String [string, required] = 2;
     }
 

@@ -19,47 +19,47 @@ messages! {
     pub struct GrsimCommands {
         /// The sender's time, s; nobody reads it.
         timestamp: f64 [double, required] = 1;
-        /// True: for yellow.
+        /// True: the commands are for yellow's robots.
         isteamyellow: bool [bool, required] = 2;
-        /// One a robot.
+        /// One command for each robot.
         robot_commands: Vec<GrsimRobotCommand> [message, repeated] = 3;
     }
 
     /// What one robot shall do until the next command.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct GrsimRobotCommand {
-        /// Shell number, 0–15.
+        /// Shell number of the robot, 0–15.
         id: u32 [uint32, required] = 1;
         /// Kick along the ground, m/s; 0: none.
         kickspeedx: f32 [float, required] = 2;
         /// Kick upwards, m/s; with the above it makes a chip.
         kickspeedz: f32 [float, required] = 3;
-        /// Forward, m/s.
+        /// Velocity forward, m/s, robot frame.
         veltangent: f32 [float, required] = 4;
         /// To the left, m/s.
         velnormal: f32 [float, required] = 5;
-        /// Counter-clockwise, rad/s.
+        /// Turning rate, rad/s, counter-clockwise.
         velangular: f32 [float, required] = 6;
-        /// The dribbler turns.
+        /// Whether the dribbler turns, at full speed.
         spinner: bool [bool, required] = 7;
         /// The wheels' speeds below hold instead of the velocities above.
         wheelsspeed: bool [bool, required] = 8;
-        /// Front left, rad/s.
+        /// Front left wheel, rad/s.
         wheel1: Option<f32> [float, optional] = 9;
-        /// Back left, rad/s.
+        /// Back left wheel, rad/s.
         wheel2: Option<f32> [float, optional] = 10;
-        /// Back right, rad/s.
+        /// Back right wheel, rad/s.
         wheel3: Option<f32> [float, optional] = 11;
-        /// Front right, rad/s.
+        /// Front right wheel, rad/s.
         wheel4: Option<f32> [float, optional] = 12;
     }
 
     /// What is to be put somewhere else.
     #[derive(Clone, PartialEq, Message)]
     pub struct GrsimReplacement {
-        /// The ball.
+        /// New place of the ball; absent: it stays.
         ball: Option<GrsimBallReplacement> [message, optional] = 1;
-        /// Robots.
+        /// New places of robots; all others stay.
         robots: Vec<GrsimRobotReplacement> [message, repeated] = 2;
     }
 
@@ -70,9 +70,9 @@ messages! {
         x: Option<f64> [double, optional] = 1;
         /// To the left of +x, m.
         y: Option<f64> [double, optional] = 2;
-        /// m/s.
+        /// Velocity along +x, m/s.
         vx: Option<f64> [double, optional] = 3;
-        /// m/s.
+        /// Velocity along +y, m/s.
         vy: Option<f64> [double, optional] = 4;
     }
 
@@ -85,9 +85,9 @@ messages! {
         y: f64 [double, required] = 2;
         /// Heading, **degrees**, counter-clockwise from +x.
         dir: f64 [double, required] = 3;
-        /// Shell number, 0–15.
+        /// Shell number of the robot, 0–15.
         id: u32 [uint32, required] = 4;
-        /// True: yellow's.
+        /// True: a robot of yellow.
         yellowteam: bool [bool, required] = 5;
         /// False: it is switched off, and vision does not see it. Absent: on.
         turnon: Option<bool> [bool, optional] = 6;
@@ -96,20 +96,20 @@ messages! {
     /// To port 30011 (blue) or 30012 (yellow) of whoever commanded last: robots whose state changed.
     #[derive(Clone, PartialEq, Message)]
     pub struct RobotsStatus {
-        /// One a robot.
+        /// One state for each robot.
         robots_status: Vec<RobotStatus> [message, repeated] = 1;
     }
 
     /// State of one robot: contact with the ball, kicks.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct RobotStatus {
-        /// Shell number, 0–15.
+        /// Shell number of the robot, 0–15.
         robot_id: i32 [int32, required] = 1;
         /// The ball is at the dribbler.
         infrared: bool [bool, required] = 2;
         /// It kicks along the ground now.
         flat_kick: bool [bool, required] = 3;
-        /// It chips now.
+        /// It kicks a chip now.
         chip_kick: bool [bool, required] = 4;
     }
 }

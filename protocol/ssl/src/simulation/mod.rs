@@ -30,16 +30,16 @@ messages! {
     pub struct SimulatorError {
         /// For programs, of the simulator's own choice.
         code: Option<String> [string, optional] = 1;
-        /// For people.
+        /// Text for the operator of the sender.
         message: Option<String> [string, optional] = 2;
     }
 
     /// To port 10300: move things, or change settings.
     #[derive(Clone, PartialEq, Message)]
     pub struct SimulatorCommand {
-        /// Move things.
+        /// Move ball and robots, or change the speed.
         control: Option<SimulatorControl> [message, optional] = 1;
-        /// Change settings.
+        /// Change settings of the simulator.
         config: Option<SimulatorConfig> [message, optional] = 2;
     }
 
@@ -53,9 +53,9 @@ messages! {
     /// Move ball and robots, change the pace.
     #[derive(Clone, PartialEq, Message)]
     pub struct SimulatorControl {
-        /// Move the ball.
+        /// Move the ball; absent: it stays.
         teleport_ball: Option<TeleportBall> [message, optional] = 1;
-        /// Move robots.
+        /// Move these robots; all others stay.
         teleport_robot: Vec<TeleportRobot> [message, repeated] = 2;
         /// Simulated seconds a second: 1 is real time, 0 stands still.
         simulation_speed: Option<f32> [float, optional] = 3;
@@ -68,13 +68,13 @@ messages! {
         x: Option<f32> [float, optional] = 1;
         /// To the left of +x, m.
         y: Option<f32> [float, optional] = 2;
-        /// Up, m.
+        /// Height above the ground, m.
         z: Option<f32> [float, optional] = 3;
         /// Velocity along x, m/s.
         vx: Option<f32> [float, optional] = 4;
         /// Velocity along y, m/s.
         vy: Option<f32> [float, optional] = 5;
-        /// Velocity upwards, m/s.
+        /// Velocity upwards, m/s; negative: downwards.
         vz: Option<f32> [float, optional] = 6;
         /// Push robots out of the way instead of putting the ball inside one.
         teleport_safely: Option<bool> [bool, optional] = 7;
@@ -87,7 +87,7 @@ messages! {
     /// Move a robot, or take it away.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct TeleportRobot {
-        /// Which.
+        /// Robot by shell number and team.
         id: RobotId [message, required] = 1;
         /// Along the field's length, m.
         x: Option<f32> [float, optional] = 2;
@@ -130,13 +130,13 @@ messages! {
     /// What a robot is like.
     #[derive(Clone, PartialEq, Message)]
     pub struct RobotSpecs {
-        /// Which.
+        /// Robot by shell number and team.
         id: RobotId [message, required] = 1;
         /// Radius of its hull, m.
         radius: Option<f32> [float, optional, default = "0.09"] = 2;
         /// Height of its hull, m.
         height: Option<f32> [float, optional, default = "0.15"] = 3;
-        /// Mass, kg.
+        /// Mass of the whole robot, kg.
         mass: Option<f32> [float, optional] = 4;
         /// Fastest flat kick, m/s.
         max_linear_kick_speed: Option<f32> [float, optional] = 7;
@@ -155,15 +155,15 @@ messages! {
     /// Bounds of a robot's motion.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct RobotLimits {
-        /// Getting faster, m/s².
+        /// Acceleration when speeding up, m/s².
         acc_speedup_absolute_max: Option<f32> [float, optional] = 1;
-        /// Turning faster, rad/s².
+        /// Angular acceleration of a faster turn, rad/s².
         acc_speedup_angular_max: Option<f32> [float, optional] = 2;
-        /// Braking, m/s².
+        /// Deceleration when braking, m/s².
         acc_brake_absolute_max: Option<f32> [float, optional] = 3;
         /// Braking a turn, rad/s².
         acc_brake_angular_max: Option<f32> [float, optional] = 4;
-        /// Speed, m/s.
+        /// Speed in any direction, m/s.
         vel_absolute_max: Option<f32> [float, optional] = 5;
         /// Rate of turn, rad/s.
         vel_angular_max: Option<f32> [float, optional] = 6;
@@ -172,13 +172,13 @@ messages! {
     /// Where the wheels' axles point, rad, counter-clockwise from the robot's front.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct RobotWheelAngles {
-        /// Front right, rad.
+        /// Front right wheel, rad.
         front_right: f32 [float, required] = 1;
-        /// Back right, rad.
+        /// Back right wheel, rad.
         back_right: f32 [float, required] = 2;
-        /// Back left, rad.
+        /// Back left wheel, rad.
         back_left: f32 [float, required] = 3;
-        /// Front left, rad.
+        /// Front left wheel, rad.
         front_left: f32 [float, required] = 4;
     }
 

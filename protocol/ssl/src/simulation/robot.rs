@@ -10,16 +10,16 @@ messages! {
     /// To ports 10301 (blue) and 10302 (yellow): one command a robot.
     #[derive(Clone, PartialEq, Message)]
     pub struct RobotControl {
-        /// Commands.
+        /// Commands, at most one for each robot.
         robot_commands: Vec<RobotCommand> [message, repeated] = 1;
     }
 
     /// What one robot shall do until the next command.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct RobotCommand {
-        /// Shell number, 0–15.
+        /// Shell number of the robot, 0–15.
         id: u32 [uint32, required] = 1;
-        /// How to move.
+        /// Motion command; if absent, some simulators brake, others keep the last one.
         move_command: Option<RobotMoveCommand> [message, optional] = 2;
         /// Kick as soon as the ball is there, at this speed in space, m/s; 0 or absent: no kick.
         kick_speed: Option<f32> [float, optional] = 3;
@@ -56,24 +56,24 @@ messages! {
     /// Speed of each wheel at its rim.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct MoveWheelVelocity {
-        /// Front right, m/s.
+        /// Front right wheel, m/s.
         front_right: f32 [float, required] = 1;
-        /// Back right, m/s.
+        /// Back right wheel, m/s.
         back_right: f32 [float, required] = 2;
-        /// Back left, m/s.
+        /// Back left wheel, m/s.
         back_left: f32 [float, required] = 3;
-        /// Front left, m/s.
+        /// Front left wheel, m/s.
         front_left: f32 [float, required] = 4;
     }
 
     /// Velocity in the robot's frame.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct MoveLocalVelocity {
-        /// Forward, m/s.
+        /// Velocity forward, m/s, robot frame.
         forward: f32 [float, required] = 1;
         /// To the left, m/s.
         left: f32 [float, required] = 2;
-        /// Counter-clockwise, rad/s.
+        /// Turning rate, rad/s, counter-clockwise.
         angular: f32 [float, required] = 3;
     }
 
@@ -84,7 +84,7 @@ messages! {
         x: f32 [float, required] = 1;
         /// To the left of +x, m/s.
         y: f32 [float, required] = 2;
-        /// Counter-clockwise, rad/s.
+        /// Turning rate, rad/s, counter-clockwise.
         angular: f32 [float, required] = 3;
     }
 
@@ -100,7 +100,7 @@ messages! {
     /// What one robot feels.
     #[derive(Clone, PartialEq, Message)]
     pub struct RobotFeedback {
-        /// Shell number, 0–15.
+        /// Shell number of the robot, 0–15.
         id: u32 [uint32, required] = 1;
         /// Is the ball at the dribbler?
         dribbler_ball_contact: Option<bool> [bool, optional] = 2;

@@ -52,7 +52,7 @@ messages! {
         t_capture: f64 [double, required] = 2;
         /// When the packet was sent, s, on the same clock.
         t_sent: f64 [double, required] = 3;
-        /// Which camera.
+        /// Number of the camera, from 0.
         camera_id: u32 [uint32, required] = 4;
         /// Every orange blob: none or two are normal.
         balls: Vec<DetectionBall> [message, repeated] = 5;

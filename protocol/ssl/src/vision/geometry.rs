@@ -19,7 +19,7 @@ messages! {
         name: String [string, required] = 1;
         /// One end, on the middle of the line's width.
         p1: Vector2f [message, required] = 2;
-        /// The other end.
+        /// The other end, likewise.
         p2: Vector2f [message, required] = 3;
         /// Width of the paint, mm.
         thickness: f32 [float, required] = 4;
@@ -32,7 +32,7 @@ messages! {
     pub struct FieldCircularArc {
         /// Which arc, as `CenterCircle`.
         name: String [string, required] = 1;
-        /// Its centre.
+        /// Centre of the circle, mm.
         center: Vector2f [message, required] = 2;
         /// Its radius, mm, to the middle of the line's width.
         radius: f32 [float, required] = 3;
@@ -61,7 +61,7 @@ messages! {
         boundary_width: i32 [int32, required] = 5;
         /// Straight lines, in any order.
         field_lines: Vec<FieldLineSegment> [message, repeated] = 6;
-        /// Round lines.
+        /// Round lines, in any order.
         field_arcs: Vec<FieldCircularArc> [message, repeated] = 7;
         /// Defence area along x, mm.
         penalty_area_depth: Option<i32> [int32, optional] = 8;
@@ -88,9 +88,9 @@ messages! {
     /// Where a camera hangs and how it looks.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct GeometryCameraCalibration {
-        /// Which camera.
+        /// Number of the camera, from 0.
         camera_id: u32 [uint32, required] = 1;
-        /// Focal length, px.
+        /// Focal length of the pinhole model, px.
         focal_length: f32 [float, required] = 2;
         /// Column of the optical axis, px.
         principal_point_x: f32 [float, required] = 3;
@@ -100,17 +100,17 @@ messages! {
         distortion: f32 [float, required] = 5;
         /// Rotation from field to camera: quaternion, x. Simulators send 0.7 four times, which is not normalised.
         q0: f32 [float, required] = 6;
-        /// Quaternion, y.
+        /// Component y of the quaternion.
         q1: f32 [float, required] = 7;
-        /// Quaternion, z.
+        /// Component z of the quaternion.
         q2: f32 [float, required] = 8;
-        /// Quaternion, w.
+        /// Component w of the quaternion.
         q3: f32 [float, required] = 9;
         /// Translation from field to camera, mm, camera frame.
         tx: f32 [float, required] = 10;
-        /// Translation, y, mm.
+        /// Component y of the translation, mm.
         ty: f32 [float, required] = 11;
-        /// Translation, z, mm.
+        /// Component z of the translation, mm.
         tz: f32 [float, required] = 12;
         /// Where the camera hangs, along x, mm, field frame.
         derived_camera_world_tx: Option<f32> [float, optional] = 13;
@@ -172,16 +172,16 @@ messages! {
     /// How the ball moves here. Simulators differ widely: read it, hard-code nothing.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct GeometryModels {
-        /// On the ground.
+        /// Model of a ball on the ground.
         straight_two_phase: Option<BallModelStraightTwoPhase> [message, optional] = 1;
-        /// In the air.
+        /// Model of a ball in the air.
         chip_fixed_loss: Option<BallModelChipFixedLoss> [message, optional] = 2;
     }
 
     /// The field, its cameras and its ball.
     #[derive(Clone, PartialEq, Message)]
     pub struct GeometryData {
-        /// Measures and lines.
+        /// Measures and lines of the field, mm.
         field: GeometryFieldSize [message, required] = 1;
         /// Cameras: all of them, or one a packet; merge by camera id.
         calib: Vec<GeometryCameraCalibration> [message, repeated] = 2;

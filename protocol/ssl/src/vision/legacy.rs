@@ -44,9 +44,9 @@ messages! {
     /// The field and its cameras.
     #[derive(Clone, PartialEq, Message)]
     pub struct GeometryData {
-        /// Measures.
+        /// Measures of the field, mm.
         field: GeometryFieldSize [message, required] = 1;
-        /// Cameras.
+        /// Calibrations of the cameras, by camera id.
         calib: Vec<GeometryCameraCalibration> [message, repeated] = 2;
     }
 
