@@ -17,7 +17,7 @@ pub enum Seen {
     Sent(RobotId, Beacon),
     /// A robot received this beacon of another.
     Received(RobotId, RobotId, Beacon),
-    /// A robot crashed: its computer stands still.
+    /// A robot crashed: its computer stopped.
     Crashed(RobotId),
     /// A robot boots into a new epoch.
     Booted(RobotId),

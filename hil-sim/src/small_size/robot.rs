@@ -175,7 +175,7 @@ impl Robot {
         &self.traits
     }
 
-    /// Limits of its wheels' drive, wear of this robot included.
+    /// Limits of its wheels' drive, differences from the nominal robot included.
     pub fn limits(&self) -> &DriveParameters {
         &self.limits
     }

@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Team {
-    /// The team in blue.
+    /// The team with blue centre dots.
     Blue,
-    /// The team in yellow.
+    /// The team with yellow centre dots.
     Yellow,
 }
 

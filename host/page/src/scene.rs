@@ -144,7 +144,7 @@ pub struct Intent {
     pub ball_to: Option<[f32; 2]>,
 }
 
-/// A timer of a robot: how long a role or state lasts.
+/// A timer of a robot: how long a role or state has lasted.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Timer {
     /// Name with the role or state.

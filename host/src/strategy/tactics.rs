@@ -39,7 +39,7 @@ impl Tactics {
         attack: false,
         bridge: false,
     };
-    /// All parts of the paper, as our team plays.
+    /// All parts of the paper; the default has fewer.
     pub const ALL: Self = Self {
         threats: true,
         second_level: true,

@@ -35,7 +35,7 @@ impl<'b> Tab<'b> {
         self.browser.ask(Some(&self.session), method, what)
     }
 
-    /// Loads an address, without waiting until it is there.
+    /// Loads an address, without waiting until it is loaded.
     pub fn go(&mut self, url: &str) -> Result<(), BrowserError> {
         self.ask("Page.navigate", &json!({ "url": url })).map(drop)
     }

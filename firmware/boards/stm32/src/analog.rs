@@ -28,7 +28,7 @@ impl Analog {
         }
     }
 
-    /// Battery voltage, V, behind the input's divider; blocks some 10 µs.
+    /// Battery voltage, V, from that behind the input's divider; blocks some 10 µs.
     pub fn battery(&mut self) -> f32 {
         share(self.converter.blocking_read(&mut self.battery, TIME)) * SUPPLY * BATTERY_DIVIDER
     }

@@ -24,9 +24,9 @@ pub struct Sample {
     pub tipped: bool,
     /// The beam is interrupted.
     pub ball: bool,
-    /// Battery voltage, V; NaN before the first reading.
+    /// Battery voltage, V; NaN without a valid reading.
     pub battery: f32,
-    /// Voltage of the kicker's capacitor, V; NaN before the first reading.
+    /// Voltage of the kicker's capacitor, V; NaN without a valid reading.
     pub capacitor: f32,
 }
 

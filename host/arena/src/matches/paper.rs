@@ -56,7 +56,7 @@ pub const PAPER: [PaperGame; 6] = [
     game("B", "F", [2, 2], 1.63, 1.09),
 ];
 
-/// Table 1: passes of five games.
+/// Table 1: passes of the planner in five games.
 pub const PAPER_PASSES: [PaperPasses; 5] = [
     passes("G", 11, 6, 0),
     passes("F", 6, 5, 4),

@@ -58,11 +58,11 @@ pub struct MatchRow {
     pub losses_against: u32,
     /// Passes of restarts as the host followed them, by kick and fate: `flat.received:3 chip.out:1`.
     pub restart_passes: String,
-    /// The same of the opponents' passes.
+    /// Passes of the opponents' restarts, in the same form.
     pub restart_passes_against: String,
     /// Their P(receive) by tenths: tenth, passes, sum of P(receive), received, as in `9:12:11.2:10`.
     pub calibration: String,
-    /// The same of the opponents' passes.
+    /// P(receive) of the opponents' passes, in the same form.
     pub calibration_against: String,
     /// Passes of the Coerce and Attack Planner that left.
     pub cap_attempts: u32,
@@ -82,11 +82,11 @@ pub struct MatchRow {
     pub cap_reuse_successes_against: u32,
     /// Number of changes of a robot's role within a phase.
     pub role_changes: u32,
-    /// The same of the opponents' robots.
+    /// Number of such changes of the opponents' robots.
     pub role_changes_against: u32,
     /// Offences: `kind:number`, a blank between two.
     pub fouls: String,
-    /// The same of the opponents.
+    /// Offences of the opponents, in the same form.
     pub fouls_against: String,
     /// Equal for equal matches.
     pub trace_hash: String,

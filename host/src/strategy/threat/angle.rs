@@ -37,7 +37,7 @@ impl Span {
         self.left - self.right
     }
 
-    /// Direction of its bisector, rad, as measured in [`Span`].
+    /// Direction of its bisector, rad from the opening's middle.
     pub fn middle(&self) -> f32 {
         0.5 * (self.left + self.right)
     }

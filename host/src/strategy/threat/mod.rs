@@ -216,7 +216,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// Primary defenders of the last decision; `None` where fewer are needed.
+    /// Primary defenders of the last decision; `None` where there are fewer.
     pub fn primaries(&self) -> [Option<RobotId>; 2] {
         self.primaries
     }

@@ -27,7 +27,7 @@ impl fmt::Display for Interface {
     }
 }
 
-/// Choice of the interfaces on which multicast is received.
+/// Choice of the interfaces on which a group is joined.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Interfaces {
     /// Every interface that can, loopback included: vision is received from any of them.
