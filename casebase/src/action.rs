@@ -109,7 +109,7 @@ pub enum TurnTarget {
 
 /// A kick kind: its aim, its scatter and the body's kick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Kick {
+pub struct CaseKick {
     /// Direction of the kick: along a heading or at the goal.
     pub aim: KickAim,
     /// Radius of its trajectory at the foot, mm.

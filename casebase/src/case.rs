@@ -7,7 +7,7 @@ use crate::path::{Corridor, Leg, RelativeLeg};
 use crate::plan_simulation::{HandOver, Script, plan_simulation};
 use crate::settings::SCOPE_EXPONENT;
 use crate::stored::Stored;
-use crate::table::{CaseBase, Group, Opponent, RawAction, RawLeg, RecordHeader, part};
+use crate::table::{CaseBase, Group, OpponentRecord, RawAction, RawLeg, RecordHeader, part};
 use crate::{GoalEnd, PointMm, Scope, Symmetry};
 
 /// A stored case: case = (P, A, K). Cheap to copy: it contains only references.
@@ -162,7 +162,7 @@ impl<'a> Case<'a> {
     }
 
     #[inline]
-    pub(crate) fn raw_opponents(&self) -> &'a [Opponent] {
+    pub(crate) fn raw_opponents(&self) -> &'a [OpponentRecord] {
         self.record_header.opponents(self.base.places).unwrap_or(&[])
     }
 

@@ -13,7 +13,7 @@ use protocol::RobotId;
 use crate::action::TEAMMATES_MAX;
 use crate::problem::PROBLEM_TEAMMATES_MAX;
 use crate::rank::Correspondence;
-use crate::settings::{CorrespondenceRule, CostRule, Settings};
+use crate::settings::{CorrespondenceRule, CostRule, RetrievalSettings};
 
 /// The distances of every present robot to every part of a case, mm.
 #[derive(Clone, Debug, Default)]
@@ -86,7 +86,7 @@ pub(crate) fn nearest(robots: &[(RobotId, [f32; 2])], places: &[[i16; 2]], limit
 
 /// The cheapest correspondence; `None` where there are fewer robots than parts, or where the settings
 /// constrain the search to the travel limit and no correspondence is within it.
-pub(crate) fn assign(distances: &Distances, settings: &Settings) -> Option<Assignment> {
+pub(crate) fn assign(distances: &Distances, settings: &RetrievalSettings) -> Option<Assignment> {
     let limit = match settings.correspondence {
         CorrespondenceRule::MinThenTest => f32::INFINITY,
         CorrespondenceRule::Constrained => settings.travel_max_mm,
@@ -321,7 +321,7 @@ mod tests {
     fn a_limit_during_the_search_finds_what_a_test_after_it_rejects() {
         // The cheapest map sends robot 2 over 1600 mm; within 1500 mm the more expensive one fits.
         let matrix = distances(&[&[0.0, 1400.0], &[1450.0, 1600.0]], &[1, 2]);
-        let mut settings = Settings::default();
+        let mut settings = RetrievalSettings::default();
         let free = assign(&matrix, &settings).unwrap();
         assert_eq!((players(&free), free.farthest, free.distance), (List::from([1, 2]), 1, 1600.0));
         settings.set("correspondence", "constrained").unwrap();

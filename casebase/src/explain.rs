@@ -15,13 +15,13 @@ use crate::path::{Leg, blocked_leg};
 use crate::problem::Problem;
 use crate::query::Query;
 use crate::rank::Match;
-use crate::settings::Settings;
+use crate::settings::RetrievalSettings;
 use crate::stored::Stored;
 use crate::table::CaseBase;
 
 /// Result of a case.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Verdict {
+pub enum CaseVerdict {
     /// The ball lies outside the ball's scope.
     Ball {
         /// sim_B, at most the threshold.
@@ -68,7 +68,7 @@ pub enum Verdict {
     Candidate(Match),
 }
 
-impl Verdict {
+impl CaseVerdict {
     /// Its label in answers.
     pub const fn label(&self) -> &'static str {
         match self {
@@ -86,8 +86,8 @@ impl Verdict {
 pub fn explain(
     base: &CaseBase<'_>,
     problem: &Problem,
-    settings: &Settings,
-    mut sink: impl FnMut(CaseId, Verdict),
+    settings: &RetrievalSettings,
+    mut sink: impl FnMut(CaseId, CaseVerdict),
 ) {
     Query::with(problem, settings, |query| {
         for case in base.cases().filter(|case| case.defending() == problem.defending) {
@@ -97,18 +97,18 @@ pub fn explain(
     });
 }
 
-fn judge(base: &CaseBase<'_>, query: &Query<'_>, case: &Case<'_>, stored: &Stored<'_, '_>) -> Verdict {
+fn judge(base: &CaseBase<'_>, query: &Query<'_>, case: &Case<'_>, stored: &Stored<'_, '_>) -> CaseVerdict {
     let (problem, settings) = (query.problem, query.settings);
     let exponent = case.ball_exponent(problem.ball);
     if exponent >= query.key.limit {
         let similarity = math::exp(-exponent);
-        return Verdict::Ball { similarity, margin: (settings.threshold - similarity).max(0.0) };
+        return CaseVerdict::Ball { similarity, margin: (settings.threshold - similarity).max(0.0) };
     }
     if case.teammates() > problem.teammates.len() {
-        return Verdict::Robots { needed: case.teammates(), present: problem.teammates.len() };
+        return CaseVerdict::Robots { needed: case.teammates(), present: problem.teammates.len() };
     }
     if let Some(robot) = query.robot_outside(stored) {
-        return Verdict::OutOfField { robot };
+        return CaseVerdict::OutOfField { robot };
     }
     let distances = query.distances(stored);
     let assigned = assign(&distances, settings).filter(|found| found.distance <= settings.travel_max_mm);
@@ -116,18 +116,18 @@ fn judge(base: &CaseBase<'_>, query: &Query<'_>, case: &Case<'_>, stored: &Store
         // A constrained search without a result reports the cheapest correspondence without the constraint.
         let cheapest = assign_within(&distances, settings.cost, f32::INFINITY);
         let too_far = cheapest.and_then(|cheapest| {
-            Some(Verdict::TooFar {
+            Some(CaseVerdict::TooFar {
                 robot: CaseRobot::new(cheapest.farthest)?,
                 player: *cheapest.players.ids.get(cheapest.farthest)?,
                 distance: cheapest.distance,
                 margin: cheapest.distance - settings.travel_max_mm,
             })
         });
-        let robots = Verdict::Robots { needed: case.teammates(), present: problem.teammates.len() };
+        let robots = CaseVerdict::Robots { needed: case.teammates(), present: problem.teammates.len() };
         return too_far.unwrap_or(robots);
     };
     if let Some(blocked) = blocked_leg(case, base, problem.ball, &problem.opponents, settings) {
-        return Verdict::Path {
+        return CaseVerdict::Path {
             index: blocked.index,
             leg: blocked.leg,
             opponent: blocked.opponent,
@@ -135,5 +135,5 @@ fn judge(base: &CaseBase<'_>, query: &Query<'_>, case: &Case<'_>, stored: &Store
         };
     }
     let free = query.freedom(stored).unwrap_or(0.0);
-    Verdict::Candidate(query.found(stored, exponent, free, assignment.players).into_match())
+    CaseVerdict::Candidate(query.found(stored, exponent, free, assignment.players).into_match())
 }

@@ -34,12 +34,12 @@ pub mod table;
 mod testing;
 
 pub use action::{
-    Action, CaseRobot, FieldMm, Kick, KickAim, KickId, OPPONENTS_MAX, Pass, Primitive, TEAMMATES_MAX,
+    Action, CaseKick, CaseRobot, FieldMm, KickAim, KickId, OPPONENTS_MAX, Pass, Primitive, TEAMMATES_MAX,
     TurnTarget,
 };
 pub use case::Case;
 pub use cells::cells_of;
-pub use explain::{Verdict, explain};
+pub use explain::{CaseVerdict, explain};
 pub use geometry::GoalEnd;
 pub use index::Grid;
 pub use path::{Abreast, Blocked, Leg, LegKind, blocked_leg};
@@ -49,7 +49,8 @@ pub use query::adapted_position;
 pub use rank::{Correspondence, Match, rank_order};
 pub use retrieve::{Retrieval, retrieve, retrieve_best};
 pub use settings::{
-    CorrespondenceRule, CostRule, Criterion, FreePathRule, OutOfField, ScopeRule, SettingError, Settings,
+    CorrespondenceRule, CostRule, Criterion, FreePathRule, OutOfField, RetrievalSettings, ScopeRule,
+    SettingError,
 };
 pub use symmetry::Symmetry;
 pub use table::{CaseBase, TableError};

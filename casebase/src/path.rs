@@ -10,9 +10,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::action::{Action, CaseRobot, KickId};
 use crate::case::Case;
-use crate::plan_simulation::{Script, Spot, Step, plan_simulation};
+use crate::plan_simulation::{PlanStep, Script, Spot, plan_simulation};
 use crate::point::gauss_exponent;
-use crate::settings::{FreePathRule, OutOfField, Settings};
+use crate::settings::{FreePathRule, OutOfField, RetrievalSettings};
 use crate::stored::Stored;
 use crate::table::{self, CaseBase, RawLeg};
 use crate::{GoalEnd, PointMm};
@@ -66,7 +66,7 @@ impl Leg {
     }
 
     /// Depth of an opponent inside the leg, mm from its edge at the settings' threshold; `None` outside.
-    pub fn blocked_by(&self, opponent: PointMm, settings: &Settings) -> Option<f32> {
+    pub fn blocked_by(&self, opponent: PointMm, settings: &RetrievalSettings) -> Option<f32> {
         let point = opponent.to_f32();
         let exponent = self.corridor().exponent(point).filter(|exponent| is_blocking(*exponent, settings))?;
         let abreast = self.abreast(point)?;
@@ -176,7 +176,7 @@ pub fn blocked_leg(
     base: &CaseBase<'_>,
     ball: PointMm,
     opponents: &[PointMm],
-    settings: &Settings,
+    settings: &RetrievalSettings,
 ) -> Option<Blocked> {
     let mut found = None;
     let mut index = 0;
@@ -203,7 +203,7 @@ pub(crate) fn least_exponent(
     stored: &Stored<'_, '_>,
     ball: PointMm,
     opponents: &[[f32; 2]],
-    settings: &Settings,
+    settings: &RetrievalSettings,
 ) -> Option<f32> {
     let mut least: Option<f32> = None;
     let mut look = |corridor: &Corridor| {
@@ -258,7 +258,7 @@ pub(crate) fn is_crisply_blocked(
 
 /// Whether an opponent with this exponent in a leg blocks it.
 #[inline]
-pub(crate) fn is_blocking(exponent: f32, settings: &Settings) -> bool {
+pub(crate) fn is_blocking(exponent: f32, settings: &RetrievalSettings) -> bool {
     match settings.free_path {
         FreePathRule::Crisp => exponent < settings.limit(),
         FreePathRule::Fuzzy => freedom(Some(exponent)) < settings.free_min,
@@ -281,7 +281,7 @@ fn each_leg(
     case: &Case<'_>,
     base: &CaseBase<'_>,
     ball: PointMm,
-    settings: &Settings,
+    settings: &RetrievalSettings,
     mut sink: impl FnMut(RelativeLeg),
 ) {
     if settings.out_of_field != OutOfField::Clamp {
@@ -289,7 +289,7 @@ fn each_leg(
     }
     // A stored case was simulated without an error when it was built, and clamping moves positions only.
     let _ = plan_simulation(&Clamped { case, base, ball }, base, |step| {
-        if let Step::Leg { robot, action, from, to, radii, kind, .. } = step {
+        if let PlanStep::Leg { robot, action, from, to, radii, kind, .. } = step {
             let relative = |spot: Spot| if spot.on_field { minus(spot.at, ball.to_f32()) } else { spot.at };
             let [r_min, r_max] = radii.map(|radius| radius as f32);
             sink(RelativeLeg(Leg {
@@ -366,7 +366,7 @@ impl Script for Clamped<'_, '_> {
 /// ball; `None` once they are more than `most`. `cells` are the squares that contain opponents.
 #[inline(always)]
 pub(crate) fn empty_scopes(
-    scopes: &[table::Opponent],
+    scopes: &[table::OpponentRecord],
     moved: [f32; 2],
     opponents: &[[f32; 2]],
     cells: u32,

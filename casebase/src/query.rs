@@ -14,15 +14,15 @@ use crate::correspondence::{Distances, Nearest, Players, assign, nearest};
 use crate::path::{empty_scopes, freedom, is_blocking, is_crisply_blocked, least_exponent};
 use crate::problem::{PROBLEM_OPPONENTS_MAX, PROBLEM_TEAMMATES_MAX, Problem};
 use crate::rank::{Correspondence, Key, Match};
-use crate::settings::{CorrespondenceRule, CostRule, FreePathRule, OutOfField, ScopeRule, Settings};
+use crate::settings::{CorrespondenceRule, CostRule, FreePathRule, OutOfField, RetrievalSettings, ScopeRule};
 use crate::stored::Stored;
-use crate::table::{Opponent, RecordHeader};
+use crate::table::{OpponentRecord, RecordHeader};
 use crate::{CaseRobot, PointMm};
 
 /// A prepared problem: everything relative to the ball.
 pub(crate) struct Query<'p> {
     pub(crate) problem: &'p Problem,
-    pub(crate) settings: &'p Settings,
+    pub(crate) settings: &'p RetrievalSettings,
     pub(crate) key: QueryKey,
     teammates: &'p [(RobotId, [f32; 2])],
     opponents: &'p [[f32; 2]],
@@ -56,7 +56,11 @@ impl QueryKey {
 impl Query<'_> {
     /// Prepares a problem and calls `work` with it.
     #[inline(always)]
-    pub(crate) fn with<R>(problem: &Problem, settings: &Settings, work: impl FnOnce(&Query<'_>) -> R) -> R {
+    pub(crate) fn with<R>(
+        problem: &Problem,
+        settings: &RetrievalSettings,
+        work: impl FnOnce(&Query<'_>) -> R,
+    ) -> R {
         let ball = problem.ball;
         // Both lists have the capacity of the problem's: every push fits.
         let mut teammates: Vec<_, PROBLEM_TEAMMATES_MAX> = Vec::new();
@@ -93,7 +97,7 @@ impl Query<'_> {
     /// Number of those that contain none, where scopes move with the ball; `None` once they are more than
     /// `most`.
     #[inline(always)]
-    pub(crate) fn empty_scopes(&self, scopes: &[Opponent], most: u32) -> Option<u32> {
+    pub(crate) fn empty_scopes(&self, scopes: &[OpponentRecord], most: u32) -> Option<u32> {
         empty_scopes(scopes, [0.0; 2], self.opponents, self.cells, self.key.limit, most)
     }
 
@@ -136,7 +140,7 @@ impl Query<'_> {
 
     /// The cheapest correspondence, where no robot in it exceeds the travel limit.
     pub(crate) fn cheapest(&self, case: &Stored<'_, '_>) -> Option<Players> {
-        let Settings { cost, correspondence, out_of_field, .. } = self.settings;
+        let RetrievalSettings { cost, correspondence, out_of_field, .. } = self.settings;
         let plain = *cost == CostRule::Sum
             && *correspondence == CorrespondenceRule::MinThenTest
             && *out_of_field != OutOfField::Clamp;
@@ -218,7 +222,12 @@ fn distance(from: [f32; 2], to: [f32; 2]) -> f32 {
 
 /// Position of a robot of the case for a ball at `ball`, by the settings: adapted, and clamped to the field
 /// only where they require it.
-pub fn adapted_position(case: &Case<'_>, robot: CaseRobot, ball: PointMm, settings: &Settings) -> PointMm {
+pub fn adapted_position(
+    case: &Case<'_>,
+    robot: CaseRobot,
+    ball: PointMm,
+    settings: &RetrievalSettings,
+) -> PointMm {
     let adapted = case.adapted(robot, ball);
     match settings.out_of_field {
         OutOfField::Clamp => case.base().field().clamp(adapted),

@@ -10,7 +10,7 @@ use protocol::{CaseId, RobotId};
 use serde::{Deserialize, Serialize};
 
 use crate::action::TEAMMATES_MAX;
-use crate::settings::{Criterion, FreePathRule, Settings};
+use crate::settings::{Criterion, FreePathRule, RetrievalSettings};
 
 /// The players: case robot i is played by entry i.
 pub type Correspondence = Vec<RobotId, TEAMMATES_MAX>;
@@ -38,7 +38,7 @@ pub struct Match {
 }
 
 /// `Less` where `a` ranks before `b`.
-pub fn rank_order(a: &Match, b: &Match, settings: &Settings) -> Ordering {
+pub fn rank_order(a: &Match, b: &Match, settings: &RetrievalSettings) -> Ordering {
     key_order(&Key::of(a), &Key::of(b), settings)
 }
 
@@ -67,7 +67,7 @@ impl Key {
 }
 
 /// [`rank_order`] on keys.
-pub(crate) fn key_order(a: &Key, b: &Key, settings: &Settings) -> Ordering {
+pub(crate) fn key_order(a: &Key, b: &Key, settings: &RetrievalSettings) -> Ordering {
     for criterion in settings.ranking {
         let order = match criterion {
             Criterion::Conditions => b.conditions.cmp(&a.conditions),
@@ -115,7 +115,7 @@ mod tests {
         }
     }
 
-    fn first<'a>(candidates: &'a [Match], settings: &Settings) -> &'a Match {
+    fn first<'a>(candidates: &'a [Match], settings: &RetrievalSettings) -> &'a Match {
         candidates.iter().min_by(|a, b| rank_order(a, b, settings)).unwrap()
     }
 
@@ -123,21 +123,21 @@ mod tests {
     fn the_paper_s_example_of_an_interval_is_ordered_by_cost() {
         let list =
             [candidate(3, 0, 1, 0.9, 30.0), candidate(7, 0, 1, 0.99, 40.0), candidate(10, 0, 1, 0.81, 20.0)];
-        assert_eq!(first(&list, &Settings::default()).case, CaseId(10));
+        assert_eq!(first(&list, &RetrievalSettings::default()).case, CaseId(10));
     }
 
     #[test]
     fn a_somewhat_less_similar_case_of_a_lower_interval_never_wins_by_cost() {
         let list = [candidate(0, 0, 1, 0.80001, 900.0), candidate(4, 0, 1, 0.7999, 1.0)];
-        assert_eq!(first(&list, &Settings::default()).case, CaseId(0));
+        assert_eq!(first(&list, &RetrievalSettings::default()).case, CaseId(0));
     }
 
     #[test]
     fn conditions_come_before_teammates_before_the_interval() {
         let list =
             [candidate(0, 0, 4, 1.0, 0.0), candidate(4, 1, 1, 0.4, 900.0), candidate(8, 1, 2, 0.4, 999.0)];
-        assert_eq!(first(&list, &Settings::default()).case, CaseId(8));
-        let mut teammates_first = Settings::default();
+        assert_eq!(first(&list, &RetrievalSettings::default()).case, CaseId(8));
+        let mut teammates_first = RetrievalSettings::default();
         teammates_first.set("ranking", "teammates,conditions,interval-cost").unwrap();
         assert_eq!(first(&list, &teammates_first).case, CaseId(0));
     }
@@ -146,7 +146,7 @@ mod tests {
     fn ties_go_to_the_higher_similarity_and_then_to_the_lower_id() {
         let list =
             [candidate(8, 0, 1, 0.9, 5.0), candidate(4, 0, 1, 0.95, 5.0), candidate(0, 0, 1, 0.95, 5.0)];
-        assert_eq!(first(&list, &Settings::default()).case, CaseId(0));
+        assert_eq!(first(&list, &RetrievalSettings::default()).case, CaseId(0));
     }
 
     #[test]

@@ -13,7 +13,7 @@ use crate::problem::Problem;
 use crate::query::{Found, Query};
 use crate::rank::{Key, Match, interval, key_order};
 use crate::settings::{
-    CorrespondenceRule, CostRule, Criterion, FreePathRule, OutOfField, ScopeRule, Settings,
+    CorrespondenceRule, CostRule, Criterion, FreePathRule, OutOfField, RetrievalSettings, ScopeRule,
 };
 use crate::stored::Stored;
 use crate::table::{CaseBase, RecordHeader};
@@ -28,7 +28,7 @@ pub struct Retrieval {
 }
 
 /// The best case and the number of candidates.
-pub fn retrieve(base: &CaseBase<'_>, problem: &Problem, settings: &Settings) -> Retrieval {
+pub fn retrieve(base: &CaseBase<'_>, problem: &Problem, settings: &RetrievalSettings) -> Retrieval {
     Query::with(problem, settings, |query| {
         let mut best: Option<Found> = None;
         let mut candidates = 0;
@@ -72,7 +72,7 @@ fn candidate(query: &Query<'_>, case: &Stored<'_, '_>) -> Option<Found> {
 
 /// The best case alone, without counting the candidates: cases that cannot win are skipped.
 #[inline(never)]
-pub fn retrieve_best(base: &CaseBase<'_>, problem: &Problem, settings: &Settings) -> Option<Match> {
+pub fn retrieve_best(base: &CaseBase<'_>, problem: &Problem, settings: &RetrievalSettings) -> Option<Match> {
     if !are_the_papers(settings) {
         return retrieve(base, problem, settings).best;
     }
@@ -98,9 +98,9 @@ pub fn retrieve_best(base: &CaseBase<'_>, problem: &Problem, settings: &Settings
 /// Whether these are the choices of the paper, for which the bounds hold and the fast path is written.
 /// Numbers may differ.
 #[inline]
-fn are_the_papers(settings: &Settings) -> bool {
-    let Settings { ranking: [first, second, third], .. } = *settings;
-    let Settings { out_of_field, correspondence, cost, scopes, free_path, .. } = *settings;
+fn are_the_papers(settings: &RetrievalSettings) -> bool {
+    let RetrievalSettings { ranking: [first, second, third], .. } = *settings;
+    let RetrievalSettings { out_of_field, correspondence, cost, scopes, free_path, .. } = *settings;
     let choices = [
         first as u8,
         second as u8,

@@ -20,7 +20,7 @@ pub const FREE_MIN: f32 = 1.0 - SCOPE_THRESHOLD;
 
 /// The options of retrieval.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Settings {
+pub struct RetrievalSettings {
     /// `correspondence`: when thr_c applies.
     pub correspondence: CorrespondenceRule,
     /// `cost`: cost of a correspondence.
@@ -100,7 +100,7 @@ pub enum FreePathRule {
     Fuzzy,
 }
 
-impl Default for Settings {
+impl Default for RetrievalSettings {
     fn default() -> Self {
         Self {
             correspondence: CorrespondenceRule::MinThenTest,
@@ -116,7 +116,7 @@ impl Default for Settings {
     }
 }
 
-impl Settings {
+impl RetrievalSettings {
     /// Sets one option by its name; on an error the settings stay unchanged.
     pub fn set(&mut self, name: &str, value: &str) -> Result<(), SettingError> {
         let setting =
@@ -180,8 +180,8 @@ impl core::error::Error for SettingError {}
 struct Setting {
     name: &'static str,
     expected: &'static str,
-    set: fn(&mut Settings, &str) -> Option<()>,
-    get: fn(&Settings, &mut SettingValue) -> fmt::Result,
+    set: fn(&mut RetrievalSettings, &str) -> Option<()>,
+    get: fn(&RetrievalSettings, &mut SettingValue) -> fmt::Result,
 }
 
 /// The labels of an option with two or three values.
@@ -304,14 +304,14 @@ mod tests {
     #[test]
     fn the_limit_is_the_negated_logarithm_of_the_papers_literal() {
         assert!((f64::from(SCOPE_EXPONENT) + 0.367_f64.ln()).abs() < 1e-7);
-        assert_eq!(Settings::default().limit(), SCOPE_EXPONENT);
-        let half = Settings { threshold: 0.5, ..Settings::default() };
+        assert_eq!(RetrievalSettings::default().limit(), SCOPE_EXPONENT);
+        let half = RetrievalSettings { threshold: 0.5, ..RetrievalSettings::default() };
         assert!((half.limit() - core::f32::consts::LN_2).abs() < 1e-6);
     }
 
     #[test]
     fn what_is_described_can_be_set_again() {
-        let mut changed = Settings::default();
+        let mut changed = RetrievalSettings::default();
         for (name, value) in [
             ("correspondence", "constrained"),
             ("cost", "max"),
@@ -325,7 +325,7 @@ mod tests {
         ] {
             changed.set(name, value).unwrap();
         }
-        let mut copy = Settings::default();
+        let mut copy = RetrievalSettings::default();
         for (name, value) in changed.describe() {
             copy.set(name, &value).unwrap();
         }
@@ -335,7 +335,7 @@ mod tests {
 
     #[test]
     fn a_wrong_setting_says_what_is_allowed() {
-        let mut settings = Settings::default();
+        let mut settings = RetrievalSettings::default();
         let unknown = settings.set("thr_x", "1").unwrap_err();
         assert!(unknown.to_string().contains("thr_c, thr, free_min"), "{unknown}");
         for (name, value) in [
@@ -349,6 +349,6 @@ mod tests {
             let error = settings.set(name, value).unwrap_err();
             assert!(error.to_string().starts_with(name), "{error}");
         }
-        assert_eq!(settings, Settings::default());
+        assert_eq!(settings, RetrievalSettings::default());
     }
 }

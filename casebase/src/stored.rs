@@ -8,7 +8,7 @@ use protocol::CaseId;
 use crate::PointMm;
 use crate::action::FieldMm;
 use crate::case::Case;
-use crate::table::{CaseBase, Opponent, RawLeg, RecordHeader};
+use crate::table::{CaseBase, OpponentRecord, RawLeg, RecordHeader};
 
 /// The records of a stored case.
 #[derive(Clone, Copy)]
@@ -58,7 +58,7 @@ impl<'q, 'a> Stored<'q, 'a> {
 
     /// The opponents.
     #[inline]
-    pub(crate) fn opponents(&self) -> Option<&'a [Opponent]> {
+    pub(crate) fn opponents(&self) -> Option<&'a [OpponentRecord]> {
         self.record_header.opponents(self.base.places)
     }
 

@@ -11,7 +11,7 @@ use geometry::{Pose, Twist, Vector};
 use hil_sim::TraceHash;
 use hil_sim::small_size::camera::Cameras;
 use hil_sim::small_size::compatibility::Profile;
-use hil_sim::small_size::{Ball, Drive, Event, Kick, Order, Parameters, World};
+use hil_sim::small_size::{Ball, Drive, KickCommand, Order, Parameters, PhysicsEvent, World};
 use protocol::{RobotId, Who};
 use rules::{Colour, League};
 use ssl::Message;
@@ -39,8 +39,8 @@ fn main() -> ExitCode {
         world.step();
         world.take_events(&mut events);
         for event in events.drain(..) {
-            kicks += u32::from(matches!(event, Event::Kicked { .. }));
-            crashes += u32::from(matches!(event, Event::Crash { .. }));
+            kicks += u32::from(matches!(event, PhysicsEvent::Kicked { .. }));
+            crashes += u32::from(matches!(event, PhysicsEvent::Crash { .. }));
         }
         if part == 0 {
             continue;
@@ -96,7 +96,12 @@ fn script(world: &mut World, step: u32, restless: bool) {
                 let to = robot.pose.vector_to_body((behind - robot.pose.position) * 4.0).clamped(2.5);
                 let turn = (geometry::Angle::new(heading) - robot.pose.heading).radians();
                 let drive = Drive::Local(Twist { linear: to, angular: turn * 5.0 });
-                Order { drive, kick: Some(Kick { speed: 3.0, angle: 0.0 }), dribbler: 1.0, discharge: false }
+                Order {
+                    drive,
+                    kick: Some(KickCommand { speed: 3.0, angle: 0.0 }),
+                    dribbler: 1.0,
+                    discharge: false,
+                }
             } else {
                 // Every two seconds another side of the square, each robot turning on two of them.
                 let side = (step / 2_000 % 4) as usize;

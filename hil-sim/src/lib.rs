@@ -27,12 +27,12 @@ pub mod small_size;
 
 pub use air::{Air, AirCounts, AirSettings, Bursts, LinkLoss};
 pub use four_legged::fault::{Fault, ScheduledFault};
-pub use four_legged::opponents::{Conduct, Opponent, Role};
+pub use four_legged::opponents::{Conduct, Opponent, OpponentRole};
 pub use four_legged::parameters::{FOUR_LEGGED_TOML, Noise, ParameterError, Parameters, Region};
-pub use four_legged::referee::{Configuration, Outcome, Party, Referee, Verdict};
+pub use four_legged::referee::{Configuration, Party, Referee, TrialOutcome, TrialVerdict};
 pub use four_legged::scenario::{Layout, Placed, Scenario, TEAM};
 pub use four_legged::simulation::{
-    Received, Sent, Simulation, SimulationConfig, SimulationError, TICK_US, Tick,
+    ReceivedPacket, Sent, Simulation, SimulationConfig, SimulationError, TICK_US, Tick,
 };
 pub use four_legged::trace::TraceHash;
 pub use hash::Fnv;

@@ -11,7 +11,7 @@ use std::process::ExitCode;
 
 use flate2::bufread::MultiGzDecoder;
 use host::record::header::RecordingHeader;
-use host::record::trace::{Kind, Reader, Record};
+use host::record::trace::{Reader, Record, RecordKind};
 use host::{Host, Input};
 use protocol::frame::TeamKey;
 
@@ -40,7 +40,7 @@ fn feed(file: &str) -> Result<String, Box<dyn std::error::Error>> {
     let (mut round, mut rounds, mut packets, mut bytes) = (Vec::<Record>::new(), 0, 0, 0);
     let mut image = None;
     for record in reader.by_ref().filter(|record| record.host == 0 && record.kind.is_input()) {
-        let next = record.kind == Kind::Vision && image.is_none_or(|at| record.at > at);
+        let next = record.kind == RecordKind::Vision && image.is_none_or(|at| record.at > at);
         if next {
             let (sent, long) = count_this_round(&mut host, &round);
             (rounds, packets, bytes) = (rounds + u32::from(image.is_some()), packets + sent, bytes + long);
@@ -58,12 +58,12 @@ fn count_this_round(host: &mut Host, round: &[Record]) -> (u64, u64) {
     let (mut packets, mut bytes) = (0, 0);
     for record in round {
         let input = match record.kind {
-            Kind::Vision => Input::Vision(&record.bytes),
-            Kind::Referee => Input::Referee(&record.bytes, record.from),
-            Kind::Robot => Input::Robot(&record.bytes),
-            Kind::Timeout => Input::Timeout,
-            Kind::Halt => Input::Halt,
-            Kind::Sent | Kind::Lost => continue,
+            RecordKind::Vision => Input::Vision(&record.bytes),
+            RecordKind::Referee => Input::Referee(&record.bytes, record.from),
+            RecordKind::Robot => Input::Robot(&record.bytes),
+            RecordKind::Timeout => Input::Timeout,
+            RecordKind::Halt => Input::Halt,
+            RecordKind::Sent | RecordKind::Lost => continue,
         };
         host.handle(record.at, input);
         while let Some((_, packet)) = host.poll_packet() {

@@ -12,7 +12,7 @@ mod state;
 use casebase::CaseBase;
 use geometry::{GoalEnd, Point};
 use protocol::frame::TeamKey;
-use protocol::host::{Command, Condition, Directive, RuleRole, Telemetry};
+use protocol::host::{Condition, Directive, HostCommand, RuleRole, Telemetry};
 use protocol::link::Packet;
 use protocol::team::{Beacon, PRESENCE_LEASE, Progress};
 use protocol::{Duration, Instant, RobotId, TeamId};
@@ -22,19 +22,19 @@ use ssl::Message;
 use crate::field_geometry::VisionGeometry;
 use crate::learned::Learned;
 use crate::proposal::{cases_of, proposal};
-use crate::radio::{self, Radio, RadioSettings, Situation, To};
-use crate::referee::team_port::Request;
+use crate::radio::{self, Radio, RadioSettings, RadioSituation, To};
+use crate::referee::team_port::TeamPortRequest;
 use crate::referee::{Listener, OnSilence, SenderAddress, SourcePin};
 use crate::requests::Requests;
 use crate::strategy::counters::Bookkeeper;
 use crate::strategy::pass::bridge::CasePass;
-use crate::strategy::view::{Game, RobotSet};
+use crate::strategy::view::{RobotSet, ViewGame};
 use crate::strategy::{Coach, Flip, Orders, Tactics, Team, View};
 use crate::tracking::HiddenBall;
 use crate::tracking::{self, Tracker};
 use crate::world::{Ball, World};
 
-pub use input::{Input, Undecodable, Verdict};
+pub use input::{Input, InputVerdict, Undecodable};
 
 /// Settings that are fixed while a host runs.
 #[derive(Clone, Debug)]
@@ -169,18 +169,18 @@ impl Host {
     }
 
     /// Handles an input or a deadline.
-    pub fn handle(&mut self, now: Instant, input: Input<'_>) -> Verdict {
+    pub fn handle(&mut self, now: Instant, input: Input<'_>) -> InputVerdict {
         match input {
             Input::Vision(bytes) => self.see(now, bytes),
             Input::Referee(bytes, from) => self.obey(now, bytes, from),
             Input::Robot(bytes) => self.listen(now, bytes),
             Input::Halt => {
                 self.halt(now);
-                Verdict::Halted
+                InputVerdict::Halted
             }
             Input::Timeout => {
                 self.radio.handle_timeout(now);
-                Verdict::Timeout
+                InputVerdict::Timeout
             }
         }
     }
@@ -205,7 +205,7 @@ impl Host {
     }
 
     /// The next request to send to the game controller's port for teams.
-    pub fn poll_request(&mut self) -> Option<Request> {
+    pub fn poll_request(&mut self) -> Option<TeamPortRequest> {
         self.requests.poll()
     }
 
@@ -214,10 +214,10 @@ impl Host {
         self.radio.poll_timeout()
     }
 
-    fn see(&mut self, now: Instant, bytes: &[u8]) -> Verdict {
+    fn see(&mut self, now: Instant, bytes: &[u8]) -> InputVerdict {
         let Ok(packet) = ssl::vision::WrapperPacket::decode(bytes) else {
             self.undecodable.vision += 1;
-            return Verdict::Undecodable;
+            return InputVerdict::Undecodable;
         };
         self.undecodable.empty += u64::from(packet.geometry.is_none() && packet.detection.is_none());
         if let Some(data) = &packet.geometry {
@@ -225,20 +225,21 @@ impl Host {
             let _told = self.geometry.receive(data);
         }
         let received = self.tracker.handle(&packet, now);
-        let changes = !matches!(received, tracking::Received::NoImage | tracking::Received::Repeated);
+        let changes =
+            !matches!(received, tracking::VisionVerdict::NoImage | tracking::VisionVerdict::Repeated);
         if changes {
             self.imaged = Some(now);
         }
         if changes && self.planned.is_none_or(|last| now.since(last) >= PLAN_EVERY) {
             self.plan(now);
         }
-        Verdict::Vision(received)
+        InputVerdict::Vision(received)
     }
 
-    fn obey(&mut self, now: Instant, bytes: &[u8], from: SenderAddress) -> Verdict {
+    fn obey(&mut self, now: Instant, bytes: &[u8], from: SenderAddress) -> InputVerdict {
         let Ok(packet) = ssl::referee::Referee::decode(bytes) else {
             self.undecodable.referee += 1;
-            return Verdict::Undecodable;
+            return InputVerdict::Undecodable;
         };
         let before = self.listener.game().phase;
         let ball = plainly_seen(now, self.tracker.world(now).ball);
@@ -252,21 +253,21 @@ impl Host {
         } else if phase != before && !lately {
             self.replan(now);
         }
-        Verdict::Referee(Box::new(verdict))
+        InputVerdict::Referee(Box::new(verdict))
     }
 
-    fn listen(&mut self, now: Instant, bytes: &[u8]) -> Verdict {
+    fn listen(&mut self, now: Instant, bytes: &[u8]) -> InputVerdict {
         match self.radio.handle_packet(now, bytes) {
-            Ok(radio::Received::Beacon(robot, beacon)) => {
+            Ok(radio::RadioReceived::Beacon(robot, beacon)) => {
                 self.robots[robot.index()].beacon = Some((now, beacon));
-                Verdict::Robot(robot)
+                InputVerdict::Robot(robot)
             }
-            Ok(radio::Received::Telemetry(robot, telemetry)) => {
+            Ok(radio::RadioReceived::Telemetry(robot, telemetry)) => {
                 self.robots[robot.index()].telemetry = Some((now, telemetry));
-                Verdict::Robot(robot)
+                InputVerdict::Robot(robot)
             }
-            Ok(radio::Received::Handshake(robot)) => Verdict::Robot(robot),
-            Err(refusal) => Verdict::Refused(refusal),
+            Ok(radio::RadioReceived::Handshake(robot)) => InputVerdict::Robot(robot),
+            Err(refusal) => InputVerdict::Refused(refusal),
         }
     }
 
@@ -298,7 +299,7 @@ impl Host {
         }
         let flip = Flip::defending(game.defending);
         self.books.note((&self.world, &view, &view.field), (us, flip), &self.orders, self.coach.take_sent());
-        let command = |(to, rule_role, directive): (RobotId, RuleRole, Directive)| Command {
+        let command = |(to, rule_role, directive): (RobotId, RuleRole, Directive)| HostCommand {
             to,
             defending: game.defending,
             phase: game.phase,
@@ -308,7 +309,7 @@ impl Host {
         let coached = |order: &crate::strategy::Order| {
             command((order.robot, order.role.rule_role(), order.task.directive(flip)))
         };
-        let commands: heapless::Vec<Command, { RobotId::COUNT }> = match &self.drill {
+        let commands: heapless::Vec<HostCommand, { RobotId::COUNT }> = match &self.drill {
             Some(drill) => drill.iter().cloned().map(command).collect(),
             None => self.orders.iter().map(coached).collect(),
         };
@@ -320,7 +321,7 @@ impl Host {
             self.roll_with(known.value);
         }
         self.ordered = self.listener.game().phase;
-        let situation = Situation { us, phase: game.phase, placement: game.placement };
+        let situation = RadioSituation { us, phase: game.phase, placement: game.placement };
         self.radio.offer(now, &self.world, situation, &commands);
     }
 
@@ -345,9 +346,9 @@ impl Host {
         self.hidden.fill(now, &mut self.world, self.settings.us, self.listener.game(), feels);
     }
 
-    fn our_game(&self) -> Game {
+    fn our_game(&self) -> ViewGame {
         let (us, game) = (self.settings.us, self.listener.game());
-        Game {
+        ViewGame {
             phase: if self.halted { Phase::Halt } else { game.phase.seen_by(us) },
             next: game.next.map(|phase| phase.seen_by(us)),
             placement: game.ball_goes_to(),

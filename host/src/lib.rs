@@ -22,5 +22,5 @@ pub mod strategy;
 pub mod tracking;
 pub mod world;
 
-pub use host::{Drill, Host, HostSettings, Input, Undecodable, Verdict};
+pub use host::{Drill, Host, HostSettings, Input, InputVerdict, Undecodable};
 pub use proposal::cases_of;

@@ -45,7 +45,7 @@ pub use game::{Game, TeamAccount};
 pub use identity::{SenderAddress, SourceKey, SourcePin};
 pub use source::{CONFIRM, HOLD};
 pub use stamps::WINDOW;
-pub use verdict::{Counts, Doubt, Taken, Verdict};
+pub use verdict::{Doubt, RefereeCounts, RefereeVerdict, Taken};
 pub use warning::Warning;
 
 /// The silence of the referee is reported to the operator after this: it sends every 25 ms, pauses of 1.6 s
@@ -101,7 +101,7 @@ pub struct Listener {
     /// STOP until then, because an imposed HALT ended.
     still_until: Instant,
     none: (Game, GameState),
-    counts: Counts,
+    counts: RefereeCounts,
     started: Instant,
 }
 
@@ -130,7 +130,7 @@ impl Listener {
             undecided: None,
             still_until: Instant(0),
             none: (Game::default(), GameState::new()),
-            counts: Counts::default(),
+            counts: RefereeCounts::default(),
             started: now,
         }
     }
@@ -153,7 +153,7 @@ impl Listener {
     }
 
     /// Numbers of packets by verdict.
-    pub fn counts(&self) -> Counts {
+    pub fn counts(&self) -> RefereeCounts {
         self.counts
     }
 
@@ -193,12 +193,12 @@ impl Listener {
         from: SenderAddress,
         now: Instant,
         ball: Option<Point<Field>>,
-    ) -> Verdict {
+    ) -> RefereeVerdict {
         let key = SourceKey { identifier: packet.source_identifier.clone(), address: from };
         if self.pin.as_ref().is_some_and(|pin| !pin.matches(&key)) {
             self.counts.excluded += 1;
             self.exclude(key.clone(), now);
-            return Verdict::Excluded { source: key };
+            return RefereeVerdict::Excluded { source: key };
         }
         let before = self.source().cloned();
         let known = self.sources.iter_mut().find(|source| source.key == key);
@@ -218,17 +218,17 @@ impl Listener {
             taken.new_source = Some(before);
         }
         match outcome {
-            Outcome::Copy => Verdict::Copy,
+            Outcome::Copy => RefereeVerdict::Copy,
             _ if self.source() != Some(&key) => {
                 self.counts.other_source += 1;
-                Verdict::OtherSource { source: key }
+                RefereeVerdict::OtherSource { source: key }
             }
-            Outcome::Doubted { doubt, restrains } => Verdict::Doubted { doubt, restrains },
+            Outcome::Doubted { doubt, restrains } => RefereeVerdict::Doubted { doubt, restrains },
             Outcome::Taken(taken) => {
                 self.counts.taken += 1;
                 self.counts.commands += u64::from(taken.command.is_some());
                 self.counts.missed += u64::from(taken.missed);
-                Verdict::Taken(taken)
+                RefereeVerdict::Taken(taken)
             }
         }
     }

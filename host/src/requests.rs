@@ -9,14 +9,14 @@ use std::collections::VecDeque;
 use protocol::{Duration, Instant};
 use rules::{Phase, Side};
 
-use crate::referee::team_port::Request;
+use crate::referee::team_port::TeamPortRequest;
 use crate::strategy::View;
 use crate::strategy::view::nearest;
 
 /// The requests sent, and since when their causes persist.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Requests {
-    out: VecDeque<Request>,
+    out: VecDeque<TeamPortRequest>,
     keeper_gone: Option<Instant>,
     keeper_asked: Option<Instant>,
     crowded: Option<Instant>,
@@ -35,7 +35,7 @@ impl Requests {
     }
 
     /// The next request to send.
-    pub(crate) fn poll(&mut self) -> Option<Request> {
+    pub(crate) fn poll(&mut self) -> Option<TeamPortRequest> {
         self.out.pop_front()
     }
 
@@ -56,7 +56,7 @@ impl Requests {
             && let Some((robot, _)) = nearest(view.ours.iter(), view.our_goal())
         {
             self.keeper_asked = Some(view.now);
-            self.out.push_back(Request::Keeper(robot.id));
+            self.out.push_back(TeamPortRequest::Keeper(robot.id));
         }
     }
 
@@ -72,7 +72,7 @@ impl Requests {
         if !too_many {
             self.crowded = None;
             if std::mem::take(&mut self.substitution) {
-                self.out.push_back(Request::Substitute(false));
+                self.out.push_back(TeamPortRequest::Substitute(false));
             }
             return;
         }
@@ -83,7 +83,7 @@ impl Requests {
         let stuck = view.now.since(*self.crowded.get_or_insert(view.now)) >= STUCK;
         if stuck && !self.substitution && left != Some(0) {
             self.substitution = true;
-            self.out.push_back(Request::Substitute(true));
+            self.out.push_back(TeamPortRequest::Substitute(true));
         }
     }
 
@@ -99,7 +99,7 @@ impl Requests {
         let go_on = attack && theirs > view.theirs_allowed;
         if go_on != self.advantage {
             self.advantage = go_on;
-            self.out.push_back(Request::Advantage { go_on });
+            self.out.push_back(TeamPortRequest::Advantage { go_on });
         }
     }
 }

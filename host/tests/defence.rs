@@ -5,8 +5,8 @@ use std::path::Path;
 
 use geometry::GoalEnd;
 use host::strategy::View;
-use host::strategy::threat::{Defence, Guards, Memory, Settings, defend};
-use host::strategy::view::{Game, ROBOTS_MAX, RobotSet};
+use host::strategy::threat::{Defence, Guards, Memory, ThreatSettings, defend};
+use host::strategy::view::{ROBOTS_MAX, RobotSet, ViewGame};
 use host::tracking::Tracker;
 use protocol::{Instant, RobotId};
 use rules::{Colour, FieldSpec, League, Phase};
@@ -42,7 +42,7 @@ fn defended(name: &str, field: FieldSpec, remembers: bool) -> Seen {
         seen.seconds = now.as_secs_f32();
         let world = tracker.world(now);
         for (team, (us, defending)) in teams.into_iter().enumerate() {
-            let game = Game {
+            let game = ViewGame {
                 phase: Phase::Run,
                 next: None,
                 placement: None,
@@ -54,7 +54,7 @@ fn defended(name: &str, field: FieldSpec, remembers: bool) -> Seen {
             if !remembers {
                 memories[team] = Memory::default();
             }
-            let defence = defend(&view, all_robots, &mut memories[team], &Settings::default());
+            let defence = defend(&view, all_robots, &mut memories[team], &ThreatSettings::default());
             count(&view, &defence, &mut before[team], &mut seen);
         }
     }

@@ -4,7 +4,7 @@
 use host::radio::To;
 use host::record::header::{HostHeader, RecordingHeader};
 use host::record::recheck::Recheck;
-use host::record::trace::{Kind, Record};
+use host::record::trace::{Record, RecordKind};
 use host::referee::{SenderAddress, SourcePin};
 use host::{Host, HostSettings, Input};
 use protocol::frame::TeamKey;
@@ -155,15 +155,15 @@ fn recorded(settings: HostSettings) -> Vec<Record> {
     for step in 0..400_u32 {
         let now = u64::from(step) * 10 * MS;
         let (kind, from, bytes) = match step % 4 {
-            0 => (Kind::Referee, machine(1), packet(now, Wire::ForceStart, 1)),
+            0 => (RecordKind::Referee, machine(1), packet(now, Wire::ForceStart, 1)),
             // From the second second on another machine sends HALT with the same identifier, for a second.
-            1 if (100..200).contains(&step) => (Kind::Referee, machine(2), packet(now, Wire::Halt, 1)),
-            2 => (Kind::Robot, SenderAddress::INTERNAL, telemetry(&mut robot, now)),
-            _ => (Kind::Vision, SenderAddress::INTERNAL, camera_frame(step, now)),
+            1 if (100..200).contains(&step) => (RecordKind::Referee, machine(2), packet(now, Wire::Halt, 1)),
+            2 => (RecordKind::Robot, SenderAddress::INTERNAL, telemetry(&mut robot, now)),
+            _ => (RecordKind::Vision, SenderAddress::INTERNAL, camera_frame(step, now)),
         };
         let input = match kind {
-            Kind::Referee => Input::Referee(&bytes, from),
-            Kind::Robot => Input::Robot(&bytes),
+            RecordKind::Referee => Input::Referee(&bytes, from),
+            RecordKind::Robot => Input::Robot(&bytes),
             _ => Input::Vision(&bytes),
         };
         host.handle(Instant(now), input);
@@ -175,7 +175,7 @@ fn recorded(settings: HostSettings) -> Vec<Record> {
             records.push(Record {
                 at: Instant(now),
                 host: 0,
-                kind: Kind::Sent,
+                kind: RecordKind::Sent,
                 from: SenderAddress::INTERNAL,
                 bytes,
             });
@@ -210,7 +210,7 @@ fn from_a_trace_with_two_referees_a_host_decides_the_same_again() {
     let halts = |records: &[Record]| {
         let reported = records
             .iter()
-            .filter(|record| record.kind == Kind::Sent)
+            .filter(|record| record.kind == RecordKind::Sent)
             .filter_map(|record| read(&record.bytes[1..]));
         reported
             .filter(|message| matches!(message, HostMessage::World(part) if part.phase == Phase::Halt))

@@ -4,10 +4,10 @@
 mod allocations;
 
 use geometry::{Angle, Field, GoalEnd, Point, Pose, Vector};
-use host::radio::{Radio, RadioSettings, Relay, Situation};
+use host::radio::{Radio, RadioSettings, RadioSituation, Relay};
 use host::world::{BallModels, Robot, World};
 use protocol::frame::TeamKey;
-use protocol::host::{Command, Directive, RuleRole, Telemetry};
+use protocol::host::{Directive, HostCommand, RuleRole, Telemetry};
 use protocol::link::{Link, Packet};
 use protocol::quantized::WirePose;
 use protocol::team::{Beacon, Progress, Role, Status, TeamMessage};
@@ -29,11 +29,11 @@ fn eleven_robots_at_a_hundred_snapshots_a_second_need_no_heap() {
             world.put(Robot { who, pose, velocity, angular: 0.1, confidence: 1.0, seen });
         }
     }
-    let situation = Situation { us: Colour::Blue, phase: Phase::Run, placement: None };
+    let situation = RadioSituation { us: Colour::Blue, phase: Phase::Run, placement: None };
     let gameplay = Directive::Gameplay { hint: None };
-    let commands: Vec<Command> = RobotId::all()
+    let commands: Vec<HostCommand> = RobotId::all()
         .take(11)
-        .map(|to| Command {
+        .map(|to| HostCommand {
             to,
             defending: GoalEnd::Negative,
             phase: Phase::Run,

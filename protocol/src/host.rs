@@ -36,7 +36,7 @@ pub enum HostMessage {
     /// To all: a part of the snapshot.
     World(WorldPart),
     /// To one robot: its directive.
-    Command(Command),
+    Command(HostCommand),
     /// To one robot: the host's answer to receiving it for the first time; repeated occasionally.
     Welcome(Welcome),
 }
@@ -170,7 +170,7 @@ impl TryFrom<u8> for WireWho {
 
 /// Command to one robot.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Command {
+pub struct HostCommand {
     /// Number of the robot addressed.
     pub to: RobotId,
     /// The goal we defend: teams change ends at half-time.
@@ -376,7 +376,7 @@ mod tests {
         ];
         for directive in directives {
             let phase = Phase::BallPlacement(Side::Theirs);
-            let command = HostMessage::Command(Command {
+            let command = HostMessage::Command(HostCommand {
                 to: id,
                 defending: GoalEnd::Positive,
                 phase,

@@ -4,7 +4,7 @@
 use geometry::GoalEnd;
 use protocol::frame::{Audience, Frame, Key, Sender, TeamKey};
 use protocol::host::{
-    Command, Condition, Directive, Hint, HostMessage, KickOrder, RuleRole, Telemetry, Welcome, WireBall,
+    Condition, Directive, Hint, HostCommand, HostMessage, KickOrder, RuleRole, Telemetry, Welcome, WireBall,
     WireRobot, WireWho, WorldPart,
 };
 use protocol::quantized::{WirePoint, WirePose};
@@ -153,7 +153,13 @@ fn commands() -> [(&'static str, Phase<Side>, RuleRole, Directive); 11] {
 
 fn stand() -> HostMessage {
     let (phase, rule_role, directive) = (Phase::Halt, RuleRole::Player, Directive::Stand);
-    HostMessage::Command(Command { to: robot(3), defending: GoalEnd::Negative, phase, rule_role, directive })
+    HostMessage::Command(HostCommand {
+        to: robot(3),
+        defending: GoalEnd::Negative,
+        phase,
+        rule_role,
+        directive,
+    })
 }
 
 /// The message is these bytes, and these bytes are the message.
@@ -198,7 +204,7 @@ fn the_hosts_messages_have_the_bytes_of_the_specification() {
     for (name, phase, rule_role, directive) in commands() {
         both_ways(
             name,
-            &HostMessage::Command(Command {
+            &HostMessage::Command(HostCommand {
                 to: robot(3),
                 defending: GoalEnd::Negative,
                 phase,

@@ -22,7 +22,8 @@ fn main() -> ExitCode {
             }
         }
     }
-    let image = firmware_build::build_image(&firmware_build::workspace_root(), firmware_build::Body::Omni);
+    let image =
+        firmware_build::build_image(&firmware_build::workspace_root(), firmware_build::ImageBody::Omni);
     let reported = match image {
         Ok(image) => Pair::new(seed, seconds, &image).and_then(|mut pair| pair.play(|_, _| {})),
         Err(error) => {

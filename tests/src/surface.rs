@@ -9,9 +9,9 @@ use std::collections::BTreeMap;
 use brain::{Brain, BrainConfig};
 use casebase::CaseBase;
 use geometry::{Field, GoalEnd, Point, Pose, Vector};
-use hil_sim::small_size::{Ball, Event, Parameters, Robot, World};
+use hil_sim::small_size::{Ball, Parameters, PhysicsEvent, Robot, World};
 use protocol::host::{
-    Command, Directive, HostMessage, PART_ROBOTS_MAX, RuleRole, Telemetry, WireBall, WireRobot, WireWho,
+    Directive, HostCommand, HostMessage, PART_ROBOTS_MAX, RuleRole, Telemetry, WireBall, WireRobot, WireWho,
     WorldPart,
 };
 use protocol::quantized::{WirePoint, WirePose, to_mm};
@@ -33,7 +33,7 @@ pub struct Surface<'a> {
     /// Brains of our robots, by number.
     pub brains: BTreeMap<RobotId, Brain<'a>>,
     /// Events, with the time, s.
-    pub events: Vec<(f64, Event)>,
+    pub events: Vec<(f64, PhysicsEvent)>,
     /// The newest order of each of ours.
     pub orders: BTreeMap<RobotId, ActuatorFrame>,
     /// Ends of cycles, as reported by any robot.
@@ -139,8 +139,8 @@ impl<'a> Surface<'a> {
 
     /// Every kick of ours so far: the robot, and the ball's speed after it, m/s.
     pub fn kicks(&self) -> Vec<(RobotId, f32, Vector<Field>)> {
-        let kick = |(_, event): &(f64, Event)| match *event {
-            Event::Kicked { robot, speed, velocity, .. } if robot.colour == Colour::Blue => {
+        let kick = |(_, event): &(f64, PhysicsEvent)| match *event {
+            PhysicsEvent::Kicked { robot, speed, velocity, .. } if robot.colour == Colour::Blue => {
                 Some((robot.id, speed, velocity))
             }
             _ => None,
@@ -236,7 +236,7 @@ impl<'a> Surface<'a> {
                 brain.handle_host_message(now, Duration(0), message);
             }
             if let Some((rule_role, directive)) = self.commands.get(&id) {
-                let command = Command {
+                let command = HostCommand {
                     to: id,
                     defending: GoalEnd::Negative,
                     phase: self.phase,

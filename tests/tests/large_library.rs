@@ -4,7 +4,8 @@
 
 use case_library::LEAGUES;
 use casebase::{
-    CaseBase, Match, PointMm, Problem, Settings, Verdict, explain, rank_order, retrieve, retrieve_best,
+    CaseBase, CaseVerdict, Match, PointMm, Problem, RetrievalSettings, explain, rank_order, retrieve,
+    retrieve_best,
 };
 use match_tests::random_library::{Dice, RandomLibrary};
 use protocol::{CaseId, RobotId};
@@ -26,14 +27,14 @@ fn problem(dice: &mut Dice, base: &CaseBase<'_>) -> Problem {
 
 /// Checks for the same winner and count; returns the number of problems with a winner.
 fn agree(base: &CaseBase<'_>, seed: u64, problems: usize) -> usize {
-    let settings = Settings::default();
+    let settings = RetrievalSettings::default();
     let mut dice = Dice::new(seed);
     let mut won = 0;
     for number in 0..problems {
         let problem = problem(&mut dice, base);
         let mut candidates: Vec<Match> = Vec::new();
         explain(base, &problem, &settings, |_, verdict| {
-            if let Verdict::Candidate(found) = verdict {
+            if let CaseVerdict::Candidate(found) = verdict {
                 candidates.push(found);
             }
         });

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use arena::{CaseNames, CaseTrial, Opposition, Score, markdown};
-use casebase::Settings;
+use casebase::RetrievalSettings;
 
 /// What `onetwo cases play --trials 200 --seed 1 --markdown` wrote.
 const TRIALS: u32 = 200;
@@ -38,7 +38,7 @@ fn rows_of_the_table_come_out_again() {
     let case_trial = CaseTrial {
         base: case_library::four_legged(),
         names: CaseNames::new(names.iter().copied()),
-        settings: Settings::default(),
+        settings: RetrievalSettings::default(),
         trials: TRIALS,
         seed: SEED,
     };

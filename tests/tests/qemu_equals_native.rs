@@ -123,7 +123,8 @@ fn paper() -> impl Iterator<Item = (Scenario, Configuration)> {
 /// The firmware image, built where it is missing or old.
 static IMAGE: LazyLock<PathBuf> = LazyLock::new(|| {
     let root = firmware_build::workspace_root();
-    firmware_build::build_image(&root, firmware_build::Body::Legged).unwrap_or_else(|error| panic!("{error}"))
+    firmware_build::build_image(&root, firmware_build::ImageBody::Legged)
+        .unwrap_or_else(|error| panic!("{error}"))
 });
 
 /// A directory with some files of the built-in library; deleted on drop.

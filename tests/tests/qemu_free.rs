@@ -19,7 +19,7 @@ use firmware_build::inspect::STACK_BUDGET;
 use firmware_build::{Install, MACHINE, Program, build_program, ensure_qemu, workspace_root};
 use match_tests::bad_line::{BadLine, Trouble};
 use protocol::frame::TeamKey;
-use protocol::host::{Command, Condition, Directive, HostMessage, RuleRole, Telemetry, Welcome};
+use protocol::host::{Condition, Directive, HostCommand, HostMessage, RuleRole, Telemetry, Welcome};
 use protocol::host_link::HostLink;
 use protocol::link::overhear;
 use protocol::serial::{Lines, line};
@@ -217,7 +217,7 @@ impl Robot {
 
     /// Sends a welcome and a command of that host.
     fn send_welcome(&mut self, link: &mut HostLink, welcome: Option<Welcome>) {
-        let command = Command {
+        let command = HostCommand {
             to: id(),
             defending: geometry::GoalEnd::Negative,
             phase: Phase::Run,

@@ -9,15 +9,15 @@ use std::time::{Duration, Instant};
 
 use firmware_build::inspect::Image;
 use firmware_build::{
-    Body, Install, MACHINE, Program, build_image, build_program, ensure_qemu, workspace_root,
+    ImageBody, Install, MACHINE, Program, build_image, build_program, ensure_qemu, workspace_root,
 };
 
 #[test]
 fn no_image_has_an_allocator_or_double_precision_in_software() {
-    Body::ALL.into_iter().for_each(is_free_of_them);
+    ImageBody::ALL.into_iter().for_each(is_free_of_them);
 }
 
-fn is_free_of_them(body: Body) {
+fn is_free_of_them(body: ImageBody) {
     let path = build_image(&workspace_root(), body).unwrap_or_else(|error| panic!("{error}"));
     let bytes = fs::read(&path).expect("the image that was just built");
     let image = Image::parse(&bytes).unwrap_or_else(|error| panic!("{}: {error}", path.display()));

@@ -14,7 +14,7 @@ use hil_sim::small_size::{Ball, Drive, Order, Parameters, World};
 use hil_sim::{Backend, Mcu, Meter, NativeBackend, QemuBackend};
 use protocol::frame::{Audience, TeamKey};
 use protocol::host::{
-    Command, Directive, HostMessage, KickOrder, PART_ROBOTS_MAX, RuleRole, Welcome, WireBall, WireRobot,
+    Directive, HostCommand, HostMessage, KickOrder, PART_ROBOTS_MAX, RuleRole, Welcome, WireBall, WireRobot,
     WireWho, WorldPart,
 };
 use protocol::host_link::{HostLink, Opened};
@@ -145,7 +145,7 @@ impl Table {
                 packets.push(self.link.seal(now, &HostMessage::Welcome(welcome)));
             }
             packets.extend(parts.iter().cloned());
-            let command = Command {
+            let command = HostCommand {
                 to: *robot,
                 defending: GoalEnd::Negative,
                 phase,
@@ -238,5 +238,6 @@ fn theirs(number: u8) -> Who {
 /// The firmware image, built where it is missing or old.
 static IMAGE: LazyLock<PathBuf> = LazyLock::new(|| {
     let root = firmware_build::workspace_root();
-    firmware_build::build_image(&root, firmware_build::Body::Omni).unwrap_or_else(|error| panic!("{error}"))
+    firmware_build::build_image(&root, firmware_build::ImageBody::Omni)
+        .unwrap_or_else(|error| panic!("{error}"))
 });

@@ -7,10 +7,10 @@ use std::collections::VecDeque;
 use brain::{BrainConfig, Station};
 use geometry::{GoalEnd, Pose, Twist, Vector};
 use hil_sim::Stream;
-use host::radio::{Radio, RadioSettings, RadioWarning, Relay, Situation};
+use host::radio::{Radio, RadioSettings, RadioSituation, RadioWarning, Relay};
 use host::world::{BallModels, Robot, World};
 use protocol::frame::{Frame, Refusal, RobotKeys, TeamKey};
-use protocol::host::{Command, Directive, RuleRole};
+use protocol::host::{Directive, HostCommand, RuleRole};
 use protocol::link::Packet;
 use protocol::quantized::{WirePoint, WirePose};
 use protocol::robot_io::{ActuatorFrame, Health, SensorFrame};
@@ -133,8 +133,8 @@ fn offer(radio: &mut Radio, now: u64) -> Vec<Packet> {
     });
     let directive = Directive::GoTo { pose: WirePose { at: WirePoint { x: 3_000, y: 0 }, heading: 0 } };
     let (defending, phase, rule_role) = (GoalEnd::Negative, Phase::Run, RuleRole::Player);
-    let command = Command { to: id(), defending, phase, rule_role, directive };
-    radio.offer(ms(now), &world, Situation { us: Colour::Blue, phase, placement: None }, &[command]);
+    let command = HostCommand { to: id(), defending, phase, rule_role, directive };
+    radio.offer(ms(now), &world, RadioSituation { us: Colour::Blue, phase, placement: None }, &[command]);
     fetch(radio)
 }
 

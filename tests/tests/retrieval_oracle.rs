@@ -7,7 +7,7 @@
 
 use std::path::{Path, PathBuf};
 
-use casebase::{GoalEnd, PointMm, Retrieval, Settings};
+use casebase::{GoalEnd, PointMm, Retrieval, RetrievalSettings};
 use match_tests::oracle::library::{Goal, Library, Point};
 use match_tests::oracle::problem::Problem;
 use match_tests::oracle::{Answer, Criterion, NEAR, Rules, retrieve};
@@ -24,14 +24,14 @@ const EXCUSED_MAX: f64 = 0.01;
 fn random_libraries_are_answered_as_the_oracle_answers() {
     for (seed, size) in [(1, 1), (2, 5), (3, 20), (4, 20), (5, 60), (6, 60), (7, 120), (8, 250)] {
         let trial = Trial::of_random_library(seed, size);
-        trial.compare(&Settings::default(), &Rules::default());
+        trial.compare(&RetrievalSettings::default(), &Rules::default());
     }
 }
 
 #[test]
 fn the_built_in_library_is_answered_as_the_oracle_answers() {
     let trial = Trial::of_directory(1, &four_legged_directory());
-    trial.compare(&Settings::default(), &Rules::default());
+    trial.compare(&RetrievalSettings::default(), &Rules::default());
     assert_eq!(
         trial.table.base().hash(),
         case_library::four_legged().hash(),
@@ -71,7 +71,7 @@ fn settings_change_the_answers_as_the_agreement_says() {
         ),
     ];
     for (name, value, rules) in settings {
-        let mut settings = Settings::default();
+        let mut settings = RetrievalSettings::default();
         settings.set(name, value).unwrap_or_else(|error| panic!("--set {name}={value}: {error}"));
         let changed = trial.compare(&settings, &rules);
         assert!(changed > 0, "--set {name}={value} changes no answer");
@@ -83,7 +83,8 @@ fn every_authored_case_in_all_four_symmetries_retrieves_itself_from_its_own_situ
     let trial = Trial::of_directory(1, &four_legged_directory());
     for (id, case) in trial.oracle.cases.iter().enumerate() {
         let problem = Problem::own_situation(case);
-        let answer = casebase::retrieve(&trial.table.base(), &translated(&problem), &Settings::default());
+        let answer =
+            casebase::retrieve(&trial.table.base(), &translated(&problem), &RetrievalSettings::default());
         let best = answer.best.unwrap_or_else(|| panic!("{} {} blocks itself", case.name, case.symmetry));
         let winner = &trial.oracle.cases[usize::from(best.case.0)];
         assert_eq!(winner.name, case.name, "{id} {} is beaten by {}", case.symmetry, best.case);
@@ -117,7 +118,7 @@ impl Trial {
     }
 
     /// Compares both sides; returns the number of answers that differ from those under default rules.
-    fn compare(&self, settings: &Settings, rules: &Rules) -> usize {
+    fn compare(&self, settings: &RetrievalSettings, rules: &Rules) -> usize {
         let base = self.table.base();
         let mut dice = Dice::new(self.seed ^ 0x5eed);
         let (mut excused, mut answered, mut several, mut changed) = (0, 0, 0, 0);

@@ -7,13 +7,13 @@ use std::collections::VecDeque;
 use brain::{BrainConfig, Station};
 use geometry::{GoalEnd, Pose, Twist};
 use hil_sim::Stream;
-use host::radio::{Radio, RadioSettings, Situation};
+use host::radio::{Radio, RadioSettings, RadioSituation};
 use host::world::{BallModels, Robot, World};
 use match_tests::bad_line::{BadLine, Trouble};
 use match_tests::swarm::guard::Guard;
 use match_tests::swarm::honest::Sayings;
 use protocol::frame::TeamKey;
-use protocol::host::{Command, Directive, RuleRole};
+use protocol::host::{Directive, HostCommand, RuleRole};
 use protocol::quantized::{WirePoint, WirePose};
 use protocol::robot_io::{ActuatorFrame, Health, OmniKick, SensorFrame};
 use protocol::serial::{Lines, line};
@@ -85,7 +85,7 @@ fn run(seed: u64, bad: Trouble, late: u32) -> Reported {
             // Corrupted packets are refused.
             let _ = radio.handle_packet(now, &packet);
         }
-        let to = Command {
+        let to = HostCommand {
             to: id,
             defending: GoalEnd::Negative,
             phase: Phase::Run,
@@ -93,7 +93,7 @@ fn run(seed: u64, bad: Trouble, late: u32) -> Reported {
             // Never reached: it drives on.
             directive: Directive::GoTo { pose: WirePose { at: WirePoint { x: 3_000, y: 0 }, heading: 0 } },
         };
-        let situation = Situation { us: Colour::Blue, phase: Phase::Run, placement: None };
+        let situation = RadioSituation { us: Colour::Blue, phase: Phase::Run, placement: None };
         radio.offer(now, &field(now, id), situation, &[to]);
         while let Some((_, packet)) = radio.poll_packet() {
             sayings.add(&packet);

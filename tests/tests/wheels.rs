@@ -172,7 +172,10 @@ fn a_free_kick_is_taken_with_one_touch_and_the_kicker_leaves_the_ball_alone_afte
     surface.give_order(1, RuleRole::Kicker, Directive::Kick { at: at(1.0, 1.0), kick: KickOrder::Flat(150) });
     assert!(surface.until(6.0, |c| !c.kicks().is_empty()).is_some());
     let touches = |c: &Surface<'_>| {
-        c.events.iter().filter(|(_, e)| matches!(e, hil_sim::small_size::Event::Touched { .. })).count()
+        c.events
+            .iter()
+            .filter(|(_, e)| matches!(e, hil_sim::small_size::PhysicsEvent::Touched { .. }))
+            .count()
     };
     let before = touches(&surface);
     surface.phase = Phase::Run;

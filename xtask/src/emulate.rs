@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use firmware_build::on_target::{OnTarget, Verdict, run_test, tests_in};
+use firmware_build::on_target::{OnTarget, TestVerdict, run_test, tests_in};
 use firmware_build::{Install, MACHINE, ensure_qemu};
 
 use crate::context::{Context, Failure, line_of, run};
@@ -55,8 +55,8 @@ fn run_tests(qemu: &Path, image: &Path, tests: &[OnTarget], arguments: &[String]
         let verdict =
             run_test(qemu, image, test).map_err(|error| Failure::Start { line: test.name.clone(), error })?;
         match verdict {
-            Verdict::Passed => println!("test {} ... ok", test.name),
-            Verdict::Failed(output) => {
+            TestVerdict::Passed => println!("test {} ... ok", test.name),
+            TestVerdict::Failed(output) => {
                 println!("test {} ... FAILED\n{output}", test.name);
                 failures.push(format!("{}: {}", test.name, output.lines().next().unwrap_or("no output")));
             }

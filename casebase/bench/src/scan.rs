@@ -5,14 +5,14 @@
 //! correspondence by enumeration. Lengths in mm.
 
 use casebase::{
-    Case, CaseBase, Correspondence, Match, Problem, Retrieval, Settings, blocked_leg, rank_order,
+    Case, CaseBase, Correspondence, Match, Problem, Retrieval, RetrievalSettings, blocked_leg, rank_order,
 };
 use geometry::math;
 use protocol::RobotId;
 
 /// The best case and the number of candidates.
 pub fn scan(base: &CaseBase<'_>, problem: &Problem) -> Retrieval {
-    let settings = Settings::default();
+    let settings = RetrievalSettings::default();
     let mut team = problem.teammates.clone();
     team.sort_unstable_by_key(|(id, _)| *id);
     let mut best: Option<Match> = None;
@@ -32,7 +32,7 @@ fn candidate(
     case: &Case<'_>,
     problem: &Problem,
     team: &[(RobotId, casebase::PointMm)],
-    settings: &Settings,
+    settings: &RetrievalSettings,
 ) -> Option<Match> {
     let ball = problem.ball;
     if !case.ball_in_scope(ball) || case.teammates() > team.len() {

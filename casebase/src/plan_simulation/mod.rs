@@ -10,7 +10,7 @@ use core::fmt;
 
 use geometry::math;
 
-use crate::action::{Action, CaseRobot, FieldMm, Kick, KickAim, KickId, Pass, TEAMMATES_MAX};
+use crate::action::{Action, CaseKick, CaseRobot, FieldMm, KickAim, KickId, Pass, TEAMMATES_MAX};
 use crate::path::LegKind;
 use crate::table::CaseBase;
 use crate::{GoalEnd, PointMm};
@@ -32,7 +32,7 @@ pub trait Script {
 /// The league's parameters of kicked balls.
 pub trait Kicks {
     /// The kick kind with this id; `None` if unknown.
-    fn kick(&self, id: KickId) -> Option<Kick>;
+    fn kick(&self, id: KickId) -> Option<CaseKick>;
     /// The radii of passes.
     fn pass(&self) -> Pass;
     /// Dimensions of the league's field, mm.
@@ -40,7 +40,7 @@ pub trait Kicks {
 }
 
 impl Kicks for CaseBase<'_> {
-    fn kick(&self, id: KickId) -> Option<Kick> {
+    fn kick(&self, id: KickId) -> Option<CaseKick> {
         self.kick(id)
     }
     fn pass(&self) -> Pass {
@@ -55,7 +55,7 @@ impl Kicks for CaseBase<'_> {
 pub fn plan_simulation(
     script: &impl Script,
     kicks: &impl Kicks,
-    sink: impl FnMut(Step),
+    sink: impl FnMut(PlanStep),
 ) -> Result<(), PlanError> {
     let getter = CaseRobot::first(script.teammates())
         .find(|robot| script.action(*robot, 0) == Some(Action::GetBall))
@@ -90,7 +90,7 @@ impl Spot {
 
 /// An event of the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Step {
+pub enum PlanStep {
     /// It runs along a leg.
     Leg {
         /// The case robot that passes or kicks.
@@ -119,7 +119,7 @@ pub enum Step {
     },
 }
 
-impl Step {
+impl PlanStep {
     /// The hand-over, if it is one.
     pub const fn hand_over(self) -> Option<HandOver> {
         if let Self::HandOver(hand_over) = self { Some(hand_over) } else { None }
@@ -179,7 +179,7 @@ struct Walker<'s, S, K, F> {
     carried: Option<(CaseRobot, usize)>,
 }
 
-impl<S: Script, K: Kicks, F: FnMut(Step)> Walker<'_, S, K, F> {
+impl<S: Script, K: Kicks, F: FnMut(PlanStep)> Walker<'_, S, K, F> {
     /// Plays the holder's actions until the ball leaves it; returns the next holder, `None` where there is
     /// none.
     fn play(&mut self, robot: CaseRobot) -> Result<Option<CaseRobot>, PlanError> {
@@ -227,7 +227,7 @@ impl<S: Script, K: Kicks, F: FnMut(Step)> Walker<'_, S, K, F> {
         let Pass { r_min, r_max } = self.kicks.pass();
         self.leg(robot, index, self.places[theirs], [r_min, r_max], LegKind::Pass(receiver));
         let (from, to) = ((robot, index), (receiver, there));
-        (self.sink)(Step::HandOver(HandOver { from, to, by_pass: true }));
+        (self.sink)(PlanStep::HandOver(HandOver { from, to, by_pass: true }));
         self.next[theirs] += 1;
         Ok(receiver)
     }
@@ -242,7 +242,7 @@ impl<S: Script, K: Kicks, F: FnMut(Step)> Walker<'_, S, K, F> {
         let robot = CaseRobot::first(self.script.teammates()).find(chases)?;
         self.walk_on(robot);
         let to = (robot, self.next[robot.index()]);
-        (self.sink)(Step::HandOver(HandOver { from, to, by_pass: false }));
+        (self.sink)(PlanStep::HandOver(HandOver { from, to, by_pass: false }));
         Some(robot)
     }
 
@@ -264,7 +264,7 @@ impl<S: Script, K: Kicks, F: FnMut(Step)> Walker<'_, S, K, F> {
     /// The ball runs to `to`.
     fn leg(&mut self, robot: CaseRobot, action: usize, to: Spot, radii: [i32; 2], kind: LegKind) {
         let (from, carried_by) = (self.ball, self.carried.take());
-        (self.sink)(Step::Leg { robot, action, from, to, radii, kind, carried_by });
+        (self.sink)(PlanStep::Leg { robot, action, from, to, radii, kind, carried_by });
         self.ball = to;
     }
 
@@ -293,7 +293,7 @@ impl<S: Script, K: Kicks, F: FnMut(Step)> Walker<'_, S, K, F> {
                 match self.script.action(robot, index) {
                     None => break,
                     Some(Action::Wait | Action::Turn(_) | Action::GoToPoint(_)) => {}
-                    Some(Action::GetBall) => (self.sink)(Step::NeverReached { robot, action: index }),
+                    Some(Action::GetBall) => (self.sink)(PlanStep::NeverReached { robot, action: index }),
                     Some(Action::ReceiveBall(_)) => return Err(PlanError::ReceiveUnanswered(robot, index)),
                     Some(Action::DribbleTo(_) | Action::PassBall(_) | Action::Kick(_)) => {
                         return Err(PlanError::NotHolding(robot, index));

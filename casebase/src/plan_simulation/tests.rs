@@ -35,14 +35,14 @@ impl Script for Written {
 struct League;
 
 impl Kicks for League {
-    fn kick(&self, id: KickId) -> Option<Kick> {
+    fn kick(&self, id: KickId) -> Option<CaseKick> {
         let aim = match id.0 {
             0 => KickAim::Heading { degrees: 0, length_mm: 1000 },
             1 => KickAim::Heading { degrees: 90, length_mm: 1000 },
             2 => KickAim::Goal { offset_mm: 200 },
             _ => return None,
         };
-        Some(Kick { aim, r_min: 80, r_max: 240, primitive: Primitive::Unspecified })
+        Some(CaseKick { aim, r_min: 80, r_max: 240, primitive: Primitive::Unspecified })
     }
     fn pass(&self) -> Pass {
         Pass { r_min: 100, r_max: 300 }
@@ -79,7 +79,7 @@ fn written(robots: &[Part<'_>]) -> Written {
     Written { defending: GoalEnd::Negative, robots }
 }
 
-fn steps(script: &Written) -> Result<Vec<Step>, PlanError> {
+fn steps(script: &Written) -> Result<Vec<PlanStep>, PlanError> {
     let mut steps = Vec::new();
     plan_simulation(script, &League, |step| steps.push(step)).map(|()| steps)
 }
@@ -88,7 +88,7 @@ fn steps(script: &Written) -> Result<Vec<Step>, PlanError> {
 fn legs(script: &Written) -> Vec<([i32; 2], [i32; 2], bool)> {
     let whole = |at: [f32; 2]| at.map(math::round_to_i32);
     let as_leg = |step| match step {
-        Step::Leg { from, to, .. } => Some((whole(from.at), whole(to.at), to.on_field)),
+        PlanStep::Leg { from, to, .. } => Some((whole(from.at), whole(to.at), to.on_field)),
         _ => None,
     };
     steps(script).unwrap().into_iter().filter_map(as_leg).collect()
@@ -143,7 +143,7 @@ fn a_dribble_carries_the_ball_without_a_leg() {
     let case = written(&[((0, 50), &[Action::GetBall, Action::DribbleTo(point(400, 250)), AHEAD])]);
     assert_eq!(legs(&case), [([300, 200], [1300, 200], false)]);
     let carried = steps(&case).unwrap();
-    assert!(matches!(carried[0], Step::Leg { carried_by: Some((robot, 1)), .. } if robot == tm(1)));
+    assert!(matches!(carried[0], PlanStep::Leg { carried_by: Some((robot, 1)), .. } if robot == tm(1)));
 }
 
 #[test]
@@ -233,7 +233,7 @@ fn what_cannot_be_walked_names_the_robot_and_its_action() {
 #[test]
 fn a_get_ball_that_no_kick_serves_is_reported() {
     let case = written(&[((0, 0), &[Action::GetBall]), ((0, 0), &[Action::Wait, Action::GetBall])]);
-    assert_eq!(steps(&case).unwrap(), [Step::NeverReached { robot: tm(2), action: 1 }]);
+    assert_eq!(steps(&case).unwrap(), [PlanStep::NeverReached { robot: tm(2), action: 1 }]);
 }
 
 #[test]

@@ -16,10 +16,10 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 mod record_header;
 mod validate;
 
-pub use record_header::{Opponent, RawLeg, RecordHeader};
+pub use record_header::{OpponentRecord, RawLeg, RecordHeader};
 pub use validate::TableError;
 
-use crate::action::{FieldMm, Kick, KickAim, KickId, Pass, Primitive, TEAMMATES_MAX};
+use crate::action::{CaseKick, FieldMm, KickAim, KickId, Pass, Primitive, TEAMMATES_MAX};
 use crate::case::Case;
 use crate::index::Grid;
 
@@ -74,7 +74,7 @@ impl<'a> CaseBase<'a> {
     }
 
     /// The kick kind with this id; `None` if the table has no such kind.
-    pub fn kick(&self, id: KickId) -> Option<Kick> {
+    pub fn kick(&self, id: KickId) -> Option<CaseKick> {
         self.kicks.get(id.0 as usize).map(RawKick::decode)
     }
 
@@ -220,7 +220,7 @@ pub struct RawKick {
 
 impl RawKick {
     /// As a table stores it.
-    pub fn encode(kick: Kick) -> Self {
+    pub fn encode(kick: CaseKick) -> Self {
         let (degrees, length_or_offset, at_goal) = match kick.aim {
             KickAim::Heading { degrees, length_mm } => (degrees, length_mm, 0),
             KickAim::Goal { offset_mm } => (0, offset_mm, 1),
@@ -229,7 +229,7 @@ impl RawKick {
         Self { degrees, length_or_offset, radii, at_goal, primitive: kick.primitive as u8, reserved: [0; 2] }
     }
 
-    fn decode(&self) -> Kick {
+    fn decode(&self) -> CaseKick {
         let aim = if self.at_goal == 0 {
             KickAim::Heading { degrees: self.degrees, length_mm: self.length_or_offset }
         } else {
@@ -237,7 +237,7 @@ impl RawKick {
         };
         let [r_min, r_max] = self.radii;
         let primitive = Primitive::ALL.get(self.primitive as usize).copied().unwrap_or_default();
-        Kick { aim, r_min, r_max, primitive }
+        CaseKick { aim, r_min, r_max, primitive }
     }
 }
 

@@ -29,7 +29,7 @@ pub struct RecordHeader {
 /// An opponent's scope, with its centre relative to the ball.
 #[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(C)]
-pub struct Opponent {
+pub struct OpponentRecord {
     /// The squares around the ball that it overlaps: [`cells_of`](crate::cells_of).
     pub cells: u32,
     /// Relative to the case's ball, mm.
@@ -75,7 +75,7 @@ impl RecordHeader {
     /// The case's opponents among the table's places; `None` where those end before (never in a validated
     /// table).
     #[inline]
-    pub(crate) fn opponents<'a>(&self, places: &'a [u32]) -> Option<&'a [Opponent]> {
+    pub(crate) fn opponents<'a>(&self, places: &'a [u32]) -> Option<&'a [OpponentRecord]> {
         records(places, self.places_at as usize, self.opponents)
     }
 
@@ -94,7 +94,8 @@ impl RecordHeader {
 
     #[inline]
     fn legs_at(&self) -> usize {
-        (self.places_at as usize).wrapping_add(usize::from(self.opponents) * (size_of::<Opponent>() / LABEL))
+        (self.places_at as usize)
+            .wrapping_add(usize::from(self.opponents) * (size_of::<OpponentRecord>() / LABEL))
     }
 }
 

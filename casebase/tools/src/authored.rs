@@ -13,7 +13,7 @@ use crate::document::{Reader, Table, Value};
 use crate::files::SourceFile;
 use crate::finding::{Finding, Severity};
 use crate::keys::{self, COORDINATES};
-use crate::league::League;
+use crate::league::CaseLeague;
 
 /// A case as its author wrote it. Spans are byte ranges in its file.
 #[derive(Clone, Debug)]
@@ -47,7 +47,7 @@ pub(crate) struct Opponent {
 
 impl Authored {
     /// Reads a case file; without the league, kick kinds are not checked (the library is refused anyway).
-    pub(crate) fn read(file: &SourceFile, league: Option<&League>) -> (Option<Self>, Vec<Finding>) {
+    pub(crate) fn read(file: &SourceFile, league: Option<&CaseLeague>) -> (Option<Self>, Vec<Finding>) {
         let mut reader = Reader::new(file);
         let case = reader.parse().and_then(|root| read_case(&mut reader, &Table::root(&root), league));
         let faulty = reader.findings.iter().any(|finding| finding.severity == Severity::Error);
@@ -55,7 +55,7 @@ impl Authored {
     }
 
     /// The case in one of the four symmetries.
-    pub(crate) fn mirrored<'c>(&'c self, symmetry: Symmetry, league: &'c League) -> Mirrored<'c> {
+    pub(crate) fn mirrored<'c>(&'c self, symmetry: Symmetry, league: &'c CaseLeague) -> Mirrored<'c> {
         Mirrored { case: self, symmetry, league }
     }
 }
@@ -65,7 +65,7 @@ impl Authored {
 pub(crate) struct Mirrored<'c> {
     pub(crate) case: &'c Authored,
     pub(crate) symmetry: Symmetry,
-    league: &'c League,
+    league: &'c CaseLeague,
 }
 
 impl Mirrored<'_> {
@@ -107,7 +107,7 @@ impl Script for Mirrored<'_> {
     }
 }
 
-fn read_case(reader: &mut Reader<'_>, root: &Table<'_, '_>, league: Option<&League>) -> Option<Authored> {
+fn read_case(reader: &mut Reader<'_>, root: &Table<'_, '_>, league: Option<&CaseLeague>) -> Option<Authored> {
     root.refuse_others(reader, keys::CASE);
     let intent = root.required(reader, "intent").and_then(|value| reader.text(value, "intent"));
     let defending = root.required(reader, "defending").and_then(|value| read_defending(reader, value));
@@ -155,7 +155,7 @@ fn read_scope(reader: &mut Reader<'_>, table: &Table<'_, '_>) -> Option<Scope> {
 fn read_teammates(
     reader: &mut Reader<'_>,
     root: &Table<'_, '_>,
-    league: Option<&League>,
+    league: Option<&CaseLeague>,
 ) -> Option<Vec<Teammate>> {
     let value = root.optional("teammates");
     let list = value.map_or(Some(Vec::new()), |value| reader.list(value, "teammates"))?;
@@ -196,7 +196,7 @@ fn read_teammate(
     value: Value<'_, '_>,
     robot: CaseRobot,
     count: usize,
-    league: Option<&League>,
+    league: Option<&CaseLeague>,
 ) -> Option<Teammate> {
     let table = reader.table(value, robot.to_string())?;
     table.refuse_others(reader, keys::TEAMMATE);
@@ -216,7 +216,7 @@ fn read_teammate(
 struct Cast<'l> {
     robot: CaseRobot,
     count: usize,
-    league: Option<&'l League>,
+    league: Option<&'l CaseLeague>,
 }
 
 fn read_action(reader: &mut Reader<'_>, value: Value<'_, '_>, cast: &Cast<'_>) -> Option<Action> {

@@ -7,10 +7,10 @@ use crate::authored::Authored;
 use crate::codes::code;
 use crate::files::SourceFile;
 use crate::finding::{Finding, Severity};
-use crate::league::League;
+use crate::league::CaseLeague;
 
 /// Every error of a case that was read without a fault.
-pub(crate) fn errors(file: &SourceFile, case: &Authored, league: &League) -> Vec<Finding> {
+pub(crate) fn errors(file: &SourceFile, case: &Authored, league: &CaseLeague) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut error = |code, span: &std::ops::Range<usize>, message: String, hint: &str| {
         findings.push(file.finding(Severity::Error, code, file.line(span.start), message, hint));

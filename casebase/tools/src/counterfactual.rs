@@ -6,7 +6,9 @@
 //! shortest distance is found by bisection, in whole mm, and every answer was retrieved again on the changed
 //! problem: the move is proven to work, but a shorter one on another line may exist.
 
-use casebase::{Case, CaseBase, Criterion, Leg, Match, PointMm, Problem, ScopeRule, Settings, retrieve_best};
+use casebase::{
+    Case, CaseBase, Criterion, Leg, Match, PointMm, Problem, RetrievalSettings, ScopeRule, retrieve_best,
+};
 use protocol::{CaseId, RobotId};
 
 /// What would make a case the retrieved one.
@@ -17,7 +19,7 @@ pub enum Counterfactual {
     /// The shortest single move that makes it the retrieved case.
     Move(Move),
     /// No single move that was tried.
-    NoSingleMove(Obstacle),
+    NoSingleMove(CounterfactualObstacle),
 }
 
 /// One object moved to another position.
@@ -46,7 +48,7 @@ pub enum Entity {
 
 /// Why no single move works.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Obstacle {
+pub enum CounterfactualObstacle {
     /// Fewer robots are present than the case needs.
     Robots {
         /// Robots of the case.
@@ -98,7 +100,7 @@ impl Move {
 pub fn counterfactual(
     base: &CaseBase<'_>,
     problem: &Problem,
-    settings: &Settings,
+    settings: &RetrievalSettings,
     id: CaseId,
 ) -> Option<Counterfactual> {
     let case = base.case(id).filter(|case| case.defending() == problem.defending)?;
@@ -108,7 +110,7 @@ pub fn counterfactual(
     }
     let (needed, present) = (case.teammates(), problem.teammates.len());
     if needed > present {
-        return Some(Counterfactual::NoSingleMove(Obstacle::Robots { needed, present }));
+        return Some(Counterfactual::NoSingleMove(CounterfactualObstacle::Robots { needed, present }));
     }
     let mut search = Search { base, problem, settings, id, best: None, tried: 0 };
     search.ball(&case);
@@ -120,20 +122,25 @@ pub fn counterfactual(
     })
 }
 
-fn obstacle(case: &Case<'_>, winner: Option<&Match>, settings: &Settings, tried: usize) -> Obstacle {
+fn obstacle(
+    case: &Case<'_>,
+    winner: Option<&Match>,
+    settings: &RetrievalSettings,
+    tried: usize,
+) -> CounterfactualObstacle {
     let most = case.opponents().count() as u8;
     match winner {
         Some(winner) if settings.ranking[0] == Criterion::Conditions && winner.conditions > most => {
-            Obstacle::Conditions { winner: winner.case, fulfilled: winner.conditions, most }
+            CounterfactualObstacle::Conditions { winner: winner.case, fulfilled: winner.conditions, most }
         }
-        _ => Obstacle::Several { tried },
+        _ => CounterfactualObstacle::Several { tried },
     }
 }
 
 struct Search<'s, 'b> {
     base: &'s CaseBase<'b>,
     problem: &'s Problem,
-    settings: &'s Settings,
+    settings: &'s RetrievalSettings,
     id: CaseId,
     best: Option<Move>,
     tried: usize,

@@ -4,16 +4,16 @@
 //! The code that will read the table computes its content: `casebase`'s symmetry, plan simulation and
 //! records.
 
-use casebase::plan_simulation::{Script, Step, plan_simulation};
+use casebase::plan_simulation::{PlanStep, Script, plan_simulation};
 use casebase::table::{
-    Group, HASHED_FROM, Header, MAGIC, Opponent, RawAction, RawKick, RawLeg, RecordHeader, content_hash,
+    Group, HASHED_FROM, Header, MAGIC, OpponentRecord, RawAction, RawKick, RawLeg, RecordHeader, content_hash,
 };
 use casebase::{Action, CaseRobot, GoalEnd, PointMm, Scope, Symmetry, TurnTarget, cells_of};
 use zerocopy::IntoBytes;
 
 use crate::authored::{Authored, Mirrored};
 use crate::grid;
-use crate::league::League;
+use crate::league::CaseLeague;
 
 /// A table that starts at a multiple of 4, as required of a case base.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -38,7 +38,7 @@ impl Table {
 
 /// The table of cases that passed every check, in the order of their ids; without symmetry, mirrored copies
 /// are stored but never found.
-pub(crate) fn encode(league: &League, cases: &[Authored], symmetry: bool) -> Table {
+pub(crate) fn encode(league: &CaseLeague, cases: &[Authored], symmetry: bool) -> Table {
     let mut pools = Pools::default();
     for case in cases {
         pools.add(case, league);
@@ -111,7 +111,7 @@ impl Pools {
     }
 
     /// The four copies of a case.
-    fn add(&mut self, case: &Authored, league: &League) {
+    fn add(&mut self, case: &Authored, league: &CaseLeague) {
         let (points_at, actions_at) = (self.points.len(), self.actions.len());
         for symmetry in Symmetry::ALL {
             self.add_copy(&case.mirrored(symmetry, league), league);
@@ -136,7 +136,7 @@ impl Pools {
         });
     }
 
-    fn add_copy(&mut self, copy: &Mirrored<'_>, league: &League) {
+    fn add_copy(&mut self, copy: &Mirrored<'_>, league: &CaseLeague) {
         let ball = copy.ball();
         let robots = CaseRobot::first(copy.teammates());
         let positions: Vec<_> =
@@ -148,7 +148,7 @@ impl Pools {
             .map(|opponent| {
                 let at = copy.symmetry.point(opponent.at).minus(ball);
                 let cells = cells_of(at, opponent.scope);
-                Opponent { cells, at: narrow(at), inverse_scope: inverse(opponent.scope) }
+                OpponentRecord { cells, at: narrow(at), inverse_scope: inverse(opponent.scope) }
             })
             .collect();
         let first_point = self.points.len();
@@ -168,7 +168,7 @@ impl Pools {
         };
         let mut legs = Vec::new();
         let walked = plan_simulation(copy, league, |step| {
-            if let Step::Leg { robot, action, to, radii, carried_by, .. } = step {
+            if let PlanStep::Leg { robot, action, to, radii, carried_by, .. } = step {
                 legs.push(RawLeg {
                     to: to.at,
                     radii: radii.map(|radius| radius as f32),

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::codes::code;
 use crate::finding::{Finding, Severity};
-use crate::library::Place;
+use crate::library::SourcePlace;
 
 /// A file of a library, read.
 #[derive(Clone, Debug)]
@@ -26,8 +26,8 @@ impl SourceFile {
     }
 
     /// The line of a byte of the text.
-    pub(crate) fn place(&self, at: usize) -> Place {
-        Place { file: self.path.clone(), line: self.line(at) }
+    pub(crate) fn place(&self, at: usize) -> SourcePlace {
+        SourcePlace { file: self.path.clone(), line: self.line(at) }
     }
 
     /// A finding in this file.

@@ -3,7 +3,7 @@
 
 use casebase::action::KICKS_MAX;
 use casebase::plan_simulation::Kicks;
-use casebase::{FieldMm, Kick, KickAim, KickId, Pass, Primitive};
+use casebase::{CaseKick, FieldMm, KickAim, KickId, Pass, Primitive};
 
 use crate::codes::code;
 use crate::document::{Reader, Table, Value};
@@ -14,20 +14,20 @@ use crate::lineup::Lineup;
 
 /// A league's rules, as `league.toml` states them.
 #[derive(Clone, Debug)]
-pub struct League {
+pub struct CaseLeague {
     /// Dimensions of the field, mm.
     pub field: FieldMm,
     /// Radii r_min and r_max of passes, mm.
     pub pass: Pass,
     /// Kick kinds by name, in the order of their names: this order is their [`KickId`]s.
-    pub kicks: Vec<(String, Kick)>,
+    pub kicks: Vec<(String, CaseKick)>,
     /// Areas of the robots in drawn problems, where the file contains them.
     pub lineup: Option<Lineup>,
     /// The kind that replaces each under a single reflection.
     partners: Vec<KickId>,
 }
 
-impl League {
+impl CaseLeague {
     /// Reads `league.toml`, with its findings; without the league they are errors.
     pub(crate) fn read(file: &SourceFile) -> (Option<Self>, Vec<Finding>) {
         let mut reader = Reader::new(file);
@@ -47,8 +47,8 @@ impl League {
     }
 }
 
-impl Kicks for League {
-    fn kick(&self, id: KickId) -> Option<Kick> {
+impl Kicks for CaseLeague {
+    fn kick(&self, id: KickId) -> Option<CaseKick> {
         self.kicks.get(usize::from(id.0)).map(|(_, kick)| *kick)
     }
     fn pass(&self) -> Pass {
@@ -59,7 +59,7 @@ impl Kicks for League {
     }
 }
 
-fn read_league(reader: &mut Reader<'_>, root: &Table<'_, '_>) -> Option<League> {
+fn read_league(reader: &mut Reader<'_>, root: &Table<'_, '_>) -> Option<CaseLeague> {
     root.refuse_others(reader, keys::LEAGUE);
     let field = root.required(reader, "field").and_then(|value| read_field(reader, value));
     let pass = root.required(reader, "pass").and_then(|value| read_pass(reader, value));
@@ -90,7 +90,7 @@ fn read_league(reader: &mut Reader<'_>, root: &Table<'_, '_>) -> Option<League> 
             reader.error(code::NO_PARTNER, span, message, hint);
         }
     }
-    Some(League { field: field?, pass: pass?, kicks, lineup, partners })
+    Some(CaseLeague { field: field?, pass: pass?, kicks, lineup, partners })
 }
 
 fn read_field(reader: &mut Reader<'_>, value: Value<'_, '_>) -> Option<FieldMm> {
@@ -119,7 +119,7 @@ fn read_pass(reader: &mut Reader<'_>, value: Value<'_, '_>) -> Option<Pass> {
     Some(Pass { r_min: r_min?, r_max: r_max? })
 }
 
-fn read_kick(reader: &mut Reader<'_>, name: &str, value: Value<'_, '_>) -> Option<Kick> {
+fn read_kick(reader: &mut Reader<'_>, name: &str, value: Value<'_, '_>) -> Option<CaseKick> {
     let table = reader.table(value, name)?;
     let (r_min, r_max) = (table.whole(reader, "r_min", &POSITIVE), table.whole(reader, "r_max", &POSITIVE));
     let primitive = table.optional("primitive").and_then(|value| read_primitive(reader, name, value));
@@ -145,7 +145,7 @@ fn read_kick(reader: &mut Reader<'_>, name: &str, value: Value<'_, '_>) -> Optio
         let length_mm = table.whole(reader, "length", &(0..=*POSITIVE.end()));
         KickAim::Heading { degrees: degrees?, length_mm: length_mm? }
     };
-    Some(Kick { aim, r_min: r_min?, r_max: r_max?, primitive: primitive.unwrap_or_default() })
+    Some(CaseKick { aim, r_min: r_min?, r_max: r_max?, primitive: primitive.unwrap_or_default() })
 }
 
 fn read_primitive(reader: &mut Reader<'_>, name: &str, value: Value<'_, '_>) -> Option<Primitive> {
@@ -161,7 +161,7 @@ fn read_primitive(reader: &mut Reader<'_>, name: &str, value: Value<'_, '_>) -> 
 }
 
 /// Whether `other` is a mirror image of `kick`.
-fn are_partners(kick: Kick, other: Kick) -> bool {
+fn are_partners(kick: CaseKick, other: CaseKick) -> bool {
     let opposite = match (kick.aim, other.aim) {
         (
             KickAim::Heading { degrees, length_mm },

@@ -31,12 +31,12 @@ mod skeleton;
 mod warnings;
 
 pub use codes::{CODES, CodeEntry, code, entry};
-pub use counterfactual::{Counterfactual, Entity, Move, Obstacle, counterfactual};
+pub use counterfactual::{Counterfactual, CounterfactualObstacle, Entity, Move, counterfactual};
 pub use encode::Table;
 pub use files::{CASE_FILE_LEN_MAX, Files, SourceFile};
 pub use finding::{Finding, Severity};
-pub use league::League;
-pub use library::{Library, Place, Reduction, build, build_reduced, load, load_telling};
+pub use league::CaseLeague;
+pub use library::{Library, Reduction, SourcePlace, build, build_reduced, load, load_telling};
 pub use lineup::{Lineup, Rectangle};
 pub use sample::Sampler;
 pub use sampled::never_retrieved;

@@ -12,7 +12,7 @@ use crate::codes::code;
 use crate::encode::{Table, encode};
 use crate::files::Files;
 use crate::finding::{Finding, Severity};
-use crate::league::League;
+use crate::league::CaseLeague;
 use crate::lineup::Lineup;
 use crate::sample::Sampler;
 use crate::warnings::warnings;
@@ -32,7 +32,7 @@ pub struct Library {
     /// The text of each case file.
     pub sources: Vec<String>,
     /// File and line of each case's ball position.
-    pub balls: Vec<Place>,
+    pub balls: Vec<SourcePlace>,
     /// The names of the kick kinds, by [`casebase::KickId`].
     pub kicks: Vec<String>,
     /// Areas of the robots in the problems drawn for it.
@@ -43,7 +43,7 @@ pub struct Library {
 
 /// A line of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct SourcePlace {
     /// Path of the file.
     pub file: PathBuf,
     /// Its line, from 1.
@@ -92,7 +92,7 @@ fn build_telling(
     mut report: impl FnMut(usize, usize),
 ) -> Result<Library, Vec<Finding>> {
     let steps = 2 * files.cases.len();
-    let (league, mut findings) = League::read(&files.rules);
+    let (league, mut findings) = CaseLeague::read(&files.rules);
     let mut cases = Vec::new();
     for (done, file) in files.cases.iter().enumerate() {
         report(done, steps);

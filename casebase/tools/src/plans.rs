@@ -10,11 +10,11 @@ use casebase::{Action, Case, CaseRobot, Leg, LegKind, PointMm, Symmetry};
 
 use crate::authored::Authored;
 use crate::codes::code;
-use crate::league::League;
+use crate::league::CaseLeague;
 use crate::warnings::Notes;
 
 /// Warns of robots at one position, of legs that are probably unintended, and of a ball that is never played.
-pub(crate) fn doubts(notes: &mut Notes<'_>, case: &Authored, stored: &Case<'_>, league: &League) {
+pub(crate) fn doubts(notes: &mut Notes<'_>, case: &Authored, stored: &Case<'_>, league: &CaseLeague) {
     same_spot(notes, case);
     for (index, leg) in stored.legs(case.ball).enumerate() {
         let span = &case.teammates[leg.robot.index()].gameplay[leg.action].1;
@@ -44,7 +44,7 @@ fn same_spot(notes: &mut Notes<'_>, case: &Authored) {
     }
 }
 
-fn leg_doubts(notes: &mut Notes<'_>, leg: &Leg, span: &Range<usize>, league: &League) {
+fn leg_doubts(notes: &mut Notes<'_>, leg: &Leg, span: &Range<usize>, league: &CaseLeague) {
     let [dx, dy] = [leg.to[0] - leg.from[0], leg.to[1] - leg.from[1]];
     match leg.kind {
         LegKind::Pass(to) if dx * dx + dy * dy < leg.r_min * leg.r_min => {
@@ -69,7 +69,7 @@ fn leg_doubts(notes: &mut Notes<'_>, leg: &Leg, span: &Range<usize>, league: &Le
 
 /// Teammates on the first leg, before any robot has moved, which are neither its kicker nor ever receive the
 /// ball.
-fn teammates_on(notes: &mut Notes<'_>, case: &Authored, leg: &Leg, league: &League) {
+fn teammates_on(notes: &mut Notes<'_>, case: &Authored, leg: &Leg, league: &CaseLeague) {
     let mut takers = vec![leg.robot];
     // The case passed the same simulation among the checks.
     let _ = plan_simulation(&case.mirrored(Symmetry::Identity, league), league, |step| {

@@ -1,7 +1,7 @@
 //! `sampled`: cases that no drawn problem retrieves, and what is retrieved instead. Warnings
 //! (docs/case-format.md §1.2), from counters over problems; the build of the built-in libraries draws none.
 
-use casebase::{SettingError, Settings};
+use casebase::{RetrievalSettings, SettingError};
 
 use crate::codes::code;
 use crate::coverage::{CaseCounters, Cells, Counters, Survey, VERDICTS};
@@ -15,7 +15,7 @@ impl Library {
         let base = self.base();
         let field = base.field();
         let cells = Cells { columns: 1, rows: 1, edge_mm: field.length.max(field.width) };
-        Survey::new(base, &Settings::default(), cells)
+        Survey::new(base, &RetrievalSettings::default(), cells)
     }
 }
 

@@ -7,13 +7,14 @@
 use std::fmt::Write as _;
 
 use casebase::{
-    FieldMm, GoalEnd, KickAim, OPPONENTS_MAX, PointMm, Problem, Settings, TEAMMATES_MAX, retrieve_best,
+    FieldMm, GoalEnd, KickAim, OPPONENTS_MAX, PointMm, Problem, RetrievalSettings, TEAMMATES_MAX,
+    retrieve_best,
 };
 use protocol::RobotId;
 
 use crate::files::{Files, SourceFile};
 use crate::finding::Finding;
-use crate::league::League;
+use crate::league::CaseLeague;
 use crate::library::build;
 
 /// A drafted case file.
@@ -41,7 +42,7 @@ pub enum SkeletonError {
 
 /// A case file for the situation of a problem, in the league of `rules`.
 pub fn skeleton(rules: &SourceFile, problem: &Problem) -> Result<Skeleton, SkeletonError> {
-    let (league, findings) = League::read(rules);
+    let (league, findings) = CaseLeague::read(rules);
     let league = league.ok_or(SkeletonError::League(findings))?;
     if problem.teammates.is_empty() {
         return Err(SkeletonError::NoTeammate);
@@ -149,7 +150,7 @@ impl Scene {
 
 /// Possible plans of the robot at the ball, the likeliest first: in the attacking half at the goal, else
 /// straight ahead.
-fn plans(league: &League, scene: &Scene) -> Vec<String> {
+fn plans(league: &CaseLeague, scene: &Scene) -> Vec<String> {
     let attacks = scene.defending.attack_sign() * scene.ball.x > 0;
     let mut kicks: Vec<_> = league.kicks.iter().collect();
     kicks.sort_by_key(|(_, kick)| match kick.aim {
@@ -171,7 +172,7 @@ fn tried(rules: &SourceFile, problem: &Problem, scene: &Scene, plan: &str) -> Sk
     let text = scene.toml(plan);
     let (findings, retrieved) = match build(&Files::from_texts("new", &rules.text, &[("draft/new", &text)])) {
         Ok(library) => {
-            let best = retrieve_best(&library.base(), problem, &Settings::default());
+            let best = retrieve_best(&library.base(), problem, &RetrievalSettings::default());
             // Warnings about the league do not concern the draft.
             let of_case = |finding: &Finding| finding.file.ends_with("draft/new.toml");
             (library.findings.iter().filter(|finding| of_case(finding)).cloned().collect(), best.is_some())

@@ -4,10 +4,10 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use casebase::plan_simulation::{Step, plan_simulation};
+use casebase::plan_simulation::{PlanStep, plan_simulation};
 use casebase::{
-    Action, Case, CaseBase, CaseRobot, PointMm, Problem, Scope, Settings, Symmetry, TurnTarget, blocked_leg,
-    retrieve_best,
+    Action, Case, CaseBase, CaseRobot, PointMm, Problem, RetrievalSettings, Scope, Symmetry, TurnTarget,
+    blocked_leg, retrieve_best,
 };
 use protocol::{CaseId, RobotId};
 
@@ -15,7 +15,7 @@ use crate::authored::Authored;
 use crate::codes::code;
 use crate::files::{Files, SourceFile};
 use crate::finding::{Finding, Severity};
-use crate::league::League;
+use crate::league::CaseLeague;
 use crate::plans;
 
 /// Every warning about cases that passed all checks; `report` is called with the number of cases done.
@@ -23,7 +23,7 @@ pub(crate) fn warnings(
     files: &Files,
     cases: &[Authored],
     base: &CaseBase<'_>,
-    league: &League,
+    league: &CaseLeague,
     mut report: impl FnMut(usize),
 ) -> Vec<Finding> {
     let mut findings = Vec::new();
@@ -103,7 +103,7 @@ fn big_scopes(notes: &mut Notes<'_>, case: &Authored) {
 }
 
 /// Checks the lists of actions alone.
-fn gameplays(notes: &mut Notes<'_>, case: &Authored, league: &League) {
+fn gameplays(notes: &mut Notes<'_>, case: &Authored, league: &CaseLeague) {
     for (robot, teammate) in CaseRobot::first(case.teammates.len()).zip(&case.teammates) {
         if teammate.gameplay.iter().all(|(action, _)| *action == Action::Wait) {
             let hint = "leave it out of the case, or give it something to do";
@@ -136,7 +136,7 @@ fn gameplays(notes: &mut Notes<'_>, case: &Authored, league: &League) {
     }
     // The case passed the same simulation among the checks.
     let _ = plan_simulation(&case.mirrored(Symmetry::Identity, league), league, |step| {
-        if let Step::NeverReached { robot, action } = step {
+        if let PlanStep::NeverReached { robot, action } = step {
             let (_, span) = &case.teammates[robot.index()].gameplay[action];
             let message = format!("no kick ever leaves the ball to this get_ball of {robot}");
             notes.add(code::NEVER_REACHED, span, message, "take it out, or let a kick come before it");
@@ -148,7 +148,9 @@ fn gameplays(notes: &mut Notes<'_>, case: &Authored, league: &League) {
 fn scopes_in_path(notes: &mut Notes<'_>, case: &Authored, stored: &Case<'_>, base: &CaseBase<'_>) -> bool {
     let mut free = true;
     for (i, opponent) in case.opponents.iter().enumerate() {
-        if let Some(blocked) = blocked_leg(stored, base, case.ball, &[opponent.at], &Settings::default()) {
+        if let Some(blocked) =
+            blocked_leg(stored, base, case.ball, &[opponent.at], &RetrievalSettings::default())
+        {
             free = false;
             let message = format!(
                 "the centre of opp{}'s scope lies {:.0} mm inside leg {} of the case's own ball path",
@@ -176,7 +178,7 @@ fn beaten(notes: &mut Notes<'_>, files: &Files, stored: &Case<'_>, base: &CaseBa
         teammates: players.collect(),
         opponents: stored.opponents().map(|(at, _)| at).collect(),
     };
-    let winner = retrieve_best(base, &problem, &Settings::default());
+    let winner = retrieve_best(base, &problem, &RetrievalSettings::default());
     let winner = winner.and_then(|winner| base.case(winner.case));
     if let Some(winner) = winner.filter(|winner| winner.authored() != stored.authored()) {
         let name = &files.cases[winner.authored()].name;

@@ -2,7 +2,7 @@
 
 use case_tools::coverage::{Cells, Counters, Survey};
 use case_tools::{Files, Library, build};
-use casebase::{GoalEnd, PointMm, Problem, Settings, retrieve};
+use casebase::{GoalEnd, PointMm, Problem, RetrievalSettings, retrieve};
 use protocol::RobotId;
 
 const RULES: &str = "[field]\nlength = 5400\nwidth = 3600\ngoal_width = 800\npenalty_area = { depth = 650, width = 1300 }\n\
@@ -51,7 +51,7 @@ fn problem(number: u64) -> Problem {
 fn survey(library: &Library) -> Counters {
     let base = library.base();
     let cells = Cells::new(base.field(), 300).expect("a grid");
-    Survey::new(base, &Settings::default(), cells)
+    Survey::new(base, &RetrievalSettings::default(), cells)
         .expect("settings")
         .over((0..PROBLEMS).map(|n| (n, problem(n))))
 }
@@ -77,7 +77,7 @@ fn winners_and_candidates_are_those_of_retrieval() {
     let counters = survey(&library);
     let (mut wins, mut candidates, mut none) = (vec![0; 4], 0, 0);
     for number in 0..PROBLEMS {
-        let found = retrieve(&library.base(), &problem(number), &Settings::default());
+        let found = retrieve(&library.base(), &problem(number), &RetrievalSettings::default());
         candidates += u64::from(found.candidates);
         match found.best {
             Some(best) => wins[usize::from(best.case.0 / 4)] += 1,
@@ -99,7 +99,7 @@ fn parts_merge_to_the_whole_in_any_order() {
     let library = library(&texts());
     let base = library.base();
     let cells = Cells::new(base.field(), 300).expect("a grid");
-    let survey = Survey::new(base, &Settings::default(), cells).expect("settings");
+    let survey = Survey::new(base, &RetrievalSettings::default(), cells).expect("settings");
     let part = |from: u64, to: u64| survey.over((from..to).map(|number| (number, problem(number))));
     let whole = part(0, 900);
     assert_eq!(part(0, 1).merge(part(1, 500)).merge(part(500, 900)), whole);
@@ -111,7 +111,7 @@ fn a_problem_just_outside_a_scope_is_reported_as_one_that_a_larger_scope_would_f
     let library = library(&[("center/only", case([0, 0], [500, 400], ""))]);
     let base = library.base();
     let cells = Cells::new(base.field(), 300).expect("a grid");
-    let survey = Survey::new(base, &Settings::default(), cells).expect("settings");
+    let survey = Survey::new(base, &RetrievalSettings::default(), cells).expect("settings");
     // The scope ends at 500.6 mm, one a fifth larger at 600.7 mm.
     for (x, would_fill) in [(500, None), (501, Some(1)), (600, Some(1)), (601, Some(0))] {
         let mut problem = problem(0);

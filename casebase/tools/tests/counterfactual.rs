@@ -3,14 +3,14 @@
 
 mod common;
 
-use case_tools::{Counterfactual, Entity, Obstacle, counterfactual};
-use casebase::{PointMm, Settings, Verdict, explain, retrieve, retrieve_best};
+use case_tools::{Counterfactual, CounterfactualObstacle, Entity, counterfactual};
+use casebase::{CaseVerdict, PointMm, RetrievalSettings, explain, retrieve, retrieve_best};
 use common::{Dice, PASS_AROUND, library, problem, single};
 use protocol::{CaseId, RobotId};
 
 #[test]
 fn every_move_reported_makes_the_case_win_in_thousands_of_problems() {
-    let settings = Settings::default();
+    let settings = RetrievalSettings::default();
     let (mut moves, mut kinds, mut asked) = (0, [0; 3], 0);
     for seed in 0..8 {
         let mut dice = Dice::new(seed);
@@ -22,7 +22,7 @@ fn every_move_reported_makes_the_case_win_in_thousands_of_problems() {
             // One case at random, and all that pass the test of the ball.
             let mut ids = vec![CaseId(dice.below(base.len() as u64) as u16)];
             explain(&base, &problem, &settings, |id, verdict| {
-                ids.extend((!matches!(verdict, Verdict::Ball { .. })).then_some(id));
+                ids.extend((!matches!(verdict, CaseVerdict::Ball { .. })).then_some(id));
             });
             for id in ids {
                 match counterfactual(&base, &problem, &settings, id) {
@@ -62,7 +62,7 @@ fn the_robot_s_way_is_the_one_found_by_hand() {
     let library = library(&[("x/a", &a), ("x/b", &b)]);
     let base = library.base();
     let problem = problem((0, 0), &[(3, (-100, 0))], &[]);
-    let found = counterfactual(&base, &problem, &Settings::default(), CaseId(4));
+    let found = counterfactual(&base, &problem, &RetrievalSettings::default(), CaseId(4));
     let Some(Counterfactual::Move(found)) = found else { panic!("{found:?}") };
     // Past the middle, x = 150, b is nearer: 251 mm; at 150 both cost the same and the lower id wins.
     assert_eq!(found.entity, Entity::Teammate(RobotId::new(3).unwrap()));
@@ -77,7 +77,7 @@ fn an_opponent_in_the_leg_is_to_move_by_what_it_stands_inside() {
     let base = library.base();
     // Half way along 1,000 mm the leg is 200 mm wide at each side, times √1.002393: it ends at 200.24 mm.
     let problem = problem((0, 0), &[(1, (0, 0))], &[(500, 150)]);
-    let found = counterfactual(&base, &problem, &Settings::default(), CaseId(0));
+    let found = counterfactual(&base, &problem, &RetrievalSettings::default(), CaseId(0));
     let Some(Counterfactual::Move(found)) = found else { panic!("{found:?}") };
     assert_eq!((found.entity, found.to), (Entity::Opponent(0), PointMm::new(500, 201)));
     assert_eq!(found.distance_mm, 51.0);
@@ -88,14 +88,17 @@ fn what_no_single_move_mends_is_reported_with_its_reason() {
     let library = library(&[("x/pass", PASS_AROUND)]);
     let base = library.base();
     let alone = problem((-600, 0), &[(1, (-700, 0))], &[]);
-    let settings = Settings::default();
+    let settings = RetrievalSettings::default();
     let found = counterfactual(&base, &alone, &settings, CaseId(0));
-    let reason = Obstacle::Robots { needed: 2, present: 1 };
+    let reason = CounterfactualObstacle::Robots { needed: 2, present: 1 };
     assert_eq!(found, Some(Counterfactual::NoSingleMove(reason)));
     // Two robots too far away each: one move brings only one of them within the limit.
     let far = problem((-600, 0), &[(1, (2600, -1700)), (2, (2600, -1800))], &[]);
     let found = counterfactual(&base, &far, &settings, CaseId(0));
-    assert!(matches!(found, Some(Counterfactual::NoSingleMove(Obstacle::Several { .. }))), "{found:?}");
+    assert!(
+        matches!(found, Some(Counterfactual::NoSingleMove(CounterfactualObstacle::Several { .. }))),
+        "{found:?}"
+    );
     // Under the other goal it is not tested.
     assert_eq!(counterfactual(&base, &far, &settings, CaseId(2)), None);
 }

@@ -6,17 +6,17 @@ mod common;
 use case_tools::Table;
 use casebase::table::{HASHED_FROM, content_hash};
 use casebase::{
-    Action, CaseBase, Match, PointMm, Problem, Settings, Symmetry, TableError, Verdict, explain, rank_order,
-    retrieve, retrieve_best,
+    Action, CaseBase, CaseVerdict, Match, PointMm, Problem, RetrievalSettings, Symmetry, TableError, explain,
+    rank_order, retrieve, retrieve_best,
 };
 use common::Dice;
 use protocol::CaseId;
 
 /// The candidates of the plain order: every case under the goal, no index, no short cut.
-fn scan(base: &CaseBase<'_>, problem: &Problem, settings: &Settings) -> Vec<Match> {
+fn scan(base: &CaseBase<'_>, problem: &Problem, settings: &RetrievalSettings) -> Vec<Match> {
     let mut candidates = Vec::new();
     explain(base, problem, settings, |_, verdict| {
-        if let Verdict::Candidate(candidate) = verdict {
+        if let CaseVerdict::Candidate(candidate) = verdict {
             candidates.push(candidate);
         }
     });
@@ -24,7 +24,7 @@ fn scan(base: &CaseBase<'_>, problem: &Problem, settings: &Settings) -> Vec<Matc
 }
 
 /// Settings that change the candidates or their ranking.
-fn variants() -> Vec<Settings> {
+fn variants() -> Vec<RetrievalSettings> {
     let assignments: [&[(&str, &str)]; 10] = [
         &[],
         &[("correspondence", "constrained"), ("thr_c", "700")],
@@ -38,7 +38,7 @@ fn variants() -> Vec<Settings> {
         &[("thr", "0.2")],
     ];
     let with = |list: &[(&str, &str)]| {
-        let mut settings = Settings::default();
+        let mut settings = RetrievalSettings::default();
         for (name, value) in list {
             settings.set(name, value).unwrap();
         }
@@ -89,7 +89,7 @@ fn a_ball_anywhere_finds_every_case_whose_scope_holds_it() {
         let reach = [2700, 4000, 1_000_000][dice.below(3) as usize];
         problem.ball = PointMm::new(dice.between(-reach, reach), dice.between(-reach, reach));
         problem.opponents.clear();
-        let lenient = Settings { travel_max_mm: 1e9, ..Settings::default() };
+        let lenient = RetrievalSettings { travel_max_mm: 1e9, ..RetrievalSettings::default() };
         let inside = base.cases().filter(|case| {
             let fits = case.teammates() <= problem.teammates.len();
             case.defending() == problem.defending && case.ball_in_scope(problem.ball) && fits
@@ -115,7 +115,7 @@ fn mirrored(problem: &Problem, symmetry: Symmetry) -> Problem {
 
 #[test]
 fn in_a_mirror_the_mirrored_case_is_retrieved_with_the_same_numbers() {
-    let settings = Settings::default();
+    let settings = RetrievalSettings::default();
     for seed in 0..20 {
         let mut dice = Dice::new(100 + seed);
         let library = dice.library(40);

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 use std::path::Path;
 
 use case_tools::{Files, Library, Reduction, build_reduced};
-use casebase::{Match, Problem, Settings, Verdict, explain, retrieve, retrieve_best};
+use casebase::{CaseVerdict, Match, Problem, RetrievalSettings, explain, retrieve, retrieve_best};
 
 fn kept(symmetry: bool, opponents: bool) -> Library {
     let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("../library/cases/four-legged");
@@ -22,11 +22,11 @@ fn without_symmetry_the_best_authored_candidate_wins_under_its_own_id() {
     let (whole, reduced) = (kept(true, true), kept(false, true));
     assert_eq!(reduced.base().len(), whole.base().len());
     assert_ne!(reduced.base().hash(), whole.base().hash());
-    let (settings, mut mirrored, mut authored) = (Settings::default(), 0, 0);
+    let (settings, mut mirrored, mut authored) = (RetrievalSettings::default(), 0, 0);
     for problem in problems(&whole) {
         let mut candidates = Vec::new();
         explain(&whole.base(), &problem, &settings, |case, verdict| {
-            if let Verdict::Candidate(found) = verdict {
+            if let CaseVerdict::Candidate(found) = verdict {
                 candidates.push(found);
                 assert_eq!(candidates.last().map(|found| found.case), Some(case));
             }
@@ -46,7 +46,7 @@ fn without_symmetry_the_best_authored_candidate_wins_under_its_own_id() {
 #[test]
 fn without_opponents_the_same_cases_fit_and_no_condition_speaks_for_any() {
     let (whole, reduced) = (kept(true, true), kept(true, false));
-    let (settings, mut justified) = (Settings::default(), 0);
+    let (settings, mut justified) = (RetrievalSettings::default(), 0);
     for problem in problems(&whole) {
         let (full, bare) =
             (retrieve(&whole.base(), &problem, &settings), retrieve(&reduced.base(), &problem, &settings));

@@ -3,19 +3,23 @@
 
 mod common;
 
-use casebase::{Retrieval, Settings, Verdict, explain, retrieve, retrieve_best};
+use casebase::{CaseVerdict, Retrieval, RetrievalSettings, explain, retrieve, retrieve_best};
 use common::{PASS_AROUND, library, problem, single};
 use protocol::CaseId;
 
-fn settings(assignments: &[(&str, &str)]) -> Settings {
-    let mut settings = Settings::default();
+fn settings(assignments: &[(&str, &str)]) -> RetrievalSettings {
+    let mut settings = RetrievalSettings::default();
     for (name, value) in assignments {
         settings.set(name, value).unwrap();
     }
     settings
 }
 
-fn ask(library: &case_tools::Library, problem: &casebase::Problem, settings: &Settings) -> Retrieval {
+fn ask(
+    library: &case_tools::Library,
+    problem: &casebase::Problem,
+    settings: &RetrievalSettings,
+) -> Retrieval {
     let found = retrieve(&library.base(), problem, settings);
     assert_eq!(retrieve_best(&library.base(), problem, settings), found.best);
     found
@@ -23,14 +27,14 @@ fn ask(library: &case_tools::Library, problem: &casebase::Problem, settings: &Se
 
 /// The id of the winner under the default settings.
 fn winner(library: &case_tools::Library, problem: &casebase::Problem) -> Option<u16> {
-    ask(library, problem, &Settings::default()).best.map(|best| best.case.0)
+    ask(library, problem, &RetrievalSettings::default()).best.map(|best| best.case.0)
 }
 
 #[test]
 fn the_example_of_the_agreement() {
     let library = library(&[("center/pass-around", PASS_AROUND)]);
     let problem = problem((-600, 10), &[(1, (-700, 0)), (3, (200, 800))], &[(-150, 40)]);
-    let found = ask(&library, &problem, &Settings::default());
+    let found = ask(&library, &problem, &RetrievalSettings::default());
     let best = found.best.unwrap();
     assert_eq!((found.candidates, best.case, best.conditions, best.teammates), (1, CaseId(0), 1, 2));
     // sim_B = exp(−(10/250)²); cost = |(−700, 0) − (−720, 10)| + |(200, 800) − (300, 910)|.
@@ -45,7 +49,10 @@ fn an_opponent_in_a_leg_leaves_nothing() {
     let library = library(&[("center/pass-around", PASS_AROUND)]);
     // Half way along the pass from (−600, 10) to (300, 910).
     let blocked = problem((-600, 10), &[(1, (-700, 0)), (3, (200, 800))], &[(-150, 460)]);
-    assert_eq!(ask(&library, &blocked, &Settings::default()), Retrieval { best: None, candidates: 0 });
+    assert_eq!(
+        ask(&library, &blocked, &RetrievalSettings::default()),
+        Retrieval { best: None, candidates: 0 }
+    );
 }
 
 #[test]
@@ -76,8 +83,10 @@ fn fewer_robots_than_the_case_needs_are_reported() {
     let alone = problem((-600, 0), &[(1, (-700, 0))], &[]);
     assert_eq!(winner(&library, &alone), None);
     let mut verdicts = Vec::new();
-    explain(&library.base(), &alone, &Settings::default(), |id, verdict| verdicts.push((id.0, verdict)));
-    assert_eq!(verdicts, [0, 1].map(|id| (id, Verdict::Robots { needed: 2, present: 1 })));
+    explain(&library.base(), &alone, &RetrievalSettings::default(), |id, verdict| {
+        verdicts.push((id.0, verdict))
+    });
+    assert_eq!(verdicts, [0, 1].map(|id| (id, CaseVerdict::Robots { needed: 2, present: 1 })));
 }
 
 #[test]
@@ -86,7 +95,7 @@ fn one_opponent_may_fulfil_two_conditions_and_an_empty_scope_costs_nothing() {
         + "[[opponents]]\nat = [300, 500]\nscope = [200, 200]\n[[opponents]]\nat = [350, 550]\nscope = [200, 200]\n";
     let library = library(&[("a/two", &two)]);
     let conditions = |opponents: &[(i32, i32)]| {
-        ask(&library, &problem((0, 100), &[(1, (0, 0))], opponents), &Settings::default())
+        ask(&library, &problem((0, 100), &[(1, (0, 0))], opponents), &RetrievalSettings::default())
             .best
             .unwrap()
             .conditions
@@ -102,8 +111,8 @@ fn scopes_may_be_read_where_the_case_has_them() {
     let case = single("[0, 0]", "[400, 400]", "") + "[[opponents]]\nat = [300, 0]\nscope = [100, 100]\n";
     let library = library(&[("a/a", &case)]);
     let moved = problem((300, 0), &[(1, (300, 0))], &[(300, 20)]);
-    let conditions = |settings: &Settings| ask(&library, &moved, settings).best.unwrap().conditions;
-    assert_eq!(conditions(&Settings::default()), 0);
+    let conditions = |settings: &RetrievalSettings| ask(&library, &moved, settings).best.unwrap().conditions;
+    assert_eq!(conditions(&RetrievalSettings::default()), 0);
     assert_eq!(conditions(&settings(&[("scopes", "absolute")])), 1);
 }
 
@@ -124,8 +133,8 @@ fn a_blocked_path_reports_the_leg_the_opponent_and_how_deep_it_stands() {
     let library = library(&[("a/a", &single("[0, 0]", "[400, 400]", ", { kick = \"forward\" }"))]);
     let blocked = problem((0, 0), &[(1, (0, 0))], &[(0, 900), (500, 150)]);
     let mut verdicts = Vec::new();
-    explain(&library.base(), &blocked, &Settings::default(), |_, verdict| verdicts.push(verdict));
-    let Verdict::Path { index: 0, opponent: 1, inside_mm, .. } = verdicts[0] else {
+    explain(&library.base(), &blocked, &RetrievalSettings::default(), |_, verdict| verdicts.push(verdict));
+    let CaseVerdict::Path { index: 0, opponent: 1, inside_mm, .. } = verdicts[0] else {
         panic!("{:?}", verdicts[0])
     };
     assert!((inside_mm - (200.239 - 150.0)).abs() < 0.01, "{inside_mm}");
@@ -137,8 +146,11 @@ fn a_leg_of_no_length_blocks_no_one() {
         [[teammates]]\nat = [-100, 0]\ngameplay = [\"get_ball\", { pass_ball = 2 }]\n\
         [[teammates]]\nat = [0, 0]\ngameplay = [{ receive_ball = 1 }]\n";
     let library = library(&[("a/a", text)]);
-    let found =
-        ask(&library, &problem((0, 0), &[(1, (-100, 0)), (2, (0, 0))], &[(0, 0)]), &Settings::default());
+    let found = ask(
+        &library,
+        &problem((0, 0), &[(1, (-100, 0)), (2, (0, 0))], &[(0, 0)]),
+        &RetrievalSettings::default(),
+    );
     assert_eq!(found.candidates, 2);
 }
 
@@ -171,7 +183,7 @@ fn clamped_positions_lead_the_ball_elsewhere() {
     // With the ball at (0, 300) the pass ends at (0, 2100), clamped at (0, 1800): an opponent beyond is not
     // abreast.
     let beyond = problem((0, 300), &[(1, (0, 300)), (2, (0, 1800))], &[(50, 1900)]);
-    assert_eq!(ask(&library, &beyond, &Settings::default()).candidates, 0);
+    assert_eq!(ask(&library, &beyond, &RetrievalSettings::default()).candidates, 0);
     assert_eq!(ask(&library, &beyond, &settings(&[("out_of_field", "clamp")])).candidates, 1);
 }
 
@@ -179,7 +191,7 @@ fn clamped_positions_lead_the_ball_elsewhere() {
 fn another_threshold_widens_every_scope() {
     let library = library(&[("a/a", &single("[0, 0]", "[400, 400]", ""))]);
     let far = problem((600, 0), &[(1, (600, 0))], &[]);
-    assert_eq!(ask(&library, &far, &Settings::default()).candidates, 0);
+    assert_eq!(ask(&library, &far, &RetrievalSettings::default()).candidates, 0);
     // exp(−2.25) = 0.105.
     assert_eq!(ask(&library, &far, &settings(&[("thr", "0.1")])).candidates, 2);
     assert_eq!(ask(&library, &far, &settings(&[("thr", "0.11")])).candidates, 0);

@@ -4,7 +4,7 @@
 mod common;
 
 use case_tools::{Finding, Library, code, never_retrieved};
-use casebase::{Settings, explain, retrieve_best};
+use casebase::{RetrievalSettings, explain, retrieve_best};
 use common::{library, single};
 
 const DRAWN: u64 = 3_000;
@@ -33,7 +33,7 @@ fn a_case_that_another_always_beats_is_reported_with_that_other() {
     assert_eq!((one.code, one.line, one.file.ends_with("a/shadowed.toml")), (code::NEVER_RETRIEVED, 3, true));
 
     // The same by asking case by case.
-    let (base, sampler, settings) = (library.base(), library.sampler(1), Settings::default());
+    let (base, sampler, settings) = (library.base(), library.sampler(1), RetrievalSettings::default());
     let mut beaten = 0;
     for number in 0..DRAWN {
         let problem = sampler.problem(number);

@@ -4,7 +4,7 @@
 mod common;
 
 use case_tools::{Files, Lineup, Sampler, SkeletonError, build, skeleton};
-use casebase::{Problem, Settings, retrieve_best};
+use casebase::{Problem, RetrievalSettings, retrieve_best};
 use common::{LEAGUE, library, problem};
 
 fn draft(of: &Problem) -> case_tools::Skeleton {
@@ -22,7 +22,8 @@ fn drafts_of_two_to_four_robots_are_sound_without_a_doubt_and_retrieve_themselve
             let files = Files::from_texts("test", LEAGUE, &[("center/new", &made.text)]);
             let library = build(&files).unwrap_or_else(|findings| panic!("{findings:?}\n{}", made.text));
             assert_eq!(library.findings, [], "{number}\n{}", made.text);
-            let best = retrieve_best(&library.base(), &situation, &Settings::default()).expect(&made.text);
+            let best =
+                retrieve_best(&library.base(), &situation, &RetrievalSettings::default()).expect(&made.text);
             assert_eq!((best.cost, best.similarity), (0.0, 1.0), "{}", made.text);
             let counts = (usize::from(best.teammates), usize::from(best.conditions));
             assert_eq!(counts, (robots, situation.opponents.len()), "{}", made.text);

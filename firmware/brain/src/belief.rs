@@ -30,7 +30,7 @@ pub const REST_SPEED: f32 = 0.05;
 
 /// Estimated state of the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ball {
+pub struct BelievedBall {
     /// Position, m.
     pub position: Point<Field>,
     /// Velocity, m/s.
@@ -39,7 +39,7 @@ pub struct Ball {
     pub rest: Point<Field>,
 }
 
-impl Ball {
+impl BelievedBall {
     /// Whether it is slow enough to count as stationary.
     pub fn is_at_rest(&self) -> bool {
         self.velocity.norm() < REST_SPEED
@@ -76,7 +76,7 @@ pub struct Other {
 
 /// Phase of the game, and this robot's role in its team.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Game {
+pub struct BelievedGame {
     /// The phase of the game.
     pub phase: Phase<Side>,
     /// Target of a ball placement, while one is running.
@@ -90,7 +90,7 @@ pub struct Game {
     pub double_touch_blocked: bool,
 }
 
-impl Default for Game {
+impl Default for BelievedGame {
     /// Play (`Phase::Run`), the default without a host.
     fn default() -> Self {
         Self {
@@ -109,7 +109,7 @@ pub struct Belief {
     /// Own pose.
     pub pose: Pose<Field>,
     /// The ball; `None` if its position is unknown.
-    pub ball: Option<Ball>,
+    pub ball: Option<BelievedBall>,
     /// Positions of the opponents.
     pub opponents: heapless::Vec<Point<Field>, OPPONENTS_MAX>,
     /// The robot holds the ball.
@@ -125,7 +125,7 @@ pub struct Belief {
     /// All other robots whose motion the host sends.
     pub others: heapless::Vec<Other, OTHERS_MAX>,
     /// Phase of the game, and its role in the team.
-    pub game: Game,
+    pub game: BelievedGame,
     /// Fixed target of the held ball: where it is kicked to, and how.
     pub resolved: Option<(Point<Field>, OmniKick)>,
     handling: Handling,
@@ -156,7 +156,7 @@ impl Belief {
             angular: 0.0,
             kicker_ready: false,
             others: heapless::Vec::new(),
-            game: Game::default(),
+            game: BelievedGame::default(),
             resolved: None,
             handling: Handling::default(),
             sight: None,
@@ -168,7 +168,7 @@ impl Belief {
 
     /// A belief that knows only the goal its team defends.
     pub fn defending(league: League, defending: GoalEnd) -> Self {
-        Self { game: Game { defending, ..Game::default() }, ..Self::new(league) }
+        Self { game: BelievedGame { defending, ..BelievedGame::default() }, ..Self::new(league) }
     }
 
     /// Takes in what the body perceives and what teammates report.
@@ -233,7 +233,7 @@ impl Belief {
         self.sight = Some(Sight { position: predicted + miss * alpha, velocity, at });
     }
 
-    fn own_ball(&self, now: Instant) -> Option<Ball> {
+    fn own_ball(&self, now: Instant) -> Option<BelievedBall> {
         let sight = self.sight.filter(|s| now.since(s.at) <= SIGHT_LEASE)?;
         let mut ball = rolling(sight.position, sight.velocity, self.league);
         // An opponent on its path stops it.
@@ -250,7 +250,12 @@ impl Belief {
         Some(ball)
     }
 
-    fn reported_ball(now: Instant, me: RobotId, teammates: &Teammates, league: League) -> Option<Ball> {
+    fn reported_ball(
+        now: Instant,
+        me: RobotId,
+        teammates: &Teammates,
+        league: League,
+    ) -> Option<BelievedBall> {
         let report = teammates
             .present(now)
             .filter(|(id, _)| *id != me)
@@ -268,14 +273,14 @@ pub(crate) fn nearest(
     points.map(|p| (p, p.distance(to))).reduce(|best, next| if next.1 < best.1 { next } else { best })
 }
 
-fn rolling(position: Point<Field>, velocity: Vector<Field>, league: League) -> Ball {
+fn rolling(position: Point<Field>, velocity: Vector<Field>, league: League) -> BelievedBall {
     let model = RollingBall { deceleration: league.ball().rolling_deceleration };
     let speed = velocity.norm();
     let rest = match velocity.unit() {
         Some(direction) if speed >= REST_SPEED => position + direction * model.rest_distance(speed),
         _ => position,
     };
-    Ball { position, velocity, rest: league.field().clamp(rest, 0.0) }
+    BelievedBall { position, velocity, rest: league.field().clamp(rest, 0.0) }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! `config`: static configuration of a robot. Identity, abilities and the paper's alternatives.
 
-use casebase::{GoalEnd, Settings};
+use casebase::{GoalEnd, RetrievalSettings};
 use protocol::{Duration, RobotId, TeamId};
 use rules::League;
 use serde::{Deserialize, Serialize};
@@ -25,7 +25,7 @@ pub struct BrainConfig {
     /// How it chooses its actions.
     pub approach: Approach,
     /// Settings of case retrieval (docs/case-format.md §3.2).
-    pub settings: Settings,
+    pub settings: RetrievalSettings,
     /// Whether a host leads it: without frames of one it does nothing (docs/architecture.md §6.2).
     pub hosted: bool,
     /// Time for which robots stand still after every cycle (5 s in the paper's experiments with real robots;
@@ -67,7 +67,7 @@ impl BrainConfig {
             retriever: true,
             positioning: Positioning::default(),
             approach: Approach::default(),
-            settings: Settings::default(),
+            settings: RetrievalSettings::default(),
             hosted: false,
             pause_after_cycle: Duration(0),
         }

@@ -5,7 +5,7 @@ use casebase::{Action, CaseRobot, Leg};
 use geometry::{Field, Point};
 use protocol::Duration;
 
-use crate::execution::Scene;
+use crate::execution::ActionScene;
 
 /// Time limit for a task expected to take `expected` seconds.
 pub(crate) fn limit(expected: f32) -> Duration {
@@ -14,7 +14,7 @@ pub(crate) fn limit(expected: f32) -> Duration {
 
 /// Expected seconds from now until the whole gameplay is over: the ball getter's walk, then every action that
 /// the ball waits for, one after the other; walks without the ball run beside them.
-pub(crate) fn gameplay(scene: &Scene<'_>) -> f32 {
+pub(crate) fn gameplay(scene: &ActionScene<'_>) -> f32 {
     let case = &scene.case;
     let mut walk = 0.0_f32;
     for part in case.robots() {
@@ -40,13 +40,13 @@ pub(crate) fn gameplay(scene: &Scene<'_>) -> f32 {
 }
 
 /// Expected seconds of one action, from the time it starts.
-fn action(scene: &Scene<'_>, part: CaseRobot, index: usize) -> f32 {
+fn action(scene: &ActionScene<'_>, part: CaseRobot, index: usize) -> f32 {
     action_with(scene, part, index, || scene.case.partner_of(part, index))
 }
 
 /// The same, called for `partner` at the other end of the action's hand-over.
 pub(crate) fn action_with(
-    scene: &Scene<'_>,
+    scene: &ActionScene<'_>,
     part: CaseRobot,
     index: usize,
     partner: impl FnOnce() -> Option<(CaseRobot, usize)>,
@@ -77,17 +77,17 @@ pub(crate) fn action_with(
 }
 
 /// The leg by which the ball comes from that action of a partner, and the robot that makes it.
-fn handed_over(scene: &Scene<'_>, partner: Option<(CaseRobot, usize)>) -> Option<(CaseRobot, Leg)> {
+fn handed_over(scene: &ActionScene<'_>, partner: Option<(CaseRobot, usize)>) -> Option<(CaseRobot, Leg)> {
     let (from, action) = partner?;
     Some((from, scene.leg(from, action)?))
 }
 
 /// Seconds until a ball passed over `distance` is there.
-pub(crate) fn roll(scene: &Scene<'_>, distance: f32) -> f32 {
+pub(crate) fn roll(scene: &ActionScene<'_>, distance: f32) -> f32 {
     scene.body.roll(scene.belief.league(), distance)
 }
 
-fn along(scene: &Scene<'_>, leg: &Leg) -> f32 {
+fn along(scene: &ActionScene<'_>, leg: &Leg) -> f32 {
     roll(scene, leg.start().distance(leg.end()))
 }
 

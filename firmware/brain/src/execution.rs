@@ -19,7 +19,7 @@ use crate::timer::{Timer, TimerTable};
 
 /// Inputs of an execution in one step.
 #[derive(Clone, Copy)]
-pub struct Scene<'s> {
+pub struct ActionScene<'s> {
     /// Time of this step, the robot's own clock.
     pub now: Instant,
     /// This robot's world model in this step.
@@ -38,7 +38,7 @@ pub struct Scene<'s> {
     pub body: &'s dyn Body,
 }
 
-impl Scene<'_> {
+impl ActionScene<'_> {
     /// A point of the case, adapted, on the field.
     pub fn adapt(&self, point: PointMm) -> Point<Field> {
         point.plus(self.case.shift(self.ball_used())).into()
@@ -78,7 +78,7 @@ impl Scene<'_> {
 
 /// Result of one step of execution.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Outcome {
+pub enum ActionOutcome {
     /// It continues with this intent.
     Running(Intent),
     /// All actions are done.
@@ -120,12 +120,14 @@ impl Execution {
     }
 
     /// One step: runs the current action, and continues with the next ones as they start and end.
-    pub fn step(&mut self, scene: &Scene<'_>, timers: &mut TimerTable) -> Outcome {
+    pub fn step(&mut self, scene: &ActionScene<'_>, timers: &mut TimerTable) -> ActionOutcome {
         for _ in 0..ACTIONS_A_STEP {
-            let Some(action) = scene.case.action(self.part, self.done) else { return Outcome::Finished };
+            let Some(action) = scene.case.action(self.part, self.done) else {
+                return ActionOutcome::Finished;
+            };
             if !self.started {
                 if !self.may_start(scene, timers, self.done) {
-                    return Outcome::Running(self.hold(scene));
+                    return ActionOutcome::Running(self.hold(scene));
                 }
                 self.started = true;
                 // Waiting has no limit of its own (docs/case-format.md §4): the gameplay's is enough.
@@ -137,19 +139,19 @@ impl Execution {
             match self.run(scene, timers, action) {
                 Verdict::Running(intent) => {
                     return if timers.has_fired(Timer::Action) {
-                        Outcome::Failed(AbortReason::Timeout)
+                        ActionOutcome::Failed(AbortReason::Timeout)
                     } else {
-                        Outcome::Running(intent)
+                        ActionOutcome::Running(intent)
                     };
                 }
-                Verdict::Failed(reason) => return Outcome::Failed(reason),
+                Verdict::Failed(reason) => return ActionOutcome::Failed(reason),
                 Verdict::Done => self.advance(scene, timers, action),
             }
         }
-        Outcome::Running(self.hold(scene))
+        ActionOutcome::Running(self.hold(scene))
     }
 
-    fn advance(&mut self, scene: &Scene<'_>, timers: &mut TimerTable, action: Action) {
+    fn advance(&mut self, scene: &ActionScene<'_>, timers: &mut TimerTable, action: Action) {
         if matches!(
             action,
             Action::GoToPoint(_) | Action::DribbleTo(_) | Action::GetBall | Action::ReceiveBall(_)
@@ -165,13 +167,13 @@ impl Execution {
     }
 
     /// Expected seconds of the current action.
-    fn expected(&mut self, scene: &Scene<'_>) -> f32 {
+    fn expected(&mut self, scene: &ActionScene<'_>) -> f32 {
         let (part, index) = (self.part, self.done);
         estimate::action_with(scene, part, index, || self.partner_of(scene, index))
     }
 
     /// The other end of the hand-over of action number `index`; looked up once.
-    fn partner_of(&mut self, scene: &Scene<'_>, index: usize) -> Partner {
+    fn partner_of(&mut self, scene: &ActionScene<'_>, index: usize) -> Partner {
         // The current action and the next are looked up in turn: two places are enough.
         let slot = &mut self.partners[index % 2];
         if let Some((of, partner)) = *slot
@@ -185,7 +187,7 @@ impl Execution {
     }
 
     /// Whether action number `index` may start.
-    fn may_start(&mut self, scene: &Scene<'_>, timers: &mut TimerTable, index: usize) -> bool {
+    fn may_start(&mut self, scene: &ActionScene<'_>, timers: &mut TimerTable, index: usize) -> bool {
         match scene.case.action(self.part, index) {
             None | Some(Action::Wait | Action::GoToPoint(_) | Action::Turn(_)) => true,
             Some(Action::GetBall) if index == 0 => true,
@@ -202,7 +204,7 @@ impl Execution {
     }
 
     /// The kick or pass that gives us the ball is done, or the ball is seen coming.
-    fn ball_is_handed_over(&mut self, scene: &Scene<'_>, index: usize) -> bool {
+    fn ball_is_handed_over(&mut self, scene: &ActionScene<'_>, index: usize) -> bool {
         let Some((from, their_action)) = self.partner_of(scene, index) else { return true };
         let done = if from == self.part {
             self.done > their_action
@@ -226,7 +228,7 @@ impl Execution {
 
     /// The receiver has come to its `receive_ball` (a wait before it counts as waiting for it) and to its
     /// place.
-    fn receiver_is_ready(&mut self, scene: &Scene<'_>, index: usize, to: CaseRobot) -> bool {
+    fn receiver_is_ready(&mut self, scene: &ActionScene<'_>, index: usize, to: CaseRobot) -> bool {
         let Some((_, receive)) = self.partner_of(scene, index) else { return true };
         let Some(Progress::Execute { done }) = scene.progress_of(to) else { return false };
         let waits = |i| matches!(scene.case.action(to, i), Some(Action::Wait));
@@ -240,7 +242,7 @@ impl Execution {
         at_receive && teammate.is_some_and(|teammate| teammate.pose().position.distance(place) < near)
     }
 
-    fn run(&mut self, scene: &Scene<'_>, timers: &mut TimerTable, action: Action) -> Verdict {
+    fn run(&mut self, scene: &ActionScene<'_>, timers: &mut TimerTable, action: Action) -> Verdict {
         let belief = scene.belief;
         match action {
             Action::Wait => {
@@ -314,7 +316,7 @@ impl Execution {
     }
 
     /// Getting the ball fails when an opponent has had it for too long.
-    fn take(scene: &Scene<'_>, timers: &mut TimerTable, step: Step) -> Verdict {
+    fn take(scene: &ActionScene<'_>, timers: &mut TimerTable, step: Step) -> Verdict {
         if scene.belief.opponent_on_ball(scene.now, scene.teammates) {
             timers.set_if_idle(Timer::OpponentHolds, scene.now, OPPONENT_PATIENCE);
         } else {
@@ -342,7 +344,7 @@ impl Execution {
     }
 
     /// Holding its place, facing the ball: what a robot does before its next action may start.
-    fn hold(&self, scene: &Scene<'_>) -> Intent {
+    fn hold(&self, scene: &ActionScene<'_>) -> Intent {
         if scene.belief.holds_ball {
             return self.aim_ahead(scene).unwrap_or(Intent::Stand { face: None });
         }
@@ -351,14 +353,14 @@ impl Execution {
     }
 
     /// Turning for the pass that waits for its receiver.
-    fn aim_ahead(&self, scene: &Scene<'_>) -> Option<Intent> {
+    fn aim_ahead(&self, scene: &ActionScene<'_>) -> Option<Intent> {
         let Some(Action::PassBall(_)) = scene.case.action(self.part, self.done) else { return None };
         let (place, _) = scene.leg_of(self.part, self.done)?;
         Some(scene.body.pass(scene.belief, place)).filter(|intent| matches!(intent, Intent::Turn { .. }))
     }
 
     /// Heading that the action after getting the ball needs.
-    fn exit_heading(&self, scene: &Scene<'_>) -> Option<Angle> {
+    fn exit_heading(&self, scene: &ActionScene<'_>) -> Option<Angle> {
         let next = self.done + 1;
         match scene.case.action(self.part, next)? {
             Action::PassBall(_) => scene.leg_of(self.part, next).map(|(_, along)| along),
@@ -393,7 +395,7 @@ pub(crate) fn face_ball(belief: &Belief, at: Point<Field>) -> Angle {
     belief.ball.map_or(belief.pose.heading, |ball| at.direction_to(ball.position))
 }
 
-fn attack_direction(scene: &Scene<'_>) -> Angle {
+fn attack_direction(scene: &ActionScene<'_>) -> Angle {
     if scene.case.defending().attack_sign() > 0 { Angle::ZERO } else { Angle::HALF_TURN }
 }
 

@@ -70,7 +70,7 @@ pub struct Hearing {
 /// Why a robot is limited or brakes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u16)]
-pub enum Why {
+pub enum LimitReason {
     /// HALT or a time-out.
     Halt = 1,
     /// The host is silent, or has not been received again for long enough.
@@ -105,7 +105,7 @@ pub struct Reasons(u16);
 
 impl Reasons {
     /// Whether `why` is one of them.
-    pub fn has(self, why: Why) -> bool {
+    pub fn has(self, why: LimitReason) -> bool {
         self.0 & why as u16 != 0
     }
 
@@ -115,11 +115,11 @@ impl Reasons {
     }
 
     /// Whether any of `these` is one of them.
-    fn has_any(self, these: &[Why]) -> bool {
+    fn has_any(self, these: &[LimitReason]) -> bool {
         these.iter().any(|why| self.has(*why))
     }
 
-    fn add_if(&mut self, holds: bool, why: Why) {
+    fn add_if(&mut self, holds: bool, why: LimitReason) {
         if holds {
             self.0 |= why as u16;
         }
@@ -212,18 +212,18 @@ impl Governor {
             self.received_since = if gone { None } else { Some(self.received_since.unwrap_or(at.now)) };
             let disarmed = self.received_since.is_none_or(|since| at.now.since(since) < ARM_AFTER);
             let silence = disarmed || silent(hearing.frame);
-            why.add_if(silence, Why::Silence);
-            why.add_if(!silence && silent(hearing.command), Why::NoCommand);
+            why.add_if(silence, LimitReason::Silence);
+            why.add_if(!silence && silent(hearing.command), LimitReason::NoCommand);
         }
         let low = at.health.battery.is_some_and(|volts| volts < BATTERY_LOW || volts.is_nan());
         self.low_since = if low { Some(self.low_since.unwrap_or(at.now)) } else { None };
-        why.add_if(matches!(at.phase, Some(Phase::Halt | Phase::Timeout(_))), Why::Halt);
-        why.add_if(!at.placed, Why::Lost);
-        why.add_if(at.health.tipped, Why::Tipped);
-        why.add_if(at.odometry.angular.abs() > SPINNING, Why::Spinning);
-        why.add_if(self.low_since.is_some_and(|since| at.now.since(since) >= LOW_FOR), Why::Battery);
-        why.add_if(!is_finite(wanted.twist) || !is_finite(at.odometry), Why::NotANumber);
-        why.add_if(!wanted.dribbler.is_finite() || !is_kick(wanted.kick), Why::NotANumber);
+        why.add_if(matches!(at.phase, Some(Phase::Halt | Phase::Timeout(_))), LimitReason::Halt);
+        why.add_if(!at.placed, LimitReason::Lost);
+        why.add_if(at.health.tipped, LimitReason::Tipped);
+        why.add_if(at.odometry.angular.abs() > SPINNING, LimitReason::Spinning);
+        why.add_if(self.low_since.is_some_and(|since| at.now.since(since) >= LOW_FOR), LimitReason::Battery);
+        why.add_if(!is_finite(wanted.twist) || !is_finite(at.odometry), LimitReason::NotANumber);
+        why.add_if(!wanted.dribbler.is_finite() || !is_kick(wanted.kick), LimitReason::NotANumber);
         why
     }
 
@@ -261,11 +261,11 @@ impl Governor {
         let allowed = limit.max(self.last.linear.norm() - BRAKE * step);
         let speed = wanted.twist.linear.norm();
         if speed > allowed {
-            why.add_if(at.phase == Some(Phase::Stop) && limit <= STOP_SPEED, Why::StopSpeed);
-            why.add_if(silence > RAMP_FROM, Why::Hesitant);
-            why.add_if(limit >= SPEED_MAX, Why::Reach);
+            why.add_if(at.phase == Some(Phase::Stop) && limit <= STOP_SPEED, LimitReason::StopSpeed);
+            why.add_if(silence > RAMP_FROM, LimitReason::Hesitant);
+            why.add_if(limit >= SPEED_MAX, LimitReason::Reach);
         }
-        why.add_if(wanted.twist.angular.abs() > TURN_MAX, Why::Reach);
+        why.add_if(wanted.twist.angular.abs() > TURN_MAX, LimitReason::Reach);
         let twist = Twist {
             linear: wanted.twist.linear.clamped(allowed),
             angular: wanted.twist.angular.clamp(-TURN_MAX, TURN_MAX),
@@ -278,14 +278,14 @@ impl Governor {
     fn kick(&self, phase: Option<Phase<Side>>, kick: OmniKick, why: &mut Reasons) -> OmniKick {
         let (OmniKick::Flat(speed) | OmniKick::Chip(speed)) = kick else { return kick };
         if !phase.is_none_or(may_kick) {
-            why.add_if(true, Why::NoKick);
+            why.add_if(true, LimitReason::NoKick);
             return OmniKick::None;
         }
         let most = ball_speed(self.league);
         if speed <= most {
             return kick;
         }
-        why.add_if(true, Why::BallSpeed);
+        why.add_if(true, LimitReason::BallSpeed);
         match kick {
             OmniKick::Chip(_) => OmniKick::Chip(most),
             _ => OmniKick::Flat(most),
@@ -361,7 +361,7 @@ const BATTERY_LOW: f32 = 14.0;
 /// Minimum duration of a low battery: the voltage sinks briefly when the motors pull.
 const LOW_FOR: Duration = Duration::millis(1000);
 /// Reasons to brake that may last: no command, or the robot cannot go on.
-const LETS_GO: [Why; 3] = [Why::Silence, Why::Tipped, Why::Battery];
+const LETS_GO: [LimitReason; 3] = [LimitReason::Silence, LimitReason::Tipped, LimitReason::Battery];
 /// Standstill time before the motors are released: ten times the host's shortest silence that counts.
 const LET_GO_AFTER: Duration = Duration::millis(500);
 /// A slower robot stands, m/s and rad/s: a few counts of an encoder in a step, and a gyroscope's noise.

@@ -6,12 +6,12 @@
 //! most [`LATENCY_MAX`] old, and earlier by its excess age otherwise (`received_at`).
 
 use geometry::{Field, Point};
-use protocol::host::{Command, Directive, HostMessage, RuleRole};
+use protocol::host::{Directive, HostCommand, HostMessage, RuleRole};
 use protocol::robot_io::SensorFrame;
 use protocol::{Duration, Instant, RobotId};
 use rules::{Phase, Side, contact};
 
-use crate::belief::{Belief, Game};
+use crate::belief::{Belief, BelievedGame};
 use crate::governor::{Hearing, LATENCY_MAX, SILENCE};
 use crate::snapshot::{HostSnapshot, Taken};
 
@@ -20,7 +20,7 @@ use crate::snapshot::{HostSnapshot, Taken};
 pub struct Hosted {
     me: RobotId,
     snapshot: HostSnapshot,
-    command: Option<(Instant, Command)>,
+    command: Option<(Instant, HostCommand)>,
     frame: Option<Instant>,
     /// Arrival of the last frame, of any age.
     arrived: Option<Instant>,
@@ -94,7 +94,7 @@ impl Hosted {
         // A robot without a received phase does nothing.
         let phase = self.phase.unwrap_or(Phase::Halt);
         self.watch_touches(phase, rule_role, belief);
-        belief.game = Game {
+        belief.game = BelievedGame {
             phase,
             placement: self.snapshot.placement(),
             rule_role,
@@ -175,7 +175,7 @@ const LEFT: f32 = 0.06;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::belief::{Ball, Other};
+    use crate::belief::{BelievedBall, Other};
     use geometry::{Point, Pose, Twist, Vector};
     use protocol::robot_io::Health;
     use rules::League;
@@ -185,7 +185,7 @@ mod tests {
     }
 
     fn command(to: u8, directive: Directive) -> HostMessage {
-        HostMessage::Command(Command {
+        HostMessage::Command(HostCommand {
             to: id(to),
             defending: geometry::GoalEnd::Negative,
             phase: Phase::Run,
@@ -224,7 +224,7 @@ mod tests {
     fn with_ball(x: f32) -> Belief {
         let mut belief = Belief::new(League::DivisionB);
         let at = Point::new(x, 0.0);
-        belief.ball = Some(Ball { position: at, velocity: Vector::default(), rest: at });
+        belief.ball = Some(BelievedBall { position: at, velocity: Vector::default(), rest: at });
         belief
     }
 

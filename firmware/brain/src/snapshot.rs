@@ -30,7 +30,7 @@ pub enum Taken {
 
 /// A robot of the snapshot.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Received {
+pub struct ReceivedPart {
     /// Team and number of the robot.
     pub who: WireWho,
     /// Position, m, and heading.
@@ -67,7 +67,7 @@ pub struct HostSnapshot {
     /// Target of a ball placement.
     placement: Option<geometry::Point<Field>>,
     ball: Option<ReceivedBall>,
-    robots: [[Option<Received>; RobotId::COUNT]; 2],
+    robots: [[Option<ReceivedPart>; RobotId::COUNT]; 2],
     own: Option<Own>,
     odometry: Twist<Body>,
 }
@@ -177,13 +177,13 @@ impl HostSnapshot {
     }
 
     /// Every robot received but this one, where it will be `now`: ours first, lowest id first.
-    pub fn others(&self, now: Instant) -> impl Iterator<Item = Received> {
-        let fresh = move |robot: &&Received| now.since(robot.at) <= ROBOT_LEASE;
+    pub fn others(&self, now: Instant) -> impl Iterator<Item = ReceivedPart> {
+        let fresh = move |robot: &&ReceivedPart| now.since(robot.at) <= ROBOT_LEASE;
         self.robots.iter().flatten().flatten().filter(fresh).filter(|robot| !self.is_me(robot.who)).map(
             move |robot| {
                 let time = now.since(robot.at).as_secs_f32();
                 let position = robot.pose.position + robot.velocity * time;
-                Received { pose: Pose { position, ..robot.pose }, ..*robot }
+                ReceivedPart { pose: Pose { position, ..robot.pose }, ..*robot }
             },
         )
     }
@@ -206,7 +206,8 @@ impl HostSnapshot {
 
     fn show(&mut self, now: Instant, snapshot: u8, robot: &WireRobot) {
         let velocity = Vector::new(from_mm(i32::from(robot.vx)), from_mm(i32::from(robot.vy)));
-        let received_at = Received { who: robot.who, pose: robot.pose.into(), velocity, at: now, snapshot };
+        let received_at =
+            ReceivedPart { who: robot.who, pose: robot.pose.into(), velocity, at: now, snapshot };
         if self.is_me(robot.who) {
             self.correct_own(now, received_at.pose);
         }

@@ -1,7 +1,7 @@
 //! A keeper that was off the field, behind its own goal, comes around the goal to its line: with the robot's
 //! own motion planner, followed exactly. Field frame, SI.
 
-use brain::belief::{Ball, Belief};
+use brain::belief::{Belief, BelievedBall};
 use brain::body::omni::{Drive, Drivetrain};
 use geometry::{Angle, Field, GoalEnd, Point, Pose, Vector};
 use protocol::Instant;
@@ -16,7 +16,7 @@ fn last_second(phase: Phase<Side>, from: Point<Field>, to: Point<Field>) -> Vec<
     (belief.game.phase, belief.game.rule_role) = (phase, RuleRole::Keeper);
     belief.pose = Pose { position: from, heading: Angle::HALF_TURN };
     let ball = League::DivisionA.field().penalty_spot(own);
-    belief.ball = Some(Ball { position: ball, velocity: Vector::default(), rest: ball });
+    belief.ball = Some(BelievedBall { position: ball, velocity: Vector::default(), rest: ball });
     let mut drivetrain = Drivetrain::default();
     let mut places = Vec::new();
     for step in 0..1000 {

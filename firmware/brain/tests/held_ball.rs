@@ -1,7 +1,7 @@
 //! `held_ball`: tests: a robot that has to leave a ball which lies within its own outline, as in simulators
 //! that hold it there. Field frame, SI.
 
-use brain::belief::{Ball, Belief};
+use brain::belief::{Belief, BelievedBall};
 use brain::body::omni::{Drive, Drivetrain};
 use geometry::{Angle, GoalEnd, Point, Pose, Vector};
 use protocol::Instant;
@@ -17,7 +17,7 @@ fn left(gap: f32, held: bool, phase: Phase<Side>) -> f32 {
     belief.holds_ball = held;
     let (mut drivetrain, drive) = (Drivetrain::default(), Drive::avoiding(Point::new(2.46, 0.19), heading));
     for step in 0..200_u64 {
-        belief.ball = Some(Ball { position: ball, velocity: Vector::default(), rest: ball });
+        belief.ball = Some(BelievedBall { position: ball, velocity: Vector::default(), rest: ball });
         let wanted = drivetrain.actuate(Instant(step * 10_000), &belief, drive.into());
         belief.velocity = belief.pose.vector_to_field(wanted.twist.linear);
         belief.pose.position += belief.velocity * 0.01;

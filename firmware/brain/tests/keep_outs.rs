@@ -1,13 +1,13 @@
 //! `keep_outs`: tests: every robot leaves where the rules forbid it to be, from every place, in every phase.
 //! With the robot's own motion planner, followed exactly; the judge is `rules::keep_out`. Field frame, SI.
 
-use brain::belief::{Ball, Belief, Other};
+use brain::belief::{Belief, BelievedBall, Other};
 use brain::body::omni::{Drive, Drivetrain};
 use geometry::{Angle, Field, GoalEnd, Point, Pose, Vector};
 use protocol::{Instant, RobotId};
 use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro128PlusPlus;
-use rules::keep_out::{Situation, Why, keep_out};
+use rules::keep_out::{KeepOutReason, Situation, keep_out};
 use rules::limits::ROBOT_RADIUS;
 use rules::{League, Phase, RuleRole, Side};
 
@@ -79,7 +79,7 @@ impl Player {
     }
 
     fn sees(&mut self, ball: Point<Field>, placement: Point<Field>) {
-        self.belief.ball = Some(Ball { position: ball, velocity: Vector::default(), rest: ball });
+        self.belief.ball = Some(BelievedBall { position: ball, velocity: Vector::default(), rest: ball });
         self.belief.game.placement = Some(placement);
     }
 
@@ -88,7 +88,7 @@ impl Player {
     }
 
     /// Reason why it must not be where it is, if any.
-    fn offence(&self) -> Option<Why> {
+    fn offence(&self) -> Option<KeepOutReason> {
         let (belief, game) = (&self.belief, &self.belief.game);
         let field = belief.league().field();
         let situation = Situation {

@@ -17,7 +17,7 @@ use crate::{TARGET, TargetError, ensure_target};
 /// older than its sources.
 ///
 /// Where the sources or cargo are gone (an installed program), an existing build is used.
-pub fn build_image(root: &Path, body: Body) -> Result<PathBuf, BuildError> {
+pub fn build_image(root: &Path, body: ImageBody) -> Result<PathBuf, BuildError> {
     build_program(root, Program::Robot(body))
 }
 
@@ -40,7 +40,7 @@ fn build_into(target_dir: &Path, root: &Path, program: Program) -> Result<PathBu
         build.args(["--no-default-features", "--features", body.label()]);
     }
     if program == Program::Free {
-        build.args(["--no-default-features", "--features", Body::Omni.label()]);
+        build.args(["--no-default-features", "--features", ImageBody::Omni.label()]);
     }
     run_cargo(&mut build)?;
     if image.is_file() { Ok(image) } else { Err(BuildError::NoImage { image }) }
@@ -50,7 +50,7 @@ fn build_into(target_dir: &Path, root: &Path, program: Program) -> Result<PathBu
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Program {
     /// A whole robot: the brain for its body, its library and its tasks.
-    Robot(Body),
+    Robot(ImageBody),
     /// A robot on wheels that runs by its own clock, with a serial line for a radio.
     Free,
     /// A robot on wheels for the chip of a real one, which the emulator does not support.
@@ -68,13 +68,13 @@ pub enum Program {
 impl Program {
     /// Whole robots, which are held to the budgets of their firmware.
     pub const IMAGES: [Self; 4] =
-        [Self::Robot(Body::Legged), Self::Robot(Body::Omni), Self::Free, Self::Stm32];
+        [Self::Robot(ImageBody::Legged), Self::Robot(ImageBody::Omni), Self::Free, Self::Stm32];
 
     /// The name of the binary.
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Robot(Body::Legged) => "onetwo-mps2-legged",
-            Self::Robot(Body::Omni) => "onetwo-mps2-omni",
+            Self::Robot(ImageBody::Legged) => "onetwo-mps2-legged",
+            Self::Robot(ImageBody::Omni) => "onetwo-mps2-omni",
             Self::Free => "onetwo-mps2-free",
             Self::Stm32 => "onetwo-stm32",
             Self::MathHash => "math-hash",
@@ -103,14 +103,14 @@ impl Program {
 
 /// The body whose brain a firmware image contains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Body {
+pub enum ImageBody {
     /// A robot on four legs.
     Legged,
     /// A robot on omnidirectional wheels.
     Omni,
 }
 
-impl Body {
+impl ImageBody {
     /// Both bodies: legs, then wheels.
     pub const ALL: [Self; 2] = [Self::Legged, Self::Omni];
 
@@ -237,12 +237,14 @@ mod tests {
     use super::*;
     use std::fs;
 
-    const ROBOT: Program = Program::Robot(Body::Omni);
+    const ROBOT: Program = Program::Robot(ImageBody::Omni);
 
     #[test]
     fn the_board_is_where_we_look_for_it() {
         let manifest = fs::read_to_string(crate::workspace_root().join(MANIFEST)).unwrap();
-        for name in [PACKAGE, ROBOT.name(), Program::Robot(Body::Legged).name(), Program::MathHash.name()] {
+        for name in
+            [PACKAGE, ROBOT.name(), Program::Robot(ImageBody::Legged).name(), Program::MathHash.name()]
+        {
             assert!(manifest.contains(&format!("name = \"{name}\"")), "{name}");
         }
         let workspace = fs::read_to_string(crate::workspace_root().join("Cargo.toml")).unwrap();

@@ -31,7 +31,7 @@ pub struct OnTarget {
 
 /// Result of a test.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub enum TestVerdict {
     /// It ended as expected.
     Passed,
     /// Any other result, with its output.
@@ -93,7 +93,7 @@ fn text_at(file: &object::File<'_>, address: u32, len: u32) -> Option<String> {
 }
 
 /// Runs one test in an emulator of its own.
-pub fn run_test(qemu: &Path, image: &Path, test: &OnTarget) -> std::io::Result<Verdict> {
+pub fn run_test(qemu: &Path, image: &Path, test: &OnTarget) -> std::io::Result<TestVerdict> {
     let mut child = Command::new(qemu)
         .args(["-machine", MACHINE, "-display", "none", "-monitor", "none", "-serial", "none"])
         .arg("-semihosting-config")
@@ -128,12 +128,14 @@ pub fn run_test(qemu: &Path, image: &Path, test: &OnTarget) -> std::io::Result<V
 }
 
 /// The verdict for an exit status; `None` is no exit within the test's time.
-fn judged(test: &OnTarget, well: Option<bool>, output: &str) -> Verdict {
+fn judged(test: &OnTarget, well: Option<bool>, output: &str) -> TestVerdict {
     match (well, test.should_panic) {
-        (Some(true), false) | (Some(false), true) => Verdict::Passed,
-        (Some(false), false) => Verdict::Failed(output.to_owned()),
-        (Some(true), true) => Verdict::Failed("it should have panicked".to_owned()),
-        (None, _) => Verdict::Failed(format!("it did not end within {} s; {output}", test.timeout.as_secs())),
+        (Some(true), false) | (Some(false), true) => TestVerdict::Passed,
+        (Some(false), false) => TestVerdict::Failed(output.to_owned()),
+        (Some(true), true) => TestVerdict::Failed("it should have panicked".to_owned()),
+        (None, _) => {
+            TestVerdict::Failed(format!("it did not end within {} s; {output}", test.timeout.as_secs()))
+        }
     }
 }
 
@@ -154,12 +156,12 @@ mod tests {
 
     #[test]
     fn a_panic_fails_a_test_unless_it_should_and_a_hang_fails_any() {
-        assert_eq!(judged(&test(false), Some(true), ""), Verdict::Passed);
-        assert_eq!(judged(&test(true), Some(false), "panicked"), Verdict::Passed);
-        assert_eq!(judged(&test(false), Some(false), "why"), Verdict::Failed("why".into()));
-        assert!(matches!(judged(&test(true), Some(true), ""), Verdict::Failed(_)));
+        assert_eq!(judged(&test(false), Some(true), ""), TestVerdict::Passed);
+        assert_eq!(judged(&test(true), Some(false), "panicked"), TestVerdict::Passed);
+        assert_eq!(judged(&test(false), Some(false), "why"), TestVerdict::Failed("why".into()));
+        assert!(matches!(judged(&test(true), Some(true), ""), TestVerdict::Failed(_)));
         for should_panic in [false, true] {
-            let Verdict::Failed(description) = judged(&test(should_panic), None, "") else {
+            let TestVerdict::Failed(description) = judged(&test(should_panic), None, "") else {
                 panic!("passed")
             };
             assert!(description.contains("60 s"), "{description}");

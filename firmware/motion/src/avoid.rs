@@ -90,7 +90,7 @@ pub struct Course<'o, F> {
 
 /// Kind of path found.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Verdict<F> {
+pub enum RouteVerdict<F> {
     /// Straight to the goal.
     Direct,
     /// Around at least one obstacle.
@@ -127,7 +127,7 @@ pub enum Restraint {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detour<F> {
     /// Whether the path is direct, a detour or blocked.
-    pub verdict: Verdict<F>,
+    pub verdict: RouteVerdict<F>,
     /// Stop position: the target, or the free point that replaces it.
     pub goal: Point<F>,
     /// Length of the route to the goal, m; of its known part where blocked.
@@ -148,7 +148,7 @@ pub fn plan<F: Copy>(course: &Course<'_, F>) -> Detour<F> {
         // Standing where it is, if that is known.
         let motion = FreeLimits::default().plan(from, Vector::new(f32::NAN, 0.0), to);
         let next = motion.at(0.0);
-        let (verdict, restraint) = (Verdict::Blocked { at: next.position }, Restraint::Braked);
+        let (verdict, restraint) = (RouteVerdict::Blocked { at: next.position }, Restraint::Braked);
         return Detour { verdict, goal: next.position, length: 0.0, restraint, next, motion };
     }
     let mut scene = Scene::new(course.obstacles, within, course.effort);
@@ -160,9 +160,9 @@ pub fn plan<F: Copy>(course: &Course<'_, F>) -> Detour<F> {
     scene.keep_apart(from, goal, false);
     let route = Route::find(&scene, from, velocity, goal, &limits, course.checks);
     let (verdict, towards) = match route.via {
-        _ if !route.arrives => (Verdict::Blocked { at: route.end }, route.via.unwrap_or(route.end)),
-        None => (Verdict::Direct, goal),
-        Some(via) => (Verdict::Around { via }, past(from, via, route.behind, &limits)),
+        _ if !route.arrives => (RouteVerdict::Blocked { at: route.end }, route.via.unwrap_or(route.end)),
+        None => (RouteVerdict::Direct, goal),
+        Some(via) => (RouteVerdict::Around { via }, past(from, via, route.behind, &limits)),
     };
     let motion = limits.plan(from, velocity, towards);
     let (next, restraint) = safe_step(course, &scene, &motion, towards);
@@ -187,7 +187,7 @@ fn escape<F: Copy>(course: &Course<'_, F>, scene: &mut Scene<'_, F>) -> Detour<F
     let motion = limits.plan(from, velocity, towards);
     let (next, restraint) = safe_step(course, scene, &motion, towards);
     let length = route.length + exit.distance(goal);
-    Detour { verdict: Verdict::Escape { to: exit }, goal, length, restraint, next, motion }
+    Detour { verdict: RouteVerdict::Escape { to: exit }, goal, length, restraint, next, motion }
 }
 
 /// A point beyond a corner, at such a distance that the robot comes to the corner as fast as it can turn

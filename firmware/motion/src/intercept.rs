@@ -33,7 +33,7 @@ pub struct Interception<'b, F> {
 
 /// Which of the reachable interceptions to choose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Request {
+pub enum InterceptRequest {
     /// arg min t_ball: for an attacker, whose failure is cheap.
     Soonest,
     /// arg max slack: for a defender, whose failure is a goal.
@@ -42,7 +42,7 @@ pub enum Request {
 
 /// Result of an interception.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Verdict<F> {
+pub enum InterceptVerdict<F> {
     /// The robot can intercept in time.
     Intercepts(InterceptionPoint<F>),
     /// No point is reached in time: go to the ball's stop position, or to where it is no longer of interest.
@@ -89,20 +89,20 @@ pub fn kick_place<F: Copy>(ball: Point<F>, target: Point<F>, reach: f32) -> Poin
 
 impl<F: Copy> Interception<'_, F> {
     /// Finds the interception that `request` asks for; else where to follow the ball.
-    pub fn find<L: CalcMotion>(&self, limits: &L, request: Request) -> Verdict<F> {
+    pub fn find<L: CalcMotion>(&self, limits: &L, request: InterceptRequest) -> InterceptVerdict<F> {
         let best = match request {
-            Request::Soonest => self.soonest(limits, u32::MAX),
-            Request::Safest => self.safest(limits),
+            InterceptRequest::Soonest => self.soonest(limits, u32::MAX),
+            InterceptRequest::Safest => self.safest(limits),
         };
-        best.map_or_else(|| self.chase(limits, self.horizon()), Verdict::Intercepts)
+        best.map_or_else(|| self.chase(limits, self.horizon()), InterceptVerdict::Intercepts)
     }
 
     /// As [`Interception::find`] with [`Request::Soonest`], in bounded time: after `most` points without an
     /// interception only every fourth is tested, and after as many more one of eight; from the first in time
     /// back by bisection.
-    pub fn find_within<L: CalcMotion>(&self, limits: &L, most: u32) -> Verdict<F> {
+    pub fn find_within<L: CalcMotion>(&self, limits: &L, most: u32) -> InterceptVerdict<F> {
         let best = self.soonest(limits, most);
-        best.map_or_else(|| self.chase(limits, self.horizon()), Verdict::Intercepts)
+        best.map_or_else(|| self.chase(limits, self.horizon()), InterceptVerdict::Intercepts)
     }
 
     fn horizon(&self) -> f32 {
@@ -226,10 +226,10 @@ impl<F: Copy> Interception<'_, F> {
         if interception_point.slack() >= least { Look::Intercepts(interception_point) } else { Look::TooLate }
     }
 
-    fn chase<L: CalcMotion>(&self, limits: &L, horizon: f32) -> Verdict<F> {
+    fn chase<L: CalcMotion>(&self, limits: &L, horizon: f32) -> InterceptVerdict<F> {
         let ball = self.ball.at(horizon).position;
         let place = kick_place(ball, self.target, self.reach);
-        Verdict::Chase { ball, place, robot_time: limits.time(self.robot, self.velocity, place) }
+        InterceptVerdict::Chase { ball, place, robot_time: limits.time(self.robot, self.velocity, place) }
     }
 }
 
@@ -278,8 +278,8 @@ mod tests {
     fn linear<L: CalcMotion>(
         asked: &Interception<'_, Field>,
         limits: &L,
-        request: Request,
-    ) -> Verdict<Field> {
+        request: InterceptRequest,
+    ) -> InterceptVerdict<Field> {
         let horizon = asked.horizon();
         let mut best: Option<InterceptionPoint<Field>> = None;
         let steps = (horizon / STEP) as u32;
@@ -288,13 +288,14 @@ mod tests {
             let place = kick_place(ball, asked.target, asked.reach);
             let robot_time = limits.time(asked.robot, asked.velocity, place);
             let interception_point = InterceptionPoint { ball, place, ball_time: time, robot_time };
-            let better = best
-                .is_none_or(|best| request == Request::Safest && interception_point.slack() > best.slack());
+            let better = best.is_none_or(|best| {
+                request == InterceptRequest::Safest && interception_point.slack() > best.slack()
+            });
             if interception_point.slack() >= 0.0 && better {
                 best = Some(interception_point);
             }
         }
-        best.map_or_else(|| asked.chase(limits, horizon), Verdict::Intercepts)
+        best.map_or_else(|| asked.chase(limits, horizon), InterceptVerdict::Intercepts)
     }
 
     #[test]
@@ -315,15 +316,19 @@ mod tests {
                 until: 2.0,
             };
             let limits = FreeLimits::default();
-            match (asked.find(&limits, Request::Soonest), asked.find_within(&limits, 4)) {
-                (Verdict::Intercepts(best), Verdict::Intercepts(found)) if best == found => same += 1,
-                (Verdict::Intercepts(best), Verdict::Intercepts(found)) => {
+            match (asked.find(&limits, InterceptRequest::Soonest), asked.find_within(&limits, 4)) {
+                (InterceptVerdict::Intercepts(best), InterceptVerdict::Intercepts(found))
+                    if best == found =>
+                {
+                    same += 1
+                }
+                (InterceptVerdict::Intercepts(best), InterceptVerdict::Intercepts(found)) => {
                     let by = found.ball_time - best.ball_time;
                     assert!(by > 0.0 && by < (BLOCK as f32 - 0.5) * STEP, "{by} s later: {asked:?}");
                     later += 1;
                 }
                 (exact, found) => {
-                    assert!(matches!(found, Verdict::Chase { .. }), "{exact:?} {found:?}");
+                    assert!(matches!(found, InterceptVerdict::Chase { .. }), "{exact:?} {found:?}");
                     none += 1;
                 }
             }
@@ -353,17 +358,20 @@ mod tests {
                 reach: kick_reach(0.09, 0.0215),
                 until: 3.0 + within(3.0),
             };
-            for request in [Request::Soonest, Request::Safest] {
+            for request in [InterceptRequest::Soonest, InterceptRequest::Safest] {
                 let found = asked.find(&FreeLimits::default(), request);
                 assert_eq!(found, linear(&asked, &FreeLimits::default(), request), "{asked:?}");
                 match found {
-                    Verdict::Intercepts(_) => interception_points += 1,
-                    Verdict::Chase { .. } => chases += 1,
+                    InterceptVerdict::Intercepts(_) => interception_points += 1,
+                    InterceptVerdict::Chase { .. } => chases += 1,
                 }
             }
             if i < 100 {
                 let drag = DragLimits::default();
-                assert_eq!(asked.find(&drag, Request::Soonest), linear(&asked, &drag, Request::Soonest));
+                assert_eq!(
+                    asked.find(&drag, InterceptRequest::Soonest),
+                    linear(&asked, &drag, InterceptRequest::Soonest)
+                );
             }
         }
         assert!(interception_points > 500 && chases > 500, "{interception_points} {chases}");
@@ -378,12 +386,16 @@ mod tests {
     fn a_ball_that_comes_by_is_met_soonest_where_the_robot_is_just_in_time() {
         let ball = BallModel::default().rolling(Point::new(-2.0, 1.0), Vector::new(2.0, 0.0));
         let question = asked(&ball, Point::new(0.0, 0.0));
-        let Verdict::Intercepts(soonest) = question.find(&FreeLimits::default(), Request::Soonest) else {
+        let InterceptVerdict::Intercepts(soonest) =
+            question.find(&FreeLimits::default(), InterceptRequest::Soonest)
+        else {
             panic!()
         };
         // One step earlier the robot would be late.
         assert!(soonest.slack() >= 0.0 && soonest.slack() < 0.1, "{soonest:?}");
-        let Verdict::Intercepts(safest) = question.find(&FreeLimits::default(), Request::Safest) else {
+        let InterceptVerdict::Intercepts(safest) =
+            question.find(&FreeLimits::default(), InterceptRequest::Safest)
+        else {
             panic!()
         };
         assert!(safest.slack() > soonest.slack() && safest.ball_time > soonest.ball_time);
@@ -396,8 +408,8 @@ mod tests {
     fn a_ball_that_runs_away_is_chased_to_its_rest() {
         let ball = BallModel::default().rolling(Point::new(0.0, 0.0), Vector::new(1.0, 0.0));
         let slow = FreeLimits { speed: 0.1, acceleration: 1.0, braking: 1.0 };
-        let Verdict::Chase { ball: rest, robot_time, .. } =
-            asked(&ball, Point::new(-2.0, 0.0)).find(&slow, Request::Soonest)
+        let InterceptVerdict::Chase { ball: rest, robot_time, .. } =
+            asked(&ball, Point::new(-2.0, 0.0)).find(&slow, InterceptRequest::Soonest)
         else {
             panic!()
         };
@@ -409,9 +421,12 @@ mod tests {
         let ball = BallModel::default().rolling(Point::new(1.0, 0.0), Vector::default());
         let behind = asked(&ball, Point::new(0.9, 0.0));
         assert!(
-            matches!(behind.find(&FreeLimits::default(), Request::Safest), Verdict::Intercepts(m) if m.ball_time == 0.0)
+            matches!(behind.find(&FreeLimits::default(), InterceptRequest::Safest), InterceptVerdict::Intercepts(m) if m.ball_time == 0.0)
         );
         let away = asked(&ball, Point::new(0.0, 0.0));
-        assert!(matches!(away.find(&FreeLimits::default(), Request::Safest), Verdict::Chase { .. }));
+        assert!(matches!(
+            away.find(&FreeLimits::default(), InterceptRequest::Safest),
+            InterceptVerdict::Chase { .. }
+        ));
     }
 }

@@ -15,4 +15,4 @@ mod run;
 
 pub use body::{SimulatedBody, TICK};
 pub use robot::VirtualRobot;
-pub use run::{End, Options, RunError, parent_gone, run};
+pub use run::{Options, ProcessEnd, RunError, parent_gone, run};

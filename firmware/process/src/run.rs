@@ -29,7 +29,7 @@ pub struct Options {
 
 /// Regular end of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum ProcessEnd {
     /// The parent process requested it.
     Asked,
 }
@@ -71,7 +71,7 @@ pub fn parent_gone() -> Arc<AtomicBool> {
 }
 
 /// Runs the robot until `end` is raised.
-pub fn run(options: &Options, base: CaseBase<'_>, end: &AtomicBool) -> Result<End, RunError> {
+pub fn run(options: &Options, base: CaseBase<'_>, end: &AtomicBool) -> Result<ProcessEnd, RunError> {
     let local = |address: &SocketAddr| address.ip().is_loopback();
     let any: SocketAddr = match options.simulator {
         SocketAddr::V4(_) if local(&options.host) && local(&options.simulator) => ([127, 0, 0, 1], 0).into(),
@@ -105,7 +105,7 @@ pub fn run(options: &Options, base: CaseBase<'_>, end: &AtomicBool) -> Result<En
             let _ = socket.send_to(&control, options.simulator);
         }
     }
-    Ok(End::Asked)
+    Ok(ProcessEnd::Asked)
 }
 
 /// The longest datagram that is read: the league's programs send no longer ones.

@@ -12,7 +12,7 @@ use protocol::host_link::{HostLink, Opened};
 use protocol::{Instant, RobotId, TeamId};
 use rules::{Colour, League};
 use ssl::simulation::{RobotControl, RobotControlResponse, RobotFeedback};
-use virtual_robot::{End, Options, VirtualRobot, run};
+use virtual_robot::{Options, ProcessEnd, VirtualRobot, run};
 
 const KEY: TeamKey = TeamKey([9; 16]);
 
@@ -112,6 +112,6 @@ fn over_a_socket_it_is_received_by_its_host_and_its_simulator_and_ends_when_aske
         // Twenty ticks are 190 ms; a busy machine may need longer, never much less.
         assert!(began.elapsed() > Duration::from_millis(120), "{:?}", began.elapsed());
         end.store(true, Ordering::Relaxed);
-        assert_eq!(robot.join().unwrap().unwrap(), End::Asked);
+        assert_eq!(robot.join().unwrap().unwrap(), ProcessEnd::Asked);
     });
 }

@@ -23,8 +23,8 @@ use protocol::robot_io::{Health, OmniKick, SensorFrame, WHEELED_STEP};
 
 use crate::kicker::{Interlock, KickerAct};
 use crate::mailboxes::{Arrival, Mailboxes};
-use crate::ports::{Kicker, Probes, RadioReceiver, Watchdog, Wheels};
-use crate::progress::Part;
+use crate::ports::{Kicker, Probes, RadioReceiver, Watchdog, WheelsPort};
+use crate::progress::RobotPart;
 use crate::tasks::now;
 use crate::wheel::{CONTROL_PERIOD, Control, Motors, WHEELS};
 
@@ -51,7 +51,7 @@ impl Default for Wires {
 
 /// Controls the wheels to the brain's orders, and to a stop without orders. Replaces
 /// [`tasks::body`](crate::tasks::body).
-pub async fn control(mut wheels: impl Wheels, boxes: &Mailboxes, wires: &Wires) -> ! {
+pub async fn control(mut wheels: impl WheelsPort, boxes: &Mailboxes, wires: &Wires) -> ! {
     let mut ticker = Ticker::every(Duration::from_micros(CONTROL_PERIOD.0));
     let mut control = Control::new();
     loop {
@@ -68,7 +68,7 @@ pub async fn control(mut wheels: impl Wheels, boxes: &Mailboxes, wires: &Wires) 
         }
         wires.rims.signal(measured);
         wires.request.signal(step.kick);
-        boxes.progress.mark(Part::Control);
+        boxes.progress.mark(RobotPart::Control);
     }
 }
 
@@ -128,7 +128,7 @@ pub async fn radio_receive(mut radio: impl RadioReceiver, boxes: &Mailboxes) -> 
             // Not cancelled midway: bytes of a packet that is coming in would be lost.
             let mut next = pin!(radio.receive());
             loop {
-                boxes.progress.mark(Part::Radio);
+                boxes.progress.mark(RobotPart::Radio);
                 if let Either::First(packet) = select(next.as_mut(), Timer::after(LISTENS)).await {
                     break packet;
                 }
@@ -174,7 +174,7 @@ mod tests {
 
     /// Wheels that reach two thirds of a change in 30 ms.
     struct Motor(&'static Cell<Option<[f32; WHEELS]>>, [f32; WHEELS]);
-    impl Wheels for Motor {
+    impl WheelsPort for Motor {
         fn measured(&mut self) -> [f32; WHEELS] {
             self.1
         }
@@ -279,7 +279,7 @@ mod tests {
         world.advance(1_000_000);
         assert_eq!(fed.get(), 0, "the brain has not said a word");
         for ms in (1_000..2_000).step_by(10) {
-            boxes.progress.mark(Part::Brain);
+            boxes.progress.mark(RobotPart::Brain);
             world.advance(ms * 1_000);
         }
         assert!((45..=50).contains(&fed.get()), "{}", fed.get());

@@ -10,7 +10,7 @@ use embassy_sync::signal::Signal;
 use protocol::link::Packet;
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
 
-use crate::progress::Progress;
+use crate::progress::TaskProgress;
 
 /// Inputs that may wait for the brain. When full, radio and sensors wait with the next one: their drivers
 /// count what is lost then.
@@ -39,7 +39,7 @@ pub struct Mailboxes {
     /// Only the latest orders count: a body never executes old ones.
     pub(crate) orders: Signal<CriticalSectionRawMutex, ActuatorFrame>,
     /// Parts that have run, for the watchdog.
-    pub(crate) progress: Progress,
+    pub(crate) progress: TaskProgress,
     unsent: AtomicU32,
     undelivered: AtomicU32,
 }
@@ -51,7 +51,7 @@ impl Mailboxes {
             inbox: Channel::new(),
             outbox: Channel::new(),
             orders: Signal::new(),
-            progress: Progress::new(),
+            progress: TaskProgress::new(),
             unsent: AtomicU32::new(0),
             undelivered: AtomicU32::new(0),
         }

@@ -14,7 +14,7 @@ const MAGIC: [u8; 4] = *b"1-2B";
 
 /// Content of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Cell {
+pub enum CounterCell {
     /// Erased flash: not written since the last erase.
     Empty,
     /// A start with this epoch.
@@ -23,7 +23,7 @@ pub enum Cell {
     Damaged,
 }
 
-impl Cell {
+impl CounterCell {
     /// Decodes a cell's bytes.
     pub fn of(bytes: &[u8; CELL_LEN]) -> Self {
         let [m0, m1, m2, m3, e0, e1, e2, e3, i0, i1, i2, i3, rest @ ..] = *bytes;
@@ -49,7 +49,7 @@ pub fn cell(epoch: u32) -> [u8; CELL_LEN] {
 
 /// Position of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct CounterPlace {
     /// Half, 0 or 1.
     pub half: usize,
     /// Index of the cell in its half.
@@ -58,26 +58,26 @@ pub struct Place {
 
 /// What a start has to do before it sends anything.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Plan {
+pub struct WritePlan {
     /// Epoch of this start.
     pub epoch: u32,
     /// Cell to write it to.
-    pub at: Place,
+    pub at: CounterPlace,
     /// Whether that half must be erased first.
     pub erase: bool,
 }
 
 /// Reads all cells, `cells` in each half; `None` after 2³² starts.
-pub fn plan(cells: usize, mut read: impl FnMut(Place) -> Cell) -> Option<Plan> {
+pub fn plan(cells: usize, mut read: impl FnMut(CounterPlace) -> CounterCell) -> Option<WritePlan> {
     let (mut newest, mut active) = (0, 0);
     // The first cell of each half behind all written ones.
     let mut free = [0; 2];
     for (half, free) in free.iter_mut().enumerate() {
         for index in 0..cells {
-            match read(Place { half, index }) {
-                Cell::Empty => continue,
-                Cell::Epoch(epoch) if epoch > newest => (newest, active) = (epoch, half),
-                Cell::Epoch(_) | Cell::Damaged => {}
+            match read(CounterPlace { half, index }) {
+                CounterCell::Empty => continue,
+                CounterCell::Epoch(epoch) if epoch > newest => (newest, active) = (epoch, half),
+                CounterCell::Epoch(_) | CounterCell::Damaged => {}
             }
             *free = index + 1;
         }
@@ -86,9 +86,9 @@ pub fn plan(cells: usize, mut read: impl FnMut(Place) -> Cell) -> Option<Plan> {
     let [first, second] = free;
     let index = if active == 0 { first } else { second };
     Some(if index < cells {
-        Plan { epoch, at: Place { half: active, index }, erase: false }
+        WritePlan { epoch, at: CounterPlace { half: active, index }, erase: false }
     } else {
-        Plan { epoch, at: Place { half: 1 - active, index: 0 }, erase: true }
+        WritePlan { epoch, at: CounterPlace { half: 1 - active, index: 0 }, erase: true }
     })
 }
 
@@ -111,13 +111,13 @@ mod tests {
             Self(vec![[EMPTY; CELL_LEN]; 2 * CELLS])
         }
 
-        fn plan(&self) -> Plan {
-            plan(CELLS, |at| Cell::of(&self.0[at.half * CELLS + at.index])).unwrap()
+        fn plan(&self) -> WritePlan {
+            plan(CELLS, |at| CounterCell::of(&self.0[at.half * CELLS + at.index])).unwrap()
         }
 
         /// A start that loses its power after `steps` steps: erasing, half a cell, the whole cell.
         fn start(&mut self, steps: usize) -> Option<u32> {
-            let Plan { epoch, at, erase } = self.plan();
+            let WritePlan { epoch, at, erase } = self.plan();
             if erase {
                 if steps == 0 {
                     // Erasing was interrupted: some cells are erased, and some are undefined.
@@ -163,15 +163,16 @@ mod tests {
 
     #[test]
     fn a_cell_is_what_was_written_and_nothing_else() {
-        assert_eq!(Cell::of(&cell(7)), Cell::Epoch(7));
+        assert_eq!(CounterCell::of(&cell(7)), CounterCell::Epoch(7));
         assert_eq!(&cell(0x0102_0304)[..12], [0x31, 0x2d, 0x32, 0x42, 4, 3, 2, 1, 0xfb, 0xfc, 0xfd, 0xfe]);
-        assert_eq!(Cell::of(&[EMPTY; CELL_LEN]), Cell::Empty);
+        assert_eq!(CounterCell::of(&[EMPTY; CELL_LEN]), CounterCell::Empty);
         for bit in 0..8 * CELL_LEN {
             let mut bytes = cell(7);
             bytes[bit / 8] ^= 1 << (bit % 8);
-            assert_eq!(Cell::of(&bytes), Cell::Damaged, "bit {bit}");
+            assert_eq!(CounterCell::of(&bytes), CounterCell::Damaged, "bit {bit}");
         }
-        let full = |at: Place| if at.index == 0 { Cell::Epoch(u32::MAX) } else { Cell::Empty };
+        let full =
+            |at: CounterPlace| if at.index == 0 { CounterCell::Epoch(u32::MAX) } else { CounterCell::Empty };
         assert_eq!(plan(CELLS, full), None);
     }
 }

@@ -33,13 +33,13 @@ pub trait Senses {
 }
 
 /// Actuators of a robot.
-pub trait Body {
+pub trait BodyPort {
     /// Executes the orders until the next call.
     async fn act(&mut self, wanted: ActuatorFrame);
 }
 
 /// Four wheels with their motors, and the dribbler.
-pub trait Wheels {
+pub trait WheelsPort {
     /// Rim speeds since the last call, m/s; NaN where an encoder is known to be broken.
     fn measured(&mut self) -> [f32; WHEELS];
 

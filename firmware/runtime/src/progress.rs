@@ -5,7 +5,7 @@ use core::sync::atomic::{AtomicU32, Ordering};
 
 /// Parts that have to report that they run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum RobotPart {
     /// The control loop of the wheels.
     Control = 1,
     /// The radio receiver, whether it receives something or not.
@@ -16,16 +16,16 @@ pub enum Part {
 
 /// Parts that have run since the watchdog was fed last.
 #[derive(Debug, Default)]
-pub struct Progress(AtomicU32);
+pub struct TaskProgress(AtomicU32);
 
-impl Progress {
+impl TaskProgress {
     /// A record in which no part has reported yet.
     pub const fn new() -> Self {
         Self(AtomicU32::new(0))
     }
 
     /// Records that this part runs.
-    pub fn mark(&self, part: Part) {
+    pub fn mark(&self, part: RobotPart) {
         // Load and store, not a swap: all tasks of a robot run on one executor.
         self.0.store(self.0.load(Ordering::Relaxed) | part as u32, Ordering::Relaxed);
     }
@@ -40,7 +40,7 @@ impl Progress {
     }
 }
 
-const ALL: u32 = Part::Control as u32 | Part::Radio as u32 | Part::Brain as u32;
+const ALL: u32 = RobotPart::Control as u32 | RobotPart::Radio as u32 | RobotPart::Brain as u32;
 
 #[cfg(test)]
 mod tests {
@@ -48,9 +48,9 @@ mod tests {
 
     #[test]
     fn only_all_parts_together_count_and_only_once() {
-        let progress = Progress::new();
-        for missing in [Part::Control, Part::Radio, Part::Brain] {
-            for part in [Part::Control, Part::Radio, Part::Brain, Part::Brain] {
+        let progress = TaskProgress::new();
+        for missing in [RobotPart::Control, RobotPart::Radio, RobotPart::Brain] {
+            for part in [RobotPart::Control, RobotPart::Radio, RobotPart::Brain, RobotPart::Brain] {
                 if part != missing {
                     progress.mark(part);
                 }

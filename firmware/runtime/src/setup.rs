@@ -3,13 +3,13 @@
 use core::fmt;
 
 use brain::BrainConfig;
-use brain::body::Kind;
+use brain::body::BodyKind;
 use rules::League;
 
 /// Reads a configuration (postcard), which must end with the last byte.
 pub fn read(bytes: &[u8]) -> Result<BrainConfig, SetupError> {
     match postcard::take_from_bytes::<BrainConfig>(bytes) {
-        Ok((config, [])) if !Kind::is_built(config.league) => Err(SetupError::Body(config.league)),
+        Ok((config, [])) if !BodyKind::is_built(config.league) => Err(SetupError::Body(config.league)),
         Ok((config, [])) => Ok(config),
         Ok((_, rest)) => Err(SetupError::Rest(rest.len())),
         Err(_) => Err(SetupError::Unreadable),

@@ -15,8 +15,8 @@ use protocol::{Duration, Instant};
 
 use crate::controller::Controller;
 use crate::mailboxes::{Arrival, Mailboxes};
-use crate::ports::{Body, RadioReceiver, RadioSender, Senses};
-use crate::progress::Part;
+use crate::ports::{BodyPort, RadioReceiver, RadioSender, Senses};
+use crate::progress::RobotPart;
 
 /// The robot's task: starts the boot epoch with its first poll.
 pub async fn brain(config: &BrainConfig, base: CaseBase<'_>, boxes: &Mailboxes) -> ! {
@@ -62,7 +62,7 @@ pub async fn sensors(mut senses: impl Senses, boxes: &Mailboxes) -> ! {
 }
 
 /// Passes the brain's latest orders to the body.
-pub async fn body(mut body: impl Body, boxes: &Mailboxes) -> ! {
+pub async fn body(mut body: impl BodyPort, boxes: &Mailboxes) -> ! {
     loop {
         let wanted = boxes.orders.wait().await;
         body.act(wanted).await;
@@ -88,7 +88,7 @@ pub(crate) async fn think(controller: &mut impl Controller, boxes: &Mailboxes) -
             continue;
         };
         empty(controller, last, boxes);
-        boxes.progress.mark(Part::Brain);
+        boxes.progress.mark(RobotPart::Brain);
     }
 }
 

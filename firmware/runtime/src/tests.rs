@@ -18,7 +18,7 @@ use protocol::{Duration, Instant, RobotId, TeamId};
 
 use crate::controller::Controller;
 use crate::mailboxes::{Arrival, Mailboxes, OUTBOX_LEN};
-use crate::ports::{Body, RadioReceiver, RadioSender, Senses};
+use crate::ports::{BodyPort, RadioReceiver, RadioSender, Senses};
 use crate::tasks;
 use crate::testing::{World, clock};
 
@@ -292,7 +292,7 @@ impl RadioSender for PacketLog {
         self.0.borrow_mut().push(packet);
     }
 }
-impl Body for Actuators {
+impl BodyPort for Actuators {
     async fn act(&mut self, wanted: ActuatorFrame) {
         self.0.borrow_mut().push(wanted);
     }

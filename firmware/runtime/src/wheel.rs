@@ -22,7 +22,7 @@ pub enum Motors {
 
 /// Outputs of one step, after the loop's own check.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step {
+pub struct EncoderStep {
     /// Output of the wheels.
     pub motors: Motors,
     /// The dribbler's share of full speed, 0–1.
@@ -52,12 +52,12 @@ impl Control {
     }
 
     /// One step of a millisecond: the drive for the encoders' readings.
-    pub fn step(&mut self, now: Instant, measured: [f32; WHEELS]) -> Step {
+    pub fn step(&mut self, now: Instant, measured: [f32; WHEELS]) -> EncoderStep {
         let fresh = self.order.filter(|(at, _)| now.since(*at) < ORDER_STALE).map(|(_, order)| order);
         let (dribbler, kick) = match (self.order, fresh) {
             (None, _) | (_, Some(ActuatorFrame::Released | ActuatorFrame::Legged { .. })) => {
                 *self = Self { order: self.order, ..Self::new() };
-                return Step { motors: Motors::Released, dribbler: 0.0, kick: OmniKick::Discharge };
+                return EncoderStep { motors: Motors::Released, dribbler: 0.0, kick: OmniKick::Discharge };
             }
             (Some(_), Some(ActuatorFrame::Omni { wheels, dribbler, kick }))
                 if is_finite(&wheels, dribbler) =>
@@ -88,7 +88,7 @@ impl Control {
                 *integral = trial;
             }
         }
-        Step { motors: Motors::Driven(rule_role), dribbler, kick }
+        EncoderStep { motors: Motors::Driven(rule_role), dribbler, kick }
     }
 }
 
@@ -137,8 +137,8 @@ mod tests {
         ms: u64,
         order: Option<ActuatorFrame>,
         speeds: &mut [f32; WHEELS],
-    ) -> Step {
-        let mut last = Step { motors: Motors::Released, dribbler: 0.0, kick: OmniKick::None };
+    ) -> EncoderStep {
+        let mut last = EncoderStep { motors: Motors::Released, dribbler: 0.0, kick: OmniKick::None };
         for t in from..from + ms {
             let now = Instant(t * 1000);
             if let Some(order) = order.filter(|_| t % 10 == 0) {
@@ -184,7 +184,7 @@ mod tests {
     #[test]
     fn before_the_first_order_and_when_released_there_is_no_current() {
         let mut control = Control::new();
-        let released = Step { motors: Motors::Released, dribbler: 0.0, kick: OmniKick::Discharge };
+        let released = EncoderStep { motors: Motors::Released, dribbler: 0.0, kick: OmniKick::Discharge };
         assert_eq!(control.step(Instant(0), [0.0; WHEELS]), released);
         control.order(Instant(1000), omni(1.0));
         assert_ne!(control.step(Instant(1000), [0.0; WHEELS]).motors, Motors::Released);

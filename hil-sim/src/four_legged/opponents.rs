@@ -11,13 +11,13 @@ use protocol::robot_io::{ActuatorFrame, LeggedKick, LeggedPrimitive};
 use serde::Deserialize;
 
 use crate::four_legged::parameters::{Parameters, Region};
-use crate::four_legged::world::World;
+use crate::four_legged::world::LeggedWorld;
 
 crate::labels! {
     /// What an opponent is there for.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
     #[serde(rename_all = "lowercase")]
-    pub enum Role {
+    pub enum OpponentRole {
         /// Between midfield and penalty area.
         Defender = "defender",
         /// Around the centre line.
@@ -27,7 +27,7 @@ crate::labels! {
     }
 }
 
-impl Role {
+impl OpponentRole {
     /// Its home.
     pub fn home(self, parameters: &Parameters) -> Region {
         match self {
@@ -54,7 +54,7 @@ pub enum Conduct {
 #[derive(Clone, Debug)]
 pub struct Opponent {
     /// Its role.
-    pub role: Role,
+    pub role: OpponentRole,
     /// Its index in [`World::walkers`].
     robot: usize,
     /// Region where it plays; `None` where it only stands.
@@ -63,7 +63,7 @@ pub struct Opponent {
 
 impl Opponent {
     /// An opponent in its home region, or in the region its conduct names.
-    pub fn new(role: Role, conduct: Conduct, robot: usize, parameters: &Parameters) -> Self {
+    pub fn new(role: OpponentRole, conduct: Conduct, robot: usize, parameters: &Parameters) -> Self {
         let home = match conduct {
             Conduct::AtHome => Some(role.home(parameters)),
             Conduct::Within(region) => Some(region),
@@ -73,7 +73,7 @@ impl Opponent {
     }
 
     /// Decides and orders its body, in every control step.
-    pub fn act(&self, world: &mut World, parameters: &Parameters) {
+    pub fn act(&self, world: &mut LeggedWorld, parameters: &Parameters) {
         let Some(home) = self.home else { return };
         let (ball, pose) = (world.ball.position, world.walkers[self.robot].pose);
         let primitive = if world.holder() == Some(self.robot) {
@@ -142,15 +142,15 @@ mod tests {
     const DT: f32 = 0.04;
 
     struct Game {
-        world: World,
+        world: LeggedWorld,
         opponent: Opponent,
         events: Vec<WorldEvent>,
     }
 
-    fn game(role: Role, at: (f32, f32), ball: (f32, f32)) -> Game {
+    fn game(role: OpponentRole, at: (f32, f32), ball: (f32, f32)) -> Game {
         let p = Parameters::four_legged();
         let walker = Walker::at(Side::Opponents, Pose::from_mm_deg(at.0, at.1, 180.0));
-        let world = World::new(p, 1, Point::new(ball.0, ball.1), vec![walker]);
+        let world = LeggedWorld::new(p, 1, Point::new(ball.0, ball.1), vec![walker]);
         Game { world, opponent: Opponent::new(role, Conduct::AtHome, 0, p), events: Vec::new() }
     }
 
@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn with_the_ball_elsewhere_it_stands_at_its_border_and_faces_it() {
-        let mut game = game(Role::Defender, (1500.0, 300.0), (-1.0, 0.5));
+        let mut game = game(OpponentRole::Defender, (1500.0, 300.0), (-1.0, 0.5));
         game.run(8.0);
         assert!(game.pose().position.distance(Point::new(0.9, 0.5)) < 0.01, "{:?}", game.pose());
         assert!(game.pose().turn_to(Point::new(-1.0, 0.5)).abs() < 0.01);
@@ -179,7 +179,7 @@ mod tests {
 
     #[test]
     fn a_ball_in_its_home_is_gone_for_and_kicked_upfield() {
-        let mut game = game(Role::Defender, (1900.0, 0.0), (1.2, 0.3));
+        let mut game = game(OpponentRole::Defender, (1900.0, 0.0), (1.2, 0.3));
         game.run(6.0);
         let kick = game.events.iter().find_map(|event| match event {
             WorldEvent::Kicked { from, rest, .. } => Some(*rest - *from),
@@ -192,8 +192,8 @@ mod tests {
     fn a_clearance_takes_a_grab_and_a_kick() {
         // In its grasp from the start: 0.5 s of closing the legs and 0.4 s of kicking, in steps of 40 ms.
         let kicked = |seed, seconds| {
-            let mut game = game(Role::Defender, (1400.0, 0.0), (1.25, 0.0));
-            game.world = World::new(
+            let mut game = game(OpponentRole::Defender, (1400.0, 0.0), (1.25, 0.0));
+            game.world = LeggedWorld::new(
                 Parameters::four_legged(),
                 seed,
                 game.world.ball.position,
@@ -211,14 +211,14 @@ mod tests {
     #[test]
     fn one_that_stands_neither_moves_nor_clears_and_one_with_a_region_of_its_own_keeps_to_it() {
         let p = Parameters::four_legged();
-        let mut standing = game(Role::Defender, (1400.0, 0.0), (1.2, 0.0));
-        standing.opponent = Opponent::new(Role::Defender, Conduct::Standing, 0, p);
+        let mut standing = game(OpponentRole::Defender, (1400.0, 0.0), (1.2, 0.0));
+        standing.opponent = Opponent::new(OpponentRole::Defender, Conduct::Standing, 0, p);
         standing.run(3.0);
         assert!(standing.pose().position.distance(Point::new(1.4, 0.0)) < 1e-3, "{:?}", standing.pose());
         assert!(!standing.events.iter().any(|e| matches!(e, WorldEvent::Kicked { .. })));
         let region = Region { x: [-1.5, -0.5], y: [-0.5, 0.5] };
-        let mut presser = game(Role::Defender, (-1000.0, 0.0), (-2.0, 1.0));
-        presser.opponent = Opponent::new(Role::Defender, Conduct::Within(region), 0, p);
+        let mut presser = game(OpponentRole::Defender, (-1000.0, 0.0), (-2.0, 1.0));
+        presser.opponent = Opponent::new(OpponentRole::Defender, Conduct::Within(region), 0, p);
         presser.run(10.0);
         assert!(presser.pose().position.distance(Point::new(-1.5, 0.5)) < 0.05, "{:?}", presser.pose());
     }
@@ -226,12 +226,16 @@ mod tests {
     #[test]
     fn no_one_leaves_home_whatever_the_ball_does() {
         let p = Parameters::four_legged();
-        for (role, at) in [(Role::Defender, 1500.0), (Role::Midfield, 500.0), (Role::Goalie, 2400.0)] {
+        for (role, at) in [
+            (OpponentRole::Defender, 1500.0),
+            (OpponentRole::Midfield, 500.0),
+            (OpponentRole::Goalie, 2400.0),
+        ] {
             let mut game = game(role, (at, 0.0), (0.0, 0.0));
             let mut chance = Stream::new(5, "test");
             for _ in 0..60 {
                 let to = Point::new(chance.between(-2.7, 2.7), chance.between(-1.8, 1.8));
-                game.world.ball = crate::four_legged::world::Ball::at(to);
+                game.world.ball = crate::four_legged::world::LeggedBall::at(to);
                 for _ in 0..50 {
                     game.run(DT);
                     let (place, home) = (game.pose().position, role.home(p));

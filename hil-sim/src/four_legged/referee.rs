@@ -8,9 +8,9 @@ use geometry::{Field, GoalEnd, Point};
 use rules::{FieldSpec, League};
 use serde::{Deserialize, Serialize};
 
-use crate::four_legged::opponents::Role;
+use crate::four_legged::opponents::OpponentRole;
 use crate::four_legged::parameters::RefereeParameters;
-use crate::four_legged::world::{Side, World, WorldEvent};
+use crate::four_legged::world::{LeggedWorld, Side, WorldEvent};
 
 crate::labels! {
     /// Which opponents play (paper §5.1.2, Fig. 11).
@@ -29,7 +29,7 @@ crate::labels! {
     /// How a trial ended.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
-    pub enum Outcome {
+    pub enum TrialOutcome {
         /// In the attacked goal; against two defenders: in the attacked penalty area.
         Goal = "goal",
         /// Out over the attacked goal line, near a goalpost.
@@ -45,9 +45,9 @@ crate::labels! {
 
 /// The referee's final result.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Verdict {
+pub struct TrialVerdict {
     /// How the trial ended.
-    pub outcome: Outcome,
+    pub outcome: TrialOutcome,
     /// Seconds from kick-off.
     pub time: f32,
 }
@@ -58,7 +58,7 @@ pub enum Party {
     /// One of the robots controlled by brains.
     Attackers,
     /// A scripted opponent.
-    Opponent(Role),
+    Opponent(OpponentRole),
 }
 
 impl Party {
@@ -79,11 +79,11 @@ pub struct Referee {
     field: FieldSpec,
     ball_radius: f32,
     /// The opponents' roles, in the order of the walkers after the attackers.
-    roles: Vec<Role>,
+    roles: Vec<OpponentRole>,
     contacts: Vec<Contact>,
     last: Option<Party>,
     before: Point<Field>,
-    verdict: Option<Verdict>,
+    verdict: Option<TrialVerdict>,
 }
 
 /// An opponent's contacts with the ball.
@@ -100,7 +100,7 @@ impl Referee {
     pub fn new(
         configuration: Configuration,
         parameters: &RefereeParameters,
-        roles: Vec<Role>,
+        roles: Vec<OpponentRole>,
         ball: Point<Field>,
     ) -> Self {
         let league = League::FourLegged;
@@ -119,7 +119,7 @@ impl Referee {
 
     /// Examines the world after a step that ended at `time` seconds. The first verdict and all counts are
     /// kept.
-    pub fn observe(&mut self, time: f32, world: &World, events: &[WorldEvent]) {
+    pub fn observe(&mut self, time: f32, world: &LeggedWorld, events: &[WorldEvent]) {
         if self.verdict.is_some() {
             return;
         }
@@ -133,21 +133,21 @@ impl Referee {
                 continue;
             };
             self.touched(time, robot, attackers);
-            goalie_touched |= self.last == Some(Party::Opponent(Role::Goalie));
+            goalie_touched |= self.last == Some(Party::Opponent(OpponentRole::Goalie));
         }
         let (before, now) = (self.before, world.ball.position);
         self.before = now;
         let outcome = self.judge(time, before, now, goalie_touched);
-        self.verdict = outcome.map(|outcome| Verdict { outcome, time });
+        self.verdict = outcome.map(|outcome| TrialVerdict { outcome, time });
     }
 
     /// How and when the trial ended, if it has.
-    pub fn verdict(&self) -> Option<Verdict> {
+    pub fn verdict(&self) -> Option<TrialVerdict> {
         self.verdict
     }
 
     /// How the trial ended, if it has.
-    pub fn outcome(&self) -> Option<Outcome> {
+    pub fn outcome(&self) -> Option<TrialOutcome> {
         self.verdict.map(|verdict| verdict.outcome)
     }
 
@@ -157,7 +157,7 @@ impl Referee {
     }
 
     /// Number of possessions of the opponent of that role.
-    pub fn possessions(&self, role: Role) -> u32 {
+    pub fn possessions(&self, role: OpponentRole) -> u32 {
         self.roles.iter().zip(&self.contacts).filter(|(r, _)| **r == role).map(|(_, c)| c.possessions).sum()
     }
 
@@ -181,12 +181,12 @@ impl Referee {
         before: Point<Field>,
         now: Point<Field>,
         goalie_touched: bool,
-    ) -> Option<Outcome> {
+    ) -> Option<TrialOutcome> {
         let goal_line = self.field.length * 0.5;
         let (out_x, out_y) = (goal_line + self.ball_radius, self.field.width * 0.5 + self.ball_radius);
         let two_defenders = self.configuration == Configuration::TwoDefenders;
         if two_defenders && self.field.in_penalty_area(GoalEnd::Positive, now) {
-            return Some(Outcome::Goal);
+            return Some(TrialOutcome::Goal);
         }
         if now.x().abs() > out_x {
             let step = now - before;
@@ -195,20 +195,20 @@ impl Referee {
             let y = (before.y() + step.y() * share.clamp(0.0, 1.0)).abs();
             let post = self.field.goal_width * 0.5;
             return Some(match () {
-                () if now.x() < 0.0 => Outcome::Out,
-                () if y <= post => Outcome::Goal,
-                () if y <= post + self.parameters.close => Outcome::Close,
-                () => Outcome::Out,
+                () if now.x() < 0.0 => TrialOutcome::Out,
+                () if y <= post => TrialOutcome::Goal,
+                () if y <= post + self.parameters.close => TrialOutcome::Close,
+                () => TrialOutcome::Out,
             });
         }
         if now.y().abs() > out_y {
-            return Some(Outcome::Out);
+            return Some(TrialOutcome::Out);
         }
         if goalie_touched {
-            return Some(Outcome::Block);
+            return Some(TrialOutcome::Block);
         }
         let limit = if two_defenders { self.parameters.time_limit_2d } else { self.parameters.time_limit_dg };
-        (time >= limit).then_some(Outcome::Timeout)
+        (time >= limit).then_some(TrialOutcome::Timeout)
     }
 }
 
@@ -218,11 +218,11 @@ mod tests {
 
     use super::*;
     use crate::four_legged::parameters::Parameters;
-    use crate::four_legged::world::{Ball, Walker};
+    use crate::four_legged::world::{LeggedBall, Walker};
     use protocol::robot_io::LeggedKick;
 
     struct Match {
-        world: World,
+        world: LeggedWorld,
         referee: Referee,
     }
 
@@ -230,20 +230,20 @@ mod tests {
     fn kick_off(configuration: Configuration) -> Match {
         let p = Parameters::four_legged();
         let roles = match configuration {
-            Configuration::DefenderGoalie => vec![Role::Defender, Role::Goalie],
-            Configuration::TwoDefenders => vec![Role::Midfield, Role::Defender],
+            Configuration::DefenderGoalie => vec![OpponentRole::Defender, OpponentRole::Goalie],
+            Configuration::TwoDefenders => vec![OpponentRole::Midfield, OpponentRole::Defender],
         };
         let pose = Pose::from_mm_deg(-2000.0, -1500.0, 0.0);
         let mut walkers = vec![Walker::at(Side::Attackers, pose)];
         walkers.extend(roles.iter().map(|_| Walker::at(Side::Opponents, pose)));
         let referee = Referee::new(configuration, &p.referee, roles, Point::default());
-        Match { world: World::new(p, 0, Point::default(), walkers), referee }
+        Match { world: LeggedWorld::new(p, 0, Point::default(), walkers), referee }
     }
 
     impl Match {
         /// Moves the ball to a position and returns the outcome.
-        fn ball(&mut self, time: f32, x: f32, y: f32) -> Option<Outcome> {
-            self.world.ball = Ball::at(Point::new(x, y));
+        fn ball(&mut self, time: f32, x: f32, y: f32) -> Option<TrialOutcome> {
+            self.world.ball = LeggedBall::at(Point::new(x, y));
             self.referee.observe(time, &self.world, &[]);
             self.referee.outcome()
         }
@@ -254,7 +254,7 @@ mod tests {
     }
 
     /// The outcome of a ball that moves from one position to another between two observations.
-    fn between(from: (f32, f32), to: (f32, f32)) -> Option<Outcome> {
+    fn between(from: (f32, f32), to: (f32, f32)) -> Option<TrialOutcome> {
         let mut game = kick_off(Configuration::DefenderGoalie);
         game.ball(0.0, from.0, from.1);
         game.ball(0.01, to.0, to.1)
@@ -264,18 +264,18 @@ mod tests {
     fn where_the_ball_crosses_decides() {
         assert_eq!(between((2.69, 0.0), (2.70, 0.0)), None, "the line belongs to the field");
         assert_eq!(between((2.69, 0.0), (2.74, 0.0)), None, "not yet with all of itself");
-        assert_eq!(between((2.74, 0.39), (2.745, 0.39)), Some(Outcome::Goal));
-        assert_eq!(between((2.74, -0.69), (2.745, -0.69)), Some(Outcome::Close));
-        assert_eq!(between((2.74, 0.71), (2.745, 0.71)), Some(Outcome::Out));
-        assert_eq!(between((-2.74, 0.0), (-2.745, 0.0)), Some(Outcome::Out), "an own goal");
-        assert_eq!(between((0.0, 1.84), (0.0, 1.845)), Some(Outcome::Out));
+        assert_eq!(between((2.74, 0.39), (2.745, 0.39)), Some(TrialOutcome::Goal));
+        assert_eq!(between((2.74, -0.69), (2.745, -0.69)), Some(TrialOutcome::Close));
+        assert_eq!(between((2.74, 0.71), (2.745, 0.71)), Some(TrialOutcome::Out));
+        assert_eq!(between((-2.74, 0.0), (-2.745, 0.0)), Some(TrialOutcome::Out), "an own goal");
+        assert_eq!(between((0.0, 1.84), (0.0, 1.845)), Some(TrialOutcome::Out));
     }
 
     #[test]
     fn a_slanted_shot_is_judged_where_it_crosses_the_line() {
         // The whole ball is over at x = 2.7425: a quarter of the distance from 2.7325 to 2.7725, at y = 0.39.
-        assert_eq!(between((2.7325, 0.38), (2.7725, 0.42)), Some(Outcome::Goal));
-        assert_eq!(between((2.7325, 0.40), (2.7725, 0.44)), Some(Outcome::Close));
+        assert_eq!(between((2.7325, 0.38), (2.7725, 0.42)), Some(TrialOutcome::Goal));
+        assert_eq!(between((2.7325, 0.40), (2.7725, 0.44)), Some(TrialOutcome::Close));
     }
 
     #[test]
@@ -284,27 +284,30 @@ mod tests {
         game.touch(1.0, 1);
         assert_eq!(game.referee.verdict(), None);
         game.touch(1.1, 2);
-        assert_eq!(game.referee.verdict(), Some(Verdict { outcome: Outcome::Block, time: 1.1 }));
+        assert_eq!(game.referee.verdict(), Some(TrialVerdict { outcome: TrialOutcome::Block, time: 1.1 }));
     }
 
     #[test]
     fn two_defenders_end_a_trial_at_the_penalty_area_or_after_a_minute() {
         let mut game = kick_off(Configuration::TwoDefenders);
         assert_eq!(game.ball(1.0, 2.04, 0.0), None);
-        assert_eq!(game.ball(1.1, 2.06, 0.64), Some(Outcome::Goal));
+        assert_eq!(game.ball(1.1, 2.06, 0.64), Some(TrialOutcome::Goal));
         let mut slow = kick_off(Configuration::TwoDefenders);
         assert_eq!(slow.ball(59.99, 0.0, 0.0), None);
-        assert_eq!(slow.ball(60.0, 0.0, 0.0), Some(Outcome::Timeout));
+        assert_eq!(slow.ball(60.0, 0.0, 0.0), Some(TrialOutcome::Timeout));
         let mut goalie = kick_off(Configuration::DefenderGoalie);
         assert_eq!(goalie.ball(60.0, 2.3, 0.0), None);
-        assert_eq!(goalie.ball(600.0, 2.3, 0.0), Some(Outcome::Timeout));
+        assert_eq!(goalie.ball(600.0, 2.3, 0.0), Some(TrialOutcome::Timeout));
     }
 
     #[test]
     fn a_possession_counts_again_after_half_a_second_without_contact_whoever_touched_meanwhile() {
         let mut game = kick_off(Configuration::TwoDefenders);
         let had = |game: &Match| {
-            (game.referee.possessions(Role::Midfield), game.referee.possessions(Role::Defender))
+            (
+                game.referee.possessions(OpponentRole::Midfield),
+                game.referee.possessions(OpponentRole::Defender),
+            )
         };
         for (time, robot, expected) in [
             (1.00, 1, (1, 0)),
@@ -334,6 +337,6 @@ mod tests {
         assert_eq!(game.referee.last_touch(), Some(Party::Attackers));
         let (kick, at) = (LeggedKick::ForwardHard, Point::default());
         game.referee.observe(3.0, &game.world, &[WorldEvent::Kicked { robot: 1, kick, from: at, rest: at }]);
-        assert_eq!(game.referee.last_touch(), Some(Party::Opponent(Role::Defender)));
+        assert_eq!(game.referee.last_touch(), Some(Party::Opponent(OpponentRole::Defender)));
     }
 }

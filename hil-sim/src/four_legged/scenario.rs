@@ -11,7 +11,7 @@ use geometry::{Angle, Field, Point, Pose};
 use rules::League;
 use serde::Deserialize;
 
-use crate::four_legged::opponents::{Conduct, Role};
+use crate::four_legged::opponents::{Conduct, OpponentRole};
 use crate::four_legged::parameters::Parameters;
 use crate::four_legged::referee::Configuration;
 use crate::rng::Stream;
@@ -48,7 +48,7 @@ pub struct Layout {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
     /// Its role.
-    pub role: Role,
+    pub role: OpponentRole,
     /// Its behaviour.
     pub conduct: Conduct,
     /// Its position and heading.
@@ -57,7 +57,7 @@ pub struct Placed {
 
 impl Placed {
     /// An opponent that plays from its home region, facing the ball.
-    pub fn at_home(role: Role, position: Point<Field>, ball: Point<Field>) -> Self {
+    pub fn at_home(role: OpponentRole, position: Point<Field>, ball: Point<Field>) -> Self {
         let pose = Pose { position, heading: position.direction_to(ball) };
         Self { role, conduct: Conduct::AtHome, pose }
     }
@@ -127,8 +127,8 @@ fn random(configuration: Configuration, parameters: &Parameters, seed: u64) -> L
         attackers.push(place(&mut chance, [x - 1.2, x + 0.6], [y - 1.2, y + 1.2]));
     }
     let roles = match configuration {
-        Configuration::DefenderGoalie => [Role::Defender, Role::Goalie],
-        Configuration::TwoDefenders => [Role::Midfield, Role::Defender],
+        Configuration::DefenderGoalie => [OpponentRole::Defender, OpponentRole::Goalie],
+        Configuration::TwoDefenders => [OpponentRole::Midfield, OpponentRole::Defender],
     };
     let opponents = roles.map(|role| {
         let home = role.home(parameters);
@@ -172,7 +172,7 @@ struct OpponentsFile {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct OpponentFile {
-    role: Role,
+    role: OpponentRole,
     at: [i16; 2],
 }
 

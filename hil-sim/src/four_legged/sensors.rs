@@ -8,7 +8,7 @@ use protocol::Duration;
 use protocol::robot_io::{BallSight, Health, SensorFrame};
 
 use crate::four_legged::parameters::Noise;
-use crate::four_legged::world::World;
+use crate::four_legged::world::LeggedWorld;
 use crate::rng::Stream;
 
 /// The sensors of one robot.
@@ -27,7 +27,7 @@ impl Senses {
     }
 
     /// The sensor frame of the robot, `dt` seconds after its last one.
-    pub fn look(&mut self, world: &World, robot: usize, dt: f32) -> SensorFrame {
+    pub fn look(&mut self, world: &LeggedWorld, robot: usize, dt: f32) -> SensorFrame {
         let walker = &world.walkers[robot];
         let before = self.before.replace(walker.pose).unwrap_or(walker.pose);
         let moved = before.vector_to_body(walker.pose.position - before.position);
@@ -79,13 +79,13 @@ mod tests {
     use crate::Parameters;
     use crate::four_legged::world::{Side, Walker};
 
-    fn world() -> World {
+    fn world() -> LeggedWorld {
         let walkers = vec![
             Walker::at(Side::Attackers, Pose::from_mm_deg(0.0, 0.0, 90.0)),
             Walker::at(Side::Attackers, Pose::from_mm_deg(-500.0, 0.0, 0.0)),
             Walker::at(Side::Opponents, Pose::from_mm_deg(900.0, 100.0, 180.0)),
         ];
-        World::new(Parameters::four_legged(), 0, Point::new(0.0, 2.0), walkers)
+        LeggedWorld::new(Parameters::four_legged(), 0, Point::new(0.0, 2.0), walkers)
     }
 
     #[test]

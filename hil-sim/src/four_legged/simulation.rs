@@ -17,13 +17,13 @@ use protocol::{Instant, RobotId};
 
 use crate::air::{Air, AirSettings};
 use crate::four_legged::fault::{Fault, ScheduledFault, flipped};
-use crate::four_legged::opponents::{Opponent, Role};
+use crate::four_legged::opponents::{Opponent, OpponentRole};
 use crate::four_legged::parameters::{Noise, Parameters};
 use crate::four_legged::referee::{Configuration, Referee};
 use crate::four_legged::scenario::Layout;
 use crate::four_legged::sensors::Senses;
 use crate::four_legged::trace::TraceHash;
-use crate::four_legged::world::{STEP, Side, Walker, World, WorldEvent};
+use crate::four_legged::world::{LeggedWorld, STEP, Side, Walker, WorldEvent};
 use crate::mcu::{Backend, Mcu, McuError};
 
 /// Everything that determines a trial; equal configurations give equal runs.
@@ -51,7 +51,7 @@ pub struct SimulationConfig {
 pub struct Simulation<'a> {
     backend: Box<dyn Backend<'a> + 'a>,
     robots: Vec<Robot<'a>>,
-    world: World,
+    world: LeggedWorld,
     opponents: Vec<Opponent>,
     referee: Referee,
     air: Air,
@@ -84,7 +84,7 @@ pub struct Tick {
     /// Faults applied in it.
     pub faults: Vec<Fault>,
     /// Packets received by robots, in delivery order.
-    pub received: Vec<Received>,
+    pub received: Vec<ReceivedPacket>,
     /// Orders to bodies, by id.
     pub orders: Vec<(RobotId, ActuatorFrame)>,
     /// Packets sent by robots, in order.
@@ -104,7 +104,7 @@ pub struct Sent {
 
 /// A packet delivered to a robot.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Received {
+pub struct ReceivedPacket {
     /// The receiver.
     pub to: RobotId,
     /// The bytes.
@@ -132,7 +132,7 @@ impl<'a> Simulation<'a> {
             .map(|pose| Walker::at(Side::Attackers, *pose))
             .collect();
         walkers.extend(layout.opponents.iter().map(|placed| Walker::at(Side::Opponents, placed.pose)));
-        let roles: Vec<Role> = layout.opponents.iter().map(|placed| placed.role).collect();
+        let roles: Vec<OpponentRole> = layout.opponents.iter().map(|placed| placed.role).collect();
         let opponents = (layout.opponents.iter().zip(brains.len()..))
             .map(|(placed, i)| Opponent::new(placed.role, placed.conduct, i, &parameters));
         let mut robots = Vec::new();
@@ -149,7 +149,7 @@ impl<'a> Simulation<'a> {
             robots,
             opponents: opponents.collect(),
             referee: Referee::new(configuration, &parameters.referee, roles, layout.ball),
-            world: World::new(&parameters, seed, layout.ball, walkers),
+            world: LeggedWorld::new(&parameters, seed, layout.ball, walkers),
             air: Air::new(air, seed, &ids),
             parameters,
             faults,
@@ -185,7 +185,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// The true state, as it is now: at the end of the last tick.
-    pub fn world(&self) -> &World {
+    pub fn world(&self) -> &LeggedWorld {
         &self.world
     }
 
@@ -220,7 +220,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// The opponents' roles; they follow the attackers in [`World::walkers`].
-    pub fn opponents(&self) -> impl Iterator<Item = Role> {
+    pub fn opponents(&self) -> impl Iterator<Item = OpponentRole> {
         self.opponents.iter().map(|opponent| opponent.role)
     }
 
@@ -267,7 +267,7 @@ impl<'a> Simulation<'a> {
             };
             let packets = self.air.deliver(number, id);
             let first = self.tick.received.len();
-            self.tick.received.extend(packets.into_iter().map(|packet| Received { to: id, packet }));
+            self.tick.received.extend(packets.into_iter().map(|packet| ReceivedPacket { to: id, packet }));
             let tick = TickIn {
                 seq: number,
                 now: Instant(u64::from(number - robot.born) * TICK_US),
@@ -289,7 +289,7 @@ impl<'a> Simulation<'a> {
                 self.tick.orders.push((id, order));
             }
         }
-        for Received { to, packet } in &self.tick.received {
+        for ReceivedPacket { to, packet } in &self.tick.received {
             self.trace.packet(*to, packet);
         }
         Ok(())

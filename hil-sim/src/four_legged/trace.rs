@@ -9,7 +9,7 @@
 use protocol::RobotId;
 use protocol::robot_io::ActuatorFrame;
 
-use crate::four_legged::world::{Ball, Walker, World};
+use crate::four_legged::world::{LeggedBall, LeggedWorld, Walker};
 use crate::hash::Fnv;
 
 /// A running hash of a trial.
@@ -18,7 +18,7 @@ pub struct TraceHash(pub(crate) Fnv);
 
 impl TraceHash {
     /// Hashes the start of a tick with this state of the world.
-    pub fn tick(&mut self, number: u32, world: &World) {
+    pub fn tick(&mut self, number: u32, world: &LeggedWorld) {
         self.0.add(&number.to_le_bytes());
         self.ball(&world.ball);
         for walker in &world.walkers {
@@ -51,7 +51,7 @@ impl TraceHash {
         self.0.to_string()
     }
 
-    fn ball(&mut self, ball: &Ball) {
+    fn ball(&mut self, ball: &LeggedBall) {
         let (p, v) = (ball.position, ball.velocity);
         for value in [p.x(), p.y(), v.x(), v.y()] {
             self.0.add_f32(value);
@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn a_world_at_rest_hashes_to_the_bytes_the_words_lists() {
-        let world = World::new(Parameters::four_legged(), 0, Point::new(1.0, -2.0), Vec::new());
+        let world = LeggedWorld::new(Parameters::four_legged(), 0, Point::new(1.0, -2.0), Vec::new());
         let mut by_hand = Fnv::default();
         by_hand.add(&[7, 0, 0, 0]);
         // 1.0 is 0x3f800000 and −2.0 is 0xc0000000.

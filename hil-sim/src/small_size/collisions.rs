@@ -5,7 +5,7 @@
 
 use geometry::{Field, Point, Vector};
 
-use super::event::Event;
+use super::event::PhysicsEvent;
 use super::robot::Robot;
 use super::{STEP, World};
 
@@ -122,7 +122,7 @@ impl World {
         let place = robots[0].slot() * super::SLOTS + robots[1].slot();
         let before = std::mem::replace(&mut self.crashes[place], self.step + 1);
         if before == 0 || self.step + 1 - before > super::TOUCH_GAP_STEPS {
-            self.events.push(Event::Crash { robots, at, velocities, closing });
+            self.events.push(PhysicsEvent::Crash { robots, at, velocities, closing });
         }
     }
 }

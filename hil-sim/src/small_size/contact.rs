@@ -7,7 +7,7 @@
 use geometry::{Field, Point, Vector};
 
 use super::ball::{Ball, Impact};
-use super::event::Event;
+use super::event::PhysicsEvent;
 use super::surface::{Nearest, hull};
 use super::{STEP, World};
 
@@ -24,7 +24,7 @@ impl World {
         let before = self.ball;
         self.ball.advance(&self.parameters.ball, STEP);
         if before.in_the_air() && self.ball.hops != before.hops {
-            self.events.push(Event::Landed { at: self.ball.position });
+            self.events.push(PhysicsEvent::Landed { at: self.ball.position });
         }
         let near = self.robots_near_ball(&before);
         let (from, mut motion) = (before.position, self.ball.position - before.position);
@@ -186,7 +186,7 @@ impl World {
                 let restitution = if inside { of.net } else { of.wall };
                 let impact = Impact { restitution, friction: of.friction, spin: of.spin, share: 1.0 };
                 self.ball.bounce(normal, Vector::default(), impact);
-                self.events.push(Event::GoalHit { at: self.ball.position, speed });
+                self.events.push(PhysicsEvent::GoalHit { at: self.ball.position, speed });
             }
         }
     }
@@ -279,12 +279,12 @@ impl World {
             ball.position = Point::new(-out * (line - radius), ball.position.y());
             ball.velocity =
                 Vector::new(out * ball.velocity.x().abs() * self.parameters.bounce.wall, ball.velocity.y());
-            self.events.push(Event::GoalHit { at: self.ball.position, speed });
+            self.events.push(PhysicsEvent::GoalHit { at: self.ball.position, speed });
         } else if is > line && is < line + self.pitch.field.goal_depth && ball.climb > 0.0 {
             // Against the roof from inside.
             ball.climb = -ball.climb * self.parameters.bounce.net;
             ball.height = bar - 2.0 * radius;
-            self.events.push(Event::GoalHit { at: self.ball.position, speed });
+            self.events.push(PhysicsEvent::GoalHit { at: self.ball.position, speed });
         }
     }
 
@@ -314,7 +314,7 @@ impl World {
                 let of = &self.parameters.bounce;
                 let impact = Impact { restitution: bounce, friction: of.friction, spin: of.spin, share: 1.0 };
                 self.ball.bounce(normal, Vector::default(), impact);
-                self.events.push(Event::BoardHit { at: self.ball.position });
+                self.events.push(PhysicsEvent::BoardHit { at: self.ball.position });
             }
         }
     }
@@ -331,7 +331,7 @@ impl World {
         }
         self.last_touch = Some((robot.who, now));
         if is_new_touch {
-            self.events.push(Event::Touched { robot: robot.who, at });
+            self.events.push(PhysicsEvent::Touched { robot: robot.who, at });
         }
     }
 }

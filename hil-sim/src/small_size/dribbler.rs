@@ -7,7 +7,7 @@
 
 use geometry::{Angle, Vector, math};
 
-use super::event::Event;
+use super::event::PhysicsEvent;
 use super::parameters::DribblerParameters;
 use super::robot::Robot;
 use super::{Ball, STEP, World};
@@ -52,7 +52,7 @@ impl World {
             robot.discharge(self.step, of.recharge, self.parameters.battery.kick);
             robot.kicked = Some((self.step, chip));
             robot.velocity += velocity * (-self.parameters.ball.mass / robot.body.mass);
-            self.events.push(Event::Kicked { robot: who, at, velocity, speed, chip });
+            self.events.push(PhysicsEvent::Kicked { robot: who, at, velocity, speed, chip });
         }
     }
 

@@ -6,7 +6,7 @@ use protocol::Who;
 
 /// Events of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Event {
+pub enum PhysicsEvent {
     /// Contact of ball and robot, after at least [`super::TOUCH_GAP_STEPS`] apart.
     Touched {
         /// The robot that the ball touched.

@@ -29,8 +29,8 @@ mod wheels;
 pub mod worlds;
 
 pub use ball::Ball;
-pub use event::Event;
-pub use order::{Drive, Kick, Order};
+pub use event::PhysicsEvent;
+pub use order::{Drive, KickCommand, Order};
 pub use parameters::{
     BallParameters, BatteryParameters, BodyParameters, BounceParameters, CameraParameters,
     DribblerParameters, DriveParameters, FieldParameters, KickParameters, NoiseParameters, Parameters,
@@ -64,7 +64,7 @@ pub struct World {
     kicks: Stream,
     spread: RobotSpread,
     latency: Latency,
-    events: Vec<Event>,
+    events: Vec<PhysicsEvent>,
     last_touch: Option<(Who, u64)>,
     ball_drag: Option<BallDrag>,
     /// For each pair of slots, the step after the one in which they last touched; 0: never.
@@ -333,7 +333,7 @@ impl World {
     }
 
     /// Appends the events since the last call, in order, to `into`.
-    pub fn take_events(&mut self, into: &mut Vec<Event>) {
+    pub fn take_events(&mut self, into: &mut Vec<PhysicsEvent>) {
         into.append(&mut self.events);
     }
 

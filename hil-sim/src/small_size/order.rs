@@ -22,7 +22,7 @@ pub enum Drive {
 
 /// A kick that fires as soon as the ball lies in the dribbler opening and the kicker is charged.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Kick {
+pub struct KickCommand {
     /// Speed of the ball in 3-D, m/s.
     pub speed: f32,
     /// Elevation above the field surface, rad; 0 is a flat kick.
@@ -35,7 +35,7 @@ pub struct Order {
     /// Order to the wheels.
     pub drive: Drive,
     /// Order to the kicker.
-    pub kick: Option<Kick>,
+    pub kick: Option<KickCommand>,
     /// Share of the dribbler's full strength, 0–1.
     pub dribbler: f32,
     /// Discharge the kicker's capacitor; it recharges afterwards.
@@ -52,9 +52,9 @@ impl Order {
         let ActuatorFrame::Omni { wheels, dribbler, kick } = frame else { return Self::default() };
         let kick = match *kick {
             OmniKick::None | OmniKick::Discharge => None,
-            OmniKick::Flat(speed) => Some(Kick { speed, angle: 0.0 }),
+            OmniKick::Flat(speed) => Some(KickCommand { speed, angle: 0.0 }),
             OmniKick::Chip(speed) => {
-                Some(Kick { speed, angle: parameters.kick.chip_deg * (math::PI / 180.0) })
+                Some(KickCommand { speed, angle: parameters.kick.chip_deg * (math::PI / 180.0) })
             }
         };
         let discharge = matches!(frame, ActuatorFrame::Omni { kick: OmniKick::Discharge, .. });

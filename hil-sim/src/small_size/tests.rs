@@ -46,7 +46,7 @@ pub(super) fn six_a_side(mut world: World) -> World {
     world
 }
 
-fn run(world: &mut World, steps: u32) -> Vec<Event> {
+fn run(world: &mut World, steps: u32) -> Vec<PhysicsEvent> {
     for _ in 0..steps {
         world.step();
     }
@@ -56,7 +56,7 @@ fn run(world: &mut World, steps: u32) -> Vec<Event> {
 }
 
 /// Runs with the order repeated every 10 ms, as a brain does.
-fn lead(world: &mut World, who: Who, order: Order, steps: u32) -> Vec<Event> {
+fn lead(world: &mut World, who: Who, order: Order, steps: u32) -> Vec<PhysicsEvent> {
     let mut events = Vec::new();
     for step in 0..steps {
         if step % 10 == 0 {
@@ -118,7 +118,12 @@ fn play(world: &mut World, steps: u32) -> String {
                     let angle = if robot.who.id.number() % 3 == 0 { 0.8 } else { 0.0 };
                     (
                         robot.who,
-                        Order { drive, kick: Some(Kick { speed, angle }), dribbler: 1.0, discharge: false },
+                        Order {
+                            drive,
+                            kick: Some(KickCommand { speed, angle }),
+                            dribbler: 1.0,
+                            discharge: false,
+                        },
                     )
                 })
                 .collect();
@@ -162,7 +167,7 @@ fn in_a_crowd_no_one_stays_in_anybody_and_kicks_and_crashes_are_reported() {
             assert!(one.pose.position.x().abs() <= x && one.pose.position.y().abs() <= y);
         }
         world.take_events(&mut events);
-        kicks += events.iter().filter(|event| matches!(event, Event::Kicked { .. })).count();
+        kicks += events.iter().filter(|event| matches!(event, PhysicsEvent::Kicked { .. })).count();
     }
     assert!(kicks > 3, "{kicks}");
 }

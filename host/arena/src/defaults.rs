@@ -5,9 +5,9 @@
 //! none fitted is judged from the true positions at the end of the tick in which that is received: the
 //! farthest any case came through retrieval's tests (docs/case-format.md §3).
 
-use casebase::{CaseBase, GoalEnd, Problem, Settings, Verdict, explain};
+use casebase::{CaseBase, CaseVerdict, GoalEnd, Problem, RetrievalSettings, explain};
 use hil_sim::TICK_US;
-use hil_sim::four_legged::world::{Side, World};
+use hil_sim::four_legged::world::{LeggedWorld, Side};
 use protocol::{CycleId, RobotId};
 use serde::Serialize;
 
@@ -63,7 +63,7 @@ impl DefaultWatch {
         cycle: &CycleSeen,
         problem: &Problem,
         base: &CaseBase<'_>,
-        settings: &Settings,
+        settings: &RetrievalSettings,
     ) {
         if cycle.play.is_some() {
             self.active = false;
@@ -82,15 +82,15 @@ impl DefaultWatch {
 }
 
 impl Causes {
-    fn of(&mut self, base: &CaseBase<'_>, problem: &Problem, settings: &Settings) -> &mut u32 {
+    fn of(&mut self, base: &CaseBase<'_>, problem: &Problem, settings: &RetrievalSettings) -> &mut u32 {
         let mut farthest = 0;
         explain(base, problem, settings, |_, verdict| {
             farthest = farthest.max(match verdict {
-                Verdict::Ball { .. } => 0,
-                Verdict::Robots { .. } => 1,
-                Verdict::OutOfField { .. } | Verdict::TooFar { .. } => 2,
-                Verdict::Path { .. } => 3,
-                Verdict::Candidate(_) => 4,
+                CaseVerdict::Ball { .. } => 0,
+                CaseVerdict::Robots { .. } => 1,
+                CaseVerdict::OutOfField { .. } | CaseVerdict::TooFar { .. } => 2,
+                CaseVerdict::Path { .. } => 3,
+                CaseVerdict::Candidate(_) => 4,
             });
         });
         match farthest {
@@ -111,7 +111,7 @@ impl Causes {
 
 /// What a coordinator without noise sees: the ball at its stop position, the attackers by id, all other
 /// robots.
-pub(crate) fn problem(world: &World, attackers: &[RobotId], deceleration: f32) -> Problem {
+pub(crate) fn problem(world: &LeggedWorld, attackers: &[RobotId], deceleration: f32) -> Problem {
     let places = |side| {
         let walkers = world.walkers.iter().filter(move |walker| walker.side == side);
         walkers.map(|walker| walker.pose.position.into())
@@ -143,7 +143,7 @@ mod tests {
             ..problem_of_nobody()
         };
         let mut causes = Causes::default();
-        *causes.of(&case_library::four_legged(), &problem, &Settings::default()) += 1;
+        *causes.of(&case_library::four_legged(), &problem, &RetrievalSettings::default()) += 1;
         causes
     }
 
@@ -181,7 +181,7 @@ mod tests {
     #[test]
     fn a_spell_lasts_from_the_first_word_to_the_next_case() {
         let problem = Problem { ball: at(60_000, 0), ..problem_of_nobody() };
-        let (base, settings) = (case_library::four_legged(), Settings::default());
+        let (base, settings) = (case_library::four_legged(), RetrievalSettings::default());
         let mut watch = DefaultWatch::default();
         // The second report of cycle 2 is its closing.
         for (counter, no_case, play, ticks) in [

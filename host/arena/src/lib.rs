@@ -39,7 +39,7 @@ pub use cycles::{CycleEnd, CycleEvent, CycleLog, CycleSeen};
 pub use defaults::{Causes, DefaultReport};
 pub use names::{CaseNames, Cast, letter};
 pub use picture::picture;
-pub use recording::{Kick, Recording, Sample, Start};
+pub use recording::{RecordedKick, RecordedSample, Recording, Start};
 pub use report::{Backups, CaseCounts, CycleReport, Possession, TrialReport};
 pub use story::TextLog;
 pub use trial::{

@@ -2,7 +2,7 @@
 //! (docs/case-format.md §2).
 
 use casebase::Symmetry;
-use hil_sim::Role;
+use hil_sim::OpponentRole;
 use protocol::{CaseId, RobotId};
 
 /// Identities of the robots: attackers by id, then opponents, as in `hil_sim::four_legged::world::World`.
@@ -11,7 +11,7 @@ pub struct Cast {
     /// Ids of the robots with brains.
     pub attackers: Vec<RobotId>,
     /// Roles of the scripted robots.
-    pub opponents: Vec<Role>,
+    pub opponents: Vec<OpponentRole>,
 }
 
 impl Cast {
@@ -20,7 +20,7 @@ impl Cast {
         match robot.checked_sub(self.attackers.len()) {
             None => letter(robot).to_string(),
             Some(i) => match self.opponents.get(i) {
-                Some(Role::Midfield) => "the midfield defender".to_owned(),
+                Some(OpponentRole::Midfield) => "the midfield defender".to_owned(),
                 Some(role) => format!("the {}", role.label()),
                 None => format!("robot {robot}"),
             },
@@ -71,7 +71,10 @@ mod tests {
     #[test]
     fn attackers_have_letters_and_opponents_their_roles() {
         let attackers = [3, 7].map(|n| RobotId::new(n).unwrap());
-        let cast = Cast { attackers: attackers.to_vec(), opponents: vec![Role::Midfield, Role::Defender] };
+        let cast = Cast {
+            attackers: attackers.to_vec(),
+            opponents: vec![OpponentRole::Midfield, OpponentRole::Defender],
+        };
         assert_eq!([0, 1, 2, 3].map(|i| cast.name(i)), ["A", "B", "the midfield defender", "the defender"]);
         assert_eq!(cast.name_of(attackers[1]), "B");
     }

@@ -17,9 +17,9 @@ pub struct Recording {
     /// Identities of the robots in [`Sample::robots`].
     pub cast: Cast,
     /// One sample a tick, oldest first.
-    pub samples: Vec<Sample>,
+    pub samples: Vec<RecordedSample>,
     /// Every kick, opponents' included.
-    pub kicks: Vec<Kick>,
+    pub kicks: Vec<RecordedKick>,
     /// Every gameplay that started.
     pub starts: Vec<Start>,
     /// How it ended, once it has.
@@ -28,7 +28,7 @@ pub struct Recording {
 
 /// Positions of ball and robots at the end of a tick.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sample {
+pub struct RecordedSample {
     /// Simulated seconds from kick-off.
     pub time: f32,
     /// Position of the ball, m, field frame.
@@ -41,7 +41,7 @@ pub struct Sample {
 
 /// A kick of any robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Kick {
+pub struct RecordedKick {
     /// Simulated seconds from kick-off.
     pub time: f32,
     /// The robot that kicked.
@@ -92,10 +92,10 @@ impl Watcher for Recording {
         }
         for (time, event) in &moment.tick.events {
             if let WorldEvent::Kicked { robot, kick, from, rest } = *event {
-                self.kicks.push(Kick { time: *time, robot, kick, from, rest });
+                self.kicks.push(RecordedKick { time: *time, robot, kick, from, rest });
             }
         }
-        self.samples.push(Sample {
+        self.samples.push(RecordedSample {
             time: moment.tick.time + TICK_US as f32 * 1e-6,
             ball: moment.world.ball.position,
             holder: moment.world.holder(),

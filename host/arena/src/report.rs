@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use hil_sim::{Configuration, Outcome, Scenario};
+use hil_sim::{Configuration, Scenario, TrialOutcome};
 use serde::{Serialize, Serializer};
 
 use crate::cycles::CycleSeen;
@@ -25,7 +25,7 @@ pub struct TrialReport {
     /// Random seed of the trial.
     pub seed: u64,
     /// How it ended. Against two defenders `goal` is a ball in the penalty area (paper §5.2.2: "to goal").
-    pub outcome: Outcome,
+    pub outcome: TrialOutcome,
     /// Seconds from kick-off to its end.
     pub time_s: f64,
     /// Number of the opponents' possessions.

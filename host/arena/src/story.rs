@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use casebase::{Action, CaseRobot, PointMm, TurnTarget};
 use hil_sim::four_legged::world::WorldEvent;
-use hil_sim::{Configuration, Fault, Outcome, Role};
+use hil_sim::{Configuration, Fault, OpponentRole, TrialOutcome};
 use protocol::RobotId;
 use protocol::robot_io::LeggedKick;
 use protocol::team::{Play, Progress};
@@ -178,8 +178,8 @@ impl Watcher for TextLog {
         for (time, event) in &moment.tick.events {
             self.event(moment, *time, event);
         }
-        let possessions =
-            moment.referee.possessions(Role::Defender) + moment.referee.possessions(Role::Midfield);
+        let possessions = moment.referee.possessions(OpponentRole::Defender)
+            + moment.referee.possessions(OpponentRole::Midfield);
         if possessions > self.possessions {
             let who = moment.referee.last_touch().map_or("an opponent", hil_sim::Party::label);
             self.add(moment.tick.time, format!("possession {possessions} of the opponents ({who})"));
@@ -189,14 +189,16 @@ impl Watcher for TextLog {
 
     fn end(&mut self, _moment: &Moment<'_>, report: &TrialReport) {
         let text = match (report.outcome, report.opponents) {
-            (Outcome::Goal, Configuration::DefenderGoalie) => "goal".to_owned(),
-            (Outcome::Goal, Configuration::TwoDefenders) => {
+            (TrialOutcome::Goal, Configuration::DefenderGoalie) => "goal".to_owned(),
+            (TrialOutcome::Goal, Configuration::TwoDefenders) => {
                 "goal: the ball is in the penalty area".to_owned()
             }
-            (Outcome::Close, _) => "close: out beside the goalpost".to_owned(),
-            (Outcome::Block, _) => "block: the goalie has the ball".to_owned(),
-            (Outcome::Out, _) => format!("out, last touched by the {}", report.out_by.unwrap_or("nobody")),
-            (Outcome::Timeout, _) => "time is up".to_owned(),
+            (TrialOutcome::Close, _) => "close: out beside the goalpost".to_owned(),
+            (TrialOutcome::Block, _) => "block: the goalie has the ball".to_owned(),
+            (TrialOutcome::Out, _) => {
+                format!("out, last touched by the {}", report.out_by.unwrap_or("nobody"))
+            }
+            (TrialOutcome::Timeout, _) => "time is up".to_owned(),
         };
         let counts = report.cases;
         self.add(report.time_s as f32, text);

@@ -2,10 +2,11 @@
 //! docs/architecture.md §7, docs/case-format.md §5). Robots 1, 2, … are A, B, … and attack +x.
 
 use brain::{Approach, BrainConfig, Positioning};
-use casebase::{CaseBase, Settings};
+use casebase::{CaseBase, RetrievalSettings};
 use hil_sim::{
-    AirSettings, Backend, Configuration, Layout, Noise, Outcome, Parameters, Party, Referee, Role, Scenario,
-    ScheduledFault, Simulation, SimulationConfig, SimulationError, Tick, Verdict, four_legged::world::World,
+    AirSettings, Backend, Configuration, Layout, Noise, OpponentRole, Parameters, Party, Referee, Scenario,
+    ScheduledFault, Simulation, SimulationConfig, SimulationError, Tick, TrialOutcome, TrialVerdict,
+    four_legged::world::LeggedWorld,
 };
 use protocol::frame::{TeamKey, TeamKeys};
 use protocol::link::overhear;
@@ -32,7 +33,7 @@ pub struct TrialConfig<'a> {
     /// Random seed of the trial.
     pub seed: u64,
     /// Settings of case retrieval (docs/case-format.md §3.2).
-    pub settings: Settings,
+    pub settings: RetrievalSettings,
     /// When a case's actions start.
     pub positioning: Positioning,
     /// Attackers, 1 to 4; the paper has 2.
@@ -66,7 +67,7 @@ impl TrialConfig<'static> {
             opponents,
             approach,
             seed,
-            settings: Settings::default(),
+            settings: RetrievalSettings::default(),
             positioning: Positioning::default(),
             robots: 2,
             retrievers: 2,
@@ -129,7 +130,7 @@ pub struct Moment<'a> {
     /// Identities of the robots.
     pub cast: &'a Cast,
     /// The true state of the field at the end of the tick.
-    pub world: &'a World,
+    pub world: &'a LeggedWorld,
     /// The tick's perceptions, kicks and packets.
     pub tick: &'a Tick,
     /// The referee, with its counts.
@@ -251,7 +252,7 @@ impl<'c, 'a> Game<'c, 'a> {
     }
 
     /// Ends the trial: returns its report and passes it to the watchers.
-    pub(crate) fn end(mut self, verdict: Verdict, watchers: &mut [&mut dyn Watcher]) -> TrialReport {
+    pub(crate) fn end(mut self, verdict: TrialVerdict, watchers: &mut [&mut dyn Watcher]) -> TrialReport {
         self.cycles.finish(verdict.time);
         let report = self.report(verdict);
         let moment = self.moment();
@@ -261,9 +262,9 @@ impl<'c, 'a> Game<'c, 'a> {
         report
     }
 
-    fn report(&self, verdict: Verdict) -> TrialReport {
+    fn report(&self, verdict: TrialVerdict) -> TrialReport {
         let (config, referee) = (self.config, self.simulation.referee());
-        let out_by = referee.last_touch().filter(|_| verdict.outcome == Outcome::Out).map(Party::label);
+        let out_by = referee.last_touch().filter(|_| verdict.outcome == TrialOutcome::Out).map(Party::label);
         TrialReport {
             scenario: config.scenario,
             opponents: config.opponents,
@@ -273,8 +274,8 @@ impl<'c, 'a> Game<'c, 'a> {
             outcome: verdict.outcome,
             time_s: in_seconds(verdict.time),
             possession: Possession {
-                defender: referee.possessions(Role::Defender),
-                midfield: referee.possessions(Role::Midfield),
+                defender: referee.possessions(OpponentRole::Defender),
+                midfield: referee.possessions(OpponentRole::Midfield),
             },
             backups: Backups(self.backups.counts()),
             out_by,

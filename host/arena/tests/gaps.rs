@@ -11,7 +11,7 @@ use std::rc::Rc;
 
 use arena::game::{Game, GameConfig, NoWatcher};
 use brain::BrainConfig;
-use brain::governor::{Ruling, Why};
+use brain::governor::{LimitReason, Ruling};
 use casebase::CaseBase;
 use hil_sim::{Backend, Bursts, Mcu, McuError, NativeMcu, Reply, Stream};
 use host::strategy::{Flip, Task};
@@ -110,7 +110,7 @@ fn watched() -> (Watched, Rulings) {
 }
 
 fn held(ruling: Ruling) -> bool {
-    matches!(ruling, Ruling::Braking(why) if [Why::Silence, Why::NoCommand, Why::Lost].iter().any(|w| why.has(*w)))
+    matches!(ruling, Ruling::Braking(why) if [LimitReason::Silence, LimitReason::NoCommand, LimitReason::Lost].iter().any(|w| why.has(*w)))
 }
 
 /// Which link fails.

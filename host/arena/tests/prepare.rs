@@ -5,9 +5,9 @@ use arena::game::{Game, GameConfig, NoWatcher};
 use geometry::{Angle, Field, Point, Pose};
 use hil_sim::NativeBackend;
 use protocol::{Duration, Who};
-use rules::keep_out::{Situation, Why, keep_out};
+use rules::keep_out::{KeepOutReason, Situation, keep_out};
 use rules::limits::ROBOT_RADIUS;
-use rules::state::Command;
+use rules::state::RefereeCommand;
 use rules::{Colour, League, Phase, RuleRole};
 
 /// Time that the controller gives teams to prepare, s.
@@ -45,7 +45,7 @@ fn scatter(game: &mut Game<'_>, league: League, state: &mut u64) {
 }
 
 /// The reason why a robot must not be where it is, if any.
-fn offence(game: &Game<'_>, league: League, who: Who) -> Option<Why> {
+fn offence(game: &Game<'_>, league: League, who: Who) -> Option<KeepOutReason> {
     let field = league.field();
     let host = game.host(who.colour);
     let order = host.orders().iter().find(|order| order.robot == who.id);
@@ -72,7 +72,7 @@ fn offence(game: &Game<'_>, league: League, who: Who) -> Option<Why> {
 }
 
 /// Offences at the end of one preparation.
-fn prepare(league: League, command: Command, seed: u64) -> Vec<String> {
+fn prepare(league: League, command: RefereeCommand, seed: u64) -> Vec<String> {
     let mut config = GameConfig::new(league, seed, 60.0);
     // Longer than the test: the referee does not start play by itself.
     config.referee.patience = Duration::millis(30_000);
@@ -123,8 +123,8 @@ fn all(league: League, seeds: u64) {
     let mut wrong = Vec::new();
     for seed in 0..seeds {
         for colour in [Colour::Yellow, Colour::Blue] {
-            wrong.extend(prepare(league, Command::PreparePenalty(colour), seed));
-            wrong.extend(prepare(league, Command::PrepareKickoff(colour), seed));
+            wrong.extend(prepare(league, RefereeCommand::PreparePenalty(colour), seed));
+            wrong.extend(prepare(league, RefereeCommand::PrepareKickoff(colour), seed));
         }
     }
     assert!(wrong.is_empty(), "{} robots:\n{}", wrong.len(), wrong.join("\n"));

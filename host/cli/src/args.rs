@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use casebase::Settings;
+use casebase::RetrievalSettings;
 use clap::{Args, Parser, Subcommand};
 
 use crate::Failure;
@@ -85,7 +85,7 @@ pub(crate) struct SettingsArgs {
 /// Settings of the retrieval.
 #[derive(Debug)]
 pub(crate) struct Chosen {
-    pub(crate) settings: Settings,
+    pub(crate) settings: RetrievalSettings,
     /// Name and value of every setting that is not at its default, recorded with the results.
     pub(crate) changed: Vec<(String, String)>,
 }
@@ -98,11 +98,11 @@ impl SettingsArgs {
 
     /// The defaults, changed as the command line orders; of two assignments to a name the later one counts.
     pub(crate) fn choose(&self) -> Result<Chosen, Failure> {
-        let mut settings = Settings::default();
+        let mut settings = RetrievalSettings::default();
         for (name, value) in &self.assignments {
             settings.set(name, value).map_err(|error| Failure::setting(name, value, error))?;
         }
-        let defaults = described(&Settings::default());
+        let defaults = described(&RetrievalSettings::default());
         let changed =
             described(&settings).into_iter().filter(|setting| !defaults.contains(setting)).collect();
         Ok(Chosen { settings, changed })
@@ -110,7 +110,7 @@ impl SettingsArgs {
 }
 
 /// Every setting's name and value.
-pub(crate) fn described(settings: &Settings) -> Vec<(String, String)> {
+pub(crate) fn described(settings: &RetrievalSettings) -> Vec<(String, String)> {
     settings.describe().map(|(name, value)| (name.to_string(), value.to_string())).collect()
 }
 

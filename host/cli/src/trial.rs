@@ -151,8 +151,9 @@ fn play(args: &TrialArgs, watchers: &mut [&mut dyn Watcher]) -> Result<TrialRepo
 /// QEMU with freshly built firmware; the user's own library goes into the robots' flash beside it.
 fn qemu(args: &TrialArgs, library_handle: &LibraryHandle) -> Result<QemuBackend, Failure> {
     firmware_build::ensure_qemu(Install::ForUser).map_err(|error| Failure::Firmware(error.to_string()))?;
-    let image = firmware_build::build_image(&firmware_build::workspace_root(), firmware_build::Body::Legged)
-        .map_err(|error| Failure::Firmware(error.to_string()))?;
+    let image =
+        firmware_build::build_image(&firmware_build::workspace_root(), firmware_build::ImageBody::Legged)
+            .map_err(|error| Failure::Firmware(error.to_string()))?;
     let backend = QemuBackend::new(image);
     if args.setup.is_built_in() {
         return Ok(backend);

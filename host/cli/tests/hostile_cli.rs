@@ -15,7 +15,7 @@ use flate2::bufread::MultiGzDecoder;
 use flate2::write::GzEncoder;
 use host::record::header::RecordingHeader;
 use host::record::recheck::Recheck;
-use host::record::trace::{End, Kind, Reader};
+use host::record::trace::{Reader, RecordKind, TraceEnd};
 use host::referee::SenderAddress;
 use protocol::frame::TeamKey;
 use serde_json::Value;
@@ -111,7 +111,7 @@ fn a_recording_cut_between_any_two_records_is_cut_and_never_other_decisions() {
     let mut boundaries = vec![(at, None)];
     for record in reader.by_ref() {
         // A referee's packet is preceded by its sender's address.
-        let sender = if record.kind == Kind::Referee { SenderAddress::LEN } else { 0 };
+        let sender = if record.kind == RecordKind::Referee { SenderAddress::LEN } else { 0 };
         at += 14 + sender + record.bytes.len();
         boundaries.push((at, Some(record.kind)));
         // A truncated trace is checked up to its last record: the result must equal that of the trace
@@ -119,7 +119,7 @@ fn a_recording_cut_between_any_two_records_is_cut_and_never_other_decisions() {
         recheck.feed(&record);
         assert!(recheck.results().all(|(_, difference)| difference.is_none()), "after byte {at}");
     }
-    assert_eq!((at, reader.end()), (whole.len(), Some(&End::Whole)));
+    assert_eq!((at, reader.end()), (whole.len(), Some(&TraceEnd::Whole)));
     assert!(boundaries.len() > 500, "{} records", boundaries.len());
     let mut zip = GzEncoder::new(Vec::new(), Compression::fast());
     let mut written = 0;
@@ -135,14 +135,14 @@ fn a_recording_cut_between_any_two_records_is_cut_and_never_other_decisions() {
         let mut reader = Reader::new(MultiGzDecoder::new(&zip[..end])).unwrap();
         assert_eq!(reader.by_ref().count(), records);
         assert!(
-            matches!(reader.end(), Some(End::Cut { at: cut, .. }) if *cut == *at as u64),
+            matches!(reader.end(), Some(TraceEnd::Cut { at: cut, .. }) if *cut == *at as u64),
             "byte {at}: {:?}",
             reader.end()
         );
     }
     // With the program itself, after records of each kind, gzipped and not.
     let mut tried = 0;
-    for kind in [Kind::Vision, Kind::Referee, Kind::Robot, Kind::Sent] {
+    for kind in [RecordKind::Vision, RecordKind::Referee, RecordKind::Robot, RecordKind::Sent] {
         let of_kind: Vec<_> = boundaries.iter().filter(|(_, of)| *of == Some(kind)).collect();
         for place in [of_kind.len() / 3, of_kind.len() / 2] {
             let Some((at, _)) = of_kind.get(place) else { continue };

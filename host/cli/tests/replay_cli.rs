@@ -8,9 +8,9 @@ use std::process::{Command, Output};
 use host::radio::To;
 use host::record::header::{HostHeader, RecordingHeader};
 use host::record::recheck::Recheck;
-use host::record::trace::{Kind, Reader, Writer};
+use host::record::trace::{Reader, RecordKind, Writer};
 use host::referee::SenderAddress;
-use host::strategy::Why;
+use host::strategy::OrderReason;
 use host::{Host, HostSettings, Input};
 use protocol::Instant;
 use protocol::frame::TeamKey;
@@ -151,22 +151,22 @@ fn trace(name: &str, change: impl Fn(&mut Vec<u8>, usize)) -> String {
     let log = open(Path::new(&recording("erforce_divB_realistic_22s.log.gz"))).expect("the recording");
     for (number, record) in (1_u64..).zip(log.take(2000)) {
         let (kind, input) = match record.kind {
-            MessageKind::Vision2014 => (Kind::Vision, Input::Vision(&record.payload)),
+            MessageKind::Vision2014 => (RecordKind::Vision, Input::Vision(&record.payload)),
             MessageKind::Refbox2013 => {
-                (Kind::Referee, Input::Referee(&record.payload, SenderAddress::INTERNAL))
+                (RecordKind::Referee, Input::Referee(&record.payload, SenderAddress::INTERNAL))
             }
             _ => continue,
         };
         let at = Instant(number * 5_000);
         // A packet of the referee is preceded by its sender.
         let sender = SenderAddress::INTERNAL.to_bytes();
-        let sender = if kind == Kind::Referee { &sender[..] } else { &[] };
+        let sender = if kind == RecordKind::Referee { &sender[..] } else { &[] };
         writer.write(at, 0, kind, &[sender, &record.payload]).expect("memory");
         length += 14 + sender.len() + record.payload.len();
         host.handle(at, input);
         while let Some((to, packet)) = host.poll_packet() {
             let to = if let To::One(robot) = to { robot.number() } else { u8::MAX };
-            writer.write(at, 0, Kind::Sent, &[&[to], &packet]).expect("memory");
+            writer.write(at, 0, RecordKind::Sent, &[&[to], &packet]).expect("memory");
             length += 14 + 1 + packet.len();
             last_sent = length;
         }
@@ -272,7 +272,7 @@ fn parts_in_passes_of_cases(file: &Path) -> BTreeSet<(u16, usize)> {
         recheck.feed(&record);
         let Some(host) = recheck.host(usize::from(record.host)) else { continue };
         parts.extend(host.orders().iter().filter_map(|order| match order.why {
-            Why::OfCase { case, part, .. } => Some((case.0, part.index())),
+            OrderReason::OfCase { case, part, .. } => Some((case.0, part.index())),
             _ => None,
         }));
     }

@@ -15,11 +15,11 @@ use std::time::{Duration, Instant as Clock};
 use geometry::{Angle, Field, GoalEnd, Point, Pose};
 use hil_sim::small_size::compatibility::Profile;
 use hil_sim::small_size::server::{Destination, Port, Server, ServerSettings};
-use host::radio::{Radio, RadioSettings, Relay, Situation, To};
+use host::radio::{Radio, RadioSettings, RadioSituation, Relay, To};
 use host::shell::{Link as _, SimLink, SimSettings};
 use host::world::{BallModels, Robot, World};
 use protocol::frame::TeamKey;
-use protocol::host::{Command, Directive, RuleRole};
+use protocol::host::{Directive, HostCommand, RuleRole};
 use protocol::{Instant, RobotId, TeamId, Who};
 use rules::{Colour, League, Phase};
 
@@ -117,12 +117,12 @@ impl Team {
             self.offered = now;
             let mut world = displayed.lock().unwrap().clone();
             world.time = now;
-            let situation = Situation { us: US, phase: Phase::Run, placement: None };
+            let situation = RadioSituation { us: US, phase: Phase::Run, placement: None };
             let commands = ROBOTS.map(|robot| {
                 let pose = Pose { position: target(id(robot)), heading: Angle::new(0.0) };
                 let directive = Directive::GoTo { pose: pose.into() };
                 let (phase, rule_role, defending) = (Phase::Run, RuleRole::Player, GoalEnd::Negative);
-                Command { to: id(robot), defending, phase, rule_role, directive }
+                HostCommand { to: id(robot), defending, phase, rule_role, directive }
             });
             self.radio.offer(now, &world, situation, &commands);
         }

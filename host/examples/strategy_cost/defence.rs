@@ -2,9 +2,9 @@
 
 use host::strategy::View;
 use host::strategy::coerce::tactics::Models;
-use host::strategy::coerce::{self, ByPassLocation, Planner, Progress};
+use host::strategy::coerce::{self, ByPassLocation, CoerceProgress, Planner};
 use host::strategy::pass::{Kicks, PassConstants};
-use host::strategy::threat::{Memory, Settings, defend};
+use host::strategy::threat::{Memory, ThreatSettings, defend};
 use host::strategy::view::RobotSet;
 use motion::ball::BallModel;
 use motion::ball::chip::ChipModel;
@@ -23,7 +23,7 @@ pub(crate) fn defences(league: League, robots: u8, count: u32) -> String {
     RobotId::all().take(usize::from(robots)).for_each(|id| team.insert(id));
     for i in 0..count {
         let view = &scenes[(i / 8 % SCENES) as usize];
-        given += defend(view, team, &mut memory, &Settings::default()).assignments.len();
+        given += defend(view, team, &mut memory, &ThreatSettings::default()).assignments.len();
     }
     format!("{given} assignments")
 }
@@ -37,7 +37,7 @@ pub(crate) fn plans(league: League, robots: u8, count: u32) -> String {
     let (mut coercers, mut worth) = (0, 0.0_f64);
     for i in 0..count {
         let view = &scenes[(i % SCENES) as usize];
-        let mut planner = Planner::new(coerce::Settings::of(league), Models::default());
+        let mut planner = Planner::new(coerce::CoerceSettings::of(league), Models::default());
         if let Some(plan) = planner.plan(view, &value, KICKER, u64::from(i)) {
             coercers += plan.coerce.coercers.len();
             worth += f64::from(plan.optimistic.worth.value());
@@ -55,7 +55,7 @@ pub(crate) fn watches(count: u32, attack: bool) -> String {
     // A free kick for which coercing is worth it; for most it is not.
     let (mut view, mut planner) = loop {
         let view = random.free_kick(league, 6);
-        let mut planner = Planner::new(coerce::Settings::of(league), Models::default());
+        let mut planner = Planner::new(coerce::CoerceSettings::of(league), Models::default());
         if planner.plan(&view, &value, KICKER, 1).is_some() {
             break (view, planner);
         }
@@ -71,8 +71,8 @@ pub(crate) fn watches(count: u32, attack: bool) -> String {
             view.now += Duration(1);
         }
         match planner.watch(&view, &value) {
-            Progress::Attacking(_) => attacks += 1,
-            Progress::Coercing { .. } => coercing += 1,
+            CoerceProgress::Attacking(_) => attacks += 1,
+            CoerceProgress::Coercing { .. } => coercing += 1,
             _ => {}
         }
     }

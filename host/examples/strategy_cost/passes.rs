@@ -2,7 +2,7 @@
 //! 2014 §3.1).
 
 use host::strategy::View;
-use host::strategy::pass::{Kicks, PassConstants, SAMPLES, Scene, Search};
+use host::strategy::pass::{Kicks, PassConstants, PassScene, SAMPLES, Search};
 use motion::ball::BallModel;
 use motion::ball::chip::ChipModel;
 use protocol::RobotId;
@@ -20,7 +20,7 @@ pub(crate) fn locations(league: League, robots: u8, count: u32) -> String {
     for group in 0..count / PLACES {
         let view = &scenes[(group % SCENES) as usize];
         let (Some(ball), Some(receiver)) = (view.ball, view.ours.get(1)) else { continue };
-        let scene = Scene::of(view, &kicks, ball.position, Some(RobotId::ZERO), receiver);
+        let scene = PassScene::of(view, &kicks, ball.position, Some(RobotId::ZERO), receiver);
         for _ in 0..PLACES {
             let rating = scene.rate(random.place(view, 1.0));
             sum += f64::from(rating.value());
@@ -39,7 +39,7 @@ pub(crate) fn searches(league: League, robots: u8, count: u32) -> String {
     for group in 0..count / SAMPLES {
         let view = &scenes[(group / MOMENTS % SCENES) as usize];
         let (Some(ball), Some(receiver)) = (view.ball, view.ours.get(1)) else { continue };
-        let scene = Scene::of(view, &kicks, ball.position, Some(RobotId::ZERO), receiver);
+        let scene = PassScene::of(view, &kicks, ball.position, Some(RobotId::ZERO), receiver);
         if group % MOMENTS == 0 {
             search = Search::new(u64::from(group));
         }

@@ -3,7 +3,7 @@
 
 use geometry::{Attack, Point, Vector};
 use host::strategy::View;
-use host::strategy::view::Ball;
+use host::strategy::view::ViewBall;
 use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro128PlusPlus;
 use rules::{League, Phase, Side};
@@ -30,7 +30,7 @@ impl Random {
     pub(crate) fn view(&mut self, league: League, robots: u8) -> View {
         let nowhere = (0..robots).map(|_| Point::default());
         let mut view = View::still(league.field(), Point::default(), nowhere.clone(), nowhere);
-        view.ball = Some(Ball::at_rest(self.place(&view, 0.9)));
+        view.ball = Some(ViewBall::at_rest(self.place(&view, 0.9)));
         for i in 0..usize::from(robots) {
             let pace = if i % 2 == 0 { 0.0 } else { 1.5 };
             for ours in [true, false] {

@@ -4,7 +4,7 @@
 use drawing::{Anchor, Svg};
 use geometry::{Angle, Attack, Point};
 use host::strategy::threat::cover::{Case, Cover, cover};
-use host::strategy::threat::{Settings, angle};
+use host::strategy::threat::{ThreatSettings, angle};
 use rules::League;
 
 use crate::page::{BLUE, GAP, GREEN, Panel, RED, YELLOW, finish, lines_of_text, off};
@@ -21,7 +21,7 @@ pub(crate) fn draw() -> String {
         let mut panel = Panel::new(field, part, [GAP + i as f64 * (size[0] + GAP), 92.0], 128.0);
         size = panel.size();
         let view = scenes::moment(League::Ssl2013, threat, &[], &[]);
-        let cover = cover(&view, Point::new(threat.0, threat.1), 2, None, &Settings::default());
+        let cover = cover(&view, Point::new(threat.0, threat.1), 2, None, &ThreatSettings::default());
         shadows(&mut panel, &cover);
         panel.lines();
         rays(&mut panel, &cover);

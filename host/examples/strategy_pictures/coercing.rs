@@ -6,7 +6,7 @@ use geometry::{Point, Vector};
 use host::strategy::View;
 use host::strategy::coerce::grid::Cell;
 use host::strategy::coerce::tactics::Models;
-use host::strategy::coerce::{ByPassLocation, CapPlan, Planner, Settings};
+use host::strategy::coerce::{ByPassLocation, CapPlan, CoerceSettings, Planner};
 use host::strategy::pass::{Kicks, PassConstants};
 use motion::ball::BallModel;
 use motion::ball::chip::ChipModel;
@@ -21,7 +21,7 @@ pub(crate) fn draw() -> String {
     let view = scenes::free_kick();
     let kicker = view.ours[1].id;
     let kicks = Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default());
-    let mut planner = Planner::new(Settings::of(league), Models::default());
+    let mut planner = Planner::new(CoerceSettings::of(league), Models::default());
     planner.observe(&view, kicker);
     let Some(plan) = planner.plan(&view, &ByPassLocation::new(&kicks), kicker, SEED) else {
         return String::new();

@@ -5,7 +5,7 @@
 use drawing::{Anchor, At, Svg, half_extent};
 use geometry::{Attack, Point};
 use host::strategy::View;
-use host::strategy::pass::{Kicks, PassConstants, Rating, SAMPLES, Scene, Search};
+use host::strategy::pass::{Kicks, PassConstants, PassScene, Rating, SAMPLES, Search};
 use motion::ball::BallModel;
 use motion::ball::chip::ChipModel;
 use rules::League;
@@ -19,7 +19,7 @@ pub(crate) fn draw() -> String {
     let view = moment(league, BALL, &OURS, &THEIRS);
     let kicks = Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default());
     let (Some(ball), [_, passer, receiver, ..]) = (view.ball, &view.ours[..]) else { return String::new() };
-    let scene = Scene::of(&view, &kicks, ball.position, Some(passer.id), receiver);
+    let scene = PassScene::of(&view, &kicks, ball.position, Some(passer.id), receiver);
     let mut search = Search::new(1);
     let best = (0..20).fold(search.step(&scene, SAMPLES), |_, _| search.step(&scene, SAMPLES));
     let [half_x, half_y] = half_extent(&in_mm(&view.field));

@@ -3,7 +3,7 @@
 
 use drawing::{Anchor, Svg};
 use geometry::{Attack, Point, Vector};
-use host::strategy::threat::Settings;
+use host::strategy::threat::ThreatSettings;
 use host::strategy::threat::receiving::{isocontour, risk_of_receiving};
 use rules::League;
 
@@ -12,7 +12,7 @@ use crate::page::{GAP, GREEN, Panel, YELLOW, finish, lines_of_text};
 /// SVG text of the figure.
 pub(crate) fn draw() -> String {
     let field = League::Ssl2013.field();
-    let threshold = Settings::default().risk_threshold;
+    let threshold = ThreatSettings::default().risk_threshold;
     let (ball, velocity) = (Point::<Attack>::new(0.6, -0.9), Vector::new(-1.35, 1.05));
     let opponents = [(-0.35, -0.1), (-1.5, 0.95), (-1.2, -0.95), (1.45, -0.1), (-2.2, 0.2)];
     let mut panels = Vec::new();

@@ -4,7 +4,7 @@
 use drawing::{Anchor, Font, Svg};
 use geometry::Point;
 use host::strategy::coerce::detect::Detector;
-use host::strategy::coerce::tactics::{Models, Situation, Tactic};
+use host::strategy::coerce::tactics::{CoerceSituation, Models, Tactic};
 
 use crate::page::{BLUE, GAP, GREEN, PURPLE, Panel, RED, TEXT, YELLOW, finish, lines_of_text};
 use crate::scenes;
@@ -14,7 +14,7 @@ pub(crate) fn draw() -> String {
     let view = scenes::free_kick();
     let kicker = view.ours[1].id;
     let mut panel = Panel::whole(view.field, [GAP, 118.0], 120.0);
-    let situation = Situation::new(&view, Models::default(), Some(kicker));
+    let situation = CoerceSituation::new(&view, Models::default(), Some(kicker));
     for tactic in [Tactic::Mark, Tactic::Wall, Tactic::PrimaryDefence, Tactic::Goalkeeper] {
         let which = Tactic::ALL.iter().position(|other| *other == tactic).unwrap_or(0);
         for level in LEVELS {

@@ -28,7 +28,7 @@ const MATCH_EVENTS_MAX: usize = 100_000;
 
 /// Values of one second, for plots.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Sample {
+pub struct ArchiveSample {
     /// Seconds since the start.
     pub t: f64,
     /// `group/name` of a gauge, with its value.
@@ -43,7 +43,7 @@ pub(crate) struct Kept {
     seconds: BTreeMap<u32, Arc<[u8]>>,
     open: Option<(u32, Vec<Encoded>)>,
     pub(crate) match_events: Vec<MatchEvent>,
-    pub(crate) samples: Vec<Sample>,
+    pub(crate) samples: Vec<ArchiveSample>,
     /// Time of the first and the last scene, s.
     pub(crate) span: Option<(f64, f64)>,
     /// Number of restarts.
@@ -206,9 +206,9 @@ impl Kept {
     }
 }
 
-fn sample(scene: &Scene) -> Sample {
+fn sample(scene: &Scene) -> ArchiveSample {
     let values = scene.gauges.iter().map(|gauge| (format!("{}/{}", gauge.group, gauge.name), gauge.value));
-    Sample { t: scene.t, values: values.collect() }
+    ArchiveSample { t: scene.t, values: values.collect() }
 }
 
 fn gzip(texts: &[Encoded]) -> Arc<[u8]> {

@@ -36,16 +36,16 @@ mod socket;
 mod token;
 mod viewers;
 
-pub use archive::Sample;
+pub use archive::ArchiveSample;
 pub use deferred_scene::DeferredScene;
 pub use limits::Limits;
-pub use match_event::{Kind, MatchEvent};
-pub use page::{ExplanationService, Page, PageError, Settings};
+pub use match_event::{MatchEvent, MatchEventKind};
+pub use page::{ExplanationService, Page, PageError, PageSettings};
 pub use problem::{Freeze, problem, skeleton};
-pub use request::{Powers, Refused, Request, Team};
+pub use request::{PageTeam, Powers, Refused, UserRequest};
 pub use scene::{
-    Ball, Cycle, Field, Gauge, Intent, Match, PerTeam, Raw, Robot, RobotDetail, Scene, TeamSheet, Timer,
-    Vitals,
+    Cycle, Field, Gauge, Intent, Match, PerTeam, Raw, RobotDetail, Scene, SceneBall, SceneRobot, TeamSheet,
+    Timer, Vitals,
 };
 pub use shape::{Heat, Layer, Shape, Tone};
 pub use token::{NoToken, Token};

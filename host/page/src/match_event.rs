@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::request::Team;
+use crate::request::PageTeam;
 
 /// An event of the time line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -10,10 +10,10 @@ pub struct MatchEvent {
     /// Seconds since the start.
     pub t: f64,
     /// Kind of event, for its symbol and filter.
-    pub kind: Kind,
+    pub kind: MatchEventKind,
     /// The team, if the event belongs to one.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub team: Option<Team>,
+    pub team: Option<PageTeam>,
     /// A short text for the time line.
     #[serde(rename = "words")]
     pub description: String,
@@ -28,7 +28,7 @@ pub struct MatchEvent {
 /// Kinds of events; the time line has a row for each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Kind {
+pub enum MatchEventKind {
     /// A goal that counts.
     Goal,
     /// A command of the referee.

@@ -13,7 +13,7 @@ use crate::archive::Archive;
 use crate::deferred_scene::DeferredScene;
 use crate::limits::Limits;
 use crate::match_event::MatchEvent;
-use crate::request::{Powers, Request};
+use crate::request::{Powers, UserRequest};
 use crate::server::{Ask, Server, Shared};
 use crate::token::Token;
 use crate::viewers::{Mailbox, Viewers};
@@ -23,7 +23,7 @@ const REQUESTS_MAX: usize = 256;
 
 /// Settings of a page.
 #[derive(Clone, Debug)]
-pub struct Settings {
+pub struct PageSettings {
     /// Address that it is served on; port 0: any free port.
     pub listen: SocketAddr,
     /// Title of the page.
@@ -95,7 +95,10 @@ pub struct Page {
 
 impl Page {
     /// Opens the port and serves.
-    pub fn open(settings: Settings, explanations: Arc<dyn ExplanationService>) -> Result<Self, PageError> {
+    pub fn open(
+        settings: PageSettings,
+        explanations: Arc<dyn ExplanationService>,
+    ) -> Result<Self, PageError> {
         let listen = settings.listen;
         let failed = |error: io::Error| match error.kind() {
             io::ErrorKind::AddrInUse => PageError::Taken(listen),
@@ -165,7 +168,7 @@ impl Page {
     }
 
     /// The next request of a viewer.
-    pub fn next_request(&self) -> Option<Request> {
+    pub fn next_request(&self) -> Option<UserRequest> {
         let Ask { request, asker } = self.requests.try_recv().ok()?;
         self.asker.replace(Some(asker));
         Some(request)

@@ -6,8 +6,8 @@ use std::fmt::Write as _;
 
 use serde::{Deserialize, Serialize};
 
-use crate::request::Team;
-use crate::scene::{Robot, Scene};
+use crate::request::PageTeam;
+use crate::scene::{Scene, SceneRobot};
 
 /// Format of the export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -37,7 +37,7 @@ struct Problem {
 }
 
 /// The moment as that team's problem; `None` without a ball. Its keeper is left out: it plays no cases.
-pub fn problem(scene: &Scene, team: Team) -> Option<String> {
+pub fn problem(scene: &Scene, team: PageTeam) -> Option<String> {
     let ball = scene.ball.as_ref()?;
     let teammates = field_players(scene, team).take(PROBLEM_ROBOTS_MAX);
     let opponents = scene.robots.iter().filter(|robot| robot.team != team).take(PROBLEM_ROBOTS_MAX);
@@ -52,13 +52,13 @@ pub fn problem(scene: &Scene, team: Team) -> Option<String> {
 
 /// The moment as a case file of that team: the robots nearest to the ball; the first of them gets it and
 /// passes to the second.
-pub fn skeleton(scene: &Scene, team: Team) -> Option<String> {
+pub fn skeleton(scene: &Scene, team: PageTeam) -> Option<String> {
     let ball = scene.ball.as_ref()?;
-    let far = |robot: &Robot| {
+    let far = |robot: &SceneRobot| {
         let (x, y) = (robot.at[0] - ball.at[0], robot.at[1] - ball.at[1]);
         x * x + y * y
     };
-    let nearest = |mut robots: Vec<Robot>| {
+    let nearest = |mut robots: Vec<SceneRobot>| {
         robots.sort_by(|a, b| far(a).total_cmp(&far(b)).then(a.id.cmp(&b.id)));
         robots.truncate(CASE_ROBOTS_MAX);
         robots
@@ -99,24 +99,24 @@ pub fn skeleton(scene: &Scene, team: Team) -> Option<String> {
     Some(out)
 }
 
-fn field_players(scene: &Scene, team: Team) -> impl Iterator<Item = &Robot> {
+fn field_players(scene: &Scene, team: PageTeam) -> impl Iterator<Item = &SceneRobot> {
     let keeper = scene.game.teams.of(team).keeper;
     scene.robots.iter().filter(move |robot| robot.team == team && Some(robot.id) != keeper)
 }
 
 /// The paper's names: yellow is the goal at −x.
-fn defending(scene: &Scene, team: Team) -> &'static str {
+fn defending(scene: &Scene, team: PageTeam) -> &'static str {
     match scene.game.teams.of(team).defends {
-        0 if team == Team::Blue => "cyan",
+        0 if team == PageTeam::Blue => "cyan",
         1 => "cyan",
         _ => "yellow",
     }
 }
 
-fn label(team: Team) -> &'static str {
+fn label(team: PageTeam) -> &'static str {
     match team {
-        Team::Blue => "blue",
-        Team::Yellow => "yellow",
+        PageTeam::Blue => "blue",
+        PageTeam::Yellow => "yellow",
     }
 }
 
@@ -132,21 +132,21 @@ fn mm(at: [f32; 2]) -> [i32; 2] {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::scene::{Ball, Field};
+    use crate::scene::{Field, SceneBall};
 
     /// Three of each team, robot 0 their keepers, blue defends +x.
     pub(crate) fn scene() -> Scene {
         let mut scene = Scene {
             t: 12.5,
             field: Field { length: 9.0, width: 6.0, ..Field::default() },
-            ball: Some(Ball { at: [0.5, -0.25], ..Ball::default() }),
+            ball: Some(SceneBall { at: [0.5, -0.25], ..SceneBall::default() }),
             ..Scene::default()
         };
-        for (team, sign) in [(Team::Blue, 1.0), (Team::Yellow, -1.0)] {
+        for (team, sign) in [(PageTeam::Blue, 1.0), (PageTeam::Yellow, -1.0)] {
             *scene.game.teams.of_mut(team) =
                 crate::TeamSheet { keeper: Some(0), defends: sign as i8, ..crate::TeamSheet::default() };
             for (id, x) in [(0, 4.4), (3, 1.0), (5, 0.5)] {
-                scene.robots.push(Robot {
+                scene.robots.push(SceneRobot {
                     team,
                     id,
                     at: [x * sign, 0.1 * f32::from(id)],
@@ -164,16 +164,16 @@ pub(crate) mod tests {
     #[test]
     fn a_moment_becomes_the_problem_of_a_team_in_mm_without_its_keeper() {
         assert_eq!(
-            problem(&scene(), Team::Blue).unwrap(),
+            problem(&scene(), PageTeam::Blue).unwrap(),
             r#"{"ball":[500,-250],"defending":"cyan","teammates":{"3":[1000,300],"5":[500,500]},"opponents":[[-4400,0],[-1000,300],[-500,500]]}"#
         );
         let no_ball = Scene { ball: None, ..scene() };
-        assert_eq!(problem(&no_ball, Team::Blue), None);
+        assert_eq!(problem(&no_ball, PageTeam::Blue), None);
     }
 
     #[test]
     fn a_skeleton_has_the_nearest_robots_and_one_that_gets_the_ball() {
-        let text = skeleton(&scene(), Team::Yellow).unwrap();
+        let text = skeleton(&scene(), PageTeam::Yellow).unwrap();
         assert_eq!(text.matches("get_ball").count(), 1);
         assert_eq!((text.matches("[[teammates]]").count(), text.matches("[[opponents]]").count()), (2, 3));
         assert!(text.contains("defending = \"yellow\"\nball = { at = [500, -250]"), "{text}");

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// A team, by its colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Team {
+pub enum PageTeam {
     /// The team with blue centre dots.
     Blue,
     /// The team with yellow centre dots.
@@ -15,7 +15,7 @@ pub enum Team {
 /// A request; the driver may refuse it. Field frame, m, rad.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "ask", rename_all = "lowercase", deny_unknown_fields)]
-pub enum Request {
+pub enum UserRequest {
     /// Halt our robots until the program ends: the only request that a real field accepts.
     Halt {},
     /// Pause, or go on.
@@ -51,7 +51,7 @@ pub enum Request {
     /// Put a robot there, or move it while the match runs.
     Robot {
         /// Team of that robot.
-        team: Team,
+        team: PageTeam,
         /// The robot's number in its team.
         id: u8,
         /// Target place, m, field frame.
@@ -60,7 +60,7 @@ pub enum Request {
     /// Switch a robot's computer off, or boot it.
     Power {
         /// Team of that robot.
-        team: Team,
+        team: PageTeam,
         /// The robot's number in its team.
         id: u8,
         /// True: boot; false: switch off.
@@ -112,7 +112,7 @@ impl std::fmt::Display for Refused {
     }
 }
 
-impl Request {
+impl UserRequest {
     /// Parses a viewer's message, within what may be requested here.
     pub fn read(text: &str, powers: Powers) -> Result<Self, Refused> {
         let request: Self =
@@ -165,7 +165,7 @@ mod tests {
 
     #[test]
     fn a_real_field_takes_halt_and_nothing_else() {
-        assert_eq!(Request::read(r#"{"ask":"halt"}"#, Powers::Halt), Ok(Request::Halt {}));
+        assert_eq!(UserRequest::read(r#"{"ask":"halt"}"#, Powers::Halt), Ok(UserRequest::Halt {}));
         for other in [
             r#"{"ask":"pause","on":true}"#,
             r#"{"ask":"referee","command":"FORCE_START"}"#,
@@ -173,9 +173,13 @@ mod tests {
             r#"{"ask":"situation","name":"center/pass-around"}"#,
             r#"{"ask":"power","team":"blue","id":1,"on":false}"#,
         ] {
-            assert_eq!(Request::read(other, Powers::Halt), Err(Refused::NotHere(Powers::Halt)), "{other}");
-            assert!(Request::read(other, Powers::Simulation).is_ok(), "{other}");
-            assert!(Request::read(other, Powers::None).is_err(), "{other}");
+            assert_eq!(
+                UserRequest::read(other, Powers::Halt),
+                Err(Refused::NotHere(Powers::Halt)),
+                "{other}"
+            );
+            assert!(UserRequest::read(other, Powers::Simulation).is_ok(), "{other}");
+            assert!(UserRequest::read(other, Powers::None).is_err(), "{other}");
         }
     }
 
@@ -189,13 +193,16 @@ mod tests {
             r#"{"ask":"robot","team":"blue","id":16,"at":[0,0]}"#,
             &format!(r#"{{"ask":"situation","name":"{}"}}"#, "a".repeat(201)),
         ] {
-            assert!(matches!(Request::read(wrong, Powers::Simulation), Err(Refused::Range(_))), "{wrong}");
+            assert!(
+                matches!(UserRequest::read(wrong, Powers::Simulation), Err(Refused::Range(_))),
+                "{wrong}"
+            );
         }
         for wrong in
             ["", "[]", r#"{"ask":"fly"}"#, r#"{"ask":"halt","now":1}"#, r#"{"ask":"ball","at":[null,0]}"#]
         {
             assert!(
-                matches!(Request::read(wrong, Powers::Simulation), Err(Refused::Malformed(_))),
+                matches!(UserRequest::read(wrong, Powers::Simulation), Err(Refused::Malformed(_))),
                 "{wrong}"
             );
         }

@@ -9,7 +9,7 @@ use crate::archive::look;
 use crate::files;
 use crate::http::{Answer, Head, Status};
 use crate::problem::{Freeze, problem, skeleton};
-use crate::request::Team;
+use crate::request::PageTeam;
 use crate::server::Shared;
 
 /// Happenings in one answer.
@@ -101,7 +101,7 @@ fn explain(shared: &Shared, body: Vec<u8>, within: Duration) -> Answer {
 #[derive(Deserialize)]
 struct Frozen {
     t: f64,
-    team: Team,
+    team: PageTeam,
     what: Freeze,
 }
 

@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::request::Team;
+use crate::request::PageTeam;
 use crate::shape::Layer;
 
 /// One moment of a match.
@@ -16,9 +16,9 @@ pub struct Scene {
     /// The lines of the field, m.
     pub field: Field,
     /// The ball, where it is known.
-    pub ball: Option<Ball>,
+    pub ball: Option<SceneBall>,
     /// All robots on the field, as filtered.
-    pub robots: Vec<Robot>,
+    pub robots: Vec<SceneRobot>,
     /// Detections of the cameras, before any filter.
     pub raw: Raw,
     /// The match so far.
@@ -72,7 +72,7 @@ pub struct Field {
 
 /// The ball, as the host's tracking estimates it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Ball {
+pub struct SceneBall {
     /// Position of its centre, m.
     pub at: [f32; 2],
     /// Above the field surface.
@@ -89,9 +89,9 @@ pub struct Ball {
 
 /// A robot of either team, as filtered.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Robot {
+pub struct SceneRobot {
     /// Team of the robot.
-    pub team: Team,
+    pub team: PageTeam,
     /// The robot's number in its team.
     pub id: u8,
     /// Position of its centre, m.
@@ -188,7 +188,7 @@ pub struct Raw {
     /// Positions of detected balls, m.
     pub balls: Vec<[f32; 2]>,
     /// Robots: team, number, x, y, heading.
-    pub robots: Vec<(Team, u8, f32, f32, f32)>,
+    pub robots: Vec<(PageTeam, u8, f32, f32, f32)>,
 }
 
 /// The match so far.
@@ -256,7 +256,7 @@ pub struct TeamSheet {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
     /// The team that plays it.
-    pub team: Option<Team>,
+    pub team: Option<PageTeam>,
     /// Its number, counted by the team.
     pub number: u32,
     /// Number of its coordinator.
@@ -292,18 +292,18 @@ pub struct Gauge {
 
 impl<T> PerTeam<T> {
     /// The value of `team`.
-    pub fn of(&self, team: Team) -> &T {
+    pub fn of(&self, team: PageTeam) -> &T {
         match team {
-            Team::Blue => &self.blue,
-            Team::Yellow => &self.yellow,
+            PageTeam::Blue => &self.blue,
+            PageTeam::Yellow => &self.yellow,
         }
     }
 
     /// The value of `team`, mutable.
-    pub fn of_mut(&mut self, team: Team) -> &mut T {
+    pub fn of_mut(&mut self, team: PageTeam) -> &mut T {
         match team {
-            Team::Blue => &mut self.blue,
-            Team::Yellow => &mut self.yellow,
+            PageTeam::Blue => &mut self.blue,
+            PageTeam::Yellow => &mut self.yellow,
         }
     }
 }

@@ -17,8 +17,8 @@ use crate::archive::Kept;
 use crate::guard;
 use crate::http::{Answer, Head, NoRequest, Status, Wire};
 use crate::limits::Seat;
-use crate::page::{ExplanationService, Settings};
-use crate::request::Request;
+use crate::page::{ExplanationService, PageSettings};
+use crate::request::UserRequest;
 use crate::routes;
 use crate::socket::{self, Received};
 use crate::viewers::{Mailbox, Sent, Viewers};
@@ -35,7 +35,7 @@ const WAKE: Duration = Duration::from_millis(200);
 /// State shared by all request handlers.
 pub(crate) struct Shared {
     pub(crate) port: u16,
-    pub(crate) settings: Settings,
+    pub(crate) settings: PageSettings,
     pub(crate) explanations: Arc<dyn ExplanationService>,
     pub(crate) viewers: Arc<Viewers>,
     pub(crate) kept: Arc<Mutex<Kept>>,
@@ -45,7 +45,7 @@ pub(crate) struct Shared {
 
 /// What a viewer asked for, and how it is told that it is not done.
 pub(crate) struct Ask {
-    pub(crate) request: Request,
+    pub(crate) request: UserRequest,
     pub(crate) asker: Arc<Mailbox>,
 }
 
@@ -303,7 +303,7 @@ const NO_TOKEN: &str = "this page is open to the network: to ask for anything, o
                         printed when it started";
 
 fn ask(shared: &Shared, asker: &Arc<Mailbox>, label: &str) -> Result<(), String> {
-    let request = Request::read(label, shared.settings.powers).map_err(|refused| refused.to_string())?;
+    let request = UserRequest::read(label, shared.settings.powers).map_err(|refused| refused.to_string())?;
     shared
         .asks
         .try_send(Ask { request, asker: asker.clone() })

@@ -10,7 +10,7 @@ use std::sync::{Arc, Barrier};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use page::{ExplanationService, Limits, Page, Powers, Request, Settings, Team, Token};
+use page::{ExplanationService, Limits, Page, PageSettings, PageTeam, Powers, Token, UserRequest};
 use tungstenite::stream::MaybeTlsStream;
 use tungstenite::{Message, WebSocket};
 
@@ -36,7 +36,7 @@ impl ExplanationService for Silent {
 fn open(limits: Limits, token: Option<Token>) -> Page {
     let listen = SocketAddr::from(([127, 0, 0, 1], 0));
     let (title, powers) = ("a test".to_owned(), Powers::Simulation);
-    let settings = Settings { listen, title, recorded: false, powers, token, limits };
+    let settings = PageSettings { listen, title, recorded: false, powers, token, limits };
     Page::open(settings, Arc::new(Silent)).unwrap()
 }
 
@@ -195,7 +195,7 @@ fn without_the_token_everyone_looks_on_and_no_one_asks() {
         asked = page.next_request();
         thread::sleep(Duration::from_millis(5));
     }
-    assert_eq!(asked, Some(Request::Halt {}));
+    assert_eq!(asked, Some(UserRequest::Halt {}));
     assert_eq!(page.next_request(), None, "the strangers asked nothing");
 }
 
@@ -210,7 +210,7 @@ fn what_the_match_does_not_do_is_reported_to_the_viewer_that_asked() {
         asked = page.next_request();
         thread::sleep(Duration::from_millis(5));
     }
-    assert_eq!(asked, Some(Request::Robot { team: Team::Blue, id: 15, at: [0.0, 0.0] }));
+    assert_eq!(asked, Some(UserRequest::Robot { team: PageTeam::Blue, id: 15, at: [0.0, 0.0] }));
     page.refuse("blue has no robot 15 on the field");
     assert_eq!(refused(&mut asking), "blue has no robot 15 on the field");
     other.send(Message::text("no request")).unwrap();

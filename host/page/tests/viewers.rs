@@ -8,8 +8,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use page::{
-    DeferredScene, ExplanationService, Kind, Layer, Limits, MatchEvent, Page, PageError, Powers, Request,
-    Scene, Settings, Team,
+    DeferredScene, ExplanationService, Layer, Limits, MatchEvent, MatchEventKind, Page, PageError,
+    PageSettings, PageTeam, Powers, Scene, UserRequest,
 };
 use tungstenite::client::IntoClientRequest;
 use tungstenite::stream::MaybeTlsStream;
@@ -29,10 +29,10 @@ impl ExplanationService for Echo {
     }
 }
 
-fn settings(powers: Powers) -> Settings {
+fn settings(powers: Powers) -> PageSettings {
     let listen = SocketAddr::from(([127, 0, 0, 1], 0));
     let (token, limits) = (None, Limits::default());
-    Settings { listen, title: "a test".to_owned(), recorded: false, powers, token, limits }
+    PageSettings { listen, title: "a test".to_owned(), recorded: false, powers, token, limits }
 }
 
 fn open(powers: Powers) -> Page {
@@ -180,8 +180,8 @@ fn what_has_passed_is_asked_for_by_the_second() {
     let mut page = open(Powers::None);
     page.push(MatchEvent {
         t: 0.2,
-        kind: Kind::Goal,
-        team: Some(Team::Blue),
+        kind: MatchEventKind::Goal,
+        team: Some(PageTeam::Blue),
         description: "goal".into(),
         at: None,
         problem: None,
@@ -224,7 +224,7 @@ fn foreign_pages_and_foreign_names_are_refused() {
     own.send(Message::text(r#"{"ask":"pause","on":true}"#)).unwrap();
     let mut asked = None;
     wait_for_some(&mut asked, || page.next_request());
-    assert_eq!(asked, Some(Request::Pause { on: true }), "and the foreign ones asked nothing");
+    assert_eq!(asked, Some(UserRequest::Pause { on: true }), "and the foreign ones asked nothing");
 }
 
 fn wait_for_some<T>(into: &mut Option<T>, what: impl Fn() -> Option<T>) {
@@ -246,13 +246,13 @@ fn a_real_field_is_only_ever_halted() {
     viewer.send(Message::text(r#"{"ask":"halt"}"#)).unwrap();
     let mut asked = None;
     wait_for_some(&mut asked, || page.next_request());
-    assert_eq!(asked, Some(Request::Halt {}));
+    assert_eq!(asked, Some(UserRequest::Halt {}));
 }
 
 #[test]
 fn a_problem_is_explained_and_a_moment_frozen() {
     let mut page = open(Powers::None);
-    let ball = page::Ball { at: [0.5, -0.25], ..page::Ball::default() };
+    let ball = page::SceneBall { at: [0.5, -0.25], ..page::SceneBall::default() };
     page.keep(Scene { ball: Some(ball), ..scene(3.0) });
     show_scene(&mut page, 4.0);
     let at = page.address();
@@ -268,7 +268,7 @@ fn a_problem_is_explained_and_a_moment_frozen() {
 #[test]
 fn a_taken_port_is_reported_with_what_to_do() {
     let page = open(Powers::None);
-    let settings = Settings { listen: page.address(), ..settings(Powers::None) };
+    let settings = PageSettings { listen: page.address(), ..settings(Powers::None) };
     let Err(error) = Page::open(settings, Arc::new(Echo)) else { panic!("the port is taken") };
     assert!(matches!(error, PageError::Taken(_)));
     assert!(error.to_string().contains("such as 127.0.0.1:"), "{error}");

@@ -26,7 +26,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use arena::evaluation::{CaseUse, Claim, Comparison, Line, TableRow};
+use arena::evaluation::{CaseUse, Claim, Comparison, JudgementLine, TableRow};
 
 pub use ablation::Ablation;
 pub use facts::Facts;
@@ -51,7 +51,7 @@ pub struct Report<'a> {
     /// The paper's claims in prose, and whether the numbers support them.
     pub claims: &'a [Claim],
     /// Whether the pattern of its results is reproduced.
-    pub lines: &'a [Line],
+    pub lines: &'a [JudgementLine],
     /// All settings that the trials depend on: parameters, options, hashes, commit.
     pub facts: &'a [Facts],
     /// Where the ball was and the passes between robots, one a cell.

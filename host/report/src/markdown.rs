@@ -4,7 +4,7 @@
 use std::fmt;
 use std::fmt::Write as _;
 
-use arena::evaluation::{Claim, Judgement, Line};
+use arena::evaluation::{Claim, Judgement, JudgementLine};
 
 use crate::facts::HASH;
 use crate::table::{Cell, LineKind, Table, tables};
@@ -127,10 +127,10 @@ fn verdict_text(judgement: &Judgement) -> String {
     format!("**{label}**: {}", cell(&judgement.evidence))
 }
 
-fn lines(text: &mut String, lines: &[Line]) {
+fn lines(text: &mut String, lines: &[JudgementLine]) {
     text.push_str("### The pattern of its results, and what is asked of ours\n\n");
     text.push_str("| | line | | the numbers |\n|---|---|---|---|\n");
-    for Line { id, line, verdict, evidence } in lines {
+    for JudgementLine { id, line, verdict, evidence } in lines {
         let _ = writeln!(text, "| {id} | {} | **{}** | {} |", cell(line), verdict.label(), cell(evidence));
     }
     text.push('\n');

@@ -1,7 +1,7 @@
 //! `page`: layout of the report page. At a glance, the claims, tables with their plots, maps, every
 //! comparison, every parameter.
 
-use arena::evaluation::{Claim, Comparison, Held, Judgement, Line, Verdict};
+use arena::evaluation::{Claim, ClaimVerdict, Comparison, Held, Judgement, JudgementLine};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::plot::{Figure, figures};
@@ -112,7 +112,12 @@ fn claims(claims: &[Claim]) -> Markup {
 
 /// `Our trials: 18 supported, 10 contradicted, 6 undecided.`
 fn counted<'c>(whose: &str, judgements: &(impl Iterator<Item = &'c Judgement> + Clone)) -> String {
-    let verdicts = [Verdict::Supported, Verdict::Contradicted, Verdict::Undecided, Verdict::Unmeasured];
+    let verdicts = [
+        ClaimVerdict::Supported,
+        ClaimVerdict::Contradicted,
+        ClaimVerdict::Undecided,
+        ClaimVerdict::Unmeasured,
+    ];
     let counts = verdicts.into_iter().filter_map(|verdict| {
         let count = judgements.clone().filter(|judgement| judgement.verdict == verdict).count();
         (count > 0).then(|| format!("{count} {}", verdict.label()))
@@ -122,10 +127,10 @@ fn counted<'c>(whose: &str, judgements: &(impl Iterator<Item = &'c Judgement> + 
 
 fn judgement(judgement: &Judgement) -> Markup {
     let sign = match judgement.verdict {
-        Verdict::Supported => "✓",
-        Verdict::Contradicted => "✗",
-        Verdict::Undecided => "?",
-        Verdict::Unmeasured => "–",
+        ClaimVerdict::Supported => "✓",
+        ClaimVerdict::Contradicted => "✗",
+        ClaimVerdict::Undecided => "?",
+        ClaimVerdict::Unmeasured => "–",
     };
     verdict(sign, judgement.verdict.label(), &judgement.evidence)
 }
@@ -140,7 +145,7 @@ fn verdict(sign: &str, label: &str, evidence: &str) -> Markup {
     }
 }
 
-fn pattern(lines: &[Line]) -> Markup {
+fn pattern(lines: &[JudgementLine]) -> Markup {
     html! {
         section id="pattern" {
             h2 { "The pattern of its results, and what is asked of ours" }

@@ -3,7 +3,7 @@
 
 use arena::TrialConfig;
 use arena::evaluation::{
-    Claim, Comparison, Held, Judgement, Line, TableRow, Verdict, compare, paper, with_paper,
+    Claim, ClaimVerdict, Comparison, Held, Judgement, JudgementLine, TableRow, compare, paper, with_paper,
 };
 use brain::Approach;
 use hil_sim::{Configuration, Scenario};
@@ -26,7 +26,7 @@ struct Made {
     between: Vec<Comparison>,
     papers: Vec<Comparison>,
     claims: Vec<Claim>,
-    lines: Vec<Line>,
+    lines: Vec<JudgementLine>,
     facts: Vec<Facts>,
     maps: Vec<Map>,
 }
@@ -50,10 +50,10 @@ impl Made {
                 section: "5.2.1",
                 sentence: "<script>alert('&')</script>",
                 ours_as_paper: None,
-                ours: judged(Verdict::Supported, "34 > 28 | 31 & *so*"),
-                paper: judged(Verdict::Undecided, "p = 0.31"),
+                ours: judged(ClaimVerdict::Supported, "34 > 28 | 31 & *so*"),
+                paper: judged(ClaimVerdict::Undecided, "p = 0.31"),
             }],
-            lines: vec![Line {
+            lines: vec![JudgementLine {
                 id: "z",
                 line: "more < less",
                 verdict: Held::Missed,
@@ -252,7 +252,7 @@ fn view_box(document: &roxmltree::Document<'_>) -> (f64, f64, f64, f64) {
 #[test]
 fn maps_are_drawn_with_what_they_count() {
     let config = TrialConfig::new(Scenario::DefenderAhead, Configuration::DefenderGoalie, Approach::Cases, 5);
-    let cell = arena::evaluation::Cell {
+    let cell = arena::evaluation::EvaluationCell {
         profile: arena::evaluation::Profile::Simulated,
         configuration: config.opponents,
         scenario: config.scenario,

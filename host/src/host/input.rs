@@ -23,11 +23,11 @@ pub enum Input<'a> {
 
 /// What became of an input.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Verdict {
+pub enum InputVerdict {
     /// A camera frame or geometry.
-    Vision(tracking::Received),
+    Vision(tracking::VisionVerdict),
     /// A packet of the referee.
-    Referee(Box<referee::Verdict>),
+    Referee(Box<referee::RefereeVerdict>),
     /// A frame of this robot was accepted.
     Robot(RobotId),
     /// A frame that was refused.

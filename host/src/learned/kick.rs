@@ -2,7 +2,7 @@
 //! the tracker saw, by the ball's places 0.05–0.3 s after the kick. m, m/s, s.
 
 use geometry::{Field, Point, Vector};
-use protocol::host::{Command, Directive, KickOrder};
+use protocol::host::{Directive, HostCommand, KickOrder};
 use protocol::{Duration, Instant, RobotId, Who};
 use rules::Colour;
 
@@ -35,7 +35,7 @@ struct Watched {
 }
 
 impl Kicks {
-    pub(super) fn see(&mut self, now: Instant, world: &World, us: Colour, commands: &[Command]) {
+    pub(super) fn see(&mut self, now: Instant, world: &World, us: Colour, commands: &[HostCommand]) {
         self.watch(world, us);
         for command in commands {
             if let Directive::Kick { kick: KickOrder::Flat(speed), .. }
@@ -179,7 +179,7 @@ mod tests {
         let (mut learned, models) = (Kicks::default(), BallModels::default());
         let mut time = 1_000_000_u64;
         for (n, (ordered, kicked)) in kicks.iter().enumerate() {
-            let command = Command {
+            let command = HostCommand {
                 to: id(),
                 defending: geometry::GoalEnd::Negative,
                 phase: rules::Phase::Run,

@@ -6,7 +6,7 @@
 //! includes radio, brain and motors.
 
 use geometry::{Field, Point};
-use protocol::host::{Command, Directive};
+use protocol::host::{Directive, HostCommand};
 use protocol::{Duration, Instant, RobotId, Who};
 use rules::{Colour, Phase, Side};
 
@@ -47,7 +47,7 @@ impl Latencies {
         world: &World,
         us: Colour,
         phase: Phase<Side>,
-        commands: &[Command],
+        commands: &[HostCommand],
     ) {
         let may_go = !matches!(phase, Phase::Halt | Phase::Timeout(_));
         for id in RobotId::all() {
@@ -184,7 +184,7 @@ mod tests {
                 world.put(robot);
                 let x = if now >= ordered { 2.0 } else { 0.0 };
                 let pose = geometry::Pose { position: Point::new(x, 0.0), ..geometry::Pose::default() };
-                let command = Command {
+                let command = HostCommand {
                     to: id(),
                     defending: geometry::GoalEnd::Negative,
                     phase: Phase::Stop,

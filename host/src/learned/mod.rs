@@ -17,7 +17,7 @@ mod kick;
 mod latency;
 mod samples;
 
-use protocol::host::Command;
+use protocol::host::HostCommand;
 use protocol::{Instant, RobotId};
 use rules::{Colour, Phase, Side};
 
@@ -42,7 +42,7 @@ impl Learned {
         now: Instant,
         (world, us): (&World, Colour),
         phase: Phase<Side>,
-        commands: &[Command],
+        commands: &[HostCommand],
     ) {
         self.kicks.see(now, world, us, commands);
         self.latencies.see(now, world, us, phase, commands);

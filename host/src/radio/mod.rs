@@ -22,7 +22,7 @@ mod snapshot;
 mod warning;
 
 use protocol::frame::{Audience, Frame, Refusal, Sender, TeamKey};
-use protocol::host::{Command, HostMessage, PARTS_MAX, Telemetry};
+use protocol::host::{HostCommand, HostMessage, PARTS_MAX, Telemetry};
 use protocol::host_link::{HostLink, Opened};
 use protocol::link::Packet;
 use protocol::team::{Beacon, TeamMessage};
@@ -33,8 +33,8 @@ use warning::Refusals;
 
 pub use counters::Counters;
 pub use quality::{Quality, table};
-pub use snapshot::{PARTS_ROBOTS_MAX, Situation};
-pub use warning::{RadioWarning, Why};
+pub use snapshot::{PARTS_ROBOTS_MAX, RadioSituation};
+pub use warning::{RadioWarning, RefusalReason};
 
 /// At most one snapshot in this time: 100 Hz, as fast as the league's cameras and the best published radios.
 pub const PERIOD_MIN: Duration = Duration::millis(10);
@@ -102,7 +102,7 @@ impl RadioSettings {
 /// A message received from a robot.
 #[allow(clippy::large_enum_variant, reason = "one value at a time, on the stack")]
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Received {
+pub enum RadioReceived {
     /// To its teammates: its state.
     Beacon(RobotId, Beacon),
     /// To the host: its condition.
@@ -135,8 +135,8 @@ pub struct Radio {
 struct Latest {
     since: Instant,
     world: World,
-    situation: Situation,
-    commands: heapless::Vec<Command, { RobotId::COUNT }>,
+    situation: RadioSituation,
+    commands: heapless::Vec<HostCommand, { RobotId::COUNT }>,
     /// It has not gone out yet.
     fresh: bool,
 }
@@ -161,8 +161,14 @@ impl Radio {
 
     /// Takes a new snapshot and all robots' commands: they go out now, or as soon as the rate allows. Of two
     /// commands for one robot the first counts. Fetch packets afterwards.
-    pub fn offer(&mut self, now: Instant, world: &World, situation: Situation, commands: &[Command]) {
-        let mut kept = heapless::Vec::<Command, { RobotId::COUNT }>::new();
+    pub fn offer(
+        &mut self,
+        now: Instant,
+        world: &World,
+        situation: RadioSituation,
+        commands: &[HostCommand],
+    ) {
+        let mut kept = heapless::Vec::<HostCommand, { RobotId::COUNT }>::new();
         for command in commands {
             if kept.iter().all(|known| known.to != command.to) {
                 // One per robot: there is room.
@@ -203,7 +209,7 @@ impl Radio {
     }
 
     /// Handles a packet of a robot: returns its message, or why it is refused (counted).
-    pub fn handle_packet(&mut self, now: Instant, packet: &[u8]) -> Result<Received, Refusal> {
+    pub fn handle_packet(&mut self, now: Instant, packet: &[u8]) -> Result<RadioReceived, Refusal> {
         let frame = Frame::parse(packet, self.settings.team);
         let opened = self.link.open(now, packet);
         if let Err(refusal) = opened {
@@ -230,17 +236,17 @@ impl Radio {
         match message {
             TeamMessage::Beacon(beacon) => {
                 self.relay(now, robot, packet);
-                Ok(Received::Beacon(robot, beacon))
+                Ok(RadioReceived::Beacon(robot, beacon))
             }
             TeamMessage::Handshake(_) => {
                 self.relay(now, robot, packet);
-                Ok(Received::Handshake(robot))
+                Ok(RadioReceived::Handshake(robot))
             }
             TeamMessage::Telemetry(telemetry) => {
                 let departed = self.departures[usize::from(telemetry.snapshot)];
                 self.refusals.report(now, robot, &telemetry);
                 self.robots[robot.index()].report(now, telemetry, departed);
-                Ok(Received::Telemetry(robot, telemetry))
+                Ok(RadioReceived::Telemetry(robot, telemetry))
             }
         }
     }

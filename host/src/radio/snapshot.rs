@@ -13,7 +13,7 @@ pub const PARTS_ROBOTS_MAX: usize = WORLD_ROBOTS_MAX;
 
 /// The state of the game, beside the snapshot.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Situation {
+pub struct RadioSituation {
     /// The colour our robots play with.
     pub us: Colour,
     /// The phase, by side (ours or theirs).
@@ -27,7 +27,7 @@ pub(super) fn parts(
     snapshot: u8,
     addressees: usize,
     world: &World,
-    situation: &Situation,
+    situation: &RadioSituation,
 ) -> heapless::Vec<WorldPart, PARTS_MAX> {
     let us = situation.us;
     let ours = world.ours(us).map(|robot| wire_robot(Side::Ours, robot));

@@ -23,8 +23,8 @@ fn radio(relay: Relay) -> Radio {
     Radio::new(RadioSettings { relay, ..RadioSettings::new(TEAM, 70) })
 }
 
-fn situation() -> Situation {
-    Situation { us: Colour::Blue, phase: Phase::Run, placement: None }
+fn situation() -> RadioSituation {
+    RadioSituation { us: Colour::Blue, phase: Phase::Run, placement: None }
 }
 
 /// `ours` blue and `theirs` yellow robots in a row, all moving at 1 m/s along +x.
@@ -46,8 +46,8 @@ fn world(now: Instant, ours: u8, theirs: u8) -> World {
     world
 }
 
-fn stand(to: u8) -> Command {
-    Command {
+fn stand(to: u8) -> HostCommand {
+    HostCommand {
         to: id(to),
         defending: GoalEnd::Negative,
         phase: Phase::Run,
@@ -388,7 +388,7 @@ fn a_robot_that_falls_silent_is_not_present_and_foreign_frames_are_interference(
 #[test]
 fn more_robots_than_fit_are_left_out_and_no_one_fetching_is_no_harm() {
     let mut radio = radio(Relay::No);
-    let commands: Vec<Command> = (0..16).map(stand).collect();
+    let commands: Vec<HostCommand> = (0..16).map(stand).collect();
     for n in 0..16 {
         join(&mut radio, &mut robot(n), n, ms(0));
     }

@@ -23,7 +23,7 @@ pub enum RadioWarning {
     /// The robot follows a host with a later epoch, and refuses this one.
     LaterHost(RobotId, u32),
     /// The robot refuses frames for this reason.
-    Refuses(RobotId, Why),
+    Refuses(RobotId, RefusalReason),
     /// Frames in that robot's name have a tag that is not its key's.
     WrongKey(RobotId),
     /// Frames of another host of our team come in, with this epoch.
@@ -36,7 +36,7 @@ pub enum RadioWarning {
 
 /// Why a robot refuses frames, as its telemetry counts them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Why {
+pub enum RefusalReason {
     /// They are of another protocol version.
     Version,
     /// They are of another team's number.
@@ -51,7 +51,7 @@ pub enum Why {
     Stale,
 }
 
-impl Why {
+impl RefusalReason {
     const ALL: [Self; 6] =
         [Self::Version, Self::Team, Self::Epoch, Self::Tag, Self::Unauthenticated, Self::Stale];
 
@@ -77,20 +77,20 @@ impl fmt::Display for RadioWarning {
             ),
             Self::Refuses(robot, why) => {
                 let (what, remedy) = match why {
-                    Why::Version => {
+                    RefusalReason::Version => {
                         ("of another protocol version", "flash robots and host with the same release")
                     }
-                    Why::Team => ("of another team's number", "give each team its own channel"),
-                    Why::Epoch => ("of an earlier host", "end the other host"),
-                    Why::Tag => (
+                    RefusalReason::Team => ("of another team's number", "give each team its own channel"),
+                    RefusalReason::Epoch => ("of an earlier host", "end the other host"),
+                    RefusalReason::Tag => (
                         "with a wrong tag",
                         "another host with another key, or an attacker, sends on this channel",
                     ),
-                    Why::Unauthenticated => (
+                    RefusalReason::Unauthenticated => (
                         "of a sender it does not know",
                         "another host or robot of this team number, or recordings, are on this channel",
                     ),
-                    Why::Stale => (
+                    RefusalReason::Stale => (
                         "that are over 200 ms old",
                         "the radio is too slow or overloaded, or frames are withheld",
                     ),
@@ -163,7 +163,7 @@ impl Rising {
 #[derive(Clone, Copy, Debug, Default)]
 struct OfRobot {
     last_refused: Option<[u16; Refusal::KINDS]>,
-    rising: [Rising; Why::ALL.len()],
+    rising: [Rising; RefusalReason::ALL.len()],
     forged: Rising,
     follows: Option<(u32, Instant)>,
 }
@@ -183,7 +183,7 @@ impl Refusals {
         let known = &mut self.robots[robot.index()];
         known.follows = Some((telemetry.host, now));
         let before = known.last_refused.replace(telemetry.refused).unwrap_or(telemetry.refused);
-        for (why, rising) in Why::ALL.into_iter().zip(&mut known.rising) {
+        for (why, rising) in RefusalReason::ALL.into_iter().zip(&mut known.rising) {
             let of = |counts: &[u16; Refusal::KINDS]| counts.get(why.kind()).copied().unwrap_or(0);
             // After a boot the counts restart from 0.
             rising.add(now, u32::from(of(&telemetry.refused).saturating_sub(of(&before))));
@@ -218,11 +218,11 @@ impl Refusals {
         let of_robot = move |(robot, known): (RobotId, &OfRobot)| {
             let later = known.follows.filter(|(host, at)| *host > epoch && now.since(*at) < OVER);
             let later = later.map(|(host, _)| RadioWarning::LaterHost(robot, host));
-            let whys = Why::ALL.into_iter().zip(known.rising).filter(move |(why, rising)| {
+            let whys = RefusalReason::ALL.into_iter().zip(known.rising).filter(move |(why, rising)| {
                 // That it refuses this host's epoch is reported already.
                 match why {
-                    Why::Unauthenticated => rising.goes_on_for(now, HANDSHAKES),
-                    Why::Epoch => rising.goes_on(now) && later.is_none(),
+                    RefusalReason::Unauthenticated => rising.goes_on_for(now, HANDSHAKES),
+                    RefusalReason::Epoch => rising.goes_on(now) && later.is_none(),
                     _ => rising.goes_on(now),
                 }
             });
@@ -272,7 +272,7 @@ mod tests {
 
     #[test]
     fn counts_that_rise_are_reported_within_two_seconds_and_a_few_are_not() {
-        for why in Why::ALL {
+        for why in RefusalReason::ALL {
             let (mut refusals, mut counts) = (Refusals::default(), [0; Refusal::KINDS]);
             let mut reported = None;
             for n in 0..50_u64 {
@@ -285,7 +285,7 @@ mod tests {
                     reported = reported.or(Some(100 * n));
                 }
             }
-            let expected = if why == Why::Unauthenticated { 3_000..=4_500 } else { 0..=1_000 };
+            let expected = if why == RefusalReason::Unauthenticated { 3_000..=4_500 } else { 0..=1_000 };
             assert!(reported.is_some_and(|at| expected.contains(&at)), "{why:?}: {reported:?}");
             // One in a second is a bit that flipped; a reboot resets the counts to 0.
             let mut refusals = Refusals::default();

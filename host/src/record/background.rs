@@ -212,7 +212,7 @@ mod tests {
     use super::*;
     use crate::HostSettings;
     use crate::record::header::{HostHeader, RecordingHeader};
-    use crate::record::trace::{End, Kind, Reader};
+    use crate::record::trace::{Reader, RecordKind, TraceEnd};
 
     fn recorder(name: &str) -> (Recorder, PathBuf) {
         let stem = std::env::temp_dir().join(format!("onetwo-{name}-{}", std::process::id()));
@@ -229,7 +229,7 @@ mod tests {
         (Recorder::begin(&stem, &header).unwrap(), stem)
     }
 
-    fn read(stem: &std::path::Path) -> (Vec<Kind>, Option<End>) {
+    fn read(stem: &std::path::Path) -> (Vec<RecordKind>, Option<TraceEnd>) {
         let [log, trace] = Recorder::files(stem);
         let bytes = flate2::read::MultiGzDecoder::new(std::fs::File::open(&trace).unwrap());
         let mut reader = Reader::new(bytes).unwrap();
@@ -252,8 +252,14 @@ mod tests {
         background.sent(Instant(2), Colour::Blue, To::All, &Packet::from_slice(b"f").unwrap());
         assert_eq!((background.dropped(), background.trace_ended()), (0, None));
         background.finish().unwrap();
-        let kinds = vec![Kind::Vision, Kind::Referee, Kind::Halt, Kind::Timeout, Kind::Sent];
-        assert_eq!(read(&stem), (kinds, Some(End::Whole)));
+        let kinds = vec![
+            RecordKind::Vision,
+            RecordKind::Referee,
+            RecordKind::Halt,
+            RecordKind::Timeout,
+            RecordKind::Sent,
+        ];
+        assert_eq!(read(&stem), (kinds, Some(TraceEnd::Whole)));
     }
 
     #[test]
@@ -277,6 +283,6 @@ mod tests {
         // The disk works again: what was queued is whole, and the trace has its end mark.
         write(recorder, &entries, &shared).unwrap();
         let (kinds, end) = read(&stem);
-        assert_eq!((kinds.len() as u64, end), (ended.0, Some(End::Lost { at: ended })));
+        assert_eq!((kinds.len() as u64, end), (ended.0, Some(TraceEnd::Lost { at: ended })));
     }
 }

@@ -9,7 +9,7 @@ use protocol::{Instant, RobotId};
 
 use crate::radio::To;
 use crate::record::header::{HeaderError, RecordingHeader};
-use crate::record::trace::{Kind, Record};
+use crate::record::trace::{Record, RecordKind};
 use crate::{Host, Input};
 
 /// The hosts of a recording, fed with its inputs again.
@@ -23,13 +23,13 @@ pub struct Recheck {
 struct Checked {
     host: Host,
     sent_bytes: VecDeque<(Instant, Vec<u8>)>,
-    counts: Counts,
+    counts: RecheckCounts,
     difference: Option<Difference>,
 }
 
 /// Counts of one host under check.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
+pub struct RecheckCounts {
     /// Number of inputs fed.
     pub inputs: u64,
     /// Packets that were the same.
@@ -126,7 +126,7 @@ impl Recheck {
             Ok(Checked {
                 host: Host::new(settings, host.began()),
                 sent_bytes: VecDeque::new(),
-                counts: Counts::default(),
+                counts: RecheckCounts::default(),
                 difference: None,
             })
         };
@@ -137,13 +137,13 @@ impl Recheck {
     pub fn feed(&mut self, record: &Record) -> bool {
         let Some(checked) = self.hosts.get_mut(usize::from(record.host)) else { return false };
         match record.kind {
-            Kind::Sent => checked.compare(record),
-            Kind::Vision => checked.feed_input(record.at, Input::Vision(&record.bytes)),
-            Kind::Referee => checked.feed_input(record.at, Input::Referee(&record.bytes, record.from)),
-            Kind::Robot => checked.feed_input(record.at, Input::Robot(&record.bytes)),
-            Kind::Timeout => checked.feed_input(record.at, Input::Timeout),
-            Kind::Halt => checked.feed_input(record.at, Input::Halt),
-            Kind::Lost => {}
+            RecordKind::Sent => checked.compare(record),
+            RecordKind::Vision => checked.feed_input(record.at, Input::Vision(&record.bytes)),
+            RecordKind::Referee => checked.feed_input(record.at, Input::Referee(&record.bytes, record.from)),
+            RecordKind::Robot => checked.feed_input(record.at, Input::Robot(&record.bytes)),
+            RecordKind::Timeout => checked.feed_input(record.at, Input::Timeout),
+            RecordKind::Halt => checked.feed_input(record.at, Input::Halt),
+            RecordKind::Lost => {}
         }
         true
     }
@@ -163,7 +163,7 @@ impl Recheck {
 
     /// Host by host, in the header's order: the numbers of its inputs and packets, and where it differs from
     /// the record.
-    pub fn results(&self) -> impl Iterator<Item = (Counts, Option<&Difference>)> {
+    pub fn results(&self) -> impl Iterator<Item = (RecheckCounts, Option<&Difference>)> {
         self.hosts.iter().map(|checked| (checked.counts, checked.difference.as_ref()))
     }
 
@@ -267,17 +267,29 @@ mod tests {
             let at = Instant(1_000_000) + Duration(u64::from(number) * 16_000);
             let bytes = image(number);
             host.handle(at, Input::Vision(&bytes));
-            records.push(Record { at, host: 0, kind: Kind::Vision, from: SenderAddress::INTERNAL, bytes });
+            records.push(Record {
+                at,
+                host: 0,
+                kind: RecordKind::Vision,
+                from: SenderAddress::INTERNAL,
+                bytes,
+            });
             while let Some((to, packet)) = host.poll_packet() {
                 let to = if let To::One(robot) = to { robot.number() } else { u8::MAX };
                 let bytes = [&[to], &packet[..]].concat();
-                records.push(Record { at, host: 0, kind: Kind::Sent, from: SenderAddress::INTERNAL, bytes });
+                records.push(Record {
+                    at,
+                    host: 0,
+                    kind: RecordKind::Sent,
+                    from: SenderAddress::INTERNAL,
+                    bytes,
+                });
             }
         }
         records
     }
 
-    fn check(records: &[Record]) -> (Counts, Option<Difference>) {
+    fn check(records: &[Record]) -> (RecheckCounts, Option<Difference>) {
         let mut recheck = Recheck::new(&header(), TeamKey::ZERO).unwrap();
         for record in records {
             assert!(recheck.feed(record));
@@ -289,15 +301,15 @@ mod tests {
     #[test]
     fn the_same_inputs_give_the_same_packets() {
         let records = recorded();
-        let sent = records.iter().filter(|record| record.kind == Kind::Sent).count() as u64;
+        let sent = records.iter().filter(|record| record.kind == RecordKind::Sent).count() as u64;
         assert!(sent > 50, "{sent}");
-        assert_eq!(check(&records), (Counts { inputs: 60, same: sent }, None));
+        assert_eq!(check(&records), (RecheckCounts { inputs: 60, same: sent }, None));
     }
 
     #[test]
     fn one_byte_that_differs_is_found_with_its_time() {
         let mut records = recorded();
-        let place = records.iter().rposition(|record| record.kind == Kind::Sent).unwrap();
+        let place = records.iter().rposition(|record| record.kind == RecordKind::Sent).unwrap();
         records[place].bytes[15] ^= 1;
         let (_, difference) = check(&records);
         let difference = difference.unwrap();
@@ -308,7 +320,7 @@ mod tests {
     #[test]
     fn a_packet_too_few_or_too_many_is_reported() {
         let records = recorded();
-        let place = records.iter().rposition(|record| record.kind == Kind::Sent).unwrap();
+        let place = records.iter().rposition(|record| record.kind == RecordKind::Sent).unwrap();
         let mut fewer = records.clone();
         fewer.remove(place);
         assert!(matches!(check(&fewer).1, Some(Difference::Extra { .. } | Difference::Other { .. })));
@@ -321,7 +333,7 @@ mod tests {
     fn a_record_of_no_host_is_not_fed() {
         let mut recheck = Recheck::new(&header(), TeamKey::ZERO).unwrap();
         let from = SenderAddress::INTERNAL;
-        let stray = Record { at: Instant(0), host: 9, kind: Kind::Timeout, from, bytes: Vec::new() };
+        let stray = Record { at: Instant(0), host: 9, kind: RecordKind::Timeout, from, bytes: Vec::new() };
         assert!(!recheck.feed(&stray));
     }
 }

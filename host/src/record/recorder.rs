@@ -21,7 +21,7 @@ use ssl::log::{LogWriter, MessageKind, Sink};
 use crate::Input;
 use crate::radio::To;
 use crate::record::header::RecordingHeader;
-use crate::record::trace::{Kind, Writer};
+use crate::record::trace::{RecordKind, Writer};
 
 /// Both files while they are written. The first error ends the writing, not the match; [`Recorder::finish`]
 /// returns it.
@@ -86,15 +86,15 @@ impl Recorder {
     /// Something came to the host of that colour.
     pub fn input(&mut self, now: Instant, host: Colour, input: Input<'_>) {
         let sender;
-        let (kind, bytes): (Kind, [&[u8]; 2]) = match input {
-            Input::Vision(bytes) => (Kind::Vision, [&[], bytes]),
+        let (kind, bytes): (RecordKind, [&[u8]; 2]) = match input {
+            Input::Vision(bytes) => (RecordKind::Vision, [&[], bytes]),
             Input::Referee(bytes, from) => {
                 sender = from.to_bytes();
-                (Kind::Referee, [&sender, bytes])
+                (RecordKind::Referee, [&sender, bytes])
             }
-            Input::Robot(bytes) => (Kind::Robot, [&[], bytes]),
-            Input::Halt => (Kind::Halt, [&[], &[]]),
-            Input::Timeout => (Kind::Timeout, [&[], &[]]),
+            Input::Robot(bytes) => (RecordKind::Robot, [&[], bytes]),
+            Input::Halt => (RecordKind::Halt, [&[], &[]]),
+            Input::Timeout => (RecordKind::Timeout, [&[], &[]]),
         };
         let host = self.number(host);
         self.write(now, |files| files.trace.write(now, host, kind, &bytes));
@@ -107,12 +107,12 @@ impl Recorder {
             To::One(robot) => robot.number(),
         };
         let host = self.number(host);
-        self.write(now, |files| files.trace.write(now, host, Kind::Sent, &[&[to], packet]));
+        self.write(now, |files| files.trace.write(now, host, RecordKind::Sent, &[&[to], packet]));
     }
 
     /// Records were lost: the trace ends here with a mark for it. Nothing more may be written to it.
     pub fn lost(&mut self, now: Instant) {
-        self.write(now, |files| files.trace.write(now, 0, Kind::Lost, &[]));
+        self.write(now, |files| files.trace.write(now, 0, RecordKind::Lost, &[]));
     }
 
     /// Whether an error has ended the writing.
@@ -163,7 +163,7 @@ mod tests {
     use super::*;
     use crate::HostSettings;
     use crate::record::header::HostHeader;
-    use crate::record::trace::{End, Reader};
+    use crate::record::trace::{Reader, TraceEnd};
 
     /// Packets of the cameras and the referee of a real game, with their times.
     fn packets() -> Vec<(Instant, MessageKind, Vec<u8>)> {
@@ -240,7 +240,7 @@ mod tests {
             let mut reader = Reader::new(MultiGzDecoder::new(&trace[..])).unwrap();
             let last = reader.by_ref().last().map_or(0, |record| record.at.0);
             assert!(within(last), "trace: {last} of {} µs", now.0);
-            assert!(matches!(reader.end(), Some(End::Cut { .. })), "{:?}", reader.end());
+            assert!(matches!(reader.end(), Some(TraceEnd::Cut { .. })), "{:?}", reader.end());
             let mut log = ssl::log::open(&log_file).unwrap();
             let last = log.by_ref().last().map_or(0, |record| record.timestamp_ns / 1000);
             assert!(within(last as u64), "log: {last} of {} µs", now.0);
@@ -251,7 +251,7 @@ mod tests {
         let trace = fs::read(&trace_file).unwrap();
         let mut reader = Reader::new(MultiGzDecoder::new(&trace[..])).unwrap();
         assert!(reader.by_ref().count() > 1000);
-        assert_eq!(reader.end(), Some(&End::Whole));
+        assert_eq!(reader.end(), Some(&TraceEnd::Whole));
         remove(&stem);
     }
 

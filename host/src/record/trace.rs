@@ -35,7 +35,7 @@ pub const HEADER_LEN_MAX: usize = 1 << 20;
 
 /// Kinds of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum RecordKind {
     /// A datagram of the vision came in.
     Vision,
     /// A datagram of the referee came in.
@@ -52,7 +52,7 @@ pub enum Kind {
     Halt,
 }
 
-impl Kind {
+impl RecordKind {
     const ALL: [Self; 7] =
         [Self::Vision, Self::Referee, Self::Robot, Self::Timeout, Self::Sent, Self::Lost, Self::Halt];
 
@@ -74,7 +74,7 @@ pub struct Record {
     /// Number of the host, where one recording holds several teams'.
     pub host: u8,
     /// Whether it is an input or output, and of what.
-    pub kind: Kind,
+    pub kind: RecordKind,
     /// The sender, for packets of the referee; [`SenderAddress::INTERNAL`] for everything else.
     pub from: SenderAddress,
     /// Its payload without the head, at most [`RECORD_LEN_MAX`].
@@ -98,7 +98,7 @@ impl<W: Write> Writer<W> {
     }
 
     /// Adds a record at the end; fails where it exceeds [`RECORD_LEN_MAX`].
-    pub fn write(&mut self, at: Instant, host: u8, kind: Kind, bytes: &[&[u8]]) -> io::Result<()> {
+    pub fn write(&mut self, at: Instant, host: u8, kind: RecordKind, bytes: &[&[u8]]) -> io::Result<()> {
         let total: usize = bytes.iter().map(|part| part.len()).sum();
         if total > RECORD_LEN_MAX {
             return Err(io::Error::other(format!("a record of {total} bytes; at most {RECORD_LEN_MAX} fit")));
@@ -133,7 +133,7 @@ pub struct Reader<R: Read> {
     from: R,
     version: u32,
     header: String,
-    end: Option<End>,
+    end: Option<TraceEnd>,
     /// Where the next record starts.
     at: u64,
     /// Time of the last one.
@@ -142,7 +142,7 @@ pub struct Reader<R: Read> {
 
 /// How a trace ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum TraceEnd {
     /// After a whole record.
     Whole,
     /// Where the recorder could not keep up.
@@ -167,14 +167,14 @@ pub enum End {
     },
 }
 
-impl End {
+impl TraceEnd {
     /// Whether the trace ended as it should.
     pub const fn is_whole(&self) -> bool {
         matches!(self, Self::Whole)
     }
 }
 
-impl fmt::Display for End {
+impl fmt::Display for TraceEnd {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Whole => f.write_str("whole"),
@@ -268,14 +268,14 @@ impl<R: Read> Reader<R> {
     }
 
     /// How it ended, once it has.
-    pub fn end(&self) -> Option<&End> {
+    pub fn end(&self) -> Option<&TraceEnd> {
         self.end.as_ref()
     }
 
-    fn read(&mut self) -> Result<Record, End> {
+    fn read(&mut self) -> Result<Record, TraceEnd> {
         let (begin, last) = (self.at, self.last);
-        let cut = || End::Cut { at: begin, last };
-        let broken = |what: String| End::Broken { at: begin, what };
+        let cut = || TraceEnd::Cut { at: begin, last };
+        let broken = |what: String| TraceEnd::Broken { at: begin, what };
         // A compressed stream that stops in its middle is a cut file; anything else is damage.
         let failed = |error: io::Error| match error.kind() {
             io::ErrorKind::UnexpectedEof => cut(),
@@ -283,13 +283,14 @@ impl<R: Read> Reader<R> {
         };
         let mut head = [0; 14];
         match fill(&mut self.from, &mut head).map_err(failed)? {
-            0 => return Err(End::Whole),
+            0 => return Err(TraceEnd::Whole),
             got if got < head.len() => return Err(cut()),
             _ => {}
         }
         let [t0, t1, t2, t3, t4, t5, t6, t7, host, kind, l0, l1, l2, l3] = head;
         let length = u32::from_le_bytes([l0, l1, l2, l3]) as usize;
-        let kind = Kind::from_byte(kind).ok_or_else(|| broken(format!("no record is of kind {kind}")))?;
+        let kind =
+            RecordKind::from_byte(kind).ok_or_else(|| broken(format!("no record is of kind {kind}")))?;
         if length > RECORD_LEN_MAX {
             return Err(broken(format!("a record of {length} bytes; at most {RECORD_LEN_MAX} are written")));
         }
@@ -301,8 +302,8 @@ impl<R: Read> Reader<R> {
         self.at += (head.len() + length) as u64;
         self.last = Some(at);
         let from = match kind {
-            Kind::Lost => return Err(End::Lost { at }),
-            Kind::Referee if self.version >= WITH_SENDER => take_sender(&mut bytes)
+            RecordKind::Lost => return Err(TraceEnd::Lost { at }),
+            RecordKind::Referee if self.version >= WITH_SENDER => take_sender(&mut bytes)
                 .ok_or_else(|| broken(format!("a referee's record of {length} bytes has no sender")))?,
             _ => SenderAddress::INTERNAL,
         };
@@ -349,9 +350,9 @@ mod tests {
 
     fn written() -> Vec<u8> {
         let mut writer = Writer::new(Vec::new(), r#"{"seed":7}"#).unwrap();
-        writer.write(Instant(10), 0, Kind::Vision, &[b"abc"]).unwrap();
-        writer.write(Instant(20), 1, Kind::Timeout, &[]).unwrap();
-        writer.write(Instant(30), 1, Kind::Sent, &[&[255], b"frame"]).unwrap();
+        writer.write(Instant(10), 0, RecordKind::Vision, &[b"abc"]).unwrap();
+        writer.write(Instant(20), 1, RecordKind::Timeout, &[]).unwrap();
+        writer.write(Instant(30), 1, RecordKind::Sent, &[&[255], b"frame"]).unwrap();
         writer.into_inner()
     }
 
@@ -367,12 +368,12 @@ mod tests {
             Record {
                 at: Instant(30),
                 host: 1,
-                kind: Kind::Sent,
+                kind: RecordKind::Sent,
                 from: SenderAddress::INTERNAL,
                 bytes: b"\xffframe".to_vec()
             }
         );
-        assert_eq!(reader.end(), Some(&End::Whole));
+        assert_eq!(reader.end(), Some(&TraceEnd::Whole));
     }
 
     #[test]
@@ -389,10 +390,10 @@ mod tests {
                     assert_eq!(got, whole, "{cut}");
                     let begins = [30, 47, 61];
                     let expected = if begins.contains(&cut) {
-                        End::Whole
+                        TraceEnd::Whole
                     } else {
                         let last = [Instant(10), Instant(20)].into_iter().take(whole).next_back();
-                        End::Cut { at: begins[whole] as u64, last }
+                        TraceEnd::Cut { at: begins[whole] as u64, last }
                     };
                     assert_eq!(reader.end(), Some(&expected), "{cut}");
                 }
@@ -406,7 +407,7 @@ mod tests {
         let mut writer = Writer::new(zip, r#"{"seed":7}"#).unwrap();
         let mut flushed = Vec::new();
         for number in 0..20_u8 {
-            writer.write(Instant(u64::from(number)), 0, Kind::Vision, &[&[number; 90]]).unwrap();
+            writer.write(Instant(u64::from(number)), 0, RecordKind::Vision, &[&[number; 90]]).unwrap();
             writer.flush().unwrap();
             flushed.push(writer.out.get_ref().len());
         }
@@ -423,10 +424,10 @@ mod tests {
             let whole = flushed.iter().filter(|at| **at <= cut).count();
             assert!(got >= whole, "{cut}: {got} of {whole} records that were flushed");
             let last = got.checked_sub(1).map(|last| Instant(last as u64));
-            assert_eq!(reader.end(), Some(&End::Cut { at: 30 + 104 * got as u64, last }), "{cut}");
+            assert_eq!(reader.end(), Some(&TraceEnd::Cut { at: 30 + 104 * got as u64, last }), "{cut}");
         }
         let mut reader = Reader::new(flate2::bufread::MultiGzDecoder::new(&bytes[..])).unwrap();
-        assert_eq!((reader.by_ref().count(), reader.end()), (20, Some(&End::Whole)));
+        assert_eq!((reader.by_ref().count(), reader.end()), (20, Some(&TraceEnd::Whole)));
     }
 
     #[test]
@@ -452,14 +453,14 @@ mod tests {
         bytes[30 + 9] = 77;
         let mut reader = Reader::new(&bytes[..]).unwrap();
         assert_eq!(reader.by_ref().count(), 0);
-        assert!(matches!(reader.end(), Some(End::Broken { at: 30, what }) if what.contains("77")));
+        assert!(matches!(reader.end(), Some(TraceEnd::Broken { at: 30, what }) if what.contains("77")));
     }
 
     #[test]
     fn a_referees_packet_keeps_its_sender_and_one_of_version_1_has_none() {
         let from = SenderAddress::new(([10, 0, 0, 7], 41_234).into());
         let mut writer = Writer::new(Vec::new(), "{}").unwrap();
-        writer.write(Instant(1), 0, Kind::Referee, &[&from.to_bytes(), b"packet"]).unwrap();
+        writer.write(Instant(1), 0, RecordKind::Referee, &[&from.to_bytes(), b"packet"]).unwrap();
         let mut bytes = writer.into_inner();
         let record = Reader::new(&bytes[..]).unwrap().next().unwrap();
         assert_eq!((record.from, &record.bytes[..]), (from, &b"packet"[..]));
@@ -468,21 +469,21 @@ mod tests {
         assert_eq!((record.from, record.bytes.len()), (SenderAddress::INTERNAL, SenderAddress::LEN + 6));
         // A record too short for a sender is damage, not a panic.
         let mut writer = Writer::new(Vec::new(), "{}").unwrap();
-        writer.write(Instant(1), 0, Kind::Referee, &[b"short"]).unwrap();
+        writer.write(Instant(1), 0, RecordKind::Referee, &[b"short"]).unwrap();
         let bytes = writer.into_inner();
         let mut reader = Reader::new(&bytes[..]).unwrap();
         assert_eq!(reader.next(), None);
-        assert!(matches!(reader.end(), Some(End::Broken { what, .. }) if what.contains("no sender")));
+        assert!(matches!(reader.end(), Some(TraceEnd::Broken { what, .. }) if what.contains("no sender")));
     }
 
     #[test]
     fn a_trace_that_lost_records_ends_there() {
         let mut writer = Writer::new(Vec::new(), "{}").unwrap();
-        writer.write(Instant(1), 0, Kind::Timeout, &[]).unwrap();
-        writer.write(Instant(2), 0, Kind::Lost, &[]).unwrap();
+        writer.write(Instant(1), 0, RecordKind::Timeout, &[]).unwrap();
+        writer.write(Instant(2), 0, RecordKind::Lost, &[]).unwrap();
         let bytes = writer.into_inner();
         let mut reader = Reader::new(&bytes[..]).unwrap();
-        assert_eq!((reader.by_ref().count(), reader.end()), (1, Some(&End::Lost { at: Instant(2) })));
+        assert_eq!((reader.by_ref().count(), reader.end()), (1, Some(&TraceEnd::Lost { at: Instant(2) })));
     }
 
     #[test]
@@ -491,6 +492,6 @@ mod tests {
         bytes[30 + 10..30 + 14].copy_from_slice(&u32::MAX.to_le_bytes());
         let mut reader = Reader::new(&bytes[..]).unwrap();
         assert_eq!(reader.by_ref().count(), 0);
-        assert!(matches!(reader.end(), Some(End::Broken { .. })));
+        assert!(matches!(reader.end(), Some(TraceEnd::Broken { .. })));
     }
 }

@@ -114,10 +114,13 @@ fn a_stamp_ahead_of_its_arrival_never_becomes_the_newest() {
     };
     receive(&mut listener, 0, 0, Wire::Stop, 1);
     let verdict = receive(&mut listener, S, 4_900_000, Wire::ForceStart, 2);
-    assert_eq!(verdict, Verdict::Doubted { doubt: Doubt::Ahead(Duration(4_900_000)), restrains: false });
+    assert_eq!(
+        verdict,
+        RefereeVerdict::Doubted { doubt: Doubt::Ahead(Duration(4_900_000)), restrains: false }
+    );
     assert_eq!(listener.game().phase, Phase::Stop);
     // Genuine packets are followed as before.
-    assert!(matches!(receive(&mut listener, S + PERIOD, 0, Wire::ForceStart, 2), Verdict::Taken(_)));
+    assert!(matches!(receive(&mut listener, S + PERIOD, 0, Wire::ForceStart, 2), RefereeVerdict::Taken(_)));
     assert_eq!(listener.game().phase, Phase::Run);
     let warned = listener.warnings(Instant(S + PERIOD));
     assert!(warned.iter().any(|warning| warning.to_string().contains("4.9 s ahead")), "{warned:?}");
@@ -345,7 +348,7 @@ fn a_pinned_referee_is_obeyed_alone_and_the_other_is_reported() {
         send_packet(&mut listener, &mut genuine, S, Wire::ForceStart);
         let packet = evil.packet(S, 0, Wire::Halt);
         let verdict = listener.receive(&packet, evil.address, Instant(S), None);
-        assert!(matches!(verdict, Verdict::Excluded { .. }), "{verdict:?}");
+        assert!(matches!(verdict, RefereeVerdict::Excluded { .. }), "{verdict:?}");
         assert_eq!((listener.game().phase, listener.counts().excluded), (Phase::Run, 1));
         let warned = listener.warnings(Instant(S));
         assert!(matches!(&warned[..], [Warning::Excluded { .. }]), "{warned:?}");
@@ -424,7 +427,7 @@ fn a_counter_that_starts_again_is_followed_once_it_stays() {
     genuine.counter = 0;
     let verdict =
         listener.receive(&genuine.packet(PERIOD, 0, Wire::Halt), genuine.address, Instant(PERIOD), None);
-    assert_eq!(verdict, Verdict::Doubted { doubt: Doubt::Counter, restrains: true });
+    assert_eq!(verdict, RefereeVerdict::Doubted { doubt: Doubt::Counter, restrains: true });
     assert_eq!(listener.game().phase, Phase::Halt, "HALT at once");
     let mut now = PERIOD;
     let taken = loop {
@@ -432,7 +435,7 @@ fn a_counter_that_starts_again_is_followed_once_it_stays() {
         let received =
             listener.receive(&genuine.packet(now, 0, Wire::Halt), genuine.address, Instant(now), None);
         assert_eq!(listener.game().phase, Phase::Halt);
-        if let Verdict::Taken(taken) = received {
+        if let RefereeVerdict::Taken(taken) = received {
             break taken;
         }
     };
@@ -449,7 +452,7 @@ fn a_goal_that_the_controller_announces_with_its_next_commands_counter_is_in_ord
     genuine.counter = 41;
     for (now, command) in [(PERIOD, Wire::GoalBlue), (2 * PERIOD, Wire::Halt), (3 * PERIOD, Wire::Halt)] {
         let verdict = listener.receive(&genuine.packet(now, 0, command), genuine.address, Instant(now), None);
-        assert!(matches!(verdict, Verdict::Taken(_)), "{command:?}: {verdict:?}");
+        assert!(matches!(verdict, RefereeVerdict::Taken(_)), "{command:?}: {verdict:?}");
     }
     assert_eq!((listener.game().phase, listener.warnings(Instant(3 * PERIOD))), (Phase::Halt, vec![]));
 }

@@ -1,28 +1,30 @@
 //! `description`: decodes the referee's commands and stages into the types of [`rules`].
 
 use rules::Colour::{self, Blue, Yellow};
-use rules::state::{Command, Stage};
+use rules::state::{RefereeCommand, Stage};
 use ssl::referee as wire;
 
 /// A command's meaning; none for a number that no program of the league sends. Indirect free kicks are free
 /// kicks since 2020; GOAL is obsolete too, and implied a stop.
-pub fn command_of(number: i32) -> Option<Command> {
+pub fn command_of(number: i32) -> Option<RefereeCommand> {
     let command = wire::Command::try_from(number).ok()?;
     Some(match command {
-        wire::Command::Halt => Command::Halt,
-        wire::Command::Stop | wire::Command::GoalYellow | wire::Command::GoalBlue => Command::Stop,
-        wire::Command::NormalStart => Command::NormalStart,
-        wire::Command::ForceStart => Command::ForceStart,
-        wire::Command::PrepareKickoffYellow => Command::PrepareKickoff(Yellow),
-        wire::Command::PrepareKickoffBlue => Command::PrepareKickoff(Blue),
-        wire::Command::PreparePenaltyYellow => Command::PreparePenalty(Yellow),
-        wire::Command::PreparePenaltyBlue => Command::PreparePenalty(Blue),
-        wire::Command::DirectFreeYellow | wire::Command::IndirectFreeYellow => Command::FreeKick(Yellow),
-        wire::Command::DirectFreeBlue | wire::Command::IndirectFreeBlue => Command::FreeKick(Blue),
-        wire::Command::TimeoutYellow => Command::Timeout(Yellow),
-        wire::Command::TimeoutBlue => Command::Timeout(Blue),
-        wire::Command::BallPlacementYellow => Command::BallPlacement(Yellow),
-        wire::Command::BallPlacementBlue => Command::BallPlacement(Blue),
+        wire::Command::Halt => RefereeCommand::Halt,
+        wire::Command::Stop | wire::Command::GoalYellow | wire::Command::GoalBlue => RefereeCommand::Stop,
+        wire::Command::NormalStart => RefereeCommand::NormalStart,
+        wire::Command::ForceStart => RefereeCommand::ForceStart,
+        wire::Command::PrepareKickoffYellow => RefereeCommand::PrepareKickoff(Yellow),
+        wire::Command::PrepareKickoffBlue => RefereeCommand::PrepareKickoff(Blue),
+        wire::Command::PreparePenaltyYellow => RefereeCommand::PreparePenalty(Yellow),
+        wire::Command::PreparePenaltyBlue => RefereeCommand::PreparePenalty(Blue),
+        wire::Command::DirectFreeYellow | wire::Command::IndirectFreeYellow => {
+            RefereeCommand::FreeKick(Yellow)
+        }
+        wire::Command::DirectFreeBlue | wire::Command::IndirectFreeBlue => RefereeCommand::FreeKick(Blue),
+        wire::Command::TimeoutYellow => RefereeCommand::Timeout(Yellow),
+        wire::Command::TimeoutBlue => RefereeCommand::Timeout(Blue),
+        wire::Command::BallPlacementYellow => RefereeCommand::BallPlacement(Yellow),
+        wire::Command::BallPlacementBlue => RefereeCommand::BallPlacement(Blue),
     })
 }
 
@@ -74,7 +76,7 @@ mod tests {
             assert!(command_of(number).is_some(), "{number}");
         }
         assert_eq!((command_of(18), command_of(-1)), (None, None));
-        assert_eq!(command_of(9), Some(Command::FreeKick(Blue)));
-        assert_eq!(command_of(16), Some(Command::BallPlacement(Yellow)));
+        assert_eq!(command_of(9), Some(RefereeCommand::FreeKick(Blue)));
+        assert_eq!(command_of(16), Some(RefereeCommand::BallPlacement(Yellow)));
     }
 }

@@ -20,7 +20,7 @@ use std::collections::VecDeque;
 use geometry::{Field, Point};
 use protocol::{Duration, Instant};
 use rules::Limits;
-use rules::state::{Command, GameState};
+use rules::state::{GameState, RefereeCommand};
 use ssl::referee::{Command as Wire, Referee};
 
 use super::identity::SourceKey;
@@ -57,10 +57,10 @@ pub(super) enum Strictness {
 }
 
 impl Strictness {
-    pub(super) const fn of(command: Command) -> Self {
+    pub(super) const fn of(command: RefereeCommand) -> Self {
         match command {
-            Command::Halt => Self::Halt,
-            Command::Stop | Command::Timeout(_) => Self::Stop,
+            RefereeCommand::Halt => Self::Halt,
+            RefereeCommand::Stop | RefereeCommand::Timeout(_) => Self::Stop,
             _ => Self::Play,
         }
     }
@@ -75,7 +75,7 @@ pub(super) struct Source {
     pub(super) state: GameState,
     pub(super) game: Game,
     /// Its newest command in order.
-    pub(super) command: Command,
+    pub(super) command: RefereeCommand,
     /// Why its last packet was out of order; none once a clock or counter that stepped is followed.
     doubted: Option<Doubted>,
     /// Step of its clock, µs, and when that was followed.
@@ -161,7 +161,7 @@ impl Source {
             received: now,
             state: GameState::new(),
             game: Game::default(),
-            command: Command::Halt,
+            command: RefereeCommand::Halt,
             doubted: None,
             stepped: None,
             newest,
@@ -296,7 +296,7 @@ impl Source {
     /// HALT and STOP are obeyed whether their stamp fits or not. True: the packet was one of them.
     fn restrain(&mut self, packet: &Referee, now: Instant) -> bool {
         let until = now + HOLD;
-        match Strictness::of(description::command_of(packet.command).unwrap_or(Command::Halt)) {
+        match Strictness::of(description::command_of(packet.command).unwrap_or(RefereeCommand::Halt)) {
             Strictness::Halt => self.halt_until = self.halt_until.max(until),
             Strictness::Stop => self.stop_until = self.stop_until.max(until),
             Strictness::Play => return false,
@@ -313,7 +313,7 @@ impl Source {
     ) {
         let command = description::command_of(packet.command).unwrap_or_else(|| {
             taken.unknown = Some(packet.command);
-            Command::Halt
+            RefereeCommand::Halt
         });
         let age = match packet.command_timestamp {
             NO_TIME => 0,

@@ -31,7 +31,7 @@ pub const PING_EVERY: Duration = Duration::millis(5_000);
 pub const RETRY_AFTER: Duration = Duration::millis(2_000);
 /// What a team may ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Request {
+pub enum TeamPortRequest {
     /// This robot is our goalkeeper from now on; granted while the ball is out of play or in their half.
     Keeper(RobotId),
     /// We request the substitution of a robot at the next opportunity, or withdraw the request.
@@ -47,7 +47,7 @@ pub enum Request {
 
 /// Events for the operator or the host.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Event {
+pub enum TeamPortEvent {
     /// The controller has accepted our registration; `verified`: by a signature.
     Registered {
         /// Whether the registration was verified by a signature.
@@ -59,11 +59,11 @@ pub enum Event {
         reason: String,
     },
     /// A request was granted.
-    Granted(Request),
+    Granted(TeamPortRequest),
     /// A request was refused.
     Refused {
         /// The request that was refused.
-        request: Request,
+        request: TeamPortRequest,
         /// The controller's reason, as text.
         reason: String,
     },
@@ -98,7 +98,7 @@ impl std::fmt::Display for Trouble {
 
 /// State of a connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stage {
+pub enum ConnectionStage {
     /// Not connected to the controller.
     Apart,
     /// Connected; the controller sends first.
@@ -114,14 +114,14 @@ pub enum Stage {
 pub struct TeamPort {
     name: String,
     colour: Colour,
-    stage: Stage,
+    stage: ConnectionStage,
     reader: FrameReader,
     token: Option<String>,
     out: VecDeque<Vec<u8>>,
-    events: VecDeque<Event>,
-    waiting: VecDeque<Request>,
+    events: VecDeque<TeamPortEvent>,
+    waiting: VecDeque<TeamPortRequest>,
     /// The request whose reply is awaited.
-    asked: Option<Request>,
+    asked: Option<TeamPortRequest>,
     /// When the next reply must have come, if one is due.
     deadline: Option<Instant>,
     /// Earliest time of the next attempt.
@@ -136,7 +136,7 @@ impl TeamPort {
         Self {
             name: name.into(),
             colour,
-            stage: Stage::Apart,
+            stage: ConnectionStage::Apart,
             reader: FrameReader::new(MESSAGE_MAX),
             token: None,
             out: VecDeque::new(),
@@ -150,7 +150,7 @@ impl TeamPort {
     }
 
     /// State of the connection.
-    pub fn stage(&self) -> Stage {
+    pub fn stage(&self) -> ConnectionStage {
         self.stage
     }
 
@@ -161,13 +161,13 @@ impl TeamPort {
 
     /// Whether the shell should (try to) connect now.
     pub fn wants_connection(&self, now: Instant) -> bool {
-        self.stage == Stage::Apart && now >= self.retry
+        self.stage == ConnectionStage::Apart && now >= self.retry
     }
 
     /// Handles an opened connection.
     pub fn connected(&mut self, now: Instant) {
         self.forget();
-        self.stage = Stage::KnownEpoch;
+        self.stage = ConnectionStage::KnownEpoch;
         self.deadline = Some(now + REPLY_TIME);
     }
 
@@ -178,7 +178,7 @@ impl TeamPort {
 
     /// Sends a request as soon as the client is registered and has the answer to the one before. A request
     /// takes the place of one of its kind that still waits, so no more wait than there are kinds.
-    pub fn ask(&mut self, request: Request, now: Instant) {
+    pub fn ask(&mut self, request: TeamPortRequest, now: Instant) {
         match self.waiting.iter_mut().find(|waiting| same_kind(**waiting, request)) {
             Some(waiting) => *waiting = request,
             None => self.waiting.push_back(request),
@@ -188,7 +188,7 @@ impl TeamPort {
 
     /// Takes bytes that were received, in pieces of any length.
     pub fn receive(&mut self, bytes: &[u8], now: Instant) {
-        if self.stage == Stage::Apart {
+        if self.stage == ConnectionStage::Apart {
             return;
         }
         self.reader.push(bytes);
@@ -204,7 +204,7 @@ impl TeamPort {
                 Err(broken) => return self.give_up(Trouble::NotTheTeamPort(broken.to_string()), now),
             };
             self.reply(reply, now);
-            if self.stage == Stage::Apart {
+            if self.stage == ConnectionStage::Apart {
                 return;
             }
         }
@@ -214,11 +214,11 @@ impl TeamPort {
     pub fn tick(&mut self, now: Instant) {
         if self.deadline.is_some_and(|deadline| now >= deadline) {
             self.give_up(Trouble::NoAnswer, now);
-        } else if self.stage == Stage::Registered
+        } else if self.stage == ConnectionStage::Registered
             && self.asked.is_none()
             && now.since(self.spoke) >= PING_EVERY
         {
-            self.ask(Request::Ping, now);
+            self.ask(TeamPortRequest::Ping, now);
         }
     }
 
@@ -229,7 +229,7 @@ impl TeamPort {
 
     /// Events, in order. On [`Event::GivenUp`] and [`Event::RegistrationRefused`] the shell closes the
     /// connection.
-    pub fn poll_event(&mut self) -> Option<Event> {
+    pub fn poll_event(&mut self) -> Option<TeamPortEvent> {
         self.events.pop_front()
     }
 
@@ -241,32 +241,34 @@ impl TeamPort {
         self.token = reply.next_token.or(self.token.take());
         self.deadline = None;
         match self.stage {
-            Stage::Apart => {}
-            Stage::KnownEpoch => {
+            ConnectionStage::Apart => {}
+            ConnectionStage::KnownEpoch => {
                 let registration = TeamRegistration {
                     team_name: self.name.clone(),
                     signature: None,
                     team: Some(team_of(self.colour) as i32),
                 };
-                self.stage = Stage::Registering;
+                self.stage = ConnectionStage::Registering;
                 self.send(delimited(&registration), now);
             }
-            Stage::Registering if rejected => {
+            ConnectionStage::Registering if rejected => {
                 self.forget();
                 self.retry = now + RETRY_AFTER;
-                self.events.push_back(Event::RegistrationRefused { reason });
+                self.events.push_back(TeamPortEvent::RegistrationRefused { reason });
             }
-            Stage::Registering => {
-                self.stage = Stage::Registered;
-                self.events.push_back(Event::Registered { verified });
+            ConnectionStage::Registering => {
+                self.stage = ConnectionStage::Registered;
+                self.events.push_back(TeamPortEvent::Registered { verified });
                 self.send_next(now);
             }
-            Stage::Registered => {
+            ConnectionStage::Registered => {
                 // A reply without a request changes nothing.
                 match self.asked.take() {
-                    None | Some(Request::Ping) => {}
-                    Some(request) if rejected => self.events.push_back(Event::Refused { request, reason }),
-                    Some(request) => self.events.push_back(Event::Granted(request)),
+                    None | Some(TeamPortRequest::Ping) => {}
+                    Some(request) if rejected => {
+                        self.events.push_back(TeamPortEvent::Refused { request, reason })
+                    }
+                    Some(request) => self.events.push_back(TeamPortEvent::Granted(request)),
                 }
                 self.send_next(now);
             }
@@ -274,18 +276,20 @@ impl TeamPort {
     }
 
     fn send_next(&mut self, now: Instant) {
-        if self.stage != Stage::Registered || self.asked.is_some() {
+        if self.stage != ConnectionStage::Registered || self.asked.is_some() {
             return;
         }
         let Some(request) = self.waiting.pop_front() else { return };
         let msg = match request {
-            Request::Keeper(id) => TeamRequest::DesiredKeeper(i32::from(id.number())),
-            Request::Substitute(wanted) => TeamRequest::SubstituteBot(wanted),
-            Request::Advantage { go_on: true } => {
+            TeamPortRequest::Keeper(id) => TeamRequest::DesiredKeeper(i32::from(id.number())),
+            TeamPortRequest::Substitute(wanted) => TeamRequest::SubstituteBot(wanted),
+            TeamPortRequest::Advantage { go_on: true } => {
                 TeamRequest::AdvantageChoice(AdvantageChoice::Continue as i32)
             }
-            Request::Advantage { go_on: false } => TeamRequest::AdvantageChoice(AdvantageChoice::Stop as i32),
-            Request::Ping => TeamRequest::Ping(true),
+            TeamPortRequest::Advantage { go_on: false } => {
+                TeamRequest::AdvantageChoice(AdvantageChoice::Stop as i32)
+            }
+            TeamPortRequest::Ping => TeamRequest::Ping(true),
         };
         self.asked = Some(request);
         self.send(delimited(&TeamToController { signature: None, msg: Some(msg) }), now);
@@ -307,22 +311,22 @@ impl TeamPort {
         }
         self.forget();
         self.retry = now + RETRY_AFTER;
-        self.events.push_back(Event::GivenUp(trouble));
+        self.events.push_back(TeamPortEvent::GivenUp(trouble));
     }
 
     /// Drops the connection's state; requests are kept, except pings.
     fn forget(&mut self) {
-        self.stage = Stage::Apart;
+        self.stage = ConnectionStage::Apart;
         self.reader = FrameReader::new(MESSAGE_MAX);
         self.token = None;
         self.out.clear();
         self.asked = None;
         self.deadline = None;
-        self.waiting.retain(|request| *request != Request::Ping);
+        self.waiting.retain(|request| *request != TeamPortRequest::Ping);
     }
 }
 
-fn same_kind(a: Request, b: Request) -> bool {
+fn same_kind(a: TeamPortRequest, b: TeamPortRequest) -> bool {
     std::mem::discriminant(&a) == std::mem::discriminant(&b)
 }
 

@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 
 use geometry::GoalEnd;
-use rules::state::{Received, Stage};
+use rules::state::{CommandVerdict, Stage};
 use rules::{Colour, League, Phase};
 use ssl::Message;
 use ssl::log::Packet;
@@ -28,7 +28,7 @@ fn listener() -> Listener {
 
 impl Listener {
     /// A packet of a referee in this program.
-    fn hears(&mut self, packet: &Referee, now: Instant, ball: Option<Point<Field>>) -> Verdict {
+    fn hears(&mut self, packet: &Referee, now: Instant, ball: Option<Point<Field>>) -> RefereeVerdict {
         self.receive(packet, SenderAddress::INTERNAL, now, ball)
     }
 }
@@ -48,9 +48,9 @@ fn packet(sent: u64, command: Wire, counter: u32) -> Referee {
     }
 }
 
-fn command(verdict: Verdict) -> Option<Received> {
+fn command(verdict: RefereeVerdict) -> Option<CommandVerdict> {
     match verdict {
-        Verdict::Taken(taken) => taken.command.map(|(_, received)| received),
+        RefereeVerdict::Taken(taken) => taken.command.map(|(_, received)| received),
         other => panic!("{other:?}"),
     }
 }
@@ -64,7 +64,7 @@ fn phases(name: &str) -> (Vec<Phase<Colour>>, Listener) {
         listener.tick(now, None);
         if let Ok(Some(Packet::Referee(packet))) = record.decode() {
             let verdict = listener.hears(&packet, now, None);
-            assert!(matches!(verdict, Verdict::Taken(_) | Verdict::Copy), "{verdict:?}");
+            assert!(matches!(verdict, RefereeVerdict::Taken(_) | RefereeVerdict::Copy), "{verdict:?}");
         }
         let phase = listener.game().phase;
         if phases.last() != Some(&phase) {
@@ -204,14 +204,14 @@ fn trap_04_a_rising_counter_is_no_changed_command() {
     };
     send(Wire::Stop, 1);
     send(Wire::PrepareKickoffYellow, 2);
-    assert_eq!(send(Wire::NormalStart, 3), (Some(Received::Followed), Phase::Kickoff(Y)));
-    assert_eq!(send(Wire::NormalStart, 4), (Some(Received::Repeated), Phase::Kickoff(Y)));
+    assert_eq!(send(Wire::NormalStart, 3), (Some(CommandVerdict::Followed), Phase::Kickoff(Y)));
+    assert_eq!(send(Wire::NormalStart, 4), (Some(CommandVerdict::Repeated), Phase::Kickoff(Y)));
     assert_eq!(send(Wire::NormalStart, 4), (None, Phase::Kickoff(Y)), "the same packet again is no command");
     send(Wire::Stop, 5);
     send(Wire::BallPlacementBlue, 6);
-    assert_eq!(send(Wire::BallPlacementBlue, 7), (Some(Received::Repeated), Phase::BallPlacement(B)));
+    assert_eq!(send(Wire::BallPlacementBlue, 7), (Some(CommandVerdict::Repeated), Phase::BallPlacement(B)));
     send(Wire::Halt, 8);
-    assert_eq!(send(Wire::Halt, 9), (Some(Received::Repeated), Phase::Halt));
+    assert_eq!(send(Wire::Halt, 9), (Some(CommandVerdict::Repeated), Phase::Halt));
 }
 
 #[test]
@@ -238,10 +238,10 @@ fn packets_out_of_order_and_copies_change_nothing() {
     let (run, halt) = (packet(0, Wire::ForceStart, 1), packet(40_000, Wire::Halt, 2));
     listener.hears(&run, Instant(S), None);
     listener.hears(&halt, Instant(S), None);
-    assert_eq!(listener.hears(&run, Instant(S), None), Verdict::Copy);
-    assert_eq!(listener.hears(&halt, Instant(S), None), Verdict::Copy);
+    assert_eq!(listener.hears(&run, Instant(S), None), RefereeVerdict::Copy);
+    assert_eq!(listener.hears(&halt, Instant(S), None), RefereeVerdict::Copy);
     let late = listener.hears(&packet(20_000, Wire::ForceStart, 1), Instant(S), None);
-    assert_eq!(late, Verdict::Doubted { doubt: Doubt::Old(Duration(20_000)), restrains: false });
+    assert_eq!(late, RefereeVerdict::Doubted { doubt: Doubt::Old(Duration(20_000)), restrains: false });
     assert_eq!(listener.game().phase, Phase::Halt);
     assert_eq!((listener.counts().old, listener.counts().copies, listener.counts().taken), (1, 2, 2));
 }
@@ -250,7 +250,8 @@ fn packets_out_of_order_and_copies_change_nothing() {
 fn commands_never_received_are_reported() {
     let mut listener = listener();
     listener.hears(&packet(S, Wire::Stop, 0), Instant(2 * S), None);
-    let Verdict::Taken(taken) = listener.hears(&packet(2 * S, Wire::ForceStart, 4), Instant(3 * S), None)
+    let RefereeVerdict::Taken(taken) =
+        listener.hears(&packet(2 * S, Wire::ForceStart, 4), Instant(3 * S), None)
     else {
         panic!("not taken")
     };
@@ -265,10 +266,12 @@ fn a_silent_source_is_succeeded_by_another() {
     other.source_identifier = Some("b".into());
     let identifier = |listener: &Listener| listener.source().and_then(|source| source.identifier.clone());
     let verdict = listener.hears(&other, Instant(2 * S), None);
-    assert!(matches!(verdict, Verdict::OtherSource { .. }), "{verdict:?}");
+    assert!(matches!(verdict, RefereeVerdict::OtherSource { .. }), "{verdict:?}");
     assert_eq!((listener.game().phase, identifier(&listener)), (Phase::Stop, Some("a".into())));
     other.packet_timestamp += S;
-    let Verdict::Taken(taken) = listener.hears(&other, Instant(3 * S), None) else { panic!("not taken") };
+    let RefereeVerdict::Taken(taken) = listener.hears(&other, Instant(3 * S), None) else {
+        panic!("not taken")
+    };
     assert_eq!(taken.new_source.flatten().and_then(|source| source.identifier), Some("a".into()));
     assert_eq!((listener.game().phase, identifier(&listener)), (Phase::Run, Some("b".into())));
 }
@@ -279,7 +282,9 @@ fn a_command_without_a_meaning_is_taken_for_halt() {
     listener.hears(&packet(0, Wire::ForceStart, 1), Instant(S), None);
     let mut odd = packet(S, Wire::Halt, 2);
     odd.command = 18;
-    let Verdict::Taken(taken) = listener.hears(&odd, Instant(2 * S), None) else { panic!("not taken") };
+    let RefereeVerdict::Taken(taken) = listener.hears(&odd, Instant(2 * S), None) else {
+        panic!("not taken")
+    };
     assert_eq!((taken.unknown, listener.game().phase), (Some(18), Phase::Halt));
 }
 

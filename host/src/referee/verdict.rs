@@ -3,13 +3,13 @@
 use std::fmt;
 
 use protocol::Duration;
-use rules::state::{Command, Received};
+use rules::state::{CommandVerdict, RefereeCommand};
 
 use super::identity::SourceKey;
 
 /// Numbers of packets by result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
+pub struct RefereeCounts {
     /// Packets in order, of the source that is followed.
     pub taken: u64,
     /// Commands among them, repeated ones too.
@@ -36,7 +36,7 @@ pub struct Counts {
 
 /// Result of a packet.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Verdict {
+pub enum RefereeVerdict {
     /// It was taken as the newest state.
     Taken(Taken),
     /// It is out of order.
@@ -88,7 +88,7 @@ impl fmt::Display for Doubt {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Taken {
     /// A command, and its effect.
-    pub command: Option<(Command, Received)>,
+    pub command: Option<(RefereeCommand, CommandVerdict)>,
     /// Commands that were never received, by the counter.
     pub missed: u32,
     /// The counter restarted: a new match, or another program.

@@ -5,7 +5,7 @@ use std::fmt;
 
 use protocol::{Duration, Instant};
 use rules::Phase;
-use rules::state::Command;
+use rules::state::RefereeCommand;
 
 use super::identity::{SourceKey, SourcePin};
 use super::verdict::Doubt;
@@ -19,11 +19,11 @@ pub enum Warning {
         /// The source that is followed.
         followed: SourceKey,
         /// Newest command of that source.
-        command: Command,
+        command: RefereeCommand,
         /// A source that contradicts it.
         other: SourceKey,
         /// Newest command of the other source.
-        others: Command,
+        others: RefereeCommand,
         /// The phase that robots obey.
         obeyed: Phase<rules::Colour>,
     },

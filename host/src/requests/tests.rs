@@ -19,7 +19,7 @@ fn stopped() -> View {
 }
 
 /// The requests in `seconds` of the same moment, checked every 0.1 s.
-fn asked(requests: &mut Requests, view: &mut View, seconds: f32) -> Vec<Request> {
+fn asked(requests: &mut Requests, view: &mut View, seconds: f32) -> Vec<TeamPortRequest> {
     let mut asked = Vec::new();
     for _ in 0..(seconds * 10.0) as u32 {
         view.now += Duration::millis(100);
@@ -38,7 +38,7 @@ fn a_keeper_that_is_gone_is_replaced_by_the_robot_nearest_to_our_goal_once_the_b
     view.phase = Phase::Run;
     assert_eq!(asked(&mut requests, &mut view, 10.0), [], "refused while play runs");
     view.phase = Phase::Stop;
-    let keeper = Request::Keeper(RobotId::ZERO);
+    let keeper = TeamPortRequest::Keeper(RobotId::ZERO);
     assert_eq!(asked(&mut requests, &mut view, 1.0), [keeper]);
     assert_eq!(asked(&mut requests, &mut view, 2.0), []);
     assert_eq!(asked(&mut requests, &mut view, 3.0), [keeper], "not granted: again");
@@ -51,11 +51,11 @@ fn a_substitution_is_wanted_when_a_robot_too_many_stays_on_the_field_and_not_whi
     let mut view = stopped().allowing(3);
     let mut requests = Requests::default();
     assert_eq!(asked(&mut requests, &mut view, 11.0), []);
-    assert_eq!(asked(&mut requests, &mut view, 2.0), [Request::Substitute(true)]);
+    assert_eq!(asked(&mut requests, &mut view, 2.0), [TeamPortRequest::Substitute(true)]);
     assert_eq!(asked(&mut requests, &mut view, 20.0), [], "once");
     // It is behind our goal line now, and does not count.
     view.ours[3].position = Point::new(-4.65, 1.5);
-    assert_eq!(asked(&mut requests, &mut view, 1.0), [Request::Substitute(false)]);
+    assert_eq!(asked(&mut requests, &mut view, 1.0), [TeamPortRequest::Substitute(false)]);
     // In play the controller gives us 10 s by itself.
     view.ours[3].position = Point::new(0.0, 1.5);
     view.phase = Phase::Run;
@@ -66,7 +66,7 @@ fn a_substitution_is_wanted_when_a_robot_too_many_stays_on_the_field_and_not_whi
 fn a_substitution_that_no_one_carries_out_is_asked_for_once_and_never_where_it_is_a_foul() {
     let mut view = stopped().allowing(3);
     let mut requests = Requests::default();
-    assert_eq!(asked(&mut requests, &mut view, 13.0), [Request::Substitute(true)]);
+    assert_eq!(asked(&mut requests, &mut view, 13.0), [TeamPortRequest::Substitute(true)]);
     for _ in 0..5 {
         // Halted for it, and stopped again with the robot where it was.
         view.phase = Phase::Halt;
@@ -86,7 +86,7 @@ fn a_substitution_that_no_one_carries_out_is_asked_for_once_and_never_where_it_i
 fn the_advantage_is_taken_while_they_are_too_many_and_we_attack() {
     let mut view = stopped();
     let mut requests = Requests::default();
-    let go_on = |go_on| [Request::Advantage { go_on }];
+    let go_on = |go_on| [TeamPortRequest::Advantage { go_on }];
     view.phase = Phase::PreparePenalty(Side::Ours);
     // Three count: the fourth is behind their goal line.
     let mut three = view.clone().allowing_them(3);

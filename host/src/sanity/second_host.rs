@@ -6,7 +6,7 @@ use std::fmt;
 use protocol::{Instant, RobotId};
 
 use crate::Host;
-use crate::radio::{RadioWarning, Why};
+use crate::radio::{RadioWarning, RefusalReason};
 
 /// Another host of our team number, with its evidence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,7 +59,7 @@ pub(super) fn look(now: Instant, host: &Host) -> Option<SecondHost> {
         RadioWarning::LaterHost(robot, epoch) if led_before(robot) => {
             Some((1, SecondHost::TookOver { robot, epoch }))
         }
-        RadioWarning::Refuses(robot, Why::Epoch) => Some((2, SecondHost::Refused { robot })),
+        RadioWarning::Refuses(robot, RefusalReason::Epoch) => Some((2, SecondHost::Refused { robot })),
         _ => None,
     });
     evidence.min_by_key(|(rank, _)| *rank).map(|(_, found)| found)

@@ -11,9 +11,9 @@ use geometry::{Angle, Attack, GoalEnd, Point};
 use protocol::{Duration, Instant, RobotId};
 use rules::{Phase, Side, limits};
 
-use super::order::{Order, Role, Task, Why};
+use super::order::{Order, OrderReason, Role, Task};
 use super::restart;
-use super::view::{ROBOTS_MAX, Robot, View};
+use super::view::{ROBOTS_MAX, View, ViewRobot};
 
 /// The robots that have left, or are leaving.
 #[derive(Clone, Debug, Default)]
@@ -59,7 +59,7 @@ impl Bench {
             });
             let at = nearest.map_or(robot.position, |i| free.swap_remove(i));
             let face = view.ball.map_or(Angle::ZERO, |ball| at.direction_to(ball.position));
-            let why = Why::TooMany { allowed: view.allowed };
+            let why = OrderReason::TooMany { allowed: view.allowed };
             let _ = orders.push(Order {
                 robot: robot.id,
                 role: Role::Leaving,
@@ -73,13 +73,13 @@ impl Bench {
     /// The next robot to leave: the one that can be out soonest, and is not needed at the ball or in a case.
     fn next(&self, view: &View, first: Option<RobotId>) -> Option<RobotId> {
         let places = waiting_places(view);
-        let cost = |robot: &Robot| {
+        let cost = |robot: &ViewRobot| {
             let out = places.iter().map(|at| at.distance(robot.position)).fold(f32::INFINITY, f32::min);
             let busy = if first == Some(robot.id) { FIRST_COST } else { 0.0 };
             let plays = if view.in_play.has(robot.id) { PLAYING_COST } else { 0.0 };
             out.min(FARTHEST) + busy + plays
         };
-        let may = |robot: &&Robot| robot.id != view.keeper && !self.off.contains(&robot.id);
+        let may = |robot: &&ViewRobot| robot.id != view.keeper && !self.off.contains(&robot.id);
         view.ours
             .iter()
             .filter(may)

@@ -26,12 +26,12 @@ use rules::{League, Phase, Side, contact};
 use super::bench::Bench;
 use super::counters::Sent;
 use super::opponents::{OpponentModel, Team};
-use super::order::{Order, Role, Task, Why};
+use super::order::{Order, OrderReason, Role, Task};
 use super::pass::{Kicks, PassConstants, Searches};
 use super::support::{self, Target};
 use super::tactics::Tactics;
 use super::threat;
-use super::view::{ROBOTS_MAX, Robot, View, nearest};
+use super::view::{ROBOTS_MAX, View, ViewRobot, nearest};
 use super::{restart, roles};
 use ahead::Ahead;
 use attack::Intent;
@@ -170,8 +170,10 @@ impl Coach {
         self.observe(view);
         let mut plan = Plan::new(view);
         match view.phase {
-            _ if self.team == Team::Idle => plan.all_robots(Role::Player, Task::Stand, Why::Idle),
-            Phase::Halt | Phase::Timeout(_) => plan.all_robots(Role::Player, Task::Stand, Why::Referee),
+            _ if self.team == Team::Idle => plan.all_robots(Role::Player, Task::Stand, OrderReason::Idle),
+            Phase::Halt | Phase::Timeout(_) => {
+                plan.all_robots(Role::Player, Task::Stand, OrderReason::Referee)
+            }
             Phase::Run => match &mut self.model {
                 Some(model) => {
                     plan.orders.extend(model.open_play(view, &mut plan.free, self.double_touch_blocked));
@@ -220,7 +222,7 @@ impl Coach {
         }
         if let (Some(pass), Some(ball)) = (self.pass, view.ball) {
             let age = view.now.since(pass.since);
-            let had = |robots: &[Robot], who: &dyn Fn(RobotId) -> bool| {
+            let had = |robots: &[ViewRobot], who: &dyn Fn(RobotId) -> bool| {
                 nearest(robots.iter().filter(|robot| who(robot.id)), ball.position)
                     .is_some_and(|(_, d)| d < TOUCHING)
             };
@@ -277,12 +279,20 @@ impl Coach {
         self.settled = Some(settled);
         let places: heapless::Vec<_, ROBOTS_MAX> = rated.iter().map(|(at, _)| *at).collect();
         self.fill(plan, &places, |i| {
-            (Role::Support(i as u8), Why::FreePlace { worth: rated.get(i).map_or(0.0, |(_, worth)| *worth) })
+            (
+                Role::Support(i as u8),
+                OrderReason::FreePlace { worth: rated.get(i).map_or(0.0, |(_, worth)| *worth) },
+            )
         });
     }
 
     /// Sends remaining robots to places in order; a robot that had a place keeps it.
-    fn fill(&mut self, plan: &mut Plan<'_>, places: &[Point<Attack>], what: impl Fn(usize) -> (Role, Why)) {
+    fn fill(
+        &mut self,
+        plan: &mut Plan<'_>,
+        places: &[Point<Attack>],
+        what: impl Fn(usize) -> (Role, OrderReason),
+    ) {
         let places: heapless::Vec<_, ROBOTS_MAX> = places.iter().map(|at| plan.kept_off(*at)).collect();
         let wanted = places.len().min(plan.free.len());
         self.others = roles::assign(plan.view, &mut plan.free, &places[..wanted], &self.others);

@@ -4,8 +4,8 @@
 use geometry::{Angle, Attack, Point, Vector};
 use protocol::host::KickOrder;
 
-use super::order::{Task, Why};
-use super::view::{Ball, View, nearest};
+use super::order::{OrderReason, Task};
+use super::view::{View, ViewBall, nearest};
 
 /// The line on which the keeper blocks the ball: before the opening of our goal, post to post.
 pub fn keeper_line(view: &View) -> Task {
@@ -20,24 +20,24 @@ pub fn keeper_on_goal_line(view: &View) -> Task {
 }
 
 /// The keeper's task in open play: clears a ball that lies in our area, else guards.
-pub fn keeper(view: &View) -> (Task, Why) {
-    let Some(ball) = view.ball else { return (keeper_line(view), Why::NoBall) };
+pub fn keeper(view: &View) -> (Task, OrderReason) {
+    let Some(ball) = view.ball else { return (keeper_line(view), OrderReason::NoBall) };
     let slow = ball.velocity.norm() < LYING && ball.height < ON_THE_GROUND;
     if slow && view.in_our_area(ball.position, 0.0) && ball.position.x() > view.our_goal().x() {
         let (at, kick, room) = clearance(view, &ball);
-        return (Task::Kick { at, kick }, Why::ClearsArea { room });
+        return (Task::Kick { at, kick }, OrderReason::ClearsArea { room });
     }
-    (keeper_line(view), Why::OnBallLine { y: crossing(view, &ball) })
+    (keeper_line(view), OrderReason::OnBallLine { y: crossing(view, &ball) })
 }
 
 /// Where the ball's path would cross our goal line, or the ball's line to the middle while it does not come.
-fn crossing(view: &View, ball: &Ball) -> f32 {
+fn crossing(view: &View, ball: &ViewBall) -> f32 {
     let (goal, v) = (view.our_goal(), ball.velocity);
     if v.x() < -LYING { ball.position.y() + v.y() * (goal.x() - ball.position.x()) / v.x() } else { goal.y() }
 }
 
 /// Target, kick and room of a clearance: to the teammate or the wing with the freest path.
-pub fn clearance(view: &View, ball: &Ball) -> (Point<Attack>, KickOrder, f32) {
+pub fn clearance(view: &View, ball: &ViewBall) -> (Point<Attack>, KickOrder, f32) {
     let wings = [1.0_f32, -1.0].map(|side| {
         Point::new(ball.position.x() + CLEAR_AHEAD, side * (view.field.width * 0.5 - CLEAR_INSIDE))
     });
@@ -55,7 +55,7 @@ pub fn clearance(view: &View, ball: &Ball) -> (Point<Attack>, KickOrder, f32) {
 
 /// The same for a ball that lies before our area: away from the goal, so that the keeper approaches it from
 /// its goal and stays between the two; turned by up to 30° to where there is room.
-pub fn clearance_outwards(view: &View, ball: &Ball) -> (Point<Attack>, KickOrder, f32) {
+pub fn clearance_outwards(view: &View, ball: &ViewBall) -> (Point<Attack>, KickOrder, f32) {
     let out = (ball.position - view.our_goal()).unit().unwrap_or(Vector::new(1.0, 0.0));
     let turned = |turn: f32| {
         let at = ball.position + out.rotated(Angle::new(turn)) * CLEAR_AHEAD;
@@ -72,8 +72,8 @@ pub fn clearance_outwards(view: &View, ball: &Ball) -> (Point<Attack>, KickOrder
 /// line up behind it, else along the area's edge. `off`: distance of the robot's centre from the area, m.
 pub fn clearance_beside(
     view: &View,
-    who: &super::view::Robot,
-    ball: &Ball,
+    who: &super::view::ViewRobot,
+    ball: &ViewBall,
     off: f32,
 ) -> (Point<Attack>, KickOrder, f32) {
     let out = (ball.position - view.our_goal()).unit().unwrap_or(Vector::new(1.0, 0.0));
@@ -101,7 +101,7 @@ pub fn clearance_beside(
 
 /// Rolls to the target, and no farther than the halfway line: a kick across it and over their goal line
 /// counts as an aimless kick.
-fn clearing_kick(ball: &Ball, at: Point<Attack>, room: f32) -> KickOrder {
+fn clearing_kick(ball: &ViewBall, at: Point<Attack>, room: f32) -> KickOrder {
     let flat = super::support::push_kick(at.distance(ball.position));
     if room > ROOM_FOR_FLAT { flat } else { KickOrder::Chip(CLEAR_CHIP) }
 }
@@ -113,9 +113,12 @@ pub fn room_along(view: &View, from: Point<Attack>, to: Point<Attack>) -> f32 {
 }
 
 /// Places of two defenders: side by side at the edge of our area, across the line from the ball to our goal.
-pub fn defenders(view: &View) -> ([Point<Attack>; 2], Why) {
+pub fn defenders(view: &View) -> ([Point<Attack>; 2], OrderReason) {
     let Some(ball) = view.ball else {
-        return ([at_edge(view, Vector::new(1.0, 0.3)), at_edge(view, Vector::new(1.0, -0.3))], Why::NoBall);
+        return (
+            [at_edge(view, Vector::new(1.0, 0.3)), at_edge(view, Vector::new(1.0, -0.3))],
+            OrderReason::NoBall,
+        );
     };
     let goal = view.our_goal();
     let mut to_ball = view.clamp(ball.position, 0.0) - goal;
@@ -131,7 +134,10 @@ pub fn defenders(view: &View) -> ([Point<Attack>; 2], Why) {
         off += 0.01;
     }
     let middle = middle.clamp(off, edge.length() - off);
-    ([edge.point(middle + off), edge.point(middle - off)], Why::OnBallLine { y: crossing(view, &ball) })
+    (
+        [edge.point(middle + off), edge.point(middle - off)],
+        OrderReason::OnBallLine { y: crossing(view, &ball) },
+    )
 }
 
 /// The edge of our area, grown by [`EDGE`]: from the goal line at −y around to the goal line at +y, by its
@@ -188,7 +194,7 @@ fn at_edge(view: &View, direction: Vector<Attack>) -> Point<Attack> {
 /// Places between opponents and our goal, for the unmarked opponents nearest to it.
 pub fn marks(view: &View) -> heapless::Vec<(Point<Attack>, protocol::RobotId), { super::view::ROBOTS_MAX }> {
     let goal = view.our_goal();
-    let danger = |robot: &super::view::Robot| robot.position.distance(goal);
+    let danger = |robot: &super::view::ViewRobot| robot.position.distance(goal);
     let mut them: heapless::Vec<_, { super::view::ROBOTS_MAX }> = view
         .theirs
         .iter()
@@ -196,7 +202,7 @@ pub fn marks(view: &View) -> heapless::Vec<(Point<Attack>, protocol::RobotId), {
         .filter(|robot| view.ball.is_none_or(|ball| ball.position.distance(robot.position) > AT_BALL))
         .collect();
     them.sort_unstable_by(|a, b| danger(a).total_cmp(&danger(b)).then(a.id.cmp(&b.id)));
-    let place = |robot: &&super::view::Robot| {
+    let place = |robot: &&super::view::ViewRobot| {
         let home = (goal - robot.position).unit().unwrap_or_default();
         let at = robot.position + home * MARK_OFF;
         let out = if view.in_our_area(at, EDGE) { at_edge(view, at - goal) } else { at };

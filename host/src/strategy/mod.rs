@@ -27,6 +27,6 @@ pub mod view;
 
 pub use coach::{Coach, Orders};
 pub use opponents::Team;
-pub use order::{Order, Role, Task, Why};
+pub use order::{Order, OrderReason, Role, Task};
 pub use tactics::Tactics;
 pub use view::{Flip, View};

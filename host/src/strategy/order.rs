@@ -21,7 +21,7 @@ pub struct Order {
     /// Its task, in the attack frame.
     pub task: Task,
     /// Reason of role and task, with its numbers.
-    pub why: Why,
+    pub why: OrderReason,
 }
 
 /// A robot's role in the team at this moment.
@@ -53,7 +53,7 @@ pub enum Role {
 
 /// The reason of an order, with its numbers; SI units, attack frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Why {
+pub enum OrderReason {
     /// The referee's command requires it.
     Referee,
     /// Nearest to the ball: this many seconds away.
@@ -214,7 +214,7 @@ impl Task {
     }
 }
 
-impl fmt::Display for Why {
+impl fmt::Display for OrderReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::Referee => f.write_str("required by the referee's command"),
@@ -269,15 +269,15 @@ mod tests {
     #[test]
     fn a_reason_is_reported_with_its_numbers() {
         let marker = RobotId::new(3).unwrap();
-        assert_eq!(Why::Coerces { marker }.to_string(), "opponent 3 follows it, out of the play");
-        let chances = Why::Chances { receive: 0.75, goal: 0.2 };
+        assert_eq!(OrderReason::Coerces { marker }.to_string(), "opponent 3 follows it, out of the play");
+        let chances = OrderReason::Chances { receive: 0.75, goal: 0.2 };
         assert_eq!(chances.to_string(), "the best pass: received with 0.75, then a goal with 0.20");
         let part = CaseRobot::new(1).unwrap();
-        let of_case = Why::OfCase { case: CaseId(12), part, moved: 0.31, receive: 0.75, goal: 0.2 };
+        let of_case = OrderReason::OfCase { case: CaseId(12), part, moved: 0.31, receive: 0.75, goal: 0.2 };
         let description =
             "tm2 of case 12, its pass moved by 0.31 m: received with 0.75, then a goal with 0.20";
         assert_eq!(of_case.to_string(), description);
-        let held = Why::Threat(Guards::Held { opponent: marker, primaries_off: 0.5 });
+        let held = OrderReason::Threat(Guards::Held { opponent: marker, primaries_off: 0.5 });
         assert!(held.to_string().contains("0.50 m"), "{held}");
     }
 

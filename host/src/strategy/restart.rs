@@ -7,9 +7,9 @@ use geometry::{Angle, Attack, Point, Segment, Vector};
 use rules::Phase;
 use rules::limits::{NEAR_MARK, ROBOT_RADIUS};
 
-use super::order::{Task, Why};
+use super::order::{OrderReason, Task};
 use super::support::{self, Target};
-use super::view::{Ball, View};
+use super::view::{View, ViewBall};
 
 /// Distance of robots from a ball that is not in play, m: the rules' 0.5 m, a body, the overshoot of robots,
 /// and the path of a ball kicked at them before all know that it is in play (6 m/s for 20 ms).
@@ -42,20 +42,22 @@ pub fn kicker_waits(view: &View, ball: Point<Attack>) -> Point<Attack> {
 
 /// Our taker's task for its target; without one it waits behind the ball until its teammates have taken their
 /// places.
-pub fn take(view: &View, ball: &Ball, target: Option<Target>) -> (Task, Why) {
+pub fn take(view: &View, ball: &ViewBall, target: Option<Target>) -> (Task, OrderReason) {
     let distance = |at: Point<Attack>| at.distance(ball.position);
     match target {
         None => {
             let at = kicker_waits(view, ball.position);
-            (Task::GoTo { at, face: at.direction_to(ball.position) }, Why::Referee)
+            (Task::GoTo { at, face: at.direction_to(ball.position) }, OrderReason::Referee)
         }
-        Some(Target::Shot { at, room }) => (Task::Kick { at, kick: support::SHOT }, Why::BestTarget { room }),
+        Some(Target::Shot { at, room }) => {
+            (Task::Kick { at, kick: support::SHOT }, OrderReason::BestTarget { room })
+        }
         Some(Target::Ahead { at, room }) => {
-            (Task::Kick { at, kick: support::push_kick(distance(at)) }, Why::BestTarget { room })
+            (Task::Kick { at, kick: support::push_kick(distance(at)) }, OrderReason::BestTarget { room })
         }
         Some(Target::Teammate { id, at, room }) => {
             let kick = support::pass_kick(distance(at));
-            (Task::Pass { at, receiver: id, kick, ready: true }, Why::BestTarget { room })
+            (Task::Pass { at, receiver: id, kick, ready: true }, OrderReason::BestTarget { room })
         }
     }
 }
@@ -74,7 +76,7 @@ pub fn kickoff_places(view: &View) -> [Point<Attack>; 6] {
 }
 
 /// Place of the wall at their restart: on the line from the ball to our goal.
-pub fn wall(view: &View, ball: &Ball) -> Point<Attack> {
+pub fn wall(view: &View, ball: &ViewBall) -> Point<Attack> {
     let home = (view.our_goal() - ball.position).unit().unwrap_or(Vector::new(-1.0, 0.0));
     ball.position + home * OFF_BALL
 }

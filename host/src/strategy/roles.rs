@@ -9,11 +9,11 @@ use geometry::{Attack, Point};
 use protocol::RobotId;
 use rules::RobotSpec;
 
-use super::view::{Robot, View};
+use super::view::{View, ViewRobot};
 
 /// Estimated time until `robot` could be at `place`, s: at its top speed, after the time it needs to get
 /// there.
-pub fn time_to(robot: &Robot, place: Point<Attack>) -> f32 {
+pub fn time_to(robot: &ViewRobot, place: Point<Attack>) -> f32 {
     let offset = place - robot.position;
     let distance = offset.norm();
     let closing = offset.unit().map_or(0.0, |along| robot.velocity.dot(along));
@@ -24,10 +24,10 @@ pub fn time_to(robot: &Robot, place: Point<Attack>) -> f32 {
 /// The robot of `robots` with the least `cost`; `held` is kept unless another one is better by more than
 /// `worth`.
 pub fn choose<'r>(
-    robots: impl Iterator<Item = &'r Robot>,
+    robots: impl Iterator<Item = &'r ViewRobot>,
     held: Option<RobotId>,
     worth: f32,
-    cost: impl Fn(&Robot) -> f32,
+    cost: impl Fn(&ViewRobot) -> f32,
 ) -> Option<(RobotId, f32)> {
     let mut best: Option<(RobotId, f32)> = None;
     let mut kept = None;
@@ -87,7 +87,7 @@ mod tests {
     fn a_role_is_held_until_another_robot_gains_enough() {
         let view = view((0.0, 0.0), &[(1.0, 0.0), (0.9, 0.0)], &[]);
         let id = |n| RobotId::new(n);
-        let cost = |robot: &Robot| robot.position.distance(Point::new(0.0, 0.0));
+        let cost = |robot: &ViewRobot| robot.position.distance(Point::new(0.0, 0.0));
         assert_eq!(choose(view.ours.iter(), None, 0.3, cost).unwrap().0, id(1).unwrap());
         assert_eq!(choose(view.ours.iter(), id(0), 0.3, cost).unwrap().0, id(0).unwrap());
         assert_eq!(choose(view.ours.iter(), id(0), 0.05, cost).unwrap().0, id(1).unwrap());

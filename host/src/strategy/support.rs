@@ -7,7 +7,7 @@ use protocol::RobotId;
 use protocol::host::KickOrder;
 
 use super::defence::room_along;
-use super::view::{ROBOTS_MAX, Robot, View};
+use super::view::{ROBOTS_MAX, View, ViewRobot};
 
 /// Places for teammates of a robot with the ball at `ball`, best first, apart from each other; with their
 /// value, 0–1.
@@ -98,7 +98,7 @@ pub fn target(view: &View, kicker: RobotId, ball: Point<Attack>) -> Target {
     if room > ROOM_TO_SHOOT && ball.distance(view.their_goal()) < SHOOT_WITHIN {
         return Target::Shot { at: shot, room };
     }
-    let receivable = |teammate: &&Robot| {
+    let receivable = |teammate: &&ViewRobot| {
         teammate.id != kicker
             && teammate.id != view.keeper
             && view.clamp(teammate.position, INSIDE) == teammate.position

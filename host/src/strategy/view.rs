@@ -57,7 +57,7 @@ impl Flip {
 
 /// The ball, in the attack frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ball {
+pub struct ViewBall {
     /// Its place on the ground.
     pub position: Point<Attack>,
     /// Velocity along the ground, m/s.
@@ -68,7 +68,7 @@ pub struct Ball {
     pub height: f32,
 }
 
-impl Ball {
+impl ViewBall {
     /// A ball at standstill.
     pub fn at_rest(position: Point<Attack>) -> Self {
         Self { position, velocity: Vector::default(), rest: position, height: 0.0 }
@@ -77,7 +77,7 @@ impl Ball {
 
 /// A robot, in the attack frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Robot {
+pub struct ViewRobot {
     /// The robot's number in its team.
     pub id: RobotId,
     /// Position of its centre, m.
@@ -88,7 +88,7 @@ pub struct Robot {
     pub velocity: Vector<Attack>,
 }
 
-impl Robot {
+impl ViewRobot {
     /// A robot that stands still, facing the goal we attack.
     pub fn at_rest(id: RobotId, position: Point<Attack>) -> Self {
         Self { id, position, heading: Angle::ZERO, velocity: Vector::default() }
@@ -97,7 +97,7 @@ impl Robot {
 
 /// State of the game by the referee, by side (ours or theirs).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Game {
+pub struct ViewGame {
     /// The phase of the game.
     pub phase: Phase<Side>,
     /// The phase that will start next, if the referee sends it.
@@ -124,15 +124,15 @@ pub struct View {
     /// Where the ball is to be placed, while it is.
     pub placement: Option<Point<Attack>>,
     /// The ball, if its place is known.
-    pub ball: Option<Ball>,
+    pub ball: Option<ViewBall>,
     /// Our robots on the field that can be commanded, by id.
-    pub ours: heapless::Vec<Robot, ROBOTS_MAX>,
+    pub ours: heapless::Vec<ViewRobot, ROBOTS_MAX>,
     /// Number of further robots of ours that count on the field although they cannot be commanded.
     pub uncommanded: usize,
     /// Number of those that have never answered since this start of the host.
     pub never_answered: usize,
     /// Their robots, by id.
-    pub theirs: heapless::Vec<Robot, ROBOTS_MAX>,
+    pub theirs: heapless::Vec<ViewRobot, ROBOTS_MAX>,
     /// Our keeper's number, by the referee.
     pub keeper: RobotId,
     /// Their keeper's number, by the referee.
@@ -154,13 +154,13 @@ impl View {
     pub fn of(
         world: &World,
         us: Colour,
-        game: &Game,
+        game: &ViewGame,
         field: FieldSpec,
         fit: RobotSet,
         in_play: RobotSet,
     ) -> Self {
         let flip = Flip::defending(game.defending);
-        let robot = |robot: &crate::world::Robot| Robot {
+        let robot = |robot: &crate::world::Robot| ViewRobot {
             id: robot.who.id,
             position: flip.point(robot.pose.position),
             heading: flip.angle(robot.pose.heading),
@@ -171,7 +171,7 @@ impl View {
             phase: game.phase,
             next: game.next,
             placement: game.placement.map(|at| flip.point(at)),
-            ball: world.ball.map(|ball| Ball {
+            ball: world.ball.map(|ball| ViewBall {
                 position: flip.point(ball.position),
                 velocity: flip.vector(ball.velocity),
                 rest: flip.point(ball.rest(&world.models)),
@@ -202,13 +202,13 @@ impl View {
         ours: impl IntoIterator<Item = Point<Attack>>,
         theirs: impl IntoIterator<Item = Point<Attack>>,
     ) -> Self {
-        let robot = |(id, position)| Robot::at_rest(id, position);
+        let robot = |(id, position)| ViewRobot::at_rest(id, position);
         Self {
             now: Instant(1_000_000),
             phase: Phase::Run,
             next: None,
             placement: None,
-            ball: Some(Ball::at_rest(ball)),
+            ball: Some(ViewBall::at_rest(ball)),
             ours: RobotId::all().zip(ours).map(robot).collect(),
             uncommanded: 0,
             never_answered: 0,
@@ -257,7 +257,7 @@ impl View {
     }
 
     /// Our robot of that number.
-    pub fn our(&self, id: RobotId) -> Option<&Robot> {
+    pub fn our(&self, id: RobotId) -> Option<&ViewRobot> {
         self.ours.iter().find(|robot| robot.id == id)
     }
 
@@ -287,7 +287,7 @@ impl View {
     }
 
     /// The opponent nearest to `point`, with its distance, m.
-    pub fn nearest_theirs(&self, point: Point<Attack>) -> Option<(&Robot, f32)> {
+    pub fn nearest_theirs(&self, point: Point<Attack>) -> Option<(&ViewRobot, f32)> {
         nearest(self.theirs.iter(), point)
     }
 
@@ -300,9 +300,9 @@ impl View {
 
 /// The robot nearest to `point`; the first one among equals.
 pub fn nearest<'r>(
-    robots: impl Iterator<Item = &'r Robot>,
+    robots: impl Iterator<Item = &'r ViewRobot>,
     point: Point<Attack>,
-) -> Option<(&'r Robot, f32)> {
+) -> Option<(&'r ViewRobot, f32)> {
     robots
         .map(|robot| (robot, robot.position.distance(point)))
         .reduce(|best, next| if next.1 < best.1 { next } else { best })

@@ -67,7 +67,7 @@ use crate::world::{BallModels, World};
 
 /// Settings of a tracker.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
+pub struct TrackingSettings {
     /// Noise of robots' detections.
     pub robots: RobotNoise,
     /// Standard deviation of a ball's coordinate, m.
@@ -76,7 +76,7 @@ pub struct Settings {
     pub models: BallModels,
 }
 
-impl Default for Settings {
+impl Default for TrackingSettings {
     /// Noise of the noisiest recording (see [`RobotNoise`]; balls 3.1 mm there, 1.5 mm in ER-Force's).
     fn default() -> Self {
         Self { robots: RobotNoise::default(), ball: 0.003, models: BallModels::default() }
@@ -85,7 +85,7 @@ impl Default for Settings {
 
 /// Result of a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Received {
+pub enum VisionVerdict {
     /// It contains no camera frame.
     NoImage,
     /// It is the newest camera frame.
@@ -106,7 +106,7 @@ pub enum Received {
 
 /// Numbers of packets by result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub struct Counts {
+pub struct TrackingCounts {
     /// Packets without a camera frame.
     pub no_image: u64,
     /// Camera frames that were the newest when they came, restarts included.
@@ -127,7 +127,7 @@ pub struct Counts {
     pub geometry_refused: u64,
 }
 
-impl Counts {
+impl TrackingCounts {
     /// Number of all packets.
     pub fn packets(&self) -> u64 {
         self.no_image + self.images()
@@ -138,16 +138,16 @@ impl Counts {
         self.newest + self.reordered + self.repeated + self.late + self.nonsense + self.foreign
     }
 
-    fn count(&mut self, received: Received) {
+    fn count(&mut self, received: VisionVerdict) {
         *match received {
-            Received::NoImage => &mut self.no_image,
-            Received::Newest => &mut self.newest,
-            Received::Reordered(_) => &mut self.reordered,
-            Received::Repeated => &mut self.repeated,
-            Received::Late(_) => &mut self.late,
-            Received::Nonsense => &mut self.nonsense,
-            Received::ForeignClock => &mut self.foreign,
-            Received::Restarted => {
+            VisionVerdict::NoImage => &mut self.no_image,
+            VisionVerdict::Newest => &mut self.newest,
+            VisionVerdict::Reordered(_) => &mut self.reordered,
+            VisionVerdict::Repeated => &mut self.repeated,
+            VisionVerdict::Late(_) => &mut self.late,
+            VisionVerdict::Nonsense => &mut self.nonsense,
+            VisionVerdict::ForeignClock => &mut self.foreign,
+            VisionVerdict::Restarted => {
                 self.restarts += 1;
                 &mut self.newest
             }
@@ -175,7 +175,7 @@ struct State {
 }
 
 impl State {
-    fn see(&mut self, frame: &Frame, scene: &Scene, settings: &Settings) {
+    fn see(&mut self, frame: &Frame, scene: &Scene, settings: &TrackingSettings) {
         self.nonsense += u64::from(frame.nonsense);
         self.robots.see(&frame.robots, frame.at, settings.robots);
         let around = Around { robots: &self.robots, scene, sigma: settings.ball };
@@ -186,25 +186,25 @@ impl State {
 /// Turns camera frames into a world model.
 #[derive(Clone, Debug)]
 pub struct Tracker {
-    settings: Settings,
+    settings: TrackingSettings,
     scene: Scene,
     clock: Clock,
     timeline: Timeline<State>,
     state: State,
     /// The present camera frame, kept to reuse its memory.
     frame: Frame,
-    counts: Counts,
+    counts: TrackingCounts,
 }
 
 impl Default for Tracker {
     fn default() -> Self {
-        Self::new(Settings::default())
+        Self::new(TrackingSettings::default())
     }
 }
 
 impl Tracker {
     /// A tracker without input yet.
-    pub fn new(settings: Settings) -> Self {
+    pub fn new(settings: TrackingSettings) -> Self {
         let state = State::default();
         Self {
             settings,
@@ -213,28 +213,29 @@ impl Tracker {
             timeline: Timeline::new(state),
             state,
             frame: Frame::empty(),
-            counts: Counts::default(),
+            counts: TrackingCounts::default(),
         }
     }
 
     /// Takes a packet that came at `arrived`, our clock.
-    pub fn handle(&mut self, packet: &WrapperPacket, arrived: Instant) -> Received {
+    pub fn handle(&mut self, packet: &WrapperPacket, arrived: Instant) -> VisionVerdict {
         if let Some(geometry) = &packet.geometry {
             self.counts.geometry_refused += u64::from(self.scene.receive(geometry).is_err());
         }
-        let received = packet.detection.as_ref().map_or(Received::NoImage, |image| self.see(image, arrived));
+        let received =
+            packet.detection.as_ref().map_or(VisionVerdict::NoImage, |image| self.see(image, arrived));
         self.counts.count(received);
         received
     }
 
-    fn see(&mut self, image: &DetectionFrame, arrived: Instant) -> Received {
+    fn see(&mut self, image: &DetectionFrame, arrived: Instant) -> VisionVerdict {
         if !self.frame.read(image) {
-            return Received::Nonsense;
+            return VisionVerdict::Nonsense;
         }
         let at = self.frame.at;
         let mut restarted = match self.clock.judge(at, arrived) {
             Judgement::Ours => false,
-            Judgement::Foreign => return Received::ForeignClock,
+            Judgement::Foreign => return VisionVerdict::ForeignClock,
             Judgement::Restart => true,
         };
         let mut placed = self.place(restarted);
@@ -245,14 +246,14 @@ impl Tracker {
             placed = self.place(restarted);
         }
         match placed {
-            Placed::Repeated => return Received::Repeated,
-            Placed::Late(by) => return Received::Late(Duration(by.unsigned_abs())),
+            Placed::Repeated => return VisionVerdict::Repeated,
+            Placed::Late(by) => return VisionVerdict::Late(Duration(by.unsigned_abs())),
             Placed::Newest | Placed::Before(_) => self.clock.receive(at, captured(image.t_sent), arrived),
         }
         match placed {
-            _ if restarted => Received::Restarted,
-            Placed::Before(newer) => Received::Reordered(newer),
-            _ => Received::Newest,
+            _ if restarted => VisionVerdict::Restarted,
+            Placed::Before(newer) => VisionVerdict::Reordered(newer),
+            _ => VisionVerdict::Newest,
         }
     }
 
@@ -306,7 +307,7 @@ impl Tracker {
     }
 
     /// Counts of packets so far.
-    pub fn counts(&self) -> &Counts {
+    pub fn counts(&self) -> &TrackingCounts {
         &self.counts
     }
 

@@ -1,7 +1,7 @@
 //! `clocks`: tests: tracking is independent of vision's clock and its jumps.
 
 use geometry::Point;
-use host::tracking::{Received, Tracker};
+use host::tracking::{Tracker, VisionVerdict};
 use protocol::{Duration, Instant};
 use rules::Colour::Yellow;
 
@@ -44,7 +44,7 @@ fn the_snapshot_is_carried_to_the_moment_asked_for() {
 
 /// Feeds camera frames whose clock is `epoch` ahead of ours from `from` to `to`, our time, and returns the
 /// results.
-fn run(tracker: &mut Tracker, epoch: f64, from: f64, to: f64) -> Vec<Received> {
+fn run(tracker: &mut Tracker, epoch: f64, from: f64, to: f64) -> Vec<VisionVerdict> {
     let mut stadium = Stadium { epoch, ..Stadium::one_camera(33) };
     let images = stadium.images(from, to, truth);
     images.iter().map(|(t, packet)| tracker.handle(packet, arrival(*t))).collect()
@@ -56,9 +56,9 @@ fn a_simulator_that_begins_again_is_followed_within_a_quarter_of_a_second() {
         let mut tracker = Tracker::default();
         run(&mut tracker, 100.0, 0.0, 3.0);
         let received = run(&mut tracker, 100.0 + epoch, 3.0, 4.0);
-        let restart = received.iter().position(|received| *received == Received::Restarted);
+        let restart = received.iter().position(|received| *received == VisionVerdict::Restarted);
         assert!(restart.is_some_and(|images| images as f64 / RATE < 0.25), "{epoch}: {restart:?}");
-        assert!(received[restart.unwrap() + 1..].iter().all(|received| *received == Received::Newest));
+        assert!(received[restart.unwrap() + 1..].iter().all(|received| *received == VisionVerdict::Newest));
         assert_eq!(tracker.counts().restarts, 1);
         let ball = tracker.snapshot().ball.unwrap();
         assert!(ball.position.distance(Point::new(2.0 - 1.0 / RATE as f32, 0.5)) < 0.02, "{epoch}: {ball:?}");
@@ -70,12 +70,12 @@ fn a_clock_set_back_by_less_than_a_second_is_followed_too() {
     let mut tracker = Tracker::default();
     run(&mut tracker, 100.0, 0.0, 3.0);
     let received = run(&mut tracker, 99.29, 3.0, 4.5);
-    let restart = received.iter().position(|received| *received == Received::Restarted);
+    let restart = received.iter().position(|received| *received == VisionVerdict::Restarted);
     assert!(restart.is_some_and(|images| images as f64 / RATE < 0.55), "{restart:?}");
     assert!(
         received[..restart.unwrap()]
             .iter()
-            .all(|received| matches!(received, Received::Late(_) | Received::Repeated))
+            .all(|received| matches!(received, VisionVerdict::Late(_) | VisionVerdict::Repeated))
     );
 }
 
@@ -84,7 +84,7 @@ fn after_ten_seconds_without_vision_the_snapshot_comes_back_at_once() {
     let mut tracker = Tracker::default();
     run(&mut tracker, 50.0, 0.0, 1.0);
     let received = run(&mut tracker, 50.0, 11.0, 11.2);
-    assert!(received.iter().all(|received| *received == Received::Newest), "{received:?}");
+    assert!(received.iter().all(|received| *received == VisionVerdict::Newest), "{received:?}");
     let ball = tracker.snapshot().ball.unwrap();
     assert!(ball.position.distance(Point::new(9.2 - 1.0 / RATE as f32, 0.5)) < 0.02, "{ball:?}");
     assert!(tracker.snapshot().robot(who(Yellow, 3)).is_some());
@@ -96,7 +96,7 @@ fn a_simulator_that_stood_still_for_ten_seconds_goes_on_and_is_not_ten_seconds_l
     run(&mut tracker, 50.0, 0.0, 1.0);
     // Its clock continues where it stood.
     let received = run(&mut tracker, 40.0, 11.0, 12.0);
-    assert!(received.iter().all(|received| *received == Received::Newest), "{received:?}");
+    assert!(received.iter().all(|received| *received == VisionVerdict::Newest), "{received:?}");
     assert!(tracker.delay() < Duration::millis(10), "{:?}", tracker.delay());
     assert!(tracker.snapshot().time.0.abs_diff(arrival(12.0).0) < 30_000);
 }
@@ -109,8 +109,8 @@ fn a_second_vision_with_another_clock_is_received_and_left_alone() {
     let elsewhere = |_| Truth { balls: vec![[4.0, 2.0, 0.0]], robots: vec![] };
     let theirs = other.images(0.001, 3.0, elsewhere);
     for ((t, a), (u, b)) in ours.iter().zip(&theirs) {
-        assert_eq!(tracker.handle(a, arrival(*t)), Received::Newest);
-        assert_eq!(tracker.handle(b, arrival(*u)), Received::ForeignClock);
+        assert_eq!(tracker.handle(a, arrival(*t)), VisionVerdict::Newest);
+        assert_eq!(tracker.handle(b, arrival(*u)), VisionVerdict::ForeignClock);
     }
     let ball = tracker.snapshot().ball.unwrap();
     assert!(ball.position.distance(Point::new(1.0 - 1.0 / RATE as f32, 0.5)) < 0.02, "{ball:?}");
@@ -127,10 +127,13 @@ fn nonsense_times_are_counted_and_survived() {
         let mut packet = stadium.image(0, 1, 0.0, &truth(0.0));
         packet.detection.as_mut().unwrap().t_capture = t_capture;
         let received = tracker.handle(&packet, arrival(1.0));
-        assert!(matches!(received, Received::Nonsense | Received::ForeignClock), "{t_capture}: {received:?}");
+        assert!(
+            matches!(received, VisionVerdict::Nonsense | VisionVerdict::ForeignClock),
+            "{t_capture}: {received:?}"
+        );
     }
     assert_eq!(tracker.snapshot(), before);
-    assert_eq!(tracker.handle(&ssl::vision::WrapperPacket::default(), Instant(0)), Received::NoImage);
+    assert_eq!(tracker.handle(&ssl::vision::WrapperPacket::default(), Instant(0)), VisionVerdict::NoImage);
     let counts = *tracker.counts();
     assert_eq!((counts.nonsense, counts.foreign, counts.no_image), (4, 2, 1));
     assert_eq!(counts.packets(), 60 + 7);

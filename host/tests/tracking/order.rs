@@ -1,7 +1,7 @@
 //! `order`: tests: tracking does not depend on how the network shuffled, copied and delayed packets.
 
 use geometry::{Field, Point, Vector};
-use host::tracking::{Received, Tracker};
+use host::tracking::{Tracker, VisionVerdict};
 use host::world::World;
 use motion::ball::BallModel;
 use motion::trajectory::Motion;
@@ -53,12 +53,12 @@ fn copies_of_half_of_the_images_and_late_copies_of_all_change_nothing_ever() {
         // The wireless copies, a tenth of a second late.
         while let Some((then, packet)) = late.next_if(|(then, _)| then < t) {
             let received = copied.handle(packet, arrival(then));
-            assert!(matches!(received, Received::Repeated | Received::Late(_)), "{received:?}");
+            assert!(matches!(received, VisionVerdict::Repeated | VisionVerdict::Late(_)), "{received:?}");
             copies += 1;
         }
         copied.handle(packet, arrival(*t));
         if i > 0 && i % 2 == 0 {
-            assert_eq!(copied.handle(packet, arrival(*t + 0.001)), Received::Repeated);
+            assert_eq!(copied.handle(packet, arrival(*t + 0.001)), VisionVerdict::Repeated);
             copies += 1;
         }
         assert_eq!(plain.snapshot(), copied.snapshot(), "at {t} s");
@@ -110,7 +110,7 @@ fn trap_02_four_images_a_tick_with_a_robot_in_all_of_them_are_one_robot() {
                 robots: vec![(who(Blue, 3), [0.1, -0.1, 0.5]), (who(Yellow, 8), [-3.0, 2.0, 0.0])],
             };
             let packet = stadium.image(camera, 500 + tick * (camera as u32 + 1), t, &truth);
-            assert_eq!(tracker.handle(&packet, arrival(t)), Received::Newest);
+            assert_eq!(tracker.handle(&packet, arrival(t)), VisionVerdict::Newest);
         }
     }
     let world = tracker.snapshot();

@@ -5,7 +5,7 @@
 use std::path::PathBuf;
 
 use geometry::Point;
-use host::tracking::{Received, Tracker};
+use host::tracking::{Tracker, VisionVerdict};
 use protocol::{Instant, Who};
 use rules::Colour::{Blue, Yellow};
 use ssl::Message;
@@ -132,7 +132,7 @@ fn compare(name: &str, bounds: [[f64; 3]; 2]) -> Tracker {
     for (i, (arrived, packet)) in packets.iter().enumerate() {
         let received = tracker.handle(packet, *arrived);
         assert!(
-            matches!(received, Received::Newest | Received::Reordered(_)),
+            matches!(received, VisionVerdict::Newest | VisionVerdict::Reordered(_)),
             "{name}, packet {i}: {received:?}"
         );
         if i % 20 != 19 || i < 100 {

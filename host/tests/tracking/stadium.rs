@@ -1,7 +1,7 @@
 //! An artificial field with known ground truth, seen by cameras with noise. SI; vision's packets in mm as in
 //! the protocol.
 
-use host::tracking::{Received, Tracker};
+use host::tracking::{Tracker, VisionVerdict};
 use protocol::{Instant, RobotId, Who};
 use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -186,7 +186,7 @@ pub(crate) fn play(
 ) {
     tracker.handle(&stadium.geometry(), arrival(span.0));
     for (t, packet) in stadium.images(span.0, span.1, truth) {
-        assert_eq!(tracker.handle(&packet, arrival(t)), Received::Newest, "at {t} s");
+        assert_eq!(tracker.handle(&packet, arrival(t)), VisionVerdict::Newest, "at {t} s");
         after(t, tracker);
     }
 }

@@ -7,7 +7,7 @@
 use geometry::GoalEnd;
 use protocol::frame::{Audience, TeamKey};
 use protocol::host::{
-    Command, Condition, Directive, Hint, HostMessage, PART_ROBOTS_MAX, RuleRole, Telemetry, Welcome,
+    Condition, Directive, Hint, HostCommand, HostMessage, PART_ROBOTS_MAX, RuleRole, Telemetry, Welcome,
     WireBall, WireRobot, WireWho, WorldPart,
 };
 use protocol::host_link::HostLink;
@@ -98,7 +98,7 @@ pub struct Bench {
 }
 
 /// A work with its inputs.
-pub struct Task<'b> {
+pub struct RadioTask<'b> {
     link: &'b mut Link,
     /// Frame to open; empty for works that seal.
     packet: Packet,
@@ -129,7 +129,7 @@ impl Bench {
     }
 
     /// Prepares a task: only [`Task::run`] is measured.
-    pub fn task(&mut self, work: Work) -> Task<'_> {
+    pub fn task(&mut self, work: Work) -> RadioTask<'_> {
         let Self { robot, teammate, host } = self;
         let mut message = None;
         let mut packet = Packet::new();
@@ -155,7 +155,7 @@ impl Bench {
                 }
             }
         }
-        Task { link: robot, packet, message }
+        RadioTask { link: robot, packet, message }
     }
 }
 
@@ -165,7 +165,7 @@ impl Default for Bench {
     }
 }
 
-impl Task<'_> {
+impl RadioTask<'_> {
     /// Runs the work; returns the frame's length, and 1,000 more where a frame was accepted.
     #[inline(never)]
     pub fn run(&mut self) -> u32 {
@@ -223,7 +223,7 @@ fn telemetry() -> TeamMessage {
 
 fn command(to: u8, directive: Directive) -> HostMessage {
     let (defending, phase) = (GoalEnd::Negative, Phase::FreeKick(Side::Ours));
-    HostMessage::Command(Command { to: id(to), defending, phase, rule_role: RuleRole::Player, directive })
+    HostMessage::Command(HostCommand { to: id(to), defending, phase, rule_role: RuleRole::Player, directive })
 }
 
 fn longest() -> Directive {

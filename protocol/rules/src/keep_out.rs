@@ -39,7 +39,7 @@ pub struct Situation<'a> {
 
 /// Why a place is forbidden.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Why {
+pub enum KeepOutReason {
     /// Within 0.5 m of the ball on STOP, or at the opponents' kick-off or free kick.
     BallDistance,
     /// On the ball before NORMAL_START.
@@ -65,7 +65,7 @@ pub enum Why {
     Border,
 }
 
-impl Why {
+impl KeepOutReason {
     /// Whether being there is an offence or a failure by itself. Where it is not, robots keep out because
     /// being there is useless: in the opponents' area the ball may not be touched, at the target teammates
     /// are on the path.
@@ -84,7 +84,7 @@ pub struct Forbidden {
     /// No part of the body may be in here.
     pub shape: Shape<Field>,
     /// Reason for the region.
-    pub why: Why,
+    pub why: KeepOutReason,
 }
 
 /// Regions where a robot must not be, and the one it must stay in.
@@ -99,10 +99,10 @@ pub struct KeepOut {
 impl KeepOut {
     /// The first region that a disc-shaped body at this place reaches into (to touch its border is allowed),
     /// if any.
-    pub fn offence(&self, center: Point<Field>, radius: f32) -> Option<Why> {
+    pub fn offence(&self, center: Point<Field>, radius: f32) -> Option<KeepOutReason> {
         let hit = self.forbidden.iter().find(|region| region.shape.distance_to(center) < radius);
         let out = self.within.distance_to(center) > -radius;
-        hit.map(|region| region.why).or(out.then_some(Why::Border))
+        hit.map(|region| region.why).or(out.then_some(KeepOutReason::Border))
     }
 }
 
@@ -115,13 +115,13 @@ pub fn keep_out(s: &Situation) -> KeepOut {
     match s.phase {
         Phase::Halt | Phase::Timeout(_) => {}
         Phase::Stop => {
-            list.add_some(Why::BallDistance, s.ball.map(|ball| disc(ball, BALL_DISTANCE)));
+            list.add_some(KeepOutReason::BallDistance, s.ball.map(|ball| disc(ball, BALL_DISTANCE)));
             list.opponent_area(s, OPPONENT_AREA_DISTANCE);
             list.own_area(s);
         }
         Phase::FreeKick(side) => {
             let away = s.ball.filter(|_| side == Side::Theirs);
-            list.add_some(Why::BallDistance, away.map(|ball| disc(ball, BALL_DISTANCE)));
+            list.add_some(KeepOutReason::BallDistance, away.map(|ball| disc(ball, BALL_DISTANCE)));
             list.opponent_area(s, OPPONENT_AREA_DISTANCE);
             list.own_area(s);
         }
@@ -135,11 +135,11 @@ pub fn keep_out(s: &Situation) -> KeepOut {
                 (known, other) => known.or(other).map(|point| Segment::new(point, point)),
             };
             let stadium = spine.map(|spine| Shape::Capsule { spine, radius: BALL_DISTANCE });
-            list.add_some(Why::Stadium, stadium);
+            list.add_some(KeepOutReason::Stadium, stadium);
         }
         Phase::BallPlacement(Side::Ours) => {
             let target = s.placement.filter(|_| !is_kicker);
-            list.add_some(Why::Target, target.map(|target| disc(target, BALL_DISTANCE)));
+            list.add_some(KeepOutReason::Target, target.map(|target| disc(target, BALL_DISTANCE)));
         }
         Phase::PrepareKickoff(side) | Phase::Kickoff(side) => {
             let center = Point::new(0.0, 0.0);
@@ -147,13 +147,13 @@ pub fn keep_out(s: &Situation) -> KeepOut {
                 list.kicker(s);
                 let prepares = matches!(s.phase, Phase::PrepareKickoff(_));
                 let ball = s.ball.filter(|_| prepares);
-                list.add_some(Why::BallTouch, ball.map(|ball| disc(ball, BALL_RADIUS)));
+                list.add_some(KeepOutReason::BallTouch, ball.map(|ball| disc(ball, BALL_RADIUS)));
             } else {
-                list.half_plane(s, Why::OtherHalf, 0.0, s.own.opposite());
-                list.add(Why::CentreCircle, disc(center, s.field.center_radius));
+                list.half_plane(s, KeepOutReason::OtherHalf, 0.0, s.own.opposite());
+                list.add(KeepOutReason::CentreCircle, disc(center, s.field.center_radius));
             }
             let away = s.ball.filter(|_| side == Side::Theirs);
-            list.add_some(Why::BallDistance, away.map(|ball| disc(ball, BALL_DISTANCE)));
+            list.add_some(KeepOutReason::BallDistance, away.map(|ball| disc(ball, BALL_DISTANCE)));
             list.own_area(s);
         }
         Phase::PreparePenalty(side) | Phase::Penalty(side) => list.penalty(s, side, keeper, is_kicker),
@@ -213,12 +213,12 @@ pub fn may_touch_ball(s: &Situation, center: Point<Field>) -> Touch {
 struct List(Vec<Forbidden, FORBIDDEN_MAX>);
 
 impl List {
-    fn add(&mut self, why: Why, shape: Shape<Field>) {
+    fn add(&mut self, why: KeepOutReason, shape: Shape<Field>) {
         let full = self.0.push(Forbidden { shape, why }).is_err();
         debug_assert!(!full, "more than {FORBIDDEN_MAX} forbidden regions");
     }
 
-    fn add_some(&mut self, why: Why, shape: Option<Shape<Field>>) {
+    fn add_some(&mut self, why: KeepOutReason, shape: Option<Shape<Field>>) {
         if let Some(shape) = shape {
             self.add(why, shape);
         }
@@ -227,19 +227,19 @@ impl List {
     fn own_area(&mut self, s: &Situation) {
         if s.rule_role != RuleRole::Keeper {
             for shape in &s.field.defence_area(s.own) {
-                self.add(Why::OwnArea, shape.grown(s.field.line_width * 0.5));
+                self.add(KeepOutReason::OwnArea, shape.grown(s.field.line_width * 0.5));
             }
         }
     }
 
     fn opponent_area(&mut self, s: &Situation, by: f32) {
         for shape in &s.field.defence_area(s.own.opposite()) {
-            self.add(Why::OpponentArea, shape.grown(by + s.field.line_width * 0.5));
+            self.add(KeepOutReason::OpponentArea, shape.grown(by + s.field.line_width * 0.5));
         }
     }
 
     /// The whole field surface from x = `from` to the wall behind this goal.
-    fn half_plane(&mut self, s: &Situation, why: Why, from: f32, towards: GoalEnd) {
+    fn half_plane(&mut self, s: &Situation, why: KeepOutReason, from: f32, towards: GoalEnd) {
         let wall = s.field.goal_line(towards) + towards.sign() as f32 * s.field.goal_line_margin;
         let y = s.field.width * 0.5 + s.field.margin;
         let (low, high) = (from.min(wall), from.max(wall));
@@ -252,11 +252,11 @@ impl List {
         let side = s.field.center_radius * core::f32::consts::FRAC_1_SQRT_2;
         let other = s.own.opposite();
         let far = side * other.sign() as f32;
-        self.half_plane(s, Why::OtherHalf, far, other);
+        self.half_plane(s, KeepOutReason::OtherHalf, far, other);
         let wall = s.field.width * 0.5 + s.field.margin;
         for (low, high) in [(-wall, -side), (side, wall)] {
             let (low, high) = (Point::new(far.min(0.0), low), Point::new(far.max(0.0), high));
-            self.add(Why::OtherHalf, Shape::Box { low, high });
+            self.add(KeepOutReason::OtherHalf, Shape::Box { low, high });
         }
     }
 
@@ -270,13 +270,13 @@ impl List {
             let prepares = matches!(s.phase, Phase::PreparePenalty(_));
             let ball = s.ball.filter(|_| prepares);
             let on = ball.map(|center| Shape::Disc { center, radius: BALL_RADIUS });
-            self.add_some(Why::BallTouch, on);
+            self.add_some(KeepOutReason::BallTouch, on);
         } else {
             // A ball that lies elsewhere is not yet where the kick is taken from: it is placed there by hand.
             let mark = s.field.penalty_spot(attacked);
             let ball = s.ball.filter(|ball| ball.distance(mark) < NEAR_MARK).unwrap_or(mark);
             let from = ball.x() - attacked.sign() as f32 * PENALTY_BEHIND;
-            self.half_plane(s, Why::BehindBall, from, attacked);
+            self.half_plane(s, KeepOutReason::BehindBall, from, attacked);
         }
     }
 
@@ -285,14 +285,14 @@ impl List {
     fn keeper_line(&mut self, s: &Situation) {
         let (line, sign) = (s.field.goal_line(s.own), s.own.sign() as f32);
         let strip = 2.0 * ROBOT_RADIUS;
-        self.half_plane(s, Why::KeeperLine, line - sign * strip, s.own.opposite());
-        self.half_plane(s, Why::KeeperLine, line + sign * strip, s.own);
+        self.half_plane(s, KeepOutReason::KeeperLine, line - sign * strip, s.own.opposite());
+        self.half_plane(s, KeepOutReason::KeeperLine, line + sign * strip, s.own);
         let wall = s.field.width * 0.5 + s.field.margin;
         let post = s.field.goal_width * 0.5;
         let (low_x, high_x) = (line - strip, line + strip);
         for (low, high) in [(-wall, -post), (post, wall)] {
             let shape = Shape::Box { low: Point::new(low_x, low), high: Point::new(high_x, high) };
-            self.add(Why::KeeperLine, shape);
+            self.add(KeepOutReason::KeeperLine, shape);
         }
     }
 }

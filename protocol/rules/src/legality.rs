@@ -14,7 +14,7 @@ use crate::{FieldSpec, Limits};
 
 /// A line of the field that a ball can leave by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Line {
+pub enum BoundaryLine {
     /// A touch line: the one at +y, or the one at −y.
     Touch {
         /// Whether it is the line at +y.
@@ -30,7 +30,7 @@ pub enum Line {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
     /// Line that was crossed.
-    pub line: Line,
+    pub line: BoundaryLine,
     /// The point of that line where the ball's centre crossed it.
     pub at: Point<Field>,
 }
@@ -74,12 +74,12 @@ pub fn crossing(field: &FieldSpec, before: Point<Field>, now: Point<Field>) -> O
         let goal = if now.x() < 0.0 { GoalEnd::Negative } else { GoalEnd::Positive };
         let at = Point::new(field.goal_line(goal), from.y() + dy * over_goal_line.unwrap_or(1.0));
         let is_opening = at.y().abs() < field.goal_width * 0.5;
-        let line = if is_opening { Line::GoalOpening(goal) } else { Line::Goal(goal) };
+        let line = if is_opening { BoundaryLine::GoalOpening(goal) } else { BoundaryLine::Goal(goal) };
         Some(Crossing { line, at })
     } else {
         let positive = now.y() > 0.0;
         let at = Point::new(from.x() + dx * over_touch_line.unwrap_or(1.0), if positive { y } else { -y });
-        Some(Crossing { line: Line::Touch { positive }, at })
+        Some(Crossing { line: BoundaryLine::Touch { positive }, at })
     }
 }
 

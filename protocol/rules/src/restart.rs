@@ -4,7 +4,7 @@
 use geometry::{Field, GoalEnd, Point, math};
 use heapless::Vec;
 
-use crate::legality::{Crossing, Line};
+use crate::legality::{BoundaryLine, Crossing};
 use crate::limits::{
     BALL_DISTANCE, BALL_STILL, PLACEMENT_CLEARANCE, PLACEMENT_SKIP_AREA_DISTANCE, PLACEMENT_SKIP_DISTANCE,
     PLACEMENT_TOLERANCE, ROBOT_RADIUS, ROBOTS_MAX,
@@ -168,15 +168,15 @@ pub fn after_out(
     let (x, y) = (field.length * 0.5 - FROM_LINE, field.width * 0.5 - FROM_LINE);
     let touch_line = |at: f32| if at < 0.0 { -y } else { y };
     match crossing.line {
-        Line::Touch { positive } => {
+        BoundaryLine::Touch { positive } => {
             let spot = Point::new(math::clamp(crossing.at.x(), -x, x), if positive { y } else { -y });
             AfterOut { kind: OutKind::ThrowIn, spot }
         }
-        Line::Goal(goal) | Line::GoalOpening(goal) if goal == own => {
+        BoundaryLine::Goal(goal) | BoundaryLine::GoalOpening(goal) if goal == own => {
             let spot = Point::new(x * goal.sign() as f32, touch_line(crossing.at.y()));
             AfterOut { kind: OutKind::Corner, spot }
         }
-        Line::Goal(goal) | Line::GoalOpening(goal) => {
+        BoundaryLine::Goal(goal) | BoundaryLine::GoalOpening(goal) => {
             let aimless = kicked_from.filter(|from| {
                 // The place of the last touch decides: from the own half it has crossed the halfway line
                 // since.

@@ -25,7 +25,7 @@ use crate::{Colour, Limits, Phase};
 
 /// A command of the referee.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Command {
+pub enum RefereeCommand {
     /// No robot moves, by the rules of HALT.
     Halt,
     /// Slow, away from the ball.
@@ -46,7 +46,7 @@ pub enum Command {
     BallPlacement(Colour),
 }
 
-impl Command {
+impl RefereeCommand {
     /// The phase that it leads to; `None` for NORMAL_START without a preparation.
     pub const fn leads_to(self, from: Phase<Colour>) -> Option<Phase<Colour>> {
         Some(match self {
@@ -146,7 +146,7 @@ impl Stage {
 
 /// Effect of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Received {
+pub enum CommandVerdict {
     /// It follows from the phase before.
     Followed,
     /// The command that holds already.
@@ -184,7 +184,7 @@ pub enum Ticked {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GameState {
     phase: Phase<Colour>,
-    command: Option<Command>,
+    command: Option<RefereeCommand>,
     /// When the phase started, µs.
     since: u64,
     /// Where the ball lay when the restart started.
@@ -215,7 +215,7 @@ impl GameState {
     }
 
     /// The newest command; none: nothing received yet.
-    pub const fn command(&self) -> Option<Command> {
+    pub const fn command(&self) -> Option<RefereeCommand> {
         self.command
     }
 
@@ -235,14 +235,19 @@ impl GameState {
     }
 
     /// A command that was given at `at`, µs; `ball` is where it lies then, if known.
-    pub fn receive(&mut self, command: Command, at: u64, ball: Option<Point<Field>>) -> Received {
+    pub fn receive(
+        &mut self,
+        command: RefereeCommand,
+        at: u64,
+        ball: Option<Point<Field>>,
+    ) -> CommandVerdict {
         let (from, first) = (self.phase, self.command.is_none());
         let again = self.command == Some(command);
         self.command = Some(command);
         if again {
             return self.repeat(command, at, ball);
         }
-        if matches!(command, Command::Halt | Command::Stop | Command::Timeout(_)) {
+        if matches!(command, RefereeCommand::Halt | RefereeCommand::Stop | RefereeCommand::Timeout(_)) {
             self.still_until = 0;
         } else if matches!(from, Phase::Halt | Phase::Timeout(_)) && !first {
             self.still_until = at.saturating_add(micros(GRACE));
@@ -257,7 +262,7 @@ impl GameState {
             return self.stop_first(to, at, self.still_until);
         }
         self.enter(to, at, ball);
-        if first || follows(from, to) { Received::Followed } else { Received::OffGraph { from } }
+        if first || follows(from, to) { CommandVerdict::Followed } else { CommandVerdict::OffGraph { from } }
     }
 
     /// Handles the time `now`, µs, and the observed position of the ball.
@@ -291,25 +296,25 @@ impl GameState {
         Ticked::BallMoved
     }
 
-    fn repeat(&mut self, command: Command, at: u64, ball: Option<Point<Field>>) -> Received {
+    fn repeat(&mut self, command: RefereeCommand, at: u64, ball: Option<Point<Field>>) -> CommandVerdict {
         match (self.phase, command) {
             (Phase::Kickoff(_) | Phase::FreeKick(_) | Phase::Penalty(_), _) => {
                 self.since = self.since.max(at);
-                Received::Repeated
+                CommandVerdict::Repeated
             }
-            (Phase::Run, Command::FreeKick(who)) => {
+            (Phase::Run, RefereeCommand::FreeKick(who)) => {
                 self.enter(Phase::FreeKick(who), at, ball);
-                Received::OffGraph { from: Phase::Run }
+                CommandVerdict::OffGraph { from: Phase::Run }
             }
-            _ => Received::Repeated,
+            _ => CommandVerdict::Repeated,
         }
     }
 
-    fn stop_first(&mut self, then: Phase<Colour>, now: u64, at: u64) -> Received {
+    fn stop_first(&mut self, then: Phase<Colour>, now: u64, at: u64) -> CommandVerdict {
         let from = self.phase;
         self.enter(Phase::Stop, now, None);
         self.later = Some((then, at));
-        Received::AsStop { from, then, at }
+        CommandVerdict::AsStop { from, then, at }
     }
 
     fn enter(&mut self, phase: Phase<Colour>, at: u64, ball: Option<Point<Field>>) {

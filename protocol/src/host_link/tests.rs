@@ -6,7 +6,7 @@ use std::vec::Vec;
 
 use super::*;
 use crate::Duration;
-use crate::host::{Command, Directive, RuleRole};
+use crate::host::{Directive, HostCommand, RuleRole};
 use crate::link::Link;
 use crate::quantized::WirePose;
 use crate::team::{Beacon, Progress, Role, Status};
@@ -46,7 +46,7 @@ fn beacon(link: &mut Link) -> Packet {
 }
 
 fn stand(to: u8) -> HostMessage {
-    HostMessage::Command(Command {
+    HostMessage::Command(HostCommand {
         to: id(to),
         defending: geometry::GoalEnd::Negative,
         phase: Phase::Run,

@@ -5,7 +5,7 @@ extern crate std;
 use super::*;
 use crate::frame::{Audience, TeamKey};
 use crate::host::Welcome;
-use crate::host::{Command, Directive, RuleRole, WorldPart};
+use crate::host::{Directive, HostCommand, RuleRole, WorldPart};
 use crate::host_link::{HostLink, Opened};
 use crate::team::{Beacon, Progress, Role, Status};
 use rules::Phase;
@@ -40,7 +40,7 @@ const NOW: Instant = Instant(5_000_000);
 
 fn stand(to: u8) -> HostMessage {
     let directive = Directive::Stand;
-    HostMessage::Command(Command {
+    HostMessage::Command(HostCommand {
         to: robot(to),
         defending: geometry::GoalEnd::Negative,
         phase: Phase::Halt,

@@ -13,7 +13,7 @@ use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use recordings::{ERFORCE, GRSIM, GRSIM_INDEXED, GRSIM_NOISY};
 use ssl::log::{
-    End, LogError, LogReader, LogWriter, MessageKind, PAYLOAD_MAX, Packet, PacketError, Record, Summary,
+    LogEnd, LogError, LogReader, LogWriter, MessageKind, PAYLOAD_MAX, Packet, PacketError, Record, Summary,
 };
 
 #[test]
@@ -34,7 +34,7 @@ fn a_gzipped_file_reads_back_as_it_was_written() {
     let zipped = zipped.finish().expect("an end");
     let mut reader = LogReader::new(MultiGzDecoder::new(&zipped[..])).expect("a header");
     assert!(reader.by_ref().eq(records), "other messages came back");
-    assert!(matches!(reader.end(), Some(End::Whole)));
+    assert!(matches!(reader.end(), Some(LogEnd::Whole)));
 }
 
 #[test]
@@ -79,7 +79,7 @@ fn a_gzipped_file_cut_anywhere_gives_the_messages_before_the_cut() {
         };
         let found: Vec<_> = reader.by_ref().collect();
         assert!(found == records[..found.len()], "cut at {cut}");
-        assert!(matches!(reader.end(), Some(End::Cut { .. })), "cut at {cut}: {:?}", reader.end());
+        assert!(matches!(reader.end(), Some(LogEnd::Cut { .. })), "cut at {cut}: {:?}", reader.end());
         // deflate holds back 32 kB of what it unpacks at most; a message has at most 1.5 kB.
         let bytes: usize = found.iter().map(|record| record.payload.len() + 16).sum();
         assert!(
@@ -98,7 +98,7 @@ fn a_gzipped_file_with_a_wrong_byte_gives_what_is_before_it_and_says_so() {
     zipped[checksum] ^= 1;
     let mut reader = LogReader::new(MultiGzDecoder::new(&zipped[..])).expect("a header");
     assert_eq!(reader.by_ref().count(), 7903);
-    let Some(End::Read { at: 1_587_762, error }) = reader.end() else { panic!("{:?}", reader.end()) };
+    let Some(LogEnd::Read { at: 1_587_762, error }) = reader.end() else { panic!("{:?}", reader.end()) };
     assert!(error.to_string().contains("checksum"), "{error}");
 }
 
@@ -109,7 +109,7 @@ fn an_impossible_size_ends_the_file_and_takes_no_memory() {
         file[begins[2] + 12..begins[2] + 16].copy_from_slice(&size.to_be_bytes());
         let mut reader = LogReader::new(&file[..]).expect("a header");
         assert_eq!(reader.by_ref().count(), 2);
-        let Some(End::Size { at, size: reported }) = reader.end() else { panic!("{:?}", reader.end()) };
+        let Some(LogEnd::Size { at, size: reported }) = reader.end() else { panic!("{:?}", reader.end()) };
         assert_eq!((*at, *reported), (begins[2] as u64, size));
     }
     // The largest possible size: the file has fewer bytes.
@@ -117,7 +117,7 @@ fn an_impossible_size_ends_the_file_and_takes_no_memory() {
     file[begins[2] + 12..begins[2] + 16].copy_from_slice(&(PAYLOAD_MAX as i32).to_be_bytes());
     let mut reader = LogReader::new(&file[..]).expect("a header");
     assert_eq!(reader.by_ref().count(), 2);
-    assert!(matches!(reader.end(), Some(End::Cut { .. })));
+    assert!(matches!(reader.end(), Some(LogEnd::Cut { .. })));
 }
 
 #[test]
@@ -133,7 +133,7 @@ fn a_blank_message_of_any_size_is_passed_over_and_counted() {
     let mut reader = LogReader::new(&file[..]).expect("a header");
     assert_eq!(reader.by_ref().collect::<Vec<_>>(), [record]);
     assert_eq!(reader.counts().blank, 1);
-    assert!(matches!(reader.end(), Some(End::Cut { bytes: 16, .. })), "{:?}", reader.end());
+    assert!(matches!(reader.end(), Some(LogEnd::Cut { bytes: 16, .. })), "{:?}", reader.end());
 }
 
 #[test]
@@ -243,8 +243,8 @@ fn check_cut(file: &[u8], records: &[Record], begins: &[usize]) {
     let whole = begins[1..].partition_point(|end| *end <= cut);
     assert!(reader.by_ref().eq(records[..whole].iter().cloned()), "cut at {cut}");
     let fits = match reader.end() {
-        Some(End::Whole) => cut == begins[whole],
-        Some(End::Cut { at, bytes }) => {
+        Some(LogEnd::Whole) => cut == begins[whole],
+        Some(LogEnd::Cut { at, bytes }) => {
             *at == begins[whole] as u64 && *at + bytes == cut as u64 && cut > begins[whole]
         }
         _ => false,

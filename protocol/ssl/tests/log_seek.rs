@@ -109,13 +109,13 @@ fn an_empty_match_has_an_index_too() {
     assert_eq!(Index::read(&mut file).expect("readable"), Index::Whole(vec![]));
     let (mut reader, _) = open_at(&path, 0).expect("opens");
     assert_eq!(reader.next(), None);
-    assert!(reader.end().is_some_and(ssl::log::End::is_whole));
+    assert!(reader.end().is_some_and(ssl::log::LogEnd::is_whole));
     let mut writer = LogWriter::create(&path).expect("a file");
     writer.write(9, MessageKind::Tracker2020, &[]).expect("written");
     writer.close().expect("closed");
     let (mut reader, place) = open_at(&path, 10).expect("opens");
     assert_eq!((reader.next(), place), (None, Place::Index));
-    assert!(reader.end().is_some_and(ssl::log::End::is_whole), "{:?}", reader.end());
+    assert!(reader.end().is_some_and(ssl::log::LogEnd::is_whole), "{:?}", reader.end());
 }
 
 fn check(path: &Path, time: i64, place: Place, expected: &[Record]) {

@@ -3,7 +3,7 @@
 
 use geometry::GoalEnd;
 use protocol::frame::{Audience, Frame, Sender, TeamKey};
-use protocol::host::{Command, Directive, HostMessage, RuleRole, Telemetry, Welcome, WorldPart};
+use protocol::host::{Directive, HostCommand, HostMessage, RuleRole, Telemetry, Welcome, WorldPart};
 use protocol::host_link::{HostLink, Opened};
 use protocol::link::{Link, Packet, Received};
 use protocol::quantized::WirePose;
@@ -31,7 +31,7 @@ fn messages(n: u32, welcome: Welcome) -> [HostMessage; 3] {
     let snapshot = n as u8;
     [
         HostMessage::Welcome(welcome),
-        HostMessage::Command(Command {
+        HostMessage::Command(HostCommand {
             to: robot(2),
             defending: GoalEnd::Negative,
             phase,

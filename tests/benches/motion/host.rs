@@ -5,7 +5,7 @@
 use std::hint::black_box;
 
 use firmware_build::count::callgrind;
-use motion_bench::{SEED, TASKS, Task, Tasks, Work};
+use motion_bench::{MotionTask, SEED, TASKS, Tasks, Work};
 
 /// Mean instructions per task.
 pub(crate) fn instructions(work: Work) -> Result<u64, String> {
@@ -20,7 +20,7 @@ fn counted(work: Work, rounds: u32) -> Result<u64, String> {
 pub(crate) fn work(label: &str, rounds: &str) -> Result<(), String> {
     let work = Work::ALL.into_iter().find(|work| work.label() == label).ok_or("no such work")?;
     let rounds: u32 = rounds.parse().map_err(|_| "rounds")?;
-    let tasks: Vec<Task> = Tasks::new(SEED).take(TASKS).collect();
+    let tasks: Vec<MotionTask> = Tasks::new(SEED).take(TASKS).collect();
     let mut found = 0;
     for _ in 0..rounds {
         for task in &tasks {

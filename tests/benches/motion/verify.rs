@@ -2,7 +2,7 @@
 
 use geometry::{Field, Point, Vector, math};
 use motion::trajectory::{CalcMotion, DragLimits, FreeLimits};
-use motion_bench::{Task, Tasks};
+use motion_bench::{MotionTask, Tasks};
 
 /// Compares `tasks` tasks with the best of all shares, without drag and with, on all processor cores.
 pub(crate) fn run(tasks: usize) -> Result<(), String> {
@@ -25,7 +25,7 @@ fn drag_alone(limits: DragLimits, share: f32) -> DragLimits {
 fn print_excess(
     what: &str,
     tasks: usize,
-    excess: impl Fn(&Task) -> Option<f32> + Sync,
+    excess: impl Fn(&MotionTask) -> Option<f32> + Sync,
 ) -> Result<(), String> {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let excess = &excess;
@@ -57,7 +57,7 @@ fn print_excess(
 }
 
 /// Relative excess of the time over the best; `None` where there is no valid time.
-fn task_excess<L: CalcMotion>(task: &Task, limits: &L, alone: impl Fn(f32) -> L) -> Option<f32> {
+fn task_excess<L: CalcMotion>(task: &MotionTask, limits: &L, alone: impl Fn(f32) -> L) -> Option<f32> {
     let (offset, velocity) = (task.to - task.from, task.velocity);
     let origin = Point::<Field>::new(0.0, 0.0);
     let axis = |distance: f32, speed: f32, share: f32| {

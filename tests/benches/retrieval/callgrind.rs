@@ -6,7 +6,7 @@
 use std::fs;
 use std::path::Path;
 
-use casebase::{CaseBase, Problem, Settings, retrieve, retrieve_best};
+use casebase::{CaseBase, Problem, RetrievalSettings, retrieve, retrieve_best};
 use firmware_build::count::callgrind;
 use retrieval_bench::{problems, scan};
 
@@ -41,7 +41,7 @@ pub(crate) fn work(directory: &Path, method: &str, rounds: u32) -> Result<(), St
     let table = case_tools::Table::aligned(&read("table")?);
     let base = CaseBase::from_bytes(table.bytes()).map_err(|error| error.to_string())?;
     let problems: Vec<Problem> = problems(&read("problems")?).collect();
-    let settings = Settings::default();
+    let settings = RetrievalSettings::default();
     let mut found = 0_u64;
     for _ in 0..rounds {
         for problem in &problems {

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-use casebase::{CaseBase, Problem, Settings, retrieve, retrieve_best};
+use casebase::{CaseBase, Problem, RetrievalSettings, retrieve, retrieve_best};
 use firmware_build::Program;
 use firmware_build::count::CountingImage;
 use retrieval_bench::{Answer, LEN_MAX, PROBLEMS_ADDRESS, TABLE_ADDRESS, encode, header, scan};
@@ -39,7 +39,7 @@ impl Board {
 
 /// Checks that the board's answers equal this machine's, bit for bit.
 pub(crate) fn agrees(base: &CaseBase<'_>, problems: &[Problem], answers: &[Answer]) -> Result<(), String> {
-    let settings = Settings::default();
+    let settings = RetrievalSettings::default();
     for (problem, answer) in problems.iter().zip(answers) {
         let best = retrieve_best(base, problem, &settings);
         let here = Answer::new(

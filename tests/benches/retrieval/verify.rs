@@ -1,6 +1,6 @@
 //! `verify`: check of retrieval against the scan.
 
-use casebase::{Settings, retrieve, retrieve_best};
+use casebase::{RetrievalSettings, retrieve, retrieve_best};
 use retrieval_bench::scan;
 
 use crate::bases::Base;
@@ -38,7 +38,7 @@ pub(crate) fn run(problems: [usize; 4]) -> Result<(), String> {
 /// differently.
 fn differences(base: &Base, seed: u64, count: usize) -> Result<[usize; 2], String> {
     let table = base.library.base();
-    let settings = Settings::default();
+    let settings = RetrievalSettings::default();
     let (mut some, mut several) = (0, 0);
     for problem in base.random_problems(seed).take(count) {
         let expected = scan(&table, &problem);

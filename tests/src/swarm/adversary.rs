@@ -4,7 +4,7 @@
 use geometry::GoalEnd;
 use hil_sim::Stream;
 use protocol::frame::{Frame, Key, Sender};
-use protocol::host::{Command, Directive, HostMessage, RuleRole, Welcome};
+use protocol::host::{Directive, HostCommand, HostMessage, RuleRole, Welcome};
 use protocol::host_link::HostLink;
 use protocol::link::{Link, Packet};
 use protocol::lockstep::{AIR_IN_BYTES_MAX, AIR_IN_MAX};
@@ -118,7 +118,7 @@ pub fn earlier_match(plan: &Plan) -> Vec<Packet> {
 /// Drive to the corner at full speed.
 fn go_away(to: RobotId) -> HostMessage {
     let pose = WirePose { at: WirePoint { x: 4_000, y: 2_500 }, heading: 0 };
-    HostMessage::Command(Command {
+    HostMessage::Command(HostCommand {
         to,
         defending: GoalEnd::Negative,
         phase: Phase::Run,

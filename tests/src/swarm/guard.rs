@@ -283,12 +283,12 @@ const BLUR: f32 = 0.01;
 mod tests {
     use super::*;
     use geometry::Twist;
-    use protocol::host::{Command, Directive};
+    use protocol::host::{Directive, HostCommand};
     use protocol::robot_io::Health;
 
     fn frame() -> Believed {
         let me = RobotId::new(1).unwrap();
-        Believed::Host(HostMessage::Command(Command {
+        Believed::Host(HostMessage::Command(HostCommand {
             to: me,
             defending: geometry::GoalEnd::Negative,
             phase: Phase::Run,

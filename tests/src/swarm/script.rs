@@ -4,9 +4,9 @@
 use geometry::{GoalEnd, Point};
 use hil_sim::Stream;
 use hil_sim::small_size::World;
-use host::radio::{Radio, RadioSettings, Situation, To};
+use host::radio::{Radio, RadioSettings, RadioSituation, To};
 use host::world::{Ball, BallModels, Robot};
-use protocol::host::{Command, Directive, KickOrder, RuleRole};
+use protocol::host::{Directive, HostCommand, KickOrder, RuleRole};
 use protocol::link::Packet;
 use protocol::quantized::{WirePoint, WirePose};
 use protocol::{Instant, RobotId, Who};
@@ -81,8 +81,8 @@ impl Headquarters {
     /// Gives the radio the field and the script's command of this moment.
     pub(super) fn lead(&mut self, now: Instant, ms: u32, plan: &Plan, ids: &[RobotId], truth: &World) {
         let phase = self.script.at(ms, 0).0;
-        let commands: Vec<Command> = (ids.iter().enumerate())
-            .map(|(i, to)| Command {
+        let commands: Vec<HostCommand> = (ids.iter().enumerate())
+            .map(|(i, to)| HostCommand {
                 to: *to,
                 defending: self.defending,
                 phase,
@@ -91,7 +91,7 @@ impl Headquarters {
             })
             .collect();
         let placement = matches!(phase, Phase::BallPlacement(_)).then(|| Point::new(0.0, 1.0));
-        let situation = Situation { us: self.us, phase, placement };
+        let situation = RadioSituation { us: self.us, phase, placement };
         debug_assert_eq!(plan.brains.len(), ids.len());
         self.radio.offer(now, &seen(now, truth), situation, &commands);
     }

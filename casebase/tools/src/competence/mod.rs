@@ -23,7 +23,7 @@ pub use twins::{Shared, shared};
 
 /// Role of a case in the library's coverage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Role {
+pub enum CompetenceRole {
     /// The only candidate for some problem.
     Pivotal,
     /// Covers its problems as others do together.
@@ -36,7 +36,7 @@ pub enum Role {
     Idle,
 }
 
-impl Role {
+impl CompetenceRole {
     /// All of them, the most important first.
     pub const ALL: [Self; 5] = [Self::Pivotal, Self::Spanning, Self::Support, Self::Auxiliary, Self::Idle];
 
@@ -53,19 +53,19 @@ impl Role {
 }
 
 /// The role of every authored case.
-pub fn roles(counters: &Counters, shared: &[Shared]) -> Vec<Role> {
-    let mut roles: Vec<Role> = counters
+pub fn roles(counters: &Counters, shared: &[Shared]) -> Vec<CompetenceRole> {
+    let mut roles: Vec<CompetenceRole> = counters
         .cases
         .iter()
         .map(|case| match (case.candidate(), case.sole) {
-            (0, _) => Role::Idle,
-            (_, 0) => Role::Spanning,
-            _ => Role::Pivotal,
+            (0, _) => CompetenceRole::Idle,
+            (_, 0) => CompetenceRole::Spanning,
+            _ => CompetenceRole::Pivotal,
         })
         .collect();
-    let mut mark = |case: u16, role: Role| {
+    let mut mark = |case: u16, role: CompetenceRole| {
         let slot = &mut roles[usize::from(case)];
-        if *slot != Role::Pivotal {
+        if *slot != CompetenceRole::Pivotal {
             *slot = (*slot).max(role);
         }
     };
@@ -74,11 +74,11 @@ pub fn roles(counters: &Counters, shared: &[Shared]) -> Vec<Role> {
         let [of_a, of_b] = pair.cases.map(|case| counters.cases[usize::from(case)].candidate());
         let (a_within, b_within) = (pair.problems == of_a, pair.problems == of_b);
         if a_within {
-            mark(b, Role::Support);
-            mark(a, if b_within { Role::Support } else { Role::Auxiliary });
+            mark(b, CompetenceRole::Support);
+            mark(a, if b_within { CompetenceRole::Support } else { CompetenceRole::Auxiliary });
         } else if b_within {
-            mark(a, Role::Support);
-            mark(b, Role::Auxiliary);
+            mark(a, CompetenceRole::Support);
+            mark(b, CompetenceRole::Auxiliary);
         }
     }
     roles
@@ -180,7 +180,7 @@ mod tests {
         let counters =
             counters(6, &[(&[0], 4), (&[0, 1], 3), (&[2, 3], 5), (&[0, 4], 1), (&[2, 3, 4], 2), (&[], 9)]);
         let roles = roles(&counters, &shared(&counters));
-        use Role::{Auxiliary, Idle, Pivotal, Spanning, Support};
+        use CompetenceRole::{Auxiliary, Idle, Pivotal, Spanning, Support};
         assert_eq!(roles, [Pivotal, Auxiliary, Support, Support, Spanning, Idle]);
     }
 

@@ -1,7 +1,7 @@
 //! `survey`: verdicts of a library on many problems. Every case is tested in every problem, as in `cases
 //! explain`.
 
-use casebase::{CaseBase, Match, Problem, SettingError, Settings, Verdict, explain, rank_order};
+use casebase::{CaseBase, CaseVerdict, Match, Problem, RetrievalSettings, SettingError, explain, rank_order};
 
 use super::area::Area;
 use super::cells::Cells;
@@ -11,16 +11,16 @@ use super::counters::{COST_BIN_MM, COST_BINS, Counters, RINGS, Reach, VERDICTS};
 #[derive(Clone, Debug)]
 pub struct Survey<'a> {
     base: CaseBase<'a>,
-    settings: Settings,
+    settings: RetrievalSettings,
     /// With scopes a fifth larger; opponents' paths widen too, so a case that passes these checks would pass
     /// with the ball's scope alone enlarged.
-    wider: Settings,
+    wider: RetrievalSettings,
     cells: Cells,
 }
 
 impl<'a> Survey<'a> {
     /// A survey of a library; fails where the widened `thr` is refused by [`Settings::set`].
-    pub fn new(base: CaseBase<'a>, settings: &Settings, cells: Cells) -> Result<Self, SettingError> {
+    pub fn new(base: CaseBase<'a>, settings: &RetrievalSettings, cells: Cells) -> Result<Self, SettingError> {
         let mut wider = settings.clone();
         // exp(−k²·e) where the threshold is exp(−e).
         let threshold = f64::from(settings.threshold).powf(WIDER * WIDER);
@@ -60,7 +60,7 @@ impl<'a> Survey<'a> {
         explain(&self.base, problem, &self.settings, |id, verdict| {
             let Some((step, interval)) = reached.get_mut(usize::from(id.0) / COPIES) else { return };
             *step = (*step).max(step_of(&verdict));
-            if let Verdict::Candidate(found) = verdict {
+            if let CaseVerdict::Candidate(found) = verdict {
                 candidates += 1;
                 *interval = (*interval).min(ring(&found));
                 if best.as_ref().is_none_or(|best| rank_order(&found, best, &self.settings).is_lt()) {
@@ -118,7 +118,7 @@ impl<'a> Survey<'a> {
         let mut fills = Vec::new();
         explain(&self.base, problem, &self.wider, |id, verdict| {
             let authored = usize::from(id.0) / COPIES;
-            if matches!(verdict, Verdict::Candidate(_)) && last != Some(authored) {
+            if matches!(verdict, CaseVerdict::Candidate(_)) && last != Some(authored) {
                 last = Some(authored);
                 fills.push(authored);
             }
@@ -130,7 +130,7 @@ impl<'a> Survey<'a> {
 }
 
 /// The last check that a copy reached: an index of [`VERDICTS`].
-fn step_of(verdict: &Verdict) -> usize {
+fn step_of(verdict: &CaseVerdict) -> usize {
     VERDICTS.iter().position(|label| *label == verdict.label()).unwrap_or(0)
 }
 

@@ -4,8 +4,8 @@
 //! the case has it.
 
 use casebase::{
-    Action, Case, CaseBase, CaseRobot, GoalEnd, Leg, PointMm, Problem, Scope, ScopeRule, Settings, Verdict,
-    adapted_position,
+    Action, Case, CaseBase, CaseRobot, CaseVerdict, GoalEnd, Leg, PointMm, Problem, RetrievalSettings, Scope,
+    ScopeRule, adapted_position,
 };
 
 use drawing::{Anchor, At, Colors, Font, Svg, Theme, draw_field, half_extent, wrapped};
@@ -36,9 +36,9 @@ pub struct Overlay<'a> {
     /// Ball, teammates and opponents, mm, field frame.
     pub problem: &'a Problem,
     /// The settings of the retrieval.
-    pub settings: &'a Settings,
+    pub settings: &'a RetrievalSettings,
     /// The verdict of [`casebase::explain()`] on the case.
-    pub verdict: &'a Verdict,
+    pub verdict: &'a CaseVerdict,
     /// The case's rank among the candidates, from 1, and their number; `None` where it is not a candidate.
     pub rank: Option<(usize, usize)>,
 }
@@ -62,7 +62,8 @@ fn scene<'p>(picture: &'p CasePicture<'p>, zoom: f64) -> Pen {
     let unit = 2.0 * x / 100.0 * zoom;
     let mut pen = Pen { svg: Svg::default(), labels: Labels::default(), colors, unit };
     draw_field(&mut pen.svg, &picture.base.field(), colors);
-    let settings = picture.overlay.map_or_else(Settings::default, |overlay| overlay.settings.clone());
+    let settings =
+        picture.overlay.map_or_else(RetrievalSettings::default, |overlay| overlay.settings.clone());
     let ball = picture.overlay.map_or(picture.case.ball(), |overlay| overlay.problem.ball);
     let scene = Scene { picture, settings: &settings, ball };
     scene.reserve(&mut pen);
@@ -86,7 +87,7 @@ fn scene<'p>(picture: &'p CasePicture<'p>, zoom: f64) -> Pen {
 /// A case for one position of the ball.
 struct Scene<'p, 'a> {
     picture: &'p CasePicture<'a>,
-    settings: &'p Settings,
+    settings: &'p RetrievalSettings,
     ball: PointMm,
 }
 
@@ -193,7 +194,7 @@ impl Scene<'_, '_> {
 
     fn legs(&self, pen: &mut Pen) {
         let blocked = match self.picture.overlay.map(|overlay| overlay.verdict) {
-            Some(Verdict::Path { index, .. }) => Some(*index),
+            Some(CaseVerdict::Path { index, .. }) => Some(*index),
             _ => None,
         };
         for (number, leg) in self.picture.case.legs(self.ball).enumerate() {
@@ -267,13 +268,13 @@ impl Scene<'_, '_> {
         let place =
             |id| problem.teammates.iter().find(|(other, _)| *other == id).map(|(_, place)| at(*place));
         let pairs: Vec<_> = match verdict {
-            Verdict::Candidate(found) => {
+            CaseVerdict::Candidate(found) => {
                 self.picture.case.robots().zip(found.correspondence.iter().copied()).collect()
             }
-            Verdict::TooFar { robot, player, .. } => vec![(*robot, *player)],
+            CaseVerdict::TooFar { robot, player, .. } => vec![(*robot, *player)],
             _ => Vec::new(),
         };
-        let far = matches!(verdict, Verdict::TooFar { .. });
+        let far = matches!(verdict, CaseVerdict::TooFar { .. });
         let color = if far { pen.colors.warning } else { pen.colors.team };
         for (robot, player) in pairs {
             let (Some(from), to) = (place(player), at(self.adapted(robot))) else { continue };
@@ -288,7 +289,7 @@ impl Scene<'_, '_> {
         }
         for (index, place) in problem.opponents.iter().enumerate() {
             match verdict {
-                Verdict::Path { opponent, inside_mm, .. } if *opponent == index => {
+                CaseVerdict::Path { opponent, inside_mm, .. } if *opponent == index => {
                     pen.square(at(*place), pen.colors.warning);
                     let text = format!("{inside_mm:.0} mm inside");
                     pen.labels.name(at(*place), pen.unit * 1.7, text, pen.colors.warning);

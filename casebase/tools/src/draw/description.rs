@@ -1,28 +1,30 @@
 //! `description`: a verdict as one sentence for captions; mm.
 
-use casebase::Verdict;
+use casebase::CaseVerdict;
 
 /// The verdict with its evidence.
-pub(super) fn verdict(verdict: &Verdict, rank: Option<(usize, usize)>) -> String {
+pub(super) fn verdict(verdict: &CaseVerdict, rank: Option<(usize, usize)>) -> String {
     match verdict {
-        Verdict::Candidate(found) => {
+        CaseVerdict::Candidate(found) => {
             let rank = rank.map_or_else(String::new, |(rank, of)| format!(", rank {rank} of {of}"));
             format!(
                 "Candidate{rank}: occupied opponent scopes {}, teammates {}, similarity {:.3}, cost {:.0} mm.",
                 found.conditions, found.teammates, found.similarity, found.cost
             )
         }
-        Verdict::Ball { similarity, .. } => {
+        CaseVerdict::Ball { similarity, .. } => {
             format!("Not applicable: the ball lies outside its scope, similarity {similarity:.3}.")
         }
-        Verdict::Robots { needed, present } => {
+        CaseVerdict::Robots { needed, present } => {
             format!("Not applicable: it needs {needed} robots, {present} are there.")
         }
-        Verdict::OutOfField { robot } => format!("Not applicable: {robot} would stand outside the field."),
-        Verdict::TooFar { robot, player, distance, margin } => format!(
+        CaseVerdict::OutOfField { robot } => {
+            format!("Not applicable: {robot} would stand outside the field.")
+        }
+        CaseVerdict::TooFar { robot, player, distance, margin } => format!(
             "Not applicable: robot {player} would have {distance:.0} mm to go as {robot}, {margin:.0} mm too far."
         ),
-        Verdict::Path { index, opponent, inside_mm, .. } => format!(
+        CaseVerdict::Path { index, opponent, inside_mm, .. } => format!(
             "Not applicable: opponent {} stands {inside_mm:.0} mm inside leg {}.",
             opponent + 1,
             index + 1

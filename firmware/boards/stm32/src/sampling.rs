@@ -17,7 +17,7 @@ use crate::imu::Imu;
 
 /// The last reading of all sensors.
 #[derive(Clone, Copy, Debug, PartialEq, defmt::Format)]
-pub struct Sample {
+pub struct SensorSample {
     /// Turning rate of the body, rad/s, counter-clockwise.
     pub turn: Option<f32>,
     /// The robot lies on its side.
@@ -30,16 +30,16 @@ pub struct Sample {
     pub capacitor: f32,
 }
 
-impl Sample {
+impl SensorSample {
     const NONE: Self =
         Self { turn: None, tipped: false, ball: false, battery: f32::NAN, capacitor: f32::NAN };
 }
 
 /// The newest sample, if it is recent enough; else all readings are unknown, and an unknown battery brakes
 /// the robot.
-pub fn newest() -> Sample {
+pub fn newest() -> SensorSample {
     let (at, sample) = NEWEST.lock(Cell::get);
-    if at.elapsed() < STALE { sample } else { Sample::NONE }
+    if at.elapsed() < STALE { sample } else { SensorSample::NONE }
 }
 
 /// Reads everything, for ever. A sensor that does not answer is reported and tried again each second; until
@@ -66,7 +66,7 @@ pub async fn run(mut imu: Imu, mut analog: Analog) -> ! {
             defmt::warn!("the gyroscope is gone");
         }
         let now = Instant::now();
-        let sample = Sample {
+        let sample = SensorSample {
             turn: reading.and_then(|reading| turn.step(reading.rate[UP])),
             tipped: tilt.step(
                 protocol::Instant(now.as_micros()),
@@ -87,13 +87,13 @@ pub struct Probes;
 
 impl ports::Probes for Probes {
     fn look(&mut self) -> Seen {
-        let Sample { turn, tipped, ball, battery, capacitor } = newest();
+        let SensorSample { turn, tipped, ball, battery, capacitor } = newest();
         Seen { turn, ball, tipped, battery: Some(battery), kicker_ready: capacitor >= FULL_VOLTS }
     }
 }
 
-static NEWEST: CriticalSectionMutex<Cell<(Instant, Sample)>> =
-    CriticalSectionMutex::new(Cell::new((Instant::MIN, Sample::NONE)));
+static NEWEST: CriticalSectionMutex<Cell<(Instant, SensorSample)>> =
+    CriticalSectionMutex::new(Cell::new((Instant::MIN, SensorSample::NONE)));
 /// Sampling period, that of the control loop.
 const STEP: Duration = Duration::from_millis(1);
 /// Maximum age of a sample: ten steps.

@@ -100,20 +100,20 @@ impl Drivers {
 }
 
 /// Motors with their encoders, as the control loop drives them.
-pub struct Wheels {
+pub struct WheelDrivers {
     drivers: Drivers,
     encoders: Encoders,
     rule_role: [f32; WHEELS],
 }
 
-impl Wheels {
+impl WheelDrivers {
     /// Wheels with all motors without current.
     pub fn new(drivers: Drivers, encoders: Encoders) -> Self {
         Self { drivers, encoders, rule_role: [0.0; WHEELS] }
     }
 }
 
-impl ports::Wheels for Wheels {
+impl ports::WheelsPort for WheelDrivers {
     fn measured(&mut self) -> [f32; WHEELS] {
         self.encoders.rims(protocol::Instant(Instant::now().as_micros()), self.rule_role)
     }

@@ -12,7 +12,7 @@ use protocol::robot_io::SensorFrame;
 use protocol::{Duration, Instant};
 use rules::{FieldSpec, Phase, Side};
 
-use crate::belief::{Ball, Belief, Other};
+use crate::belief::{Belief, BelievedBall, Other};
 use crate::body::omni::{BALL_AT, FRONT};
 use crate::snapshot::{HostSnapshot, IN_THE_AIR};
 
@@ -138,8 +138,11 @@ impl Belief {
             self.handling.held = now.since(since).as_secs_f32();
             // A ball that the break-beam sensor sees is at the opening; cameras report it later.
             if contact {
-                self.ball =
-                    Some(Ball { position: dribbler_point, velocity: self.velocity, rest: dribbler_point });
+                self.ball = Some(BelievedBall {
+                    position: dribbler_point,
+                    velocity: self.velocity,
+                    rest: dribbler_point,
+                });
             }
         } else if received.is_none_or(|at| at.distance(dribbler_point) > VISIBLE_GAP) {
             (self.handling.from, self.handling.since, self.handling.held) = (None, None, 0.0);
@@ -149,7 +152,7 @@ impl Belief {
 }
 
 /// A ball that rolls freely, its path cut just beyond the lines; whether it still slides is unknown.
-fn rolling(position: Point<Field>, velocity: Vector<Field>, field: &FieldSpec) -> Ball {
+fn rolling(position: Point<Field>, velocity: Vector<Field>, field: &FieldSpec) -> BelievedBall {
     let rest = BallModel::default().rolling(position, velocity).rest();
     let offset = rest - position;
     // The share of the path that stays between two lines; 1 for a ball that is outside already.
@@ -162,7 +165,7 @@ fn rolling(position: Point<Field>, velocity: Vector<Field>, field: &FieldSpec) -
         offset.y(),
         0.5 * field.width,
     ));
-    Ball { position, velocity, rest: position + offset * inside }
+    BelievedBall { position, velocity, rest: position + offset * inside }
 }
 
 /// Whether the ball is in front of the flat front, within the noise of the snapshot.

@@ -8,10 +8,10 @@ use protocol::robot_io::{ActuatorFrame, SensorFrame};
 use rules::League;
 
 use crate::belief::Belief;
-use crate::body::kind::{self, Kind};
+use crate::body::kind::{self, BodyKind};
 use crate::body::omni::Drivetrain;
 use crate::body::{Intent, legged};
-use crate::governor::{Circumstances, Governor, Reasons, Ruling, Why};
+use crate::governor::{Circumstances, Governor, LimitReason, Reasons, Ruling};
 use crate::hosted::Hosted;
 use crate::teammates::Teammates;
 
@@ -22,12 +22,12 @@ pub enum Actuation {
     /// Actuation of four legs.
     Legs(kind::Legs),
     /// Actuation of four wheels.
-    Wheels(kind::Wheels, Wheels),
+    Wheels(kind::WheeledKind, WheelControl),
 }
 
 /// Drivetrain of the wheels with the governor that limits it.
 #[derive(Clone, Debug)]
-pub struct Wheels {
+pub struct WheelControl {
     drivetrain: Drivetrain,
     governor: Governor,
     kinematics: Omni,
@@ -37,10 +37,10 @@ pub struct Wheels {
 impl Actuation {
     /// Actuation for that league's robots.
     pub fn of(league: League) -> Self {
-        match Kind::of(league) {
-            Kind::Legged(built) => Self::Legs(built),
-            Kind::Wheeled(built) => {
-                let wheels = Wheels {
+        match BodyKind::of(league) {
+            BodyKind::Legged(built) => Self::Legs(built),
+            BodyKind::Wheeled(built) => {
+                let wheels = WheelControl {
                     drivetrain: Drivetrain::default(),
                     governor: Governor::new(league),
                     kinematics: Omni::default(),
@@ -97,7 +97,7 @@ impl Actuation {
 
     /// Whether the battery is too low to play.
     pub fn is_battery_low(&self) -> bool {
-        self.reasons().has(Why::Battery)
+        self.reasons().has(LimitReason::Battery)
     }
 
     /// The order that makes the body do `intent`, within its limits.

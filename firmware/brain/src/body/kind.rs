@@ -12,11 +12,11 @@ use rules::League;
 
 /// A kind of body that is built in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum BodyKind {
     /// A body with four legs.
     Legged(Legs),
     /// A body with four omnidirectional wheels.
-    Wheeled(Wheels),
+    Wheeled(WheeledKind),
 }
 
 /// Proof that the brain of a robot on legs is built in.
@@ -25,12 +25,12 @@ pub struct Legs(#[cfg(not(feature = "legged"))] Infallible);
 
 /// Proof that the brain of a robot on wheels is built in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Wheels(#[cfg(not(feature = "omni"))] Infallible);
+pub struct WheeledKind(#[cfg(not(feature = "omni"))] Infallible);
 
 #[cfg(not(any(feature = "legged", feature = "omni")))]
 compile_error!("a brain needs a body: turn on the feature `legged` or `omni`");
 
-impl Kind {
+impl BodyKind {
     /// The body kind of that league's robots. If it is not built in ([`Kind::is_built`]), the kind that is: a
     /// caller that takes a configuration from outside must check first.
     pub fn of(league: League) -> Self {
@@ -38,9 +38,9 @@ impl Kind {
             #[cfg(feature = "legged")]
             League::FourLegged => Self::Legged(Legs()),
             #[cfg(feature = "omni")]
-            League::Ssl2013 | League::DivisionB | League::DivisionA => Self::Wheeled(Wheels()),
+            League::Ssl2013 | League::DivisionB | League::DivisionA => Self::Wheeled(WheeledKind()),
             #[cfg(all(feature = "omni", not(feature = "legged")))]
-            League::FourLegged => Self::Wheeled(Wheels()),
+            League::FourLegged => Self::Wheeled(WheeledKind()),
             #[cfg(all(feature = "legged", not(feature = "omni")))]
             League::Ssl2013 | League::DivisionB | League::DivisionA => Self::Legged(Legs()),
         }

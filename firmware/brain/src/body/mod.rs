@@ -7,7 +7,7 @@ pub mod kind;
 pub mod legged;
 pub mod omni;
 
-use casebase::Kick;
+use casebase::CaseKick;
 use geometry::{Angle, Field, GoalEnd, Point};
 use protocol::Duration;
 use protocol::robot_io::{LeggedKick, OmniKick};
@@ -16,7 +16,7 @@ use rules::League;
 use crate::belief::Belief;
 use crate::skills::{Reception, Step};
 pub use actuation::Actuation;
-pub use kind::Kind;
+pub use kind::BodyKind;
 
 /// Motion or primitive wanted for the coming step. Points and angles of the field.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -121,13 +121,13 @@ pub trait Body: Sync {
     fn pass(&self, belief: &Belief, place: Point<Field>) -> Intent;
 
     /// Kicks the held ball with the library's kick `kind`, to `end`.
-    fn kick(&self, belief: &Belief, kind: &Kick, along: Angle, end: Point<Field>) -> Intent;
+    fn kick(&self, belief: &Belief, kind: &CaseKick, along: Angle, end: Point<Field>) -> Intent;
 
     /// Shoots the ball held at the goal, where it is open, or brings it to where that is easier.
     fn shoot(&self, belief: &Belief, attacked: GoalEnd, patient: bool) -> Intent;
 
     /// The heading from which a kick of that kind sends the ball in that direction.
-    fn heading_for(&self, kind: &Kick, along: Angle) -> Angle;
+    fn heading_for(&self, kind: &CaseKick, along: Angle) -> Angle;
 
     /// Seconds a passed ball takes for a distance, m.
     fn roll(&self, league: League, distance: f32) -> f32;
@@ -135,8 +135,8 @@ pub trait Body: Sync {
 
 /// The body of that league's robots.
 pub fn of(league: League) -> &'static dyn Body {
-    match Kind::of(league) {
-        Kind::Legged(_) => &legged::Legged,
-        Kind::Wheeled(_) => &omni::Wheeled,
+    match BodyKind::of(league) {
+        BodyKind::Legged(_) => &legged::Legged,
+        BodyKind::Wheeled(_) => &omni::Wheeled,
     }
 }

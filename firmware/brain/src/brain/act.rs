@@ -7,10 +7,10 @@ use rules::Phase;
 use super::Brain;
 use crate::body::Intent;
 use crate::config::Approach;
-use crate::execution::Scene;
+use crate::execution::ActionScene;
 use crate::reactive::Freedom;
 use crate::skills::wheels;
-use crate::team::reuse::{self, Request};
+use crate::team::reuse::{self, ReuseRequest};
 use crate::timer::Timer;
 
 impl Brain<'_> {
@@ -52,11 +52,11 @@ impl Brain<'_> {
             return self.default_behaviour(now, Freedom::Full);
         }
         match self.reuse(now) {
-            Request::Body(intent) => {
+            ReuseRequest::Body(intent) => {
                 self.reactive.rest();
                 return intent;
             }
-            Request::Abort(reason) => {
+            ReuseRequest::Abort(reason) => {
                 if let Some(state) = self.cycle.aborted(reason) {
                     self.adopt(now, &state);
                 }
@@ -66,7 +66,7 @@ impl Brain<'_> {
                     return Intent::Stand { face: None };
                 }
             }
-            Request::Nothing => {}
+            ReuseRequest::Nothing => {}
         }
         if !self.timers.is_idle(Timer::Pause) && !self.timers.has_fired(Timer::Pause) {
             return Intent::Stand { face: None };
@@ -80,14 +80,14 @@ impl Brain<'_> {
     }
 
     /// This robot's part in the running case, if it has one.
-    fn reuse(&mut self, now: Instant) -> Request {
-        let Some(mut execution) = self.execution.take() else { return Request::Nothing };
+    fn reuse(&mut self, now: Instant) -> ReuseRequest {
+        let Some(mut execution) = self.execution.take() else { return ReuseRequest::Nothing };
         let mut progress = self.cycle.progress;
         let mut touched = self.cycle.touched;
         let mut timers = core::mem::take(&mut self.timers);
         let mut monitor = core::mem::take(&mut self.monitor);
         let request = match self.scene(now) {
-            None => Request::Abort(AbortReason::UnknownCase),
+            None => ReuseRequest::Abort(AbortReason::UnknownCase),
             Some(scene) => {
                 touched |= scene.belief.holds_ball
                     || scene.play.robots.iter().any(|&id| {
@@ -99,7 +99,7 @@ impl Brain<'_> {
                 let playing = !matches!(progress, Progress::WaitEnd { .. });
                 let doubt = monitor.step(&scene, touched, &self.config.settings).filter(|_| playing);
                 if let Some(reason) = doubt {
-                    Request::Abort(reason)
+                    ReuseRequest::Abort(reason)
                 } else {
                     let how = self.config.positioning;
                     reuse::step(&scene, how, &mut execution, &mut progress, &mut timers)
@@ -119,11 +119,11 @@ impl Brain<'_> {
         self.reactive.step(now, self.config.robot, &self.belief, &self.teammates, attacked, freedom)
     }
 
-    pub(super) fn scene(&self, now: Instant) -> Option<Scene<'_>> {
+    pub(super) fn scene(&self, now: Instant) -> Option<ActionScene<'_>> {
         let state = self.cycle.state()?;
         let play = state.play()?;
         let case = self.base.case(play.case)?;
-        Some(Scene {
+        Some(ActionScene {
             now,
             belief: &self.belief,
             teammates: &self.teammates,

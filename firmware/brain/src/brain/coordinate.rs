@@ -10,7 +10,7 @@ use protocol::{Duration, Instant, RobotId};
 use super::Brain;
 use crate::config::Approach;
 use crate::estimate;
-use crate::execution::{Execution, Scene};
+use crate::execution::{ActionScene, Execution};
 use crate::team::cycle::CycleEvent;
 use crate::team::{election, hybrid, retrieval};
 use crate::timer::Timer;
@@ -164,7 +164,7 @@ impl Brain<'_> {
         }
         let (Some(cycle), Some(case)) = (self.cycle.id(), self.base.case(play.case)) else { return false };
         let (belief, teammates, base) = (&self.belief, &self.teammates, &self.base);
-        let scene = Scene { now, belief, teammates, cycle, play, case, base, body: self.body };
+        let scene = ActionScene { now, belief, teammates, cycle, play, case, base, body: self.body };
         hybrid::reactive_shoots_sooner(&scene)
     }
 

@@ -8,7 +8,7 @@ use protocol::team::{BallReport, Beacon, Role, Status};
 use protocol::{Duration, Instant, RobotId};
 
 use super::Brain;
-use crate::governor::{Ruling, Why};
+use crate::governor::{LimitReason, Ruling};
 
 /// What was sent last, and when.
 #[derive(Clone, Debug, Default)]
@@ -89,7 +89,7 @@ impl Brain<'_> {
             (spoken.tipped, Condition::TIPPED),
             (self.actuation.is_battery_low(), Condition::BATTERY_LOW),
             (self.actuation.ruling() != Ruling::Allowed, Condition::GOVERNED),
-            (reasons.has(Why::Silence), Condition::LINK_LOST),
+            (reasons.has(LimitReason::Silence), Condition::LINK_LOST),
         ];
         let set = |all: Condition, (holds, bit): (bool, Condition)| if holds { all.with(bit) } else { all };
         let condition = condition.into_iter().fold(Condition::default(), set);

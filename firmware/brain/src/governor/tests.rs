@@ -56,24 +56,27 @@ fn each_reason_alone_brakes_with_dribbler_off_and_kicker_discharged() {
     let moved = |x, angular| Twist { linear: Vector::new(x, 0.0), angular };
     let run = at(610, Phase::Run);
     let cases = [
-        (Circumstances { phase: Some(Phase::Halt), ..run }, Why::Halt),
-        (Circumstances { phase: Some(Phase::Timeout(Side::Theirs)), ..run }, Why::Halt),
+        (Circumstances { phase: Some(Phase::Halt), ..run }, LimitReason::Halt),
+        (Circumstances { phase: Some(Phase::Timeout(Side::Theirs)), ..run }, LimitReason::Halt),
         (
             Circumstances { host: Some(Hearing { frame: silent(100), command: silent(100) }), ..run },
-            Why::Silence,
+            LimitReason::Silence,
         ),
-        (Circumstances { host: Some(Hearing { frame: None, command: None }), ..run }, Why::Silence),
+        (Circumstances { host: Some(Hearing { frame: None, command: None }), ..run }, LimitReason::Silence),
         (
             Circumstances { host: Some(Hearing { frame: Some(now), command: silent(100) }), ..run },
-            Why::NoCommand,
+            LimitReason::NoCommand,
         ),
-        (Circumstances { host: Some(Hearing { frame: Some(now), command: None }), ..run }, Why::NoCommand),
-        (Circumstances { placed: false, ..run }, Why::Lost),
-        (Circumstances { health: &tipped, ..run }, Why::Tipped),
-        (Circumstances { odometry: moved(0.0, 30.1), ..run }, Why::Spinning),
-        (Circumstances { odometry: moved(0.0, -30.1), ..run }, Why::Spinning),
-        (Circumstances { odometry: moved(f32::NAN, 0.0), ..run }, Why::NotANumber),
-        (Circumstances { odometry: moved(0.0, f32::INFINITY), ..run }, Why::NotANumber),
+        (
+            Circumstances { host: Some(Hearing { frame: Some(now), command: None }), ..run },
+            LimitReason::NoCommand,
+        ),
+        (Circumstances { placed: false, ..run }, LimitReason::Lost),
+        (Circumstances { health: &tipped, ..run }, LimitReason::Tipped),
+        (Circumstances { odometry: moved(0.0, 30.1), ..run }, LimitReason::Spinning),
+        (Circumstances { odometry: moved(0.0, -30.1), ..run }, LimitReason::Spinning),
+        (Circumstances { odometry: moved(f32::NAN, 0.0), ..run }, LimitReason::NotANumber),
+        (Circumstances { odometry: moved(0.0, f32::INFINITY), ..run }, LimitReason::NotANumber),
     ];
     for (circumstances, expected) in cases {
         let (given, ruling) = driving(600, Phase::Run).rule(&circumstances, &go(3.0));
@@ -98,7 +101,7 @@ fn numbers_that_are_none_brake_wherever_they_stand() {
     ];
     for wanted in wanted {
         let (given, ruling) = driving(600, Phase::Run).rule(&at(610, Phase::Run), &wanted);
-        assert!(why(ruling).has(Why::NotANumber), "{wanted:?}");
+        assert!(why(ruling).has(LimitReason::NotANumber), "{wanted:?}");
         assert!(is_finite(given.twist) && given.dribbler == 0.0 && given.kick == OmniKick::Discharge);
     }
 }
@@ -141,8 +144,8 @@ fn from_50_to_100_ms_of_silence_the_limit_shrinks_and_the_first_frame_after_a_ga
         match t - 600 {
             // 4 m/s · (100 − t)/50 passes below 3 m/s after 62.5 ms.
             0..=60 => assert_eq!(ruling, Ruling::Allowed, "{t}"),
-            61..100 => assert!(matches!(ruling, Ruling::Limited(r) if r.has(Why::Hesitant)), "{t}"),
-            _ => assert!(why(ruling).has(Why::Silence), "{t}"),
+            61..100 => assert!(matches!(ruling, Ruling::Limited(r) if r.has(LimitReason::Hesitant)), "{t}"),
+            _ => assert!(why(ruling).has(LimitReason::Silence), "{t}"),
         }
     }
     assert!(speeds.windows(2).all(|pair| pair[1] <= pair[0]), "{speeds:?}");
@@ -201,7 +204,7 @@ fn who_expects_no_host_is_not_braked_by_its_silence() {
     let alone = Circumstances { host: None, phase: None, ..at(10, Phase::Run) };
     assert_eq!(governor.rule(&alone, &go(1.0)).1, Ruling::Allowed);
     let halted = Circumstances { host: None, ..at(20, Phase::Halt) };
-    assert!(why(governor.rule(&halted, &go(1.0)).1).has(Why::Halt));
+    assert!(why(governor.rule(&halted, &go(1.0)).1).has(LimitReason::Halt));
 }
 
 #[test]
@@ -212,7 +215,7 @@ fn in_stop_a_robot_is_slowed_to_1_3_m_per_s_within_the_grace_of_2_s() {
         governor.receive_host(Instant(t * 1000));
         let odometry = governor.last();
         let (given, ruling) = governor.rule(&Circumstances { odometry, ..at(t, Phase::Stop) }, &go(3.0));
-        assert!(matches!(ruling, Ruling::Limited(r) if r.has(Why::StopSpeed)));
+        assert!(matches!(ruling, Ruling::Limited(r) if r.has(LimitReason::StopSpeed)));
         if given.twist.linear.norm() <= STOP_SPEED + 1e-5 && slow_after.is_none() {
             slow_after = Some(t - 600);
         }
@@ -252,9 +255,10 @@ fn the_table_of_kicks_by_phase() {
         let hard = Wanted { kick: OmniKick::Flat(8.0), ..go(1.0) };
         let (given, ruling) = driving(600, Phase::Run).rule(&at(610, phase), &hard);
         match expected {
-            None => assert!(why(ruling).has(Why::Halt), "{phase:?}"),
+            None => assert!(why(ruling).has(LimitReason::Halt), "{phase:?}"),
             Some(kick) => {
-                let reason = if kick == OmniKick::None { Why::NoKick } else { Why::BallSpeed };
+                let reason =
+                    if kick == OmniKick::None { LimitReason::NoKick } else { LimitReason::BallSpeed };
                 assert!(matches!(ruling, Ruling::Limited(r) if r.has(reason)), "{phase:?}: {ruling:?}");
                 assert_eq!(given.kick, kick, "{phase:?}");
             }
@@ -286,7 +290,7 @@ fn a_battery_must_be_low_for_a_second() {
         governor.receive_host(Instant(t * 1000));
         let ruling = governor.rule(&Circumstances { health: &low, ..at(t, Phase::Run) }, &go(1.0)).1;
         if matches!(ruling, Ruling::Braking(_)) {
-            assert!(why(ruling).has(Why::Battery));
+            assert!(why(ruling).has(LimitReason::Battery));
             braked = Some(t - 610);
             break;
         }
@@ -299,7 +303,7 @@ fn an_absurd_motion_is_cut_to_what_robots_do() {
     let mut governor = driving(600, Phase::Run);
     let twist = Twist { linear: Vector::new(300.0, 400.0), angular: -99.0 };
     let (given, ruling) = governor.rule(&at(610, Phase::Run), &Wanted { twist, ..go(0.0) });
-    assert!(matches!(ruling, Ruling::Limited(r) if r.has(Why::Reach)));
+    assert!(matches!(ruling, Ruling::Limited(r) if r.has(LimitReason::Reach)));
     assert!((given.twist.linear.norm() - 4.0).abs() < 1e-5 && given.twist.angular == -20.0);
 }
 

@@ -16,7 +16,7 @@ use protocol::robot_io::LeggedKick;
 use protocol::team::{Role, Status};
 use protocol::{Duration, Instant, RobotId};
 
-use crate::belief::{Ball, Belief};
+use crate::belief::{Belief, BelievedBall};
 use crate::body::{Intent, legged};
 use crate::execution::face_ball;
 use crate::reactive::Freedom;
@@ -26,13 +26,13 @@ use crate::teammates::Teammates;
 
 /// State of the behaviour.
 #[derive(Clone, Debug, Default)]
-pub struct Reactive {
+pub struct LeggedReactive {
     role: Role,
     held_since: Option<Instant>,
     dodge: Option<bool>,
 }
 
-impl Reactive {
+impl LeggedReactive {
     /// This robot's present role in its team.
     pub fn role(&self) -> Role {
         self.role
@@ -93,7 +93,7 @@ impl Reactive {
         now: Instant,
         belief: &Belief,
         teammates: &Teammates,
-        ball: &Ball,
+        ball: &BelievedBall,
         attacked: GoalEnd,
     ) -> Intent {
         let since = *self.held_since.get_or_insert(now);
@@ -134,7 +134,7 @@ fn way_out(
     now: Instant,
     belief: &Belief,
     teammates: &Teammates,
-    ball: &Ball,
+    ball: &BelievedBall,
     goal: Point<Field>,
 ) -> Option<LeggedKick> {
     let field = belief.league().field();
@@ -160,12 +160,12 @@ fn way_out(
 }
 
 /// Whether an opponent is about to be at the ball.
-fn disputed(belief: &Belief, ball: &Ball) -> bool {
+fn disputed(belief: &Belief, ball: &BelievedBall) -> bool {
     belief.nearest_opponent(ball.position).is_some_and(|(_, distance)| distance < DISPUTED_WITHIN)
 }
 
 /// The hard kick if it stays within the lines, else the soft one.
-fn strength(belief: &Belief, ball: &Ball, direction: Angle) -> LeggedKick {
+fn strength(belief: &Belief, ball: &BelievedBall, direction: Angle) -> LeggedKick {
     let (_, length) = legged::nominal(LeggedKick::ForwardHard);
     let end = ball.position + Vector::polar(length, direction);
     let field = belief.league().field();
@@ -181,7 +181,7 @@ fn strength(belief: &Belief, ball: &Ball, direction: Angle) -> LeggedKick {
 fn is_attacker(
     now: Instant,
     me: RobotId,
-    ball: &Ball,
+    ball: &BelievedBall,
     belief: &Belief,
     teammates: &Teammates,
     role: Role,
@@ -199,7 +199,7 @@ fn is_attacker(
 }
 
 /// Back up: beside the ball, off its line to the goal, on the side with more room.
-fn beside(belief: &Belief, ball: &Ball, attacked: GoalEnd) -> Point<Field> {
+fn beside(belief: &Belief, ball: &BelievedBall, attacked: GoalEnd) -> Point<Field> {
     let field = belief.league().field();
     let to_goal = ball.position.direction_to(field.goal_center(attacked));
     let left = left_is_clearer(belief, ball, to_goal);
@@ -214,7 +214,7 @@ fn beside(belief: &Belief, ball: &Ball, attacked: GoalEnd) -> Point<Field> {
 
 /// Beside a gameplay of others: across the field from the ball's stop position and ahead of it, for the next
 /// one's pass.
-fn across(belief: &Belief, ball: &Ball, attacked: GoalEnd) -> Point<Field> {
+fn across(belief: &Belief, ball: &BelievedBall, attacked: GoalEnd) -> Point<Field> {
     let goal = belief.league().field().goal_center(attacked);
     let me = belief.pose.position;
     let side = if ball.rest.y().abs() > ACROSS_FROM { -ball.rest.y() } else { me.y() }.signum();
@@ -235,7 +235,7 @@ fn support(belief: &Belief, to: Point<Field>) -> Intent {
 }
 
 /// The opponent that is near the ball and on the path of a kick towards the goal.
-fn blocker(belief: &Belief, ball: &Ball, to_goal: Angle) -> Option<Point<Field>> {
+fn blocker(belief: &Belief, ball: &BelievedBall, to_goal: Angle) -> Option<Point<Field>> {
     belief.opponents.iter().copied().find(|&opponent| {
         let v = opponent - ball.position;
         v.norm() < BLOCKED_WITHIN && (v.angle() - to_goal).abs() < BLOCKED_ANGLE
@@ -249,7 +249,7 @@ fn clearance(belief: &Belief, from: Point<Field>, direction: Angle, length: f32)
 }
 
 /// The direction in which a kick passes `opponent` on its left or right.
-fn past(ball: &Ball, opponent: Point<Field>, left: bool) -> Angle {
+fn past(ball: &BelievedBall, opponent: Point<Field>, left: bool) -> Angle {
     let v = opponent - ball.position;
     let off = math::atan2(PASS_BY, v.norm()).clamp(DODGE_OFF[0], DODGE_OFF[1]);
     v.angle() + Angle::new(if left { off } else { -off })
@@ -257,7 +257,7 @@ fn past(ball: &Ball, opponent: Point<Field>, left: bool) -> Angle {
 
 /// On which side of the line to the goal a dodge is better: where a hard kick stays within the lines, else
 /// the clearer, else the inner.
-fn left_is_clearer(belief: &Belief, ball: &Ball, to_goal: Angle) -> bool {
+fn left_is_clearer(belief: &Belief, ball: &BelievedBall, to_goal: Angle) -> bool {
     let value = |direction: Angle| {
         let end = ball.position + Vector::polar(HARD_KICK, direction);
         let inside = if belief.league().field().contains(end) { 1.0 } else { 0.0 };
@@ -334,18 +334,18 @@ mod tests {
         let mut belief = Belief::new(League::FourLegged);
         belief.pose = Pose { position: Point::new(me.0, me.1), heading: Angle::ZERO };
         let at = Point::new(ball.0, ball.1);
-        belief.ball = Some(Ball { position: at, velocity: Vector::default(), rest: at });
+        belief.ball = Some(BelievedBall { position: at, velocity: Vector::default(), rest: at });
         belief
     }
 
-    fn step(reactive: &mut Reactive, belief: &Belief, ms: u64) -> Intent {
+    fn step(reactive: &mut LeggedReactive, belief: &Belief, ms: u64) -> Intent {
         let me = RobotId::new(1).unwrap();
         reactive.step(Instant(ms * 1000), me, belief, &Teammates::default(), GoalEnd::Positive, Freedom::Full)
     }
 
     #[test]
     fn alone_it_goes_for_the_ball() {
-        let mut reactive = Reactive::default();
+        let mut reactive = LeggedReactive::default();
         assert!(matches!(step(&mut reactive, &belief((0.0, 0.0), (1.0, 0.0)), 0), Intent::Walk { .. }));
         assert_eq!(reactive.role(), Role::Attacker);
     }
@@ -357,7 +357,7 @@ mod tests {
         let _ = b.opponents.push(Point::new(0.6, 0.0));
         // Turned to the best place for shots: 0.5 m before the penalty area, opposite its corner.
         b.pose.heading = Angle::new(math::atan2(0.65, 1.55));
-        assert_eq!(step(&mut Reactive::default(), &b, 0), Intent::Kick(LeggedKick::ForwardSoft));
+        assert_eq!(step(&mut LeggedReactive::default(), &b, 0), Intent::Kick(LeggedKick::ForwardSoft));
     }
 
     #[test]
@@ -368,7 +368,7 @@ mod tests {
         // On either side stands another one, too near for a kick aside.
         let _ = b.opponents.push(Point::new(0.2, 0.35));
         let _ = b.opponents.push(Point::new(0.2, -0.35));
-        let mut reactive = Reactive::default();
+        let mut reactive = LeggedReactive::default();
         let Intent::Carry { to } = step(&mut reactive, &b, 0) else { panic!("dodges") };
         assert!(to.y() < 0.0, "opponent is on the left, dodge right: {to:?}");
         assert!(!matches!(step(&mut reactive, &b, 1600), Intent::Carry { .. }));
@@ -378,7 +378,7 @@ mod tests {
     fn an_opponent_at_the_limit_cannot_make_it_hold_the_ball_for_ever() {
         let mut b = belief((0.0, 0.0), (0.13, 0.0));
         b.holds_ball = true;
-        let mut reactive = Reactive::default();
+        let mut reactive = LeggedReactive::default();
         let near = |ms: u64| if (ms / 200).is_multiple_of(2) { 0.35 } else { 0.45 };
         let kicked = (0..=100).map(|i| i * 40).any(|ms| {
             b.opponents.clear();

@@ -11,7 +11,7 @@ use rules::League;
 
 use crate::belief::Belief;
 use crate::body::Intent;
-use crate::body::kind::{self, Kind};
+use crate::body::kind::{self, BodyKind};
 use crate::teammates::Teammates;
 
 /// Extent of the behaviour.
@@ -29,17 +29,17 @@ pub enum Freedom {
 #[derive(Clone, Debug)]
 pub enum Reactive {
     /// The paper's behaviour, on legs.
-    Legged(kind::Legs, legged::Reactive),
+    Legged(kind::Legs, legged::LeggedReactive),
     /// Simple and rule-compliant, on wheels.
-    Wheels(kind::Wheels, wheels::Reactive),
+    Wheels(kind::WheeledKind, wheels::WheeledReactive),
 }
 
 impl Reactive {
     /// The behaviour of that league's robots.
     pub fn of(league: League) -> Self {
-        match Kind::of(league) {
-            Kind::Legged(built) => Self::Legged(built, legged::Reactive::default()),
-            Kind::Wheeled(built) => Self::Wheels(built, wheels::Reactive::default()),
+        match BodyKind::of(league) {
+            BodyKind::Legged(built) => Self::Legged(built, legged::LeggedReactive::default()),
+            BodyKind::Wheeled(built) => Self::Wheels(built, wheels::WheeledReactive::default()),
         }
     }
 

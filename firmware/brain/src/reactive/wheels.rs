@@ -9,7 +9,7 @@ use protocol::robot_io::OmniKick;
 use protocol::team::{Role, Status};
 use protocol::{Instant, RobotId};
 
-use crate::belief::{Ball, Belief};
+use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
 use crate::body::omni::{Drive, SHOT};
 use crate::reactive::Freedom;
@@ -19,11 +19,11 @@ use crate::teammates::Teammates;
 
 /// State of the behaviour.
 #[derive(Clone, Debug, Default)]
-pub struct Reactive {
+pub struct WheeledReactive {
     role: Role,
 }
 
-impl Reactive {
+impl WheeledReactive {
     /// This robot's present role in its team.
     pub fn role(&self) -> Role {
         self.role
@@ -93,7 +93,7 @@ fn advance(belief: &Belief, attacked: GoalEnd) -> Intent {
 fn is_attacker(
     now: Instant,
     me: RobotId,
-    ball: &Ball,
+    ball: &BelievedBall,
     belief: &Belief,
     teammates: &Teammates,
     role: Role,
@@ -118,7 +118,7 @@ fn place(
     me: RobotId,
     belief: &Belief,
     teammates: &Teammates,
-    ball: &Ball,
+    ball: &BelievedBall,
     attacked: GoalEnd,
 ) -> Point<Field> {
     let field = belief.league().field();
@@ -138,7 +138,7 @@ fn place(
     Point::new(x, y)
 }
 
-fn contested(belief: &Belief, ball: &Ball) -> bool {
+fn contested(belief: &Belief, ball: &BelievedBall) -> bool {
     belief.nearest_opponent(ball.position).is_some_and(|(_, distance)| distance < CONTESTED)
 }
 
@@ -185,7 +185,7 @@ mod tests {
     }
 
     fn step(belief: &Belief, teammates: &Teammates, freedom: Freedom) -> (Intent, Role) {
-        let mut reactive = Reactive::default();
+        let mut reactive = WheeledReactive::default();
         let intent = reactive.step(Instant(0), id(2), belief, teammates, GoalEnd::Positive, freedom);
         (intent, reactive.role())
     }

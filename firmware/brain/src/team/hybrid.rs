@@ -10,10 +10,10 @@ use geometry::{Field, Point, Segment};
 use casebase::{Action, KickAim};
 
 use crate::estimate;
-use crate::execution::Scene;
+use crate::execution::ActionScene;
 
 /// Whether the reactive behaviour is expected to shoot sooner than the gameplay of `scene`.
-pub fn reactive_shoots_sooner(scene: &Scene<'_>) -> bool {
+pub fn reactive_shoots_sooner(scene: &ActionScene<'_>) -> bool {
     let ball = Point::from(casebase::PointMm::from(scene.play.ball));
     let goal = scene.belief.league().field().goal_center(scene.case.defending().opposite());
     if ball.distance(goal) > IN_REACH {
@@ -37,7 +37,7 @@ pub fn reactive_shoots_sooner(scene: &Scene<'_>) -> bool {
 
 /// Expected seconds until the gameplay's shot, or until the shot that could follow from its final ball
 /// position.
-fn gameplay_until_shot(scene: &Scene<'_>) -> f32 {
+fn gameplay_until_shot(scene: &ActionScene<'_>) -> f32 {
     let shoots = scene.case.robots().flat_map(|part| scene.case.gameplay(part)).any(|action| match action {
         Action::Kick(kind) => {
             scene.base.kick(kind).is_some_and(|kick| matches!(kick.aim, KickAim::Goal { .. }))
@@ -54,7 +54,7 @@ fn gameplay_until_shot(scene: &Scene<'_>) -> f32 {
 
 /// Expected seconds from reaching a ball at `ball` until a shot: grabs, and short kicks on until the goal is
 /// in reach.
-fn until_shot(scene: &Scene<'_>, ball: Point<Field>) -> f32 {
+fn until_shot(scene: &ActionScene<'_>, ball: Point<Field>) -> f32 {
     let goal = scene.belief.league().field().goal_center(scene.case.defending().opposite());
     let mut pushes = 0.0;
     let mut left = ball.distance(goal) - SHOT_FROM;

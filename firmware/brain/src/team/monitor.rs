@@ -5,11 +5,11 @@
 //! ball not stopped where no robot of the case expects it. A doubt must last a fifth of a second before it
 //! aborts: an opponent at the edge of a trapezoid shall not end a gameplay by swaying.
 
-use casebase::{PointMm, Settings};
+use casebase::{PointMm, RetrievalSettings};
 use geometry::Segment;
 use protocol::team::AbortReason;
 
-use crate::execution::Scene;
+use crate::execution::ActionScene;
 
 /// A doubt about the case, and its duration.
 #[derive(Clone, Debug, Default)]
@@ -25,7 +25,12 @@ impl Monitor {
     }
 
     /// The reason to abort, if there is one.
-    pub fn step(&mut self, scene: &Scene<'_>, touched: bool, settings: &Settings) -> Option<AbortReason> {
+    pub fn step(
+        &mut self,
+        scene: &ActionScene<'_>,
+        touched: bool,
+        settings: &RetrievalSettings,
+    ) -> Option<AbortReason> {
         let doubt = if touched { after_touch(scene) } else { before_touch(scene, settings) };
         self.steps = if doubt.is_some() && doubt == self.doubt { self.steps.saturating_add(1) } else { 0 };
         self.doubt = doubt;
@@ -33,7 +38,7 @@ impl Monitor {
     }
 }
 
-fn before_touch(scene: &Scene<'_>, settings: &Settings) -> Option<AbortReason> {
+fn before_touch(scene: &ActionScene<'_>, settings: &RetrievalSettings) -> Option<AbortReason> {
     let ball = scene.belief.ball?.rest.into();
     if !scene.case.ball_in_scope(ball) {
         return Some(AbortReason::BallOutOfScope);
@@ -47,7 +52,7 @@ fn before_touch(scene: &Scene<'_>, settings: &Settings) -> Option<AbortReason> {
         .map(|_| AbortReason::PathBlocked)
 }
 
-fn after_touch(scene: &Scene<'_>) -> Option<AbortReason> {
+fn after_touch(scene: &ActionScene<'_>) -> Option<AbortReason> {
     if scene.belief.opponent_on_ball(scene.now, scene.teammates) {
         return Some(AbortReason::OpponentOnBall);
     }

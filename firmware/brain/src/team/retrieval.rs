@@ -3,7 +3,7 @@
 //! The ball of the problem is at its stop position: robots that adapt to a place a rolling ball has left
 //! would only abort. For a stationary ball it is the paper's own ball position.
 
-use casebase::{CaseBase, GoalEnd, Problem, Settings};
+use casebase::{CaseBase, GoalEnd, Problem, RetrievalSettings};
 use protocol::host::Hint;
 use protocol::team::{Decision, Play};
 use protocol::{Instant, RobotId};
@@ -68,7 +68,7 @@ pub fn accept(
 pub fn decide(
     base: &CaseBase<'_>,
     problem: &Problem,
-    settings: &Settings,
+    settings: &RetrievalSettings,
     holder: Option<RobotId>,
 ) -> Decision {
     let Some(best) = casebase::retrieve_best(base, problem, settings) else { return Decision::NoCase };

@@ -5,12 +5,12 @@ use protocol::team::{AbortReason, Progress};
 
 use crate::body::Intent;
 use crate::config::Positioning;
-use crate::execution::{Execution, Outcome, Scene, face_ball};
+use crate::execution::{ActionOutcome, ActionScene, Execution, face_ball};
 use crate::timer::TimerTable;
 
 /// Result of a step of reuse.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Request {
+pub enum ReuseRequest {
     /// This intent for the body.
     Body(Intent),
     /// This robot's part is over: default behaviour.
@@ -21,12 +21,12 @@ pub enum Request {
 
 /// One step of the machine; `progress` moves on, never back.
 pub fn step(
-    scene: &Scene<'_>,
+    scene: &ActionScene<'_>,
     positioning: Positioning,
     execution: &mut Execution,
     progress: &mut Progress,
     timers: &mut TimerTable,
-) -> Request {
+) -> ReuseRequest {
     if let Progress::Adapt { .. } = progress {
         let arrived = has_arrived(scene, execution);
         *progress = if may_execute(scene, positioning, execution, arrived) {
@@ -36,24 +36,24 @@ pub fn step(
         };
     }
     match progress {
-        Progress::Adapt { .. } => Request::Body(adapt(scene, execution)),
+        Progress::Adapt { .. } => ReuseRequest::Body(adapt(scene, execution)),
         Progress::Execute { .. } => match execution.step(scene, timers) {
-            Outcome::Running(intent) => {
+            ActionOutcome::Running(intent) => {
                 *progress = Progress::Execute { done: execution.done() };
-                Request::Body(intent)
+                ReuseRequest::Body(intent)
             }
-            Outcome::Finished => {
+            ActionOutcome::Finished => {
                 *progress = Progress::WaitEnd { finished: true };
-                Request::Nothing
+                ReuseRequest::Nothing
             }
-            Outcome::Failed(reason) => Request::Abort(reason),
+            ActionOutcome::Failed(reason) => ReuseRequest::Abort(reason),
         },
-        Progress::WaitEnd { .. } | Progress::Idle => Request::Nothing,
+        Progress::WaitEnd { .. } | Progress::Idle => ReuseRequest::Nothing,
     }
 }
 
 /// Walks to the adapted position, facing the ball at its end.
-fn adapt(scene: &Scene<'_>, execution: &Execution) -> Intent {
+fn adapt(scene: &ActionScene<'_>, execution: &Execution) -> Intent {
     if scene.belief.holds_ball {
         return Intent::Stand { face: None };
     }
@@ -63,7 +63,7 @@ fn adapt(scene: &Scene<'_>, execution: &Execution) -> Intent {
 
 /// At its adapted position, facing the ball. For the robot that gets the ball, "next to the ball" is enough
 /// (paper §4.2).
-fn has_arrived(scene: &Scene<'_>, execution: &Execution) -> bool {
+fn has_arrived(scene: &ActionScene<'_>, execution: &Execution) -> bool {
     let pose = scene.belief.pose;
     if scene.belief.holds_ball {
         return true;
@@ -82,7 +82,12 @@ fn has_arrived(scene: &Scene<'_>, execution: &Execution) -> bool {
 
 /// Dependent: the ball getter is there. Independent: all are. In both, a teammate that executes has found it
 /// so.
-fn may_execute(scene: &Scene<'_>, positioning: Positioning, execution: &Execution, arrived: bool) -> bool {
+fn may_execute(
+    scene: &ActionScene<'_>,
+    positioning: Positioning,
+    execution: &Execution,
+    arrived: bool,
+) -> bool {
     let there = |part| {
         if part == execution.part() {
             arrived
@@ -98,7 +103,7 @@ fn may_execute(scene: &Scene<'_>, positioning: Positioning, execution: &Executio
     ready || scene.case.robots().any(|part| part != execution.part() && executes(scene, part))
 }
 
-fn executes(scene: &Scene<'_>, part: casebase::CaseRobot) -> bool {
+fn executes(scene: &ActionScene<'_>, part: casebase::CaseRobot) -> bool {
     matches!(scene.progress_of(part), Some(Progress::Execute { .. } | Progress::WaitEnd { finished: true }))
 }
 

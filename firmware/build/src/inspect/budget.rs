@@ -98,11 +98,11 @@ const LARGEST: usize = 12;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::inspect::Part;
+    use crate::inspect::SizePart;
 
     #[test]
     fn a_byte_too_many_breaks_the_budget_and_the_largest_are_named() {
-        let part = |name: &str, flash| Part { name: name.into(), flash, ram: 0 };
+        let part = |name: &str, flash| SizePart { name: name.into(), flash, ram: 0 };
         let sizes = |flash, ram| Sizes { flash, ram, crates: vec![], symbols: vec![part("table", 7)] };
         assert_eq!(Budget::IMAGE.check(&sizes(163_840, 49_152)), Ok(()));
         let over = Budget::IMAGE.check(&sizes(163_841, 0)).unwrap_err().to_string();

@@ -15,7 +15,7 @@ use object::{Object as _, ObjectSection as _, ObjectSymbol as _, SectionFlags, S
 
 pub use budget::{Budget, Chip, OverBudget, STACK_BUDGET, STEP_BUDGET};
 pub use panics::{Allowed, AllowedError, PanicSite, PanicVerdict, panic_sites};
-pub use size::{Part, Sizes};
+pub use size::{SizePart, Sizes};
 
 /// A firmware image, parsed.
 pub struct Image<'a> {

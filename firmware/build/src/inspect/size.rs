@@ -15,14 +15,14 @@ pub struct Sizes {
     /// RAM that is taken before the program starts; the stack has what is left.
     pub ram: u64,
     /// Sizes by crate, the largest first.
-    pub crates: Vec<Part>,
+    pub crates: Vec<SizePart>,
     /// Sizes by symbol, the largest first.
-    pub symbols: Vec<Part>,
+    pub symbols: Vec<SizePart>,
 }
 
 /// Size of a crate or symbol, in bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Part {
+pub struct SizePart {
     /// Name of the crate or symbol.
     pub name: String,
     /// Bytes of flash used.
@@ -82,7 +82,7 @@ impl Sizes {
     }
 
     /// Statics: each of that many bytes or more, the largest first, after the crate it belongs to.
-    pub fn pools(&self, least: u64) -> Vec<(&str, &Part)> {
+    pub fn pools(&self, least: u64) -> Vec<(&str, &SizePart)> {
         let mut pools: Vec<_> = self
             .symbols
             .iter()
@@ -94,10 +94,10 @@ impl Sizes {
     }
 }
 
-fn sorted(parts: BTreeMap<&str, (u64, u64)>) -> Vec<Part> {
+fn sorted(parts: BTreeMap<&str, (u64, u64)>) -> Vec<SizePart> {
     let parts = parts.into_iter().filter(|(_, (flash, ram))| flash + ram > 0);
     let mut parts: Vec<_> =
-        parts.map(|(name, (flash, ram))| Part { name: name.to_owned(), flash, ram }).collect();
+        parts.map(|(name, (flash, ram))| SizePart { name: name.to_owned(), flash, ram }).collect();
     parts.sort_by(|a, b| (b.flash + b.ram, &a.name).cmp(&(a.flash + a.ram, &b.name)));
     parts
 }
@@ -124,7 +124,7 @@ mod tests {
 
     #[test]
     fn pools_are_the_large_statics_in_ram_the_largest_first() {
-        let part = |name: &str, flash, ram| Part { name: name.into(), flash, ram };
+        let part = |name: &str, flash, ram| SizePart { name: name.into(), flash, ram };
         let symbols = vec![
             part("a::TABLE", 9_000, 0),
             part("b::SMALL", 0, 255),

@@ -11,7 +11,7 @@ use core::fmt;
 use geometry::{Angle, Field, Point, Segment, Shape, Vector};
 use motion::avoid::{self, Course, Obstacle};
 use motion::ball::{BallModel, BallPath};
-use motion::intercept::{Interception, Request, kick_reach};
+use motion::intercept::{InterceptRequest, Interception, kick_reach};
 use motion::trajectory::{CalcMotion, DragLimits, FreeLimits, Motion, State};
 use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro128PlusPlus;
@@ -69,8 +69,8 @@ impl Work {
     }
 
     /// Runs the task; returns the bits of the result, folded into 32 bits.
-    pub fn run(self, task: &Task) -> u32 {
-        let Task { from, velocity, to, .. } = *task;
+    pub fn run(self, task: &MotionTask) -> u32 {
+        let MotionTask { from, velocity, to, .. } = *task;
         let (free, drag) = (FreeLimits::default(), DragLimits::default());
         match self {
             Self::FreeTime => free.time(from, velocity, to).to_bits(),
@@ -78,8 +78,8 @@ impl Work {
             Self::FreeState => folded(&task.motion.at(task.time)),
             Self::DragTime => drag.time(from, velocity, to).to_bits(),
             Self::DragPlan => drag.plan(from, velocity, to).duration().to_bits(),
-            Self::Soonest => task.interception_point(Request::Soonest),
-            Self::Safest => task.interception_point(Request::Safest),
+            Self::Soonest => task.interception_point(InterceptRequest::Soonest),
+            Self::Safest => task.interception_point(InterceptRequest::Safest),
             Self::Avoid => task.step(&task.standing),
             Self::AvoidMoving => task.step(&task.moving),
         }
@@ -88,7 +88,7 @@ impl Work {
 
 /// Inputs of one task.
 #[derive(Clone, Debug)]
-pub struct Task {
+pub struct MotionTask {
     /// A start, a velocity and an end on a field of 12 × 9 m; every second path is short.
     pub from: Point<Field>,
     /// Velocity at the start, m/s.
@@ -104,8 +104,8 @@ pub struct Task {
     moving: [Obstacle<Field>; OBSTACLES],
 }
 
-impl Task {
-    fn interception_point(&self, request: Request) -> u32 {
+impl MotionTask {
+    fn interception_point(&self, request: InterceptRequest) -> u32 {
         let asked = Interception {
             robot: self.start,
             velocity: self.velocity,
@@ -115,10 +115,10 @@ impl Task {
             until: 5.0,
         };
         match asked.find(&FreeLimits::default(), request) {
-            motion::intercept::Verdict::Intercepts(interception_point) => {
+            motion::intercept::InterceptVerdict::Intercepts(interception_point) => {
                 interception_point.robot_time.to_bits()
             }
-            motion::intercept::Verdict::Chase { robot_time, .. } => robot_time.to_bits() ^ 1,
+            motion::intercept::InterceptVerdict::Chase { robot_time, .. } => robot_time.to_bits() ^ 1,
         }
     }
 
@@ -197,9 +197,9 @@ impl Tasks {
 }
 
 impl Iterator for Tasks {
-    type Item = Task;
+    type Item = MotionTask;
 
-    fn next(&mut self) -> Option<Task> {
+    fn next(&mut self) -> Option<MotionTask> {
         let near = if self.0.next_u32() & 1 == 0 { 0.05 } else { 1.0 };
         let from = Point::new(self.within(6.0), self.within(4.5));
         let velocity = Vector::new(self.within(2.1), self.within(2.1));
@@ -216,7 +216,7 @@ impl Iterator for Tasks {
             }
             _ => obstacle,
         });
-        Some(Task { from, velocity, to, motion, time, ball, start, target, standing, moving })
+        Some(MotionTask { from, velocity, to, motion, time, ball, start, target, standing, moving })
     }
 }
 
@@ -231,7 +231,7 @@ pub struct Counted {
 
 impl Counted {
     /// Runs all works on a task. `count` runs one, and counts its instructions.
-    pub fn of(task: &Task, mut count: impl FnMut(Work, &Task) -> (u32, u32)) -> Self {
+    pub fn of(task: &MotionTask, mut count: impl FnMut(Work, &MotionTask) -> (u32, u32)) -> Self {
         let mut found = 0_u32;
         let instructions = Work::ALL.map(|work| {
             let (bits, instructions) = count(work, task);

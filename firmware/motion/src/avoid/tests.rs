@@ -177,7 +177,10 @@ fn in_a_thousand_scenes_it_enters_nothing_and_arrives_where_there_is_a_way() {
 #[test]
 fn a_free_way_is_taken_straight() {
     let path = plan(&course(at(0.0, 0.0), at(2.0, 1.0), &[disc(0.0, 1.0, 0.3), disc(2.0, 0.0, 0.3)]));
-    assert_eq!((path.verdict, path.restraint, path.goal), (Verdict::Direct, Restraint::None, at(2.0, 1.0)));
+    assert_eq!(
+        (path.verdict, path.restraint, path.goal),
+        (RouteVerdict::Direct, Restraint::None, at(2.0, 1.0))
+    );
     assert!(path.next.velocity.cross(Vector::new(2.0, 1.0)).abs() < 1e-3 && path.next.velocity.x() > 0.0);
     assert_eq!(path.motion, FreeLimits::default().plan(at(0.0, 0.0), Vector::default(), at(2.0, 1.0)));
 }
@@ -186,7 +189,7 @@ fn a_free_way_is_taken_straight() {
 fn a_disc_in_the_way_is_passed_on_its_nearer_side_at_its_tangent() {
     let obstacles = [disc(1.0, 0.1, 0.3)];
     let path = plan(&course(at(0.0, 0.0), at(2.0, 0.0), &obstacles));
-    let Verdict::Around { via } = path.verdict else { panic!("{path:?}") };
+    let RouteVerdict::Around { via } = path.verdict else { panic!("{path:?}") };
     // Below, as its middle is above; both pieces keep 20 mm from it, and hardly more.
     assert!(via.y() < -0.2 && path.next.velocity.y() < 0.0);
     for piece in [Segment::new(at(0.0, 0.0), via), Segment::new(via, at(2.0, 0.0))] {
@@ -203,7 +206,7 @@ fn the_present_velocity_decides_between_two_sides() {
     for sign in [-1.0, 1.0] {
         let velocity = Vector::new(0.5, sign);
         let path = plan(&Course { velocity, ..course(at(0.0, 0.0), at(2.0, 0.0), &obstacles) });
-        let Verdict::Around { via } = path.verdict else { panic!("{path:?}") };
+        let RouteVerdict::Around { via } = path.verdict else { panic!("{path:?}") };
         assert!(via.y() * sign > 0.0);
     }
 }
@@ -212,7 +215,7 @@ fn the_present_velocity_decides_between_two_sides() {
 fn who_is_inside_leaves_by_the_shortest_way() {
     let area = Obstacle::standing(Shape::Box { low: at(-4.5, -1.0), high: at(-3.5, 1.0) });
     let path = plan(&course(at(-3.7, 0.5), at(-4.0, 3.0), &[area]));
-    let Verdict::Escape { to } = path.verdict else { panic!("{path:?}") };
+    let RouteVerdict::Escape { to } = path.verdict else { panic!("{path:?}") };
     assert!((to.x() + 3.5).abs() < 0.01 && (to.y() - 0.5).abs() < 1e-5 && path.next.velocity.x() > 0.0);
     let drive = drive(course(at(-3.7, 0.5), at(-4.0, 3.0), &[area]), 5.0);
     assert!(drive.arrived && drive.time < 2.5, "{} s", drive.time);
@@ -228,7 +231,7 @@ fn a_half_plane_that_ends_beyond_a_wall_is_left_on_the_surface_side() {
         [(3.0, &[half][..]), (-3.1, &[half, circle]), (0.1, &[half, circle]), (3.0, &[half, post])]
     {
         let course = Course { within: Some(SURFACE), ..course(at(4.0, y), at(4.6, y), scene) };
-        let Verdict::Escape { to } = plan(&course).verdict else { panic!() };
+        let RouteVerdict::Escape { to } = plan(&course).verdict else { panic!() };
         assert!(to.x() < 0.0 && to.x() > -1.0, "{y}: {to:?}");
         let bodies: Vec<_> = scene.iter().copied().filter(|o| o.is_body).collect();
         let mut driven = course;
@@ -271,7 +274,7 @@ fn every_place_of_overlapping_shapes_has_a_way_out() {
 fn a_target_inside_becomes_the_nearest_point_outside() {
     let obstacles = [disc(1.0, 0.0, 0.5)];
     let path = plan(&course(at(0.0, 0.0), at(0.9, 0.0), &obstacles));
-    assert!(path.goal.distance(at(0.5, 0.0)) < 0.01 && path.verdict == Verdict::Direct);
+    assert!(path.goal.distance(at(0.5, 0.0)) < 0.01 && path.verdict == RouteVerdict::Direct);
     // In the overlap of two, and off the field surface.
     let obstacles = [disc(1.0, 0.0, 0.5), disc(1.3, 0.0, 0.5)];
     let path = plan(&course(at(0.0, 0.0), at(1.2, 0.05), &obstacles));
@@ -292,7 +295,7 @@ fn without_a_way_it_says_so_and_stays_out() {
         })
         .collect();
     let path = plan(&course(at(0.0, 0.0), at(2.0, 0.0), &ring));
-    assert!(matches!(path.verdict, Verdict::Blocked { .. }), "{:?}", path.verdict);
+    assert!(matches!(path.verdict, RouteVerdict::Blocked { .. }), "{:?}", path.verdict);
     let drive = drive(course(at(0.0, 0.0), at(2.0, 0.0), &ring), 3.0);
     assert!(!drive.arrived && drive.deepest < 1e-4);
 }

@@ -209,7 +209,9 @@ fn defenders_never_enter_the_penalty_area() {
             for _ in 0..750 {
                 simulation.step().unwrap();
                 let first = simulation.attackers().count();
-                for (i, role) in simulation.opponents().enumerate().filter(|(_, r)| *r != Role::Goalie) {
+                for (i, role) in
+                    simulation.opponents().enumerate().filter(|(_, r)| *r != OpponentRole::Goalie)
+                {
                     let place = simulation.world().walkers[first + i].pose.position;
                     // A shove can move a robot a little before its legs react.
                     let deeper = geometry::Point::new(place.x() - 0.1, place.y());

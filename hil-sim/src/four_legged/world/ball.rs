@@ -9,14 +9,14 @@ use rules::FieldSpec;
 
 /// The ball's true state.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ball {
+pub struct LeggedBall {
     /// Its centre, m.
     pub position: Point<Field>,
     /// m/s.
     pub velocity: Vector<Field>,
 }
 
-impl Ball {
+impl LeggedBall {
     /// A resting ball.
     pub fn at(position: Point<Field>) -> Self {
         Self { position, velocity: Vector::default() }
@@ -75,7 +75,7 @@ mod tests {
 
     #[test]
     fn a_ball_rolls_v_squared_over_two_a_and_stops_after_v_over_a() {
-        let mut ball = Ball { velocity: Vector::new(1.0, 0.0), ..Ball::at(Point::default()) };
+        let mut ball = LeggedBall { velocity: Vector::new(1.0, 0.0), ..LeggedBall::at(Point::default()) };
         assert!((ball.rest(0.35).x() - 1.428_571).abs() < 1e-5);
         let mut steps = 0;
         while ball.velocity.norm() > 0.0 {
@@ -89,7 +89,7 @@ mod tests {
 
     #[test]
     fn a_ball_sent_two_metres_rests_two_metres_away() {
-        let mut ball = Ball::at(Point::new(-1.0, 0.5));
+        let mut ball = LeggedBall::at(Point::new(-1.0, 0.5));
         ball.send(0.35, Vector::new(0.0, -2.0));
         for _ in 0..600 {
             ball.roll(0.35, 0.01);
@@ -102,7 +102,7 @@ mod tests {
     #[test]
     fn the_net_stops_what_crossed_the_goal_line_between_the_posts() {
         let field = League::FourLegged.field();
-        let mut ball = Ball { velocity: Vector::new(2.0, 0.0), ..Ball::at(Point::new(2.6, 0.1)) };
+        let mut ball = LeggedBall { velocity: Vector::new(2.0, 0.0), ..LeggedBall::at(Point::new(2.6, 0.1)) };
         for _ in 0..100 {
             ball.roll(0.35, 0.01);
             ball.stay_in_net(&field, 0.0425);

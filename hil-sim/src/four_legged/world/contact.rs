@@ -3,9 +3,9 @@
 
 use geometry::{Field, Vector};
 
-use super::{World, WorldEvent};
+use super::{LeggedWorld, WorldEvent};
 
-impl World {
+impl LeggedWorld {
     /// Moves overlapping robots apart, half the overlap each; a few iterations settle several robots in
     /// contact.
     pub(super) fn push_robots_apart(&mut self) {

@@ -13,7 +13,7 @@ mod contact;
 mod primitives;
 mod walker;
 
-pub use ball::Ball;
+pub use ball::LeggedBall;
 pub use walker::{Primitive, PrimitiveKind, Side, Walker};
 
 use geometry::{Field, Point, Vector};
@@ -25,9 +25,9 @@ use crate::rng::Stream;
 
 /// The true state of ball and robots.
 #[derive(Clone, Debug)]
-pub struct World {
+pub struct LeggedWorld {
     /// The ball.
-    pub ball: Ball,
+    pub ball: LeggedBall,
     /// The robots.
     pub walkers: Vec<Walker>,
     /// The robot that has the ball between its legs, if any.
@@ -94,12 +94,12 @@ pub enum WorldEvent {
     },
 }
 
-impl World {
+impl LeggedWorld {
     /// A four-legged field with a resting ball; random streams come from `seed`.
     pub fn new(parameters: &Parameters, seed: u64, ball: Point<Field>, walkers: Vec<Walker>) -> Self {
         let league = League::FourLegged;
         Self {
-            ball: Ball::at(ball),
+            ball: LeggedBall::at(ball),
             walkers,
             hold: None,
             leaving: None,

@@ -4,9 +4,9 @@
 use geometry::{Angle, Vector, math};
 use protocol::robot_io::LeggedKick;
 
-use super::{Hold, PrimitiveKind, STEP, World, WorldEvent};
+use super::{Hold, LeggedWorld, PrimitiveKind, STEP, WorldEvent};
 
-impl World {
+impl LeggedWorld {
     /// A step of the robot's current primitive, if any.
     pub(super) fn progress(&mut self, robot: usize) {
         let Some(mut action) = self.walkers[robot].action else { return };

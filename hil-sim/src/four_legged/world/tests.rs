@@ -6,22 +6,22 @@ use protocol::robot_io::{LeggedKick, LeggedPrimitive};
 use super::*;
 
 /// An attacker at the origin facing +x, the ball in its grasp, and the robots `others`.
-fn world(seed: u64, others: &[Walker]) -> World {
+fn world(seed: u64, others: &[Walker]) -> LeggedWorld {
     let mut walkers = vec![Walker::at(Side::Attackers, Pose::default())];
     walkers.extend_from_slice(others);
-    World::new(Parameters::four_legged(), seed, Point::new(0.15, 0.0), walkers)
+    LeggedWorld::new(Parameters::four_legged(), seed, Point::new(0.15, 0.0), walkers)
 }
 
-fn order(world: &mut World, primitive: LeggedPrimitive) {
+fn order(world: &mut LeggedWorld, primitive: LeggedPrimitive) {
     walk(world, Twist::default(), primitive);
 }
 
-fn walk(world: &mut World, walk: Twist<geometry::Body>, primitive: LeggedPrimitive) {
+fn walk(world: &mut LeggedWorld, walk: Twist<geometry::Body>, primitive: LeggedPrimitive) {
     world.command(0, &ActuatorFrame::Legged { walk, primitive });
 }
 
 /// Runs for `seconds`; returns all events.
-fn run(world: &mut World, seconds: f32) -> Vec<WorldEvent> {
+fn run(world: &mut LeggedWorld, seconds: f32) -> Vec<WorldEvent> {
     let steps = (seconds / STEP + 0.5) as u32;
     let mut events = Vec::new();
     (0..steps).for_each(|_| world.step());
@@ -30,7 +30,7 @@ fn run(world: &mut World, seconds: f32) -> Vec<WorldEvent> {
 }
 
 /// A world whose first robot holds the ball.
-fn holding(others: &[Walker]) -> World {
+fn holding(others: &[Walker]) -> LeggedWorld {
     (0..100)
         .map(|seed| {
             let mut world = world(seed, others);
@@ -180,8 +180,10 @@ fn a_crashed_robot_lets_the_ball_go() {
 fn a_ball_bounces_off_a_side_and_stops_between_the_legs() {
     let shot = |from: (f32, f32), velocity: (f32, f32)| {
         let mut world = world(0, &[]);
-        world.ball =
-            Ball { position: Point::new(from.0, from.1), velocity: Vector::new(velocity.0, velocity.1) };
+        world.ball = LeggedBall {
+            position: Point::new(from.0, from.1),
+            velocity: Vector::new(velocity.0, velocity.1),
+        };
         let touched = run(&mut world, 1.0).contains(&WorldEvent::Touched { robot: 0 });
         assert!(touched);
         world.ball

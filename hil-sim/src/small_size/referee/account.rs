@@ -4,7 +4,7 @@
 use protocol::{Instant, RobotId, Who};
 use rules::{Colour, limits};
 
-use super::event::Event;
+use super::event::RefereeEvent;
 use super::micros;
 use super::settings::TeamSettings;
 
@@ -18,7 +18,7 @@ pub struct Account {
     /// Number of goals that count.
     pub score: u32,
     /// Fouls that count towards cards, oldest first.
-    pub(super) fouls: Vec<Event>,
+    pub(super) fouls: Vec<RefereeEvent>,
     /// Playing time left of each active yellow card, µs.
     pub yellow_cards: Vec<i64>,
     /// Yellow cards ever given.
@@ -120,7 +120,7 @@ impl Account {
     }
 
     /// The last foul that did not stop the game.
-    pub(super) fn last_non_stopping_foul(&self) -> Option<&Event> {
+    pub(super) fn last_non_stopping_foul(&self) -> Option<&RefereeEvent> {
         self.fouls.iter().rev().find(|foul| foul.what.kind().is_non_stopping_foul())
     }
 }

@@ -8,14 +8,14 @@
 use geometry::{GoalEnd, Point, Pose};
 use protocol::{Duration, Instant, Who};
 use rules::restart::kickoff_places;
-use rules::state::Command;
+use rules::state::RefereeCommand;
 use rules::{Colour, Phase, limits};
 
 use super::InternalReferee;
-use super::event::{Event, Restart, What};
+use super::event::{RefereeEvent, Restart, What};
 use super::field_staff::WorldOrder;
 use super::observation::RobotSeen;
-use super::ready::{Obstacle, Reason};
+use super::ready::{ReadyObstacle, Reason};
 use super::scene::COLOURS;
 
 /// A match that could not continue although enough time had passed.
@@ -28,7 +28,7 @@ pub struct Blocked {
     /// Phase in which the match is blocked.
     pub phase: Phase<Colour>,
     /// The present or last obstacle.
-    pub obstacle: Obstacle,
+    pub obstacle: ReadyObstacle,
 }
 
 /// State of a wait.
@@ -55,9 +55,9 @@ impl InternalReferee {
     pub(super) fn go_on_when_clear(
         &mut self,
         robots: &[RobotSeen],
-        obstacles: &[Obstacle],
+        obstacles: &[ReadyObstacle],
         preparation: Duration,
-        command: Command,
+        command: RefereeCommand,
     ) {
         let Some(first) = obstacles.first() else {
             self.wait_ends();
@@ -81,20 +81,26 @@ impl InternalReferee {
             self.metrics.blocks.push(blocked);
             let place = first.who().and_then(|who| robots.iter().find(|robot| robot.who == who));
             let place = place.map_or(self.ball.position, |robot| robot.pose.position);
-            let Obstacle { team, robot, reason } = *first;
-            self.judge(&Event { at: self.now, by: team, robot, place, what: What::Blocked { reason } });
+            let ReadyObstacle { team, robot, reason } = *first;
+            self.judge(&RefereeEvent {
+                at: self.now,
+                by: team,
+                robot,
+                place,
+                what: What::Blocked { reason },
+            });
         }
         if self.phase() != Phase::Stop && first.reason.is_balls() {
             // The game is stopped manually, so that the ball can be placed by hand.
-            self.give(Command::Stop);
+            self.give(RefereeCommand::Stop);
         } else if self.people_can_help(obstacles) {
             self.field_staff.called = true;
-            self.give(Command::Halt);
+            self.give(RefereeCommand::Halt);
         }
     }
 
     /// Whether a halt would let robot handlers resolve the obstacles.
-    fn people_can_help(&self, obstacles: &[Obstacle]) -> bool {
+    fn people_can_help(&self, obstacles: &[ReadyObstacle]) -> bool {
         obstacles.iter().any(|obstacle| match (obstacle.reason, obstacle.team) {
             (Reason::TooManyRobots { .. }, _) => true,
             (_, Some(team)) => !self.settings.team(team).drives,
@@ -130,11 +136,11 @@ impl InternalReferee {
     fn blamed(&self, robots: &[RobotSeen]) -> Vec<Who> {
         let all = self.obstacles_to_come(robots);
         let stand = |who: &Who| !self.settings.team(who.colour).drives;
-        all.iter().filter_map(Obstacle::who).filter(stand).collect()
+        all.iter().filter_map(ReadyObstacle::who).filter(stand).collect()
     }
 
     /// Obstacles in the coming stop and in the preparation after it.
-    fn obstacles_to_come(&self, robots: &[RobotSeen]) -> Vec<Obstacle> {
+    fn obstacles_to_come(&self, robots: &[RobotSeen]) -> Vec<ReadyObstacle> {
         let next = self.next.unwrap_or(Restart::ForceStart);
         let mut all = self.obstacles_in_stop(robots, next, self.placement.unwrap_or(self.ball.position));
         match next {

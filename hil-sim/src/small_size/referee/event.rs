@@ -10,7 +10,7 @@ use super::ready::Reason;
 
 /// An observation or decision of the referee.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Event {
+pub struct RefereeEvent {
     /// Time, µs of the simulation.
     pub at: Instant,
     /// The team that caused it; `None` where no team or both did.
@@ -25,7 +25,7 @@ pub struct Event {
 
 /// A ball in a goal; [`Event::by`] is the team that scores.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shot {
+pub struct ShotEvent {
     /// The robot that touched the ball last, of either team.
     pub kicker: Option<Who>,
     /// Position of the ball at that touch, m.
@@ -119,17 +119,17 @@ kinds! {
     /// The ball is in a goal; not judged yet.
     PossibleGoal {
         /// The shot that brought it there.
-        shot: Shot,
+        shot: ShotEvent,
     } = "possible_goal",
     /// The goal counts: the score rises.
     Goal {
         /// The shot; `None` where the goal is awarded for a foul in a penalty.
-        shot: Option<Shot>,
+        shot: Option<ShotEvent>,
     } = "goal",
     /// The goal does not count.
     InvalidGoal {
         /// The shot that brought it there.
-        shot: Shot,
+        shot: ShotEvent,
         /// Rule by which it does not count.
         reason: Invalid,
     } = "invalid_goal",
@@ -258,7 +258,7 @@ kinds! {
     /// Every third foul: a yellow card.
     MultipleFouls {
         /// The three fouls, oldest first.
-        caused_by: Vec<Event>,
+        caused_by: Vec<RefereeEvent>,
     } = "multiple_fouls",
     /// A third active yellow card: it turns red.
     MultipleCards = "multiple_cards",

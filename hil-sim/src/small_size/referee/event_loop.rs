@@ -4,7 +4,7 @@
 use geometry::{Field, Point};
 use protocol::Duration;
 use rules::restart::nearest_free_kick_spot;
-use rules::state::Command;
+use rules::state::RefereeCommand;
 use rules::{Colour, Phase};
 
 use super::InternalReferee;
@@ -23,21 +23,21 @@ impl InternalReferee {
     /// A manual command; false where it makes no sense now. HALT and STOP last until the next manual one; a
     /// kick-off, free kick or penalty is reached through a stop, with the ball at the position that the rules
     /// require.
-    pub fn command_by_hand(&mut self, command: Command) -> bool {
+    pub fn command_by_hand(&mut self, command: RefereeCommand) -> bool {
         if !self.begun || self.is_over() {
             return false;
         }
         let restart = match command {
-            Command::Halt | Command::Stop => {
+            RefereeCommand::Halt | RefereeCommand::Stop => {
                 self.held = true;
                 self.give(command);
                 return true;
             }
-            Command::ForceStart => Restart::ForceStart,
-            Command::PrepareKickoff(team) => Restart::Kickoff(team),
-            Command::PreparePenalty(team) => Restart::Penalty(team),
-            Command::FreeKick(team) => Restart::FreeKick(team),
-            Command::NormalStart => {
+            RefereeCommand::ForceStart => Restart::ForceStart,
+            RefereeCommand::PrepareKickoff(team) => Restart::Kickoff(team),
+            RefereeCommand::PreparePenalty(team) => Restart::Penalty(team),
+            RefereeCommand::FreeKick(team) => Restart::FreeKick(team),
+            RefereeCommand::NormalStart => {
                 let prepared = matches!(self.phase(), Phase::PrepareKickoff(_) | Phase::PreparePenalty(_));
                 if prepared {
                     self.held = false;
@@ -45,13 +45,13 @@ impl InternalReferee {
                 }
                 return prepared;
             }
-            Command::Timeout(_) | Command::BallPlacement(_) => return false,
+            RefereeCommand::Timeout(_) | RefereeCommand::BallPlacement(_) => return false,
         };
         if restart == Restart::ForceStart {
             let may = !self.stage.is_break();
             if may {
                 self.stop_by_hand();
-                self.give(Command::ForceStart);
+                self.give(RefereeCommand::ForceStart);
             }
             return may;
         }
@@ -101,7 +101,7 @@ impl InternalReferee {
         self.held = false;
         self.recent.clear();
         if self.phase() != Phase::Stop {
-            self.give(Command::Stop);
+            self.give(RefereeCommand::Stop);
         }
     }
 }

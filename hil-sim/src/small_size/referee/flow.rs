@@ -6,13 +6,13 @@
 use geometry::{Field, Point};
 use protocol::{Duration, Instant};
 use rules::restart::{AfterPlacement, placement_lack, placement_needless};
-use rules::state::{Command, Stage};
+use rules::state::{RefereeCommand, Stage};
 use rules::{Colour, FieldSpec, Phase, limits};
 
 use super::InternalReferee;
 use super::event::{Kind, PenaltyEnd, Restart, What};
 use super::observation::RobotSeen;
-use super::ready::{Obstacle, Reason};
+use super::ready::{ReadyObstacle, Reason};
 
 /// Who brings the ball to its position.
 enum Placer {
@@ -37,21 +37,21 @@ impl InternalReferee {
         match self.phase() {
             Phase::Halt => {
                 if !self.stage.is_break() && age >= self.settings.halt && !self.field_staff.called {
-                    self.give(Command::Stop);
+                    self.give(RefereeCommand::Stop);
                 }
             }
             Phase::Timeout(team) => {
                 let account = self.accounts.of_mut(team);
                 if account.timeout_left <= 0 || account.timeout_wanted.is_none_or(|left| left <= 0) {
                     account.timeout_wanted = None;
-                    self.give(Command::Stop);
+                    self.give(RefereeCommand::Stop);
                 }
             }
             Phase::Stop => self.go_on_from_stop(robots, age),
             Phase::BallPlacement(team) => self.see_placement(robots, team, age),
             Phase::PrepareKickoff(_) | Phase::PreparePenalty(_) => {
                 let (obstacles, preparation) = (self.obstacles(robots), self.settings.person_delay);
-                self.go_on_when_clear(robots, &obstacles, preparation, Command::NormalStart);
+                self.go_on_when_clear(robots, &obstacles, preparation, RefereeCommand::NormalStart);
             }
             Phase::Penalty(team) => {
                 if self.action_left <= 0 {
@@ -77,13 +77,13 @@ impl InternalReferee {
             let account = self.accounts.of_mut(team);
             if account.timeout_wanted.is_some() && account.timeouts > 0 {
                 account.timeouts -= 1;
-                return self.give(Command::Timeout(team));
+                return self.give(RefereeCommand::Timeout(team));
             }
         }
         let next = self.next.unwrap_or(Restart::ForceStart);
         let target = self.placement.unwrap_or(self.ball.position);
         let to_be_put = match self.placer(next, target) {
-            Placer::Team(team) => return self.give(Command::BallPlacement(team)),
+            Placer::Team(team) => return self.give(RefereeCommand::BallPlacement(team)),
             Placer::Person => self.put_ball(robots, target),
             Placer::Nobody => false,
         };
@@ -91,7 +91,7 @@ impl InternalReferee {
         if to_be_put {
             let distance = self.ball.position.distance(target);
             let reason = Reason::BallNotPut { distance };
-            obstacles.insert(0, Obstacle { team: None, robot: None, reason });
+            obstacles.insert(0, ReadyObstacle { team: None, robot: None, reason });
         }
         // A team that placed the ball for its own free kick kicks at once.
         let placed = self
@@ -100,10 +100,10 @@ impl InternalReferee {
             .any(|event| event.what.kind() == Kind::PlacementSucceeded && event.by == next.team());
         let preparation = if placed { Duration(0) } else { self.settings.person_delay };
         let command = match next {
-            Restart::Kickoff(team) => Command::PrepareKickoff(team),
-            Restart::Penalty(team) => Command::PreparePenalty(team),
-            Restart::FreeKick(team) => Command::FreeKick(team),
-            Restart::ForceStart => Command::ForceStart,
+            Restart::Kickoff(team) => RefereeCommand::PrepareKickoff(team),
+            Restart::Penalty(team) => RefereeCommand::PreparePenalty(team),
+            Restart::FreeKick(team) => RefereeCommand::FreeKick(team),
+            Restart::ForceStart => RefereeCommand::ForceStart,
         };
         self.go_on_when_clear(robots, &obstacles, preparation, command);
     }
@@ -145,7 +145,7 @@ impl InternalReferee {
     }
 
     fn see_placement(&mut self, robots: &[RobotSeen], team: Colour, age: Duration) {
-        let Some(target) = self.placement else { return self.give(Command::Stop) };
+        let Some(target) = self.placement else { return self.give(RefereeCommand::Stop) };
         let after = match self.next {
             Some(Restart::FreeKick(favoured)) if favoured == team => AfterPlacement::FreeKick,
             _ => AfterPlacement::ForceStart,
@@ -165,7 +165,7 @@ impl InternalReferee {
         let interfered = self.recent.iter().filter(|event| event.what.kind() == Kind::InterferedPlacement);
         let stuck = !self.is_reachable(ball) && self.ball.speed() <= limits::BALL_STILL;
         if stuck || interfered.count() > INTERFERENCES_MAX {
-            return self.give(Command::Stop);
+            return self.give(RefereeCommand::Stop);
         }
         if self.action_left <= 0 {
             let ours = robots.iter().filter(|robot| robot.who.colour == team);

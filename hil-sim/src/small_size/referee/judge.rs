@@ -2,16 +2,16 @@
 //! offenses, sanctions, scoring goals; appendix "game events").
 
 use rules::legality::{NoGoal, no_goal};
-use rules::state::Command;
+use rules::state::RefereeCommand;
 use rules::{Colour, Phase, limits};
 
-use super::event::{Event, Invalid, Kind, PenaltyEnd, Restart, Shot, What};
+use super::event::{Invalid, Kind, PenaltyEnd, RefereeEvent, Restart, ShotEvent, What};
 use super::scene::is_running;
 use super::{InternalReferee, micros, spots};
 
 impl InternalReferee {
     /// Records an event and applies the rules to it.
-    pub(super) fn judge(&mut self, event: &Event) {
+    pub(super) fn judge(&mut self, event: &RefereeEvent) {
         let (kind, by) = (event.what.kind(), event.by);
         // An event at the same moment as one that already stopped the game is no longer in play.
         if !self.is_in_time(kind) {
@@ -56,7 +56,7 @@ impl InternalReferee {
         }
         let stopped = matches!(self.phase(), Phase::Stop | Phase::Halt | Phase::Timeout(_));
         if kind.stops_the_game() && !stopped {
-            self.give(Command::Stop);
+            self.give(RefereeCommand::Stop);
         }
     }
 
@@ -77,7 +77,7 @@ impl InternalReferee {
         }
     }
 
-    fn decide_next(&mut self, event: &Event) {
+    fn decide_next(&mut self, event: &RefereeEvent) {
         let kind = event.what.kind();
         let keeps = self.next.is_some_and(Restart::is_set_by_hand);
         let follows = if spots::is_nobodys(kind, event.by) {
@@ -92,10 +92,10 @@ impl InternalReferee {
         }
     }
 
-    fn count_foul(&mut self, event: &Event) {
+    fn count_foul(&mut self, event: &RefereeEvent) {
         let kind = event.what.kind();
         let earlier = |team| {
-            let same = |other: &&Event| other.what.kind() == kind && other.by == Some(team);
+            let same = |other: &&RefereeEvent| other.what.kind() == kind && other.by == Some(team);
             self.recent.iter().filter(same).count()
         };
         // Only the first interference with a placement counts.
@@ -130,19 +130,19 @@ impl InternalReferee {
 
     /// Halts the game until the goal is decided, as the game controller does; the decision is ours and
     /// immediate.
-    fn possible_goal(&mut self, event: &Event, shot: Shot) {
+    fn possible_goal(&mut self, event: &RefereeEvent, shot: ShotEvent) {
         let Some(scorer) = event.by else { return };
         let in_penalty = matches!(self.phase(), Phase::Penalty(_));
-        self.give(Command::Halt);
+        self.give(RefereeCommand::Halt);
         let invalid = if in_penalty { None } else { self.invalid(scorer, &shot) };
         let what = match invalid {
             None => What::Goal { shot: Some(shot) },
             Some(reason) => What::InvalidGoal { shot, reason },
         };
-        self.judge(&Event { what, ..event.clone() });
+        self.judge(&RefereeEvent { what, ..event.clone() });
     }
 
-    fn invalid(&self, scorer: Colour, shot: &Shot) -> Option<Invalid> {
+    fn invalid(&self, scorer: Colour, shot: &ShotEvent) -> Option<Invalid> {
         let account = self.accounts.of(scorer);
         let foul = account.last_non_stopping_foul();
         let since_foul = foul.map(|foul| self.now.since(foul.at).as_secs_f32());
@@ -156,13 +156,13 @@ impl InternalReferee {
 
     /// The second such foul of a team in one stoppage halts the game, once.
     fn second_in_a_stop_halts(&mut self, team: Option<Colour>) {
-        let same = |event: &&Event| event.what.kind() == Kind::AttackerTooClose && event.by == team;
+        let same = |event: &&RefereeEvent| event.what.kind() == Kind::AttackerTooClose && event.by == team;
         if self.recent.iter().filter(same).count() == 2 {
-            self.give(Command::Halt);
+            self.give(RefereeCommand::Halt);
         }
     }
 
-    fn placement_ended(&mut self, event: &Event) {
+    fn placement_ended(&mut self, event: &RefereeEvent) {
         let Some(team) = event.by else { return };
         let succeeded = event.what.kind() == Kind::PlacementSucceeded;
         self.accounts.of_mut(team).placed(succeeded);
@@ -183,10 +183,10 @@ impl InternalReferee {
 
     /// A foul in a penalty: of the shooting team, no goal; of the others, a goal. Fouls of both count as the
     /// shooting team's.
-    fn decide_penalty(&mut self, shooting: Colour, event: &Event) {
+    fn decide_penalty(&mut self, shooting: Colour, event: &RefereeEvent) {
         let kind = event.what.kind();
         if event.by == Some(shooting.other()) {
-            self.judge(&Event {
+            self.judge(&RefereeEvent {
                 by: Some(shooting),
                 robot: None,
                 what: What::Goal { shot: None },
@@ -194,13 +194,13 @@ impl InternalReferee {
             });
         } else {
             let what = What::PenaltyFailed { reason: PenaltyEnd::Foul(kind) };
-            self.judge(&Event { by: Some(shooting), what, ..event.clone() });
+            self.judge(&RefereeEvent { by: Some(shooting), what, ..event.clone() });
         }
     }
 
     /// An event of a team at the ball's position, now.
-    pub(super) fn event(&self, by: Option<Colour>, what: What) -> Event {
-        Event { at: self.now, by, robot: None, place: self.ball.position, what }
+    pub(super) fn event(&self, by: Option<Colour>, what: What) -> RefereeEvent {
+        RefereeEvent { at: self.now, by, robot: None, place: self.ball.position, what }
     }
 
     /// Number of robots a team may have, including the time to take one off after a card.
@@ -213,13 +213,13 @@ impl InternalReferee {
     }
 
     /// Time limit of placement, kick or penalty after this command, µs; as in the game controller.
-    pub(super) fn time_for(&self, command: Command) -> i64 {
+    pub(super) fn time_for(&self, command: RefereeCommand) -> i64 {
         micros(match command {
-            Command::BallPlacement(_) => limits::PLACEMENT_TIME,
-            Command::FreeKick(_) => self.limits.free_kick_time,
-            Command::PrepareKickoff(_) | Command::PreparePenalty(_) | Command::NormalStart => {
-                limits::KICKOFF_TIME
-            }
+            RefereeCommand::BallPlacement(_) => limits::PLACEMENT_TIME,
+            RefereeCommand::FreeKick(_) => self.limits.free_kick_time,
+            RefereeCommand::PrepareKickoff(_)
+            | RefereeCommand::PreparePenalty(_)
+            | RefereeCommand::NormalStart => limits::KICKOFF_TIME,
             _ => 0.0,
         })
     }

@@ -5,12 +5,12 @@ use protocol::{Instant, Who};
 use super::InternalReferee;
 use super::field_staff::WorldOrder;
 use super::observation::{BallSeen, CrashSeen, Observation, RobotSeen};
-use crate::small_size::{Ball, Event, World};
+use crate::small_size::{Ball, PhysicsEvent, World};
 
 impl InternalReferee {
     /// Observes the world, about every 10 ms; `events` are the world's since the last call. Apply
     /// [`Self::poll_order`] afterwards.
-    pub fn look(&mut self, world: &World, events: &[Event]) {
+    pub fn look(&mut self, world: &World, events: &[PhysicsEvent]) {
         let sight = Sight::of(world, events, self.begun.then_some(self.now));
         self.observe(&sight.observation());
     }
@@ -27,7 +27,7 @@ pub(super) struct Sight {
 
 impl Sight {
     /// The world now, with its events since the last observation, which was at `before`.
-    pub(super) fn of(world: &World, events: &[Event], before: Option<Instant>) -> Self {
+    pub(super) fn of(world: &World, events: &[PhysicsEvent], before: Option<Instant>) -> Self {
         let before = before.map(|at| at.0 / STEP_US);
         let since = |step: u64| before.is_some_and(|before| step > before);
         let here = world.robots().iter().filter(|robot| robot.present && !robot.bystander);
@@ -42,8 +42,8 @@ impl Sight {
         let (mut fastest, mut crashes) = (0.0_f32, Vec::new());
         for event in events {
             match *event {
-                Event::Kicked { speed, .. } => fastest = speed.max(fastest),
-                Event::Crash { robots, velocities, .. }
+                PhysicsEvent::Kicked { speed, .. } => fastest = speed.max(fastest),
+                PhysicsEvent::Crash { robots, velocities, .. }
                     if !robots.iter().any(|who| stands_about(world, *who)) =>
                 {
                     crashes.push(CrashSeen { between: robots, velocities });

@@ -12,7 +12,7 @@ use rules::Colour;
 
 use super::InternalReferee;
 use super::blocked::Blocked;
-use super::event::{Event, Kind, What};
+use super::event::{Kind, RefereeEvent, What};
 use super::observation::BallSeen;
 use super::scene::is_running;
 use protocol::Who;
@@ -118,7 +118,7 @@ impl Metrics {
         (theirs > 0).then(|| self.team(team).shots as f32 / theirs as f32)
     }
 
-    pub(super) fn count(&mut self, event: &Event) {
+    pub(super) fn count(&mut self, event: &RefereeEvent) {
         let kind = event.what.kind();
         if !kind.is_offence() {
             return;

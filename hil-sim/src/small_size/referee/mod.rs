@@ -45,17 +45,17 @@ use std::collections::VecDeque;
 
 use geometry::{Field, GoalEnd, Point};
 use protocol::Instant;
-use rules::state::{Command, GameState, Received, Stage};
+use rules::state::{CommandVerdict, GameState, RefereeCommand, Stage};
 use rules::{Colour, FieldSpec, League, Limits, Phase};
 
 pub use account::{Account, Accounts};
 pub use blocked::Blocked;
-pub use event::{Event, Invalid, Kind, PenaltyEnd, Restart, Shot, What};
+pub use event::{Invalid, Kind, PenaltyEnd, RefereeEvent, Restart, ShotEvent, What};
 pub use event_loop::Card;
 pub use field_staff::WorldOrder;
 pub use metrics::{FoulCounts, Metrics, TeamMetrics};
 pub use observation::{BallSeen, CrashSeen, Observation, RobotSeen};
-pub use ready::{Obstacle, Reason};
+pub use ready::{ReadyObstacle, Reason};
 pub use settings::{MatchClock, RefereeSettings, TeamSettings};
 
 use crate::rng::Stream;
@@ -92,7 +92,7 @@ pub struct InternalReferee {
     /// Time at which a match in simulated time ends.
     ends_at: Option<Instant>,
     shoot_out: stages::ShootOut,
-    command: Command,
+    command: RefereeCommand,
     command_counter: u32,
     command_at: Instant,
     /// Time left for placement, kick or penalty, µs.
@@ -104,13 +104,13 @@ pub struct InternalReferee {
     /// The drawn placing team where neither is in favour.
     drawn: Option<Colour>,
     /// Events since the ball was last allowed to move.
-    recent: Vec<Event>,
+    recent: Vec<RefereeEvent>,
     accounts: Accounts,
     blue_on_positive: bool,
     watch: Watch,
     field_staff: FieldStaff,
     metrics: Metrics,
-    log: Vec<Event>,
+    log: Vec<RefereeEvent>,
     chance: Stream,
     now: Instant,
     begun: bool,
@@ -141,7 +141,7 @@ impl InternalReferee {
             stage_left: 0,
             ends_at: None,
             shoot_out: stages::ShootOut::new(settings.first_kickoff),
-            command: Command::Halt,
+            command: RefereeCommand::Halt,
             command_counter: 0,
             command_at: Instant(0),
             action_left: 0,
@@ -226,7 +226,7 @@ impl InternalReferee {
     }
 
     /// The league's command in force.
-    pub fn command(&self) -> Command {
+    pub fn command(&self) -> RefereeCommand {
         self.command
     }
 
@@ -256,7 +256,7 @@ impl InternalReferee {
     }
 
     /// All events so far, oldest first.
-    pub fn events(&self) -> &[Event] {
+    pub fn events(&self) -> &[RefereeEvent] {
         &self.log
     }
 
@@ -318,9 +318,9 @@ impl InternalReferee {
     }
 
     /// Issues a command.
-    fn give(&mut self, command: Command) {
+    fn give(&mut self, command: RefereeCommand) {
         let received = self.state.receive(command, self.now.0, Some(self.ball.position));
-        if !matches!(received, Received::Followed | Received::Repeated) {
+        if !matches!(received, CommandVerdict::Followed | CommandVerdict::Repeated) {
             self.off_graph += 1;
         }
         self.command = command;
@@ -332,14 +332,17 @@ impl InternalReferee {
         self.wait_ends();
         self.field_staff.command_given();
         self.watch.command_given();
-        let starts = matches!(command, Command::NormalStart | Command::ForceStart | Command::FreeKick(_));
+        let starts = matches!(
+            command,
+            RefereeCommand::NormalStart | RefereeCommand::ForceStart | RefereeCommand::FreeKick(_)
+        );
         if starts {
             self.play_begins(command);
             self.recent.clear();
             self.placement = None;
             self.next = None;
             self.drawn = None;
-        } else if command == Command::Stop {
+        } else if command == RefereeCommand::Stop {
             self.shoot_out_goes_on();
         }
         self.next_packet = self.now;

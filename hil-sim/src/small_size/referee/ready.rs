@@ -137,7 +137,7 @@ impl fmt::Display for Reason {
 
 /// A condition that prevents the game from continuing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Obstacle {
+pub struct ReadyObstacle {
     /// The team that caused it; `None` for the ball's position.
     pub team: Option<Colour>,
     /// The robot that caused it; `None` if no single one did.
@@ -146,7 +146,7 @@ pub struct Obstacle {
     pub reason: Reason,
 }
 
-impl Obstacle {
+impl ReadyObstacle {
     fn ball(reason: Reason) -> Self {
         Self { team: None, robot: None, reason }
     }
@@ -161,7 +161,7 @@ impl Obstacle {
     }
 }
 
-impl fmt::Display for Obstacle {
+impl fmt::Display for ReadyObstacle {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (self.team, self.robot) {
             (Some(team), Some(robot)) => write!(f, "{} {robot}: {}", team.label(), self.reason),
@@ -183,14 +183,14 @@ impl InternalReferee {
         robots: &[RobotSeen],
         next: Restart,
         target: Point<Field>,
-    ) -> Vec<Obstacle> {
+    ) -> Vec<ReadyObstacle> {
         let (ball, speed) = (self.ball.position, self.ball.speed());
         let mut found = Vec::new();
         for team in super::scene::COLOURS {
             let (on_field, allowed) = (self.on_field(robots, team), self.allowed_now(team));
             if on_field > allowed {
                 let reason = Reason::TooManyRobots { allowed, on_field };
-                found.push(Obstacle { team: Some(team), robot: None, reason });
+                found.push(ReadyObstacle { team: Some(team), robot: None, reason });
             }
         }
         // The team that continues with a free kick may be at the ball already, so that it can place the ball
@@ -202,12 +202,12 @@ impl InternalReferee {
         for robot in robots.iter().filter(must_keep_away) {
             let distance = robot.pose.position.distance(ball) - limits::ROBOT_RADIUS;
             if distance < limits::BALL_DISTANCE - DISTANCE_TOLERANCE {
-                found.push(Obstacle::robot(robot.who, Reason::NearBall { distance }));
+                found.push(ReadyObstacle::robot(robot.who, Reason::NearBall { distance }));
             }
         }
         let distance = ball.distance(target);
         if distance > limits::PLACEMENT_SKIP_DISTANCE {
-            found.push(Obstacle::ball(Reason::BallOffPlace { distance }));
+            found.push(ReadyObstacle::ball(Reason::BallOffPlace { distance }));
         }
         let from_area = |p| {
             let ends = [GoalEnd::Negative, GoalEnd::Positive];
@@ -217,39 +217,39 @@ impl InternalReferee {
         let least = limits::PLACEMENT_SKIP_AREA_DISTANCE;
         let distance = from_area(ball);
         if distance < least && from_area(target) >= least {
-            found.push(Obstacle::ball(Reason::BallNearArea { distance }));
+            found.push(ReadyObstacle::ball(Reason::BallNearArea { distance }));
         }
         if !self.field.contains(ball) {
-            found.push(Obstacle::ball(Reason::BallOut));
+            found.push(ReadyObstacle::ball(Reason::BallOut));
         }
         if speed >= BALL_STEADY {
-            found.push(Obstacle::ball(Reason::BallMoves { speed }));
+            found.push(ReadyObstacle::ball(Reason::BallMoves { speed }));
         }
         found
     }
 
     /// What prevents that team's kick-off from getting its NORMAL_START.
-    pub(super) fn obstacles_at_kickoff(&self, robots: &[RobotSeen], team: Colour) -> Vec<Obstacle> {
+    pub(super) fn obstacles_at_kickoff(&self, robots: &[RobotSeen], team: Colour) -> Vec<ReadyObstacle> {
         let centre = Point::new(0.0, 0.0);
         let radius = self.field.center_radius;
         let mut found = Vec::new();
         let distance = self.ball.position.distance(centre);
         if distance > radius {
-            found.push(Obstacle::ball(Reason::BallOffPlace { distance }));
+            found.push(ReadyObstacle::ball(Reason::BallOffPlace { distance }));
         }
         let mut kickers = 0;
         for robot in self.nearest_first(robots) {
             let place = robot.pose.position;
             let inside = place.x() * self.own_end(robot.who.colour).sign() as f32;
             if inside < limits::ROBOT_RADIUS {
-                found.push(Obstacle::robot(robot.who, Reason::OtherHalf { inside }));
+                found.push(ReadyObstacle::robot(robot.who, Reason::OtherHalf { inside }));
                 continue;
             }
             let distance = place.distance(centre);
             if distance < radius + limits::ROBOT_RADIUS - DISTANCE_TOLERANCE {
                 kickers += u32::from(robot.who.colour == team);
                 if robot.who.colour != team || kickers > 1 {
-                    found.push(Obstacle::robot(robot.who, Reason::CentreCircle { distance }));
+                    found.push(ReadyObstacle::robot(robot.who, Reason::CentreCircle { distance }));
                 }
             }
         }
@@ -257,7 +257,7 @@ impl InternalReferee {
     }
 
     /// What prevents that team's penalty from getting its NORMAL_START.
-    pub(super) fn obstacles_at_penalty(&self, robots: &[RobotSeen], team: Colour) -> Vec<Obstacle> {
+    pub(super) fn obstacles_at_penalty(&self, robots: &[RobotSeen], team: Colour) -> Vec<ReadyObstacle> {
         let keeper = Who { colour: team.other(), id: self.accounts.of(team.other()).keeper };
         let goal = self.own_end(team.other());
         let (sign, line) = (goal.sign() as f32, self.field.goal_line(goal));
@@ -265,15 +265,17 @@ impl InternalReferee {
         let mut found = Vec::new();
         let distance = ball.distance(self.penalty_spot(team));
         if distance > limits::PLACEMENT_TOLERANCE {
-            found.push(Obstacle::ball(Reason::BallOffPlace { distance }));
+            found.push(ReadyObstacle::ball(Reason::BallOffPlace { distance }));
         }
         match robots.iter().find(|robot| robot.who == keeper) {
-            None => found.push(Obstacle { team: Some(team.other()), robot: None, reason: Reason::NoKeeper }),
+            None => {
+                found.push(ReadyObstacle { team: Some(team.other()), robot: None, reason: Reason::NoKeeper })
+            }
             Some(robot) => {
                 let place = robot.pose.position;
                 let (from_line, across) = ((place.x() - line).abs(), place.y().abs());
                 if from_line > limits::ROBOT_RADIUS || across > self.field.goal_width * 0.5 {
-                    found.push(Obstacle::robot(keeper, Reason::KeeperOffLine { from_line, across }));
+                    found.push(ReadyObstacle::robot(keeper, Reason::KeeperOffLine { from_line, across }));
                 }
             }
         }
@@ -286,7 +288,7 @@ impl InternalReferee {
             }
             shooters += u32::from(robot.who.colour == team);
             if robot.who.colour != team || shooters > 1 {
-                found.push(Obstacle::robot(robot.who, Reason::NotBehindBall { behind }));
+                found.push(ReadyObstacle::robot(robot.who, Reason::NotBehindBall { behind }));
             }
         }
         found
@@ -301,7 +303,7 @@ impl InternalReferee {
     }
 
     /// What prevents the next command of this phase; empty in phases that do not wait.
-    pub(super) fn obstacles(&self, robots: &[RobotSeen]) -> Vec<Obstacle> {
+    pub(super) fn obstacles(&self, robots: &[RobotSeen]) -> Vec<ReadyObstacle> {
         match self.phase() {
             Phase::Stop => {
                 let target = self.placement.unwrap_or(self.ball.position);

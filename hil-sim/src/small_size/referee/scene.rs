@@ -7,7 +7,7 @@ use protocol::{Instant, Who};
 use rules::{Colour, FieldSpec, Limits, Phase, limits};
 
 use super::account::Accounts;
-use super::event::{Event, What};
+use super::event::{RefereeEvent, What};
 use super::observation::{BallSeen, CrashSeen, RobotSeen};
 
 /// Both colours, in the order of the wire.
@@ -82,12 +82,12 @@ impl Scene<'_> {
     }
 
     /// An event of a robot at a place.
-    pub(super) fn by(&self, who: Who, place: Point<Field>, what: What) -> Event {
-        Event { at: self.now, by: Some(who.colour), robot: Some(who.id), place, what }
+    pub(super) fn by(&self, who: Who, place: Point<Field>, what: What) -> RefereeEvent {
+        RefereeEvent { at: self.now, by: Some(who.colour), robot: Some(who.id), place, what }
     }
 
     /// An event of a team, or of neither.
-    pub(super) fn of(&self, team: Option<Colour>, place: Point<Field>, what: What) -> Event {
-        Event { at: self.now, by: team, robot: None, place, what }
+    pub(super) fn of(&self, team: Option<Colour>, place: Point<Field>, what: What) -> RefereeEvent {
+        RefereeEvent { at: self.now, by: team, robot: None, place, what }
     }
 }

@@ -2,7 +2,7 @@
 
 use geometry::Point;
 use protocol::Duration;
-use rules::state::{Command, Stage};
+use rules::state::{RefereeCommand, Stage};
 use rules::{Colour, Phase, limits};
 
 use super::settings::MatchClock;
@@ -98,7 +98,7 @@ impl InternalReferee {
     }
 
     /// The ball may be played: a "pre" stage ends, a shoot-out counts the attempt.
-    pub(super) fn play_begins(&mut self, command: Command) {
+    pub(super) fn play_begins(&mut self, command: RefereeCommand) {
         let begun = match self.stage {
             Stage::FirstHalfPre => Stage::FirstHalf,
             Stage::SecondHalfPre => Stage::SecondHalf,
@@ -107,7 +107,7 @@ impl InternalReferee {
             same => same,
         };
         self.stage = begun;
-        if self.stage == Stage::ShootOut && command == Command::NormalStart {
+        if self.stage == Stage::ShootOut && command == RefereeCommand::NormalStart {
             self.shoot_out.attempts += 1;
             self.shoot_out.next = self.shoot_out.next.other();
         }
@@ -157,7 +157,7 @@ impl InternalReferee {
             self.shoot_out = ShootOut::new(first);
             self.shoot_out_goes_on();
         }
-        self.give(Command::Halt);
+        self.give(RefereeCommand::Halt);
     }
 
     fn length_of(&self, stage: Stage) -> i64 {

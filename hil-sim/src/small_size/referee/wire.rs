@@ -2,7 +2,7 @@
 //! every command. Times in µs, `designated_position` in mm, events in m; as from the real game controller.
 
 use protocol::{Duration, Instant};
-use rules::state::{Command, Stage};
+use rules::state::{RefereeCommand, Stage};
 use rules::{Colour, Phase};
 use ssl::referee as wire;
 
@@ -15,16 +15,17 @@ impl InternalReferee {
     pub fn packet(&self) -> wire::Referee {
         let placing = matches!(self.phase(), Phase::BallPlacement(_));
         let position = self.placement.filter(|_| placing || self.settings.position_always);
-        let prepares = matches!(self.command, Command::PrepareKickoff(_) | Command::PreparePenalty(_));
+        let prepares =
+            matches!(self.command, RefereeCommand::PrepareKickoff(_) | RefereeCommand::PreparePenalty(_));
         let next = if prepares {
             Some(wire::Command::NormalStart)
         } else {
             self.next.map(|next| {
                 command(match next {
-                    Restart::Kickoff(team) => Command::PrepareKickoff(team),
-                    Restart::Penalty(team) => Command::PreparePenalty(team),
-                    Restart::FreeKick(team) => Command::FreeKick(team),
-                    Restart::ForceStart => Command::ForceStart,
+                    Restart::Kickoff(team) => RefereeCommand::PrepareKickoff(team),
+                    Restart::Penalty(team) => RefereeCommand::PreparePenalty(team),
+                    Restart::FreeKick(team) => RefereeCommand::FreeKick(team),
+                    Restart::ForceStart => RefereeCommand::ForceStart,
                 })
             })
         };
@@ -110,23 +111,23 @@ impl InternalReferee {
 }
 
 /// The command's number on the wire.
-pub(super) const fn command(command: Command) -> wire::Command {
+pub(super) const fn command(command: RefereeCommand) -> wire::Command {
     use Colour::{Blue, Yellow};
     match command {
-        Command::Halt => wire::Command::Halt,
-        Command::Stop => wire::Command::Stop,
-        Command::NormalStart => wire::Command::NormalStart,
-        Command::ForceStart => wire::Command::ForceStart,
-        Command::PrepareKickoff(Yellow) => wire::Command::PrepareKickoffYellow,
-        Command::PrepareKickoff(Blue) => wire::Command::PrepareKickoffBlue,
-        Command::PreparePenalty(Yellow) => wire::Command::PreparePenaltyYellow,
-        Command::PreparePenalty(Blue) => wire::Command::PreparePenaltyBlue,
-        Command::FreeKick(Yellow) => wire::Command::DirectFreeYellow,
-        Command::FreeKick(Blue) => wire::Command::DirectFreeBlue,
-        Command::Timeout(Yellow) => wire::Command::TimeoutYellow,
-        Command::Timeout(Blue) => wire::Command::TimeoutBlue,
-        Command::BallPlacement(Yellow) => wire::Command::BallPlacementYellow,
-        Command::BallPlacement(Blue) => wire::Command::BallPlacementBlue,
+        RefereeCommand::Halt => wire::Command::Halt,
+        RefereeCommand::Stop => wire::Command::Stop,
+        RefereeCommand::NormalStart => wire::Command::NormalStart,
+        RefereeCommand::ForceStart => wire::Command::ForceStart,
+        RefereeCommand::PrepareKickoff(Yellow) => wire::Command::PrepareKickoffYellow,
+        RefereeCommand::PrepareKickoff(Blue) => wire::Command::PrepareKickoffBlue,
+        RefereeCommand::PreparePenalty(Yellow) => wire::Command::PreparePenaltyYellow,
+        RefereeCommand::PreparePenalty(Blue) => wire::Command::PreparePenaltyBlue,
+        RefereeCommand::FreeKick(Yellow) => wire::Command::DirectFreeYellow,
+        RefereeCommand::FreeKick(Blue) => wire::Command::DirectFreeBlue,
+        RefereeCommand::Timeout(Yellow) => wire::Command::TimeoutYellow,
+        RefereeCommand::Timeout(Blue) => wire::Command::TimeoutBlue,
+        RefereeCommand::BallPlacement(Yellow) => wire::Command::BallPlacementYellow,
+        RefereeCommand::BallPlacement(Blue) => wire::Command::BallPlacementBlue,
     }
 }
 

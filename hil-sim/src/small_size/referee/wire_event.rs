@@ -10,7 +10,7 @@ use ssl::event as wire;
 use ssl::event::Event as Sent;
 use ssl::event::GameEventType as Type;
 
-use super::event::{Event, Invalid, Shot, What};
+use super::event::{Invalid, RefereeEvent, ShotEvent, What};
 
 /// The league's type of an event, and the event of the same name with this message.
 macro_rules! sent {
@@ -18,7 +18,7 @@ macro_rules! sent {
     ($name:ident: $message:expr) => { (Type::$name, Sent::$name($message)) };
 }
 
-impl Event {
+impl RefereeEvent {
     /// The league's message for it; `None` where the league has none. `epoch_us` is added to times, µs.
     pub fn to_wire(&self, epoch_us: u64) -> Option<wire::GameEvent> {
         let (r#type, event) = self.sent(epoch_us)?;
@@ -36,7 +36,7 @@ impl Event {
         let by_team = team(self.by);
         let by_bot = self.robot.map(number);
         let location = Some(point(self.place));
-        let goal = |shot: Option<&Shot>, message| self.goal(shot, epoch_us, message);
+        let goal = |shot: Option<&ShotEvent>, message| self.goal(shot, epoch_us, message);
         Some(match &self.what {
             What::LeftTouchLine => {
                 sent!(BallLeftFieldTouchLine: wire::BallLeftField { by_team, by_bot, location })
@@ -141,7 +141,7 @@ impl Event {
         })
     }
 
-    fn goal(&self, shot: Option<&Shot>, epoch_us: u64, message: Option<String>) -> wire::Goal {
+    fn goal(&self, shot: Option<&ShotEvent>, epoch_us: u64, message: Option<String>) -> wire::Goal {
         let kicker = shot.and_then(|shot| shot.kicker);
         wire::Goal {
             by_team: team(self.by),

@@ -8,7 +8,7 @@ use ssl::simulation::{MoveCommand, RobotCommand, RobotControl, RobotControlRespo
 
 use super::{Refusal, Server};
 use crate::small_size::compatibility::Feedback;
-use crate::small_size::{Drive, Kick, Order};
+use crate::small_size::{Drive, KickCommand, Order};
 
 impl Server {
     /// Gives a team's robots their commands; returns the answer.
@@ -136,7 +136,7 @@ fn drive(command: &RobotCommand, refused: &mut Vec<Refusal>) -> Drive {
     }
 }
 
-fn kick(command: &RobotCommand, limits: [f32; 2], refused: &mut Vec<Refusal>) -> Option<Kick> {
+fn kick(command: &RobotCommand, limits: [f32; 2], refused: &mut Vec<Refusal>) -> Option<KickCommand> {
     let (speed, degrees) = (command.kick_speed.unwrap_or(0.0), command.kick_angle.unwrap_or(0.0));
     if !speed.is_finite() || !degrees.is_finite() {
         refused.push(Refusal::NotANumber(if speed.is_finite() { "kick_angle" } else { "kick_speed" }));
@@ -157,5 +157,5 @@ fn kick(command: &RobotCommand, limits: [f32; 2], refused: &mut Vec<Refusal>) ->
     if speed > most {
         refused.push(Refusal::KickTooFast { id: command.id, asked: speed, most });
     }
-    Some(Kick { speed: speed.min(most), angle: degrees * (math::PI / 180.0) })
+    Some(KickCommand { speed: speed.min(most), angle: degrees * (math::PI / 180.0) })
 }

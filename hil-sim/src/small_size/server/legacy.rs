@@ -17,7 +17,7 @@ use ssl::simulation::{
 };
 
 use super::{Destination, Server, Transmit};
-use crate::small_size::{Drive, Kick, Order};
+use crate::small_size::{Drive, KickCommand, Order};
 
 /// The last reported state of each robot.
 pub(super) type ReportedStates = BTreeMap<Who, RobotStatus>;
@@ -76,7 +76,7 @@ impl Server {
         let kick = (flat > KICK_LEAST || up > KICK_LEAST).then(|| {
             let (flat, up) = (flat.max(0.0), up.max(0.0));
             let most = robot.kick_limits[usize::from(up > 0.0)];
-            Kick { speed: math::sqrt(flat * flat + up * up).min(most), angle: math::atan2(up, flat) }
+            KickCommand { speed: math::sqrt(flat * flat + up * up).min(most), angle: math::atan2(up, flat) }
         });
         let dribbler = f32::from(u8::from(command.spinner));
         self.send_order(who, Order { drive, kick, dribbler, discharge: false });

@@ -116,7 +116,7 @@ pub enum Destination {
 
 /// Counts of received datagrams and their results.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
+pub struct ServerCounts {
     /// Messages understood at 10300.
     pub simulator: u64,
     /// Messages understood at 10301 and 10302.
@@ -151,7 +151,7 @@ pub struct Server {
     /// Robots' last reported states in grSim's older protocol.
     reported: legacy::ReportedStates,
     out: VecDeque<Transmit>,
-    counts: Counts,
+    counts: ServerCounts,
 }
 
 /// Loss and delay of robots' commands and answers.
@@ -196,7 +196,7 @@ impl Server {
             parked: BTreeSet::new(),
             reported: legacy::ReportedStates::default(),
             out: VecDeque::new(),
-            counts: Counts::default(),
+            counts: ServerCounts::default(),
         }
     }
 
@@ -211,7 +211,7 @@ impl Server {
     }
 
     /// Counts of received datagrams and their results.
-    pub fn counts(&self) -> Counts {
+    pub fn counts(&self) -> ServerCounts {
         self.counts
     }
 

@@ -55,7 +55,7 @@ fn a_post_sends_the_ball_back_into_the_field() {
     let mut world = world();
     world.put_ball(Ball::rolling(Point::new(4.0, 0.51), Vector::new(4.0, 0.0)));
     let events = run(&mut world, 400);
-    assert!(matches!(events[..], [Event::GoalHit { speed, .. }] if speed > 3.8), "{events:?}");
+    assert!(matches!(events[..], [PhysicsEvent::GoalHit { speed, .. }] if speed > 3.8), "{events:?}");
     assert!(world.ball.velocity.x() < 0.0 && world.ball.position.x() < 4.5, "{:?}", world.ball);
 }
 
@@ -99,7 +99,7 @@ fn a_ball_that_falls_on_a_robot_does_not_stay_there() {
     world.put(blue(1), Pose::from_mm_deg(0.0, 0.0, 0.0));
     world.put_ball(Ball { height: 0.5, ..Ball::at(Point::new(0.01, 0.02)) });
     let events = run(&mut world, 2_000);
-    assert!(events.iter().any(|event| matches!(event, Event::Touched { .. })));
+    assert!(events.iter().any(|event| matches!(event, PhysicsEvent::Touched { .. })));
     assert!(world.ball.height == 0.0 && overlap(&world) >= -1e-4, "{:?}", world.ball);
 }
 
@@ -109,7 +109,7 @@ fn the_bar_sends_a_chip_back_and_a_higher_one_passes_above_the_goal() {
     let mut world = world();
     world.put_ball(ball(0.155));
     let events = run(&mut world, 40);
-    assert!(matches!(events[..], [Event::GoalHit { .. }]), "{events:?}");
+    assert!(matches!(events[..], [PhysicsEvent::GoalHit { .. }]), "{events:?}");
     assert!(world.ball.velocity.x() < -1.0);
     world.put_ball(Ball { climb: 1.0, ..ball(0.3) });
     let events = run(&mut world, 90);
@@ -121,7 +121,7 @@ fn boards_hold_a_rolling_ball_and_a_flying_one_leaves() {
     let mut world = world();
     world.put_ball(Ball::rolling(Point::new(0.0, 2.0), Vector::new(0.5, 6.0)));
     let events = run(&mut world, 3_000);
-    assert!(events.iter().any(|event| matches!(event, Event::BoardHit { .. })));
+    assert!(events.iter().any(|event| matches!(event, PhysicsEvent::BoardHit { .. })));
     assert!(world.ball.position.y() < 3.3);
     world.put_ball(Ball { velocity: Vector::new(0.0, 5.0), climb: 2.0, ..Ball::at(Point::new(0.0, 2.5)) });
     run(&mut world, 5_000);
@@ -175,7 +175,7 @@ fn the_fastest_ball_from_afar_meets_a_robot_whenever_the_world_last_looked_aroun
         run(&mut world, phase);
         world.put_ball(Ball::rolling(Point::new(-1.0, 0.0), Vector::new(20.0, 0.0)));
         let events = run(&mut world, 60);
-        assert!(matches!(events[..], [Event::Touched { .. }, ..]), "phase {phase}: {events:?}");
+        assert!(matches!(events[..], [PhysicsEvent::Touched { .. }, ..]), "phase {phase}: {events:?}");
         assert!(world.ball.velocity.x() < 0.0, "phase {phase}: {:?}", world.ball);
     }
 }

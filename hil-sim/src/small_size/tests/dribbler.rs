@@ -16,7 +16,7 @@ fn has_ball(world: &World) -> bool {
 }
 
 fn kick(speed: f32, degrees: f32) -> Order {
-    Order { kick: Some(Kick { speed, angle: degrees * 0.017_453_3 }), ..Order::default() }
+    Order { kick: Some(KickCommand { speed, angle: degrees * 0.017_453_3 }), ..Order::default() }
 }
 
 #[test]
@@ -70,16 +70,19 @@ fn a_soft_pass_is_caught_by_the_dribbler_and_a_hard_one_bounces() {
 fn a_kick_has_the_ordered_speed_and_comes_once_a_charge() {
     let mut world = with_ball();
     let events = lead(&mut world, yellow(1), kick(6.0, 0.0), 100);
-    let kicks: Vec<_> = events.iter().filter(|event| matches!(event, Event::Kicked { .. })).collect();
-    let [Event::Kicked { robot, speed, chip, velocity, .. }] = kicks[..] else { panic!("{events:?}") };
+    let kicks: Vec<_> = events.iter().filter(|event| matches!(event, PhysicsEvent::Kicked { .. })).collect();
+    let [PhysicsEvent::Kicked { robot, speed, chip, velocity, .. }] = kicks[..] else { panic!("{events:?}") };
     assert_eq!((*robot, *speed, *chip, *velocity), (yellow(1), 6.0, false, Vector::new(6.0, 0.0)));
     let pose = world.robots()[0].pose;
     world.put_ball(Ball::at(dribbler_point(&world, pose)));
     assert!(!world.sensors(yellow(1)).unwrap().health.kicker_ready);
     let events = lead(&mut world, yellow(1), kick(6.0, 0.0), 300);
-    assert!(!events.iter().any(|event| matches!(event, Event::Kicked { .. })), "not charged yet");
+    assert!(!events.iter().any(|event| matches!(event, PhysicsEvent::Kicked { .. })), "not charged yet");
     let events = lead(&mut world, yellow(1), kick(6.0, 0.0), 200);
-    assert!(events.iter().any(|event| matches!(event, Event::Kicked { .. })), "charged after half a second");
+    assert!(
+        events.iter().any(|event| matches!(event, PhysicsEvent::Kicked { .. })),
+        "charged after half a second"
+    );
 }
 
 #[test]
@@ -87,7 +90,9 @@ fn a_kick_needs_the_ball_and_an_order_that_is_fresh() {
     let mut world = with_ball();
     world.put_ball(Ball::at(Point::new(0.15, 0.0)));
     assert!(
-        !lead(&mut world, yellow(1), kick(6.0, 0.0), 200).iter().any(|e| matches!(e, Event::Kicked { .. }))
+        !lead(&mut world, yellow(1), kick(6.0, 0.0), 200)
+            .iter()
+            .any(|e| matches!(e, PhysicsEvent::Kicked { .. }))
     );
     let mut world = with_ball();
     let pose = world.robots()[0].pose;
@@ -96,7 +101,7 @@ fn a_kick_needs_the_ball_and_an_order_that_is_fresh() {
     run(&mut world, 150);
     world.put_ball(Ball::at(dribbler_point(&world, pose)));
     assert!(
-        run(&mut world, 100).iter().all(|event| !matches!(event, Event::Kicked { .. })),
+        run(&mut world, 100).iter().all(|event| !matches!(event, PhysicsEvent::Kicked { .. })),
         "the order is old"
     );
 }
@@ -109,7 +114,7 @@ fn a_chip_of_45_degrees_first_lands_where_its_speed_says() {
     let mut landed = None;
     for _ in 0..2_000 {
         for event in run(&mut world, 1) {
-            if let (Event::Landed { at }, None) = (event, landed) {
+            if let (PhysicsEvent::Landed { at }, None) = (event, landed) {
                 landed = Some(at);
             }
         }
@@ -146,7 +151,7 @@ fn kicks_scatter_by_their_share_and_never_beyond_its_limit() {
         world.put(yellow(1), pose);
         world.put_ball(Ball::at(dribbler_point(&world, pose)));
         for event in lead(&mut world, yellow(1), kick(5.0, 0.0), 501) {
-            if let Event::Kicked { speed, velocity, .. } = event {
+            if let PhysicsEvent::Kicked { speed, velocity, .. } = event {
                 speeds.push(speed);
                 angles.push(velocity.angle().to_degrees());
             }
@@ -185,7 +190,8 @@ fn a_discharged_kicker_kicks_only_after_charging_again() {
     };
     world.command(yellow(1), &frame);
     assert!(!world.sensors(yellow(1)).unwrap().health.kicker_ready);
-    let kicked = |events: &[Event]| events.iter().any(|event| matches!(event, Event::Kicked { .. }));
+    let kicked =
+        |events: &[PhysicsEvent]| events.iter().any(|event| matches!(event, PhysicsEvent::Kicked { .. }));
     assert!(!kicked(&lead(&mut world, yellow(1), kick(3.0, 0.0), 480)));
     assert!(kicked(&lead(&mut world, yellow(1), kick(3.0, 0.0), 40)));
 }

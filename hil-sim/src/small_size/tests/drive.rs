@@ -112,7 +112,9 @@ fn a_crash_is_reported_once_with_the_projected_difference_of_speeds() {
         world.order(blue(1), local(1.0, 0.0, 0.0));
         crashes.extend(run(&mut world, 10));
     }
-    let [Event::Crash { robots, closing, velocities, .. }] = crashes[..] else { panic!("{crashes:?}") };
+    let [PhysicsEvent::Crash { robots, closing, velocities, .. }] = crashes[..] else {
+        panic!("{crashes:?}")
+    };
     assert_eq!(robots, [yellow(1), blue(1)]);
     // With an offset of half a diameter the line between them is at 30° to their course: 3 m/s · cos 30°.
     assert!((closing - 2.598).abs() < 0.02, "{closing}");

@@ -10,7 +10,7 @@ use protocol::{RobotId, Who};
 use rules::League;
 
 use super::*;
-use crate::small_size::{Ball, Drive, Event, Kick, NoiseParameters, Order, World};
+use crate::small_size::{Ball, Drive, KickCommand, NoiseParameters, Order, PhysicsEvent, World};
 
 fn yellow(id: u8) -> Who {
     Who::yellow(RobotId::new(id).unwrap())
@@ -46,7 +46,7 @@ fn dribbling(order: Order) -> Order {
 }
 
 /// Runs with the order repeated every 10 ms, as a brain does.
-fn lead(world: &mut World, order: Order, steps: u32) -> Vec<Event> {
+fn lead(world: &mut World, order: Order, steps: u32) -> Vec<PhysicsEvent> {
     let mut events = Vec::new();
     for step in 0..steps {
         if step % 10 == 0 {
@@ -74,7 +74,7 @@ fn has_ball(world: &World) -> bool {
 
 /// The speeds with which that robot's kicks leave.
 fn kick_of(world: &mut World, who: Who, speed: f32, angle: f32) -> f32 {
-    let order = Order { kick: Some(Kick { speed, angle }), ..Order::default() };
+    let order = Order { kick: Some(KickCommand { speed, angle }), ..Order::default() };
     let pose = world.robot(who).unwrap().pose;
     let of = world.parameters();
     let front = of.robot.front + of.ball.radius + 0.0001;
@@ -86,7 +86,7 @@ fn kick_of(world: &mut World, who: Who, speed: f32, angle: f32) -> f32 {
         world.take_events(&mut events);
     }
     let kicked = events.iter().find_map(|event| match event {
-        Event::Kicked { speed, robot, .. } if *robot == who => Some(*speed),
+        PhysicsEvent::Kicked { speed, robot, .. } if *robot == who => Some(*speed),
         _ => None,
     });
     kicked.expect("it had the ball")
@@ -212,7 +212,10 @@ fn a_ball_rolls_as_far_as_its_friction_says_and_a_kick_slides_to_five_sevenths_a
 fn a_heavy_ball_pushes_its_kicker_back_harder_than_a_light_one() {
     let recoil = |mass: f32| {
         let mut world = with_ball(|model| model.parameters.ball.mass = mass);
-        world.order(yellow(1), Order { kick: Some(Kick { speed: 5.0, angle: 0.0 }), ..Order::default() });
+        world.order(
+            yellow(1),
+            Order { kick: Some(KickCommand { speed: 5.0, angle: 0.0 }), ..Order::default() },
+        );
         world.step();
         world.robot(yellow(1)).unwrap().velocity.x()
     };

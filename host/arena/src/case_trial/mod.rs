@@ -14,11 +14,12 @@ mod situation;
 pub use score::{Score, markdown};
 
 use brain::Approach;
-use casebase::{Case, CaseBase, GoalEnd, Settings};
+use casebase::{Case, CaseBase, GoalEnd, RetrievalSettings};
 use geometry::Vector;
 use hil_sim::four_legged::world::WorldEvent;
 use hil_sim::{
-    Configuration, Fnv, Layout, NativeBackend, Outcome, Parameters, Scenario, SimulationError, Verdict,
+    Configuration, Fnv, Layout, NativeBackend, Parameters, Scenario, SimulationError, TrialOutcome,
+    TrialVerdict,
 };
 use rayon::prelude::*;
 
@@ -61,7 +62,7 @@ pub struct Attempt {
     pub duration: f32,
     /// The outcome that the referee would have given a trial until the ball lay still or was taken; `None`:
     /// it is still in play.
-    pub outcome: Option<Outcome>,
+    pub outcome: Option<TrialOutcome>,
     /// Distance that the ball came towards the attacked goal meanwhile, m.
     pub progress: f32,
 }
@@ -81,7 +82,7 @@ pub struct CaseTrial<'a> {
     /// Names of its cases.
     pub names: CaseNames,
     /// Settings of case retrieval (docs/case-format.md §3.2).
-    pub settings: Settings,
+    pub settings: RetrievalSettings,
     /// Number of attempts for each case.
     pub trials: u32,
     /// Random seed of all attempts; each attempt's own is derived from it.
@@ -134,7 +135,7 @@ impl<'a> CaseTrial<'a> {
             outcome: verdict.map(|verdict| verdict.outcome),
             progress: moment.world.ball.position.x() - start.x(),
         };
-        let last = Verdict { outcome: Outcome::Timeout, time: moment.tick.time };
+        let last = TrialVerdict { outcome: TrialOutcome::Timeout, time: moment.tick.time };
         game.end(verdict.unwrap_or(last), watchers);
         Ok(attempt)
     }

@@ -72,7 +72,7 @@ impl Score {
                 *score.aborted.entry(end.label()).or_default() += 1;
             }
             if attempt.completed() {
-                let label = attempt.outcome.map_or("play", hil_sim::Outcome::label);
+                let label = attempt.outcome.map_or("play", hil_sim::TrialOutcome::label);
                 *score.outcomes.entry(label).or_default() += 1;
             }
         }

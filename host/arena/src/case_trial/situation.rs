@@ -13,7 +13,7 @@
 
 use casebase::{Case, PointMm, Scope};
 use geometry::{Angle, Field, Point, Pose, Vector, math};
-use hil_sim::{Conduct, Layout, Parameters, Placed, Region, Role, Stream};
+use hil_sim::{Conduct, Layout, OpponentRole, Parameters, Placed, Region, Stream};
 use rules::League;
 
 use super::Opposition;
@@ -96,12 +96,12 @@ fn in_metres(scope: Scope, x: f32, y: f32) -> Vector<Field> {
 }
 
 /// The role of an opponent there, and its home if it is in it.
-fn role_at(at: Point<Field>, parameters: &Parameters) -> (Role, Option<Region>) {
-    let at_home = |role: &Role| role.home(parameters).contains(at);
-    match [Role::Goalie, Role::Defender, Role::Midfield].into_iter().find(at_home) {
+fn role_at(at: Point<Field>, parameters: &Parameters) -> (OpponentRole, Option<Region>) {
+    let at_home = |role: &OpponentRole| role.home(parameters).contains(at);
+    match [OpponentRole::Goalie, OpponentRole::Defender, OpponentRole::Midfield].into_iter().find(at_home) {
         Some(role) => (role, Some(role.home(parameters))),
-        None if at.x() > 0.0 => (Role::Defender, None),
-        None => (Role::Midfield, None),
+        None if at.x() > 0.0 => (OpponentRole::Defender, None),
+        None => (OpponentRole::Midfield, None),
     }
 }
 

@@ -1,14 +1,20 @@
 //! Tests: drawn situations are those of their cases, and attempts are repeatable and reported correctly.
 
 use casebase::{PointMm, Symmetry};
-use hil_sim::Role;
+use hil_sim::OpponentRole;
 use rules::League;
 
 use super::*;
 
 fn case_trial(trials: u32) -> CaseTrial<'static> {
     let config = TrialConfig::new(Scenario::Random, Configuration::DefenderGoalie, Approach::Cases, 0);
-    CaseTrial { base: config.base, names: config.names, settings: Settings::default(), trials, seed: 5 }
+    CaseTrial {
+        base: config.base,
+        names: config.names,
+        settings: RetrievalSettings::default(),
+        trials,
+        seed: 5,
+    }
 }
 
 /// Authored case number of that name.
@@ -51,7 +57,7 @@ fn opponents_have_the_role_whose_home_they_stand_in() {
     let case = case_trial.case(number(&case_trial, "center/wing-switch")).unwrap();
     let layout = situation::draw(&case, Opposition::Standing, Parameters::four_legged(), 1);
     let roles: Vec<_> = layout.opponents.iter().map(|placed| placed.role).collect();
-    assert_eq!(roles, [Role::Midfield, Role::Defender]);
+    assert_eq!(roles, [OpponentRole::Midfield, OpponentRole::Defender]);
     assert!(layout.opponents.iter().all(|placed| placed.conduct == hil_sim::Conduct::Standing));
 }
 

@@ -8,8 +8,8 @@
 use std::fmt::Write as _;
 
 use brain::Positioning;
-use casebase::Settings;
-use hil_sim::{Configuration, Outcome, Scenario};
+use casebase::RetrievalSettings;
+use hil_sim::{Configuration, Scenario, TrialOutcome};
 use serde::Serialize;
 
 use super::row::TrialRow;
@@ -57,7 +57,10 @@ impl Arm {
             Change::Independent => setup.positioning = Positioning::Independent,
             Change::Set(name, value) => {
                 let set = setup.settings.set(name, value);
-                debug_assert!(set.is_ok() && setup.settings != Settings::default(), "{name}={value}");
+                debug_assert!(
+                    set.is_ok() && setup.settings != RetrievalSettings::default(),
+                    "{name}={value}"
+                );
             }
             Change::NoSymmetry => setup.symmetry = false,
             Change::NoOpponents => setup.opponents = false,
@@ -159,8 +162,8 @@ enum Look {
 
 const MEASURES: [(&str, Look); 7] = [
     ("to_goal", Look::Share(TrialRow::to_goal)),
-    ("out", Look::Share(|row| row.outcome == Outcome::Out)),
-    ("timeout", Look::Share(|row| row.outcome == Outcome::Timeout)),
+    ("out", Look::Share(|row| row.outcome == TrialOutcome::Out)),
+    ("timeout", Look::Share(|row| row.outcome == TrialOutcome::Timeout)),
     ("possession", Look::Mean(|row| f64::from(row.possession_defender + row.possession_midfield))),
     ("time", Look::Mean(|row| row.time_s)),
     ("cases", Look::Mean(|row| f64::from(row.individual + row.cooperative))),
@@ -308,7 +311,7 @@ mod tests {
         // By manual calculation: 10 pairs; only the default goes to goal in 6 of them, only the arm in 1,
         // both in 2. McNemar: 2 · P(at most 1 of 7) = 2 · 8 / 128 = 0.125. Seconds: 1 more in every second
         // pair.
-        let outcome = |goal| if goal { Outcome::Goal } else { Outcome::Out };
+        let outcome = |goal| if goal { TrialOutcome::Goal } else { TrialOutcome::Out };
         let trial = |trial, goal, time_s| TrialRow { trial, outcome: outcome(goal), time_s, ..row() };
         let default: Vec<_> = (0..10).map(|i| trial(i, i < 8, 10.0)).collect();
         let arm = (0..10).map(|i| trial(i, i < 2 || i == 8, 10.0 + (i % 2) as f64)).collect();

@@ -18,7 +18,7 @@ use crate::trial::{APPROACHES, approach_label};
 
 /// A line with its verdict.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Line {
+pub struct JudgementLine {
     /// Its short name, such as `a`.
     pub id: &'static str,
     /// The expected result, one sentence.
@@ -47,7 +47,7 @@ hil_sim::labels! {
 type Finding = Option<(bool, String)>;
 
 /// Every line, judged by these rows.
-pub fn judge(rows: &[TableRow]) -> Vec<Line> {
+pub fn judge(rows: &[TableRow]) -> Vec<JudgementLine> {
     let rows = Rows { rows, sample: Extent::Large };
     let lines = LINES.iter().map(|(id, line, find)| {
         let (verdict, evidence) = match find(rows) {
@@ -55,7 +55,7 @@ pub fn judge(rows: &[TableRow]) -> Vec<Line> {
             Some((false, evidence)) => (Held::Missed, evidence),
             None => (Held::Unmeasured, String::new()),
         };
-        Line { id, line, verdict, evidence }
+        JudgementLine { id, line, verdict, evidence }
     });
     lines.collect()
 }

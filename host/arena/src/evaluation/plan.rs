@@ -39,7 +39,7 @@ impl Profile {
 
 /// Trials that differ only in their seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Cell {
+pub struct EvaluationCell {
     /// The world that the trials are played in.
     pub profile: Profile,
     /// The opponents: defender and goalie, or two defenders.
@@ -56,11 +56,11 @@ pub struct Cell {
 
 /// All trials of an evaluation.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Plan {
+pub struct EvaluationPlan {
     /// Seed from which the trials' seeds are derived.
     pub seed: u64,
     /// The cells, in the order of trials.
-    pub cells: Vec<Cell>,
+    pub cells: Vec<EvaluationCell>,
 }
 
 /// A trial of a plan.
@@ -69,12 +69,12 @@ pub struct Planned {
     /// Its number in the plan, from 0.
     pub number: usize,
     /// The cell to which it belongs.
-    pub cell: Cell,
+    pub cell: EvaluationCell,
     /// Its own seed; the same for the k-th trial of every approach.
     pub seed: u64,
 }
 
-impl Plan {
+impl EvaluationPlan {
     /// The paper's trials: 500 a cell against defender and goalie, 200 against two defenders; and those of
     /// its robots, 500 a cell, of which the first 30 are as many as the paper's.
     pub fn paper(seed: u64) -> Self {
@@ -105,7 +105,7 @@ impl Plan {
 
     fn add(&mut self, profile: Profile, configuration: Configuration, scenarios: &[Scenario], trials: u32) {
         for &scenario in scenarios {
-            let cell = |approach| Cell { profile, configuration, scenario, approach, trials };
+            let cell = |approach| EvaluationCell { profile, configuration, scenario, approach, trials };
             self.cells.extend(APPROACHES.map(cell));
         }
     }
@@ -122,7 +122,7 @@ impl Plan {
     }
 
     /// Keeps only the cells for which `wanted` is true.
-    pub fn only(mut self, wanted: impl Fn(&Cell) -> bool) -> Self {
+    pub fn only(mut self, wanted: impl Fn(&EvaluationCell) -> bool) -> Self {
         self.cells.retain(wanted);
         self
     }
@@ -164,7 +164,7 @@ impl Plan {
     }
 
     /// The seed is independent of approach and profile: they draw the same random numbers.
-    fn seed_of(&self, cell: Cell, trial: u32) -> u64 {
+    fn seed_of(&self, cell: EvaluationCell, trial: u32) -> u64 {
         let mut hash = Fnv::default();
         hash.add(&self.seed.to_le_bytes());
         hash.add(cell.configuration.label().as_bytes());
@@ -229,8 +229,8 @@ mod tests {
 
     #[test]
     fn the_papers_plan_has_its_5600_simulated_trials() {
-        let compared = |cell: &Cell| matches!(cell.approach, Approach::Cases | Approach::Reactive);
-        let plan = Plan::paper(1).only(compared);
+        let compared = |cell: &EvaluationCell| matches!(cell.approach, Approach::Cases | Approach::Reactive);
+        let plan = EvaluationPlan::paper(1).only(compared);
         let of = |profile| {
             let cells = plan.cells.iter().filter(|cell| cell.profile == profile);
             cells.map(|cell| cell.trials).sum::<u32>()
@@ -242,20 +242,20 @@ mod tests {
 
     #[test]
     fn random_starts_stand_behind_and_change_no_other_trial() {
-        let (plan, random) = (Plan::paper(1), Plan::paper(1).with_random());
+        let (plan, random) = (EvaluationPlan::paper(1), EvaluationPlan::paper(1).with_random());
         assert_eq!(random.cells[..plan.cells.len()], plan.cells);
         let added = &random.cells[plan.cells.len()..];
         assert!(added.iter().all(|cell| cell.scenario == Scenario::Random));
         assert_eq!(added.iter().map(|cell| cell.trials).sum::<u32>(), 700 * APPROACHES.len() as u32);
-        let alone = Plan::paper(1).with_random().only(|cell| cell.scenario == Scenario::Random);
+        let alone = EvaluationPlan::paper(1).with_random().only(|cell| cell.scenario == Scenario::Random);
         assert_eq!(alone.cells, added);
-        let arms = Plan::ablation(1);
+        let arms = EvaluationPlan::ablation(1);
         assert!(arms.cells.len() == 8 && arms.cells.iter().all(|cell| cell.approach == Approach::Cases));
     }
 
     #[test]
     fn approaches_meet_the_same_chances_and_nothing_else_does() {
-        let plan = Plan::paper(1);
+        let plan = EvaluationPlan::paper(1);
         let seeds = |approach, profile| -> Vec<u64> {
             let trials = plan.shard(Shard::WHOLE);
             let own = trials.filter(|t| t.cell.approach == approach && t.cell.profile == profile);
@@ -264,12 +264,12 @@ mod tests {
         let cases = seeds(Approach::Cases, Profile::Simulated);
         assert_eq!(cases, seeds(Approach::Reactive, Profile::Simulated));
         assert_eq!(cases.iter().collect::<BTreeSet<_>>().len(), 2800, "of 4 × (500 + 200)");
-        assert_ne!(plan.get(0).map(|t| t.seed), Plan::paper(2).get(0).map(|t| t.seed));
+        assert_ne!(plan.get(0).map(|t| t.seed), EvaluationPlan::paper(2).get(0).map(|t| t.seed));
     }
 
     #[test]
     fn shards_share_the_trials_among_them() {
-        let plan = Plan::paper(1).with_trials(3);
+        let plan = EvaluationPlan::paper(1).with_trials(3);
         let mut all: Vec<_> = (1..=4)
             .flat_map(|i| plan.shard(Shard::new(i, 4).unwrap()).map(|t| t.number).collect::<Vec<_>>())
             .collect();

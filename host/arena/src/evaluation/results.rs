@@ -20,7 +20,7 @@ use super::ablation::Effect;
 use super::claims::{Claim, claims};
 use super::comparison::{Comparison, compare, with_paper};
 use super::error::EvaluationError;
-use super::judge::{Line, judge};
+use super::judge::{JudgementLine, judge};
 use super::paper::paper;
 use super::row::{TrialRow, csv_hash, to_csv};
 use super::tables::{TableRow, tables};
@@ -44,7 +44,7 @@ pub struct Results {
     /// The paper's claims, and the verdicts of the numbers.
     pub claims: Vec<Claim>,
     /// Whether the pattern of the paper's results is reproduced.
-    pub lines: Vec<Line>,
+    pub lines: Vec<JudgementLine>,
     /// Uses and outcomes of each case.
     pub uses: Vec<CaseUse>,
     /// [`csv_hash`] of its trials.

@@ -4,7 +4,7 @@
 //! processes.
 
 use brain::Approach;
-use hil_sim::{Configuration, Fnv, Outcome, Scenario};
+use hil_sim::{Configuration, Fnv, Scenario, TrialOutcome};
 use serde::{Deserialize, Serialize};
 
 use super::description;
@@ -30,7 +30,7 @@ pub struct TrialRow {
     /// Seed that replays it.
     pub seed: u64,
     /// How it ended; against two defenders `goal` is the paper's "to goal".
-    pub outcome: Outcome,
+    pub outcome: TrialOutcome,
     /// Seconds from kick-off to its end.
     pub time_s: f64,
     /// How often the defender had the ball.
@@ -114,7 +114,7 @@ impl TrialRow {
 
     /// The paper's "to goal": goal or close; against two defenders, in the penalty area.
     pub fn to_goal(&self) -> bool {
-        matches!(self.outcome, Outcome::Goal | Outcome::Close)
+        matches!(self.outcome, TrialOutcome::Goal | TrialOutcome::Close)
     }
 }
 
@@ -160,7 +160,7 @@ pub(super) mod tests {
             scenario: Scenario::LeftSide,
             approach: Approach::Cases,
             seed: 1,
-            outcome: Outcome::Goal,
+            outcome: TrialOutcome::Goal,
             time_s: 10.0,
             possession_defender: 2,
             possession_midfield: 1,

@@ -15,7 +15,7 @@ use hil_sim::{NativeBackend, Parameters};
 use rayon::prelude::*;
 
 use super::error::EvaluationError;
-use super::plan::{Plan, Planned, Shard};
+use super::plan::{EvaluationPlan, Planned, Shard};
 use super::row::TrialRow;
 use super::setup::Setup;
 use super::trial_store::{Entry as Row, Identity, Kept, TrialStore};
@@ -26,7 +26,7 @@ use crate::trial::{TrialConfig, positioning_label, run};
 #[derive(Clone, Debug)]
 pub struct Evaluation<'a> {
     /// The trials to be played.
-    pub plan: Plan,
+    pub plan: EvaluationPlan,
     /// The case base in every robot.
     pub base: CaseBase<'a>,
     /// Names of its cases.
@@ -41,7 +41,7 @@ pub struct Evaluation<'a> {
 
 /// Progress of a shard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Progress {
+pub struct RunProgress {
     /// Finished trials, those of earlier runs included.
     pub done: usize,
     /// Trials of the shard.
@@ -92,7 +92,7 @@ impl<'a> Evaluation<'a> {
         &self,
         shard: Shard,
         file: &Path,
-        progress: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),
+        progress: &(dyn Fn(RunProgress) -> ControlFlow<()> + Sync),
     ) -> Result<Vec<TrialRow>, EvaluationError> {
         let play = |number| match self.plan.get(number) {
             Some(planned) => self.play(&planned),
@@ -108,7 +108,7 @@ pub(crate) fn play_open<R: Row>(
     identity: &R::Identity,
     shard: Shard,
     file: &Path,
-    progress: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),
+    progress: &(dyn Fn(RunProgress) -> ControlFlow<()> + Sync),
     play: impl Fn(usize) -> Result<R, EvaluationError> + Sync,
 ) -> Result<Vec<R>, EvaluationError> {
     let (trial_store, kept) = TrialStore::open::<R>(file, identity)?;
@@ -119,7 +119,7 @@ pub(crate) fn play_open<R: Row>(
     let numbers = || (0..R::planned(identity)).filter(|number| shard.has(*number));
     let open: Vec<_> = numbers().filter(|number| !rows.contains_key(number)).collect();
     let of = numbers().count();
-    let on_progress = |done: usize| match progress(Progress { done, of }) {
+    let on_progress = |done: usize| match progress(RunProgress { done, of }) {
         ControlFlow::Continue(()) => Ok(()),
         ControlFlow::Break(()) => Err(EvaluationError::Stopped),
     };

@@ -2,7 +2,7 @@
 //! value for all its trials.
 
 use brain::Positioning;
-use casebase::Settings;
+use casebase::RetrievalSettings;
 use hil_sim::AirSettings;
 
 use crate::trial::TrialConfig;
@@ -11,7 +11,7 @@ use crate::trial::TrialConfig;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setup {
     /// Settings of case retrieval (docs/case-format.md §3.2).
-    pub settings: Settings,
+    pub settings: RetrievalSettings,
     /// When a case's actions start.
     pub positioning: Positioning,
     /// Number of the two robots that may retrieve (paper §4.1).
@@ -27,7 +27,7 @@ pub struct Setup {
 impl Default for Setup {
     fn default() -> Self {
         Self {
-            settings: Settings::default(),
+            settings: RetrievalSettings::default(),
             positioning: Positioning::default(),
             retrievers: ROBOTS,
             loss: 0.0,

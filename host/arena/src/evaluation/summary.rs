@@ -202,7 +202,7 @@ pub fn stars(p: Option<f64>) -> &'static str {
 
 #[cfg(test)]
 mod tests {
-    use hil_sim::Outcome;
+    use hil_sim::TrialOutcome;
 
     use super::*;
     use crate::evaluation::row::TrialRow;
@@ -215,7 +215,7 @@ mod tests {
         // 27 of 30 against the paper's 26 % of 500: surely more. cbr − reactive: 90 − 80 %, z = 1.08.
         let goals = |approach, goals: usize| {
             (0..30).map(move |i| {
-                let outcome = if i < goals { Outcome::Goal } else { Outcome::Out };
+                let outcome = if i < goals { TrialOutcome::Goal } else { TrialOutcome::Out };
                 TrialRow { approach, outcome, time_s: 10.0, ..row() }
             })
         };

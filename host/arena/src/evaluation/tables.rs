@@ -9,7 +9,7 @@
 //! of all. Standard deviations are those of a sample.
 
 use brain::Approach;
-use hil_sim::{Configuration, Outcome, Scenario};
+use hil_sim::{Configuration, Scenario, TrialOutcome};
 use serde::{Serialize, Serializer};
 
 use super::comparison::Measure;
@@ -182,7 +182,7 @@ fn belongs(table: u8, row: &TrialRow) -> bool {
         && match table {
             2 => backs_up(row.approach),
             3 => plays_cases(row.approach),
-            5 => row.outcome != Outcome::Timeout,
+            5 => row.outcome != TrialOutcome::Timeout,
             _ => true,
         }
 }
@@ -269,8 +269,8 @@ impl TableRow {
         };
         let outcome = |outcome| share(&|row: &TrialRow| row.outcome == outcome);
         if self.table != 5 {
-            self.out = outcome(Outcome::Out);
-            self.timeout = outcome(Outcome::Timeout);
+            self.out = outcome(TrialOutcome::Out);
+            self.timeout = outcome(TrialOutcome::Timeout);
             self.to_goal = share(&TrialRow::to_goal);
             let put_out = |attackers: bool| {
                 let by = rows.iter().filter_map(|row| row.out_by.as_deref());
@@ -280,9 +280,9 @@ impl TableRow {
         }
         let mean = |of: fn(&TrialRow) -> f64| Mean::of(rows.iter().map(|row| of(row)));
         if self.configuration == Configuration::DefenderGoalie {
-            self.goal = outcome(Outcome::Goal);
-            self.close = outcome(Outcome::Close);
-            self.block = outcome(Outcome::Block);
+            self.goal = outcome(TrialOutcome::Goal);
+            self.close = outcome(TrialOutcome::Close);
+            self.block = outcome(TrialOutcome::Block);
         } else {
             let possession = mean(|row| f64::from(row.possession_midfield));
             (self.possession2_mean, self.possession2_sd) = (possession.mean, possession.sd);

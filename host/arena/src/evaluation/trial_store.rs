@@ -15,7 +15,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::error::EvaluationError;
-use super::plan::{Cell, Plan};
+use super::plan::{EvaluationCell, EvaluationPlan};
 use super::row::{TrialRow, to_csv, to_line};
 
 /// A row of such a file: one of a plan's trials, when it is over.
@@ -78,7 +78,7 @@ pub struct Identity {
     /// Parameters of the simulated world.
     pub parameters: Parameters,
     /// All trials of the evaluation, of all shards.
-    pub plan: Plan,
+    pub plan: EvaluationPlan,
 }
 
 impl Identity {
@@ -86,8 +86,9 @@ impl Identity {
     pub fn differences(&self, other: &Self) -> Vec<&'static str> {
         let Self { program, library: _, case_base, cases: _, symmetry, case_opponents, .. } = self;
         let Self { settings, positioning, retrievers, loss, parameters, plan, .. } = self;
-        let cells =
-            |plan: &Plan| plan.cells.iter().map(|cell| Cell { trials: 0, ..*cell }).collect::<Vec<_>>();
+        let cells = |plan: &EvaluationPlan| {
+            plan.cells.iter().map(|cell| EvaluationCell { trials: 0, ..*cell }).collect::<Vec<_>>()
+        };
         let library = (case_base, symmetry, case_opponents)
             != (&other.case_base, &other.symmetry, &other.case_opponents);
         let pairs = [
@@ -252,7 +253,7 @@ pub(super) mod tests {
             retrievers: 2,
             loss: 0.1,
             parameters: Parameters::four_legged().clone(),
-            plan: Plan::paper(1).with_trials(1),
+            plan: EvaluationPlan::paper(1).with_trials(1),
         }
     }
 
@@ -277,7 +278,7 @@ pub(super) mod tests {
         assert_eq!(own.differences(&read), Vec::<&str>::new());
         let other = Identity { retrievers: 1, plan: own.plan.clone().with_trials(2), ..identity() };
         assert_eq!(own.differences(&other), ["retrievers", "number of trials"]);
-        let other = Identity { case_base: "1".to_owned(), plan: Plan::judge(3), ..identity() };
+        let other = Identity { case_base: "1".to_owned(), plan: EvaluationPlan::judge(3), ..identity() };
         assert_eq!(own.differences(&other), ["cases", "seed", "scenarios, opponents or approaches"]);
         let mut heavier = identity();
         heavier.parameters.ball.deceleration += 0.01;
@@ -286,7 +287,7 @@ pub(super) mod tests {
 
     #[test]
     fn a_number_that_is_none_is_refused_with_file_line_and_column() {
-        let identity = Identity { plan: Plan::paper(1).with_trials(2), ..identity() };
+        let identity = Identity { plan: EvaluationPlan::paper(1).with_trials(2), ..identity() };
         let planned = identity.plan.get(0).unwrap();
         let row = TrialRow {
             profile: planned.cell.profile,

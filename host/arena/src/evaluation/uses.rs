@@ -5,7 +5,7 @@
 //! them: `cases.csv`.
 
 use brain::Approach;
-use hil_sim::{Configuration, Outcome};
+use hil_sim::{Configuration, TrialOutcome};
 
 use super::plan::Profile;
 use super::row::TrialRow;
@@ -34,8 +34,8 @@ pub struct CaseUse {
 }
 
 /// All outcomes, in the order of tables.
-pub const OUTCOMES: [Outcome; 5] =
-    [Outcome::Goal, Outcome::Close, Outcome::Block, Outcome::Out, Outcome::Timeout];
+pub const OUTCOMES: [TrialOutcome; 5] =
+    [TrialOutcome::Goal, TrialOutcome::Close, TrialOutcome::Block, TrialOutcome::Out, TrialOutcome::Timeout];
 
 /// The uses of `cases` (`region/name`), by kind of trial as the rows come, then in the order of `cases`.
 pub fn uses(rows: &[TrialRow], cases: &[String]) -> Vec<CaseUse> {
@@ -110,9 +110,9 @@ mod tests {
     fn a_play_counts_for_its_case_and_a_trial_once() {
         let trial = |outcome, plays: &str| TrialRow { outcome, plays: plays.to_owned(), ..row() };
         let rows = [
-            trial(Outcome::Goal, "a/x:finished a/x:timeout b/y:opponent-on-ball"),
-            trial(Outcome::Out, "a/x:finished"),
-            trial(Outcome::Out, ""),
+            trial(TrialOutcome::Goal, "a/x:finished a/x:timeout b/y:opponent-on-ball"),
+            trial(TrialOutcome::Out, "a/x:finished"),
+            trial(TrialOutcome::Out, ""),
         ];
         let names = ["a/x", "b/y", "c/z"].map(str::to_owned);
         let uses = uses(&rows, &names);

@@ -3,8 +3,8 @@
 
 use std::fmt::Write as _;
 
-use super::claims::{Claim, Judgement, Verdict};
-use super::judge::Line;
+use super::claims::{Claim, ClaimVerdict, Judgement};
+use super::judge::JudgementLine;
 use super::results::Results;
 
 /// Both, as text; `claims.json` has the numbers behind every claim.
@@ -28,18 +28,18 @@ fn claims(claims: &[Claim]) -> String {
     let _ = writeln!(
         text,
         "{} supported, {} contradicted, {} undecided, {} unmeasured\n",
-        count(Verdict::Supported),
-        count(Verdict::Contradicted),
-        count(Verdict::Undecided),
-        count(Verdict::Unmeasured)
+        count(ClaimVerdict::Supported),
+        count(ClaimVerdict::Contradicted),
+        count(ClaimVerdict::Undecided),
+        count(ClaimVerdict::Unmeasured)
     );
     text
 }
 
-fn lines(lines: &[Line]) -> String {
+fn lines(lines: &[JudgementLine]) -> String {
     let mut text = "The pattern of its results, and what is asked of ours\n".to_owned();
     let width = lines.iter().map(|line| line.id.len()).max().unwrap_or_default();
-    for Line { id, line, verdict, evidence } in lines {
+    for JudgementLine { id, line, verdict, evidence } in lines {
         let _ = writeln!(text, "  {:10}  {id:width$}  {line}", verdict.label());
         if !evidence.is_empty() {
             let _ = writeln!(text, "  {:10}  {:width$}  {evidence}", "", "");

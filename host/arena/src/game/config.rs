@@ -2,7 +2,7 @@
 //! play equally.
 
 use brain::{Approach, BrainConfig};
-use casebase::Settings;
+use casebase::RetrievalSettings;
 use hil_sim::AirSettings;
 use hil_sim::small_size::referee::{MatchClock, RefereeSettings};
 use hil_sim::small_size::worlds::WorldChoice;
@@ -41,7 +41,7 @@ pub struct TeamSetup {
     /// Approach of robots without an order of a host.
     pub approach: Approach,
     /// Settings of case retrieval (docs/case-format.md §3.2).
-    pub settings: Settings,
+    pub settings: RetrievalSettings,
     /// Tactics of the second paper that its host plays.
     pub tactics: Tactics,
 }
@@ -58,7 +58,7 @@ impl GameConfig {
             robots,
             plays: Team::Ours,
             approach: Approach::Cases,
-            settings: Settings::default(),
+            settings: RetrievalSettings::default(),
             tactics: Tactics::default(),
         };
         let total = Duration((duration_s * 1e6) as u64);

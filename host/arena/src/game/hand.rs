@@ -7,7 +7,7 @@ use hil_sim::small_size::Ball;
 use hil_sim::small_size::referee::{Card, Restart};
 use protocol::{Duration, RobotId, Who};
 use rules::Colour;
-use rules::state::Command;
+use rules::state::RefereeCommand;
 
 use super::{Game, GameConfig, GameError};
 
@@ -56,7 +56,7 @@ impl<'a> Game<'a> {
     }
 
     /// Orders the referee to send a command; false where that is not possible now.
-    pub fn command(&mut self, command: Command) -> bool {
+    pub fn command(&mut self, command: RefereeCommand) -> bool {
         self.referee.command_by_hand(command)
     }
 

@@ -28,7 +28,7 @@ use hil_sim::small_size::camera::Cameras;
 use hil_sim::small_size::compatibility::Profile;
 use hil_sim::small_size::referee::InternalReferee;
 use hil_sim::small_size::worlds::WorldModel;
-use hil_sim::small_size::{Event, World};
+use hil_sim::small_size::{PhysicsEvent, World};
 use hil_sim::{Backend, McuError, TraceHash};
 use host::Host;
 use protocol::{Instant, RobotId, Who};
@@ -65,7 +65,7 @@ pub struct Game<'a> {
     teams: [Team<'a>; 2],
     trace: TraceHash,
     tick: u32,
-    events: Vec<Event>,
+    events: Vec<PhysicsEvent>,
     holds: Holds,
     /// Vision's packets reach no host.
     blind: bool,
@@ -154,7 +154,7 @@ impl<'a> Game<'a> {
     }
 
     /// Events of the last tick.
-    pub fn events(&self) -> &[Event] {
+    pub fn events(&self) -> &[PhysicsEvent] {
         &self.events
     }
 

@@ -12,7 +12,7 @@ use hil_sim::small_size::Ball;
 use host::strategy::Team;
 use protocol::{Duration, RobotId, Who};
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
-use rules::state::Command;
+use rules::state::RefereeCommand;
 use rules::{Colour, League, Phase};
 
 use super::{Game, GameConfig, GameError, NoWatcher};
@@ -29,7 +29,7 @@ pub enum Keeper {
 
 /// One shot, the same for every keeper.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shot {
+pub struct PenaltyShot {
     /// From NORMAL_START to the moment at which the ball leaves, s.
     pub after: f64,
     /// Place where it crosses the goal line, m from the goal's middle.
@@ -42,7 +42,7 @@ pub struct Shot {
 
 /// Outcome of a shot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
+pub enum PenaltyOutcome {
     /// The whole ball crossed the line between the posts.
     Goal,
     /// The ball did not cross it.
@@ -51,7 +51,7 @@ pub enum Outcome {
     NoShot,
 }
 
-impl Shot {
+impl PenaltyShot {
     /// The shot of this seed.
     pub fn of(league: League, seed: u64) -> Self {
         let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
@@ -83,15 +83,15 @@ pub fn saves(
     let mut count = Count { hits: 0, of: 0 };
     for seed in seeds {
         let outcome = shoot(league, seed, keeper)?;
-        count.hits += u32::from(outcome == Outcome::Saved);
-        count.of += u32::from(outcome != Outcome::NoShot);
+        count.hits += u32::from(outcome == PenaltyOutcome::Saved);
+        count.of += u32::from(outcome != PenaltyOutcome::NoShot);
     }
     Ok(count)
 }
 
 /// Plays one penalty, with the shot that `seed` draws.
-pub fn shoot(league: League, seed: u64, keeper: Keeper) -> Result<Outcome, GameError> {
-    let shot = Shot::of(league, seed);
+pub fn shoot(league: League, seed: u64, keeper: Keeper) -> Result<PenaltyOutcome, GameError> {
+    let shot = PenaltyShot::of(league, seed);
     let mut config = GameConfig::new(league, seed, MATCH).between(Team::Idle, Team::Ours);
     for team in &mut config.teams {
         team.robots = 2;
@@ -114,7 +114,7 @@ pub fn shoot(league: League, seed: u64, keeper: Keeper) -> Result<Outcome, GameE
     while game.time() < MATCH {
         let phase = game.referee().phase();
         if !asked && game.time() > 1.0 {
-            asked = game.command(Command::PreparePenalty(Colour::Blue));
+            asked = game.command(RefereeCommand::PreparePenalty(Colour::Blue));
         }
         // The script's robots stand at their required places at all times.
         game.put_robot(other, behind(2.0, straight));
@@ -136,23 +136,23 @@ pub fn shoot(league: League, seed: u64, keeper: Keeper) -> Result<Outcome, GameE
                 game.kick_ball(velocity);
                 left = Some(game.time());
             } else if begun.is_some() && !running {
-                return Ok(Outcome::NoShot);
+                return Ok(PenaltyOutcome::NoShot);
             }
         }
         if let Some(left) = left {
             let ball: &Ball = &game.world().ball;
             let over = (ball.position.x() - line) * own.sign() as f32 > BALL_RADIUS;
             if over && ball.position.y().abs() < 0.5 * field.goal_width {
-                return Ok(Outcome::Goal);
+                return Ok(PenaltyOutcome::Goal);
             }
             let turned = ball.velocity.x() * (own.sign() as f32) <= 0.0;
             if turned || game.time() - left > FLIGHT {
-                return Ok(Outcome::Saved);
+                return Ok(PenaltyOutcome::Saved);
             }
         }
         game.step(&mut NoWatcher)?;
     }
-    Ok(Outcome::NoShot)
+    Ok(PenaltyOutcome::NoShot)
 }
 
 /// Longest penalty, simulated s.
@@ -179,8 +179,8 @@ mod tests {
     #[test]
     fn shots_are_seeded_and_go_near_both_posts() {
         let league = League::DivisionB;
-        assert_eq!(Shot::of(league, 7), Shot::of(league, 7));
-        let shots: Vec<Shot> = (0..200).map(|seed| Shot::of(league, seed)).collect();
+        assert_eq!(PenaltyShot::of(league, 7), PenaltyShot::of(league, 7));
+        let shots: Vec<PenaltyShot> = (0..200).map(|seed| PenaltyShot::of(league, seed)).collect();
         let left = shots.iter().filter(|shot| shot.aim > 0.0).count();
         assert!((70..130).contains(&left), "{left}");
         assert!(shots.iter().all(|shot| (0.24..0.45).contains(&shot.aim.abs())));

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use hil_sim::small_size::referee::{Blocked, Event, Kind, Metrics};
+use hil_sim::small_size::referee::{Blocked, Kind, Metrics, RefereeEvent};
 use host::strategy::Team;
 use host::strategy::counters::PlayCounters;
 use rules::Colour;
@@ -148,7 +148,7 @@ impl GameReport {
     pub fn of(config: &GameConfig, game: &Game<'_>) -> Self {
         let (accounts, metrics) = (game.referee().accounts(), game.referee().metrics());
         let holds = game.holds().closed();
-        let no_progress = |event: &&Event| event.what.kind() == Kind::NoProgress;
+        let no_progress = |event: &&RefereeEvent| event.what.kind() == Kind::NoProgress;
         Self {
             score: PerTeam::of(|team| accounts.of(team).score),
             duration_s: game.time(),

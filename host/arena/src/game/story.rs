@@ -1,7 +1,7 @@
 //! `story`: text log of a match. A line for each event of the referee, and for each restart. Seconds, field
 //! frame, m.
 
-use hil_sim::small_size::referee::{Event, What};
+use hil_sim::small_size::referee::{RefereeEvent, What};
 use rules::{Colour, Phase};
 
 use super::{Game, Watcher};
@@ -49,7 +49,7 @@ impl Watcher for MatchLog {
 }
 
 /// An event as text: robot, event, place.
-pub fn sentence(event: &Event) -> String {
+pub fn sentence(event: &RefereeEvent) -> String {
     let who = match (event.by, event.robot) {
         (Some(team), Some(robot)) => format!("{} {robot}: ", team.label()),
         (Some(team), None) => format!("{}: ", team.label()),

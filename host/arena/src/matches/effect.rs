@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::match_team::MatchTeam;
 use super::outcome::CONFIDENCE;
-use super::plan::Plan;
+use super::plan::MatchPlan;
 use super::row::MatchRow;
 use crate::evaluation::statistics::{Sample, paired, student};
 
@@ -64,7 +64,7 @@ pub struct Effect {
 }
 
 /// One for each pair of the plan whose teams differ by parts that one of them has and the other lacks.
-pub fn effects(plan: &Plan, rows: &[MatchRow]) -> Vec<Effect> {
+pub fn effects(plan: &MatchPlan, rows: &[MatchRow]) -> Vec<Effect> {
     let of = |own: MatchTeam, opponent: MatchTeam| {
         let (more, less) = (own.beyond(opponent), opponent.beyond(own));
         let (part, own_has) = match (&more[..], &less[..]) {

@@ -21,7 +21,7 @@ mod row;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use casebase::{CaseBase, Settings};
+use casebase::{CaseBase, RetrievalSettings};
 use hil_sim::NativeBackend;
 use rules::Colour;
 use serde::{Deserialize, Serialize};
@@ -33,22 +33,22 @@ pub use match_team::MatchTeam;
 pub use outcome::{Estimate, Outcome, our_passes, outcomes};
 pub use paper::{PAPER, PAPER_PASSES, PaperGame, PaperPasses};
 pub use passes::{Kicked, Passes, Share, Tenth};
-pub use plan::{Pairing, Plan, Planned};
+pub use plan::{MatchPlan, Pairing, Planned};
 pub use plot::plot;
 pub use row::MatchRow;
 
-use crate::evaluation::{EvaluationError, Progress, Shard, play_open};
+use crate::evaluation::{EvaluationError, RunProgress, Shard, play_open};
 use crate::game::{GameConfig, NoWatcher, play};
 
 /// All settings that the matches of a plan depend on.
 #[derive(Clone, Debug)]
 pub struct Matches<'a> {
     /// The matches to be played.
-    pub plan: Plan,
+    pub plan: MatchPlan,
     /// The case base in every robot.
     pub base: CaseBase<'a>,
     /// Settings of case retrieval (docs/case-format.md §3.2).
-    pub settings: Settings,
+    pub settings: RetrievalSettings,
     /// Version and commit of the program: matches of two programs are never mixed.
     pub program: String,
 }
@@ -63,7 +63,7 @@ pub struct MatchIdentity {
     /// The named settings of retrieval that are not as usual, name and value.
     pub settings: Vec<(String, String)>,
     /// All matches of the evaluation, of all shards.
-    pub plan: Plan,
+    pub plan: MatchPlan,
 }
 
 impl MatchIdentity {
@@ -125,7 +125,7 @@ impl Matches<'_> {
         &self,
         shard: Shard,
         file: &Path,
-        progress: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),
+        progress: &(dyn Fn(RunProgress) -> ControlFlow<()> + Sync),
     ) -> Result<Vec<MatchRow>, EvaluationError> {
         play_open(&self.identity(), shard, file, progress, |number| self.play(number))
     }

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::match_team::MatchTeam;
 use super::passes::{self, Passes};
-use super::plan::Plan;
+use super::plan::MatchPlan;
 use super::row::{MatchRow, counted};
 use crate::evaluation::statistics::{Sample, paired, student};
 
@@ -85,7 +85,7 @@ pub struct Outcome {
 }
 
 /// One for each pair of the plan, in its order.
-pub fn outcomes(plan: &Plan, rows: &[MatchRow]) -> Vec<Outcome> {
+pub fn outcomes(plan: &MatchPlan, rows: &[MatchRow]) -> Vec<Outcome> {
     plan.pairings
         .iter()
         .map(|pairing| {

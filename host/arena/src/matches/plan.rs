@@ -19,7 +19,7 @@ pub struct Pairing {
 
 /// Numbers the matches: pair by pair.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Plan {
+pub struct MatchPlan {
     /// Seed from which the matches' seeds are derived.
     pub seed: u64,
     /// Name of the league: field, robots and rules.
@@ -56,7 +56,7 @@ impl Planned {
     }
 }
 
-impl Plan {
+impl MatchPlan {
     /// A team against each of these.
     pub fn against(own: MatchTeam, opponents: &[MatchTeam]) -> Vec<Pairing> {
         opponents.iter().map(|&opponent| Pairing { own, opponent }).collect()
@@ -116,9 +116,9 @@ mod tests {
 
     #[test]
     fn pairs_meet_as_often_on_both_sides_with_the_same_seeds() {
-        let pairings = Plan::round_robin(&[Team::Ours, Team::Reactive, Team::Zone].map(MatchTeam::from));
+        let pairings = MatchPlan::round_robin(&[Team::Ours, Team::Reactive, Team::Zone].map(MatchTeam::from));
         assert_eq!(pairings.len(), 3);
-        let plan = Plan {
+        let plan = MatchPlan {
             seed: 1,
             league: "division-b".to_owned(),
             world: WorldPlan::RandomPerMatch,

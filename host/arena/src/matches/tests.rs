@@ -10,7 +10,7 @@ use host::strategy::Team;
 use super::*;
 use crate::evaluation::{csv_hash, merge, read, to_csv};
 
-const GO_ON: &(dyn Fn(Progress) -> ControlFlow<()> + Sync) = &|_| ControlFlow::Continue(());
+const GO_ON: &(dyn Fn(RunProgress) -> ControlFlow<()> + Sync) = &|_| ControlFlow::Continue(());
 
 /// A directory of a test's own, removed at the end of the test.
 struct Directory(PathBuf);
@@ -26,19 +26,19 @@ impl Directory {
     fn play(&self, shard: Shard, threads: usize) -> Vec<MatchRow> {
         let base = case_library::division_b();
         let matches = Matches {
-            plan: Plan {
+            plan: MatchPlan {
                 seed: 4,
                 league: "division-b".to_owned(),
                 world: WorldPlan::default(),
                 duration_s: 4.0,
-                pairings: Plan::against(
+                pairings: MatchPlan::against(
                     MatchTeam::ours(),
                     &[Team::Reactive.into(), MatchTeam::parse("ours-without-second-level").unwrap()],
                 ),
                 matches: 2,
             },
             base,
-            settings: Settings::default(),
+            settings: RetrievalSettings::default(),
             program: "test".to_owned(),
         };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -76,18 +76,18 @@ fn threads_shards_and_interrupts_change_no_byte() {
 #[test]
 fn matches_of_different_worlds_are_of_different_evaluations_and_a_plan_keeps_its_world() {
     let of = |world: WorldPlan| {
-        let plan = Plan {
+        let plan = MatchPlan {
             seed: 4,
             league: "division-b".to_owned(),
             world,
             duration_s: 4.0,
-            pairings: Plan::against(MatchTeam::ours(), &[Team::Reactive.into()]),
+            pairings: MatchPlan::against(MatchTeam::ours(), &[Team::Reactive.into()]),
             matches: 2,
         };
         Matches {
             plan,
             base: case_library::division_b(),
-            settings: Settings::default(),
+            settings: RetrievalSettings::default(),
             program: "test".to_owned(),
         }
     };
@@ -100,10 +100,10 @@ fn matches_of_different_worlds_are_of_different_evaluations_and_a_plan_keeps_its
     assert_eq!(grsim.config(&planned).unwrap().world.to_string(), "grsim");
     for matches in [nominal, grsim, random] {
         let json = serde_json::to_string(&matches.plan).unwrap();
-        assert_eq!(serde_json::from_str::<Plan>(&json).unwrap(), matches.plan);
+        assert_eq!(serde_json::from_str::<MatchPlan>(&json).unwrap(), matches.plan);
         // A file of a version with a single world.
         let older = json.replace(&format!("\"world\":\"{}\",", matches.plan.world), "");
-        assert_eq!(serde_json::from_str::<Plan>(&older).unwrap().world, WorldPlan::default());
+        assert_eq!(serde_json::from_str::<MatchPlan>(&older).unwrap().world, WorldPlan::default());
     }
 }
 
@@ -151,12 +151,12 @@ fn row(number: usize, goals: [u32; 2], halves: [f32; 2], shots: [u32; 2]) -> Mat
 
 #[test]
 fn ratios_goals_and_intervals_are_those_counted_by_hand() {
-    let plan = Plan {
+    let plan = MatchPlan {
         seed: 1,
         league: "ssl-2013".to_owned(),
         world: WorldPlan::default(),
         duration_s: 600.0,
-        pairings: Plan::against(MatchTeam::ours(), &[Team::Zone.into()]),
+        pairings: MatchPlan::against(MatchTeam::ours(), &[Team::Zone.into()]),
         matches: 3,
     };
     let rows = [
@@ -203,12 +203,12 @@ fn ratios_goals_and_intervals_are_those_counted_by_hand() {
 #[test]
 fn a_part_is_worth_what_the_side_with_it_was_ahead() {
     let without = MatchTeam::parse("ours-without-second-level").unwrap();
-    let plan = Plan {
+    let plan = MatchPlan {
         seed: 1,
         league: "division-b".to_owned(),
         world: WorldPlan::default(),
         duration_s: 600.0,
-        pairings: Plan::against(MatchTeam::ours(), &[without, Team::Zone.into()]),
+        pairings: MatchPlan::against(MatchTeam::ours(), &[without, Team::Zone.into()]),
         matches: 2,
     };
     let of = |row: MatchRow| MatchRow { opponent: without, ..row };
@@ -231,7 +231,7 @@ fn a_part_is_worth_what_the_side_with_it_was_ahead() {
     // 2 and −1 once more: spread 2.1213, t = 1/3 with 1 degree, p = 0.7952.
     assert!((effect.goals.unwrap().p.unwrap() - 0.7952).abs() < 1e-4);
     // The same from the other side.
-    let turned = Plan { pairings: vec![Pairing { own: without, opponent: MatchTeam::ours() }], ..plan };
+    let turned = MatchPlan { pairings: vec![Pairing { own: without, opponent: MatchTeam::ours() }], ..plan };
     let rows = [row(0, [0, 2], [100.0, 200.0], [1, 7])].map(|row| MatchRow {
         own: without,
         opponent: MatchTeam::ours(),

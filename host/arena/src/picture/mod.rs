@@ -10,11 +10,11 @@ mod legend;
 mod page;
 
 use geometry::{Field, Point, Pose};
-use hil_sim::{Configuration, Role, Scenario};
+use hil_sim::{Configuration, OpponentRole, Scenario};
 use rules::League;
 
 use crate::names::letter;
-use crate::recording::{Recording, Sample, Start};
+use crate::recording::{RecordedSample, Recording, Start};
 use crate::report::TrialReport;
 use drawing::{Anchor, Font};
 
@@ -196,9 +196,9 @@ impl Actor<'_> {
         let role = self.robot.checked_sub(self.attackers).and_then(|i| self.recording.cast.opponents.get(i));
         match role {
             None => letter(self.robot).to_string(),
-            Some(Role::Defender) => "D".to_owned(),
-            Some(Role::Midfield) => "M".to_owned(),
-            Some(Role::Goalie) => "G".to_owned(),
+            Some(OpponentRole::Defender) => "D".to_owned(),
+            Some(OpponentRole::Midfield) => "M".to_owned(),
+            Some(OpponentRole::Goalie) => "G".to_owned(),
         }
     }
 }
@@ -211,7 +211,7 @@ fn ball(page: &mut Page, at: Point<Field>, filled: bool) {
 }
 
 /// Small time labels along the ball's path, where the ball has moved since the last.
-fn seconds(page: &mut Page, samples: &[Sample], taken: &mut Vec<Px>) {
+fn seconds(page: &mut Page, samples: &[RecordedSample], taken: &mut Vec<Px>) {
     let mut last: Option<Px> = None;
     let mut next = EVERY;
     for sample in samples {

@@ -5,13 +5,13 @@ use hil_sim::NativeBackend;
 use super::legend::LISTED;
 use super::*;
 use crate::names::Cast;
-use crate::recording::Kick;
+use crate::recording::RecordedKick;
 use crate::trial::{TrialConfig, run};
 use brain::Approach;
 use protocol::RobotId;
 
-fn sample(time: f32, x: f32, holder: Option<usize>) -> Sample {
-    Sample {
+fn sample(time: f32, x: f32, holder: Option<usize>) -> RecordedSample {
+    RecordedSample {
         time,
         ball: Point::new(x, 0.0),
         holder,
@@ -22,14 +22,14 @@ fn sample(time: f32, x: f32, holder: Option<usize>) -> Sample {
 #[test]
 fn a_carried_and_kicked_ball_is_a_thick_and_then_a_dotted_line() {
     let mut recording = Recording {
-        cast: Cast { attackers: vec![RobotId::new(1).unwrap()], opponents: vec![Role::Defender] },
+        cast: Cast { attackers: vec![RobotId::new(1).unwrap()], opponents: vec![OpponentRole::Defender] },
         ..Recording::default()
     };
     let held = (0..20).map(|i| sample(i as f32 * 0.04, i as f32 * 0.01, Some(0)));
     let rolling = (20..60).map(|i| sample(i as f32 * 0.04, i as f32 * 0.03 - 0.4, None));
     recording.samples = held.chain(rolling).collect();
     let kick = LEGGED_KICK;
-    recording.kicks.push(Kick {
+    recording.kicks.push(RecordedKick {
         time: 0.79,
         robot: 0,
         kick,

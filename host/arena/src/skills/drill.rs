@@ -2,7 +2,7 @@
 //! the true world. SI units, field frame; our team is yellow and defends −x.
 
 use geometry::{Angle, Field, Point, Pose};
-use hil_sim::small_size::{Ball, Event, Robot, World};
+use hil_sim::small_size::{Ball, PhysicsEvent, Robot, World};
 use hil_sim::{Backend, Fnv};
 use host::Drill as Orders;
 use host::strategy::Team;
@@ -63,7 +63,7 @@ pub(super) struct Moment<'g> {
     /// The truth.
     pub(super) world: &'g World,
     /// What happened in the last 10 ms.
-    pub(super) events: &'g [Event],
+    pub(super) events: &'g [PhysicsEvent],
 }
 
 impl Moment<'_> {

@@ -1,7 +1,7 @@
 //! `kicks`: tries of `kick` and `chip`: the ball passes a point near enough, and over a robot.
 
 use geometry::{Field, Point, Segment, Vector};
-use hil_sim::small_size::{Ball, Event};
+use hil_sim::small_size::{Ball, PhysicsEvent};
 use protocol::host::{Directive, KickOrder, RuleRole};
 use rules::{Colour, League};
 
@@ -74,11 +74,13 @@ impl Judge for Kick {
     fn judge(&mut self, moment: &Moment<'_>) -> State {
         for event in moment.events {
             match event {
-                Event::Kicked { robot, .. } if robot.colour == US => {
+                PhysicsEvent::Kicked { robot, .. } if robot.colour == US => {
                     // It was dribbled on the way: aimed from where it is kicked.
                     (self.kicked, self.from) = (Some(moment.time), moment.world.ball.position);
                 }
-                Event::Touched { robot, .. } if robot.colour == Colour::Blue && self.kicked.is_some() => {
+                PhysicsEvent::Touched { robot, .. }
+                    if robot.colour == Colour::Blue && self.kicked.is_some() =>
+                {
                     return State::Failed("the ball met the robot that it was to fly over".to_owned());
                 }
                 _ => {}

@@ -3,7 +3,9 @@
 
 use std::io::{self, Write};
 
-use casebase::{Case, CaseBase, CaseRobot, Match, PointMm, Problem, Retrieval, Settings, adapted_position};
+use casebase::{
+    Case, CaseBase, CaseRobot, Match, PointMm, Problem, Retrieval, RetrievalSettings, adapted_position,
+};
 use protocol::RobotId;
 use serde::{Serialize, Serializer};
 
@@ -88,7 +90,12 @@ pub(super) fn roles(found: &Match) -> Vec<(u8, u8)> {
 }
 
 /// Robot id with its adapted start position, mm.
-fn adapted(case: &Case<'_>, found: &Match, ball: PointMm, settings: &Settings) -> Vec<(u8, [i32; 2])> {
+fn adapted(
+    case: &Case<'_>,
+    found: &Match,
+    ball: PointMm,
+    settings: &RetrievalSettings,
+) -> Vec<(u8, [i32; 2])> {
     let place = |(robot, player): (CaseRobot, &RobotId)| {
         let PointMm { x, y } = adapted_position(case, robot, ball, settings);
         (player.number(), [x, y])

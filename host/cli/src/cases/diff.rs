@@ -3,7 +3,7 @@
 
 use std::io::{self, Write};
 
-use casebase::{Criterion, Match, Settings, Symmetry, Verdict, rank_order};
+use casebase::{CaseVerdict, Criterion, Match, RetrievalSettings, Symmetry, rank_order};
 use protocol::CaseId;
 use serde::Serialize;
 
@@ -54,11 +54,11 @@ impl<'a> Difference<'a> {
     /// `reported` are both cases with their verdicts and texts; a case for the other goal has none.
     pub(super) fn new(
         library_handle: &'a LibraryHandle,
-        reported: [(CaseId, Option<&Verdict>, String); 2],
-        settings: &Settings,
+        reported: [(CaseId, Option<&CaseVerdict>, String); 2],
+        settings: &RetrievalSettings,
     ) -> Self {
         let found = reported.each_ref().map(|(_, verdict, _)| match verdict {
-            Some(Verdict::Candidate(found)) => Some(found),
+            Some(CaseVerdict::Candidate(found)) => Some(found),
             _ => None,
         });
         let (first, by) = match found {
@@ -73,7 +73,7 @@ impl<'a> Difference<'a> {
             id: id.0,
             case: library_handle.name(id),
             symmetry: Symmetry::from_bits(id.0).label(),
-            verdict: verdict.map_or("other_goal", Verdict::label),
+            verdict: verdict.map_or("other_goal", CaseVerdict::label),
             why,
         });
         Self { first, by, cases }
@@ -95,7 +95,7 @@ impl<'a> Difference<'a> {
 }
 
 /// The first criterion in which two candidates differ.
-fn separated_by(a: &Match, b: &Match, settings: &Settings) -> &'static str {
+fn separated_by(a: &Match, b: &Match, settings: &RetrievalSettings) -> &'static str {
     for criterion in settings.ranking {
         match criterion {
             Criterion::Conditions if a.conditions != b.conditions => return "conditions",

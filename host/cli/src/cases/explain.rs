@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use std::io::{self, Write, stdin};
 use std::process::ExitCode;
 
-use casebase::{Case, CaseBase, Match, Problem, Verdict, rank_order};
+use casebase::{Case, CaseBase, CaseVerdict, Match, Problem, rank_order};
 use clap::Args;
 use protocol::CaseId;
 use serde::Serialize;
@@ -182,7 +182,7 @@ impl<'a> Explanation<'a> {
             verdicts.iter().filter_map(|(_, verdict)| candidate(verdict)).collect();
         ranking.sort_by(|a, b| rank_order(a, b, &chosen.settings));
         let ranks: HashMap<CaseId, usize> = ranking.iter().map(|found| found.case).zip(1..).collect();
-        let row = |(id, verdict): &(_, Verdict)| {
+        let row = |(id, verdict): &(_, CaseVerdict)| {
             let case = base.case(*id)?;
             let rank = ranks.get(id).copied().unwrap_or(0);
             Some(Row {
@@ -284,17 +284,17 @@ fn difference<'a>(
     Difference::new(library_handle, chosen_rows, &chosen.settings)
 }
 
-fn candidate(verdict: &Verdict) -> Option<&Match> {
+fn candidate(verdict: &CaseVerdict) -> Option<&Match> {
     match verdict {
-        Verdict::Candidate(found) => Some(found),
+        CaseVerdict::Candidate(found) => Some(found),
         _ => None,
     }
 }
 
 impl Evidence {
-    fn of(verdict: &Verdict, rank: usize, case: &Case<'_>, problem: &Problem, chosen: &Chosen) -> Self {
+    fn of(verdict: &CaseVerdict, rank: usize, case: &Case<'_>, problem: &Problem, chosen: &Chosen) -> Self {
         match verdict {
-            Verdict::Candidate(found) => Self::Candidate {
+            CaseVerdict::Candidate(found) => Self::Candidate {
                 rank,
                 similarity: similarity(found),
                 cost: cost(found),
@@ -302,20 +302,20 @@ impl Evidence {
                 teammates: found.teammates,
                 roles: roles(found),
             },
-            Verdict::Ball { similarity, .. } => Self::Ball {
+            CaseVerdict::Ball { similarity, .. } => Self::Ball {
                 similarity: rounded(*similarity, 1e4),
                 threshold: chosen.settings.threshold,
                 outside_mm: ball_outside(case, problem, chosen),
             },
-            Verdict::Robots { needed, present } => Self::Robots { needed: *needed, present: *present },
-            Verdict::OutOfField { robot } => Self::OutOfField { case_robot: robot.number() },
-            Verdict::TooFar { robot, player, distance, margin } => Self::TooFar {
+            CaseVerdict::Robots { needed, present } => Self::Robots { needed: *needed, present: *present },
+            CaseVerdict::OutOfField { robot } => Self::OutOfField { case_robot: robot.number() },
+            CaseVerdict::TooFar { robot, player, distance, margin } => Self::TooFar {
                 case_robot: robot.number(),
                 robot: player.number(),
                 distance_mm: rounded(*distance, 1e2),
                 over_mm: rounded(*margin, 1e2),
             },
-            Verdict::Path { index, opponent, inside_mm, .. } => {
+            CaseVerdict::Path { index, opponent, inside_mm, .. } => {
                 Self::Path { leg: index + 1, opponent: opponent + 1, inside_mm: rounded(*inside_mm, 1e2) }
             }
         }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use case_tools::draw::{CasePicture, Overlay, Theme, case_picture, sheet};
-use casebase::{Match, Problem, Symmetry, Verdict, rank_order};
+use casebase::{CaseVerdict, Match, Problem, Symmetry, rank_order};
 use clap::{Args, ValueEnum};
 
 use super::lines::LINE_MAX;
@@ -148,9 +148,9 @@ fn every(args: &RenderArgs, library_handle: &LibraryHandle) -> Result<ExitCode, 
     Ok(ExitCode::SUCCESS)
 }
 
-fn candidate(verdict: &Verdict) -> Option<&Match> {
+fn candidate(verdict: &CaseVerdict) -> Option<&Match> {
     match verdict {
-        Verdict::Candidate(found) => Some(found),
+        CaseVerdict::Candidate(found) => Some(found),
         _ => None,
     }
 }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use case_tools::competence::{Role, Shared, groups, roles, shared, thin_out};
+use case_tools::competence::{CompetenceRole, Shared, groups, roles, shared, thin_out};
 use case_tools::coverage::{Area, COST_BIN_MM, CaseCounters, Counters, RINGS, VERDICTS};
 use clap::Args;
 use serde_json::{Value, json};
@@ -59,7 +59,7 @@ struct Report<'r> {
     names: Vec<String>,
     counters: &'r Counters,
     pairs: Vec<Shared>,
-    roles: Vec<Role>,
+    roles: Vec<CompetenceRole>,
 }
 
 impl Report<'_> {

@@ -1,6 +1,6 @@
 //! `whatif`: text and data of a counterfactual. mm, field frame.
 
-use case_tools::{Counterfactual, Entity, Obstacle};
+use case_tools::{Counterfactual, CounterfactualObstacle, Entity};
 use serde::Serialize;
 
 use super::answer::rounded;
@@ -73,19 +73,22 @@ impl WhatIf {
     }
 }
 
-fn reported_obstacle(library_handle: &LibraryHandle, obstacle: Obstacle) -> (&'static str, String) {
+fn reported_obstacle(
+    library_handle: &LibraryHandle,
+    obstacle: CounterfactualObstacle,
+) -> (&'static str, String) {
     match obstacle {
-        Obstacle::Robots { needed, present } => {
+        CounterfactualObstacle::Robots { needed, present } => {
             ("robots", format!("cannot win: it needs {needed} robots, {present} are present"))
         }
-        Obstacle::Conditions { winner, fulfilled, most } => {
+        CounterfactualObstacle::Conditions { winner, fulfilled, most } => {
             let name = library_handle.name(winner);
             (
                 "conditions",
                 format!("cannot win while {name} fulfils {fulfilled} conditions: it has {most} at most"),
             )
         }
-        Obstacle::Several { tried } => {
+        CounterfactualObstacle::Several { tried } => {
             ("several", format!("no single move makes it win ({tried} were tried)"))
         }
     }

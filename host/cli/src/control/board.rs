@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use host::Host;
-use page::{Kind, MatchEvent, Page, Powers, Request};
+use page::{MatchEvent, MatchEventKind, Page, Powers, UserRequest};
 
 use crate::library::LibraryHandle;
 use crate::live::{CaseExplanations, Composer, Moment, PageArgs, SCENE_EVERY_S, tick};
@@ -24,7 +24,7 @@ impl Board {
         args: &PageArgs,
         title: String,
         library_handle: Option<LibraryHandle>,
-        settings: casebase::Settings,
+        settings: casebase::RetrievalSettings,
     ) -> Option<Self> {
         let open = || {
             let composer = Composer::new(library_handle.as_ref());
@@ -46,7 +46,14 @@ impl Board {
     /// Adds a fault to the page's events.
     pub(super) fn fault(&mut self, now: protocol::Instant, description: String) {
         let t = now.0 as f64 * 1e-6;
-        self.page.push(MatchEvent { t, kind: Kind::Fault, team: None, description, at: None, problem: None });
+        self.page.push(MatchEvent {
+            t,
+            kind: MatchEventKind::Fault,
+            team: None,
+            description,
+            at: None,
+            problem: None,
+        });
     }
 
     /// Records how long an input took.
@@ -71,7 +78,7 @@ impl Board {
         }
         let mut halt = false;
         while let Some(request) = self.page.next_request() {
-            halt |= request == Request::Halt {};
+            halt |= request == UserRequest::Halt {};
         }
         halt
     }

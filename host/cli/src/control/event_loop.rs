@@ -18,10 +18,10 @@ use host::learned::Learned;
 use host::radio::RadioSettings;
 use host::record::header::{HostHeader, RecordingHeader};
 use host::record::{BackgroundRecorder, Recorder};
-use host::referee::team_port::Request;
+use host::referee::team_port::TeamPortRequest;
 use host::shell::{Outbox, SimSettings};
-use host::tracking::{Publisher, Received};
-use host::{Host, HostSettings, Input, Verdict};
+use host::tracking::{Publisher, VisionVerdict};
+use host::{Host, HostSettings, Input, InputVerdict};
 use protocol::RobotId;
 use protocol::frame::TeamKey;
 use rules::Colour;
@@ -249,7 +249,7 @@ struct EventLoop {
     host: Host,
     began: Instant,
     /// Requests to the game controller.
-    ask: Sender<Request>,
+    ask: Sender<TeamPortRequest>,
     out: Arc<Mutex<Outbox>>,
     us: Colour,
     recorder: Option<BackgroundRecorder>,
@@ -292,7 +292,7 @@ impl EventLoop {
                 self.counts.vision += 1;
                 if matches!(
                     self.feed(now, Input::Vision(&bytes)),
-                    Verdict::Vision(Received::Newest | Received::Restarted)
+                    InputVerdict::Vision(VisionVerdict::Newest | VisionVerdict::Restarted)
                 ) {
                     self.publish(now);
                 }
@@ -316,7 +316,7 @@ impl EventLoop {
     }
 
     /// Feeds one input to the host, then handles its output.
-    fn feed(&mut self, now: protocol::Instant, input: Input<'_>) -> Verdict {
+    fn feed(&mut self, now: protocol::Instant, input: Input<'_>) -> InputVerdict {
         if let Some(recorder) = &mut self.recorder {
             let received = match input {
                 Input::Vision(bytes) => Some((MessageKind::Vision2014, bytes)),

@@ -154,7 +154,7 @@ pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
 /// The case library, and the form in which our robots receive cases.
 struct Cases {
     library_handle: Option<LibraryHandle>,
-    settings: casebase::Settings,
+    settings: casebase::RetrievalSettings,
     description: Vec<OsString>,
 }
 

@@ -10,7 +10,7 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use foreign::excerpt;
-use host::referee::team_port::{Event, Request, TeamPort};
+use host::referee::team_port::{TeamPort, TeamPortEvent, TeamPortRequest};
 use protocol::RobotId;
 use rules::Colour;
 
@@ -26,7 +26,7 @@ const CONNECT: Duration = Duration::from_secs(1);
 pub(super) fn talk(
     address: SocketAddr,
     (name, colour, keeper): (String, Colour, RobotId),
-    asked: Receiver<Request>,
+    asked: Receiver<TeamPortRequest>,
     mail: Arc<Inbox>,
     end: Arc<AtomicBool>,
 ) -> JoinHandle<()> {
@@ -36,7 +36,7 @@ pub(super) fn talk(
         let now = || protocol::Instant(began.elapsed().as_micros() as u64);
         let mut stream: Option<TcpStream> = None;
         let mut last = None;
-        port.ask(Request::Keeper(keeper), now());
+        port.ask(TeamPortRequest::Keeper(keeper), now());
         while !end.load(Ordering::Relaxed) {
             if port.wants_connection(now()) {
                 stream = connect(address);
@@ -51,7 +51,7 @@ pub(super) fn talk(
             }
             port.tick(now());
             while let Some(event) = port.poll_event() {
-                if matches!(event, Event::GivenUp(_) | Event::RegistrationRefused { .. }) {
+                if matches!(event, TeamPortEvent::GivenUp(_) | TeamPortEvent::RegistrationRefused { .. }) {
                     stream = None;
                 }
                 let description = description(&event, address);
@@ -98,18 +98,18 @@ fn exchange(stream: &mut TcpStream, port: &mut TeamPort, now: protocol::Instant)
 /// Longest reason that is printed, characters.
 const REASON_LEN: usize = 200;
 
-fn description(event: &Event, address: SocketAddr) -> Option<String> {
+fn description(event: &TeamPortEvent, address: SocketAddr) -> Option<String> {
     Some(match event {
-        Event::Registered { .. } => format!("game controller  at {address} knows us now"),
-        Event::RegistrationRefused { reason } => format!(
+        TeamPortEvent::Registered { .. } => format!("game controller  at {address} knows us now"),
+        TeamPortEvent::RegistrationRefused { reason } => format!(
             "game controller  at {address} will not have us: {}; is our --name the one it shows, and our --colour?",
             excerpt(reason, REASON_LEN)
         ),
-        Event::Granted(Request::Ping) => return None,
-        Event::Granted(request) => format!("game controller  granted: {request:?}"),
-        Event::Refused { request, reason } => {
+        TeamPortEvent::Granted(TeamPortRequest::Ping) => return None,
+        TeamPortEvent::Granted(request) => format!("game controller  granted: {request:?}"),
+        TeamPortEvent::Refused { request, reason } => {
             format!("game controller  refused {request:?}: {}", excerpt(reason, REASON_LEN))
         }
-        Event::GivenUp(trouble) => format!("waiting for the game controller at {address}: {trouble}"),
+        TeamPortEvent::GivenUp(trouble) => format!("waiting for the game controller at {address}: {trouble}"),
     })
 }

@@ -8,7 +8,8 @@ use std::process::ExitCode;
 
 use ::report::{Ablation, Facts};
 use arena::evaluation::{
-    ARMS, Arm, EvaluationError, Plan, Shard, ablation_table, csv_hash, effects, to_csv, write_effects,
+    ARMS, Arm, EvaluationError, EvaluationPlan, Shard, ablation_table, csv_hash, effects, to_csv,
+    write_effects,
 };
 use clap::Args;
 
@@ -40,7 +41,7 @@ pub(super) struct AblationsArgs {
 }
 
 pub(super) fn run(args: &AblationsArgs) -> Result<ExitCode, Failure> {
-    let plan = Plan::ablation(args.seed).with_trials(args.trials);
+    let plan = EvaluationPlan::ablation(args.seed).with_trials(args.trials);
     let wanted = |arm: &&Arm| args.arm.is_empty() || arm.is_default() || args.arm.contains(arm);
     let arms: Vec<Arm> = ARMS.iter().filter(wanted).copied().collect();
     let (directory, pool) = (args.work.directory()?, args.work.pool()?);

@@ -7,7 +7,7 @@
 
 use std::process::ExitCode;
 
-use arena::evaluation::{Plan, Shard};
+use arena::evaluation::{EvaluationPlan, Shard};
 use clap::Args;
 
 use super::report::ReportArgs;
@@ -36,6 +36,6 @@ pub(super) struct JudgeArgs {
 }
 
 pub(super) fn run(args: &JudgeArgs) -> Result<ExitCode, Failure> {
-    let plan = Plan::judge(args.seed).with_trials(args.trials);
+    let plan = EvaluationPlan::judge(args.seed).with_trials(args.trials);
     work::run(plan, args.shard, &args.setup, &args.work, &args.report)
 }

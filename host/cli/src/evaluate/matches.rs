@@ -8,7 +8,7 @@ use std::process::ExitCode;
 
 use arena::evaluation::{EvaluationError, Shard, csv_hash, merge, to_csv};
 use arena::matches::{
-    Effect, MatchIdentity, MatchRow, MatchTeam, Matches, Outcome, PAPER, PAPER_PASSES, Passes, Plan,
+    Effect, MatchIdentity, MatchPlan, MatchRow, MatchTeam, Matches, Outcome, PAPER, PAPER_PASSES, Passes,
     calibration_plot, effects, markdown, our_passes, outcomes, plot,
 };
 use casebase::CaseBase;
@@ -116,7 +116,7 @@ pub(super) fn run(args: &MatchesArgs) -> Result<ExitCode, Failure> {
 }
 
 impl MatchesArgs {
-    fn plan(&self) -> Plan {
+    fn plan(&self) -> MatchPlan {
         let mut opponents = self.opponents.clone();
         if opponents.is_empty() && (self.round_robin || !self.ablations) {
             opponents.extend(Team::OPPONENTS.map(MatchTeam::from));
@@ -126,11 +126,11 @@ impl MatchesArgs {
         }
         let pairings = if self.round_robin {
             let teams: Vec<_> = [self.team].into_iter().chain(opponents).collect();
-            Plan::round_robin(&teams)
+            MatchPlan::round_robin(&teams)
         } else {
-            Plan::against(self.team, &opponents)
+            MatchPlan::against(self.team, &opponents)
         };
-        Plan {
+        MatchPlan {
             seed: self.seed,
             league: self.league.name().to_owned(),
             world: self.world,

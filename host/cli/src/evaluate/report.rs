@@ -10,7 +10,7 @@ use std::process::ExitCode;
 
 use arena::evaluation::{Identity, Results, Setup, compare, merge, paper};
 use brain::{Approach, Positioning};
-use casebase::Settings;
+use casebase::RetrievalSettings;
 use clap::Args;
 use report::{Ablation, Facts, Map, Picture, Report};
 
@@ -200,7 +200,7 @@ fn maps(identity: &Identity, trials: u32) -> Result<Vec<Map>, Failure> {
 
 /// The attackers' set-up that is recorded in an evaluation's files.
 fn setup_of(identity: &Identity) -> Result<Setup, Failure> {
-    let mut settings = Settings::default();
+    let mut settings = RetrievalSettings::default();
     for (name, value) in &identity.settings {
         settings.set(name, value).map_err(|error| Failure::setting(name, value, error))?;
     }

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use arena::evaluation::{Cell, Plan, Profile, Shard};
+use arena::evaluation::{EvaluationCell, EvaluationPlan, Profile, Shard};
 use brain::Approach;
 use clap::Args;
 use hil_sim::{Configuration, Scenario};
@@ -53,16 +53,16 @@ pub(super) fn run(args: &TablesArgs) -> Result<ExitCode, Failure> {
 }
 
 impl TablesArgs {
-    fn plan(&self) -> Result<Plan, Failure> {
+    fn plan(&self) -> Result<EvaluationPlan, Failure> {
         let wants_random = self.random || self.scenario.contains(&Scenario::Random);
-        let plan = Plan::paper(self.seed);
+        let plan = EvaluationPlan::paper(self.seed);
         let plan = if wants_random { plan.with_random() } else { plan };
         let scenario = |asked: Scenario| {
             self.scenario.is_empty()
                 || self.scenario.contains(&asked)
                 || (self.random && asked == Scenario::Random)
         };
-        let wanted = |cell: &Cell| {
+        let wanted = |cell: &EvaluationCell| {
             scenario(cell.scenario)
                 && (self.opponents.is_empty() || self.opponents.contains(&cell.configuration))
                 && (self.approach.is_empty() || self.approach.contains(&cell.approach))

@@ -8,7 +8,8 @@ use std::sync::atomic::Ordering;
 
 use arena::CaseNames;
 use arena::evaluation::{
-    Evaluation, EvaluationError, Plan, Progress, ROBOTS, Results, Setup, Shard, TrialRow, summary, verdicts,
+    Evaluation, EvaluationError, EvaluationPlan, ROBOTS, Results, RunProgress, Setup, Shard, TrialRow,
+    summary, verdicts,
 };
 use clap::Args;
 
@@ -77,7 +78,7 @@ pub(super) fn make(directory: &Path) -> Result<(), Failure> {
 
 /// All settings that the trials of a plan depend on.
 pub(super) fn evaluation(
-    plan: Plan,
+    plan: EvaluationPlan,
     setup: Setup,
     library_handle: &LibraryHandle,
     library: String,
@@ -101,14 +102,14 @@ pub(super) fn play(
 pub(super) fn with_bar<R: Send>(
     pool: &rayon::ThreadPool,
     title: &str,
-    play: impl FnOnce(&(dyn Fn(Progress) -> ControlFlow<()> + Sync)) -> Result<R, EvaluationError> + Send,
+    play: impl FnOnce(&(dyn Fn(RunProgress) -> ControlFlow<()> + Sync)) -> Result<R, EvaluationError> + Send,
 ) -> Result<R, Failure> {
     // The running trials are still finished and stored.
     let stopped = stopped_by_hand();
     // Drawn on a terminal's stderr, and nowhere else.
     let line = progress::Progress::open();
     line.set_text(title);
-    let on_progress = |progress: Progress| {
+    let on_progress = |progress: RunProgress| {
         line.set(progress.done as u64, progress.of as u64);
         if stopped.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
@@ -119,7 +120,7 @@ pub(super) fn with_bar<R: Send>(
 
 /// Plays a shard of a plan and, if it is the whole plan, writes and prints the results.
 pub(super) fn run(
-    plan: Plan,
+    plan: EvaluationPlan,
     shard: Shard,
     setup_args: &SetupArgs,
     work: &WorkArgs,

@@ -7,7 +7,7 @@
 use arena::game::{Game, GameConfig, NoWatcher};
 use arena::{TrialConfig, run};
 use brain::Approach;
-use firmware_build::{Body, Install, Program, ensure_qemu};
+use firmware_build::{ImageBody, Install, Program, ensure_qemu};
 use hil_sim::{ByTeam, Configuration, Meter, Metered, NativeBackend, QemuBackend, Scenario};
 use protocol::TeamId;
 use rules::{Colour, League};
@@ -32,8 +32,8 @@ pub(super) struct Measured {
 pub(super) fn measure(program: Program, seconds: f64) -> Result<Option<Measured>, Failure> {
     let meter = Meter::default();
     match program {
-        Program::Robot(Body::Legged) => trials(&meter)?,
-        Program::Robot(Body::Omni) => play(&meter, seconds)?,
+        Program::Robot(ImageBody::Legged) => trials(&meter)?,
+        Program::Robot(ImageBody::Omni) => play(&meter, seconds)?,
         _ => return Ok(None),
     }
     let (median, worst) = meter.median_and_worst();
@@ -41,7 +41,7 @@ pub(super) fn measure(program: Program, seconds: f64) -> Result<Option<Measured>
 }
 
 fn trials(meter: &Meter) -> Result<(), Failure> {
-    let image = emulated(Body::Legged)?;
+    let image = emulated(ImageBody::Legged)?;
     for scenario in Scenario::PAPER {
         for opponents in [Configuration::DefenderGoalie, Configuration::TwoDefenders] {
             let config = TrialConfig::new(scenario, opponents, Approach::Cases, SEED);
@@ -53,7 +53,7 @@ fn trials(meter: &Meter) -> Result<(), Failure> {
 }
 
 fn play(meter: &Meter, seconds: f64) -> Result<(), Failure> {
-    let image = emulated(Body::Omni)?;
+    let image = emulated(ImageBody::Omni)?;
     let config = GameConfig::new(League::DivisionB, SEED, seconds);
     let base = case_library::division_b();
     let mut backend = ByTeam {
@@ -68,7 +68,7 @@ fn play(meter: &Meter, seconds: f64) -> Result<(), Failure> {
     Ok(())
 }
 
-fn emulated(body: Body) -> Result<std::path::PathBuf, Failure> {
+fn emulated(body: ImageBody) -> Result<std::path::PathBuf, Failure> {
     ensure_qemu(Install::ForUser).map_err(failed)?;
     build(Program::Robot(body))
 }

@@ -19,7 +19,7 @@ use std::process::ExitCode;
 
 use clap::{Args, Subcommand, ValueEnum};
 use firmware_build::inspect::{Image, Sizes};
-use firmware_build::{Body, Program, build_program, workspace_root};
+use firmware_build::{ImageBody, Program, build_program, workspace_root};
 
 use crate::Failure;
 use crate::output::print_text;
@@ -67,8 +67,8 @@ enum ImageLabel {
 impl ImageLabel {
     const fn program(self) -> Program {
         match self {
-            Self::Legged => Program::Robot(Body::Legged),
-            Self::Omni => Program::Robot(Body::Omni),
+            Self::Legged => Program::Robot(ImageBody::Legged),
+            Self::Omni => Program::Robot(ImageBody::Omni),
             Self::Free => Program::Free,
             Self::Stm32 => Program::Stm32,
         }

@@ -5,8 +5,8 @@
 use std::fmt::Write as _;
 
 use clap::Args;
-use firmware_build::inspect::{Budget, Chip, Part, STACK_BUDGET, STEP_BUDGET, Sizes};
-use firmware_build::{Body, Program};
+use firmware_build::inspect::{Budget, Chip, STACK_BUDGET, STEP_BUDGET, SizePart, Sizes};
+use firmware_build::{ImageBody, Program};
 use serde::Serialize;
 
 use super::measure::{Measured, measure};
@@ -66,8 +66,8 @@ impl Known {
     /// Steps of its brain in a second (docs/architecture.md §2.3).
     fn steps_a_second(&self) -> Option<u64> {
         match self.program {
-            Program::Robot(Body::Legged) => Some(25),
-            Program::Robot(Body::Omni) | Program::Free => Some(100),
+            Program::Robot(ImageBody::Legged) => Some(25),
+            Program::Robot(ImageBody::Omni) | Program::Free => Some(100),
             _ => None,
         }
     }
@@ -128,8 +128,8 @@ struct PoolJson<'a> {
     ram: u64,
 }
 
-impl<'a> From<&'a Part> for PartJson<'a> {
-    fn from(part: &'a Part) -> Self {
+impl<'a> From<&'a SizePart> for PartJson<'a> {
+    fn from(part: &'a SizePart) -> Self {
         Self { name: &part.name, flash: part.flash, ram: part.ram }
     }
 }

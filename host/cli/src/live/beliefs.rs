@@ -47,7 +47,7 @@ impl Beliefs {
 /// Our robot at the ball.
 fn kicker(view: &View) -> Option<RobotId> {
     let ball = view.ball?.position;
-    let far = |robot: &&host::strategy::view::Robot| robot.position.distance(ball);
+    let far = |robot: &&host::strategy::view::ViewRobot| robot.position.distance(ball);
     let nearest = view.ours.iter().min_by(|a, b| far(a).total_cmp(&far(b)))?;
     (far(&nearest) < AT_BALL).then_some(nearest.id)
 }

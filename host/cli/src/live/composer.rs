@@ -11,7 +11,8 @@ use host::referee::Game;
 use host::sanity::Sanity;
 use host::world::{Ball, World};
 use page::{
-    DeferredScene, Field, Gauge, Kind, Layer, Match, MatchEvent, Robot, Scene, Shape, TeamSheet, milli,
+    DeferredScene, Field, Gauge, Layer, Match, MatchEvent, MatchEventKind, Scene, SceneRobot, Shape,
+    TeamSheet, milli,
 };
 use protocol::{CaseId, Instant};
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
@@ -142,7 +143,7 @@ impl Composer {
                 let team = Some(team(host.settings().us));
                 self.match_events.push(MatchEvent {
                     t,
-                    kind: Kind::Fault,
+                    kind: MatchEventKind::Fault,
                     team,
                     description,
                     at: None,
@@ -182,7 +183,7 @@ impl Composer {
                 let detail = host.and_then(|host| minds::detail(host, robot, played, names, clocks, t));
                 let (detail, aim) = detail.unzip();
                 aims.extend(aim.flatten());
-                Robot {
+                SceneRobot {
                     team: team(colour),
                     id: robot.who.id.number(),
                     at: [milli(at.x()), milli(at.y())],
@@ -237,7 +238,7 @@ impl Composer {
         self.overlay_builder.deferred_scene(scene, picture)
     }
 
-    fn ball(&mut self, t: f64, ball: &Ball, world: &World) -> page::Ball {
+    fn ball(&mut self, t: f64, ball: &Ball, world: &World) -> page::SceneBall {
         let at = [milli(ball.position.x()), milli(ball.position.y())];
         if self.trail.back().is_some_and(|(last, _)| *last > t) {
             self.trail.clear();
@@ -255,7 +256,7 @@ impl Composer {
             let later = ball.after((step as f32 * 0.1).min(rests), &world.models).position;
             [milli(later.x()), milli(later.y())]
         });
-        page::Ball {
+        page::SceneBall {
             at,
             height: milli(ball.height),
             velocity: [milli(ball.velocity.x()), milli(ball.velocity.y())],

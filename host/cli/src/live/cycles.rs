@@ -3,7 +3,7 @@
 use arena::{CycleEvent, CycleLog};
 use casebase::CaseBase;
 use host::Host;
-use page::{Cycle, Kind, MatchEvent};
+use page::{Cycle, MatchEvent, MatchEventKind};
 use protocol::team::{CycleState, Status};
 use protocol::{Instant, RobotId};
 use rules::Colour;
@@ -54,7 +54,7 @@ impl TeamCycles {
                         format!("{}: {} by {}", us.label(), names.of(play.case), players.join(", "));
                     let ball: geometry::Point<geometry::Field> = play.ball.into();
                     add(
-                        Kind::Case,
+                        MatchEventKind::Case,
                         description,
                         Some([ball.x(), ball.y()]),
                         Some(problem(host, play.ball.into())),
@@ -64,14 +64,14 @@ impl TeamCycles {
                     let ball = host.world().ball.map(|ball| ball.position);
                     let problem =
                         ball.map(|ball| problem(host, protocol::quantized::WirePoint::from(ball).into()));
-                    add(Kind::Cycle, format!("{}: no case fits", us.label()), None, problem);
+                    add(MatchEventKind::Cycle, format!("{}: no case fits", us.label()), None, problem);
                 }
             }
             CycleEvent::Ended(i) => {
                 let Some(cycle) = of(i).filter(|cycle| cycle.play.is_some()) else { return };
                 if let Some((_, end)) = cycle.end {
                     add(
-                        Kind::Cycle,
+                        MatchEventKind::Cycle,
                         format!("{}: case {}", us.label(), end.label().replace('-', " ")),
                         None,
                         None,

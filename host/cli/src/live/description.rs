@@ -1,7 +1,7 @@
 //! `description`: texts of roles, reasons, directives and actions. Short labels; places in m, field frame.
 
 use casebase::{Action, Case, CaseRobot};
-use host::strategy::{Flip, Role, Why};
+use host::strategy::{Flip, OrderReason, Role};
 use protocol::host::{Directive, KickOrder};
 use protocol::quantized::WirePoint;
 use protocol::team::{AbortReason, Closure, Decision, Progress};
@@ -35,26 +35,26 @@ pub(crate) fn role(role: Role) -> String {
     }
 }
 
-pub(crate) fn why(why: &Why) -> String {
+pub(crate) fn why(why: &OrderReason) -> String {
     match why {
-        Why::Referee => "required by the referee's command".to_owned(),
-        Why::SoonestAtBall { seconds } => format!("soonest at the ball, in {seconds:.2} s"),
-        Why::OnBallLine { y } => {
+        OrderReason::Referee => "required by the referee's command".to_owned(),
+        OrderReason::SoonestAtBall { seconds } => format!("soonest at the ball, in {seconds:.2} s"),
+        OrderReason::OnBallLine { y } => {
             format!("between the ball and our goal; the line ends {y:.2} m beside its middle")
         }
-        Why::ClearsArea { room } => format!("only the keeper may play it there; {room:.2} m of room"),
-        Why::FreePlace { worth } => format!("the best free place, worth {worth:.2}"),
-        Why::Marks { opponent } => {
+        OrderReason::ClearsArea { room } => format!("only the keeper may play it there; {room:.2} m of room"),
+        OrderReason::FreePlace { worth } => format!("the best free place, worth {worth:.2}"),
+        OrderReason::Marks { opponent } => {
             format!("opponent {} stands nearest to our goal unmarked", opponent.number())
         }
-        Why::BestTarget { room } => format!("the best target for the ball, {room:.2} m of room"),
-        Why::DoubleTouch => "it took our restart and must not touch the ball again yet".to_owned(),
-        Why::TooMany { allowed } => format!("the referee lets us have {allowed}"),
-        Why::Threat(_)
-        | Why::Chances { .. }
-        | Why::OfCase { .. }
-        | Why::Coerces { .. }
-        | Why::Coercing { .. } => why.to_string(),
+        OrderReason::BestTarget { room } => format!("the best target for the ball, {room:.2} m of room"),
+        OrderReason::DoubleTouch => "it took our restart and must not touch the ball again yet".to_owned(),
+        OrderReason::TooMany { allowed } => format!("the referee lets us have {allowed}"),
+        OrderReason::Threat(_)
+        | OrderReason::Chances { .. }
+        | OrderReason::OfCase { .. }
+        | OrderReason::Coerces { .. }
+        | OrderReason::Coercing { .. } => why.to_string(),
         // Reasons without a label of their own are printed by their name.
         other => spaced(&format!("{other:?}")),
     }
@@ -179,7 +179,7 @@ mod tests {
         assert_eq!(spaced("FirstHalfPre"), "first half pre");
         assert_eq!(role(Role::Defender(0)), "defender 1");
         assert_eq!(role(Role::Keeper), "keeper");
-        assert_eq!(why(&Why::NoBall), "no ball");
+        assert_eq!(why(&OrderReason::NoBall), "no ball");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! `explanations`: answers to the page's questions about cases, by the same code as `onetwo cases explain`.
 
-use casebase::Settings;
+use casebase::RetrievalSettings;
 
 use crate::args::Chosen;
 use crate::cases;
@@ -14,7 +14,7 @@ pub(crate) struct CaseExplanations {
 
 impl CaseExplanations {
     /// Over a library, where there is one.
-    pub(crate) fn new(library_handle: Option<LibraryHandle>, settings: Settings) -> Self {
+    pub(crate) fn new(library_handle: Option<LibraryHandle>, settings: RetrievalSettings) -> Self {
         Self { library_handle, chosen: Chosen { settings, changed: Vec::new() } }
     }
 }

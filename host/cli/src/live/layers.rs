@@ -6,7 +6,7 @@ use geometry::{GoalEnd, Point};
 use page::{Layer, Shape, Tone, milli};
 use protocol::RobotId;
 use protocol::team::Play;
-use rules::keep_out::{Situation, Why, keep_out};
+use rules::keep_out::{KeepOutReason, Situation, keep_out};
 use rules::{Colour, FieldSpec, Phase, RuleRole};
 
 use super::description::spaced;
@@ -150,7 +150,9 @@ pub(super) fn keep_outs(
         };
         for forbidden in &keep_out(&situation).forbidden {
             // In open play both teams must keep out of the defence areas: drawing that adds no information.
-            if matches!(phase, Phase::Run) && matches!(forbidden.why, Why::OwnArea | Why::OpponentArea) {
+            if matches!(phase, Phase::Run)
+                && matches!(forbidden.why, KeepOutReason::OwnArea | KeepOutReason::OpponentArea)
+            {
                 continue;
             }
             let note = format!("{} keeps out: {}", team.label(), spaced(&format!("{:?}", forbidden.why)));

@@ -4,7 +4,8 @@
 use arena::{CycleEvent, Moment, TrialReport, Watcher};
 use casebase::CaseBase;
 use page::{
-    Cycle, Intent, Kind, Match, MatchEvent, Page, Robot, RobotDetail, Scene, Shape, Team, Tone, milli,
+    Cycle, Intent, Match, MatchEvent, MatchEventKind, Page, PageTeam, RobotDetail, Scene, SceneRobot, Shape,
+    Tone, milli,
 };
 use protocol::RobotId;
 use protocol::team::{Beacon, CycleState, Role};
@@ -50,15 +51,24 @@ impl Legged {
             let (CycleEvent::Decided(i) | CycleEvent::Ended(i)) = *event else { continue };
             let Some(cycle) = moment.cycles.cycles().get(i) else { continue };
             let (kind, description) = match (event, &cycle.play) {
-                (CycleEvent::Decided(_), Some(play)) => (Kind::Case, moment.config.names.of(play.case)),
+                (CycleEvent::Decided(_), Some(play)) => {
+                    (MatchEventKind::Case, moment.config.names.of(play.case))
+                }
                 (CycleEvent::Ended(_), Some(_)) => {
                     let end = cycle.end.map_or("", |(_, end)| end.label());
-                    (Kind::Cycle, format!("case {}", end.replace('-', " ")))
+                    (MatchEventKind::Cycle, format!("case {}", end.replace('-', " ")))
                 }
                 _ => continue,
             };
-            let problem = (kind == Kind::Case).then(|| problem(moment));
-            self.page.push(MatchEvent { t, kind, team: Some(Team::Blue), description, at: None, problem });
+            let problem = (kind == MatchEventKind::Case).then(|| problem(moment));
+            self.page.push(MatchEvent {
+                t,
+                kind,
+                team: Some(PageTeam::Blue),
+                description,
+                at: None,
+                problem,
+            });
         }
     }
 
@@ -102,8 +112,8 @@ impl Legged {
         let robots = moment.world.walkers.iter().enumerate().map(|(i, walker)| {
             let at = [milli(walker.pose.position.x()), milli(walker.pose.position.y())];
             let id = moment.cast.attackers.get(i);
-            Robot {
-                team: if id.is_some() { Team::Blue } else { Team::Yellow },
+            SceneRobot {
+                team: if id.is_some() { PageTeam::Blue } else { PageTeam::Yellow },
                 id: id.map_or((i - attackers.min(i)) as u8 + 1, |id| id.number()),
                 at,
                 heading: milli(walker.pose.heading.radians()),
@@ -115,7 +125,7 @@ impl Legged {
         });
         let robots = robots.collect();
         let cycle = self.newest.as_ref().map(|state| Cycle {
-            team: Some(Team::Blue),
+            team: Some(PageTeam::Blue),
             number: state.id.counter,
             coordinator: state.coordinator.number(),
             state: description::decision(&state.decision),
@@ -143,11 +153,11 @@ impl Legged {
         Scene {
             t,
             field: field_of(&League::FourLegged.field()),
-            ball: Some(page::Ball {
+            ball: Some(page::SceneBall {
                 at,
                 confidence: 1.0,
                 trail: self.trail.clone(),
-                ..page::Ball::default()
+                ..page::SceneBall::default()
             }),
             robots,
             game,
@@ -175,9 +185,20 @@ impl Watcher for Legged {
 
     fn end(&mut self, moment: &Moment<'_>, report: &TrialReport) {
         let t = f64::from(moment.tick.time);
-        let kind = if report.outcome == hil_sim::Outcome::Goal { Kind::Goal } else { Kind::Event };
+        let kind = if report.outcome == hil_sim::TrialOutcome::Goal {
+            MatchEventKind::Goal
+        } else {
+            MatchEventKind::Event
+        };
         let description = format!("the trial ends: {}", report.outcome.label());
-        self.page.push(MatchEvent { t, kind, team: Some(Team::Blue), description, at: None, problem: None });
+        self.page.push(MatchEvent {
+            t,
+            kind,
+            team: Some(PageTeam::Blue),
+            description,
+            at: None,
+            problem: None,
+        });
         let mut scene = self.scene(moment, t + 0.04);
         scene.layers.push(page::Layer {
             name: "outcome".into(),

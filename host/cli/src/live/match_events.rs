@@ -3,7 +3,7 @@
 use arena::game::sentence;
 use hil_sim::small_size::referee::InternalReferee;
 use host::world::Kick;
-use page::{Kind, MatchEvent, Team, milli};
+use page::{MatchEvent, MatchEventKind, PageTeam, milli};
 use ssl::Message;
 use ssl::referee::Referee;
 
@@ -26,15 +26,15 @@ impl EventFeed {
         for found in found {
             let name = found.name.replace('_', " ").to_lowercase();
             let kind = match found.kind {
-                match_event::Kind::Command => Kind::Command,
-                match_event::Kind::Stage => Kind::Stage,
-                match_event::Kind::Goal => Kind::Goal,
+                match_event::Kind::Command => MatchEventKind::Command,
+                match_event::Kind::Stage => MatchEventKind::Stage,
+                match_event::Kind::Goal => MatchEventKind::Goal,
                 match_event::Kind::GameEvent if own => continue,
                 match_event::Kind::GameEvent => foul_or_event(&found.name),
-                match_event::Kind::Card => Kind::Foul,
+                match_event::Kind::Card => MatchEventKind::Foul,
                 match_event::Kind::MaxBots
                 | match_event::Kind::TeamName
-                | match_event::Kind::DesignatedPosition => Kind::Event,
+                | match_event::Kind::DesignatedPosition => MatchEventKind::Event,
             };
             // Numbers are stored in the record and left out of the label.
             let description = match found.kind {
@@ -59,7 +59,7 @@ impl EventFeed {
             let kind = event.what.kind();
             into.push(MatchEvent {
                 t,
-                kind: if kind.is_offence() { Kind::Foul } else { Kind::Event },
+                kind: if kind.is_offence() { MatchEventKind::Foul } else { MatchEventKind::Event },
                 team: event.by.map(super::team),
                 description: sentence(event),
                 at: Some([milli(event.place.x()), milli(event.place.y())]),
@@ -79,7 +79,7 @@ impl EventFeed {
         let how = if kick.is_chip() { "chips" } else { "kicks" };
         into.push(MatchEvent {
             t,
-            kind: Kind::Kick,
+            kind: MatchEventKind::Kick,
             team: Some(super::team(by.colour)),
             description: format!(
                 "{} {} {how} at {:.1} m/s",
@@ -97,7 +97,7 @@ impl EventFeed {
 const SAME_KICK_US: u64 = 200_000;
 
 /// Kind of a game event of the league by its name: a foul, or any other event.
-pub(crate) fn foul_or_event(name: &str) -> Kind {
+pub(crate) fn foul_or_event(name: &str) -> MatchEventKind {
     let foul = [
         "BOT_",
         "ATTACKER_",
@@ -109,21 +109,21 @@ pub(crate) fn foul_or_event(name: &str) -> Kind {
         "MULTIPLE_FOULS",
     ];
     if foul.iter().any(|begin| name.starts_with(begin)) && name != "BOT_SUBSTITUTION" {
-        Kind::Foul
+        MatchEventKind::Foul
     } else {
-        Kind::Event
+        MatchEventKind::Event
     }
 }
 
-fn whose(description: &str) -> Option<Team> {
+fn whose(description: &str) -> Option<PageTeam> {
     let has = |colour: &str| description.split(|c: char| !c.is_alphabetic()).any(|label| label == colour);
     match (has("blue"), has("yellow")) {
-        (true, false) => Some(Team::Blue),
-        (false, true) => Some(Team::Yellow),
+        (true, false) => Some(PageTeam::Blue),
+        (false, true) => Some(PageTeam::Yellow),
         // "goal, yellow, blue 0 : 1 yellow": the first team is the one that scored.
         (true, true) => description.split(", ").find_map(|part| match part {
-            "blue" => Some(Team::Blue),
-            "yellow" => Some(Team::Yellow),
+            "blue" => Some(PageTeam::Blue),
+            "yellow" => Some(PageTeam::Yellow),
             _ => None,
         }),
         (false, false) => None,
@@ -136,14 +136,14 @@ mod tests {
 
     #[test]
     fn a_goal_is_the_scorers_and_a_command_its_teams() {
-        assert_eq!(whose("goal, yellow, blue 0 : 1 yellow"), Some(Team::Yellow));
-        assert_eq!(whose("direct free blue"), Some(Team::Blue));
+        assert_eq!(whose("goal, yellow, blue 0 : 1 yellow"), Some(PageTeam::Yellow));
+        assert_eq!(whose("direct free blue"), Some(PageTeam::Blue));
         assert_eq!(whose("halt"), None);
     }
 
     #[test]
     fn offences_are_distinguished_from_other_events() {
-        assert_eq!(foul_or_event("BOT_CRASH_UNIQUE"), Kind::Foul);
-        assert_eq!(foul_or_event("PLACEMENT_SUCCEEDED"), Kind::Event);
+        assert_eq!(foul_or_event("BOT_CRASH_UNIQUE"), MatchEventKind::Foul);
+        assert_eq!(foul_or_event("PLACEMENT_SUCCEEDED"), MatchEventKind::Event);
     }
 }

@@ -14,10 +14,10 @@ use casebase::CaseBase;
 use foreign::excerpt;
 use geometry::Point;
 use hil_sim::NativeBackend;
-use page::{Kind, MatchEvent, Page, Request};
+use page::{MatchEvent, MatchEventKind, Page, UserRequest};
 use protocol::{RobotId, Who};
 use rules::Colour;
-use rules::state::Command;
+use rules::state::RefereeCommand;
 
 use self::situation::{Sides, of_case};
 use super::gauges::{gauge, tick};
@@ -108,7 +108,7 @@ impl<'s> MatchRunner<'s> {
     /// requested.
     pub(crate) fn linger(&mut self) -> Option<u64> {
         while !stopped_by_hand().load(Ordering::Relaxed) {
-            if let Some(Request::Restart { seed }) = self.page.next_request()
+            if let Some(UserRequest::Restart { seed }) = self.page.next_request()
                 && !self.recorded
             {
                 return Some(seed.unwrap_or(self.config.seed));
@@ -191,33 +191,33 @@ impl<'s> MatchRunner<'s> {
 
     fn obey<'b>(
         &mut self,
-        request: &Request,
+        request: &UserRequest,
         controls: &mut UserControls,
         game: &mut Game<'b>,
         backend: &mut NativeBackend<'b>,
     ) -> Result<(), arena::game::GameError> {
         let t = game.time();
         let (mut noted, mut refused) = (None, None);
-        let playing = |team: page::Team, id: u8| {
+        let playing = |team: page::PageTeam, id: u8| {
             let who = RobotId::new(id).map(|id| Who { colour: colour(team), id });
             who.filter(|who| game.world().robot(*who).is_some_and(|robot| robot.present))
                 .ok_or_else(|| format!("{} has no robot {id} on the field", colour(team).label()))
         };
         match request {
-            Request::Pause { on } => {
+            UserRequest::Pause { on } => {
                 (controls.paused, controls.steps) = (*on, 0);
                 controls.clock = (Instant::now(), t);
             }
-            Request::Step { ticks } => (controls.paused, controls.steps) = (true, *ticks),
-            Request::Speed { factor } => {
+            UserRequest::Step { ticks } => (controls.paused, controls.steps) = (true, *ticks),
+            UserRequest::Speed { factor } => {
                 controls.speed = *factor;
                 controls.clock = (Instant::now(), t);
             }
-            Request::Restart { .. } if self.recorded => {
+            UserRequest::Restart { .. } if self.recorded => {
                 refused = Some("a match that is recorded cannot start again".into());
             }
-            Request::Restart { seed } => controls.restart = Some(seed.unwrap_or(self.config.seed)),
-            Request::Situation { name } => {
+            UserRequest::Restart { seed } => controls.restart = Some(seed.unwrap_or(self.config.seed)),
+            UserRequest::Situation { name } => {
                 if !situate(game, self.library_handle, name) {
                     refused = Some(format!(
                         "no situation of the name {} can be set up now",
@@ -225,12 +225,12 @@ impl<'s> MatchRunner<'s> {
                     ));
                 }
             }
-            Request::Ball { at } => game.move_ball(Point::new(at[0], at[1]), controls.paused),
-            Request::Robot { team, id, at } => match playing(*team, *id) {
+            UserRequest::Ball { at } => game.move_ball(Point::new(at[0], at[1]), controls.paused),
+            UserRequest::Robot { team, id, at } => match playing(*team, *id) {
                 Ok(who) => game.move_robot(who, Point::new(at[0], at[1]), controls.paused),
                 Err(description) => refused = Some(description),
             },
-            Request::Power { team, id, on } => match playing(*team, *id) {
+            UserRequest::Power { team, id, on } => match playing(*team, *id) {
                 Ok(who) => {
                     let name = format!("{} {}", who.colour.label(), who.id.number());
                     if game.power(who, *on, backend)? {
@@ -242,14 +242,14 @@ impl<'s> MatchRunner<'s> {
                 }
                 Err(description) => refused = Some(description),
             },
-            Request::Loss { share } => {
+            UserRequest::Loss { share } => {
                 game.lose(*share);
                 noted = Some(format!("the radio loses {:.0} % of all packets, by hand", share * 100.0));
             }
-            Request::Halt {} => {
-                game.command(Command::Halt);
+            UserRequest::Halt {} => {
+                game.command(RefereeCommand::Halt);
             }
-            Request::Referee { command } => {
+            UserRequest::Referee { command } => {
                 let done = command_of(command).is_some_and(|command| game.command(command));
                 if !done {
                     let name = command.to_lowercase().replace('_', " ");
@@ -260,7 +260,7 @@ impl<'s> MatchRunner<'s> {
         if let Some(description) = noted {
             self.page.push(MatchEvent {
                 t,
-                kind: Kind::Fault,
+                kind: MatchEventKind::Fault,
                 team: None,
                 description,
                 at: None,
@@ -285,7 +285,7 @@ fn situate(game: &mut Game<'_>, library_handle: Option<&LibraryHandle>, name: &s
     let Some((library_handle, blue_goal)) = library_handle.zip(blue_goal) else { return false };
     let sides = Sides { field: &field, blue_goal, present: &present, keepers };
     let Some(situation) = of_case(library_handle, name, &sides) else { return false };
-    if !game.command(Command::ForceStart) {
+    if !game.command(RefereeCommand::ForceStart) {
         return false;
     }
     for (who, pose) in situation.robots {
@@ -336,21 +336,21 @@ impl Watcher for Feed {
 }
 
 /// A command by its name in the league.
-pub(crate) fn command_of(name: &str) -> Option<Command> {
+pub(crate) fn command_of(name: &str) -> Option<RefereeCommand> {
     let of = |begin: &str| match name.strip_prefix(begin)? {
         "BLUE" => Some(Colour::Blue),
         "YELLOW" => Some(Colour::Yellow),
         _ => None,
     };
     Some(match name {
-        "HALT" => Command::Halt,
-        "STOP" => Command::Stop,
-        "NORMAL_START" => Command::NormalStart,
-        "FORCE_START" => Command::ForceStart,
+        "HALT" => RefereeCommand::Halt,
+        "STOP" => RefereeCommand::Stop,
+        "NORMAL_START" => RefereeCommand::NormalStart,
+        "FORCE_START" => RefereeCommand::ForceStart,
         _ => of("PREPARE_KICKOFF_")
-            .map(Command::PrepareKickoff)
-            .or_else(|| of("PREPARE_PENALTY_").map(Command::PreparePenalty))
-            .or_else(|| of("DIRECT_FREE_").map(Command::FreeKick))?,
+            .map(RefereeCommand::PrepareKickoff)
+            .or_else(|| of("PREPARE_PENALTY_").map(RefereeCommand::PreparePenalty))
+            .or_else(|| of("DIRECT_FREE_").map(RefereeCommand::FreeKick))?,
     })
 }
 
@@ -360,9 +360,12 @@ mod tests {
 
     #[test]
     fn commands_go_by_their_names_in_the_league() {
-        assert_eq!(command_of("HALT"), Some(Command::Halt));
-        assert_eq!(command_of("DIRECT_FREE_BLUE"), Some(Command::FreeKick(Colour::Blue)));
-        assert_eq!(command_of("PREPARE_KICKOFF_YELLOW"), Some(Command::PrepareKickoff(Colour::Yellow)));
+        assert_eq!(command_of("HALT"), Some(RefereeCommand::Halt));
+        assert_eq!(command_of("DIRECT_FREE_BLUE"), Some(RefereeCommand::FreeKick(Colour::Blue)));
+        assert_eq!(
+            command_of("PREPARE_KICKOFF_YELLOW"),
+            Some(RefereeCommand::PrepareKickoff(Colour::Yellow))
+        );
         assert_eq!(command_of("PREPARE_KICKOFF_RED"), None);
         assert_eq!(command_of("GOAL_BLUE"), None);
     }

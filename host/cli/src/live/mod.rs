@@ -29,7 +29,7 @@ use std::thread;
 use std::time::Duration;
 
 use clap::Args;
-use page::{Limits, Page, Powers, Team, Token};
+use page::{Limits, Page, PageTeam, Powers, Token};
 use rules::{Colour, League};
 
 use crate::Failure;
@@ -82,7 +82,7 @@ impl PageArgs {
         let token = open.then(Token::random).transpose().map_err(|error| failed(&error))?;
         let limits = Limits::default();
         let settings =
-            page::Settings { listen: self.listen, title, recorded, powers, token: token.clone(), limits };
+            page::PageSettings { listen: self.listen, title, recorded, powers, token: token.clone(), limits };
         let page = Page::open(settings, Arc::new(explanations)).map_err(|error| failed(&error))?;
         let at = page.address();
         match token {
@@ -121,17 +121,17 @@ pub(crate) fn library_handle_of(
 }
 
 /// A colour in the page's format.
-pub(crate) const fn team(colour: Colour) -> Team {
+pub(crate) const fn team(colour: Colour) -> PageTeam {
     match colour {
-        Colour::Blue => Team::Blue,
-        Colour::Yellow => Team::Yellow,
+        Colour::Blue => PageTeam::Blue,
+        Colour::Yellow => PageTeam::Yellow,
     }
 }
 
 /// The inverse of [`team`].
-pub(crate) const fn colour(team: Team) -> Colour {
+pub(crate) const fn colour(team: PageTeam) -> Colour {
     match team {
-        Team::Blue => Colour::Blue,
-        Team::Yellow => Colour::Yellow,
+        PageTeam::Blue => Colour::Blue,
+        PageTeam::Yellow => Colour::Yellow,
     }
 }

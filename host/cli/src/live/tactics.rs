@@ -6,10 +6,10 @@
 //! frame, m.
 
 use geometry::{Attack, Point};
-use host::strategy::pass::{Kicks, PassConstants, Scene};
+use host::strategy::pass::{Kicks, PassConstants, PassScene};
 use host::strategy::threat::angle::Opening;
-use host::strategy::threat::{Memory, Settings, defend};
-use host::strategy::view::{Game as ViewGame, RobotSet};
+use host::strategy::threat::{Memory, ThreatSettings, defend};
+use host::strategy::view::{RobotSet, ViewGame};
 use host::strategy::{Flip, View};
 use page::{Heat, Layer, Shape, Tone, milli};
 use protocol::RobotId;
@@ -150,15 +150,17 @@ struct Rated {
 /// nearest to the place, and the value of that pass.
 fn maps(view: &View, flip: Flip, kicks: &Kicks) -> [Vec<Shape>; 2] {
     let Some(ball) = view.ball else { return Default::default() };
-    let off = |teammate: &&host::strategy::view::Robot| teammate.position.distance(ball.position);
+    let off = |teammate: &&host::strategy::view::ViewRobot| teammate.position.distance(ball.position);
     let passer = view.ours.iter().min_by(|a, b| off(a).total_cmp(&off(b))).map(|robot| robot.id);
     let teammates: Vec<_> = view
         .ours
         .iter()
         .filter(|teammate| Some(teammate.id) != passer && teammate.id != view.keeper)
         .collect();
-    let scenes: Vec<_> =
-        teammates.iter().map(|teammate| Scene::of(view, kicks, ball.position, passer, teammate)).collect();
+    let scenes: Vec<_> = teammates
+        .iter()
+        .map(|teammate| PassScene::of(view, kicks, ball.position, passer, teammate))
+        .collect();
     let (half_x, half_y) = (view.field.length * 0.5, view.field.width * 0.5);
     let (columns, rows) =
         ((view.field.length / CELL).round() as u32, (view.field.width / CELL).round() as u32);
@@ -204,7 +206,7 @@ fn maps(view: &View, flip: Flip, kicks: &Kicks) -> [Vec<Shape>; 2] {
 
 /// The open angle of the nearest threat, then of every robot that could receive the ball next.
 fn threat_shapes(view: &View, flip: Flip, memory: &mut Memory) -> Vec<Shape> {
-    let defence = defend(view, all_robots(), memory, &Settings::default());
+    let defence = defend(view, all_robots(), memory, &ThreatSettings::default());
     let on_field = |at: Point<Attack>| {
         let at = flip.to_field(at);
         [milli(at.x()), milli(at.y())]
@@ -287,7 +289,7 @@ mod tests {
             picture.world.models.ground,
             picture.world.models.chip,
         );
-        let scene = Scene::of(&view, &kicks, Point::new(0.2, 0.0), Some(view.ours[1].id), &view.ours[2]);
+        let scene = PassScene::of(&view, &kicks, Point::new(0.2, 0.0), Some(view.ours[1].id), &view.ours[2]);
         for (column, row) in [(20, 14), (22, 12), (5, 5), (25, 10)] {
             let middle = Point::new(-4.35 + 0.3 * column as f32, -2.85 + 0.3 * row as f32);
             let cell = f32::from(heat.cells[row * 30 + column]) / 255.0 * heat.most;

@@ -4,9 +4,9 @@
 use std::collections::BTreeSet;
 
 use arena::game::{Game, GameConfig, Watcher, Watchers};
-use casebase::Settings;
+use casebase::RetrievalSettings;
 use hil_sim::NativeBackend;
-use page::{Kind, MatchEvent, Scene, Shape, Team};
+use page::{MatchEvent, MatchEventKind, PageTeam, Scene, Shape};
 use rules::{Colour, League};
 
 use super::{Composer, Moment, library_handle_of};
@@ -33,7 +33,7 @@ struct Played {
     /// The most bytes that a scene took.
     most: usize,
     /// Robots that cameras saw in its last second: one camera frame in a hundred lacks one.
-    seen: BTreeSet<(Team, u8)>,
+    seen: BTreeSet<(PageTeam, u8)>,
     /// Scenes with a map of passes, and all scenes; scenes with a keeper labelled as one, and
     /// scenes with labels.
     maps: (u32, u32),
@@ -134,7 +134,7 @@ fn a_match_fills_scenes_that_hold_against_the_truth() {
     assert!(keepers.1 > 500 && keepers.0 * 10 > keepers.1 * 8, "{keepers:?}");
     // 25 of them a second have to go through any network and a browser's parser.
     assert!(most < 40_000, "{most} bytes");
-    assert!(match_events.iter().any(|match_event| match_event.kind == Kind::Command));
+    assert!(match_events.iter().any(|match_event| match_event.kind == MatchEventKind::Command));
     assert!(match_events.windows(2).all(|pair| pair[0].t <= pair[1].t + 0.05), "in order");
 }
 
@@ -142,9 +142,9 @@ fn a_match_fills_scenes_that_hold_against_the_truth() {
 fn a_retrieval_that_is_reported_can_be_explained_and_mostly_comes_to_the_same_case() {
     let match_events = played(90).match_events;
     let library_handle = library_handle_of(League::DivisionB, None).unwrap().unwrap();
-    let chosen = Chosen { settings: Settings::default(), changed: Vec::new() };
+    let chosen = Chosen { settings: RetrievalSettings::default(), changed: Vec::new() };
     let (mut reported, mut same) = (0, 0);
-    for match_event in match_events.iter().filter(|match_event| match_event.kind == Kind::Case) {
+    for match_event in match_events.iter().filter(|match_event| match_event.kind == MatchEventKind::Case) {
         let problem = match_event.problem.as_ref().unwrap().to_string();
         let answer: serde_json::Value =
             serde_json::from_str(&explained(&library_handle, &chosen, &problem).unwrap()).unwrap();

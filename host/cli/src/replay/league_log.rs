@@ -7,7 +7,7 @@
 use std::process::ExitCode;
 
 use host::referee::{Listener, SenderAddress};
-use host::tracking::{Received, Tracker};
+use host::tracking::{Tracker, VisionVerdict};
 use host::{Host, HostSettings, Input};
 use protocol::Instant;
 use rules::Colour;
@@ -145,7 +145,7 @@ impl<'a> Pass<'a> {
                     self.image(image.camera_id, at_s);
                 }
                 let received = self.tracker.handle(&packet, self.now);
-                if matches!(received, Received::Newest | Received::Restarted) {
+                if matches!(received, VisionVerdict::Newest | VisionVerdict::Restarted) {
                     self.look();
                 }
                 self.feed(Input::Vision(&record.payload));

@@ -133,7 +133,7 @@ impl Report {
         if self.gaps.len() < GAPS_LISTED { self.gaps.push(gap) } else { self.gaps_more += 1 }
     }
 
-    pub(super) fn take(&mut self, tracker: &tracking::Counts, referee: referee::Counts) {
+    pub(super) fn take(&mut self, tracker: &tracking::TrackingCounts, referee: referee::RefereeCounts) {
         self.tracker = Tracker {
             images: tracker.images(),
             newest: tracker.newest,

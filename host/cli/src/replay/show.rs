@@ -10,10 +10,10 @@ use std::sync::atomic::Ordering;
 use foreign::printable;
 use host::record::header::RecordingHeader;
 use host::record::recheck::Recheck;
-use host::record::trace::{Kind, Reader};
+use host::record::trace::{Reader, RecordKind};
 use host::referee::SenderAddress;
 use host::{Host, HostSettings, Input};
-use page::{Kind as PageKind, MatchEvent, Page, Powers};
+use page::{MatchEvent, MatchEventKind as PageKind, Page, Powers};
 use protocol::Instant;
 use rules::{Colour, League};
 use ssl::log::MessageKind;
@@ -44,7 +44,7 @@ impl Projector {
         let library_handle = library_handle_of(league, None)?;
         let composer = Composer::new(library_handle.as_ref());
         let name = args.file.file_name().map(|name| name.to_string_lossy().into_owned());
-        let explanations = CaseExplanations::new(library_handle, casebase::Settings::default());
+        let explanations = CaseExplanations::new(library_handle, casebase::RetrievalSettings::default());
         let page = page.open(name.unwrap_or_default(), true, Powers::None, explanations)?;
         Ok(Self { page, composer, due: f64::NEG_INFINITY, broken: false })
     }
@@ -106,8 +106,8 @@ fn show_trace(args: &ReplayArgs, page: &PageArgs) -> Result<ExitCode, Failure> {
         now = now.max(record.at);
         // Every host receives the same packets: those of the first one are enough.
         match record.kind {
-            Kind::Vision if record.host == 0 => projector.composer.vision(&record.bytes),
-            Kind::Referee if record.host == 0 => {
+            RecordKind::Vision if record.host == 0 => projector.composer.vision(&record.bytes),
+            RecordKind::Referee if record.host == 0 => {
                 projector.composer.referee(&record.bytes, now.0 as f64 * 1e-6, false);
             }
             _ => {}

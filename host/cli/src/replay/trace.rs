@@ -11,7 +11,7 @@ use hil_sim::small_size::worlds::WorldChoice;
 use host::Host;
 use host::record::header::RecordingHeader;
 use host::record::recheck::Recheck;
-use host::record::trace::{End, Kind, Reader};
+use host::record::trace::{Reader, RecordKind, TraceEnd};
 use protocol::Instant;
 use protocol::frame::TeamKey;
 use serde::Serialize;
@@ -84,13 +84,13 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         (*first, *last) = ((*first).min(record.at), (*last).max(record.at));
         *records.entry(label(record.kind)).or_insert(0) += 1;
         strays += u64::from(!recheck.feed(&record));
-        if record.kind == Kind::Vision
+        if record.kind == RecordKind::Vision
             && usize::from(record.host) == first_shown
             && let Ok(packet) = WrapperPacket::decode(&record.bytes[..])
         {
             sheet.vision(&packet);
         }
-        if record.kind == Kind::Referee && usize::from(record.host) == first_shown {
+        if record.kind == RecordKind::Referee && usize::from(record.host) == first_shown {
             let before = match_events.len();
             if let Ok(packet) = Referee::decode(&record.bytes[..]) {
                 sheet.referee(&packet);
@@ -207,15 +207,15 @@ pub(super) fn key(args: &ReplayArgs, header: &RecordingHeader) -> Result<TeamKey
     }
 }
 
-fn label(kind: Kind) -> &'static str {
+fn label(kind: RecordKind) -> &'static str {
     match kind {
-        Kind::Vision => "vision",
-        Kind::Referee => "referee",
-        Kind::Robot => "robots",
-        Kind::Timeout => "deadlines",
-        Kind::Sent => "sent",
-        Kind::Halt => "halts",
-        Kind::Lost => "lost",
+        RecordKind::Vision => "vision",
+        RecordKind::Referee => "referee",
+        RecordKind::Robot => "robots",
+        RecordKind::Timeout => "deadlines",
+        RecordKind::Sent => "sent",
+        RecordKind::Halt => "halts",
+        RecordKind::Lost => "lost",
     }
 }
 
@@ -266,6 +266,6 @@ impl Report<'_> {
 const VERSION_LEN: usize = 60;
 
 /// The damage of a trace with this end.
-pub(super) fn damage_of(end: Option<&End>) -> Option<String> {
+pub(super) fn damage_of(end: Option<&TraceEnd>) -> Option<String> {
     end.filter(|end| !end.is_whole()).map(ToString::to_string)
 }

@@ -9,7 +9,7 @@ use hil_sim::small_size::referee::InternalReferee;
 use hil_sim::small_size::server::Server;
 use host::referee::SenderAddress;
 use host::{Host, HostSettings, Input};
-use page::{Page, Powers, Request};
+use page::{Page, Powers, UserRequest};
 use protocol::{RobotId, Who};
 use rules::{Colour, League};
 
@@ -49,8 +49,10 @@ impl Board {
     /// Opens the page. If it cannot be opened, the error is printed and the field is simulated without it.
     pub(super) fn open(args: &PageArgs, league: League, seed: u64, speed: f32) -> Option<Self> {
         let open = || {
-            let explanations =
-                CaseExplanations::new(library_handle_of(league, None)?, casebase::Settings::default());
+            let explanations = CaseExplanations::new(
+                library_handle_of(league, None)?,
+                casebase::RetrievalSettings::default(),
+            );
             let page =
                 args.open(format!("simulate, {}", league.name()), false, Powers::Simulation, explanations)?;
             let feed = Host::new(HostSettings::new(Colour::Blue, league, 1), protocol::Instant(0));
@@ -98,15 +100,17 @@ impl Board {
         self.t = server.world().time();
         while let Some(request) = self.page.next_request() {
             match request {
-                Request::Pause { on } => wanted.pace = Some(if on { 0.0 } else { self.speed }),
-                Request::Step { ticks } => (wanted.pace, wanted.ticks) = (Some(0.0), wanted.ticks + ticks),
-                Request::Restart { seed } => wanted.restart = Some(seed.unwrap_or(self.seed)),
-                Request::Speed { factor } => {
+                UserRequest::Pause { on } => wanted.pace = Some(if on { 0.0 } else { self.speed }),
+                UserRequest::Step { ticks } => {
+                    (wanted.pace, wanted.ticks) = (Some(0.0), wanted.ticks + ticks)
+                }
+                UserRequest::Restart { seed } => wanted.restart = Some(seed.unwrap_or(self.seed)),
+                UserRequest::Speed { factor } => {
                     self.speed = factor;
                     wanted.pace = Some(factor);
                 }
-                Request::Ball { at } => server.world_mut().drag_ball(Point::new(at[0], at[1])),
-                Request::Robot { team, id, at } => {
+                UserRequest::Ball { at } => server.world_mut().drag_ball(Point::new(at[0], at[1])),
+                UserRequest::Robot { team, id, at } => {
                     let who = RobotId::new(id).map(|id| Who { colour: colour(team), id });
                     let there = |who: &Who| server.world().robot(*who).is_some_and(|robot| robot.present);
                     if let Some(who) = who.filter(there) {
@@ -116,7 +120,7 @@ impl Board {
                         self.page.refuse(format!("{team} has no robot {id} on the field"));
                     }
                 }
-                Request::Referee { command } => {
+                UserRequest::Referee { command } => {
                     let done = command_of(&command)
                         .zip(referee.as_deref_mut())
                         .is_some_and(|(command, referee)| referee.command_by_hand(command));
@@ -125,10 +129,10 @@ impl Board {
                         self.page.refuse(format!("{} makes no sense now", excerpt(&name, NAME_LEN)));
                     }
                 }
-                Request::Halt {}
-                | Request::Situation { .. }
-                | Request::Power { .. }
-                | Request::Loss { .. } => {
+                UserRequest::Halt {}
+                | UserRequest::Situation { .. }
+                | UserRequest::Power { .. }
+                | UserRequest::Loss { .. } => {
                     self.page.refuse("that can be asked of `onetwo play`; here others command the robots");
                 }
             }

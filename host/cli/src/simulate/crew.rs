@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use hil_sim::small_size::referee::NoRules;
 use hil_sim::small_size::referee::remote::{Assistant, AutoReferee, Decider, RemoteMatch};
-use hil_sim::small_size::{Event, World};
+use hil_sim::small_size::{PhysicsEvent, World};
 use rules::{Colour, League};
 use ssl::Message;
 use ssl::net::Interfaces;
@@ -142,7 +142,7 @@ impl Crew {
     }
 
     /// Runs the services on the world; `events` are the world's since the last call.
-    pub(super) fn look(&mut self, world: &mut World, events: &[Event], lines: &mut Vec<String>) {
+    pub(super) fn look(&mut self, world: &mut World, events: &[PhysicsEvent], lines: &mut Vec<String>) {
         self.game.set_field(world.pitch().field);
         self.game.tick(time_of(world), world.ball.position);
         if let Some((autoref, reporter)) = &mut self.autoref {
@@ -169,7 +169,7 @@ const fn decider(assistant: bool) -> Decider {
 }
 
 /// The event as a line for the operator.
-fn line_of(event: &hil_sim::small_size::referee::Event) -> String {
+fn line_of(event: &hil_sim::small_size::referee::RefereeEvent) -> String {
     let by = match (event.by, event.robot) {
         (Some(team), Some(robot)) => format!(" by {} {}", team_of(team), robot.number()),
         (Some(team), None) => format!(" by {}", team_of(team)),

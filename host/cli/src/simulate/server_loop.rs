@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use hil_sim::small_size::referee::{InternalReferee, RefereeSettings};
 use hil_sim::small_size::server::{Destination, Port, Server, ServerSettings};
-use hil_sim::small_size::{Event, World};
+use hil_sim::small_size::{PhysicsEvent, World};
 use host::tracking::{Publisher, Tracker};
 use ssl::Message;
 use ssl::net::{LoopbackProbe, probe_loopback};
@@ -190,7 +190,7 @@ fn advance(server: &mut Server, now: u64, game_referee: &mut Referee, descriptio
 struct Referee {
     who: RefereeSource,
     sender: NetSender,
-    events: Vec<Event>,
+    events: Vec<PhysicsEvent>,
     /// The step of the world at its last call.
     looked: u64,
     /// Time that the world has been advanced to, µs.

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use casebase::FieldMm;
 use drawing::{Anchor, Font, Svg, Theme, draw_field, field_lines, half_extent};
 use geometry::{Field, Point};
-use hil_sim::{Configuration, Outcome, Scenario};
+use hil_sim::{Configuration, Scenario, TrialOutcome};
 use maud::{Markup, PreEscaped, html};
 
 use super::{EDGE, Map, PassKind};
@@ -151,7 +151,13 @@ fn passes(map: &Map) -> Svg {
         // Overlapping arrows add up to a darker colour.
         arrows(&mut svg, &segments, kind, "0.4");
     }
-    for outcome in [Outcome::Timeout, Outcome::Out, Outcome::Block, Outcome::Close, Outcome::Goal] {
+    for outcome in [
+        TrialOutcome::Timeout,
+        TrialOutcome::Out,
+        TrialOutcome::Block,
+        TrialOutcome::Close,
+        TrialOutcome::Goal,
+    ] {
         for (place, _) in map.ends.iter().filter(|(_, own)| *own == outcome) {
             end(&mut svg, on_field(&map.field, millimetres(*place)), outcome);
         }
@@ -204,26 +210,26 @@ fn arrows(svg: &mut Svg, segments: &[([f64; 2], [f64; 2])], kind: PassKind, opac
 }
 
 /// The sign of an outcome.
-fn end(svg: &mut Svg, [x, y]: [f64; 2], outcome: Outcome) {
+fn end(svg: &mut Svg, [x, y]: [f64; 2], outcome: TrialOutcome) {
     let colors = Theme::Light.colors();
     let ink = colors.ink;
     match outcome {
-        Outcome::Goal => {
+        TrialOutcome::Goal => {
             svg.circle([x, y], 52.0, format!(r#"fill="{}" stroke="{ink}" stroke-width="12""#, colors.ball));
         }
-        Outcome::Close => {
+        TrialOutcome::Close => {
             svg.circle([x, y], 46.0, format!(r#"fill="none" stroke="{}" stroke-width="22""#, colors.ball));
         }
-        Outcome::Block => {
+        TrialOutcome::Block => {
             let style = format!(r#"fill="{}" stroke="{}" stroke-width="8""#, colors.opponent, colors.surface);
             svg.rect([x - 36.0, y - 36.0], [x + 36.0, y + 36.0], style);
         }
-        Outcome::Out => {
+        TrialOutcome::Out => {
             let style = format!(r#"stroke="{ink}" stroke-width="15" stroke-opacity="0.75""#);
             svg.line([x - 32.0, y - 32.0], [x + 32.0, y + 32.0], &style);
             svg.line([x - 32.0, y + 32.0], [x + 32.0, y - 32.0], &style);
         }
-        Outcome::Timeout => {
+        TrialOutcome::Timeout => {
             svg.circle([x, y], 26.0, format!(r#"fill="{}" stroke="{ink}" stroke-width="9""#, colors.surface));
         }
     }
@@ -265,11 +271,11 @@ fn entries() -> Vec<(Svg, &'static str)> {
         (PassKind::Chance, "kick that came to a teammate"),
     ];
     let ends = [
-        (Outcome::Goal, "goal"),
-        (Outcome::Close, "close"),
-        (Outcome::Block, "block"),
-        (Outcome::Out, "out"),
-        (Outcome::Timeout, "timeout"),
+        (TrialOutcome::Goal, "goal"),
+        (TrialOutcome::Close, "close"),
+        (TrialOutcome::Block, "block"),
+        (TrialOutcome::Out, "out"),
+        (TrialOutcome::Timeout, "timeout"),
     ];
     let passes = passes.into_iter().map(|(kind, label)| {
         let mut svg = Svg::default();

@@ -3,11 +3,11 @@
 
 mod draw;
 
-use arena::evaluation::{Cell, Evaluation, Profile, Shard};
+use arena::evaluation::{Evaluation, EvaluationCell, Profile, Shard};
 use arena::{Moment, TrialConfig, TrialReport, Watcher, run};
 use geometry::{Field, Point};
-use hil_sim::four_legged::world::{World, WorldEvent};
-use hil_sim::{Layout, NativeBackend, Outcome, Scenario, SimulationError, TICK_US};
+use hil_sim::four_legged::world::{LeggedWorld, WorldEvent};
+use hil_sim::{Layout, NativeBackend, Scenario, SimulationError, TICK_US, TrialOutcome};
 use protocol::robot_io::LeggedKick;
 use rayon::prelude::*;
 
@@ -20,7 +20,7 @@ pub type MapError = SimulationError;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
     /// The cell whose trials are mapped.
-    pub cell: Cell,
+    pub cell: EvaluationCell,
     /// Number of its trials.
     pub trials: u32,
     /// The field they were played on.
@@ -33,7 +33,7 @@ pub struct Map {
     /// Where the robots stood at kick-off; `None` where each trial has its own layout.
     pub start: Option<Layout>,
     /// Where the ball was at the end of each trial, and the outcome.
-    pub ends: Vec<(Point<Field>, Outcome)>,
+    pub ends: Vec<(Point<Field>, TrialOutcome)>,
 }
 
 /// A ball that one attacker intended for another, or that another one received.
@@ -69,7 +69,7 @@ impl Map {
         squares(self.field.width)
     }
 
-    fn empty(cell: Cell, field: casebase::FieldMm) -> Self {
+    fn empty(cell: EvaluationCell, field: casebase::FieldMm) -> Self {
         let (seconds, passes, ends) = (Vec::new(), Vec::new(), Vec::new());
         let mut map = Self { cell, trials: 0, field, seconds, passes, start: None, ends };
         map.seconds = vec![0.0; map.columns() * map.rows()];
@@ -114,7 +114,11 @@ impl Map {
     }
 
     /// The map of these trials, which are of one cell.
-    pub fn play(cell: Cell, field: casebase::FieldMm, configs: &[TrialConfig<'_>]) -> Result<Self, MapError> {
+    pub fn play(
+        cell: EvaluationCell,
+        field: casebase::FieldMm,
+        configs: &[TrialConfig<'_>],
+    ) -> Result<Self, MapError> {
         let watched: Result<Vec<Mapper>, _> = configs
             .par_iter()
             .map(|config| {
@@ -140,7 +144,7 @@ impl Map {
 pub struct Mapper {
     balls: Vec<Point<Field>>,
     passes: Vec<Pass>,
-    end: Option<(Point<Field>, Outcome)>,
+    end: Option<(Point<Field>, TrialOutcome)>,
     flying: Option<Flight>,
 }
 
@@ -159,7 +163,7 @@ impl Mapper {
         &self.passes
     }
 
-    fn event(&mut self, world: &World, attackers: usize, event: &WorldEvent) {
+    fn event(&mut self, world: &LeggedWorld, attackers: usize, event: &WorldEvent) {
         let ball = world.ball.position;
         match *event {
             WorldEvent::Grabbed { robot } => self.got(robot, attackers, ball),
@@ -200,7 +204,7 @@ impl Watcher for Mapper {
         let ball = moment.world.ball.position;
         // A pass that goes in or passes a post is not counted as lost.
         if let Some(Flight { from, pass: true, .. }) = self.flying.take()
-            && !matches!(report.outcome, Outcome::Goal | Outcome::Close)
+            && !matches!(report.outcome, TrialOutcome::Goal | TrialOutcome::Close)
         {
             self.passes.push(Pass { from, to: ball, kind: PassKind::Lost });
         }

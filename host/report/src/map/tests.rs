@@ -1,14 +1,14 @@
 //! Tests: a map agrees with what happened. Hand-made flights, and a trial played twice.
 
 use arena::TEAM;
-use arena::evaluation::{Plan, Setup};
+use arena::evaluation::{EvaluationPlan, Setup};
 use brain::Approach;
 use hil_sim::Configuration;
 
 use super::*;
 
-fn cell() -> Cell {
-    Cell {
+fn cell() -> EvaluationCell {
+    EvaluationCell {
         profile: Profile::Simulated,
         configuration: Configuration::DefenderGoalie,
         scenario: Scenario::DefenderAhead,
@@ -76,7 +76,7 @@ fn a_map_holds_all_the_time_of_its_trials_and_their_ends() {
 fn maps_are_of_the_simulated_cells_of_a_plan() {
     let config = config(1);
     let evaluation = Evaluation {
-        plan: Plan::paper(1).with_trials(1),
+        plan: EvaluationPlan::paper(1).with_trials(1),
         base: config.base,
         names: config.names.clone(),
         library: "four-legged".to_owned(),

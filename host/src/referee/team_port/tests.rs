@@ -33,8 +33,8 @@ fn registered() -> TeamPort {
     assert_eq!((registration.team_name.as_str(), registration.team), ("onetwo", Some(2)));
     assert_eq!(registration.signature, None);
     port.receive(&ok("second"), Instant(0));
-    assert_eq!(port.poll_event(), Some(Event::Registered { verified: false }));
-    assert_eq!((port.token(), port.stage()), (Some("second"), Stage::Registered));
+    assert_eq!(port.poll_event(), Some(TeamPortEvent::Registered { verified: false }));
+    assert_eq!((port.token(), port.stage()), (Some("second"), ConnectionStage::Registered));
     port
 }
 
@@ -53,10 +53,10 @@ fn replies_may_come_in_pieces() {
     let mut port = TeamPort::new("onetwo", Colour::Yellow);
     port.connected(Instant(0));
     for byte in ok("a token") {
-        assert_eq!(port.stage(), Stage::KnownEpoch);
+        assert_eq!(port.stage(), ConnectionStage::KnownEpoch);
         port.receive(&[byte], Instant(0));
     }
-    assert_eq!(port.stage(), Stage::Registering);
+    assert_eq!(port.stage(), ConnectionStage::Registering);
     assert_eq!(sent::<TeamRegistration>(&mut port).team, Some(1));
 }
 
@@ -67,7 +67,7 @@ fn a_name_the_controller_does_not_know_is_reported_and_tried_again() {
     port.receive(&ok("t"), Instant(0));
     port.receive(&from_controller(Some(StatusCode::Rejected), Some("name unknown"), "t"), Instant(S));
     let reason = "name unknown".to_owned();
-    assert_eq!(port.poll_event(), Some(Event::RegistrationRefused { reason }));
+    assert_eq!(port.poll_event(), Some(TeamPortEvent::RegistrationRefused { reason }));
     assert!(!port.wants_connection(Instant(2 * S)));
     assert!(port.wants_connection(Instant(3 * S)));
 }
@@ -75,8 +75,8 @@ fn a_name_the_controller_does_not_know_is_reported_and_tried_again() {
 #[test]
 fn requests_go_one_at_a_time_and_replies_belong_to_them_in_order() {
     let mut port = registered();
-    let keeper = Request::Keeper(RobotId::new(7).unwrap());
-    let substitute = Request::Substitute(true);
+    let keeper = TeamPortRequest::Keeper(RobotId::new(7).unwrap());
+    let substitute = TeamPortRequest::Substitute(true);
     port.ask(keeper, Instant(S));
     port.ask(substitute, Instant(S));
     let first: TeamToController = sent(&mut port);
@@ -84,16 +84,16 @@ fn requests_go_one_at_a_time_and_replies_belong_to_them_in_order() {
     assert_eq!(port.poll_transmit(), None);
     port.receive(&from_controller(Some(StatusCode::Rejected), Some("ball in play"), "x"), Instant(S));
     let reason = "ball in play".to_owned();
-    assert_eq!(port.poll_event(), Some(Event::Refused { request: keeper, reason }));
+    assert_eq!(port.poll_event(), Some(TeamPortEvent::Refused { request: keeper, reason }));
     assert_eq!(sent::<TeamToController>(&mut port).msg, Some(TeamRequest::SubstituteBot(true)));
     port.receive(&ok("y"), Instant(S));
-    assert_eq!(port.poll_event(), Some(Event::Granted(substitute)));
+    assert_eq!(port.poll_event(), Some(TeamPortEvent::Granted(substitute)));
     for (go_on, number) in [(true, 1), (false, 0)] {
-        port.ask(Request::Advantage { go_on }, Instant(S));
+        port.ask(TeamPortRequest::Advantage { go_on }, Instant(S));
         let message: TeamToController = sent(&mut port);
         assert_eq!(message.msg, Some(TeamRequest::AdvantageChoice(number)));
         port.receive(&ok("z"), Instant(S));
-        assert_eq!(port.poll_event(), Some(Event::Granted(Request::Advantage { go_on })));
+        assert_eq!(port.poll_event(), Some(TeamPortEvent::Granted(TeamPortRequest::Advantage { go_on })));
     }
 }
 
@@ -101,7 +101,7 @@ fn requests_go_one_at_a_time_and_replies_belong_to_them_in_order() {
 fn the_newest_request_of_a_kind_is_the_one_that_waits() {
     let mut port = TeamPort::new("onetwo", Colour::Blue);
     for id in 0..16 {
-        port.ask(Request::Keeper(RobotId::new(id).unwrap()), Instant(0));
+        port.ask(TeamPortRequest::Keeper(RobotId::new(id).unwrap()), Instant(0));
     }
     port.connected(Instant(0));
     port.receive(&ok("1"), Instant(0));
@@ -123,19 +123,19 @@ fn an_idle_connection_is_tried_and_a_dead_one_given_up() {
     assert_eq!(port.poll_event(), None);
     port.tick(Instant(10 * S));
     port.tick(Instant(13 * S - 1));
-    assert_eq!(port.stage(), Stage::Registered);
+    assert_eq!(port.stage(), ConnectionStage::Registered);
     port.tick(Instant(13 * S));
-    assert_eq!(port.poll_event(), Some(Event::GivenUp(Trouble::NoAnswer)));
+    assert_eq!(port.poll_event(), Some(TeamPortEvent::GivenUp(Trouble::NoAnswer)));
     assert!(port.wants_connection(Instant(15 * S)));
 }
 
 #[test]
 fn an_unanswered_request_is_asked_again_on_the_next_connection() {
     let mut port = registered();
-    port.ask(Request::Substitute(true), Instant(S));
+    port.ask(TeamPortRequest::Substitute(true), Instant(S));
     port.poll_transmit();
     port.lost(Instant(S));
-    assert_eq!(port.poll_event(), Some(Event::GivenUp(Trouble::Closed)));
+    assert_eq!(port.poll_event(), Some(TeamPortEvent::GivenUp(Trouble::Closed)));
     assert_eq!(port.token(), None);
     port.connected(Instant(3 * S));
     port.receive(&ok("1"), Instant(3 * S));
@@ -154,7 +154,7 @@ fn a_port_that_speaks_something_else_is_reported() {
         port.receive(&[b'x'; 100], Instant(0));
         let reported = port.poll_event();
         assert!(
-            matches!(reported, Some(Event::GivenUp(Trouble::NotTheTeamPort(_)))),
+            matches!(reported, Some(TeamPortEvent::GivenUp(Trouble::NotTheTeamPort(_)))),
             "{garbage:?}: {reported:?}"
         );
     }
@@ -165,5 +165,5 @@ fn a_controller_that_never_greets_is_given_up() {
     let mut port = TeamPort::new("onetwo", Colour::Blue);
     port.connected(Instant(0));
     port.tick(Instant(3 * S));
-    assert_eq!(port.poll_event(), Some(Event::GivenUp(Trouble::NoAnswer)));
+    assert_eq!(port.poll_event(), Some(TeamPortEvent::GivenUp(Trouble::NoAnswer)));
 }

@@ -2,7 +2,7 @@
 
 use rules::{FieldSpec, League};
 
-use super::super::view::Ball;
+use super::super::view::ViewBall;
 use super::super::view::tests::view;
 use super::*;
 
@@ -121,7 +121,7 @@ fn at_a_penalty_they_stand_behind_the_ball_and_in_stop_before_it_they_do_not_cou
     for side in [Side::Ours, Side::Theirs] {
         let back = if side == Side::Ours { -1.0 } else { 1.0 };
         let ball = Point::new(back * (8.0 - 6.0), 0.0);
-        view.ball = Some(Ball::at_rest(ball));
+        view.ball = Some(ViewBall::at_rest(ball));
         view.phase = Phase::PreparePenalty(side);
         for at in places(&bench.orders(&view)) {
             assert!((at.x() - ball.x()) * back > 1.1, "{side:?} {at:?}");
@@ -142,7 +142,7 @@ fn they_keep_off_the_ball_and_out_of_the_way_of_a_placement_wherever_that_is() {
     view.phase = Phase::BallPlacement(Side::Theirs);
     for y in -45..=45 {
         let ball = Point::new(-6.4, 0.1 * y as f32);
-        view.ball = Some(Ball::at_rest(ball));
+        view.ball = Some(ViewBall::at_rest(ball));
         view.placement = Some(Point::new(-5.8, 0.1 * y as f32));
         for at in places(&bench.orders(&view)) {
             assert!(!controller_counts(&view.field, at));

@@ -5,11 +5,11 @@ use protocol::{Instant, RobotId};
 
 use super::super::counters::Sent;
 use super::super::defence::room_along;
-use super::super::order::{Task, Why};
+use super::super::order::{OrderReason, Task};
 use super::super::pass::ahead::{PassAhead, PasserMove, Places, Times};
-use super::super::pass::{Rating, SAMPLES, Scene};
+use super::super::pass::{PassScene, Rating, SAMPLES};
 use super::super::support::{self, Target};
-use super::super::view::{Ball, Robot, View};
+use super::super::view::{View, ViewBall, ViewRobot};
 use super::{Coach, restart};
 use rules::{Phase, Side};
 
@@ -41,15 +41,15 @@ impl Ahead {
     }
 
     /// Its reasons for the order, as numbers.
-    pub(super) fn why(&self) -> Why {
-        Why::Chances { receive: self.rating.receive(), goal: self.rating.goal() }
+    pub(super) fn why(&self) -> OrderReason {
+        OrderReason::Chances { receive: self.rating.receive(), goal: self.rating.goal() }
     }
 }
 
 impl Coach {
     /// What our restart is aimed at: a shot with room, else the likeliest pass ahead, else the best remaining
     /// target.
-    pub(super) fn target(&mut self, view: &View, kicker: RobotId, ball: &Ball) -> Target {
+    pub(super) fn target(&mut self, view: &View, kicker: RobotId, ball: &ViewBall) -> Target {
         let usual = support::target(view, kicker, ball.position);
         let free_kick = view.phase == Phase::FreeKick(Side::Ours);
         if !self.tactics.pass_ahead || !free_kick || self.gave_up || matches!(usual, Target::Shot { .. }) {
@@ -65,11 +65,17 @@ impl Coach {
     }
 
     /// The taker's task for its pass ahead, if it has one.
-    pub(super) fn pass_ahead(&mut self, view: &View, kicker: RobotId, ball: &Ball) -> Option<(Task, Why)> {
+    pub(super) fn pass_ahead(
+        &mut self,
+        view: &View,
+        kicker: RobotId,
+        ball: &ViewBall,
+    ) -> Option<(Task, OrderReason)> {
         let mut ahead = self.ahead?;
         let passer = view.our(kicker)?;
         let Some(receiver) = view.our(ahead.receiver) else { return self.give_up(view) };
-        let now = Scene::of(view, &self.kicks, ball.position, Some(kicker), receiver).rate(ahead.rating.at);
+        let now =
+            PassScene::of(view, &self.kicks, ball.position, Some(kicker), receiver).rate(ahead.rating.at);
         let planned = ahead.planned.is_some();
         let least = if planned { SURE } else { ahead.rating.receive() * STILL_LIKELY };
         if ahead.steps.shot().is_none() && now.receive() < least {
@@ -97,7 +103,7 @@ impl Coach {
     /// The pass of our restart that has just left.
     pub(super) fn sent(&self, view: &View, receiver: RobotId, to: Point<Attack>) -> Option<Sent> {
         let (passer, from) = (self.first?, self.ball_lay?);
-        let rated = |teammate| Scene::of(view, &self.kicks, from, Some(passer), teammate).rate(to);
+        let rated = |teammate| PassScene::of(view, &self.kicks, from, Some(passer), teammate).rate(to);
         let rating = self.ahead.map(|ahead| ahead.rating).or_else(|| view.our(receiver).map(rated))?;
         Some(Sent {
             passer,
@@ -111,7 +117,7 @@ impl Coach {
         })
     }
 
-    fn give_up(&mut self, view: &View) -> Option<(Task, Why)> {
+    fn give_up(&mut self, view: &View) -> Option<(Task, OrderReason)> {
         let planned = self.ahead.is_some_and(|ahead| ahead.planned.is_some());
         let again = planned && self.reconsider(view);
         (self.ahead, self.aim, self.gave_up) = (None, None, !again);
@@ -122,9 +128,9 @@ impl Coach {
 /// The times of Algorithm 1; the passer waits a short distance behind x_p, so that it does not touch the ball
 /// before.
 fn times(
-    ball: &Ball,
-    passer: &Robot,
-    receiver: &Robot,
+    ball: &ViewBall,
+    passer: &ViewRobot,
+    receiver: &ViewRobot,
     rating: &Rating,
     limits: &motion::trajectory::FreeLimits,
 ) -> Times {

@@ -11,12 +11,12 @@ use motion::trajectory::CalcMotion;
 use protocol::{Duration, Instant, RobotId};
 
 use super::super::counters::Sent;
-use super::super::order::{Role, Task, Why};
+use super::super::order::{OrderReason, Role, Task};
 use super::super::pass::bridge::{CasePass, RADIUS, refine};
 use super::super::pass::shot::shot;
-use super::super::pass::{Rating, SAMPLES, Scene};
+use super::super::pass::{PassScene, Rating, SAMPLES};
 use super::super::support;
-use super::super::view::{Ball, View};
+use super::super::view::{View, ViewBall};
 use super::{Coach, Pass, Plan};
 
 /// The shot, pass or case chosen in open play, its robot, and since when.
@@ -55,7 +55,12 @@ impl What {
 impl Coach {
     /// The task of `who`, first at the ball, with an order for the receiver too; `None` where it plays a
     /// case.
-    pub(super) fn attack(&mut self, plan: &mut Plan<'_>, who: RobotId, ball: &Ball) -> Option<(Task, Why)> {
+    pub(super) fn attack(
+        &mut self,
+        plan: &mut Plan<'_>,
+        who: RobotId,
+        ball: &ViewBall,
+    ) -> Option<(Task, OrderReason)> {
         if !self.tactics.attack {
             return None;
         }
@@ -63,14 +68,14 @@ impl Coach {
         match self.intends(view, who, ball) {
             What::Case => None,
             What::Shot { at, goal } => {
-                Some((Task::Kick { at, kick: support::SHOT }, Why::Chances { receive: 1.0, goal }))
+                Some((Task::Kick { at, kick: support::SHOT }, OrderReason::Chances { receive: 1.0, goal }))
             }
             What::Pass { receiver, rating } => {
-                let why = Why::Chances { receive: rating.receive(), goal: rating.goal() };
+                let why = OrderReason::Chances { receive: rating.receive(), goal: rating.goal() };
                 Some((self.pass_to(plan, receiver, &rating, why)?, why))
             }
             What::OfCase { pass, rating, moved } => {
-                let why = |part| Why::OfCase {
+                let why = |part| OrderReason::OfCase {
                     case: pass.case,
                     part,
                     moved,
@@ -84,7 +89,13 @@ impl Coach {
     }
 
     /// The passer's task, with an order for the receiver too; `None` where there is no receiver any more.
-    fn pass_to(&self, plan: &mut Plan<'_>, receiver: RobotId, rating: &Rating, why: Why) -> Option<Task> {
+    fn pass_to(
+        &self,
+        plan: &mut Plan<'_>,
+        receiver: RobotId,
+        rating: &Rating,
+        why: OrderReason,
+    ) -> Option<Task> {
         let teammate = plan.view.our(receiver)?;
         if plan.take(receiver) {
             let then = rating.shot.one_touch.then_some(rating.shot.aim);
@@ -126,7 +137,7 @@ impl Coach {
 
     /// The earlier choice where it is still valid, so that a robot that moves around the ball does not turn
     /// back.
-    fn intends(&mut self, view: &View, who: RobotId, ball: &Ball) -> What {
+    fn intends(&mut self, view: &View, who: RobotId, ball: &ViewBall) -> What {
         if let Some(intent) = self.intent
             && intent.who == who
             && intent.from.distance(ball.position) < MOVED
@@ -139,7 +150,7 @@ impl Coach {
         what
     }
 
-    fn stands(&self, view: &View, intent: &Intent, ball: &Ball) -> bool {
+    fn stands(&self, view: &View, intent: &Intent, ball: &ViewBall) -> bool {
         let held = match intent.what {
             What::Case => ASKED_AGAIN,
             What::Shot { .. } | What::Pass { .. } => HELD,
@@ -148,7 +159,7 @@ impl Coach {
         let likely = || {
             let Some((receiver, rating)) = intent.what.pass() else { return true };
             let receive = view.our(receiver).map_or(0.0, |teammate| {
-                let scene = Scene::of(view, &self.kicks, ball.position, Some(intent.who), teammate);
+                let scene = PassScene::of(view, &self.kicks, ball.position, Some(intent.who), teammate);
                 scene.rate(rating.at).receive()
             });
             receive > rating.receive() * STILL_LIKELY
@@ -156,7 +167,7 @@ impl Coach {
         view.now.since(intent.since) < held && likely()
     }
 
-    fn likeliest(&mut self, view: &View, who: RobotId, ball: &Ball) -> What {
+    fn likeliest(&mut self, view: &View, who: RobotId, ball: &ViewBall) -> What {
         let shot = shot(view, &self.kicks, ball.position);
         self.searches.forget();
         let offers = self.searches.offers(view, &self.kicks, ball.position, who, SAMPLES);
@@ -176,11 +187,11 @@ impl Coach {
 
     /// The next pass of the case that `who` plays, refined near the case's place for it, if it is then likely
     /// to arrive.
-    fn of_the_case(&self, view: &View, who: RobotId, ball: &Ball) -> Option<What> {
+    fn of_the_case(&self, view: &View, who: RobotId, ball: &ViewBall) -> Option<What> {
         let pass = view.proposal.filter(|pass| self.tactics.bridge && pass.passer.0 == who)?;
         let receiver = pass.receiver.0;
         let teammate = view.our(receiver).filter(|_| !self.defenders.contains(&Some(receiver)))?;
-        let scene = Scene::of(view, &self.kicks, ball.position, Some(who), teammate);
+        let scene = PassScene::of(view, &self.kicks, ball.position, Some(who), teammate);
         let refined = refine(&scene, pass.at, RADIUS);
         let rating = refined.best;
         (rating.receive() > LIKELY).then_some(What::OfCase { pass, rating, moved: refined.moved() })

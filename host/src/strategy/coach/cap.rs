@@ -6,12 +6,14 @@ use protocol::RobotId;
 use rules::{League, Phase, Side};
 
 use super::super::coerce::tactics::Models;
-use super::super::coerce::{ByPassLocation, FinalAttack, Part, Planner, Progress, Settings};
+use super::super::coerce::{
+    ByPassLocation, CoercePart, CoerceProgress, CoerceSettings, FinalAttack, Planner,
+};
 use super::super::defence;
-use super::super::order::{Role, Task, Why};
-use super::super::pass::{Kicks, Scene};
+use super::super::order::{OrderReason, Role, Task};
+use super::super::pass::{Kicks, PassScene};
 use super::super::support::{self, Target};
-use super::super::view::{Ball, View};
+use super::super::view::{View, ViewBall};
 use super::{Ahead, Coach, Plan};
 
 /// The planner, and its settings at this free kick.
@@ -25,7 +27,7 @@ pub(super) struct Cap {
 
 impl Cap {
     pub(super) fn new(league: League) -> Self {
-        let planner = Planner::new(Settings::of(league), Models::default());
+        let planner = Planner::new(CoerceSettings::of(league), Models::default());
         Self { planner, seed: 0, asked: false }
     }
 
@@ -59,8 +61,8 @@ impl Coach {
         &mut self,
         plan: &mut Plan<'_>,
         kicker: RobotId,
-        ball: &Ball,
-    ) -> Option<(Task, Why)> {
+        ball: &ViewBall,
+    ) -> Option<(Task, OrderReason)> {
         let view = plan.view;
         if !self.tactics.coerce || self.gave_up || view.phase != Phase::FreeKick(Side::Ours) {
             return None;
@@ -78,7 +80,7 @@ impl Coach {
             }
         }
         let progress = self.cap.planner.watch(view, &value);
-        if let Progress::Attacking(attack) = progress
+        if let CoerceProgress::Attacking(attack) = progress
             && self.ahead.is_none()
         {
             self.ahead = begin(view, &self.kicks, kicker, ball, &attack);
@@ -89,15 +91,20 @@ impl Coach {
             self.gave_up = self.ahead.is_none();
         }
         for posting in self.cap.planner.postings(view) {
-            if let Part::Coerces { marker, .. } = posting.part
+            if let CoercePart::Coerces { marker, .. } = posting.part
                 && plan.take(posting.robot)
             {
                 let at = plan.kept_off(posting.at);
-                plan.order(posting.robot, Role::Coercer, plan.facing_ball(at), Why::Coerces { marker });
+                plan.order(
+                    posting.robot,
+                    Role::Coercer,
+                    plan.facing_ball(at),
+                    OrderReason::Coerces { marker },
+                );
             }
         }
-        let Progress::Coercing { arrived, of, .. } = progress else { return None };
-        let why = Why::Coercing { arrived, of };
+        let CoerceProgress::Coercing { arrived, of, .. } = progress else { return None };
+        let why = OrderReason::Coercing { arrived, of };
         let attack = self.cap.planner.current()?.optimistic;
         Some((
             Task::Pass { at: attack.at, receiver: attack.receiver, kick: attack.worth.kick, ready: false },
@@ -106,9 +113,15 @@ impl Coach {
     }
 }
 
-fn begin(view: &View, kicks: &Kicks, kicker: RobotId, ball: &Ball, attack: &FinalAttack) -> Option<Ahead> {
+fn begin(
+    view: &View,
+    kicks: &Kicks,
+    kicker: RobotId,
+    ball: &ViewBall,
+    attack: &FinalAttack,
+) -> Option<Ahead> {
     let receiver = view.our(attack.plan.receiver)?;
-    let scene = Scene::of(view, kicks, ball.position, Some(kicker), receiver);
+    let scene = PassScene::of(view, kicks, ball.position, Some(kicker), receiver);
     Some(Ahead::new(receiver.id, scene.rate(attack.plan.at), view.now, Some(attack.reused)))
 }
 

@@ -6,9 +6,9 @@ use protocol::{Duration, Instant, RobotId};
 use rules::limits::ROBOT_RADIUS;
 use rules::{Phase, contact};
 
-use super::super::order::{Role, Task, Why};
+use super::super::order::{OrderReason, Role, Task};
 use super::super::threat::{self, receiving::comes_at_goal};
-use super::super::view::{Ball, RobotSet, View};
+use super::super::view::{RobotSet, View, ViewBall};
 use super::super::{defence, roles};
 use super::{Coach, Plan};
 
@@ -19,7 +19,7 @@ pub(super) struct Clearing {
     since: Instant,
     from: Point<Attack>,
     task: Task,
-    why: Why,
+    why: OrderReason,
 }
 
 impl Coach {
@@ -49,10 +49,10 @@ impl Coach {
         if all_robots {
             plan.free.iter().for_each(|id| team.insert(*id));
         }
-        let defence = threat::defend(view, team, &mut self.threats, &threat::Settings::default());
+        let defence = threat::defend(view, team, &mut self.threats, &threat::ThreatSettings::default());
         self.defenders = self.threats.primaries();
         for (i, assignment) in defence.assignments.iter().enumerate() {
-            let (id, why) = (assignment.robot, Why::Threat(assignment.guards));
+            let (id, why) = (assignment.robot, OrderReason::Threat(assignment.guards));
             if !plan.take(id) {
                 continue;
             }
@@ -78,12 +78,12 @@ impl Coach {
         let away =
             (robot.position - ball.position).unit().or_else(|| (ball.position - view.our_goal()).unit());
         let at = ball.position + away.unwrap_or_default() * CLEARER_NEEDS;
-        threat::legal(view, at, &threat::Settings::default())
+        threat::legal(view, at, &threat::ThreatSettings::default())
     }
 
     /// Whether the ball before our area is left to our keeper: it is there first. Held until another robot is
     /// clearly sooner there.
-    pub(super) fn is_keepers(&mut self, view: &View, ball: &Ball) -> bool {
+    pub(super) fn is_keepers(&mut self, view: &View, ball: &ViewBall) -> bool {
         let keeper =
             view.our(view.keeper).filter(|_| self.tactics.threats && lies_before_our_area(view, ball));
         let Some(keeper) = keeper else {
@@ -117,13 +117,13 @@ impl Coach {
         &mut self,
         view: &View,
         who: RobotId,
-        ball: &Ball,
-    ) -> Option<(Task, Why)> {
+        ball: &ViewBall,
+    ) -> Option<(Task, OrderReason)> {
         let robot = view.our(who).filter(|_| self.keepers == Some(false))?;
         if !view.in_our_area(ball.position, BEHIND_BALL) {
             return Some(self.kept_clearance(view, who, ball, |view| {
                 let (at, kick, room) = defence::clearance_beside(view, robot, ball, OFF_OUR_AREA);
-                (Task::Kick { at, kick }, Why::BestTarget { room })
+                (Task::Kick { at, kick }, OrderReason::BestTarget { room })
             }));
         }
         // There is no room behind it: it is approached from the field, and turned.
@@ -131,26 +131,26 @@ impl Coach {
         let has = to_ball.norm() < AT_FRONT && (to_ball.angle() - robot.heading).abs() < BEFORE_FRONT;
         if !has {
             let room = defence::room_along(view, robot.position, ball.position);
-            return Some((Task::GetBall { face: ball.position + to_ball }, Why::BestTarget { room }));
+            return Some((Task::GetBall { face: ball.position + to_ball }, OrderReason::BestTarget { room }));
         }
         Some(self.kept_clearance(view, who, ball, |view| {
             let (at, kick, room) = defence::clearance_outwards(view, ball);
-            (Task::Kick { at, kick }, Why::BestTarget { room })
+            (Task::Kick { at, kick }, OrderReason::BestTarget { room })
         }))
     }
 
     /// The keeper at its place; it clears a ball in our area, and intercepts a shot on its line.
-    fn keeper(&mut self, view: &View, at: Point<Attack>, why: Why) -> (Task, Why) {
+    fn keeper(&mut self, view: &View, at: Point<Attack>, why: OrderReason) -> (Task, OrderReason) {
         let (task, usual) =
             if view.phase == Phase::Run { defence::keeper(view) } else { (defence::keeper_line(view), why) };
         let Some(ball) = view.ball else { return (task, why) };
-        if matches!(usual, Why::ClearsArea { .. }) {
+        if matches!(usual, OrderReason::ClearsArea { .. }) {
             return self.kept_clearance(view, view.keeper, &ball, |_| (task, usual));
         }
         if self.keepers == Some(true) && lies_before_our_area(view, &ball) {
             return self.kept_clearance(view, view.keeper, &ball, |view| {
                 let (at, kick, room) = defence::clearance_outwards(view, &ball);
-                (Task::Kick { at, kick }, Why::ClearsArea { room })
+                (Task::Kick { at, kick }, OrderReason::ClearsArea { room })
             });
         }
         if ball.velocity.norm() > COMES && comes_at_goal(view, ball.position, ball.velocity) {
@@ -165,9 +165,9 @@ impl Coach {
         &mut self,
         view: &View,
         who: RobotId,
-        ball: &Ball,
-        choose: impl Fn(&View) -> (Task, Why),
-    ) -> (Task, Why) {
+        ball: &ViewBall,
+        choose: impl Fn(&View) -> (Task, OrderReason),
+    ) -> (Task, OrderReason) {
         if let Some(kept) = &self.clearing
             && kept.who == who
             && kept.from.distance(ball.position) < MOVED
@@ -196,7 +196,7 @@ impl Coach {
 
 /// The ball is so near to our area that there is hardly room behind it, and slow enough to be kicked as it
 /// lies.
-fn lies_before_our_area(view: &View, ball: &Ball) -> bool {
+fn lies_before_our_area(view: &View, ball: &ViewBall) -> bool {
     let inside = ball.position.x() > view.our_goal().x();
     view.phase == Phase::Run
         && inside

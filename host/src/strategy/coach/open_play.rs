@@ -2,9 +2,9 @@
 
 use geometry::{Attack, Point};
 
-use super::super::order::{Role, Task, Why};
+use super::super::order::{OrderReason, Role, Task};
 use super::super::threat::receiving::comes_at_goal;
-use super::super::view::{Ball, View};
+use super::super::view::{View, ViewBall};
 use super::super::{roles, support};
 use super::{Coach, Plan};
 
@@ -21,7 +21,7 @@ impl Coach {
                 double_touch_blocked,
                 Role::DoubleTouchBlocked,
                 plan.facing_ball(at),
-                Why::FreePlace { worth },
+                OrderReason::FreePlace { worth },
             );
         }
         self.see_pass_leave(view);
@@ -30,10 +30,10 @@ impl Coach {
             && plan.take(pass.receiver)
         {
             self.first = Some(pass.receiver);
-            let why = Why::BestTarget { room: support::worth(view, ball.position, pass.at) };
+            let why = OrderReason::BestTarget { room: support::worth(view, ball.position, pass.at) };
             plan.order(pass.receiver, Role::Receiver, Task::Receive { at: pass.at, then: pass.then }, why);
             self.defend(plan, false);
-            return plan.all_robots(Role::Player, Task::Gameplay, Why::OpenPlay);
+            return plan.all_robots(Role::Player, Task::Gameplay, OrderReason::OpenPlay);
         }
         let forbidden = view.in_their_area(ball.position, THEIRS) || view.in_our_area(ball.position, 0.0);
         if forbidden || keepers || is_shot_at_us(view, &ball) {
@@ -60,16 +60,21 @@ impl Coach {
                 self.defend(plan, self.attacked);
                 return self.support(plan, ball.position);
             }
-            plan.order(id, Role::Player, Task::Gameplay, Why::SoonestAtBall { seconds: seconds.max(0.0) });
+            plan.order(
+                id,
+                Role::Player,
+                Task::Gameplay,
+                OrderReason::SoonestAtBall { seconds: seconds.max(0.0) },
+            );
         }
         // A robot that plays a case plays it to its end.
         for robot in view.ours.iter().filter(|robot| view.in_play.has(robot.id)) {
             if plan.free.len() > 2 && plan.take(robot.id) {
-                plan.order(robot.id, Role::Player, Task::Gameplay, Why::OpenPlay);
+                plan.order(robot.id, Role::Player, Task::Gameplay, OrderReason::OpenPlay);
             }
         }
         self.defend(plan, self.attacked);
-        plan.all_robots(Role::Player, Task::Gameplay, Why::OpenPlay);
+        plan.all_robots(Role::Player, Task::Gameplay, OrderReason::OpenPlay);
     }
 
     /// Updates whether the ball is theirs: one of them is clearly sooner at it than ours, `ours` s from now.
@@ -83,7 +88,7 @@ impl Coach {
 }
 
 /// Whether a shot moves at our goal: a robot that ran after it would open the line that it blocks.
-fn is_shot_at_us(view: &View, ball: &Ball) -> bool {
+fn is_shot_at_us(view: &View, ball: &ViewBall) -> bool {
     let goal = view.our_goal();
     ball.velocity.norm() > SHOT
         && ball.position.x() < 0.0

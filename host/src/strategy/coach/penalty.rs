@@ -4,7 +4,7 @@ use geometry::{Attack, Point};
 use protocol::RobotId;
 use rules::{Phase, Side};
 
-use super::super::order::{Role, Why};
+use super::super::order::{OrderReason, Role};
 use super::super::view::ROBOTS_MAX;
 use super::super::{defence, restart};
 use super::{Coach, Plan};
@@ -20,7 +20,7 @@ impl Coach {
             self.kicker(plan, started, Some(spot));
             plan.keeper_guards();
         } else if plan.take(view.keeper) {
-            plan.order(view.keeper, Role::Keeper, defence::keeper_on_goal_line(view), Why::Referee);
+            plan.order(view.keeper, Role::Keeper, defence::keeper_on_goal_line(view), OrderReason::Referee);
         }
         let waiting = plan.free.len();
         let places: heapless::Vec<_, ROBOTS_MAX> =
@@ -50,7 +50,7 @@ impl Coach {
             if let (Some(id), Some(at)) = (id, places.get(slot))
                 && plan.take(id)
             {
-                plan.order(id, Role::Support(slot as u8), plan.facing_ball(*at), Why::Referee);
+                plan.order(id, Role::Support(slot as u8), plan.facing_ball(*at), OrderReason::Referee);
             }
         }
     }

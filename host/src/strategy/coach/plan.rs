@@ -4,8 +4,8 @@ use geometry::{Angle, Attack, Point};
 use protocol::RobotId;
 use rules::{Phase, RuleRole};
 
-use super::super::order::{Order, Role, Task, Why};
-use super::super::view::{ROBOTS_MAX, Robot, View};
+use super::super::order::{Order, OrderReason, Role, Task};
+use super::super::view::{ROBOTS_MAX, View, ViewRobot};
 use super::super::{defence, restart, threat};
 use super::{Free, Orders};
 
@@ -24,7 +24,7 @@ impl<'v> Plan<'v> {
 
     /// Sets the robot's order. While the ball is not in play no robot is sent to where the rules do not let
     /// it stand, nor to another robot's place: it would not get there.
-    pub(super) fn order(&mut self, robot: RobotId, role: Role, task: Task, why: Why) {
+    pub(super) fn order(&mut self, robot: RobotId, role: Role, task: Task, why: OrderReason) {
         let rule_role = match role {
             Role::Kicker => RuleRole::Kicker,
             _ if robot == self.view.keeper => RuleRole::Keeper,
@@ -33,7 +33,7 @@ impl<'v> Plan<'v> {
         let task = match task {
             Task::GoTo { at, face } if self.view.phase != Phase::Run => {
                 let taken = self.places();
-                let settings = threat::Settings::default();
+                let settings = threat::ThreatSettings::default();
                 Task::GoTo { at: threat::legal_for(self.view, rule_role, at, &taken, &settings), face }
             }
             other => other,
@@ -67,11 +67,11 @@ impl<'v> Plan<'v> {
 
     pub(super) fn keeper_guards(&mut self) {
         if self.take(self.view.keeper) {
-            self.order(self.view.keeper, Role::Keeper, defence::keeper_line(self.view), Why::Referee);
+            self.order(self.view.keeper, Role::Keeper, defence::keeper_line(self.view), OrderReason::Referee);
         }
     }
 
-    pub(super) fn all_robots(&mut self, role: Role, task: Task, why: Why) {
+    pub(super) fn all_robots(&mut self, role: Role, task: Task, why: OrderReason) {
         for id in core::mem::take(&mut self.free) {
             self.order(id, role, task, why);
         }
@@ -82,12 +82,12 @@ impl<'v> Plan<'v> {
     pub(super) fn stay_legal(&mut self) {
         let view = self.view;
         if view.phase == Phase::Run {
-            return self.all_robots(Role::Player, Task::Stand, Why::NoBall);
+            return self.all_robots(Role::Player, Task::Stand, OrderReason::NoBall);
         }
         for id in core::mem::take(&mut self.free) {
-            let here = |robot: &Robot| Task::GoTo { at: robot.position, face: robot.heading };
+            let here = |robot: &ViewRobot| Task::GoTo { at: robot.position, face: robot.heading };
             let task = view.our(id).map_or(Task::Stand, here);
-            self.order(id, Role::Player, task, Why::NoBall);
+            self.order(id, Role::Player, task, OrderReason::NoBall);
         }
     }
 

@@ -4,9 +4,9 @@ use geometry::{Attack, Point};
 use protocol::Duration;
 use rules::{Phase, Side};
 
-use super::super::order::{Role, Task, Why};
+use super::super::order::{OrderReason, Role, Task};
 use super::super::support::{self, Target};
-use super::super::view::{Ball, ROBOTS_MAX, View};
+use super::super::view::{ROBOTS_MAX, View, ViewBall};
 use super::super::{defence, restart, roles};
 use super::{Coach, Plan};
 
@@ -29,7 +29,7 @@ impl Coach {
             if let Some((id, seconds)) = first
                 && plan.take(id)
             {
-                plan.order(id, Role::Kicker, Task::PlaceBall { at }, Why::SoonestAtBall { seconds });
+                plan.order(id, Role::Kicker, Task::PlaceBall { at }, OrderReason::SoonestAtBall { seconds });
             }
         }
         self.defend(plan, false);
@@ -37,7 +37,7 @@ impl Coach {
     }
 
     /// Whether the ball has not come nearer to its place for so long that it will not.
-    fn gives_up_placing(&mut self, view: &View, ball: &Ball, at: Point<Attack>) -> bool {
+    fn gives_up_placing(&mut self, view: &View, ball: &ViewBall, at: Point<Attack>) -> bool {
         let left = ball.position.distance(at);
         let (least, since) = *self.placing.get_or_insert((left, view.now));
         if left < least - PLACING_GAINS {
@@ -57,7 +57,7 @@ impl Coach {
         }
         self.defend(plan, false);
         let places: heapless::Vec<_, ROBOTS_MAX> = restart::kickoff_places(view).into_iter().collect();
-        self.fill(plan, &places, |i| (Role::Support(i as u8), Why::Referee));
+        self.fill(plan, &places, |i| (Role::Support(i as u8), OrderReason::Referee));
     }
 
     /// Free kick: ours with a taker and mates in free places, theirs with a wall and marked opponents.
@@ -80,13 +80,13 @@ impl Coach {
         // Near our area the defenders are the wall already.
         if ball.position.distance(view.our_goal()) > WALL_BEYOND {
             let _ = places.push(restart::wall(view, &ball));
-            let _ = whom.push((Role::Wall, Why::OnBallLine { y: view.our_goal().y() }));
+            let _ = whom.push((Role::Wall, OrderReason::OnBallLine { y: view.our_goal().y() }));
         }
         for (i, (at, opponent)) in defence::marks(view).into_iter().enumerate() {
             let _ = places.push(at);
-            let _ = whom.push((Role::Marker(i as u8), Why::Marks { opponent }));
+            let _ = whom.push((Role::Marker(i as u8), OrderReason::Marks { opponent }));
         }
-        self.fill(plan, &places, |i| whom.get(i).copied().unwrap_or((Role::Player, Why::Referee)));
+        self.fill(plan, &places, |i| whom.get(i).copied().unwrap_or((Role::Player, OrderReason::Referee)));
         self.spread(plan);
     }
 
@@ -107,7 +107,12 @@ impl Coach {
         if !started {
             let spot = mark.or(view.placement).unwrap_or(ball.position);
             let at = plan.kept_off(restart::kicker_waits(view, spot));
-            return plan.order(id, Role::Kicker, plan.facing_ball(at), Why::SoonestAtBall { seconds });
+            return plan.order(
+                id,
+                Role::Kicker,
+                plan.facing_ball(at),
+                OrderReason::SoonestAtBall { seconds },
+            );
         }
         self.ball_lay = Some(ball.position);
         if let Some((task, why)) = self.coerce(plan, id, &ball) {
@@ -143,12 +148,17 @@ impl Coach {
         if let Some((_, Target::Teammate { id, at, room })) = self.aim
             && plan.take(id)
         {
-            plan.order(id, Role::Receiver, Task::Receive { at, then: None }, Why::BestTarget { room });
+            plan.order(
+                id,
+                Role::Receiver,
+                Task::Receive { at, then: None },
+                OrderReason::BestTarget { room },
+            );
         }
     }
 
     /// Theirs against threats: a wall where it has room, everybody else as keeper, primary defender or against a second-level threat.
-    fn their_free_kick(&mut self, plan: &mut Plan<'_>, ball: &Ball) {
+    fn their_free_kick(&mut self, plan: &mut Plan<'_>, ball: &ViewBall) {
         let view = plan.view;
         if ball.position.distance(view.our_goal()) > WALL_BEYOND {
             let at = plan.kept_off(restart::wall(view, ball));
@@ -161,7 +171,12 @@ impl Coach {
             if let Some((id, _)) = wall
                 && plan.take(id)
             {
-                plan.order(id, Role::Wall, plan.facing_ball(at), Why::OnBallLine { y: view.our_goal().y() });
+                plan.order(
+                    id,
+                    Role::Wall,
+                    plan.facing_ball(at),
+                    OrderReason::OnBallLine { y: view.our_goal().y() },
+                );
             }
         }
         self.defend(plan, true);

@@ -3,7 +3,7 @@
 use super::*;
 use crate::strategy::pass::bridge::{CasePass, RADIUS};
 use crate::strategy::threat::Guards;
-use crate::strategy::view::Ball;
+use crate::strategy::view::ViewBall;
 use crate::strategy::view::tests::view;
 use casebase::CaseRobot;
 use geometry::Vector;
@@ -95,7 +95,7 @@ fn who_took_our_free_kick_leaves_the_ball_to_others_until_somebody_touched_it() 
     assert_eq!(orders[3].role, Role::DoubleTouchBlocked);
     // Another one is at the ball: it may touch it again.
     let ball = Point::new(0.5, 1.4);
-    view.ball = Some(Ball { position: ball, rest: ball, ..view.ball.unwrap() });
+    view.ball = Some(ViewBall { position: ball, rest: ball, ..view.ball.unwrap() });
     assert_ne!(coach.decide(&view)[3].role, Role::DoubleTouchBlocked);
 }
 
@@ -136,7 +136,7 @@ fn against_threats_keeper_and_defenders_say_what_is_open_and_others_come_back_on
     let guards = |orders: &Orders| {
         orders
             .iter()
-            .filter(|order| matches!(order.why, Why::Threat(_)))
+            .filter(|order| matches!(order.why, OrderReason::Threat(_)))
             .map(|order| order.robot.number())
             .collect::<Vec<_>>()
     };
@@ -147,7 +147,7 @@ fn against_threats_keeper_and_defenders_say_what_is_open_and_others_come_back_on
     let mut far = theirs.clone();
     far.ours.iter_mut().skip(3).for_each(|robot| robot.position = robot.position - Vector::new(1.5, 0.0));
     let orders = Coach::new(Team::Ours, tactics, League::DivisionB).decide(&far);
-    let marks = |order: &&Order| matches!(order.why, Why::Threat(Guards::SecondLevel { opponent, .. }) if opponent.number() == 1);
+    let marks = |order: &&Order| matches!(order.why, OrderReason::Threat(Guards::SecondLevel { opponent, .. }) if opponent.number() == 1);
     assert!(orders.iter().any(|order| marks(&order)), "{orders:?}");
     let alone = Tactics { second_level: false, ..tactics };
     assert_eq!(guards(&Coach::new(Team::Ours, alone, League::DivisionB).decide(&far)), [0, 1, 2]);
@@ -188,7 +188,7 @@ fn a_pass_ahead_leaves_when_its_receiver_will_be_there_and_whoever_receives_it_i
             if let Task::Pass { at, ready, receiver, .. } = order.task {
                 assert_eq!(order.robot, kicker);
                 assert!(
-                    matches!(order.why, Why::Chances { receive, .. } if receive > 0.3),
+                    matches!(order.why, OrderReason::Chances { receive, .. } if receive > 0.3),
                     "{:?}",
                     order.why
                 );
@@ -230,7 +230,7 @@ fn a_shot_at_our_goal_makes_no_one_leave_its_place_and_the_keeper_stays_one() {
     // keeper would be soonest.
     let velocity = Vector::new(-6.0, -0.3);
     let ball =
-        Ball { position: Point::new(-2.0, 0.175), velocity, rest: Point::new(-20.0, -0.7), height: 0.0 };
+        ViewBall { position: Point::new(-2.0, 0.175), velocity, rest: Point::new(-20.0, -0.7), height: 0.0 };
     view.ball = Some(ball);
     let orders = coach.decide(&view);
     let roles: Vec<_> = orders.iter().map(|order| order.role).collect();
@@ -284,7 +284,7 @@ fn in_open_play_an_open_goal_is_shot_at_and_a_closed_one_passed_around_and_far_f
         shoots[3]
     );
     assert!(
-        matches!(shoots[3].why, Why::Chances { receive, goal } if receive == 1.0 && goal > WORTH),
+        matches!(shoots[3].why, OrderReason::Chances { receive, goal } if receive == 1.0 && goal > WORTH),
         "{:?}",
         shoots[3]
     );
@@ -322,7 +322,7 @@ fn where_a_case_is_played_its_pass_goes_near_its_place_to_its_receiver_if_the_br
     assert!(there.distance(at) <= RADIUS);
     assert!(matches!(orders[5].task, Task::Receive { at, .. } if at == there), "{:?}", orders[5]);
     for (robot, part) in [(3, 0), (5, 1)] {
-        let Why::OfCase { case, part: reported, moved, receive, .. } = orders[robot].why else {
+        let OrderReason::OfCase { case, part: reported, moved, receive, .. } = orders[robot].why else {
             panic!("{:?}", orders[robot])
         };
         assert_eq!((case, reported.index()), (CaseId(12), part));
@@ -343,7 +343,7 @@ fn a_pass_of_open_play_that_has_left_is_its_receivers_and_is_reported_to_the_boo
     assert_eq!(coach.take_sent(), None);
     let offset = (at - Point::new(2.0, 0.0)).unit().unwrap();
     let position = Point::new(2.0, 0.0) + offset * 0.2;
-    view.ball = Some(Ball { position, velocity: offset * 3.0, rest: at + offset, height: 0.0 });
+    view.ball = Some(ViewBall { position, velocity: offset * 3.0, rest: at + offset, height: 0.0 });
     view.now = Instant(view.now.0 + 50_000);
     let orders = coach.decide(&view);
     assert!(matches!(orders[4].task, Task::Receive { at: there, .. } if there == at), "{:?}", orders[4]);
@@ -367,7 +367,7 @@ fn a_placement_that_gets_nowhere_is_given_up_and_everyone_keeps_away() {
         view.now = Instant(begun.0 + second * 1_000_000);
         let moved = 0.5 * (second.min(20) / 5) as f32;
         let at = Point::new(2.0 - moved, 2.0);
-        view.ball = Some(Ball::at_rest(at));
+        view.ball = Some(ViewBall::at_rest(at));
         let orders = coach.decide(&view);
         assert_eq!(places(&orders), second <= 50, "{second} s");
         if second > 50 {

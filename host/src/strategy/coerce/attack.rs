@@ -7,7 +7,7 @@ use protocol::host::KickOrder;
 use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro128PlusPlus;
 
-use super::super::view::{Robot, View};
+use super::super::view::{View, ViewRobot};
 use super::grid::{CELLS, Cell};
 
 /// What a pass to a place is worth.
@@ -39,16 +39,16 @@ pub trait PassValue {
         view: &View,
         from: Point<Attack>,
         kicker: RobotId,
-        receiver: &Robot,
+        receiver: &ViewRobot,
         places: &mut dyn Iterator<Item = Point<Attack>>,
         take: &mut dyn FnMut(Point<Attack>, Worth),
     );
 
     /// Probability that this opponent intercepts a pass from `from` to `to`.
-    fn meets_pass(&self, opponent: &Robot, from: Point<Attack>, to: Point<Attack>) -> f32;
+    fn meets_pass(&self, opponent: &ViewRobot, from: Point<Attack>, to: Point<Attack>) -> f32;
 
     /// Probability that it intercepts a shot.
-    fn meets_shot(&self, opponent: &Robot, from: Point<Attack>, to: Point<Attack>) -> f32;
+    fn meets_shot(&self, opponent: &ViewRobot, from: Point<Attack>, to: Point<Attack>) -> f32;
 }
 
 /// A pass to a receiver, and a shot from there.

@@ -5,11 +5,11 @@ use geometry::{Attack, Point, Vector};
 use protocol::RobotId;
 
 use super::super::pass::conditions::not_intercepted;
-use super::super::pass::intercept::{BallPath, Opponent, SAFE};
+use super::super::pass::intercept::{BallPath, PassOpponent, SAFE};
 use super::super::pass::kicks::FlatKick;
 use super::super::pass::reach::Mover;
-use super::super::pass::{Kicks, Scene};
-use super::super::view::{Robot, View};
+use super::super::pass::{Kicks, PassScene};
+use super::super::view::{View, ViewRobot};
 use super::attack::{PassValue, Worth};
 
 /// P(receive) · P(goal) of the pass location.
@@ -25,7 +25,13 @@ impl<'k> ByPassLocation<'k> {
     }
 
     /// 1 − P(c2) of one opponent alone.
-    fn intercepts(self, opponent: &Robot, from: Point<Attack>, to: Point<Attack>, kick: &FlatKick) -> f32 {
+    fn intercepts(
+        self,
+        opponent: &ViewRobot,
+        from: Point<Attack>,
+        to: Point<Attack>,
+        kick: &FlatKick,
+    ) -> f32 {
         let c = self.kicks.constants();
         let path = to - from;
         let path = BallPath {
@@ -36,7 +42,7 @@ impl<'k> ByPassLocation<'k> {
             reaction: c.reaction,
         };
         let mover = Mover::new(opponent.position, opponent.velocity, &c.opponent);
-        let found = path.flat(kick, &[Opponent { id: opponent.id, mover }]);
+        let found = path.flat(kick, &[PassOpponent { id: opponent.id, mover }]);
         1.0 - not_intercepted(found.map_or(SAFE, |found| found.margin), false, c)
     }
 }
@@ -47,11 +53,11 @@ impl PassValue for ByPassLocation<'_> {
         view: &View,
         from: Point<Attack>,
         kicker: RobotId,
-        receiver: &Robot,
+        receiver: &ViewRobot,
         places: &mut dyn Iterator<Item = Point<Attack>>,
         take: &mut dyn FnMut(Point<Attack>, Worth),
     ) {
-        let scene = Scene::of(view, self.kicks, from, Some(kicker), receiver);
+        let scene = PassScene::of(view, self.kicks, from, Some(kicker), receiver);
         for at in places {
             let rating = scene.rate(at);
             let (receive, goal) = (rating.receive(), rating.goal());
@@ -59,11 +65,11 @@ impl PassValue for ByPassLocation<'_> {
         }
     }
 
-    fn meets_pass(&self, opponent: &Robot, from: Point<Attack>, to: Point<Attack>) -> f32 {
+    fn meets_pass(&self, opponent: &ViewRobot, from: Point<Attack>, to: Point<Attack>) -> f32 {
         self.intercepts(opponent, from, to, &self.kicks.flat(from.distance(to)))
     }
 
-    fn meets_shot(&self, opponent: &Robot, from: Point<Attack>, to: Point<Attack>) -> f32 {
+    fn meets_shot(&self, opponent: &ViewRobot, from: Point<Attack>, to: Point<Attack>) -> f32 {
         self.intercepts(opponent, from, to, &self.kicks.shot())
     }
 }
@@ -74,7 +80,7 @@ mod tests {
     use super::super::super::view::tests::view;
     use super::super::attack::Least;
     use super::super::grid::Cell;
-    use super::super::{Planner, Settings, tactics::Models};
+    use super::super::{CoerceSettings, Planner, tactics::Models};
     use super::*;
     use motion::ball::BallModel;
     use motion::ball::chip::ChipModel;
@@ -93,7 +99,7 @@ mod tests {
         assert!(value.meets_pass(&scene.theirs[0], from, to) > 0.95);
         assert!(value.meets_pass(&scene.theirs[1], from, to) < 0.05);
         // A shot is faster: there is less time to reach its path.
-        let beside = Robot { position: Point::new(1.5, 0.8), ..scene.theirs[0] };
+        let beside = ViewRobot { position: Point::new(1.5, 0.8), ..scene.theirs[0] };
         assert!(value.meets_shot(&beside, from, to) < value.meets_pass(&beside, from, to));
     }
 
@@ -102,7 +108,7 @@ mod tests {
         let kicks = kicks(League::DivisionB);
         let scene = view((0.5, 1.8), &[(-4.4, 0.0), (0.4, 1.9), (1.5, -0.8)], &[(4.3, 0.1), (2.0, 0.0)]);
         let from = Point::new(0.5, 1.8);
-        let direct = Scene::of(&scene, &kicks, from, Some(scene.ours[1].id), &scene.ours[2]);
+        let direct = PassScene::of(&scene, &kicks, from, Some(scene.ours[1].id), &scene.ours[2]);
         let mut places = Cell::all().map(|cell| cell.middle(&scene.field));
         let mut count = 0;
         let kicker = scene.ours[1].id;
@@ -143,7 +149,7 @@ mod tests {
             let mut scene = view(ball, &ours, &theirs);
             scene.field = league.field();
             // The values are compared here, whatever their size.
-            let settings = Settings { least: Least::default(), ..Settings::of(league) };
+            let settings = CoerceSettings { least: Least::default(), ..CoerceSettings::of(league) };
             let mut planner = Planner::new(settings, Models::default());
             let kicker = scene.ours[1].id;
             planner.observe(&scene, kicker);
@@ -155,7 +161,7 @@ mod tests {
             }
             // Followers where they are expected give the attack a higher value than at their present places.
             let receiver = *scene.our(plan.optimistic.receiver).unwrap();
-            let worth = |theirs: &dyn Fn(&mut Robot)| {
+            let worth = |theirs: &dyn Fn(&mut ViewRobot)| {
                 let mut then = scene.clone();
                 then.ours.retain(|robot| robot.id == kicker || robot.id == receiver.id);
                 then.theirs.iter_mut().for_each(theirs);

@@ -11,11 +11,11 @@ use geometry::{Attack, Point, Segment};
 use motion::trajectory::CalcMotion;
 use protocol::RobotId;
 
-use super::super::view::{ROBOTS_MAX, Robot, View};
+use super::super::view::{ROBOTS_MAX, View, ViewRobot};
 use super::attack::{AttackPlan, PassValue};
 use super::detect::Detected;
 use super::grid::{CELLS, Cell};
-use super::{Settings, tactics};
+use super::{CoerceSettings, tactics};
 
 /// One robot of ours, the opponent that it draws, and its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,12 +90,12 @@ pub fn pairs(
 /// Probability that an opponent standing at `at` intercepts the pass, or the shot after it.
 pub fn interference(
     value: &dyn PassValue,
-    opponent: &Robot,
+    opponent: &ViewRobot,
     at: Point<Attack>,
     from: Point<Attack>,
     attack: &AttackPlan,
 ) -> f32 {
-    let standing = Robot { position: at, velocity: geometry::Vector::default(), ..*opponent };
+    let standing = ViewRobot { position: at, velocity: geometry::Vector::default(), ..*opponent };
     let pass = value.meets_pass(&standing, from, attack.at);
     let shot = value.meets_shot(&standing, attack.at, attack.worth.aim);
     1.0 - (1.0 - pass) * (1.0 - shot)
@@ -105,10 +105,10 @@ pub fn interference(
 pub fn coerce(
     view: &View,
     value: &dyn PassValue,
-    situation: &tactics::Situation<'_>,
+    situation: &tactics::CoerceSituation<'_>,
     pairs: &[Pair],
     attack: &AttackPlan,
-    settings: &Settings,
+    settings: &CoerceSettings,
 ) -> CoercePlan {
     let mut plan = CoercePlan { coercers: heapless::Vec::new(), first: [1.0; CELLS] };
     let Some(ball) = view.ball else { return plan };
@@ -154,7 +154,11 @@ pub fn coerce(
 
 /// Where an opponent that follows robots drives to when the one it follows is at `at`: to its distance from
 /// it, on the side that it keeps to.
-pub fn response(situation: &tactics::Situation<'_>, marker: &Detected, at: Point<Attack>) -> Point<Attack> {
+pub fn response(
+    situation: &tactics::CoerceSituation<'_>,
+    marker: &Detected,
+    at: Point<Attack>,
+) -> Point<Attack> {
     let [goal_side, ball_side] = situation.mark_places(at, marker.stand_off);
     if marker.ball_side { ball_side } else { goal_side }
 }
@@ -167,7 +171,7 @@ fn may_go(
     attack: &AttackPlan,
     from: Point<Attack>,
     cell: Cell,
-    settings: &Settings,
+    settings: &CoerceSettings,
 ) -> bool {
     let at = cell.middle(&view.field);
     let taken = cell == attack.cell || plan.coercers.iter().any(|other| other.cell == cell);

@@ -5,7 +5,7 @@ use geometry::{Attack, Point};
 use protocol::{Instant, RobotId};
 
 use super::super::view::{ROBOTS_MAX, View};
-use super::tactics::{Likelihoods, Models, Situation, Tactic, detected};
+use super::tactics::{CoerceSituation, Likelihoods, Models, Tactic, detected};
 
 /// State of an opponent.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,7 +63,7 @@ impl Detector {
         let since = self.seen.map_or(f32::INFINITY, |seen| view.now.since(seen).as_secs_f32());
         self.seen = Some(view.now);
         let keeps = if since < FORGOTTEN { geometry::math::exp(-since / MEMORY) } else { 0.0 };
-        let situation = Situation::new(view, self.models, kicker);
+        let situation = CoerceSituation::new(view, self.models, kicker);
         let mut known = [None; ROBOTS_MAX];
         for robot in &view.theirs {
             let new = situation.likelihoods(robot.position);
@@ -85,8 +85,8 @@ impl Detector {
 
     /// Estimates for each opponent of the view, by number; one never watched is judged by its present place.
     pub fn read(&self, view: &View, kicker: Option<RobotId>) -> heapless::Vec<Detected, ROBOTS_MAX> {
-        let situation = Situation::new(view, self.models, kicker);
-        let read = |robot: &super::super::view::Robot| {
+        let situation = CoerceSituation::new(view, self.models, kicker);
+        let read = |robot: &super::super::view::ViewRobot| {
             let known = self.known[robot.id.index()];
             let now = || situation.likelihoods(robot.position);
             let likelihoods = known.map_or_else(now, |known| known.likelihoods);

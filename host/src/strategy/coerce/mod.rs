@@ -25,11 +25,11 @@ use motion::trajectory::FreeLimits;
 use rules::League;
 
 pub use by_pass::ByPassLocation;
-pub use planner::{CapPlan, End, FinalAttack, Followed, Part, Planner, Posting, Progress};
+pub use planner::{CapPlan, CoerceEnd, CoercePart, CoerceProgress, FinalAttack, Followed, Planner, Posting};
 
 /// Settings that the paper leaves open.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
+pub struct CoerceSettings {
     /// How our robots drive, for the times at which they reach a cell.
     pub robot: FreeLimits,
     /// Longest time for coercing, s: part of the time that a free kick may take.
@@ -52,7 +52,7 @@ pub struct Settings {
     pub off_areas: f32,
 }
 
-impl Settings {
+impl CoerceSettings {
     /// The settings for a league's rules.
     pub fn of(league: League) -> Self {
         let free_kick = league.limits().map_or(FREE_KICK_TIME, |limits| limits.free_kick_time);
@@ -60,7 +60,7 @@ impl Settings {
     }
 }
 
-impl Default for Settings {
+impl Default for CoerceSettings {
     fn default() -> Self {
         Self {
             robot: FreeLimits::default(),

@@ -5,11 +5,11 @@ use protocol::{Instant, RobotId};
 use rules::{Phase, Side};
 
 use super::super::view::{ROBOTS_MAX, View};
-use super::Settings;
+use super::CoerceSettings;
 use super::attack::{AttackPlan, CellValues, PassValue, Worth, best_attack};
 use super::coercing::{CoercePlan, Coercer, Pair, coerce, pairs};
 use super::detect::{Detected, Detector};
-use super::tactics::{Models, Situation};
+use super::tactics::{CoerceSituation, Models};
 
 /// The plan of a free kick, with its reasons.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,7 +77,7 @@ pub struct FinalAttack {
 
 /// Progress of the plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Progress {
+pub enum CoerceProgress {
     /// Nothing is planned, as outside free kicks.
     Idle,
     /// Robots go to the places of the coerce plan (step 4).
@@ -92,12 +92,12 @@ pub enum Progress {
     /// The attack has started (step 7): the pass goes to the receiver, ahead of it.
     Attacking(FinalAttack),
     /// The plan has ended.
-    Over(End),
+    Over(CoerceEnd),
 }
 
 /// Why it has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum CoerceEnd {
     /// The ball is in play.
     InPlay,
     /// The referee has changed the command.
@@ -108,7 +108,7 @@ pub enum End {
 
 /// A robot's part in the plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Part {
+pub enum CoercePart {
     /// Takes the free kick.
     Takes,
     /// Draws this opponent away.
@@ -132,13 +132,13 @@ pub struct Posting {
     /// Place that it goes to, attack frame, m.
     pub at: Point<Attack>,
     /// Its part in the plan.
-    pub part: Part,
+    pub part: CoercePart,
 }
 
 /// State of the planner between snapshots.
 #[derive(Clone, Debug)]
 pub struct Planner {
-    settings: Settings,
+    settings: CoerceSettings,
     detector: Detector,
     seed: u64,
     plan: Option<CapPlan>,
@@ -147,12 +147,12 @@ pub struct Planner {
     /// When the last coercer arrived.
     arrived: Option<Instant>,
     attack: Option<FinalAttack>,
-    over: Option<End>,
+    over: Option<CoerceEnd>,
 }
 
 impl Planner {
     /// A planner without observations.
-    pub fn new(settings: Settings, models: Models) -> Self {
+    pub fn new(settings: CoerceSettings, models: Models) -> Self {
         Self {
             settings,
             detector: Detector::new(models),
@@ -186,7 +186,7 @@ impl Planner {
         (self.seed, self.begun, self.arrived, self.attack, self.over) = (seed, None, None, None, None);
         self.plan = self.make(view, value, kicker);
         if self.plan.is_none() {
-            self.over = Some(End::NoAttack);
+            self.over = Some(CoerceEnd::NoAttack);
         }
         self.plan.as_ref()
     }
@@ -205,7 +205,7 @@ impl Planner {
         let (attack, values) =
             best_attack(&imagined, value, kicker, receivers, self.settings.least, self.seed);
         let attack = attack?;
-        let situation = Situation::new(view, *self.detector.models(), Some(kicker));
+        let situation = CoerceSituation::new(view, *self.detector.models(), Some(kicker));
         let coerce = coerce(view, value, &situation, &pairs, &attack, &self.settings);
         Some(CapPlan { kicker, detected, optimistic: attack, values, coerce, attackers })
     }
@@ -221,25 +221,25 @@ impl Planner {
     }
 
     /// Steps 4 to 7: progress of the plan in this snapshot.
-    pub fn watch(&mut self, view: &View, value: &dyn PassValue) -> Progress {
+    pub fn watch(&mut self, view: &View, value: &dyn PassValue) -> CoerceProgress {
         if let Some(end) = self.over {
-            return Progress::Over(end);
+            return CoerceProgress::Over(end);
         }
-        let Some(plan) = &self.plan else { return Progress::Idle };
+        let Some(plan) = &self.plan else { return CoerceProgress::Idle };
         self.detector.watch(view, Some(plan.kicker));
         let end = match view.phase {
             Phase::FreeKick(Side::Ours) | Phase::Stop | Phase::BallPlacement(Side::Ours) => None,
-            Phase::Run => Some(End::InPlay),
-            _ => Some(End::Stopped),
+            Phase::Run => Some(CoerceEnd::InPlay),
+            _ => Some(CoerceEnd::Stopped),
         };
         let gone = view.our(plan.kicker).is_none()
             || self.attack.is_some_and(|attack| view.our(attack.plan.receiver).is_none());
-        if let Some(end) = end.or(gone.then_some(End::NoAttack)) {
+        if let Some(end) = end.or(gone.then_some(CoerceEnd::NoAttack)) {
             self.over = Some(end);
-            return Progress::Over(end);
+            return CoerceProgress::Over(end);
         }
         if let Some(attack) = self.attack {
-            return Progress::Attacking(attack);
+            return CoerceProgress::Attacking(attack);
         }
         let free_kick = view.phase == Phase::FreeKick(Side::Ours);
         let coercers = &plan.coerce.coercers;
@@ -254,7 +254,7 @@ impl Planner {
             self.arrived = None;
         }
         if !free_kick {
-            return Progress::Coercing { arrived, of, left: self.settings.coerce_time };
+            return CoerceProgress::Coercing { arrived, of, left: self.settings.coerce_time };
         }
         let begun = *self.begun.get_or_insert(view.now);
         let left = self.settings.coerce_time - view.now.since(begun).as_secs_f32();
@@ -262,19 +262,19 @@ impl Planner {
             .arrived
             .is_some_and(|since| of == 0 || view.now.since(since).as_secs_f32() >= self.settings.follow_time);
         if !settled && left > 0.0 {
-            return Progress::Coercing { arrived, of, left };
+            return CoerceProgress::Coercing { arrived, of, left };
         }
         let attack = self.attack_now(view, value, plan);
         self.attack = attack;
         if let Some(attack) = attack {
-            return Progress::Attacking(attack);
+            return CoerceProgress::Attacking(attack);
         }
         if left > 0.0 {
             // A robot that still moves may open a path.
-            return Progress::Coercing { arrived, of, left };
+            return CoerceProgress::Coercing { arrived, of, left };
         }
-        self.over = Some(End::NoAttack);
-        Progress::Over(End::NoAttack)
+        self.over = Some(CoerceEnd::NoAttack);
+        CoerceProgress::Over(CoerceEnd::NoAttack)
     }
 
     /// Step 6: the final attack.
@@ -345,17 +345,17 @@ impl Planner {
         let Some(plan) = self.plan.as_ref().filter(|_| self.over.is_none()) else {
             return heapless::Vec::new();
         };
-        let post = |robot: &super::super::view::Robot| {
+        let post = |robot: &super::super::view::ViewRobot| {
             let id = robot.id;
             let (at, part) = if id == plan.kicker {
-                (view.ball.map_or(robot.position, |ball| ball.position), Part::Takes)
+                (view.ball.map_or(robot.position, |ball| ball.position), CoercePart::Takes)
             } else if let Some(attack) = self.attack.filter(|attack| attack.plan.receiver == id) {
-                (attack.plan.at, Part::Receives)
+                (attack.plan.at, CoercePart::Receives)
             } else if let Some(coercer) = plan.coercer(id) {
                 let Coercer { marker, expected, .. } = *coercer;
-                (coercer.at, Part::Coerces { marker, expected })
+                (coercer.at, CoercePart::Coerces { marker, expected })
             } else {
-                (robot.position, Part::Waits)
+                (robot.position, CoercePart::Waits)
             };
             Posting { robot: id, at, part }
         };

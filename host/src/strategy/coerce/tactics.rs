@@ -70,7 +70,7 @@ impl Default for Models {
 
 /// The world's part in the models: the ball and the robots of ours that can be marked.
 #[derive(Clone, Debug)]
-pub struct Situation<'v> {
+pub struct CoerceSituation<'v> {
     view: &'v View,
     models: Models,
     ball: Point<Attack>,
@@ -80,11 +80,12 @@ pub struct Situation<'v> {
     keeper_front: Point<Attack>,
 }
 
-impl<'v> Situation<'v> {
+impl<'v> CoerceSituation<'v> {
     /// The situation in this snapshot, with `kicker` at the ball.
     pub fn new(view: &'v View, models: Models, kicker: Option<protocol::RobotId>) -> Self {
         let ball = view.ball.map_or(Point::new(0.0, 0.0), |ball| ball.position);
-        let marked = |robot: &super::super::view::Robot| robot.id != view.keeper && Some(robot.id) != kicker;
+        let marked =
+            |robot: &super::super::view::ViewRobot| robot.id != view.keeper && Some(robot.id) != kicker;
         let marked = view.ours.iter().enumerate().filter(|(_, robot)| marked(robot)).map(|(i, _)| i);
         let goal = view.their_goal();
         let keeper_front =
@@ -203,7 +204,7 @@ mod tests {
         let view = scene();
         let kicker = Some(view.ours[1].id);
         let models = Models::default();
-        let situation = Situation::new(&view, models, kicker);
+        let situation = CoerceSituation::new(&view, models, kicker);
         let at = |x: f32, y: f32| situation.likelihoods(Point::new(x, y));
         // Goalkeeper: in the area, 0.1 m beside the line from (3, 0) to (0, 1): exp(−0.5 · 0.4²).
         let line = Segment::new(Point::<Attack>::new(3.0, 0.0), Point::new(0.0, 1.0));
@@ -230,7 +231,7 @@ mod tests {
     fn the_tactic_is_the_one_that_explains_a_place_best_and_none_below_its_threshold() {
         let view = scene();
         let models = Models::default();
-        let situation = Situation::new(&view, models, Some(view.ours[1].id));
+        let situation = CoerceSituation::new(&view, models, Some(view.ours[1].id));
         let tactic = |x: f32, y: f32| detected(&situation.likelihoods(Point::new(x, y)), &models);
         assert_eq!(tactic(2.7, 0.1), Some(Tactic::Goalkeeper));
         assert_eq!(tactic(2.1, 0.2), Some(Tactic::PrimaryDefence));
@@ -244,7 +245,7 @@ mod tests {
     #[test]
     fn likelihoods_are_shares_everywhere() {
         let view = scene();
-        let situation = Situation::new(&view, Models::default(), None);
+        let situation = CoerceSituation::new(&view, Models::default(), None);
         for i in 0..2_400 {
             let at = Point::new((i % 60) as f32 * 0.1 - 3.0, (i / 60) as f32 * 0.1 - 2.0);
             assert!(situation.likelihoods(at).iter().all(|p| (0.0..=1.0).contains(p)), "{at:?}");

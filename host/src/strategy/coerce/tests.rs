@@ -2,7 +2,7 @@
 //! hand.
 
 use super::super::view::tests::view;
-use super::super::view::{Robot, View};
+use super::super::view::{View, ViewRobot};
 use super::attack::{PassValue, Worth};
 use super::grid::Cell;
 use super::tactics::Models;
@@ -32,7 +32,7 @@ impl PassValue for ByDistance {
         view: &View,
         from: Point<Attack>,
         _: RobotId,
-        _: &Robot,
+        _: &ViewRobot,
         places: &mut dyn Iterator<Item = Point<Attack>>,
         take: &mut dyn FnMut(Point<Attack>, Worth),
     ) {
@@ -52,11 +52,11 @@ impl PassValue for ByDistance {
         }
     }
 
-    fn meets_pass(&self, opponent: &Robot, from: Point<Attack>, to: Point<Attack>) -> f32 {
+    fn meets_pass(&self, opponent: &ViewRobot, from: Point<Attack>, to: Point<Attack>) -> f32 {
         1.0 - Self::free(Segment::new(from, to).distance_to(opponent.position))
     }
 
-    fn meets_shot(&self, opponent: &Robot, from: Point<Attack>, to: Point<Attack>) -> f32 {
+    fn meets_shot(&self, opponent: &ViewRobot, from: Point<Attack>, to: Point<Attack>) -> f32 {
         1.0 - Self::free(Segment::new(from, to).distance_to(opponent.position))
     }
 }
@@ -82,7 +82,7 @@ fn free_kick(teammates: &[(f32, f32)], marked: &[usize]) -> View {
 const ANY: attack::Least = attack::Least { receive: 0.0, value: 0.0 };
 
 fn planner() -> Planner {
-    Planner::new(Settings { least: ANY, ..Settings::default() }, Models::default())
+    Planner::new(CoerceSettings { least: ANY, ..CoerceSettings::default() }, Models::default())
 }
 
 fn run(teammates: &[(f32, f32)], marked: &[usize]) -> (Planner, CapPlan, View) {
@@ -171,13 +171,13 @@ fn coercers_go_where_their_followers_are_least_in_the_way() {
 }
 
 /// All robots move as ordered for `seconds`: coercers to their places, followers after them if `follow`.
-fn play(planner: &mut Planner, view: &mut View, follow: bool, seconds: f32) -> Progress {
+fn play(planner: &mut Planner, view: &mut View, follow: bool, seconds: f32) -> CoerceProgress {
     let mut progress = planner.watch(view, &ByDistance);
     for _ in 0..(seconds * 100.0) as u32 {
         view.now += protocol::Duration::millis(10);
         for posting in &planner.postings(view) {
             let robot = view.ours.iter_mut().find(|robot| robot.id == posting.robot).unwrap();
-            if let Part::Coerces { marker, expected } = posting.part {
+            if let CoercePart::Coerces { marker, expected } = posting.part {
                 robot.position += (posting.at - robot.position).clamped(0.02);
                 let by = view.theirs.iter_mut().find(|robot| robot.id == marker).unwrap();
                 if follow {
@@ -186,7 +186,7 @@ fn play(planner: &mut Planner, view: &mut View, follow: bool, seconds: f32) -> P
             }
         }
         progress = planner.watch(view, &ByDistance);
-        if matches!(progress, Progress::Attacking(_)) {
+        if matches!(progress, CoerceProgress::Attacking(_)) {
             break;
         }
     }
@@ -198,8 +198,8 @@ fn who_is_followed_as_expected_attacks_as_planned_after_the_followers_came() {
     let (mut planner, plan, mut view) = run(&TEAMMATES, &[0, 1, 2]);
     let begin = view.now;
     let first = planner.watch(&view, &ByDistance);
-    assert!(matches!(first, Progress::Coercing { of: 3, .. }), "{first:?}");
-    let Progress::Attacking(attack) = play(&mut planner, &mut view, true, 5.0) else { panic!() };
+    assert!(matches!(first, CoerceProgress::Coercing { of: 3, .. }), "{first:?}");
+    let CoerceProgress::Attacking(attack) = play(&mut planner, &mut view, true, 5.0) else { panic!() };
     assert!(matches!(attack.followed, Followed::AsExpected { worst } if worst < 0.5), "{attack:?}");
     assert_eq!((attack.plan, attack.reused), (plan.optimistic, false));
     let took = view.now.since(begin).as_secs_f32();
@@ -207,18 +207,18 @@ fn who_is_followed_as_expected_attacks_as_planned_after_the_followers_came() {
     // Orders now: the receiver has its place, the others stay.
     let postings = planner.postings(&view);
     let part = |n: u8| postings.iter().find(|posting| posting.robot == id(n)).unwrap().part;
-    assert_eq!((part(1), part(5)), (Part::Takes, Part::Receives));
-    assert!(matches!(part(2), Part::Coerces { .. }));
+    assert_eq!((part(1), part(5)), (CoercePart::Takes, CoercePart::Receives));
+    assert!(matches!(part(2), CoercePart::Coerces { .. }));
     // The ball in play ends it.
     view.phase = Phase::Run;
-    assert_eq!(planner.watch(&view, &ByDistance), Progress::Over(End::InPlay));
+    assert_eq!(planner.watch(&view, &ByDistance), CoerceProgress::Over(CoerceEnd::InPlay));
     assert!(planner.postings(&view).is_empty());
 }
 
 #[test]
 fn who_does_not_follow_makes_a_new_attack_against_everyone() {
     let (mut planner, _, mut view) = run(&TEAMMATES, &[0, 1, 2]);
-    let Progress::Attacking(attack) = play(&mut planner, &mut view, false, 5.0) else { panic!() };
+    let CoerceProgress::Attacking(attack) = play(&mut planner, &mut view, false, 5.0) else { panic!() };
     let Followed::Otherwise { off, .. } = attack.followed else { panic!("{attack:?}") };
     assert!(off > 0.5 && attack.plan.against == 6);
     // Coercers that no opponent followed are free: they may be used again.
@@ -232,7 +232,7 @@ fn who_does_not_follow_makes_a_new_attack_against_everyone() {
 fn where_all_coerce_one_whom_no_one_follows_is_used_again() {
     let (mut planner, plan, mut view) = run(&TEAMMATES, &[0, 1, 2, 3]);
     let marked = plan.optimistic.receiver;
-    let Progress::Attacking(attack) = play(&mut planner, &mut view, true, 5.0) else { panic!() };
+    let CoerceProgress::Attacking(attack) = play(&mut planner, &mut view, true, 5.0) else { panic!() };
     // All are followed as expected, so the receiver is marked; no robot is free; one of them attacks
     // nevertheless.
     assert!(matches!(attack.followed, Followed::ReceiverMarked { .. }), "{attack:?} {marked:?}");
@@ -255,7 +255,7 @@ fn where_all_coerce_one_whom_no_one_follows_is_used_again() {
     }
     planner.watch(&now, &ByDistance);
     now.now += protocol::Duration::millis(600);
-    let Progress::Attacking(attack) = planner.watch(&now, &ByDistance) else { panic!() };
+    let CoerceProgress::Attacking(attack) = planner.watch(&now, &ByDistance) else { panic!() };
     assert_eq!((attack.plan.receiver, attack.reused), (free, true));
     assert!(matches!(attack.followed, Followed::AsExpected { .. }));
 }
@@ -273,12 +273,16 @@ fn before_the_free_kick_the_clock_stands_and_a_halt_ends_it() {
     view.phase = Phase::Stop;
     for _ in 0..1_000 {
         view.now += protocol::Duration::millis(10);
-        assert!(matches!(planner.watch(&view, &ByDistance), Progress::Coercing { left: 4.0, .. }));
+        assert!(matches!(planner.watch(&view, &ByDistance), CoerceProgress::Coercing { left: 4.0, .. }));
     }
     view.phase = Phase::Halt;
-    assert_eq!(planner.watch(&view, &ByDistance), Progress::Over(End::Stopped));
+    assert_eq!(planner.watch(&view, &ByDistance), CoerceProgress::Over(CoerceEnd::Stopped));
     view.phase = Phase::FreeKick(Side::Ours);
-    assert_eq!(planner.watch(&view, &ByDistance), Progress::Over(End::Stopped), "until it is planned anew");
+    assert_eq!(
+        planner.watch(&view, &ByDistance),
+        CoerceProgress::Over(CoerceEnd::Stopped),
+        "until it is planned anew"
+    );
 }
 
 #[test]
@@ -286,16 +290,19 @@ fn without_a_ball_or_teammates_there_is_no_plan() {
     let mut planner = planner();
     let mut lonely = free_kick(&[], &[]);
     assert_eq!(planner.plan(&lonely, &ByDistance, id(1), 1), None);
-    assert_eq!(planner.watch(&lonely, &ByDistance), Progress::Over(End::NoAttack));
+    assert_eq!(planner.watch(&lonely, &ByDistance), CoerceProgress::Over(CoerceEnd::NoAttack));
     lonely.ball = None;
     assert_eq!(planner.plan(&lonely, &ByDistance, id(1), 1), None);
-    let mut idle = Planner::new(Settings::default(), Models::default());
-    assert_eq!(idle.watch(&lonely, &ByDistance), Progress::Idle);
+    let mut idle = Planner::new(CoerceSettings::default(), Models::default());
+    assert_eq!(idle.watch(&lonely, &ByDistance), CoerceProgress::Idle);
 }
 
 #[test]
 fn a_pass_that_hardly_arrives_is_no_attack_and_a_way_is_sought_until_the_time_to_coerce_is_over() {
-    let likely = |receive| Settings { least: attack::Least { receive, value: 0.0 }, ..Settings::default() };
+    let likely = |receive| CoerceSettings {
+        least: attack::Least { receive, value: 0.0 },
+        ..CoerceSettings::default()
+    };
     let mut view = free_kick(&TEAMMATES, &[0, 1, 2]);
     let mut strict = Planner::new(likely(1.1), Models::default());
     assert_eq!(strict.plan(&view, &ByDistance, id(1), 1), None);
@@ -309,14 +316,14 @@ fn a_pass_that_hardly_arrives_is_no_attack_and_a_way_is_sought_until_the_time_to
     for ms in (0..4_500).step_by(100) {
         closed.now = view.now + protocol::Duration::millis(ms);
         match planner.watch(&closed, &ByDistance) {
-            Progress::Coercing { .. } => sought = ms,
-            Progress::Over(end) => {
+            CoerceProgress::Coercing { .. } => sought = ms,
+            CoerceProgress::Over(end) => {
                 over.get_or_insert((ms, end));
             }
             other => panic!("{other:?}"),
         }
     }
-    assert_eq!((sought, over), (3_900, Some((4_000, End::NoAttack))));
+    assert_eq!((sought, over), (3_900, Some((4_000, CoerceEnd::NoAttack))));
     // It leaves in time: then there is a plan, and it is searched again as long as there is time.
     planner.plan(&view, &ByDistance, id(1), 1).unwrap();
     let begun = view.now;
@@ -326,10 +333,10 @@ fn a_pass_that_hardly_arrives_is_no_attack_and_a_way_is_sought_until_the_time_to
     }
     planner.watch(&view, &ByDistance);
     view.now += protocol::Duration::millis(600);
-    let Progress::Attacking(first) = planner.watch(&view, &ByDistance) else { panic!() };
+    let CoerceProgress::Attacking(first) = planner.watch(&view, &ByDistance) else { panic!() };
     assert!(first.plan.worth.receive >= 0.7);
     assert!(planner.reconsider(view.now));
-    let Progress::Attacking(again) = planner.watch(&view, &ByDistance) else { panic!() };
+    let CoerceProgress::Attacking(again) = planner.watch(&view, &ByDistance) else { panic!() };
     assert_eq!(again.plan, first.plan);
     assert!(!planner.reconsider(begun + protocol::Duration::millis(4_000)));
 }
@@ -347,7 +354,7 @@ impl PassValue for Counting {
         view: &View,
         from: Point<Attack>,
         kicker: RobotId,
-        receiver: &Robot,
+        receiver: &ViewRobot,
         places: &mut dyn Iterator<Item = Point<Attack>>,
         take: &mut dyn FnMut(Point<Attack>, Worth),
     ) {
@@ -357,12 +364,12 @@ impl PassValue for Counting {
         });
     }
 
-    fn meets_pass(&self, opponent: &Robot, from: Point<Attack>, to: Point<Attack>) -> f32 {
+    fn meets_pass(&self, opponent: &ViewRobot, from: Point<Attack>, to: Point<Attack>) -> f32 {
         self.meets.set(self.meets.get() + 1);
         ByDistance.meets_pass(opponent, from, to)
     }
 
-    fn meets_shot(&self, opponent: &Robot, from: Point<Attack>, to: Point<Attack>) -> f32 {
+    fn meets_shot(&self, opponent: &ViewRobot, from: Point<Attack>, to: Point<Attack>) -> f32 {
         ByDistance.meets_shot(opponent, from, to)
     }
 }

@@ -6,27 +6,27 @@
 use geometry::Vector;
 
 use super::{Places, Style, defenders, free_places};
-use crate::strategy::order::{Role, Why};
-use crate::strategy::view::{Ball, Robot, View};
+use crate::strategy::order::{OrderReason, Role};
+use crate::strategy::view::{View, ViewBall, ViewRobot};
 use crate::strategy::{roles, support};
 
 pub(super) const STYLE: Style = Style { target: support::target, places };
 
-fn places(view: &View, ball: &Ball, wanted: usize) -> Places {
+fn places(view: &View, ball: &ViewBall, wanted: usize) -> Places {
     let goal = view.our_goal();
-    let mut them: heapless::Vec<&Robot, { super::ROBOTS_MAX }> = view
+    let mut them: heapless::Vec<&ViewRobot, { super::ROBOTS_MAX }> = view
         .theirs
         .iter()
         .filter(|robot| robot.id != view.their_keeper)
         .filter(|robot| ball.position.distance(robot.position) > AT_BALL)
         .collect();
-    let danger = |robot: &Robot| robot.position.distance(goal);
+    let danger = |robot: &ViewRobot| robot.position.distance(goal);
     them.sort_unstable_by(|a, b| danger(a).total_cmp(&danger(b)).then(a.id.cmp(&b.id)));
     let marks = (0_u8..).zip(them).map(|(i, robot)| {
         // Extrapolated to where it will be when the marker has reacted.
         let at = robot.position + robot.velocity * ANSWERS;
         let home = (goal - at).unit().unwrap_or(Vector::new(-1.0, 0.0));
-        (at + home * OFF, Role::Marker(i), Why::Marks { opponent: robot.id })
+        (at + home * OFF, Role::Marker(i), OrderReason::Marks { opponent: robot.id })
     });
     let forward = if is_ours(view, ball) { FORWARD } else { 0 };
     let [near, _] = defenders(view);
@@ -38,8 +38,8 @@ fn places(view: &View, ball: &Ball, wanted: usize) -> Places {
 }
 
 /// Whether one of ours can have the ball well before any of theirs.
-fn is_ours(view: &View, ball: &Ball) -> bool {
-    let soonest = |robots: &[Robot]| {
+fn is_ours(view: &View, ball: &ViewBall) -> bool {
+    let soonest = |robots: &[ViewRobot]| {
         robots.iter().map(|robot| roles::time_to(robot, ball.rest)).fold(f32::INFINITY, f32::min)
     };
     soonest(&view.ours) + SOONER < soonest(&view.theirs)

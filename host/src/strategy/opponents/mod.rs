@@ -13,9 +13,9 @@ use geometry::{Angle, Attack, Point};
 use protocol::{Duration, Instant, RobotId};
 use serde::{Deserialize, Serialize};
 
-use super::order::{Order, Role, Task, Why};
+use super::order::{Order, OrderReason, Role, Task};
 use super::support::{self, Target};
-use super::view::{Ball, ROBOTS_MAX, View};
+use super::view::{ROBOTS_MAX, View, ViewBall};
 use super::{Orders, defence, restart, roles};
 
 /// What decides a side's open play.
@@ -76,11 +76,11 @@ struct Style {
     /// The target chosen for the robot at the ball.
     target: fn(&View, RobotId, Point<Attack>) -> Target,
     /// Where the others stand, most urgent first, while `wanted` of them are free.
-    places: fn(&View, &Ball, usize) -> Places,
+    places: fn(&View, &ViewBall, usize) -> Places,
 }
 
 /// A place to be taken, its role, and the reason.
-type Place = (Point<Attack>, Role, Why);
+type Place = (Point<Attack>, Role, OrderReason);
 type Places = heapless::Vec<Place, ROBOTS_MAX>;
 type Free = heapless::Vec<RobotId, ROBOTS_MAX>;
 
@@ -105,7 +105,7 @@ impl OpponentModel {
     ) -> Orders {
         let mut orders = Orders::new();
         // At most one order per robot, and as many places as robots.
-        let mut order = |free: &mut Free, robot: RobotId, role: Role, task: Task, why: Why| {
+        let mut order = |free: &mut Free, robot: RobotId, role: Role, task: Task, why: OrderReason| {
             free.retain(|other| *other != robot);
             let _ = orders.push(Order { robot, role, task, why });
         };
@@ -117,12 +117,18 @@ impl OpponentModel {
         if let Some((robot, seconds)) = self.choose_first(view, &ball, free, double_touch_blocked) {
             let target = self.target(view, robot, &ball);
             let (task, why) = restart::take(view, &ball, Some(target));
-            let why = if ball.velocity.norm() > LIES { Why::SoonestAtBall { seconds } } else { why };
+            let why = if ball.velocity.norm() > LIES { OrderReason::SoonestAtBall { seconds } } else { why };
             order(free, robot, Role::Player, task, why);
             if let Target::Teammate { id, at, room } = target
                 && free.contains(&id)
             {
-                order(free, id, Role::Receiver, Task::Receive { at, then: None }, Why::BestTarget { room });
+                order(
+                    free,
+                    id,
+                    Role::Receiver,
+                    Task::Receive { at, then: None },
+                    OrderReason::BestTarget { room },
+                );
             }
         } else {
             self.aim = None;
@@ -146,7 +152,7 @@ impl OpponentModel {
     fn choose_first(
         &mut self,
         view: &View,
-        ball: &Ball,
+        ball: &ViewBall,
         free: &Free,
         double_touch_blocked: Option<RobotId>,
     ) -> Option<(RobotId, f32)> {
@@ -162,7 +168,7 @@ impl OpponentModel {
     }
 
     /// The ball's target: held for a while, so that a robot that moves around the ball does not turn back.
-    fn target(&mut self, view: &View, robot: RobotId, ball: &Ball) -> Target {
+    fn target(&mut self, view: &View, robot: RobotId, ball: &ViewBall) -> Target {
         match self.aim {
             Some((since, from, target))
                 if view.now.since(since) < AIM_STANDS && from.distance(ball.position) < AIM_MOVES =>
@@ -185,9 +191,9 @@ fn defenders(view: &View) -> [Place; 2] {
 }
 
 /// Free places for a pass from the ball, at most `wanted` of them.
-fn free_places(view: &View, ball: &Ball, wanted: usize) -> impl Iterator<Item = Place> {
+fn free_places(view: &View, ball: &ViewBall, wanted: usize) -> impl Iterator<Item = Place> {
     let places = support::places(view, ball.position, wanted);
-    (0_u8..).zip(places).map(|(i, (at, worth))| (at, Role::Support(i), Why::FreePlace { worth }))
+    (0_u8..).zip(places).map(|(i, (at, worth))| (at, Role::Support(i), OrderReason::FreePlace { worth }))
 }
 
 fn facing(view: &View, at: Point<Attack>) -> Task {
@@ -196,7 +202,7 @@ fn facing(view: &View, at: Point<Attack>) -> Task {
 }
 
 /// Away from the ball that a teammate plays: a supporting robot does not obstruct it.
-fn off_ball(view: &View, ball: &Ball, at: Point<Attack>) -> Point<Attack> {
+fn off_ball(view: &View, ball: &ViewBall, at: Point<Attack>) -> Point<Attack> {
     let away = at - ball.position;
     if away.norm() >= OFF_TEAMMATES_BALL {
         return at;

@@ -7,9 +7,9 @@ use protocol::RobotId;
 
 use super::{Place, Places, Style, defenders, free_places};
 use crate::strategy::defence::room_along;
-use crate::strategy::order::{Role, Why};
+use crate::strategy::order::{OrderReason, Role};
 use crate::strategy::support::{Target, best_shot};
-use crate::strategy::view::{Ball, View};
+use crate::strategy::view::{View, ViewBall};
 
 pub(super) const STYLE: Style = Style { target: shoot_or_clear, places };
 
@@ -30,10 +30,10 @@ pub(super) fn shoot_or_clear(view: &View, _robot: RobotId, ball: Point<Attack>) 
     Target::Ahead { at, room }
 }
 
-fn places(view: &View, ball: &Ball, wanted: usize) -> Places {
+fn places(view: &View, ball: &ViewBall, wanted: usize) -> Places {
     let home = (view.our_goal() - ball.position).unit().unwrap_or(Vector::new(-1.0, 0.0));
     let second: Place =
-        (ball.position + home * BEHIND, Role::Support(0), Why::OnBallLine { y: view.our_goal().y() });
+        (ball.position + home * BEHIND, Role::Support(0), OrderReason::OnBallLine { y: view.our_goal().y() });
     let [near, far] = defenders(view);
     [second, near]
         .into_iter()

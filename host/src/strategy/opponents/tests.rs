@@ -68,7 +68,7 @@ fn a_marker_stands_between_each_opponent_and_the_goal() {
         let them = view.theirs[opponent];
         let marker = orders
             .iter()
-            .find(|order| matches!(order.why, Why::Marks { opponent } if opponent == them.id))
+            .find(|order| matches!(order.why, OrderReason::Marks { opponent } if opponent == them.id))
             .unwrap();
         let Task::GoTo { at, .. } = marker.task else { panic!("{marker:?}") };
         let (to_goal, goal) = (view.our_goal() - them.position, at - them.position);

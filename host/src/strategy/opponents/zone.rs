@@ -4,13 +4,13 @@
 use geometry::{Angle, Vector};
 
 use super::{Places, Style, free_places};
-use crate::strategy::order::{Role, Why};
+use crate::strategy::order::{OrderReason, Role};
 use crate::strategy::support;
-use crate::strategy::view::{Ball, View};
+use crate::strategy::view::{View, ViewBall};
 
 pub(super) const STYLE: Style = Style { target: support::target, places };
 
-fn places(view: &View, ball: &Ball, wanted: usize) -> Places {
+fn places(view: &View, ball: &ViewBall, wanted: usize) -> Places {
     let goal = view.our_goal();
     let forward = usize::from(wanted > 2);
     let wall = wanted - forward.min(wanted);
@@ -21,7 +21,7 @@ fn places(view: &View, ball: &Ball, wanted: usize) -> Places {
     let bricks = (0..wall).map(|i| {
         let beside = (i as f32 - (wall as f32 - 1.0) * 0.5) * SPACING / radius;
         let at = goal + middle.rotated(Angle::new(beside)) * radius;
-        (at, Role::Wall, Why::OnBallLine { y: goal.y() })
+        (at, Role::Wall, OrderReason::OnBallLine { y: goal.y() })
     });
     bricks.chain(free_places(view, ball, forward)).take(wanted).collect()
 }

@@ -12,7 +12,7 @@ use motion::trajectory::{CalcMotion, FreeLimits, TurnLimits};
 use protocol::{Duration, Instant};
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 
-use super::super::view::Robot;
+use super::super::view::ViewRobot;
 use super::scene::Rating;
 
 /// Times used by Algorithm 1, s.
@@ -54,12 +54,12 @@ impl Times {
     /// headings, whichever takes longer.
     pub fn of(
         places: &Places,
-        passer: &Robot,
-        receiver: &Robot,
+        passer: &ViewRobot,
+        receiver: &ViewRobot,
         ball_time: f32,
         limits: &FreeLimits,
     ) -> Self {
-        let time = |robot: &Robot, (at, facing): (Point<Attack>, Angle)| {
+        let time = |robot: &ViewRobot, (at, facing): (Point<Attack>, Angle)| {
             let turn = TurnLimits::default().plan(robot.heading, 0.0, facing).duration();
             limits.time(robot.position, robot.velocity, at).max(turn)
         };

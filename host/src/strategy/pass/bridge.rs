@@ -5,7 +5,7 @@ use casebase::CaseRobot;
 use geometry::{Angle, Attack, Point, Vector, math};
 use protocol::{CaseId, RobotId};
 
-use super::scene::{Rating, Scene};
+use super::scene::{PassScene, Rating};
 
 /// The next pass of a case that is being played.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,7 +44,7 @@ impl Refined {
 
 /// Refines the pass to `place` within `radius` m of it: a sunflower of places, then ever smaller circles
 /// around the best of them. Nothing is random: the same scene gives the same point.
-pub fn refine(scene: &Scene<'_>, place: Point<Attack>, radius: f32) -> Refined {
+pub fn refine(scene: &PassScene<'_>, place: Point<Attack>, radius: f32) -> Refined {
     let proposed = scene.rate(place);
     let mut best = proposed;
     let look = |best: &mut Rating, at: Point<Attack>| {
@@ -106,7 +106,7 @@ mod tests {
         let kicks =
             Kicks::new(PassConstants::of(League::DivisionB), BallModel::default(), ChipModel::default());
         let view = view((0.4, 0.0), &OURS, theirs);
-        let scene = Scene::of(&view, &kicks, Point::new(0.4, 0.0), Some(view.ours[0].id), &view.ours[1]);
+        let scene = PassScene::of(&view, &kicks, Point::new(0.4, 0.0), Some(view.ours[0].id), &view.ours[1]);
         let place = Point::new(2.4, 1.0);
         // Every 2 cm within the radius.
         let mut best = 0.0_f32;

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::watch::{Ordered, Verdict};
+use super::watch::{Ordered, PassVerdict};
 
 /// Passes of one kind of kick, by outcome.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -67,15 +67,15 @@ impl Fates {
         self.received + self.by_teammate
     }
 
-    fn count(&mut self, verdict: &Verdict) -> &mut u32 {
+    fn count(&mut self, verdict: &PassVerdict) -> &mut u32 {
         match verdict {
-            Verdict::Received { .. } => &mut self.received,
-            Verdict::ByTeammate { .. } => &mut self.by_teammate,
-            Verdict::Intercepted { .. } => &mut self.intercepted,
-            Verdict::Missed { .. } => &mut self.missed,
-            Verdict::Late { .. } => &mut self.late,
-            Verdict::Out { .. } => &mut self.out,
-            Verdict::NoKick { .. } => &mut self.no_kick,
+            PassVerdict::Received { .. } => &mut self.received,
+            PassVerdict::ByTeammate { .. } => &mut self.by_teammate,
+            PassVerdict::Intercepted { .. } => &mut self.intercepted,
+            PassVerdict::Missed { .. } => &mut self.missed,
+            PassVerdict::Late { .. } => &mut self.late,
+            PassVerdict::Out { .. } => &mut self.out,
+            PassVerdict::NoKick { .. } => &mut self.no_kick,
         }
     }
 
@@ -92,10 +92,10 @@ impl Fates {
 
 impl PassCounters {
     /// Counts one pass by its kick, verdict and predicted P(receive).
-    pub fn record(&mut self, pass: &Ordered, verdict: &Verdict) {
+    pub fn record(&mut self, pass: &Ordered, verdict: &PassVerdict) {
         let fates = if pass.chip { &mut self.chip } else { &mut self.flat };
         *fates.count(verdict) += 1;
-        if matches!(verdict, Verdict::NoKick { .. }) {
+        if matches!(verdict, PassVerdict::NoKick { .. }) {
             return;
         }
         // NaN counts as 0.
@@ -103,7 +103,7 @@ impl PassCounters {
         let bin = &mut self.calibration[bin];
         bin.passes += 1;
         bin.predicted += f64::from(pass.likely);
-        bin.received += u32::from(matches!(verdict, Verdict::Received { .. }));
+        bin.received += u32::from(matches!(verdict, PassVerdict::Received { .. }));
     }
 
     /// Adds the passes of another match.
@@ -148,16 +148,18 @@ mod tests {
         }
     }
 
-    const RECEIVED: Verdict = Verdict::Received { off: 0.0, late: 0.0 };
+    const RECEIVED: PassVerdict = PassVerdict::Received { off: 0.0, late: 0.0 };
 
     #[test]
     fn passes_are_counted_by_kick_and_fate_and_those_never_kicked_predict_nothing() {
         let mut counters = PassCounters::default();
         counters.record(&pass(0.95, false), &RECEIVED);
-        counters.record(&pass(1.0, false), &Verdict::Late { receiver_off: 1.0 });
-        counters
-            .record(&pass(0.2, true), &Verdict::Intercepted { by: RobotId::ZERO, along: 1.0, after: 0.5 });
-        counters.record(&pass(0.2, true), &Verdict::NoKick { after: 5.0, lost_to: None });
+        counters.record(&pass(1.0, false), &PassVerdict::Late { receiver_off: 1.0 });
+        counters.record(
+            &pass(0.2, true),
+            &PassVerdict::Intercepted { by: RobotId::ZERO, along: 1.0, after: 0.5 },
+        );
+        counters.record(&pass(0.2, true), &PassVerdict::NoKick { after: 5.0, lost_to: None });
         assert_eq!((counters.flat.kicked(), counters.flat.successful(), counters.flat.late), (2, 1, 1));
         assert_eq!((counters.chip.ordered(), counters.chip.kicked(), counters.chip.intercepted), (2, 1, 1));
         let last = counters.calibration[9];
@@ -171,12 +173,12 @@ mod tests {
         assert_eq!(one.calibration_error(), None);
         // Predicted 0.75 + 0.75, one received: |1.5 − 1| / 2.
         one.record(&pass(0.75, false), &RECEIVED);
-        one.record(&pass(0.75, false), &Verdict::Missed { by: 1.0 });
+        one.record(&pass(0.75, false), &PassVerdict::Missed { by: 1.0 });
         assert!((one.calibration_error().unwrap() - 0.25).abs() < 1e-9);
         let mut other = PassCounters::default();
         // Predicted 0.25 + 0.25, none received: with the above (0.5 + 0.5) / 4.
-        other.record(&pass(0.25, true), &Verdict::Out { at: Point::default() });
-        other.record(&pass(0.25, true), &Verdict::Out { at: Point::default() });
+        other.record(&pass(0.25, true), &PassVerdict::Out { at: Point::default() });
+        other.record(&pass(0.25, true), &PassVerdict::Out { at: Point::default() });
         one.add(&other);
         assert!((one.calibration_error().unwrap() - 0.25).abs() < 1e-9);
         assert_eq!((one.chip.out, one.flat.kicked()), (2, 2));

@@ -14,7 +14,7 @@ use super::reach::Mover;
 
 /// An opponent that may intercept the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Opponent {
+pub struct PassOpponent {
     /// The opponent's number in its team.
     pub id: RobotId,
     /// Its motion and limits.
@@ -50,12 +50,17 @@ pub struct BallPath {
 impl BallPath {
     /// The opponent with the least margin along a flat pass, if it is below [`SAFE`]; the first one below
     /// −[`SAFE`], which certainly has the ball.
-    pub fn flat(&self, kick: &FlatKick, opponents: &[Opponent]) -> Option<Interceptor> {
+    pub fn flat(&self, kick: &FlatKick, opponents: &[PassOpponent]) -> Option<Interceptor> {
         self.flat_until(kick, opponents, -SAFE)
     }
 
     /// … the first one below `enough`: the caller needs no smaller one.
-    pub fn flat_until(&self, kick: &FlatKick, opponents: &[Opponent], enough: f32) -> Option<Interceptor> {
+    pub fn flat_until(
+        &self,
+        kick: &FlatKick,
+        opponents: &[PassOpponent],
+        enough: f32,
+    ) -> Option<Interceptor> {
         let end = kick.at(self.length);
         self.worst(opponents, end.0, enough, |opponent, worst| {
             self.stretch(opponent, (0.0, self.length), end, |s| kick.at(s), worst);
@@ -63,7 +68,7 @@ impl BallPath {
     }
 
     /// … along a chip: while it rises over a robot's height, and from where it comes down below it.
-    pub fn chip(&self, kick: &ChipKick, opponents: &[Opponent]) -> Option<Interceptor> {
+    pub fn chip(&self, kick: &ChipKick, opponents: &[PassOpponent]) -> Option<Interceptor> {
         let end = kick.at(self.length);
         let (up, down) = kick.over;
         self.worst(opponents, end.0, -SAFE, |opponent, worst| {
@@ -74,10 +79,10 @@ impl BallPath {
 
     fn worst(
         &self,
-        opponents: &[Opponent],
+        opponents: &[PassOpponent],
         arrival: f32,
         enough: f32,
-        look: impl Fn(&Opponent, &mut Interceptor),
+        look: impl Fn(&PassOpponent, &mut Interceptor),
     ) -> Option<Interceptor> {
         let mut worst = Interceptor { id: RobotId::ZERO, margin: SAFE, along: 0.0 };
         for opponent in opponents {
@@ -100,7 +105,7 @@ impl BallPath {
 
     /// The opponent's position along the path, and beside it, m.
     #[inline]
-    fn seen(&self, opponent: &Opponent) -> (f32, f32) {
+    fn seen(&self, opponent: &PassOpponent) -> (f32, f32) {
         let off = opponent.mover.position - self.from;
         (off.dot(self.along), self.along.cross(off))
     }
@@ -109,7 +114,7 @@ impl BallPath {
     #[inline]
     fn stretch(
         &self,
-        opponent: &Opponent,
+        opponent: &PassOpponent,
         (low, high): (f32, f32),
         end: (f32, f32),
         ball: impl Fn(f32) -> (f32, f32),
@@ -144,7 +149,7 @@ impl BallPath {
     }
 
     #[inline]
-    fn look(&self, opponent: &Opponent, along: f32, ball_time: f32, worst: &mut Interceptor) -> f32 {
+    fn look(&self, opponent: &PassOpponent, along: f32, ball_time: f32, worst: &mut Interceptor) -> f32 {
         let place = self.from + self.along * along;
         let time = self.touch_time(&opponent.mover, place);
         if time - ball_time < worst.margin {
@@ -187,10 +192,10 @@ mod tests {
     use super::super::constants::PassConstants;
     use super::super::kicks::Kicks;
 
-    fn opponent(id: u8, at: (f32, f32), velocity: (f32, f32)) -> Opponent {
+    fn opponent(id: u8, at: (f32, f32), velocity: (f32, f32)) -> PassOpponent {
         let (at, velocity) = (Point::new(at.0, at.1), Vector::new(velocity.0, velocity.1));
         let mover = Mover::new(at, velocity, &FreeLimits::default());
-        Opponent { id: RobotId::new(id).unwrap(), mover }
+        PassOpponent { id: RobotId::new(id).unwrap(), mover }
     }
 
     fn path(length: f32) -> BallPath {

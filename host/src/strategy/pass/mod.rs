@@ -31,6 +31,6 @@ pub use ahead::{Moves, PassAhead, PasserMove, Places, Times};
 pub use constants::PassConstants;
 pub use counters::PassCounters;
 pub use kicks::{Kicks, PassKick};
-pub use scene::{Rating, Scene};
+pub use scene::{PassScene, Rating};
 pub use search::{Offer, SAMPLES, Search, Searches};
-pub use watch::{Ordered, PassWatch, Verdict};
+pub use watch::{Ordered, PassVerdict, PassWatch};

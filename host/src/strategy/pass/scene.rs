@@ -8,10 +8,10 @@ use geometry::{Attack, Field, GoalEnd, Point, Shape, Vector};
 use protocol::RobotId;
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 
-use super::super::view::{ROBOTS_MAX, Robot, View};
+use super::super::view::{ROBOTS_MAX, View, ViewRobot};
 use super::conditions as given;
 use super::constants::PassConstants;
-use super::intercept::{BallPath, Interceptor, Opponent, SAFE};
+use super::intercept::{BallPath, Interceptor, PassOpponent, SAFE};
 use super::kicks::{FlatKick, Kicks, PassKick};
 use super::open::GoalOpening;
 use super::reach::Mover;
@@ -88,11 +88,11 @@ impl Rating {
 
 /// One snapshot, a ball to be passed, and its receiver.
 #[derive(Clone, Debug)]
-pub struct Scene<'k> {
+pub struct PassScene<'k> {
     kicks: &'k Kicks,
     from: Point<Attack>,
     receiver: Mover,
-    opponents: heapless::Vec<Opponent, ROBOTS_MAX>,
+    opponents: heapless::Vec<PassOpponent, ROBOTS_MAX>,
     teammates: heapless::Vec<Point<Attack>, ROBOTS_MAX>,
     our_area: heapless::Vec<Shape<Field>, { rules::AREA_SHAPES_MAX }>,
     their_area: heapless::Vec<Shape<Field>, { rules::AREA_SHAPES_MAX }>,
@@ -101,14 +101,14 @@ pub struct Scene<'k> {
     shot: FlatKick,
 }
 
-impl<'k> Scene<'k> {
+impl<'k> PassScene<'k> {
     /// A pass from `from`, played by `passer`, to `receiver`, against all opponents of the view.
     pub fn of(
         view: &View,
         kicks: &'k Kicks,
         from: Point<Attack>,
         passer: Option<RobotId>,
-        receiver: &Robot,
+        receiver: &ViewRobot,
     ) -> Self {
         Self::against(view, kicks, from, passer, receiver, view.theirs.iter())
     }
@@ -119,11 +119,11 @@ impl<'k> Scene<'k> {
         kicks: &'k Kicks,
         from: Point<Attack>,
         passer: Option<RobotId>,
-        receiver: &Robot,
-        opponents: impl Iterator<Item = &'r Robot>,
+        receiver: &ViewRobot,
+        opponents: impl Iterator<Item = &'r ViewRobot>,
     ) -> Self {
         let c = kicks.constants();
-        let mover = |robot: &Robot, limits| Mover::new(robot.position, robot.velocity, limits);
+        let mover = |robot: &ViewRobot, limits| Mover::new(robot.position, robot.velocity, limits);
         let others =
             view.ours.iter().filter(|teammate| teammate.id != receiver.id && Some(teammate.id) != passer);
         let (length, width) = (view.field.length, view.field.width);
@@ -133,7 +133,7 @@ impl<'k> Scene<'k> {
             from,
             receiver: mover(receiver, &c.receiver),
             opponents: opponents
-                .map(|robot| Opponent { id: robot.id, mover: mover(robot, &c.opponent) })
+                .map(|robot| PassOpponent { id: robot.id, mover: mover(robot, &c.opponent) })
                 .take(ROBOTS_MAX)
                 .collect(),
             teammates: others.map(|teammate| teammate.position).collect(),

@@ -13,7 +13,7 @@ use rand_xoshiro::Xoshiro128PlusPlus;
 
 use super::super::view::{ROBOTS_MAX, View};
 use super::kicks::Kicks;
-use super::scene::{Rating, Scene};
+use super::scene::{PassScene, Rating};
 
 /// A receiver's search, kept between snapshots.
 #[derive(Clone, Debug)]
@@ -39,7 +39,7 @@ impl Search {
     }
 
     /// Rates `samples` places and the last optimum, and returns the best.
-    pub fn step(&mut self, scene: &Scene<'_>, samples: u32) -> Rating {
+    pub fn step(&mut self, scene: &PassScene<'_>, samples: u32) -> Rating {
         let anywhere = match self.last {
             Some(_) => samples / GLOBAL_SHARE,
             None => samples,
@@ -88,7 +88,7 @@ impl Search {
 }
 
 /// The best so far, or the place `at` where that has a higher value.
-fn better(best: Option<Rating>, scene: &Scene<'_>, at: Point<Attack>) -> Rating {
+fn better(best: Option<Rating>, scene: &PassScene<'_>, at: Point<Attack>) -> Rating {
     match best {
         Some(best) => scene.rate_above(at, best.value()).unwrap_or(best),
         None => scene.rate(at),
@@ -132,7 +132,7 @@ impl Searches {
         for teammate in
             view.ours.iter().filter(|teammate| teammate.id != passer && teammate.id != view.keeper)
         {
-            let scene = Scene::of(view, kicks, from, Some(passer), teammate);
+            let scene = PassScene::of(view, kicks, from, Some(passer), teammate);
             let rating = self.each[teammate.id.index()].step(&scene, samples);
             let worse = |other: &Offer| other.rating.value() < rating.value();
             let place = offers.iter().position(worse).unwrap_or(offers.len());
@@ -197,7 +197,7 @@ mod tests {
     #[test]
     fn it_finds_what_a_fine_grid_finds() {
         let (kicks, view) = (kicks(), view((0.5, 0.0), &OURS, &THEIRS));
-        let scene = Scene::of(&view, &kicks, Point::new(0.5, 0.0), Some(view.ours[1].id), &view.ours[2]);
+        let scene = PassScene::of(&view, &kicks, Point::new(0.5, 0.0), Some(view.ours[1].id), &view.ours[2]);
         let mut best = 0.0_f32;
         for i in 0..180 {
             for j in 0..120 {
@@ -220,7 +220,7 @@ mod tests {
             let shift = tick as f32 * 0.002;
             let theirs = THEIRS.map(|(x, y)| (x, y + shift));
             let view = view((0.5, 0.0), &OURS, &theirs);
-            let scene = Scene::of(&view, &kicks, Point::new(0.5, 0.0), None, &view.ours[2]);
+            let scene = PassScene::of(&view, &kicks, Point::new(0.5, 0.0), None, &view.ours[2]);
             let at = search.step(&scene, 60).at;
             // The first steps still search.
             if let (Some(last), true) = (last, tick > 10) {
@@ -251,7 +251,7 @@ mod tests {
     #[test]
     fn a_search_without_samples_still_answers() {
         let (kicks, view) = (kicks(), view((0.5, 0.0), &OURS, &THEIRS));
-        let scene = Scene::of(&view, &kicks, Point::new(0.5, 0.0), None, &view.ours[2]);
+        let scene = PassScene::of(&view, &kicks, Point::new(0.5, 0.0), None, &view.ours[2]);
         let mut search = Search::new(5);
         assert!(search.step(&scene, 0).value() >= 0.0);
         assert!(search.last().is_some());

@@ -36,7 +36,7 @@ pub struct Ordered {
 
 /// Outcome of a pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Verdict {
+pub enum PassVerdict {
     /// The receiver has received it.
     Received {
         /// Distance from x*, m.
@@ -84,7 +84,7 @@ pub enum Verdict {
     },
 }
 
-impl Verdict {
+impl PassVerdict {
     /// Our team has the ball.
     pub fn is_success(&self) -> bool {
         matches!(self, Self::Received { .. } | Self::ByTeammate { .. })
@@ -123,7 +123,7 @@ impl PassWatch {
     }
 
     /// The next picture. A verdict ends the watch.
-    pub fn observe(&mut self, world: &World, field: &FieldSpec) -> Option<Verdict> {
+    pub fn observe(&mut self, world: &World, field: &FieldSpec) -> Option<PassVerdict> {
         let Some(ball) = world.ball else { return self.over(world.time) };
         match self.flight {
             None => self.before(world, &ball),
@@ -135,7 +135,7 @@ impl PassWatch {
         }
     }
 
-    fn before(&mut self, world: &World, ball: &Ball) -> Option<Verdict> {
+    fn before(&mut self, world: &World, ball: &Ball) -> Option<PassVerdict> {
         let passer = Who { colour: self.ordered.us, id: self.ordered.passer };
         let off =
             world.robot(passer).map_or(f32::INFINITY, |robot| robot.pose.position.distance(ball.position));
@@ -145,7 +145,7 @@ impl PassWatch {
             && distance < TOUCHING
             && off > TOUCHING
         {
-            return Some(Verdict::NoKick { after, lost_to: Some(robot.who.id) });
+            return Some(PassVerdict::NoKick { after, lost_to: Some(robot.who.id) });
         }
         if off > LEFT && ball.velocity.norm() > KICKED {
             self.flight = Some(Flight {
@@ -157,10 +157,16 @@ impl PassWatch {
             });
             return None;
         }
-        (after > KICK_WITHIN.as_secs_f32()).then_some(Verdict::NoKick { after, lost_to: None })
+        (after > KICK_WITHIN.as_secs_f32()).then_some(PassVerdict::NoKick { after, lost_to: None })
     }
 
-    fn during(&self, flight: &mut Flight, world: &World, ball: &Ball, field: &FieldSpec) -> Option<Verdict> {
+    fn during(
+        &self,
+        flight: &mut Flight,
+        world: &World,
+        ball: &Ball,
+        field: &FieldSpec,
+    ) -> Option<PassVerdict> {
         let Ordered { us, receiver, from, to, .. } = self.ordered;
         let before = core::mem::replace(&mut flight.velocity, ball.velocity);
         let after = world.time.since(flight.since).as_secs_f32();
@@ -174,17 +180,19 @@ impl PassWatch {
         }
         if let Some(who) = self.touch(flight, before, world, ball) {
             return Some(match (who.colour == us, who.id) {
-                (true, id) if id == receiver => Verdict::Received { off, late: after - self.ordered.flight },
-                (true, by) => Verdict::ByTeammate { by, off },
+                (true, id) if id == receiver => {
+                    PassVerdict::Received { off, late: after - self.ordered.flight }
+                }
+                (true, by) => PassVerdict::ByTeammate { by, off },
                 (false, by) => {
                     let along = path.unit().map_or(0.0, |along| (ball.position - from).dot(along));
-                    Verdict::Intercepted { by, along, after }
+                    PassVerdict::Intercepted { by, along, after }
                 }
             });
         }
         let out = BALL_RADIUS;
         if field.clamp(ball.position, -out).distance(ball.position) > 0.0 {
-            return Some(Verdict::Out { at: ball.position });
+            return Some(PassVerdict::Out { at: ball.position });
         }
         let stopped = ball.velocity.norm() < STOPPED && after > MOVES_FOR;
         stopped.then(|| flight.end())
@@ -218,12 +226,12 @@ impl PassWatch {
     }
 
     /// A ball that no camera saw again, or that rolls on without a receiver.
-    fn over(&self, now: Instant) -> Option<Verdict> {
+    fn over(&self, now: Instant) -> Option<PassVerdict> {
         match self.flight {
             None => {
                 let after = now.since(self.ordered.at);
                 let after = (after > KICK_WITHIN).then_some(after.as_secs_f32())?;
-                Some(Verdict::NoKick { after, lost_to: None })
+                Some(PassVerdict::NoKick { after, lost_to: None })
             }
             Some(flight) => {
                 let after = now.since(flight.since).as_secs_f32();
@@ -235,12 +243,12 @@ impl PassWatch {
 
 impl Flight {
     /// The verdict where no robot received it: late or missed.
-    fn end(&self) -> Verdict {
+    fn end(&self) -> PassVerdict {
         match self.receiver_off {
             Some(receiver_off) if receiver_off > THERE && self.nearest <= THERE => {
-                Verdict::Late { receiver_off }
+                PassVerdict::Late { receiver_off }
             }
-            _ => Verdict::Missed { by: self.nearest },
+            _ => PassVerdict::Missed { by: self.nearest },
         }
     }
 }

@@ -5,12 +5,12 @@ use geometry::{Attack, Point};
 use protocol::RobotId;
 
 use super::super::roles;
-use super::super::view::{ROBOTS_MAX, Robot, RobotSet, View};
+use super::super::view::{ROBOTS_MAX, RobotSet, View, ViewRobot};
 use super::cover::{Case, Cover, beside};
 use super::danger::{Blocks, Danger, Position, block_shot, ranked};
 use super::edge::Edge;
 use super::receiving::FirstLevel;
-use super::{Assignment, Guards, Kept, Memory, Settings};
+use super::{Assignment, Guards, Kept, Memory, ThreatSettings};
 
 type Assignments = heapless::Vec<Assignment, ROBOTS_MAX>;
 
@@ -31,7 +31,7 @@ pub(super) fn assign(
     cover: &Cover,
     dangers: &[Danger],
     memory: &mut Memory,
-    settings: &Settings,
+    settings: &ThreatSettings,
 ) -> Assignments {
     let mut giving = Giving {
         view,
@@ -81,9 +81,9 @@ fn held_task(threat: &FirstLevel, memory: &Memory) -> Option<Kept> {
 /// Places being assigned, and robots that have none yet.
 struct Giving<'v> {
     view: &'v View,
-    settings: &'v Settings,
+    settings: &'v ThreatSettings,
     edge: Edge,
-    free: heapless::Vec<Robot, ROBOTS_MAX>,
+    free: heapless::Vec<ViewRobot, ROBOTS_MAX>,
     given: Assignments,
 }
 
@@ -95,7 +95,7 @@ impl Giving<'_> {
     }
 
     /// Takes a robot out of the free ones.
-    fn take(&mut self, id: RobotId) -> Option<Robot> {
+    fn take(&mut self, id: RobotId) -> Option<ViewRobot> {
         let found = self.free.iter().position(|robot| robot.id == id)?;
         Some(self.free.remove(found))
     }
@@ -121,7 +121,7 @@ impl Giving<'_> {
     }
 
     /// The free robot nearest to a place, taken.
-    fn nearest(&mut self, place: Point<Attack>, held: Option<RobotId>, worth: f32) -> Option<Robot> {
+    fn nearest(&mut self, place: Point<Attack>, held: Option<RobotId>, worth: f32) -> Option<ViewRobot> {
         let (id, _) = roles::choose(self.free.iter(), held, worth, |robot| robot.position.distance(place))?;
         self.take(id)
     }
@@ -132,9 +132,9 @@ impl Giving<'_> {
         places: [Point<Attack>; 2],
         before: [Option<RobotId>; 2],
     ) -> heapless::Vec<Primary, 2> {
-        let mut robots: heapless::Vec<Robot, 2> = heapless::Vec::new();
+        let mut robots: heapless::Vec<ViewRobot, 2> = heapless::Vec::new();
         for _ in 0..places.len().min(self.free.len()) {
-            let off = |robot: &Robot| {
+            let off = |robot: &ViewRobot| {
                 let bonus = if before.contains(&Some(robot.id)) { self.settings.worth } else { 0.0 };
                 robot.position.distance(places[0]).min(robot.position.distance(places[1])) - bonus
             };
@@ -143,7 +143,7 @@ impl Giving<'_> {
             }
         }
         // Along the edge they cannot pass each other, so their order there is that of their places.
-        let along = |robot: &Robot| self.edge.along(robot.position);
+        let along = |robot: &ViewRobot| self.edge.along(robot.position);
         robots.sort_unstable_by(|a, b| along(a).total_cmp(&along(b)).then(a.id.cmp(&b.id)));
         if let [lower, upper] = robots[..]
             && before == [Some(upper.id), Some(lower.id)]
@@ -152,7 +152,7 @@ impl Giving<'_> {
             robots.swap(0, 1);
         }
         let needed =
-            |(robot, place): (&Robot, Point<Attack>)| Primary { robot: robot.id, place, needed: true };
+            |(robot, place): (&ViewRobot, Point<Attack>)| Primary { robot: robot.id, place, needed: true };
         robots.iter().zip(places).map(needed).collect()
     }
 

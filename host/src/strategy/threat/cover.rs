@@ -14,7 +14,7 @@
 use geometry::{Angle, Attack, Point, Vector};
 
 use super::super::view::View;
-use super::Settings;
+use super::ThreatSettings;
 use super::angle::{Opening, distance_for, half_shadow, widest};
 use super::edge::Edge;
 
@@ -61,7 +61,7 @@ pub fn cover(
     threat: Point<Attack>,
     available: usize,
     before: Option<Before>,
-    settings: &Settings,
+    settings: &ThreatSettings,
 ) -> Cover {
     let place = Placing::new(view, threat, before, settings);
     let held = before.map(|before| before.case);
@@ -90,14 +90,19 @@ pub fn cover(
 /// Values that every placement needs.
 struct Placing<'v> {
     view: &'v View,
-    settings: &'v Settings,
+    settings: &'v ThreatSettings,
     opening: Opening,
     edge: Edge,
     upper_post: bool,
 }
 
 impl<'v> Placing<'v> {
-    fn new(view: &'v View, threat: Point<Attack>, before: Option<Before>, settings: &'v Settings) -> Self {
+    fn new(
+        view: &'v View,
+        threat: Point<Attack>,
+        before: Option<Before>,
+        settings: &'v ThreatSettings,
+    ) -> Self {
         let opening = Opening::of(threat, view.our_goal(), view.field.goal_width);
         let edge = Edge::of(&view.field, settings.off_area);
         let near_axis = threat.y().abs() < settings.axis;
@@ -214,7 +219,7 @@ impl Cover {
         &self,
         view: &View,
         bodies: impl Iterator<Item = Point<Attack>>,
-        settings: &Settings,
+        settings: &ThreatSettings,
     ) -> Point<Attack> {
         let gaps = self.opening.gaps(bodies, f32::INFINITY);
         let then = self.opening.gaps(self.primaries.iter().copied(), f32::INFINITY);
@@ -236,7 +241,7 @@ impl Cover {
 
     /// Place of a primary defender that is not needed: beside the one that is, on the side of the field's
     /// middle.
-    pub fn spare_place(&self, edge: &Edge, settings: &Settings) -> Point<Attack> {
+    pub fn spare_place(&self, edge: &Edge, settings: &ThreatSettings) -> Point<Attack> {
         let along = self.primaries.first().map_or(0.5 * edge.length(), |place| edge.along(*place));
         beside(edge, along, if self.upper_post { -1.0 } else { 1.0 }, settings)
     }
@@ -254,7 +259,7 @@ impl Cover {
 
 /// The point of the edge next to the one `along` it that leaves room for two bodies, upwards (1) or downwards
 /// (−1).
-pub(super) fn beside(edge: &Edge, along: f32, towards: f32, settings: &Settings) -> Point<Attack> {
+pub(super) fn beside(edge: &Edge, along: f32, towards: f32, settings: &ThreatSettings) -> Point<Attack> {
     let (here, least) = (edge.point(along), 2.0 * settings.shoulder);
     let mut off = least;
     // Around a corner bodies come nearer to each other than along the edge.

@@ -7,12 +7,12 @@ use geometry::{Attack, Point};
 use motion::ball::BallModel;
 use protocol::RobotId;
 
-use super::super::view::{ROBOTS_MAX, Robot, View};
+use super::super::view::{ROBOTS_MAX, View, ViewRobot};
 use super::angle::{BODY, Opening, widest};
 use super::cover::Cover;
 use super::edge::Edge;
 use super::receiving::{Because, FirstLevel};
-use super::{Memory, Settings, legal};
+use super::{Memory, ThreatSettings, legal};
 
 /// An opponent as a second-level threat, with its two positions.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,7 +61,7 @@ pub fn dangers(
     threat: &FirstLevel,
     cover: &Cover,
     memory: &mut Memory,
-    settings: &Settings,
+    settings: &ThreatSettings,
 ) -> heapless::Vec<Danger, ROBOTS_MAX> {
     let mut near = super::RobotSet::default();
     let holder = holder(view, threat);
@@ -93,9 +93,9 @@ fn danger(
     view: &View,
     threat: Point<Attack>,
     cover: &Cover,
-    robot: &Robot,
+    robot: &ViewRobot,
     near: bool,
-    settings: &Settings,
+    settings: &ThreatSettings,
 ) -> Danger {
     let (at, goal) = (robot.position, view.our_goal());
     let opening = Opening::of(at, goal, view.field.goal_width);
@@ -124,7 +124,7 @@ pub fn time_to_shoot(pass: f32, shot: f32) -> f32 {
 
 /// On the line from our goal's middle to the opponent, as far out as our robot can react to its start in time
 /// ([`share`]), off its body, and out of our area. With it the share of the distance.
-pub fn block_shot(view: &View, opponent: Point<Attack>, settings: &Settings) -> (Point<Attack>, f32) {
+pub fn block_shot(view: &View, opponent: Point<Attack>, settings: &ThreatSettings) -> (Point<Attack>, f32) {
     let (goal, travel) = (view.our_goal(), opponent - view.our_goal());
     let length = travel.norm().max(settings.clear);
     let share = share(settings).min(1.0 - settings.clear / length).max(0.0);
@@ -141,8 +141,8 @@ pub fn block_shot(view: &View, opponent: Point<Attack>, settings: &Settings) -> 
 /// the opponent starts sideways with a_o: it has to move k·a_o·t²/2, and moves a_d·(t − τ)²/2. The greatest
 /// lag, k·a_o·a_d·τ²/(2 (a_d − k·a_o)), is a body's half width r for k = r / (a_o·(τ²/2 + r/a_d)). Never
 /// beyond the opponent.
-pub fn share(settings: &Settings) -> f32 {
-    let Settings { acceleration: a, latency: tau, .. } = *settings;
+pub fn share(settings: &ThreatSettings) -> f32 {
+    let ThreatSettings { acceleration: a, latency: tau, .. } = *settings;
     let r = BODY;
     (r / (a * (0.5 * tau * tau + r / a))).min(1.0)
 }
@@ -152,7 +152,7 @@ pub fn share(settings: &Settings) -> f32 {
 pub fn ranked(
     dangers: &[Danger],
     held: impl Fn(RobotId, Blocks) -> bool,
-    settings: &Settings,
+    settings: &ThreatSettings,
 ) -> heapless::Vec<Position, { 2 * ROBOTS_MAX }> {
     let mut positions: heapless::Vec<Position, { 2 * ROBOTS_MAX }> = heapless::Vec::new();
     for danger in dangers {
@@ -168,7 +168,7 @@ pub fn ranked(
 }
 
 impl Position {
-    fn compare(&self, other: &Self, settings: &Settings) -> Ordering {
+    fn compare(&self, other: &Self, settings: &ThreatSettings) -> Ordering {
         let open = |p: &Self| (p.danger.open + p.held * settings.open_worth).min(settings.open_enough);
         let time = |p: &Self| p.danger.time_to_shoot - p.held * settings.time_worth;
         let near = other.danger.near.cmp(&self.danger.near);
@@ -195,7 +195,7 @@ mod tests {
     #[test]
     fn the_share_of_the_way_is_the_largest_from_which_the_line_is_never_left() {
         // Python: .1115 / (4 * (.1**2/2 + .1115/4)) = 0.8479
-        let settings = Settings::default();
+        let settings = ThreatSettings::default();
         let k = share(&settings);
         assert!((k - 0.847_908_7).abs() < 1e-5, "{k}");
         // Simulated motion of both: with k the greatest lag is a body's half width, with a greater share it
@@ -211,14 +211,14 @@ mod tests {
         };
         assert!((lag(k) - BODY).abs() < 1e-4, "{}", lag(k));
         assert!(lag(k + 0.02) > BODY + 0.01);
-        let slow = Settings { latency: 0.0, ..settings };
+        let slow = ThreatSettings { latency: 0.0, ..settings };
         assert_eq!(share(&slow), 1.0, "who needs no time can stand at the opponent");
     }
 
     #[test]
     fn the_two_positions_are_on_the_line_to_our_goal_and_half_way_to_the_ball() {
         let view = view((0.0, 2.0), &[], &[(0.0, -2.0)]);
-        let settings = Settings::default();
+        let settings = ThreatSettings::default();
         let mut memory = Memory::default();
         let threat = FirstLevel { at: Point::new(0.0, 2.0), because: Because::Ball };
         let cover = super::super::cover::cover(&view, threat.at, 2, None, &settings);
@@ -232,7 +232,7 @@ mod tests {
 
     #[test]
     fn near_an_opponent_the_defender_stays_off_it_and_out_of_our_area() {
-        let settings = Settings::default();
+        let settings = ThreatSettings::default();
         let view = view((0.0, 0.0), &[], &[]);
         // 1.3 m before the goal: the edge (1.13 m) is the farthest place allowed.
         let (at, _) = block_shot(&view, Point::new(-3.2, 0.0), &settings);
@@ -259,7 +259,7 @@ mod tests {
 
     #[test]
     fn positions_are_ranked_by_the_papers_four_criteria_in_order() {
-        let settings = Settings::default();
+        let settings = ThreatSettings::default();
         let dangers = [
             made(0, false, 0.17, 0.5), // far, however open
             made(1, true, 0.05, 1.0),  // near, little open
@@ -284,7 +284,7 @@ mod tests {
     #[test]
     fn the_widest_gap_is_what_keeper_and_primaries_leave() {
         let view = view((-1.0, 0.0), &[], &[(-2.0, 2.0)]);
-        let settings = Settings::default();
+        let settings = ThreatSettings::default();
         let threat = FirstLevel { at: Point::new(-1.0, 0.0), because: Because::Ball };
         let cover = super::super::cover::cover(&view, threat.at, 2, None, &settings);
         let found = dangers(&view, &threat, &cover, &mut Memory::default(), &settings);

@@ -7,12 +7,12 @@ use rules::{Phase, RuleRole};
 
 use super::super::restart;
 use super::super::view::View;
-use super::Settings;
+use super::ThreatSettings;
 use super::edge::Edge;
 
 /// The nearest place to `at` where a field player may stand: within the lines, out of our area (at its edge),
 /// and off everything else that the phase forbids.
-pub fn legal(view: &View, at: Point<Attack>, settings: &Settings) -> Point<Attack> {
+pub fn legal(view: &View, at: Point<Attack>, settings: &ThreatSettings) -> Point<Attack> {
     legal_for(view, RuleRole::Player, at, &[], settings)
 }
 
@@ -23,7 +23,7 @@ pub fn legal_for(
     rule_role: RuleRole,
     at: Point<Attack>,
     taken: &[Point<Attack>],
-    settings: &Settings,
+    settings: &ThreatSettings,
 ) -> Point<Attack> {
     let ours = Edge::of(&view.field, settings.off_area);
     let more =
@@ -107,7 +107,7 @@ mod tests {
 
     #[test]
     fn a_place_is_moved_to_where_the_rules_let_a_player_be() {
-        let settings = Settings::default();
+        let settings = ThreatSettings::default();
         let phases = [
             Phase::Run,
             Phase::Stop,
@@ -151,7 +151,7 @@ mod tests {
     fn a_place_that_a_teammate_is_sent_to_is_taken() {
         let mut view = view((-3.1, 0.4), &[], &[]);
         view.phase = Phase::Stop;
-        let settings = Settings::default();
+        let settings = ThreatSettings::default();
         let mut taken = Vec::new();
         // Seven robots are sent between the ball and the goal, where its circle overlaps our area.
         for _ in 0..7 {

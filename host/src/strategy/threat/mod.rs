@@ -34,7 +34,7 @@ pub use legal::{legal, legal_for};
 
 /// Settings that the paper leaves open.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
+pub struct ThreatSettings {
     /// c of equation 6: between the 5 and 20 of the paper's Figure 6.
     pub c: f32,
     /// A slower ball is no pass, m/s.
@@ -86,7 +86,7 @@ pub struct Settings {
     pub worth: f32,
 }
 
-impl Default for Settings {
+impl Default for ThreatSettings {
     fn default() -> Self {
         Self {
             c: 10.0,
@@ -232,7 +232,7 @@ struct Kept {
 
 /// The defence by our keeper and those of our robots that are in `team`; `memory` is changed only by this
 /// function.
-pub fn defend(view: &View, team: RobotSet, memory: &mut Memory, settings: &Settings) -> Defence {
+pub fn defend(view: &View, team: RobotSet, memory: &mut Memory, settings: &ThreatSettings) -> Defence {
     let threat = receiving::first_level(view, memory.threat, settings);
     let players = view.ours.iter().filter(|robot| robot.id != view.keeper && team.has(robot.id)).count();
     let cover = cover::cover(view, threat.at, players.min(2), memory.cover, settings);

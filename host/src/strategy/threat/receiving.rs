@@ -4,7 +4,7 @@ use geometry::{Attack, Point, Vector};
 use protocol::RobotId;
 
 use super::super::view::View;
-use super::Settings;
+use super::ThreatSettings;
 
 /// Equation 6: −(|d| / |v|) · (1 + c · (1 − cos θ)), s, at most 0; greater is riskier.
 ///
@@ -69,7 +69,7 @@ impl FirstLevel {
 }
 
 /// The first-level threat, given the one before (a pass once detected is kept until it is clearly over).
-pub fn first_level(view: &View, before: Option<FirstLevel>, settings: &Settings) -> FirstLevel {
+pub fn first_level(view: &View, before: Option<FirstLevel>, settings: &ThreatSettings) -> FirstLevel {
     let Some(ball) = view.ball else {
         let at = before.map_or(Point::new(0.0, 0.0), |threat| threat.at);
         return FirstLevel { at, because: Because::BallUnseen };
@@ -165,7 +165,7 @@ mod tests {
 
     #[test]
     fn the_threat_is_whom_the_ball_is_passed_to_and_else_the_ball() {
-        let settings = Settings::default();
+        let settings = ThreatSettings::default();
         let theirs = [(-1.5, 2.0), (-2.0, -2.0), (0.1, -0.05)];
         // Towards the first one, 2.5 m away, at 4 m/s: 0.625 s.
         let threat = first_level(&passing((-2.4, 3.2), &theirs), None, &settings);
@@ -182,7 +182,7 @@ mod tests {
 
     #[test]
     fn a_pass_once_seen_is_believed_through_noise() {
-        let settings = Settings::default();
+        let settings = ThreatSettings::default();
         let theirs = [(-1.5, 2.0), (-1.7, 1.8)];
         let mut before = None;
         let (mut changes, mut last) = (0, None);
@@ -212,7 +212,7 @@ mod tests {
         let mut view = passing((0.0, 0.0), &[]);
         view.ball = None;
         let before = FirstLevel { at: Point::new(-2.0, 1.0), because: Because::Ball };
-        let threat = first_level(&view, Some(before), &Settings::default());
+        let threat = first_level(&view, Some(before), &ThreatSettings::default());
         assert_eq!((threat.at, threat.because), (before.at, Because::BallUnseen));
     }
 }

@@ -40,7 +40,7 @@ impl Noise {
 #[test]
 fn whatever_the_snapshot_every_robot_has_one_legal_place_at_most() {
     let mut noise = Noise::seeded(1);
-    let settings = Settings::default();
+    let settings = ThreatSettings::default();
     let phases = [Phase::Run, Phase::Stop, Phase::FreeKick(Side::Theirs)];
     for league in [League::Ssl2013, League::DivisionB, League::DivisionA] {
         let field = league.field();
@@ -87,7 +87,7 @@ fn the_nearest_defenders_take_the_best_ranked_positions() {
     let theirs = [(4.4, 0.0), (-1.0, -0.1), (-2.4, 2.0), (-1.8, -1.5)];
     let view = view((-0.9, 0.0), &ours, &theirs);
     let mut memory = Memory::default();
-    let defence = defend(&view, all_robots(&view), &mut memory, &Settings::default());
+    let defence = defend(&view, all_robots(&view), &mut memory, &ThreatSettings::default());
     assert_eq!(defence.threat.because, receiving::Because::Ball);
     // The holder (1) and their keeper (0) are no second-level threats.
     let dangers: Vec<_> = defence.dangers.iter().map(|danger| danger.opponent.number()).collect();
@@ -100,7 +100,7 @@ fn the_nearest_defenders_take_the_best_ranked_positions() {
 
 #[test]
 fn a_blocked_shot_stays_blocked_until_the_primaries_have_come_over() {
-    let settings = Settings::default();
+    let settings = ThreatSettings::default();
     let ours = [(-4.4, 0.0), (-3.3, -0.5), (-3.2, -0.7), (-2.3, 1.5)];
     let theirs = [(4.4, 0.0), (-1.5, -1.7), (-2.0, 2.0)];
     let mut scene = view((-1.4, -1.6), &ours, &theirs);
@@ -130,7 +130,7 @@ fn a_blocked_shot_stays_blocked_until_the_primaries_have_come_over() {
 
 /// A sequence of 20 s at 100 Hz: opponents wander, the ball is carried and passed, all positions have the
 /// noise of a camera; our robots go to their places at 2 m/s. Counts changes of task per robot.
-fn changes_over_a_sequence(sigma: f32, settings: &Settings, forgetful: bool) -> (usize, usize) {
+fn changes_over_a_sequence(sigma: f32, settings: &ThreatSettings, forgetful: bool) -> (usize, usize) {
     let mut noise = Noise::seeded(7);
     let ours = [(-4.4, 0.0), (-3.3, 0.3), (-3.3, -0.3), (-2.0, 1.6), (-1.5, -1.0), (0.0, 0.0)];
     let mut truth =
@@ -180,7 +180,7 @@ fn changes_over_a_sequence(sigma: f32, settings: &Settings, forgetful: bool) -> 
 
 #[test]
 fn over_a_noisy_sequence_tasks_do_not_flicker() {
-    let settings = Settings::default();
+    let settings = ThreatSettings::default();
     let (clean, _) = changes_over_a_sequence(0.0, &settings, false);
     let (noisy, jumps) = changes_over_a_sequence(0.01, &settings, false);
     let (forgetful, _) = changes_over_a_sequence(0.01, &settings, true);
@@ -198,7 +198,7 @@ fn at_their_free_kick_places_keep_off_the_ball() {
     let ours = [(-4.4, 0.0), (-3.3, 0.3), (-3.3, -0.3), (-2.0, 1.6)];
     let mut view = view((-3.0, 1.2), &ours, &[(4.4, 0.0), (-2.9, 1.3), (-2.4, 2.0)]);
     view.phase = Phase::FreeKick(Side::Theirs);
-    let defence = defend(&view, all_robots(&view), &mut Memory::default(), &Settings::default());
+    let defence = defend(&view, all_robots(&view), &mut Memory::default(), &ThreatSettings::default());
     let ball = view.ball.unwrap().position;
     for assignment in defence.assignments.iter().skip(1) {
         assert!(assignment.at.distance(ball) > 0.59, "{assignment:?}");

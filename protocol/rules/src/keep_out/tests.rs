@@ -21,7 +21,7 @@ fn phases() -> impl Iterator<Item = Phase<Side>> {
     [Phase::Halt, Phase::Stop, Phase::Run].into_iter().chain(with)
 }
 
-fn why(field: &FieldSpec, phase: Phase<Side>, rule_role: RuleRole, at: (f32, f32)) -> Option<Why> {
+fn why(field: &FieldSpec, phase: Phase<Side>, rule_role: RuleRole, at: (f32, f32)) -> Option<KeepOutReason> {
     why_with_ball(field, phase, rule_role, (0.0, 0.0), at)
 }
 
@@ -31,7 +31,7 @@ fn why_with_ball(
     rule_role: RuleRole,
     ball: (f32, f32),
     at: (f32, f32),
-) -> Option<Why> {
+) -> Option<KeepOutReason> {
     let ball = Some(Point::new(ball.0, ball.1));
     let placement = Some(Point::new(2.0, 0.0));
     let s =
@@ -43,7 +43,7 @@ fn why_with_ball(
 fn on_stop_a_robots_side_is_half_a_metre_from_the_ball() {
     let field = League::DivisionB.field();
     let at = |x| why(&field, Phase::Stop, RuleRole::Kicker, (x, 0.0));
-    assert_eq!((at(0.58), at(0.60)), (Some(Why::BallDistance), None));
+    assert_eq!((at(0.58), at(0.60)), (Some(KeepOutReason::BallDistance), None));
 }
 
 #[test]
@@ -52,19 +52,23 @@ fn on_stop_and_at_free_kicks_attackers_are_two_tenths_from_the_area_and_in_play_
     // The area starts at x = 3.495, its line's outer edge; with the body's 0.09: 3.205 and 3.405.
     let at = |phase, x| why(&field, phase, RuleRole::Player, (x, 0.0));
     for phase in [Phase::Stop, Phase::FreeKick(Side::Ours), Phase::FreeKick(Side::Theirs)] {
-        assert_eq!((at(phase, 3.22), at(phase, 3.20)), (Some(Why::OpponentArea), None), "{phase:?}");
-        assert!(Why::OpponentArea.offends(phase));
+        assert_eq!(
+            (at(phase, 3.22), at(phase, 3.20)),
+            (Some(KeepOutReason::OpponentArea), None),
+            "{phase:?}"
+        );
+        assert!(KeepOutReason::OpponentArea.offends(phase));
     }
-    assert_eq!((at(Phase::Run, 3.42), at(Phase::Run, 3.40)), (Some(Why::OpponentArea), None));
-    assert!(!Why::OpponentArea.offends(Phase::Run));
+    assert_eq!((at(Phase::Run, 3.42), at(Phase::Run, 3.40)), (Some(KeepOutReason::OpponentArea), None));
+    assert!(!KeepOutReason::OpponentArea.offends(Phase::Run));
 }
 
 #[test]
 fn only_the_keeper_is_in_its_own_area() {
     let field = League::DivisionB.field();
     for phase in [Phase::Stop, Phase::Run, Phase::FreeKick(Side::Ours), Phase::Kickoff(Side::Theirs)] {
-        assert_eq!(why(&field, phase, RuleRole::Player, (-3.58, 0.0)), Some(Why::OwnArea));
-        assert_eq!(why(&field, phase, RuleRole::Kicker, (-3.58, 0.0)), Some(Why::OwnArea));
+        assert_eq!(why(&field, phase, RuleRole::Player, (-3.58, 0.0)), Some(KeepOutReason::OwnArea));
+        assert_eq!(why(&field, phase, RuleRole::Kicker, (-3.58, 0.0)), Some(KeepOutReason::OwnArea));
         assert_eq!(why(&field, phase, RuleRole::Player, (-3.40, 0.0)), None);
         assert_eq!(why(&field, phase, RuleRole::Keeper, (-4.3, 0.0)), None);
     }
@@ -76,7 +80,7 @@ fn the_round_area_of_2013_lets_robots_cut_its_corner() {
     let field = League::Ssl2013.field();
     // 0.095 m beyond the curve at 45°: 0.895 / √2 = 0.633 from its centre at (−3, 0.175).
     let at = |d: f32| why(&field, Phase::Run, RuleRole::Player, (-3.0 + d, 0.175 + d));
-    assert_eq!((at(0.62), at(0.64)), (Some(Why::OwnArea), None));
+    assert_eq!((at(0.62), at(0.64)), (Some(KeepOutReason::OwnArea), None));
 }
 
 #[test]
@@ -84,23 +88,23 @@ fn at_a_kick_off_only_the_kicker_is_in_the_circle() {
     let field = League::DivisionB.field();
     for phase in [Phase::PrepareKickoff(Side::Ours), Phase::Kickoff(Side::Ours)] {
         let player = |x, y| why(&field, phase, RuleRole::Player, (x, y));
-        assert_eq!(player(-0.08, 1.0), Some(Why::OtherHalf));
+        assert_eq!(player(-0.08, 1.0), Some(KeepOutReason::OtherHalf));
         assert_eq!(player(-0.10, 1.0), None);
-        assert_eq!(player(-0.58, 0.0), Some(Why::CentreCircle));
+        assert_eq!(player(-0.58, 0.0), Some(KeepOutReason::CentreCircle));
         assert_eq!(player(-0.60, 0.0), None);
         let kicker = |x, y| why(&field, phase, RuleRole::Kicker, (x, y));
         assert_eq!(kicker(-0.12, 0.0), None);
         assert_eq!(kicker(0.12, 0.0), None, "the whole circle is the kicker's");
-        assert_eq!(kicker(0.5, 0.0), Some(Why::OtherHalf));
-        assert_eq!(kicker(0.0, 0.6), Some(Why::OtherHalf));
+        assert_eq!(kicker(0.5, 0.0), Some(KeepOutReason::OtherHalf));
+        assert_eq!(kicker(0.0, 0.6), Some(KeepOutReason::OtherHalf));
     }
     let touch = |phase| why(&field, phase, RuleRole::Kicker, (-0.1, 0.0));
-    assert_eq!(touch(Phase::PrepareKickoff(Side::Ours)), Some(Why::BallTouch));
+    assert_eq!(touch(Phase::PrepareKickoff(Side::Ours)), Some(KeepOutReason::BallTouch));
     assert_eq!(touch(Phase::Kickoff(Side::Ours)), None);
     let theirs = |rule_role, x| why(&field, Phase::Kickoff(Side::Theirs), rule_role, (x, 0.0));
     assert_eq!(
         (theirs(RuleRole::Kicker, -0.3), theirs(RuleRole::Player, -0.6)),
-        (Some(Why::CentreCircle), None)
+        (Some(KeepOutReason::CentreCircle), None)
     );
 }
 
@@ -110,23 +114,23 @@ fn at_a_penalty_all_others_are_a_metre_behind_the_ball() {
     for phase in [Phase::PreparePenalty(Side::Ours), Phase::Penalty(Side::Ours)] {
         // The ball is at x = −1.6, 0.1 m behind its mark, and we attack +x: the body ends at x = −2.6.
         let player = |x| why_with_ball(&field, phase, RuleRole::Player, (-1.6, 0.0), (x, 2.0));
-        assert_eq!((player(-2.68), player(-2.70)), (Some(Why::BehindBall), None));
+        assert_eq!((player(-2.68), player(-2.70)), (Some(KeepOutReason::BehindBall), None));
         // A ball that was carried elsewhere: the mark, at x = −1.5, is used.
         let carried = |x| why(&field, phase, RuleRole::Player, (x, 2.0));
-        assert_eq!((carried(-2.58), carried(-2.60)), (Some(Why::BehindBall), None));
+        assert_eq!((carried(-2.58), carried(-2.60)), (Some(KeepOutReason::BehindBall), None));
         assert_eq!(why(&field, phase, RuleRole::Keeper, (-4.4, 0.0)), None);
         assert_eq!(why(&field, phase, RuleRole::Kicker, (-0.3, 0.0)), None);
     }
     for phase in [Phase::PreparePenalty(Side::Theirs), Phase::Penalty(Side::Theirs)] {
         // They attack −x: behind the ball is x > 2.6.
         let player = |x| why_with_ball(&field, phase, RuleRole::Player, (1.6, 0.0), (x, 2.0));
-        assert_eq!((player(2.68), player(2.70)), (Some(Why::BehindBall), None));
+        assert_eq!((player(2.68), player(2.70)), (Some(KeepOutReason::BehindBall), None));
         let keeper = |x, y| why(&field, phase, RuleRole::Keeper, (x, y));
         assert_eq!(keeper(-4.5, 0.0), None);
         assert_eq!(keeper(-4.42, 0.4), None);
-        assert_eq!(keeper(-4.40, 0.0), Some(Why::KeeperLine));
-        assert_eq!(keeper(-4.60, 0.0), Some(Why::KeeperLine));
-        assert_eq!(keeper(-4.5, 0.42), Some(Why::KeeperLine));
+        assert_eq!(keeper(-4.40, 0.0), Some(KeepOutReason::KeeperLine));
+        assert_eq!(keeper(-4.60, 0.0), Some(KeepOutReason::KeeperLine));
+        assert_eq!(keeper(-4.5, 0.42), Some(KeepOutReason::KeeperLine));
     }
 }
 
@@ -144,11 +148,11 @@ fn who_does_not_place_keeps_out_of_the_stadium() {
     let field = League::DivisionB.field();
     // Ball at 0, target at (2, 0).
     let theirs = |x, y| why(&field, Phase::BallPlacement(Side::Theirs), RuleRole::Player, (x, y));
-    assert_eq!((theirs(1.0, 0.58), theirs(1.0, 0.60)), (Some(Why::Stadium), None));
-    assert_eq!((theirs(2.58, 0.0), theirs(2.60, 0.0)), (Some(Why::Stadium), None));
+    assert_eq!((theirs(1.0, 0.58), theirs(1.0, 0.60)), (Some(KeepOutReason::Stadium), None));
+    assert_eq!((theirs(2.58, 0.0), theirs(2.60, 0.0)), (Some(KeepOutReason::Stadium), None));
     let ours = |rule_role, x| why(&field, Phase::BallPlacement(Side::Ours), rule_role, (x, 0.0));
     assert_eq!((ours(RuleRole::Kicker, 2.0), ours(RuleRole::Player, 2.5), ours(RuleRole::Player, 1.0)), {
-        (None, Some(Why::Target), None)
+        (None, Some(KeepOutReason::Target), None)
     });
 }
 
@@ -272,10 +276,13 @@ fn what_keep_out_forbids_is_what_the_referee_whistles() {
             list.iter().any(|region| region.why == why && region.shape.distance_to(at) < ROBOT_RADIUS)
         };
         let both = [
-            (found(Phase::Stop, Why::BallDistance), too_close_to_ball(at, ball)),
-            (found(Phase::Stop, Why::OpponentArea), too_close_to_area(field, GoalEnd::Positive, at)),
-            (found(Phase::BallPlacement(Side::Theirs), Why::Stadium), interferes(at, ball, target)),
-            (found(Phase::Run, Why::OwnArea), in_area(field, GoalEnd::Negative, at) != InArea::Out),
+            (found(Phase::Stop, KeepOutReason::BallDistance), too_close_to_ball(at, ball)),
+            (
+                found(Phase::Stop, KeepOutReason::OpponentArea),
+                too_close_to_area(field, GoalEnd::Positive, at),
+            ),
+            (found(Phase::BallPlacement(Side::Theirs), KeepOutReason::Stadium), interferes(at, ball, target)),
+            (found(Phase::Run, KeepOutReason::OwnArea), in_area(field, GoalEnd::Negative, at) != InArea::Out),
         ];
         for (forbidden, whistled) in both {
             // Corners of grown boxes stay corners: more is forbidden there than is penalised, never less.

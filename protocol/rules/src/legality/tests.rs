@@ -28,18 +28,18 @@ fn the_crossing_is_on_the_line_that_was_crossed_first() {
     let field = b();
     assert_eq!(crossing(&field, p(1.0, 2.9), p(1.0, 3.02)), None);
     let got = crossing(&field, p(1.0, 2.9), p(1.2, 3.1)).unwrap();
-    assert_eq!(got.line, Line::Touch { positive: true });
+    assert_eq!(got.line, BoundaryLine::Touch { positive: true });
     assert!(got.at.distance(p(1.1, 3.0)) < 1e-5);
     // Past the corner: from (4.4, 2.8) to (4.6, 3.1) x reaches 4.5 at half, y reaches 3 at two thirds.
     let got = crossing(&field, p(4.4, 2.8), p(4.6, 3.1)).unwrap();
-    assert_eq!(got.line, Line::Goal(P));
+    assert_eq!(got.line, BoundaryLine::Goal(P));
     assert!(got.at.distance(p(4.5, 2.95)) < 1e-5);
     let got = crossing(&field, p(-4.4, 0.2), p(-4.6, 0.3)).unwrap();
-    assert_eq!(got.line, Line::GoalOpening(N));
+    assert_eq!(got.line, BoundaryLine::GoalOpening(N));
     assert!(got.at.distance(p(-4.5, 0.25)) < 1e-5);
     // First observed outside: straight over the nearest line.
     let got = crossing(&field, p(9.0, -3.2), p(2.0, -3.2)).unwrap();
-    assert_eq!((got.line, got.at), (Line::Touch { positive: false }, p(2.0, -3.0)));
+    assert_eq!((got.line, got.at), (BoundaryLine::Touch { positive: false }, p(2.0, -3.0)));
 }
 
 #[test]

@@ -76,23 +76,26 @@ fn a_ball_out_comes_back_at_its_throw_in_goal_kick_or_corner() {
         let after = after_out(&field, &limits, crossing, own, Some(Point::new(0.5, 0.0)), false);
         (after.kind, after.spot)
     };
-    assert_eq!(out(Line::Touch { positive: true }, 1.2, 3.0, N), (OutKind::ThrowIn, Point::new(1.2, 2.8)));
-    let (kind, spot) = out(Line::Touch { positive: false }, -4.45, -3.0, N);
+    assert_eq!(
+        out(BoundaryLine::Touch { positive: true }, 1.2, 3.0, N),
+        (OutKind::ThrowIn, Point::new(1.2, 2.8))
+    );
+    let (kind, spot) = out(BoundaryLine::Touch { positive: false }, -4.45, -3.0, N);
     assert_eq!(kind, OutKind::ThrowIn);
     near(spot, -4.3, -2.8);
     // Last touched by the team that defends −x, over the goal line at +x: their goal kick; at −x: a corner
     // against them.
-    let (kind, spot) = out(Line::Goal(P), 4.5, -0.9, N);
+    let (kind, spot) = out(BoundaryLine::Goal(P), 4.5, -0.9, N);
     assert_eq!(kind, OutKind::GoalKick);
     near(spot, 3.5, -2.8);
-    let (kind, spot) = out(Line::Goal(N), -4.5, 2.0, N);
+    let (kind, spot) = out(BoundaryLine::Goal(N), -4.5, 2.0, N);
     assert_eq!(kind, OutKind::Corner);
     near(spot, -4.3, 2.8);
 }
 
 #[test]
 fn a_kick_from_the_own_half_over_their_line_is_aimless_in_division_b_only() {
-    let crossing = Crossing { line: Line::Goal(P), at: Point::new(4.5, 2.0) };
+    let crossing = Crossing { line: BoundaryLine::Goal(P), at: Point::new(4.5, 2.0) };
     let kind = |league: League, from: f32, kickoff| {
         let (field, limits) = (league.field(), league.limits().unwrap());
         after_out(&field, &limits, crossing, N, Some(Point::new(from, 1.0)), kickoff)

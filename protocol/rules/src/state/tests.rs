@@ -21,7 +21,7 @@ fn at(x: f32, y: f32) -> Option<Point<Field>> {
 }
 
 /// A state after these commands, a second apart, the ball at the centre; and the time.
-fn after(commands: &[Command]) -> (GameState, u64) {
+fn after(commands: &[RefereeCommand]) -> (GameState, u64) {
     let mut state = GameState::new();
     let mut now = 0;
     for command in commands {
@@ -31,39 +31,40 @@ fn after(commands: &[Command]) -> (GameState, u64) {
     (state, now)
 }
 
-fn commands() -> Vec<Command> {
+fn commands() -> Vec<RefereeCommand> {
     let with = COLOURS.into_iter().flat_map(|who| {
         [
-            Command::PrepareKickoff(who),
-            Command::PreparePenalty(who),
-            Command::FreeKick(who),
-            Command::Timeout(who),
-            Command::BallPlacement(who),
+            RefereeCommand::PrepareKickoff(who),
+            RefereeCommand::PreparePenalty(who),
+            RefereeCommand::FreeKick(who),
+            RefereeCommand::Timeout(who),
+            RefereeCommand::BallPlacement(who),
         ]
     });
-    let plain = [Command::Halt, Command::Stop, Command::NormalStart, Command::ForceStart];
+    let plain =
+        [RefereeCommand::Halt, RefereeCommand::Stop, RefereeCommand::NormalStart, RefereeCommand::ForceStart];
     plain.into_iter().chain(with).collect()
 }
 
 /// For every phase a path that leads to it, over edges of the graph only.
-fn sequences() -> Vec<(Phase<Colour>, Vec<Command>)> {
-    let stop = Command::Stop;
+fn sequences() -> Vec<(Phase<Colour>, Vec<RefereeCommand>)> {
+    let stop = RefereeCommand::Stop;
     let mut sequences = vec![
-        (Phase::Halt, vec![stop, Command::Halt]),
-        (Phase::Stop, vec![Command::Halt, stop]),
-        (Phase::Run, vec![stop, Command::ForceStart]),
+        (Phase::Halt, vec![stop, RefereeCommand::Halt]),
+        (Phase::Stop, vec![RefereeCommand::Halt, stop]),
+        (Phase::Run, vec![stop, RefereeCommand::ForceStart]),
     ];
     for who in COLOURS {
-        let kickoff = Command::PrepareKickoff(who);
-        let penalty = Command::PreparePenalty(who);
+        let kickoff = RefereeCommand::PrepareKickoff(who);
+        let penalty = RefereeCommand::PreparePenalty(who);
         sequences.extend([
-            (Phase::Timeout(who), vec![stop, Command::Timeout(who)]),
-            (Phase::BallPlacement(who), vec![stop, Command::BallPlacement(who)]),
+            (Phase::Timeout(who), vec![stop, RefereeCommand::Timeout(who)]),
+            (Phase::BallPlacement(who), vec![stop, RefereeCommand::BallPlacement(who)]),
             (Phase::PrepareKickoff(who), vec![stop, kickoff]),
-            (Phase::Kickoff(who), vec![stop, kickoff, Command::NormalStart]),
+            (Phase::Kickoff(who), vec![stop, kickoff, RefereeCommand::NormalStart]),
             (Phase::PreparePenalty(who), vec![stop, penalty]),
-            (Phase::Penalty(who), vec![stop, penalty, Command::NormalStart]),
-            (Phase::FreeKick(who), vec![stop, Command::FreeKick(who)]),
+            (Phase::Penalty(who), vec![stop, penalty, RefereeCommand::NormalStart]),
+            (Phase::FreeKick(who), vec![stop, RefereeCommand::FreeKick(who)]),
         ]);
     }
     sequences
@@ -75,7 +76,7 @@ fn every_phase_is_reached_over_edges_of_the_graph() {
         let mut state = GameState::new();
         for (i, command) in path.iter().enumerate() {
             let received = state.receive(*command, i as u64 * S, None);
-            assert_eq!(received, Received::Followed, "{phase:?}: {command:?}");
+            assert_eq!(received, CommandVerdict::Followed, "{phase:?}: {command:?}");
         }
         assert_eq!(state.phase(), phase);
     }
@@ -101,22 +102,22 @@ fn every_command_in_every_phase_has_a_safe_reading() {
             let received = state.receive(command, now + S, at(0.0, 0.0));
             let got = state.phase();
             match received {
-                Received::Followed => {
+                CommandVerdict::Followed => {
                     assert!(follows(phase, got), "{phase:?} → {command:?} → {got:?}");
                     counts[0] += 1;
                 }
-                Received::Repeated => {
+                CommandVerdict::Repeated => {
                     assert_eq!(got, phase, "{phase:?} → {command:?}");
                     assert_eq!(path.last(), Some(&command));
                     counts[1] += 1;
                 }
-                Received::OffGraph { from } => {
+                CommandVerdict::OffGraph { from } => {
                     assert_eq!(from, phase);
                     assert!(!follows(phase, got), "{phase:?} → {command:?} → {got:?}");
                     assert!(freedom(phase) > 0 || freedom(got) == 0, "{phase:?} → {command:?} → {got:?}");
                     counts[2] += 1;
                 }
-                Received::AsStop { from, then, at } => {
+                CommandVerdict::AsStop { from, then, at } => {
                     assert_eq!((from, got), (phase, Phase::Stop));
                     assert!(freedom(then) > 1 && at >= now + 2 * S);
                     counts[3] += 1;
@@ -124,11 +125,11 @@ fn every_command_in_every_phase_has_a_safe_reading() {
             }
             // After any command, HALT and STOP work at once.
             assert_eq!(
-                state.receive(Command::Halt, now + 2 * S, None) == Received::Repeated,
-                command == Command::Halt
+                state.receive(RefereeCommand::Halt, now + 2 * S, None) == CommandVerdict::Repeated,
+                command == RefereeCommand::Halt
             );
             assert_eq!(state.phase(), Phase::Halt);
-            state.receive(Command::Stop, now + 3 * S, None);
+            state.receive(RefereeCommand::Stop, now + 3 * S, None);
             assert_eq!(state.phase(), Phase::Stop);
         }
     }
@@ -138,7 +139,7 @@ fn every_command_in_every_phase_has_a_safe_reading() {
 
 #[test]
 fn a_kick_off_is_in_play_when_the_ball_has_moved_5_cm_or_after_10_s() {
-    let path = [Command::Stop, Command::PrepareKickoff(B), Command::NormalStart];
+    let path = [RefereeCommand::Stop, RefereeCommand::PrepareKickoff(B), RefereeCommand::NormalStart];
     let (mut state, now) = after(&path);
     assert_eq!(state.tick(now + S, at(0.049, 0.0), &limits()), Ticked::Same);
     assert_eq!(state.phase(), Phase::Kickoff(B));
@@ -154,7 +155,7 @@ fn a_kick_off_is_in_play_when_the_ball_has_moved_5_cm_or_after_10_s() {
 fn a_free_kick_is_in_play_after_5_s_in_division_a_and_10_s_in_b() {
     for (league, time) in [(League::DivisionA, 5), (League::DivisionB, 10)] {
         let limits = league.limits().unwrap();
-        let (mut state, now) = after(&[Command::Stop, Command::FreeKick(Y)]);
+        let (mut state, now) = after(&[RefereeCommand::Stop, RefereeCommand::FreeKick(Y)]);
         assert_eq!(state.tick(now + time * S - 1, at(0.0, 0.0), &limits), Ticked::Same);
         assert_eq!(state.tick(now + time * S, at(0.0, 0.0), &limits), Ticked::TimeUp);
         assert_eq!(state.phase(), Phase::Run);
@@ -164,7 +165,7 @@ fn a_free_kick_is_in_play_after_5_s_in_division_a_and_10_s_in_b() {
 #[test]
 fn a_ball_that_was_not_seen_at_the_command_is_measured_from_where_it_shows_up() {
     let mut state = GameState::new();
-    state.receive(Command::FreeKick(Y), S, None);
+    state.receive(RefereeCommand::FreeKick(Y), S, None);
     assert_eq!(state.tick(2 * S, None, &limits()), Ticked::Same);
     assert_eq!(state.tick(2 * S, at(f32::NAN, 0.0), &limits()), Ticked::Same);
     assert_eq!(state.tick(3 * S, at(2.0, 1.0), &limits()), Ticked::Same);
@@ -173,7 +174,8 @@ fn a_ball_that_was_not_seen_at_the_command_is_measured_from_where_it_shows_up() 
 
 #[test]
 fn a_penalty_frees_the_keeper_when_the_ball_moves_and_stops_after_10_s() {
-    let (mut state, now) = after(&[Command::Stop, Command::PreparePenalty(Y), Command::NormalStart]);
+    let (mut state, now) =
+        after(&[RefereeCommand::Stop, RefereeCommand::PreparePenalty(Y), RefereeCommand::NormalStart]);
     assert!(!state.ball_in_play());
     assert_eq!(state.tick(now + S, at(0.06, 0.0), &limits()), Ticked::BallMoved);
     assert_eq!((state.phase(), state.ball_in_play()), (Phase::Penalty(Y), true));
@@ -184,23 +186,31 @@ fn a_penalty_frees_the_keeper_when_the_ball_moves_and_stops_after_10_s() {
 
 #[test]
 fn a_start_out_of_halt_is_read_as_stop_for_two_seconds() {
-    let (mut state, now) = after(&[Command::Stop, Command::Halt, Command::ForceStart]);
+    let (mut state, now) = after(&[RefereeCommand::Stop, RefereeCommand::Halt, RefereeCommand::ForceStart]);
     assert_eq!(state.phase(), Phase::Stop);
     assert_eq!(state.tick(now + 2 * S - 1, None, &limits()), Ticked::Same);
     assert_eq!(state.tick(now + 2 * S, None, &limits()), Ticked::Released);
     assert_eq!(state.phase(), Phase::Run);
     // A HALT in between takes precedence.
-    let (mut state, now) = after(&[Command::Stop, Command::Halt, Command::ForceStart, Command::Halt]);
+    let (mut state, now) = after(&[
+        RefereeCommand::Stop,
+        RefereeCommand::Halt,
+        RefereeCommand::ForceStart,
+        RefereeCommand::Halt,
+    ]);
     assert_eq!(state.tick(now + 20 * S, None, &limits()), Ticked::Same);
     assert_eq!(state.phase(), Phase::Halt);
 }
 
 #[test]
 fn a_kick_off_prepared_out_of_halt_is_still_a_kick_off() {
-    let mut state = after(&[Command::Stop, Command::Halt]).0;
-    let received = state.receive(Command::PrepareKickoff(B), 10 * S, None);
-    assert_eq!(received, Received::AsStop { from: Phase::Halt, then: Phase::PrepareKickoff(B), at: 12 * S });
-    state.receive(Command::NormalStart, 11 * S, None);
+    let mut state = after(&[RefereeCommand::Stop, RefereeCommand::Halt]).0;
+    let received = state.receive(RefereeCommand::PrepareKickoff(B), 10 * S, None);
+    assert_eq!(
+        received,
+        CommandVerdict::AsStop { from: Phase::Halt, then: Phase::PrepareKickoff(B), at: 12 * S }
+    );
+    state.receive(RefereeCommand::NormalStart, 11 * S, None);
     assert_eq!((state.phase(), state.tick(12 * S, None, &limits())), (Phase::Stop, Ticked::Released));
     assert_eq!(state.phase(), Phase::Kickoff(B));
 }
@@ -209,51 +219,58 @@ fn a_kick_off_prepared_out_of_halt_is_still_a_kick_off() {
 fn who_joins_a_game_after_normal_start_waits_until_the_ball_must_be_in_play() {
     let mut state = GameState::new();
     assert_eq!(state.phase(), Phase::Halt);
-    let received = state.receive(Command::NormalStart, 100 * S, None);
-    assert_eq!(received, Received::AsStop { from: Phase::Halt, then: Phase::Run, at: 110 * S });
+    let received = state.receive(RefereeCommand::NormalStart, 100 * S, None);
+    assert_eq!(received, CommandVerdict::AsStop { from: Phase::Halt, then: Phase::Run, at: 110 * S });
     assert_eq!(state.tick(109 * S, None, &limits()), Ticked::Same);
     assert_eq!((state.phase(), state.tick(111 * S, None, &limits())), (Phase::Stop, Ticked::Released));
     // A command that is a minute old requires no wait.
     let mut state = GameState::new();
-    state.receive(Command::NormalStart, 40 * S, None);
+    state.receive(RefereeCommand::NormalStart, 40 * S, None);
     assert_eq!(state.tick(100 * S, None, &limits()), Ticked::Released);
     assert_eq!(state.phase(), Phase::Run);
     // A program that joins in a standing phase takes it as it is.
     let mut state = GameState::new();
-    assert_eq!(state.receive(Command::FreeKick(B), S, None), Received::Followed);
+    assert_eq!(state.receive(RefereeCommand::FreeKick(B), S, None), CommandVerdict::Followed);
     assert_eq!(state.phase(), Phase::FreeKick(B));
 }
 
 #[test]
 fn trap_04_the_same_command_again_is_no_new_command() {
     // NORMAL_START after the kick-off is in play.
-    let (mut state, now) = after(&[Command::Stop, Command::PrepareKickoff(B), Command::NormalStart]);
+    let (mut state, now) =
+        after(&[RefereeCommand::Stop, RefereeCommand::PrepareKickoff(B), RefereeCommand::NormalStart]);
     state.tick(now + S, at(1.0, 0.0), &limits());
-    assert_eq!(state.receive(Command::NormalStart, now + 2 * S, at(1.0, 0.0)), Received::Repeated);
+    assert_eq!(
+        state.receive(RefereeCommand::NormalStart, now + 2 * S, at(1.0, 0.0)),
+        CommandVerdict::Repeated
+    );
     assert_eq!(state.phase(), Phase::Run);
     // HALT and BALL_PLACEMENT twice.
-    for command in [Command::Halt, Command::BallPlacement(Y)] {
-        let (mut state, now) = after(&[Command::Stop, command]);
+    for command in [RefereeCommand::Halt, RefereeCommand::BallPlacement(Y)] {
+        let (mut state, now) = after(&[RefereeCommand::Stop, command]);
         let before = state;
-        assert_eq!(state.receive(command, now + S, None), Received::Repeated);
+        assert_eq!(state.receive(command, now + S, None), CommandVerdict::Repeated);
         assert_eq!(state, before);
     }
 }
 
 #[test]
 fn a_restart_that_is_ordered_again_before_it_is_in_play_gets_its_time_again() {
-    let (mut state, now) = after(&[Command::Stop, Command::FreeKick(B)]);
-    assert_eq!(state.receive(Command::FreeKick(B), now + 4 * S, at(0.01, 0.0)), Received::Repeated);
+    let (mut state, now) = after(&[RefereeCommand::Stop, RefereeCommand::FreeKick(B)]);
+    assert_eq!(
+        state.receive(RefereeCommand::FreeKick(B), now + 4 * S, at(0.01, 0.0)),
+        CommandVerdict::Repeated
+    );
     assert_eq!(state.tick(now + 10 * S, at(0.0, 0.0), &limits()), Ticked::Same);
     assert_eq!(state.tick(now + 14 * S, at(0.0, 0.0), &limits()), Ticked::TimeUp);
 }
 
 #[test]
 fn a_free_kick_that_is_ordered_again_after_it_was_in_play_is_a_new_one() {
-    let (mut state, now) = after(&[Command::Stop, Command::FreeKick(B)]);
+    let (mut state, now) = after(&[RefereeCommand::Stop, RefereeCommand::FreeKick(B)]);
     state.tick(now + 11 * S, at(0.0, 0.0), &limits());
     assert_eq!(state.phase(), Phase::Run);
-    state.receive(Command::FreeKick(B), now + 12 * S, at(0.0, 0.0));
+    state.receive(RefereeCommand::FreeKick(B), now + 12 * S, at(0.0, 0.0));
     assert_eq!(state.phase(), Phase::FreeKick(B));
     // A ball that rolls puts it back into play at once.
     assert_eq!(state.tick(now + 12 * S + 20_000, at(0.06, 0.0), &limits()), Ticked::BallMoved);
@@ -288,8 +305,8 @@ fn whatever_is_said_no_one_starts_from_a_standstill_within_two_seconds_without_s
             let command = all[random(all.len() as u64) as usize];
             state.receive(command, now, at(0.0, 0.0));
             match command {
-                Command::Halt | Command::Timeout(_) => (stands, called) = (true, None),
-                Command::Stop => stands = false,
+                RefereeCommand::Halt | RefereeCommand::Timeout(_) => (stands, called) = (true, None),
+                RefereeCommand::Stop => stands = false,
                 _ => called = called.or(Some(now)),
             }
         }

@@ -22,7 +22,7 @@ pub use guess::guess;
 pub use index::Index;
 pub use open::{BACK_STEP_MESSAGES, Place, Source, open, open_at};
 pub use packet::{Packet, PacketError};
-pub use reader::{Counts, End, LogReader};
+pub use reader::{LogCounts, LogEnd, LogReader};
 pub use summary::{KindSummary, Summary};
 pub use writer::{LogWriter, Sink};
 

@@ -16,13 +16,13 @@ pub struct LogReader<R> {
     at: u64,
     ahead: Option<Record>,
     last_ns: Option<i64>,
-    counts: Counts,
-    end: Option<End>,
+    counts: LogCounts,
+    end: Option<LogEnd>,
 }
 
 /// Counters of the messages read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
+pub struct LogCounts {
     /// Number of messages returned.
     pub messages: u64,
     /// Number of blank messages skipped.
@@ -37,7 +37,7 @@ pub struct Counts {
 
 /// How a file ends. Positions and sizes are bytes of the unzipped file.
 #[derive(Debug)]
-pub enum End {
+pub enum LogEnd {
     /// The file ends after a whole message.
     Whole,
     /// The file ends within a message.
@@ -63,14 +63,14 @@ pub enum End {
     },
 }
 
-impl End {
+impl LogEnd {
     /// Whether the file ended as it should.
     pub const fn is_whole(&self) -> bool {
         matches!(self, Self::Whole)
     }
 }
 
-impl fmt::Display for End {
+impl fmt::Display for LogEnd {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Whole => write!(f, "whole"),
@@ -116,16 +116,16 @@ impl<R: Read> LogReader<R> {
 
     /// Continues reading from a message's first byte, which is byte `at` of the file.
     pub(super) fn from_message(source: R, at: u64) -> Self {
-        Self { source, at, ahead: None, last_ns: None, counts: Counts::default(), end: None }
+        Self { source, at, ahead: None, last_ns: None, counts: LogCounts::default(), end: None }
     }
 
     /// How the file ended; `None` until the iterator gave its last message.
-    pub fn end(&self) -> Option<&End> {
+    pub fn end(&self) -> Option<&LogEnd> {
         self.end.as_ref()
     }
 
     /// Counts of the messages read so far.
-    pub fn counts(&self) -> &Counts {
+    pub fn counts(&self) -> &LogCounts {
         &self.counts
     }
 
@@ -144,24 +144,24 @@ impl<R: Read> LogReader<R> {
         }
     }
 
-    fn read_message(&mut self) -> Result<Record, End> {
+    fn read_message(&mut self) -> Result<Record, LogEnd> {
         loop {
             let at = self.at;
             let mut header = [0; MESSAGE_HEADER];
             match fill(&mut self.source, &mut header) {
-                Ok(0) => return Err(End::Whole),
+                Ok(0) => return Err(LogEnd::Whole),
                 Ok(MESSAGE_HEADER) => {}
-                Ok(bytes) => return Err(End::Cut { at, bytes: bytes as u64 }),
+                Ok(bytes) => return Err(LogEnd::Cut { at, bytes: bytes as u64 }),
                 Err((bytes, error)) => return Err(broken_off(at, bytes as u64, error)),
             }
             let (timestamp_ns, kind, size) = parse_header(&header);
-            let length = usize::try_from(size).map_err(|_| End::Size { at, size })?;
+            let length = usize::try_from(size).map_err(|_| LogEnd::Size { at, size })?;
             if matches!(kind, MessageKind::Blank | MessageKind::Index2021) {
                 // An index may be large; it is not kept.
                 let skipped = io::copy(&mut self.source.by_ref().take(length as u64), &mut io::sink());
                 let skipped = skipped.map_err(|error| broken_off(at, MESSAGE_HEADER as u64, error))?;
                 if skipped < length as u64 {
-                    return Err(End::Cut { at, bytes: MESSAGE_HEADER as u64 + skipped });
+                    return Err(LogEnd::Cut { at, bytes: MESSAGE_HEADER as u64 + skipped });
                 }
                 self.at += (MESSAGE_HEADER + length) as u64;
                 let passed =
@@ -170,12 +170,12 @@ impl<R: Read> LogReader<R> {
                 continue;
             }
             if length > PAYLOAD_MAX {
-                return Err(End::Size { at, size });
+                return Err(LogEnd::Size { at, size });
             }
             let mut payload = vec![0; length];
             match fill(&mut self.source, &mut payload) {
                 Ok(bytes) if bytes == length => {}
-                Ok(bytes) => return Err(End::Cut { at, bytes: (MESSAGE_HEADER + bytes) as u64 }),
+                Ok(bytes) => return Err(LogEnd::Cut { at, bytes: (MESSAGE_HEADER + bytes) as u64 }),
                 Err((bytes, error)) => return Err(broken_off(at, (MESSAGE_HEADER + bytes) as u64, error)),
             }
             self.at += (MESSAGE_HEADER + length) as u64;
@@ -240,10 +240,10 @@ pub(super) fn fill(source: &mut impl Read, buffer: &mut [u8]) -> Result<usize, (
 }
 
 /// A gzip stream that stops in its middle is a cut file; anything else is damage.
-fn broken_off(at: u64, bytes: u64, error: io::Error) -> End {
+fn broken_off(at: u64, bytes: u64, error: io::Error) -> LogEnd {
     match error.kind() {
-        io::ErrorKind::UnexpectedEof => End::Cut { at, bytes },
-        _ => End::Read { at, error },
+        io::ErrorKind::UnexpectedEof => LogEnd::Cut { at, bytes },
+        _ => LogEnd::Read { at, error },
     }
 }
 

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::io::Read;
 
-use super::{Counts, LogReader, MessageKind, Packet, PacketError};
+use super::{LogCounts, LogReader, MessageKind, Packet, PacketError};
 
 /// Statistics of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -15,7 +15,7 @@ pub struct Summary {
     /// Number of messages of kind `Unknown` whose kind was found.
     pub guessed: u64,
     /// Counters of the reader.
-    pub counts: Counts,
+    pub counts: LogCounts,
     /// First and last time of any message, ns, Unix time.
     pub span_ns: Option<(i64, i64)>,
     /// Camera frames by camera.

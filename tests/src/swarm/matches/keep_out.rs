@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use geometry::{Field, GoalEnd, Point};
 use protocol::Who;
-use rules::keep_out::{Forbidden, Situation, Why, keep_out};
+use rules::keep_out::{Forbidden, KeepOutReason, Situation, keep_out};
 use rules::{Colour, FieldSpec, Phase, RuleRole, Side, limits};
 
 /// Grace before being in a region counts.
@@ -20,23 +20,28 @@ pub enum Grace {
 }
 
 /// The rules' grace for that region in that phase; `None` where being there is no offence.
-pub fn grace(why: Why, phase: Phase<Side>) -> Option<Grace> {
+pub fn grace(why: KeepOutReason, phase: Phase<Side>) -> Option<Grace> {
     if !why.offends(phase) {
         return None;
     }
     Some(match (why, phase) {
         // Offenses, ball placement interference: "for more than 2 seconds".
-        (Why::Stadium, _) => Grace::AtATime(limits::GRACE),
+        (KeepOutReason::Stadium, _) => Grace::AtATime(limits::GRACE),
         // Preparations are for taking positions: the controller's time for them.
-        (Why::OtherHalf | Why::CentreCircle | Why::BallDistance, Phase::PrepareKickoff(_))
-        | (Why::BehindBall | Why::KeeperLine, Phase::PreparePenalty(_)) => {
+        (
+            KeepOutReason::OtherHalf | KeepOutReason::CentreCircle | KeepOutReason::BallDistance,
+            Phase::PrepareKickoff(_),
+        )
+        | (KeepOutReason::BehindBall | KeepOutReason::KeeperLine, Phase::PreparePenalty(_)) => {
             Grace::AfterChange(limits::PREPARE_TIME)
         }
         // Offenses, attacker too close to defence area; referee commands, stop: 2 s to slow down and leave.
-        (Why::OpponentArea, _) | (Why::BallDistance, Phase::Stop) => Grace::AfterChange(limits::GRACE),
+        (KeepOutReason::OpponentArea, _) | (KeepOutReason::BallDistance, Phase::Stop) => {
+            Grace::AfterChange(limits::GRACE)
+        }
         // Being in the own area is no offence before the ball is touched: the time to leave it at the speed
         // of STOP, ours.
-        (Why::OwnArea, _) => Grace::AfterChange(LEAVE_OWN_AREA),
+        (KeepOutReason::OwnArea, _) => Grace::AfterChange(LEAVE_OWN_AREA),
         _ => Grace::AfterChange(0.0),
     })
 }
@@ -84,7 +89,7 @@ pub struct Within {
     /// The robot in the region.
     pub who: Who,
     /// Rule that forbids the region.
-    pub why: Why,
+    pub why: KeepOutReason,
     /// Depth within it, m.
     pub depth: f32,
 }
@@ -172,7 +177,10 @@ impl KeepOuts {
             let phase = moment.phase.seen_by(one.who.colour);
             let Some(grace) = grace(one.why, phase) else { continue };
             let entry = self.since.entry((one.who, one.why as u8)).or_insert((moment.time, one.depth, false));
-            if one.why == Why::BallDistance && moment.ball_speed > BALL_QUICK && moment.ball_is_free(robots) {
+            if one.why == KeepOutReason::BallDistance
+                && moment.ball_speed > BALL_QUICK
+                && moment.ball_is_free(robots)
+            {
                 entry.0 = moment.time;
             }
             entry.1 = entry.1.max(one.depth);

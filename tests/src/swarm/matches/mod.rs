@@ -38,7 +38,7 @@ pub enum Broken {
     /// A robot is faster than 1.5 m/s in STOP after 2 s.
     FastInStop(Who, f32),
     /// The match stands: the obstacle that the referee reports.
-    Blocked(hil_sim::small_size::referee::Obstacle),
+    Blocked(hil_sim::small_size::referee::ReadyObstacle),
     /// It could not be played to its end.
     Ended(String),
 }

@@ -9,7 +9,7 @@ use hil_sim::small_size::Ball;
 use hil_sim::small_size::referee::{Card, Kind, MatchClock, Restart};
 use host::strategy::{Flip, Task};
 use protocol::{Duration, Who};
-use rules::state::Command;
+use rules::state::RefereeCommand;
 use rules::{Colour, FieldSpec, Phase, Side, limits};
 
 use super::frozen::{Must, Stands};
@@ -99,8 +99,8 @@ fn perform(game: &mut Game<'_>, act: Act) -> bool {
         Act::Kickoff(team) => game.restart(Restart::Kickoff(team), origin),
         Act::FreeKick(team, at) => game.restart(Restart::FreeKick(team), at),
         Act::ForceStart(at) => game.restart(Restart::ForceStart, at),
-        Act::Halt => !game.referee().stage().is_break() && game.command(Command::Halt),
-        Act::Stop => !game.referee().stage().is_break() && game.command(Command::Stop),
+        Act::Halt => !game.referee().stage().is_break() && game.command(RefereeCommand::Halt),
+        Act::Stop => !game.referee().stage().is_break() && game.command(RefereeCommand::Stop),
         Act::GoOn => {
             game.go_on();
             true

@@ -12,7 +12,7 @@ use board_stm32::kicker::Kicker;
 use board_stm32::radio::{self, UartReceiver, UartSender};
 use board_stm32::sampling::{self, Probes};
 use board_stm32::watchdog::BoardWatchdog;
-use board_stm32::wheels::{Drivers, Wheels};
+use board_stm32::wheels::{Drivers, WheelDrivers};
 use board_stm32::{flash, off};
 use case_library::division_b;
 use casebase::CaseBase;
@@ -48,7 +48,7 @@ fn main() -> ! {
     };
     let config = BrainConfig { epoch, ..BrainConfig::hosted(who.robot, who.team, who.league) };
     defmt::info!("robot {=u8}, team {=u8}, epoch {=u32}", who.robot.number(), who.team.0, epoch);
-    let wheels = Wheels::new(drivers, Encoders::new(parts.encoders));
+    let wheels = WheelDrivers::new(drivers, Encoders::new(parts.encoders));
     let (imu, analog) = (Imu::new(parts.imu), Analog::new(parts.analog));
     // The last step that may take long is over.
     let watchdog = BoardWatchdog::start(parts.keeper.watchdog);
@@ -67,7 +67,7 @@ static WIRES: Wires = Wires::new();
 fn start(
     spawner: Spawner,
     (config, base, keys): (BrainConfig, CaseBase<'static>, RobotKeys),
-    wheels: Wheels,
+    wheels: WheelDrivers,
     kicker: Kicker,
     imu: Imu,
     analog: Analog,
@@ -94,7 +94,7 @@ async fn brain(config: BrainConfig, base: CaseBase<'static>, keys: RobotKeys) ->
 }
 
 #[embassy_executor::task]
-async fn control(wheels: Wheels) -> ! {
+async fn control(wheels: WheelDrivers) -> ! {
     hardware::control(wheels, &BOXES, &WIRES).await
 }
 

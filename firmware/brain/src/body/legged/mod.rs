@@ -2,7 +2,7 @@
 
 mod walk;
 
-use casebase::{Kick, KickAim, Primitive};
+use casebase::{CaseKick, KickAim, Primitive};
 use geometry::{Angle, Field, GoalEnd, Point};
 use motion::legged::{CARRY_SPEED, WALK_FORWARD};
 use motion::rolling::RollingBall;
@@ -43,7 +43,7 @@ impl Body for Legged {
         skills::pass(belief, place)
     }
 
-    fn kick(&self, belief: &Belief, kind: &Kick, along: Angle, _end: Point<Field>) -> Intent {
+    fn kick(&self, belief: &Belief, kind: &CaseKick, along: Angle, _end: Point<Field>) -> Intent {
         skills::shoot(belief, along, legged_kick(kind))
     }
 
@@ -51,7 +51,7 @@ impl Body for Legged {
         skills::attempt(belief, attacked, patient).unwrap_or_else(|| skills::push_on(belief, attacked))
     }
 
-    fn heading_for(&self, kind: &Kick, along: Angle) -> Angle {
+    fn heading_for(&self, kind: &CaseKick, along: Angle) -> Angle {
         along - nominal(legged_kick(kind)).0
     }
 
@@ -62,7 +62,7 @@ impl Body for Legged {
 }
 
 /// The body's kick for a kick kind of the library: the one it names, else by reach.
-fn legged_kick(kind: &Kick) -> LeggedKick {
+fn legged_kick(kind: &CaseKick) -> LeggedKick {
     match (kind.primitive, kind.aim) {
         (Primitive::ForwardSoft, _) => LeggedKick::ForwardSoft,
         (Primitive::ForwardHard, _) => LeggedKick::ForwardHard,

@@ -6,7 +6,7 @@
 //! ([`Intent::KeepPath`]). SI, body frame out.
 
 use geometry::{Angle, Body, Field, Point, Twist, Vector, math};
-use motion::avoid::{self, Course, Restraint, Verdict};
+use motion::avoid::{self, Course, Restraint, RouteVerdict};
 use motion::trajectory::{CalcMotion, FreeLimits, Motion, TurnLimits};
 use protocol::Instant;
 use protocol::robot_io::{OmniKick, WHEELED_STEP};
@@ -129,7 +129,7 @@ impl Drivetrain {
             checks: if effort >= EFFORT_TAKING { avoid::CHECKS_LONG } else { avoid::CHECKS_MAX },
         });
         if path.restraint == Restraint::None {
-            let winds = path.verdict != Verdict::Direct;
+            let winds = path.verdict != RouteVerdict::Direct;
             self.under_way = Some(CurrentPath { drive: *drive, towards: path.motion.to(), winds });
         }
         let there = rests && from.distance(path.goal) < THERE;

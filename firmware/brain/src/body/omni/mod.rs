@@ -6,7 +6,7 @@
 mod drivetrain;
 pub mod surroundings;
 
-use casebase::{Kick, KickAim};
+use casebase::{CaseKick, KickAim};
 use geometry::{Angle, Field, GoalEnd, Point};
 use motion::ball::BallModel;
 use motion::trajectory::Motion;
@@ -117,7 +117,7 @@ impl Body for Wheeled {
         skills::kick_held(belief, place, OmniKick::Flat(speed))
     }
 
-    fn kick(&self, belief: &Belief, kind: &Kick, _along: Angle, end: Point<Field>) -> Intent {
+    fn kick(&self, belief: &Belief, kind: &CaseKick, _along: Angle, end: Point<Field>) -> Intent {
         let speed = match kind.aim {
             KickAim::Heading { length_mm, .. } => {
                 BallModel::default().kick_speed(from_mm(length_mm), ROLLS_ON).min(SHOT)
@@ -131,7 +131,7 @@ impl Body for Wheeled {
         skills::shoot(belief, attacked, patient)
     }
 
-    fn heading_for(&self, _kind: &Kick, along: Angle) -> Angle {
+    fn heading_for(&self, _kind: &CaseKick, along: Angle) -> Angle {
         along
     }
 

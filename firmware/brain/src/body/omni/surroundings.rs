@@ -6,7 +6,7 @@
 
 use geometry::{Field, GoalEnd, Point, Segment, Shape, Vector};
 use motion::avoid::{OBSTACLES_MAX, Obstacle};
-use rules::keep_out::{Forbidden, KeepOut, Situation, Why, keep_out};
+use rules::keep_out::{Forbidden, KeepOut, KeepOutReason, Situation, keep_out};
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 use rules::{FieldSpec, Phase, RuleRole, Side};
 
@@ -44,9 +44,9 @@ impl Surroundings {
             && belief.ball.is_some_and(|ball| rolls < LIES && ball.position.distance(to) < AT_BALL);
         let grown = |region: &Forbidden| {
             let law = match region.why {
-                Why::OpponentArea | Why::OwnArea if at_ball => LAW_AT_BALL,
+                KeepOutReason::OpponentArea | KeepOutReason::OwnArea if at_ball => LAW_AT_BALL,
                 // The stadium moves with the ball.
-                Why::Stadium => LAW + (LEADS * rolls).min(LEADS_MOST),
+                KeepOutReason::Stadium => LAW + (LEADS * rolls).min(LEADS_MOST),
                 _ => LAW,
             };
             region.shape.grown(BODY + law)

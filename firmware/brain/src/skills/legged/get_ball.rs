@@ -3,7 +3,7 @@
 use geometry::{Angle, Field, Point, Vector, math};
 use motion::legged::{CARRY_TURN_RATE, GRAB_HALF_ANGLE, GRAB_REACH, WALK_FORWARD};
 
-use crate::belief::{Ball, Belief};
+use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
 use crate::skills::Step;
 
@@ -45,7 +45,7 @@ pub fn get_ball(belief: &Belief, exit_heading: Option<Angle>) -> Step {
 /// Where to stand for a ball that will stop, so as to face `exit_heading` with it at once; `None` where
 /// intercepting it and turning with it, ready `by` seconds from now, is quicker, or an opponent is there
 /// first.
-fn place_behind(belief: &Belief, ball: &Ball, exit_heading: Angle, by: f32) -> Option<Point<Field>> {
+fn place_behind(belief: &Belief, ball: &BelievedBall, exit_heading: Angle, by: f32) -> Option<Point<Field>> {
     let from = belief.pose.position;
     let behind = ball.rest - Vector::polar(STAND_OFF, exit_heading);
     // Around the ball the path is an arc about it, not through it.
@@ -61,7 +61,7 @@ fn place_behind(belief: &Belief, ball: &Ball, exit_heading: Angle, by: f32) -> O
 
 /// Where a robot that now stands at `from` can have the ball, and in how many seconds: the earliest point on
 /// the ball's path that it reaches no later than the ball, else the ball's stop position.
-pub fn interception_point(ball: &Ball, from: Point<Field>) -> (Point<Field>, f32) {
+pub fn interception_point(ball: &BelievedBall, from: Point<Field>) -> (Point<Field>, f32) {
     let walk = |to: Point<Field>| from.distance(to) / WALK_FORWARD;
     if ball.is_at_rest() {
         return (ball.position, walk(ball.position));
@@ -104,7 +104,7 @@ mod tests {
     fn belief(ball: (f32, f32), velocity: (f32, f32), rest: (f32, f32)) -> Belief {
         let mut belief = Belief::new(League::FourLegged);
         belief.pose = Pose::from_mm_deg(0.0, 0.0, 0.0);
-        belief.ball = Some(Ball {
+        belief.ball = Some(BelievedBall {
             position: Point::new(ball.0, ball.1),
             velocity: Vector::new(velocity.0, velocity.1),
             rest: Point::new(rest.0, rest.1),

@@ -28,20 +28,23 @@ const FETCH_WITHIN: f32 = 0.9;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::belief::Ball;
+    use crate::belief::BelievedBall;
     use geometry::{Point, Vector};
     use rules::League;
 
     #[test]
     fn a_ball_that_rests_out_of_reach_is_missed_and_a_near_one_fetched() {
         let mut belief = Belief::new(League::FourLegged);
-        let lying =
-            |x| Ball { position: Point::new(x, 0.0), velocity: Vector::default(), rest: Point::new(x, 0.0) };
+        let lying = |x| BelievedBall {
+            position: Point::new(x, 0.0),
+            velocity: Vector::default(),
+            rest: Point::new(x, 0.0),
+        };
         belief.ball = Some(lying(1.2));
         assert_eq!(receive(&belief, None), Reception::Missed);
         belief.ball = Some(lying(0.7));
         assert!(matches!(receive(&belief, None), Reception::Going(Step::Running(_))));
-        belief.ball = Some(Ball {
+        belief.ball = Some(BelievedBall {
             position: Point::new(1.5, 0.0),
             velocity: Vector::new(-0.9, 0.0),
             rest: Point::new(0.35, 0.0),

@@ -6,11 +6,11 @@
 
 use geometry::{Field, Point, Pose, Segment};
 use motion::ball::BallModel;
-use motion::intercept::{Interception, Request, Verdict};
+use motion::intercept::{InterceptRequest, InterceptVerdict, Interception};
 use rules::limits::ROBOT_RADIUS;
 use rules::{Phase, Side};
 
-use crate::belief::{Ball, Belief};
+use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive, LIMITS};
 use crate::skills::wheels::get_ball::LOOKS_AHEAD;
@@ -31,7 +31,7 @@ pub fn block(belief: &Belief, stretch: Segment<Field>) -> Intent {
 }
 
 /// Point at which an approaching ball crosses the stretch.
-fn coming(ball: &Ball, stretch: Segment<Field>) -> Option<Point<Field>> {
+fn coming(ball: &BelievedBall, stretch: Segment<Field>) -> Option<Point<Field>> {
     if ball.velocity.norm() < COMING {
         return None;
     }
@@ -40,7 +40,7 @@ fn coming(ball: &Ball, stretch: Segment<Field>) -> Option<Point<Field>> {
 }
 
 /// The point with the most slack on the ball's path to `crossing`.
-fn stop(belief: &Belief, ball: &Ball, crossing: Point<Field>) -> Point<Field> {
+fn stop(belief: &Belief, ball: &BelievedBall, crossing: Point<Field>) -> Point<Field> {
     let path = BallModel::default().rolling(ball.position, ball.velocity);
     let until = path.time_to(ball.position.distance(crossing)).unwrap_or(f32::INFINITY).min(LOOKS_AHEAD);
     let question = Interception {
@@ -51,8 +51,8 @@ fn stop(belief: &Belief, ball: &Ball, crossing: Point<Field>) -> Point<Field> {
         reach: BALL_AT,
         until,
     };
-    match question.find(&LIMITS, Request::Safest) {
-        Verdict::Intercepts(interception_point) if interception_point.slack() > 0.0 => {
+    match question.find(&LIMITS, InterceptRequest::Safest) {
+        InterceptVerdict::Intercepts(interception_point) if interception_point.slack() > 0.0 => {
             interception_point.place
         }
         // Too late to stop there: go where it crosses, as fast as possible; a body on the ball's path is
@@ -62,7 +62,7 @@ fn stop(belief: &Belief, ball: &Ball, crossing: Point<Field>) -> Point<Field> {
 }
 
 /// Point at which a ball that does not approach would cross the stretch.
-fn threatened(belief: &Belief, ball: &Ball, stretch: Segment<Field>) -> Point<Field> {
+fn threatened(belief: &Belief, ball: &BelievedBall, stretch: Segment<Field>) -> Point<Field> {
     let goal = belief.league().field().goal_center(belief.game.defending);
     // The kicker of a penalty reveals its aim by where it lines up: there is no time to wait for the ball.
     let penalty = belief.game.phase == Phase::Penalty(Side::Theirs);

@@ -5,9 +5,9 @@
 
 use geometry::{Angle, Field, Point, Segment, Vector, math};
 use motion::ball::{BallModel, BallPath};
-use motion::intercept::{Interception, Verdict};
+use motion::intercept::{InterceptVerdict, Interception};
 
-use crate::belief::{Ball, Belief};
+use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive, LIMITS};
 use crate::skills::Step;
@@ -43,7 +43,7 @@ pub fn get_ball(belief: &Belief, face: Option<Angle>) -> Step {
 }
 
 /// Comes up to a resting ball so as to look along `face` over it, the last bit with `speed`.
-pub fn approach(belief: &Belief, ball: &Ball, face: Angle, speed: f32) -> Approach {
+pub fn approach(belief: &Belief, ball: &BelievedBall, face: Angle, speed: f32) -> Approach {
     let ahead = Vector::polar(1.0, face);
     let to_ball = ball.position - belief.pose.position;
     let (along, beside) = (to_ball.dot(ahead), ahead.cross(to_ball));
@@ -72,7 +72,7 @@ pub fn approach(belief: &Belief, ball: &Ball, face: Angle, speed: f32) -> Approa
 }
 
 /// Goes for a ball that rolls: from behind where it rolls away before the robot, else beyond it on its way, facing it.
-pub(super) fn intercept_ball(belief: &Belief, ball: &Ball) -> Drive {
+pub(super) fn intercept_ball(belief: &Belief, ball: &BelievedBall) -> Drive {
     let to_ball = ball.position - belief.pose.position;
     let (gap, speed) = (to_ball.norm() - BALL_AT, ball.velocity.norm());
     let away = ball.velocity.dot(to_ball) > ROLLS_AWAY * speed * to_ball.norm();
@@ -97,14 +97,14 @@ pub(super) fn intercept_ball(belief: &Belief, ball: &Ball) -> Drive {
         until,
     };
     let place = match question.find_within(&LIMITS, LOOKS_MAX) {
-        Verdict::Intercepts(interception_point) => interception_point.place,
-        Verdict::Chase { place, .. } => place,
+        InterceptVerdict::Intercepts(interception_point) => interception_point.place,
+        InterceptVerdict::Chase { place, .. } => place,
     };
     receive_at(belief, ball, place)
 }
 
 /// Stands on the ball's line at `place`, facing it; gives way a little as it comes, with the dribbler turning.
-pub(super) fn receive_at(belief: &Belief, ball: &Ball, place: Point<Field>) -> Drive {
+pub(super) fn receive_at(belief: &Belief, ball: &BelievedBall, place: Point<Field>) -> Drive {
     let me = belief.pose.position;
     let speed = ball.velocity.norm();
     let gap = me.distance(ball.position) - BALL_AT;
@@ -121,7 +121,7 @@ pub(super) fn receive_at(belief: &Belief, ball: &Ball, place: Point<Field>) -> D
 }
 
 /// How long the ball stays within the lines, s.
-fn time_in_field(belief: &Belief, ball: &Ball, path: &BallPath<Field>) -> f32 {
+fn time_in_field(belief: &Belief, ball: &BelievedBall, path: &BallPath<Field>) -> f32 {
     let field = belief.league().field();
     let rest = path.rest();
     if field.contains(rest) {
@@ -135,7 +135,7 @@ fn time_in_field(belief: &Belief, ball: &Ball, path: &BallPath<Field>) -> f32 {
     path.time_to(v.norm() * out).unwrap_or(f32::INFINITY)
 }
 
-fn is_contested(belief: &Belief, ball: &Ball) -> bool {
+fn is_contested(belief: &Belief, ball: &BelievedBall) -> bool {
     belief.nearest_opponent(ball.position).is_some_and(|(_, distance)| distance < CONTESTED)
 }
 

@@ -12,7 +12,7 @@ use geometry::{Angle, Field, Point, Vector};
 use protocol::{Duration, Instant};
 use rules::limits::ROBOT_RADIUS;
 
-use crate::belief::{Ball, Belief};
+use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive};
 use ways::{NEAR_ENOUGH, fetch, kick_off, pull, push, strays, wall};
@@ -80,21 +80,21 @@ impl Placement {
     }
 
     /// Whether a ball in the open is pushed: from where the robot is behind it anyway, and where it does not follow.
-    fn pushes(&self, belief: &Belief, ball: &Ball, at: Point<Field>) -> bool {
+    fn pushes(&self, belief: &Belief, ball: &BelievedBall, at: Point<Field>) -> bool {
         let behind = (ball.position - belief.pose.position).dot(at - ball.position) > 0.0;
         let pulled = matches!(self.placing, Placing::Pulling { .. });
         behind && !pulled || self.grip < FOLLOWS
     }
 
     /// The direction out of the field, where a wall is in the way of what it means to do.
-    fn wall(&self, belief: &Belief, ball: &Ball, at: Point<Field>) -> Option<Angle> {
+    fn wall(&self, belief: &Belief, ball: &BelievedBall, at: Point<Field>) -> Option<Angle> {
         // Once it is pulled, it is pulled a little farther than it must be.
         let room = if matches!(self.placing, Placing::Pulling { .. }) { CLEARS } else { 0.0 };
         wall(&belief.league().field(), ball.position, at, self.pushes(belief, ball, at), room)
     }
 
     /// A ball at a wall that does not follow is kicked off it, in turns with pulling: facing so.
-    fn kicks(&self, belief: &Belief, ball: &Ball, at: Point<Field>) -> Option<Angle> {
+    fn kicks(&self, belief: &Belief, ball: &BelievedBall, at: Point<Field>) -> Option<Angle> {
         if self.grip > KICKS_BELOW || self.kicked {
             return None;
         }
@@ -178,7 +178,7 @@ fn next(
     now: Instant,
     placement: &mut Placement,
     belief: &Belief,
-    ball: &Ball,
+    ball: &BelievedBall,
     at: Point<Field>,
     kicks: Option<Angle>,
 ) -> Placing {

@@ -7,7 +7,7 @@
 use geometry::{Angle, Field, Point, Segment, Vector};
 use protocol::robot_io::OmniKick;
 
-use crate::belief::{Ball, Belief};
+use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive, SHOT};
 use crate::skills::wheels::get_ball::{get_ball, receive_at};
@@ -65,7 +65,7 @@ pub fn take_pass(belief: &Belief, exit_heading: Option<Angle>) -> Reception {
 }
 
 /// Whether the ball comes towards the robot: past `at` or this robot within a metre.
-fn comes(belief: &Belief, ball: &Ball, at: Point<Field>) -> bool {
+fn comes(belief: &Belief, ball: &BelievedBall, at: Point<Field>) -> bool {
     let me = belief.pose.position;
     let towards = ball.velocity.dot(at - ball.position) > 0.0 || ball.velocity.dot(me - ball.position) > 0.0;
     let line = Segment::new(ball.position, ball.rest);
@@ -83,7 +83,7 @@ fn exit_heading(belief: &Belief, then: Point<Field>) -> (OmniKick, f32) {
 }
 
 /// The heading from which the incoming ball is redirected to `then`; `None` where that is too far round.
-fn deflection(ball: &Ball, at: Point<Field>, then: Point<Field>, speed: f32) -> Option<Angle> {
+fn deflection(ball: &BelievedBall, at: Point<Field>, then: Point<Field>, speed: f32) -> Option<Angle> {
     let wanted = at.direction_to(then);
     let back = (-ball.velocity).angle();
     if (wanted - back).abs() > DEFLECTS {

@@ -20,7 +20,7 @@ use crate::small_size::{Robot, World};
 
 /// Reason of a manual act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Why {
+pub enum AssistantReason {
     /// The ball is placed by hand for this kick-off or penalty.
     SetByHand(Restart),
     /// No team may place the ball, or both have failed.
@@ -46,7 +46,7 @@ pub struct Deed {
     /// The act, as the simulator carries it out.
     pub order: WorldOrder,
     /// The reason that the rules give for it.
-    pub why: Why,
+    pub why: AssistantReason,
 }
 
 /// Decides the manual acts at the field.
@@ -54,7 +54,7 @@ pub struct Deed {
 pub struct Assistant {
     commands: u64,
     /// What is wrong with the ball, and since when.
-    ball: Option<(Why, Instant)>,
+    ball: Option<(AssistantReason, Instant)>,
     /// Number of manual placements since the last command, and the time of the last.
     puts: u32,
     put_at: Option<Instant>,
@@ -101,7 +101,7 @@ impl Assistant {
         let since = self.ball.filter(|(before, _)| *before == why).map_or(now, |(_, since)| since);
         self.ball = Some((why, since));
         let waited = now.since(self.put_at.map_or(since, |put| put.max(since)));
-        let delay = if why == Why::NothingHappens { PATIENCE } else { PERSON_DELAY };
+        let delay = if why == AssistantReason::NothingHappens { PATIENCE } else { PERSON_DELAY };
         let stands = |robot: &Robot| {
             robot.present && robot.pose.position.distance(target) < limits::ROBOT_RADIUS + ROOM
         };
@@ -149,17 +149,17 @@ impl Team {
         let crowded_for = self.crowded.map_or(Duration(0), |since| now.since(since));
         let taken = if game.substitutes(colour) && halted && !self.substituted {
             let any = || whom_to_take(game, ours(), ball);
-            left.or_else(any).map(|robot| (robot.who, Why::Substituted))
+            left.or_else(any).map(|robot| (robot.who, AssistantReason::Substituted))
         } else if here > allowed && left.is_some() {
-            left.map(|robot| (robot.who, Why::HasLeft))
+            left.map(|robot| (robot.who, AssistantReason::HasLeft))
         } else if stopped && crowded_for.as_secs_f32() >= limits::CARD_REMOVAL_TIME {
-            whom_to_take(game, ours(), ball).map(|robot| (robot.who, Why::TooMany))
+            whom_to_take(game, ours(), ball).map(|robot| (robot.who, AssistantReason::TooMany))
         } else {
             None
         };
         if let Some((who, why)) = taken {
             self.changed = Some(now);
-            self.substituted |= why == Why::Substituted;
+            self.substituted |= why == AssistantReason::Substituted;
             self.off.push(who);
             return Some(Deed { order: WorldOrder::RemoveRobot(who), why });
         }
@@ -174,18 +174,18 @@ impl Team {
         let who = *self.off.first()?;
         self.off.remove(0);
         self.changed = Some(now);
-        Some(Deed { order: WorldOrder::ReturnRobot(who, pose), why: Why::MayComeBack })
+        Some(Deed { order: WorldOrder::ReturnRobot(who, pose), why: AssistantReason::MayComeBack })
     }
 }
 
 /// The position where the ball has to be placed by hand now, if any.
-fn wanted(game: &RemoteMatch, world: &World) -> Option<(Why, Point<Field>)> {
+fn wanted(game: &RemoteMatch, world: &World) -> Option<(AssistantReason, Point<Field>)> {
     let (ball, speed) = (world.ball.position, world.ball.velocity.norm());
     let still = speed <= limits::BALL_STILL && world.ball.height <= 0.0;
     let set = match game.phase() {
         Phase::BallPlacement(_) => {
             let lost = still && !is_reachable(&game.field, ball);
-            return lost.then(|| (Why::OutOfReach, places::within_reach(&game.field, ball)));
+            return lost.then(|| (AssistantReason::OutOfReach, places::within_reach(&game.field, ball)));
         }
         // Robots stand around it now: only a ball from which the controller does not start is moved.
         Phase::PrepareKickoff(team) => Some((Restart::Kickoff(team), game.field.center_radius)),
@@ -194,7 +194,7 @@ fn wanted(game: &RemoteMatch, world: &World) -> Option<(Why, Point<Field>)> {
     };
     if let Some((restart, tolerance)) = set {
         let mark = game.mark(restart).filter(|mark| ball.distance(*mark) > tolerance)?;
-        return Some((Why::SetByHand(restart), mark));
+        return Some((AssistantReason::SetByHand(restart), mark));
     }
     let stopped = matches!(game.phase(), Phase::Stop);
     if !stopped && game.phase() != Phase::Halt || game.stage().is_break() {
@@ -206,11 +206,13 @@ fn wanted(game: &RemoteMatch, world: &World) -> Option<(Why, Point<Field>)> {
     let target = game.target().or_else(spot).filter(|_| !open || stopped)?;
     let lies = |tolerance: f32| still && ball.distance(target) <= tolerance;
     match game.next() {
-        Some(next) if next.is_set_by_hand() => (!lies(SET_BY_HAND)).then_some((Why::SetByHand(next), target)),
+        Some(next) if next.is_set_by_hand() => {
+            (!lies(SET_BY_HAND)).then_some((AssistantReason::SetByHand(next), target))
+        }
         _ if !stopped || placement_needless(&game.field, ball, speed, target) => None,
         _ if game.has_event(GameEventType::PlacementSucceeded) && lies(limits::PLACEMENT_TOLERANCE) => None,
-        _ if game.placing_team().is_none() => Some((Why::NoTeamPlaces, target)),
-        _ => Some((Why::NothingHappens, target)),
+        _ if game.placing_team().is_none() => Some((AssistantReason::NoTeamPlaces, target)),
+        _ => Some((AssistantReason::NothingHappens, target)),
     }
 }
 
@@ -229,7 +231,7 @@ fn whom_to_take<'a>(
     })
 }
 
-impl fmt::Display for Why {
+impl fmt::Display for AssistantReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let team = |team: Colour| if team == Colour::Blue { "blue" } else { "yellow" };
         match self {

@@ -11,12 +11,12 @@ use rules::legality::no_goal;
 use rules::restart::{AfterPlacement, placement_lack};
 use rules::{Colour, Phase, limits};
 
-use super::super::event::{Event, Invalid, Kind, PenaltyEnd, Restart, Shot, What};
+use super::super::event::{Invalid, Kind, PenaltyEnd, RefereeEvent, Restart, ShotEvent, What};
 use super::super::look::Sight;
 use super::super::scene::{COLOURS, Scene, is_running};
 use super::super::watch::Watch;
 use super::RemoteMatch;
-use crate::small_size::{Event as WorldEvent, World};
+use crate::small_size::{PhysicsEvent as WorldEvent, World};
 
 /// Who takes the decisions that automatic referees leave open: whether a ball in the goal is a goal, and how
 /// play continues after a ball left the field that no robot touched.
@@ -53,7 +53,7 @@ impl AutoReferee {
 
     /// Observes the world, about every 10 ms; `events` are the world's since the last call. Returns the
     /// events to report.
-    pub fn look(&mut self, game: &RemoteMatch, world: &World, events: &[WorldEvent]) -> Vec<Event> {
+    pub fn look(&mut self, game: &RemoteMatch, world: &World, events: &[WorldEvent]) -> Vec<RefereeEvent> {
         let sight = Sight::of(world, events, self.looked);
         let now = sight.time;
         self.looked = Some(now);
@@ -85,7 +85,7 @@ impl AutoReferee {
     }
 
     /// The events to report for this one: none, one, or two where it takes both to determine the restart.
-    fn report(&mut self, game: &RemoteMatch, event: Event) -> Vec<Event> {
+    fn report(&mut self, game: &RemoteMatch, event: RefereeEvent) -> Vec<RefereeEvent> {
         let phase = game.phase();
         let kind = event.what.kind();
         if is_the_controllers(&event.what) || !is_in_time(kind, phase) {
@@ -109,11 +109,11 @@ impl AutoReferee {
             What::LeftTouchLine | What::LeftGoalLine
                 if event.by.is_none() && self.decider == Decider::AutoReferee =>
             {
-                vec![Event { what: What::NoProgress { duration: 0.0 }, ..event }]
+                vec![RefereeEvent { what: What::NoProgress { duration: 0.0 }, ..event }]
             }
             _ => vec![event],
         };
-        let stops = |event: &Event| {
+        let stops = |event: &RefereeEvent| {
             event.what.kind().stops_the_game() || matches!(event.what, What::PossibleGoal { .. })
         };
         if events.iter().any(stops) && (is_running(phase) || matches!(phase, Phase::BallPlacement(_))) {
@@ -123,30 +123,30 @@ impl AutoReferee {
     }
 
     /// A ball in a goal, as required by [`Decider`].
-    fn goal(&self, game: &RemoteMatch, shot: Shot, event: Event) -> Vec<Event> {
+    fn goal(&self, game: &RemoteMatch, shot: ShotEvent, event: RefereeEvent) -> Vec<RefereeEvent> {
         let Some(scorer) = event.by else { return vec![event] };
         if self.decider == Decider::Person {
-            return vec![Event { what: What::PossibleGoal { shot }, ..event }];
+            return vec![RefereeEvent { what: What::PossibleGoal { shot }, ..event }];
         }
         let invalid = self.invalid(game, scorer, &shot, event.at);
         match invalid.filter(|_| !matches!(game.phase(), Phase::Penalty(_))) {
-            None => vec![Event { what: What::Goal { shot: Some(shot) }, ..event }],
+            None => vec![RefereeEvent { what: What::Goal { shot: Some(shot) }, ..event }],
             Some(reason) => {
                 // The controller takes the position of the restart from a ball over the goal line, and none
                 // from an invalid goal.
                 let kicker = shot.kicker;
-                let out = Event {
+                let out = RefereeEvent {
                     by: kicker.map_or(Some(scorer), |kicker| Some(kicker.colour)),
                     robot: kicker.map(|kicker| kicker.id),
                     what: What::LeftGoalLine,
                     ..event.clone()
                 };
-                vec![Event { what: What::InvalidGoal { shot, reason }, ..event }, out]
+                vec![RefereeEvent { what: What::InvalidGoal { shot, reason }, ..event }, out]
             }
         }
     }
 
-    fn invalid(&self, game: &RemoteMatch, scorer: Colour, shot: &Shot, at: Instant) -> Option<Invalid> {
+    fn invalid(&self, game: &RemoteMatch, scorer: Colour, shot: &ShotEvent, at: Instant) -> Option<Invalid> {
         use rules::legality::NoGoal;
         let foul = self.fouls[usize::from(scorer == COLOURS[1])];
         let since = foul.map(|(_, foul)| at.since(foul).as_secs_f32());
@@ -160,7 +160,7 @@ impl AutoReferee {
 
     /// The ball lies where the placing team had to bring it: the controller takes this from automatic
     /// referees alone.
-    fn placement(&mut self, game: &RemoteMatch, scene: &Scene<'_>) -> Option<Event> {
+    fn placement(&mut self, game: &RemoteMatch, scene: &Scene<'_>) -> Option<RefereeEvent> {
         let Phase::BallPlacement(team) = game.phase() else { return None };
         let target = scene.game.target.filter(|_| !self.placed)?;
         let after = match game.next() {

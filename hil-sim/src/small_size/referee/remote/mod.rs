@@ -13,12 +13,12 @@ mod tests;
 
 use geometry::{Field, GoalEnd, Point};
 use protocol::{Duration, Instant, RobotId};
-use rules::state::{Command, GameState, Stage};
+use rules::state::{GameState, RefereeCommand, Stage};
 use rules::{Colour, FieldSpec, League, Limits, Phase};
 use ssl::event::{Event as Reported, GameEvent, GameEventType};
 use ssl::referee as packet;
 
-pub use assistant::{Assistant, Deed, Why};
+pub use assistant::{Assistant, AssistantReason, Deed};
 pub use autoref::{AutoReferee, Decider};
 
 use super::account::{Account, Accounts};
@@ -34,7 +34,7 @@ pub struct RemoteMatch {
     limits: Limits,
     state: GameState,
     stage: Stage,
-    command: Option<Command>,
+    command: Option<RefereeCommand>,
     newest: Option<packet::Referee>,
     received: Instant,
     now: Instant,
@@ -153,10 +153,10 @@ impl RemoteMatch {
     /// The restart after the stop.
     pub fn next(&self) -> Option<Restart> {
         match command_of(self.newest.as_ref()?.next_command?)? {
-            Command::PrepareKickoff(team) => Some(Restart::Kickoff(team)),
-            Command::PreparePenalty(team) => Some(Restart::Penalty(team)),
-            Command::FreeKick(team) => Some(Restart::FreeKick(team)),
-            Command::ForceStart => Some(Restart::ForceStart),
+            RefereeCommand::PrepareKickoff(team) => Some(Restart::Kickoff(team)),
+            RefereeCommand::PreparePenalty(team) => Some(Restart::Penalty(team)),
+            RefereeCommand::FreeKick(team) => Some(Restart::FreeKick(team)),
+            RefereeCommand::ForceStart => Some(Restart::ForceStart),
             _ => None,
         }
     }
@@ -251,17 +251,18 @@ fn colour_of(team: i32) -> Option<Colour> {
 
 /// The command with that number on the wire; none for obsolete ones (goals, indirect free kicks) and unknown
 /// numbers.
-fn command_of(number: i32) -> Option<Command> {
+fn command_of(number: i32) -> Option<RefereeCommand> {
     let of_teams = COLOURS.into_iter().flat_map(|team| {
         [
-            Command::PrepareKickoff(team),
-            Command::PreparePenalty(team),
-            Command::FreeKick(team),
-            Command::Timeout(team),
-            Command::BallPlacement(team),
+            RefereeCommand::PrepareKickoff(team),
+            RefereeCommand::PreparePenalty(team),
+            RefereeCommand::FreeKick(team),
+            RefereeCommand::Timeout(team),
+            RefereeCommand::BallPlacement(team),
         ]
     });
-    let plain = [Command::Halt, Command::Stop, Command::NormalStart, Command::ForceStart];
+    let plain =
+        [RefereeCommand::Halt, RefereeCommand::Stop, RefereeCommand::NormalStart, RefereeCommand::ForceStart];
     plain.into_iter().chain(of_teams).find(|command| wire::command(*command) as i32 == number)
 }
 

@@ -6,7 +6,7 @@ use protocol::Who;
 use ssl::event::PlacementFailed;
 use ssl::referee::Command as Wire;
 
-use super::super::event::{Event, Kind, What};
+use super::super::event::{Kind, RefereeEvent, What};
 use super::super::field_staff::WorldOrder;
 use super::*;
 use crate::small_size::{Ball, Parameters, World};
@@ -19,7 +19,7 @@ struct ServerLoop {
     assistant: Assistant,
     autoref: AutoReferee,
     deeds: Vec<(f64, Deed)>,
-    events: Vec<Event>,
+    events: Vec<RefereeEvent>,
 }
 
 fn who(colour: Colour, id: u8) -> Who {
@@ -101,7 +101,7 @@ impl ServerLoop {
         }
     }
 
-    fn reasons(&self) -> Vec<Why> {
+    fn reasons(&self) -> Vec<AssistantReason> {
         self.deeds.iter().map(|(_, deed)| deed.why).collect()
     }
 
@@ -136,14 +136,14 @@ fn the_ball_is_set_for_a_kick_off_and_for_a_penalty() {
     server_loop.run(1.9);
     assert_eq!(server_loop.deeds, [], "a person needs 2 s");
     server_loop.run(0.5);
-    assert_eq!(server_loop.reasons(), [Why::SetByHand(Restart::Kickoff(Colour::Yellow))]);
+    assert_eq!(server_loop.reasons(), [AssistantReason::SetByHand(Restart::Kickoff(Colour::Yellow))]);
     assert_eq!(server_loop.world.ball.position, at(0.0, 0.0));
     server_loop.run(20.0);
     assert_eq!(server_loop.deeds.len(), 1, "it lies there: {:?}", server_loop.deeds);
     server_loop.command(Wire::Halt);
     server_loop.next(Wire::PreparePenaltyBlue, at(1.5, 0.0));
     server_loop.run(3.0);
-    assert_eq!(server_loop.reasons()[1], Why::SetByHand(Restart::Penalty(Colour::Blue)));
+    assert_eq!(server_loop.reasons()[1], AssistantReason::SetByHand(Restart::Penalty(Colour::Blue)));
     let ball = server_loop.world.ball.position;
     assert!(ball.distance(at(1.5, 0.0)) < 1e-5, "6 m from yellow's goal at -4.5 m: {ball:?}");
 }
@@ -163,7 +163,7 @@ fn the_ball_is_put_where_no_team_may_place_it_and_left_alone_where_one_does() {
     server_loop.packet.game_events.push(failed(Colour::Yellow));
     server_loop.command(Wire::Stop);
     server_loop.run(3.0);
-    assert_eq!(server_loop.reasons(), [Why::NoTeamPlaces]);
+    assert_eq!(server_loop.reasons(), [AssistantReason::NoTeamPlaces]);
     assert!(server_loop.world.ball.position.distance(spot) < 1e-5, "{:?}", server_loop.world.ball.position);
 
     let mut neither = ServerLoop::new(Decider::Person);
@@ -172,7 +172,7 @@ fn the_ball_is_put_where_no_team_may_place_it_and_left_alone_where_one_does() {
     (neither.packet.yellow.can_place_ball, neither.packet.blue.ball_placement_failures_reached) =
         (Some(false), Some(true));
     neither.run(3.0);
-    assert_eq!(neither.reasons(), [Why::NoTeamPlaces]);
+    assert_eq!(neither.reasons(), [AssistantReason::NoTeamPlaces]);
 }
 
 #[test]
@@ -187,7 +187,7 @@ fn where_the_controller_wants_the_ball_decides_and_the_mark_when_it_prepares() {
     server_loop.run(1.5);
     assert_eq!(server_loop.deeds.len(), 1);
     server_loop.run(1.5);
-    assert_eq!(server_loop.reasons()[1], Why::SetByHand(Restart::Kickoff(Colour::Yellow)));
+    assert_eq!(server_loop.reasons()[1], AssistantReason::SetByHand(Restart::Kickoff(Colour::Yellow)));
     assert_eq!(server_loop.world.ball.position, at(0.0, 0.0));
     server_loop.ball(at(0.3, 0.0), Vector::default());
     server_loop.run(10.0);
@@ -197,7 +197,7 @@ fn where_the_controller_wants_the_ball_decides_and_the_mark_when_it_prepares() {
     lost.ball(at(4.6, 0.0), Vector::default());
     lost.packet.next_command = Some(Wire::DirectFreeBlue as i32);
     lost.run(11.0);
-    assert_eq!(lost.reasons(), [Why::NothingHappens]);
+    assert_eq!(lost.reasons(), [AssistantReason::NothingHappens]);
     let spot = lost.world.ball.position;
     assert_eq!(rules::restart::free_kick_fault(&lost.game.field, &lost.game.limits, spot), None, "{spot:?}");
 }
@@ -235,7 +235,7 @@ fn a_stop_from_which_nothing_goes_on_is_ended_by_hand_at_last() {
     server_loop.run(9.9);
     assert_eq!(server_loop.deeds, []);
     server_loop.run(0.5);
-    assert_eq!(server_loop.reasons(), [Why::NothingHappens]);
+    assert_eq!(server_loop.reasons(), [AssistantReason::NothingHappens]);
 }
 
 #[test]
@@ -247,7 +247,7 @@ fn a_ball_that_robots_cannot_reach_is_brought_back_to_the_team_that_places() {
         server_loop.command(Wire::BallPlacementBlue);
         server_loop.ball(at(x, y), Vector::default());
         server_loop.run(3.0);
-        assert_eq!(server_loop.reasons(), [Why::OutOfReach], "{x} {y}");
+        assert_eq!(server_loop.reasons(), [AssistantReason::OutOfReach], "{x} {y}");
         let ball = server_loop.world.ball.position;
         assert!((ball.x() - 4.3).abs() < 1e-6 && (ball.y() - y.min(2.8)).abs() < 1e-6, "{ball:?}");
     }
@@ -284,13 +284,16 @@ fn a_surplus_robot_is_taken_off_where_it_may_be_and_brought_back_when_the_card_i
         let leaving = who(Colour::Blue, 3);
         server_loop.world.put(leaving, Pose { position: at(x, y), heading: Angle::ZERO });
         server_loop.run(1.0);
-        let taken = Deed { order: WorldOrder::RemoveRobot(leaving), why: Why::HasLeft };
+        let taken = Deed { order: WorldOrder::RemoveRobot(leaving), why: AssistantReason::HasLeft };
         assert_eq!(server_loop.deeds.pop().map(|(_, deed)| deed), Some(taken));
         server_loop.run(20.0);
         assert_eq!((server_loop.deeds.len(), server_loop.here(Colour::Blue)), (0, 5));
         server_loop.packet.blue.max_allowed_bots = Some(6);
         server_loop.run(1.0);
-        assert_eq!((server_loop.reasons(), server_loop.here(Colour::Blue)), (vec![Why::MayComeBack], 6));
+        assert_eq!(
+            (server_loop.reasons(), server_loop.here(Colour::Blue)),
+            (vec![AssistantReason::MayComeBack], 6)
+        );
         let place = server_loop.world.robot(leaving).unwrap().pose.position;
         assert!(place.x() > 0.0 && place.x() <= 1.0 && place.y().abs() > 3.0, "{place:?}");
         server_loop.run(20.0);
@@ -305,7 +308,10 @@ fn in_stop_a_surplus_robot_is_taken_off_after_the_controllers_patience() {
     server_loop.run(9.9);
     assert_eq!(server_loop.deeds, []);
     server_loop.run(0.5);
-    assert_eq!((server_loop.reasons(), server_loop.here(Colour::Yellow)), (vec![Why::TooMany], 5));
+    assert_eq!(
+        (server_loop.reasons(), server_loop.here(Colour::Yellow)),
+        (vec![AssistantReason::TooMany], 5)
+    );
     assert!(server_loop.world.robot(who(Colour::Yellow, 0)).unwrap().present, "not the keeper");
     // A second card: robots are taken off one after the other.
     server_loop.packet.yellow.max_allowed_bots = Some(3);
@@ -321,10 +327,10 @@ fn a_substitution_takes_one_robot_and_brings_it_back_standing() {
     let fallen = who(Colour::Blue, 4);
     server_loop.world.tip(fallen, true);
     server_loop.run(1.0);
-    assert_eq!(server_loop.reasons(), [Why::Substituted]);
+    assert_eq!(server_loop.reasons(), [AssistantReason::Substituted]);
     assert_eq!(server_loop.deeds[0].1.order, WorldOrder::RemoveRobot(fallen));
     server_loop.run(10.0);
-    assert_eq!(server_loop.reasons(), [Why::Substituted, Why::MayComeBack]);
+    assert_eq!(server_loop.reasons(), [AssistantReason::Substituted, AssistantReason::MayComeBack]);
     assert!(!server_loop.world.robot(fallen).unwrap().tipped && server_loop.here(Colour::Blue) == 6);
     server_loop.command(Wire::Stop);
     server_loop.packet.blue.bot_substitution_allowed = Some(false);

@@ -210,14 +210,14 @@ impl Stage {
 
     /// Moves every robot that the referee waits for to a rule-compliant position of its own.
     fn make_way(&mut self) {
-        if let Some(Obstacle { team: Some(team), reason: Reason::NoKeeper, .. }) =
+        if let Some(ReadyObstacle { team: Some(team), reason: Reason::NoKeeper, .. }) =
             self.referee.blocked().map(|blocked| blocked.obstacle)
         {
             let keeper = Who { colour: team, id: self.referee.accounts().of(team).keeper };
             self.put(keeper, at(self.referee.own_end(team).sign() as f32 * 4.5, 0.0));
         }
         let waits_for: Vec<Who> =
-            self.referee.obstacles(&self.robots).iter().filter_map(Obstacle::who).collect();
+            self.referee.obstacles(&self.robots).iter().filter_map(ReadyObstacle::who).collect();
         for who in waits_for {
             let side = self.referee.own_end(who.colour).sign() as f32;
             let lane =
@@ -264,9 +264,9 @@ impl Stage {
             if let Some(command) = wire::from_wire(packet.command).filter(|_| new) {
                 let ball = self.ball.map(|ball| ball.position);
                 let received = self.received.receive(command, packet.command_timestamp, ball);
-                use rules::state::Received;
+                use rules::state::CommandVerdict;
                 assert!(
-                    matches!(received, Received::Followed | Received::Repeated),
+                    matches!(received, CommandVerdict::Followed | CommandVerdict::Repeated),
                     "{received:?} for {command:?}"
                 );
             }
@@ -305,7 +305,7 @@ impl Stage {
     }
 
     /// The only event of that kind.
-    fn only(&self, kind: Kind) -> &Event {
+    fn only(&self, kind: Kind) -> &RefereeEvent {
         let mut same = self.referee.events().iter().filter(|event| event.what.kind() == kind);
         let first = same.next().unwrap_or_else(|| panic!("no {kind:?} in {:#?}", self.referee.events()));
         assert_eq!(same.count(), 0, "more than one {kind:?}");

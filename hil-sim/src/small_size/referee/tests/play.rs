@@ -139,7 +139,7 @@ fn no_progress_for_ten_seconds_is_a_force_start() {
     stage.only(Kind::NoProgress);
     assert_eq!(stage.referee.next(), Some(Restart::ForceStart));
     stage.until(Phase::Run, 5.0);
-    assert_eq!(stage.referee.command(), Command::ForceStart);
+    assert_eq!(stage.referee.command(), RefereeCommand::ForceStart);
 }
 
 /// Yellow's robot 1 and blue's robot 1 collide head-on with these speeds.

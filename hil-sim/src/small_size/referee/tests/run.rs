@@ -73,7 +73,7 @@ fn the_ball_is_in_play_when_it_has_moved_5_cm_or_after_ten_seconds() {
     stage.move_ball(at(0.06, 0.0));
     stage.step();
     assert_eq!(stage.phase(), Phase::Run);
-    assert_eq!(stage.referee.command(), Command::NormalStart);
+    assert_eq!(stage.referee.command(), RefereeCommand::NormalStart);
 
     let mut stage = super::stage();
     stage.until(Phase::Kickoff(Colour::Yellow), 30.0);

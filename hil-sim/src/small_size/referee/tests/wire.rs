@@ -5,23 +5,23 @@ use ssl::event::GameEventType;
 use ssl::referee as sent;
 
 /// The command of a packet; `None` for the obsolete announcements of goals.
-pub(super) fn from_wire(number: i32) -> Option<Command> {
+pub(super) fn from_wire(number: i32) -> Option<RefereeCommand> {
     use Colour::{Blue, Yellow};
     Some(match sent::Command::try_from(number).unwrap() {
-        sent::Command::Halt => Command::Halt,
-        sent::Command::Stop => Command::Stop,
-        sent::Command::NormalStart => Command::NormalStart,
-        sent::Command::ForceStart => Command::ForceStart,
-        sent::Command::PrepareKickoffYellow => Command::PrepareKickoff(Yellow),
-        sent::Command::PrepareKickoffBlue => Command::PrepareKickoff(Blue),
-        sent::Command::PreparePenaltyYellow => Command::PreparePenalty(Yellow),
-        sent::Command::PreparePenaltyBlue => Command::PreparePenalty(Blue),
-        sent::Command::DirectFreeYellow => Command::FreeKick(Yellow),
-        sent::Command::DirectFreeBlue => Command::FreeKick(Blue),
-        sent::Command::TimeoutYellow => Command::Timeout(Yellow),
-        sent::Command::TimeoutBlue => Command::Timeout(Blue),
-        sent::Command::BallPlacementYellow => Command::BallPlacement(Yellow),
-        sent::Command::BallPlacementBlue => Command::BallPlacement(Blue),
+        sent::Command::Halt => RefereeCommand::Halt,
+        sent::Command::Stop => RefereeCommand::Stop,
+        sent::Command::NormalStart => RefereeCommand::NormalStart,
+        sent::Command::ForceStart => RefereeCommand::ForceStart,
+        sent::Command::PrepareKickoffYellow => RefereeCommand::PrepareKickoff(Yellow),
+        sent::Command::PrepareKickoffBlue => RefereeCommand::PrepareKickoff(Blue),
+        sent::Command::PreparePenaltyYellow => RefereeCommand::PreparePenalty(Yellow),
+        sent::Command::PreparePenaltyBlue => RefereeCommand::PreparePenalty(Blue),
+        sent::Command::DirectFreeYellow => RefereeCommand::FreeKick(Yellow),
+        sent::Command::DirectFreeBlue => RefereeCommand::FreeKick(Blue),
+        sent::Command::TimeoutYellow => RefereeCommand::Timeout(Yellow),
+        sent::Command::TimeoutBlue => RefereeCommand::Timeout(Blue),
+        sent::Command::BallPlacementYellow => RefereeCommand::BallPlacement(Yellow),
+        sent::Command::BallPlacementBlue => RefereeCommand::BallPlacement(Blue),
         sent::Command::GoalYellow | sent::Command::GoalBlue => return None,
         old => panic!("{old:?} is not sent any more"),
     })
@@ -128,7 +128,7 @@ fn in_preparation_the_next_command_is_normal_start() {
 
 #[test]
 fn every_event_is_reported_by_the_leagues_type_with_its_evidence_but_our_own_three() {
-    let shot = Shot {
+    let shot = ShotEvent {
         kicker: Some(yellow(3)),
         from: at(1.0, 0.0),
         max_height: 0.1,
@@ -192,8 +192,13 @@ fn every_event_is_reported_by_the_leagues_type_with_its_evidence_but_our_own_thr
     assert_eq!(cases.len(), Kind::ALL.len());
     for ((what, number), kind) in cases.into_iter().zip(Kind::ALL) {
         assert_eq!(what.kind(), *kind);
-        let event =
-            Event { at: Instant(9), by: Some(Colour::Blue), robot: Some(id(2)), place: at(-1.0, 2.0), what };
+        let event = RefereeEvent {
+            at: Instant(9),
+            by: Some(Colour::Blue),
+            robot: Some(id(2)),
+            place: at(-1.0, 2.0),
+            what,
+        };
         let reported = event.to_wire(1_000);
         assert_eq!(reported.as_ref().map_or(0, |reported| reported.r#type.unwrap()), number, "{kind:?}");
         let Some(reported) = reported else { continue };
@@ -210,7 +215,7 @@ fn every_event_is_reported_by_the_leagues_type_with_its_evidence_but_our_own_thr
 
 #[test]
 fn a_crash_and_a_goal_carry_what_was_measured() {
-    let event = |what| Event {
+    let event = |what| RefereeEvent {
         at: Instant(9),
         by: Some(Colour::Blue),
         robot: Some(id(2)),
@@ -234,7 +239,7 @@ fn a_crash_and_a_goal_carry_what_was_measured() {
             crash_angle: Some(0.25),
         }
     );
-    let shot = Shot {
+    let shot = ShotEvent {
         kicker: Some(yellow(3)),
         from: at(1.0, 0.0),
         max_height: 0.1,

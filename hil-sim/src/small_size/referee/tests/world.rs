@@ -1,12 +1,12 @@
 //! Tests of the referee with the simulator's world: a kick-off and a shot, with the simulator's own events.
 
 use super::*;
-use crate::small_size::{Ball, Drive, Kick, Order, Parameters, World};
+use crate::small_size::{Ball, Drive, KickCommand, Order, Parameters, World};
 
 struct Match {
     world: World,
     referee: InternalReferee,
-    events: Vec<crate::small_size::Event>,
+    events: Vec<crate::small_size::PhysicsEvent>,
 }
 
 impl Match {
@@ -55,7 +55,7 @@ fn kick_off(speed: f32) -> Match {
     game.world.put(yellow(1), Pose { position: at(-0.15, 0.0), heading: Angle::ZERO });
     game.until(Phase::Kickoff(Colour::Yellow), 5.0, Order::default());
     let ahead = geometry::Twist { linear: Vector::new(0.3, 0.0), angular: 0.0 };
-    let kick = Some(Kick { speed, angle: 0.0 });
+    let kick = Some(KickCommand { speed, angle: 0.0 });
     let order = Order { drive: Drive::Local(ahead), kick, ..Order::default() };
     game.until(Phase::Run, 2.0, order);
     game
@@ -113,7 +113,7 @@ fn rough(game: &Match, who: Who, home: Point<Field>) -> Order {
     let turn = (direction.angle() - robot.pose.heading).radians() * 5.0;
     let lined_up = (ball - place).unit().is_some_and(|to| to.dot(direction) > 0.95);
     let target = if lined_up { ball + direction * 0.2 } else { behind };
-    let kick = Some(Kick { speed: 5.0, angle: 0.0 });
+    let kick = Some(KickCommand { speed: 5.0, angle: 0.0 });
     Order { kick, ..global(((target - place) * 3.0).clamped(1.5), turn) }
 }
 

@@ -6,7 +6,7 @@ use protocol::{Instant, Who};
 use rules::legality::{self, InArea};
 use rules::{Colour, FieldSpec, Phase, limits};
 
-use super::super::event::{Event, What};
+use super::super::event::{RefereeEvent, What};
 use super::super::observation::RobotSeen;
 use super::super::scene::{COLOURS, Scene};
 use super::Episodes;
@@ -26,7 +26,7 @@ impl Areas {
         self.too_close = [None; 2];
     }
 
-    pub(super) fn look(&mut self, scene: &Scene<'_>, events: &mut Vec<Event>) {
+    pub(super) fn look(&mut self, scene: &Scene<'_>, events: &mut Vec<RefereeEvent>) {
         // Teams that change ends drive through each other's areas; on a real field their robots are carried.
         if matches!(scene.game.phase, Phase::Stop | Phase::FreeKick(_)) && !scene.game.before_half {
             for (team, raised) in COLOURS.into_iter().zip(&mut self.too_close) {
@@ -58,7 +58,7 @@ impl Areas {
 
 /// The team's robot that is nearest to the opponents' area, where it is too near and the team's grace is
 /// over.
-fn too_close(scene: &Scene<'_>, team: Colour, raised: &mut Option<Instant>) -> Option<Event> {
+fn too_close(scene: &Scene<'_>, team: Colour, raised: &mut Option<Instant>) -> Option<RefereeEvent> {
     let grace_began = raised.map_or(scene.game.since, |raised| raised.max(scene.game.since));
     if scene.now.since(grace_began).as_secs_f32() <= limits::GRACE {
         return None;

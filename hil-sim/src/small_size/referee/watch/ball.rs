@@ -7,7 +7,7 @@ use geometry::{Field, Point};
 use protocol::{Instant, Who};
 use rules::{Colour, Phase, legality, limits};
 
-use super::super::event::{Event, What};
+use super::super::event::{RefereeEvent, What};
 use super::super::scene::{COLOURS, Scene};
 use super::{Episodes, Touches};
 
@@ -44,7 +44,7 @@ impl BallWatch {
         self.too_fast.clear();
     }
 
-    pub(super) fn look(&mut self, scene: &Scene<'_>, touches: &Touches, events: &mut Vec<Event>) {
+    pub(super) fn look(&mut self, scene: &Scene<'_>, touches: &Touches, events: &mut Vec<RefereeEvent>) {
         if !scene.game.is_running() {
             return;
         }
@@ -55,7 +55,7 @@ impl BallWatch {
         events.extend(self.no_progress(scene));
     }
 
-    fn speed(&mut self, scene: &Scene<'_>, touches: &Touches) -> Option<Event> {
+    fn speed(&mut self, scene: &Scene<'_>, touches: &Touches) -> Option<RefereeEvent> {
         let touch = touches.last()?;
         let speed = scene.fastest;
         let chipped = scene.ball.climb > 0.0 || scene.ball.height > limits::BALL_RADIUS;
@@ -64,7 +64,7 @@ impl BallWatch {
         raised.then(|| scene.by(touch.who, touch.ball, What::BallTooFast { speed, chipped }))
     }
 
-    fn dribbling(&mut self, scene: &Scene<'_>, touches: &Touches) -> Option<Event> {
+    fn dribbling(&mut self, scene: &Scene<'_>, touches: &Touches) -> Option<RefereeEvent> {
         let end = scene.ball.position;
         for (who, contact) in touches.contacts() {
             let far = legality::dribbled_too_far(scene.game.limits, contact.start, end);
@@ -76,7 +76,7 @@ impl BallWatch {
         None
     }
 
-    fn double_touch(&mut self, scene: &Scene<'_>, touches: &Touches) -> Option<Event> {
+    fn double_touch(&mut self, scene: &Scene<'_>, touches: &Touches) -> Option<RefereeEvent> {
         let mut touching = scene.robots.iter().filter(|robot| robot.touches_ball).map(|robot| robot.who);
         match (self.kicker, scene.game.phase) {
             (Kicker::Awaited, Phase::FreeKick(team) | Phase::Kickoff(team)) => {
@@ -107,7 +107,7 @@ impl BallWatch {
         }
     }
 
-    fn keeper_held(&mut self, scene: &Scene<'_>) -> Option<Event> {
+    fn keeper_held(&mut self, scene: &Scene<'_>) -> Option<RefereeEvent> {
         let game = scene.game;
         let within = |team: &Colour| game.field.in_penalty_area(game.own_end(*team), scene.ball.position);
         let Some(team) = COLOURS.into_iter().find(within) else {
@@ -123,7 +123,7 @@ impl BallWatch {
         })
     }
 
-    fn no_progress(&mut self, scene: &Scene<'_>) -> Option<Event> {
+    fn no_progress(&mut self, scene: &Scene<'_>) -> Option<RefereeEvent> {
         let place = scene.ball.position;
         let (rest, since) = self.rests.unwrap_or((place, scene.now));
         // The kicker has its own time limit before this one starts.

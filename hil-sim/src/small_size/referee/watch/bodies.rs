@@ -10,7 +10,7 @@ use protocol::{Instant, Who};
 use rules::legality::{self, Blame};
 use rules::{Colour, limits};
 
-use super::super::event::{Event, What};
+use super::super::event::{RefereeEvent, What};
 use super::super::observation::{CrashSeen, RobotSeen};
 use super::super::scene::{COLOURS, Scene};
 use super::Episodes;
@@ -33,7 +33,7 @@ struct Push {
 }
 
 impl Bodies {
-    pub(super) fn look(&mut self, scene: &Scene<'_>, events: &mut Vec<Event>) {
+    pub(super) fn look(&mut self, scene: &Scene<'_>, events: &mut Vec<RefereeEvent>) {
         for crash in scene.crashes {
             events.extend(self.crash(scene, crash));
         }
@@ -55,7 +55,7 @@ impl Bodies {
         }
     }
 
-    fn crash(&mut self, scene: &Scene<'_>, crash: &CrashSeen) -> Option<Event> {
+    fn crash(&mut self, scene: &Scene<'_>, crash: &CrashSeen) -> Option<RefereeEvent> {
         let [a, b] = crash.between;
         if a.colour == b.colour {
             return None;
@@ -87,7 +87,7 @@ impl Bodies {
     }
 
     /// Whether both are in contact, and both move in the direction from the first to the second.
-    fn push(&mut self, scene: &Scene<'_>, from: &RobotSeen, to: &RobotSeen, dt: f32) -> Option<Event> {
+    fn push(&mut self, scene: &Scene<'_>, from: &RobotSeen, to: &RobotSeen, dt: f32) -> Option<RefereeEvent> {
         let pair = [from.who, to.who];
         let between = to.pose.position - from.pose.position;
         let apart = between.norm() - 2.0 * limits::ROBOT_RADIUS;
@@ -115,7 +115,7 @@ impl Bodies {
 }
 
 /// A team's robots enclose the ball so that no opponent fits between them.
-fn holding(scene: &Scene<'_>, team: Colour, since: &mut Option<Instant>) -> Option<Event> {
+fn holding(scene: &Scene<'_>, team: Colour, since: &mut Option<Instant>) -> Option<RefereeEvent> {
     let around = scene
         .robots
         .iter()

@@ -4,11 +4,11 @@
 
 use geometry::{Field, GoalEnd, Point};
 use protocol::Instant;
-use rules::legality::{self, Crossing, Line};
+use rules::legality::{self, BoundaryLine, Crossing};
 use rules::restart::{OutKind, after_out};
 use rules::{Colour, Phase, limits};
 
-use super::super::event::{Event, PenaltyEnd, Shot, What};
+use super::super::event::{PenaltyEnd, RefereeEvent, ShotEvent, What};
 use super::super::observation::RobotSeen;
 use super::super::scene::Scene;
 use super::Touches;
@@ -18,11 +18,11 @@ use super::Touches;
 pub(super) struct Lines {
     before: Option<Point<Field>>,
     /// The kick that sent the ball out: the ball may still fly over the wall.
-    sent_out: Option<(Event, Instant)>,
+    sent_out: Option<(RefereeEvent, Instant)>,
 }
 
 impl Lines {
-    pub(super) fn look(&mut self, scene: &Scene<'_>, touches: &Touches, events: &mut Vec<Event>) {
+    pub(super) fn look(&mut self, scene: &Scene<'_>, touches: &Touches, events: &mut Vec<RefereeEvent>) {
         let now = scene.ball.position;
         let before = self.before.replace(now).unwrap_or(now);
         if !scene.game.is_running() {
@@ -44,23 +44,23 @@ impl Lines {
     }
 
     /// The ball that left flies on over the wall before any robot touches it.
-    fn over_the_wall(&mut self, scene: &Scene<'_>) -> Option<Event> {
+    fn over_the_wall(&mut self, scene: &Scene<'_>) -> Option<RefereeEvent> {
         let (event, at) = self.sent_out.take()?;
         let touched = scene.robots.iter().any(|robot| robot.touches_ball);
         if touched || scene.now.since(at).as_secs_f32() > FLIGHT {
             return None;
         }
         if scene.game.field.surface().distance_to(scene.ball.position) > limits::BALL_RADIUS {
-            return Some(Event { at: scene.now, ..event });
+            return Some(RefereeEvent { at: scene.now, ..event });
         }
         self.sent_out = Some((event, at));
         None
     }
 }
 
-fn judge(scene: &Scene<'_>, touches: &Touches, crossing: Crossing) -> Event {
+fn judge(scene: &Scene<'_>, touches: &Touches, crossing: Crossing) -> RefereeEvent {
     let (game, place, last) = (scene.game, crossing.at, touches.last());
-    if let Line::GoalOpening(end) = crossing.line
+    if let BoundaryLine::GoalOpening(end) = crossing.line
         && scene.ball.height < game.field.goal_height
     {
         let scorer = if game.own_end(Colour::Blue) == end { Colour::Yellow } else { Colour::Blue };
@@ -75,15 +75,15 @@ fn judge(scene: &Scene<'_>, touches: &Touches, crossing: Crossing) -> Event {
         let aimless = last.filter(|touch| {
             let own = game.own_end(touch.who.colour);
             let from_kickoff = touch.ball.distance(Point::new(0.0, 0.0)) < limits::IN_PLAY_DISTANCE;
-            let crossing = Crossing { line: Line::Goal(end), at: place };
+            let crossing = Crossing { line: BoundaryLine::Goal(end), at: place };
             let out = after_out(game.field, game.limits, crossing, own, Some(touch.ball), from_kickoff);
             out.kind == OutKind::AimlessKick
         });
         aimless.map_or(What::LeftGoalLine, |touch| What::AimlessKick { from: touch.ball })
     };
     let what = match crossing.line {
-        Line::Touch { .. } => What::LeftTouchLine,
-        Line::Goal(end) | Line::GoalOpening(end) => goal_line(end),
+        BoundaryLine::Touch { .. } => What::LeftTouchLine,
+        BoundaryLine::Goal(end) | BoundaryLine::GoalOpening(end) => goal_line(end),
     };
     match last {
         Some(touch) => scene.by(touch.who, place, what),
@@ -91,12 +91,12 @@ fn judge(scene: &Scene<'_>, touches: &Touches, crossing: Crossing) -> Event {
     }
 }
 
-fn shot(scene: &Scene<'_>, touches: &Touches, scorer: Colour) -> Shot {
+fn shot(scene: &Scene<'_>, touches: &Touches, scorer: Colour) -> ShotEvent {
     let (last, game) = (touches.last(), scene.game);
     let own = game.own_end(scorer);
     let counts =
         |robot: &&RobotSeen| robot.who.colour == scorer && game.field.counts(own, robot.pose.position);
-    Shot {
+    ShotEvent {
         kicker: last.map(|touch| touch.who),
         from: last.map_or(scene.ball.position, |touch| touch.ball),
         max_height: touches.height_since(scorer),

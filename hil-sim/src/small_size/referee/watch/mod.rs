@@ -13,7 +13,7 @@ mod touches;
 
 use geometry::{Field, Point};
 
-use super::event::Event;
+use super::event::RefereeEvent;
 use super::scene::Scene;
 use areas::Areas;
 use ball::BallWatch;
@@ -39,7 +39,7 @@ pub(super) struct Watch {
 
 impl Watch {
     /// Adds the events since the last observation.
-    pub(super) fn look(&mut self, scene: &Scene<'_>, events: &mut Vec<Event>) {
+    pub(super) fn look(&mut self, scene: &Scene<'_>, events: &mut Vec<RefereeEvent>) {
         self.touches.look(scene);
         self.penalty.look(scene, &self.touches, events);
         self.lines.look(scene, &self.touches, events);

@@ -5,7 +5,7 @@
 use geometry::{Field, Vector};
 use rules::{Colour, Phase, legality, limits};
 
-use super::super::event::{Event, PenaltyEnd, What};
+use super::super::event::{PenaltyEnd, RefereeEvent, What};
 use super::super::scene::Scene;
 use super::Touches;
 use protocol::Who;
@@ -25,7 +25,7 @@ impl PenaltyWatch {
         *self = Self::default();
     }
 
-    pub(super) fn look(&mut self, scene: &Scene<'_>, touches: &Touches, events: &mut Vec<Event>) {
+    pub(super) fn look(&mut self, scene: &Scene<'_>, touches: &Touches, events: &mut Vec<RefereeEvent>) {
         let Phase::Penalty(team) = scene.game.phase else { return };
         let failed = self.failed(scene, touches, team).filter(|_| !self.raised);
         if let Some(reason) = failed {

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use protocol::{Instant, Who};
 use rules::{Colour, Phase, legality, limits};
 
-use super::super::event::{Event, What};
+use super::super::event::{RefereeEvent, What};
 use super::super::observation::RobotSeen;
 use super::super::scene::Scene;
 use super::Episodes;
@@ -33,7 +33,7 @@ impl StopRules {
         *self = Self::default();
     }
 
-    pub(super) fn look(&mut self, scene: &Scene<'_>, events: &mut Vec<Event>) {
+    pub(super) fn look(&mut self, scene: &Scene<'_>, events: &mut Vec<RefereeEvent>) {
         match scene.game.phase {
             Phase::Halt => self.halt(scene, events),
             Phase::Stop => {
@@ -48,7 +48,7 @@ impl StopRules {
         }
     }
 
-    fn halt(&mut self, scene: &Scene<'_>, events: &mut Vec<Event>) {
+    fn halt(&mut self, scene: &Scene<'_>, events: &mut Vec<RefereeEvent>) {
         if scene.game.is_break || scene.game.age(scene.now) <= limits::GRACE {
             return;
         }
@@ -60,7 +60,7 @@ impl StopRules {
         }
     }
 
-    fn stop_speed(&mut self, scene: &Scene<'_>, events: &mut Vec<Event>) {
+    fn stop_speed(&mut self, scene: &Scene<'_>, events: &mut Vec<RefereeEvent>) {
         if scene.game.age(scene.now) <= limits::GRACE {
             return;
         }
@@ -73,7 +73,7 @@ impl StopRules {
         }
     }
 
-    fn stop_distance(&mut self, scene: &Scene<'_>, events: &mut Vec<Event>) {
+    fn stop_distance(&mut self, scene: &Scene<'_>, events: &mut Vec<RefereeEvent>) {
         for robot in scene.robots {
             let distance = scene.distance_to_ball(robot);
             let close = legality::too_close_to_ball(robot.pose.position, scene.ball.position);
@@ -86,7 +86,7 @@ impl StopRules {
     }
 
     /// The nearest robot of the team that must keep its distance while the other kicks.
-    fn kick_point(&mut self, scene: &Scene<'_>, team: Colour) -> Option<Event> {
+    fn kick_point(&mut self, scene: &Scene<'_>, team: Colour) -> Option<RefereeEvent> {
         let nearest = nearest(scene, team)?;
         let distance = scene.distance_to_ball(nearest);
         let holds = legality::too_close_to_ball(nearest.pose.position, scene.ball.position);
@@ -97,7 +97,7 @@ impl StopRules {
 
     /// A robot of the team that does not place, too near the line from ball to target for longer than the
     /// grace.
-    fn placement(&mut self, scene: &Scene<'_>, team: Colour) -> Option<Event> {
+    fn placement(&mut self, scene: &Scene<'_>, team: Colour) -> Option<RefereeEvent> {
         let target = scene.game.target?;
         let mut first = None;
         for robot in scene.robots.iter().filter(|robot| robot.who.colour == team) {

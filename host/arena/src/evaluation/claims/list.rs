@@ -4,11 +4,11 @@
 use brain::Approach::{self, Cases, Reactive};
 use hil_sim::Scenario::{self, DefenderAhead, DefenderClose, LeftSide, MiddleBack};
 
-use super::point::{Point, Rows, Wanted};
+use super::point::{ClaimPoint, Rows, Wanted};
 use crate::evaluation::comparison::Measure;
 
 /// The numbers of a claim; `None` where one was not measured.
-pub(super) type Points = fn(&Rows<'_>) -> Vec<Option<Point>>;
+pub(super) type Points = fn(&Rows<'_>) -> Vec<Option<ClaimPoint>>;
 
 /// Name, section, sentence, numbers.
 type Entry = (&'static str, &'static str, &'static str, Points);
@@ -29,12 +29,17 @@ fn each(
     scenarios: &[Scenario],
     measure: Measure,
     order: [Approach; 2],
-) -> Vec<Option<Point>> {
+) -> Vec<Option<ClaimPoint>> {
     scenarios.iter().map(|s| rows.pair((table, *s), measure, order, Wanted::Greater)).collect()
 }
 
 /// One measure of one scenario of Table 6.
-fn robots(rows: &Rows<'_>, scenario: Scenario, measure: Measure, order: [Approach; 2]) -> Vec<Option<Point>> {
+fn robots(
+    rows: &Rows<'_>,
+    scenario: Scenario,
+    measure: Measure,
+    order: [Approach; 2],
+) -> Vec<Option<ClaimPoint>> {
     vec![rows.pair((6, scenario), measure, order, Wanted::Greater)]
 }
 
@@ -94,7 +99,8 @@ pub(super) const CLAIMS: &[Entry] = &[
             let point = |scenario| {
                 let (first, second) = (rate(scenario, Reactive)?, rate(scenario, Cases)?);
                 let name = format!("scenario {scenario}");
-                let point = Point::new(name, ("reactive", first), ("cbr", second), None, Wanted::Greater);
+                let point =
+                    ClaimPoint::new(name, ("reactive", first), ("cbr", second), None, Wanted::Greater);
                 Some(point.with_decimals(3))
             };
             ALL.map(point).into()
@@ -130,7 +136,8 @@ pub(super) const CLAIMS: &[Entry] = &[
             let point = |far: Scenario| {
                 let (near, other) = (share(DefenderClose)?, share(far)?);
                 let second = (format!("scenario {far}"), other);
-                let point = Point::new("percent by A", ("scenario 4", near), second, None, Wanted::Greater);
+                let point =
+                    ClaimPoint::new("percent by A", ("scenario 4", near), second, None, Wanted::Greater);
                 Some(point.with_decimals(1))
             };
             FIRST_THREE.map(point).into()
@@ -250,7 +257,7 @@ pub(super) const CLAIMS: &[Entry] = &[
         |r| {
             let simulated = r.pair((1, DefenderClose), Measure::ToGoal, CBR_MORE, Wanted::Greater);
             let robots = r.pair((6, DefenderClose), Measure::ToGoal, CBR_LESS, Wanted::Greater);
-            let named = |point: Option<Point>, of: &str| point.map(|point| point.of(of));
+            let named = |point: Option<ClaimPoint>, of: &str| point.map(|point| point.of(of));
             vec![named(simulated, "simulated"), named(robots, "robots")]
         },
     ),
@@ -276,8 +283,13 @@ pub(super) const CLAIMS: &[Entry] = &[
             let point = |scenario| {
                 let share = r.row(3, scenario, Cases)?.default_time?;
                 let name = format!("scenario {scenario}");
-                let point =
-                    Point::new(name, ("at most", LITTLE_PERCENT), ("default", share), None, Wanted::AtLeast);
+                let point = ClaimPoint::new(
+                    name,
+                    ("at most", LITTLE_PERCENT),
+                    ("default", share),
+                    None,
+                    Wanted::AtLeast,
+                );
                 Some(point.with_decimals(1))
             };
             ALL.map(point).into()
@@ -291,7 +303,7 @@ pub(super) const CLAIMS: &[Entry] = &[
             (all > 0.0).then_some(())?;
             let share = 100.0 * row.none_thr_c? / all;
             let name = format!("scenario {scenario}");
-            let point = Point::new(
+            let point = ClaimPoint::new(
                 name,
                 ("thr_c, percent of all causes", share),
                 ("all", 100.0),

@@ -15,7 +15,7 @@ use serde::Serialize;
 use super::statistics::holm;
 use super::tables::{Extent, TableRow};
 
-pub use point::{Point, Standing};
+pub use point::{ClaimPoint, Standing};
 pub(super) use point::{Rows, p_text};
 
 /// A claim of the paper about its results.
@@ -39,7 +39,7 @@ hil_sim::labels! {
     /// Do numbers bear it out?
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
     #[serde(rename_all = "lowercase")]
-    pub enum Verdict {
+    pub enum ClaimVerdict {
         /// The numbers support it, in every point.
         Supported = "supported",
         /// They say the opposite, in one point at least.
@@ -55,18 +55,18 @@ hil_sim::labels! {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Judgement {
     /// Supported, contradicted or undecided.
-    pub verdict: Verdict,
+    pub verdict: ClaimVerdict,
     /// The numbers, as text.
     pub evidence: String,
     /// The numbers, pair by pair.
-    pub points: Vec<Point>,
+    pub points: Vec<ClaimPoint>,
 }
 
 impl Judgement {
     /// Judges the points of a claim; `None` stands for one that was not measured.
-    pub(super) fn new(points: Vec<Option<Point>>) -> Self {
+    pub(super) fn new(points: Vec<Option<ClaimPoint>>) -> Self {
         let all = points.len();
-        let mut points: Vec<Point> = points.into_iter().flatten().collect();
+        let mut points: Vec<ClaimPoint> = points.into_iter().flatten().collect();
         let tested: Vec<usize> = (0..points.len()).filter(|i| points[*i].p.is_some()).collect();
         let family: Vec<f64> = tested.iter().filter_map(|i| points[*i].p).collect();
         for (i, p) in tested.into_iter().zip(holm(&family)) {
@@ -77,12 +77,12 @@ impl Judgement {
         }
         let stands = |standing| points.iter().filter(|point| point.stands == standing).count();
         let verdict = match () {
-            () if points.is_empty() => Verdict::Unmeasured,
-            () if stands(Standing::Against) > 0 => Verdict::Contradicted,
-            () if stands(Standing::Holds) == all => Verdict::Supported,
-            () => Verdict::Undecided,
+            () if points.is_empty() => ClaimVerdict::Unmeasured,
+            () if stands(Standing::Against) > 0 => ClaimVerdict::Contradicted,
+            () if stands(Standing::Holds) == all => ClaimVerdict::Supported,
+            () => ClaimVerdict::Undecided,
         };
-        let mut evidence = points.iter().map(Point::to_string).collect::<Vec<_>>().join("; ");
+        let mut evidence = points.iter().map(ClaimPoint::to_string).collect::<Vec<_>>().join("; ");
         if points.len() < all && !points.is_empty() {
             evidence.push_str("; the rest was not played");
         }
@@ -124,21 +124,21 @@ mod tests {
         // (`data/derived_cbr_vs_reactive_z.csv`), and the contradictions between tables and prose that its
         // transcription found.
         for (id, verdict) in [
-            ("dg-to-goal", Verdict::Undecided),
-            ("dg-to-goal-3-4", Verdict::Supported),
-            ("dg-out", Verdict::Supported),
-            ("dg-possession", Verdict::Supported),
-            ("dg-time", Verdict::Supported),
-            ("2d-to-goal", Verdict::Supported),
-            ("2d-out", Verdict::Supported),
-            ("2d-midfield", Verdict::Supported),
-            ("2d-defender", Verdict::Undecided),
-            ("2d-time", Verdict::Contradicted),
-            ("2d-timeout", Verdict::Undecided),
-            ("robots-3-out", Verdict::Supported),
-            ("robots-3-to-goal", Verdict::Undecided),
-            ("robots-4-to-goal", Verdict::Undecided),
-            ("default-share", Verdict::Unmeasured),
+            ("dg-to-goal", ClaimVerdict::Undecided),
+            ("dg-to-goal-3-4", ClaimVerdict::Supported),
+            ("dg-out", ClaimVerdict::Supported),
+            ("dg-possession", ClaimVerdict::Supported),
+            ("dg-time", ClaimVerdict::Supported),
+            ("2d-to-goal", ClaimVerdict::Supported),
+            ("2d-out", ClaimVerdict::Supported),
+            ("2d-midfield", ClaimVerdict::Supported),
+            ("2d-defender", ClaimVerdict::Undecided),
+            ("2d-time", ClaimVerdict::Contradicted),
+            ("2d-timeout", ClaimVerdict::Undecided),
+            ("robots-3-out", ClaimVerdict::Supported),
+            ("robots-3-to-goal", ClaimVerdict::Undecided),
+            ("robots-4-to-goal", ClaimVerdict::Undecided),
+            ("default-share", ClaimVerdict::Unmeasured),
         ] {
             let judged = of_paper(id);
             assert_eq!(judged.verdict, verdict, "{id}: {}", judged.evidence);
@@ -161,13 +161,13 @@ mod tests {
             rows
         };
         let verdict = |rows: &[TableRow]| claims(rows, paper())[0].ours.clone();
-        assert_eq!(verdict(&rows(30.0)).verdict, Verdict::Supported);
-        assert_eq!(verdict(&rows(49.0)).verdict, Verdict::Undecided);
-        assert_eq!(verdict(&rows(80.0)).verdict, Verdict::Contradicted);
+        assert_eq!(verdict(&rows(30.0)).verdict, ClaimVerdict::Supported);
+        assert_eq!(verdict(&rows(49.0)).verdict, ClaimVerdict::Undecided);
+        assert_eq!(verdict(&rows(80.0)).verdict, ClaimVerdict::Contradicted);
         let lacking = verdict(&rows(30.0)[..7]);
-        assert_eq!(lacking.verdict, Verdict::Undecided);
+        assert_eq!(lacking.verdict, ClaimVerdict::Undecided);
         assert!(lacking.evidence.ends_with("the rest was not played"), "{}", lacking.evidence);
-        assert_eq!(verdict(&[]).verdict, Verdict::Unmeasured);
+        assert_eq!(verdict(&[]).verdict, ClaimVerdict::Unmeasured);
         assert!(
             verdict(&rows(30.0)).evidence.starts_with("scenario 1: cbr 50.0 > reactive 30.0 (p < 0.001)")
         );

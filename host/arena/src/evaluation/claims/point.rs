@@ -14,7 +14,7 @@ use crate::trial::approach_label;
 
 /// Two numbers of a claim.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Point {
+pub struct ClaimPoint {
     /// The trials that it is about.
     pub of: String,
     /// Description of the first number.
@@ -63,7 +63,7 @@ pub(in super::super) enum Wanted {
 /// Significance level (paper §5: Student's t at the usual level).
 const LEVEL: f64 = 0.05;
 
-impl Point {
+impl ClaimPoint {
     pub(in super::super) fn new(
         of: impl Into<String>,
         (first_name, first): (impl Into<String>, f64),
@@ -117,7 +117,7 @@ impl Point {
     }
 }
 
-impl fmt::Display for Point {
+impl fmt::Display for ClaimPoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { of, first_name, first, second_name, second, p_holm, decimals, .. } = self;
         let sign = if first > second {
@@ -169,12 +169,12 @@ impl<'a> Rows<'a> {
         measure: Measure,
         [first, second]: [Approach; 2],
         wanted: Wanted,
-    ) -> Option<Point> {
+    ) -> Option<ClaimPoint> {
         let (a, b) = (self.row(table, scenario, first)?, self.row(table, scenario, second)?);
         let values = (measure.value(a)?, measure.value(b)?);
         let (first, second) = (approach_label(first), approach_label(second));
         let of = format!("scenario {scenario}");
-        let point = Point::new(of, (first, values.0), (second, values.1), measure.test(a, b), wanted);
+        let point = ClaimPoint::new(of, (first, values.0), (second, values.1), measure.test(a, b), wanted);
         Some(point.with_decimals(decimals(measure)))
     }
 
@@ -185,13 +185,13 @@ impl<'a> Rows<'a> {
         approach: Approach,
         measure: Measure,
         [first, second]: [Scenario; 2],
-    ) -> Option<Point> {
+    ) -> Option<ClaimPoint> {
         let (a, b) = (self.row(table, first, approach)?, self.row(table, second, approach)?);
         let [first, second] = [first, second].map(|scenario| format!("scenario {scenario}"));
         let values = (measure.value(a)?, measure.value(b)?);
         let of = approach_label(approach);
         let point =
-            Point::new(of, (first, values.0), (second, values.1), measure.test(a, b), Wanted::Greater);
+            ClaimPoint::new(of, (first, values.0), (second, values.1), measure.test(a, b), Wanted::Greater);
         Some(point.with_decimals(decimals(measure)))
     }
 
@@ -203,13 +203,13 @@ impl<'a> Rows<'a> {
         second: (u8, Scenario, Measure),
         approaches: [Approach; 2],
         names: [String; 2],
-    ) -> Option<Point> {
+    ) -> Option<ClaimPoint> {
         let (a, b) = (self.effect(first, approaches)?, self.effect(second, approaches)?);
         let test = a.1.zip(b.1).and_then(|(x, y)| normal(a.0 - b.0, x + y));
         let [x, y] = names;
         let [greater, less] = approaches.map(approach_label);
         let of = format!("{greater} - {less}");
-        Some(Point::new(of, (x, a.0), (y, b.0), test, Wanted::Greater).with_decimals(decimals(first.2)))
+        Some(ClaimPoint::new(of, (x, a.0), (y, b.0), test, Wanted::Greater).with_decimals(decimals(first.2)))
     }
 
     /// A difference, and its variance where it is known.
@@ -238,22 +238,28 @@ impl<'a> Rows<'a> {
         measure: Measure,
         [first, second]: [Approach; 2],
         factor: f64,
-    ) -> Option<Point> {
+    ) -> Option<ClaimPoint> {
         let (a, b) = (self.row(table, scenario, first)?, self.row(table, scenario, second)?);
         let (a, b) = (measure.sample(a)?, measure.sample(b)?);
         let b = Sample { mean: factor * b.mean, sd: b.sd.map(|sd| factor * sd), ..b };
         let second = format!("{factor} x {}", approach_label(second));
         let of = format!("scenario {scenario}");
-        Some(Point::new(of, (approach_label(first), a.mean), (second, b.mean), welch(a, b), Wanted::Greater))
+        Some(ClaimPoint::new(
+            of,
+            (approach_label(first), a.mean),
+            (second, b.mean),
+            welch(a, b),
+            Wanted::Greater,
+        ))
     }
 
     /// Robot B's backing up against robot A's.
-    pub(in super::super) fn backups(self, scenario: Scenario) -> Option<Point> {
+    pub(in super::super) fn backups(self, scenario: Scenario) -> Option<ClaimPoint> {
         let row = self.row(2, scenario, Approach::Reactive)?;
         let sample = |mean: Option<f64>, sd| Some(Sample { n: row.trials, mean: mean?, sd });
         let (a, b) = (sample(row.backups_a, row.backups_a_sd)?, sample(row.backups_b, row.backups_b_sd)?);
         let of = format!("scenario {scenario}");
-        Some(Point::new(of, ("B", b.mean), ("A", a.mean), welch(b, a), Wanted::Greater))
+        Some(ClaimPoint::new(of, ("B", b.mean), ("A", a.mean), welch(b, a), Wanted::Greater))
     }
 
     /// The cases for several robots among all used, percent. Cases of a trial count as if they were drawn
@@ -266,21 +272,26 @@ impl<'a> Rows<'a> {
     }
 
     /// That share compared with one half.
-    pub(in super::super) fn half_cooperative(self, scenario: Scenario) -> Option<Point> {
+    pub(in super::super) fn half_cooperative(self, scenario: Scenario) -> Option<ClaimPoint> {
         let count = self.cooperative(scenario, Approach::Cases)?;
         let share = 100.0 * count.share()?;
         let of = format!("scenario {scenario}");
-        let point =
-            Point::new(of, ("several robots", share), ("half", 50.0), against(count, 0.5), Wanted::AtLeast);
+        let point = ClaimPoint::new(
+            of,
+            ("several robots", share),
+            ("half", 50.0),
+            against(count, 0.5),
+            Wanted::AtLeast,
+        );
         Some(point.with_decimals(1))
     }
 
     /// Of two scenarios, the first should have more cases for several.
-    pub(in super::super) fn more_cooperative(self, [first, second]: [Scenario; 2]) -> Option<Point> {
+    pub(in super::super) fn more_cooperative(self, [first, second]: [Scenario; 2]) -> Option<ClaimPoint> {
         let (a, b) = (self.cooperative(first, Approach::Cases)?, self.cooperative(second, Approach::Cases)?);
         let [x, y] = [first, second].map(|scenario| format!("scenario {scenario}"));
         let (x, y) = ((x, 100.0 * a.share()?), (y, 100.0 * b.share()?));
-        Some(Point::new("several robots", x, y, two_proportions(a, b), Wanted::Greater).with_decimals(1))
+        Some(ClaimPoint::new("several robots", x, y, two_proportions(a, b), Wanted::Greater).with_decimals(1))
     }
 
     /// Trials that opponents ended by putting the ball out: more with the first approach.
@@ -288,7 +299,7 @@ impl<'a> Rows<'a> {
         self,
         scenario: Scenario,
         [first, second]: [Approach; 2],
-    ) -> Option<Point> {
+    ) -> Option<ClaimPoint> {
         let of = |approach| {
             let row = self.row(6, scenario, approach)?;
             Some(Count { hits: row.out_by_opponents?, of: row.trials })
@@ -298,7 +309,7 @@ impl<'a> Rows<'a> {
         let [x, y] = [first, second].map(approach_label);
         let (x, y) = ((x, share(a)?), (y, share(b)?));
         let name = format!("scenario {scenario}");
-        Some(Point::new(name, x, y, two_proportions(a, b), Wanted::Greater).with_decimals(1))
+        Some(ClaimPoint::new(name, x, y, two_proportions(a, b), Wanted::Greater).with_decimals(1))
     }
 }
 

@@ -8,7 +8,7 @@ use brain::Approach;
 use hil_sim::{Configuration, Scenario};
 
 use super::*;
-use crate::evaluation::plan::{Cell, Profile};
+use crate::evaluation::plan::{EvaluationCell, Profile};
 use crate::evaluation::row::{csv_hash, to_csv};
 use crate::evaluation::trial_store::read;
 
@@ -35,7 +35,7 @@ impl Drop for Directory {
 }
 
 fn evaluation() -> Evaluation<'static> {
-    let cell = |profile, scenario, approach| Cell {
+    let cell = |profile, scenario, approach| EvaluationCell {
         profile,
         configuration: Configuration::TwoDefenders,
         scenario,
@@ -46,7 +46,7 @@ fn evaluation() -> Evaluation<'static> {
         .map(|approach| cell(Profile::Simulated, Scenario::DefenderClose, approach));
     let cells = simulated.into_iter().chain([cell(Profile::Robots, Scenario::Random, Approach::Cases)]);
     Evaluation {
-        plan: Plan { seed: 7, cells: cells.collect() },
+        plan: EvaluationPlan { seed: 7, cells: cells.collect() },
         base: case_library::four_legged(),
         names: CaseNames::default(),
         library: "four-legged".to_owned(),
@@ -59,7 +59,7 @@ fn hash(rows: &[TrialRow]) -> String {
     csv_hash(&to_csv(rows).unwrap())
 }
 
-const GO_ON: &(dyn Fn(Progress) -> ControlFlow<()> + Sync) = &|_| ControlFlow::Continue(());
+const GO_ON: &(dyn Fn(RunProgress) -> ControlFlow<()> + Sync) = &|_| ControlFlow::Continue(());
 
 fn played(directory: &Directory, shard: Shard, threads: usize) -> Vec<TrialRow> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -89,7 +89,7 @@ fn threads_shards_and_interrupts_change_no_byte() {
     // Stopped after two trials, killed in the middle of a line, continued.
     let torn = Directory::new("torn");
     let file = torn.file(Shard::WHOLE);
-    let stop = |progress: Progress| {
+    let stop = |progress: RunProgress| {
         if progress.done < 2 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
@@ -118,7 +118,7 @@ fn another_evaluation_is_not_mixed_in() {
     let small = |seed| {
         let mut small = evaluation();
         small.plan.cells.truncate(1);
-        Evaluation { plan: Plan { seed, ..small.plan.with_trials(1) }, ..evaluation() }
+        Evaluation { plan: EvaluationPlan { seed, ..small.plan.with_trials(1) }, ..evaluation() }
     };
     small(1).play_shard(Shard::WHOLE, &file, GO_ON).unwrap();
     let refused = small(2).play_shard(Shard::WHOLE, &file, GO_ON);

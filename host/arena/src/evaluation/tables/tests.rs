@@ -3,8 +3,8 @@
 use super::*;
 use crate::evaluation::row::tests::row;
 
-fn trial(approach: Approach, configuration: Configuration, outcome: Outcome, time_s: f64) -> TrialRow {
-    let out_by = (outcome == Outcome::Out).then(|| "defender".to_owned());
+fn trial(approach: Approach, configuration: Configuration, outcome: TrialOutcome, time_s: f64) -> TrialRow {
+    let out_by = (outcome == TrialOutcome::Out).then(|| "defender".to_owned());
     let of_all = TrialRow { configuration, approach, outcome, time_s, out_by, ..row() };
     if approach == Approach::Cases {
         return of_all;
@@ -27,9 +27,9 @@ fn trial(approach: Approach, configuration: Configuration, outcome: Outcome, tim
 #[test]
 fn a_row_has_the_fields_of_the_agreement_in_their_order() {
     let rows = [
-        trial(Approach::Cases, Configuration::DefenderGoalie, Outcome::Goal, 10.0),
-        trial(Approach::Cases, Configuration::DefenderGoalie, Outcome::Out, 30.0),
-        trial(Approach::Cases, Configuration::DefenderGoalie, Outcome::Close, 20.0),
+        trial(Approach::Cases, Configuration::DefenderGoalie, TrialOutcome::Goal, 10.0),
+        trial(Approach::Cases, Configuration::DefenderGoalie, TrialOutcome::Out, 30.0),
+        trial(Approach::Cases, Configuration::DefenderGoalie, TrialOutcome::Close, 20.0),
     ];
     let json = serde_json::to_string(&tables(&rows)[0]).unwrap();
     assert!(
@@ -52,13 +52,13 @@ fn a_row_has_the_fields_of_the_agreement_in_their_order() {
 #[test]
 fn every_trial_stands_in_the_tables_of_its_kind() {
     let (dg, two) = (Configuration::DefenderGoalie, Configuration::TwoDefenders);
-    let mut robots = trial(Approach::Reactive, dg, Outcome::Block, 9.0);
+    let mut robots = trial(Approach::Reactive, dg, TrialOutcome::Block, 9.0);
     robots.profile = Profile::Robots;
     let rows = [
-        trial(Approach::Cases, dg, Outcome::Goal, 10.0),
-        trial(Approach::Reactive, dg, Outcome::Goal, 10.0),
-        trial(Approach::Reactive, two, Outcome::Goal, 10.0),
-        trial(Approach::Reactive, two, Outcome::Timeout, 60.0),
+        trial(Approach::Cases, dg, TrialOutcome::Goal, 10.0),
+        trial(Approach::Reactive, dg, TrialOutcome::Goal, 10.0),
+        trial(Approach::Reactive, two, TrialOutcome::Goal, 10.0),
+        trial(Approach::Reactive, two, TrialOutcome::Timeout, 60.0),
         robots,
     ];
     let tables = tables(&rows);
@@ -82,9 +82,9 @@ fn every_trial_stands_in_the_tables_of_its_kind() {
 
 #[test]
 fn more_trials_of_robots_than_the_papers_are_distinguished() {
-    let mut robots = trial(Approach::Cases, Configuration::DefenderGoalie, Outcome::Goal, 9.0);
+    let mut robots = trial(Approach::Cases, Configuration::DefenderGoalie, TrialOutcome::Goal, 9.0);
     robots.profile = Profile::Robots;
-    let out = TrialRow { outcome: Outcome::Out, ..robots.clone() };
+    let out = TrialRow { outcome: TrialOutcome::Out, ..robots.clone() };
     let rows = [vec![robots; 30], vec![out; 10]].concat();
     let shares: Vec<_> =
         tables(&rows).iter().map(|row| (row.table, row.sample, row.trials, row.goal)).collect();
@@ -96,14 +96,16 @@ fn more_trials_of_robots_than_the_papers_are_distinguished() {
 fn shares_have_wilsons_intervals() {
     // 15 of 148 (Newcombe 1998, table I, method 3): 6.24 % to 16.05 %.
     let (cases, dg) = (Approach::Cases, Configuration::DefenderGoalie);
-    let rows =
-        [vec![trial(cases, dg, Outcome::Goal, 9.0); 15], vec![trial(cases, dg, Outcome::Out, 9.0); 133]]
-            .concat();
+    let rows = [
+        vec![trial(cases, dg, TrialOutcome::Goal, 9.0); 15],
+        vec![trial(cases, dg, TrialOutcome::Out, 9.0); 133],
+    ]
+    .concat();
     let row = &tables(&rows)[0];
     let near = |value: Option<f64>, expected: f64| (value.unwrap() - expected).abs() < 0.006;
     assert!(near(row.goal_low, 6.24) && near(row.goal_high, 16.05), "{row:?}");
     assert!(near(row.out_low, 100.0 - 16.05) && near(row.out_high, 100.0 - 6.24), "{row:?}");
     assert_eq!(row.timeout_low, Some(0.0));
-    let two = &tables(&[trial(cases, Configuration::TwoDefenders, Outcome::Goal, 9.0)])[0];
+    let two = &tables(&[trial(cases, Configuration::TwoDefenders, TrialOutcome::Goal, 9.0)])[0];
     assert_eq!((two.goal_low, two.to_goal_high), (None, Some(100.0)), "not measured there");
 }

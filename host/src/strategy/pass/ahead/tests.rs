@@ -192,7 +192,7 @@ fn places_and_times_by_hand() {
     assert!(places.passer.0.distance(Point::new(-0.1015, 0.0)) < 1e-5 && places.passer.1 == Angle::ZERO);
     assert!(places.receiver.0.distance(Point::new(2.1015, 0.0)) < 1e-5);
     assert!((places.receiver.1 - Angle::HALF_TURN).abs() < 1e-5);
-    let robot = |x: f32, heading: f32| Robot {
+    let robot = |x: f32, heading: f32| ViewRobot {
         id: protocol::RobotId::ZERO,
         position: Point::new(x, 0.0),
         heading: Angle::degrees(heading),

@@ -19,7 +19,7 @@ fn kicks(league: League) -> Kicks {
 fn rated(from: (f32, f32), at: (f32, f32), ours: &[(f32, f32)], theirs: &[(f32, f32)]) -> Rating {
     let (kicks, view) = (kicks(League::DivisionB), view(from, ours, theirs));
     let from = Point::new(from.0, from.1);
-    Scene::of(&view, &kicks, from, Some(view.ours[0].id), &view.ours[1]).rate(Point::new(at.0, at.1))
+    PassScene::of(&view, &kicks, from, Some(view.ours[0].id), &view.ours[1]).rate(Point::new(at.0, at.1))
 }
 
 fn all_close(are: &[f32], by_hand: &[f64]) {
@@ -83,7 +83,7 @@ fn the_opponents_area_is_worthless_today_and_the_best_place_in_2013() {
         let kicks = kicks(league);
         let mut view = view((1.5, -1.2), &[(1.4, -1.3), (2.2, 0.3)], &[(0.0, 0.0)]);
         view.field = league.field();
-        let scene = Scene::of(&view, &kicks, Point::new(1.5, -1.2), Some(view.ours[0].id), &view.ours[1]);
+        let scene = PassScene::of(&view, &kicks, Point::new(1.5, -1.2), Some(view.ours[0].id), &view.ours[1]);
         // 0.5 m before the goal line.
         scene.rate(Point::new(league.field().length * 0.5 - 0.5, 0.0))
     };
@@ -117,7 +117,7 @@ fn every_factor_is_a_probability_wherever_everyone_stands() {
         let (ours, theirs) = (places(6, &mut within), places(6, &mut within));
         let view = view((within(4.5), within(3.0)), &ours, &theirs);
         let from = view.ball.unwrap().position;
-        let scene = Scene::of(&view, &kicks, from, None, &view.ours[1]);
+        let scene = PassScene::of(&view, &kicks, from, None, &view.ours[1]);
         for at in (0..20).map(|_| Point::new(within(5.0), within(3.5))).chain([from, view.theirs[0].position])
         {
             let rating = scene.rate(at);

@@ -34,7 +34,7 @@ impl Play {
         self
     }
 
-    fn verdict(&self) -> Verdict {
+    fn verdict(&self) -> PassVerdict {
         let field = League::DivisionB.field();
         let mut watch = PassWatch::new(Ordered {
             at: Instant(0),
@@ -83,7 +83,7 @@ fn rolling(direction: (f32, f32), stops: f32) -> impl Fn(f32) -> Seen {
 #[test]
 fn a_ball_that_stops_at_the_receivers_dribbler_is_received_in_time() {
     let verdict = Play::new(rolling((1.0, 0.0), 2.0)).verdict();
-    let Verdict::Received { off, late } = verdict else { panic!("{verdict:?}") };
+    let PassVerdict::Received { off, late } = verdict else { panic!("{verdict:?}") };
     // 2 m take 0.8 s; the kick is known by the snapshot in which the ball has left the passer.
     assert!(off < 0.02 && late.abs() < 0.05, "{verdict:?}");
     assert!(verdict.is_success());
@@ -93,7 +93,7 @@ fn a_ball_that_stops_at_the_receivers_dribbler_is_received_in_time() {
 fn a_ball_that_a_teammate_stops_is_the_teams_but_not_the_receivers() {
     let play = Play::new(rolling((1.0, 0.0), 1.2)).with(who(Colour::Blue, 4), (1.31, 0.0));
     let verdict = play.verdict();
-    let Verdict::ByTeammate { by, off } = verdict else { panic!("{verdict:?}") };
+    let PassVerdict::ByTeammate { by, off } = verdict else { panic!("{verdict:?}") };
     assert!(by.number() == 4 && (off - 0.8).abs() < 0.03 && verdict.is_success());
 }
 
@@ -109,7 +109,7 @@ fn a_ball_that_an_opponent_turns_aside_is_intercepted_where_it_was() {
         (Point::new(1.0, path - 1.0), Vector::new(0.0, 2.0), 0.0)
     });
     let verdict = play.with(who(Colour::Yellow, 5), (1.1, -0.06)).verdict();
-    let Verdict::Intercepted { by, along, after } = verdict else { panic!("{verdict:?}") };
+    let PassVerdict::Intercepted { by, along, after } = verdict else { panic!("{verdict:?}") };
     assert!(by.number() == 5 && (along - 1.0).abs() < 0.06 && (after - 0.36).abs() < 0.06, "{verdict:?}");
     assert!(!verdict.is_success());
 }
@@ -117,24 +117,24 @@ fn a_ball_that_an_opponent_turns_aside_is_intercepted_where_it_was() {
 #[test]
 fn a_ball_that_rolls_past_an_opponent_or_over_it_is_not_intercepted() {
     let beside = Play::new(rolling((1.0, 0.0), 2.0)).with(who(Colour::Yellow, 5), (1.0, 0.125));
-    assert!(matches!(beside.verdict(), Verdict::Received { .. }), "near, but its way does not change");
+    assert!(matches!(beside.verdict(), PassVerdict::Received { .. }), "near, but its way does not change");
     let chip = Play::new(|time| {
         let path = (2.5 * (time - 0.2)).clamp(0.0, 2.0);
         let speed = if time > 0.2 && path < 2.0 { 2.5 } else { 0.0 };
         (Point::new(path, 0.0), Vector::new(speed, 0.0), (path * (2.0 - path)).max(0.0))
     });
-    assert!(matches!(chip.with(who(Colour::Yellow, 5), (1.0, 0.0)).verdict(), Verdict::Received { .. }));
+    assert!(matches!(chip.with(who(Colour::Yellow, 5), (1.0, 0.0)).verdict(), PassVerdict::Received { .. }));
 }
 
 #[test]
 fn a_ball_beside_a_receiver_that_stands_there_is_missed() {
     // 15° off: 0.518 m beside x* at its nearest.
     let verdict = Play::new(rolling((0.965_926, 0.258_819), 2.5)).verdict();
-    let Verdict::Missed { by } = verdict else { panic!("{verdict:?}") };
+    let PassVerdict::Missed { by } = verdict else { panic!("{verdict:?}") };
     assert!((by - 0.5176).abs() < 0.01, "{verdict:?}");
     // One that stops short, too.
     let short = Play::new(rolling((1.0, 0.0), 1.0)).verdict();
-    assert!(matches!(short, Verdict::Missed { by } if (by - 1.0).abs() < 0.03), "{short:?}");
+    assert!(matches!(short, PassVerdict::Missed { by } if (by - 1.0).abs() < 0.03), "{short:?}");
 }
 
 #[test]
@@ -142,7 +142,7 @@ fn a_ball_that_comes_to_x_before_the_receiver_makes_it_late() {
     let play = Play::new(rolling((1.0, 0.0), 3.0)).with(who(Colour::Blue, 2), (2.0, -0.7));
     let verdict = play.verdict();
     assert!(
-        matches!(verdict, Verdict::Late { receiver_off } if (receiver_off - 0.7).abs() < 1e-4),
+        matches!(verdict, PassVerdict::Late { receiver_off } if (receiver_off - 0.7).abs() < 1e-4),
         "{verdict:?}"
     );
 }
@@ -150,7 +150,7 @@ fn a_ball_that_comes_to_x_before_the_receiver_makes_it_late() {
 #[test]
 fn a_ball_over_the_line_is_out_there() {
     let verdict = Play::new(rolling((0.0, 1.0), 4.0)).verdict();
-    let Verdict::Out { at } = verdict else { panic!("{verdict:?}") };
+    let PassVerdict::Out { at } = verdict else { panic!("{verdict:?}") };
     assert!(at.y() > 3.02 && at.y() < 3.06 && at.x() == 0.0);
 }
 
@@ -158,11 +158,11 @@ fn a_ball_over_the_line_is_out_there() {
 fn a_pass_that_never_leaves_is_no_kick_and_a_stolen_ball_reports_by_whom() {
     let lies = |_: f32| (Point::new(0.0, 0.0), Vector::default(), 0.0);
     let verdict = Play::new(lies).verdict();
-    assert!(matches!(verdict, Verdict::NoKick { after, lost_to: None } if after > 5.0), "{verdict:?}");
+    assert!(matches!(verdict, PassVerdict::NoKick { after, lost_to: None } if after > 5.0), "{verdict:?}");
     let stolen =
         Play::new(lies).with(who(Colour::Blue, 1), (-0.4, 0.0)).with(who(Colour::Yellow, 5), (0.1, 0.0));
     assert!(
-        matches!(stolen.verdict(), Verdict::NoKick { lost_to: Some(by), .. } if by.number() == 5),
+        matches!(stolen.verdict(), PassVerdict::NoKick { lost_to: Some(by), .. } if by.number() == 5),
         "{stolen:?}",
         stolen = stolen.verdict()
     );

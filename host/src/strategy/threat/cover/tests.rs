@@ -9,7 +9,7 @@ use rules::League;
 fn at(league: League, threat: (f32, f32), available: usize) -> (View, Cover) {
     let mut view = view(threat, &[], &[]);
     view.field = league.field();
-    let cover = cover(&view, Point::new(threat.0, threat.1), available, None, &Settings::default());
+    let cover = cover(&view, Point::new(threat.0, threat.1), available, None, &ThreatSettings::default());
     (view, cover)
 }
 
@@ -70,7 +70,7 @@ fn else_two_defenders_stand_on_the_bisectors_of_what_the_keeper_leaves() {
 
 #[test]
 fn while_the_primaries_are_not_there_yet_the_keeper_takes_what_they_leave() {
-    let settings = Settings::default();
+    let settings = ThreatSettings::default();
     // A ball on the flank: one defender will cover all; until it is there, the keeper is before the near
     // post, not the middle.
     let (view, cover) = at(League::DivisionB, (-3.65, -1.89), 2);
@@ -91,7 +91,7 @@ fn while_the_primaries_are_not_there_yet_the_keeper_takes_what_they_leave() {
 
 #[test]
 fn primaries_are_always_at_the_edge_and_bodies_never_in_each_other() {
-    let settings = Settings::default();
+    let settings = ThreatSettings::default();
     for league in [League::Ssl2013, League::DivisionB, League::DivisionA] {
         let field = league.field();
         let edge = Edge::of(&field, settings.off_area);
@@ -143,7 +143,7 @@ fn what_is_left_open_is_what_rays_find_and_in_the_papers_world_it_is_nothing() {
 #[test]
 fn a_placement_is_kept_while_fewer_bodies_suffice_only_just() {
     // Moves outwards along a circle until one defender barely suffices without a memory.
-    let settings = Settings::default();
+    let settings = ThreatSettings::default();
     let angle = |deg: f32| {
         let (s, c) = Angle::degrees(deg).sin_cos();
         Point::<Attack>::new(-4.5 + 2.6 * c, 2.6 * s)

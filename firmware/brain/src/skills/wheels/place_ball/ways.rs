@@ -6,7 +6,7 @@ use rules::FieldSpec;
 use rules::limits::{PLACEMENT_TOLERANCE, ROBOT_RADIUS};
 
 use super::{ASKEW, FOLLOWS, GAP, Placement};
-use crate::belief::{Ball, Belief};
+use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive};
 use crate::skills::wheels::get_ball::{Approach, approach, intercept_ball};
@@ -15,7 +15,7 @@ use crate::skills::wheels::get_ball::{Approach, approach, intercept_ball};
 pub(super) fn fetch(
     placement: &Placement,
     belief: &Belief,
-    ball: &Ball,
+    ball: &BelievedBall,
     at: Point<Field>,
     kicks: Option<Angle>,
 ) -> Intent {
@@ -24,7 +24,7 @@ pub(super) fn fetch(
         return intercept_ball(belief, ball).into();
     }
     // Chased, a ball that the dribbler does not hold is only driven on: it is waited for where it will rest.
-    let resting = Ball { position: ball.rest, velocity: Vector::default(), rest: ball.rest };
+    let resting = BelievedBall { position: ball.rest, velocity: Vector::default(), rest: ball.rest };
     let ball = if rolls { &resting } else { ball };
     let wall = placement.wall(belief, ball, at);
     let face = match (kicks, wall) {
@@ -77,7 +77,7 @@ pub(super) fn pull(belief: &Belief, at: Point<Field>, out: Option<Angle>, gentle
 }
 
 /// From behind, with what the dribbler holds.
-pub(super) fn push(belief: &Belief, ball: &Ball, at: Point<Field>, grip: f32) -> Intent {
+pub(super) fn push(belief: &Belief, ball: &BelievedBall, at: Point<Field>, grip: f32) -> Intent {
     let face = ball.position.direction_to(at);
     // So slow that the ball rests at the place when it rolls on from here, and no slower than it starts at all.
     let rolls = SLOWS.iter().find(|(held, _)| grip > *held).map_or(ROLLS, |(_, brakes)| *brakes);
@@ -88,7 +88,7 @@ pub(super) fn push(belief: &Belief, ball: &Ball, at: Point<Field>, grip: f32) ->
 }
 
 /// A pushed ball has got beside the robot, or the robot beside its way.
-pub(super) fn strays(belief: &Belief, ball: &Ball, at: Point<Field>) -> bool {
+pub(super) fn strays(belief: &Belief, ball: &BelievedBall, at: Point<Field>) -> bool {
     let seen = belief.pose.to_body(ball.position);
     let askew = (ball.position.direction_to(at) - belief.pose.heading).abs();
     seen.x() < BALL_AT - GAP || seen.y().abs() > BESIDE || askew > ASKEW || seen.x() > ESCAPED
