@@ -200,7 +200,7 @@ impl RawAction {
     pub const KICK: u8 = 8;
 }
 
-/// A kick kind as the table stores it; [`RawKick::decode`] gives a [`Kick`].
+/// A kick kind as the table stores it, with numbers in place of names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(C)]
 pub struct RawKick {

@@ -19,7 +19,7 @@ pub struct Survey<'a> {
 }
 
 impl<'a> Survey<'a> {
-    /// A survey of a library; fails where the widened `thr` is refused by [`Settings::set`].
+    /// A survey of a library; fails where the widened `thr` is refused as a setting.
     pub fn new(base: CaseBase<'a>, settings: &RetrievalSettings, cells: Cells) -> Result<Self, SettingError> {
         let mut wider = settings.clone();
         // exp(−k²·e) where the threshold is exp(−e).
