@@ -14,7 +14,7 @@ use crate::trial::{Moment, Watcher};
 /// A trial's course.
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
-    /// Identities of the robots in [`Sample::robots`].
+    /// Identities of the robots in [`RecordedSample::robots`].
     pub cast: Cast,
     /// Every tick.
     pub samples: Vec<RecordedSample>,
