@@ -1,7 +1,7 @@
 //! `settings`: the named settings of retrieval (docs/case-format.md §3.2), one for each reading of the paper,
 //! each declared once.
 //!
-//! `--set name=value` reaches [`Settings::set`]; [`Settings::describe`] is recorded with every result.
+//! `--set name=value` reaches [`RetrievalSettings::set`]; [`RetrievalSettings::describe`] is recorded with every result.
 
 use core::fmt::{self, Write as _};
 
@@ -125,7 +125,7 @@ impl RetrievalSettings {
             .ok_or(SettingError::BadValue { name: setting.name, expected: setting.expected })
     }
 
-    /// Name and value of every setting, in a fixed order; [`Settings::set`] reads them back.
+    /// Name and value of every setting, in a fixed order; [`RetrievalSettings::set`] reads them back.
     pub fn describe(&self) -> impl Iterator<Item = (&'static str, SettingValue)> + '_ {
         SETTINGS.iter().map(|setting| {
             let mut text = SettingValue::new();

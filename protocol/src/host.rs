@@ -2,7 +2,7 @@
 //! Millimetres, milliradians, field frame.
 //!
 //! The snapshot of the field goes to all robots present in parts ([`WorldPart`]), the directive goes to each
-//! robot by itself ([`Command`]). Both carry the phase of the game, so that a HALT never waits for a packet
+//! robot by itself ([`HostCommand`]). Both carry the phase of the game, so that a HALT never waits for a packet
 //! that was lost. All places hold at the moment of arrival: the host's tracking has carried them forward by
 //! the radio's latency, so no clocks need to agree. Everything is repeated with every snapshot; nothing is
 //! sent once. Robots answer with their [`Telemetry`]. Before a robot believes a host it must have had its
@@ -26,7 +26,7 @@ pub const PART_ROBOTS_MAX: usize = 6;
 pub const WORLD_ROBOTS_MAX: usize = 24;
 /// Parts that they need when 16 robots are addressed.
 pub const PARTS_MAX: usize = 8;
-/// The longest [`Command`] in postcard bytes; with the frame's overhead it stays within 40 B
+/// The longest [`HostCommand`] in postcard bytes; with the frame's overhead it stays within 40 B
 /// (docs/architecture.md §6.1).
 pub const COMMAND_LEN_MAX: usize = 40 - crate::frame::OVERHEAD;
 

@@ -1,7 +1,7 @@
 //! `case_tools`: tools that turn case files into tables and check them. Runs on the host, at build and run
 //! time.
 //!
-//! [`load`] reads one league's directory: files → [`League`] and authored cases → checks → the four symmetric
+//! [`load`] reads one league's directory: files → [`CaseLeague`] and authored cases → checks → the four symmetric
 //! copies → table and index ([`Table`]) → warnings. Every [`Finding`] has a code, file, line and hint
 //! (docs/case-format.md §1.2).
 //!

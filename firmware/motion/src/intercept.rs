@@ -97,7 +97,7 @@ impl<F: Copy> Interception<'_, F> {
         best.map_or_else(|| self.chase(limits, self.horizon()), InterceptVerdict::Intercepts)
     }
 
-    /// As [`Interception::find`] with [`Request::Soonest`], in bounded time: after `most` points without an
+    /// As [`Interception::find`] with [`InterceptRequest::Soonest`], in bounded time: after `most` points without an
     /// interception only every fourth is tested, and after as many more one of eight; from the first in time
     /// back by bisection.
     pub fn find_within<L: CalcMotion>(&self, limits: &L, most: u32) -> InterceptVerdict<F> {

@@ -214,12 +214,12 @@ impl<'a> Simulation<'a> {
         self.worst_instructions
     }
 
-    /// The attackers' ids, in the order of [`World::walkers`], and whether their computers run.
+    /// The attackers' ids, in the order of [`LeggedWorld::walkers`], and whether their computers run.
     pub fn attackers(&self) -> impl Iterator<Item = (RobotId, bool)> {
         self.robots.iter().map(|robot| (robot.config.robot, robot.computer.is_some()))
     }
 
-    /// The opponents' roles; they follow the attackers in [`World::walkers`].
+    /// The opponents' roles; they follow the attackers in [`LeggedWorld::walkers`].
     pub fn opponents(&self) -> impl Iterator<Item = OpponentRole> {
         self.opponents.iter().map(|opponent| opponent.role)
     }

@@ -3,7 +3,7 @@
 //!
 //! A step of the [`World`]: wheels drive (`robot`), bodies are pushed apart (`collisions`), kickers and dribblers
 //! act (`dribbler`), the ball moves (`ball`) and bounces (`contact`), break-beam sensors measure. What happened
-//! is returned as [`Event`]s. SI units, field frame; heights are those of the ball's lowest point above the
+//! is returned as [`PhysicsEvent`]s. SI units, field frame; heights are those of the ball's lowest point above the
 //! field surface.
 //!
 //! **Invariants.** No clock and no unseeded randomness; robots are kept in order of colour and number, so the

@@ -14,7 +14,7 @@ use crate::trial::{Moment, Watcher};
 /// Course of a trial, filled as a [`Watcher`].
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
-    /// Identities of the robots in [`Sample::robots`].
+    /// Identities of the robots in [`RecordedSample::robots`].
     pub cast: Cast,
     /// One sample a tick, oldest first.
     pub samples: Vec<RecordedSample>,

@@ -7,7 +7,7 @@
 //! ```
 //! Bytes of a referee's record: the sender's address ([`SenderAddress::to_bytes`], 18 bytes), then the
 //! datagram. Version 1 had no address there; its packets are read as [`SenderAddress::INTERNAL`]'s. A record
-//! of kind [`Kind::Lost`] means that the recorder could not keep up from then on.
+//! of kind [`RecordKind::Lost`] means that the recorder could not keep up from then on.
 //!
 //! The header is JSON with seed, commit and configuration. A file cut anywhere gives every whole record
 //! before the cut, and reports the cut and its place. Compression is done by the file, not by this format:

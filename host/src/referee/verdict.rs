@@ -26,9 +26,9 @@ pub struct RefereeCounts {
     pub excluded: u64,
     /// Commands with an unknown number, taken for HALT.
     pub unknown: u64,
-    /// Packets whose stamp or counter does not fit, other than [`Counts::old`].
+    /// Packets whose stamp or counter does not fit, other than [`RefereeCounts::old`].
     pub doubted: u64,
-    /// HALT and STOP out of order, which were obeyed: of [`Counts::old`] and [`Counts::doubted`].
+    /// HALT and STOP out of order, which were obeyed: of [`RefereeCounts::old`] and [`RefereeCounts::doubted`].
     pub restrained: u64,
     /// Steps of the referee's clock or counter that were followed.
     pub steps: u64,

@@ -128,7 +128,7 @@ impl Bench {
         bench
     }
 
-    /// Prepares a task: only [`Task::run`] is measured.
+    /// Prepares a task: only [`RadioTask::run`] is measured.
     pub fn task(&mut self, work: Work) -> RadioTask<'_> {
         let Self { robot, teammate, host } = self;
         let mut message = None;

@@ -7,10 +7,10 @@
 //!
 //! - **The newest command counts.** The referee repeats its current command many times a second, so a command
 //!   that does not follow from the one before means that some were missed; it is followed and reported
-//!   ([`Received::OffGraph`]).
+//!   ([`CommandVerdict::OffGraph`]).
 //! - **No robot starts from a standstill without warning.** Team members may be on the field in HALT and
 //!   time-outs, which STOP alone ends. Any other command is read as STOP for [`GRACE`] first
-//!   ([`Received::AsStop`]). NORMAL_START with nothing prepared (a program joins in the middle of a game) is
+//!   ([`CommandVerdict::AsStop`]). NORMAL_START with nothing prepared (a program joins in the middle of a game) is
 //!   read as STOP until the longest kick-off or penalty is over, counted from when the command was given:
 //!   then the ball is in play in either case.
 //! - **The same command again is no new command**, though its counter rises (operators and automatic

@@ -11,7 +11,7 @@ use embassy_stm32::Peri;
 use embassy_stm32::flash::{Blocking, Flash};
 use embassy_stm32::peripherals::FLASH;
 use protocol::provision::PAGE_LEN;
-use runtime::persistent_counter::{self, CELL_LEN, Cell, Place};
+use runtime::persistent_counter::{self, CELL_LEN, CounterCell, CounterPlace};
 
 /// The provisioned page with keys and identity, unchecked; erased flash reads as 0xff.
 pub fn page() -> &'static [u8] {
@@ -40,7 +40,7 @@ pub fn begin(flash: Peri<'static, FLASH>) -> Result<u32, CounterError> {
                 defmt::warn!("the ledger's half {=usize} cannot be erased", plan.at.half);
             }
         }
-        if write(&mut flash, plan.at, plan.epoch).is_ok() && read(plan.at) == Cell::Epoch(plan.epoch) {
+        if write(&mut flash, plan.at, plan.epoch).is_ok() && read(plan.at) == CounterCell::Epoch(plan.epoch) {
             return Ok(plan.epoch);
         }
         defmt::warn!("cell {=usize} of the ledger does not keep what is written", plan.at.index);
@@ -50,7 +50,7 @@ pub fn begin(flash: Peri<'static, FLASH>) -> Result<u32, CounterError> {
 
 fn write(
     flash: &mut Flash<'static, Blocking>,
-    at: Place,
+    at: CounterPlace,
     epoch: u32,
 ) -> Result<(), embassy_stm32::flash::Error> {
     flash.blocking_write(offset(at), &persistent_counter::cell(epoch))
@@ -58,7 +58,7 @@ fn write(
 
 /// The content of a cell. A cell that was written while the power went may have wrong check bits, and reading
 /// it is a fault: such a fault is tolerated here, and the bytes read are no valid cell.
-fn read(at: Place) -> Cell {
+fn read(at: CounterPlace) -> CounterCell {
     let mut bytes = [0; CELL_LEN];
     let address = START + offset(at);
     unfaulted(|| {
@@ -67,7 +67,7 @@ fn read(at: Place) -> Cell {
             *byte = unsafe { (address as *const u8).read_volatile() };
         }
     });
-    Cell::of(&bytes)
+    CounterCell::of(&bytes)
 }
 
 /// Runs `work` with faults of data accesses ignored (Armv7-M, B3.2.8: BFHFNMIGN at the priority that
@@ -92,7 +92,7 @@ fn unfaulted(work: impl FnOnce()) {
 }
 
 /// Offset of a cell from the flash's start, bytes.
-fn offset(at: Place) -> u32 {
+fn offset(at: CounterPlace) -> u32 {
     HALVES + SECTOR * at.half as u32 + (CELL_LEN * at.index) as u32
 }
 

@@ -1,7 +1,7 @@
 //! `kind`: robot bodies that this build supports. A firmware image contains the one body of its robot
 //! (features `legged` and `omni`); on the PC both are built in.
 //!
-//! Everything that depends on the body asks [`Kind::of`] once and keeps its answer, with the proof that the
+//! Everything that depends on the body asks [`BodyKind::of`] once and keeps its answer, with the proof that the
 //! body is built in. Without the feature there is no such proof, so the compiler drops the code that needs
 //! it.
 
@@ -31,7 +31,7 @@ pub struct WheeledKind(#[cfg(not(feature = "omni"))] Infallible);
 compile_error!("a brain needs a body: turn on the feature `legged` or `omni`");
 
 impl BodyKind {
-    /// The body kind of that league's robots. If it is not built in ([`Kind::is_built`]), the kind that is: a
+    /// The body kind of that league's robots. If it is not built in ([`BodyKind::is_built`]), the kind that is: a
     /// caller that takes a configuration from outside must check first.
     pub fn of(league: League) -> Self {
         match league {

@@ -2,7 +2,7 @@
 
 #[embedded_test::tests]
 mod tests {
-    use casebase::{CaseBase, GoalEnd, PointMm, Problem, Settings, retrieve, retrieve_best};
+    use casebase::{CaseBase, GoalEnd, PointMm, Problem, RetrievalSettings, retrieve, retrieve_best};
     use heapless::Vec;
     use protocol::RobotId;
     use retrieval_bench::{Found, scan};
@@ -19,14 +19,14 @@ mod tests {
             teammates: robots(&[(1, -700, 0), (3, 200, 800)]),
             opponents: [PointMm { x: -150, y: 40 }].into_iter().collect(),
         };
-        let found = retrieve_best(&case_library::four_legged(), &problem, &Settings::default());
+        let found = retrieve_best(&case_library::four_legged(), &problem, &RetrievalSettings::default());
         let found = found.expect("pass-around fits, if nothing better does");
         assert_eq!((found.conditions, found.teammates), (1, 2));
     }
 
     #[test]
     fn two_hundred_problems_have_the_answers_of_a_plain_scan() {
-        let (mut dice, settings) = (Dice(0x0102_0304_0506_0708), Settings::default());
+        let (mut dice, settings) = (Dice(0x0102_0304_0506_0708), RetrievalSettings::default());
         let libraries =
             [(case_library::four_legged(), 2_700, 1_800), (case_library::division_b(), 4_500, 3_000)];
         let mut with_a_case = 0;
@@ -41,7 +41,7 @@ mod tests {
     }
 
     /// Whether there is a case; both methods must find the same one.
-    fn agrees(base: &CaseBase<'_>, problem: &Problem, settings: &Settings) -> bool {
+    fn agrees(base: &CaseBase<'_>, problem: &Problem, settings: &RetrievalSettings) -> bool {
         let (best, all, plain) =
             (retrieve_best(base, problem, settings), retrieve(base, problem, settings), scan(base, problem));
         assert_eq!(Found::of(best.as_ref()), Found::of(plain.best.as_ref()), "{problem:?}");

@@ -3,7 +3,7 @@
 //!
 //! A step: primitives progress (`primitives`), robots walk (`walker`) and are pushed apart, the ball rolls
 //! (`ball`) or is carried, and bodies in contact push it (`contact`). What happened is returned as
-//! [`WorldEvent`]s. Robots are named by their index in [`World::walkers`]: attackers by id, then opponents.
+//! [`WorldEvent`]s. Robots are named by their index in [`LeggedWorld::walkers`]: attackers by id, then opponents.
 //!
 //! **Invariants.** No clock and no unseeded randomness; the order of every loop is fixed; `geometry::math`
 //! only.
@@ -51,7 +51,7 @@ struct Hold {
     firm: bool,
 }
 
-/// Events of a step; robots are indices in [`World::walkers`].
+/// Events of a step; robots are indices in [`LeggedWorld::walkers`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WorldEvent {
     /// A robot's body is in contact with the ball (repeated in every step of the contact).

@@ -23,7 +23,7 @@ pub struct RefereeEvent {
     pub what: What,
 }
 
-/// A ball in a goal; [`Event::by`] is the team that scores.
+/// A ball in a goal; [`RefereeEvent::by`] is the team that scores.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShotEvent {
     /// The robot that touched the ball last, of either team.

@@ -5,7 +5,7 @@
 //! Plan ─► Evaluation::play_shard ─► trials-1-of-3.csv … ─► merge ─► rows ─► tables ─► compare ─ Wilson, z, Welch, Holm
 //!                                                                     paper::rows ──────┘
 //! ```
-//! A [`Plan`] numbers the trials; shards of it are played anywhere, and merged rows are the same bytes for
+//! A [`EvaluationPlan`] numbers the trials; shards of it are played anywhere, and merged rows are the same bytes for
 //! any number of threads, shards and interrupts. [`tables`] makes docs/case-format.md §5.2's `tables.json` of
 //! them; [`compare`] and [`with_paper`] compute the differences.
 

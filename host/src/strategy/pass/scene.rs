@@ -1,7 +1,7 @@
 //! `scene`: probability that a pass leads to a goal. P(receive | x) · P(goal | receive, x), with all its
 //! factors (Biswas et al. 2014 §3.1, equations 3–5). Attack frame, SI units.
 //!
-//! A [`Scene`] is one moment with one receiver; values that do not depend on x are computed once.
+//! A [`PassScene`] is one moment with one receiver; values that do not depend on x are computed once.
 //! docs/architecture.md §9 bounds the cost of a place (`cargo xtask bench strategy`).
 
 use geometry::{Attack, Field, GoalEnd, Point, Shape, Vector};

@@ -15,7 +15,7 @@ mod instructions;
 mod measure {
     use core::hint::black_box;
 
-    use casebase::{CaseBase, Settings, retrieve, retrieve_best};
+    use casebase::{CaseBase, RetrievalSettings, retrieve, retrieve_best};
     use cortex_m_semihosting::{debug, hprintln};
     use panic_semihosting as _;
     use retrieval_bench::{Answer, LEN_MAX, PROBLEMS_ADDRESS, TABLE_ADDRESS, behind_header, problems, scan};
@@ -29,7 +29,7 @@ mod measure {
         let core = cortex_m::Peripherals::take().expect("taken once, at start");
         instructions::start(core.SYST);
         let base = CaseBase::from_bytes(behind_header(memory(TABLE_ADDRESS))).expect("a table in memory");
-        let settings = Settings::default();
+        let settings = RetrievalSettings::default();
         // Instructions of the counting itself.
         let ((), idle) = counted(|| ());
         for problem in problems(memory(PROBLEMS_ADDRESS)) {

@@ -18,7 +18,7 @@ use heapless::Vec;
 use protocol::link::Packet;
 use protocol::lockstep::{AIR_OUT_MAX, FromRobot, TickIn, TickOut, ToRobot};
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
-use runtime::ports::{Body, RadioSender, Senses};
+use runtime::ports::{BodyPort, RadioSender, Senses};
 use runtime::{BrainConfig, Mailboxes, setup, tasks};
 
 use super::clock::Clock;
@@ -139,7 +139,7 @@ impl RadioSender for UartSender {
 }
 
 struct Actuators;
-impl Body for Actuators {
+impl BodyPort for Actuators {
     async fn act(&mut self, wanted: ActuatorFrame) {
         critical_section::with(|cs| DONE.borrow_ref_mut(cs).actuators = Some(wanted));
     }

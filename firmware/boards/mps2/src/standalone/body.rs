@@ -5,7 +5,7 @@ use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use protocol::Duration;
 use runtime::kicker::{FULL_VOLTS, KickerAct, KickerState};
-use runtime::ports::{Kicker, Probes, Seen, Wheels};
+use runtime::ports::{Kicker, Probes, Seen, WheelsPort};
 use runtime::wheel::WHEELS;
 
 /// Rim speeds, m/s, as bits.
@@ -27,7 +27,7 @@ pub(crate) fn stop() {
 /// Four simulated wheels.
 pub(crate) struct Motors;
 
-impl Wheels for Motors {
+impl WheelsPort for Motors {
     fn measured(&mut self) -> [f32; WHEELS] {
         SPEEDS.each_ref().map(|speed| f32::from_bits(speed.load(Ordering::Relaxed)))
     }
