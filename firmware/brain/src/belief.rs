@@ -31,9 +31,9 @@ pub const REST_SPEED: f32 = 0.05;
 /// Estimated state of the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BelievedBall {
-    /// Position, m.
+    /// Position of its centre, m.
     pub position: Point<Field>,
-    /// Velocity, m/s.
+    /// Velocity along the ground, m/s.
     pub velocity: Vector<Field>,
     /// Stop position: cut at the first opponent on its path and at the lines of the field.
     pub rest: Point<Field>,
@@ -70,7 +70,7 @@ pub struct Other {
     pub id: RobotId,
     /// Position, m, and heading.
     pub pose: Pose<Field>,
-    /// Velocity, m/s.
+    /// Velocity of its centre, m/s.
     pub velocity: Vector<Field>,
 }
 
@@ -106,7 +106,7 @@ impl Default for BelievedGame {
 /// The robot's world model.
 #[derive(Clone, Debug)]
 pub struct Belief {
-    /// Own pose.
+    /// Own position, m, and heading.
     pub pose: Pose<Field>,
     /// The ball; `None` if its position is unknown.
     pub ball: Option<BelievedBall>,
@@ -116,7 +116,7 @@ pub struct Belief {
     pub holds_ball: bool,
     /// Its body is executing a grab or kick.
     pub busy: bool,
-    /// Own velocity, m/s.
+    /// Velocity of the own centre, m/s.
     pub velocity: Vector<Field>,
     /// Own turning rate, rad/s.
     pub angular: f32,

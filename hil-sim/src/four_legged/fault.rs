@@ -12,11 +12,11 @@ use crate::air::AirSettings;
 pub struct ScheduledFault {
     /// Number of the tick.
     pub tick: u32,
-    /// The fault.
+    /// The fault applied at its start.
     pub fault: Fault,
 }
 
-/// Kinds of faults.
+/// Faults of a robot's computer or of the radio.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fault {
     /// A robot's computer stops; its body stands, and releases the ball.

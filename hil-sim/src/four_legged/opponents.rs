@@ -28,7 +28,7 @@ crate::labels! {
 }
 
 impl OpponentRole {
-    /// Its home.
+    /// Home region of the role, m, field frame.
     pub fn home(self, parameters: &Parameters) -> Region {
         match self {
             Self::Defender => parameters.opponent.defender,
@@ -50,10 +50,10 @@ pub enum Conduct {
     Standing,
 }
 
-/// A scripted opponent.
+/// A scripted opponent with its region.
 #[derive(Clone, Debug)]
 pub struct Opponent {
-    /// Its role.
+    /// Role from which its home follows.
     pub role: OpponentRole,
     /// Its index in [`World::walkers`].
     robot: usize,

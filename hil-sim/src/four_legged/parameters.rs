@@ -36,15 +36,15 @@ pub(crate) use numbers;
 pub struct Parameters {
     /// The ball on the field surface.
     pub ball: BallParameters,
-    /// Walking freely.
+    /// Limits of walking without the ball.
     pub walk: WalkParameters,
     /// Walking with the ball.
     pub carry: CarryParameters,
-    /// Taking the ball.
+    /// Duration, reach and success of a grab.
     pub grab: GrabParameters,
-    /// Kicking it.
+    /// Distances and scatter of the kicks.
     pub kick: KickParameters,
-    /// The scripted opponents.
+    /// Home regions of the scripted opponents.
     pub opponent: OpponentParameters,
     /// When a trial ends and what counts.
     pub referee: RefereeParameters,
@@ -60,29 +60,29 @@ numbers! {
         /// Share of the closing speed that comes back from a robot.
         bounce: 0.0, 1.0;
     }
-    /// Limits of walking.
+    /// Limits of walking without the ball.
     WalkParameters in "walk" {
-        /// m/s ahead.
+        /// m/s, straight ahead, at most.
         forward: POSITIVE, LARGEST;
         /// m/s to the sides and backwards.
         sideways: POSITIVE, LARGEST;
-        /// rad/s.
+        /// rad/s, greatest turning rate.
         turn: POSITIVE, LARGEST;
-        /// m/s².
+        /// m/s², speeding up and slowing down.
         acceleration: POSITIVE, LARGEST;
-        /// rad/s².
+        /// rad/s², speeding up and slowing down a turn.
         turn_acceleration: POSITIVE, LARGEST;
     }
     /// Limits of walking with the ball.
     CarryParameters in "carry" {
         /// m/s in any direction.
         speed: POSITIVE, LARGEST;
-        /// rad/s.
+        /// rad/s, greatest turning rate.
         turn: POSITIVE, LARGEST;
     }
-    /// The grab.
+    /// The grab: duration, reach, success.
     GrabParameters in "grab" {
-        /// s.
+        /// s from order to its end.
         duration: POSITIVE, LARGEST;
         /// m, centre to centre.
         reach: POSITIVE, LARGEST;
@@ -99,7 +99,7 @@ numbers! {
         /// m that the ball rolls away from a failed grab.
         fumble: 0.0, LARGEST;
     }
-    /// The kicks.
+    /// The kicks: distances and scatter.
     KickParameters in "kick" {
         /// s from order to ball contact.
         duration: POSITIVE, LARGEST;
@@ -109,11 +109,11 @@ numbers! {
         angle_sd_deg: 0.0, LARGEST;
         /// Where both are cut, in standard deviations.
         scatter_limit: POSITIVE, LARGEST;
-        /// m.
+        /// m that the ball rolls, soft kick.
         forward_soft: POSITIVE, LARGEST;
-        /// m.
+        /// m that the ball rolls, hard kick.
         forward_hard: POSITIVE, LARGEST;
-        /// m.
+        /// m that the ball rolls, side kick.
         side: POSITIVE, LARGEST;
         /// To the left of ahead; the right kick mirrors it.
         side_angle_deg: 0.0, LARGEST;
@@ -165,9 +165,9 @@ pub struct OpponentParameters {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Region {
-    /// From, to.
+    /// Smallest and largest x, m.
     pub x: [f32; 2],
-    /// From, to.
+    /// Smallest and largest y, m.
     pub y: [f32; 2],
 }
 
@@ -227,11 +227,11 @@ pub enum ParameterError {
     Range {
         /// Name of the number, as in the file.
         name: &'static str,
-        /// Its value.
+        /// Value in the file.
         value: f32,
-        /// Its minimum.
+        /// Its smallest valid value.
         low: f32,
-        /// Its maximum.
+        /// Its largest valid value.
         high: f32,
     },
 }

@@ -16,7 +16,7 @@ crate::labels! {
     /// Which opponents play (paper §5.1.2, Fig. 11).
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
     pub enum Configuration {
-        /// Defender and goalie.
+        /// A defender and the goalie play.
         #[serde(rename = "dg")]
         DefenderGoalie = "dg",
         /// Midfield defender and defender.
@@ -38,7 +38,7 @@ crate::labels! {
         Block = "block",
         /// Out anywhere else, the own goal included.
         Out = "out",
-        /// Time was up.
+        /// The trial's time was up.
         Timeout = "timeout",
     }
 }
@@ -48,7 +48,7 @@ crate::labels! {
 pub struct TrialVerdict {
     /// How the trial ended.
     pub outcome: TrialOutcome,
-    /// Seconds from kick-off.
+    /// Simulated seconds from kick-off.
     pub time: f32,
 }
 
@@ -57,7 +57,7 @@ pub struct TrialVerdict {
 pub enum Party {
     /// One of the robots controlled by brains.
     Attackers,
-    /// A scripted opponent.
+    /// A scripted opponent of that role.
     Opponent(OpponentRole),
 }
 

@@ -17,7 +17,7 @@ use crate::four_legged::referee::Configuration;
 use crate::rng::Stream;
 
 crate::labels! {
-    /// A scenario's name.
+    /// A scenario, by the paper's number or `random`.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Scenario {
         /// 1: ball and attackers in the middle-back.
@@ -33,23 +33,23 @@ crate::labels! {
     }
 }
 
-/// Positions at kick-off.
+/// Positions of ball and robots at kick-off.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     /// Position of the resting ball, m.
     pub ball: Point<Field>,
     /// The robots controlled by brains: A, B, and the others of the team.
     pub attackers: Vec<Pose<Field>>,
-    /// The scripted opponents.
+    /// The scripted opponents with their conduct.
     pub opponents: Vec<Placed>,
 }
 
 /// A scripted opponent at kick-off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
-    /// Its role.
+    /// Role of the opponent.
     pub role: OpponentRole,
-    /// Its behaviour.
+    /// What it does in the trial.
     pub conduct: Conduct,
     /// Its position and heading.
     pub pose: Pose<Field>,
@@ -64,7 +64,7 @@ impl Placed {
 }
 
 impl Scenario {
-    /// The paper's four.
+    /// The paper's four scenarios, in its order.
     pub const PAPER: [Self; 4] = [Self::MiddleBack, Self::LeftSide, Self::DefenderAhead, Self::DefenderClose];
 
     /// What it looks like, in a few words.

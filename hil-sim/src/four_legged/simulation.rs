@@ -31,7 +31,7 @@ use crate::mcu::{Backend, Mcu, McuError};
 pub struct SimulationConfig {
     /// Seed of all random streams.
     pub seed: u64,
-    /// Start positions.
+    /// Start positions of ball and robots.
     pub layout: Layout,
     /// The configuration of opponents; it decides what ends the trial.
     pub configuration: Configuration,
@@ -39,15 +39,15 @@ pub struct SimulationConfig {
     pub brains: Vec<BrainConfig>,
     /// Settings of the radio channel.
     pub air: AirSettings,
-    /// Errors of perception.
+    /// Errors of the robots' perception.
     pub noise: Noise,
     /// Parameters of the physics.
     pub parameters: Parameters,
-    /// Scheduled faults.
+    /// Faults with their ticks, in any order.
     pub faults: Vec<ScheduledFault>,
 }
 
-/// A running trial.
+/// A running trial, advanced tick by tick.
 pub struct Simulation<'a> {
     backend: Box<dyn Backend<'a> + 'a>,
     robots: Vec<Robot<'a>>,
@@ -77,7 +77,7 @@ struct Robot<'a> {
 /// Inputs, outputs and events of a tick.
 #[derive(Clone, Debug, Default)]
 pub struct Tick {
-    /// Its number.
+    /// Number of the tick, from 0.
     pub number: u32,
     /// Seconds from kick-off to its start.
     pub time: f32,
@@ -96,18 +96,18 @@ pub struct Tick {
 /// A packet sent by a robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sent {
-    /// The sender.
+    /// Number of the robot that sent it.
     pub from: RobotId,
-    /// The bytes.
+    /// The bytes of one frame.
     pub packet: Packet,
 }
 
 /// A packet delivered to a robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReceivedPacket {
-    /// The receiver.
+    /// Number of the robot that received it.
     pub to: RobotId,
-    /// The bytes.
+    /// The bytes of one frame.
     pub packet: Packet,
 }
 
@@ -204,7 +204,7 @@ impl<'a> Simulation<'a> {
         self.trace
     }
 
-    /// The radio channel.
+    /// The radio channel, for its settings and counts.
     pub fn air(&self) -> &Air {
         &self.air
     }
@@ -313,18 +313,18 @@ impl<'a> Simulation<'a> {
 pub enum SimulationError {
     /// The layout has fewer positions than there are brains.
     TooManyRobots {
-        /// Number of brains.
+        /// Number of brains given.
         wanted: usize,
-        /// Number of positions.
+        /// Number of positions in the layout.
         places: usize,
     },
     /// Brains must be given in rising order of their ids, each once; this id is out of order.
     IdsNotRising(RobotId),
     /// A robot's computer failed.
     Computer {
-        /// Its robot.
+        /// The robot with that computer.
         robot: RobotId,
-        /// The failure.
+        /// What the computer's back end reported.
         error: McuError,
     },
 }

@@ -46,7 +46,7 @@ impl TraceHash {
         self.0.add(packet);
     }
 
-    /// Sixteen hexadecimal digits.
+    /// The hash as sixteen hexadecimal digits.
     pub fn digits(&self) -> String {
         self.0.to_string()
     }

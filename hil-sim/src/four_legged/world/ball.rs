@@ -10,14 +10,14 @@ use rules::FieldSpec;
 /// The ball's true state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeggedBall {
-    /// Its centre, m.
+    /// Position of its centre, m.
     pub position: Point<Field>,
-    /// m/s.
+    /// Velocity along the ground, m/s.
     pub velocity: Vector<Field>,
 }
 
 impl LeggedBall {
-    /// A resting ball.
+    /// A ball that rests at `position`, m.
     pub fn at(position: Point<Field>) -> Self {
         Self { position, velocity: Vector::default() }
     }

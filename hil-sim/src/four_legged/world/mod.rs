@@ -26,9 +26,9 @@ use crate::rng::Stream;
 /// The true state of ball and robots.
 #[derive(Clone, Debug)]
 pub struct LeggedWorld {
-    /// The ball.
+    /// True state of the ball.
     pub ball: LeggedBall,
-    /// The robots.
+    /// True states of all robots, both teams.
     pub walkers: Vec<Walker>,
     /// The robot that has the ball between its legs, if any.
     hold: Option<Hold>,
@@ -56,22 +56,22 @@ struct Hold {
 pub enum WorldEvent {
     /// A robot's body is in contact with the ball (repeated in every step of the contact).
     Touched {
-        /// The robot.
+        /// Index of the robot in [`World::walkers`].
         robot: usize,
     },
-    /// A grab succeeded.
+    /// A grab succeeded: the robot holds the ball.
     Grabbed {
-        /// The robot.
+        /// Index of the robot in [`World::walkers`].
         robot: usize,
     },
     /// A grab ended without the ball.
     GrabFailed {
-        /// The robot.
+        /// Index of the robot in [`World::walkers`].
         robot: usize,
     },
     /// The ball was kicked.
     Kicked {
-        /// The robot.
+        /// Index of the robot in [`World::walkers`].
         robot: usize,
         /// The kind of kick.
         kick: LeggedKick,
@@ -82,7 +82,7 @@ pub enum WorldEvent {
     },
     /// A kick started without the ball held by the robot: nothing moved.
     KickedNothing {
-        /// The robot.
+        /// Index of the robot in [`World::walkers`].
         robot: usize,
     },
     /// A grab took the ball out of another robot's legs.

@@ -19,22 +19,22 @@ pub enum Side {
 /// A robot's true state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Walker {
-    /// Its team.
+    /// Team of the robot.
     pub side: Side,
     /// Its position and heading.
     pub pose: Pose<Field>,
     /// Its velocity, in its own frame.
     pub twist: Twist<Body>,
-    /// Its ordered velocity.
+    /// Ordered velocity, body frame, m/s and rad/s.
     pub wanted: Twist<Body>,
-    /// Its current primitive.
+    /// The running primitive; `None` while it only walks.
     pub action: Option<Primitive>,
 }
 
-/// A running primitive.
+/// A primitive that is running.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Primitive {
-    /// Its kind.
+    /// Grab, or which kick.
     pub what: PrimitiveKind,
     /// Seconds until it ends (a grab) or touches the ball (a kick).
     pub left: f32,
@@ -43,14 +43,14 @@ pub struct Primitive {
 /// The primitives of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PrimitiveKind {
-    /// Taking the ball.
+    /// Taking the ball between the front legs.
     Grab,
-    /// Kicking it.
+    /// Kicking the ball that is held.
     Kick(LeggedKick),
 }
 
 impl Walker {
-    /// A standing robot.
+    /// A robot that stands still, without an order.
     pub fn at(side: Side, pose: Pose<Field>) -> Self {
         Self { side, pose, twist: Twist::default(), wanted: Twist::default(), action: None }
     }
