@@ -304,20 +304,18 @@ const PURE: [&str; 10] = [
 ];
 
 /// docs/architecture.md §1.2; a crate depends on earlier ones only.
-const LOWEST_FIRST: [&str; 30] = [
+const LOWEST_FIRST: [&str; 28] = [
     "geometry",
     "rules",
     "protocol",
     "motion",
-    "motion-bench",
-    "radio-bench",
     "foreign",
     "ssl",
     "casebase",
     "drawing",
     "case-tools",
     "case-library",
-    "retrieval-bench",
+    "workloads",
     "brain",
     "runtime",
     "board-mps2",

@@ -5,7 +5,7 @@
 use std::hint::black_box;
 
 use firmware_build::count::callgrind;
-use motion_bench::{SEED, TASKS, Task, Tasks, Work};
+use workloads::motion::{SEED, TASKS, Task, Tasks, Work};
 
 /// Mean instructions per task.
 pub(crate) fn instructions(work: Work) -> Result<u64, String> {

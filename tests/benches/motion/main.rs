@@ -12,7 +12,7 @@ use std::process::ExitCode;
 
 use figures::Figures;
 use firmware_build::count::write_between;
-use motion_bench::Work;
+use workloads::motion::Work;
 
 fn main() -> ExitCode {
     let description: Vec<String> = std::env::args().skip(1).collect();
