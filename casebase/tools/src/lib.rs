@@ -15,7 +15,6 @@ pub mod competence;
 mod counterfactual;
 pub mod coverage;
 mod document;
-pub mod draw;
 mod encode;
 mod files;
 mod finding;

@@ -4,9 +4,10 @@ use std::io::{Read, stdin};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use case_tools::draw::{CasePicture, Overlay, Theme, case_picture, sheet};
 use casebase::{Match, Problem, Symmetry, Verdict, rank_order};
 use clap::{Args, ValueEnum};
+use drawing::Theme;
+use drawing::cases::{CasePicture, Overlay, case_picture, sheet};
 
 use super::lines::LINE_MAX;
 use super::show::{find, unknown};

@@ -8,7 +8,7 @@ use casebase::{
     adapted_position,
 };
 
-use drawing::{Anchor, At, Colors, Font, Svg, Theme, draw_field, half_extent, wrapped};
+use crate::{Anchor, At, Colors, Font, Svg, Theme, draw_field, half_extent, wrapped};
 
 use super::description;
 use super::labels::Labels;
