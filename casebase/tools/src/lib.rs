@@ -6,6 +6,7 @@
 //! (docs/case-format.md §1.2).
 //!
 //! **Invariant.** All stored values were computed by the crate that will read them, `casebase`.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 #![forbid(unsafe_code)]
 
 mod authored;
