@@ -14,8 +14,9 @@ use super::show::{find, unknown};
 use super::{counted, problem};
 use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs};
+use crate::failure::ProblemError;
 use crate::library::LibraryHandle;
-use crate::output::{say, shown};
+use crate::output::say;
 use crate::picture::{self, SnapshotError};
 
 /// Arguments of `cases render`.
@@ -167,12 +168,12 @@ fn read(argument: &str) -> Result<Problem, Failure> {
     } else {
         let file = Path::new(argument);
         foreign::read_text(file, LINE_MAX as u64)
-            .map_err(|error| Failure::Problem(format!("cannot read {}: {error}", shown(file))))?
+            .map_err(|error| Failure::Problem(ProblemError::Unreadable(file.to_owned(), error)))?
     };
     if text.len() > LINE_MAX {
-        return Err(Failure::Problem(format!("--problem: more than {LINE_MAX} bytes; give one problem")));
+        return Err(Failure::Problem(ProblemError::TooLong(LINE_MAX)));
     }
-    problem::parse(text.trim()).map_err(|error| Failure::Problem(format!("--problem: {error}")))
+    problem::parse(text.trim()).map_err(|error| Failure::Problem(ProblemError::Malformed(error)))
 }
 
 fn picture_file(text: &str) -> Result<PathBuf, SnapshotError> {

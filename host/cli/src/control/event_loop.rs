@@ -38,6 +38,7 @@ use super::threads::{self, Source};
 use super::watch::Watch;
 use super::{Cases, identity, port_for_teams, simulator};
 use crate::Failure;
+use crate::failure::NetworkError;
 use crate::live::PageArgs;
 use crate::net::NetSender;
 use crate::output::{note, shown};
@@ -90,7 +91,7 @@ pub(super) fn run(
     let recorder = keeps.record.map(|stem| {
         Recorder::begin(stem, &header(&settings))
             .and_then(BackgroundRecorder::start)
-            .map_err(|error| Failure::Network(format!("--record {}: {error}", stem.display())))
+            .map_err(|error| NetworkError::Record(stem.to_owned(), error))
     });
     let recorder = recorder.transpose()?;
     note!(
@@ -219,12 +220,11 @@ fn open_link(
     key: TeamKey,
     more: Vec<OsString>,
 ) -> Result<Box<dyn host::shell::Link>, Failure> {
-    let failed = |error: &dyn std::fmt::Display| Failure::Network(error.to_string());
     let at = match &config.robots {
         host::config::RobotLink::Simulator(host) => simulator(host, config.colour)?,
         _ => ([127, 0, 0, 1], 0).into(),
     };
-    let program = std::env::current_exe().map_err(|error| failed(&error))?;
+    let program = std::env::current_exe().map_err(NetworkError::Program)?;
     let sim = |_: &str| SimSettings {
         program,
         colour: config.colour,
@@ -234,7 +234,7 @@ fn open_link(
         key,
         more,
     };
-    host::shell::open(&config.robots, sim).map_err(|error| failed(&error))
+    Ok(host::shell::open(&config.robots, sim).map_err(NetworkError::Link)?)
 }
 
 #[derive(Clone, Copy, Debug, Default)]
