@@ -31,10 +31,10 @@ use ssl::net::Interfaces;
 
 use super::alarms::Alarms;
 use super::board::Board;
-use super::inbox::{Inbox, Mail};
+use super::inbox::{Inbox, Mail, Source};
 use super::radio_alarms::RadioAlarms;
 use super::terminal::Terminal;
-use super::threads::{self, Source};
+use super::threads;
 use super::watch::Watch;
 use super::{Cases, identity, port_for_teams, simulator};
 use crate::Failure;

@@ -14,6 +14,7 @@ mod layers;
 mod legged;
 mod match_runner;
 mod minds;
+mod names;
 mod overlay_builder;
 mod paths;
 mod possession;

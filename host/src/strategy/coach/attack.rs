@@ -12,10 +12,11 @@ use protocol::{Duration, Instant, RobotId};
 
 use super::super::counters::Sent;
 use super::super::order::{Role, Task, Why};
-use super::super::pass::bridge::{CasePass, RADIUS, refine};
+use super::super::pass::bridge::{RADIUS, refine};
 use super::super::pass::shot::shot;
 use super::super::pass::{Rating, SAMPLES, Scene};
 use super::super::support;
+use super::super::view::CasePass;
 use super::super::view::{Ball, View};
 use super::{Coach, Pass, Plan};
 

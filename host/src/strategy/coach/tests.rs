@@ -1,9 +1,10 @@
 //! Tests: every robot has one plausible order in every phase.
 
 use super::*;
-use crate::strategy::pass::bridge::{CasePass, RADIUS};
+use crate::strategy::pass::bridge::RADIUS;
 use crate::strategy::threat::Guards;
 use crate::strategy::view::Ball;
+use crate::strategy::view::CasePass;
 use crate::strategy::view::tests::view;
 use casebase::CaseRobot;
 use geometry::Vector;
