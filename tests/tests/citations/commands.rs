@@ -30,7 +30,7 @@ impl Known {
     pub(crate) fn read() -> Self {
         let below = |path: &str, name: &str| variants(&page(path).text, name);
         let mut verbs: BTreeMap<_, _> =
-            below("host/cli/src/args.rs", "Verb").into_iter().map(|verb| (verb, BTreeSet::new())).collect();
+            below("host/cli/src/verbs.rs", "Verb").into_iter().map(|verb| (verb, BTreeSet::new())).collect();
         for (verb, path, name) in [
             ("cases", "host/cli/src/cases/mod.rs", "CasesVerb"),
             ("firmware", "host/cli/src/firmware/mod.rs", "FirmwareVerb"),
