@@ -16,7 +16,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use host::config::TeamConfig;
 use host::learned::Learned;
 use host::radio::RadioSettings;
-use host::record::header::{HostHeader, RecordingHeader};
+use host::record::header::RecordingHeader;
 use host::record::{BackgroundRecorder, Recorder};
 use host::referee::team_port::Request;
 use host::shell::{Outbox, SimSettings};
@@ -206,11 +206,8 @@ fn header(settings: &HostSettings) -> RecordingHeader {
     RecordingHeader {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         commit: env!("ONETWO_COMMIT").to_owned(),
-        seed: None,
-        league: settings.league.name().to_owned(),
-        world: None,
         zero_unix_us: Some(unix.as_micros() as u64),
-        hosts: vec![HostHeader::of(settings, protocol::Instant(0))],
+        ..RecordingHeader::of(settings)
     }
 }
 
