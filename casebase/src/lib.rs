@@ -10,6 +10,7 @@
 //!
 //! **Invariants.** No I/O, no clock, no allocation; no bytes of a table, no problem and no setting can panic.
 //! It does not depend on files (`case-tools` does) or on radio. Runs on robots and on the host alike.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 #![forbid(unsafe_code)]
 #![no_std]
 

@@ -1,7 +1,7 @@
 //! `small_size_cost`: instruction count of a simulated second of an eleven-against-eleven match by a fixed
 //! script, with the parts of the simulator named by the first argument.
 //!
-//! `cargo run --release -p hil-sim --example small_size_cost -- physics|cameras|packets|restless SECONDS`
+//! `cargo run --release -p onetwo-hil-sim --example small_size_cost -- physics|cameras|packets|restless SECONDS`
 //! plays division A and
 //! prints counts of the result; `cargo xtask bench simulator` counts its instructions.
 

@@ -12,6 +12,7 @@
 //!
 //! **Invariants.** It never links `host`; robots measure the true state through [`four_legged::sensors`]
 //! alone; only the back end does I/O.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 #![forbid(unsafe_code)]
 
 mod air;

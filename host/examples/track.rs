@@ -2,7 +2,7 @@
 //! frames and objects, noise.
 //!
 //! ```sh
-//! cargo run --release -p host --example track -- protocol/ssl/tests/data/grsim_divB_noisy_64s.log.gz
+//! cargo run --release -p onetwo-host --example track -- protocol/ssl/tests/data/grsim_divB_noisy_64s.log.gz
 //! ```
 //! `--times N` feeds the recording N times and prints only the sum of positions: for counting instructions
 //! (`valgrind --tool=callgrind`, N and 2 N, the difference divided by the camera frames).

@@ -5,6 +5,7 @@
 //!
 //! **Invariants.** It never links `brain` or `hil-sim`: it knows robots by `protocol` and the field by `ssl`
 //! only. Same input, same decisions.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 #![forbid(unsafe_code)]
 
 pub mod config;

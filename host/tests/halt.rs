@@ -2,7 +2,7 @@
 //! referees gives the same decisions.
 
 use host::radio::To;
-use host::record::header::{HostHeader, RecordingHeader};
+use host::record::header::RecordingHeader;
 use host::record::recheck::Recheck;
 use host::record::trace::{Record, RecordKind};
 use host::referee::{SenderAddress, SourcePin};
@@ -185,16 +185,7 @@ fn recorded(settings: HostSettings) -> Vec<Record> {
 }
 
 fn same_again(settings: &HostSettings, records: &[Record]) -> bool {
-    let header = RecordingHeader {
-        version: String::new(),
-        commit: String::new(),
-        seed: None,
-        league: League::DivisionB.name().to_owned(),
-        world: None,
-        zero_unix_us: None,
-        hosts: vec![HostHeader::of(settings, Instant(0))],
-    };
-    let header = RecordingHeader::from_json(&header.to_json()).unwrap();
+    let header = RecordingHeader::from_json(&RecordingHeader::of(settings).to_json()).unwrap();
     let mut recheck = Recheck::new(&header, TeamKey::ZERO).unwrap();
     for record in records {
         assert!(recheck.feed(record));

@@ -1,6 +1,6 @@
 //! `forge`: counts forged, replayed and foreign frames that are accepted: none, or it panics with the first.
 //!
-//! Run it with `cargo run --release -p protocol --example forge -- --count 1000000 [--seed N]`.
+//! Run it with `cargo run --release -p onetwo-protocol --example forge -- --count 1000000 [--seed N]`.
 
 #[path = "../tests/support/forgery.rs"]
 mod forgery;

@@ -16,8 +16,8 @@ use rules::{Phase, Side};
 use serde::{Deserialize, Serialize};
 
 use crate::frame::{AUDIENCE_LEN, FRAME_LEN_MAX, HEADER_LEN, Refusal, SHORT_TAG_LEN};
+use crate::ids::CASE_ROBOTS_MAX;
 use crate::quantized::{WirePoint, WirePose};
-use crate::team::CASE_ROBOTS_MAX;
 use crate::{CaseId, RobotId};
 
 /// Most robots in one part of the world; with more than six addressees fewer fit ([`WorldPart::robots_max`]).

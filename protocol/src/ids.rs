@@ -5,6 +5,9 @@ use core::fmt;
 use rules::Colour;
 use serde::{Deserialize, Serialize};
 
+/// Robots of a team that can take part in one case (paper §2: n ≤ 4).
+pub const CASE_ROBOTS_MAX: usize = 4;
+
 /// A robot of one team, 0–15; fixed permanently (paper §4.1: "each robot has a unique fixed Id").
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(try_from = "u8", into = "u8")]

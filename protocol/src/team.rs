@@ -10,6 +10,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::host::Telemetry;
+pub use crate::ids::CASE_ROBOTS_MAX;
 use crate::quantized::{WirePoint, WirePose};
 use crate::{CaseId, CycleId, Duration, RobotId};
 
@@ -17,8 +18,6 @@ use crate::{CaseId, CycleId, Duration, RobotId};
 /// one is no absence. Robots and host hold to it.
 pub const PRESENCE_LEASE: Duration = Duration::millis(400);
 
-/// Robots of a team that can take part in one case (paper §2: n ≤ 4).
-pub const CASE_ROBOTS_MAX: usize = 4;
 /// The longest [`TeamMessage`] in postcard bytes; with the frame's overhead it stays within 64 B
 /// (docs/architecture.md §6.1).
 pub const TEAM_MESSAGE_LEN_MAX: usize = 64 - crate::frame::OVERHEAD;

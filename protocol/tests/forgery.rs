@@ -1,5 +1,5 @@
 //! `forgery`: tests: without the key, or with recordings only, no robot and no host can be deceived. 10^5
-//! tries; `cargo run --release -p protocol --example forge -- --count 1000000` makes more.
+//! tries; `cargo run --release -p onetwo-protocol --example forge -- --count 1000000` makes more.
 
 #[path = "support/forgery.rs"]
 mod forgery;

@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 pub mod bad_line;
+pub mod bench;
 pub mod hil;
 pub mod hostile;
 pub mod invariants;

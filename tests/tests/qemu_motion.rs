@@ -10,7 +10,7 @@ mod figures;
 #[path = "../benches/motion/guest.rs"]
 mod guest;
 
-use motion_bench::Work;
+use workloads::motion::Work;
 
 #[test]
 fn motion_on_the_board_is_that_of_the_pc_and_within_its_budget() {

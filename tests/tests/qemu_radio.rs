@@ -7,7 +7,7 @@
 #[path = "../benches/radio/counts.rs"]
 mod counts;
 
-use radio_bench::Work;
+use workloads::radio::Work;
 
 #[test]
 fn every_frame_is_sealed_and_opened_within_its_budget() {

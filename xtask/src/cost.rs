@@ -1,14 +1,12 @@
 //! `cost`: instruction counts of the host side. Programs under callgrind, which counts instructions: the same
-//! on any machine of one kind, however busy it is. [`write()`] collects all these figures in docs/budgets.md.
+//! on any machine of one kind, however busy it is.
 
 use std::fmt::Write as _;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::{fs, io};
 
 use crate::context::{Context, Failure, line_of, run};
-use crate::example_cost::{SIMULATOR, STRATEGY};
-use crate::{game_cost, trial_cost};
 
 /// A figure and its budget.
 pub(crate) struct Row {
@@ -81,42 +79,6 @@ pub(crate) fn counted<'a>(
         None => Err(Failure::Command { line, status: output.status }),
     }
 }
-
-/// Counts everything and writes docs/budgets.md.
-pub(crate) fn write(context: &Context) -> Result<(), Failure> {
-    let parts = [
-        ("The simulator: a second of eleven against eleven", "simulator", SIMULATOR.rows(context)?),
-        ("A trial of the first paper: a simulated second", "trial", trial_cost::rows(context)?),
-        ("Strategy: one decision", "strategy", STRATEGY.rows(context)?),
-        ("Matches: the host, and two whole teams", "game", game_cost::rows(context)?),
-    ];
-    let mut text = String::from(HEAD);
-    for (title, bench, rows) in &parts {
-        let _ = write!(text, "\n## {title}\n\n`cargo xtask bench {bench}`\n\n{}", table(rows));
-    }
-    text.push_str(TAIL);
-    let file = context.root().join("docs/budgets.md");
-    fs::write(&file, text).map_err(|error| Failure::Start { line: file.display().to_string(), error })?;
-    println!("xtask: written: docs/budgets.md");
-    judge(&parts.into_iter().flat_map(|(_, _, rows)| rows).collect::<Vec<_>>())
-}
-
-const HEAD: &str = "\
-# What it costs
-
-What simulator, trials, strategy and host cost on a PC: instructions counted by valgrind's callgrind on x86-64 in a
-release build. `cargo xtask budgets` writes this page again. What happens once, such as reading a case base, is taken out by counting a run and one twice as long. \"At most\" is the
-budget of [architecture.md §9](architecture.md#9-budgets).
-";
-
-const TAIL: &str = "
-## On the robot
-
-Counted in guest instructions under QEMU, each table written by its own command: retrieval
-([casebase](../casebase/README.md), `cargo xtask bench retrieval --write`), planned motion ([motion](../firmware/motion/README.md),
-`cargo xtask bench motion --write`), radio frames ([protocol](../protocol/README.md), `cargo xtask bench radio --write`). A brain's
-worst step, the median retrieval and the image's size are held by `cargo xtask test`.
-";
 
 /// Puts the text between the marks of that name in a file of the workspace.
 pub(crate) fn write_between(file: &str, name: &str, table: &str) -> Result<(), Failure> {

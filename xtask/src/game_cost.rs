@@ -15,7 +15,7 @@ use crate::cost::{Row, counted, release};
 /// The figures.
 pub(crate) fn rows(context: &Context) -> Result<Vec<Row>, Failure> {
     let onetwo = release(context, "--bin onetwo", "onetwo")?;
-    let feeder = release(context, "-p host --example host_cost", "examples/host_cost")?;
+    let feeder = release(context, "-p onetwo-host --example host_cost", "examples/host_cost")?;
     let directory = firmware_build::target_dir(context.root()).join("bench-game");
     let _ = fs::remove_dir_all(&directory);
     let wrong = |error| Failure::Start { line: directory.display().to_string(), error };

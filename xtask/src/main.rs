@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 mod bench;
+mod budgets;
 mod context;
 mod cost;
 mod deny;

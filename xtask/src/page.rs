@@ -64,7 +64,7 @@ pub(crate) fn bench(context: &Context, write: bool) -> Result<(), Failure> {
     let program = built(context)?;
     let frame = frames(context, &program)?;
     println!("{frame}");
-    run(&mut context.cargo("build --release --package page --example viewers"))?;
+    run(&mut context.cargo("build --release --package onetwo-page --example viewers"))?;
     let alone = count(&program, "")?;
     let watched = count(&program, READING)?;
     let slow = count(&program, SLOW)?;

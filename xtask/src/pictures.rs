@@ -7,7 +7,7 @@ pub(crate) fn draw(context: &Context) -> Result<(), Failure> {
     PICTURES
         .iter()
         .try_for_each(|line| run(&mut context.cargo(&format!("run --release --features png -- {line}"))))?;
-    run(&mut context.cargo("run --release -p host --example strategy_pictures -- docs/strategy"))?;
+    run(&mut context.cargo("run --release -p onetwo-host --example strategy_pictures -- docs/strategy"))?;
     let line = "run --release --features png -- cases render --out docs/case-problem.svg --problem";
     run(context.cargo(line).arg(PROBLEM))
 }

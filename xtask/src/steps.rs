@@ -19,7 +19,7 @@ pub(crate) struct Step {
     pub(crate) run: fn(&Context) -> Result<(), Failure>,
 }
 
-pub(crate) const STEPS: [Step; 14] = [
+pub(crate) const STEPS: [Step; 15] = [
     Step { name: "fmt", what: "sources are formatted as rustfmt.toml says", run: fmt },
     Step { name: "clippy", what: "the linter has no warning, on the PC", run: clippy },
     Step { name: "deny", what: deny::WHAT, run: deny::check },
@@ -40,6 +40,11 @@ pub(crate) const STEPS: [Step; 14] = [
     Step { name: "qemu", what: "the tests that run the image on QEMU pass", run: qemu },
     Step { name: "determinism", what: determinism::WHAT, run: determinism::run },
     Step { name: "first-build", what: first_build::WHAT, run: first_build::check },
+    Step {
+        name: "publish",
+        what: "the libraries can be packed as they would be published, each with its README",
+        run: publish,
+    },
     Step { name: "page", what: page::WHAT, run: page::check },
     Step { name: "readme", what: readme::WHAT, run: readme::check },
 ];
@@ -94,6 +99,12 @@ fn qemu(context: &Context) -> Result<(), Failure> {
     run(&mut context.cargo(line))
 }
 
+/// Everything but the upload and the build of what was packed, which takes a debug build of each package; before a
+/// release run it without `--no-verify`.
+fn publish(context: &Context) -> Result<(), Failure> {
+    run(&mut context.cargo("publish --dry-run --workspace --allow-dirty --no-verify"))
+}
+
 fn packages(names: &[&str]) -> String {
     names.iter().flat_map(|name| [" --package ", name]).collect()
 }
@@ -102,8 +113,16 @@ fn packages(names: &[&str]) -> String {
 /// once.
 const FIRMWARE: &str = " --profile firmware";
 /// Crates on a robot, lowest first; tests/tests/tidy.rs holds the same crates to `no_std`.
-const ON_ROBOT: [&str; 8] =
-    ["geometry", "protocol", "rules", "motion", "casebase", "case-library", "brain", "runtime"];
+const ON_ROBOT: [&str; 8] = [
+    "onetwo-geometry",
+    "onetwo-protocol",
+    "onetwo-rules",
+    "onetwo-motion",
+    "onetwo-casebase",
+    "onetwo-case-library",
+    "onetwo-brain",
+    "onetwo-runtime",
+];
 /// Programs for the robot's processor.
 const BOARDS: [&str; 2] = ["board-mps2", "board-stm32"];
 

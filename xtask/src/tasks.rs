@@ -2,7 +2,7 @@
 //! function.
 
 use crate::context::{Context, Failure};
-use crate::{bench, cost, emulate, evaluation, example_cost, game_cost, page, pictures, trial_cost};
+use crate::{bench, budgets, cost, emulate, evaluation, example_cost, game_cost, page, pictures, trial_cost};
 
 /// An xtask command other than `test`.
 #[derive(Debug)]
@@ -141,7 +141,7 @@ static TASKS: [Task; 19] = [
         "budgets",
         "",
         "count trial, game, strategy and simulator as below, and write docs/budgets.md",
-        |context, _| cost::write(context),
+        |context, _| budgets::write(context),
     ),
     handed_on(
         "bench retrieval",

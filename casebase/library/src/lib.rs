@@ -5,6 +5,7 @@
 //! ([`LEAGUES`]) are for output to users, and only programs that use them link them.
 //!
 //! **Invariants.** No I/O, no allocation, no decode step: a table is read in place.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 #![forbid(unsafe_code)]
 #![no_std]
 

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 
 use crate::codes::code;
 use crate::finding::{Finding, Severity};
-use crate::library::SourcePlace;
 
 /// A file of a library, read.
 #[derive(Clone, Debug)]
@@ -41,6 +40,15 @@ impl SourceFile {
     ) -> Finding {
         Finding { code, severity, file: self.path.clone(), line, message: message.into(), hint: hint.into() }
     }
+}
+
+/// A line of a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SourcePlace {
+    /// The file.
+    pub file: PathBuf,
+    /// Its line, from 1.
+    pub line: u32,
 }
 
 /// The files of one league.

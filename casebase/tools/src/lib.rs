@@ -6,6 +6,7 @@
 //! (docs/case-format.md §1.2).
 //!
 //! **Invariant.** All stored values were computed by the crate that will read them, `casebase`.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 #![forbid(unsafe_code)]
 
 mod authored;
@@ -15,7 +16,6 @@ pub mod competence;
 mod counterfactual;
 pub mod coverage;
 mod document;
-pub mod draw;
 mod encode;
 mod files;
 mod finding;
@@ -24,6 +24,7 @@ pub mod keys;
 mod league;
 mod library;
 mod lineup;
+mod notes;
 mod plans;
 mod sample;
 mod sampled;
@@ -33,10 +34,10 @@ mod warnings;
 pub use codes::{CODES, CodeEntry, code, entry};
 pub use counterfactual::{Counterfactual, CounterfactualObstacle, Entity, Move, counterfactual};
 pub use encode::Table;
-pub use files::{CASE_FILE_LEN_MAX, Files, SourceFile};
+pub use files::{CASE_FILE_LEN_MAX, Files, SourceFile, SourcePlace};
 pub use finding::{Finding, Severity};
 pub use league::CaseLeague;
-pub use library::{Library, Reduction, SourcePlace, build, build_reduced, load, load_telling};
+pub use library::{Library, Reduction, build, build_reduced, load, load_telling};
 pub use lineup::{Lineup, Rectangle};
 pub use sample::Sampler;
 pub use sampled::never_retrieved;

@@ -1,7 +1,7 @@
 //! `library`: loading and checking of a league's library. From its files to a checked table
 //! (docs/case-format.md §1–§3).
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use casebase::CaseBase;
 use casebase::table::TableError;
@@ -10,7 +10,7 @@ use crate::authored::Authored;
 use crate::check::errors;
 use crate::codes::code;
 use crate::encode::{Table, encode};
-use crate::files::Files;
+use crate::files::{Files, SourcePlace};
 use crate::finding::{Finding, Severity};
 use crate::league::CaseLeague;
 use crate::lineup::Lineup;
@@ -39,15 +39,6 @@ pub struct Library {
     pub lineup: Lineup,
     /// Warnings of a library that is accepted; no errors among them.
     pub findings: Vec<Finding>,
-}
-
-/// A line of a file.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SourcePlace {
-    /// Path of the file.
-    pub file: PathBuf,
-    /// Its line, from 1.
-    pub line: u32,
 }
 
 /// Reads one league's directory; returns the findings, with at least one error among them, where it is

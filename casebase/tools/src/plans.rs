@@ -11,7 +11,7 @@ use casebase::{Action, Case, CaseRobot, Leg, LegKind, PointMm, Symmetry};
 use crate::authored::Authored;
 use crate::codes::code;
 use crate::league::CaseLeague;
-use crate::warnings::Notes;
+use crate::notes::Notes;
 
 /// Warns of robots at one position, of legs that are probably unintended, and of a ball that is never played.
 pub(crate) fn doubts(notes: &mut Notes<'_>, case: &Authored, stored: &Case<'_>, league: &CaseLeague) {

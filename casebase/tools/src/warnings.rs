@@ -2,7 +2,6 @@
 //! (docs/case-format.md §1.2).
 
 use std::collections::HashMap;
-use std::ops::Range;
 
 use casebase::plan_simulation::{PlanStep, plan_simulation};
 use casebase::{
@@ -13,9 +12,10 @@ use protocol::{CaseId, RobotId};
 
 use crate::authored::Authored;
 use crate::codes::code;
-use crate::files::{Files, SourceFile};
+use crate::files::Files;
 use crate::finding::{Finding, Severity};
 use crate::league::CaseLeague;
+use crate::notes::Notes;
 use crate::plans;
 
 /// Every warning about cases that passed all checks; `report` is called with the number of cases done.
@@ -55,25 +55,6 @@ pub(crate) fn warnings(
         }
     }
     findings
-}
-
-/// Collects the warnings about one file.
-pub(crate) struct Notes<'n> {
-    file: &'n SourceFile,
-    findings: &'n mut Vec<Finding>,
-}
-
-impl Notes<'_> {
-    pub(crate) fn add(
-        &mut self,
-        code: &'static str,
-        at: &Range<usize>,
-        message: impl Into<String>,
-        hint: &str,
-    ) {
-        let line = self.file.line(at.start);
-        self.findings.push(self.file.finding(Severity::Warning, code, line, message, hint));
-    }
 }
 
 /// Checks the file's name and its intent.

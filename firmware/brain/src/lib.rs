@@ -13,6 +13,7 @@
 //! **Invariants.** No I/O, no clock, no allocation, no randomness; nothing from outside can panic; it
 //! perceives the world only by [`SensorFrame`](protocol::robot_io::SensorFrame), its teammates' beacons and
 //! its host; it takes a [`CaseBase`](casebase::CaseBase) and never links a library.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 #![no_std]
 #![forbid(unsafe_code)]
 

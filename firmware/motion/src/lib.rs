@@ -24,6 +24,7 @@
 //! **Invariants.** No I/O, no clock, no allocation, SI units. Every input has an answer; for NaN it is to
 //! stand still. The simulator's physics are written apart from these models, so that a wrong model causes
 //! missed passes instead of hiding.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 #![forbid(unsafe_code)]
 #![no_std]
 

@@ -20,6 +20,7 @@
 //!
 //! **Invariants.** Nothing here allocates, and nothing that arrives can panic: what does not fit is dropped
 //! and counted.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 #![no_std]
 // The functions of the processor's run-time ABI are assembly.
 #![cfg_attr(not(target_arch = "arm"), forbid(unsafe_code))]

@@ -1,7 +1,7 @@
 //! `penalties`: plays penalties against our keeper and against one that stands, the same shots for both, and
 //! prints the shares of saves with Wilson's intervals.
 //!
-//! `cargo run --release -p arena --example penalties -- LEAGUE FIRST_SEED COUNT`
+//! `cargo run --release -p onetwo-arena --example penalties -- LEAGUE FIRST_SEED COUNT`
 
 use arena::evaluation::statistics::{Count, newcombe, wilson};
 use arena::game::penalty::{Keeper, saves};

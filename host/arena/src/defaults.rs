@@ -9,36 +9,9 @@ use casebase::{CaseBase, CaseVerdict, GoalEnd, Problem, RetrievalSettings, expla
 use hil_sim::TICK_US;
 use hil_sim::four_legged::world::{LeggedWorld, Side};
 use protocol::{CycleId, RobotId};
-use serde::Serialize;
 
 use crate::cycles::CycleSeen;
-use crate::report::in_seconds;
-
-/// A trial's default behaviour.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct DefaultReport {
-    /// Time of default behaviour in the trial, s.
-    pub time_s: f64,
-    /// Number of spells of default behaviour.
-    pub spells: u32,
-    /// Causes, by decision; a spell has one every quarter of a second or so.
-    pub causes: Causes,
-}
-
-/// How often no case fitted, by the farthest that any case came.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Causes {
-    /// The ball lay in no case's scope: a hole in the case base.
-    pub ball: u32,
-    /// Too few robots for every case whose scope held the ball.
-    pub robots: u32,
-    /// A robot would have had too far to go: the paper's only cause.
-    pub thr_c: u32,
-    /// An opponent stood in the ball's path.
-    pub path: u32,
-    /// A case fitted, but could not start: another robot held the ball, or robots saw it otherwise.
-    pub held: u32,
-}
+use crate::report::{Causes, DefaultReport, in_seconds};
 
 /// Watches one team's default behaviour.
 #[derive(Clone, Debug, Default)]

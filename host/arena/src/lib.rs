@@ -36,11 +36,10 @@ mod trial;
 
 pub use case_trial::{Attempt, CaseTrial, Opposition, Retrieved, Score, markdown};
 pub use cycles::{CycleEnd, CycleEvent, CycleLog, CycleSeen};
-pub use defaults::{Causes, DefaultReport};
 pub use names::{CaseNames, Cast, letter};
 pub use picture::picture;
 pub use recording::{RecordedKick, RecordedSample, Recording, Start};
-pub use report::{Backups, CaseCounts, CycleReport, Possession, TrialReport};
+pub use report::{Backups, CaseCounts, Causes, CycleReport, DefaultReport, Possession, TrialReport};
 pub use story::TextLog;
 pub use trial::{
     APPROACHES, Moment, TEAM, TrialConfig, Watcher, approach_from_label, approach_label, positioning_label,

@@ -7,7 +7,6 @@ use hil_sim::{Configuration, Scenario, TrialOutcome};
 use serde::{Serialize, Serializer};
 
 use crate::cycles::CycleSeen;
-use crate::defaults::DefaultReport;
 use crate::names::{CaseNames, letter, symmetry};
 
 /// A trial's result. Fields may be added at the end, never renamed.
@@ -133,6 +132,32 @@ impl CycleReport {
             end,
         }
     }
+}
+
+/// A trial's default behaviour.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct DefaultReport {
+    /// Its duration, s.
+    pub time_s: f64,
+    /// Number of spells.
+    pub spells: u32,
+    /// Causes, by decision; a spell has one every quarter of a second or so.
+    pub causes: Causes,
+}
+
+/// How often no case fitted, by the farthest that any case came.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Causes {
+    /// The ball lay in no case's scope: a hole in the case base.
+    pub ball: u32,
+    /// Too few robots for every case whose scope held the ball.
+    pub robots: u32,
+    /// A robot would have had too far to go: the paper's only cause.
+    pub thr_c: u32,
+    /// An opponent stood in the ball's path.
+    pub path: u32,
+    /// A case fitted, but could not start: another robot held the ball, or robots saw it otherwise.
+    pub held: u32,
 }
 
 /// Whole milliseconds as a number that prints as such.

@@ -1,60 +1,11 @@
-//! `args`: command-line arguments. The verbs and the arguments they share (docs/case-format.md §5).
+//! `args`: command-line arguments. The arguments that verbs share (docs/case-format.md §5).
 
 use std::path::PathBuf;
 
 use casebase::RetrievalSettings;
-use clap::{Args, Parser, Subcommand};
+use clap::Args;
 
 use crate::Failure;
-use crate::cases::CasesVerb;
-use crate::control::ControlArgs;
-use crate::evaluate::EvaluateArgs;
-use crate::firmware::FirmwareVerb;
-use crate::play::PlayArgs;
-use crate::replay::ReplayArgs;
-use crate::simulate::SimulateArgs;
-use crate::trial::TrialArgs;
-use crate::virtual_robot::VirtualRobotArgs;
-
-/// Case-based robot soccer: robots that choose a gameplay together and play it.
-#[derive(Debug, Parser)]
-#[command(name = "onetwo", version = VERSION, arg_required_else_help = true)]
-pub(crate) struct Cli {
-    #[command(subcommand)]
-    pub(crate) verb: Verb,
-}
-
-/// One verb, one file.
-#[derive(Debug, Subcommand)]
-pub(crate) enum Verb {
-    /// Play a match of the Small Size League in the simulator: two teams, a referee, and a report.
-    Play(PlayArgs),
-    /// One trial of the paper.
-    Trial(TrialArgs),
-    /// Evaluate: the paper's tables, thousands of trials, beside the paper's measurements.
-    Evaluate(Box<EvaluateArgs>),
-    /// The host of a team on the league's network: vision and referee in, commands to robots out.
-    Control(Box<ControlArgs>),
-    /// Inspect a recorded match: its contents, the field at a moment, and whether the hosts decide the same
-    /// again.
-    Replay(Box<ReplayArgs>),
-    /// A Small Size field for any team's software: vision out, the league's simulation protocol in, a referee
-    /// beside it.
-    Simulate(Box<SimulateArgs>),
-    /// Check, list, show, retrieve and explain cases.
-    Cases {
-        #[command(subcommand)]
-        verb: CasesVerb,
-    },
-    /// The robots' firmware: build, size, run under QEMU, flash, provision.
-    Firmware {
-        #[command(subcommand)]
-        verb: FirmwareVerb,
-    },
-    /// One robot's brain as a process, in any simulator of the league; `control` starts them.
-    #[command(hide = true)]
-    VirtualRobot(Box<VirtualRobotArgs>),
-}
 
 /// Which libraries: every built-in league unless a directory is given.
 #[derive(Debug, Args)]
@@ -126,14 +77,7 @@ pub(crate) const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (commit ",
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
-
     use super::*;
-
-    #[test]
-    fn the_command_line_is_consistent() {
-        Cli::command().debug_assert();
-    }
 
     #[test]
     fn an_assignment_is_split_at_its_first_equals_sign() {

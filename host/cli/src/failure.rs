@@ -13,6 +13,16 @@ use casebase::SettingError;
 use foreign::printable;
 use hil_sim::SimulationError;
 
+mod firmware;
+mod network;
+mod recorded;
+mod survey;
+
+pub(crate) use firmware::FirmwareError;
+pub(crate) use network::NetworkError;
+pub(crate) use recorded::{Asked, Missing, RecordedError};
+pub(crate) use survey::{FromError, LineFault, ProblemError, SurveyError};
+
 use crate::cases::new::DraftError;
 use crate::output::{note, printable_path};
 use crate::picture::SnapshotError;
@@ -44,7 +54,7 @@ pub(crate) enum Failure {
         near: Option<String>,
     },
     /// A problem to draw cannot be read.
-    Problem(String),
+    Problem(ProblemError),
     /// A figure of the retrieved case was requested, and no case fits.
     NoCaseFits,
     /// A case to be drawn under a problem that defends the other goal.
@@ -59,7 +69,7 @@ pub(crate) enum Failure {
     /// A library without a case has nothing to count.
     EmptyLibrary(String),
     /// Problems could not be drawn, read or counted.
-    Survey(String),
+    Survey(SurveyError),
     /// A trial could not be played.
     Trial(SimulationError),
     /// A match could not be played.
@@ -72,7 +82,7 @@ pub(crate) enum Failure {
         error: io::Error,
     },
     /// The robots' image or its emulator cannot be had.
-    Firmware(String),
+    Firmware(FirmwareError),
     /// A figure could not be written.
     Picture {
         /// The output file.
@@ -114,10 +124,10 @@ pub(crate) enum Failure {
         /// The file.
         file: PathBuf,
         /// What is wrong, and how to fix it.
-        description: String,
+        error: RecordedError,
     },
     /// A verb on the league's networks cannot continue.
-    Network(String),
+    Network(NetworkError),
     /// Stdin could not be read.
     Input(io::Error),
     /// Stdout could not be written.
@@ -140,6 +150,18 @@ impl Failure {
         }
         note!("error: {self}");
         ExitCode::FAILURE
+    }
+}
+
+impl From<NetworkError> for Failure {
+    fn from(error: NetworkError) -> Self {
+        Self::Network(error)
+    }
+}
+
+impl From<FirmwareError> for Failure {
+    fn from(error: FirmwareError) -> Self {
+        Self::Firmware(error)
     }
 }
 
@@ -181,7 +203,7 @@ impl fmt::Display for Failure {
                     None => f.write_str("the library holds no case"),
                 }
             }
-            Self::Problem(description) => f.write_str(description),
+            Self::Problem(error) => write!(f, "{error}"),
             Self::NoCaseFits => {
                 f.write_str("no case fits the problem; name a case to see why, or ask `onetwo cases explain`")
             }
@@ -194,10 +216,11 @@ impl fmt::Display for Failure {
                 write!(f, "the library {league} holds no case; add one at <region>/<name>.toml")
             }
             Self::Draft(error) => write!(f, "{error}"),
-            Self::Survey(description) | Self::Network(description) => f.write_str(description),
+            Self::Survey(error) => write!(f, "{error}"),
+            Self::Network(error) => write!(f, "{error}"),
             Self::Robot(error) => write!(f, "{error}"),
             Self::Trial(error) => write!(f, "{error}"),
-            Self::Firmware(description) => f.write_str(description),
+            Self::Firmware(error) => write!(f, "{error}"),
             Self::Game(error) => write!(f, "{error}"),
             Self::Recording { stem: Some(stem), error } => {
                 write!(f, "cannot keep the recording: {}: {error}", printable_path(stem))
@@ -224,10 +247,11 @@ impl fmt::Display for Failure {
                  leave out a filter",
             ),
             Self::Threads(error) => write!(f, "cannot start threads: {error}; try --jobs 1"),
-            Self::Recorded { file, description } => {
+            Self::Recorded { file, error } => {
                 let file = printable_path(file);
                 // The reason may quote the file's own text.
-                let description = printable(description);
+                let description = error.to_string();
+                let description = printable(&description);
                 // Some reasons name the file already.
                 if description.starts_with(&file) {
                     f.write_str(&description)

@@ -23,14 +23,15 @@ mod setup;
 mod simulate;
 mod stop;
 mod trial;
+mod verbs;
 mod virtual_robot;
 
 use std::process::ExitCode;
 
 use clap::Parser;
 
-use args::{Cli, Verb};
 use failure::Failure;
+use verbs::{Cli, Verb};
 
 fn main() -> ExitCode {
     let outcome = match Cli::parse().verb {

@@ -15,6 +15,7 @@ use hil_sim::{Backend, Configuration, NativeBackend, QemuBackend, Scenario};
 use page::Powers;
 
 use crate::Failure;
+use crate::failure::FirmwareError;
 use crate::library::LibraryHandle;
 use crate::live::{CaseExplanations, Legged, PageArgs, stay};
 use crate::output;
@@ -150,15 +151,15 @@ fn play(args: &TrialArgs, watchers: &mut [&mut dyn Watcher]) -> Result<TrialRepo
 
 /// QEMU with freshly built firmware; the user's own library goes into the robots' flash beside it.
 fn qemu(args: &TrialArgs, library_handle: &LibraryHandle) -> Result<QemuBackend, Failure> {
-    firmware_build::ensure_qemu(Install::ForUser).map_err(|error| Failure::Firmware(error.to_string()))?;
+    firmware_build::ensure_qemu(Install::ForUser).map_err(FirmwareError::Qemu)?;
     let image =
         firmware_build::build_image(&firmware_build::workspace_root(), firmware_build::ImageBody::Legged)
-            .map_err(|error| Failure::Firmware(error.to_string()))?;
+            .map_err(FirmwareError::Build)?;
     let backend = QemuBackend::new(image);
     if args.setup.is_built_in() {
         return Ok(backend);
     }
-    backend.with_library(library_handle.base().bytes()).map_err(|error| Failure::Firmware(error.to_string()))
+    Ok(backend.with_library(library_handle.base().bytes()).map_err(FirmwareError::Library)?)
 }
 
 impl TrialArgs {

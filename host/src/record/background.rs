@@ -211,22 +211,13 @@ mod tests {
 
     use super::*;
     use crate::HostSettings;
-    use crate::record::header::{HostHeader, RecordingHeader};
+    use crate::record::header::RecordingHeader;
     use crate::record::trace::{Reader, RecordKind, TraceEnd};
 
     fn recorder(name: &str) -> (Recorder, PathBuf) {
         let stem = std::env::temp_dir().join(format!("onetwo-{name}-{}", std::process::id()));
         let settings = HostSettings::new(Colour::Blue, League::DivisionB, 1);
-        let header = RecordingHeader {
-            version: String::new(),
-            commit: String::new(),
-            seed: None,
-            league: League::DivisionB.name().to_owned(),
-            world: None,
-            zero_unix_us: None,
-            hosts: vec![HostHeader::of(&settings, Instant(0))],
-        };
-        (Recorder::begin(&stem, &header).unwrap(), stem)
+        (Recorder::begin(&stem, &RecordingHeader::of(&settings)).unwrap(), stem)
     }
 
     fn read(stem: &std::path::Path) -> (Vec<RecordKind>, Option<TraceEnd>) {

@@ -111,6 +111,19 @@ fn wrong(description: impl Into<String>) -> HeaderError {
 }
 
 impl RecordingHeader {
+    /// Of one host that starts at its instant 0; what the program knows besides is left out.
+    pub fn of(settings: &HostSettings) -> Self {
+        Self {
+            version: String::new(),
+            commit: String::new(),
+            seed: None,
+            league: settings.league.name().to_owned(),
+            world: None,
+            zero_unix_us: None,
+            hosts: vec![HostHeader::of(settings, Instant(0))],
+        }
+    }
+
     /// As JSON, as it is written at the start of a trace.
     pub fn to_json(&self) -> String {
         // Strings, numbers and lists of them: JSON can represent all of it.

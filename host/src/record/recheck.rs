@@ -225,20 +225,10 @@ mod tests {
 
     use super::*;
     use crate::HostSettings;
-    use crate::record::header::HostHeader;
     use crate::referee::SenderAddress;
 
     fn header() -> RecordingHeader {
-        let settings = HostSettings::new(Colour::Blue, League::DivisionB, 7);
-        RecordingHeader {
-            version: String::new(),
-            commit: String::new(),
-            seed: None,
-            league: League::DivisionB.name().to_owned(),
-            world: None,
-            zero_unix_us: None,
-            hosts: vec![HostHeader::of(&settings, Instant(0))],
-        }
+        RecordingHeader::of(&HostSettings::new(Colour::Blue, League::DivisionB, 7))
     }
 
     fn image(number: u32) -> Vec<u8> {

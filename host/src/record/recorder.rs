@@ -162,7 +162,6 @@ mod tests {
 
     use super::*;
     use crate::HostSettings;
-    use crate::record::header::HostHeader;
     use crate::record::trace::{Reader, TraceEnd};
 
     /// Packets of the cameras and the referee of a real game, with their times.
@@ -179,15 +178,7 @@ mod tests {
 
     fn begin(name: &str) -> (Recorder, PathBuf) {
         let settings = HostSettings::new(Colour::Blue, League::DivisionB, 7);
-        let header = RecordingHeader {
-            version: String::new(),
-            commit: String::new(),
-            seed: None,
-            league: League::DivisionB.name().to_owned(),
-            world: None,
-            zero_unix_us: None,
-            hosts: vec![HostHeader::of(&settings, Instant(0))],
-        };
+        let header = RecordingHeader::of(&settings);
         let stem = std::env::temp_dir().join(format!("onetwo-recorder-{}-{name}", std::process::id()));
         (Recorder::begin(&stem, &header).unwrap(), stem)
     }

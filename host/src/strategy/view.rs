@@ -1,16 +1,29 @@
 //! `view`: the strategy's view of the field. The field turned so that the goal we attack lies at +x
 //! (docs/architecture.md §2.1: the only module that flips). SI.
 
+use casebase::CaseRobot;
 use geometry::{Angle, Attack, Field, GoalEnd, Point, Pose, Vector};
 use protocol::quantized::{WirePoint, WirePose};
-use protocol::{Instant, RobotId};
+use protocol::{CaseId, Instant, RobotId};
 use rules::{Colour, FieldSpec, Phase, Side};
 
-use super::pass::bridge::CasePass;
 use crate::world::World;
 
 /// Most robots of a team in a view: one per id.
 pub const ROBOTS_MAX: usize = RobotId::COUNT;
+
+/// The next pass of a case that is being played.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CasePass {
+    /// The case.
+    pub case: CaseId,
+    /// The passer, and its robot in the case.
+    pub passer: (RobotId, CaseRobot),
+    /// The receiver, and its robot in the case.
+    pub receiver: (RobotId, CaseRobot),
+    /// The place of its reception in the adapted case.
+    pub at: Point<Attack>,
+}
 
 /// Turns between the field and the attack frame: by half a turn, or not at all.
 #[derive(Clone, Copy, Debug, PartialEq)]

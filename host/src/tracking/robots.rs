@@ -45,7 +45,7 @@ pub struct RobotNoise {
 
 impl Default for RobotNoise {
     /// The noisier of the recordings (grSim with noise: 3.0 mm, 0.035 rad; ER-Force's "realistic": 1.3 mm,
-    /// 0.010 rad; both from second differences, `cargo run -p host --example track`).
+    /// 0.010 rad; both from second differences, `cargo run -p onetwo-host --example track`).
     fn default() -> Self {
         Self { place: 0.003, heading: 0.03 }
     }

@@ -8,6 +8,7 @@
 //!
 //! **Invariants.** No input panics; nothing larger than the limit is allocated; [`printable`] changes no
 //! other character.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 #![forbid(unsafe_code)]
 
 mod file;

@@ -19,6 +19,7 @@
 //! **Invariants.** No I/O, no clock, no allocation. Everything beyond `+ − × ÷` goes through [`math`], so
 //! that the same program gives the same bits on a PC and on a Cortex-M (checked by a golden hash, see
 //! [`math::golden_hash`]).
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 // On the robot one function is assembly.
 #![cfg_attr(not(target_arch = "arm"), forbid(unsafe_code))]
 #![no_std]

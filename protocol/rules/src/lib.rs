@@ -7,6 +7,7 @@
 //!
 //! **Invariants.** No I/O, no clock, no allocation. One source per fact: physics, brains, referee and
 //! renderings read the dimensions here.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! `fuzz_decode`: fuzzing of the decoders. `cargo run -p ssl --example fuzz_decode -- --count 1000000`
+//! `fuzz_decode`: fuzzing of the decoders. `cargo run -p onetwo-ssl --example fuzz_decode -- --count 1000000`
 //!
 //! Prints counts of read and refused packets; a panic is a finding, reported with the seed that repeats it.
 

@@ -38,6 +38,7 @@
 //!
 //! **Units differ**: vision uses mm, all others m; the referee µs, vision and trackers s. Each module and
 //! each field states its own. The README lists the traps of the league's programs and which test holds each.
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 #![forbid(unsafe_code)]
 
 #[macro_use]

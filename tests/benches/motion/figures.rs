@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use motion_bench::{Counted, TASKS, Work};
+use workloads::motion::{Counted, TASKS, Work};
 
 /// Counts of one workload over all tasks.
 #[derive(Clone, Copy, Debug)]

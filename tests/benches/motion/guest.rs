@@ -3,7 +3,7 @@
 
 use firmware_build::Program;
 use firmware_build::count::CountingImage;
-use motion_bench::{Counted, SEED, TASKS, Tasks};
+use workloads::motion::{Counted, SEED, TASKS, Tasks};
 
 /// Counts for every task, in order; checked: the results equal this machine's, bit for bit.
 pub(crate) fn counted() -> Result<Vec<Counted>, String> {

@@ -5,7 +5,7 @@
 use std::hint::black_box;
 
 use firmware_build::count::callgrind;
-use motion_bench::{MotionTask, SEED, TASKS, Tasks, Work};
+use workloads::motion::{MotionTask, SEED, TASKS, Tasks, Work};
 
 /// Mean instructions per task.
 pub(crate) fn instructions(work: Work) -> Result<u64, String> {

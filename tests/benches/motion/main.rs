@@ -12,30 +12,20 @@ use std::process::ExitCode;
 
 use figures::Figures;
 use firmware_build::count::write_between;
-use motion_bench::Work;
+use match_tests::bench;
+use workloads::motion::Work;
 
 fn main() -> ExitCode {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let arguments: Vec<&str> =
-        arguments.iter().map(String::as_str).filter(|label| *label != "--bench").collect();
-    let done = match arguments[..] {
-        ["--work", work, rounds] => host::work(work, rounds),
-        [] => report(false, true),
-        ["--write"] => report(true, true),
-        ["--guest"] => report(false, false),
-        ["--verify"] => verify::run(VERIFIED),
-        _ => {
-            eprintln!("{USAGE}");
-            return ExitCode::from(2);
-        }
-    };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(why) => {
-            eprintln!("bench motion: {why}");
-            ExitCode::FAILURE
-        }
-    }
+    bench::run("motion", USAGE, |description| {
+        Some(match *description {
+            ["--work", work, rounds] => host::work(work, rounds),
+            [] => report(false, true),
+            ["--write"] => report(true, true),
+            ["--guest"] => report(false, false),
+            ["--verify"] => verify::run(VERIFIED),
+            _ => return None,
+        })
+    })
 }
 
 /// Counts, prints, and checks the budgets.

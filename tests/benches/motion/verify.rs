@@ -2,7 +2,7 @@
 
 use geometry::{Field, Point, Vector, math};
 use motion::trajectory::{CalcMotion, DragLimits, FreeLimits};
-use motion_bench::{MotionTask, Tasks};
+use workloads::motion::{MotionTask, Tasks};
 
 /// Compares `tasks` tasks with the best of all shares, without drag and with, on all processor cores.
 pub(crate) fn run(tasks: usize) -> Result<(), String> {

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use firmware_build::Program;
 use firmware_build::count::CountingImage;
-use radio_bench::{Bench, ROUNDS, Work};
+use workloads::radio::{Bench, ROUNDS, Work};
 
 /// One workload over all rounds.
 #[derive(Clone, Copy, Debug)]

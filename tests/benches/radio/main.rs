@@ -7,28 +7,16 @@ mod counts;
 use std::process::ExitCode;
 
 use firmware_build::count::write_between;
+use match_tests::bench;
 
 fn main() -> ExitCode {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let arguments: Vec<&str> =
-        arguments.iter().map(String::as_str).filter(|label| *label != "--bench").collect();
-    let done = match arguments[..] {
-        [] => report(false),
-        ["--write"] => report(true),
-        _ => {
-            eprintln!(
-                "usage: cargo xtask bench radio [--write]\n  --write   put the table into protocol/README.md"
-            );
-            return ExitCode::from(2);
-        }
-    };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(why) => {
-            eprintln!("bench radio: {why}");
-            ExitCode::FAILURE
-        }
-    }
+    bench::run("radio", USAGE, |description| {
+        Some(match *description {
+            [] => report(false),
+            ["--write"] => report(true),
+            _ => return None,
+        })
+    })
 }
 
 /// Counts, prints, and checks the budgets.
@@ -42,3 +30,6 @@ fn report(write: bool) -> Result<(), String> {
     let broken = counts::broken(&counts);
     if broken.is_empty() { Ok(()) } else { Err(broken.join("\n")) }
 }
+
+const USAGE: &str =
+    "usage: cargo xtask bench radio [--write]\n  --write   put the table into protocol/README.md";

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use casebase::{CaseBase, Problem, RetrievalSettings, retrieve, retrieve_best};
 use firmware_build::count::callgrind;
-use retrieval_bench::{problems, scan};
+use workloads::retrieval::{problems, scan};
 
 use crate::guest::{Directory, in_memory, write};
 

@@ -1,7 +1,7 @@
 //! `figures`: figures of the retrieval benchmark, and their budgets.
 
 use casebase::{CaseBase, Problem};
-use retrieval_bench::Answer;
+use workloads::retrieval::Answer;
 
 /// Counts of one base and one set of problems.
 #[derive(Clone, Debug)]

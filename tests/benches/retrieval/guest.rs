@@ -7,7 +7,7 @@ use std::{env, fs};
 use casebase::{CaseBase, Problem, RetrievalSettings, retrieve, retrieve_best};
 use firmware_build::Program;
 use firmware_build::count::CountingImage;
-use retrieval_bench::{Answer, LEN_MAX, PROBLEMS_ADDRESS, TABLE_ADDRESS, encode, header, scan};
+use workloads::retrieval::{Answer, LEN_MAX, PROBLEMS_ADDRESS, TABLE_ADDRESS, encode, header, scan};
 
 /// The image.
 pub(crate) struct Board(CountingImage);

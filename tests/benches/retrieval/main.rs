@@ -20,32 +20,22 @@ use casebase::Problem;
 use figures::{Figures, PLAYED};
 use firmware_build::count::write_between;
 use guest::Board;
+use match_tests::bench;
 
 fn main() -> ExitCode {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let arguments: Vec<&str> =
-        arguments.iter().map(String::as_str).filter(|label| *label != "--bench").collect();
-    let done = match arguments[..] {
-        ["--work", directory, method, rounds] => rounds
-            .parse()
-            .map_err(|_| "rounds".into())
-            .and_then(|rounds| callgrind::work(Path::new(directory), method, rounds)),
-        [] => report(false, true),
-        ["--write"] => report(true, true),
-        ["--guest"] => report(false, false),
-        ["--verify"] => verify::run(VERIFIED),
-        _ => {
-            eprintln!("{USAGE}");
-            return ExitCode::from(2);
-        }
-    };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(why) => {
-            eprintln!("bench retrieval: {why}");
-            ExitCode::FAILURE
-        }
-    }
+    bench::run("retrieval", USAGE, |description| {
+        Some(match *description {
+            ["--work", directory, method, rounds] => rounds
+                .parse()
+                .map_err(|_| "rounds".into())
+                .and_then(|rounds| callgrind::work(Path::new(directory), method, rounds)),
+            [] => report(false, true),
+            ["--write"] => report(true, true),
+            ["--guest"] => report(false, false),
+            ["--verify"] => verify::run(VERIFIED),
+            _ => return None,
+        })
+    })
 }
 
 /// Counts, prints, and checks the budgets.

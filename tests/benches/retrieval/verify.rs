@@ -1,7 +1,7 @@
 //! `verify`: check of retrieval against the scan.
 
 use casebase::{RetrievalSettings, retrieve, retrieve_best};
-use retrieval_bench::scan;
+use workloads::retrieval::scan;
 
 use crate::bases::Base;
 

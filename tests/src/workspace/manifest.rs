@@ -16,8 +16,10 @@ pub fn members() -> Vec<Manifest> {
 pub struct Manifest {
     /// From the workspace's root.
     pub directory: String,
-    /// Its name as a dependency.
+    /// Its name as a dependency and a library.
     pub name: String,
+    /// Its name as a package, `cargo -p`: [`Self::name`], with `onetwo-` in front where it is a library.
+    pub package: String,
     /// Crates that end up in the same program.
     pub linked: BTreeSet<String>,
     /// Those, and the dependencies of the build script.
@@ -34,7 +36,8 @@ impl Manifest {
     pub fn from_text(directory: &str, text: &str) -> Self {
         let table: toml::Table =
             text.parse().unwrap_or_else(|error| panic!("{directory}/Cargo.toml: {error}"));
-        let name = table["package"]["name"].as_str().unwrap_or_default().to_string();
+        let package = table["package"]["name"].as_str().unwrap_or_default().to_string();
+        let name = without_prefix(&package).to_string();
         let targets =
             table.get("target").and_then(toml::Value::as_table).into_iter().flat_map(toml::Table::values);
         let tables: Vec<_> =
@@ -43,14 +46,19 @@ impl Manifest {
             |kind: &str| tables.iter().flat_map(|table| dependencies(table, kind)).collect::<BTreeSet<_>>();
         let linked = of("dependencies");
         let all = linked.union(&of("build-dependencies")).cloned().collect();
-        Self { directory: directory.into(), name, linked, all }
+        Self { directory: directory.into(), name, package, linked, all }
     }
 }
 
 fn dependencies(table: &toml::Table, kind: &str) -> Vec<String> {
     let Some(entries) = table.get(kind).and_then(toml::Value::as_table) else { return vec![] };
     let name = |(key, value): (&String, &toml::Value)| {
-        value.get("package").and_then(|p| p.as_str()).unwrap_or(key).to_string()
+        without_prefix(value.get("package").and_then(|p| p.as_str()).unwrap_or(key)).to_string()
     };
     entries.iter().map(name).collect()
+}
+
+/// Packages carry the project's name, so that they could be published; libraries and dependencies do not.
+fn without_prefix(package: &str) -> &str {
+    package.strip_prefix("onetwo-").unwrap_or(package)
 }

@@ -30,7 +30,7 @@ impl Known {
     pub(crate) fn read() -> Self {
         let below = |path: &str, name: &str| variants(&page(path).text, name);
         let mut verbs: BTreeMap<_, _> =
-            below("host/cli/src/args.rs", "Verb").into_iter().map(|verb| (verb, BTreeSet::new())).collect();
+            below("host/cli/src/verbs.rs", "Verb").into_iter().map(|verb| (verb, BTreeSet::new())).collect();
         for (verb, path, name) in [
             ("cases", "host/cli/src/cases/mod.rs", "CasesVerb"),
             ("firmware", "host/cli/src/firmware/mod.rs", "FirmwareVerb"),
@@ -47,7 +47,7 @@ impl Known {
             steps: after(&steps, "name: ").collect(),
             tasks: after(&tasks, "task(").chain(after(&tasks, "handed_on(")).collect(),
             xtask: tasks + &page("xtask/src/main.rs").text,
-            packages: members().into_iter().map(|crate_| (crate_.name, crate_.directory)).collect(),
+            packages: members().into_iter().map(|crate_| (crate_.package, crate_.directory)).collect(),
         }
     }
 
@@ -214,7 +214,7 @@ mod tests {
             "cargo xtask bench …",
             "cargo test -p match-tests --test tidy",
             "cargo test --release -p match-tests --features qemu --test qemu_*",
-            "cargo run --release -p host --example track -- --x",
+            "cargo run --release -p onetwo-host --example track -- --x",
             "cargo fuzz run frame",
             "play --bad",
         ] {
@@ -233,7 +233,7 @@ mod tests {
             "cargo xtask bench retrieval --writes",
             "cargo test -p match-test",
             "cargo test -p match-tests --test tidiness",
-            "cargo run -p host --example tracks",
+            "cargo run -p onetwo-host --example tracks",
         ] {
             assert!(known.fault(wrong).is_some(), "{wrong}");
         }

@@ -73,15 +73,7 @@ const THIRD: f64 = 1.0 / 3.0;
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const FIELD: FieldMm = FieldMm {
-        length: 5400,
-        width: 3600,
-        margin: 0,
-        goal_width: 800,
-        penalty_depth: 650,
-        penalty_width: 1300,
-    };
+    use crate::coverage::TEST_FIELD as FIELD;
 
     #[test]
     fn each_area_is_where_its_word_says_for_both_teams() {

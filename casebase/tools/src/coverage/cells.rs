@@ -96,15 +96,7 @@ impl std::error::Error for CellsError {}
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const FIELD: FieldMm = FieldMm {
-        length: 5400,
-        width: 3600,
-        margin: 0,
-        goal_width: 800,
-        penalty_depth: 650,
-        penalty_width: 1300,
-    };
+    use crate::coverage::TEST_FIELD as FIELD;
 
     #[test]
     fn the_middle_of_a_cell_lies_in_it_for_both_teams() {

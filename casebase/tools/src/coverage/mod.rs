@@ -18,3 +18,14 @@ pub use counters::{
     entropy_bits,
 };
 pub use survey::Survey;
+
+/// The field of the tests, mm: that of 2007 without a margin.
+#[cfg(test)]
+const TEST_FIELD: casebase::FieldMm = casebase::FieldMm {
+    length: 5400,
+    width: 3600,
+    margin: 0,
+    goal_width: 800,
+    penalty_depth: 650,
+    penalty_width: 1300,
+};

@@ -5,7 +5,7 @@ mod tests {
     use casebase::{CaseBase, GoalEnd, PointMm, Problem, RetrievalSettings, retrieve, retrieve_best};
     use heapless::Vec;
     use protocol::RobotId;
-    use retrieval_bench::{Found, scan};
+    use workloads::retrieval::{Found, scan};
 
     /// Largest distance from the ball of a robot that may take part, mm.
     const NEAR: i32 = 1_200;

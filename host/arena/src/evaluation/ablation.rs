@@ -14,8 +14,8 @@ use serde::Serialize;
 
 use super::row::TrialRow;
 use super::setup::Setup;
+use super::statistics::stars;
 use super::statistics::{Count, Sample, Test, holm, mcnemar, paired, two_proportions, welch};
-use super::summary::stars;
 use super::tables::rounded;
 
 /// One change to the team.

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::description;
 use super::plan::{Planned, Profile};
-use crate::defaults::DefaultReport;
+use crate::report::DefaultReport;
 use crate::report::{CycleReport, TrialReport};
 
 /// Identity and measures of one trial.

@@ -189,6 +189,16 @@ pub fn holm(family: &[f64]) -> Vec<f64> {
     adjusted
 }
 
+/// Stars of a p value.
+pub fn stars(p: Option<f64>) -> &'static str {
+    match p {
+        Some(p) if p < 0.001 => "***",
+        Some(p) if p < 0.01 => "**",
+        Some(p) if p < 0.05 => "*",
+        _ => "",
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

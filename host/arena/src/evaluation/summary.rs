@@ -11,6 +11,7 @@ use hil_sim::Scenario;
 use super::comparison::{Comparison, Measure};
 use super::paper::paper;
 use super::results::Results;
+use super::statistics::stars;
 use super::tables::{Extent, TableRow};
 use crate::trial::approach_label;
 
@@ -188,16 +189,6 @@ fn cell(results: &Results, row: &TableRow, column: &Column) -> (String, String) 
 fn difference(comparison: &Comparison, decimals: usize) -> (String, String) {
     let value = comparison.first - comparison.second;
     (format!("{value:+.decimals$}"), stars(comparison.p_holm).to_owned())
-}
-
-/// Stars of a p value.
-pub fn stars(p: Option<f64>) -> &'static str {
-    match p {
-        Some(p) if p < 0.001 => "***",
-        Some(p) if p < 0.01 => "**",
-        Some(p) if p < 0.05 => "*",
-        _ => "",
-    }
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@
 use serde::Serialize;
 
 use super::match_team::MatchTeam;
-use super::outcome::CONFIDENCE;
+use super::passes::CONFIDENCE;
 use super::plan::MatchPlan;
 use super::row::MatchRow;
 use crate::evaluation::statistics::{Sample, paired, student};

@@ -8,9 +8,9 @@ use host::strategy::counters::PlayCounters;
 use serde::Serialize;
 
 use super::match_team::MatchTeam;
-use super::passes::{self, Passes};
+use super::passes::{self, CONFIDENCE, Passes, counted};
 use super::plan::MatchPlan;
-use super::row::{MatchRow, counted};
+use super::row::MatchRow;
 use crate::evaluation::statistics::{Sample, paired, student};
 
 /// Mean over matches of a number that is never below 0, or of a share, never above 1; its interval is clipped
@@ -170,6 +170,3 @@ pub fn our_passes(rows: &[MatchRow]) -> Passes {
     }
     Passes::of(&sum)
 }
-
-/// Confidence level of every interval.
-pub(super) const CONFIDENCE: f64 = 0.95;

@@ -9,9 +9,18 @@ use host::strategy::pass::PassCounters;
 use host::strategy::pass::counters::{Bin, Fates};
 use serde::Serialize;
 
-use super::outcome::CONFIDENCE;
-use super::row::counted;
 use crate::evaluation::statistics::{Count, Interval, wilson};
+
+/// Confidence level of every interval.
+pub(super) const CONFIDENCE: f64 = 0.95;
+
+/// Kinds with their numbers in a column: `flat.received:3 chip.out:1`.
+pub(super) fn counted(list: &str) -> impl Iterator<Item = (&str, u32)> {
+    list.split_whitespace().filter_map(|entry| {
+        let (kind, n) = entry.split_once(':')?;
+        Some((kind, n.parse().ok()?))
+    })
+}
 
 /// Number of passes by kick and fate: `flat.received:3 chip.out:1`.
 pub(super) fn fates_column(passes: &PassCounters) -> String {

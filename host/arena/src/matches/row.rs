@@ -213,11 +213,3 @@ fn listed(fouls: &BTreeMap<&'static str, u32>) -> String {
     let description: Vec<_> = fouls.iter().map(|(kind, n)| format!("{kind}:{n}")).collect();
     description.join(" ")
 }
-
-/// Kinds with their numbers in such a list.
-pub(super) fn counted(list: &str) -> impl Iterator<Item = (&str, u32)> {
-    list.split_whitespace().filter_map(|entry| {
-        let (kind, n) = entry.split_once(':')?;
-        Some((kind, n.parse().ok()?))
-    })
-}

@@ -13,6 +13,7 @@ use serde::Serialize;
 
 use crate::Failure;
 use crate::args::DirectoryArgs;
+use crate::failure::SurveyError;
 use crate::output;
 
 use super::answer::write_line;
@@ -96,7 +97,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<ExitCode, Failure> {
 
 /// Findings that only drawn problems reveal; the same for any number of threads.
 fn doubts_of_draw(library: &Library, args: &CheckArgs) -> Result<Vec<Finding>, Failure> {
-    let fail = |error: casebase::SettingError| Failure::Survey(error.to_string());
+    let fail = |error| Failure::Survey(SurveyError::Setting(error));
     let (survey, sampler) = (library.survey().map_err(fail)?, library.sampler(args.seed));
     let counters = survey::counters(&survey, args.problems, |number| Some(sampler.problem(number)));
     Ok(never_retrieved(library, &counters))

@@ -8,9 +8,10 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use case_tools::coverage::{Area, CellCounters, Cells, Counters, VERDICTS};
-use case_tools::draw::{HeatMap, Scale, Theme, heat_maps};
 use casebase::PointMm;
 use clap::{Args, ValueEnum};
+use drawing::Theme;
+use drawing::cases::{HeatMap, Scale, heat_maps};
 use serde_json::{Value, json};
 
 use super::survey::{SurveyArgs, Trial, class, percent, problem_line, region};

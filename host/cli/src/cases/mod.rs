@@ -9,7 +9,7 @@ mod lines;
 mod list;
 pub(crate) mod new;
 mod play;
-mod problem;
+pub(crate) mod problem;
 mod render;
 mod retrieve;
 mod schema;

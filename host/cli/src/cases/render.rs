@@ -4,17 +4,19 @@ use std::io::{Read, stdin};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use case_tools::draw::{CasePicture, Overlay, Theme, case_picture, sheet};
 use casebase::{CaseVerdict, Match, Problem, Symmetry, rank_order};
 use clap::{Args, ValueEnum};
+use drawing::Theme;
+use drawing::cases::{CasePicture, Overlay, case_picture, sheet};
 
 use super::lines::LINE_MAX;
 use super::show::{find, unknown};
 use super::{counted, problem};
 use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs};
+use crate::failure::ProblemError;
 use crate::library::LibraryHandle;
-use crate::output::{print_text, printable_path};
+use crate::output::print_text;
 use crate::picture::{self, SnapshotError};
 
 /// Arguments of `cases render`.
@@ -166,12 +168,12 @@ fn read(argument: &str) -> Result<Problem, Failure> {
     } else {
         let file = Path::new(argument);
         foreign::read_text(file, LINE_MAX as u64)
-            .map_err(|error| Failure::Problem(format!("cannot read {}: {error}", printable_path(file))))?
+            .map_err(|error| Failure::Problem(ProblemError::Unreadable(file.to_owned(), error)))?
     };
     if text.len() > LINE_MAX {
-        return Err(Failure::Problem(format!("--problem: more than {LINE_MAX} bytes; give one problem")));
+        return Err(Failure::Problem(ProblemError::TooLong(LINE_MAX)));
     }
-    problem::parse(text.trim()).map_err(|error| Failure::Problem(format!("--problem: {error}")))
+    problem::parse(text.trim()).map_err(|error| Failure::Problem(ProblemError::Malformed(error)))
 }
 
 fn picture_file(text: &str) -> Result<PathBuf, SnapshotError> {

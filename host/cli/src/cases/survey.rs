@@ -14,8 +14,8 @@ use rayon::prelude::*;
 use super::lines::for_each_problem;
 use crate::Failure;
 use crate::args::{Chosen, LibraryArgs, SettingsArgs};
+use crate::failure::{FromError, LineFault, SurveyError};
 use crate::library::LibraryHandle;
-use crate::output::printable_path;
 use crate::progress::Progress;
 
 /// Arguments of both verbs.
@@ -107,18 +107,16 @@ impl<'a> Trial<'a> {
         let base = self.library_handle.base();
         let edge = self.args.cell.unwrap_or_else(|| Cells::suitable_edge_mm(base.field()));
         let cells = Cells::new(base.field(), edge)
-            .map_err(|error| Failure::Survey(format!("--cell {edge}: {error}")))?;
+            .map_err(|error| Failure::Survey(SurveyError::Cell(edge, error)))?;
         let survey = Survey::new(base, &self.chosen.settings, cells)
-            .map_err(|error| Failure::Survey(format!("with scopes a fifth larger, thr: {error}")))?;
+            .map_err(|error| Failure::Survey(SurveyError::Wider(error)))?;
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(self.args.jobs.map_or(0, usize::from))
             .build()
             .map_err(Failure::Threads)?;
         let counters = pool.install(|| counters(&survey, self.len(), |number| self.problem(number)));
         if counters.problems == 0 {
-            return Err(Failure::Survey(
-                "no problem is left to ask; leave --defending out, or draw more".to_owned(),
-            ));
+            return Err(Failure::Survey(SurveyError::NothingLeft));
         }
         Ok((counters, cells))
     }
@@ -175,9 +173,8 @@ pub(crate) fn class(library_handle: &LibraryHandle, authored: usize) -> (&'stati
 }
 
 fn recorded(file: &Path) -> Result<Vec<Problem>, Failure> {
-    let fail =
-        |description: String| Failure::Survey(format!("--from {}: {description}", printable_path(file)));
-    let input = foreign::open(file).map_err(|error| fail(error.to_string()))?;
+    let fail = |error| Failure::Survey(SurveyError::From(file.to_owned(), error));
+    let input = foreign::open(file).map_err(|error| fail(FromError::Unreadable(error)))?;
     let mut problems = Vec::new();
     let (mut first_fault, mut faults) = (None, 0_u64);
     for_each_problem(input, &mut sink(), |_, _, problem| {
@@ -185,22 +182,18 @@ fn recorded(file: &Path) -> Result<Vec<Problem>, Failure> {
             Ok(problem) if problems.len() < RECORDED_MAX => problems.push(problem),
             Ok(_) => {
                 faults += 1;
-                first_fault
-                    .get_or_insert_with(|| format!("more than {RECORDED_MAX} problems; split the file"));
+                first_fault.get_or_insert(LineFault::TooMany(RECORDED_MAX));
             }
             Err(error) => {
                 faults += 1;
-                first_fault.get_or_insert(error);
+                first_fault.get_or_insert(LineFault::Malformed(error));
             }
         }
         Ok(())
     })?;
     match first_fault {
-        Some(first) if faults == 1 => Err(fail(first)),
-        Some(first) => Err(fail(format!("{first}; and {} more lines", faults - 1))),
-        None if problems.is_empty() => {
-            Err(fail("no problem in it; one line each, as `cases retrieve` takes them".to_owned()))
-        }
+        Some(first) => Err(fail(FromError::Faulty { first, more: faults - 1 })),
+        None if problems.is_empty() => Err(fail(FromError::Empty)),
         None => Ok(problems),
     }
 }

@@ -16,7 +16,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use host::config::TeamConfig;
 use host::learned::Learned;
 use host::radio::RadioSettings;
-use host::record::header::{HostHeader, RecordingHeader};
+use host::record::header::RecordingHeader;
 use host::record::{BackgroundRecorder, Recorder};
 use host::referee::team_port::TeamPortRequest;
 use host::shell::{Outbox, SimSettings};
@@ -31,13 +31,14 @@ use ssl::net::Interfaces;
 
 use super::alarms::Alarms;
 use super::board::Board;
-use super::inbox::{Inbox, Mail};
+use super::inbox::{Inbox, Mail, Source};
 use super::radio_alarms::RadioAlarms;
 use super::terminal::Terminal;
-use super::threads::{self, Source};
+use super::threads;
 use super::watch::Watch;
 use super::{Cases, identity, port_for_teams, simulator};
 use crate::Failure;
+use crate::failure::NetworkError;
 use crate::live::PageArgs;
 use crate::net::NetSender;
 use crate::output::{note, printable_path};
@@ -90,7 +91,7 @@ pub(super) fn run(
     let recorder = keeps.record.map(|stem| {
         Recorder::begin(stem, &header(&settings))
             .and_then(BackgroundRecorder::start)
-            .map_err(|error| Failure::Network(format!("--record {}: {error}", stem.display())))
+            .map_err(|error| NetworkError::Record(stem.to_owned(), error))
     });
     let recorder = recorder.transpose()?;
     note!(
@@ -205,11 +206,8 @@ fn header(settings: &HostSettings) -> RecordingHeader {
     RecordingHeader {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         commit: env!("ONETWO_COMMIT").to_owned(),
-        seed: None,
-        league: settings.league.name().to_owned(),
-        world: None,
         zero_unix_us: Some(unix.as_micros() as u64),
-        hosts: vec![HostHeader::of(settings, protocol::Instant(0))],
+        ..RecordingHeader::of(settings)
     }
 }
 
@@ -219,12 +217,11 @@ fn open_link(
     key: TeamKey,
     more: Vec<OsString>,
 ) -> Result<Box<dyn host::shell::Link>, Failure> {
-    let failed = |error: &dyn std::fmt::Display| Failure::Network(error.to_string());
     let at = match &config.robots {
         host::config::RobotLink::Simulator(host) => simulator(host, config.colour)?,
         _ => ([127, 0, 0, 1], 0).into(),
     };
-    let program = std::env::current_exe().map_err(|error| failed(&error))?;
+    let program = std::env::current_exe().map_err(NetworkError::Program)?;
     let sim = |_: &str| SimSettings {
         program,
         colour: config.colour,
@@ -234,7 +231,7 @@ fn open_link(
         key,
         more,
     };
-    host::shell::open(&config.robots, sim).map_err(|error| failed(&error))
+    Ok(host::shell::open(&config.robots, sim).map_err(NetworkError::Link)?)
 }
 
 #[derive(Clone, Copy, Debug, Default)]

@@ -9,13 +9,12 @@ use host::shell::{epoch, key};
 use protocol::frame::TeamKey;
 
 use crate::Failure;
+use crate::failure::NetworkError;
 use crate::output::note;
 
 /// The team's key: the file's, or zeros where that is allowed.
 pub(super) fn team_key(config: &TeamConfig) -> Result<TeamKey, Failure> {
-    let failed = |description: String| Failure::Network(description);
-    let read =
-        config.key_file.as_deref().map(key::read).transpose().map_err(|error| failed(error.to_string()))?;
+    let read = config.key_file.as_deref().map(key::read).transpose().map_err(NetworkError::Key)?;
     let key = read.as_ref().map_or(TeamKey::ZERO, |read| read.key);
     let link = match &config.robots {
         RobotLink::Simulator(_) => None,
@@ -23,14 +22,7 @@ pub(super) fn team_key(config: &TeamConfig) -> Result<TeamKey, Failure> {
         RobotLink::Serial { device, .. } => Some(format!("serial:{device}")),
     };
     if let Some(link) = link.filter(|_| key == TeamKey::ZERO && !config.insecure_zero_key) {
-        let what = match &config.key_file {
-            Some(file) => format!("the key in {} is all zeros, which is public", file.display()),
-            None => "there is no --key-file, and the key of zeros is public".to_owned(),
-        };
-        return Err(failed(format!(
-            "{link}: {what}: anybody in radio range could command the robots. Make a key with `openssl rand -hex 16 > team.key`, \
-             provision the robots with it (docs/security.md) and add --key-file team.key; or add --insecure-zero-key"
-        )));
+        return Err(NetworkError::PublicKey { link, file: config.key_file.clone() }.into());
     }
     if let Some(warning) = read.and_then(|read| read.warning) {
         note!("warning: {warning}");

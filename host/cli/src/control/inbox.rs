@@ -13,8 +13,6 @@ use std::time::{Duration, Instant};
 use host::referee::SenderAddress;
 use protocol::link::Packet;
 
-use super::threads::Source;
-
 /// The longest datagram of vision, bytes: a camera frame of 32 robots, 100 balls and the field's geometry has
 /// 9 kB.
 pub(super) const VISION_LEN_MAX: usize = 10_240;
@@ -32,6 +30,25 @@ const NOTES_MAX: usize = 256;
 /// Most referee packets and robot frames that are handled in a row while camera frames wait: a flood of one
 /// kind must not block vision.
 const URGENT_IN_ROW: u32 = 32;
+
+/// Where mail comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Source {
+    Vision,
+    Referee,
+    Robots,
+}
+
+impl Source {
+    /// Name for the operator.
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::Vision => "vision",
+            Self::Referee => "referee",
+            Self::Robots => "robots",
+        }
+    }
+}
 
 /// An entry for the event loop.
 #[derive(Debug)]

@@ -30,9 +30,9 @@ use ssl::net::addresses;
 
 use crate::Failure;
 use crate::args::{DirectoryArgs, SettingsArgs};
+use crate::failure::NetworkError;
 use crate::library::LibraryHandle;
 use crate::live::{PageArgs, library_handle_of};
-use crate::output::printable_path;
 use crate::simulate::seconds;
 
 /// Our team, and the addresses to receive from and send to. What is not given here is taken from the file,
@@ -180,9 +180,9 @@ const CONFIG_LEN_MAX: u64 = 1 << 20;
 
 /// A file of settings.
 fn read(path: &Path) -> Result<TeamSettings, Failure> {
-    let message = |description: String| Failure::Network(format!("{}: {description}", printable_path(path)));
-    let text = foreign::read_text(path, CONFIG_LEN_MAX).map_err(|error| message(error.to_string()))?;
-    TeamSettings::from_toml(&text).map_err(|error| message(error.to_string()))
+    let text = foreign::read_text(path, CONFIG_LEN_MAX)
+        .map_err(|error| NetworkError::ConfigUnreadable(path.to_owned(), error))?;
+    Ok(TeamSettings::from_toml(&text).map_err(|error| NetworkError::ConfigFile(path.to_owned(), error))?)
 }
 
 /// Flags override the file, which overrides the defaults.
@@ -216,7 +216,7 @@ fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
     };
     let settings = flags.over(file);
     let reported = settings.vision.is_some();
-    let mut config = settings.complete().map_err(|error| Failure::Network(error.to_string()))?;
+    let mut config = settings.complete().map_err(NetworkError::Config)?;
     if !reported && matches!(config.robots, RobotLink::Simulator(_)) {
         config.vision = addresses::VISION_SIMULATED.into();
     }
@@ -236,11 +236,7 @@ fn simulator(host: &str, colour: Colour) -> Result<SocketAddr, Failure> {
     };
     let port = port.and_then(|port: u16| port.checked_add(offset));
     let found = port.and_then(|port| (name, port).to_socket_addrs().ok()?.next());
-    found.ok_or_else(|| {
-        Failure::Network(format!(
-            "sim://{host}: no such machine; give sim://HOST or sim://HOST:PORT of a simulator"
-        ))
-    })
+    found.ok_or_else(|| NetworkError::UnknownSimulator(host.to_owned()).into())
 }
 
 fn ids(text: &str) -> Result<Ids, String> {

@@ -10,27 +10,8 @@ use std::time::{Duration, Instant};
 use host::shell::{LineRate, Link, OutCounts, Outbox};
 use ssl::net::{Datagram, Interfaces};
 
-use super::inbox::{Inbox, Mail, REFEREE_LEN_MAX, VISION_LEN_MAX};
+use super::inbox::{Inbox, Mail, REFEREE_LEN_MAX, Source, VISION_LEN_MAX};
 use crate::net::NetReceiver;
-
-/// Where mail comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Source {
-    Vision,
-    Referee,
-    Robots,
-}
-
-impl Source {
-    /// Name for the operator.
-    pub(super) const fn name(self) -> &'static str {
-        match self {
-            Self::Vision => "vision",
-            Self::Referee => "referee",
-            Self::Robots => "robots",
-        }
-    }
-}
 
 /// A thread checks this often whether to end.
 const LOOK: Duration = Duration::from_millis(100);

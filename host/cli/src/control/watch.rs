@@ -6,7 +6,7 @@ use host::config::TeamConfig;
 use host::referee::Silence;
 use protocol::{Duration, Instant};
 
-use super::threads::Source;
+use super::inbox::Source;
 
 /// A source is given this long after the start: messages come within 2 s, and a source that is there has had
 /// time to send.

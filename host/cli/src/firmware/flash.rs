@@ -12,6 +12,7 @@ use firmware_build::Program;
 
 use super::{build, failed};
 use crate::Failure;
+use crate::failure::FirmwareError;
 use crate::output::note;
 
 /// What is flashed, and where.
@@ -39,7 +40,7 @@ pub(super) fn run(args: &FlashArgs) -> Result<(), Failure> {
     // Checked before the firmware is built.
     let there = Command::new(PROGRAM).arg("--version").stdout(Stdio::null()).status();
     if there.is_err_and(|error| error.kind() == ErrorKind::NotFound) {
-        return Err(failed(MISSING));
+        return Err(failed(FirmwareError::NoFlasher(MISSING)));
     }
     let image = match &args.elf {
         Some(file) => file.clone(),
@@ -51,9 +52,9 @@ pub(super) fn run(args: &FlashArgs) -> Result<(), Failure> {
         match Command::new(PROGRAM).args(&description).status() {
             Ok(status) if status.success() => {}
             Ok(status) => {
-                return Err(failed(format!("`{line}` failed ({status}); its output is above")));
+                return Err(failed(FirmwareError::Flasher(line, status)));
             }
-            Err(error) => return Err(failed(format!("`{line}` does not start: {error}"))),
+            Err(error) => return Err(failed(FirmwareError::FlasherStart(line, error))),
         }
     }
     Ok(())

@@ -13,7 +13,7 @@ mod report;
 mod run;
 mod size;
 
-use std::fmt::{Display, Write as _};
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -22,6 +22,7 @@ use firmware_build::inspect::{Image, Sizes};
 use firmware_build::{ImageBody, Program, build_program, workspace_root};
 
 use crate::Failure;
+use crate::failure::FirmwareError;
 use crate::output::print_text;
 
 /// What to do with the firmware.
@@ -102,13 +103,13 @@ pub(crate) fn run(verb: &FirmwareVerb) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn failed(error: impl Display) -> Failure {
-    Failure::Firmware(error.to_string())
+fn failed(error: impl Into<FirmwareError>) -> Failure {
+    Failure::Firmware(error.into())
 }
 
 /// A failure that concerns a file.
-fn at(path: &Path, error: impl Display) -> Failure {
-    failed(format!("{}: {error}", path.display()))
+fn at<E>(path: &Path, what: impl Fn(PathBuf, E) -> FirmwareError) -> impl Fn(E) -> Failure {
+    move |error| Failure::Firmware(what(path.to_owned(), error))
 }
 
 fn build(program: Program) -> Result<PathBuf, Failure> {
@@ -119,7 +120,7 @@ fn build(program: Program) -> Result<PathBuf, Failure> {
 const IMAGE_LEN_MAX: u64 = 1 << 28;
 
 fn sizes_of(path: &Path) -> Result<Sizes, Failure> {
-    let bytes = foreign::read(path, IMAGE_LEN_MAX).map_err(|error| at(path, error))?;
-    let image = Image::parse(&bytes).map_err(|error| at(path, error))?;
+    let bytes = foreign::read(path, IMAGE_LEN_MAX).map_err(at(path, FirmwareError::File))?;
+    let image = Image::parse(&bytes).map_err(at(path, FirmwareError::Image))?;
     Ok(Sizes::of(&image))
 }

@@ -13,6 +13,7 @@ use rules::League;
 
 use super::{at, failed};
 use crate::Failure;
+use crate::failure::FirmwareError;
 use crate::output::{note, print_text};
 
 /// The robot's identity.
@@ -62,8 +63,7 @@ impl LeagueLabel {
 
 /// Writes the page.
 pub(super) fn run(args: &ProvisionArgs) -> Result<(), Failure> {
-    let robot =
-        RobotId::new(args.robot).ok_or_else(|| failed(format!("robot {} is none of 0–15", args.robot)))?;
+    let robot = RobotId::new(args.robot).ok_or_else(|| failed(FirmwareError::NoRobot(args.robot)))?;
     let key = host::shell::key::read(&args.key_file).map_err(failed)?;
     if let Some(warning) = &key.warning {
         note!("onetwo: {warning}");
@@ -76,8 +76,8 @@ pub(super) fn run(args: &ProvisionArgs) -> Result<(), Failure> {
     };
     let bytes: [u8; PAGE_LEN] = page(&who);
     // The page is read back as by the robot: a key of zeros is refused here already.
-    read(&bytes, false).map_err(failed)?;
-    write_for_owner(&args.out, &bytes).map_err(|error| at(&args.out, error))?;
+    read(&bytes, false).map_err(FirmwareError::Page)?;
+    write_for_owner(&args.out, &bytes).map_err(at(&args.out, FirmwareError::File))?;
     print_text(&format!(
         "{}: robot {robot} of team {}; it holds this robot's keys, not the team's\n",
         args.out.display(),

@@ -12,6 +12,7 @@ use super::at;
 use super::failsafe;
 use super::size::{Known, POOL_LEAST, Share};
 use crate::Failure;
+use crate::failure::FirmwareError;
 use crate::output::print_text;
 
 /// Output of the report.
@@ -36,7 +37,7 @@ pub(super) fn run(args: &ReportArgs) -> Result<(), Failure> {
         return print_text(&text);
     }
     let path = workspace_root().join(FILE);
-    fs::write(&path, text).map_err(|error| at(&path, error))
+    fs::write(&path, text).map_err(at(&path, FirmwareError::File))
 }
 
 fn text(all: &[Known], seconds: f64) -> String {

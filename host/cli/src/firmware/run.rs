@@ -11,6 +11,7 @@ use protocol::slot::PAGE_ADDRESS;
 
 use super::{at, build, failed};
 use crate::Failure;
+use crate::failure::FirmwareError;
 
 /// How a robot is run.
 #[derive(Debug, Args)]
@@ -31,8 +32,8 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     let qemu = ensure_qemu(Install::ForUser).map_err(failed)?;
     let mut command = Command::new(qemu);
     command.args(description(&build(Program::Free)?, page, &args.serial)).stdin(Stdio::null());
-    let status = command.status().map_err(failed)?;
-    if status.success() { Ok(()) } else { Err(failed(format!("QEMU ended with {status}"))) }
+    let status = command.status().map_err(FirmwareError::Emulator)?;
+    if status.success() { Ok(()) } else { Err(failed(FirmwareError::Ended(status))) }
 }
 
 /// Longest file of a key page that is read, bytes: one sector of flash.
@@ -40,8 +41,8 @@ const PAGE_FILE_LEN_MAX: u64 = 1 << 17;
 
 /// Whether a robot could read the page.
 fn check(file: &Path) -> Result<(), Failure> {
-    let bytes = foreign::read(file, PAGE_FILE_LEN_MAX).map_err(|error| at(file, error))?;
-    read(&bytes, false).map(|_| ()).map_err(|error| at(file, error))
+    let bytes = foreign::read(file, PAGE_FILE_LEN_MAX).map_err(at(file, FirmwareError::File))?;
+    read(&bytes, false).map(|_| ()).map_err(at(file, FirmwareError::PageFile))
 }
 
 /// Arguments of QEMU.

@@ -14,7 +14,7 @@ use page::{
     DeferredScene, Field, Gauge, Layer, Match, MatchEvent, MatchEventKind, Scene, SceneRobot, Shape,
     TeamSheet, milli,
 };
-use protocol::{CaseId, Instant};
+use protocol::Instant;
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 use rules::{AreaForm, Colour, FieldSpec};
 
@@ -23,6 +23,7 @@ use super::gauges::{self, Rate};
 use super::layers;
 use super::match_events::EventFeed;
 use super::minds::{self, Clocks, Faults};
+use super::names::Names;
 use super::overlay_builder::{OverlayBuilder, Picture};
 use super::possession::Possession;
 use super::raw::Images;
@@ -34,34 +35,6 @@ use crate::replay::phase_description;
 const TRAIL_S: f64 = 1.5;
 /// Number of points of the ball's prediction, one each tenth of a second; it ends at the stop position.
 const AHEAD: usize = 15;
-
-/// Names and intents of the cases.
-#[derive(Debug, Default)]
-pub(crate) struct Names {
-    names: Vec<String>,
-    meant: Vec<String>,
-}
-
-impl Names {
-    fn new(library_handle: Option<&LibraryHandle>) -> Self {
-        let Some(library_handle) = library_handle else { return Self::default() };
-        let names = library_handle.names();
-        let meant = (0..names.len())
-            .map(|i| library_handle.intent(CaseId(i as u16 * 4)).unwrap_or_default())
-            .collect();
-        Self { names, meant }
-    }
-
-    /// `region/name` of a stored case.
-    pub(super) fn of(&self, case: CaseId) -> String {
-        let name = self.names.get(usize::from(case.0 / 4));
-        name.cloned().unwrap_or_else(|| format!("case {}", case.0))
-    }
-
-    pub(super) fn meant(&self, case: CaseId) -> String {
-        self.meant.get(usize::from(case.0 / 4)).cloned().unwrap_or_default()
-    }
-}
 
 /// Inputs of a scene.
 pub(crate) struct Moment<'a> {

@@ -9,8 +9,8 @@ use protocol::{Instant, RobotId};
 use rules::Colour;
 use serde_json::{Value, json};
 
-use super::composer::Names;
 use super::layers::Played;
+use super::names::Names;
 use super::{description, team};
 
 /// Cycles of one team.

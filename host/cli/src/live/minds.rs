@@ -10,9 +10,9 @@ use protocol::team::{Progress, Role};
 use protocol::{Instant, RobotId};
 use rules::{Colour, RuleRole};
 
-use super::composer::Names;
 use super::description;
 use super::layers::Played;
+use super::names::Names;
 use super::overlay_builder::Aim;
 
 /// Since when robots are in their states: reuse, and what they are ordered.

@@ -14,6 +14,7 @@ mod legged;
 mod match_events;
 mod match_runner;
 mod minds;
+mod names;
 mod overlay_builder;
 mod paths;
 mod possession;
@@ -34,6 +35,7 @@ use rules::{Colour, League};
 
 use crate::Failure;
 use crate::args::{DirectoryArgs, LibraryArgs};
+use crate::failure::NetworkError;
 use crate::library::LibraryHandle;
 use crate::output::note;
 use crate::stop::stopped_by_hand;
@@ -77,13 +79,14 @@ impl PageArgs {
         powers: Powers,
         explanations: CaseExplanations,
     ) -> Result<Page, Failure> {
-        let failed = |error: &dyn std::fmt::Display| Failure::Network(format!("{error} ({})", self.flag));
         let open = !self.listen.ip().to_canonical().is_loopback();
-        let token = open.then(Token::random).transpose().map_err(|error| failed(&error))?;
+        let token = open.then(Token::random).transpose();
+        let token = token.map_err(|error| NetworkError::Token(error, self.flag))?;
         let limits = Limits::default();
         let settings =
             page::PageSettings { listen: self.listen, title, recorded, powers, token: token.clone(), limits };
-        let page = Page::open(settings, Arc::new(explanations)).map_err(|error| failed(&error))?;
+        let page = Page::open(settings, Arc::new(explanations))
+            .map_err(|error| NetworkError::Page(error, self.flag))?;
         let at = page.address();
         match token {
             None => note!("page     http://{at}"),

@@ -19,6 +19,7 @@ use super::moment::{Moment, Score};
 use super::report::{self, Gap, Report};
 use super::{ReplayArgs, failed};
 use crate::Failure;
+use crate::failure::{Asked, Missing, RecordedError};
 use crate::output::print_text;
 use crate::progress::Progress;
 
@@ -29,7 +30,7 @@ const VISION_GAP_S: f64 = 0.2;
 const REFEREE_GAP_S: f64 = 2.0;
 
 pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
-    let mut reader = ssl::log::open(&args.file).map_err(|error| failed(&args.file, &error))?;
+    let mut reader = ssl::log::open(&args.file).map_err(RecordedError::Log).map_err(failed(&args.file))?;
     let mut pass = Pass::new(args)?;
     let bar = Progress::open();
     let mut at_moment = None;
@@ -48,17 +49,15 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     let damage = reader.end().filter(|end| !end.is_whole()).map(ToString::to_string);
     let back_steps = reader.counts().back_steps;
     if args.at.is_some() || args.event.is_some() {
-        return Err(Failure::Recorded {
-            file: args.file.clone(),
-            description: pass.not_there(args, damage.as_deref()),
-        });
+        let missing = Missing { asked: pass.asked(args), damage };
+        return Err(failed(&args.file)(RecordedError::NotThere(missing)));
     }
     let report = pass.finish(damage, back_steps);
     print_text(&if args.json { json(&report)? } else { report.text() })?;
-    let nothing = report.messages.is_empty().then(|| "holds no message".to_owned());
-    match report.damage.or(nothing) {
+    let nothing = report.messages.is_empty().then_some(RecordedError::Empty);
+    match report.damage.map(RecordedError::Damaged).or(nothing) {
         // What could be read is printed above; the exit code reports that it is not the whole file.
-        Some(description) => Err(Failure::Recorded { file: args.file.clone(), description }),
+        Some(error) => Err(failed(&args.file)(error)),
         None => Ok(ExitCode::SUCCESS),
     }
 }
@@ -90,8 +89,7 @@ struct Team {
 impl<'a> Pass<'a> {
     fn new(args: &'a ReplayArgs) -> Result<Self, Failure> {
         let limits = args.league.limits();
-        let limits =
-            limits.ok_or_else(|| failed(&args.file, &"its league has no rules of the Small Size League"))?;
+        let limits = limits.ok_or(RecordedError::NoRules).map_err(failed(&args.file))?;
         let report = Report { kind: "log", file: args.file.display().to_string(), ..Report::default() };
         let team = args.team.map(|colour| Team {
             host: Host::new(HostSettings::new(colour, args.league, 1), Instant(0)),
@@ -187,19 +185,15 @@ impl<'a> Pass<'a> {
         Moment::new(at.0 as f64 * 1e-6, event, &world, self.listener.game(), &[])
     }
 
-    fn not_there(&self, args: &ReplayArgs, damage: Option<&str>) -> String {
-        let damage = damage.map(|damage| format!("; the file is damaged: {damage}")).unwrap_or_default();
+    fn asked(&self, args: &ReplayArgs) -> Asked {
         match (&args.event, args.at) {
             (Some(label), _) => {
-                let mut known: Vec<_> = self.report.match_events.iter().map(|h| h.name.as_str()).collect();
+                let mut known: Vec<_> = self.report.match_events.iter().map(|h| h.name.clone()).collect();
                 known.sort_unstable();
                 known.dedup();
-                let known = if known.is_empty() { "no event".to_owned() } else { known.join(", ") };
-                format!("{} `{label}` in it, not {}; it has: {known}{damage}", self.met, args.nth)
+                Asked::LogEvent { met: self.met, name: label.clone(), nth: args.nth, known }
             }
-            (None, at) => {
-                format!("it ends after {:.3} s, before {} s{damage}", self.seconds(), at.unwrap_or_default())
-            }
+            (None, at) => Asked::LogTime(at.unwrap_or_default(), self.seconds()),
         }
     }
 

@@ -25,6 +25,7 @@ use rules::{Colour, League};
 pub(crate) use moment::phase_description;
 
 use crate::Failure;
+use crate::failure::RecordedError;
 use crate::live::PageArgs;
 
 /// The file, and what to print of it.
@@ -79,9 +80,7 @@ pub(crate) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         return trace::run(args);
     }
     if args.check {
-        let description =
-            "no trace, and only a trace can be checked: give the NAME.trace that `--record NAME` wrote";
-        return Err(Failure::Recorded { file: args.file.clone(), description: description.to_owned() });
+        return Err(failed(&args.file)(RecordedError::NoTrace));
     }
     league_log::run(args)
 }
@@ -95,7 +94,7 @@ fn open(file: &Path) -> Result<Box<dyn Read>, Failure> {
 }
 
 fn bytes(file: &Path) -> Result<BufReader<std::fs::File>, Failure> {
-    foreign::open(file).map(BufReader::new).map_err(|error| failed(file, &error))
+    foreign::open(file).map(BufReader::new).map_err(RecordedError::Open).map_err(failed(file))
 }
 
 /// Whether a file is gzipped: then it has an end mark, without which it is cut.
@@ -111,8 +110,8 @@ fn begins(file: &Path) -> Result<Vec<u8>, Failure> {
     Ok(begin)
 }
 
-fn failed(file: &Path, error: &dyn std::fmt::Display) -> Failure {
-    Failure::Recorded { file: file.to_owned(), description: error.to_string() }
+fn failed(file: &Path) -> impl Fn(RecordedError) -> Failure {
+    move |error| Failure::Recorded { file: file.to_owned(), error }
 }
 
 fn moment_in_seconds(text: &str) -> Result<f64, String> {

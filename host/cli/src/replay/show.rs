@@ -21,6 +21,7 @@ use ssl::log::MessageKind;
 use super::clock::LogClock;
 use super::{ReplayArgs, TRACE, begins, failed, open, trace};
 use crate::Failure;
+use crate::failure::RecordedError;
 use crate::live::{CaseExplanations, Composer, Moment, PageArgs, SCENE_EVERY_S, library_handle_of, stay};
 use crate::output::note;
 use crate::stop::stopped_by_hand;
@@ -91,11 +92,12 @@ impl Projector {
 
 fn show_trace(args: &ReplayArgs, page: &PageArgs) -> Result<ExitCode, Failure> {
     let file = &args.file;
-    let mut reader = Reader::new(open(file)?).map_err(|error| failed(file, &error))?;
-    let header = RecordingHeader::from_json(reader.header()).map_err(|error| failed(file, &error))?;
-    let league = header.league().map_err(|error| failed(file, &error))?;
+    let mut reader = Reader::new(open(file)?).map_err(RecordedError::Trace).map_err(failed(file))?;
+    let header =
+        RecordingHeader::from_json(reader.header()).map_err(RecordedError::Header).map_err(failed(file))?;
+    let league = header.league().map_err(RecordedError::Header).map_err(failed(file))?;
     let key = trace::key(args, &header)?;
-    let mut recheck = Recheck::new(&header, key).map_err(|error| failed(file, &error))?;
+    let mut recheck = Recheck::new(&header, key).map_err(RecordedError::Header).map_err(failed(file))?;
     let mut projector = Projector::new(args, page, league)?;
     let stopped = stopped_by_hand();
     let mut now = Instant(0);
@@ -135,7 +137,7 @@ fn show_trace(args: &ReplayArgs, page: &PageArgs) -> Result<ExitCode, Failure> {
 }
 
 fn show_log(args: &ReplayArgs, page: &PageArgs) -> Result<ExitCode, Failure> {
-    let mut reader = ssl::log::open(&args.file).map_err(|error| failed(&args.file, &error))?;
+    let mut reader = ssl::log::open(&args.file).map_err(RecordedError::Log).map_err(failed(&args.file))?;
     let settings = HostSettings::new(args.team.unwrap_or(Colour::Blue), args.league, 1);
     let mut host = Host::new(settings, Instant(0));
     let mut projector = Projector::new(args, page, args.league)?;
@@ -163,7 +165,7 @@ fn show_log(args: &ReplayArgs, page: &PageArgs) -> Result<ExitCode, Failure> {
         projector.look(now, &host, if args.team.is_some() { &hosts } else { &[] });
     }
     if !began {
-        return Err(failed(&args.file, &"holds no message"));
+        return Err(failed(&args.file)(RecordedError::Empty));
     }
     if let Some(end) = reader.end().filter(|end| !end.is_whole()) {
         let hosts = [&host];

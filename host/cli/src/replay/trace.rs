@@ -24,6 +24,7 @@ use super::moment::Moment;
 use super::sheet::Sheet;
 use super::{ReplayArgs, failed, is_gzipped, open};
 use crate::Failure;
+use crate::failure::{Asked, Missing, RecordedError};
 use crate::output::{note, print_text};
 use crate::progress::Progress;
 
@@ -41,8 +42,8 @@ struct Report<'a> {
     #[serde(flatten)]
     sheet: Sheet,
     #[serde(skip_serializing_if = "Option::is_none")]
-    damage: Option<String>,
     #[serde(rename = "happenings")]
+    damage: Option<String>,
     match_events: &'a [MatchEvent],
     hosts: Vec<Outcome>,
     same_decisions: bool,
@@ -59,10 +60,11 @@ struct Outcome {
 
 pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     let file = &args.file;
-    let mut reader = Reader::new(open(file)?).map_err(|error| failed(file, &error))?;
-    let header = RecordingHeader::from_json(reader.header()).map_err(|error| failed(file, &error))?;
+    let mut reader = Reader::new(open(file)?).map_err(RecordedError::Trace).map_err(failed(file))?;
+    let header =
+        RecordingHeader::from_json(reader.header()).map_err(RecordedError::Header).map_err(failed(file))?;
     let key = key(args, &header)?;
-    let mut recheck = Recheck::new(&header, key).map_err(|error| failed(file, &error))?;
+    let mut recheck = Recheck::new(&header, key).map_err(RecordedError::Header).map_err(failed(file))?;
     let (mut finder, mut match_events, mut sheet) = (Finder::default(), Vec::new(), Sheet::default());
     let (mut records, mut strays, mut met) = (BTreeMap::new(), 0, 0);
     let mut span: Option<(Instant, Instant)> = None;
@@ -112,12 +114,12 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     let damage = damage_of(reader.end()).or(unfinished(file, &recheck)?);
     if args.at.is_some() || args.event.is_some() {
         let (_, last) = span.unwrap_or_default();
-        let asked = args.event.as_ref().map_or_else(
-            || format!("{} s is after its end", args.at.unwrap_or_default()),
-            |label| format!("{met} `{label}` in it, not {}", args.nth),
-        );
-        let damage = damage.map(|damage| format!("; the file is damaged: {damage}")).unwrap_or_default();
-        return Err(failed(file, &format!("{asked}; it ends at {:.3} s{damage}", last.0 as f64 * 1e-6)));
+        let end = last.0 as f64 * 1e-6;
+        let asked = match &args.event {
+            None => Asked::TraceTime(args.at.unwrap_or_default(), end),
+            Some(name) => Asked::TraceEvent { met, name: name.clone(), nth: args.nth, end },
+        };
+        return Err(failed(file)(RecordedError::NotThere(Missing { asked, damage })));
     }
     recheck.finish(damage.is_some());
     let hosts: Vec<Outcome> = (header.hosts.iter().zip(recheck.results()))
@@ -150,7 +152,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     print_text(&description)?;
     match report.damage {
         // What could be read is printed above.
-        Some(description) => Err(failed(file, &description)),
+        Some(place) => Err(failed(file)(RecordedError::Damaged(place))),
         None if report.same_decisions => Ok(ExitCode::SUCCESS),
         None => Ok(ExitCode::FAILURE),
     }
@@ -192,17 +194,13 @@ fn show(
 pub(super) fn key(args: &ReplayArgs, header: &RecordingHeader) -> Result<TeamKey, Failure> {
     match &args.key_file {
         Some(file) => {
-            let read = host::shell::key::read(file).map_err(|error| failed(file, &error))?;
+            let read = host::shell::key::read(file).map_err(RecordedError::Key).map_err(failed(file))?;
             if let Some(warning) = read.warning {
                 note!("warning: {warning}");
             }
             Ok(read.key)
         }
-        None if header.hosts.iter().any(|host| host.keyed) => {
-            let description =
-                "its frames were sealed with the team's key, which no recording holds: add --key-file FILE";
-            Err(failed(&args.file, &description))
-        }
+        None if header.hosts.iter().any(|host| host.keyed) => Err(failed(&args.file)(RecordedError::NoKey)),
         None => Ok(TeamKey::ZERO),
     }
 }

@@ -26,6 +26,7 @@ use rules::League;
 use ssl::net::addresses;
 
 use crate::Failure;
+use crate::failure::NetworkError;
 use crate::replay::league;
 
 /// What is simulated, and the addresses to receive from and send to.
@@ -136,10 +137,7 @@ enum ProfileLabel {
 /// `onetwo simulate`.
 pub(crate) fn run(args: &SimulateArgs) -> Result<ExitCode, Failure> {
     if args.referee == RefereeKind::Internal && (args.assistant || args.autoref.is_some()) {
-        return Err(Failure::Network(
-            "--assistant and --autoref serve a game controller elsewhere, and the internal referee needs neither; add --referee none, or the ADDRESS:PORT of its packets"
-                .to_owned(),
-        ));
+        return Err(NetworkError::InternalReferee.into());
     }
     let unix = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     let profile = match args.profile {
@@ -148,7 +146,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<ExitCode, Failure> {
         ProfileLabel::ErForce => Profile::ErForce,
     };
     let settings = ServerSettings::of(args.league, profile, args.seed, unix.as_secs_f64());
-    let no_rules = || Failure::Network(format!("{} is not played on wheels", args.league.name()));
+    let no_rules = || NetworkError::NotOnWheels(args.league);
     let mut settings = settings.ok_or_else(no_rules)?;
     settings.model = WorldModel::of(args.league, &args.world).ok_or_else(no_rules)?;
     settings.robots = args.robots.unwrap_or(settings.robots);

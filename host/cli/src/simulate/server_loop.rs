@@ -25,6 +25,7 @@ use super::ports::Ports;
 use super::sync::SyncPorts;
 use super::{RefereeKind, SimulateArgs};
 use crate::Failure;
+use crate::failure::NetworkError;
 use crate::live::PageArgs;
 use crate::net::NetSender;
 use crate::output::note;
@@ -68,9 +69,7 @@ pub(super) fn run(
         None => None,
         Some((_, Ok(sync))) => Some(sync),
         Some((blue, Err(error))) => {
-            return Err(Failure::Network(format!(
-                "--sync {blue}: {error}; it and the next port must be free"
-            )));
+            return Err(NetworkError::Sync(blue, error).into());
         }
     };
     if let Some(sync) = &sync {
@@ -209,7 +208,7 @@ impl Referee {
     fn new(args: &SimulateArgs, unix_us: u64) -> Result<Self, Failure> {
         let crew = |from| {
             let crew = Crew::new(from, args.league, args.assistant, args.autoref.as_deref());
-            crew.map(Box::new).map_err(|error| Failure::Network(error.to_string()))
+            crew.map(Box::new).map_err(NetworkError::NoRules)
         };
         let serves = args.assistant || args.autoref.is_some();
         let who = match args.referee {
@@ -230,7 +229,7 @@ impl Referee {
         match &mut self.who {
             RefereeSource::Ours(ours) => *ours = internal(args, unix_us, seed)?,
             RefereeSource::Elsewhere(crew) => {
-                crew.restart().map_err(|error| Failure::Network(error.to_string()))?;
+                crew.restart().map_err(NetworkError::NoRules)?;
             }
             RefereeSource::NoWatcher => {}
         }
@@ -301,7 +300,7 @@ fn internal(args: &SimulateArgs, unix_us: u64, seed: u64) -> Result<Box<Internal
     let settings = RefereeSettings { epoch_us: unix_us, ..RefereeSettings::new(args.league) };
     let settings = RefereeSettings { blue_on_positive_half: false, max_robots: args.robots, ..settings };
     let ours = InternalReferee::new(settings, seed);
-    ours.map(Box::new).map_err(|error| Failure::Network(error.to_string()))
+    Ok(Box::new(ours.map_err(NetworkError::NoRules)?))
 }
 
 /// Our own tracker on the simulated vision.

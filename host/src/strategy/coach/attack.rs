@@ -12,11 +12,12 @@ use protocol::{Duration, Instant, RobotId};
 
 use super::super::counters::Sent;
 use super::super::order::{OrderReason, Role, Task};
-use super::super::pass::bridge::{CasePass, RADIUS, refine};
+use super::super::pass::bridge::{RADIUS, refine};
 use super::super::pass::shot::shot;
 use super::super::pass::{PassScene, Rating, SAMPLES};
 use super::super::support;
-use super::super::view::{View, ViewBall};
+
+use super::super::view::{CasePass, View, ViewBall};
 use super::{Coach, Pass, Plan};
 
 /// The shot, pass or case chosen in open play, its robot, and since when.

@@ -1,8 +1,9 @@
 //! Tests: every robot has one plausible order in every phase.
 
 use super::*;
-use crate::strategy::pass::bridge::{CasePass, RADIUS};
+use crate::strategy::pass::bridge::RADIUS;
 use crate::strategy::threat::Guards;
+use crate::strategy::view::CasePass;
 use crate::strategy::view::ViewBall;
 use crate::strategy::view::tests::view;
 use casebase::CaseRobot;

@@ -1,24 +1,9 @@
 //! `bridge`: refinement of a retrieved case's pass point by P(receive) · P(goal) near its adapted position
 //! (docs/papers.md §8: the case gives the intent, the evaluator its parameters). Attack frame, m.
 
-use casebase::CaseRobot;
 use geometry::{Angle, Attack, Point, Vector, math};
-use protocol::{CaseId, RobotId};
 
 use super::scene::{PassScene, Rating};
-
-/// The next pass of a case that is being played.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CasePass {
-    /// The stored case being played.
-    pub case: CaseId,
-    /// The passer, and its robot in the case.
-    pub passer: (RobotId, CaseRobot),
-    /// The receiver, and its robot in the case.
-    pub receiver: (RobotId, CaseRobot),
-    /// The place of its reception in the adapted case.
-    pub at: Point<Attack>,
-}
 
 /// A case's pass point, refined.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -14,8 +14,8 @@ mod measure {
     use core::hint::black_box;
 
     use cortex_m_semihosting::{debug, hprintln};
-    use motion_bench::{Counted, SEED, TASKS, Tasks};
     use panic_semihosting as _;
+    use workloads::motion::{Counted, SEED, TASKS, Tasks};
     // Links its functions of the run-time ABI.
     use runtime as _;
 

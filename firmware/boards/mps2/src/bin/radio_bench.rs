@@ -15,7 +15,7 @@ mod measure {
 
     use cortex_m_semihosting::{debug, hprintln};
     use panic_semihosting as _;
-    use radio_bench::{Bench, ROUNDS, Work};
+    use workloads::radio::{Bench, ROUNDS, Work};
     // Links its functions of the run-time ABI.
     use runtime as _;
 

@@ -18,7 +18,9 @@ mod measure {
     use casebase::{CaseBase, RetrievalSettings, retrieve, retrieve_best};
     use cortex_m_semihosting::{debug, hprintln};
     use panic_semihosting as _;
-    use retrieval_bench::{Answer, LEN_MAX, PROBLEMS_ADDRESS, TABLE_ADDRESS, behind_header, problems, scan};
+    use workloads::retrieval::{
+        Answer, LEN_MAX, PROBLEMS_ADDRESS, TABLE_ADDRESS, behind_header, problems, scan,
+    };
     // Links its functions of the run-time ABI.
     use runtime as _;
 

@@ -1,7 +1,7 @@
 //! `labels`: label placement without overlaps. Symbols are registered first, then each name takes the first
 //! free side.
 
-use drawing::{Anchor, At, Font, Svg, width};
+use crate::{Anchor, At, Font, Svg, width};
 
 /// Names to be placed, and occupied areas. mm.
 #[derive(Debug, Default)]

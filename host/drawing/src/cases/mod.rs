@@ -1,4 +1,4 @@
-//! `draw`: figures of a case base as SVG text, in mm of the field.
+//! `cases`: figures of a case base as SVG text, in mm of the field.
 
 mod case;
 mod description;
@@ -7,6 +7,5 @@ mod labels;
 mod sheet;
 
 pub use case::{CasePicture, Overlay, case_picture};
-pub use drawing::Theme;
 pub use heat::{CATEGORIES_MAX, HeatMap, Scale, heat_map, heat_maps};
 pub use sheet::sheet;

@@ -1,12 +1,10 @@
-//! `retrieval_bench`: the baselines that retrieval is measured against, and the exchange of problems and
+//! `retrieval`: the baselines that retrieval is measured against, and the exchange of problems and
 //! answers with the measured board.
 //!
 //! [`scan`] is the plain linear scan of docs/case-format.md §3: every case in turn, no index, no short cut.
 //! [`encode`] and [`problems`] carry problems to a board, [`Answer`] brings back its results and their
 //! instruction counts. Runs on the PC and in the bench's firmware image (`retrieval-bench` of the QEMU
 //! board); `cargo xtask bench retrieval` drives both.
-#![forbid(unsafe_code)]
-#![no_std]
 
 mod exchange;
 mod scan;

@@ -1,6 +1,6 @@
 //! `sheet`: one page with a small figure of every case of a library, grouped by region.
 
-use drawing::{Anchor, Font, Svg, Theme, half_extent};
+use crate::{Anchor, Font, Svg, Theme, half_extent};
 
 use super::case::{CasePicture, small};
 

@@ -8,7 +8,7 @@ use casebase::{
     ScopeRule, adapted_position,
 };
 
-use drawing::{Anchor, At, Colors, Font, Svg, Theme, draw_field, half_extent, wrapped};
+use crate::{Anchor, At, Colors, Font, Svg, Theme, draw_field, half_extent, wrapped};
 
 use super::description;
 use super::labels::Labels;
@@ -70,7 +70,7 @@ fn scene<'p>(picture: &'p CasePicture<'p>, zoom: f64) -> Pen {
     scene.ball_scope(&mut pen);
     scene.opponents(&mut pen);
     scene.legs(&mut pen);
-    scene.robot_paths(&mut pen);
+    scene.paths(&mut pen);
     scene.robots(&mut pen);
     if let Some(overlay) = &picture.overlay {
         scene.situation(&mut pen, overlay);
@@ -222,7 +222,7 @@ impl Scene<'_, '_> {
     }
 
     /// Movements without the ball and with it.
-    fn robot_paths(&self, pen: &mut Pen) {
+    fn paths(&self, pen: &mut Pen) {
         let case = &self.picture.case;
         let shift = case.shift(self.ball);
         for robot in case.robots() {

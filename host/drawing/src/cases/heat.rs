@@ -1,7 +1,7 @@
 //! `heat`: heat map of the field as SVG. A grid of values over the field with its legend and caption.
 
+use crate::{Anchor, At, Colors, Font, Svg, Theme, draw_field, field_lines, half_extent, width, wrapped};
 use casebase::{FieldMm, PointMm};
-use drawing::{Anchor, At, Colors, Font, Svg, Theme, draw_field, field_lines, half_extent, width, wrapped};
 
 /// A grid of values over the field.
 #[derive(Clone, Debug)]

@@ -1,10 +1,8 @@
-//! `motion_bench`: motion benchmark tasks. The same on a board and on the PC, to the last bit.
+//! `motion`: motion benchmark tasks. The same on a board and on the PC, to the last bit.
 //!
 //! Tasks are drawn from a seed, so no task data goes to the board; counts and a hash of the results come
 //! back. Runs in the bench's firmware (`motion-bench` of the QEMU board) and in `cargo xtask bench motion`,
 //! which drives both. SI units.
-#![forbid(unsafe_code)]
-#![no_std]
 
 use core::fmt;
 

@@ -1,8 +1,6 @@
-//! `radio-bench`: tasks of the radio benchmark, one robot's end of it: each kind of message sealed and
+//! `radio`: tasks of the radio benchmark, one robot's end of it: each kind of message sealed and
 //! opened, shortest and longest, and frames refused. The same frames in the bench's firmware (`radio-bench`
 //! of the QEMU board) and in `cargo xtask bench radio`, which drives it.
-#![no_std]
-#![forbid(unsafe_code)]
 
 use geometry::GoalEnd;
 use protocol::frame::{Audience, TeamKey};
