@@ -84,7 +84,7 @@ fn fewer_robots_than_the_case_needs_are_reported() {
     assert_eq!(winner(&library, &alone), None);
     let mut verdicts = Vec::new();
     explain(&library.base(), &alone, &RetrievalSettings::default(), |id, verdict| {
-        verdicts.push((id.0, verdict))
+        verdicts.push((id.0, verdict));
     });
     assert_eq!(verdicts, [0, 1].map(|id| (id, CaseVerdict::Robots { needed: 2, present: 1 })));
 }

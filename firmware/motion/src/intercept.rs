@@ -320,7 +320,7 @@ mod tests {
                 (InterceptVerdict::Intercepts(best), InterceptVerdict::Intercepts(found))
                     if best == found =>
                 {
-                    same += 1
+                    same += 1;
                 }
                 (InterceptVerdict::Intercepts(best), InterceptVerdict::Intercepts(found)) => {
                     let by = found.ball_time - best.ball_time;

@@ -266,7 +266,7 @@ impl TeamPort {
                 match self.asked.take() {
                     None | Some(TeamPortRequest::Ping) => {}
                     Some(request) if rejected => {
-                        self.events.push_back(TeamPortEvent::Refused { request, reason })
+                        self.events.push_back(TeamPortEvent::Refused { request, reason });
                     }
                     Some(request) => self.events.push_back(TeamPortEvent::Granted(request)),
                 }

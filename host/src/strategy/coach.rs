@@ -172,7 +172,7 @@ impl Coach {
         match view.phase {
             _ if self.team == Team::Idle => plan.all_robots(Role::Player, Task::Stand, OrderReason::Idle),
             Phase::Halt | Phase::Timeout(_) => {
-                plan.all_robots(Role::Player, Task::Stand, OrderReason::Referee)
+                plan.all_robots(Role::Player, Task::Stand, OrderReason::Referee);
             }
             Phase::Run => match &mut self.model {
                 Some(model) => {

@@ -269,7 +269,7 @@ impl InternalReferee {
         }
         match robots.iter().find(|robot| robot.who == keeper) {
             None => {
-                found.push(ReadyObstacle { team: Some(team.other()), robot: None, reason: Reason::NoKeeper })
+                found.push(ReadyObstacle { team: Some(team.other()), robot: None, reason: Reason::NoKeeper });
             }
             Some(robot) => {
                 let place = robot.pose.position;

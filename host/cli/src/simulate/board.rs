@@ -102,7 +102,7 @@ impl Board {
             match request {
                 UserRequest::Pause { on } => wanted.pace = Some(if on { 0.0 } else { self.speed }),
                 UserRequest::Step { ticks } => {
-                    (wanted.pace, wanted.ticks) = (Some(0.0), wanted.ticks + ticks)
+                    (wanted.pace, wanted.ticks) = (Some(0.0), wanted.ticks + ticks);
                 }
                 UserRequest::Restart { seed } => wanted.restart = Some(seed.unwrap_or(self.seed)),
                 UserRequest::Speed { factor } => {
