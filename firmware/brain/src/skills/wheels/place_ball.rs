@@ -58,15 +58,15 @@ pub struct Placement {
     placing: Placing,
     /// What it does, it does since then.
     since: Instant,
-    /// The last try was a kick off a wall: no try is like the one before.
-    kicked: bool,
+    /// Tries at a wall so far; odd: the last was a kick off it. No try is like the one before.
+    tries: u8,
     /// Share of the acceleration with which the ball followed the dribbler so far.
     grip: f32,
 }
 
 impl Default for Placement {
     fn default() -> Self {
-        Self { placing: Placing::Fetching, since: Instant::default(), kicked: false, grip: 1.0 }
+        Self { placing: Placing::Fetching, since: Instant::default(), tries: 0, grip: 1.0 }
     }
 }
 
@@ -75,7 +75,7 @@ impl Placement {
     pub fn end(&mut self) {
         if self.since != Instant::default() {
             self.grip = (GROWS * self.grip).min(1.0);
-            (self.placing, self.since, self.kicked) = (Placing::Fetching, Instant::default(), false);
+            (self.placing, self.since, self.tries) = (Placing::Fetching, Instant::default(), 0);
         }
     }
 
@@ -95,7 +95,7 @@ impl Placement {
 
     /// A ball at a wall that does not follow is kicked off it, in turns with pulling: facing so.
     fn kicks(&self, belief: &Belief, ball: &Ball, at: Point<Field>) -> Option<Angle> {
-        if self.grip > KICKS_BELOW || self.kicked {
+        if self.grip > KICKS_BELOW || self.tries & 1 == 1 {
             return None;
         }
         kick_off(&belief.league().field(), ball.position, at, self.wall(belief, ball, at)?)
@@ -105,7 +105,7 @@ impl Placement {
     fn lost(&mut self, felt: Instant) {
         let share = if felt.since(self.since) < AT_ONCE { LOSES_AT_ONCE } else { LOSES };
         self.grip = (self.grip * share).max(GRIP_LEAST);
-        self.kicked = false;
+        self.tries = (self.tries + 1) & 6;
     }
 }
 
@@ -131,7 +131,7 @@ pub fn place_ball(now: Instant, placement: &mut Placement, belief: &Belief, at: 
             let to = ball.position - Vector::polar(BALL_AT - FEELS_INTO, heading);
             let drive = Drive { speed: FEELS_AT, ..Drive::holding(to, heading) };
             match kicks {
-                Some(face) if (face - heading).abs() < KICKS_WITHIN => ways::kicking(drive).into(),
+                Some(face) if (face - heading).abs() < KICKS_WITHIN => ways::kicking(placement, drive).into(),
                 _ => drive.into(),
             }
         }
@@ -142,7 +142,7 @@ pub fn place_ball(now: Instant, placement: &mut Placement, belief: &Belief, at: 
         Placing::Pulling { out, loose, .. } => {
             // Not yet sure in the grip: on ahead with it.
             if now.since(placement.since) < SEATS || loose && belief.velocity.norm() < AT_REST {
-                let on = me + Vector::polar(AT_FRONT, heading);
+                let on = me + Vector::polar(COMES_ON, heading);
                 return Drive { speed: COMES_BACK, ..Drive::holding(on, heading) }.into();
             }
             let drive = pull(belief, at, out, placement.grip);
@@ -193,7 +193,7 @@ fn next(
     match placement.placing {
         // The kick is out.
         Placing::Fetching | Placing::Feeling if kicks && !belief.kicker_ready && clear < GAP => {
-            placement.kicked ^= true;
+            placement.tries = (placement.tries + 1) & 7;
             Placing::Revealing { facing: heading }
         }
         Placing::Fetching | Placing::Feeling | Placing::Revealing { .. } if belief.holds_ball && !kicks => {
@@ -204,13 +204,13 @@ fn next(
         // Not so: another way.
         Placing::Fetching if clear < NEAR && age > FETCHES => {
             placement.since = now;
-            placement.kicked ^= true;
+            placement.tries = (placement.tries + 1) & 7;
             Placing::Fetching
         }
         Placing::Fetching if at_front && slow && aligned => Placing::Feeling,
         Placing::Feeling if !at_front || !aligned => Placing::Fetching,
         Placing::Feeling if age > FEELS => {
-            placement.kicked ^= true;
+            placement.tries = (placement.tries + 1) & 7;
             Placing::Revealing { facing: heading }
         }
         Placing::Revealing { .. } if clear > REVEALS - GAP || age > REVEALED => Placing::Fetching,
@@ -265,14 +265,14 @@ fn next(
 const FOLLOWS: f32 = 0.3;
 /// And it is no worse than this where it came off a wall.
 const FOLLOWED: f32 = 0.07;
-/// With a smaller one, it is kicked off walls: 0.18 m/s².
-const KICKS_BELOW: f32 = 0.1;
+/// With a smaller one, it is kicked off walls: 0.2 m/s².
+const KICKS_BELOW: f32 = 0.12;
 /// How much farther a ball is pulled off a wall than it must be, m.
 const CLEARS: f32 = 0.04;
 /// What each loss leaves of the acceleration, …
 const LOSES: f32 = 0.5;
 /// … and one that comes within this time; …
-const LOSES_AT_ONCE: f32 = 0.25;
+const LOSES_AT_ONCE: f32 = 0.1;
 const AT_ONCE: Duration = Duration::millis(500);
 /// … no less than this: 0.07 m/s²; …
 const GRIP_LEAST: f32 = 0.04;
@@ -295,7 +295,9 @@ const FEELS_INTO: f32 = 0.035;
 /// … so fast, m/s: a body that comes on for a centimetre squeezes the ball out.
 const FEELS_AT: f32 = 0.12;
 /// And so fast to a ball that fell back, m/s.
-const COMES_BACK: f32 = 0.2;
+const COMES_BACK: f32 = 0.25;
+/// Aiming so far ahead, m: nearer, it would hardly move.
+const COMES_ON: f32 = 0.08;
 /// A robot that feels no ball there for so long does not press on: the ball is elsewhere, or its barrier is blind.
 const FEELS: Duration = Duration::millis(500);
 /// One that is this near and does not get the ball for so long tries another way, m.
