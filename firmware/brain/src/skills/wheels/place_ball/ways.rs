@@ -63,8 +63,11 @@ pub(super) fn kicking(placement: &Placement, drive: Drive) -> Drive {
 }
 
 /// Backwards with the ball: straight away from a wall, or to its place, with this share of the acceleration.
-pub(super) fn pull(belief: &Belief, at: Point<Field>, out: Option<Angle>, gentle: f32) -> Drive {
+pub(super) fn pull(belief: &Belief, at: Point<Field>, out: Option<Angle>, placement: &Placement) -> Drive {
     let me = belief.pose.position;
+    let gentle = placement.grip;
+    // What hardly holds still holds a ball that gets no faster.
+    let speed = if gentle < FOLLOWS { HELD } else { placement.pace };
     let Some(out) = out else {
         // Facing away from the place; at the end the heading stays.
         let far = belief.dribbler_point().distance(at) > KEEPS_HEADING;
@@ -72,9 +75,9 @@ pub(super) fn pull(belief: &Belief, at: Point<Field>, out: Option<Angle>, gentle
         // Sideways a roller holds less than towards the robot.
         let share = if (face - belief.pose.heading).abs() > TURNS { SIDEWAYS } else { 1.0 };
         let to = at - Vector::polar(BALL_AT, face);
-        return Drive { speed: PULL, gentle: share * gentle, ..Drive::holding(to, face) };
+        return Drive { speed, gentle: share * gentle, ..Drive::holding(to, face) };
     };
-    Drive { speed: PULL, gentle, ..Drive::holding(me - Vector::polar(CLEAR_OF_WALL, out), out) }
+    Drive { speed, gentle, ..Drive::holding(me - Vector::polar(CLEAR_OF_WALL, out), out) }
 }
 
 /// From behind, with what the dribbler holds.
@@ -82,7 +85,7 @@ pub(super) fn push(belief: &Belief, ball: &Ball, at: Point<Field>, grip: f32) ->
     let face = ball.position.direction_to(at);
     // So slow that the ball rests at the place when it rolls on from here, and no slower than it starts at all.
     let rolls = SLOWS.iter().find(|(held, _)| grip > *held).map_or(ROLLS, |(_, brakes)| *brakes);
-    let left = ball.position.distance(at) - LAG * belief.velocity.norm();
+    let left = ball.position.distance(at) - SHORT - LAG * belief.velocity.norm();
     let speed = math::sqrt(2.0 * rolls * left.max(0.0)).clamp(CREEP, PUSH);
     let to = ball.position + Vector::polar(AHEAD - BALL_AT, face);
     Drive { speed, gentle: PUSHES, ..Drive::holding(to, face) }.into()
@@ -158,7 +161,7 @@ pub(super) fn kick_off(field: &FieldSpec, ball: Point<Field>, at: Point<Field>, 
     };
     let left = ahead.cross(towards) > 0.0;
     let face = out + Angle::new(if left { KICKS_ASKEW } else { -KICKS_ASKEW });
-    stands(field, ball - Vector::polar(BEHIND, face), 0.0).then_some(face)
+    stands(field, ball - Vector::polar(BEHIND, face), -TIGHT).then_some(face)
 }
 
 /// A body has this much room there beyond what it needs, m.
@@ -174,8 +177,6 @@ const ASIDE: f32 = 0.22;
 const GOES_BY: f32 = 0.16;
 /// With so much room on both sides it goes as it likes, m.
 const NARROW: f32 = 0.2;
-/// How fast a ball is pulled, m/s.
-const PULL: f32 = 1.4;
 /// How fast it comes to the ball, m/s.
 const GO_IN: f32 = 0.3;
 /// The same at a wall, m/s: a body that comes on for a centimetre squeezes the ball out of its mouth.
@@ -185,7 +186,7 @@ const ROLLING: f32 = 0.3;
 /// The ball is there, m: less than the rules' 0.15.
 pub(super) const NEAR_ENOUGH: f32 = 0.1;
 /// With this a ball is kicked off a wall, m/s: it leaves a board with 0.4 to 0.8 across and rests within a metre; …
-const OFF_WALL: f32 = 2.0;
+const OFF_WALL: f32 = 2.2;
 /// … and so much more for each try before, m/s.
 const STRONGER: f32 = 0.5;
 /// Off the wall's normal, rad: 40°, more leaves no room for the body, and with less the ball comes back to it.
@@ -194,6 +195,8 @@ const KICKS_ASKEW: f32 = 0.7;
 const ASKEW_OUT: f32 = 0.2;
 /// How fast a ball is pushed at first, m/s.
 const PUSH: f32 = 2.0;
+/// How fast a ball is pulled off a wall that does not follow, m/s.
+const HELD: f32 = 0.16;
 /// A ball before the front does not get lost by speeding up: share of the acceleration.
 const PUSHES: f32 = 1.6;
 /// A pushed ball is slowed down by this on the way, m/s²: about as carpets do, so that it stays near the front.
@@ -204,6 +207,8 @@ const SLOWS: [(f32, f32); 3] = [(0.3, 1.0), (0.15, 0.7), (0.045, 0.55)];
 const CREEP: f32 = 0.2;
 /// The ball is ahead of where it is shown by what it does in so long, s: picture, radio, a step; estimate.
 const LAG: f32 = 0.05;
+/// It ends this far before the place, m: within what the rules allow, and half a second sooner.
+const SHORT: f32 = 0.05;
 /// A push aims this far ahead on the ball's way, m: no less than a robot takes to brake.
 const AHEAD: f32 = 0.7;
 /// A pushed ball this far beside the middle is lost, m; ahead, m.
@@ -213,6 +218,8 @@ const ESCAPED: f32 = 0.5;
 const BEHIND: f32 = BALL_AT + 0.1;
 /// A body, and room to get there, m.
 const BODY: f32 = ROBOT_RADIUS + 0.03;
+/// So much less is needed to kick than to go around, m.
+const TIGHT: f32 = 0.02;
 /// A ball this near a wall leaves no room for a body beside it that turns, m; …
 const WALL_ROOM: f32 = 0.16;
 /// … and this near none for one that goes along.
