@@ -350,11 +350,11 @@ const SEATS: Duration = Duration::millis(120);
 /// A ball that slipped off rolls on after the robot that brakes; it is felt again within this, or lost.
 const REGAINS: Duration = Duration::millis(800);
 /// Pushed this near, a ball is let roll on, m.
-const PUSHED: f32 = 0.08;
+const PUSHED: f32 = 0.1;
 /// It looks this much askew of where a ball is pushed to, rad: it is not behind it.
 const ASKEW: f32 = 0.6;
 /// The dribbler runs out for so long.
-const RUNS_OUT: Duration = Duration::millis(300);
+const RUNS_OUT: Duration = Duration::millis(200);
 /// So far back a robot may turn and go around the ball without touching it, m.
 const STEP_BACK: f32 = 0.06;
 /// How far off the robot goes, centre to ball, m: 0.5 by the rules, its body, and a margin.

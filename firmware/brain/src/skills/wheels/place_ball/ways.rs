@@ -184,7 +184,7 @@ const GO_IN_AT_WALL: f32 = 0.12;
 /// A faster ball is met, m/s.
 const ROLLING: f32 = 0.3;
 /// The ball is there, m: less than the rules' 0.15.
-pub(super) const NEAR_ENOUGH: f32 = 0.1;
+pub(super) const NEAR_ENOUGH: f32 = 0.12;
 /// With this a ball is kicked off a wall, m/s: it leaves a board with 0.4 to 0.8 across and rests within a metre; …
 const OFF_WALL: f32 = 2.2;
 /// … and so much more for each try before, m/s.
@@ -208,7 +208,7 @@ const CREEP: f32 = 0.2;
 /// The ball is ahead of where it is shown by what it does in so long, s: picture, radio, a step; estimate.
 const LAG: f32 = 0.05;
 /// It ends this far before the place, m: within what the rules allow, and half a second sooner.
-const SHORT: f32 = 0.05;
+const SHORT: f32 = 0.07;
 /// A push aims this far ahead on the ball's way, m: no less than a robot takes to brake.
 const AHEAD: f32 = 0.7;
 /// A pushed ball this far beside the middle is lost, m; ahead, m.
