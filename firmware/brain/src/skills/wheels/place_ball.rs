@@ -157,8 +157,9 @@ pub fn place_ball(now: Instant, placement: &mut Placement, belief: &Belief, at: 
             // Not yet sure in the grip: on ahead with it.
             let backs = -belief.velocity.dot(Vector::polar(1.0, heading));
             if now.since(placement.since) < SEATS || loose && backs < EASED {
-                let on = me + Vector::polar(COMES_ON, heading);
-                return Drive { speed: COMES_BACK, ..Drive::holding(on, heading) }.into();
+                let (on, speed) = if loose { (COMES_ON, COMES_BACK) } else { (AT_FRONT, SEATS_AT) };
+                let on = me + Vector::polar(on, heading);
+                return Drive { speed, ..Drive::holding(on, heading) }.into();
             }
             let drive = pull(belief, at, out, placement);
             // It falls back: slower than it rolls, and it comes.
@@ -347,6 +348,8 @@ const KICKS_WITHIN: f32 = 0.2;
 const FLICKERS: Duration = Duration::millis(30);
 /// A ball that is felt may still be out of the roller's reach: it is pressed for so long.
 const SEATS: Duration = Duration::millis(120);
+/// So fast, m/s: at a wall a faster body squeezes the ball out.
+const SEATS_AT: f32 = 0.2;
 /// A ball that slipped off rolls on after the robot that brakes; it is felt again within this, or lost.
 const REGAINS: Duration = Duration::millis(800);
 /// Pushed this near, a ball is let roll on, m.
