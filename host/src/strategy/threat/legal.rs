@@ -3,7 +3,7 @@
 use geometry::{Attack, Field, GoalEnd, Point, Vector};
 use rules::keep_out::{KeepOut, Situation, keep_out};
 use rules::limits::{OPPONENT_AREA_DISTANCE, ROBOT_RADIUS};
-use rules::{Phase, RuleRole};
+use rules::{Phase, RuleRole, Side};
 
 use super::super::restart;
 use super::super::view::View;
@@ -50,6 +50,7 @@ pub fn legal_for(
     let free = |place: &Point<Attack>| {
         let body = Point::new(place.x(), place.y());
         rules.offence(body, ROBOT_RADIUS + margin).is_none()
+            && !in_the_way(view, rule_role, *place)
             && taken.iter().all(|other| other.distance(*place) >= SIDE_BY_SIDE)
     };
     if free(&place) {
@@ -69,6 +70,12 @@ pub fn legal_for(
 /// Half a turn: maps their end to ours.
 fn turned(at: Point<Attack>) -> Point<Attack> {
     Point::new(-at.x(), -at.y())
+}
+
+/// Whether a robot there leaves our own placer no room at the ball: the rules let it stand there.
+fn in_the_way(view: &View, rule_role: RuleRole, at: Point<Attack>) -> bool {
+    let placed = matches!(view.phase, Phase::BallPlacement(Side::Ours)) && rule_role != RuleRole::Kicker;
+    placed && view.ball.is_some_and(|ball| ball.position.distance(at) < PLACER_NEEDS)
 }
 
 /// Where a body of that role must not be, in the attack frame: we defend −x in it, as a team of that end does
@@ -91,6 +98,8 @@ const MARGIN: f32 = 0.01;
 /// The same while the ball is not in play, m: the robots' own margin (0.04, `brain`'s surroundings), less
 /// rounding. Robots would not go to a nearer place.
 const MARGIN_STOPPED: f32 = 0.038;
+/// From the ball to other robots' centres while we place it, m: the placer goes around it, 0.28 m off, and needs a body beyond that.
+const PLACER_NEEDS: f32 = 0.5;
 /// Least distance of two places, m: two bodies and the gap between two defenders of one line (`defence`,
 /// `SHOULDER`).
 const SIDE_BY_SIDE: f32 = 0.2;
@@ -103,7 +112,23 @@ const SPOKES: u32 = 24;
 mod tests {
     use super::super::super::view::tests::view;
     use super::*;
-    use rules::{League, Side};
+    use rules::League;
+
+    #[test]
+    fn while_we_place_the_ball_no_other_robot_is_sent_to_it() {
+        // Beside our area the way off the ball leads into it.
+        let settings = Settings::default();
+        let ball = Point::new(-4.44, 1.17);
+        let mut view = view((-4.44, 1.17), &[(0.0, 0.0)], &[]);
+        view.phase = Phase::BallPlacement(Side::Ours);
+        view.placement = Some(Point::new(-2.0, 0.9));
+        for at in [(-4.41, 1.13), (-4.4, 1.2), (-4.3, 1.0)] {
+            let place = legal_for(&view, RuleRole::Player, Point::new(at.0, at.1), &[], &settings);
+            assert!(place.distance(ball) >= PLACER_NEEDS, "{at:?}: {place:?}");
+        }
+        let at = Point::new(-4.4, 1.2);
+        assert!(legal_for(&view, RuleRole::Kicker, at, &[], &settings).distance(at) < 1e-6);
+    }
 
     #[test]
     fn a_place_is_moved_to_where_the_rules_let_a_player_be() {

@@ -67,7 +67,7 @@ pub fn approach(belief: &Belief, ball: &BelievedBall, face: Angle, speed: f32) -
     let behind = ball.position - ahead * (BALL_AT + stand_off) + ball.velocity * LEAD;
     let drive = Drive::avoiding(behind, face);
     // Slow at its end where there is time, or what the robot is behind in time takes it past.
-    let settles = SETTLES * belief.pose.position.distance(behind) + SIDESTEP;
+    let settles = math::sqrt(SETTLES * belief.pose.position.distance(behind)) + DRIFTS;
     Approach::Around(Drive { speed: if belief.is_placing() { settles } else { drive.speed }, ..drive })
 }
 
@@ -173,8 +173,8 @@ const SIDESTEPS: f32 = 0.1;
 const DRIFTS: f32 = 0.1;
 /// How fast, m/s: what it is behind in time makes it overshoot a faster step.
 const SIDESTEP: f32 = 0.25;
-/// How fast the rest of a way is gone, 1/s.
-const SETTLES: f32 = 4.0;
+/// Twice the deceleration at the end of a way, m/s²: what a robot is behind in time takes one that brakes harder 0.1 m too far.
+const SETTLES: f32 = 5.0;
 /// And so much wider a metre farther back.
 const WIDENS: f32 = 0.2;
 /// It looks the right way within this, rad.

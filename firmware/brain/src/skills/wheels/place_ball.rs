@@ -58,15 +58,26 @@ pub struct Placement {
     placing: Placing,
     /// What it does, it does since then.
     since: Instant,
-    /// The last try was a kick off a wall: no try is like the one before.
-    kicked: bool,
+    /// Tries at a wall so far; odd: the last was a kick off it. No try is like the one before.
+    tries: u8,
+    /// Not to the ball as it would, but from its other side: no body could get there.
+    other_side: bool,
     /// Share of the acceleration with which the ball followed the dribbler so far.
     grip: f32,
+    /// The speed at which it followed, m/s: a roller may hold less of a fast ball.
+    pace: f32,
 }
 
 impl Default for Placement {
     fn default() -> Self {
-        Self { placing: Placing::Fetching, since: Instant::default(), kicked: false, grip: 1.0 }
+        Self {
+            placing: Placing::Fetching,
+            since: Instant::default(),
+            tries: 0,
+            other_side: false,
+            grip: 1.0,
+            pace: PULL,
+        }
     }
 }
 
@@ -74,8 +85,7 @@ impl Placement {
     /// It is over; another one by the same robot begins with what its dribbler held.
     pub fn end(&mut self) {
         if self.since != Instant::default() {
-            self.grip = (GROWS * self.grip).min(1.0);
-            (self.placing, self.since, self.kicked) = (Placing::Fetching, Instant::default(), false);
+            *self = Self { grip: (GROWS * self.grip).min(1.0), pace: self.pace, ..Self::default() };
         }
     }
 
@@ -83,7 +93,8 @@ impl Placement {
     fn pushes(&self, belief: &Belief, ball: &BelievedBall, at: Point<Field>) -> bool {
         let behind = (ball.position - belief.pose.position).dot(at - ball.position) > 0.0;
         let pulled = matches!(self.placing, Placing::Pulling { .. });
-        behind && !pulled || self.grip < FOLLOWS
+        let creeps = ball.position.distance(at) * (1.0 / self.pace - ON_PUSHED) > GOES_AROUND;
+        (behind && !pulled || creeps || self.grip < FOLLOWS) != self.other_side
     }
 
     /// The direction out of the field, where a wall is in the way of what it means to do.
@@ -95,17 +106,20 @@ impl Placement {
 
     /// A ball at a wall that does not follow is kicked off it, in turns with pulling: facing so.
     fn kicks(&self, belief: &Belief, ball: &BelievedBall, at: Point<Field>) -> Option<Angle> {
-        if self.grip > KICKS_BELOW || self.kicked {
+        if self.grip > KICKS_BELOW || self.tries & 1 == 1 {
             return None;
         }
         kick_off(&belief.league().field(), ball.position, at, self.wall(belief, ball, at)?)
     }
 
     /// The ball fell back: on the way, or as soon as the robot backed up.
-    fn lost(&mut self, felt: Instant) {
+    fn lost(&mut self, felt: Instant, speed: f32) {
         let share = if felt.since(self.since) < AT_ONCE { LOSES_AT_ONCE } else { LOSES };
         self.grip = (self.grip * share).max(GRIP_LEAST);
-        self.kicked = false;
+        if speed > FAST {
+            self.pace = SLOWER * speed;
+        }
+        self.tries = (self.tries + 1) & 6;
     }
 }
 
@@ -131,7 +145,7 @@ pub fn place_ball(now: Instant, placement: &mut Placement, belief: &Belief, at: 
             let to = ball.position - Vector::polar(BALL_AT - FEELS_INTO, heading);
             let drive = Drive { speed: FEELS_AT, ..Drive::holding(to, heading) };
             match kicks {
-                Some(face) if (face - heading).abs() < KICKS_WITHIN => ways::kicking(drive).into(),
+                Some(face) if (face - heading).abs() < KICKS_WITHIN => ways::kicking(placement, drive).into(),
                 _ => drive.into(),
             }
         }
@@ -141,13 +155,15 @@ pub fn place_ball(now: Instant, placement: &mut Placement, belief: &Belief, at: 
         }
         Placing::Pulling { out, loose, .. } => {
             // Not yet sure in the grip: on ahead with it.
-            if now.since(placement.since) < SEATS || loose && belief.velocity.norm() < AT_REST {
-                let on = me + Vector::polar(AT_FRONT, heading);
-                return Drive { speed: COMES_BACK, ..Drive::holding(on, heading) }.into();
+            let backs = -belief.velocity.dot(Vector::polar(1.0, heading));
+            if now.since(placement.since) < SEATS || loose && backs < EASED {
+                let (on, speed) = if loose { (COMES_ON, COMES_BACK) } else { (AT_FRONT, SEATS_AT) };
+                let on = me + Vector::polar(on, heading);
+                return Drive { speed, ..Drive::holding(on, heading) }.into();
             }
-            let drive = pull(belief, at, out, placement.grip);
+            let drive = pull(belief, at, out, placement);
             // It falls back: slower than it rolls, and it comes.
-            if loose { Drive { speed: EASES * belief.velocity.norm(), ..drive } } else { drive }.into()
+            if loose { Drive { speed: EASES * backs, ..drive } } else { drive }.into()
         }
         Placing::Pushing => push(belief, &ball, at, placement.grip),
         Placing::Letting => {
@@ -193,29 +209,36 @@ fn next(
     match placement.placing {
         // The kick is out.
         Placing::Fetching | Placing::Feeling if kicks && !belief.kicker_ready && clear < GAP => {
-            placement.kicked ^= true;
+            placement.tries = (placement.tries + 1) & 7;
             Placing::Revealing { facing: heading }
         }
         Placing::Fetching | Placing::Feeling | Placing::Revealing { .. } if belief.holds_ball && !kicks => {
             let out = placement.wall(belief, ball, at);
+            placement.other_side = false;
             let askew = (ball.position.direction_to(at) - heading).abs();
             if askew < ASKEW { Placing::Pushing } else { Placing::Pulling { felt: now, out, loose: false } }
         }
         // Not so: another way.
-        Placing::Fetching if clear < NEAR && age > FETCHES => {
+        Placing::Fetching if clear < NEAR && slow && age > FETCHES => {
             placement.since = now;
-            placement.kicked ^= true;
+            placement.other_side ^= true;
+            placement.tries = (placement.tries + 1) & 7;
             Placing::Fetching
         }
         Placing::Fetching if at_front && slow && aligned => Placing::Feeling,
         Placing::Feeling if !at_front || !aligned => Placing::Fetching,
         Placing::Feeling if age > FEELS => {
-            placement.kicked ^= true;
+            placement.tries = (placement.tries + 1) & 7;
             Placing::Revealing { facing: heading }
         }
         Placing::Revealing { .. } if clear > REVEALS - GAP || age > REVEALED => Placing::Fetching,
         Placing::Fetching if off < NEAR_ENOUGH && slow && clear > GAP => {
             Placing::Leaving { facing: belief.pose.position.direction_to(ball.position) }
+        }
+        // It is not at the ball yet.
+        Placing::Fetching if clear > NEAR || !slow => {
+            placement.since = now;
+            Placing::Fetching
         }
         Placing::Pulling { felt, out, loose } => {
             let gone = now.since(felt);
@@ -231,7 +254,7 @@ fn next(
             let out = out.filter(|_| !free);
             if belief.contact() {
                 // It has come back to the light barrier, which sees farther than the roller reaches.
-                if loose && belief.velocity.norm() < SLOW {
+                if loose && belief.velocity.dot(Vector::polar(1.0, heading)) > -SLOW {
                     placement.since = now;
                 }
                 return Placing::Pulling { felt: now, out, loose: false };
@@ -241,13 +264,13 @@ fn next(
             }
             let falls = gone > FLICKERS;
             if falls && !loose {
-                placement.lost(felt);
+                placement.lost(felt, belief.velocity.norm());
             }
             Placing::Pulling { felt, out, loose: falls }
         }
         Placing::Pushing if off < PUSHED => Placing::Letting,
         Placing::Pushing if strays(belief, ball, at) => {
-            placement.lost(now);
+            placement.lost(now, 0.0);
             Placing::Fetching
         }
         Placing::Letting if age > RUNS_OUT => Placing::Leaving { facing: heading },
@@ -263,23 +286,34 @@ fn next(
 
 /// With a larger share of the acceleration left, a ball is pulled all the way: 0.5 m/s².
 const FOLLOWS: f32 = 0.3;
-/// And it is no worse than this where it came off a wall.
-const FOLLOWED: f32 = 0.07;
 /// With a smaller one, it is kicked off walls: 0.18 m/s².
 const KICKS_BELOW: f32 = 0.1;
+/// And it is no worse than this where it came off a wall.
+const FOLLOWED: f32 = 0.07;
 /// How much farther a ball is pulled off a wall than it must be, m.
 const CLEARS: f32 = 0.04;
 /// What each loss leaves of the acceleration, …
-const LOSES: f32 = 0.5;
+const LOSES: f32 = 0.6;
 /// … and one that comes within this time; …
 const LOSES_AT_ONCE: f32 = 0.25;
-const AT_ONCE: Duration = Duration::millis(500);
+const AT_ONCE: Duration = Duration::millis(800);
+/// One lost on the way at more than this, m/s, came as quickly as it was asked to and no faster: …
+const FAST: f32 = 1.0;
+/// … it is pulled with this share of that speed.
+const SLOWER: f32 = 0.8;
+/// How fast a ball is pulled, m/s.
+const PULL: f32 = 1.4;
+/// What a metre takes that is pushed, s, and getting around to push it: where pulling takes longer, it is pushed.
+const ON_PUSHED: f32 = 0.75;
+const GOES_AROUND: f32 = 2.5;
 /// … no less than this: 0.07 m/s²; …
 const GRIP_LEAST: f32 = 0.04;
 /// … and how much more is tried the next time.
 const GROWS: f32 = 2.0;
 /// A ball that falls back is waited for with this share of the speed.
 const EASES: f32 = 0.6;
+/// Until the robot is no faster than this, m/s: then it comes back for it.
+const EASED: f32 = 0.2;
 /// How fast a robot backs off from it, m/s.
 const LEAVE: f32 = 0.6;
 /// A slower ball rests, m/s.
@@ -295,7 +329,9 @@ const FEELS_INTO: f32 = 0.035;
 /// … so fast, m/s: a body that comes on for a centimetre squeezes the ball out.
 const FEELS_AT: f32 = 0.12;
 /// And so fast to a ball that fell back, m/s.
-const COMES_BACK: f32 = 0.2;
+const COMES_BACK: f32 = 0.25;
+/// Aiming so far ahead, m: nearer, it would hardly move.
+const COMES_ON: f32 = 0.08;
 /// A robot that feels no ball there for so long does not press on: the ball is elsewhere, or its barrier is blind.
 const FEELS: Duration = Duration::millis(500);
 /// One that is this near and does not get the ball for so long tries another way, m.
@@ -312,14 +348,16 @@ const KICKS_WITHIN: f32 = 0.2;
 const FLICKERS: Duration = Duration::millis(30);
 /// A ball that is felt may still be out of the roller's reach: it is pressed for so long.
 const SEATS: Duration = Duration::millis(120);
+/// So fast, m/s: at a wall a faster body squeezes the ball out.
+const SEATS_AT: f32 = 0.2;
 /// A ball that slipped off rolls on after the robot that brakes; it is felt again within this, or lost.
 const REGAINS: Duration = Duration::millis(800);
 /// Pushed this near, a ball is let roll on, m.
-const PUSHED: f32 = 0.08;
+const PUSHED: f32 = 0.1;
 /// It looks this much askew of where a ball is pushed to, rad: it is not behind it.
 const ASKEW: f32 = 0.6;
 /// The dribbler runs out for so long.
-const RUNS_OUT: Duration = Duration::millis(300);
+const RUNS_OUT: Duration = Duration::millis(200);
 /// So far back a robot may turn and go around the ball without touching it, m.
 const STEP_BACK: f32 = 0.06;
 /// How far off the robot goes, centre to ball, m: 0.5 by the rules, its body, and a margin.
@@ -361,11 +399,11 @@ mod tests {
     #[test]
     fn what_falls_back_at_once_is_pulled_more_gently_and_the_robot_remembers_it() {
         let mut placement = Placement { since: Instant(1_000_000), ..Placement::default() };
-        placement.lost(Instant(3_000_000));
+        placement.lost(Instant(3_000_000), 0.2);
         assert!((placement.grip - LOSES).abs() < 1e-6);
-        placement.lost(Instant(1_100_000));
+        placement.lost(Instant(1_100_000), 0.2);
         assert!((placement.grip - LOSES * LOSES_AT_ONCE).abs() < 1e-6);
-        placement.lost(Instant(1_100_000));
+        placement.lost(Instant(1_100_000), 0.2);
         assert!((placement.grip - GRIP_LEAST).abs() < 1e-6);
         placement.end();
         placement.end();

@@ -36,7 +36,7 @@ pub(super) fn fetch(
     let speed = if wall.is_some() { GO_IN_AT_WALL } else { GO_IN };
     match approach(belief, ball, face, speed) {
         Approach::Around(drive) => around(belief, ball.position, face, drive).into(),
-        Approach::In(drive) if kicks.is_some() => kicking(drive).into(),
+        Approach::In(drive) if kicks.is_some() => kicking(placement, drive).into(),
         Approach::In(drive) => Drive { dribbler: 1.0, ..drive }.into(),
     }
 }
@@ -56,14 +56,18 @@ fn around(belief: &Belief, ball: Point<Field>, face: Angle, drive: Drive) -> Dri
     Drive { to: ball + inwards * ASIDE, ..drive }
 }
 
-/// The same way, with the kick off a wall.
-pub(super) fn kicking(drive: Drive) -> Drive {
-    Drive { kick: OmniKick::Flat(OFF_WALL), dribbler: 0.0, ..drive }
+/// The same way, with the kick off a wall: stronger where one has not sufficed.
+pub(super) fn kicking(placement: &Placement, drive: Drive) -> Drive {
+    let speed = OFF_WALL + STRONGER * f32::from(placement.tries);
+    Drive { kick: OmniKick::Flat(speed), dribbler: 0.0, ..drive }
 }
 
 /// Backwards with the ball: straight away from a wall, or to its place, with this share of the acceleration.
-pub(super) fn pull(belief: &Belief, at: Point<Field>, out: Option<Angle>, gentle: f32) -> Drive {
+pub(super) fn pull(belief: &Belief, at: Point<Field>, out: Option<Angle>, placement: &Placement) -> Drive {
     let me = belief.pose.position;
+    let gentle = placement.grip;
+    // What hardly holds still holds a ball that gets no faster.
+    let speed = if gentle < FOLLOWS { HELD } else { placement.pace };
     let Some(out) = out else {
         // Facing away from the place; at the end the heading stays.
         let far = belief.dribbler_point().distance(at) > KEEPS_HEADING;
@@ -71,9 +75,9 @@ pub(super) fn pull(belief: &Belief, at: Point<Field>, out: Option<Angle>, gentle
         // Sideways a roller holds less than towards the robot.
         let share = if (face - belief.pose.heading).abs() > TURNS { SIDEWAYS } else { 1.0 };
         let to = at - Vector::polar(BALL_AT, face);
-        return Drive { speed: PULL, gentle: share * gentle, ..Drive::holding(to, face) };
+        return Drive { speed, gentle: share * gentle, ..Drive::holding(to, face) };
     };
-    Drive { speed: PULL, gentle, ..Drive::holding(me - Vector::polar(CLEAR_OF_WALL, out), out) }
+    Drive { speed, gentle, ..Drive::holding(me - Vector::polar(CLEAR_OF_WALL, out), out) }
 }
 
 /// From behind, with what the dribbler holds.
@@ -81,10 +85,10 @@ pub(super) fn push(belief: &Belief, ball: &BelievedBall, at: Point<Field>, grip:
     let face = ball.position.direction_to(at);
     // So slow that the ball rests at the place when it rolls on from here, and no slower than it starts at all.
     let rolls = SLOWS.iter().find(|(held, _)| grip > *held).map_or(ROLLS, |(_, brakes)| *brakes);
-    let left = ball.position.distance(at) - LAG * belief.velocity.norm();
+    let left = ball.position.distance(at) - SHORT - LAG * belief.velocity.norm();
     let speed = math::sqrt(2.0 * rolls * left.max(0.0)).clamp(CREEP, PUSH);
     let to = ball.position + Vector::polar(AHEAD - BALL_AT, face);
-    Drive { speed, ..Drive::holding(to, face) }.into()
+    Drive { speed, gentle: PUSHES, ..Drive::holding(to, face) }.into()
 }
 
 /// A pushed ball has got beside the robot, or the robot beside its way.
@@ -110,7 +114,9 @@ pub(super) fn wall(
     let at_goal = x.abs() > line - WALL_ROOM && y.abs() < post + BESIDE_POST;
     let spot = ball - Vector::polar(BEHIND, ball.direction_to(at));
     let fits = if pushes {
-        stands(field, spot, room) && to_end.min(to_side) > BESIDE_WALL
+        stands(field, spot, room)
+            && to_end.min(to_side) > BESIDE_WALL
+            && to_end.max(to_side) > GOES_ROUND + room
     } else {
         to_end.min(to_side) > WALL_ROOM
     };
@@ -130,7 +136,7 @@ pub(super) fn wall(
         } else {
             end
         }
-    } else if to_end.max(to_side) < IN_CORNER {
+    } else if to_end.max(to_side) < if pushes { GOES_ROUND } else { IN_CORNER } {
         end + side
     } else if to_end < to_side {
         end
@@ -154,7 +160,8 @@ pub(super) fn kick_off(field: &FieldSpec, ball: Point<Field>, at: Point<Field>, 
         at - ball
     };
     let left = ahead.cross(towards) > 0.0;
-    Some(out + Angle::new(if left { KICKS_ASKEW } else { -KICKS_ASKEW }))
+    let face = out + Angle::new(if left { KICKS_ASKEW } else { -KICKS_ASKEW });
+    stands(field, ball - Vector::polar(BEHIND, face), -TIGHT).then_some(face)
 }
 
 /// A body has this much room there beyond what it needs, m.
@@ -170,8 +177,6 @@ const ASIDE: f32 = 0.22;
 const GOES_BY: f32 = 0.16;
 /// With so much room on both sides it goes as it likes, m.
 const NARROW: f32 = 0.2;
-/// How fast a ball is pulled, m/s.
-const PULL: f32 = 1.4;
 /// How fast it comes to the ball, m/s.
 const GO_IN: f32 = 0.3;
 /// The same at a wall, m/s: a body that comes on for a centimetre squeezes the ball out of its mouth.
@@ -179,23 +184,31 @@ const GO_IN_AT_WALL: f32 = 0.12;
 /// A faster ball is met, m/s.
 const ROLLING: f32 = 0.3;
 /// The ball is there, m: less than the rules' 0.15.
-pub(super) const NEAR_ENOUGH: f32 = 0.1;
-/// With this a ball is kicked off a wall, m/s: it leaves a board with 0.5 to 1 across and rests within a metre.
-const OFF_WALL: f32 = 2.5;
+pub(super) const NEAR_ENOUGH: f32 = 0.12;
+/// With this a ball is kicked off a wall, m/s: it leaves a board with 0.4 to 0.8 across and rests within a metre; …
+const OFF_WALL: f32 = 2.2;
+/// … and so much more for each try before, m/s.
+const STRONGER: f32 = 0.5;
 /// Off the wall's normal, rad: 40°, more leaves no room for the body, and with less the ball comes back to it.
 const KICKS_ASKEW: f32 = 0.7;
 /// Product of a direction's shares along two walls, beyond which it points between them.
 const ASKEW_OUT: f32 = 0.2;
 /// How fast a ball is pushed at first, m/s.
 const PUSH: f32 = 2.0;
+/// How fast a ball is pulled off a wall that does not follow, m/s.
+const HELD: f32 = 0.16;
+/// A ball before the front does not get lost by speeding up: share of the acceleration.
+const PUSHES: f32 = 1.6;
 /// A pushed ball is slowed down by this on the way, m/s²: about as carpets do, so that it stays near the front.
 const ROLLS: f32 = 0.35;
 /// The same of one that followed with such a share of the acceleration or more, m/s².
-const SLOWS: [(f32, f32); 3] = [(0.3, 1.0), (0.12, 0.7), (0.065, 0.5)];
+const SLOWS: [(f32, f32); 3] = [(0.3, 1.0), (0.15, 0.7), (0.045, 0.55)];
 /// The slowest push, m/s.
 const CREEP: f32 = 0.2;
 /// The ball is ahead of where it is shown by what it does in so long, s: picture, radio, a step; estimate.
 const LAG: f32 = 0.05;
+/// It ends this far before the place, m: within what the rules allow, and half a second sooner.
+const SHORT: f32 = 0.07;
 /// A push aims this far ahead on the ball's way, m: no less than a robot takes to brake.
 const AHEAD: f32 = 0.7;
 /// A pushed ball this far beside the middle is lost, m; ahead, m.
@@ -205,12 +218,16 @@ const ESCAPED: f32 = 0.5;
 const BEHIND: f32 = BALL_AT + 0.1;
 /// A body, and room to get there, m.
 const BODY: f32 = ROBOT_RADIUS + 0.03;
+/// So much less is needed to kick than to go around, m.
+const TIGHT: f32 = 0.02;
 /// A ball this near a wall leaves no room for a body beside it that turns, m; …
 const WALL_ROOM: f32 = 0.16;
 /// … and this near none for one that goes along.
 const BESIDE_WALL: f32 = 0.1;
 /// The same beyond a post, m: a body across and its way around.
 const BESIDE_POST: f32 = 0.3;
+/// Nearer than this to two walls no body gets around a ball on either side, m: it, a body and margins.
+const GOES_ROUND: f32 = 0.3;
 /// Nearer than this to two walls a ball is pulled between them, m.
 const IN_CORNER: f32 = 0.2;
 /// How far it is pulled off a wall before anything else, m.
