@@ -1,7 +1,8 @@
 //! `settings`: the named settings of retrieval (docs/case-format.md §3.2), one for each reading of the paper,
 //! each declared once.
 //!
-//! `--set name=value` reaches [`RetrievalSettings::set`]; [`RetrievalSettings::describe`] is recorded with every result.
+//! `--set name=value` reaches [`RetrievalSettings::set`]; [`RetrievalSettings::describe`] is recorded with
+//! every result.
 
 use core::fmt::{self, Write as _};
 

@@ -1,9 +1,8 @@
 //! `small_size_cost`: instruction count of a simulated second of an eleven-against-eleven match by a fixed
 //! script, with the parts of the simulator named by the first argument.
 //!
-//! `cargo run --release -p onetwo-hil-sim --example small_size_cost -- physics|cameras|packets|restless SECONDS`
-//! plays division A and
-//! prints counts of the result; `cargo xtask bench simulator` counts its instructions.
+//! `cargo run --release -p onetwo-hil-sim --example small_size_cost -- physics|cameras|packets|restless S`
+//! plays division A and prints counts of the result; `cargo xtask bench simulator` counts its instructions.
 
 use std::process::ExitCode;
 

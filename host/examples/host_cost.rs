@@ -1,9 +1,9 @@
 //! `host_cost`: instruction count of a host that processes a recorded match frame by frame.
 //!
-//! `cargo run --release -p onetwo-host --example host_cost -- FILE.trace` feeds the recording's first host. A round
-//! is everything from one packet of vision to the next: tracking, the referee's packets, robots' frames,
-//! deadlines, planning where it is due, and the commands encoded and sealed. `cargo xtask bench game` counts
-//! each call of [`count_this_round`] under callgrind.
+//! `cargo run --release -p onetwo-host --example host_cost -- FILE.trace` feeds the recording's first host. A
+//! round is everything from one packet of vision to the next: tracking, the referee's packets, robots'
+//! frames, deadlines, planning where it is due, and the commands encoded and sealed. `cargo xtask bench game`
+//! counts each call of [`count_this_round`] under callgrind.
 
 use std::fs::File;
 use std::io::BufReader;

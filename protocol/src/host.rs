@@ -2,10 +2,11 @@
 //! Millimetres, milliradians, field frame.
 //!
 //! The snapshot of the field goes to all robots present in parts ([`WorldPart`]), the directive goes to each
-//! robot by itself ([`HostCommand`]). Both carry the phase of the game, so that a HALT never waits for a packet
-//! that was lost. All places hold at the moment of arrival: the host's tracking has carried them forward by
-//! the radio's latency, so no clocks need to agree. Everything is repeated with every snapshot; nothing is
-//! sent once. Robots answer with their [`Telemetry`]. Before a robot believes a host it must have had its
+//! robot by itself ([`HostCommand`]). Both carry the phase of the game, so that a HALT never waits for a
+//! packet that was lost. All places hold at the moment of arrival: the host's tracking has carried them
+//! forward by the radio's latency, so no clocks need to agree. Everything is repeated with every snapshot;
+//! nothing is sent once. Robots answer with their [`Telemetry`]. Before a robot believes a host it must have
+//! had its
 //! [`Welcome`]: a recording of an earlier boot epoch cannot command it.
 
 mod read;

@@ -14,8 +14,8 @@ pub use crate::ids::CASE_ROBOTS_MAX;
 use crate::quantized::{WirePoint, WirePose};
 use crate::{CaseId, CycleId, Duration, RobotId};
 
-/// A robot is present for this long after its last beacon (docs/architecture.md §5.1): eight beacons of 20 Hz, so that a lost
-/// one is no absence. Robots and host hold to it.
+/// A robot is present for this long after its last beacon (docs/architecture.md §5.1): eight beacons of 20
+/// Hz, so that a lost one is no absence. Robots and host hold to it.
 pub const PRESENCE_LEASE: Duration = Duration::millis(400);
 
 /// The longest [`TeamMessage`] in postcard bytes; with the frame's overhead it stays within 64 B

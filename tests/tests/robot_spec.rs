@@ -1,7 +1,7 @@
 //! `robot_spec`: our robots as `rules::RobotSpec` describes them, against those of the simulated leagues.
 //!
-//! The simulator's numbers are data with sources of their own (`hil-sim/data/`); where they differ from the description,
-//! robots plan what no wheel does, or stand where no ball is.
+//! The simulator's numbers are data with sources of their own (`hil-sim/data/`); where they differ from the
+//! description, robots plan what no wheel does, or stand where no ball is.
 
 use hil_sim::small_size::Parameters;
 use rules::{League, RobotSpec};

@@ -36,6 +36,11 @@ fn no_file_is_longer_than_a_reader_holds_in_mind() {
 }
 
 #[test]
+fn comments_are_no_wider_than_rustfmt_makes_code() {
+    check(&rust_sources(), too_wide);
+}
+
+#[test]
 fn shared_arithmetic_goes_through_geometry_math() {
     let sources = rust_sources().into_iter().filter(|source| {
         source.is_under(&folders(&SAME_BITS)) && !source.path.starts_with("protocol/geometry/src/math")
@@ -191,6 +196,11 @@ fn the_rules_find_what_they_look_for() {
     let allocating = source("extern crate alloc;\nuse alloc::vec::Vec;\nlet my_alloc::x = 1;\n");
     assert_eq!(lines(allocating.code_with(&ALLOCATES, "")), [1, 2]);
 
+    let wide = "é".repeat(WIDTH);
+    let commented =
+        format!("// {wide}\nlet x = \"{wide}\";\n/// | {wide} |\n//! ```\n//! {wide}\n//! ```\n//! {wide}\n");
+    assert_eq!(lines(too_wide(&source(&commented))), [1, 7]);
+
     let manifest = |text: &str| Manifest::from_text("x", text);
     let dependent = manifest("[package]\nname = \"geometry\"\n[dependencies]\nbrain.workspace = true\n");
     let crates = BTreeMap::from([("geometry".to_string(), dependent)]);
@@ -202,6 +212,25 @@ fn the_rules_find_what_they_look_for() {
 }
 
 // Rules
+
+/// Comments wider than code, except tables and fenced text.
+fn too_wide(source: &Source) -> Vec<Finding> {
+    let (mut fenced, mut findings) = (false, Vec::new());
+    for (number, line) in (1..).zip(source.text.lines()) {
+        let Some(comment) = line.trim_start().strip_prefix("//") else {
+            fenced = false;
+            continue;
+        };
+        let text = comment.trim_start_matches(['/', '!']).trim_start();
+        fenced ^= text.starts_with("```");
+        let columns = line.chars().count();
+        if columns > WIDTH && !fenced && !text.starts_with('|') {
+            let hint = "wrap it at the `max_width` of rustfmt.toml";
+            findings.push(source.at(number, &format!("a comment of {columns} columns"), hint));
+        }
+    }
+    findings
+}
 
 fn inexact_floats(source: &Source) -> Vec<Finding> {
     let calls = FLOAT_METHODS
@@ -284,6 +313,8 @@ fn board_folders() -> Vec<String> {
 /// A file's first comment starts within these lines, so that a lint or a shebang may come first.
 const OPENING_LINES: usize = 3;
 const LINES_MAX: usize = 500;
+/// Columns of a comment, as rustfmt.toml has it for code.
+const WIDTH: usize = 110;
 
 /// Crates on a robot.
 const NO_STD: [&str; 8] =

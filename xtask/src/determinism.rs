@@ -21,7 +21,8 @@ pub(crate) fn run(context: &Context) -> Result<(), Failure> {
     firmware_build::ensure_qemu(Install::SystemWide).map_err(Failure::Qemu)?;
     // `onetwo` builds the firmware image by itself; that needs a compiler for the target.
     context.ensure_target()?;
-    // Release as `cargo run` builds it, so that it is the program a person runs; debug with the features of the tests.
+    // Release as `cargo run` builds it, so that it is the program a person runs; debug with the features of
+    // the tests.
     context::run(&mut context.cargo("build --features onetwo/png --bin onetwo"))?;
     context::run(&mut context.cargo("build --release --bin onetwo"))?;
     let built = |directory: &str| {

@@ -1,5 +1,5 @@
-//! `example_cost`: instruction counts of the examples that do one thing many times: decisions of strategy, and
-//! simulated seconds of eleven against eleven. Under callgrind (docs/architecture.md §9).
+//! `example_cost`: instruction counts of the examples that do one thing many times: decisions of strategy,
+//! and simulated seconds of eleven against eleven. Under callgrind (docs/architecture.md §9).
 //!
 //! So many times and twice as many: the difference is free of everything that happens once.
 

@@ -1,6 +1,8 @@
-//! `first_build`: what a newcomer's first `cargo run --release` compiles and links: crates counted, program weighed.
+//! `first_build`: what a newcomer's first `cargo run --release` compiles and links: crates counted, program
+//! weighed.
 //!
-//! Crates are those of `cargo tree` on this machine, our own and build scripts' among them; the program is weighed without symbols.
+//! Crates are those of `cargo tree` on this machine, our own and build scripts' among them; the program is
+//! weighed without symbols.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -12,7 +14,8 @@ use crate::context::{Context, Failure, line_of, run};
 pub(crate) const WHAT: &str =
     "what a first build compiles and links stays small, and no crate stands in it in two versions";
 
-/// Crates that a first build may compile: half of the 218 that it once had. On Linux; other systems may need some more.
+/// Crates that a first build may compile: half of the 218 that it once had. On Linux; other systems may need
+/// some more.
 const CRATES_MAX: usize = 109;
 /// Bytes of the program without symbols.
 const PROGRAM_MAX: u64 = 20_000_000;

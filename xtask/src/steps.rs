@@ -99,8 +99,8 @@ fn qemu(context: &Context) -> Result<(), Failure> {
     run(&mut context.cargo(line))
 }
 
-/// Everything but the upload and the build of what was packed, which takes a debug build of each package; before a
-/// release run it without `--no-verify`.
+/// Everything but the upload and the build of what was packed, which takes a debug build of each package;
+/// before a release run it without `--no-verify`.
 fn publish(context: &Context) -> Result<(), Failure> {
     run(&mut context.cargo("publish --dry-run --workspace --allow-dirty --no-verify"))
 }

@@ -3,10 +3,10 @@
 //!
 //! Sections follow the [`Header`] in the order of [`CaseBase`]'s fields, those of the widest alignment first,
 //! native byte order. The four symmetric copies of an authored case are stored in full, one after the other;
-//! records used by retrieval belong to each copy's [`RecordHeader`], those used by its players to their common
-//! [`Group`]. Positions and opponents are stored relative to the case's ball, legs computed to their ends:
-//! nothing is derived twice at run time. The index is a grid over the ball's position for cases that defend
-//! the negative goal; a mirrored look-up serves the others.
+//! records used by retrieval belong to each copy's [`RecordHeader`], those used by its players to their
+//! common [`Group`]. Positions and opponents are stored relative to the case's ball, legs computed to their
+//! ends: nothing is derived twice at run time. The index is a grid over the ball's position for cases that
+//! defend the negative goal; a mirrored look-up serves the others.
 //!
 //! [`CaseBase::from_bytes`] checks everything once, so that no later access can panic or leave the table.
 

@@ -1,6 +1,6 @@
-//! `gate`: record headers: positions of the records that retrieval reads. Each stored case has a [`RecordHeader`],
-//! and behind it, in one run of the table's places, its opponents, its legs and its robots' positions.
-//! Lengths in mm.
+//! `record_header`: positions of the records that retrieval reads. Each stored case has a
+//! [`RecordHeader`], and behind it, in one run of the table's places, its opponents, its legs and its robots'
+//! positions. Lengths in mm.
 
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 

@@ -1,9 +1,9 @@
 //! `case_tools`: tools that turn case files into tables and check them. Runs on the host, at build and run
 //! time.
 //!
-//! [`load`] reads one league's directory: files → [`CaseLeague`] and authored cases → checks → the four symmetric
-//! copies → table and index ([`Table`]) → warnings. Every [`Finding`] has a code, file, line and hint
-//! (docs/case-format.md §1.2).
+//! [`load`] reads one league's directory: files → [`CaseLeague`] and authored cases → checks → the four
+//! symmetric copies → table and index ([`Table`]) → warnings. Every [`Finding`] has a code, file, line and
+//! hint (docs/case-format.md §1.2).
 //!
 //! **Invariant.** All stored values were computed by the crate that will read them, `casebase`.
 #![cfg_attr(doctest, doc = include_str!("../README.md"))]

@@ -22,8 +22,9 @@ fn shot(scope: &str, rest: &str) -> String {
 
 #[test]
 fn a_case_that_another_always_beats_is_reported_with_that_other() {
-    // Same position, but `candidate` dribbles and has an opponent scope over the whole field: where `shadowed` is
-    // a candidate, `candidate` is one with one condition or two more, or by its lower id with the same.
+    // Same position, but `candidate` dribbles and has an opponent scope over the whole field: where
+    // `shadowed` is a candidate, `candidate` is one with one condition or two more, or by its lower id with
+    // the same.
     let everywhere = "[[opponents]]\nat = [0, 0]\nscope = [9000, 9000]\n";
     let candidate = shot("[800, 600]", everywhere).replace("kick = \"forward\"", "dribble_to = [9, 0]");
     let shadowed = shot("[800, 600]", "");

@@ -169,7 +169,8 @@ fn gone(belief: &Belief, lay: Point<Field>) -> bool {
     belief.ball.is_none_or(|ball| ball.position.distance(lay) > LEFT)
 }
 
-/// The ball has left, m: in play after 0.05 m by the rules, and the dribbler that located it errs by a centimetre.
+/// The ball has left, m: in play after 0.05 m by the rules, and the dribbler that located it errs by a
+/// centimetre.
 const LEFT: f32 = 0.06;
 
 #[cfg(test)]

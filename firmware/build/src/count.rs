@@ -1,5 +1,5 @@
-//! `count`: counted instructions: of images under QEMU, of the calling program under callgrind; and where tables of
-//! counts stand in READMEs. For benches.
+//! `count`: counted instructions: of images under QEMU, of the calling program under callgrind; and where
+//! tables of counts stand in READMEs. For benches.
 
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -22,7 +22,8 @@ impl CountingImage {
         Ok(Self { qemu, image })
     }
 
-    /// Runs it to its end with these words for QEMU and reads what it prints, a `T` a line; there must be `count`.
+    /// Runs it to its end with these words for QEMU and reads what it prints, a `T` a line; there must be
+    /// `count`.
     pub fn lines<T>(
         &self,
         more: &[String],

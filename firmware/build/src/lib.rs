@@ -7,8 +7,8 @@
 //! * [`ensure_qemu`]: finds the emulator.
 //! * [`build_image`]: returns the firmware, freshly built.
 //!
-//! [`inspect`] looks into an image: sizes, budgets, places that can panic. [`on_target`] runs an image of tests, [`count`]
-//! counts instructions.
+//! [`inspect`] looks into an image: sizes, budgets, places that can panic. [`on_target`] runs an image of
+//! tests, [`count`] counts instructions.
 //!
 //! A missing tool is fetched where that is allowed ([`Install`]), or the error names what to install. Slow
 //! operations are reported on stderr.

@@ -28,8 +28,8 @@ pub fn ensure_target(root: &Path) -> Result<ThumbToolchain, TargetError> {
 pub struct ThumbToolchain(());
 
 impl ThumbToolchain {
-    /// `cargo`, in the workspace; add a verb, packages and a profile, then run it. Every build for the target starts
-    /// here: other flags would compile all of it again.
+    /// `cargo`, in the workspace; add a verb, packages and a profile, then run it. Every build for the target
+    /// starts here: other flags would compile all of it again.
     pub fn cargo(&self, root: &Path, verb: &str) -> Command {
         let mut command = Command::new(cargo_program());
         command.current_dir(root).arg(verb).args(["--target", TARGET]);

@@ -4,7 +4,8 @@
 //! [`plan`] is called every step and keeps no state. It answers in three parts:
 //!
 //! 1. **Goal.** A target inside an obstacle is moved to a free point nearby. A start inside one is left for
-//!    such a point by a short path ([`RouteVerdict::Escape`]): through regions, around bodies and out of no wall.
+//!    such a point by a short path ([`RouteVerdict::Escape`]): through regions, around bodies and out of no
+//!    wall.
 //! 2. **Route.** The straight path, or the cheapest path found over tangent points of the obstacles on it: a
 //!    search of at most [`CHECKS_MAX`] straight pieces, fewer where the course's effort is spent, in a fixed
 //!    order. Cost is length, plus what turning the present velocity costs.

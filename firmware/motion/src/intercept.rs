@@ -76,7 +76,8 @@ impl<F> InterceptionPoint<F> {
     }
 }
 
-/// From the robot's centre to the ball's, when it kicks, m: the dribbler's opening lets the ball in (`HullSpec::opening`).
+/// From the robot's centre to the ball's, when it kicks, m: the dribbler's opening lets the ball in
+/// (`HullSpec::opening`).
 pub fn kick_reach(robot_radius: f32, ball_radius: f32) -> f32 {
     robot_radius + ball_radius - RobotSpec::OURS.hull.opening
 }
@@ -97,9 +98,9 @@ impl<F: Copy> Interception<'_, F> {
         best.map_or_else(|| self.chase(limits, self.horizon()), InterceptVerdict::Intercepts)
     }
 
-    /// As [`Interception::find`] with [`InterceptRequest::Soonest`], in bounded time: after `most` points without an
-    /// interception only every fourth is tested, and after as many more one of eight; from the first in time
-    /// back by bisection.
+    /// As [`Interception::find`] with [`InterceptRequest::Soonest`], in bounded time: after `most` points
+    /// without an interception only every fourth is tested, and after as many more one of eight; from the
+    /// first in time back by bisection.
     pub fn find_within<L: CalcMotion>(&self, limits: &L, most: u32) -> InterceptVerdict<F> {
         let best = self.soonest(limits, most);
         best.map_or_else(|| self.chase(limits, self.horizon()), InterceptVerdict::Intercepts)

@@ -25,8 +25,8 @@ use ssl::simulation::{
 
 /// Between two commands, and between two pictures of the senses.
 pub const TICK: Duration = WHEELED_STEP;
-/// How long the last word on ball contact holds: five responses in a row are lost once in 100,000 at the 10 % loss of
-/// ER-Force's "realistic".
+/// How long the last word on ball contact holds: five responses in a row are lost once in 100,000 at the 10 %
+/// loss of ER-Force's "realistic".
 const CONTACT_HOLDS: Duration = Duration::millis(50);
 /// Of a dribbler's full speed, rpm.
 const DRIBBLER_FULL: f32 = RobotSpec::OURS.dribbler.full_rpm;

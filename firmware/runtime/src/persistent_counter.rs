@@ -1,4 +1,4 @@
-//! `ledger`: persistent counter of starts in the robot's flash. Every start must use a larger epoch than all
+//! `persistent_counter`: persistent counter of starts in the robot's flash. Every start must use a larger epoch than all
 //! before it (docs/architecture.md §6.1): hosts and teammates accept nothing of an older one. Sans-IO.
 //!
 //! Two halves, each erased as a whole, of cells that are written once: a start finds the largest epoch and

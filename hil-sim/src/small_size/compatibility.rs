@@ -1,5 +1,5 @@
-//! `compatibility`: compatibility profiles: this simulator's own behaviour on the wire, or that of the league's
-//! other simulators.
+//! `compatibility`: compatibility profiles: this simulator's own behaviour on the wire, or that of the
+//! league's other simulators.
 //!
 //! For tests of a host against what it will receive there: clocks, cameras, geometry, which settings are
 //! accepted and how robots are answered, as observed on running grSim and ER-Force's simulator. The physics

@@ -1,10 +1,10 @@
 //! `small_size`: physics of the Small Size League. Robots on wheels and a golf ball in three dimensions, 1 ms
 //! a step (docs/architecture.md §2.3, §7.1).
 //!
-//! A step of the [`World`]: wheels drive (`robot`), bodies are pushed apart (`collisions`), kickers and dribblers
-//! act (`dribbler`), the ball moves (`ball`) and bounces (`contact`), break-beam sensors measure. What happened
-//! is returned as [`PhysicsEvent`]s. SI units, field frame; heights are those of the ball's lowest point above the
-//! field surface.
+//! A step of the [`World`]: wheels drive (`robot`), bodies are pushed apart (`collisions`), kickers and
+//! dribblers act (`dribbler`), the ball moves (`ball`) and bounces (`contact`), break-beam sensors measure.
+//! What happened is returned as [`PhysicsEvent`]s. SI units, field frame; heights are those of the ball's
+//! lowest point above the field surface.
 //!
 //! **Invariants.** No clock and no unseeded randomness; robots are kept in order of colour and number, so the
 //! order in which they were placed has no effect; `geometry::math` only; no use of `motion`'s models.

@@ -2,9 +2,9 @@
 //! phase of the game, ball placements, the longest time that one robot held the ball, no-progress stops,
 //! fouls.
 //!
-//! `cargo run --release -p onetwo-arena --example conduct -- LEAGUE WORLD OPPONENT FIRST_SEED COUNT SECONDS`, as in
-//! `conduct division-b random ours 1 200 120`; ours is blue, and with `random` each match has the random
-//! world of its own seed. `conduct LEAGUE WORLD` prints that world's numbers.
+//! `cargo run --release -p onetwo-arena --example conduct -- LEAGUE WORLD OPPONENT FIRST_SEED COUNT SECONDS`,
+//! as in `conduct division-b random ours 1 200 120`; ours is blue, and with `random` each match has the
+//! random world of its own seed. `conduct LEAGUE WORLD` prints that world's numbers.
 
 use std::collections::BTreeMap;
 

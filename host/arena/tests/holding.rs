@@ -51,8 +51,8 @@ impl Stage<'_> {
         self.game.put_ball(Ball::at(at));
     }
 
-    /// Plays on; the seconds until the ball is farther than `at_least` from where it lay, if that comes within
-    /// `seconds`.
+    /// Plays on; the seconds until the ball is farther than `at_least` from where it lay, if that comes
+    /// within `seconds`.
     fn until_moved(
         &mut self,
         seconds: f64,

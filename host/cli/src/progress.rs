@@ -21,7 +21,8 @@ struct Line {
     unit: &'static str,
     done: u64,
     of: Option<u64>,
-    /// When and from where the work of this run started: what an earlier run did says nothing of how long the rest takes.
+    /// When and from where the work of this run started: what an earlier run did says nothing of how long the
+    /// rest takes.
     start: (Instant, u64),
     drawn: Option<Instant>,
 }

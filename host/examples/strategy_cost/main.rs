@@ -1,8 +1,8 @@
 //! `strategy_cost`: instruction counts of strategy decisions: COUNT decisions of one PART, on scenes of six
 //! against six or eleven against eleven.
 //!
-//! `cargo run --release -p onetwo-host --example strategy_cost -- PART COUNT` runs them and prints a summary of the
-//! results; `cargo xtask bench strategy` counts its instructions, for every PART of its table.
+//! `cargo run --release -p onetwo-host --example strategy_cost -- PART COUNT` runs them and prints a summary
+//! of the results; `cargo xtask bench strategy` counts its instructions, for every PART of its table.
 
 mod defence;
 mod passes;

@@ -1,7 +1,7 @@
 //! `strategy_snapshots`: the figures of the second paper, by our own code (Biswas et al. 2014).
 //!
-//! `cargo run --release -p onetwo-host --example strategy_pictures -- FOLDER` writes them to that directory; `cargo
-//! xtask pictures` keeps those in `docs/strategy`.
+//! `cargo run --release -p onetwo-host --example strategy_pictures -- FOLDER` writes them to that directory;
+//! `cargo xtask pictures` keeps those in `docs/strategy`.
 
 mod angles;
 mod coercing;

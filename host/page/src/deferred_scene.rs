@@ -1,5 +1,5 @@
-//! `deferred_scene`: a scene with deferred work. A sketch is a scene and what still has to be done to it: the page's
-//! own thread does that, so that planned paths, maps and beliefs cost the match's thread nothing.
+//! `deferred_scene`: a scene with deferred work. A sketch is a scene and what still has to be done to it: the
+//! page's own thread does that, so that planned paths, maps and beliefs cost the match's thread nothing.
 
 use std::fmt;
 

@@ -1,7 +1,8 @@
-//! `http`: HTTP/1.1 over one connection: heads and bodies of requests within their deadlines and lengths, answers.
+//! `http`: HTTP/1.1 over one connection: heads and bodies of requests within their deadlines and lengths,
+//! answers.
 //!
-//! What the page needs and no more: one request after the other, bodies of a stated length. Whatever else is asked is refused with
-//! the status that the standard (RFC 9112) has for it, and ends the connection.
+//! What the page needs and no more: one request after the other, bodies of a stated length. Whatever else is
+//! asked is refused with the status that the standard (RFC 9112) has for it, and ends the connection.
 
 use std::borrow::Cow;
 use std::io::{self, Read, Write};
@@ -12,7 +13,8 @@ use std::time::{Duration, Instant};
 const HEAD_MAX: usize = 16 * 1024;
 /// Lines in a head: a browser sends 20.
 const LINES_MAX: usize = 64;
-/// What a refused request may still bring before its connection ends, bytes and time: closed at once, it would lose the answer.
+/// What a refused request may still bring before its connection ends, bytes and time: closed at once, it
+/// would lose the answer.
 const LEFTOVER_MAX: usize = 64 * 1024;
 const LEFTOVER: Duration = Duration::from_secs(1);
 

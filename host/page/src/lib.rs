@@ -2,9 +2,9 @@
 //! PC).
 //!
 //! The driver of a match fills a [`Scene`] some 25 times a second and passes it to [`Page::show`], which
-//! never waits; expensive parts are computed later, on the page's own thread ([`DeferredScene`]). Viewers get the
-//! newest one over a WebSocket; the seconds that have passed are kept, so that every viewer can seek back for
-//! itself. Viewers' requests come back as [`UserRequest`]s, which the driver takes when it has time
+//! never waits; expensive parts are computed later, on the page's own thread ([`DeferredScene`]). Viewers get
+//! the newest one over a WebSocket; the seconds that have passed are kept, so that every viewer can seek back
+//! for itself. Viewers' requests come back as [`UserRequest`]s, which the driver takes when it has time
 //! ([`Page::next_request`]).
 //!
 //! ```text

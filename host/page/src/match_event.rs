@@ -1,4 +1,4 @@
-//! `happening`: time-line events. One entry of the time line, reported once and kept.
+//! `match_event`: time-line events. One entry of the time line, reported once and kept.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,5 @@
-//! `routes`: what is answered to a request: files of the page, seconds that are kept, explanations, frozen moments.
+//! `routes`: what is answered to a request: files of the page, seconds that are kept, explanations, frozen
+//! moments.
 
 use std::time::Duration;
 

@@ -55,7 +55,8 @@ impl Shared {
         self.settings.token.as_ref().is_none_or(|token| brought.is_some_and(|brought| token.is(brought)))
     }
 
-    /// Works that out in `within` on a thread of its own, and not on the connection's: the answer cannot be called off.
+    /// Works that out in `within` on a thread of its own, and not on the connection's: the answer cannot be
+    /// called off.
     pub(crate) fn in_time<T: Send + 'static>(
         &self,
         within: Duration,

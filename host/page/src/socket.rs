@@ -104,8 +104,9 @@ fn frame(kind: u8, payload: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// Waits for a message of at most `most` bytes. Control frames may come between the frames of a text, whose beginning stands in
-/// `begun`. An error ends the socket: time, the end of the stream, or what the standard does not allow.
+/// Waits for a message of at most `most` bytes. Control frames may come between the frames of a text, whose
+/// beginning stands in `begun`. An error ends the socket: time, the end of the stream, or what the standard
+/// does not allow.
 pub(crate) fn receive(
     wire: &mut Wire,
     begun: &mut Option<Vec<u8>>,

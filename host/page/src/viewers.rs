@@ -1,5 +1,5 @@
-//! `viewers`: newest scene and mailboxes of viewers. A viewer's socket carries the newest scene whenever the viewer has taken the one
-//! before.
+//! `viewers`: newest scene and mailboxes of viewers. A viewer's socket carries the newest scene whenever the
+//! viewer has taken the one before.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, Weak};
@@ -116,7 +116,8 @@ impl Mailbox {
         });
     }
 
-    /// The viewer asks whether the page is there. Of many such questions the last is answered, as the standard allows.
+    /// The viewer asks whether the page is there. Of many such questions the last is answered, as the
+    /// standard allows.
     pub(crate) fn ping(&self, payload: Vec<u8>) {
         self.change(|mail| mail.ping = Some(payload));
     }

@@ -1,4 +1,5 @@
-//! `description`: labels and colours of the report. One label and one colour an approach, wherever it appears.
+//! `description`: labels and colours of the report. One label and one colour an approach, wherever it
+//! appears.
 
 use arena::approach_label;
 use brain::Approach;

@@ -1,5 +1,5 @@
-//! `snapshot`: packs a snapshot into parts that fit into frames: ours first, then theirs, lowest number first,
-//! spread over as few parts as hold them. Field frame.
+//! `snapshot`: packs a snapshot into parts that fit into frames: ours first, then theirs, lowest number
+//! first, spread over as few parts as hold them. Field frame.
 
 use geometry::{Field, Point};
 use protocol::host::{PARTS_MAX, WORLD_ROBOTS_MAX, WireBall, WireRobot, WireWho, WorldPart};

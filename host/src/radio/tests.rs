@@ -311,8 +311,8 @@ fn beacons_are_passed_on_unchanged_and_telemetry_is_not() {
     }
 }
 
-/// A robot that sends telemetry `held` after each snapshot; the latency is `latency` in each direction, and it
-/// receives four of five snapshots.
+/// A robot that sends telemetry `held` after each snapshot; the latency is `latency` in each direction, and
+/// it receives four of five snapshots.
 #[test]
 fn round_trip_loss_rate_and_start_up_are_those_of_the_link() {
     let mut radio = radio(Relay::No);

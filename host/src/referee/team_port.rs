@@ -227,8 +227,8 @@ impl TeamPort {
         self.out.pop_front()
     }
 
-    /// Events, in order. On [`TeamPortEvent::GivenUp`] and [`TeamPortEvent::RegistrationRefused`] the shell closes the
-    /// connection.
+    /// Events, in order. On [`TeamPortEvent::GivenUp`] and [`TeamPortEvent::RegistrationRefused`] the shell
+    /// closes the connection.
     pub fn poll_event(&mut self) -> Option<TeamPortEvent> {
         self.events.pop_front()
     }

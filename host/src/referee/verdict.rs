@@ -28,7 +28,8 @@ pub struct RefereeCounts {
     pub unknown: u64,
     /// Packets whose stamp or counter does not fit, other than [`RefereeCounts::old`].
     pub doubted: u64,
-    /// HALT and STOP out of order, which were obeyed: of [`RefereeCounts::old`] and [`RefereeCounts::doubted`].
+    /// HALT and STOP out of order, which were obeyed: of [`RefereeCounts::old`] and
+    /// [`RefereeCounts::doubted`].
     pub restrained: u64,
     /// Steps of the referee's clock or counter that were followed.
     pub steps: u64,

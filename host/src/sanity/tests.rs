@@ -22,8 +22,8 @@ fn host() -> Host {
     Host::new(HostSettings::new(Colour::Blue, League::DivisionB, EPOCH), Instant(0))
 }
 
-/// The first time at which a second host is found, ms, with its evidence; every 100 ms `report` feeds the host
-/// its inputs.
+/// The first time at which a second host is found, ms, with its evidence; every 100 ms `report` feeds the
+/// host its inputs.
 fn second_host(mut report: impl FnMut(u64, &mut Host)) -> Option<(u64, SecondHost)> {
     let (mut host, mut sanity) = (host(), Sanity::default());
     (0..8_000).step_by(100).find_map(|ms| {

@@ -11,11 +11,11 @@
 //! | Positions of cameras, model of the ball | `scene` |
 //! | Tracker packets for other programs | `publish` |
 //!
-//! **Invariants.** No content of a packet causes a panic; every camera frame is counted in [`TrackingCounts`]. Frames
-//! within 50 ms of the newest count in the order in which they were taken, so copies and shuffled packets
-//! change nothing. After [`Tracker::new`] and the first packets nothing is allocated. Same packets, same
-//! bits. A packet costs some 20,000 instructions, including the present world (16,200 with grSim's recording,
-//! 23,200 with ER-Force's 11 robots; `track --times`).
+//! **Invariants.** No content of a packet causes a panic; every camera frame is counted in
+//! [`TrackingCounts`]. Frames within 50 ms of the newest count in the order in which they were taken, so
+//! copies and shuffled packets change nothing. After [`Tracker::new`] and the first packets nothing is
+//! allocated. Same packets, same bits. A packet costs some 20,000 instructions, including the present world
+//! (16,200 with grSim's recording, 23,200 with ER-Force's 11 robots; `track --times`).
 //!
 //! ```
 //! use host::tracking::Tracker;

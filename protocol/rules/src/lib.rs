@@ -1,9 +1,10 @@
 //! `rules`: rules of the leagues. Dimensions, limits, keep-out areas, restarts, offences and the state of a
 //! game, SI, field frame.
 //!
-//! [`FieldSpec`] and [`League`] are data; [`limits`] are the rules' numbers; [`RobotSpec`] holds
-//! every number of our own robots, [`contact`] how near a robot is to a ball that it touches; [`keep_out`] says where a robot must not be,
-//! [`restart`] where the ball goes, [`legality`] what is an offence, [`state`] what a referee's command means.
+//! [`FieldSpec`] and [`League`] are data; [`limits`] are the rules' numbers; [`RobotSpec`] holds every number
+//! of our own robots, [`contact`] how near a robot is to a ball that it touches; [`keep_out`] says where a
+//! robot must not be, [`restart`] where the ball goes, [`legality`] what is an offence, [`state`] what a
+//! referee's command means.
 //!
 //! **Invariants.** No I/O, no clock, no allocation. One source per fact: physics, brains, referee and
 //! renderings read the dimensions here.

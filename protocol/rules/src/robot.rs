@@ -1,11 +1,11 @@
-//! `robot`: our robots on wheels, every number once: shape, motion limits, kicker, dribbler, wheel control. SI
-//! units, body frame.
+//! `robot`: our robots on wheels, every number once: shape, motion limits, kicker, dribbler, wheel control.
+//! SI units, body frame.
 //!
-//! Read by the planner and the skills (`brain`), the governor, the wheel and kicker control (`runtime`), the host's
-//! passes and roles, and the robot that plays in another team's simulator. A team with other robots changes
-//! [`RobotSpec::OURS`] and rebuilds: constants cost the robot neither flash nor time. The simulator's robots have numbers of
-//! their own (`hil-sim/data/division-b.toml`), as physics must not agree with the plan by construction;
-//! `tests/tests/robot_spec.rs` compares the two.
+//! Read by the planner and the skills (`brain`), the governor, the wheel and kicker control (`runtime`), the
+//! host's passes and roles, and the robot that plays in another team's simulator. A team with other robots
+//! changes [`RobotSpec::OURS`] and rebuilds: constants cost the robot neither flash nor time. The simulator's
+//! robots have numbers of their own (`hil-sim/data/division-b.toml`), as physics must not agree with the plan
+//! by construction; `tests/tests/robot_spec.rs` compares the two.
 
 use crate::League;
 use crate::limits::{BALL_RADIUS, ROBOT_RADIUS};
@@ -157,7 +157,8 @@ pub struct DribblerSpec {
 /// Four wheels and their speed control.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WheelSpec {
-    /// Where they stand, degrees counter-clockwise from the front: front right, back right, back left, front left.
+    /// Where they stand, degrees counter-clockwise from the front: front right, back right, back left, front
+    /// left.
     pub degrees: [f32; 4],
     /// From the robot's centre to a wheel, m.
     pub distance: f32,
@@ -180,10 +181,12 @@ impl RobotSpec {
             // Paper 2's robots; docs/papers.md D2.
             opening: 0.01,
         },
-        // Wheels hold 3.5 to 5.5 m/s² in the simulator; 3 m/s is what the league's 2013 robots exceed (paper 2 §1).
+        // Wheels hold 3.5 to 5.5 m/s² in the simulator; 3 m/s is what the league's 2013 robots exceed (paper
+        // 2 §1).
         plan: DriveSpec { speed: 3.0, acceleration: 3.0, braking: 3.5 },
-        // The dribbler pulls with some 6 m/s² and holds aside with 4: it brakes a ball that it caught on the run before the
-        // rules' metre is over (2.2 m/s in 0.97 m), and backs up no harder than the roller follows.
+        // The dribbler pulls with some 6 m/s² and holds aside with 4: it brakes a ball that it caught on the
+        // run before the rules' metre is over (2.2 m/s in 0.97 m), and backs up no harder than the roller
+        // follows.
         plan_holding: DriveSpec { speed: 1.5, acceleration: 1.8, braking: 2.5 },
         // Estimates; a simulated robot turns with 50 rad/s² and 15 rad/s at most.
         turn: TurnSpec { rate: 8.0, acceleration: 30.0 },
@@ -202,22 +205,27 @@ impl RobotSpec {
             brake_turn: 40.0,
         },
         assumed: AssumedSpec {
-            // The league's 2013 robots exceed 3 m/s (paper 2 §1); no paper prints accelerations, 3.5 m/s² lies between
-            // published teams' 2 and 4.5. Opponents may have it; our own robots plan with `plan`.
+            // The league's 2013 robots exceed 3 m/s (paper 2 §1); no paper prints accelerations, 3.5 m/s²
+            // lies between published teams' 2 and 4.5. Opponents may have it; our own robots plan with
+            // `plan`.
             pass: DriveSpec { speed: 3.0, acceleration: 3.5, braking: 3.5 },
-            // ER-Force's simulated robot of 2020 turns with 6 rad/s; half its 60 rad/s², which no wheel on a field keeps.
+            // ER-Force's simulated robot of 2020 turns with 6 rad/s; half its 60 rad/s², which no wheel on a
+            // field keeps.
             turn: TurnSpec { rate: 6.0, acceleration: 30.0 },
-            // Of the 3 m/s and more that teams drive, what is left on average; the weakest of the 3 to 4.7 m/s² they publish.
+            // Of the 3 m/s and more that teams drive, what is left on average; the weakest of the 3 to 4.7
+            // m/s² they publish.
             role: TypicalSpec { speed: 2.0, acceleration: 3.0 },
             // Within the 3 to 4.7 m/s² that teams publish; a defence assumes a strong opponent.
             defence_acceleration: 4.0,
-            // The weakest of the same: from a standing start to the side, where wheels stand steeper (estimate).
+            // The weakest of the same: from a standing start to the side, where wheels stand steeper
+            // (estimate).
             blocker_acceleration: 3.0,
             // A kicker may err by 4 % (estimate).
             kick_share: 0.96,
         },
         kicker: KickerSpec {
-            // The rules' 6.5 less 11 %: a kicker may give 10 % more than it is ordered (the worlds' spread; docs/fields.md).
+            // The rules' 6.5 less 11 %: a kicker may give 10 % more than it is ordered (the worlds' spread;
+            // docs/fields.md).
             fastest: 5.8,
             // The same of 8 (paper 2 §1).
             fastest_2013: 7.1,

@@ -10,9 +10,9 @@
 //!   ([`CommandVerdict::OffGraph`]).
 //! - **No robot starts from a standstill without warning.** Team members may be on the field in HALT and
 //!   time-outs, which STOP alone ends. Any other command is read as STOP for [`GRACE`] first
-//!   ([`CommandVerdict::AsStop`]). NORMAL_START with nothing prepared (a program joins in the middle of a game) is
-//!   read as STOP until the longest kick-off or penalty is over, counted from when the command was given:
-//!   then the ball is in play in either case.
+//!   ([`CommandVerdict::AsStop`]). NORMAL_START with nothing prepared (a program joins in the middle of a
+//!   game) is read as STOP until the longest kick-off or penalty is over, counted from when the command was
+//!   given: then the ball is in play in either case.
 //! - **The same command again is no new command**, though its counter rises (operators and automatic
 //!   continuation issue some twice). It only restarts the clock of a restart that is not yet in play. A free
 //!   kick that comes again after the ball was in play is a new one: a ball that rolls is back in play at

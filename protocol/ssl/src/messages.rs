@@ -1,7 +1,8 @@
-//! `messages`: the macro that declares the league's messages, a line a field, close to the league's own files.
+//! `messages`: the macro that declares the league's messages, a line a field, close to the league's own
+//! files.
 
-/// Declares `prost` messages. A field is `NAME: TYPE [KIND, LABEL] = TAG;` with its docs above it; what stands in
-/// brackets is `prost`'s.
+/// Declares `prost` messages. A field is `NAME: TYPE [KIND, LABEL] = TAG;` with its docs above it; what
+/// stands in brackets is `prost`'s.
 macro_rules! messages {
     ($(
         $(#[$about:meta])*

@@ -1,5 +1,5 @@
-//! `facts`: numbers that may stand in one place only: the robot's, contact distances, leases, ports, the step's
-//! budget.
+//! `facts`: numbers that may stand in one place only: the robot's, contact distances, leases, ports, the
+//! step's budget.
 
 use std::collections::BTreeSet;
 
@@ -33,7 +33,8 @@ fn a_retyped_number_is_found_and_so_is_an_exception_that_nothing_needs() {
     }
     let brakes = fact(&["0.09", "braking: #", "BRAKE #"], &[]);
     assert_eq!(found(&brakes, "L { braking: 3.5 }\nconst BRAKE: f32 = 5.0;\nL { braking: x }\n"), 2);
-    // An exception holds for its line alone, and is found when nothing needs it any more; so is a home that moved.
+    // An exception holds for its line alone, and is found when nothing needs it any more; so is a home that
+    // moved.
     let gap = fact(&["0.09"], &[("a/b.rs", "GAP")]);
     assert_eq!(found(&gap, "const GAP: f32 = 0.09;\nconst GO: f32 = 0.09;\n"), 1);
     assert_eq!(found(&gap, "const GAP: f32 = 0.08;\n"), 1);
@@ -72,7 +73,8 @@ fn retyped(fact: &Fact, sources: &[Source]) -> Vec<String> {
     findings
 }
 
-/// A line of code without its texts; `in_text` tells whether one goes on from the line before, and into the next.
+/// A line of code without its texts; `in_text` tells whether one goes on from the line before, and into the
+/// next.
 fn without_texts(line: &str, in_text: &mut bool) -> String {
     let (mut code, mut escaped) = (String::new(), false);
     for letter in line.chars() {
@@ -89,7 +91,8 @@ fn without_texts(line: &str, in_text: &mut bool) -> String {
     code
 }
 
-/// Whether code writes a fact: a number of that value, or a name (field or constant) that gets a number (`NAME #`).
+/// Whether code writes a fact: a number of that value, or a name (field or constant) that gets a number
+/// (`NAME #`).
 fn writes(code: &str, pattern: &str) -> bool {
     let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';
     if let Some(name) = pattern.strip_suffix(" #") {

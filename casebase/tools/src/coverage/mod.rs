@@ -1,10 +1,10 @@
 //! `coverage`: regions of the field where a library has no case (Ros et al. 2009, §5.1.1; Smyth & McKenna
 //! 2001).
 //!
-//! A [`Survey`] retrieves many problems from the library and counts into a [`Counters`]. Counters of parts merge
-//! to those of the whole, in any order and grouping, so a caller may distribute the work over threads and
-//! always gets the same numbers. No threads, clock or I/O here. Lengths in mm; cells and areas in the attack
-//! frame (+x towards the goal attacked), problems in the field frame.
+//! A [`Survey`] retrieves many problems from the library and counts into a [`Counters`]. Counters of parts
+//! merge to those of the whole, in any order and grouping, so a caller may distribute the work over threads
+//! and always gets the same numbers. No threads, clock or I/O here. Lengths in mm; cells and areas in the
+//! attack frame (+x towards the goal attacked), problems in the field frame.
 
 mod area;
 mod cells;

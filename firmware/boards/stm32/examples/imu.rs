@@ -2,8 +2,8 @@
 //!
 //! Connect: the IMU. See: lying still, the acceleration is about (0, 0, 1) g and every rate within 0.02 rad/s
 //! of 0. Turn the board counter-clockwise (seen from above): the third rate is positive. On its side: the
-//! third acceleration is about 0. `Unauthenticated(0)` or `Unauthenticated(255)`: no answer, check clock, data and select;
-//! another number: another sensor.
+//! third acceleration is about 0. `Unauthenticated(0)` or `Unauthenticated(255)`: no answer, check clock,
+//! data and select; another number: another sensor.
 #![allow(unsafe_code, reason = "registers, interrupts and flash are reached by address")]
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

@@ -1,9 +1,9 @@
 //! `kind`: robot bodies that this build supports. A firmware image contains the one body of its robot
 //! (features `legged` and `omni`); on the PC both are built in.
 //!
-//! Everything that depends on the body asks [`BodyKind::of`] once and keeps its answer, with the proof that the
-//! body is built in. Without the feature there is no such proof, so the compiler drops the code that needs
-//! it.
+//! Everything that depends on the body asks [`BodyKind::of`] once and keeps its answer, with the proof that
+//! the body is built in. Without the feature there is no such proof, so the compiler drops the code that
+//! needs it.
 
 #[cfg(not(all(feature = "legged", feature = "omni")))]
 use core::convert::Infallible;
@@ -31,8 +31,8 @@ pub struct WheeledKind(#[cfg(not(feature = "omni"))] Infallible);
 compile_error!("a brain needs a body: turn on the feature `legged` or `omni`");
 
 impl BodyKind {
-    /// The body kind of that league's robots. If it is not built in ([`BodyKind::is_built`]), the kind that is: a
-    /// caller that takes a configuration from outside must check first.
+    /// The body kind of that league's robots. If it is not built in ([`BodyKind::is_built`]), the kind that
+    /// is: a caller that takes a configuration from outside must check first.
     pub fn of(league: League) -> Self {
         match league {
             #[cfg(feature = "legged")]

@@ -1,4 +1,4 @@
-//! `tell`: what the robot sends about itself: beacons (docs/architecture.md §5.1) and, where a host leads,
+//! `telemeter`: what the robot sends about itself: beacons (docs/architecture.md §5.1) and, where a host leads,
 //! telemetry (docs/architecture.md §6.1).
 
 use protocol::host::{Condition, Telemetry};

@@ -23,8 +23,8 @@ pub fn coordinator(now: Instant, me: RobotId, own: &Beacon, teammates: &Teammate
         .map(|(id, _)| id)
 }
 
-/// The next cycle, as proposed in that boot epoch (`boot_epoch`) of this robot. Each epoch counts in a residue
-/// class of its own: a robot that has booted cannot know which cycles its earlier epochs proposed to
+/// The next cycle, as proposed in that boot epoch (`boot_epoch`) of this robot. Each epoch counts in a
+/// residue class of its own: a robot that has booted cannot know which cycles its earlier epochs proposed to
 /// teammates it does not receive, and cycle ids must be unique.
 pub fn proposal(known: Option<CycleId>, me: RobotId, coordinator: RobotId, boot_epoch: u32) -> CycleState {
     let successor = known.map_or(0, |id| id.counter).saturating_add(1);

@@ -3,7 +3,8 @@
 //!
 //! A step: primitives progress (`primitives`), robots walk (`walker`) and are pushed apart, the ball rolls
 //! (`ball`) or is carried, and bodies in contact push it (`contact`). What happened is returned as
-//! [`WorldEvent`]s. Robots are named by their index in [`LeggedWorld::walkers`]: attackers by id, then opponents.
+//! [`WorldEvent`]s. Robots are named by their index in [`LeggedWorld::walkers`]: attackers by id, then
+//! opponents.
 //!
 //! **Invariants.** No clock and no unseeded randomness; the order of every loop is fixed; `geometry::math`
 //! only.

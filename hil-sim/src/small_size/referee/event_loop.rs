@@ -1,5 +1,5 @@
-//! `event_loop`: manual control of the referee: commands and cards out of turn; the game continues as if an event
-//! had caused them. Field frame, m.
+//! `event_loop`: manual control of the referee: commands and cards out of turn; the game continues as if an
+//! event had caused them. Field frame, m.
 
 use geometry::{Field, Point};
 use protocol::Duration;

@@ -1,5 +1,5 @@
-//! `field_staff`: manual acts at the field. The ball is placed by hand where no robot can or may, and robots are
-//! taken off for cards where the rules permit: in a substitution area, or in a halt.
+//! `field_staff`: manual acts at the field. The ball is placed by hand where no robot can or may, and robots
+//! are taken off for cards where the rules permit: in a substitution area, or in a halt.
 //!
 //! m, field frame.
 

@@ -5,9 +5,9 @@
 //! Plan ─► Evaluation::play_shard ─► trials-1-of-3.csv … ─► merge ─► rows ─► tables ─► compare ─ Wilson, z, Welch, Holm
 //!                                                                     paper::rows ──────┘
 //! ```
-//! A [`EvaluationPlan`] numbers the trials; shards of it are played anywhere, and merged rows are the same bytes for
-//! any number of threads, shards and interrupts. [`tables`] makes docs/case-format.md §5.2's `tables.json` of
-//! them; [`compare`] and [`with_paper`] compute the differences.
+//! A [`EvaluationPlan`] numbers the trials; shards of it are played anywhere, and merged rows are the same
+//! bytes for any number of threads, shards and interrupts. [`tables`] makes docs/case-format.md §5.2's
+//! `tables.json` of them; [`compare`] and [`with_paper`] compute the differences.
 
 mod ablation;
 mod claims;

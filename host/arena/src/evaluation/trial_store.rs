@@ -1,5 +1,5 @@
-//! `trial_store`: crash-safe file of finished trials. Every trial is a line, appended to its shard's file when it
-//! is over.
+//! `trial_store`: crash-safe file of finished trials. Every trial is a line, appended to its shard's file
+//! when it is over.
 //!
 //! The first line identifies the evaluation, the second names the columns. A last line without its end was
 //! torn by the interrupt: it is cut off, and its trial played again. Lines stand in the order in which trials

@@ -1,4 +1,5 @@
-//! `get-ball`, `receive`, `dribble` and `turn-with-ball`: having the ball, and keeping it. Judged by where ball and robot truly are.
+//! `get-ball`, `receive`, `dribble` and `turn-with-ball`: having the ball, and keeping it. Judged by where
+//! ball and robot truly are.
 
 use geometry::{Angle, Field, Point, Vector};
 use hil_sim::small_size::Ball;

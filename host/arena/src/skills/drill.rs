@@ -1,5 +1,5 @@
-//! `drill`: one try through the whole loop. A start, a referee that says one thing, orders by hand or by the coach, and a judge of
-//! the true world. SI units, field frame; our team is yellow and defends −x.
+//! `drill`: one try through the whole loop. A start, a referee that says one thing, orders by hand or by the
+//! coach, and a judge of the true world. SI units, field frame; our team is yellow and defends −x.
 
 use geometry::{Angle, Field, Point, Pose};
 use hil_sim::small_size::{Ball, PhysicsEvent, Robot, World};

@@ -3,8 +3,9 @@
 //! ```text
 //! SkillPlan ─► tries (skill × world × number) ─► drill: start, orders, judge ─► TryResult ─► SkillRow
 //! ```
-//! A try plays world, cameras, host, radio and brains as a match does. Its start comes from seed, skill and number alone, so that
-//! one number starts equally in every named world; the true world decides whether it succeeded. Times in simulated seconds.
+//! A try plays world, cameras, host, radio and brains as a match does. Its start comes from seed, skill and
+//! number alone, so that one number starts equally in every named world; the true world decides whether it
+//! succeeded. Times in simulated seconds.
 
 mod catches;
 mod drill;

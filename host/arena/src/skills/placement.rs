@@ -1,4 +1,5 @@
-//! `placement`: the referee's ball placement for our team, with its coach choosing who places. Success by the referee's rule.
+//! `placement`: the referee's ball placement for our team, with its coach choosing who places. Success by the
+//! referee's rule.
 
 use geometry::{Field, Point, Segment};
 use hil_sim::small_size::Ball;

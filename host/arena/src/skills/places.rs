@@ -1,4 +1,5 @@
-//! `places`: random places on a league's field: in play, along boards, in corners, at the goals. Field frame, m.
+//! `places`: random places on a league's field: in play, along boards, in corners, at the goals. Field frame,
+//! m.
 
 use geometry::{Angle, Field, GoalEnd, Point, Pose, Segment};
 use hil_sim::Stream;

@@ -1,5 +1,5 @@
-//! `event_loop`: event loop of `onetwo control`: feeds what arrives on the channel to the host, with the time of a
-//! monotonic clock, and sends the host's packets.
+//! `event_loop`: event loop of `onetwo control`: feeds what arrives on the channel to the host, with the time
+//! of a monotonic clock, and sends the host's packets.
 //!
 //! Event-driven: it waits for mail or for the host's deadline, whichever is first. Times on the host's clock,
 //! which is 0 when the program starts.

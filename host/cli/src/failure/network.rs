@@ -1,4 +1,5 @@
-//! `network`: why a verb on the league's networks cannot continue: `onetwo control`, `simulate`, and every page.
+//! `network`: why a verb on the league's networks cannot continue: `onetwo control`, `simulate`, and every
+//! page.
 
 use std::fmt;
 use std::io;

@@ -1,4 +1,5 @@
-//! `survey`: why problems cannot be read, drawn or counted, for `cases coverage`, `check`, `render` and the like.
+//! `survey`: why problems cannot be read, drawn or counted, for `cases coverage`, `check`, `render` and the
+//! like.
 
 use std::fmt;
 use std::io;

@@ -1,4 +1,4 @@
-//! `happenings`: time-line events from the referee's packets; the referee of a simulation reports more.
+//! `match_events`: time-line events from the referee's packets; the referee of a simulation reports more.
 
 use arena::game::sentence;
 use hil_sim::small_size::referee::InternalReferee;

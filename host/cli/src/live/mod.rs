@@ -1,7 +1,7 @@
 //! `live`: feed of the page. A match, a host or a recording becomes a [`page::Scene`] some 25 times a second.
 //!
-//! [`Composer`] fills scenes from hosts, the same for `play`, `control` and `replay`; [`explanations`] answers why
-//! a case was chosen. Everything here only observes: no decision is made here.
+//! [`Composer`] fills scenes from hosts, the same for `play`, `control` and `replay`; [`explanations`]
+//! answers why a case was chosen. Everything here only observes: no decision is made here.
 
 mod beliefs;
 mod composer;

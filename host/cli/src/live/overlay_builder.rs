@@ -1,6 +1,6 @@
-//! `overlay_builder`: deferred overlays. Planned paths, maps of passes, threats, the tactics that opponents are
-//! believed to play: computed from a snapshot, on the page's own thread, so that the match thread pays for
-//! the snapshot only. m, s, field frame.
+//! `overlay_builder`: deferred overlays. Planned paths, maps of passes, threats, the tactics that opponents
+//! are believed to play: computed from a snapshot, on the page's own thread, so that the match thread pays
+//! for the snapshot only. m, s, field frame.
 
 use std::sync::{Arc, Mutex, PoisonError};
 

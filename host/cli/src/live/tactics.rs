@@ -2,8 +2,8 @@
 //! strategy's own functions: maps of P(receive) and of P(receive) · P(goal) for the team in possession,
 //! threats and open angles for the other, and what the one believes of the other ([`super::beliefs`]).
 //!
-//! Computed from a snapshot, on the page's thread ([`super::overlay_builder`]); maps five times a second. Field
-//! frame, m.
+//! Computed from a snapshot, on the page's thread ([`super::overlay_builder`]); maps five times a second.
+//! Field frame, m.
 
 use geometry::{Attack, Point};
 use host::strategy::pass::{Kicks, PassConstants, PassScene};

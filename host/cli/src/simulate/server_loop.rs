@@ -1,5 +1,5 @@
-//! `server_loop`: server loop of `onetwo simulate`: the clock that drives the field, the network around it, the
-//! referee beside it.
+//! `server_loop`: server loop of `onetwo simulate`: the clock that drives the field, the network around it,
+//! the referee beside it.
 //!
 //! One thread: every millisecond it polls three sockets, advances the world to the clock and sends what is
 //! due.

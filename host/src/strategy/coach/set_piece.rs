@@ -11,8 +11,8 @@ use super::super::{defence, restart, roles};
 use super::{Coach, Plan};
 
 impl Coach {
-    /// Our ball placement: the nearest brings it, the others keep out of its way. One that gets nowhere is given up: everybody keeps
-    /// away from ball and target as at the opponents', until the referee goes on.
+    /// Our ball placement: the nearest brings it, the others keep out of its way. One that gets nowhere is
+    /// given up: everybody keeps away from ball and target as at the opponents', until the referee goes on.
     pub(super) fn place_ball(&mut self, plan: &mut Plan<'_>) {
         let view = plan.view;
         if let (Some(ball), Some(at)) = (view.ball, view.placement)
@@ -90,7 +90,8 @@ impl Coach {
         self.spread(plan);
     }
 
-    /// Our taker: behind the ball until it may kick, then the kick; behind the `mark` of a kick-off or a penalty.
+    /// Our taker: behind the ball until it may kick, then the kick; behind the `mark` of a kick-off or a
+    /// penalty.
     pub(super) fn kicker(&mut self, plan: &mut Plan<'_>, started: bool, mark: Option<Point<Attack>>) {
         let view = plan.view;
         let penalty = matches!(view.phase, Phase::Penalty(_));
@@ -157,7 +158,8 @@ impl Coach {
         }
     }
 
-    /// Theirs against threats: a wall where it has room, everybody else as keeper, primary defender or against a second-level threat.
+    /// Theirs against threats: a wall where it has room, everybody else as keeper, primary defender or
+    /// against a second-level threat.
     fn their_free_kick(&mut self, plan: &mut Plan<'_>, ball: &ViewBall) {
         let view = plan.view;
         if ball.position.distance(view.our_goal()) > WALL_BEYOND {
@@ -184,17 +186,18 @@ impl Coach {
     }
 }
 
-/// How much sooner another robot must be at the ball to become the taker, s: more than in play, the ball lies.
+/// How much sooner another robot must be at the ball to become the taker, s: more than in play, the ball
+/// lies.
 const KICKER_WORTH: f32 = 1.0;
-/// Mates are given this long to take their places before a restart is aimed, of the 5 s (A) that the rules give: they are there since
-/// the ball was placed, and run on while the taker goes around it.
+/// Mates are given this long to take their places before a restart is aimed, of the 5 s (A) that the rules
+/// give: they are there since the ball was placed, and run on while the taker goes around it.
 const TEAMMATES_GET_READY: Duration = Duration::millis(200);
 /// A target once chosen stands for this long: to walk around the ball, aim and kick.
 const AIM_STANDS: Duration = Duration::millis(3000);
 /// Nearer to our goal than this the defenders are the wall, m.
 const WALL_BEYOND: f32 = 2.2;
-/// How much sooner another robot must be at the ball to take a placement over, s: as long as fetching it takes; and as usual of one
-/// that has not brought the ball nearer for so long.
+/// How much sooner another robot must be at the ball to take a placement over, s: as long as fetching it
+/// takes; and as usual of one that has not brought the ball nearer for so long.
 const PLACER_WORTH: f32 = 4.0;
 const PLACER_PATIENCE: Duration = Duration::millis(6_000);
 /// Who brings the ball is chosen afresh for so long: before, it was for a stop.

@@ -96,7 +96,8 @@ impl OpponentModel {
         Some(Self { style, first: None, aim: None, held: [None; PLACES] })
     }
 
-    /// Orders in open play for those of `free`, which are removed from it; `double_touch_blocked` must not touch the ball.
+    /// Orders in open play for those of `free`, which are removed from it; `double_touch_blocked` must not
+    /// touch the ball.
     pub(super) fn open_play(
         &mut self,
         view: &View,

@@ -98,7 +98,8 @@ const MARGIN: f32 = 0.01;
 /// The same while the ball is not in play, m: the robots' own margin (0.04, `brain`'s surroundings), less
 /// rounding. Robots would not go to a nearer place.
 const MARGIN_STOPPED: f32 = 0.038;
-/// From the ball to other robots' centres while we place it, m: the placer goes around it, 0.28 m off, and needs a body beyond that.
+/// From the ball to other robots' centres while we place it, m: the placer goes around it, 0.28 m off, and
+/// needs a body beyond that.
 const PLACER_NEEDS: f32 = 0.5;
 /// Least distance of two places, m: two bodies and the gap between two defenders of one line (`defence`,
 /// `SHOULDER`).

@@ -93,7 +93,8 @@ messages! {
     pub struct RobotControlResponse {
         /// What was not done.
         errors: Vec<SimulatorError> [message, repeated] = 1;
-        /// What robots feel: every one on the field, or those that were commanded, or also those taken away (README, trap 9).
+        /// What robots feel: every one on the field, or those that were commanded, or also those taken away
+        /// (README, trap 9).
         feedback: Vec<RobotFeedback> [message, repeated] = 2;
     }
 

@@ -98,7 +98,8 @@ messages! {
         principal_point_y: f32 [float, required] = 4;
         /// Radial distortion, the coefficient of r².
         distortion: f32 [float, required] = 5;
-        /// Rotation from field to camera: quaternion, x. Simulators send 0.7 four times, which is not normalised.
+        /// Rotation from field to camera: quaternion, x. Simulators send 0.7 four times, which is not
+        /// normalised.
         q0: f32 [float, required] = 6;
         /// Component y of the quaternion.
         q1: f32 [float, required] = 7;

@@ -1,5 +1,5 @@
-//! `watchdog`: watchdog driver. The board's watchdog (CMSDK APB watchdog, Arm DDI 0479): its first time-out raises
-//! the NMI, its second resets the board.
+//! `watchdog`: watchdog driver. The board's watchdog (CMSDK APB watchdog, Arm DDI 0479): its first time-out
+//! raises the NMI, its second resets the board.
 
 use cortex_m_rt::exception;
 use protocol::Duration;

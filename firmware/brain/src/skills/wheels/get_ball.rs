@@ -1,7 +1,8 @@
 //! Get the ball: meet a rolling one, come up behind a resting one, and have it at the dribbler.
 //!
-//! Rolling: `motion::intercept` says where the robot can stand beyond the ball in time, facing it; it stops itself against the
-//! roller. Resting: around the ball to a place behind it, as seen from where it will go, and slowly on from there.
+//! Rolling: `motion::intercept` says where the robot can stand beyond the ball in time, facing it; it stops
+//! itself against the roller. Resting: around the ball to a place behind it, as seen from where it will go,
+//! and slowly on from there.
 
 use geometry::{Angle, Field, Point, Segment, Vector, math};
 use motion::ball::{BallModel, BallPath};
@@ -71,7 +72,8 @@ pub fn approach(belief: &Belief, ball: &BelievedBall, face: Angle, speed: f32) -
     Approach::Around(Drive { speed: if belief.is_placing() { settles } else { drive.speed }, ..drive })
 }
 
-/// Goes for a ball that rolls: from behind where it rolls away before the robot, else beyond it on its way, facing it.
+/// Goes for a ball that rolls: from behind where it rolls away before the robot, else beyond it on its way,
+/// facing it.
 pub(super) fn intercept_ball(belief: &Belief, ball: &BelievedBall) -> Drive {
     let to_ball = ball.position - belief.pose.position;
     let (gap, speed) = (to_ball.norm() - BALL_AT, ball.velocity.norm());
@@ -103,7 +105,8 @@ pub(super) fn intercept_ball(belief: &Belief, ball: &BelievedBall) -> Drive {
     receive_at(belief, ball, place)
 }
 
-/// Stands on the ball's line at `place`, facing it; gives way a little as it comes, with the dribbler turning.
+/// Stands on the ball's line at `place`, facing it; gives way a little as it comes, with the dribbler
+/// turning.
 pub(super) fn receive_at(belief: &Belief, ball: &BelievedBall, place: Point<Field>) -> Drive {
     let me = belief.pose.position;
     let speed = ball.velocity.norm();
@@ -173,7 +176,8 @@ const SIDESTEPS: f32 = 0.1;
 const DRIFTS: f32 = 0.1;
 /// How fast, m/s: what it is behind in time makes it overshoot a faster step.
 const SIDESTEP: f32 = 0.25;
-/// Twice the deceleration at the end of a way, m/s²: what a robot is behind in time takes one that brakes harder 0.1 m too far.
+/// Twice the deceleration at the end of a way, m/s²: what a robot is behind in time takes one that brakes
+/// harder 0.1 m too far.
 const SETTLES: f32 = 5.0;
 /// And so much wider a metre farther back.
 const WIDENS: f32 = 0.2;
@@ -181,10 +185,11 @@ const WIDENS: f32 = 0.2;
 const ALIGNED: f32 = 0.15;
 /// What a robot is behind in time: picture, radio and a step, s.
 const LEAD: f32 = 0.05;
-/// So far ahead the ball is followed, s: looking farther costs, and what comes later is looked at anew before.
+/// So far ahead the ball is followed, s: looking farther costs, and what comes later is looked at anew
+/// before.
 pub(super) const LOOKS_AHEAD: f32 = 0.8;
-/// Places that are looked at in vain before it looks less closely where to meet the ball: a step is bounded. In 2,000 questions the
-/// place is the soonest for 828 of 833 that have one (a test of `motion::intercept`).
+/// Places that are looked at in vain before it looks less closely where to meet the ball: a step is bounded.
+/// In 2,000 questions the place is the soonest for 828 of 833 that have one (a test of `motion::intercept`).
 const LOOKS_MAX: u32 = 4;
 /// A point far back on the ball's line, m.
 const FAR_BACK: f32 = 20.0;

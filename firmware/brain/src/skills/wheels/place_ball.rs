@@ -1,9 +1,10 @@
 //! Place ball: bring it to the designated place, leave it at rest there, and make room.
 //!
-//! At a wall or in a goal the robot comes from the field and pulls the ball clear, no faster than it follows: each time it falls back the
-//! acceleration shrinks, and grows again while it stays. A ball that follows is pulled all the way; one that does not is pushed from
-//! behind, and kicked off a wall. At the place the robot stops, lets the dribbler run out, backs off straight without touching, and
-//! watches: a ball that did not stay is fetched again. A ball that is shown at its front and that it does not feel is not there: it backs
+//! At a wall or in a goal the robot comes from the field and pulls the ball clear, no faster than it follows:
+//! each time it falls back the acceleration shrinks, and grows again while it stays. A ball that follows is
+//! pulled all the way; one that does not is pushed from behind, and kicked off a wall. At the place the robot
+//! stops, lets the dribbler run out, backs off straight without touching, and watches: a ball that did not
+//! stay is fetched again. A ball that is shown at its front and that it does not feel is not there: it backs
 //! off, so that cameras see where the ball is.
 
 mod ways;
@@ -89,7 +90,8 @@ impl Placement {
         }
     }
 
-    /// Whether a ball in the open is pushed: from where the robot is behind it anyway, and where it does not follow.
+    /// Whether a ball in the open is pushed: from where the robot is behind it anyway, and where it does not
+    /// follow.
     fn pushes(&self, belief: &Belief, ball: &BelievedBall, at: Point<Field>) -> bool {
         let behind = (ball.position - belief.pose.position).dot(at - ball.position) > 0.0;
         let pulled = matches!(self.placing, Placing::Pulling { .. });
@@ -123,7 +125,8 @@ impl Placement {
     }
 }
 
-/// One step of bringing the ball to `at`. Not part of its caller: what it needs of the stack is free again while a way is planned.
+/// One step of bringing the ball to `at`. Not part of its caller: what it needs of the stack is free again
+/// while a way is planned.
 #[inline(never)]
 pub fn place_ball(now: Instant, placement: &mut Placement, belief: &Belief, at: Point<Field>) -> Intent {
     let Some(ball) = belief.ball else { return Intent::Stand { face: None } };
@@ -140,7 +143,8 @@ pub fn place_ball(now: Instant, placement: &mut Placement, belief: &Belief, at: 
     placement.placing = next;
     match placement.placing {
         Placing::Fetching => fetch(placement, belief, &ball, at, kicks),
-        // Cameras do not see a ball so near, and where it is taken to be errs by two centimetres: on to where it must be.
+        // Cameras do not see a ball so near, and where it is taken to be errs by two centimetres: on to where
+        // it must be.
         Placing::Feeling => {
             let to = ball.position - Vector::polar(BALL_AT - FEELS_INTO, heading);
             let drive = Drive { speed: FEELS_AT, ..Drive::holding(to, heading) };
@@ -303,7 +307,8 @@ const FAST: f32 = 1.0;
 const SLOWER: f32 = 0.8;
 /// How fast a ball is pulled, m/s.
 const PULL: f32 = 1.4;
-/// What a metre takes that is pushed, s, and getting around to push it: where pulling takes longer, it is pushed.
+/// What a metre takes that is pushed, s, and getting around to push it: where pulling takes longer, it is
+/// pushed.
 const ON_PUSHED: f32 = 0.75;
 const GOES_AROUND: f32 = 2.5;
 /// … no less than this: 0.07 m/s²; …
@@ -332,7 +337,8 @@ const FEELS_AT: f32 = 0.12;
 const COMES_BACK: f32 = 0.25;
 /// Aiming so far ahead, m: nearer, it would hardly move.
 const COMES_ON: f32 = 0.08;
-/// A robot that feels no ball there for so long does not press on: the ball is elsewhere, or its barrier is blind.
+/// A robot that feels no ball there for so long does not press on: the ball is elsewhere, or its barrier is
+/// blind.
 const FEELS: Duration = Duration::millis(500);
 /// One that is this near and does not get the ball for so long tries another way, m.
 const NEAR: f32 = 0.4;

@@ -1,5 +1,5 @@
-//! `stop_rules`: rules while the ball is out of play: standing still, speed and distances. Rules: referee commands;
-//! fouls while the ball is out of play.
+//! `stop_rules`: rules while the ball is out of play: standing still, speed and distances. Rules: referee
+//! commands; fouls while the ball is out of play.
 //!
 //! m, m/s, s, field frame; distances from a robot's nearest side to the ball's centre.
 

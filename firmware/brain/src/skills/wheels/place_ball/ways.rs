@@ -1,4 +1,5 @@
-//! `ways`: how a ball that is placed is come to, pulled, pushed and kicked off walls, and where walls are in the way.
+//! `ways`: how a ball that is placed is come to, pulled, pushed and kicked off walls, and where walls are in
+//! the way.
 
 use geometry::{Angle, Field, Point, Vector, math};
 use protocol::robot_io::OmniKick;
@@ -11,7 +12,8 @@ use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive};
 use crate::skills::wheels::get_ball::{Approach, approach, intercept_ball};
 
-/// To the ball from the side of the place, or from behind it; at a wall from the field, at right angles to it, or as it is kicked.
+/// To the ball from the side of the place, or from behind it; at a wall from the field, at right angles to
+/// it, or as it is kicked.
 pub(super) fn fetch(
     placement: &Placement,
     belief: &Belief,
@@ -83,7 +85,8 @@ pub(super) fn pull(belief: &Belief, at: Point<Field>, out: Option<Angle>, placem
 /// From behind, with what the dribbler holds.
 pub(super) fn push(belief: &Belief, ball: &BelievedBall, at: Point<Field>, grip: f32) -> Intent {
     let face = ball.position.direction_to(at);
-    // So slow that the ball rests at the place when it rolls on from here, and no slower than it starts at all.
+    // So slow that the ball rests at the place when it rolls on from here, and no slower than it starts at
+    // all.
     let rolls = SLOWS.iter().find(|(held, _)| grip > *held).map_or(ROLLS, |(_, brakes)| *brakes);
     let left = ball.position.distance(at) - SHORT - LAG * belief.velocity.norm();
     let speed = math::sqrt(2.0 * rolls * left.max(0.0)).clamp(CREEP, PUSH);
@@ -98,7 +101,8 @@ pub(super) fn strays(belief: &Belief, ball: &BelievedBall, at: Point<Field>) -> 
     seen.x() < BALL_AT - GAP || seen.y().abs() > BESIDE || askew > ASKEW || seen.x() > ESCAPED
 }
 
-/// The direction out of the field, where a ball lies so near a wall or goal that no body gets beside it, or behind it to push it to `at`.
+/// The direction out of the field, where a ball lies so near a wall or goal that no body gets beside it, or
+/// behind it to push it to `at`.
 pub(super) fn wall(
     field: &FieldSpec,
     ball: Point<Field>,
@@ -146,7 +150,8 @@ pub(super) fn wall(
     Some(out.angle())
 }
 
-/// Where a ball that lies at one wall is kicked so that it leaves that wall, on the side of the place; `None` in corners and goals.
+/// Where a ball that lies at one wall is kicked so that it leaves that wall, on the side of the place; `None`
+/// in corners and goals.
 pub(super) fn kick_off(field: &FieldSpec, ball: Point<Field>, at: Point<Field>, out: Angle) -> Option<Angle> {
     let ahead = Vector::<Field>::polar(1.0, out);
     let goal = 0.5 * field.goal_width + field.goal_wall + ROBOT_RADIUS;
@@ -185,11 +190,13 @@ const GO_IN_AT_WALL: f32 = 0.12;
 const ROLLING: f32 = 0.3;
 /// The ball is there, m: less than the rules' 0.15.
 pub(super) const NEAR_ENOUGH: f32 = 0.12;
-/// With this a ball is kicked off a wall, m/s: it leaves a board with 0.4 to 0.8 across and rests within a metre; …
+/// With this a ball is kicked off a wall, m/s: it leaves a board with 0.4 to 0.8 across and rests within a
+/// metre; …
 const OFF_WALL: f32 = 2.2;
 /// … and so much more for each try before, m/s.
 const STRONGER: f32 = 0.5;
-/// Off the wall's normal, rad: 40°, more leaves no room for the body, and with less the ball comes back to it.
+/// Off the wall's normal, rad: 40°, more leaves no room for the body, and with less the ball comes back to
+/// it.
 const KICKS_ASKEW: f32 = 0.7;
 /// Product of a direction's shares along two walls, beyond which it points between them.
 const ASKEW_OUT: f32 = 0.2;
@@ -199,7 +206,8 @@ const PUSH: f32 = 2.0;
 const HELD: f32 = 0.16;
 /// A ball before the front does not get lost by speeding up: share of the acceleration.
 const PUSHES: f32 = 1.6;
-/// A pushed ball is slowed down by this on the way, m/s²: about as carpets do, so that it stays near the front.
+/// A pushed ball is slowed down by this on the way, m/s²: about as carpets do, so that it stays near the
+/// front.
 const ROLLS: f32 = 0.35;
 /// The same of one that followed with such a share of the acceleration or more, m/s².
 const SLOWS: [(f32, f32); 3] = [(0.3, 1.0), (0.15, 0.7), (0.045, 0.55)];
