@@ -118,7 +118,7 @@ mod tests {
     #[test]
     fn while_we_place_the_ball_no_other_robot_is_sent_to_it() {
         // Beside our area the way off the ball leads into it.
-        let settings = Settings::default();
+        let settings = ThreatSettings::default();
         let ball = Point::new(-4.44, 1.17);
         let mut view = view((-4.44, 1.17), &[(0.0, 0.0)], &[]);
         view.phase = Phase::BallPlacement(Side::Ours);
