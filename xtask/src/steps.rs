@@ -100,8 +100,8 @@ fn qemu(context: &Context) -> Result<(), Failure> {
 }
 
 /// Everything but the upload and the build of what was packed, which takes a debug build of each package;
-/// before a release run it without `--no-verify`. Where the registry cannot be asked, the libraries are packed
-/// from the crates that are on this machine.
+/// before a release run it without `--no-verify`. Where the registry cannot be asked, the libraries are
+/// packed from the crates that are on this machine.
 fn publish(context: &Context) -> Result<(), Failure> {
     let asked = run(&mut context.cargo("publish --dry-run --workspace --allow-dirty --no-verify"));
     asked.or_else(|_| {

@@ -1,5 +1,6 @@
-//! `persistent_counter`: persistent counter of starts in the robot's flash. Every start must use a larger epoch than all
-//! before it (docs/architecture.md §6.1): hosts and teammates accept nothing of an older one. Sans-IO.
+//! `persistent_counter`: persistent counter of starts in the robot's flash. Every start must use a larger
+//! epoch than all before it (docs/architecture.md §6.1): hosts and teammates accept nothing of an older one.
+//! Sans-IO.
 //!
 //! Two halves, each erased as a whole, of cells that are written once: a start finds the largest epoch and
 //! writes the next one into the next empty cell. After a full half the other is used, which is erased first;

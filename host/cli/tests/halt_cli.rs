@@ -90,7 +90,7 @@ impl Field {
                         return line;
                     }
                 }
-                Err(error) => panic!("{arguments:?} is not said ({error}); said is: {:#?}", self.output),
+                Err(error) => panic!("{arguments:?} was not printed ({error}); printed: {:#?}", self.output),
             }
         }
     }

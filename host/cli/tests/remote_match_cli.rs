@@ -100,7 +100,7 @@ fn the_assistant_puts_the_ball_takes_a_robot_off_and_brings_it_back() {
     let more = ["--referee", &referee, "--vision", &to, "--ideal", "--cameras", "1", "--speed", "4"];
     let mut simulator = Running::start(&[&simulate[..], &more[..]].concat());
     let control = SocketAddr::from(([127, 0, 0, 1], simulator.control_port()));
-    simulator.wait_for("a game controller is heard at");
+    simulator.wait_for("a game controller is received at");
     teleport(control, TeleportBall { x: Some(1.0), y: Some(-1.0), ..TeleportBall::default() });
     image(&vision, "the ball is moved", |frame| ball_at(frame, 1_000.0, -1_000.0));
     controller.wait_for(|packet| {
@@ -141,7 +141,7 @@ fn the_automatic_referee_registers_and_reports_what_it_sees() {
     let registration: Option<AutoRefRegistration> = talk.receive(PATIENCE).expect("no error");
     assert_eq!(registration.expect("a registration").identifier, "onetwo");
     talk.send(&reply).expect("accepted");
-    simulator.wait_for("a game controller is heard at");
+    simulator.wait_for("a game controller is received at");
     controller.wait_for(|packet| packet.command = Command::Stop as i32);
     thread::sleep(Duration::from_millis(300));
     controller.wait_for(|packet| packet.command = Command::ForceStart as i32);

@@ -1,5 +1,5 @@
-//! `telemeter`: what the robot sends about itself: beacons (docs/architecture.md §5.1) and, where a host leads,
-//! telemetry (docs/architecture.md §6.1).
+//! `telemeter`: what the robot sends about itself: beacons (docs/architecture.md §5.1) and, where a host
+//! leads, telemetry (docs/architecture.md §6.1).
 
 use protocol::host::{Condition, Telemetry};
 use protocol::quantized::length_to_mm;

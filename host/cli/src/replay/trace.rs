@@ -42,8 +42,8 @@ struct Report<'a> {
     #[serde(flatten)]
     sheet: Sheet,
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[serde(rename = "happenings")]
     damage: Option<String>,
+    #[serde(rename = "happenings")]
     match_events: &'a [MatchEvent],
     hosts: Vec<Outcome>,
     same_decisions: bool,

@@ -67,7 +67,7 @@ impl Program {
                 return;
             }
         }
-        panic!("`{arguments}` is not said");
+        panic!("`{arguments}` was not printed");
     }
 
     #[allow(dead_code, reason = "the browser's tests ask for it")]

@@ -65,7 +65,9 @@ impl Running {
                         return line;
                     }
                 }
-                Err(error) => panic!("`{description}` is not said ({error}); said is: {:#?}", self.received),
+                Err(error) => {
+                    panic!("`{description}` was not printed ({error}); printed: {:#?}", self.received)
+                }
             }
         }
     }
