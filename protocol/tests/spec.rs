@@ -193,7 +193,7 @@ fn robots_messages_have_the_bytes_of_the_specification() {
     let teammate = |who, boot_epoch, bond| KnownEpoch { who: robot(who), boot_epoch, bond };
     let teammates =
         [teammate(1, 9, Bond::Received), teammate(3, 258, Bond::Believed), teammate(12, 1, Bond::Mutual)];
-    both_ways("greeting", &TeamMessage::Handshake(Handshake { teammates: teammates.into_iter().collect() }));
+    both_ways("handshake", &TeamMessage::Handshake(Handshake { teammates: teammates.into_iter().collect() }));
 }
 
 #[test]
