@@ -1,6 +1,6 @@
-//! `labels`: the macro that declares an enum whose variants have words, for options, reports and files.
+//! `labels`: the macro that declares an enum whose variants have labels, for options, reports and files.
 
-/// Declares an enum with `ALL`, `label` and `from_label`; a variant is `NAME = "word"`.
+/// Declares an enum with `ALL`, `label` and `from_label`; a variant is `NAME = "label"`.
 #[macro_export]
 macro_rules! labels {
     ($(#[$about:meta])* pub enum $name:ident { $($(#[$doc:meta])* $variant:ident = $label:literal,)+ }) => {
@@ -11,12 +11,12 @@ macro_rules! labels {
             /// All of them, in the order they are declared.
             pub const ALL: [Self; [$(Self::$variant),+].len()] = [$(Self::$variant),+];
 
-            /// Its word in options, reports and files.
+            /// Its label in options, reports and files.
             pub const fn label(self) -> &'static str {
                 match self { $(Self::$variant => $label),+ }
             }
 
-            /// The one of that word.
+            /// The variant of that label.
             pub fn from_label(label: &str) -> Option<Self> {
                 Self::ALL.into_iter().find(|one| one.label() == label)
             }

@@ -65,7 +65,7 @@ impl<'a> NativeMcu<'a> {
         self.reply.actuators = self.station.poll_actuators(tick.now);
     }
 
-    /// Sends what the station has to say; as on a board, what does not fit into the tick is dropped.
+    /// Sends what the station has to send; as on a board, what does not fit into the tick is dropped.
     fn drain(&mut self, now: Instant, seen: &mut impl FnMut(&Station<'a>, Instant)) {
         seen(&self.station, now);
         while let Some(packet) = self.station.poll_packet(now) {

@@ -167,7 +167,7 @@ impl Ball {
         }
     }
 
-    /// Its way along the ground from here; for a ball in the air, from here as if it were down.
+    /// Its path along the ground from here; for a ball in the air, from here as if it were down.
     pub fn path(&self, models: &BallModels) -> BallPath<Field> {
         models.ground.moving(self.position, self.velocity, self.rolls_below)
     }

@@ -9,7 +9,7 @@
 //! age = own clock now + offset − counter of the frame
 //! ```
 //!
-//! is never less than the true age, whatever delayed or withheld either frame: it is the sum of both
+//! is never less than the true age, however long either frame was delayed or withheld: it is the sum of both
 //! latencies, up and down. The smallest offset counts. It grows by 1/1024 of the time since it was learned,
 //! more than two clocks drift apart (crystals 100 ppm, a slewed system clock 500 ppm).
 

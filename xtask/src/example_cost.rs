@@ -6,7 +6,7 @@
 use crate::context::{Context, Failure};
 use crate::cost::{Row, counted, release};
 
-/// An example that takes the word of a part and how often to do it.
+/// An example that takes the name of a part and how often to do it.
 pub(crate) struct Example {
     package: &'static str,
     name: &'static str,
@@ -29,7 +29,7 @@ impl Example {
 }
 
 struct Part {
-    /// The program's word.
+    /// The program's argument.
     label: &'static str,
     what: &'static str,
     /// So many and twice as many.

@@ -52,7 +52,7 @@ pub fn skeleton(rules: &SourceFile, problem: &Problem) -> Result<Skeleton, Skele
         plans(&league, &scene).iter().map(|plan| tried(rules, problem, &scene, plan)).collect();
     let usable = |made: &&Skeleton| made.retrieved;
     let best = made.iter().filter(usable).find(|made| made.findings.is_empty());
-    // The dribble comes last and is kept whatever its findings are.
+    // The dribble comes last and is kept with all its findings.
     let best = best.or_else(|| made.iter().find(usable)).or(made.last());
     best.cloned().ok_or(SkeletonError::NoTeammate)
 }

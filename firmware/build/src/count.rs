@@ -15,14 +15,14 @@ pub struct CountingImage {
 }
 
 impl CountingImage {
-    /// Builds the image. The error says what is missing.
+    /// Builds the image. The error names what is missing.
     pub fn new(program: Program) -> Result<Self, String> {
         let qemu = ensure_qemu(Install::ForUser).map_err(|error| error.to_string())?;
         let image = build_program(&workspace_root(), program).map_err(|error| error.to_string())?;
         Ok(Self { qemu, image })
     }
 
-    /// Runs it to its end with these words for QEMU and reads what it prints, a `T` a line; there must be
+    /// Runs it to its end with these arguments for QEMU and reads what it prints, a `T` a line; there must be
     /// `count`.
     pub fn lines<T>(
         &self,
@@ -50,7 +50,7 @@ impl CountingImage {
     }
 }
 
-/// Instructions of the calling program, started again with these words, in all.
+/// Instructions of the calling program, started again with these arguments, in all.
 pub fn callgrind(arguments: &[&str]) -> Result<u64, String> {
     let program = env::current_exe().map_err(|error| format!("which program is this? {error}"))?;
     let output = Command::new("valgrind")

@@ -31,7 +31,7 @@ pub use target::{TargetError, ThumbToolchain, ensure_target};
 /// Which places a missing tool may be installed to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Install {
-    /// Into the user's own folders only: rustup's targets. What a program may do unasked.
+    /// Into the user's own directories only: rustup's targets. What a program may do unasked.
     ForUser,
     /// System packages as well, where we are root. For the test command, which promises to install what it
     /// needs.

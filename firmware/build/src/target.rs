@@ -47,7 +47,7 @@ pub enum TargetError {
     },
     /// The compiler has no `core` for the target, and rustup did not fetch it.
     NoTarget {
-        /// What stood in the way.
+        /// The obstacle.
         why: String,
     },
 }
@@ -89,7 +89,7 @@ fn prebuilt(root: &Path) -> Result<(), String> {
     if has_core { Ok(()) } else { Err("without `core`".into()) }
 }
 
-/// The target is 10 MB; a server that is silent for so long will stay so.
+/// The target is 10 MB; a server that is silent for this long will stay silent.
 const RUSTUP: Duration = Duration::from_mins(2);
 
 #[cfg(test)]

@@ -152,7 +152,7 @@ pub async fn watchdog<D: Watchdog>(mut watchdog: D, boxes: &Mailboxes) -> ! {
 
 /// The brain's pace on wheels (docs/architecture.md §2.3).
 const BRAIN_PERIOD: Duration = Duration::from_micros(WHEELED_STEP.0);
-/// The control loop has said nothing for ten of its steps.
+/// The control loop has been silent for ten of its steps.
 const SILENT: Duration = Duration::from_millis(10);
 /// Period in which a radio that receives nothing reports that it listens.
 const LISTENS: Duration = Duration::from_millis(10);

@@ -108,7 +108,7 @@ pub const ORDER_STALE: Duration = Duration::millis(50);
 const SPEC: WheelSpec = RobotSpec::OURS.wheels;
 /// Steps in a second.
 const STEPS: f32 = (1_000_000 / CONTROL_PERIOD.0) as f32;
-/// By so much a rim slows down in a step, m/s: as the governor brakes.
+/// Speed by which a rim slows down in a step, m/s: as the governor brakes.
 const BRAKE_A_STEP: f32 = RobotSpec::OURS.governor.brake / STEPS;
 /// Duty for a rim speed, s/m.
 const FEED_FORWARD: f32 = 1.0 / SPEC.free_speed;

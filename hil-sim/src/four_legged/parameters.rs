@@ -126,7 +126,7 @@ numbers! {
     RefereeParameters in "referee" {
         /// m beside a goalpost that still count as close.
         close: 0.0, LARGEST;
-        /// s without contact before a touch counts anew.
+        /// s without contact before a touch counts again.
         possession_gap: 0.0, LARGEST;
         /// s, against defender and goalie.
         time_limit_dg: POSITIVE, LARGEST;
@@ -142,7 +142,7 @@ numbers! {
         heading_deg: 0.0, LARGEST;
         /// Of the ball's position, as a share of its distance.
         ball_share: 0.0, LARGEST;
-        /// Of the ball's position, m, whatever the distance.
+        /// Of the ball's position, m, at any distance.
         ball_floor: 0.0, LARGEST;
         /// Of an opponent's position, m.
         opponent: 0.0, LARGEST;

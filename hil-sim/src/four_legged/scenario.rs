@@ -67,7 +67,7 @@ impl Scenario {
     /// The paper's four scenarios, in its order.
     pub const PAPER: [Self; 4] = [Self::MiddleBack, Self::LeftSide, Self::DefenderAhead, Self::DefenderClose];
 
-    /// What it looks like, in a few words.
+    /// Short description.
     pub fn title(self) -> &'static str {
         self.file().map_or("random", |file| &file.title)
     }

@@ -39,7 +39,7 @@ pub(crate) fn flag(text: &str) -> Result<bool, SnapshotError> {
     }
 }
 
-/// Why a picture is not written.
+/// Why a figure is not written.
 #[derive(Debug)]
 pub(crate) enum SnapshotError {
     /// The name ends in none of these.
@@ -70,7 +70,7 @@ impl fmt::Display for SnapshotError {
 
 impl std::error::Error for SnapshotError {}
 
-/// For clap: the name of a picture, of one of these kinds.
+/// For clap: the name of a figure, of one of these kinds.
 pub(crate) fn named(text: &str, kinds: &'static [&'static str]) -> Result<PathBuf, SnapshotError> {
     let file = PathBuf::from(text);
     if !kinds.iter().any(|kind| has_extension(&file, kind)) {

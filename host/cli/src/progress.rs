@@ -21,8 +21,8 @@ struct Line {
     unit: &'static str,
     done: u64,
     of: Option<u64>,
-    /// When and from where the work of this run started: what an earlier run did says nothing of how long the
-    /// rest takes.
+    /// When and from where the work of this run started: what an earlier run did does not predict how long
+    /// the rest takes.
     start: (Instant, u64),
     drawn: Option<Instant>,
 }
@@ -43,7 +43,7 @@ impl Progress {
         Self(Mutex::new(Line { visible, description: String::new(), unit, done: 0, of, start, drawn: None }))
     }
 
-    /// The words before the bar, or all of the line where the end is not known.
+    /// The text before the bar, or all of the line where the end is not known.
     pub(crate) fn set_text(&self, description: impl Into<String>) {
         let mut line = self.line();
         line.description = description.into();
@@ -64,7 +64,7 @@ impl Progress {
         line.draw();
     }
 
-    /// So many steps are done, of so many.
+    /// Sets the numbers of steps done and of all steps.
     pub(crate) fn set(&self, done: u64, of: u64) {
         let mut line = self.line();
         if line.of != Some(of) {
@@ -74,7 +74,7 @@ impl Progress {
         line.draw();
     }
 
-    /// Does something that writes to the terminal, with the line out of its way.
+    /// Does something that writes to the terminal, with the line cleared.
     pub(crate) fn aside<T>(&self, write: impl FnOnce() -> T) -> T {
         let mut line = self.line();
         line.clear();

@@ -131,7 +131,7 @@ impl Worker {
             match mail {
                 Mail::DeferredScene(deferred_scene) => {
                     let scene = deferred_scene.finished();
-                    // Strings, numbers and lists of them: nothing that JSON cannot say.
+                    // Strings, numbers and lists of them: nothing that JSON cannot hold.
                     let text: Arc<str> = Arc::from(serde_json::to_string(&scene).unwrap_or_default());
                     look(&self.kept, |kept| kept.add(&scene, text.clone()));
                     self.viewers.show(&text);

@@ -18,7 +18,7 @@ const LINES_MAX: usize = 64;
 const LEFTOVER_MAX: usize = 64 * 1024;
 const LEFTOVER: Duration = Duration::from_secs(1);
 
-/// Status line's number and words.
+/// Status line's number and reason.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Status(pub(crate) u16, &'static str);
 
@@ -85,7 +85,7 @@ impl Wire {
         Ok(())
     }
 
-    /// Ends both directions, for whoever reads or writes it too.
+    /// Ends both directions, for every thread that reads or writes it.
     pub(crate) fn close(&self) {
         // What is closed already needs nothing more.
         let _ = self.stream.shutdown(Shutdown::Both);
@@ -112,7 +112,7 @@ fn left(by: Instant) -> io::Result<Duration> {
     if left.is_zero() { Err(io::ErrorKind::TimedOut.into()) } else { Ok(left) }
 }
 
-/// Systems tell a time-out in two ways.
+/// Systems report a time-out by two codes.
 fn timed_out(error: io::Error) -> io::Error {
     if error.kind() == io::ErrorKind::WouldBlock { io::ErrorKind::TimedOut.into() } else { error }
 }
@@ -227,7 +227,7 @@ impl Head {
         if values.next().is_some() { Err(Status::BAD_REQUEST) } else { Ok(Some(text.trim())) }
     }
 
-    /// Whether a header's list of words has that one, in whatever case.
+    /// Whether a header's list has that token, ignoring case.
     pub(crate) fn has_label(&self, name: &str, label: &str) -> bool {
         let values = self.all(name).filter_map(|value| std::str::from_utf8(value).ok());
         values.flat_map(|value| value.split(',')).any(|one| one.trim().eq_ignore_ascii_case(label))
@@ -260,7 +260,7 @@ impl Answer {
         Self { status: Status::OK, headers: vec![("content-type", kind.into())], body: body.into() }
     }
 
-    /// Plain words.
+    /// Plain text.
     pub(crate) fn description(status: Status, description: impl Into<Cow<'static, str>>) -> Self {
         let body = match description.into() {
             Cow::Borrowed(description) => Cow::Borrowed(description.as_bytes()),
@@ -269,7 +269,7 @@ impl Answer {
         Self { status, ..Self::of("text/plain; charset=utf-8", body) }
     }
 
-    /// The status' own words.
+    /// The status' reason.
     pub(crate) fn bare(status: Status) -> Self {
         Self::description(status, status.1)
     }

@@ -177,7 +177,7 @@ impl Page {
     /// Answers the viewer whose request was taken last with the reason why it is refused.
     pub fn refuse(&self, description: impl Into<String>) {
         if let Some(asker) = &*self.asker.borrow() {
-            // A viewer that is gone, or that asks faster than it reads, is told nothing.
+            // A viewer that is gone, or that asks faster than it reads, gets no reply.
             asker.refuse(description.into());
         }
     }

@@ -23,7 +23,7 @@ use crate::routes;
 use crate::socket::{self, Received};
 use crate::viewers::{Mailbox, Sent, Viewers};
 
-/// A viewer that takes nothing for so long is gone.
+/// A viewer that takes nothing for this long is gone.
 const GONE: Duration = Duration::from_secs(30);
 /// Where no connection can be taken (no descriptor is left), the next attempt is after that time.
 const ACCEPT_AGAIN: Duration = Duration::from_millis(50);
@@ -43,7 +43,7 @@ pub(crate) struct Shared {
     pub(crate) seats: Arc<AtomicUsize>,
 }
 
-/// What a viewer asked for, and how it is told that it is not done.
+/// What a viewer asked for, and how its refusal is sent.
 pub(crate) struct Ask {
     pub(crate) request: UserRequest,
     pub(crate) asker: Arc<Mailbox>,
@@ -140,7 +140,7 @@ impl Drop for Place {
     }
 }
 
-/// Serves connection by connection, no more at once than the limits say.
+/// Serves connection by connection, no more at once than the limits allow.
 fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
     let places = Arc::new(Places::default());
     loop {
@@ -273,18 +273,18 @@ fn send(wire: &mut Wire, mailbox: &Mailbox) {
             break;
         }
     }
-    // The match is over with its page: the socket closes, and viewers say so.
+    // The match is over with its page: the socket closes, and viewers show it.
     let _ = wire.send(&socket::close(), Instant::now() + WAKE);
     wire.close();
 }
 
-/// Reads what a viewer says, until it says nothing more.
+/// Reads what a viewer sends, until it closes.
 fn listen(wire: &mut Wire, shared: &Shared, mailbox: &Arc<Mailbox>, may_ask: bool) {
     let mut begun = None;
     loop {
         match socket::receive(wire, &mut begun, LABEL_MAX, Instant::now() + GONE) {
             Ok(Received::Text(label)) if label == "." => mailbox.take(),
-            // A viewer of something that stands still says that it is there.
+            // A viewer of something that stands still sends a sign that it is there.
             Ok(Received::Text(label)) if label.is_empty() => {}
             Ok(Received::Text(label)) => {
                 let asked = if may_ask { ask(shared, mailbox, &label) } else { Err(NO_TOKEN.to_owned()) };

@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, Weak};
 
-/// Scenes on their way to a viewer that has not yet taken them.
+/// Scenes queued for a viewer that has not yet taken them.
 const UNTAKEN_MAX: u32 = 2;
 /// Refusals that wait for a viewer that does not read; more are dropped.
 const REFUSALS_MAX: usize = 16;

@@ -92,7 +92,7 @@ pub struct Coach {
     placing: Option<(f32, Instant)>,
     /// Whether opponents have the ball.
     attacked: bool,
-    /// The pass of our restart that is under way.
+    /// The pass of our restart that is running.
     pass: Option<Pass>,
     /// Where the ball of our restart lay.
     ball_lay: Option<Point<Attack>>,

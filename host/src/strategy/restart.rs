@@ -14,13 +14,13 @@ use super::view::{View, ViewBall};
 /// Distance of robots from a ball that is not in play, m: the rules' 0.5 m, a body, the overshoot of robots,
 /// and the path of a ball kicked at them before all know that it is in play (6 m/s for 20 ms).
 pub const OFF_BALL: f32 = 0.78;
-/// Distance behind the ball at which our taker waits, m.
+/// Distance behind the ball at which our kicker waits, m.
 const KICKER_WAITS: f32 = 0.7;
-/// Distance behind the mark of all robots except taker and keeper at a penalty, m: the rules' 1 m, a body and
-/// a margin, and room for another robot (0.23 m) to pass in front of the row to its place, or for a ball that
-/// lies a little behind the mark.
+/// Distance behind the mark of all robots except kicker and keeper at a penalty, m: the rules' 1 m, a body
+/// and a margin, and room for another robot (0.23 m) to pass in front of the row to its place, or for a ball
+/// that lies a little behind the mark.
 const BEHIND_PENALTY: f32 = 1.45;
-/// From the middle to the first robot that waits at a penalty, m: the taker passes between the teams.
+/// From the middle to the first robot that waits at a penalty, m: the kicker passes between the teams.
 const PENALTY_FIRST: f32 = 0.3;
 /// Largest distance between robots that wait at a penalty, m: a third passes between two of them.
 const PENALTY_APART: f32 = 0.6;
@@ -34,14 +34,14 @@ const TURN_STEP_DEG: f32 = 15.0;
 /// pass.
 const KICKOFF_BACK: f32 = 0.9;
 
-/// Waiting place of our taker for its restart from `ball`: behind it, as seen from their goal.
+/// Waiting place of our kicker for its restart from `ball`: behind it, as seen from their goal.
 pub fn kicker_waits(view: &View, ball: Point<Attack>) -> Point<Attack> {
     let back = (ball - view.their_goal()).unit().unwrap_or(Vector::new(-1.0, 0.0));
     view.clamp(ball + back * KICKER_WAITS, -0.1)
 }
 
-/// Our taker's task for its target; without one it waits behind the ball until its teammates have taken their
-/// places.
+/// Our kicker's task for its target; without one it waits behind the ball until its teammates have taken
+/// their places.
 pub fn take(view: &View, ball: &ViewBall, target: Option<Target>) -> (Task, OrderReason) {
     let distance = |at: Point<Attack>| at.distance(ball.position);
     match target {
@@ -62,7 +62,7 @@ pub fn take(view: &View, ball: &ViewBall, target: Option<Target>) -> (Task, Orde
     }
 }
 
-/// Places of field players at our kick-off: on our half, within a pass of the taker.
+/// Places of field players at our kick-off: on our half, within a pass of the kicker.
 pub fn kickoff_places(view: &View) -> [Point<Attack>; 6] {
     let (x, wing) = (-KICKOFF_BACK, view.field.width * 0.5);
     [
@@ -101,7 +101,7 @@ fn lies_at(view: &View, mark: Point<Attack>) -> Option<Point<Attack>> {
     Some(ball.position).filter(|at| at.distance(mark) < NEAR_MARK)
 }
 
-/// Places of robots other than taker and keeper at a penalty from `spot`, `waiting` in number: in a row
+/// Places of robots other than kicker and keeper at a penalty from `spot`, `waiting` in number: in a row
 /// behind it, each team on its own left, so that no two are sent to one place.
 pub fn behind_penalty(
     view: &View,

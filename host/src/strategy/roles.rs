@@ -71,7 +71,7 @@ pub fn assign<const N: usize>(
 /// Time by which another robot must be there sooner to take over a role, s: the time in which a robot brakes
 /// and turns.
 pub const WORTH: f32 = 0.4;
-/// Speed of a robot on its way, m/s.
+/// Speed of a moving robot, m/s.
 const TYPICAL_SPEED: f32 = RobotSpec::OURS.assumed.role.speed;
 /// m/s².
 const TYPICAL_ACCELERATION: f32 = RobotSpec::OURS.assumed.role.acceleration;

@@ -2,7 +2,7 @@
 //! game, SI, field frame.
 //!
 //! [`FieldSpec`] and [`League`] are data; [`limits`] are the rules' numbers; [`RobotSpec`] holds every number
-//! of our own robots, [`contact`] how near a robot is to a ball that it touches; [`keep_out`] says where a
+//! of our own robots, [`contact`] how near a robot is to a ball that it touches; [`keep_out`] defines where a
 //! robot must not be, [`restart`] where the ball goes, [`legality`] what is an offence, [`state`] what a
 //! referee's command means.
 //!

@@ -95,7 +95,7 @@ pub struct AssumedSpec {
     pub pass: DriveSpec,
     /// The same robots' limits of turning.
     pub turn: TurnSpec,
-    /// Role assignment: speed and acceleration over a few metres, other bodies in the way.
+    /// Role assignment: speed and acceleration over a few metres, other bodies that obstruct.
     pub role: TypicalSpec,
     /// Defence: acceleration of opponents and of our defenders, m/s².
     pub defence_acceleration: f32,
@@ -108,7 +108,7 @@ pub struct AssumedSpec {
 /// Average motion over a few metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TypicalSpec {
-    /// Speed on the way, m/s.
+    /// Speed while driving, m/s.
     pub speed: f32,
     /// Acceleration and braking, m/s².
     pub acceleration: f32,

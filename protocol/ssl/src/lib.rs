@@ -3,7 +3,7 @@
 //! One module a protobuf package, as `prost` structs written by hand: no protoc, no build script. Names are
 //! the league's without `SSL_`; a field is a plain value where the league requires it, an `Option` where it
 //! does not. Enums are kept as the number on the wire, so that unknown ones survive; the accessor of the
-//! field's name reads an unknown number as the enum's first value, `Enum::try_from(number)` tells it apart.
+//! field's name reads an unknown number as the enum's first value, `Enum::try_from(number)` distinguishes it.
 //!
 //! | module | message on the wire | address |
 //! |---|---|---|

@@ -37,13 +37,13 @@ messages! {
         current_action_time_remaining: Option<i64> [int64, optional] = 15;
         /// What was decided since the last command that let the ball move.
         game_events: Vec<GameEvent> [message, repeated] = 16;
-        /// What automatic referees proposed and nobody decided yet.
+        /// What automatic referees proposed and is not decided yet.
         game_event_proposals: Vec<GameEventProposalGroup> [message, repeated] = 17;
         /// Which program sends, the same through a session.
         source_identifier: Option<String> [string, optional] = 18;
         /// What kind of match, [`MatchType`].
         match_type: Option<i32> [enumeration = "MatchType", optional] = 19;
-        /// What the controller waits for, in words.
+        /// What the controller waits for, as text.
         status_message: Option<String> [string, optional] = 20;
     }
 

@@ -13,7 +13,7 @@ messages! {
     pub struct TrackerWrapperPacket {
         /// Names the source, the same through a session.
         uuid: String [string, required] = 1;
-        /// The source in words.
+        /// The source as text.
         source_name: Option<String> [string, optional] = 2;
         /// The field as this source estimates it.
         tracked_frame: Option<TrackedFrame> [message, optional] = 3;
@@ -47,7 +47,7 @@ messages! {
         visibility: Option<f32> [float, optional] = 3;
     }
 
-    /// A ball that was kicked, and where it will end if nobody touches it.
+    /// A ball that was kicked, and where it will end if no robot touches it.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct KickedBall {
         /// Where it was kicked, m.

@@ -70,7 +70,7 @@ pub enum Action {
     Pass(usize),
     /// `receive_ball`: from the robot of this number.
     Receive(usize),
-    /// `kick`: the ball leaves in this way.
+    /// `kick`: the ball leaves as this kick.
     Kick(Kick),
 }
 

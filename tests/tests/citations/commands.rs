@@ -17,7 +17,7 @@ pub(crate) struct Known {
     program: String,
     /// Steps of `cargo xtask test`.
     steps: BTreeSet<String>,
-    /// The other commands of xtask, with all their words.
+    /// The other commands of xtask, with all their arguments.
     tasks: Vec<String>,
     /// The source that contains their flags.
     xtask: String,

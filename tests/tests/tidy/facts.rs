@@ -73,7 +73,7 @@ fn retyped(fact: &Fact, sources: &[Source]) -> Vec<String> {
     findings
 }
 
-/// A line of code without its texts; `in_text` tells whether one goes on from the line before, and into the
+/// A line of code without its texts; `in_text` is whether one goes on from the line before, and into the
 /// next.
 fn without_texts(line: &str, in_text: &mut bool) -> String {
     let (mut code, mut escaped) = (String::new(), false);
@@ -223,9 +223,9 @@ const FACTS: [Fact; 10] = [
         folders: CODE_OF_ROBOTS,
         home: "protocol/rules/src/contact.rs",
         other: &[
-            // The legged robot's way to a ball.
+            // The legged robot's path to a ball.
             ("firmware/brain/src/skills/legged/get_ball.rs", "STAND_OFF"),
-            // Where a way starts and where it ends.
+            // Start and end of a path.
             ("firmware/motion/src/avoid/item.rs", "TOUCH"),
             // A share of a radius.
             ("host/src/strategy/pass/bridge.rs", "FIRST_STEP"),

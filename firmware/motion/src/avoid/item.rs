@@ -313,7 +313,7 @@ fn touches<F: Copy>(from: Point<F>, path: Vector<F>, center: Point<F>, radius_sq
 fn hits_capsule<F: Copy>(from: Point<F>, path: Vector<F>, spine: &Segment<F>, radius: f32) -> Option<f32> {
     let bone = spine.vector();
     let offset = spine.from - from;
-    // Intersection test: from + s·way = spine.from + t·bone.
+    // Intersection test: from + s·step = spine.from + t·bone.
     let turn = path.cross(bone);
     if turn != 0.0 {
         let per_turn = 1.0 / turn;

@@ -28,7 +28,7 @@ impl TurnLimits {
         Self { rate: turn.rate, acceleration: turn.acceleration }
     }
 
-    /// From `from`, turning with `rate` rad/s, to rest at `to`: the way round that is sooner there.
+    /// From `from`, turning with `rate` rad/s, to rest at `to`: in the direction that arrives sooner.
     pub fn plan(&self, from: Angle, rate: f32, to: Angle) -> Turn {
         let (speed, braking) = (self.rate, self.acceleration);
         // False for NaN.

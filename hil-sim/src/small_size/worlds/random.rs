@@ -97,7 +97,7 @@ pub const DRAWS: &[Quantity] = &[
         }
     }),
     quantity!(Even "camera.rate" 50.0 100.0, camera.rate),
-    // What of it the packet tells stays as it is, as far as it fits.
+    // What the packet reports of it stays as it is, as far as it fits.
     quantity!(Even "camera.delay" 0.010 0.050, |model, value| {
         let of = &mut model.parameters.camera;
         (of.delay, of.processing) = (value, of.processing.min(value));

@@ -31,7 +31,7 @@ hil_sim::labels! {
     /// What the opponents of a case do.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Opposition {
-        /// They hold their places: bodies in the way.
+        /// They hold their places: bodies that obstruct.
         Standing = "standing",
         /// They play as the paper's scripted ones.
         Playing = "playing",

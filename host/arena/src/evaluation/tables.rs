@@ -25,7 +25,7 @@ hil_sim::labels! {
     pub enum Extent {
         /// The paper's: all of them, but of Table 6 the first 30.
         Paper = "paper",
-        /// Table 6 alone: all of them, to say what 30 could not.
+        /// Table 6 alone: all of them, to show what 30 could not.
         Large = "large",
     }
 }

@@ -202,7 +202,7 @@ impl Judge for Dribble {
     }
 }
 
-/// Take the ball, and look the other way with it.
+/// Take the ball, and turn half around with it.
 pub(super) struct Turn {
     start: Start,
     lay: Point<Field>,
@@ -265,7 +265,7 @@ impl Judge for Turn {
     }
 }
 
-/// The ball is had after so long without a break, s.
+/// Time of uninterrupted contact after which the ball counts as taken, s.
 const KEEPS: f32 = 0.3;
 /// Kinds of balls to get, which take turns.
 const GET_KINDS: u32 = 4;

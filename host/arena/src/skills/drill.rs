@@ -1,4 +1,4 @@
-//! `drill`: one try through the whole loop. A start, a referee that says one thing, orders by hand or by the
+//! `drill`: one try through the whole loop. A start, a referee with one command, orders by hand or by the
 //! coach, and a judge of the true world. SI units, field frame; our team is yellow and defends −x.
 
 use geometry::{Angle, Field, Point, Pose};
@@ -17,7 +17,7 @@ use crate::game::{Game, GameConfig, GameError, NoWatcher};
 /// Our team.
 pub(super) const US: Colour = Colour::Yellow;
 
-/// What the referee says.
+/// The command of the referee.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum RefereeOrder {
     /// STOP.
@@ -31,7 +31,7 @@ pub(super) enum RefereeOrder {
 /// How a try begins.
 #[derive(Clone, Debug)]
 pub(super) struct Start {
-    /// In words.
+    /// Description.
     pub(super) description: String,
     /// Our robots.
     pub(super) ours: Vec<(u8, Pose<Field>)>,
@@ -39,9 +39,9 @@ pub(super) struct Start {
     pub(super) theirs: Vec<Pose<Field>>,
     /// The ball at the beginning.
     pub(super) ball: Ball,
-    /// What the referee says from the beginning on.
+    /// The first command of the referee.
     pub(super) referee_order: RefereeOrder,
-    /// It has failed after so many s.
+    /// Time after which it has failed, s.
     pub(super) limit: f32,
 }
 
@@ -50,7 +50,7 @@ pub(super) struct Start {
 pub(super) enum State {
     /// It goes on.
     Going,
-    /// It succeeded after so many s.
+    /// Time until it succeeded, s.
     Succeeded(f32),
     /// It failed, and this was wrong.
     Failed(String),
@@ -90,13 +90,13 @@ impl Moment<'_> {
 pub(super) trait Judge {
     /// How it begins.
     fn start(&self) -> &Start;
-    /// What our robots are told; `None`: what the coach says.
+    /// Orders to our robots; `None`: those of the coach.
     fn orders(&mut self, moment: &Moment<'_>) -> Option<Vec<(u8, RuleRole, Directive)>>;
     /// How it stands.
     fn judge(&mut self, moment: &Moment<'_>) -> State;
     /// What is wrong when time is up.
     fn lacks(&self, moment: &Moment<'_>) -> String;
-    /// What another hand does in the world, and what the referee says from now on.
+    /// What another hand does in the world, and the next command of the referee.
     fn happens(&mut self, _time: f32, _world: &mut World) -> Option<RefereeOrder> {
         None
     }
@@ -107,7 +107,7 @@ pub(super) fn id(number: u8) -> RobotId {
     RobotId::new(number).unwrap_or(RobotId::ZERO)
 }
 
-/// Chance of a try: seed, skill and number, whatever the world.
+/// Random stream of a try: seed, skill and number, the same in every world.
 fn seed_of(tried: &Try) -> u64 {
     let mut hash = Fnv::default();
     hash.add(&tried.seed.to_le_bytes());
@@ -232,7 +232,7 @@ fn place(game: &mut Game<'_>, start: &Start, robots: u8) {
     }
 }
 
-/// A referee that says what it is told to.
+/// A referee that sends the command it is given.
 struct Whistle {
     packet: ssl::referee::Referee,
     first_stamp: u64,
@@ -247,7 +247,7 @@ impl Whistle {
             next_command: None,
             ..game.referee().packet()
         };
-        // Bystanders count as nobody's, or our robots would have to leave for them.
+        // Bystanders belong to no team, or our robots would have to leave for them.
         packet.yellow.max_allowed_bots = Some(u32::from(u8::MAX));
         Self { first_stamp: packet.packet_timestamp, packet, next: 0 }
     }
@@ -300,9 +300,9 @@ pub(super) fn team_size(league: League) -> u8 {
 const WARM_UP_TICKS: u32 = 80;
 /// Between two packets of the referee, µs: as the game controller's.
 const PERIOD_US: u64 = 25_000;
-/// Bystanders keep this far from where a try begins, m: a body's way round.
+/// Bystanders keep this far from where a try starts, m: room for a body to pass.
 const BYSTANDERS_OFF: f32 = 0.4;
-/// Ball and dribbler this near, m: as far as a light barrier sees, and a little.
+/// Ball and dribbler this near, m: as far as a break-beam sensor sees, and a little.
 const HAS: f32 = 0.025;
 /// Beside the middle of the front, m: a dribbler's half width and a little.
 const HAS_BESIDE: f32 = 0.045;

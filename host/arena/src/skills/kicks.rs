@@ -75,7 +75,7 @@ impl Judge for Kick {
         for event in moment.events {
             match event {
                 PhysicsEvent::Kicked { robot, .. } if robot.colour == US => {
-                    // It was dribbled on the way: aimed from where it is kicked.
+                    // It was dribbled before: aimed from where it is kicked.
                     (self.kicked, self.from) = (Some(moment.time), moment.world.ball.position);
                 }
                 PhysicsEvent::Touched { robot, .. }

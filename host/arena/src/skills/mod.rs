@@ -89,7 +89,7 @@ pub struct Try {
 pub struct TryResult {
     /// The try that was made.
     pub tried: Try,
-    /// How it began, in words.
+    /// Description of its start.
     pub start: String,
     /// Simulated seconds until it succeeded, or what was wrong at the end.
     pub end: Result<f32, String>,

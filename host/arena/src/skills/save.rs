@@ -77,7 +77,7 @@ impl Judge for Save {
     }
 }
 
-/// The keeper may take its place for so long, s.
+/// The keeper has this long to take its place, s.
 const SHOT_AT: f32 = 1.5;
 /// A shot is over after this, s.
 const LASTS: f32 = 4.0;

@@ -1,4 +1,5 @@
-//! `story`: a try, a line for every tenth of a second: the ball, who is near it, what it was told and does.
+//! `story`: a try, a line for every tenth of a second: the ball, the robot near it, its order and what it
+//! does.
 
 use std::fmt::Write as _;
 

@@ -126,7 +126,7 @@ pub(crate) enum DraftError {
     NoTeammate,
     /// The league's rules cannot be read.
     Rules {
-        /// `league.toml` of the folder that was named.
+        /// `league.toml` of the named directory.
         file: PathBuf,
         /// Why.
         error: io::Error,

@@ -74,7 +74,7 @@ impl fmt::Display for FirmwareError {
     }
 }
 
-/// Where the error alone says what failed.
+/// Where the error alone names what failed.
 macro_rules! from {
     ($($variant:ident($error:ty)),*) => {
         $(impl From<$error> for FirmwareError {

@@ -25,7 +25,7 @@ pub(super) fn png(svg: &str) -> Result<Vec<u8>, PngError> {
 
 /// Pixels of a PNG for one of the SVG: sharp on a dense screen, and 300 dots an inch at 15 cm of a page.
 const SCALE: f32 = 2.0;
-/// A part of DejaVu Sans: what the pictures ask for first. Its licence lies beside it.
+/// A part of DejaVu Sans: the letters that figures use first. Its licence lies beside it.
 const FONTS: [&[u8]; 2] =
     [include_bytes!("../../fonts/DejaVuSans.ttf"), include_bytes!("../../fonts/DejaVuSans-Bold.ttf")];
 const FAMILY: &str = "DejaVu Sans";

@@ -26,7 +26,7 @@ impl Decided {
         })
     }
 
-    /// `taker: kick at (1.20, -0.45), 6.2 m/s (the best target for the ball, 0.80 m of room)`.
+    /// `kicker: kick at (1.20, -0.45), 6.2 m/s (the best target for the ball, 0.80 m of room)`.
     pub(super) fn text(&self) -> String {
         let Self { role, directive, why } = self;
         format!("{role}: {directive} ({why})")

@@ -23,7 +23,7 @@ pub(crate) fn free() -> String {
     socket().local_addr().expect("an address").to_string()
 }
 
-/// A running verb; its words on stderr come line by line. Ended when dropped.
+/// A running verb; its stderr comes line by line. Ended when dropped.
 pub(crate) struct Running {
     pub(crate) process: Child,
     lines: Receiver<(Duration, String)>,

@@ -64,7 +64,7 @@ impl Coach {
         Target::Teammate { id: best.receiver, at, room: room_along(view, ball.position, at) }
     }
 
-    /// The taker's task for its pass ahead, if it has one.
+    /// The kicker's task for its pass ahead, if it has one.
     pub(super) fn pass_ahead(
         &mut self,
         view: &View,

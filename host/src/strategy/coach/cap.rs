@@ -55,7 +55,7 @@ impl Coach {
         }
     }
 
-    /// The taker's task while others coerce; orders for those. When they have finished, the attack becomes
+    /// The kicker's task while others coerce; orders for those. When they have finished, the attack becomes
     /// the pass ahead.
     pub(super) fn coerce(
         &mut self,

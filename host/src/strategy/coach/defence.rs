@@ -12,7 +12,7 @@ use super::super::view::{RobotSet, View, ViewBall};
 use super::super::{defence, roles};
 use super::{Coach, Plan};
 
-/// A clearance under way: its robot, start and place.
+/// A running clearance: its robot, start and place.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Clearing {
     who: RobotId,

@@ -10,7 +10,7 @@ use super::super::{defence, restart};
 use super::{Coach, Plan};
 
 impl Coach {
-    /// Penalty: taker or keeper, all other robots behind the mark.
+    /// Penalty: kicker or keeper, all other robots behind the mark.
     pub(super) fn penalty(&mut self, plan: &mut Plan<'_>, side: Side) {
         let view = plan.view;
         let started = matches!(view.phase, Phase::Penalty(_));

@@ -11,15 +11,16 @@ use super::super::{defence, restart, roles};
 use super::{Coach, Plan};
 
 impl Coach {
-    /// Our ball placement: the nearest brings it, the others keep out of its way. One that gets nowhere is
-    /// given up: everybody keeps away from ball and target as at the opponents', until the referee goes on.
+    /// Our ball placement: the nearest brings it, the others keep clear of it. One that gets nowhere is
+    /// given up: all robots keep away from ball and target as at the opponents', until the referee goes on.
     pub(super) fn place_ball(&mut self, plan: &mut Plan<'_>) {
         let view = plan.view;
         if let (Some(ball), Some(at)) = (view.ball, view.placement)
             && !self.gives_up_placing(view, &ball, at)
         {
             let field_players = view.ours.iter().filter(|robot| robot.id != view.keeper);
-            // Who backs off with the ball seems to get away from it: nobody takes over from one that gets on.
+            // Who backs off with the ball seems to get away from it: no robot takes over from one that makes
+            // progress.
             let stuck = self.placing.is_some_and(|(_, since)| view.now.since(since) > PLACER_PATIENCE);
             let chosen = self.age(view) > PLACER_CHOSEN && !stuck;
             let worth = if chosen { PLACER_WORTH } else { roles::WORTH };
@@ -36,7 +37,7 @@ impl Coach {
         self.spread(plan);
     }
 
-    /// Whether the ball has not come nearer to its place for so long that it will not.
+    /// Whether the ball has not come nearer to its place for so long that it is given up.
     fn gives_up_placing(&mut self, view: &View, ball: &ViewBall, at: Point<Attack>) -> bool {
         let left = ball.position.distance(at);
         let (least, since) = *self.placing.get_or_insert((left, view.now));
@@ -48,7 +49,7 @@ impl Coach {
         waited > PLACING_PATIENCE || waited > BALL_ROLLS && restart::is_out_of_reach(view, ball.position)
     }
 
-    /// Kick-off: ours with a taker and mates to pass to, theirs with everybody at home.
+    /// Kick-off: ours with a kicker and teammates to pass to, theirs with all robots at home.
     pub(super) fn kickoff(&mut self, plan: &mut Plan<'_>, side: Side) {
         let view = plan.view;
         if side == Side::Ours {
@@ -60,7 +61,7 @@ impl Coach {
         self.fill(plan, &places, |i| (Role::Support(i as u8), OrderReason::Referee));
     }
 
-    /// Free kick: ours with a taker and mates in free places, theirs with a wall and marked opponents.
+    /// Free kick: ours with a kicker and teammates in free places, theirs with a wall and marked opponents.
     pub(super) fn free_kick(&mut self, plan: &mut Plan<'_>, side: Side) {
         let view = plan.view;
         let Some(ball) = view.ball else { return self.defend(plan, false) };
@@ -90,7 +91,7 @@ impl Coach {
         self.spread(plan);
     }
 
-    /// Our taker: behind the ball until it may kick, then the kick; behind the `mark` of a kick-off or a
+    /// Our kicker: behind the ball until it may kick, then the kick; behind the `mark` of a kick-off or a
     /// penalty.
     pub(super) fn kicker(&mut self, plan: &mut Plan<'_>, started: bool, mark: Option<Point<Attack>>) {
         let view = plan.view;
@@ -138,7 +139,7 @@ impl Coach {
         plan.order(id, Role::Kicker, task, why);
     }
 
-    /// The mate that our restart is aimed at; of a pass ahead, as soon as it is its time.
+    /// The teammate that our restart is aimed at; of a pass ahead, as soon as it is its time.
     fn receiver(&mut self, plan: &mut Plan<'_>) {
         if let Some(ahead) = self.ahead {
             if ahead.receiver_goes() && plan.take(ahead.receiver) {
@@ -158,7 +159,7 @@ impl Coach {
         }
     }
 
-    /// Theirs against threats: a wall where it has room, everybody else as keeper, primary defender or
+    /// Theirs against threats: a wall where it has room, all others as keeper, primary defender or
     /// against a second-level threat.
     fn their_free_kick(&mut self, plan: &mut Plan<'_>, ball: &ViewBall) {
         let view = plan.view;
@@ -186,23 +187,23 @@ impl Coach {
     }
 }
 
-/// How much sooner another robot must be at the ball to become the taker, s: more than in play, the ball
+/// How much sooner another robot must be at the ball to become the kicker, s: more than in play, the ball
 /// lies.
 const KICKER_WORTH: f32 = 1.0;
 /// Mates are given this long to take their places before a restart is aimed, of the 5 s (A) that the rules
-/// give: they are there since the ball was placed, and run on while the taker goes around it.
+/// give: they are there since the ball was placed, and run on while the kicker goes around it.
 const TEAMMATES_GET_READY: Duration = Duration::millis(200);
 /// A target once chosen stands for this long: to walk around the ball, aim and kick.
 const AIM_STANDS: Duration = Duration::millis(3000);
 /// Nearer to our goal than this the defenders are the wall, m.
 const WALL_BEYOND: f32 = 2.2;
 /// How much sooner another robot must be at the ball to take a placement over, s: as long as fetching it
-/// takes; and as usual of one that has not brought the ball nearer for so long.
+/// takes; and as usual of one that has not brought the ball nearer for this long.
 const PLACER_WORTH: f32 = 4.0;
 const PLACER_PATIENCE: Duration = Duration::millis(6_000);
-/// Who brings the ball is chosen afresh for so long: before, it was for a stop.
+/// Who brings the ball is chosen again for this long: before, it was for a stop.
 const PLACER_CHOSEN: Duration = Duration::millis(100);
-/// A ball that has come nearer to its place by this much is on its way, m.
+/// A ball that has come nearer to its place by this much counts as being placed, m.
 const PLACING_GAINS: f32 = 0.1;
 /// A ball that has not for this long is given up: the 30 s of a placement.
 const PLACING_PATIENCE: Duration = Duration::millis(30_000);

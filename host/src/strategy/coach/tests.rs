@@ -154,7 +154,7 @@ fn against_threats_keeper_and_defenders_say_what_is_open_and_others_come_back_on
     assert_eq!(guards(&Coach::new(Team::Ours, alone, League::DivisionB).decide(&far)), [0, 1, 2]);
 }
 
-/// A free kick of ours with the taker behind the ball, `x` m before our 4 at its place, after `ms`.
+/// A free kick of ours with the kicker behind the ball, `x` m before our 4 at its place, after `ms`.
 fn free_kick(ms: u64, receiver: (f32, f32), theirs: &[(f32, f32)]) -> View {
     let ours = [(-4.4, 0.0), (-3.2, 0.3), (-3.2, -0.3), (0.855, 0.0), receiver, (-1.0, -2.0)];
     let mut view = view((1.0, 0.0), &ours, theirs);
@@ -175,7 +175,7 @@ fn a_pass_ahead_leaves_when_its_receiver_will_be_there_and_whoever_receives_it_i
         let mut view = free_kick(ms, receiver, &theirs);
         let kicker = view.ours[3].id;
         if let Some((at, _)) = went {
-            // The taker faces x*, the receiver moves there at 2 m/s.
+            // The kicker faces x*, the receiver moves there at 2 m/s.
             let at: Point<Attack> = at;
             let ball = Point::new(1.0, 0.0);
             view.ours[3].heading = ball.direction_to(at);

@@ -148,7 +148,7 @@ mod tests {
                 [at(2.82, -0.1), at(2.2, -0.42), at(1.04, 0.12), at(1.86, 0.38), at(1.17, 1.0), at(0.0, 1.9)];
             let mut scene = view(ball, &ours, &theirs);
             scene.field = league.field();
-            // The values are compared here, whatever their size.
+            // The values are compared here, at any size.
             let settings = CoerceSettings { least: Least::default(), ..CoerceSettings::of(league) };
             let mut planner = Planner::new(settings, Models::default());
             let kicker = scene.ours[1].id;

@@ -102,7 +102,7 @@ pub enum CoerceEnd {
     InPlay,
     /// The referee has changed the command.
     Stopped,
-    /// No robot can receive a pass anywhere, or taker or receiver are missing.
+    /// No robot can receive a pass anywhere, or kicker or receiver are missing.
     NoAttack,
 }
 
@@ -363,7 +363,7 @@ impl Planner {
     }
 }
 
-/// The view without the opponents that follow robots, and of ours only with keeper, taker and the receivers
+/// The view without the opponents that follow robots, and of ours only with keeper, kicker and the receivers
 /// (§4.2: "only … ball-following tactics" count; and coercers will have left).
 fn optimistic(view: &View, detected: &[Detected], kicker: RobotId, receivers: &[RobotId]) -> View {
     let mut imagined = view.clone();

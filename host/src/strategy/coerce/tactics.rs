@@ -21,7 +21,7 @@ pub enum Tactic {
     PrimaryDefence,
     /// Follows one of our attackers.
     Mark,
-    /// Follows the ball, as close to our taker as the rules allow.
+    /// Follows the ball, as close to our kicker as the rules allow.
     Wall,
 }
 
@@ -74,7 +74,7 @@ pub struct CoerceSituation<'v> {
     view: &'v View,
     models: Models,
     ball: Point<Attack>,
-    /// Our field players except the taker.
+    /// Our field players except the kicker.
     marked: heapless::Vec<usize, { super::super::view::ROBOTS_MAX }>,
     /// End of the ball's shortest path to the middle of their goal, on their area's border.
     keeper_front: Point<Attack>,
@@ -238,7 +238,7 @@ mod tests {
         assert_eq!(tactic(1.25, -0.9), Some(Tactic::Mark));
         assert_eq!(tactic(0.5, 0.7), Some(Tactic::Wall));
         assert_eq!(tactic(-2.0, -1.8), None);
-        // Neither the taker nor the keeper is marked.
+        // Neither the kicker nor the keeper is marked.
         assert_eq!(situation.mark(Point::new(-0.1, 1.3)).1, Some(2));
     }
 

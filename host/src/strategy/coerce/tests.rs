@@ -61,7 +61,7 @@ impl PassValue for ByDistance {
     }
 }
 
-/// Division B, our free kick at (0.5, 1.8) with 1 as taker; keeper 0, teammates from 2 on. Theirs: keeper 0,
+/// Division B, our free kick at (0.5, 1.8) with 1 as kicker; keeper 0, teammates from 2 on. Theirs: keeper 0,
 /// primaries 1 and 2, then a marker goal-side of each teammate named.
 fn free_kick(teammates: &[(f32, f32)], marked: &[usize]) -> View {
     let mut ours = vec![(-4.4, 0.0), (0.4, 1.9)];

@@ -122,7 +122,7 @@ impl PassWatch {
         &self.ordered
     }
 
-    /// The next picture. A verdict ends the watch.
+    /// The next camera frame. A verdict ends the watch.
     pub fn observe(&mut self, world: &World, field: &FieldSpec) -> Option<PassVerdict> {
         let Some(ball) = world.ball else { return self.over(world.time) };
         match self.flight {

@@ -16,7 +16,7 @@ pub fn legal(view: &View, at: Point<Attack>, settings: &ThreatSettings) -> Point
     legal_for(view, RuleRole::Player, at, &[], settings)
 }
 
-/// The same for a robot of that role under the rules (a keeper may stay in our area, a taker near the ball),
+/// The same for a robot of that role under the rules (a keeper may stay in our area, a kicker near the ball),
 /// a body clear of the `taken` places.
 pub fn legal_for(
     view: &View,

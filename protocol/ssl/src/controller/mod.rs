@@ -13,7 +13,7 @@ use crate::common::Team;
 pub use autoref::{AutoRefRegistration, AutoRefToController, ControllerToAutoRef};
 
 messages! {
-    /// The controller's answer to whatever was sent.
+    /// The controller's answer to any request.
     #[derive(Clone, PartialEq, Message)]
     pub struct ControllerReply {
         /// Accepted or not, [`StatusCode`].
@@ -92,13 +92,13 @@ pub enum TeamRequest {
     /// Request, or withdraw, a substitution.
     #[prost(bool, tag = "4")]
     SubstituteBot(bool),
-    /// Requests a reply as a sign of life.
+    /// Requests a reply to prove that the peer is alive.
     #[prost(bool, tag = "5")]
     Ping(bool),
 }
 
 messages! {
-    /// What a team hears.
+    /// What a team receives.
     #[derive(Clone, PartialEq, Message)]
     pub struct ControllerToTeam {
         /// The answer to its last message.

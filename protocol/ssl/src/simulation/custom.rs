@@ -26,17 +26,17 @@ messages! {
         camera_overlap: Option<f32> [float, optional] = 7;
         /// False balls seen at dribblers, probability.
         dribbler_ball_detections: Option<f32> [float, optional] = 8;
-        /// How wrong the cameras' places are told, m.
+        /// Error of the announced camera positions, m.
         camera_position_error: Option<f32> [float, optional] = 9;
-        /// Commands lost on the way, probability.
+        /// Commands lost in transmission, probability.
         robot_command_loss: Option<f32> [float, optional] = 10;
-        /// Feedback lost on the way, probability.
+        /// Feedback lost in transmission, probability.
         robot_response_loss: Option<f32> [float, optional] = 11;
         /// Balls not seen, probability a frame.
         missing_ball_detections: Option<f32> [float, optional] = 12;
         /// Image to packet, ns.
         vision_delay: Option<i64> [int64, optional] = 13;
-        /// Part of it that `t_sent` − `t_capture` tells, ns.
+        /// Part of it that `t_sent` − `t_capture` reports, ns.
         vision_processing_time: Option<i64> [int64, optional] = 14;
         /// Simulate the dribbler's roller instead of a force.
         simulate_dribbling: Option<bool> [bool, optional] = 15;

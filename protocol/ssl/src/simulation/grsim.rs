@@ -17,7 +17,7 @@ messages! {
     /// Commands for one team.
     #[derive(Clone, PartialEq, Message)]
     pub struct GrsimCommands {
-        /// The sender's time, s; nobody reads it.
+        /// The sender's time, s; not read by simulators.
         timestamp: f64 [double, required] = 1;
         /// True: the commands are for yellow's robots.
         isteamyellow: bool [bool, required] = 2;
@@ -93,7 +93,7 @@ messages! {
         turnon: Option<bool> [bool, optional] = 6;
     }
 
-    /// To port 30011 (blue) or 30012 (yellow) of whoever commanded last: robots whose state changed.
+    /// To port 30011 (blue) or 30012 (yellow) of the sender that commanded last: robots whose state changed.
     #[derive(Clone, PartialEq, Message)]
     pub struct RobotsStatus {
         /// One state for each robot.

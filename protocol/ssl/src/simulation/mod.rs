@@ -76,7 +76,7 @@ messages! {
         vy: Option<f32> [float, optional] = 5;
         /// Velocity upwards, m/s; negative: downwards.
         vz: Option<f32> [float, optional] = 6;
-        /// Push robots out of the way instead of putting the ball inside one.
+        /// Push robots aside instead of putting the ball inside one.
         teleport_safely: Option<bool> [bool, optional] = 7;
         /// Start as a rolling ball, without a sliding phase.
         roll: Option<bool> [bool, optional] = 8;

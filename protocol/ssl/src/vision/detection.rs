@@ -14,7 +14,7 @@ messages! {
         x: f32 [float, required] = 3;
         /// To the left of +x, mm.
         y: f32 [float, required] = 4;
-        /// Height, mm; nearly nobody sets it.
+        /// Height, mm; set by few systems.
         z: Option<f32> [float, optional] = 5;
         /// Column in the camera's image, px; simulators send dummies.
         pixel_x: f32 [float, required] = 6;

@@ -1,6 +1,6 @@
 //! Get the ball: meet a rolling one, come up behind a resting one, and have it at the dribbler.
 //!
-//! Rolling: `motion::intercept` says where the robot can stand beyond the ball in time, facing it; it stops
+//! Rolling: `motion::intercept` finds where the robot can stand beyond the ball in time, facing it; it stops
 //! itself against the roller. Resting: around the ball to a place behind it, as seen from where it will go,
 //! and slowly on from there.
 
@@ -13,16 +13,16 @@ use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive, LIMITS};
 use crate::skills::Step;
 
-/// Where a robot stands on its way to a ball that lies.
+/// Where a robot stands on the path to a ball at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Approach {
-    /// On the way to the place behind the ball.
+    /// Driving to the place behind the ball.
     Around(Drive),
-    /// Behind the ball, looking over it the right way: going in.
+    /// Behind the ball, facing the right direction: going in.
     In(Drive),
 }
 
-/// Takes the ball; facing `face` with it, or whatever is quickest.
+/// Takes the ball; facing `face` with it, or whichever heading is quickest.
 pub fn get_ball(belief: &Belief, face: Option<Angle>) -> Step {
     if belief.holds_ball {
         return Step::Done;
@@ -49,7 +49,7 @@ pub fn approach(belief: &Belief, ball: &BelievedBall, face: Angle, speed: f32) -
     let to_ball = ball.position - belief.pose.position;
     let (along, beside) = (to_ball.dot(ahead), ahead.cross(to_ball));
     let off = (face - belief.pose.heading).abs();
-    // The farther back, the wider the way in; at the ball itself a finger's breadth.
+    // The farther back, the wider the approach; at the ball itself a finger's breadth.
     let room = along - BALL_AT;
     let width = BESIDE + WIDENS * room.clamp(0.0, 0.3);
     let drifts = belief.is_placing() && ahead.cross(belief.velocity).abs() > DRIFTS;
@@ -60,7 +60,7 @@ pub fn approach(belief: &Belief, ball: &BelievedBall, face: Angle, speed: f32) -
         return Approach::In(Drive { speed: speed + 2.0 * room.max(0.0), ..Drive::bold(to, face) });
     }
     if belief.is_placing() && room > 0.0 && room < GO_IN_FROM && beside.abs() < SIDESTEPS && off < ALIGNED {
-        // Nearly behind it: a step aside, not all the way back and around.
+        // Nearly behind it: a step aside, not all the way around.
         let to = ball.position - ahead * (BALL_AT + room.max(PRESS)) + ball.velocity * LEAD;
         return Approach::Around(Drive { speed: SIDESTEP, ..Drive::bold(to, face) });
     }
@@ -72,7 +72,7 @@ pub fn approach(belief: &Belief, ball: &BelievedBall, face: Angle, speed: f32) -
     Approach::Around(Drive { speed: if belief.is_placing() { settles } else { drive.speed }, ..drive })
 }
 
-/// Goes for a ball that rolls: from behind where it rolls away before the robot, else beyond it on its way,
+/// Goes for a ball that rolls: from behind where it rolls away before the robot, else beyond it on its path,
 /// facing it.
 pub(super) fn intercept_ball(belief: &Belief, ball: &BelievedBall) -> Drive {
     let to_ball = ball.position - belief.pose.position;
@@ -93,7 +93,7 @@ pub(super) fn intercept_ball(belief: &Belief, ball: &BelievedBall) -> Drive {
         robot: belief.pose.position,
         velocity: belief.velocity,
         ball: &path,
-        // It shall stand beyond the ball and look back along its way.
+        // It shall stand beyond the ball and look back along its path.
         target: ball.position - along * FAR_BACK,
         reach: BALL_AT,
         until,
@@ -105,7 +105,7 @@ pub(super) fn intercept_ball(belief: &Belief, ball: &BelievedBall) -> Drive {
     receive_at(belief, ball, place)
 }
 
-/// Stands on the ball's line at `place`, facing it; gives way a little as it comes, with the dribbler
+/// Stands on the ball's line at `place`, facing it; moves back a little as it comes, with the dribbler
 /// turning.
 pub(super) fn receive_at(belief: &Belief, ball: &BelievedBall, place: Point<Field>) -> Drive {
     let me = belief.pose.position;
@@ -144,7 +144,7 @@ fn is_contested(belief: &Belief, ball: &BelievedBall) -> bool {
 
 /// Cosine between where a ball rolls and where it is seen, above which it rolls away: 60°.
 const ROLLS_AWAY: f32 = 0.5;
-/// This near it is chased, m; from farther its way is cut off.
+/// This near it is chased, m; from farther it is intercepted.
 const CHASED: f32 = 0.5;
 /// How much faster than the ball a robot touches it, m/s.
 const CLOSES: f32 = 0.25;
@@ -176,16 +176,16 @@ const SIDESTEPS: f32 = 0.1;
 const DRIFTS: f32 = 0.1;
 /// How fast, m/s: what it is behind in time makes it overshoot a faster step.
 const SIDESTEP: f32 = 0.25;
-/// Twice the deceleration at the end of a way, m/s²: what a robot is behind in time takes one that brakes
+/// Twice the deceleration at the end of a path, m/s²: what a robot is behind in time takes one that brakes
 /// harder 0.1 m too far.
 const SETTLES: f32 = 5.0;
-/// And so much wider a metre farther back.
+/// Additional width for each metre farther back, m.
 const WIDENS: f32 = 0.2;
-/// It looks the right way within this, rad.
+/// It faces the right direction within this, rad.
 const ALIGNED: f32 = 0.15;
-/// What a robot is behind in time: picture, radio and a step, s.
+/// Delay of a robot: camera frame, radio and a step, s.
 const LEAD: f32 = 0.05;
-/// So far ahead the ball is followed, s: looking farther costs, and what comes later is looked at anew
+/// Horizon for which the ball is predicted, s: a longer one costs, and what comes later is predicted again
 /// before.
 pub(super) const LOOKS_AHEAD: f32 = 0.8;
 /// Places that are looked at in vain before it looks less closely where to meet the ball: a step is bounded.
@@ -193,11 +193,11 @@ pub(super) const LOOKS_AHEAD: f32 = 0.8;
 const LOOKS_MAX: u32 = 4;
 /// A point far back on the ball's line, m.
 const FAR_BACK: f32 = 20.0;
-/// So long before the ball comes the dribbler turns and the robot gives way, s.
+/// Time before the ball arrives from which the dribbler turns and the robot moves back, s.
 const CUSHION_TIME: f32 = 0.2;
-/// Share of the ball's speed with which it gives way.
+/// Share of the ball's speed with which it moves back.
 const YIELD: f32 = 0.2;
-/// For so long, s; and no farther than this, m.
+/// For at most this long, s, and no farther than this, m.
 const YIELD_TIME: f32 = 0.15;
 const YIELD_MOST: f32 = 0.06;
 /// On the ball's line within this, m.

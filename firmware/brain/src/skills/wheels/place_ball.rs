@@ -2,10 +2,10 @@
 //!
 //! At a wall or in a goal the robot comes from the field and pulls the ball clear, no faster than it follows:
 //! each time it falls back the acceleration shrinks, and grows again while it stays. A ball that follows is
-//! pulled all the way; one that does not is pushed from behind, and kicked off a wall. At the place the robot
-//! stops, lets the dribbler run out, backs off straight without touching, and watches: a ball that did not
-//! stay is fetched again. A ball that is shown at its front and that it does not feel is not there: it backs
-//! off, so that cameras see where the ball is.
+//! pulled to the place; one that does not is pushed from behind, and kicked off a wall. At the place the
+//! robot stops, lets the dribbler run out, backs off straight without touching, and watches: a ball that did
+//! not stay is fetched again. A ball that is shown at its front and that it does not feel is not there: it
+//! backs off, so that cameras see where the ball is.
 
 mod ways;
 
@@ -44,7 +44,7 @@ pub(super) enum Placing {
     Pushing,
     /// It is there; the roller runs out.
     Letting,
-    /// Backing off along this way.
+    /// Backing off in this direction.
     Leaving {
         /// The heading it keeps.
         facing: Angle,
@@ -53,7 +53,7 @@ pub(super) enum Placing {
     Done,
 }
 
-/// A placement under way: what it does, and what it has learned of the ball's grip.
+/// A running placement: what it does, and what it has learned of how well the dribbler holds the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
     placing: Placing,
@@ -99,7 +99,7 @@ impl Placement {
         (behind && !pulled || creeps || self.grip < FOLLOWS) != self.other_side
     }
 
-    /// The direction out of the field, where a wall is in the way of what it means to do.
+    /// The direction out of the field, where a wall blocks what it intends to do.
     fn wall(&self, belief: &Belief, ball: &BelievedBall, at: Point<Field>) -> Option<Angle> {
         // Once it is pulled, it is pulled a little farther than it must be.
         let room = if matches!(self.placing, Placing::Pulling { .. }) { CLEARS } else { 0.0 };
@@ -114,7 +114,7 @@ impl Placement {
         kick_off(&belief.league().field(), ball.position, at, self.wall(belief, ball, at)?)
     }
 
-    /// The ball fell back: on the way, or as soon as the robot backed up.
+    /// The ball fell back: during the pull, or as soon as the robot backed up.
     fn lost(&mut self, felt: Instant, speed: f32) {
         let share = if felt.since(self.since) < AT_ONCE { LOSES_AT_ONCE } else { LOSES };
         self.grip = (self.grip * share).max(GRIP_LEAST);
@@ -126,7 +126,7 @@ impl Placement {
 }
 
 /// One step of bringing the ball to `at`. Not part of its caller: what it needs of the stack is free again
-/// while a way is planned.
+/// while a path is planned.
 #[inline(never)]
 pub fn place_ball(now: Instant, placement: &mut Placement, belief: &Belief, at: Point<Field>) -> Intent {
     let Some(ball) = belief.ball else { return Intent::Stand { face: None } };
@@ -222,7 +222,7 @@ fn next(
             let askew = (ball.position.direction_to(at) - heading).abs();
             if askew < ASKEW { Placing::Pushing } else { Placing::Pulling { felt: now, out, loose: false } }
         }
-        // Not so: another way.
+        // That failed: try another method.
         Placing::Fetching if clear < NEAR && slow && age > FETCHES => {
             placement.since = now;
             placement.other_side ^= true;
@@ -257,7 +257,7 @@ fn next(
             }
             let out = out.filter(|_| !free);
             if belief.contact() {
-                // It has come back to the light barrier, which sees farther than the roller reaches.
+                // It has come back to the break-beam sensor, which sees farther than the roller reaches.
                 if loose && belief.velocity.dot(Vector::polar(1.0, heading)) > -SLOW {
                     placement.since = now;
                 }
@@ -288,7 +288,7 @@ fn next(
     }
 }
 
-/// With a larger share of the acceleration left, a ball is pulled all the way: 0.5 m/s².
+/// With a larger share of the acceleration left, a ball is pulled to the place: 0.5 m/s².
 const FOLLOWS: f32 = 0.3;
 /// With a smaller one, it is kicked off walls: 0.18 m/s².
 const KICKS_BELOW: f32 = 0.1;
@@ -301,7 +301,7 @@ const LOSES: f32 = 0.6;
 /// … and one that comes within this time; …
 const LOSES_AT_ONCE: f32 = 0.25;
 const AT_ONCE: Duration = Duration::millis(800);
-/// One lost on the way at more than this, m/s, came as quickly as it was asked to and no faster: …
+/// One lost during a pull at more than this, m/s, came as quickly as it was asked to and no faster: …
 const FAST: f32 = 1.0;
 /// … it is pulled with this share of that speed.
 const SLOWER: f32 = 0.8;
@@ -325,7 +325,7 @@ const LEAVE: f32 = 0.6;
 const AT_REST: f32 = 0.06;
 /// So slowly a robot presses on a ball without pushing it off, m/s.
 const SLOW: f32 = 0.15;
-/// A ball in the mouth is there, m.
+/// Position tolerance of a ball at the dribbler, m.
 const THERE: f32 = 0.03;
 /// Where the ball is shown this near the front, it should be felt, m.
 const AT_FRONT: f32 = 0.04;
@@ -337,22 +337,22 @@ const FEELS_AT: f32 = 0.12;
 const COMES_BACK: f32 = 0.25;
 /// Aiming so far ahead, m: nearer, it would hardly move.
 const COMES_ON: f32 = 0.08;
-/// A robot that feels no ball there for so long does not press on: the ball is elsewhere, or its barrier is
+/// Time after which a robot that senses no ball there stops pressing: the ball is elsewhere, or its sensor is
 /// blind.
 const FEELS: Duration = Duration::millis(500);
-/// One that is this near and does not get the ball for so long tries another way, m.
+/// One that is this near and does not get the ball for this long tries another method, m.
 const NEAR: f32 = 0.4;
 const FETCHES: Duration = Duration::millis(3000);
-/// It backs off by so much to show the place to the cameras, m, and for no longer than this.
+/// Distance by which it backs off so that the cameras see the place, m, and the longest time for it.
 const REVEALS: f32 = 0.2;
 const REVEALED: Duration = Duration::millis(1000);
 /// So much between front and ball, and it is not held, m.
 const GAP: f32 = 0.04;
 /// Where a kick points right enough, rad.
 const KICKS_WITHIN: f32 = 0.2;
-/// The light barrier may miss a ball on the roller for so long.
+/// Time for which the break-beam sensor may miss a ball on the roller.
 const FLICKERS: Duration = Duration::millis(30);
-/// A ball that is felt may still be out of the roller's reach: it is pressed for so long.
+/// A ball that is felt may still be out of the roller's reach: time for which it is pressed.
 const SEATS: Duration = Duration::millis(120);
 /// So fast, m/s: at a wall a faster body squeezes the ball out.
 const SEATS_AT: f32 = 0.2;
@@ -362,7 +362,7 @@ const REGAINS: Duration = Duration::millis(800);
 const PUSHED: f32 = 0.1;
 /// It looks this much askew of where a ball is pushed to, rad: it is not behind it.
 const ASKEW: f32 = 0.6;
-/// The dribbler runs out for so long.
+/// Time for which the dribbler runs down.
 const RUNS_OUT: Duration = Duration::millis(200);
 /// So far back a robot may turn and go around the ball without touching it, m.
 const STEP_BACK: f32 = 0.06;
@@ -376,7 +376,7 @@ mod tests {
 
     #[test]
     fn a_placer_that_feels_no_ball_where_one_is_displayed_backs_off_and_tries_again() {
-        // The mouth is where a hidden ball is believed.
+        // A hidden ball is believed at the dribbler.
         let mut b = belief((0.0, 0.0, 0.0), (BALL_AT, 0.0));
         let mut placement = Placement::default();
         let (mut revealed, mut tried_again) = (0, 0);
@@ -386,7 +386,7 @@ mod tests {
             let intent = place_ball(now, &mut placement, &b, Point::new(-2.0, 0.0));
             let placing = placement.placing;
             let Intent::Drive(drive) = intent else { panic!("{intent:?}") };
-            // A robot that drives as it is told, at its own pace.
+            // A robot that drives as ordered, at its own pace.
             b.pose.position += (drive.to - b.pose.position).clamped(drive.speed.min(1.0) * 0.01);
             b.pose.heading = drive.face;
             revealed += u32::from(matches!(placing, Placing::Revealing { .. }) && before != placing);

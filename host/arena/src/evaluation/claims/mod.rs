@@ -42,7 +42,7 @@ hil_sim::labels! {
     pub enum ClaimVerdict {
         /// The numbers support it, in every point.
         Supported = "supported",
-        /// They say the opposite, in one point at least.
+        /// They contradict it, in one point at least.
         Contradicted = "contradicted",
         /// Neither: at least one point is not significant or not measured.
         Undecided = "undecided",

@@ -1,5 +1,5 @@
-//! `ways`: how a ball that is placed is come to, pulled, pushed and kicked off walls, and where walls are in
-//! the way.
+//! `ways`: how a ball is approached, pulled, pushed and kicked off walls, and where walls
+//! obstruct.
 
 use geometry::{Angle, Field, Point, Vector, math};
 use protocol::robot_io::OmniKick;
@@ -43,7 +43,7 @@ pub(super) fn fetch(
     }
 }
 
-/// On the way to behind a ball at a wall: past it on the side that lies farther from the wall.
+/// Path to behind a ball at a wall: past it on the side that lies farther from the wall.
 fn around(belief: &Belief, ball: Point<Field>, face: Angle, drive: Drive) -> Drive {
     let surface = belief.league().field().surface();
     let ahead = Vector::<Field>::polar(1.0, face);
@@ -58,7 +58,7 @@ fn around(belief: &Belief, ball: Point<Field>, face: Angle, drive: Drive) -> Dri
     Drive { to: ball + inwards * ASIDE, ..drive }
 }
 
-/// The same way, with the kick off a wall: stronger where one has not sufficed.
+/// The same path, with the kick off a wall: stronger where one has not sufficed.
 pub(super) fn kicking(placement: &Placement, drive: Drive) -> Drive {
     let speed = OFF_WALL + STRONGER * f32::from(placement.tries);
     Drive { kick: OmniKick::Flat(speed), dribbler: 0.0, ..drive }
@@ -94,7 +94,7 @@ pub(super) fn push(belief: &Belief, ball: &BelievedBall, at: Point<Field>, grip:
     Drive { speed, gentle: PUSHES, ..Drive::holding(to, face) }.into()
 }
 
-/// A pushed ball has got beside the robot, or the robot beside its way.
+/// A pushed ball has got beside the robot, or the robot beside its path.
 pub(super) fn strays(belief: &Belief, ball: &BelievedBall, at: Point<Field>) -> bool {
     let seen = belief.pose.to_body(ball.position);
     let askew = (ball.position.direction_to(at) - belief.pose.heading).abs();
@@ -180,11 +180,11 @@ fn stands(field: &FieldSpec, spot: Point<Field>, room: f32) -> bool {
 /// From ball to the centre of who goes past it, m, and from where on it is past.
 const ASIDE: f32 = 0.22;
 const GOES_BY: f32 = 0.16;
-/// With so much room on both sides it goes as it likes, m.
+/// With this much room on both sides it may go freely, m.
 const NARROW: f32 = 0.2;
 /// How fast it comes to the ball, m/s.
 const GO_IN: f32 = 0.3;
-/// The same at a wall, m/s: a body that comes on for a centimetre squeezes the ball out of its mouth.
+/// The same at a wall, m/s: a body that comes on for a centimetre squeezes the ball out of the dribbler.
 const GO_IN_AT_WALL: f32 = 0.12;
 /// A faster ball is met, m/s.
 const ROLLING: f32 = 0.3;
@@ -193,7 +193,7 @@ pub(super) const NEAR_ENOUGH: f32 = 0.12;
 /// With this a ball is kicked off a wall, m/s: it leaves a board with 0.4 to 0.8 across and rests within a
 /// metre; …
 const OFF_WALL: f32 = 2.2;
-/// … and so much more for each try before, m/s.
+/// … and this much more for each earlier try, m/s.
 const STRONGER: f32 = 0.5;
 /// Off the wall's normal, rad: 40°, more leaves no room for the body, and with less the ball comes back to
 /// it.
@@ -206,18 +206,19 @@ const PUSH: f32 = 2.0;
 const HELD: f32 = 0.16;
 /// A ball before the front does not get lost by speeding up: share of the acceleration.
 const PUSHES: f32 = 1.6;
-/// A pushed ball is slowed down by this on the way, m/s²: about as carpets do, so that it stays near the
-/// front.
+/// A pushed ball is slowed down by this on its path, m/s²: about as field surfaces do, so that it stays near
+/// the front.
 const ROLLS: f32 = 0.35;
 /// The same of one that followed with such a share of the acceleration or more, m/s².
 const SLOWS: [(f32, f32); 3] = [(0.3, 1.0), (0.15, 0.7), (0.045, 0.55)];
 /// The slowest push, m/s.
 const CREEP: f32 = 0.2;
-/// The ball is ahead of where it is shown by what it does in so long, s: picture, radio, a step; estimate.
+/// The ball is ahead of where it is shown by how far it moves in this time, s: camera frame, radio, a step;
+/// estimate.
 const LAG: f32 = 0.05;
 /// It ends this far before the place, m: within what the rules allow, and half a second sooner.
 const SHORT: f32 = 0.07;
-/// A push aims this far ahead on the ball's way, m: no less than a robot takes to brake.
+/// A push aims this far ahead on the ball's path, m: no less than a robot takes to brake.
 const AHEAD: f32 = 0.7;
 /// A pushed ball this far beside the middle is lost, m; ahead, m.
 const BESIDE: f32 = 0.07;
@@ -232,7 +233,7 @@ const TIGHT: f32 = 0.02;
 const WALL_ROOM: f32 = 0.16;
 /// … and this near none for one that goes along.
 const BESIDE_WALL: f32 = 0.1;
-/// The same beyond a post, m: a body across and its way around.
+/// The same beyond a post, m: a body across and its path around.
 const BESIDE_POST: f32 = 0.3;
 /// Nearer than this to two walls no body gets around a ball on either side, m: it, a body and margins.
 const GOES_ROUND: f32 = 0.3;
@@ -267,7 +268,7 @@ mod tests {
         assert!((out((4.6, 0.47), false).unwrap() - 45.0).abs() < 1e-3);
         assert!((out((4.6, 0.55), false).unwrap() + 45.0).abs() < 1e-3);
         assert_eq!(out((1.0, 1.0), false), None);
-        // Pulled it is free where nobody comes behind it to push it.
+        // Pulled it is free where no robot can get behind it to push it.
         assert_eq!(out((4.6, 2.0), false), None);
         assert!(out((4.6, 2.0), true).is_some());
     }
