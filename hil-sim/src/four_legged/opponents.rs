@@ -55,7 +55,7 @@ pub enum Conduct {
 pub struct Opponent {
     /// Role from which its home follows.
     pub role: OpponentRole,
-    /// Its index in [`World::walkers`].
+    /// Its index in [`LeggedWorld::walkers`].
     robot: usize,
     /// Region where it plays; `None` where it only stands.
     home: Option<Region>,

@@ -21,7 +21,7 @@ async fn main(spawner: embassy_executor::Spawner) {
     loop {
         let bytes = receiver.bytes().await;
         received = received.wrapping_add(bytes.len() as u32);
-        sender.print(bytes).await;
+        sender.send_bytes(bytes).await;
         defmt::info!("{=u32} bytes, line errors {=u32}", received, radio::noise());
     }
 }

@@ -90,7 +90,7 @@ pub struct UartSender {
 
 impl UartSender {
     /// Sends bytes unchanged, at most a line's capacity.
-    pub async fn print(&mut self, bytes: &[u8]) {
+    pub async fn send_bytes(&mut self, bytes: &[u8]) {
         let len = bytes.len().min(LINE_LEN_MAX);
         self.line.iter_mut().zip(bytes).for_each(|(to, from)| *to = *from);
         if let Some(whole) = self.line.get(..len)
@@ -104,7 +104,7 @@ impl UartSender {
 impl RadioSender for UartSender {
     async fn send(&mut self, packet: Packet) {
         let line = line(&packet);
-        self.print(&line).await;
+        self.send_bytes(&line).await;
     }
 }
 

@@ -57,22 +57,22 @@ struct Hold {
 pub enum WorldEvent {
     /// A robot's body is in contact with the ball (repeated in every step of the contact).
     Touched {
-        /// Index of the robot in [`World::walkers`].
+        /// Index of the robot in [`LeggedWorld::walkers`].
         robot: usize,
     },
     /// A grab succeeded: the robot holds the ball.
     Grabbed {
-        /// Index of the robot in [`World::walkers`].
+        /// Index of the robot in [`LeggedWorld::walkers`].
         robot: usize,
     },
     /// A grab ended without the ball.
     GrabFailed {
-        /// Index of the robot in [`World::walkers`].
+        /// Index of the robot in [`LeggedWorld::walkers`].
         robot: usize,
     },
     /// The ball was kicked.
     Kicked {
-        /// Index of the robot in [`World::walkers`].
+        /// Index of the robot in [`LeggedWorld::walkers`].
         robot: usize,
         /// The kind of kick.
         kick: LeggedKick,
@@ -83,7 +83,7 @@ pub enum WorldEvent {
     },
     /// A kick started without the ball held by the robot: nothing moved.
     KickedNothing {
-        /// Index of the robot in [`World::walkers`].
+        /// Index of the robot in [`LeggedWorld::walkers`].
         robot: usize,
     },
     /// A grab took the ball out of another robot's legs.
