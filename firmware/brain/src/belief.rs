@@ -5,6 +5,7 @@
 //! teammate nearest the ball is used (its information is the most accurate, paper §4.1). A fresh snapshot of
 //! the host overrides both ([`shown`]).
 
+mod camera;
 pub mod shown;
 
 use geometry::{Field, GoalEnd, Point, Pose, Vector, math};
@@ -130,6 +131,8 @@ pub struct Belief {
     pub resolved: Option<(Point<Field>, OmniKick)>,
     handling: Handling,
     sight: Option<Sight>,
+    /// Time of the last camera frame.
+    looked: Option<Instant>,
     /// Consecutive detections of a loose ball slow enough to grab.
     slow_sights: u8,
     league: League,
@@ -160,6 +163,7 @@ impl Belief {
             resolved: None,
             handling: Handling::default(),
             sight: None,
+            looked: None,
             slow_sights: 0,
             league,
             spec: body::of(league).spec(),
@@ -185,6 +189,9 @@ impl Belief {
         }
         if let Some(ball) = sensors.ball.filter(|b| b.position.is_finite()) {
             self.see(now - ball.age, ball.position, ball.sigma);
+        }
+        if let Some(camera) = &sensors.camera {
+            self.look(now, sensors.pose.is_none(), camera, sensors.odometry);
         }
         let slow = self.sight.is_some_and(|s| s.velocity.norm() < GRAB_SPEED) && !self.holds_ball;
         self.slow_sights = if slow { self.slow_sights.saturating_add(1) } else { 0 };
@@ -293,6 +300,7 @@ mod tests {
             busy: false,
             odometry: Twist::default(),
             health: Health::default(),
+            camera: None,
         }
     }
 

@@ -199,6 +199,7 @@ mod tests {
             busy: false,
             odometry: Twist::default(),
             health: Health::default(),
+            camera: None,
         }
     }
 

@@ -111,7 +111,11 @@ fn write(text: &mut String, results: &Results, table: u8, sample: Extent, rows: 
     let least = rows.iter().map(|row| row.trials).min().unwrap_or_default();
     let most = rows.iter().map(|row| row.trials).max().unwrap_or_default();
     let trials = if least == most { most.to_string() } else { format!("{least} to {most}") };
-    let _ = writeln!(text, "Table {table}: {title}; {trials} trials a row, in brackets the paper's");
+    let world = &results.identity.world;
+    let _ = writeln!(
+        text,
+        "Table {table}: {title}; {trials} trials a row, world {world}, in brackets the paper's"
+    );
     let mut lines = vec![Line { names: [""; 2].map(str::to_owned), cells: Vec::new() }];
     lines[0].cells.extend(columns.iter().map(|column| (column.title.to_owned(), String::new())));
     let mut scenarios: Vec<Scenario> = rows.iter().map(|row| row.scenario).collect();
