@@ -1,8 +1,8 @@
 //! `legged`: reactive behaviour of walking robots without a case: that of the paper's comparison (§5).
 //!
 //! Every robot goes for a loose ball as fast as possible. The one that has it plays on alone towards the
-//! attacked goal, and as long as it holds the ball the others back up, off the line from ball to goal; once the
-//! ball has left it, all go for the ball again (§5.2.1). An opponent is considered only when it blocks the path within 0.4
+//! attacked goal, and as long as it holds the ball, or is at it to take it, the others back up, off the line from
+//! ball to goal; once the ball has left it, all go for the ball again (§5.2.1). An opponent is considered only when it blocks the path within 0.4
 //! m: then dodge, turning with the ball and stepping diagonally, and kick as soon as the kick passes it.
 //! Short kicks advance, near the goal the robot turns to the clearest lane and shoots. No passes.
 //!
@@ -56,7 +56,7 @@ impl Reactive {
         if !belief.holds_ball {
             (self.held_since, self.dodge) = (None, None);
         }
-        let mine = freedom != Freedom::KeepNear && is_attacker(now, belief, teammates);
+        let mine = freedom != Freedom::KeepNear && is_attacker(now, &ball, belief, teammates);
         self.role = if mine { Role::Attacker } else { Role::Supporter };
         if !mine {
             let place = match freedom {
@@ -175,11 +175,16 @@ fn strength(belief: &Belief, ball: &Ball, direction: Angle) -> LeggedKick {
     }
 }
 
-/// Whether the ball is this robot's to go for: unless a teammate has announced that it holds it (paper §5.2.1:
+/// Whether the ball is this robot's to go for: unless a teammate holds it, or is at it and nearer (paper §5.2.1:
 /// while one possesses the ball the other makes way; "once the action ends, both robots will try to get near").
-fn is_attacker(now: Instant, belief: &Belief, teammates: &Teammates) -> bool {
-    let holds = |teammate: &Teammate| teammate.beacon.status.has(Status::HOLDS_BALL);
-    belief.holds_ball || !teammates.present(now).any(|(_, teammate)| holds(teammate))
+/// Two robots that both go up to a resting ball block each other for ever: so the first at it possesses it.
+fn is_attacker(now: Instant, ball: &Ball, belief: &Belief, teammates: &Teammates) -> bool {
+    let mine = belief.pose.position.distance(ball.position);
+    let possesses = |teammate: &Teammate| {
+        let theirs = teammate.pose().position.distance(ball.position);
+        teammate.beacon.status.has(Status::HOLDS_BALL) || (theirs < AT_BALL && theirs < mine)
+    };
+    belief.holds_ball || !teammates.present(now).any(|(_, teammate)| possesses(teammate))
 }
 
 /// Back up: beside the ball, off its line to the goal, on the side with more room.
@@ -297,6 +302,8 @@ const ACROSS_AHEAD: f32 = 0.6;
 const ACROSS_OFF: f32 = 0.6;
 /// But no nearer the goal line than this, m: half a metre before the penalty area.
 const ACROSS_BEFORE_GOAL: f32 = 1.3;
+/// A robot whose centre is this near the ball is at it, m: its next step is the grab's (0.17 m and a body).
+const AT_BALL: f32 = 0.3;
 /// A supporter keeps this far from the ball (an estimate between 0.8 and 1 m).
 const SUPPORT_DISTANCE: f32 = 0.9;
 /// And this far off the line from ball to goal: 70°.
@@ -345,7 +352,7 @@ mod tests {
             progress: Progress::Idle,
             role: Role::None,
         };
-        let (b, mut reactive) = (belief((0.0, 0.0), (1.0, 0.0)), Reactive::default());
+        let (b, mut reactive) = (belief((0.2, 0.0), (1.0, 0.0)), Reactive::default());
         let mut teammates = Teammates::default();
         for (ms, status, role) in [
             (40, Status::AVAILABLE, Role::Attacker),
@@ -357,6 +364,10 @@ mod tests {
             reactive.step(now, &b, &teammates, GoalEnd::Positive, Freedom::Full);
             assert_eq!(reactive.role(), role, "{ms} ms");
         }
+        // The teammate is at the ball, nearer than this robot, and about to take it.
+        let near = belief((0.4, 0.0), (0.15, 0.0));
+        reactive.step(Instant(120_000), &near, &teammates, GoalEnd::Positive, Freedom::Full);
+        assert_eq!(reactive.role(), Role::Supporter);
     }
 
     #[test]
