@@ -5,7 +5,18 @@
 //! teammate nearest the ball is used (its information is the most accurate, paper §4.1). A fresh snapshot of
 //! the host overrides both ([`shown`]).
 
-mod camera;
+#[cfg(feature = "legged")]
+pub mod ball;
+#[cfg(feature = "legged")]
+pub mod camera;
+#[cfg(test)]
+mod chance;
+#[cfg(feature = "legged")]
+pub mod model;
+#[cfg(feature = "legged")]
+pub mod opponents;
+#[cfg(feature = "legged")]
+pub mod pose;
 pub mod shown;
 
 use geometry::{Field, GoalEnd, Point, Pose, Vector, math};
@@ -131,8 +142,9 @@ pub struct Belief {
     pub resolved: Option<(Point<Field>, OmniKick)>,
     handling: Handling,
     sight: Option<Sight>,
-    /// Time of the last camera frame.
-    looked: Option<Instant>,
+    /// Estimators of a robot with a camera.
+    #[cfg(feature = "legged")]
+    perception: camera::Perception,
     /// Consecutive detections of a loose ball slow enough to grab.
     slow_sights: u8,
     league: League,
@@ -163,7 +175,8 @@ impl Belief {
             resolved: None,
             handling: Handling::default(),
             sight: None,
-            looked: None,
+            #[cfg(feature = "legged")]
+            perception: camera::Perception::default(),
             slow_sights: 0,
             league,
             spec: body::of(league).spec(),
@@ -177,25 +190,33 @@ impl Belief {
 
     /// Takes in what the body perceives and what teammates report.
     pub fn update(&mut self, now: Instant, me: RobotId, sensors: &SensorFrame, teammates: &Teammates) {
+        self.holds_ball = sensors.ball_contact;
+        self.busy = sensors.busy;
+        let own = self.own_ball(now, sensors);
+        let slow = own.is_some_and(|ball| ball.velocity.norm() < GRAB_SPEED) && !self.holds_ball;
+        self.slow_sights = if slow { self.slow_sights.saturating_add(1) } else { 0 };
+        self.ball = own.or_else(|| Self::reported_ball(now, me, teammates, self.league));
+    }
+
+    /// The own ball of a sensor frame, after pose and opponents.
+    fn own_ball(&mut self, now: Instant, sensors: &SensorFrame) -> Option<Ball> {
+        #[cfg(feature = "legged")]
+        if let Some(camera) = &sensors.camera {
+            return self.perceive(now, sensors, camera);
+        }
         if let Some(pose) = sensors.pose.filter(|pose| pose.position.is_finite()) {
             self.pose = pose;
         }
-        self.holds_ball = sensors.ball_contact;
-        self.busy = sensors.busy;
         self.opponents.clear();
-        // Same capacity: every finite one fits.
+        // Fewer in a frame than opponents have room.
         for seen in sensors.opponents.iter().filter(|p| p.is_finite()) {
             let _room = self.opponents.push(*seen);
         }
         if let Some(ball) = sensors.ball.filter(|b| b.position.is_finite()) {
             self.see(now - ball.age, ball.position, ball.sigma);
         }
-        if let Some(camera) = &sensors.camera {
-            self.look(now, sensors.pose.is_none(), camera, sensors.odometry);
-        }
-        let slow = self.sight.is_some_and(|s| s.velocity.norm() < GRAB_SPEED) && !self.holds_ball;
-        self.slow_sights = if slow { self.slow_sights.saturating_add(1) } else { 0 };
-        self.ball = self.own_ball(now).or_else(|| Self::reported_ball(now, me, teammates, self.league));
+        let sight = self.sight.filter(|s| now.since(s.at) <= SIGHT_LEASE)?;
+        Some(self.cut_at_opponents(rolling(sight.position, sight.velocity, self.league)))
     }
 
     /// The opponent whose centre is nearest to `point`, and its distance.
@@ -240,10 +261,8 @@ impl Belief {
         self.sight = Some(Sight { position: predicted + miss * alpha, velocity, at });
     }
 
-    fn own_ball(&self, now: Instant) -> Option<Ball> {
-        let sight = self.sight.filter(|s| now.since(s.at) <= SIGHT_LEASE)?;
-        let mut ball = rolling(sight.position, sight.velocity, self.league);
-        // An opponent on its path stops it.
+    /// The ball with its path ended by an opponent on it.
+    fn cut_at_opponents(&self, mut ball: Ball) -> Ball {
         let within = self.spec.opponent_holds_within;
         let way = geometry::Segment::new(ball.position, ball.rest);
         let stops =
@@ -254,7 +273,7 @@ impl Belief {
             let free = math::clamp(share * length - within, 0.0, length);
             ball.rest = ball.position + way.vector() * (free / length.max(f32::MIN_POSITIVE));
         }
-        Some(ball)
+        ball
     }
 
     fn reported_ball(now: Instant, me: RobotId, teammates: &Teammates, league: League) -> Option<Ball> {

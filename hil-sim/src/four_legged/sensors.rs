@@ -175,6 +175,26 @@ mod tests {
     }
 
     #[test]
+    fn brains_assume_the_errors_that_the_world_has() {
+        use brain::belief::model;
+        let noise = Parameters::four_legged().noise;
+        for (assumed, degrees) in [
+            (model::PIXEL, noise.pixel_deg),
+            (model::JOINT, noise.joint_deg),
+            (model::SWAY, noise.sway_deg),
+            (model::PLACING_HEADING, noise.placing_deg),
+        ] {
+            assert!((assumed - degrees.to_radians()).abs() < 1e-6, "{degrees}");
+        }
+        let lengths =
+            [model::MARKER_SIZE, model::GOAL_SIZE, model::RANGE_FLOOR, model::PLACING, model::REPORTED];
+        assert_eq!(lengths, [noise.marker, noise.goal, noise.range_floor, noise.placing, noise.localisation]);
+        let legs = [model::SLIP, model::SLIP_TIME, model::SCALE, model::SWAY_TIME, model::STANDS];
+        let world = [noise.odometry_slip, noise.slip_time, noise.odometry_scale, noise.sway_time, STANDS];
+        assert_eq!(legs, world);
+    }
+
+    #[test]
     fn legs_mismeasure_by_a_share_of_the_speed_and_do_not_feel_a_push() {
         let noise = Parameters::four_legged().noise;
         let (mut squares, n) = (0.0, 4_000);
