@@ -34,6 +34,13 @@ use crate::teammates::Teammates;
 const SIGHT_LEASE: Duration = Duration::millis(400);
 /// A detection this precise needs no filter, m: over a walking robot's step of 40 ms it is 0.1 m/s.
 const SHARP: f32 = 0.004;
+/// Standard deviation that an estimate gains a second after its last sight, m/s: half the mean speed of a short
+/// kick, as it may have been kicked.
+const UNSEEN: f32 = 0.2;
+/// Without a sight for longer, a teammate's report may be better than the own estimate: two steps' misses and the
+/// head's glances are shorter.
+#[cfg(feature = "legged")]
+const STALE: Duration = Duration::millis(1200);
 /// A ball slower than this may be grabbed, m/s.
 const GRAB_SPEED: f32 = 0.4;
 /// A ball slower than this is stationary, m/s: below the apparent speed that a walking body's sway gives a
@@ -122,6 +129,8 @@ pub struct Belief {
     pub pose: Pose<Field>,
     /// The ball; `None` if its position is unknown.
     pub ball: Option<Ball>,
+    /// Standard deviation of a coordinate of the ball's position, m; 0 where it is exact or the host's.
+    pub ball_sigma: f32,
     /// Positions of the opponents.
     pub opponents: heapless::Vec<Point<Field>, OPPONENTS_MAX>,
     /// The robot holds the ball.
@@ -145,6 +154,9 @@ pub struct Belief {
     /// Estimators of a robot with a camera.
     #[cfg(feature = "legged")]
     perception: camera::Perception,
+    /// Its frames are a camera's, with errors.
+    #[cfg(feature = "legged")]
+    has_camera: bool,
     /// Consecutive detections of a loose ball slow enough to grab.
     slow_sights: u8,
     league: League,
@@ -164,6 +176,7 @@ impl Belief {
         Self {
             pose: Pose::default(),
             ball: None,
+            ball_sigma: 0.0,
             opponents: heapless::Vec::new(),
             holds_ball: false,
             busy: false,
@@ -177,6 +190,8 @@ impl Belief {
             sight: None,
             #[cfg(feature = "legged")]
             perception: camera::Perception::default(),
+            #[cfg(feature = "legged")]
+            has_camera: false,
             slow_sights: 0,
             league,
             spec: body::of(league).spec(),
@@ -195,13 +210,15 @@ impl Belief {
         let own = self.own_ball(now, sensors);
         let slow = own.is_some_and(|ball| ball.velocity.norm() < GRAB_SPEED) && !self.holds_ball;
         self.slow_sights = if slow { self.slow_sights.saturating_add(1) } else { 0 };
-        self.ball = own.or_else(|| Self::reported_ball(now, me, teammates, self.league));
+        let reported = self.reported_ball(now, me, teammates, own.is_some());
+        self.ball = reported.or(own);
     }
 
     /// The own ball of a sensor frame, after pose and opponents.
     fn own_ball(&mut self, now: Instant, sensors: &SensorFrame) -> Option<Ball> {
         #[cfg(feature = "legged")]
         if let Some(camera) = &sensors.camera {
+            self.has_camera = true;
             return self.perceive(now, sensors, camera);
         }
         if let Some(pose) = sensors.pose.filter(|pose| pose.position.is_finite()) {
@@ -276,13 +293,63 @@ impl Belief {
         ball
     }
 
-    fn reported_ball(now: Instant, me: RobotId, teammates: &Teammates, league: League) -> Option<Ball> {
-        let report = teammates
-            .present(now)
-            .filter(|(id, _)| *id != me)
-            .filter_map(|(_, teammate)| teammate.beacon.ball)
-            .min_by_key(|ball| ball.distance)?;
-        Some(rolling(report.at.into(), Vector::default(), league))
+    /// The ball of a teammate's report, where it is better than the own estimate: intersection of covariances.
+    /// Reports have one standard deviation for both axes, so the intersection of least trace is the estimate with
+    /// the smaller one. A ball that was just seen is the own one: skills need it in the body's frame.
+    fn reported_ball(&mut self, now: Instant, me: RobotId, teammates: &Teammates, own: bool) -> Option<Ball> {
+        if own && !self.is_ball_stale(now) {
+            return None;
+        }
+        let others = teammates.present(now).filter(|(id, _)| *id != me);
+        let reports = others.filter_map(|(_, teammate)| {
+            let report = teammate.beacon.ball?;
+            let age = report.quality.age() + now.since(teammate.received);
+            let grown = report.quality.sigma() + UNSEEN * age.as_secs_f32();
+            Some((report, age, grown))
+        });
+        let (report, age, sigma) =
+            reports.min_by(|a, b| a.2.total_cmp(&b.2).then(a.0.distance.cmp(&b.0.distance)))?;
+        if own && sigma >= self.ball_sigma {
+            return None;
+        }
+        self.ball_sigma = sigma;
+        let velocity = report.quality.velocity();
+        let ball = rolling(Point::from(report.at), velocity, self.league);
+        // Where it has rolled to since, at most to its stop.
+        let rolled = (velocity * age.as_secs_f32()).clamped(ball.position.distance(ball.rest));
+        Some(Ball { position: ball.position + rolled, ..ball })
+    }
+
+    /// Whether the own estimate of the ball has lacked sights for so long that a teammate's may be better.
+    #[cfg(feature = "legged")]
+    fn is_ball_stale(&self, now: Instant) -> bool {
+        self.has_camera && self.perception.ball_age(now) > STALE
+    }
+
+    /// Whether the own estimate of the ball has lacked sights for so long that a teammate's may be better.
+    #[cfg(not(feature = "legged"))]
+    #[expect(clippy::unused_self, reason = "as with legs")]
+    fn is_ball_stale(&self, _now: Instant) -> bool {
+        false
+    }
+
+    /// Age of the own estimate of the ball.
+    pub fn ball_age(&self, now: Instant) -> Duration {
+        #[cfg(feature = "legged")]
+        if self.has_camera {
+            return self.perception.ball_age(now);
+        }
+        let _ = now;
+        Duration(0)
+    }
+
+    /// Standard deviation of a coordinate of an opponent's position, m; 0 where it is exact or the host's.
+    pub fn opponent_sigma(&self) -> f32 {
+        #[cfg(feature = "legged")]
+        if self.has_camera {
+            return model::REPORTED;
+        }
+        0.0
     }
 }
 

@@ -107,6 +107,7 @@ impl Belief {
             // Fewer tracks than opponents have room.
             let _room = self.opponents.push(track.place);
         }
+        self.ball_sigma = self.perception.ball_sigma().unwrap_or(0.0);
         let ball = self.perception.ball?;
         Some(self.cut_at_opponents(super::rolling(
             self.pose.to_field(ball.place()),
