@@ -117,10 +117,13 @@ fn noise(level: f32) -> Noise {
     }
 }
 
-/// The newest sight, and its velocity on the field.
+/// The newest sight: in the body's frame, on the field, with its velocity there, and its step.
+type Look = (Point<Body>, Point<Field>, Vector<Field>, u32);
+
+/// What a brain without estimators believes.
 #[derive(Default)]
 struct LastLook {
-    at: Option<(Point<Body>, Point<Field>, Vector<Field>, u32)>,
+    at: Option<Look>,
 }
 
 impl LastLook {

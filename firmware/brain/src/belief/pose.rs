@@ -94,12 +94,11 @@ impl PoseFilter {
         let p = &mut self.covariance;
         // F = 1 but for the heading's effect on the place, and the sway's decay: P ← F P Fᵀ.
         let jacobian = [-moved.y(), moved.x()];
-        for column in 0..N {
-            for (row, share) in jacobian.into_iter().enumerate() {
-                p[row][column] += share * p[2][column];
-            }
-            p[3][column] *= keep;
+        let turning = p[2];
+        for (row, share) in p.iter_mut().zip(jacobian) {
+            row.iter_mut().zip(turning).for_each(|(cell, by)| *cell += share * by);
         }
+        p[3].iter_mut().for_each(|cell| *cell *= keep);
         for row in p.iter_mut() {
             for (column, share) in jacobian.into_iter().enumerate() {
                 row[column] += share * row[2];
@@ -167,7 +166,7 @@ impl PoseFilter {
         let ph: [f32; N] =
             core::array::from_fn(|i| p[i][0] * h[0] + p[i][1] * h[1] + p[i][2] * h[2] + p[i][3] * h[3]);
         let s = ph[0] * h[0] + ph[1] * h[1] + ph[2] * h[2] + ph[3] * h[3] + variance;
-        if !(innovation * innovation < GATE * s) {
+        if innovation.is_nan() || innovation * innovation >= GATE * s {
             return false;
         }
         let gain = 1.0 / s;
@@ -204,21 +203,18 @@ impl PoseFilter {
                 && known.pose.position.distance(pose.position) < SAME_PLACE
                 && (known.pose.heading - pose.heading).abs() < SAME_HEADING
         };
-        let supported = match self.hypotheses.iter_mut().find(|known| near(known)) {
-            Some(known) => {
-                known.support += 1;
-                known.pose.position += (pose.position - known.pose.position) * 0.5;
-                known.pose.heading =
-                    known.pose.heading + Angle::new(0.5 * (pose.heading - known.pose.heading).radians());
-                *known
+        let supported = if let Some(known) = self.hypotheses.iter_mut().find(|known| near(known)) {
+            known.support = known.support.saturating_add(1);
+            known.pose.position += (pose.position - known.pose.position) * 0.5;
+            let turned = 0.5 * (pose.heading - known.pose.heading).radians();
+            known.pose.heading = known.pose.heading + Angle::new(turned);
+            *known
+        } else {
+            let known = Hypothesis { pose, support: 1 };
+            if let Some(weakest) = self.hypotheses.iter_mut().min_by_key(|known| known.support) {
+                *weakest = known;
             }
-            None => {
-                let known = Hypothesis { pose, support: 1 };
-                if let Some(weakest) = self.hypotheses.iter_mut().min_by_key(|known| known.support) {
-                    *weakest = known;
-                }
-                known
-            }
+            known
         };
         if supported.support >= SUPPORT && self.doubts >= DOUBTS {
             *self = Self::at(supported.pose, SAME_PLACE, SAME_HEADING);

@@ -1,5 +1,7 @@
 //! Tests: against a reference in f64, consistency of the variance, and how soon it knows rest, kick and stop.
 
+#![expect(clippy::needless_range_loop, reason = "matrices by their indices")]
+
 extern crate std;
 
 use std::println;

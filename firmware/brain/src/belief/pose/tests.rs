@@ -1,5 +1,7 @@
 //! Tests: against a reference in f64, consistency of the covariance, and recovery of a robot that was moved.
 
+#![expect(clippy::needless_range_loop, reason = "matrices by their indices")]
+
 extern crate std;
 
 use std::f64::consts::PI;
@@ -235,7 +237,9 @@ fn its_covariance_is_that_of_its_errors() {
             for _ in 0..seconds * 25 {
                 let (odometry, seen) = walk.step();
                 filter.predict(odometry, DT as f32);
-                seen.into_iter().for_each(|sight| filter.see(sight));
+                for sight in seen {
+                    filter.see(sight);
+                }
             }
             sum += squared_error(&filter, &walk);
         }
@@ -257,7 +261,9 @@ fn a_robot_that_is_carried_away_finds_itself_again() {
             }
             let (odometry, seen) = walk.step();
             filter.predict(odometry, DT as f32);
-            seen.into_iter().for_each(|sight| filter.see(sight));
+            for sight in seen {
+                filter.see(sight);
+            }
         }
         let [x, y, heading] = off(&filter, &walk);
         lost += u32::from(x.hypot(y) > 0.3 || heading.abs() > 0.3);
@@ -274,7 +280,9 @@ fn without_any_pose_to_start_from_two_landmarks_are_enough() {
         for _ in 0..500 {
             let (odometry, seen) = walk.step();
             filter.predict(odometry, DT as f32);
-            seen.into_iter().for_each(|sight| filter.see(sight));
+            for sight in seen {
+                filter.see(sight);
+            }
         }
         let [x, y, heading] = off(&filter, &walk);
         lost += u32::from(x.hypot(y) > 0.3 || heading.abs() > 0.3);
