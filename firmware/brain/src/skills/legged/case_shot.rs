@@ -30,9 +30,12 @@ pub fn case_shot(
     patient: bool,
 ) -> Intent {
     let along = belief.pose.position.direction_to(end);
-    let release = into_space(belief, attacked);
     let Some((chance, best)) = shot::chance_along(belief, attacked, along, kick) else {
-        return if patient { skills::shoot(belief, along, kick) } else { release.intent };
+        return if patient {
+            skills::shoot(belief, along, kick)
+        } else {
+            into_space(belief, attacked).intent
+        };
     };
     let leg = shot_at(belief, along, kick, chance);
     let other = shot_at(belief, best.direction, best.kick, best.chance);
@@ -40,7 +43,7 @@ pub fn case_shot(
     if !patient {
         // What needs no turn any more.
         let kicks = [leg, other].into_iter().filter(|shot| matches!(shot.intent, Intent::Kick(_)));
-        return kicks.fold(release, better).intent;
+        return kicks.fold(into_space(belief, attacked), better).intent;
     }
     // Asking for twice the probability was measured: it costs 2 to 5 points to goal against a goalkeeper.
     let shot = if best.chance > chance { other } else { leg };

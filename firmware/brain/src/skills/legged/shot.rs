@@ -78,7 +78,11 @@ pub(super) fn shooting_place(belief: &Belief, attacked: GoalEnd) -> Point<Field>
 /// The shot at the goal at `attacked` with the best probability, less the cost of turning for it; `None` from
 /// behind the goal line.
 fn best_shot(belief: &Belief, attacked: GoalEnd) -> Option<Shot> {
-    let fan = Fan::new(belief, attacked)?;
+    best_of(belief, &Fan::new(belief, attacked)?)
+}
+
+/// The best shot into that opening.
+fn best_of(belief: &Belief, fan: &Fan) -> Option<Shot> {
     let mut best: Option<(f32, Shot)> = None;
     for kick in SHOTS {
         let (off, length) = legged::nominal(kick);
@@ -113,7 +117,7 @@ pub(super) fn chance_along(
         // Beside the goal.
         _ => 0.0,
     };
-    Some((chance, best_shot(belief, attacked)?))
+    Some((chance, best_of(belief, &fan)?))
 }
 
 /// Probability that a kick nominally `length` long rolls beyond `distance`.
