@@ -1,7 +1,6 @@
 //! `chance`: seeded normal numbers for tests of the estimators.
 
-extern crate std;
-
+use geometry::math;
 use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro128PlusPlus;
 
@@ -25,7 +24,7 @@ impl Chance {
 
     /// Normal, mean 0 and deviation 1.
     pub(super) fn normal(&mut self) -> f64 {
-        let radius = (-2.0 * self.share().ln()).sqrt();
-        radius * (std::f64::consts::TAU * self.share()).cos()
+        let radius = math::sqrt(-2.0 * math::ln(self.share() as f32));
+        f64::from(radius * math::sin_cos(math::TAU * self.share() as f32).1)
     }
 }
