@@ -226,7 +226,10 @@ mod tests {
         let rows = goals(Approach::Cases, 27).chain(goals(Approach::Reactive, 24));
         let text = summary(&Results::new(identity(), rows.collect()).unwrap());
         let lines: Vec<_> = text.lines().collect();
-        assert_eq!(lines[0], "Table 1: defender and goalie; 30 trials a row, in brackets the paper's");
+        let world = hil_sim::world_hash();
+        let title =
+            format!("Table 1: defender and goalie; 30 trials a row, world {world}, in brackets the paper's");
+        assert_eq!(lines[0], title);
         let description = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
         assert_eq!(description(lines[2])[..4], ["2", "cbr", "90.0", "(26)***"]);
         assert_eq!(description(lines[3])[..3], ["reactive", "80.0", "(25)***"]);
