@@ -36,6 +36,7 @@ pub use four_legged::simulation::{
     ReceivedPacket, Sent, Simulation, SimulationConfig, SimulationError, TICK_US, Tick,
 };
 pub use four_legged::trace::TraceHash;
+pub use four_legged::world_hash::world_hash;
 pub use hash::Fnv;
 pub use mcu::{Backend, Mcu, McuError, Reply};
 pub use meter::{ByTeam, Meter, Metered};

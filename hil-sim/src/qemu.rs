@@ -380,6 +380,7 @@ mod tests {
             busy: false,
             odometry: Twist { linear: Vector::new(0.0, 0.0), angular: 0.0 },
             health: protocol::robot_io::Health::default(),
+            camera: None,
         }
     }
 

@@ -87,20 +87,25 @@ pub struct TickOut<'a> {
 mod tests {
     use super::*;
     use crate::Duration;
-    use crate::robot_io::{BallSight, Health, OPPONENTS_MAX};
+    use crate::robot_io::{BallSight, CameraFrame, Health, LandmarkSight, OPPONENTS_SEEN_MAX, Sight};
     use geometry::{Angle, Point, Pose, Twist};
 
     #[test]
     fn the_fullest_tick_fits_into_a_message() {
         let far = Point::new(f32::MAX, f32::MIN);
+        let sight = Sight::new(60.0, Angle::new(-3.0));
         let sensors = SensorFrame {
             pose: Some(Pose { position: far, heading: Angle::new(1.0) }),
             ball: Some(BallSight { position: far, sigma: 1.0, age: Duration(u64::MAX) }),
-            opponents: [far; OPPONENTS_MAX].into_iter().collect(),
+            opponents: [far; OPPONENTS_SEEN_MAX].into_iter().collect(),
             ball_contact: true,
             busy: true,
             odometry: Twist::default(),
             health: Health { battery: Some(1.0), ..Health::default() },
+            camera: Some(CameraFrame {
+                landmarks: [LandmarkSight { landmark: u8::MAX, sight }; 4].into_iter().collect(),
+                ball: Some(sight),
+            }),
         };
         let packet = [0; AIR_IN_BYTES_MAX / AIR_IN_MAX];
         let air = [&packet[..]; AIR_IN_MAX].into_iter().collect();

@@ -4,26 +4,32 @@
 //! Noise enters the system only here: the simulator (or a real camera) fills a [`SensorFrame`], and that is
 //! all a robot knows of the world besides its teammates' beacons.
 
-use geometry::{Body, Field, Point, Pose, Twist};
+use geometry::{Angle, Body, Field, Point, Pose, Twist, math};
 use serde::{Deserialize, Serialize};
 
 use crate::Duration;
+use crate::quantized::{from_mm, length_to_mm, saturate};
 
 /// A wheeled brain steps this often, and gets a sensor frame (docs/architecture.md §2.3).
 pub const WHEELED_STEP: Duration = Duration::millis(10);
 /// Opponents a robot can see at once: a whole team of the largest league.
 pub const OPPONENTS_MAX: usize = 11;
 
+/// Opponents in a sensor frame: a team of walking robots. Robots on wheels know opponents from their host.
+pub const OPPONENTS_SEEN_MAX: usize = 4;
+/// Landmarks in one camera frame.
+pub const LANDMARKS_SEEN_MAX: usize = 4;
+
 /// Measurements of a robot at one moment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SensorFrame {
-    /// Own pose as the robot's camera measures it; a robot on wheels has no camera and knows its pose from
-    /// its host alone.
+    /// Own pose, where something measures it as a whole: a simulator without noise, or the placing by hand at
+    /// kick-off. A robot on wheels has no camera and knows its pose from its host alone.
     pub pose: Option<Pose<Field>>,
-    /// The ball, if it is detected.
+    /// The ball in the field frame, if it is detected so: in a simulator without noise.
     pub ball: Option<BallSight>,
-    /// Opponents detected, in no particular order.
-    pub opponents: heapless::Vec<Point<Field>, OPPONENTS_MAX>,
+    /// Opponents' positions as they report them (paper §5.3), always in the same order.
+    pub opponents: heapless::Vec<Point<Field>, OPPONENTS_SEEN_MAX>,
     /// The robot holds the ball: between the legs, or on the dribbler.
     pub ball_contact: bool,
     /// A grab or kick is running; the body takes no other until it ends.
@@ -32,6 +38,53 @@ pub struct SensorFrame {
     pub odometry: Twist<Body>,
     /// State of the body.
     pub health: Health,
+    /// What its own camera sees, relative to the body.
+    pub camera: Option<CameraFrame>,
+}
+
+/// What a walking robot's camera sees in one frame, relative to the body.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct CameraFrame {
+    /// Landmarks of the field (`rules::LANDMARKS`).
+    pub landmarks: heapless::Vec<LandmarkSight, LANDMARKS_SEEN_MAX>,
+    /// The ball.
+    pub ball: Option<Sight>,
+}
+
+/// A detected landmark.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LandmarkSight {
+    /// Its index in `rules::LANDMARKS`: colours tell them apart.
+    pub landmark: u8,
+    /// Where it is.
+    pub sight: Sight,
+}
+
+/// A detection relative to the robot's centre and heading.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sight {
+    /// Distance along the ground, mm.
+    range: u16,
+    /// To the left of the heading, 0.1 mrad.
+    bearing: i16,
+}
+
+impl Sight {
+    /// A detection at `range` m, `bearing` to the left of the heading.
+    pub fn new(range: f32, bearing: Angle) -> Self {
+        let bearing = saturate(math::round_to_i32(bearing.radians() * 10_000.0));
+        Self { range: length_to_mm(range), bearing }
+    }
+
+    /// Distance along the ground, m.
+    pub fn range(self) -> f32 {
+        from_mm(i32::from(self.range))
+    }
+
+    /// Direction, to the left of the heading.
+    pub fn bearing(self) -> Angle {
+        Angle::new(f32::from(self.bearing) * 0.000_1)
+    }
 }
 
 /// State of a body.

@@ -7,6 +7,7 @@
 //! for the host; teammates ignore it. A [`Handshake`] is how teammates come to trust each other
 //! after a boot ([`crate::peer`]).
 
+use geometry::{Field, Vector, math};
 use serde::{Deserialize, Serialize};
 
 use crate::host::Telemetry;
@@ -103,7 +104,51 @@ pub struct BallReport {
     /// Distance from the sender's centre, mm: compared by the elector.
     #[serde(with = "postcard::fixint::le")]
     pub distance: u16,
+    /// How well it is known, and how it moves.
+    pub quality: BallQuality,
 }
+
+/// Uncertainty, age and velocity of a reported ball, a byte each: standard deviation of a coordinate in cm, age
+/// of the detection in 20 ms, velocity along x and y in 5 cm/s, signed. All saturate. All zero: exact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct BallQuality(#[serde(with = "postcard::fixint::le")] u32);
+
+impl BallQuality {
+    /// Of a standard deviation in m, an age, and a velocity in m/s.
+    pub fn new(sigma: f32, age: Duration, velocity: Vector<Field>) -> Self {
+        let sigma = math::round_to_i32(sigma * 100.0).clamp(0, 255) as u8;
+        let age = (age.0 / BALL_AGE_STEP.0).min(255) as u8;
+        let speed = |v: f32| math::round_to_i32(v * (1.0 / BALL_SPEED_STEP)).clamp(-127, 127) as i8 as u8;
+        Self(u32::from_le_bytes([sigma, age, speed(velocity.x()), speed(velocity.y())]))
+    }
+
+    /// Standard deviation of a coordinate, cm.
+    pub const fn sigma_cm(self) -> u8 {
+        self.0 as u8
+    }
+
+    /// Standard deviation of a coordinate, m.
+    pub fn sigma(self) -> f32 {
+        f32::from(self.sigma_cm()) * 0.01
+    }
+
+    /// Age of the detection when it was sent.
+    pub const fn age(self) -> Duration {
+        Duration((self.0 >> 8 & 0xff) as u64 * BALL_AGE_STEP.0)
+    }
+
+    /// Velocity, m/s.
+    pub fn velocity(self) -> Vector<Field> {
+        let [_, _, x, y] = self.0.to_le_bytes().map(|byte| f32::from(byte as i8) * BALL_SPEED_STEP);
+        Vector::new(x, y)
+    }
+}
+
+/// Resolution of a reported ball's age.
+const BALL_AGE_STEP: Duration = Duration::millis(20);
+/// Resolution of a reported ball's velocity, m/s.
+const BALL_SPEED_STEP: f32 = 0.05;
 
 /// Abilities of a robot, one bit each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -291,7 +336,11 @@ mod tests {
     pub(crate) fn longest() -> TeamMessage {
         TeamMessage::Beacon(Beacon {
             pose: WirePose { at: WirePoint { x: -32768, y: 32767 }, heading: -3142 },
-            ball: Some(BallReport { at: WirePoint { x: -32768, y: 32767 }, distance: 65535 }),
+            ball: Some(BallReport {
+                at: WirePoint { x: -32768, y: 32767 },
+                distance: 65535,
+                quality: BallQuality(u32::MAX),
+            }),
             status: Status(0xff),
             case_base: 0xffff_ffff,
             cycle: Some(CycleState {
@@ -306,6 +355,17 @@ mod tests {
             progress: Progress::Execute { done: 255 },
             role: Role::Supporter,
         })
+    }
+
+    #[test]
+    fn a_balls_quality_survives_the_wire_and_saturates() {
+        let quality = BallQuality::new(0.12, Duration::millis(140), Vector::new(-0.75, 1.2));
+        assert_eq!((quality.sigma_cm(), quality.age()), (12, Duration::millis(140)));
+        assert!((quality.velocity() - Vector::new(-0.75, 1.2)).norm() < 1e-5);
+        let most = BallQuality::new(9.0, Duration::millis(60_000), Vector::new(-99.0, f32::NAN));
+        assert_eq!((most.sigma_cm(), most.age()), (255, Duration::millis(5_100)));
+        assert!((most.velocity() - Vector::new(-6.35, 0.0)).norm() < 1e-5);
+        assert_eq!(BallQuality::new(0.0, Duration(0), Vector::default()), BallQuality::default());
     }
 
     #[test]

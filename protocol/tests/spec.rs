@@ -1,7 +1,7 @@
 //! The code writes the bytes of `SPEC.md`: every worked example there is named and checked, in both
 //! directions.
 
-use geometry::GoalEnd;
+use geometry::{GoalEnd, Vector};
 use protocol::frame::{Audience, Frame, Key, Sender, TeamKey};
 use protocol::host::{
     Condition, Directive, Hint, HostCommand, HostMessage, KickOrder, RuleRole, Telemetry, Welcome, WireBall,
@@ -10,10 +10,10 @@ use protocol::host::{
 use protocol::quantized::{WirePoint, WirePose};
 use protocol::serial::{Lines, line};
 use protocol::team::{
-    AbortReason, BallReport, Beacon, Bond, Closure, CycleState, Decision, Handshake, KnownEpoch, Play,
-    Progress, Role, Status, TeamMessage,
+    AbortReason, BallQuality, BallReport, Beacon, Bond, Closure, CycleState, Decision, Handshake, KnownEpoch,
+    Play, Progress, Role, Status, TeamMessage,
 };
-use protocol::{CaseId, CycleId, RobotId, TeamId};
+use protocol::{CaseId, CycleId, Duration, RobotId, TeamId};
 use rules::{Phase, Side};
 
 const SPEC: &str = include_str!("../SPEC.md");
@@ -51,8 +51,9 @@ fn quiet() -> Beacon {
 }
 
 fn playing() -> Beacon {
+    let quality = BallQuality::new(0.12, Duration::millis(40), Vector::new(-0.5, 0.25));
     Beacon {
-        ball: Some(BallReport { at: WirePoint { x: -600, y: 10 }, distance: 100 }),
+        ball: Some(BallReport { at: WirePoint { x: -600, y: 10 }, distance: 100, quality }),
         status: Status::AVAILABLE.with(Status::RETRIEVER),
         cycle: Some(CycleState {
             id: CycleId { counter: 7, proposer: robot(1) },

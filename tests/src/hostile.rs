@@ -128,6 +128,7 @@ impl Minds {
             busy: false,
             odometry: Twist::default(),
             health: Health { battery: Some(16.0), tipped: false, kicker_ready: true },
+            camera: None,
         };
         while let Some(due) = brain.poll_timeout().filter(|due| *due <= self.now) {
             brain.handle_timeout(due);

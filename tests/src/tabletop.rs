@@ -101,6 +101,7 @@ impl<'a> Tabletop<'a> {
                 busy: false,
                 odometry: Twist::default(),
                 health: Health::default(),
+                camera: None,
             };
             robot.brain.handle_sensors(now, &sensors);
             while let Some(message) = robot.brain.poll_message(now) {

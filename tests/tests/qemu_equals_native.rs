@@ -9,6 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
+use arena::evaluation::Profile;
 use arena::{CaseNames, TrialConfig, TrialReport, run};
 use brain::{Approach, BrainConfig};
 use hil_sim::{
@@ -52,6 +53,22 @@ fn native_equals_qemu_when_packets_are_lost_and_a_robot_dies_and_returns() {
             ScheduledFault { tick: 70, fault: Fault::Return(robot) },
         ];
         both(&config, QemuBackend::new(&*IMAGE), &mut meter);
+    }
+    meter.check();
+}
+
+#[test]
+fn native_equals_qemu_with_the_robots_perception() {
+    let mut meter = Meter::default();
+    for (scenario, approach) in [
+        (Scenario::DefenderAhead, Approach::Cases),
+        (Scenario::DefenderClose, Approach::Hybrid),
+        (Scenario::Random, Approach::Reactive),
+    ] {
+        for seed in 1..=2 {
+            let config = TrialConfig::new(scenario, Configuration::DefenderGoalie, approach, seed);
+            both(&Profile::Robots.apply(config), QemuBackend::new(&*IMAGE), &mut meter);
+        }
     }
     meter.check();
 }

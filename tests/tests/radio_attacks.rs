@@ -102,6 +102,7 @@ impl Body {
             busy: false,
             odometry,
             health: Health { battery: Some(16.0), tipped: false, kicker_ready: true },
+            camera: None,
         };
         self.station.handle_sensors(clock, &sensors);
         let output = std::iter::from_fn(|| self.station.poll_packet(clock)).collect();

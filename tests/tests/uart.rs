@@ -116,6 +116,7 @@ fn run(seed: u64, bad: Trouble, late: u32) -> Reported {
             busy: false,
             odometry: Twist::default(),
             health,
+            camera: None,
         };
         station.handle_sensors(now, &sensors);
         while let Some(packet) = station.poll_packet(now) {

@@ -44,7 +44,7 @@ pub(crate) fn write_skills(context: &Context) -> Result<(), Failure> {
 pub(crate) fn write(context: &Context) -> Result<(), Failure> {
     // `--fresh`: trials of an earlier uncommitted version of the program would count as its own.
     for line in [
-        "evaluate --fresh --maps 0 --out out/evaluation",
+        "evaluate --random --fresh --maps 0 --out out/evaluation",
         "evaluate report out/evaluation --markdown docs/evaluation.md",
         "evaluate ablations --fresh --out out/ablations --markdown docs/evaluation.md",
     ] {

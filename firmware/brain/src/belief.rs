@@ -5,6 +5,18 @@
 //! teammate nearest the ball is used (its information is the most accurate, paper §4.1). A fresh snapshot of
 //! the host overrides both ([`received`]).
 
+#[cfg(feature = "legged")]
+pub mod ball;
+#[cfg(feature = "legged")]
+pub mod camera;
+#[cfg(test)]
+mod chance;
+#[cfg(feature = "legged")]
+pub mod model;
+#[cfg(feature = "legged")]
+pub mod opponents;
+#[cfg(feature = "legged")]
+pub mod pose;
 pub mod received;
 
 use geometry::{Field, GoalEnd, Point, Pose, Vector, math};
@@ -22,6 +34,13 @@ use crate::teammates::Teammates;
 const SIGHT_LEASE: Duration = Duration::millis(400);
 /// A detection this precise needs no filter, m: over a walking robot's step of 40 ms it is 0.1 m/s.
 const SHARP: f32 = 0.004;
+/// Standard deviation that an estimate gains a second after its last sight, m/s: half the mean speed of a short
+/// kick, as it may have been kicked.
+const UNSEEN: f32 = 0.2;
+/// Without a sight for longer, a teammate's report may be better than the own estimate: two steps' misses and the
+/// head's glances are shorter.
+#[cfg(feature = "legged")]
+const STALE: Duration = Duration::millis(1200);
 /// A ball slower than this may be grabbed, m/s.
 const GRAB_SPEED: f32 = 0.4;
 /// A ball slower than this is stationary, m/s: below the apparent speed that a walking body's sway gives a
@@ -110,6 +129,8 @@ pub struct Belief {
     pub pose: Pose<Field>,
     /// The ball; `None` if its position is unknown.
     pub ball: Option<BelievedBall>,
+    /// Standard deviation of a coordinate of the ball's position, m; 0 where it is exact or the host's.
+    pub ball_sigma: f32,
     /// Positions of the opponents.
     pub opponents: heapless::Vec<Point<Field>, OPPONENTS_MAX>,
     /// The robot holds the ball.
@@ -130,6 +151,12 @@ pub struct Belief {
     pub resolved: Option<(Point<Field>, OmniKick)>,
     handling: Handling,
     sight: Option<Sight>,
+    /// Estimators of a robot with a camera.
+    #[cfg(feature = "legged")]
+    perception: camera::Perception,
+    /// Its frames are a camera's, with errors.
+    #[cfg(feature = "legged")]
+    has_camera: bool,
     /// Consecutive detections of a loose ball slow enough to grab.
     slow_sights: u8,
     league: League,
@@ -149,6 +176,7 @@ impl Belief {
         Self {
             pose: Pose::default(),
             ball: None,
+            ball_sigma: 0.0,
             opponents: heapless::Vec::new(),
             holds_ball: false,
             busy: false,
@@ -160,6 +188,10 @@ impl Belief {
             resolved: None,
             handling: Handling::default(),
             sight: None,
+            #[cfg(feature = "legged")]
+            perception: camera::Perception::default(),
+            #[cfg(feature = "legged")]
+            has_camera: false,
             slow_sights: 0,
             league,
             spec: body::of(league).spec(),
@@ -173,22 +205,35 @@ impl Belief {
 
     /// Takes in what the body perceives and what teammates report.
     pub fn update(&mut self, now: Instant, me: RobotId, sensors: &SensorFrame, teammates: &Teammates) {
+        self.holds_ball = sensors.ball_contact;
+        self.busy = sensors.busy;
+        let own = self.own_ball(now, sensors);
+        let slow = own.is_some_and(|ball| ball.velocity.norm() < GRAB_SPEED) && !self.holds_ball;
+        self.slow_sights = if slow { self.slow_sights.saturating_add(1) } else { 0 };
+        let reported = self.reported_ball(now, me, teammates, own.is_some());
+        self.ball = reported.or(own);
+    }
+
+    /// The own ball of a sensor frame, after pose and opponents.
+    fn own_ball(&mut self, now: Instant, sensors: &SensorFrame) -> Option<BelievedBall> {
+        #[cfg(feature = "legged")]
+        if let Some(camera) = &sensors.camera {
+            self.has_camera = true;
+            return self.perceive(now, sensors, camera);
+        }
         if let Some(pose) = sensors.pose.filter(|pose| pose.position.is_finite()) {
             self.pose = pose;
         }
-        self.holds_ball = sensors.ball_contact;
-        self.busy = sensors.busy;
         self.opponents.clear();
-        // Same capacity: every finite one fits.
+        // Fewer in a frame than opponents have room.
         for seen in sensors.opponents.iter().filter(|p| p.is_finite()) {
             let _room = self.opponents.push(*seen);
         }
         if let Some(ball) = sensors.ball.filter(|b| b.position.is_finite()) {
             self.see(now - ball.age, ball.position, ball.sigma);
         }
-        let slow = self.sight.is_some_and(|s| s.velocity.norm() < GRAB_SPEED) && !self.holds_ball;
-        self.slow_sights = if slow { self.slow_sights.saturating_add(1) } else { 0 };
-        self.ball = self.own_ball(now).or_else(|| Self::reported_ball(now, me, teammates, self.league));
+        let sight = self.sight.filter(|s| now.since(s.at) <= SIGHT_LEASE)?;
+        Some(self.cut_at_opponents(rolling(sight.position, sight.velocity, self.league)))
     }
 
     /// The opponent whose centre is nearest to `point`, and its distance.
@@ -233,10 +278,8 @@ impl Belief {
         self.sight = Some(Sight { position: predicted + miss * alpha, velocity, at });
     }
 
-    fn own_ball(&self, now: Instant) -> Option<BelievedBall> {
-        let sight = self.sight.filter(|s| now.since(s.at) <= SIGHT_LEASE)?;
-        let mut ball = rolling(sight.position, sight.velocity, self.league);
-        // An opponent on its path stops it.
+    /// The ball with its path ended by an opponent on it.
+    fn cut_at_opponents(&self, mut ball: BelievedBall) -> BelievedBall {
         let within = self.spec.opponent_holds_within;
         let path = geometry::Segment::new(ball.position, ball.rest);
         let stops =
@@ -247,21 +290,72 @@ impl Belief {
             let free = math::clamp(share * length - within, 0.0, length);
             ball.rest = ball.position + path.vector() * (free / length.max(f32::MIN_POSITIVE));
         }
-        Some(ball)
+        ball
     }
 
+    /// The ball of a teammate's report, where it is better than the own estimate: intersection of covariances.
+    /// Reports have one standard deviation for both axes, so the intersection of least trace is the estimate with
+    /// the smaller one. A ball that was just seen is the own one: skills need it in the body's frame.
     fn reported_ball(
+        &mut self,
         now: Instant,
         me: RobotId,
         teammates: &Teammates,
-        league: League,
+        own: bool,
     ) -> Option<BelievedBall> {
-        let report = teammates
-            .present(now)
-            .filter(|(id, _)| *id != me)
-            .filter_map(|(_, teammate)| teammate.beacon.ball)
-            .min_by_key(|ball| ball.distance)?;
-        Some(rolling(report.at.into(), Vector::default(), league))
+        if own && !self.is_ball_stale(now) {
+            return None;
+        }
+        let others = teammates.present(now).filter(|(id, _)| *id != me);
+        let reports = others.filter_map(|(_, teammate)| {
+            let report = teammate.beacon.ball?;
+            let age = report.quality.age() + now.since(teammate.received);
+            let grown = report.quality.sigma() + UNSEEN * age.as_secs_f32();
+            Some((report, age, grown))
+        });
+        let (report, age, sigma) =
+            reports.min_by(|a, b| a.2.total_cmp(&b.2).then(a.0.distance.cmp(&b.0.distance)))?;
+        if own && sigma >= self.ball_sigma {
+            return None;
+        }
+        self.ball_sigma = sigma;
+        let velocity = report.quality.velocity();
+        let ball = rolling(Point::from(report.at), velocity, self.league);
+        // Where it has rolled to since, at most to its stop.
+        let rolled = (velocity * age.as_secs_f32()).clamped(ball.position.distance(ball.rest));
+        Some(BelievedBall { position: ball.position + rolled, ..ball })
+    }
+
+    /// Whether the own estimate of the ball has lacked sights for so long that a teammate's may be better.
+    #[cfg(feature = "legged")]
+    fn is_ball_stale(&self, now: Instant) -> bool {
+        self.has_camera && self.perception.ball_age(now) > STALE
+    }
+
+    /// Whether the own estimate of the ball has lacked sights for so long that a teammate's may be better.
+    #[cfg(not(feature = "legged"))]
+    #[expect(clippy::unused_self, reason = "as with legs")]
+    fn is_ball_stale(&self, _now: Instant) -> bool {
+        false
+    }
+
+    /// Age of the own estimate of the ball.
+    pub fn ball_age(&self, now: Instant) -> Duration {
+        #[cfg(feature = "legged")]
+        if self.has_camera {
+            return self.perception.ball_age(now);
+        }
+        let _ = now;
+        Duration(0)
+    }
+
+    /// Standard deviation of a coordinate of an opponent's position, m; 0 where it is exact or the host's.
+    pub fn opponent_sigma(&self) -> f32 {
+        #[cfg(feature = "legged")]
+        if self.has_camera {
+            return model::REPORTED;
+        }
+        0.0
     }
 }
 
@@ -298,6 +392,7 @@ mod tests {
             busy: false,
             odometry: Twist::default(),
             health: Health::default(),
+            camera: None,
         }
     }
 

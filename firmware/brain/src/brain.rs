@@ -184,7 +184,7 @@ impl<'a> Brain<'a> {
             return self.telemetry(now).map(TeamMessage::Telemetry);
         }
         self.spoken.beacon(now);
-        let beacon = self.beacon();
+        let beacon = self.beacon(now);
         if self.cycle.closure().is_some() && self.reported_end_of != self.cycle.id() {
             // The end is announced before the next cycle starts: a teammate that receives only the start
             // would not know why.

@@ -299,13 +299,12 @@ impl Execution {
                     return Verdict::Failed(AbortReason::ActionFailed);
                 };
                 match kick.aim {
-                    // The case only marks it as a shot; the aim between the posts, and the leg to kick with,
-                    // are chosen now.
+                    // The leg is kicked that was checked, unless the moment has made another better.
                     KickAim::Goal { .. } => {
                         timers.set_if_idle(Timer::PassPatience, scene.now, scene.body.spec().shot_patience);
                         let patient = !timers.has_fired(Timer::PassPatience);
                         let attacked = scene.case.defending().opposite();
-                        self.release(belief, scene.body.shoot(belief, attacked, patient))
+                        self.release(belief, scene.body.shoot_leg(belief, attacked, (&kick, end), patient))
                     }
                     KickAim::Heading { .. } => {
                         self.release(belief, scene.body.kick(belief, &kick, along, end))

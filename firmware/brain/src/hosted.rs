@@ -241,6 +241,7 @@ mod tests {
             busy: false,
             odometry: Twist::default(),
             health: Health::default(),
+            camera: None,
         };
         held.show(Instant(0), &HostSnapshot::new(id(3)), &sensors);
         let free_kick = Phase::FreeKick(Side::Ours);

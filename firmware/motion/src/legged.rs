@@ -18,6 +18,8 @@ pub const CARRY_SPEED: f32 = 0.15;
 pub const CARRY_TURN_RATE: f32 = 1.0;
 /// Ball within this distance of the body's centre, ahead: a grab may succeed, m.
 pub const GRAB_REACH: f32 = 0.165;
+/// A held ball lies this far ahead of the body's centre, m.
+pub const HOLD_DISTANCE: f32 = 0.13;
 /// Half the angle of the grab's zone, rad.
 pub const GRAB_HALF_ANGLE: f32 = 0.4;
 /// Standard deviation of a kick's direction, rad: 10°, UT Austin's 9.5° at 2 m over 50 kicks.

@@ -131,6 +131,7 @@ impl SimulatedBody {
             // The protocol does not report its motion, so the commanded one is used.
             odometry: self.motion,
             health: Health { battery: None, tipped: false, kicker_ready: true },
+            camera: None,
         }
     }
 

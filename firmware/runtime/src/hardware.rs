@@ -114,6 +114,7 @@ pub async fn senses(mut probes: impl Probes, boxes: &Mailboxes, wires: &Wires) -
             busy: false,
             odometry,
             health,
+            camera: None,
         };
         boxes.room_for_arrival().await;
         boxes.deliver(Arrival::Sensors(snapshot));

@@ -317,6 +317,7 @@ fn snapshot(x: f32) -> SensorFrame {
         busy: false,
         odometry: Twist { linear: Vector::new(0.0, 0.0), angular: 0.0 },
         health: Health::default(),
+        camera: None,
     }
 }
 

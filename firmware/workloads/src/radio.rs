@@ -11,7 +11,9 @@ use protocol::host::{
 use protocol::host_link::HostLink;
 use protocol::link::{Link, Packet, Received};
 use protocol::quantized::{WirePoint, WirePose};
-use protocol::team::{BallReport, Beacon, CycleState, Decision, Play, Progress, Role, Status, TeamMessage};
+use protocol::team::{
+    BallQuality, BallReport, Beacon, CycleState, Decision, Play, Progress, Role, Status, TeamMessage,
+};
 use protocol::{CaseId, CycleId, Instant, RobotId, TeamId};
 use rules::{Phase, Side};
 
@@ -201,7 +203,7 @@ fn long() -> TeamMessage {
     let play = Play { case: CaseId(300), ball: FAR, robots: [1, 3, 5, 7].map(id).into_iter().collect() };
     TeamMessage::Beacon(Beacon {
         pose: WirePose { at: FAR, heading: 1571 },
-        ball: Some(BallReport { at: FAR, distance: 999 }),
+        ball: Some(BallReport { at: FAR, distance: 999, quality: BallQuality::default() }),
         status: Status::AVAILABLE,
         case_base: 0x1234_5678,
         cycle: Some(CycleState {

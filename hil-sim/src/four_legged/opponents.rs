@@ -2,16 +2,24 @@
 //! leaves; it walks to a ball inside that region and clears it, else it stands at the region's border nearest
 //! the ball and faces it; a ball in its grasp there is cleared as well. m, s, field frame.
 //!
-//! They have the attackers' bodies and abilities: they walk, grab (which may fail) and then kick at once in
-//! whichever of the body's three directions (ahead, left, right) points most upfield. They see the true
-//! state, as in the paper's simulator.
+//! They have the attackers' bodies and abilities: they walk, grab (which may fail), turn with the ball and
+//! kick. **Clearance** (§5.1.2 "clears it", §5.3.1 "from its defending zone"): away from their own goal, along a
+//! corridor without a robot, to a place within the lines, as a ball over a line is the other team's; of the
+//! kicks that do so, the one that gains most. Without one they turn, the least that makes a hard kick do so,
+//! and after the league's 3 s of holding they kick in whichever direction points most upfield. The same rule
+//! against every approach. They see the true state, as in the paper's simulator; in the robots' profile they
+//! act on a sight of the ball and on a localisation with errors (R40: "he may believe that the ball is within
+//! his home region", §5.4), which they also report (§5.3).
 
-use geometry::{Angle, Body, Field, Point, Pose, Twist, Vector, math};
+use geometry::{Angle, Body, Field, Point, Pose, Segment, Twist, Vector, math};
 use protocol::robot_io::{ActuatorFrame, LeggedKick, LeggedPrimitive};
+use rules::League;
 use serde::Deserialize;
 
-use crate::four_legged::parameters::{Parameters, Region};
+use crate::four_legged::drift::Drift;
+use crate::four_legged::parameters::{Noise, Parameters, Region};
 use crate::four_legged::world::LeggedWorld;
+use crate::rng::Stream;
 
 crate::labels! {
     /// What an opponent is there for.
@@ -59,6 +67,51 @@ pub struct Opponent {
     robot: usize,
     /// Region where it plays; `None` where it only stands.
     home: Option<Region>,
+    /// Control steps since it has the ball.
+    held: u32,
+    /// Its perception, where that has errors.
+    eyes: Option<Eyes>,
+}
+
+/// Errors of an opponent's perception.
+#[derive(Clone, Debug)]
+struct Eyes {
+    noise: Noise,
+    chance: Stream,
+    /// Of its own pose: x, y, heading.
+    pose: [Drift; 3],
+    /// Of its sight of the ball: range, bearing.
+    ball: [Drift; 2],
+}
+
+impl Eyes {
+    fn step(&mut self) {
+        for drift in self.pose.iter_mut().chain(&mut self.ball) {
+            drift.step(&mut self.chance);
+        }
+    }
+
+    /// Where a robot at `pose` believes to be.
+    fn located(&self, pose: Pose<Field>) -> Pose<Field> {
+        let [x, y, heading] = &self.pose;
+        let off = Vector::new(x.value(), y.value()) * self.noise.localisation;
+        let turned = Angle::degrees(heading.value() * self.noise.localisation_deg);
+        Pose { position: pose.position + off, heading: pose.heading + turned }
+    }
+
+    /// Where a robot at `pose` sees `ball`, relative to its body: it faces the ball and follows it with its
+    /// eyes, so that it is always in view, and its estimate is as correlated as the gait's sway.
+    fn sees(&self, pose: Pose<Field>, ball: Point<Field>) -> Point<Body> {
+        let [ranged, aimed] = &self.ball;
+        let range = pose.position.distance(ball);
+        let pixel = Angle::degrees(self.noise.pixel_deg).radians();
+        let size = 2.0 * League::FourLegged.ball().radius;
+        let sigma = self.noise.range_floor + range * range * pixel / size;
+        let range = (range + sigma * ranged.value()).max(0.0);
+        let sway = Angle::degrees((self.noise.joint_deg + self.noise.sway_deg) * aimed.value());
+        let seen = Vector::<Body>::polar(range, pose.turn_to(ball) + sway);
+        Point::new(seen.x(), seen.y())
+    }
 }
 
 impl Opponent {
@@ -69,35 +122,116 @@ impl Opponent {
             Conduct::Within(region) => Some(region),
             Conduct::Standing => None,
         };
-        Self { role, robot, home }
+        Self { role, robot, home, held: 0, eyes: None }
+    }
+
+    /// The same opponent with errors of perception, if `noise` has any.
+    #[must_use]
+    pub fn with_noise(mut self, noise: Noise, seed: u64) -> Self {
+        if !noise.is_none() {
+            let mut chance = Stream::new(seed, &format!("eyes {}", self.robot));
+            let pose = [(); 3].map(|()| Drift::new(noise.localisation_time, CONTROL_STEP, &mut chance));
+            let ball = [(); 2].map(|()| Drift::new(noise.sway_time, CONTROL_STEP, &mut chance));
+            self.eyes = Some(Eyes { noise, chance, pose, ball });
+        }
+        self
+    }
+
+    /// Advances its perception by a control step.
+    pub fn perceive(&mut self) {
+        if let Some(eyes) = &mut self.eyes {
+            eyes.step();
+        }
+    }
+
+    /// The position that it reports.
+    pub fn reported(&self, world: &LeggedWorld) -> Point<Field> {
+        let pose = world.walkers[self.robot].pose;
+        self.eyes.as_ref().map_or(pose, |eyes| eyes.located(pose)).position
     }
 
     /// Decides and orders its body, in every control step.
-    pub fn act(&self, world: &mut LeggedWorld, parameters: &Parameters) {
+    pub fn act(&mut self, world: &mut LeggedWorld, parameters: &Parameters) {
         let Some(home) = self.home else { return };
-        let (ball, pose) = (world.ball.position, world.walkers[self.robot].pose);
-        let primitive = if world.holder() == Some(self.robot) {
-            LeggedPrimitive::Kick(most_upfield(world.kick_directions(pose.heading)))
-        } else if world.in_grasp(self.robot) {
-            LeggedPrimitive::Grab
+        let (mut ball, mut pose) = (world.ball.position, world.walkers[self.robot].pose);
+        let mut grasps = world.in_grasp(self.robot);
+        if let Some(eyes) = &self.eyes {
+            let seen = eyes.sees(pose, ball);
+            // The legs close on a ball where the eyes see it; whether it is slow enough shows in its motion.
+            grasps = world.in_grasp_at(self.robot, pose.to_field(seen));
+            pose = eyes.located(pose);
+            ball = pose.to_field(seen);
+        }
+        self.held = if world.holder() == Some(self.robot) { self.held + 1 } else { 0 };
+        let (walk, primitive) = if self.held > 0 {
+            self.clear(world, pose, ball, parameters)
         } else {
-            LeggedPrimitive::None
+            let primitive = if grasps { LeggedPrimitive::Grab } else { LeggedPrimitive::None };
+            // At its home's border where the ball is outside, at the ball where it is inside: the same
+            // expression.
+            (walk_to(pose, home.nearest(ball), ball, parameters), primitive)
         };
-        // At its home's border where the ball is outside, at the ball where it is inside: the same
-        // expression.
-        let walk = walk_to(pose, home.nearest(ball), ball, parameters);
         world.command(self.robot, &ActuatorFrame::Legged { walk, primitive });
     }
-}
 
-/// The kick whose direction (ahead, left, right) points most towards -x.
-fn most_upfield(directions: [Angle; 3]) -> LeggedKick {
-    let kicks = [LeggedKick::ForwardHard, LeggedKick::Left, LeggedKick::Right];
-    let upfield = |to: &Angle| -to.sin_cos().1;
-    let pairs = directions.into_iter().zip(kicks);
-    pairs
-        .reduce(|best, next| if upfield(&next.0) > upfield(&best.0) { next } else { best })
-        .map_or(LeggedKick::ForwardHard, |(_, kick)| kick)
+    /// Stands, and starts nothing: all robots have to stop.
+    pub fn stand(&self, world: &mut LeggedWorld) {
+        let order = ActuatorFrame::Legged { walk: Twist::default(), primitive: LeggedPrimitive::None };
+        world.command(self.robot, &order);
+    }
+
+    /// With the ball: the kick that clears it, or the turn towards one.
+    fn clear(
+        &self,
+        world: &LeggedWorld,
+        pose: Pose<Field>,
+        ball: Point<Field>,
+        parameters: &Parameters,
+    ) -> (Twist<Body>, LeggedPrimitive) {
+        let kicks = world.nominal_kicks();
+        let kick = |kick| (Twist::default(), LeggedPrimitive::Kick(kick));
+        let ends = |heading: Angle, (_, off, length): (LeggedKick, Angle, f32)| {
+            ball + Vector::polar(length, heading + off)
+        };
+        let clears = |heading: Angle, kick| self.clears(world, ball, ends(heading, kick), parameters);
+        let upfield = |kick: &(LeggedKick, Angle, f32)| ball.x() - ends(pose.heading, *kick).x();
+        let most_upfield = |kicks: &mut dyn Iterator<Item = (LeggedKick, Angle, f32)>| {
+            kicks.reduce(|best, next| if upfield(&next) > upfield(&best) { next } else { best })
+        };
+        if let Some(best) = most_upfield(&mut kicks.into_iter().filter(|kick| clears(pose.heading, *kick))) {
+            return kick(best.0);
+        }
+        let steps = (0..=TURNS).flat_map(|i| [TURN_STEP * i as f32, -TURN_STEP * i as f32]);
+        let turn = steps.skip(1).find(|turn| clears(pose.heading + Angle::new(*turn), kicks[0]));
+        match turn {
+            Some(turn) if (self.held as f32) * CONTROL_STEP < parameters.opponent.clear.hold => {
+                let rate = parameters.carry.turn;
+                let angular = (GAZE_GAIN * turn).clamp(-rate, rate);
+                (Twist { linear: Vector::default(), angular }, LeggedPrimitive::None)
+            }
+            _ => kick(most_upfield(&mut kicks.into_iter()).map_or(LeggedKick::ForwardHard, |best| best.0)),
+        }
+    }
+
+    /// Whether a kick from `ball` to `end` leaves the own goal, meets no robot at once, and stays in the field.
+    fn clears(
+        &self,
+        world: &LeggedWorld,
+        ball: Point<Field>,
+        end: Point<Field>,
+        parameters: &Parameters,
+    ) -> bool {
+        let clear = &parameters.opponent.clear;
+        let field = League::FourLegged.field();
+        let Some(along) = (end - ball).unit() else { return false };
+        let start = Segment::new(ball, ball + along * clear.corridor);
+        let body = League::FourLegged.robot().radius + League::FourLegged.ball().radius;
+        let blocks = |at: Point<Field>| (at - ball).dot(along) > 0.0 && start.distance_to(at) < body;
+        let others = world.walkers.iter().enumerate().filter(|(index, _)| *index != self.robot);
+        end.x() < ball.x()
+            && field.clamp(end, clear.inside).distance(end) == 0.0
+            && !others.map(|(_, walker)| walker.pose.position).any(blocks)
+    }
 }
 
 impl Region {
@@ -129,6 +263,12 @@ fn walk_to(
     Twist { linear, angular: (GAZE_GAIN * turn).clamp(-p.turn, p.turn) }
 }
 
+/// A control step, s (docs/architecture.md §2.3: four-legged, every 40 ms).
+const CONTROL_STEP: f32 = 0.04;
+/// Directions tried for a turn before a clearance: every 15°, half a turn to either side.
+const TURN_STEP: f32 = math::PI / TURNS as f32;
+/// Number of them to one side.
+const TURNS: u32 = 12;
 /// Turning rate for an error of 1 rad, 1/s: three time constants in 0.75 s, well damped at 4 rad/s² and steps
 /// of 40 ms.
 const GAZE_GAIN: f32 = 4.0;
@@ -137,7 +277,6 @@ const GAZE_GAIN: f32 = 4.0;
 mod tests {
     use super::*;
     use crate::four_legged::world::{Side, Walker, WorldEvent};
-    use crate::rng::Stream;
 
     const DT: f32 = 0.04;
 
@@ -208,6 +347,55 @@ mod tests {
         assert!((19..40).contains(&at_once), "{at_once}");
     }
 
+    /// Ends of the clearances of 60 opponents that stand at `at` in that heading, with a robot at `beside`.
+    fn clearances(at: (f32, f32), heading: f32, beside: Option<(f32, f32)>) -> Vec<Point<Field>> {
+        let p = Parameters::four_legged();
+        let pose = Pose::from_mm_deg(at.0 * 1000.0, at.1 * 1000.0, heading);
+        let mut walkers = vec![Walker::at(Side::Opponents, pose)];
+        let beside = beside.map(|(x, y)| Pose::from_mm_deg(x * 1000.0, y * 1000.0, 0.0));
+        walkers.extend(beside.map(|pose| Walker::at(Side::Attackers, pose)));
+        let ends = (0..60).filter_map(|seed| {
+            let ball = pose.to_field(Point::new(0.13, 0.0));
+            let mut game = Game {
+                world: World::new(p, seed, ball, walkers.clone()),
+                opponent: Opponent::new(Role::Defender, Conduct::AtHome, 0, p),
+                events: Vec::new(),
+            };
+            game.run(5.0);
+            game.events.iter().find_map(|event| match event {
+                WorldEvent::Kicked { rest, .. } => Some(*rest),
+                _ => None,
+            })
+        });
+        ends.collect()
+    }
+
+    #[test]
+    fn a_clearance_leaves_the_own_goal_and_stays_in_the_field() {
+        let field = rules::League::FourLegged.field();
+        // Facing upfield, beside the side line facing it, and turned to the own goal.
+        for (at, heading) in [((1.4, 0.0), 180.0), ((1.4, 1.45), 90.0), ((1.5, -1.2), -60.0)] {
+            let ends = clearances(at, heading, None);
+            assert!(ends.len() > 50, "{at:?}: {}", ends.len());
+            let inside = ends.iter().filter(|end| field.contains(**end)).count();
+            let upfield = ends.iter().filter(|end| end.x() < at.0).count();
+            // The scatter of a kick puts a few out.
+            assert!(inside * 10 >= ends.len() * 9, "{at:?}: {inside} of {}", ends.len());
+            assert!(upfield * 10 >= ends.len() * 9, "{at:?}: {upfield} of {}", ends.len());
+        }
+    }
+
+    #[test]
+    fn a_clearance_is_not_kicked_into_a_robot_that_stands_before_it() {
+        let free = clearances((1.4, 0.0), 180.0, None);
+        let straight = free.iter().filter(|end| end.y().abs() < 0.45).count();
+        // 2.15 m at 10° scatter by 0.37 m.
+        assert!(straight * 10 >= free.len() * 6, "{straight} of {}", free.len());
+        let blocked = clearances((1.4, 0.0), 180.0, Some((1.1, 0.0)));
+        let straight = blocked.iter().filter(|end| end.y().abs() < 0.45 && end.x() < 0.0).count();
+        assert!(blocked.len() > 50 && straight * 10 < blocked.len(), "{straight} of {}", blocked.len());
+    }
+
     #[test]
     fn one_that_stands_neither_moves_nor_clears_and_one_with_a_region_of_its_own_keeps_to_it() {
         let p = Parameters::four_legged();
@@ -221,6 +409,32 @@ mod tests {
         presser.opponent = Opponent::new(OpponentRole::Defender, Conduct::Within(region), 0, p);
         presser.run(10.0);
         assert!(presser.pose().position.distance(Point::new(-1.5, 0.5)) < 0.05, "{:?}", presser.pose());
+    }
+
+    #[test]
+    fn with_noise_it_reports_a_place_that_drifts_and_may_believe_a_ball_outside_to_be_in_its_home() {
+        let p = Parameters::four_legged();
+        // A ball 5 cm before the goalie's home: without noise it stays out of reach of it.
+        let goes = |noise: Noise, seed| {
+            let mut game = game(Role::Goalie, (2300.0, 0.0), (1.99, 0.0));
+            game.opponent = game.opponent.with_noise(noise, seed);
+            let mut worst = 0.0_f32;
+            let mut reported = Vec::new();
+            for _ in 0..250 {
+                game.opponent.perceive();
+                game.run(DT);
+                worst = worst.max(2.05 - game.pose().position.x());
+                reported.push(game.opponent.reported(&game.world) - game.pose().position);
+            }
+            (worst, reported)
+        };
+        assert!((0..10).all(|seed| goes(Noise::NONE, seed).0 < 0.01));
+        let outside = (0..20).filter(|&seed| goes(p.noise, seed).0 > 0.05).count();
+        assert!(outside > 5, "{outside} of 20");
+        let reported: Vec<_> = (0..40).flat_map(|seed| goes(p.noise, seed).1).collect();
+        let squares: f32 = reported.iter().map(|off| off.x() * off.x()).sum();
+        let sigma = math::sqrt(squares / reported.len() as f32);
+        assert!((sigma - p.noise.localisation).abs() < 0.25 * p.noise.localisation, "{sigma}");
     }
 
     #[test]

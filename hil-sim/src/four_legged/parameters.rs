@@ -122,6 +122,15 @@ numbers! {
         /// m, the strongest pass.
         pass_max: POSITIVE, LARGEST;
     }
+    /// Clearing the ball.
+    ClearParameters in "opponent.clear" {
+        /// m within the lines at which a clearance should end.
+        inside: 0.0, LARGEST;
+        /// m from the ball on which no robot may stand in the kick's path.
+        corridor: 0.0, LARGEST;
+        /// s for which the ball is held at most.
+        hold: 0.0, LARGEST;
+    }
     /// When a trial ends and what counts.
     RefereeParameters in "referee" {
         /// m beside a goalpost that still count as close.
@@ -133,19 +142,55 @@ numbers! {
         /// s, against two defenders.
         time_limit_2d: POSITIVE, LARGEST;
     }
-    /// Standard deviations of what robots perceive.
+    /// Perception of the real-robot profile; all zero: perception without noise.
     #[derive(Default)]
     Noise in "noise" {
-        /// Of the own position, m.
-        pose: 0.0, LARGEST;
-        /// Of the own heading.
-        heading_deg: 0.0, LARGEST;
-        /// Of the ball's position, as a share of its distance.
-        ball_share: 0.0, LARGEST;
-        /// Of the ball's position, m, at any distance.
-        ball_floor: 0.0, LARGEST;
-        /// Of an opponent's position, m.
-        opponent: 0.0, LARGEST;
+        /// Width of the camera's view.
+        field_of_view_deg: 0.0, 360.0;
+        /// Standard deviation of an edge in the camera's image.
+        pixel_deg: 0.0, LARGEST;
+        /// How far the head turns to either side.
+        pan_deg: 0.0, 180.0;
+        /// s from one sweep of the head to the next.
+        glance_every: 0.0, LARGEST;
+        /// s of a sweep.
+        glance_for: 0.0, LARGEST;
+        /// s without a sight of the ball after which the head sweeps.
+        lost_after: 0.0, LARGEST;
+        /// Size by which a marker's range is measured, m.
+        marker: 0.0, LARGEST;
+        /// Size by which a goal's range is measured, m.
+        goal: 0.0, LARGEST;
+        /// Standard deviation of a range at no distance, m.
+        range_floor: 0.0, LARGEST;
+        /// Standard deviation of all bearings of a frame together, standing.
+        joint_deg: 0.0, LARGEST;
+        /// Added to it while walking.
+        sway_deg: 0.0, LARGEST;
+        /// Correlation time of the sway, s.
+        sway_time: 0.0, LARGEST;
+        /// Share of detections missed at no distance.
+        miss: 0.0, 1.0;
+        /// Distance at which the ball is no longer detected, m.
+        ball_within: 0.0, LARGEST;
+        /// Distance at which a landmark is no longer detected, m.
+        landmark_within: 0.0, LARGEST;
+        /// Standard deviation of the odometry's scale, by axis.
+        odometry_scale: 0.0, 1.0;
+        /// Standard deviation of slipping, as a share of the speed.
+        odometry_slip: 0.0, 1.0;
+        /// Correlation time of slipping, s.
+        slip_time: 0.0, LARGEST;
+        /// Standard deviation of the believed place at kick-off, m.
+        placing: 0.0, LARGEST;
+        /// Standard deviation of the believed heading at kick-off.
+        placing_deg: 0.0, LARGEST;
+        /// Standard deviation of an opponent's own position, m.
+        localisation: 0.0, LARGEST;
+        /// Standard deviation of an opponent's own heading.
+        localisation_deg: 0.0, LARGEST;
+        /// Correlation time of both, s.
+        localisation_time: 0.0, LARGEST;
     }
 }
 
@@ -159,6 +204,8 @@ pub struct OpponentParameters {
     pub midfield: Region,
     /// Home of the goalie.
     pub goalie: Region,
+    /// How they clear the ball.
+    pub clear: ClearParameters,
 }
 
 /// A rectangle of the field, m: from and to along x and y.
@@ -173,8 +220,36 @@ pub struct Region {
 
 impl Noise {
     /// As in the paper's simulator: everything is seen where it is.
-    pub const NONE: Self =
-        Self { pose: 0.0, heading_deg: 0.0, ball_share: 0.0, ball_floor: 0.0, opponent: 0.0 };
+    pub const NONE: Self = Self {
+        field_of_view_deg: 0.0,
+        pixel_deg: 0.0,
+        pan_deg: 0.0,
+        glance_every: 0.0,
+        glance_for: 0.0,
+        lost_after: 0.0,
+        marker: 0.0,
+        goal: 0.0,
+        range_floor: 0.0,
+        joint_deg: 0.0,
+        sway_deg: 0.0,
+        sway_time: 0.0,
+        miss: 0.0,
+        ball_within: 0.0,
+        landmark_within: 0.0,
+        odometry_scale: 0.0,
+        odometry_slip: 0.0,
+        slip_time: 0.0,
+        placing: 0.0,
+        placing_deg: 0.0,
+        localisation: 0.0,
+        localisation_deg: 0.0,
+        localisation_time: 0.0,
+    };
+
+    /// Whether robots perceive without noise.
+    pub fn is_none(&self) -> bool {
+        *self == Self::NONE
+    }
 }
 
 impl Parameters {
@@ -199,9 +274,12 @@ impl Parameters {
         kick.check()?;
         referee.check()?;
         noise.check()?;
+        opponent.clear.check()?;
         within("grab.hold_distance", grab.hold_distance, 0.0, grab.reach)?;
         // Beyond this a kick of −limit standard deviations would roll backwards.
         within("kick.distance_sd", kick.distance_sd, 0.0, 1.0 / kick.scatter_limit)?;
+        within("noise.marker", noise.marker, POSITIVE, LARGEST)?;
+        within("noise.goal", noise.goal, POSITIVE, LARGEST)?;
         within("kick.pass_max", kick.pass_max, kick.pass_min, LARGEST)?;
         let corners = [
             ("opponent.defender", opponent.defender),

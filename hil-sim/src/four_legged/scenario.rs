@@ -183,14 +183,16 @@ const APART: f32 = 0.35;
 /// Maximum number of draws for a random position.
 const PLACING_ATTEMPTS: usize = 100;
 
+/// The scenarios' files, part of the program.
+pub(crate) const SCENARIO_FILES: [&str; 4] = [
+    include_str!("../../data/scenarios/1.toml"),
+    include_str!("../../data/scenarios/2.toml"),
+    include_str!("../../data/scenarios/3.toml"),
+    include_str!("../../data/scenarios/4.toml"),
+];
+
 static FILES: LazyLock<[ScenarioFile; 4]> = LazyLock::new(|| {
-    [
-        include_str!("../../data/scenarios/1.toml"),
-        include_str!("../../data/scenarios/2.toml"),
-        include_str!("../../data/scenarios/3.toml"),
-        include_str!("../../data/scenarios/4.toml"),
-    ]
-    .map(|text| toml::from_str(text).expect("the built-in scenarios are read by a test"))
+    SCENARIO_FILES.map(|text| toml::from_str(text).expect("the built-in scenarios are read by a test"))
 });
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use brain::BrainConfig;
 use protocol::link::Packet;
 use protocol::lockstep::TickIn;
 use protocol::robot_io::ActuatorFrame;
-use protocol::{Instant, RobotId};
+use protocol::{Duration, Instant, RobotId};
 
 use crate::air::{Air, AirSettings};
 use crate::four_legged::fault::{Fault, ScheduledFault, flipped};
@@ -59,6 +59,8 @@ pub struct Simulation<'a> {
     faults: Vec<ScheduledFault>,
     trace: TraceHash,
     next: u32,
+    /// The tick from which the opponents act again.
+    opponents_act_from: u32,
     tick: Tick,
     worst_instructions: u32,
 }
@@ -133,12 +135,13 @@ impl<'a> Simulation<'a> {
             .collect();
         walkers.extend(layout.opponents.iter().map(|placed| Walker::at(Side::Opponents, placed.pose)));
         let roles: Vec<OpponentRole> = layout.opponents.iter().map(|placed| placed.role).collect();
-        let opponents = (layout.opponents.iter().zip(brains.len()..))
-            .map(|(placed, i)| Opponent::new(placed.role, placed.conduct, i, &parameters));
+        let opponents = (layout.opponents.iter().zip(brains.len()..)).map(|(placed, i)| {
+            Opponent::new(placed.role, placed.conduct, i, &parameters).with_noise(noise, seed)
+        });
         let mut robots = Vec::new();
         for (i, config) in brains.into_iter().enumerate() {
             let computer = start(&mut *backend, &config)?;
-            let senses = Senses::new(noise, seed, i);
+            let senses = Senses::new(noise, seed, i, TICK);
             robots.push(Robot { config, computer: Some(computer), born: 0, senses, flip: None });
         }
         let mut faults = faults;
@@ -155,6 +158,7 @@ impl<'a> Simulation<'a> {
             faults,
             trace: TraceHash::default(),
             next: 0,
+            opponents_act_from: 0,
             tick: Tick::default(),
             worst_instructions: 0,
         })
@@ -168,15 +172,27 @@ impl<'a> Simulation<'a> {
         self.tick = Tick { number, time: seconds(number, 0), ..Tick::default() };
         self.happen(number)?;
         self.trace.tick(number, &self.world);
+        self.opponents.iter_mut().for_each(Opponent::perceive);
         self.think(number)?;
         for Sent { from, packet } in &self.tick.sent {
             self.air.send(number, *from, packet);
         }
+        let opponents_act = number >= self.opponents_act_from;
         for opponent in &mut self.opponents {
-            opponent.act(&mut self.world, &self.parameters);
+            if opponents_act {
+                opponent.act(&mut self.world, &self.parameters);
+            } else {
+                opponent.stand(&mut self.world);
+            }
         }
         self.play(number);
         Ok(&self.tick)
+    }
+
+    /// The opponents stand still for that time from the next tick on, as "all robots stop" after a cycle of
+    /// the paper's robots (Ros et al. 2009 §5.3); a grab or kick that is running ends.
+    pub fn stop_opponents(&mut self, time: Duration) {
+        self.opponents_act_from = self.next.saturating_add((time.0 / TICK_US).try_into().unwrap_or(u32::MAX));
     }
 
     /// What happened in the last tick.
@@ -260,7 +276,8 @@ impl<'a> Simulation<'a> {
         for (i, robot) in self.robots.iter_mut().enumerate() {
             let id = robot.config.robot;
             // Measured even without a computer, so that odometry spans one tick after a reboot.
-            let sensors = robot.senses.look(&self.world, i, TICK);
+            let opponents = self.opponents.iter().map(|opponent| opponent.reported(&self.world));
+            let sensors = robot.senses.look(&self.world, i, opponents, TICK);
             let Some(computer) = &mut robot.computer else {
                 self.air.discard(number, id);
                 continue;

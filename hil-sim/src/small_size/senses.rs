@@ -48,6 +48,7 @@ impl Senses {
                 tipped: robot.tipped,
                 kicker_ready: robot.charged(now),
             },
+            camera: None,
         }
     }
 

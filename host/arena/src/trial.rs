@@ -10,11 +10,11 @@ use hil_sim::{
 };
 use protocol::frame::{TeamKey, TeamKeys};
 use protocol::link::overhear;
-use protocol::team::{Beacon, TeamMessage};
+use protocol::team::{Beacon, Closure, TeamMessage};
 use protocol::{Duration, RobotId, TeamId};
 
 use crate::backups::BackupCount;
-use crate::cycles::{CycleEvent, CycleLog};
+use crate::cycles::{CycleEnd, CycleEvent, CycleLog};
 use crate::defaults::{self, DefaultWatch};
 use crate::names::{CaseNames, Cast};
 use crate::report::{Backups, CaseCounts, CycleReport, Possession, TrialReport, in_seconds};
@@ -47,7 +47,9 @@ pub struct TrialConfig<'a> {
     pub noise: Noise,
     /// Time that robots stand still after every cycle.
     pub pause_after_cycle: Duration,
-    /// Faults with their times.
+    /// Whether the opponents stand still in that time too: "all robots stop" (paper §5.3).
+    pub opponents_pause: bool,
+    /// Scheduled faults.
     pub faults: Vec<ScheduledFault>,
     /// Parameters of the simulated world.
     pub parameters: Parameters,
@@ -74,6 +76,7 @@ impl TrialConfig<'static> {
             air: AirSettings::default(),
             noise: Noise::NONE,
             pause_after_cycle: Duration(0),
+            opponents_pause: true,
             faults: Vec::new(),
             parameters: Parameters::four_legged().clone(),
             base: case_library::four_legged(),
@@ -214,12 +217,30 @@ impl<'c, 'a> Game<'c, 'a> {
             }
             self.beacons.push((from, beacon));
         }
+        self.pause_opponents();
         self.watch_defaults();
         let moment = self.moment();
         for watcher in watchers.iter_mut() {
             watcher.watch(&moment);
         }
         Ok(())
+    }
+
+    /// Where the attackers pause after a gameplay, the opponents stop with them.
+    fn pause_opponents(&mut self) {
+        let pause = self.config.pause_after_cycle;
+        if !self.config.opponents_pause || pause == Duration(0) {
+            return;
+        }
+        let paused_after = |events: &CycleEvent| {
+            let CycleEvent::Ended(place) = *events else { return false };
+            let end = self.cycles.cycles().get(place).and_then(|cycle| cycle.end);
+            // Without a case no gameplay was run that robots would pause after.
+            matches!(end, Some((_, CycleEnd::Closed(closure))) if closure != Closure::NoCase)
+        };
+        if self.events.iter().any(paused_after) {
+            self.simulation.stop_opponents(pause);
+        }
     }
 
     /// Tracks whether the team plays by a case, and if not, why.

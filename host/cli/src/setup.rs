@@ -31,6 +31,9 @@ pub(crate) struct SetupArgs {
     /// Without the opponents of cases: they are neither a condition nor a criterion of rank.
     #[arg(long)]
     no_opponents: bool,
+    /// As robots: the opponents play on while the attackers stand still after a cycle.
+    #[arg(long)]
+    opponents_play_on: bool,
     #[command(flatten)]
     library: LibraryArgs,
     #[command(flatten)]
@@ -59,6 +62,7 @@ impl SetupArgs {
             loss: self.loss,
             symmetry: !self.no_symmetry,
             opponents: !self.no_opponents,
+            opponents_pause: !self.opponents_play_on,
         })
     }
 
@@ -95,7 +99,12 @@ impl SetupArgs {
         if self.loss > 0.0 {
             let _ = write!(description, " --loss {}", self.loss);
         }
-        for (flag, given) in [("no-symmetry", self.no_symmetry), ("no-opponents", self.no_opponents)] {
+        let flags = [
+            ("no-symmetry", self.no_symmetry),
+            ("no-opponents", self.no_opponents),
+            ("opponents-play-on", self.opponents_play_on),
+        ];
+        for (flag, given) in flags {
             if given {
                 let _ = write!(description, " --{flag}");
             }

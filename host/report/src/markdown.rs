@@ -14,7 +14,8 @@ use crate::{Report, description, map, table};
 pub(crate) fn markdown(report: &Report<'_>, pictures: &str) -> String {
     let mut text = String::new();
     let facts = || report.facts.iter().flat_map(|facts| &facts.entries);
-    let known = [("program", "onetwo"), ("plan.seed", "seed"), ("seed", "seed"), (HASH, HASH)];
+    let known =
+        [("program", "onetwo"), ("plan.seed", "seed"), ("seed", "seed"), ("world", "world"), (HASH, HASH)];
     let verdict_text = known.into_iter().filter_map(|(name, label)| {
         let (_, value) = facts().find(|(own, _)| own == name)?;
         Some(format!("{label} {value}"))
@@ -30,7 +31,8 @@ pub(crate) fn markdown(report: &Report<'_>, pictures: &str) -> String {
     for table in tables(report) {
         let number = table.number;
         let _ = writeln!(text, "### Table {number}: {}\n", description::table(number));
-        let _ = writeln!(text, "{}\n", description::note(number));
+        let world = facts().find(|(name, _)| name == "world").map(|(_, world)| format!(" World {world}."));
+        let _ = writeln!(text, "{}{}\n", description::note(number), world.unwrap_or_default());
         own(&mut text, &table);
         against(&mut text, &table);
         for figure in figures.iter().filter(|figure| figure.table == number) {

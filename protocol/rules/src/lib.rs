@@ -26,7 +26,7 @@ pub mod restart;
 mod robot;
 pub mod state;
 
-pub use field::{AREA_SHAPES_MAX, AreaForm, FieldFault, FieldSpec};
+pub use field::{AREA_SHAPES_MAX, AreaForm, FieldFault, FieldSpec, LANDMARKS};
 pub use game::{Colour, Phase, RuleRole, Side};
 pub use league::{BallSpec, Footprint, League};
 pub use limits::Limits;

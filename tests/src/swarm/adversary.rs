@@ -9,7 +9,9 @@ use protocol::host_link::HostLink;
 use protocol::link::{Link, Packet};
 use protocol::lockstep::{AIR_IN_BYTES_MAX, AIR_IN_MAX};
 use protocol::quantized::{WirePoint, WirePose};
-use protocol::team::{BallReport, Beacon, CycleState, Decision, Play, Progress, Role, Status, TeamMessage};
+use protocol::team::{
+    BallQuality, BallReport, Beacon, CycleState, Decision, Play, Progress, Role, Status, TeamMessage,
+};
 use protocol::{CaseId, CycleId, Instant, RobotId, TeamId};
 use rules::Phase;
 
@@ -139,7 +141,7 @@ fn boast(robot: RobotId, chance: &mut Stream) -> Beacon {
     };
     Beacon {
         pose: WirePose { at, heading: 0 },
-        ball: Some(BallReport { at, distance: 0 }),
+        ball: Some(BallReport { at, distance: 0, quality: BallQuality::default() }),
         status: Status::AVAILABLE.with(Status::RETRIEVER),
         case_base: 0,
         cycle: Some(CycleState { id, coordinator: robot, decision }),

@@ -306,6 +306,7 @@ mod tests {
             busy: false,
             odometry: Twist::default(),
             health: Health { battery: Some(16.0), tipped: false, kicker_ready: true },
+            camera: None,
         }
     }
 

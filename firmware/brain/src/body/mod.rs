@@ -126,6 +126,18 @@ pub trait Body: Sync {
     /// Shoots the ball held at the goal, where it is open, or brings it to where that is easier.
     fn shoot(&self, belief: &Belief, attacked: GoalEnd, patient: bool) -> Intent;
 
+    /// A case's shot at goal along the leg that ends at `end`, with its kick `kind`.
+    fn shoot_leg(
+        &self,
+        belief: &Belief,
+        attacked: GoalEnd,
+        leg: (&Kick, Point<Field>),
+        patient: bool,
+    ) -> Intent {
+        let _ = leg;
+        self.shoot(belief, attacked, patient)
+    }
+
     /// The heading from which a kick of that kind sends the ball in that direction.
     fn heading_for(&self, kind: &CaseKick, along: Angle) -> Angle;
 

@@ -187,7 +187,7 @@ impl Brain<'_> {
 
     fn propose(&mut self, now: Instant) -> Option<CycleState> {
         let me = self.config.robot;
-        let coordinator = election::coordinator(now, me, &self.beacon(), &self.teammates)?;
+        let coordinator = election::coordinator(now, me, &self.beacon(now), &self.teammates)?;
         Some(election::proposal(self.cycle.id(), me, coordinator, self.config.epoch))
     }
 

@@ -1,10 +1,11 @@
 //! `telemeter`: what the robot sends about itself: beacons (docs/architecture.md §5.1) and, where a host
 //! leads, telemetry (docs/architecture.md §6.1).
 
+use geometry::{Field, Vector};
 use protocol::host::{Condition, Telemetry};
 use protocol::quantized::length_to_mm;
 use protocol::robot_io::SensorFrame;
-use protocol::team::{BallReport, Beacon, Role, Status};
+use protocol::team::{BallQuality, BallReport, Beacon, Role, Status};
 use protocol::{Duration, Instant, RobotId};
 
 use super::Brain;
@@ -53,7 +54,16 @@ impl Spoken {
 }
 
 impl Brain<'_> {
-    pub(super) fn beacon(&self) -> Beacon {
+    /// How well this robot knows the ball; a robot led by a host does not tell.
+    fn ball_quality(&self, now: Instant, velocity: Vector<Field>) -> BallQuality {
+        if cfg!(feature = "legged") && self.host.is_none() && self.belief.ball_sigma > 0.0 {
+            BallQuality::new(self.belief.ball_sigma, self.belief.ball_age(now), velocity)
+        } else {
+            BallQuality::default()
+        }
+    }
+
+    pub(super) fn beacon(&self, now: Instant) -> Beacon {
         let mut status = Status::default();
         if self.awake && self.was_available {
             status = status.with(Status::AVAILABLE);
@@ -69,6 +79,7 @@ impl Brain<'_> {
             ball: self.belief.ball.map(|ball| BallReport {
                 at: ball.position.into(),
                 distance: length_to_mm(ball.position.distance(self.belief.pose.position)),
+                quality: self.ball_quality(now, ball.velocity),
             }),
             status,
             case_base: self.base.hash(),

@@ -1,20 +1,20 @@
 //! `legged`: reactive behaviour of walking robots without a case: that of the paper's comparison (§5).
 //!
-//! The robot nearest the ball goes for it as fast as possible and alone towards the attacked goal; the others
-//! back up, off the line from ball to goal. An opponent is considered only when it blocks the path within 0.4
+//! Every robot goes for a loose ball as fast as possible. The one that has it plays on alone towards the
+//! attacked goal, and as long as it holds the ball, or is at it to take it, the others back up, off the line from
+//! ball to goal; once the ball has left it, all go for the ball again (§5.2.1). An opponent is considered only when it blocks the path within 0.4
 //! m: then dodge, turning with the ball and stepping diagonally, and kick as soon as the kick passes it.
 //! Short kicks advance, near the goal the robot turns to the clearest lane and shoots. No passes.
 //!
 //! Needed to be as strong as the paper's (28 % to goal in scenario 1, 17 % in 3, defender and goalkeeper):
 //! kicks out of a duel that pass the opponent and end where one of us is first, head kicks among them; shots
 //! by the open angle of the goal, from aside of its middle, where a goalkeeper opposite the ball leaves the
-//! far post open; standing turned to that post until it opens; roles by who has the ball first at its stop
-//! position. `onetwo evaluate` measures it.
+//! far post open; standing turned to that post until it opens. `onetwo evaluate` measures it.
 
 use geometry::{Angle, Field, GoalEnd, Point, Vector, math};
 use protocol::robot_io::LeggedKick;
 use protocol::team::{Role, Status};
-use protocol::{Duration, Instant, RobotId};
+use protocol::{Duration, Instant};
 
 use crate::belief::{Belief, BelievedBall};
 use crate::body::{Intent, legged};
@@ -22,7 +22,7 @@ use crate::execution::face_ball;
 use crate::reactive::Freedom;
 use crate::skills::Step;
 use crate::skills::legged as skills;
-use crate::teammates::Teammates;
+use crate::teammates::{Teammate, Teammates};
 
 /// State of the behaviour.
 #[derive(Clone, Debug, Default)]
@@ -47,7 +47,6 @@ impl LeggedReactive {
     pub fn step(
         &mut self,
         now: Instant,
-        me: RobotId,
         belief: &Belief,
         teammates: &Teammates,
         attacked: GoalEnd,
@@ -57,7 +56,7 @@ impl LeggedReactive {
         if !belief.holds_ball {
             (self.held_since, self.dodge) = (None, None);
         }
-        let mine = freedom != Freedom::KeepNear && is_attacker(now, me, &ball, belief, teammates, self.role);
+        let mine = freedom != Freedom::KeepNear && is_attacker(now, &ball, belief, teammates);
         self.role = if mine { Role::Attacker } else { Role::Supporter };
         if !mine {
             let place = match freedom {
@@ -176,26 +175,16 @@ fn strength(belief: &Belief, ball: &BelievedBall, direction: Angle) -> LeggedKic
     }
 }
 
-/// Whether the ball is this robot's: it holds it, or no robot holds it and no teammate is there earlier (the
-/// robot that already goes for it keeps it unless beaten clearly).
-fn is_attacker(
-    now: Instant,
-    me: RobotId,
-    ball: &BelievedBall,
-    belief: &Belief,
-    teammates: &Teammates,
-    role: Role,
-) -> bool {
-    if belief.holds_ball {
-        return true;
-    }
-    let mine = skills::interception_point(ball, belief.pose.position).1;
-    let mine = if role == Role::Attacker { mine - KEEP_ROLE } else { mine };
-    teammates.present(now).all(|(id, teammate)| {
-        let theirs = skills::interception_point(ball, teammate.pose().position).1;
-        let theirs = if teammate.beacon.role == Role::Attacker { theirs - KEEP_ROLE } else { theirs };
-        !teammate.beacon.status.has(Status::HOLDS_BALL) && (mine < theirs || (mine == theirs && me < id))
-    })
+/// Whether the ball is this robot's to go for: unless a teammate holds it, or is at it and nearer (paper §5.2.1:
+/// while one possesses the ball the other makes way; "once the action ends, both robots will try to get near").
+/// Two robots that both go up to a resting ball block each other for ever: so the first at it possesses it.
+fn is_attacker(now: Instant, ball: &BelievedBall, belief: &Belief, teammates: &Teammates) -> bool {
+    let mine = belief.pose.position.distance(ball.position);
+    let possesses = |teammate: &Teammate| {
+        let theirs = teammate.pose().position.distance(ball.position);
+        teammate.beacon.status.has(Status::HOLDS_BALL) || (theirs < AT_BALL && theirs < mine)
+    };
+    belief.holds_ball || !teammates.present(now).any(|(_, teammate)| possesses(teammate))
 }
 
 /// Back up: beside the ball, off its line to the goal, on the side with more room.
@@ -313,6 +302,8 @@ const ACROSS_AHEAD: f32 = 0.6;
 const ACROSS_OFF: f32 = 0.6;
 /// But no nearer the goal line than this, m: half a metre before the penalty area.
 const ACROSS_BEFORE_GOAL: f32 = 1.3;
+/// A robot whose centre is this near the ball is at it, m: its next step is the grab's (0.17 m and a body).
+const AT_BALL: f32 = 0.3;
 /// A supporter keeps this far from the ball (an estimate between 0.8 and 1 m).
 const SUPPORT_DISTANCE: f32 = 0.9;
 /// And this far off the line from ball to goal: 70°.
@@ -321,13 +312,14 @@ const SUPPORT_ANGLE: Angle = Angle::const_new(1.221_730_5);
 const SUPPORT_TOLERANCE: f32 = 0.12;
 /// Places of the behaviour keep this far within the lines, m.
 const KEEP_INSIDE: f32 = 0.25;
-/// A robot that goes for the ball counts as this much earlier, s: roles do not flicker.
-const KEEP_ROLE: f32 = 0.5;
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use geometry::Pose;
+    use protocol::RobotId;
+    use protocol::quantized::WirePose;
+    use protocol::team::{Beacon, Progress};
     use rules::League;
 
     fn belief(me: (f32, f32), ball: (f32, f32)) -> Belief {
@@ -339,8 +331,7 @@ mod tests {
     }
 
     fn step(reactive: &mut LeggedReactive, belief: &Belief, ms: u64) -> Intent {
-        let me = RobotId::new(1).unwrap();
-        reactive.step(Instant(ms * 1000), me, belief, &Teammates::default(), GoalEnd::Positive, Freedom::Full)
+        reactive.step(Instant(ms * 1000), belief, &Teammates::default(), GoalEnd::Positive, Freedom::Full)
     }
 
     #[test]
@@ -348,6 +339,35 @@ mod tests {
         let mut reactive = LeggedReactive::default();
         assert!(matches!(step(&mut reactive, &belief((0.0, 0.0), (1.0, 0.0)), 0), Intent::Walk { .. }));
         assert_eq!(reactive.role(), Role::Attacker);
+    }
+
+    #[test]
+    fn it_makes_way_while_a_teammate_holds_the_ball_and_goes_for_it_again_when_it_has_left() {
+        let beacon = |status| Beacon {
+            pose: WirePose::default(),
+            ball: None,
+            status,
+            case_base: 0,
+            cycle: None,
+            progress: Progress::Idle,
+            role: Role::None,
+        };
+        let (b, mut reactive) = (belief((0.2, 0.0), (1.0, 0.0)), Reactive::default());
+        let mut teammates = Teammates::default();
+        for (ms, status, role) in [
+            (40, Status::AVAILABLE, Role::Attacker),
+            (80, Status::AVAILABLE.with(Status::HOLDS_BALL), Role::Supporter),
+            (120, Status::AVAILABLE, Role::Attacker),
+        ] {
+            let now = Instant(ms * 1000);
+            teammates.receive(now, RobotId::new(2).unwrap(), &beacon(status));
+            reactive.step(now, &b, &teammates, GoalEnd::Positive, Freedom::Full);
+            assert_eq!(reactive.role(), role, "{ms} ms");
+        }
+        // The teammate is at the ball, nearer than this robot, and about to take it.
+        let near = belief((0.4, 0.0), (0.15, 0.0));
+        reactive.step(Instant(120_000), &near, &teammates, GoalEnd::Positive, Freedom::Full);
+        assert_eq!(reactive.role(), Role::Supporter);
     }
 
     #[test]

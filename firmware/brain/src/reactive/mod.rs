@@ -70,7 +70,7 @@ impl Reactive {
         freedom: Freedom,
     ) -> Intent {
         match self {
-            Self::Legged(_, legs) => legs.step(now, me, belief, teammates, attacked, freedom),
+            Self::Legged(_, legs) => legs.step(now, belief, teammates, attacked, freedom),
             Self::Wheels(_, wheels) => wheels.step(now, me, belief, teammates, attacked, freedom),
         }
     }

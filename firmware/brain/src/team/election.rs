@@ -11,15 +11,22 @@ pub fn elector(now: Instant, me: RobotId, teammates: &Teammates) -> RobotId {
     teammates.present(now).map(|(id, _)| id).chain([me]).min().unwrap_or(me)
 }
 
-/// The retriever nearest the ball; of equals the lowest id. `None` without a retriever.
+/// The retriever that knows the ball best: near it the one with the smallest standard deviation, of equals the
+/// nearest, then the lowest id. `None` without a retriever.
 pub fn coordinator(now: Instant, me: RobotId, own: &Beacon, teammates: &Teammates) -> Option<RobotId> {
-    let distance = |beacon: &Beacon| beacon.ball.map_or(u32::MAX, |ball| u32::from(ball.distance));
+    let doubt = |beacon: &Beacon| {
+        beacon.ball.map_or(u32::MAX, |ball| {
+            let distance = u32::from(ball.distance);
+            let sigma = u32::from(ball.quality.sigma_cm());
+            if distance > NEAR_MM { NEAR_NOT | distance } else { sigma << 16 | distance }
+        })
+    };
     teammates
         .present(now)
         .map(|(id, teammate)| (id, &teammate.beacon))
         .chain([(me, own)])
         .filter(|(_, beacon)| beacon.status.has(Status::RETRIEVER))
-        .min_by_key(|(id, beacon)| (distance(beacon), *id))
+        .min_by_key(|(id, beacon)| (doubt(beacon), *id))
         .map(|(id, _)| id)
 }
 
@@ -33,6 +40,11 @@ pub fn proposal(known: Option<CycleId>, me: RobotId, coordinator: RobotId, boot_
     CycleState { id: CycleId { counter, proposer: me }, coordinator, decision: Decision::Undecided }
 }
 
+/// Retrievers within this distance of the ball compare how well they know it, mm: a range at 1.5 m is 0.13 m
+/// off; farther away no pose helps.
+const NEAR_MM: u32 = 1_500;
+/// Order of those farther away: after all others, by distance.
+const NEAR_NOT: u32 = 1 << 24;
 /// Number of successive boot epochs of a robot that never propose the same cycle. A power of two, so that
 /// residues hold over the wrap of the difference; at a cycle a second counters last for two years.
 const LIVES: u32 = 64;
@@ -40,18 +52,25 @@ const LIVES: u32 = 64;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use geometry::Vector;
+    use protocol::Duration;
     use protocol::quantized::{WirePoint, WirePose};
-    use protocol::team::{BallReport, Progress, Role};
+    use protocol::team::{BallQuality, BallReport, Progress, Role};
 
     fn robot(n: u8) -> RobotId {
         RobotId::new(n).unwrap()
     }
 
     fn beacon(distance: Option<u16>, retriever: bool) -> Beacon {
+        blurred(distance, 0.0, retriever)
+    }
+
+    fn blurred(distance: Option<u16>, sigma: f32, retriever: bool) -> Beacon {
+        let quality = BallQuality::new(sigma, Duration(0), Vector::default());
         let status = if retriever { Status::AVAILABLE.with(Status::RETRIEVER) } else { Status::AVAILABLE };
         Beacon {
             pose: WirePose::default(),
-            ball: distance.map(|distance| BallReport { at: WirePoint::default(), distance }),
+            ball: distance.map(|distance| BallReport { at: WirePoint::default(), distance, quality }),
             status,
             case_base: 0,
             cycle: None,
@@ -70,6 +89,17 @@ mod tests {
         assert_eq!(coordinator(now, robot(5), &beacon(Some(400), false), &teammates), Some(robot(7)));
         assert_eq!(coordinator(now, robot(5), &beacon(Some(500), true), &teammates), Some(robot(5)));
         assert_eq!(coordinator(now, robot(5), &beacon(None, true), &teammates), Some(robot(7)));
+    }
+
+    #[test]
+    fn near_the_ball_the_one_that_knows_it_best_is_named() {
+        let mut teammates = Teammates::default();
+        let now = Instant(0);
+        teammates.receive(now, robot(2), &blurred(Some(900), 0.05, true));
+        teammates.receive(now, robot(3), &blurred(Some(2_000), 0.01, true));
+        assert_eq!(coordinator(now, robot(1), &blurred(Some(400), 0.2, true), &teammates), Some(robot(2)));
+        assert_eq!(coordinator(now, robot(1), &blurred(Some(400), 0.05, true), &teammates), Some(robot(1)));
+        assert_eq!(coordinator(now, robot(1), &blurred(Some(1_900), 0.9, false), &teammates), Some(robot(2)));
     }
 
     #[test]

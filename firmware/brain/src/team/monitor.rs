@@ -3,10 +3,11 @@
 //!
 //! Before the first touch: ball in the case's scope, path free. After it: no opponent on the ball, and the
 //! ball not stopped where no robot of the case expects it. A doubt must last a fifth of a second before it
-//! aborts: an opponent at the edge of a trapezoid shall not end a gameplay by swaying.
+//! aborts: an opponent at the edge of a trapezoid shall not end a gameplay by swaying. What is believed with an
+//! error is doubted only beyond two standard deviations of it.
 
 use casebase::{PointMm, RetrievalSettings};
-use geometry::Segment;
+use geometry::{Field, Segment, Vector, math};
 use protocol::team::AbortReason;
 
 use crate::execution::ActionScene;
@@ -39,8 +40,8 @@ impl Monitor {
 }
 
 fn before_touch(scene: &ActionScene<'_>, settings: &RetrievalSettings) -> Option<AbortReason> {
-    let ball = scene.belief.ball?.rest.into();
-    if !scene.case.ball_in_scope(ball) {
+    let ball: PointMm = scene.belief.ball?.rest.into();
+    if !scene.case.ball_in_scope(ball) && !may_be_in_scope(scene, ball) {
         return Some(AbortReason::BallOutOfScope);
     }
     let mut opponents: heapless::Vec<PointMm, { protocol::robot_io::OPPONENTS_MAX }> = heapless::Vec::new();
@@ -49,7 +50,21 @@ fn before_touch(scene: &ActionScene<'_>, settings: &RetrievalSettings) -> Option
         let _room = opponents.push(PointMm::from(*opponent));
     }
     casebase::blocked_leg(&scene.case, scene.base, scene.ball_used(), &opponents, settings)
+        .filter(|blocked| blocked.inside_mm >= SURE * 1000.0 * scene.belief.opponent_sigma())
         .map(|_| AbortReason::PathBlocked)
+}
+
+/// Whether a ball whose estimate lies outside of the case's scope may lie inside: within [`SURE`] deviations.
+fn may_be_in_scope(scene: &ActionScene<'_>, ball: PointMm) -> bool {
+    let sigma = if cfg!(feature = "legged") { scene.belief.ball_sigma } else { 0.0 };
+    if sigma <= 0.0 {
+        return false;
+    }
+    let [x, y] = scene.case.ball().minus(ball).to_f32();
+    let nearer = Vector::<Field>::new(x, y).clamped(SURE * 1000.0 * sigma);
+    scene.case.ball_in_scope(
+        ball.plus(PointMm::new(math::round_to_i32(nearer.x()), math::round_to_i32(nearer.y()))),
+    )
 }
 
 fn after_touch(scene: &ActionScene<'_>) -> Option<AbortReason> {
@@ -61,13 +76,17 @@ fn after_touch(scene: &ActionScene<'_>) -> Option<AbortReason> {
     if held || !ball.is_at_rest() {
         return None;
     }
+    let stray = STRAY + SURE * scene.belief.ball_sigma;
     let expected = scene.case.legs(scene.ball_used()).into_iter().any(|leg| {
         let path = Segment::new(leg.start(), leg.end());
-        path.distance_to(ball.position) < leg.r_max * 0.001 + STRAY
+        path.distance_to(ball.position) < leg.r_max * 0.001 + stray
     });
-    let at_start = ball.position.distance(scene.ball_used().into()) < STRAY;
+    let at_start = ball.position.distance(scene.ball_used().into()) < stray;
     (!expected && !at_start).then_some(AbortReason::BallAtRest)
 }
 
 /// Distance outside a leg's trapezoid up to which a stationary ball is still where the case expects it, m.
 const STRAY: f32 = 0.3;
+
+/// Standard deviations beyond which a believed position is certain enough to end a gameplay.
+const SURE: f32 = 2.0;

@@ -92,6 +92,7 @@ mod tests {
                 busy: false,
                 odometry: Twist::default(),
                 health: Health::default(),
+                camera: None,
             };
             self.brain.handle_sensors(self.now, &sensors);
             let mut progress = None;

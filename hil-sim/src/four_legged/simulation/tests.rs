@@ -35,6 +35,8 @@ struct Script {
     held: u32,
     ticks: u32,
     reply: Reply,
+    placed: Option<Pose<geometry::Field>>,
+    ball: Option<Point<geometry::Field>>,
 }
 
 impl Backend<'static> for Scripts {
@@ -44,7 +46,16 @@ impl Backend<'static> for Scripts {
 
     fn boot(&mut self, config: &BrainConfig) -> Result<Box<dyn Mcu>, McuError> {
         let (config, log) = (config.clone(), self.0.clone());
-        Ok(Box::new(Script { config, log, kicks: 0, held: 0, ticks: 0, reply: Reply::default() }))
+        Ok(Box::new(Script {
+            config,
+            log,
+            kicks: 0,
+            held: 0,
+            ticks: 0,
+            reply: Reply::default(),
+            placed: None,
+            ball: None,
+        }))
     }
 }
 
@@ -70,6 +81,21 @@ impl Mcu for Script {
 }
 
 impl Script {
+    /// Pose and ball: as measured, or from the sights of this frame with the pose of the first.
+    fn believes(&mut self, sensors: &SensorFrame) -> Option<(Pose<geometry::Field>, Point<geometry::Field>)> {
+        let Some(camera) = &sensors.camera else { return Some((sensors.pose?, sensors.ball?.position)) };
+        self.placed = sensors.pose.or(self.placed);
+        let mut pose = self.placed?;
+        pose.position += pose.vector_to_field(sensors.odometry.linear) * TICK;
+        pose.heading = pose.heading + geometry::Angle::new(sensors.odometry.angular * TICK);
+        self.placed = Some(pose);
+        if let Some(seen) = camera.ball.or(camera.landmarks.first().map(|seen| seen.sight)) {
+            let seen = Vector::<geometry::Body>::polar(seen.range(), seen.bearing());
+            self.ball = Some(pose.to_field(Point::new(seen.x(), seen.y())));
+        }
+        self.ball.map(|ball| (pose, ball))
+    }
+
     fn order(&mut self, sensors: &SensorFrame) -> ActuatorFrame {
         let kicks = [
             LeggedKick::ForwardSoft,
@@ -81,7 +107,12 @@ impl Script {
         ];
         self.ticks += 1;
         let (mut walk, mut primitive) = (Twist::default(), LeggedPrimitive::None);
-        let (pose, ball) = (sensors.pose.unwrap(), sensors.ball.unwrap().position);
+        let Some((pose, ball)) = self.believes(sensors) else {
+            return ActuatorFrame::Legged {
+                walk: Twist { linear: Vector::new(0.1, 0.0), angular: 1.0 },
+                primitive: LeggedPrimitive::None,
+            };
+        };
         let offset = pose.to_body(ball);
         let turn = pose.turn_to(ball).radians();
         self.held = if sensors.ball_contact { self.held + 1 } else { 0 };

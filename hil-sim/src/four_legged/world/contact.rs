@@ -1,7 +1,7 @@
 //! `contact`: collisions. Robots are pushed apart; a robot pushes the ball, and between its front legs the
 //! ball lies deeper and does not bounce. All are discs; m, field frame.
 
-use geometry::{Field, Vector};
+use geometry::{Field, Point, Vector};
 
 use super::{LeggedWorld, WorldEvent};
 
@@ -75,8 +75,13 @@ impl LeggedWorld {
 
     /// Whether the ball lies where the robot's front legs could close upon it, and is slow enough.
     pub(crate) fn in_grasp(&self, robot: usize) -> bool {
+        self.in_grasp_at(robot, self.ball.position)
+    }
+
+    /// The same of a ball that is believed at `ball`.
+    pub(crate) fn in_grasp_at(&self, robot: usize, ball: Point<Field>) -> bool {
         let (grab, walker) = (&self.parameters.grab, &self.walkers[robot]);
-        let (distance, angle) = walker.bearing(self.ball.position);
+        let (distance, angle) = walker.bearing(ball);
         let relative = self.ball.velocity - walker.velocity_at(self.ball.position);
         distance <= grab.reach && angle.abs() <= grab.half_angle && relative.norm() <= grab.speed_limit
     }

@@ -33,10 +33,17 @@ impl LeggedWorld {
         }
     }
 
-    /// The three directions a body can kick in, from a heading: ahead, left, right.
-    pub fn kick_directions(&self, heading: Angle) -> [Angle; 3] {
-        let side = Angle::degrees(self.parameters.kick.side_angle_deg);
-        [heading, heading + side, heading - side]
+    /// The kicks of a body with their nominal result: direction from straight ahead and distance, m; the hard
+    /// one first.
+    pub fn nominal_kicks(&self) -> [(LeggedKick, Angle, f32); 4] {
+        let p = &self.parameters.kick;
+        let side = Angle::degrees(p.side_angle_deg);
+        [
+            (LeggedKick::ForwardHard, Angle::ZERO, p.forward_hard),
+            (LeggedKick::Left, side, p.side),
+            (LeggedKick::Right, -side, p.side),
+            (LeggedKick::ForwardSoft, Angle::ZERO, p.forward_soft),
+        ]
     }
 
     /// Ends a grab: decides whether the legs closed upon the ball, and whether they keep it.

@@ -64,6 +64,8 @@ impl<'a> Evaluation<'a> {
             positioning: positioning_label(setup.positioning).to_owned(),
             retrievers: setup.retrievers,
             loss: setup.loss,
+            opponents_pause: setup.opponents_pause,
+            world: hil_sim::world_hash(),
             parameters: Parameters::four_legged().clone(),
             plan: self.plan.clone(),
         }

@@ -22,6 +22,8 @@ pub struct Setup {
     pub symmetry: bool,
     /// Whether cases contain opponents (paper §2.1).
     pub opponents: bool,
+    /// Whether opponents stop too where robots pause after a cycle (paper §5.3).
+    pub opponents_pause: bool,
 }
 
 impl Default for Setup {
@@ -33,6 +35,7 @@ impl Default for Setup {
             loss: 0.0,
             symmetry: true,
             opponents: true,
+            opponents_pause: true,
         }
     }
 }
@@ -46,6 +49,7 @@ impl Setup {
             positioning: self.positioning,
             retrievers: self.retrievers.min(config.robots),
             air: AirSettings::with_loss(self.loss),
+            opponents_pause: self.opponents_pause,
             ..config
         }
     }

@@ -112,7 +112,11 @@ fn write(text: &mut String, results: &Results, table: u8, sample: Extent, rows: 
     let least = rows.iter().map(|row| row.trials).min().unwrap_or_default();
     let most = rows.iter().map(|row| row.trials).max().unwrap_or_default();
     let trials = if least == most { most.to_string() } else { format!("{least} to {most}") };
-    let _ = writeln!(text, "Table {table}: {title}; {trials} trials a row, in brackets the paper's");
+    let world = &results.identity.world;
+    let _ = writeln!(
+        text,
+        "Table {table}: {title}; {trials} trials a row, world {world}, in brackets the paper's"
+    );
     let mut lines = vec![Line { names: [""; 2].map(str::to_owned), cells: Vec::new() }];
     lines[0].cells.extend(columns.iter().map(|column| (column.title.to_owned(), String::new())));
     let mut scenarios: Vec<Scenario> = rows.iter().map(|row| row.scenario).collect();
@@ -213,7 +217,10 @@ mod tests {
         let rows = goals(Approach::Cases, 27).chain(goals(Approach::Reactive, 24));
         let text = summary(&Results::new(identity(), rows.collect()).unwrap());
         let lines: Vec<_> = text.lines().collect();
-        assert_eq!(lines[0], "Table 1: defender and goalie; 30 trials a row, in brackets the paper's");
+        let world = hil_sim::world_hash();
+        let title =
+            format!("Table 1: defender and goalie; 30 trials a row, world {world}, in brackets the paper's");
+        assert_eq!(lines[0], title);
         let description = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
         assert_eq!(description(lines[2])[..4], ["2", "cbr", "90.0", "(26)***"]);
         assert_eq!(description(lines[3])[..3], ["reactive", "80.0", "(25)***"]);

@@ -75,6 +75,10 @@ pub struct Identity {
     pub retrievers: usize,
     /// Share of packets that a receiver does not get.
     pub loss: f32,
+    /// Whether opponents stop too where robots pause after a cycle.
+    pub opponents_pause: bool,
+    /// Hash of the world: its data and the version of its model, 8 hexadecimal digits.
+    pub world: String,
     /// Parameters of the simulated world.
     pub parameters: Parameters,
     /// All trials of the evaluation, of all shards.
@@ -86,6 +90,7 @@ impl Identity {
     pub fn differences(&self, other: &Self) -> Vec<&'static str> {
         let Self { program, library: _, case_base, cases: _, symmetry, case_opponents, .. } = self;
         let Self { settings, positioning, retrievers, loss, parameters, plan, .. } = self;
+        let world = parameters == &other.parameters && self.world == other.world;
         let cells = |plan: &EvaluationPlan| {
             plan.cells.iter().map(|cell| EvaluationCell { trials: 0, ..*cell }).collect::<Vec<_>>()
         };
@@ -98,7 +103,8 @@ impl Identity {
             (*positioning != other.positioning, "positioning"),
             (*retrievers != other.retrievers, "retrievers"),
             (*loss != other.loss, "loss"),
-            (*parameters != other.parameters, "parameters of the world"),
+            (self.opponents_pause != other.opponents_pause, "pause of the opponents"),
+            (!world, "parameters of the world"),
             (plan.seed != other.plan.seed, "seed"),
             (cells(plan) != cells(&other.plan), "scenarios, opponents or approaches"),
             (cells(plan) == cells(&other.plan) && plan.cells != other.plan.cells, "number of trials"),
@@ -252,6 +258,8 @@ pub(super) mod tests {
             positioning: "dependent".to_owned(),
             retrievers: 2,
             loss: 0.1,
+            opponents_pause: true,
+            world: hil_sim::world_hash(),
             parameters: Parameters::four_legged().clone(),
             plan: EvaluationPlan::paper(1).with_trials(1),
         }

@@ -3,6 +3,8 @@
 
 use hil_sim::{Fault, NativeBackend};
 
+use crate::evaluation::Profile;
+
 use super::*;
 use crate::story::TextLog;
 
@@ -105,4 +107,71 @@ fn without_cases_the_team_plays_reactively_and_says_so() {
     let report = run(&empty, Box::new(NativeBackend::new(empty.base)), &mut []).unwrap();
     assert_eq!((report.cases.individual, report.cases.cooperative), (0, 0));
     assert!(report.cases.none > 0 && report.cycles.iter().all(|cycle| cycle.case.is_none()));
+}
+
+/// Longest walk of an opponent and of an attacker in the pauses after gameplays, m, and number of pauses.
+#[derive(Default)]
+struct Pauses {
+    until: f32,
+    from: Option<(f32, Vec<geometry::Point<geometry::Field>>)>,
+    count: u32,
+    moved: [f32; 2],
+}
+
+impl Watcher for Pauses {
+    fn watch(&mut self, moment: &Moment<'_>) {
+        let places = || moment.world.walkers.iter().map(|walker| walker.pose.position).collect::<Vec<_>>();
+        let ended = moment.events.iter().any(|events| match *events {
+            CycleEvent::Ended(place) => {
+                let end = moment.cycles.cycles()[place].end;
+                matches!(end, Some((_, CycleEnd::Closed(closure))) if closure != Closure::NoCase)
+            }
+            _ => false,
+        });
+        if ended {
+            self.count += 1;
+            // Legs need half a second to stop; robots are within two ticks of each other.
+            (self.until, self.from) = (moment.tick.time + 4.8, None);
+        }
+        if moment.tick.time >= self.until {
+            return;
+        }
+        let since = moment.tick.time - (self.until - 4.8);
+        match &self.from {
+            None if since > 0.7 => self.from = Some((since, places())),
+            Some((_, from)) => {
+                let attackers = moment.cast.attackers.len();
+                for (i, (a, b)) in from.iter().zip(places()).enumerate() {
+                    let side = usize::from(i < attackers);
+                    self.moved[side] = self.moved[side].max(a.distance(b));
+                }
+            }
+            None => {}
+        }
+    }
+}
+
+#[test]
+fn all_robots_stop_for_five_seconds_after_a_gameplay_of_robots() {
+    let watch = |opponents_pause| {
+        let mut pauses = Pauses::default();
+        for seed in 0..6 {
+            let config = TrialConfig::new(
+                Scenario::DefenderAhead,
+                Configuration::DefenderGoalie,
+                Approach::Cases,
+                seed,
+            );
+            let config = TrialConfig { opponents_pause, ..Profile::Robots.apply(config) };
+            pauses.until = 0.0;
+            run(&config, Box::new(NativeBackend::new(config.base)), &mut [&mut pauses]).unwrap();
+        }
+        assert!(pauses.count > 10, "{}", pauses.count);
+        pauses.moved
+    };
+    let [opponents, attackers] = watch(true);
+    assert!(opponents < 0.02 && attackers < 0.02, "opponents {opponents} m, attackers {attackers} m");
+    // The other reading: only the attackers stop; opponents walk to the ball, and push them.
+    let [opponents, _] = watch(false);
+    assert!(opponents > 0.5, "{opponents} m");
 }

@@ -212,6 +212,7 @@ fn setup_of(identity: &Identity) -> Result<Setup, Failure> {
         loss: identity.loss,
         symmetry: identity.symmetry,
         opponents: identity.case_opponents,
+        opponents_pause: identity.opponents_pause,
     })
 }
 

@@ -51,6 +51,16 @@ impl Body for Legged {
         skills::attempt(belief, attacked, patient).unwrap_or_else(|| skills::push_on(belief, attacked))
     }
 
+    fn shoot_leg(
+        &self,
+        belief: &Belief,
+        attacked: GoalEnd,
+        leg: (&CaseKick, Point<Field>),
+        patient: bool,
+    ) -> Intent {
+        skills::case_shot(belief, attacked, leg.1, legged_kick(leg.0), patient)
+    }
+
     fn heading_for(&self, kind: &CaseKick, along: Angle) -> Angle {
         along - nominal(legged_kick(kind)).0
     }

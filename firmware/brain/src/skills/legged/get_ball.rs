@@ -122,6 +122,7 @@ mod tests {
                 busy: false,
                 odometry: Twist::default(),
                 health: Health::default(),
+                camera: None,
             };
             b.update(Instant(ms * 1000), RobotId::new(1).unwrap(), &sensors, &Teammates::default());
         }

@@ -16,13 +16,13 @@ use crate::skills::legged as skills;
 
 /// A shot at goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Shot {
+pub(super) struct Shot {
     /// Direction on the field.
-    direction: Angle,
+    pub(super) direction: Angle,
     /// Kick to use.
-    kick: LeggedKick,
+    pub(super) kick: LeggedKick,
     /// Probability of a goal, 0 to 1.
-    chance: f32,
+    pub(super) chance: f32,
 }
 
 /// With the ball near their goal: shoot if the probability of a goal is good, or fair while an opponent is
@@ -35,6 +35,12 @@ pub fn attempt(belief: &Belief, attacked: GoalEnd, patient: bool) -> Option<Inte
     if shot.chance >= enough {
         return Some(skills::shoot(belief, shot.direction, shot.kick));
     }
+    prepare(belief, attacked)
+}
+
+/// With the ball near their goal: carry it to the best place for shots, or there turn to the post that the
+/// goalkeeper will leave open; `None` while that place is far.
+pub(super) fn prepare(belief: &Belief, attacked: GoalEnd) -> Option<Intent> {
     let me = belief.pose.position;
     let place = shooting_place(belief, attacked);
     if me.distance(place) > CARRIED_AT_MOST {
@@ -61,7 +67,7 @@ pub fn push_on(belief: &Belief, attacked: GoalEnd) -> Intent {
 
 /// Best place for a shot: before the goal, beside its middle, where a goalkeeper opposite the ball leaves the
 /// far post open.
-fn shooting_place(belief: &Belief, attacked: GoalEnd) -> Point<Field> {
+pub(super) fn shooting_place(belief: &Belief, attacked: GoalEnd) -> Point<Field> {
     let field = belief.league().field();
     let goal = field.goal_center(attacked);
     let side = if belief.pose.position.y() < 0.0 { -1.0 } else { 1.0 };
@@ -72,7 +78,11 @@ fn shooting_place(belief: &Belief, attacked: GoalEnd) -> Point<Field> {
 /// The shot at the goal at `attacked` with the best probability, less the cost of turning for it; `None` from
 /// behind the goal line.
 fn best_shot(belief: &Belief, attacked: GoalEnd) -> Option<Shot> {
-    let fan = Fan::new(belief, attacked)?;
+    best_of(belief, &Fan::new(belief, attacked)?)
+}
+
+/// The best shot into that opening.
+fn best_of(belief: &Belief, fan: &Fan) -> Option<Shot> {
     let mut best: Option<(f32, Shot)> = None;
     for kick in SHOTS {
         let (off, length) = legged::nominal(kick);
@@ -88,6 +98,26 @@ fn best_shot(belief: &Belief, attacked: GoalEnd) -> Option<Shot> {
         }
     }
     best.map(|(_, shot)| shot)
+}
+
+/// Probability of a goal by a kick in that direction, and the best shot of all; `None` from behind the goal line.
+pub(super) fn chance_along(
+    belief: &Belief,
+    attacked: GoalEnd,
+    direction: Angle,
+    kick: LeggedKick,
+) -> Option<(f32, Shot)> {
+    let fan = Fan::new(belief, attacked)?;
+    let (_, length) = legged::nominal(kick);
+    let ray = (direction - fan.right).radians() / fan.step.max(f32::MIN_POSITIVE);
+    let chance = match math::round_to_i32(ray) {
+        aim @ 0.. if (aim as usize) < RAYS => {
+            reaches(length, fan.distance) * fan.chance(&fan.free_rays(belief, length), aim as usize)
+        }
+        // Beside the goal.
+        _ => 0.0,
+    };
+    Some((chance, best_of(belief, &fan)?))
 }
 
 /// Probability that a kick nominally `length` long rolls beyond `distance`.
@@ -180,7 +210,7 @@ fn sidestep(time: f32) -> f32 {
 /// Kicks to shoot with: the hard one, and from near the goal the head kicks, which save turning.
 const SHOTS: [LeggedKick; 3] = [LeggedKick::ForwardHard, LeggedKick::Left, LeggedKick::Right];
 /// A shot with this probability is taken at once: about the best there is against a well-placed goalkeeper.
-const GOOD_SHOT: f32 = 0.3;
+pub(super) const GOOD_SHOT: f32 = 0.3;
 /// A shot with this probability is taken if an opponent is about to take the ball.
 const FAIR_SHOT: f32 = 0.12;
 /// An opponent whose centre is this near the robot's is about to take the ball, m: two bodies and a second's

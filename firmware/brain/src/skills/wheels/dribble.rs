@@ -160,6 +160,7 @@ mod tests {
             busy: false,
             odometry: Twist::default(),
             health: Health::default(),
+            camera: None,
         }
     }
 
