@@ -10,7 +10,7 @@ use brain::belief::REST_SPEED;
 use brain::belief::camera::Perception;
 use geometry::{Angle, Body, Field, Point, Pose, Twist, Vector};
 use hil_sim::four_legged::sensors::Senses;
-use hil_sim::four_legged::world::{Side, Walker, World};
+use hil_sim::four_legged::world::{LeggedWorld, Side, Walker};
 use hil_sim::{Noise, Parameters, Stream};
 use protocol::Instant;
 use protocol::robot_io::{ActuatorFrame, LeggedPrimitive};
@@ -21,7 +21,7 @@ const STEPS: u32 = 3_000;
 const WARM_UP: u32 = 75;
 
 fn main() {
-    println!("World {}, {SEEDS} seeds of {} s.\n", hil_sim::world_hash(), STEPS as f32 * DT);
+    println!("LeggedWorld {}, {SEEDS} seeds of {} s.\n", hil_sim::world_hash(), STEPS as f32 * DT);
     println!(
         "| noise | pose (m) | heading (°) | NEES of the pose (3) | ball, own frame (m) | last look (m) | ball, field (m) | \
          velocity (m/s) | last look (m/s) | stop position, median (m) | last look (m) | at rest within 1.2 m believed so (%) | \
@@ -147,7 +147,7 @@ fn play(level: f32, seed: u64, errors: &mut Errors) {
     let mut chance = Stream::new(seed, "script");
     let at = Point::new(chance.between(-1.5, 1.0), chance.between(-1.0, 1.0));
     let walker = Walker::at(Side::Attackers, Pose { position: at, heading: Angle::ZERO });
-    let mut world = World::new(parameters, seed, Point::new(at.x() + 0.8, at.y()), vec![walker]);
+    let mut world = LeggedWorld::new(parameters, seed, Point::new(at.x() + 0.8, at.y()), vec![walker]);
     let mut senses = Senses::new(noise(level), seed, 0, DT);
     let (mut perception, mut last) = (Perception::default(), LastLook::default());
     let deceleration = parameters.ball.deceleration;
@@ -186,7 +186,7 @@ fn play(level: f32, seed: u64, errors: &mut Errors) {
 }
 
 fn measure(
-    world: &World,
+    world: &LeggedWorld,
     perception: &Perception,
     last: &LastLook,
     step: u32,

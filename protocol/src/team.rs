@@ -108,8 +108,8 @@ pub struct BallReport {
     pub quality: BallQuality,
 }
 
-/// Uncertainty, age and velocity of a reported ball, a byte each: standard deviation of a coordinate in cm, age
-/// of the detection in 20 ms, velocity along x and y in 5 cm/s, signed. All saturate. All zero: exact.
+/// Uncertainty, age and velocity of a reported ball, a byte each: standard deviation of a coordinate in cm,
+/// age of the detection in 20 ms, velocity along x and y in 5 cm/s, signed. All saturate. All zero: exact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct BallQuality(#[serde(with = "postcard::fixint::le")] u32);

@@ -34,11 +34,11 @@ use crate::teammates::Teammates;
 const SIGHT_LEASE: Duration = Duration::millis(400);
 /// A detection this precise needs no filter, m: over a walking robot's step of 40 ms it is 0.1 m/s.
 const SHARP: f32 = 0.004;
-/// Standard deviation that an estimate gains a second after its last sight, m/s: half the mean speed of a short
-/// kick, as it may have been kicked.
+/// Standard deviation that an estimate gains a second after its last sight, m/s: half the mean speed of a
+/// short kick, as it may have been kicked.
 const UNSEEN: f32 = 0.2;
-/// Without a sight for longer, a teammate's report may be better than the own estimate: two steps' misses and the
-/// head's glances are shorter.
+/// Without a sight for longer, a teammate's report may be better than the own estimate: two steps' misses and
+/// the head's glances are shorter.
 #[cfg(feature = "legged")]
 const STALE: Duration = Duration::millis(1200);
 /// A ball slower than this may be grabbed, m/s.
@@ -293,9 +293,10 @@ impl Belief {
         ball
     }
 
-    /// The ball of a teammate's report, where it is better than the own estimate: intersection of covariances.
-    /// Reports have one standard deviation for both axes, so the intersection of least trace is the estimate with
-    /// the smaller one. A ball that was just seen is the own one: skills need it in the body's frame.
+    /// The ball of a teammate's report, where it is better than the own estimate: intersection of
+    /// covariances. Reports have one standard deviation for both axes, so the intersection of least trace is
+    /// the estimate with the smaller one. A ball that was just seen is the own one: skills need it in the
+    /// body's frame.
     fn reported_ball(
         &mut self,
         now: Instant,

@@ -1,11 +1,11 @@
-//! `camera`: perception of the real-robot profile. Range and bearing in the body frame, as a camera on a turning
-//! head sees ball and landmarks; m, rad (docs/papers.md R40).
+//! `camera`: perception of the real-robot profile. Range and bearing in the body frame, as a camera on a
+//! turning head sees ball and landmarks; m, rad (docs/papers.md R40).
 //!
-//! A range is measured by the size of an image: one column of error of an object of size s at distance r is an
-//! error of r² · column / s, so errors grow with the square of the distance. All bearings of a frame share the
-//! error of the neck's joints and of the gait's sway, which is correlated over steps. What is outside of the
-//! view, too far away, or missed by chance is not detected. The head follows the ball, sweeps for landmarks
-//! every few seconds, and sweeps while the ball is lost.
+//! A range is measured by the size of an image: one column of error of an object of size s at distance r is
+//! an error of r² · column / s, so errors grow with the square of the distance. All bearings of a frame share
+//! the error of the neck's joints and of the gait's sway, which is correlated over steps. What is outside of
+//! the view, too far away, or missed by chance is not detected. The head follows the ball, sweeps for
+//! landmarks every few seconds, and sweeps while the ball is lost.
 
 use geometry::{Angle, Field, Point, Pose, math};
 use protocol::robot_io::{CameraFrame, LandmarkSight, Sight};

@@ -1,4 +1,5 @@
-//! `drift`: correlated random errors. An Ornstein–Uhlenbeck process: normal with mean 0, correlated over time.
+//! `drift`: correlated random errors. An Ornstein–Uhlenbeck process: normal with mean 0, correlated over
+//! time.
 
 use geometry::math;
 

@@ -3,13 +3,13 @@
 //! the ball and faces it; a ball in its grasp there is cleared as well. m, s, field frame.
 //!
 //! They have the attackers' bodies and abilities: they walk, grab (which may fail), turn with the ball and
-//! kick. **Clearance** (§5.1.2 "clears it", §5.3.1 "from its defending zone"): away from their own goal, along a
-//! corridor without a robot, to a place within the lines, as a ball over a line is the other team's; of the
-//! kicks that do so, the one that gains most. Without one they turn, the least that makes a hard kick do so,
-//! and after the league's 3 s of holding they kick in whichever direction points most upfield. The same rule
-//! against every approach. They see the true state, as in the paper's simulator; in the robots' profile they
-//! act on a sight of the ball and on a localisation with errors (R40: "he may believe that the ball is within
-//! his home region", §5.4), which they also report (§5.3).
+//! kick. **Clearance** (§5.1.2 "clears it", §5.3.1 "from its defending zone"): away from their own goal,
+//! along a corridor without a robot, to a place within the lines, as a ball over a line is the other team's;
+//! of the kicks that do so, the one that gains most. Without one they turn, the least that makes a hard kick
+//! do so, and after the league's 3 s of holding they kick in whichever direction points most upfield. The
+//! same rule against every approach. They see the true state, as in the paper's simulator; in the robots'
+//! profile they act on a sight of the ball and on a localisation with errors (R40: "he may believe that the
+//! ball is within his home region", §5.4), which they also report (§5.3).
 
 use geometry::{Angle, Body, Field, Point, Pose, Segment, Twist, Vector, math};
 use protocol::robot_io::{ActuatorFrame, LeggedKick, LeggedPrimitive};
@@ -213,7 +213,8 @@ impl Opponent {
         }
     }
 
-    /// Whether a kick from `ball` to `end` leaves the own goal, meets no robot at once, and stays in the field.
+    /// Whether a kick from `ball` to `end` leaves the own goal, meets no robot at once, and stays in the
+    /// field.
     fn clears(
         &self,
         world: &LeggedWorld,
@@ -357,8 +358,8 @@ mod tests {
         let ends = (0..60).filter_map(|seed| {
             let ball = pose.to_field(Point::new(0.13, 0.0));
             let mut game = Game {
-                world: World::new(p, seed, ball, walkers.clone()),
-                opponent: Opponent::new(Role::Defender, Conduct::AtHome, 0, p),
+                world: LeggedWorld::new(p, seed, ball, walkers.clone()),
+                opponent: Opponent::new(OpponentRole::Defender, Conduct::AtHome, 0, p),
                 events: Vec::new(),
             };
             game.run(5.0);
@@ -416,7 +417,7 @@ mod tests {
         let p = Parameters::four_legged();
         // A ball 5 cm before the goalie's home: without noise it stays out of reach of it.
         let goes = |noise: Noise, seed| {
-            let mut game = game(Role::Goalie, (2300.0, 0.0), (1.99, 0.0));
+            let mut game = game(OpponentRole::Goalie, (2300.0, 0.0), (1.99, 0.0));
             game.opponent = game.opponent.with_noise(noise, seed);
             let mut worst = 0.0_f32;
             let mut reported = Vec::new();

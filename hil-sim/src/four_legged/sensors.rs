@@ -1,10 +1,10 @@
-//! `sensors`: sensor frames of a walking robot. Exact by default; with a noise profile, what its camera and legs
-//! measure (docs/papers.md R39, R40).
+//! `sensors`: sensor frames of a walking robot. Exact by default; with a noise profile, what its camera and
+//! legs measure (docs/papers.md R39, R40).
 //!
 //! Measurement noise is added here and only here (docs/architecture.md §3.2). m, rad. An exact frame has pose
-//! and ball in the field frame. With noise it has sights of ball and landmarks in the body frame (`camera`), an
-//! odometry of legs that slip, opponents' positions as those report them, and a pose in the first frame alone:
-//! a robot is placed by hand at kick-off.
+//! and ball in the field frame. With noise it has sights of ball and landmarks in the body frame (`camera`),
+//! an odometry of legs that slip, opponents' positions as those report them, and a pose in the first frame
+//! alone: a robot is placed by hand at kick-off.
 
 use geometry::{Angle, Body, Field, Point, Pose, Twist, Vector};
 use protocol::Duration;

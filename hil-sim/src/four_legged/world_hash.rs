@@ -1,5 +1,5 @@
-//! `world_hash`: hash of the four-legged world: every number of its data, its scenarios, and the version of its
-//! model. Tables print it: two tables with the same hash were played in the same world.
+//! `world_hash`: hash of the four-legged world: every number of its data, its scenarios, and the version of
+//! its model. Tables print it: two tables with the same hash were played in the same world.
 
 use std::sync::LazyLock;
 
@@ -7,10 +7,11 @@ use crate::four_legged::parameters::Parameters;
 use crate::four_legged::scenario::SCENARIO_FILES;
 use crate::hash::Fnv;
 
-/// Version of the model: raised with every change of code that changes what the world does with the same data.
+/// Version of the model: raised with every change of code that changes what the world does with the same
+/// data.
 ///
-/// 1: opponents clear into the field; body-frame sights, drifting localisation and slipping legs in the robots'
-/// profile; opponents act on a noisy ball there and stop in the pause.
+/// 1: opponents clear into the field; body-frame sights, drifting localisation and slipping legs in the
+/// robots' profile; opponents act on a noisy ball there and stop in the pause.
 const MODEL_VERSION: u32 = 1;
 
 /// The hash, 8 hexadecimal digits.

@@ -47,10 +47,10 @@ pub struct FieldSpec {
     pub line_width: f32,
 }
 
-/// Landmarks by which walking robots locate themselves, m: the "two colored goals" and "four colored markers" of
-/// the four-legged league's field (Ros et al. 2009 §1, Fig. 1). Markers where the league's rules of 2005 put
-/// four of them: 1.35 m from the halfway line, on the edge of the field surface's lines (1.9 m from the axis);
-/// goals by their centres.
+/// Landmarks by which walking robots locate themselves, m: the "two colored goals" and "four colored markers"
+/// of the four-legged league's field (Ros et al. 2009 §1, Fig. 1). Markers where the league's rules of 2005
+/// put four of them: 1.35 m from the halfway line, on the edge of the field surface's lines (1.9 m from the
+/// axis); goals by their centres.
 pub const LANDMARKS: [Point<Field>; 6] = [
     Point::new(1.35, 1.9),
     Point::new(-1.35, 1.9),

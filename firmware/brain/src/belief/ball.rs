@@ -1,10 +1,11 @@
-//! `ball`: the ball in the body's frame of a walking robot: interacting models at rest, rolling and held. SI units.
+//! `ball`: the ball in the body's frame of a walking robot: interacting models at rest, rolling and held. SI
+//! units.
 //!
 //! The body's frame, carried on by the odometry: an error of the own pose does not make a resting ball move.
-//! *At rest*: constant on the field. *Rolling*: slows down evenly until it stops. Both take in every sight and
-//! are weighted by how well they foretold it; each starts from their mixture (interacting multiple models).
-//! *Held*: known by contact. A release, or a teammate's, starts a ball that may roll. Each axis has the same
-//! variance.
+//! *At rest*: constant on the field. *Rolling*: slows down evenly until it stops. Both take in every sight
+//! and are weighted by how well they foretold it; each starts from their mixture (interacting multiple
+//! models). *Held*: known by contact. A release, or a teammate's, starts a ball that may roll. Each axis has
+//! the same variance.
 
 use geometry::{Angle, Body, Point, Twist, Vector, math};
 use motion::legged::HOLD_DISTANCE;
@@ -132,8 +133,8 @@ impl BallFilter {
         roll.pp *= 1.0 - gain;
     }
 
-    /// Each model starts from the mixture of both: `stays` is the probability that a resting ball stays, `stops`
-    /// that a rolling one stops.
+    /// Each model starts from the mixture of both: `stays` is the probability that a resting ball stays,
+    /// `stops` that a rolling one stops.
     fn mix(&mut self, stays: f32, stops: f32) {
         let (rest, roll) = (self.at_rest, 1.0 - self.at_rest);
         let (to_rest, to_roll) = (rest * stays + roll * stops, rest * (1.0 - stays) + roll * (1.0 - stops));
@@ -175,8 +176,8 @@ const STOPS: f32 = 0.3;
 const STOPS_SLOW: f32 = 4.0;
 /// A ball that slow stops within a third of a second, m/s.
 const SLOW: f32 = 0.12;
-/// Variance of an axis of the velocity that a rolling ball gains, m²/s³: the carpet's unevenness, 0.1 m/s in a
-/// second; an estimate.
+/// Variance of an axis of the velocity that a rolling ball gains, m²/s³: the carpet's unevenness, 0.1 m/s in
+/// a second; an estimate.
 const ROLLING: f32 = 0.01;
 /// No model is ever excluded.
 const NEVER: f32 = 1e-3;

@@ -1,5 +1,5 @@
-//! `camera`: belief of a walking robot from its camera and legs (docs/belief.md). Pose by [`PoseFilter`], ball by
-//! [`BallFilter`], opponents by [`Tracks`]. SI units, field frame.
+//! `camera`: belief of a walking robot from its camera and legs (docs/belief.md). Pose by [`PoseFilter`],
+//! ball by [`BallFilter`], opponents by [`Tracks`]. SI units, field frame.
 
 use geometry::{Body, Point, Twist, Vector, math};
 use protocol::robot_io::{CameraFrame, SensorFrame, Sight};
@@ -8,7 +8,7 @@ use protocol::{Duration, Instant};
 use super::ball::BallFilter;
 use super::opponents::Tracks;
 use super::pose::PoseFilter;
-use super::{Ball, Belief, model};
+use super::{Belief, BelievedBall, model};
 
 /// Estimators of a walking robot with a camera.
 #[derive(Clone, Debug, Default)]
@@ -98,7 +98,7 @@ impl Belief {
         now: Instant,
         sensors: &SensorFrame,
         camera: &CameraFrame,
-    ) -> Option<Ball> {
+    ) -> Option<BelievedBall> {
         let league = self.league;
         self.perception.update(now, sensors, camera, league.ball().rolling_deceleration);
         self.pose = self.perception.pose.pose();
@@ -121,5 +121,6 @@ impl Belief {
 const LONGEST: f32 = 1.0;
 /// A ball that was not seen for longer is unknown, s: a glance for landmarks and a sweep for it.
 const LEASE: Duration = Duration::millis(3000);
-/// How many times worse sights with the sway's correlation are for a mean: (1 + ρ) / (1 − ρ), ρ = exp(−0.04 / 0.3).
+/// How many times worse sights with the sway's correlation are for a mean: (1 + ρ) / (1 − ρ), ρ = exp(−0.04 /
+/// 0.3).
 const LASTING: f32 = 15.0;

@@ -1,8 +1,8 @@
 //! `opponents`: tracks of the opponents from the places that they report. SI units, field frame.
 //!
-//! A report belongs to the nearest track within reach, else it starts a track. A track without a report walks on
-//! as it did, grows uncertain, and is dropped after a second. What a report is wrong by drifts as slowly as
-//! robots walk (2 s): filters that smooth it were measured to add more lag than they remove error, so a
+//! A report belongs to the nearest track within reach, else it starts a track. A track without a report walks
+//! on as it did, grows uncertain, and is dropped after a second. What a report is wrong by drifts as slowly
+//! as robots walk (2 s): filters that smooth it were measured to add more lag than they remove error, so a
 //! track's place is its last report.
 
 use geometry::{Field, Point, Vector};

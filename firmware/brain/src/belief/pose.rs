@@ -1,8 +1,8 @@
-//! `pose`: own pose of a walking robot: extended Kalman filter on odometry and landmark sights. SI units, field
-//! frame.
+//! `pose`: own pose of a walking robot: extended Kalman filter on odometry and landmark sights. SI units,
+//! field frame.
 //!
-//! State: x, y, heading, and the sway of the camera in standard deviations, as all bearings of a frame share it
-//! over several frames. A sight outside of its gate corrects nothing; when sights are rejected again and
+//! State: x, y, heading, and the sway of the camera in standard deviations, as all bearings of a frame share
+//! it over several frames. A sight outside of its gate corrects nothing; when sights are rejected again and
 //! again, the pose that two landmarks give together becomes a hypothesis, and one that several pairs support
 //! replaces the estimate: a robot that was pushed away or picked up.
 

@@ -131,7 +131,7 @@ pub trait Body: Sync {
         &self,
         belief: &Belief,
         attacked: GoalEnd,
-        leg: (&Kick, Point<Field>),
+        leg: (&CaseKick, Point<Field>),
         patient: bool,
     ) -> Intent {
         let _ = leg;

@@ -1,10 +1,11 @@
 //! `legged`: reactive behaviour of walking robots without a case: that of the paper's comparison (§5).
 //!
 //! Every robot goes for a loose ball as fast as possible. The one that has it plays on alone towards the
-//! attacked goal, and as long as it holds the ball, or is at it to take it, the others back up, off the line from
-//! ball to goal; once the ball has left it, all go for the ball again (§5.2.1). An opponent is considered only when it blocks the path within 0.4
-//! m: then dodge, turning with the ball and stepping diagonally, and kick as soon as the kick passes it.
-//! Short kicks advance, near the goal the robot turns to the clearest lane and shoots. No passes.
+//! attacked goal, and as long as it holds the ball, or is at it to take it, the others back up, off the line
+//! from ball to goal; once the ball has left it, all go for the ball again (§5.2.1). An opponent is
+//! considered only when it blocks the path within 0.4 m: then dodge, turning with the ball and stepping
+//! diagonally, and kick as soon as the kick passes it. Short kicks advance, near the goal the robot turns to
+//! the clearest lane and shoots. No passes.
 //!
 //! Needed to be as strong as the paper's (28 % to goal in scenario 1, 17 % in 3, defender and goalkeeper):
 //! kicks out of a duel that pass the opponent and end where one of us is first, head kicks among them; shots
@@ -175,9 +176,10 @@ fn strength(belief: &Belief, ball: &BelievedBall, direction: Angle) -> LeggedKic
     }
 }
 
-/// Whether the ball is this robot's to go for: unless a teammate holds it, or is at it and nearer (paper §5.2.1:
-/// while one possesses the ball the other makes way; "once the action ends, both robots will try to get near").
-/// Two robots that both go up to a resting ball block each other for ever: so the first at it possesses it.
+/// Whether the ball is this robot's to go for: unless a teammate holds it, or is at it and nearer (paper
+/// §5.2.1: while one possesses the ball the other makes way; "once the action ends, both robots will try to
+/// get near"). Two robots that both go up to a resting ball block each other for ever: so the first at it
+/// possesses it.
 fn is_attacker(now: Instant, ball: &BelievedBall, belief: &Belief, teammates: &Teammates) -> bool {
     let mine = belief.pose.position.distance(ball.position);
     let possesses = |teammate: &Teammate| {
@@ -352,7 +354,7 @@ mod tests {
             progress: Progress::Idle,
             role: Role::None,
         };
-        let (b, mut reactive) = (belief((0.2, 0.0), (1.0, 0.0)), Reactive::default());
+        let (b, mut reactive) = (belief((0.2, 0.0), (1.0, 0.0)), LeggedReactive::default());
         let mut teammates = Teammates::default();
         for (ms, status, role) in [
             (40, Status::AVAILABLE, Role::Attacker),

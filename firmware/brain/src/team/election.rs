@@ -11,8 +11,8 @@ pub fn elector(now: Instant, me: RobotId, teammates: &Teammates) -> RobotId {
     teammates.present(now).map(|(id, _)| id).chain([me]).min().unwrap_or(me)
 }
 
-/// The retriever that knows the ball best: near it the one with the smallest standard deviation, of equals the
-/// nearest, then the lowest id. `None` without a retriever.
+/// The retriever that knows the ball best: near it the one with the smallest standard deviation, of equals
+/// the nearest, then the lowest id. `None` without a retriever.
 pub fn coordinator(now: Instant, me: RobotId, own: &Beacon, teammates: &Teammates) -> Option<RobotId> {
     let doubt = |beacon: &Beacon| {
         beacon.ball.map_or(u32::MAX, |ball| {

@@ -3,8 +3,8 @@
 //!
 //! Before the first touch: ball in the case's scope, path free. After it: no opponent on the ball, and the
 //! ball not stopped where no robot of the case expects it. A doubt must last a fifth of a second before it
-//! aborts: an opponent at the edge of a trapezoid shall not end a gameplay by swaying. What is believed with an
-//! error is doubted only beyond two standard deviations of it.
+//! aborts: an opponent at the edge of a trapezoid shall not end a gameplay by swaying. What is believed with
+//! an error is doubted only beyond two standard deviations of it.
 
 use casebase::{PointMm, RetrievalSettings};
 use geometry::{Field, Segment, Vector, math};

@@ -271,8 +271,8 @@ fn it_is_the_reference_in_double_precision() {
 #[test]
 fn its_variance_is_that_of_its_errors() {
     // NEES of two degrees of freedom: 2,000 runs have a mean of 2 with a deviation of √(4 / 2,000) = 0.045. A
-    // ball that starts and stops as the filter assumes it, with errors that do not last. Two models in place of
-    // one for every history make it up to a sixth too cautious; bolder than its errors it must not be.
+    // ball that starts and stops as the filter assumes it, with errors that do not last. Two models in place
+    // of one for every history make it up to a sixth too cautious; bolder than its errors it must not be.
     for seconds in [1, 4] {
         let (mut sum, runs) = (0.0, 2_000);
         for seed in 0..runs {

@@ -1,9 +1,9 @@
 //! `case_shot`: a case's shot at goal: when to kick, and along which leg. Field frame, SI.
 //!
-//! The leg that retrieval checked is played, unless the moment has made another shot likelier a goal, or waiting
-//! for a gap, or from afar pushing the ball on, is worth more: optimal stopping. A choice is worth the goal that
-//! may follow times the probability that the ball is still held when it is made: an opponent at the ball takes
-//! it with the hazard of its grabs. Out of time, the ball leaves by a kick that needs no turn.
+//! The leg that retrieval checked is played, unless the moment has made another shot likelier a goal, or
+//! waiting for a gap, or from afar pushing the ball on, is worth more: optimal stopping. A choice is worth
+//! the goal that may follow times the probability that the ball is still held when it is made: an opponent at
+//! the ball takes it with the hazard of its grabs. Out of time, the ball leaves by a kick that needs no turn.
 
 use geometry::{Angle, Field, GoalEnd, Point, Segment, Vector, math};
 use motion::legged::{CARRY_SPEED, CARRY_TURN_RATE, WALK_FORWARD};
@@ -91,7 +91,8 @@ fn into_space(belief: &Belief, attacked: GoalEnd) -> Choice {
 }
 
 /// What a ball is worth that is kicked `length` m in that direction, not at the goal: a good shot, less the
-/// ground lost, if this robot is first at it. Nothing where an opponent stands in its path or it leaves the field.
+/// ground lost, if this robot is first at it. Nothing where an opponent stands in its path or it leaves the
+/// field.
 fn after(belief: &Belief, attacked: GoalEnd, along: Angle, length: f32) -> f32 {
     let from = belief.pose.position;
     let path = Segment::new(from, from + Vector::polar(length, along));
@@ -112,8 +113,8 @@ fn if_held(belief: &Belief, time: f32, worth: f32) -> f32 {
     still_held(belief, time) * worth
 }
 
-/// Probability that no opponent has taken the ball after `time` s: the nearest walks up to it, and then closes
-/// its legs again and again. A goalkeeper stays in its area (paper §5.1.2).
+/// Probability that no opponent has taken the ball after `time` s: the nearest walks up to it, and then
+/// closes its legs again and again. A goalkeeper stays in its area (paper §5.1.2).
 fn still_held(belief: &Belief, time: f32) -> f32 {
     let ball = belief.ball.map_or(belief.pose.position, |ball| ball.position);
     let (field, attacked) = (belief.league().field(), belief.game.defending.opposite());
@@ -128,8 +129,8 @@ fn still_held(belief: &Belief, time: f32) -> f32 {
 const KICK_TIME: f32 = 0.4;
 /// An opponent whose centre is this near the ball closes its legs on it, m: the grab's reach and a step.
 const GRABS_WITHIN: f32 = 0.3;
-/// Hazard of an opponent at a held ball, 1/s: a grab of 0.5 s takes it in 0.375 of tries (0.75 of grabs succeed,
-/// half of those against a grip): −ln(1 − 0.375) / 0.5.
+/// Hazard of an opponent at a held ball, 1/s: a grab of 0.5 s takes it in 0.375 of tries (0.75 of grabs
+/// succeed, half of those against a grip): −ln(1 − 0.375) / 0.5.
 const STEAL_HAZARD: f32 = 0.94;
 /// A goalkeeper that follows the ball's turn leaves the far post open within about this time, s.
 const GOALKEEPER_CROSSES: f32 = 1.0;
@@ -145,7 +146,7 @@ const GROUND: f32 = 0.06;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::belief::Ball;
+    use crate::belief::BelievedBall;
     use geometry::Pose;
     use rules::League;
 
@@ -153,7 +154,7 @@ mod tests {
         let mut belief = Belief::new(League::FourLegged);
         belief.pose = Pose { position: Point::new(x, y), heading: Angle::new(heading) };
         let at = belief.pose.to_field(Point::new(0.13, 0.0));
-        belief.ball = Some(Ball { position: at, velocity: Vector::default(), rest: at });
+        belief.ball = Some(BelievedBall { position: at, velocity: Vector::default(), rest: at });
         belief.holds_ball = true;
         for &(x, y) in opponents {
             let _ = belief.opponents.push(Point::new(x, y));

@@ -100,7 +100,8 @@ fn best_of(belief: &Belief, fan: &Fan) -> Option<Shot> {
     best.map(|(_, shot)| shot)
 }
 
-/// Probability of a goal by a kick in that direction, and the best shot of all; `None` from behind the goal line.
+/// Probability of a goal by a kick in that direction, and the best shot of all; `None` from behind the goal
+/// line.
 pub(super) fn chance_along(
     belief: &Belief,
     attacked: GoalEnd,
