@@ -1,10 +1,10 @@
 //! `belief`: errors of a walking robot's belief in the robots' world, by level of noise: the table of
 //! `docs/belief.md`.
 //!
-//! `cargo run --release -p hil-sim --example belief` prints it as Markdown. A robot walks around a ball that
-//! rests and is kicked at times, for two minutes of 30 seeds; errors are taken in every step from the third
-//! second on. "Last look" is what the brain did without estimators: the newest sight as it is, put on the
-//! field by the same pose, with an alpha–beta velocity.
+//! `cargo run --release -p onetwo-hil-sim --example belief` prints it as Markdown. A robot walks around a
+//! ball that rests and is kicked at times, for two minutes of 30 seeds; errors are taken in every step from
+//! the third second on. "Last look" is what the brain did without estimators: the newest sight as it is, put
+//! on the field by the same pose, with an alpha–beta velocity.
 
 use brain::belief::REST_SPEED;
 use brain::belief::camera::Perception;
