@@ -35,19 +35,20 @@ impl Tracks {
         }
         let mut taken = [false; OPPONENTS_SEEN_MAX];
         for &report in reports.iter().filter(|report| report.is_finite()) {
-            let near = |track: &Track| track.place.distance(report);
-            let free = self.tracks.iter().enumerate().filter(|(i, track)| !taken[*i] && near(track) < GATE);
-            let nearest =
-                free.map(|(i, track)| (i, near(track))).reduce(|a, b| if b.1 < a.1 { b } else { a });
-            match nearest {
-                Some((i, _)) => {
-                    taken[i] = true;
-                    self.tracks[i].see(report, dt);
+            let distance = |track: &Track| track.place.distance(report);
+            let free = self.tracks.iter_mut().zip(&mut taken);
+            let free = free.filter(|(track, taken)| !**taken && distance(track) < GATE);
+            match free.reduce(|a, b| if distance(b.0) < distance(a.0) { b } else { a }) {
+                Some((track, taken)) => {
+                    *taken = true;
+                    track.see(report, dt);
                 }
                 // A team has no more robots than there are tracks.
                 None => {
-                    if self.tracks.push(Track::at(report)).is_ok() {
-                        taken[self.tracks.len() - 1] = true;
+                    if let Some(taken) = taken.get_mut(self.tracks.len())
+                        && self.tracks.push(Track::at(report)).is_ok()
+                    {
+                        *taken = true;
                     }
                 }
             }

@@ -138,8 +138,9 @@ impl PoseFilter {
         let at = Point::new(at.x(), at.y());
         if let Some((other, before)) = self.last.replace((index, at)).filter(|(other, _)| *other != index)
             && self.doubts > 0
+            && let Some(&other) = LANDMARKS.get(other)
         {
-            self.suppose((landmark, at), (LANDMARKS[other], before));
+            self.suppose((landmark, at), (other, before));
         }
     }
 
