@@ -21,7 +21,7 @@ pub struct Tracks {
 pub struct Track {
     /// Its place.
     pub place: Point<Field>,
-    /// Its velocity, m/s, smoothed over [`SMOOTHED`].
+    /// Its velocity, m/s, smoothed over `SMOOTHED`.
     pub velocity: Vector<Field>,
     /// s since its last report.
     age: f32,
