@@ -75,7 +75,7 @@ fn report(packets: &[(Instant, WrapperPacket)]) {
         let world = tracker.snapshot();
         let kicked = world.ball.and_then(|ball| ball.kicked);
         if let Some(now) = kicked.filter(|now| kick != Some((now.by, now.from))) {
-            let by = now.by.map_or("somebody".into(), |who| format!("{} {}", who.colour.label(), who.id));
+            let by = now.by.map_or("a robot".into(), |who| format!("{} {}", who.colour.label(), who.id));
             println!(
                 "{:8.3} s: {by} kicks at {:?} with {:.1} m/s, {:.1} m/s up",
                 now.at.as_secs_f32(),

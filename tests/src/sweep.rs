@@ -112,7 +112,7 @@ pub fn page(rows: &[Row], seeds: u64) -> String {
          what any one receiver does not hear: each packet by itself, or everything of one direction between two stations in \
          stretches of {BURST_MS} ms on the mean (Gilbert and Elliott). All promises of [architecture.md](architecture.md) \
          §5.4 and §6.2 are watched meanwhile; none was broken.\n\n\
-         - *finished*: of the gameplays that ended, those that all their robots played to the end; the rest somebody stopped.\n\
+         - *finished*: of the gameplays that ended, those that all their robots played to the end; the rest were aborted.\n\
          - *stops*: how often a robot that was armed braked because its host was silent for 100 ms, in a robot's minute; *stood*: the \
          share of the time for which it then stood (after a silence of half a second it takes half a second to be armed again).\n\
          - *new cycle*: from the end of a gameplay until all robots know a newer cycle.\n\n\

@@ -31,14 +31,14 @@ impl Sampler {
 
     /// The problem of that number; ids of teammates count from 1.
     pub fn problem(&self, number: u64) -> Problem {
-        let mut chance = Chance::new(self.seed, number);
+        let mut chance = RandomStream::new(self.seed, number);
         let ball = chance.within(self.whole_field());
         self.around(ball, &mut chance)
     }
 
     /// The same with the ball at `ball`, as seen by a team that defends `defending`.
     pub fn problem_at(&self, ball: PointMm, defending: GoalEnd, number: u64) -> Problem {
-        let mut chance = Chance::new(self.seed, number);
+        let mut chance = RandomStream::new(self.seed, number);
         let symmetry = symmetry_for(defending, false);
         mirrored(&self.attack(symmetry.point(ball), &mut chance), symmetry)
     }
@@ -49,14 +49,14 @@ impl Sampler {
     }
 
     /// Mirrored at random in both axes, so that the draw prefers no side.
-    fn around(&self, ball: PointMm, chance: &mut Chance) -> Problem {
+    fn around(&self, ball: PointMm, chance: &mut RandomStream) -> Problem {
         let defending = [GoalEnd::Negative, GoalEnd::Positive][usize::from(chance.coin())];
         let symmetry = symmetry_for(defending, chance.coin());
         mirrored(&self.attack(ball, chance), symmetry)
     }
 
     /// A problem attacking towards +x.
-    fn attack(&self, ball: PointMm, chance: &mut Chance) -> Problem {
+    fn attack(&self, ball: PointMm, chance: &mut RandomStream) -> Problem {
         let mut problem = Problem {
             ball,
             defending: GoalEnd::Negative,
@@ -97,7 +97,7 @@ impl Sampler {
 
     /// Displacement from the ball to an opponent that stands between it and the goal it guards, with random
     /// deviation.
-    fn in_front(&self, ball: PointMm, chance: &mut Chance) -> PointMm {
+    fn in_front(&self, ball: PointMm, chance: &mut RandomStream) -> PointMm {
         let goal = PointMm::new(self.field.length / 2, 0).minus(ball).to_f32();
         let distance = chance.between(IN_FRONT[0], IN_FRONT[1]) as f32;
         let length = geometry::math::hypot(goal[0], goal[1]).max(1.0);
@@ -143,9 +143,9 @@ fn mirrored(problem: &Problem, symmetry: Symmetry) -> Problem {
 }
 
 /// Random stream of one problem.
-struct Chance(Xoshiro128PlusPlus);
+struct RandomStream(Xoshiro128PlusPlus);
 
-impl Chance {
+impl RandomStream {
     /// The generator mixes its seed itself; the number is mixed first (by multiples of the golden ratio), so
     /// that neighbouring problems of neighbouring seeds do not coincide.
     fn new(seed: u64, number: u64) -> Self {

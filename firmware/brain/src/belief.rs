@@ -9,14 +9,14 @@
 pub mod ball;
 #[cfg(feature = "legged")]
 pub mod camera;
-#[cfg(test)]
-mod chance;
 #[cfg(feature = "legged")]
 pub mod model;
 #[cfg(feature = "legged")]
 pub mod opponents;
 #[cfg(feature = "legged")]
 pub mod pose;
+#[cfg(test)]
+mod random;
 pub mod received;
 
 use geometry::{Field, GoalEnd, Point, Pose, Vector, math};

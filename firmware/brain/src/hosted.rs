@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn the_kicker_of_our_free_kick_is_barred_until_another_robot_has_touched_the_ball() {
+    fn the_kicker_of_our_free_kick_is_double_touch_blocked_until_another_robot_has_touched_the_ball() {
         let mut hosted = Hosted::new(id(3));
         let mut held = with_ball(0.0);
         let sensors = SensorFrame {

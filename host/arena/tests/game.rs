@@ -202,7 +202,7 @@ fn a_match_among_bystanders_is_played_without_them_and_is_had_again_from_its_wor
     assert_eq!((standing.places.len(), &*report.world), (10, "random:3"));
     // Players may push one or two.
     assert!(standing.unpushed >= 7, "{} of 10 stand where they stood", standing.unpushed);
-    assert!(standing.touched, "somebody took the kick-off");
+    assert!(standing.touched, "a robot took the kick-off");
     assert!(!report.fouls.blue.contains_key("too_many_robots"), "{:?}", report.fouls);
     assert_eq!(play_in("random:3", &mut NoWatcher).trace_hash, report.trace_hash);
     assert_ne!(play_in("nominal", &mut NoWatcher).trace_hash, report.trace_hash);

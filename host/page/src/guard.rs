@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_that_somebody_made_point_here_is_not_answered() {
+    fn a_name_that_was_made_to_point_here_is_not_answered() {
         for host in [
             "evil.example:8080",
             "localhost.evil.example:8080",

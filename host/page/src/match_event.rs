@@ -25,6 +25,13 @@ pub struct MatchEvent {
     pub problem: Option<serde_json::Value>,
 }
 
+impl MatchEvent {
+    /// A fault at `t` seconds since the start, of no team and no place.
+    pub fn fault(t: f64, description: String) -> Self {
+        Self { t, kind: MatchEventKind::Fault, team: None, description, at: None, problem: None }
+    }
+}
+
 /// Kinds of events; the time line has a row for each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

@@ -88,7 +88,7 @@ pub(crate) const fn note(table: u8) -> &'static str {
         }
         _ => {
             "The paper's 30 trials a row were played by robots; ours are simulated with its robots' noise and pauses. Out balls by \
-              whoever touched last, counted."
+              the robot that touched last, counted."
         }
     }
 }

@@ -3,7 +3,7 @@
 //!
 //! The body's frame, carried on by the odometry: an error of the own pose does not make a resting ball move.
 //! *At rest*: constant on the field. *Rolling*: slows down evenly until it stops. Both take in every sight
-//! and are weighted by how well they foretold it; each starts from their mixture (interacting multiple
+//! and are weighted by how well they predicted it; each starts from their mixture (interacting multiple
 //! models). *Held*: known by contact. A release, or a teammate's, starts a ball that may roll. Each axis has
 //! the same variance.
 
@@ -168,7 +168,7 @@ const HELD: f32 = 1e-4;
 const KICKED: f32 = 0.5;
 /// Probability that a ball rolls that has left the legs.
 const ROLLS_WHEN_RELEASED: f32 = 0.8;
-/// A resting ball starts to roll, 1/s: once in 5 s somebody kicks it.
+/// A resting ball starts to roll, 1/s: once in 5 s a robot kicks it.
 const STARTS: f32 = 0.2;
 /// A rolling ball stops at once, 1/s: in a robot's legs.
 const STOPS: f32 = 0.3;
@@ -176,8 +176,8 @@ const STOPS: f32 = 0.3;
 const STOPS_SLOW: f32 = 4.0;
 /// A ball that slow stops within a third of a second, m/s.
 const SLOW: f32 = 0.12;
-/// Variance of an axis of the velocity that a rolling ball gains, m²/s³: the carpet's unevenness, 0.1 m/s in
-/// a second; an estimate.
+/// Variance of an axis of the velocity that a rolling ball gains, m²/s³: the field surface's unevenness, 0.1
+/// m/s in a second; an estimate.
 const ROLLING: f32 = 0.01;
 /// No model is ever excluded.
 const NEVER: f32 = 1e-3;

@@ -79,7 +79,7 @@ impl Track {
     }
 
     fn see(&mut self, report: Point<Field>, dt: f32) {
-        // What the velocity did not foretell over its age.
+        // What the velocity did not predict over its age.
         let off = report - self.place;
         self.velocity = (self.velocity + off * (dt / (SMOOTHED * self.age.max(dt)))).clamped(WALKING);
         (self.place, self.age) = (report, 0.0);
@@ -100,19 +100,19 @@ mod tests {
     extern crate std;
 
     use super::*;
-    use crate::belief::chance::Chance;
+    use crate::belief::random::RandomStream;
 
     #[test]
     fn a_track_knows_how_a_robot_walks_and_walks_on_without_reports() {
         for speed in [0.0_f64, 0.25] {
             let (mut squares, mut carried, runs) = (0.0, 0.0, 100);
             for seed in 0..runs {
-                let mut chance = Chance::new(seed);
+                let mut random = RandomStream::new(seed);
                 let keep = (-0.04_f64 / 2.0).exp();
-                let mut drift = chance.normal();
+                let mut drift = random.normal();
                 let mut tracks = Tracks::default();
                 for step in 0..=150 {
-                    drift = keep * drift + (1.0 - keep * keep).sqrt() * chance.normal();
+                    drift = keep * drift + (1.0 - keep * keep).sqrt() * random.normal();
                     let x = speed * 0.04 * f64::from(step) + f64::from(model::REPORTED) * drift;
                     tracks.update(&[Point::new(x as f32, 0.0)], 0.04);
                 }

@@ -6,7 +6,7 @@ use hil_sim::Stream;
 use rules::limits::BALL_RADIUS;
 use rules::{FieldSpec, League};
 
-/// Chance over a field.
+/// Random places on a field.
 pub(super) struct Places {
     pub(super) field: FieldSpec,
     pub(super) chance: Stream,

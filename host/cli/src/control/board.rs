@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use host::Host;
-use page::{MatchEvent, MatchEventKind, Page, Powers, UserRequest};
+use page::{MatchEvent, Page, Powers, UserRequest};
 
 use crate::library::LibraryHandle;
 use crate::live::{CaseExplanations, Composer, Moment, PageArgs, SCENE_EVERY_S, tick};
@@ -46,14 +46,7 @@ impl Board {
     /// Adds a fault to the page's events.
     pub(super) fn fault(&mut self, now: protocol::Instant, description: String) {
         let t = now.0 as f64 * 1e-6;
-        self.page.push(MatchEvent {
-            t,
-            kind: MatchEventKind::Fault,
-            team: None,
-            description,
-            at: None,
-            problem: None,
-        });
+        self.page.push(MatchEvent::fault(t, description));
     }
 
     /// Records how long an input took.

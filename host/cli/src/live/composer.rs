@@ -11,8 +11,7 @@ use host::referee::Game;
 use host::sanity::Sanity;
 use host::world::{Ball, World};
 use page::{
-    DeferredScene, Field, Gauge, Layer, Match, MatchEvent, MatchEventKind, Scene, SceneRobot, Shape,
-    TeamSheet, milli,
+    DeferredScene, Field, Gauge, Layer, Match, MatchEvent, Scene, SceneRobot, Shape, TeamSheet, milli,
 };
 use protocol::Instant;
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
@@ -114,14 +113,7 @@ impl Composer {
             self.cycles[host.settings().us as usize].receive(host, t, &self.names, &mut self.match_events);
             for description in self.faults.look(host, now) {
                 let team = Some(team(host.settings().us));
-                self.match_events.push(MatchEvent {
-                    t,
-                    kind: MatchEventKind::Fault,
-                    team,
-                    description,
-                    at: None,
-                    problem: None,
-                });
+                self.match_events.push(MatchEvent { team, ..MatchEvent::fault(t, description) });
             }
         }
         let mut alarms = Vec::new();

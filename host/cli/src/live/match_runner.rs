@@ -14,7 +14,7 @@ use casebase::CaseBase;
 use foreign::excerpt;
 use geometry::Point;
 use hil_sim::NativeBackend;
-use page::{MatchEvent, MatchEventKind, Page, UserRequest};
+use page::{MatchEvent, Page, UserRequest};
 use protocol::{RobotId, Who};
 use rules::Colour;
 use rules::state::RefereeCommand;
@@ -258,14 +258,7 @@ impl<'s> MatchRunner<'s> {
             }
         }
         if let Some(description) = noted {
-            self.page.push(MatchEvent {
-                t,
-                kind: MatchEventKind::Fault,
-                team: None,
-                description,
-                at: None,
-                problem: None,
-            });
+            self.page.push(MatchEvent::fault(t, description));
         }
         if let Some(description) = refused {
             self.page.refuse(description);

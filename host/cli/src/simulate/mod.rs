@@ -196,7 +196,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_whistle_is_ours_nobodys_or_somebody_elses() {
+    fn the_referee_is_internal_absent_or_external() {
         assert_eq!(referee("internal"), Ok(RefereeKind::Internal));
         assert_eq!(referee("none"), Ok(RefereeKind::None));
         assert_eq!(referee("224.5.23.1:10003"), Ok(RefereeKind::Received(addresses::REFEREE.into())));

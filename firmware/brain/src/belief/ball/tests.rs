@@ -8,23 +8,23 @@ use std::println;
 use std::vec::Vec;
 
 use super::*;
-use crate::belief::chance::Chance;
+use crate::belief::random::RandomStream;
 
 const DT: f64 = 0.04;
 const DECELERATION: f32 = 0.35;
 
 /// Sights of a ball from a standing robot: range by a column of its image, bearings that sway together.
 struct Eyes {
-    chance: Chance,
+    random: RandomStream,
     sway: f64,
     walks: bool,
 }
 
 impl Eyes {
     fn new(seed: u64, walks: bool) -> Self {
-        let mut chance = Chance::new(seed);
-        let sway = chance.normal();
-        Self { chance, sway, walks }
+        let mut random = RandomStream::new(seed);
+        let sway = random.normal();
+        Self { random, sway, walks }
     }
 
     fn amplitude(&self) -> f64 {
@@ -34,12 +34,12 @@ impl Eyes {
     /// A sight of a ball at `at`, with its variance and the lasting part of it.
     fn see(&mut self, at: [f64; 2]) -> (Point<Body>, f32, f32) {
         let keep = (-DT / f64::from(model::SWAY_TIME)).exp();
-        self.sway = keep * self.sway + (1.0 - keep * keep).sqrt() * self.chance.normal();
+        self.sway = keep * self.sway + (1.0 - keep * keep).sqrt() * self.random.normal();
         let range = at[0].hypot(at[1]);
         let by_range = f64::from(model::range_variance(range as f32, model::BALL_SIZE));
         let pixel = f64::from(model::PIXEL);
-        let bearing = at[1].atan2(at[0]) + self.amplitude() * self.sway + pixel * self.chance.normal();
-        let seen = range + by_range.sqrt() * self.chance.normal();
+        let bearing = at[1].atan2(at[0]) + self.amplitude() * self.sway + pixel * self.random.normal();
+        let seen = range + by_range.sqrt() * self.random.normal();
         let across = 0.5 * range * range;
         let swayed = self.amplitude() * self.amplitude();
         let variance = 0.5 * by_range + across * (pixel * pixel + swayed);
@@ -276,24 +276,25 @@ fn its_variance_is_that_of_its_errors() {
     for seconds in [1, 4] {
         let (mut sum, runs) = (0.0, 2_000);
         for seed in 0..runs {
-            let mut chance = Chance::new(seed);
+            let mut random = RandomStream::new(seed);
             let (mut at, mut v) = ([0.9_f64, 0.3_f64], [0.0_f64; 2]);
             let variance = 0.002_f64;
-            let seen = |at: [f64; 2], chance: &mut Chance| {
-                let off = |chance: &mut Chance| variance.sqrt() * chance.normal();
-                Point::<Body>::new((at[0] + off(chance)) as f32, (at[1] + off(chance)) as f32)
+            let seen = |at: [f64; 2], random: &mut RandomStream| {
+                let off = |random: &mut RandomStream| variance.sqrt() * random.normal();
+                Point::<Body>::new((at[0] + off(random)) as f32, (at[1] + off(random)) as f32)
             };
-            let kick = |chance: &mut Chance| [(); 2].map(|()| f64::from(KICKED).sqrt() * chance.normal());
-            if chance.share() < 0.5 {
-                v = kick(&mut chance);
+            let kick =
+                |random: &mut RandomStream| [(); 2].map(|()| f64::from(KICKED).sqrt() * random.normal());
+            if random.share() < 0.5 {
+                v = kick(&mut random);
             }
-            let mut filter = BallFilter::seen(seen(at, &mut chance), variance as f32, DECELERATION);
+            let mut filter = BallFilter::seen(seen(at, &mut random), variance as f32, DECELERATION);
             for _ in 0..seconds * 25 {
                 let speed = v[0].hypot(v[1]);
                 let stops = f64::from(if speed < f64::from(SLOW) { STOPS_SLOW } else { STOPS }) * DT;
                 match speed > 0.0 {
-                    true if chance.share() < stops => v = [0.0; 2],
-                    false if chance.share() < f64::from(STARTS) * DT => v = kick(&mut chance),
+                    true if random.share() < stops => v = [0.0; 2],
+                    false if random.share() < f64::from(STARTS) * DT => v = kick(&mut random),
                     _ => {}
                 }
                 let range = at[0].hypot(at[1]);
@@ -302,11 +303,11 @@ fn its_variance_is_that_of_its_errors() {
                 let speed = v[0].hypot(v[1]);
                 let share = if speed > 0.0 { (1.0 - 0.35 * DT / speed).max(0.0) } else { 0.0 };
                 for (place, v) in at.iter_mut().zip(&mut v) {
-                    *place += *v * 0.5 * (1.0 + share) * DT + unknown.sqrt() * chance.normal();
+                    *place += *v * 0.5 * (1.0 + share) * DT + unknown.sqrt() * random.normal();
                     *v *= share;
                 }
                 filter.predict(standing(), DT as f32);
-                filter.see(seen(at, &mut chance), variance as f32, 0.0);
+                filter.see(seen(at, &mut random), variance as f32, 0.0);
             }
             let place = filter.place();
             let off = (f64::from(place.x()) - at[0]).powi(2) + (f64::from(place.y()) - at[1]).powi(2);

@@ -10,13 +10,13 @@ use std::vec::Vec;
 use protocol::robot_io::Sight;
 
 use super::*;
-use crate::belief::chance::Chance;
+use crate::belief::random::RandomStream;
 
 const DT: f64 = 0.04;
 
 /// A robot that walks at random, in a world as the filter assumes it.
 struct Walk {
-    chance: Chance,
+    random: RandomStream,
     x: f64,
     y: f64,
     heading: f64,
@@ -27,18 +27,18 @@ struct Walk {
 
 impl Walk {
     fn new(seed: u64) -> Self {
-        let mut chance = Chance::new(seed);
-        let (x, y) = (chance.between(-1.5, 1.5), chance.between(-1.0, 1.0));
-        let (heading, sway) = (chance.between(-PI, PI), chance.normal());
-        Self { chance, x, y, heading, sway, speed: [0.0; 3], steps: 0 }
+        let mut random = RandomStream::new(seed);
+        let (x, y) = (random.between(-1.5, 1.5), random.between(-1.0, 1.0));
+        let (heading, sway) = (random.between(-PI, PI), random.normal());
+        Self { random, x, y, heading, sway, speed: [0.0; 3], steps: 0 }
     }
 
     /// Where its program believes that it starts.
     fn placed(&mut self) -> Pose<Field> {
         let (place, heading) = (f64::from(model::PLACING), f64::from(model::PLACING_HEADING));
-        let x = self.x + place * self.chance.normal();
-        let y = self.y + place * self.chance.normal();
-        let heading = self.heading + heading * self.chance.normal();
+        let x = self.x + place * self.random.normal();
+        let y = self.y + place * self.random.normal();
+        let heading = self.heading + heading * self.random.normal();
         Pose { position: Point::new(x as f32, y as f32), heading: Angle::new(heading as f32) }
     }
 
@@ -46,8 +46,8 @@ impl Walk {
     fn step(&mut self) -> (Twist<Body>, Vec<LandmarkSight>) {
         if self.steps.is_multiple_of(50) {
             let towards = (-self.y).atan2(-self.x) - self.heading;
-            let turn = (towards.sin().atan2(towards.cos())).clamp(-0.8, 0.8) + self.chance.between(-0.5, 0.5);
-            self.speed = [self.chance.between(0.05, 0.3), self.chance.between(-0.1, 0.1), turn];
+            let turn = (towards.sin().atan2(towards.cos())).clamp(-0.8, 0.8) + self.random.between(-0.5, 0.5);
+            self.speed = [self.random.between(0.05, 0.3), self.random.between(-0.1, 0.1), turn];
         }
         self.steps += 1;
         let [ahead, aside, turn] = self.speed;
@@ -56,11 +56,11 @@ impl Walk {
         let place = ((motion * squared + pushed) * DT).sqrt();
         let turned = ((motion * turn * turn + f64::from(model::TURNED)) * DT).sqrt();
         let (s, c) = self.heading.sin_cos();
-        self.x += (c * ahead - s * aside) * DT + place * self.chance.normal();
-        self.y += (s * ahead + c * aside) * DT + place * self.chance.normal();
-        self.heading += turn * DT + turned * self.chance.normal();
+        self.x += (c * ahead - s * aside) * DT + place * self.random.normal();
+        self.y += (s * ahead + c * aside) * DT + place * self.random.normal();
+        self.heading += turn * DT + turned * self.random.normal();
         let keep = (-DT / f64::from(model::SWAY_TIME)).exp();
-        self.sway = keep * self.sway + (1.0 - keep * keep).sqrt() * self.chance.normal();
+        self.sway = keep * self.sway + (1.0 - keep * keep).sqrt() * self.random.normal();
         let odometry = Twist { linear: Vector::new(ahead as f32, aside as f32), angular: turn as f32 };
         let mut seen = Vec::new();
         // In every fourth step one landmark after the other.
@@ -80,8 +80,8 @@ impl Walk {
         let amplitude = f64::from(model::JOINT + model::SWAY);
         let bearing = dy.atan2(dx) - self.heading
             + amplitude * self.sway
-            + f64::from(model::PIXEL) * self.chance.normal();
-        let range = (range + sigma * self.chance.normal()).max(0.01);
+            + f64::from(model::PIXEL) * self.random.normal();
+        let range = (range + sigma * self.random.normal()).max(0.01);
         LandmarkSight { landmark: index as u8, sight: Sight::new(range as f32, Angle::new(bearing as f32)) }
     }
 }
@@ -184,6 +184,21 @@ fn off(filter: &PoseFilter, walk: &Walk) -> [f64; 3] {
     ]
 }
 
+/// One step of the walk, taken in by the filter.
+fn follow(filter: &mut PoseFilter, walk: &mut Walk) {
+    let (odometry, seen) = walk.step();
+    filter.predict(odometry, DT as f32);
+    for sight in seen {
+        filter.see(sight);
+    }
+}
+
+/// Whether the estimate is off by more than 0.3 m or 0.3 rad.
+fn is_lost(filter: &PoseFilter, walk: &Walk) -> bool {
+    let [x, y, heading] = off(filter, walk);
+    x.hypot(y) > 0.3 || heading.abs() > 0.3
+}
+
 #[test]
 fn it_is_the_reference_in_double_precision_within_a_millimetre() {
     for seed in 0..20 {
@@ -259,14 +274,9 @@ fn a_robot_that_is_carried_away_finds_itself_again() {
             if step == 250 {
                 (walk.x, walk.y, walk.heading) = (-walk.x, walk.y - 1.0, walk.heading + 2.0);
             }
-            let (odometry, seen) = walk.step();
-            filter.predict(odometry, DT as f32);
-            for sight in seen {
-                filter.see(sight);
-            }
+            follow(&mut filter, &mut walk);
         }
-        let [x, y, heading] = off(&filter, &walk);
-        lost += u32::from(x.hypot(y) > 0.3 || heading.abs() > 0.3);
+        lost += u32::from(is_lost(&filter, &walk));
     }
     assert!(lost <= 1, "{lost} of 50 are lost after 20 s");
 }
@@ -278,14 +288,9 @@ fn without_any_pose_to_start_from_two_landmarks_are_enough() {
         let mut walk = Walk::new(seed);
         let mut filter = PoseFilter::default();
         for _ in 0..500 {
-            let (odometry, seen) = walk.step();
-            filter.predict(odometry, DT as f32);
-            for sight in seen {
-                filter.see(sight);
-            }
+            follow(&mut filter, &mut walk);
         }
-        let [x, y, heading] = off(&filter, &walk);
-        lost += u32::from(x.hypot(y) > 0.3 || heading.abs() > 0.3);
+        lost += u32::from(is_lost(&filter, &walk));
     }
     assert!(lost <= 1, "{lost} of 50 are lost after 20 s");
 }

@@ -171,7 +171,7 @@ mod tests {
         let kick = |heading: f32, y: f32| shot(&belief(1.4, 0.0, heading, &[]), y, true);
         assert_eq!(kick(0.0, 0.0), Intent::Kick(LeggedKick::ForwardHard));
         assert!(matches!(kick(0.4, 0.0), Intent::Turn { .. }));
-        // Nobody guards the goal: its middle is likelier than beside a post.
+        // The goal is unguarded: its middle is likelier than beside a post.
         assert_eq!(kick(0.0, 0.3), Intent::Kick(LeggedKick::ForwardHard));
     }
 

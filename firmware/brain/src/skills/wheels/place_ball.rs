@@ -7,7 +7,7 @@
 //! not stay is fetched again. A ball that is shown at its front and that it does not feel is not there: it
 //! backs off, so that cameras see where the ball is.
 
-mod ways;
+mod methods;
 
 use geometry::{Angle, Field, Point, Vector};
 use protocol::{Duration, Instant};
@@ -16,7 +16,7 @@ use rules::limits::ROBOT_RADIUS;
 use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive};
-use ways::{NEAR_ENOUGH, fetch, kick_off, pull, push, strays, wall};
+use methods::{NEAR_ENOUGH, fetch, kick_off, pull, push, strays, wall};
 
 /// How far a placement has come.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -61,7 +61,7 @@ pub struct Placement {
     since: Instant,
     /// Tries at a wall so far; odd: the last was a kick off it. No try is like the one before.
     tries: u8,
-    /// Not to the ball as it would, but from its other side: no body could get there.
+    /// The ball is approached from the side opposite to the usual one, which no body could reach.
     other_side: bool,
     /// Share of the acceleration with which the ball followed the dribbler so far.
     grip: f32,
@@ -149,7 +149,9 @@ pub fn place_ball(now: Instant, placement: &mut Placement, belief: &Belief, at: 
             let to = ball.position - Vector::polar(BALL_AT - FEELS_INTO, heading);
             let drive = Drive { speed: FEELS_AT, ..Drive::holding(to, heading) };
             match kicks {
-                Some(face) if (face - heading).abs() < KICKS_WITHIN => ways::kicking(placement, drive).into(),
+                Some(face) if (face - heading).abs() < KICKS_WITHIN => {
+                    methods::kicking(placement, drive).into()
+                }
                 _ => drive.into(),
             }
         }
@@ -307,8 +309,8 @@ const FAST: f32 = 1.0;
 const SLOWER: f32 = 0.8;
 /// How fast a ball is pulled, m/s.
 const PULL: f32 = 1.4;
-/// What a metre takes that is pushed, s, and getting around to push it: where pulling takes longer, it is
-/// pushed.
+/// Time of a pushed metre, s/m, and time to get around the ball to push it, s: where pulling takes longer, it
+/// is pushed.
 const ON_PUSHED: f32 = 0.75;
 const GOES_AROUND: f32 = 2.5;
 /// … no less than this: 0.07 m/s²; …
@@ -335,7 +337,7 @@ const FEELS_INTO: f32 = 0.035;
 const FEELS_AT: f32 = 0.12;
 /// And so fast to a ball that fell back, m/s.
 const COMES_BACK: f32 = 0.25;
-/// Aiming so far ahead, m: nearer, it would hardly move.
+/// Distance ahead at which it aims then, m: nearer, it would hardly move.
 const COMES_ON: f32 = 0.08;
 /// Time after which a robot that senses no ball there stops pressing: the ball is elsewhere, or its sensor is
 /// blind.
@@ -354,7 +356,7 @@ const KICKS_WITHIN: f32 = 0.2;
 const FLICKERS: Duration = Duration::millis(30);
 /// A ball that is felt may still be out of the roller's reach: time for which it is pressed.
 const SEATS: Duration = Duration::millis(120);
-/// So fast, m/s: at a wall a faster body squeezes the ball out.
+/// Speed at which it presses on, m/s: at a wall a faster body squeezes the ball out.
 const SEATS_AT: f32 = 0.2;
 /// A ball that slipped off rolls on after the robot that brakes; it is felt again within this, or lost.
 const REGAINS: Duration = Duration::millis(800);

@@ -5,7 +5,7 @@ use rules::state::RefereeCommand;
 use super::*;
 
 #[test]
-fn a_halt_by_hand_lasts_until_somebody_says_otherwise() {
+fn a_halt_by_hand_lasts_until_another_command() {
     let mut stage = in_play();
     assert!(stage.referee.command_by_hand(RefereeCommand::Halt));
     stage.run(60.0);

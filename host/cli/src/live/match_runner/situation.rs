@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn every_case_of_division_b_is_set_up_with_no_one_in_somebodys_place() {
+    fn every_case_of_division_b_is_set_up_with_no_robot_on_another() {
         let library_handle = library_handle_of(League::DivisionB, None).unwrap().unwrap();
         let field = League::DivisionB.field();
         let present = all_robots();

@@ -1,4 +1,4 @@
-//! `ways`: how a ball is approached, pulled, pushed and kicked off walls, and where walls
+//! `methods`: how a ball is approached, pulled, pushed and kicked off walls, and where walls
 //! obstruct.
 
 use geometry::{Angle, Field, Point, Vector, math};
@@ -216,7 +216,7 @@ const CREEP: f32 = 0.2;
 /// The ball is ahead of where it is shown by how far it moves in this time, s: camera frame, radio, a step;
 /// estimate.
 const LAG: f32 = 0.05;
-/// It ends this far before the place, m: within what the rules allow, and half a second sooner.
+/// A push ends this far before the place, m: within what the rules allow, and half a second sooner.
 const SHORT: f32 = 0.07;
 /// A push aims this far ahead on the ball's path, m: no less than a robot takes to brake.
 const AHEAD: f32 = 0.7;
@@ -227,7 +227,7 @@ const ESCAPED: f32 = 0.5;
 const BEHIND: f32 = BALL_AT + 0.1;
 /// A body, and room to get there, m.
 const BODY: f32 = ROBOT_RADIUS + 0.03;
-/// So much less is needed to kick than to go around, m.
+/// Room that a kick needs less than going around, m.
 const TIGHT: f32 = 0.02;
 /// A ball this near a wall leaves no room for a body beside it that turns, m; …
 const WALL_ROOM: f32 = 0.16;

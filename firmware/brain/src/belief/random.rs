@@ -1,13 +1,13 @@
-//! `chance`: seeded normal numbers for tests of the estimators.
+//! `random`: seeded normal numbers for tests of the estimators.
 
 use geometry::math;
 use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro128PlusPlus;
 
 /// A stream of random numbers.
-pub(super) struct Chance(Xoshiro128PlusPlus);
+pub(super) struct RandomStream(Xoshiro128PlusPlus);
 
-impl Chance {
+impl RandomStream {
     pub(super) fn new(seed: u64) -> Self {
         Self(Xoshiro128PlusPlus::seed_from_u64(seed))
     }
