@@ -225,10 +225,10 @@ impl Description for FreePathRule {
 /// A permutation of the three criteria, with or without brackets.
 fn parse_ranking(value: &str) -> Option<[Criterion; 3]> {
     let inner = value.strip_prefix('[').and_then(|v| v.strip_suffix(']')).unwrap_or(value);
-    let mut description = inner.split(',').map(|label| Criterion::parse(label.trim()));
-    let ranking = [description.next()??, description.next()??, description.next()??];
+    let mut criteria = inner.split(',').map(|name| Criterion::parse(name.trim()));
+    let ranking = [criteria.next()??, criteria.next()??, criteria.next()??];
     let all_different = ranking[0] != ranking[1] && ranking[1] != ranking[2] && ranking[0] != ranking[2];
-    (description.next().is_none() && all_different).then_some(ranking)
+    (criteria.next().is_none() && all_different).then_some(ranking)
 }
 
 fn parse_number(value: &str, allowed: impl Fn(f32) -> bool) -> Option<f32> {

@@ -389,11 +389,11 @@ mod tests {
     #[test]
     fn a_broken_line_is_reported_with_its_place_and_without_its_length() {
         let refused = |text: &str| TeamSettings::from_toml(text).unwrap_err().description;
-        let description = refused(&format!("colour = \"blue\"\nname = {}\n", "x".repeat(1_000_000)));
-        assert!(description.starts_with("line 2: "), "{description}");
-        assert!(description.len() < 600, "{} bytes", description.len());
-        let description = refused("name = \"a\"\nkeeper = \u{1b}[2J\u{1b}]0;pwn\u{7}");
-        assert!(description.contains("line 2") && !description.contains(char::is_control), "{description:?}");
+        let error = refused(&format!("colour = \"blue\"\nname = {}\n", "x".repeat(1_000_000)));
+        assert!(error.starts_with("line 2: "), "{error}");
+        assert!(error.len() < 600, "{} bytes", error.len());
+        let error = refused("name = \"a\"\nkeeper = \u{1b}[2J\u{1b}]0;pwn\u{7}");
+        assert!(error.contains("line 2") && !error.contains(char::is_control), "{error:?}");
     }
 
     #[test]

@@ -29,8 +29,8 @@ fn worked(name: &str) -> Vec<u8> {
         .lines()
         .skip(1)
         .flat_map(|line| line.split(';').next().unwrap_or("").split_whitespace())
-        .filter(|label| *label != "|")
-        .map(|label| u8::from_str_radix(label, 16).unwrap_or_else(|_| panic!("{name}: {label} is no byte")))
+        .filter(|byte| *byte != "|")
+        .map(|byte| u8::from_str_radix(byte, 16).unwrap_or_else(|_| panic!("{name}: {byte} is no byte")))
         .collect()
 }
 

@@ -13,7 +13,7 @@ fn main() -> ExitCode {
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
             "--write" => write = true,
-            "--seeds" => match arguments.next().and_then(|label| label.parse().ok()).filter(|n| *n > 0) {
+            "--seeds" => match arguments.next().and_then(|number| number.parse().ok()).filter(|n| *n > 0) {
                 Some(n) => seeds = n,
                 None => return usage(),
             },

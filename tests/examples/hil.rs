@@ -9,9 +9,9 @@ use match_tests::hil::Pair;
 
 fn main() -> ExitCode {
     let (mut seconds, mut seed) = (20.0, 1);
-    let mut description = std::env::args().skip(1);
-    while let Some(label) = description.next() {
-        let value = description.next();
+    let mut arguments = std::env::args().skip(1);
+    while let Some(label) = arguments.next() {
+        let value = arguments.next();
         let parsed: Option<f64> = value.as_deref().and_then(|value| value.parse().ok());
         match (label.as_str(), parsed.filter(|number| *number > 0.0)) {
             ("--seconds", Some(number)) => seconds = number,

@@ -13,9 +13,9 @@ const BATCH: u64 = 50_000;
 fn main() -> ExitCode {
     let jobs = std::thread::available_parallelism().map_or(1, std::num::NonZero::get) as u64;
     let (mut count, mut seed, mut threads) = (1_000_000_u64, 0_u64, jobs);
-    let mut description = std::env::args().skip(1);
-    while let Some(label) = description.next() {
-        let value = description.next().and_then(|value| value.parse().ok());
+    let mut arguments = std::env::args().skip(1);
+    while let Some(label) = arguments.next() {
+        let value = arguments.next().and_then(|value| value.parse().ok());
         match (label.as_str(), value) {
             ("--count", Some(value)) => count = value,
             ("--seed", Some(value)) => seed = value,

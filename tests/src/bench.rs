@@ -5,11 +5,11 @@ use std::process::ExitCode;
 /// Runs a bench with its arguments; `done` is `None` where they are wrong. Exit code 1 where it fails, 2 for
 /// wrong usage.
 pub fn run(name: &str, usage: &str, done: impl FnOnce(&[&str]) -> Option<Result<(), String>>) -> ExitCode {
-    let description: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
     // Cargo's own argument.
-    let description: Vec<&str> =
-        description.iter().map(String::as_str).filter(|label| *label != "--bench").collect();
-    match done(&description) {
+    let arguments: Vec<&str> =
+        arguments.iter().map(String::as_str).filter(|argument| *argument != "--bench").collect();
+    match done(&arguments) {
         None => {
             eprintln!("{usage}");
             ExitCode::from(2)

@@ -58,8 +58,8 @@ impl Source {
     pub fn read(path: &Path) -> Self {
         let bytes = fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         let relative = path.strip_prefix(root()).unwrap_or(path);
-        let description: Vec<_> = relative.iter().map(|label| label.to_string_lossy()).collect();
-        Self { path: description.join("/"), text: String::from_utf8_lossy(&bytes).into_owned() }
+        let parts: Vec<_> = relative.iter().map(|part| part.to_string_lossy()).collect();
+        Self { path: parts.join("/"), text: String::from_utf8_lossy(&bytes).into_owned() }
     }
 
     /// Whether it is code of one of the crates in these directories, and not a file of tests.

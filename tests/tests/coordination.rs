@@ -177,7 +177,7 @@ struct Counters {
 
 /// Runs every seed, or the one that ONETWO_SEED names; panics with the first seed that fails.
 fn for_each_seed(trial: impl Fn(u64) -> Result<Counters, String>) -> Counters {
-    let number = |name| std::env::var(name).ok().and_then(|label| label.parse::<u64>().ok());
+    let number = |name| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
     let all = 0..number("ONETWO_SEEDS").unwrap_or(SEEDS);
     let seeds = number("ONETWO_SEED").map_or(all, |seed| seed..seed + 1);
     let mut sum = Counters::default();

@@ -24,7 +24,7 @@ fn every_target_has_true_messages_to_begin_with_and_every_worked_example_is_one_
         let (name, text) = example.split_once('\n').expect("a name");
         let text = text.split("```").next().unwrap_or("");
         let bytes: Vec<u8> =
-            text.split_whitespace().filter_map(|label| u8::from_str_radix(label, 16).ok()).collect();
+            text.split_whitespace().filter_map(|byte| u8::from_str_radix(byte, 16).ok()).collect();
         assert!(all.contains(&&bytes), "{name} is not in protocol/fuzz/corpus");
     }
     // The targets accept valid messages.

@@ -16,7 +16,7 @@ const SECONDS: f64 = 4.0;
 
 #[test]
 fn six_images_in_lockstep_play_the_match_that_six_native_brains_play() {
-    let seconds = std::env::var("ONETWO_MATCH_SECONDS").ok().and_then(|label| label.parse().ok());
+    let seconds = std::env::var("ONETWO_MATCH_SECONDS").ok().and_then(|text| text.parse().ok());
     let root = firmware_build::workspace_root();
     let image = firmware_build::build_image(&root, firmware_build::ImageBody::Omni)
         .unwrap_or_else(|error| panic!("{error}"));

@@ -131,8 +131,8 @@ impl fmt::Display for Failure {
 pub(crate) fn line_of(command: &Command) -> String {
     let program = Path::new(command.get_program());
     let program = program.file_stem().unwrap_or(program.as_os_str());
-    let description = std::iter::once(program).chain(command.get_args());
-    description.map(OsStr::to_string_lossy).collect::<Vec<_>>().join(" ")
+    let parts = std::iter::once(program).chain(command.get_args());
+    parts.map(OsStr::to_string_lossy).collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]

@@ -76,8 +76,8 @@ fn run_tests(qemu: &Path, image: &Path, tests: &[OnTarget], arguments: &[String]
 
 /// Whether an argument names it, or none is given.
 fn is_chosen(name: &str, arguments: &[String]) -> bool {
-    let mut arguments = arguments.iter().filter(|label| !label.starts_with('-')).peekable();
-    arguments.peek().is_none() || arguments.any(|label| name.contains(label.as_str()))
+    let mut arguments = arguments.iter().filter(|argument| !argument.starts_with('-')).peekable();
+    arguments.peek().is_none() || arguments.any(|argument| name.contains(argument.as_str()))
 }
 
 #[cfg(test)]
@@ -86,7 +86,8 @@ mod tests {
 
     #[test]
     fn words_choose_by_a_part_of_the_name_and_options_choose_nothing() {
-        let arguments = |list: &[&str]| list.iter().map(|label| (*label).to_owned()).collect::<Vec<_>>();
+        let arguments =
+            |list: &[&str]| list.iter().map(|argument| (*argument).to_owned()).collect::<Vec<_>>();
         assert!(
             is_chosen("frames::a", &arguments(&[])) && is_chosen("frames::a", &arguments(&["--nocapture"]))
         );

@@ -51,8 +51,8 @@ fn answer(command: &mut Command) -> Result<String, Failure> {
 /// Name and version of each crate of a tree.
 fn crates(tree: &str) -> BTreeSet<(String, String)> {
     let lines = tree.lines().filter_map(|line| {
-        let mut description = line.split(' ');
-        Some((description.next()?.to_owned(), description.next()?.to_owned()))
+        let mut fields = line.split(' ');
+        Some((fields.next()?.to_owned(), fields.next()?.to_owned()))
     });
     lines.collect()
 }

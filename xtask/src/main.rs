@@ -151,7 +151,8 @@ mod tests {
 
     #[test]
     fn tasks_are_found_by_all_their_words_and_get_the_rest() {
-        let arguments = |list: &[&str]| list.iter().map(|label| (*label).to_owned()).collect::<Vec<_>>();
+        let arguments =
+            |list: &[&str]| list.iter().map(|argument| (*argument).to_owned()).collect::<Vec<_>>();
         assert_eq!(task("pictures"), Some(("pictures", arguments(&[]))));
         assert_eq!(task("budgets"), Some(("budgets", arguments(&[]))));
         assert_eq!(task("bench game"), Some(("bench game", arguments(&[]))));

@@ -37,7 +37,7 @@ impl Task {
         };
         let rest = arguments[task.name.split(' ').count()..].to_vec();
         let known = |label: &String| task.takes.split(['[', ']', '|', ' ']).any(|known| known == label);
-        match rest.iter().find(|label| !task.free && !known(label)) {
+        match rest.iter().find(|argument| !task.free && !known(argument)) {
             Some(label) => Err(format!("unknown argument `{label}`; `{}` takes {}", task.name, task.taken())),
             None => Ok((task, rest)),
         }
@@ -59,7 +59,7 @@ pub(crate) fn usage() -> String {
 
 /// Whether `--write` is among the arguments.
 fn writes(arguments: &[String]) -> bool {
-    arguments.iter().any(|label| label == "--write")
+    arguments.iter().any(|argument| argument == "--write")
 }
 
 const fn task(
@@ -128,7 +128,7 @@ static TASKS: [Task; 19] = [
         \x20                lies in out/matches. Some 490 matches, 45 minutes of one core; goes on where it was stopped, --fresh\n\
         \x20                begins anew (another commit's matches are refused)",
         |context, arguments| {
-            evaluation::write_matches(context, arguments.iter().any(|label| label == "--fresh"))
+            evaluation::write_matches(context, arguments.iter().any(|argument| argument == "--fresh"))
         },
     ),
     task(

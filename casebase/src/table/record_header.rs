@@ -88,14 +88,14 @@ impl RecordHeader {
     /// Positions of its robots relative to the case's ball.
     #[inline]
     pub(crate) fn positions<'a>(&self, places: &'a [u32]) -> Option<&'a [[i16; 2]]> {
-        let at = self.legs_at().wrapping_add(usize::from(self.legs) * (size_of::<RawLeg>() / LABEL));
+        let at = self.legs_at().wrapping_add(usize::from(self.legs) * (size_of::<RawLeg>() / WORD_LEN));
         records(places, at, self.teammates)
     }
 
     #[inline]
     fn legs_at(&self) -> usize {
         (self.places_at as usize)
-            .wrapping_add(usize::from(self.opponents) * (size_of::<OpponentRecord>() / LABEL))
+            .wrapping_add(usize::from(self.opponents) * (size_of::<OpponentRecord>() / WORD_LEN))
     }
 }
 
@@ -103,9 +103,9 @@ impl RecordHeader {
 #[inline]
 fn records<T: FromBytes + Immutable + KnownLayout>(places: &[u32], at: usize, count: u8) -> Option<&[T]> {
     let count = usize::from(count);
-    let description = places.get(at..)?.get(..count * (size_of::<T>() / LABEL))?;
-    <[T]>::ref_from_bytes_with_elems(description.as_bytes(), count).ok()
+    let words = places.get(at..)?.get(..count * (size_of::<T>() / WORD_LEN))?;
+    <[T]>::ref_from_bytes_with_elems(words.as_bytes(), count).ok()
 }
 
 /// Size of a unit of the places, bytes.
-const LABEL: usize = size_of::<u32>();
+const WORD_LEN: usize = size_of::<u32>();

@@ -19,8 +19,8 @@ fn only(rules: &str, cases: &[(&str, &str)]) -> Finding {
     let result = build(&Files::from_texts("test", rules, cases));
     let refused = result.is_err();
     let findings = result.map_or_else(|findings| findings, |library| library.findings);
-    let description: Vec<_> = findings.iter().map(ToString::to_string).collect();
-    assert_eq!(findings.len(), 1, "{}", description.join("\n"));
+    let texts: Vec<_> = findings.iter().map(ToString::to_string).collect();
+    assert_eq!(findings.len(), 1, "{}", texts.join("\n"));
     assert_eq!(refused, findings[0].severity == Severity::Error, "{}", findings[0]);
     assert_eq!(entry(findings[0].code).map(|entry| entry.severity), Some(findings[0].severity));
     findings[0].clone()

@@ -50,8 +50,8 @@ pub(crate) fn run_within(limit: Duration, command: &mut Command) -> Result<(), S
 /// The command as a user would type it: by the program's name, not by its path.
 pub(crate) fn line_of(command: &Command) -> String {
     let program = Path::new(command.get_program());
-    let description = std::iter::once(program.file_stem().unwrap_or_default()).chain(command.get_args());
-    description.map(|label| label.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" ")
+    let parts = std::iter::once(program.file_stem().unwrap_or_default()).chain(command.get_args());
+    parts.map(|part| part.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" ")
 }
 
 /// Path of the program, searched in `PATH` as a shell does.

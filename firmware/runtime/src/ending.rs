@@ -27,7 +27,7 @@ impl Ending<'_> {
 }
 
 fn fill(text: &mut [u8], pieces: &[&[u8]]) -> usize {
-    let bytes = pieces.iter().flat_map(|label| label.iter());
+    let bytes = pieces.iter().flat_map(|piece| piece.iter());
     text.iter_mut().zip(bytes).map(|(to, from)| *to = *from).count()
 }
 

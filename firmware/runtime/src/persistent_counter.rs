@@ -43,8 +43,8 @@ impl CounterCell {
 /// The bytes of a cell with this epoch.
 pub fn cell(epoch: u32) -> [u8; CELL_LEN] {
     let mut bytes = [EMPTY; CELL_LEN];
-    let description = MAGIC.into_iter().chain(epoch.to_le_bytes()).chain((!epoch).to_le_bytes());
-    bytes.iter_mut().zip(description).for_each(|(to, from)| *to = from);
+    let content = MAGIC.into_iter().chain(epoch.to_le_bytes()).chain((!epoch).to_le_bytes());
+    bytes.iter_mut().zip(content).for_each(|(to, from)| *to = from);
     bytes
 }
 

@@ -139,9 +139,9 @@ impl MotionTask {
 
 fn folded(state: &State<Field>) -> u32 {
     let State { position, velocity, acceleration } = *state;
-    let description =
+    let coordinates =
         [position.x(), position.y(), velocity.x(), velocity.y(), acceleration.x(), acceleration.y()];
-    description.into_iter().fold(0, |all: u32, label| all.rotate_left(5) ^ label.to_bits())
+    coordinates.into_iter().fold(0, |all: u32, coordinate| all.rotate_left(5) ^ coordinate.to_bits())
 }
 
 /// The worst case planned for (docs/architecture.md §9): 12 robots and 4 forbidden regions.
@@ -241,12 +241,12 @@ impl Counted {
 
     /// Reads a line of numbers.
     pub fn from_line(line: &str) -> Option<Self> {
-        let mut description = line.split(' ').map_while(|label| label.parse().ok());
-        let mut counted = Self { instructions: [0; _], found: description.next()? };
+        let mut numbers = line.split(' ').map_while(|number| number.parse().ok());
+        let mut counted = Self { instructions: [0; _], found: numbers.next()? };
         for instructions in &mut counted.instructions {
-            *instructions = description.next()?;
+            *instructions = numbers.next()?;
         }
-        description.next().is_none().then_some(counted)
+        numbers.next().is_none().then_some(counted)
     }
 }
 

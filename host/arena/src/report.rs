@@ -181,9 +181,9 @@ mod tests {
     fn numbers_read_as_people_write_them() {
         assert_eq!(serde_json::to_string(&in_seconds(23.44)).unwrap(), "23.44");
         assert_eq!(serde_json::to_string(&Backups(vec![3, 16])).unwrap(), r#"{"A":3,"B":16}"#);
-        let description = |s| serde_json::to_string(&Label(s)).unwrap();
+        let json = |s| serde_json::to_string(&Label(s)).unwrap();
         assert_eq!(
-            (description(Scenario::LeftSide), description(Scenario::Random)),
+            (json(Scenario::LeftSide), json(Scenario::Random)),
             ("2".to_owned(), "\"random\"".to_owned())
         );
     }

@@ -276,23 +276,19 @@ fn write_report(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> i
         let phase = format!("blocked for {:.1} s from {:.1} s", block.lasted_s, block.from_s);
         writeln!(out, "{phase}: {}", block.description)?;
     }
-    let mut description =
+    let mut text =
         if args.duration == 600.0 { String::new() } else { format!(" --duration {}", args.duration) };
     for (side, team) in [("blue", args.blue), ("yellow", args.yellow)] {
         if team != Team::Ours {
-            description.extend([" --", side, " ", team.label()]);
+            text.extend([" --", side, " ", team.label()]);
         }
     }
     for (side, tactics) in [("blue", args.blue_tactics), ("yellow", args.yellow_tactics)] {
         if tactics != Tactics::default() {
-            description.extend([" --", side, "-tactics ", &tactics.description()]);
+            text.extend([" --", side, "-tactics ", &tactics.description()]);
         }
     }
-    writeln!(
-        out,
-        "trace {}, to see it again: onetwo play --seed {}{description}",
-        report.trace_hash, args.seed
-    )
+    writeln!(out, "trace {}, to see it again: onetwo play --seed {}{text}", report.trace_hash, args.seed)
 }
 
 /// Prints events on stdout, or the progress on a terminal where only the report is wanted.

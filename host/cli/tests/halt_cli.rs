@@ -86,7 +86,7 @@ impl Field {
             match self.lines.recv_timeout(until.saturating_duration_since(Instant::now())) {
                 Ok(line) => {
                     self.output.push(line.clone());
-                    if arguments.iter().all(|label| line.contains(label)) {
+                    if arguments.iter().all(|part| line.contains(part)) {
                         return line;
                     }
                 }

@@ -304,8 +304,8 @@ fn a_log_cannot_speak_to_the_terminal_nor_write_lines_of_its_own() {
     assert_eq!(report["teams"]["blue"]["name"], hostile, "data is kept as it is");
     // Errors name files too, and so do findings about case files.
     let out = onetwo(&["replay", text(&scratch("\u{1b}[2Jno\nsuch.log"))]);
-    let description = String::from_utf8(out.stderr).unwrap();
-    assert_eq!((obeyed(&description), description.lines().count()), (None, 1), "{description:?}");
+    let stderr = String::from_utf8(out.stderr).unwrap();
+    assert_eq!((obeyed(&stderr), stderr.lines().count()), (None, 1), "{stderr:?}");
     let library = scratch("library-\u{1b}[31m");
     fs::create_dir_all(library.join("center")).unwrap();
     fs::write(library.join("league.toml"), "\u{1b}[2J = \"\u{1b}]0;x\u{7}\"").unwrap();
@@ -315,8 +315,8 @@ fn a_log_cannot_speak_to_the_terminal_nor_write_lines_of_its_own() {
     {
         let out = onetwo(&arguments);
         assert_ne!(out.status.code(), Some(0));
-        let description = String::from_utf8([out.stdout, out.stderr].concat()).unwrap();
-        assert!(!description.is_empty() && obeyed(&description).is_none(), "{description:?}");
+        let output = String::from_utf8([out.stdout, out.stderr].concat()).unwrap();
+        assert!(!output.is_empty() && obeyed(&output).is_none(), "{output:?}");
     }
 }
 
@@ -397,12 +397,12 @@ fn special_files_are_refused_by_what_they_are_wherever_a_file_is_read() {
         ];
         for arguments in all {
             let out = onetwo(&arguments);
-            let description = String::from_utf8_lossy(&[out.stdout, out.stderr].concat()).into_owned();
-            assert_ne!(out.status.code(), Some(0), "{arguments:?}: {description}");
+            let output = String::from_utf8_lossy(&[out.stdout, out.stderr].concat()).into_owned();
+            assert_ne!(out.status.code(), Some(0), "{arguments:?}: {output}");
             // Some verbs have no such flag for files: clap exits with 2.
             if out.status.code() == Some(1) {
                 let kind = if special.starts_with("/dev") { "this is a device" } else { "this is a pipe" };
-                assert!(description.contains(kind), "{arguments:?}: {description}");
+                assert!(output.contains(kind), "{arguments:?}: {output}");
             }
         }
     }

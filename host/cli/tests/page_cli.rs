@@ -58,8 +58,8 @@ fn robots(scene: &Value) -> usize {
 
 /// A match on a page of its own, four times as fast as the clock.
 fn played() -> Program {
-    let description = "play --duration 600 --seed 5 --listen 127.0.0.1:0 --speed 4";
-    Program::start(&description.split(' ').collect::<Vec<_>>())
+    let arguments = "play --duration 600 --seed 5 --listen 127.0.0.1:0 --speed 4";
+    Program::start(&arguments.split(' ').collect::<Vec<_>>())
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn a_match_is_displayed_stopped_and_begun_again() {
         paths.filter_map(Value::as_array).any(|line| line.len() > 3)
     });
     viewer.ask(r#"{"ask":"fly"}"#);
-    let refused = viewer.until(|label| label.get("refused").is_some());
+    let refused = viewer.until(|message| message.get("refused").is_some());
     assert!(refused["refused"].as_str().unwrap().contains("no request"), "{refused}");
 }
 
@@ -96,11 +96,11 @@ fn what_is_asked_of_a_robot_that_is_not_there_is_refused_with_a_reason() {
         r#"{"ask":"power","team":"yellow","id":15,"on":false}"#,
     ] {
         viewer.ask(asked);
-        let refused = viewer.until(|label| label.get("refused").is_some());
+        let refused = viewer.until(|message| message.get("refused").is_some());
         assert!(refused["refused"].as_str().unwrap().contains("has no robot 15"), "{asked}: {refused}");
     }
     viewer.ask("{\"ask\":\"referee\",\"command\":\"FLY\\u001b[2J\"}");
-    let refused = viewer.until(|label| label.get("refused").is_some());
+    let refused = viewer.until(|message| message.get("refused").is_some());
     let description = refused["refused"].as_str().unwrap();
     assert!(
         description.contains("makes no sense now") && !description.contains(char::is_control),
@@ -110,13 +110,13 @@ fn what_is_asked_of_a_robot_that_is_not_there_is_refused_with_a_reason() {
 
 #[test]
 fn a_page_on_the_network_is_looked_at_by_all_and_asked_by_those_with_its_token() {
-    let description = "play --duration 600 --seed 5 --listen 0.0.0.0:0";
-    let play = Program::start(&description.split(' ').collect::<Vec<_>>());
+    let arguments = "play --duration 600 --seed 5 --listen 0.0.0.0:0";
+    let play = Program::start(&arguments.split(' ').collect::<Vec<_>>());
     let token = play.token().expect("a token is printed with the address").to_owned();
     let mut unauthenticated = Viewer::of(&play);
     unauthenticated.until(|scene| robots(scene) == 12);
     unauthenticated.ask(r#"{"ask":"pause","on":true}"#);
-    let refused = unauthenticated.until(|label| label.get("refused").is_some());
+    let refused = unauthenticated.until(|message| message.get("refused").is_some());
     assert!(refused["refused"].as_str().unwrap().contains("?token="), "{refused}");
     let mut own = Viewer::with(&play, &format!("?token={token}"));
     own.ask(r#"{"ask":"pause","on":true}"#);
@@ -136,7 +136,7 @@ fn a_case_is_played_from_its_own_situation() {
     // Its own side is known after the first referee packet.
     viewer.until(|scene| robots(scene) == 12 && scene["t"].as_f64().unwrap() > 2.0);
     viewer.ask(r#"{"ask":"situation","name":"nowhere/nothing"}"#);
-    let refused = viewer.until(|label| label.get("refused").is_some());
+    let refused = viewer.until(|message| message.get("refused").is_some());
     assert!(refused["refused"].as_str().unwrap().contains("nowhere/nothing"), "{refused}");
     viewer.ask(r#"{"ask":"pause","on":true}"#);
     viewer.until(|scene| scene["paused"] == true);
@@ -167,9 +167,9 @@ fn a_taken_port_ends_a_match_with_a_word_about_what_to_do() {
         .args(["play", "--listen", first.address()])
         .output()
         .unwrap();
-    let description = String::from_utf8_lossy(&second.stderr);
-    assert_eq!(second.status.code(), Some(1), "{description}");
-    assert!(description.contains("another program") && description.contains("--listen"), "{description}");
+    let stderr = String::from_utf8_lossy(&second.stderr);
+    assert_eq!(second.status.code(), Some(1), "{stderr}");
+    assert!(stderr.contains("another program") && stderr.contains("--listen"), "{stderr}");
 }
 
 #[test]
@@ -181,7 +181,7 @@ fn a_real_field_is_halted_from_the_page_and_nothing_else() {
     let mut viewer = Viewer::of(&control);
     viewer.until(|scene| scene["t"].is_number());
     viewer.ask(r#"{"ask":"speed","factor":2}"#);
-    let refused = viewer.until(|label| label.get("refused").is_some());
+    let refused = viewer.until(|message| message.get("refused").is_some());
     assert!(refused["refused"].as_str().unwrap().contains("nothing but HALT"), "{refused}");
     viewer.ask(r#"{"ask":"halt"}"#);
     control.wait_for("HALT was asked for on the page");
@@ -220,7 +220,7 @@ fn a_recording_is_kept_whole_for_who_looks_through_it() {
     let last = viewer.until(|scene| scene["t"].as_f64().is_some_and(|t| t > 20.0));
     assert!(robots(&last) > 0);
     viewer.ask(r#"{"ask":"halt"}"#);
-    let refused = viewer.until(|label| label.get("refused").is_some());
+    let refused = viewer.until(|message| message.get("refused").is_some());
     assert!(refused["refused"].as_str().unwrap().contains("recording"), "{refused}");
 }
 

@@ -173,7 +173,7 @@ fn without_a_game_controller_elsewhere_both_are_refused() {
             .output()
             .expect("the program runs");
         assert!(!output.status.success());
-        let description = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(description.contains("--referee none"), "{description}");
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(stderr.contains("--referee none"), "{stderr}");
     }
 }

@@ -87,8 +87,8 @@ fn an_event_is_found_and_the_field_displayed_as_it_was() {
     assert_eq!(second["at_s"].as_f64(), Some(stops[1]));
     assert_eq!((&second["phase"], &second["event"]), (&"stop".into(), &"STOP".into()));
     assert!(second["blue"].as_array().is_some_and(|robots| !robots.is_empty()));
-    let description = refused(&[&file, "--event", "stop", "--nth", "99"]);
-    assert!(description.contains("not 99") && description.contains("HALT"), "{description}");
+    let error = refused(&[&file, "--event", "stop", "--nth", "99"]);
+    assert!(error.contains("not 99") && error.contains("HALT"), "{error}");
 }
 
 #[test]

@@ -133,6 +133,6 @@ fn a_missing_emulator_is_reported_with_what_to_install() {
         .output()
         .expect("the program starts");
     assert_eq!(out.status.code(), Some(1));
-    let description = String::from_utf8(out.stderr).expect("words in UTF-8");
-    assert!(description.contains("qemu-system-arm") && description.contains("install"), "{description}");
+    let stderr = String::from_utf8(out.stderr).expect("words in UTF-8");
+    assert!(stderr.contains("qemu-system-arm") && stderr.contains("install"), "{stderr}");
 }

@@ -182,9 +182,9 @@ fn without_the_token_everyone_looks_on_and_no_one_asks() {
     for query in ["", "?token=", "?token=0123", "?other=1", &format!("{right}0")] {
         let mut unauthenticated = viewer(&page, query).expect("looking is free");
         unauthenticated.send(halt.clone()).unwrap();
-        let description = refused(&mut unauthenticated);
-        assert!(description.contains("?token="), "{query}: {description}");
-        assert!(!description.contains(token.as_str()), "the token is told to nobody: {description}");
+        let answer = refused(&mut unauthenticated);
+        assert!(answer.contains("?token="), "{query}: {answer}");
+        assert!(!answer.contains(token.as_str()), "the token is told to nobody: {answer}");
     }
     assert!(get(at, &format!("/api/state{right}")).contains(r#""may_ask":true"#));
     let mut own = viewer(&page, &right).unwrap();

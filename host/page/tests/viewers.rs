@@ -95,7 +95,7 @@ fn ask(at: SocketAddr, description: &str) -> (u16, String) {
     let mut bytes = Vec::new();
     let _ = stream.read_to_end(&mut bytes);
     let answer = String::from_utf8_lossy(&bytes).into_owned();
-    let status = answer.split(' ').nth(1).and_then(|label| label.parse().ok()).unwrap_or(0);
+    let status = answer.split(' ').nth(1).and_then(|code| code.parse().ok()).unwrap_or(0);
     (status, answer.split_once("\r\n\r\n").map(|(_, body)| body.to_owned()).unwrap_or_default())
 }
 

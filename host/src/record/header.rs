@@ -349,8 +349,8 @@ mod tests {
         assert_eq!(reported.cases, Some(format!("{:08x}", case_library::division_b().hash())));
         assert!(reported.settings(League::DivisionB, TeamKey::ZERO).is_ok());
         reported.cases = Some("01234567".to_owned());
-        let description = reported.settings(League::DivisionB, TeamKey::ZERO).unwrap_err().to_string();
-        assert!(description.contains("01234567"), "{description}");
+        let error = reported.settings(League::DivisionB, TeamKey::ZERO).unwrap_err().to_string();
+        assert!(error.contains("01234567"), "{error}");
     }
 
     #[test]

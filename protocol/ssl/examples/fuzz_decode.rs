@@ -54,9 +54,9 @@ fn main() -> ExitCode {
 
 fn arguments() -> Option<(u64, u64)> {
     let (mut count, mut seed) = (1_000_000, 1);
-    let mut description = std::env::args().skip(1);
-    while let Some(label) = description.next() {
-        let value = description.next()?.parse().ok()?;
+    let mut arguments = std::env::args().skip(1);
+    while let Some(label) = arguments.next() {
+        let value = arguments.next()?.parse().ok()?;
         match label.as_str() {
             "--count" => count = value,
             "--seed" => seed = value,

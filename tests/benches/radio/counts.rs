@@ -38,7 +38,7 @@ pub(crate) fn counted() -> Result<Vec<Count>, String> {
 }
 
 fn numbers(line: &str) -> Option<[u32; 3]> {
-    let numbers: Vec<u32> = line.split(' ').map_while(|label| label.parse().ok()).collect();
+    let numbers: Vec<u32> = line.split(' ').map_while(|number| number.parse().ok()).collect();
     numbers.try_into().ok()
 }
 

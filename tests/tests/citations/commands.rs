@@ -66,14 +66,14 @@ impl Known {
     fn fault(&self, command: &str) -> Option<String> {
         let ends = |label: &&str| !matches!(*label, "|" | ">" | "<" | "&&" | ";" | "#" | "\\" | "…");
         let arguments: Vec<_> =
-            command.split_whitespace().skip_while(|label| *label == "$").take_while(ends).collect();
+            command.split_whitespace().skip_while(|word| *word == "$").take_while(ends).collect();
         match arguments.as_slice() {
             ["onetwo", rest @ ..] => self.of_program(rest),
             // A command that continues with `…` names several.
             ["cargo", "xtask", rest @ ..] if command.contains('…') && self.begins(&rest.join(" ")) => None,
             ["cargo", "xtask", rest @ ..] => self.of_xtask(rest),
             ["cargo", "run" | "test", rest @ ..] => {
-                let (own, program) = match rest.iter().position(|label| *label == "--") {
+                let (own, program) = match rest.iter().position(|word| *word == "--") {
                     Some(at) => (&rest[..at], Some(&rest[at + 1..])),
                     None => (rest, None),
                 };
@@ -93,7 +93,7 @@ impl Known {
             return (!matches!(*verb, "--version" | "--help")).then(|| format!("no flag `{verb}`"));
         }
         let Some(below) = self.verbs.get(*verb) else { return Some(format!("no verb `{verb}`")) };
-        let next = rest.first().filter(|label| label.chars().all(|c| c.is_ascii_lowercase()));
+        let next = rest.first().filter(|word| word.chars().all(|c| c.is_ascii_lowercase()));
         if let Some(next) = next.filter(|next| !below.is_empty() && !below.contains(**next)) {
             return Some(format!("`{verb}` has no verb `{next}`"));
         }
@@ -157,7 +157,7 @@ impl Known {
 }
 
 fn unknown_flag(arguments: &[&str], known: impl Fn(&str) -> bool) -> Option<String> {
-    let flags = arguments.iter().filter_map(|label| label.strip_prefix("--"));
+    let flags = arguments.iter().filter_map(|argument| argument.strip_prefix("--"));
     let names = flags.map(|flag| flag.split(|c: char| !c.is_ascii_alphanumeric() && c != '-').next());
     let mut names = names.map(Option::unwrap_or_default).filter(|flag| !flag.is_empty());
     names.find(|flag| !known(flag)).map(|flag| format!("no flag `--{flag}`"))

@@ -37,13 +37,13 @@ impl Names {
 /// Names that a file defines.
 fn defined(text: &str) -> impl Iterator<Item = String> {
     text.lines().filter_map(|line| {
-        let mut description = line.split_whitespace().skip_while(|label| {
+        let mut words = line.split_whitespace().skip_while(|label| {
             label.starts_with("pub") || matches!(*label, "unsafe" | "async") || label.starts_with("#[")
         });
-        let kind = description.next()?;
+        let kind = words.next()?;
         let kinds = ["struct", "enum", "trait", "fn", "mod", "const", "static", "type"];
-        let name = description.next().filter(|_| kinds.contains(&kind))?;
-        let name = if name == "fn" { description.next()? } else { name };
+        let name = words.next().filter(|_| kinds.contains(&kind))?;
+        let name = if name == "fn" { words.next()? } else { name };
         Some(name.split(|c: char| !c.is_alphanumeric() && c != '_').next()?.to_owned())
     })
 }

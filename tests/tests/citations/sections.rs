@@ -99,8 +99,8 @@ impl Marks {
         let mut findings = Vec::new();
         for (number, line) in (1..).zip(source.text.lines()) {
             let Some((_, comment)) = line.split_once("//") else { continue };
-            let description = comment.split(|c: char| !c.is_alphanumeric() && c != '_');
-            for mark in description.filter(|label| is_mark(label)).filter(|label| !self.0.contains(*label)) {
+            let words = comment.split(|c: char| !c.is_alphanumeric() && c != '_');
+            for mark in words.filter(|label| is_mark(label)).filter(|label| !self.0.contains(*label)) {
                 let fix = "docs/papers.md has them all; a pin or a domain is written otherwise";
                 findings.push(source.at(number, &format!("no mark `{mark}`"), fix));
             }

@@ -77,8 +77,8 @@ scope = [300, 300]
 /// A library from memory; a finding ends the test.
 pub(crate) fn library(cases: &[(&str, &str)]) -> Library {
     build(&Files::from_texts("test", LEAGUE, cases)).unwrap_or_else(|findings| {
-        let description: Vec<_> = findings.iter().map(ToString::to_string).collect();
-        panic!("{}", description.join("\n"))
+        let texts: Vec<_> = findings.iter().map(ToString::to_string).collect();
+        panic!("{}", texts.join("\n"))
     })
 }
 

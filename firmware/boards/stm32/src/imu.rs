@@ -104,11 +104,11 @@ impl Imu {
 
 /// Decodes 16-bit values, high byte first.
 fn description(raw: [u8; 12]) -> [i16; 6] {
-    let mut description = [0; 6];
-    for (label, pair) in description.iter_mut().zip(raw.as_chunks().0) {
+    let mut bytes = [0; 6];
+    for (label, pair) in bytes.iter_mut().zip(raw.as_chunks().0) {
         *label = i16::from_be_bytes(*pair);
     }
-    description
+    bytes
 }
 
 /// SPI clock; the sensor allows 24 MHz.

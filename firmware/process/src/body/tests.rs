@@ -140,8 +140,8 @@ fn trap_09_the_answers_that_er_forces_simulator_really_gave_are_felt() {
         let lines: Vec<(u64, &str)> = text
             .lines()
             .filter_map(|line| {
-                let mut description = line.split_whitespace();
-                let (at, port, hex) = (description.next()?, description.next()?, description.next()?);
+                let mut fields = line.split_whitespace();
+                let (at, port, hex) = (fields.next()?, fields.next()?, fields.next()?);
                 (port == "10301").then(|| ((at.parse::<f64>().unwrap() * 1e6) as u64, hex))
             })
             .collect();

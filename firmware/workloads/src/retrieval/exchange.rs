@@ -87,7 +87,7 @@ impl Found {
         }
     }
 
-    fn description(self) -> [u32; 5] {
+    fn numbers(self) -> [u32; 5] {
         let [cost, exponent, similarity] = self.bits;
         [self.case, cost, exponent, similarity, self.players]
     }
@@ -123,10 +123,10 @@ impl Answer {
 impl fmt::Display for Answer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let found = [self.best, self.counted, self.scanned];
-        let description =
-            found.into_iter().flat_map(Found::description).chain([self.candidates]).chain(self.instructions);
-        for (i, label) in description.enumerate() {
-            write!(f, "{}{label}", if i == 0 { "" } else { " " })?;
+        let numbers =
+            found.into_iter().flat_map(Found::numbers).chain([self.candidates]).chain(self.instructions);
+        for (i, number) in numbers.enumerate() {
+            write!(f, "{}{number}", if i == 0 { "" } else { " " })?;
         }
         Ok(())
     }
@@ -136,8 +136,8 @@ impl FromStr for Answer {
     type Err = ();
 
     fn from_str(line: &str) -> Result<Self, ()> {
-        let mut description = line.split(' ').map(|label| label.parse::<u32>().map_err(|_| ()));
-        let mut next = || description.next().ok_or(())?;
+        let mut numbers = line.split(' ').map(|number| number.parse::<u32>().map_err(|_| ()));
+        let mut next = || numbers.next().ok_or(())?;
         let mut found = [Found::default(); 3];
         for found in &mut found {
             *found = Found::from_description([next()?, next()?, next()?, next()?, next()?]);
@@ -145,7 +145,7 @@ impl FromStr for Answer {
         let [best, counted, scanned] = found;
         let answer =
             Self { best, counted, candidates: next()?, scanned, instructions: [next()?, next()?, next()?] };
-        if description.next().is_none() { Ok(answer) } else { Err(()) }
+        if numbers.next().is_none() { Ok(answer) } else { Err(()) }
     }
 }
 

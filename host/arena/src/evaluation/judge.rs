@@ -85,8 +85,8 @@ const LINES: &[Entry] = &[
             let shares = each(Scenario::PAPER, share)?;
             let least = shares.iter().copied().fold(f64::INFINITY, f64::min);
             let within = shares.iter().all(|share| (50.0..=60.0).contains(share));
-            let description = shares.iter().map(|share| format!("{share:.1} %"));
-            Some((within && shares[3] <= least + 3.0, description.collect::<Vec<_>>().join(", ")))
+            let texts = shares.iter().map(|share| format!("{share:.1} %"));
+            Some((within && shares[3] <= least + 3.0, texts.collect::<Vec<_>>().join(", ")))
         },
     ),
     ("e", "reactive: B backs up 3.5 to 7 times as often as A, except in scenario 4", |r| {
@@ -219,10 +219,10 @@ fn each<T, V>(items: impl IntoIterator<Item = T>, of: impl FnMut(T) -> Option<V>
 }
 
 fn evidence_text(cells: &[Cell]) -> String {
-    let description = cells.iter().map(|Cell { name, first, second, difference, p }| {
+    let lines = cells.iter().map(|Cell { name, first, second, difference, p }| {
         format!("{name}: {first:.1} - {second:.1} = {difference:+.1}, {}", p_text(*p))
     });
-    description.collect::<Vec<_>>().join("; ")
+    lines.collect::<Vec<_>>().join("; ")
 }
 
 fn numbers(values: &[f64], decimals: usize) -> String {

@@ -221,10 +221,10 @@ mod tests {
         let title =
             format!("Table 1: defender and goalie; 30 trials a row, world {world}, in brackets the paper's");
         assert_eq!(lines[0], title);
-        let description = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
-        assert_eq!(description(lines[2])[..4], ["2", "cbr", "90.0", "(26)***"]);
-        assert_eq!(description(lines[3])[..3], ["reactive", "80.0", "(25)***"]);
-        assert_eq!(description(lines[4])[..5], ["cbr", "-", "reactive", "+10.0", "+0.0"]);
+        let fields = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+        assert_eq!(fields(lines[2])[..4], ["2", "cbr", "90.0", "(26)***"]);
+        assert_eq!(fields(lines[3])[..3], ["reactive", "80.0", "(25)***"]);
+        assert_eq!(fields(lines[4])[..5], ["cbr", "-", "reactive", "+10.0", "+0.0"]);
         assert_eq!(lines[2].find("90.0"), lines[3].find("80.0"), "{text}");
         assert!(text.contains("Table 2") && text.contains("Table 3") && !text.contains("Table 4"), "{text}");
     }

@@ -313,17 +313,17 @@ pub(super) mod tests {
         let kept = parse::<TrialRow>(Path::new("x.csv"), file(&csv).as_bytes()).unwrap().unwrap();
         assert_eq!(kept.rows.len(), 1);
         for wrong in ["NaN", "nan", "inf", "-inf", "infinity", "1e999"] {
-            let description = refused(&file(&csv.replace("10.125", wrong)));
-            assert!(description.starts_with("x.csv:3: time_s is "), "{wrong}: {description}");
-            assert!(description.contains("not a finite number"), "{wrong}: {description}");
+            let error = refused(&file(&csv.replace("10.125", wrong)));
+            assert!(error.starts_with("x.csv:3: time_s is "), "{wrong}: {error}");
+            assert!(error.contains("not a finite number"), "{wrong}: {error}");
         }
     }
 
     #[cfg(unix)]
     #[test]
     fn a_device_is_no_ledger() {
-        let description = read::<TrialRow>(Path::new("/dev/zero")).unwrap_err().to_string();
-        assert!(description.contains("a device, not a regular file"), "{description}");
+        let error = read::<TrialRow>(Path::new("/dev/zero")).unwrap_err().to_string();
+        assert!(error.contains("a device, not a regular file"), "{error}");
     }
 
     #[test]

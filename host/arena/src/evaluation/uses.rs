@@ -89,14 +89,14 @@ pub fn uses_to_csv(uses: &[CaseUse]) -> Result<Vec<u8>, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let columns = ["profile", "configuration", "approach", "case", "retrieved"].into_iter();
     let outcomes = OUTCOMES.iter().map(|outcome| outcome.label());
-    let outcomes = outcomes.map(|label| format!("trials_{label}"));
+    let outcomes = outcomes.map(|outcome| format!("trials_{outcome}"));
     let header = columns.chain(CycleEnd::DESCRIPTION).chain(["trials"]).map(str::to_owned).chain(outcomes);
     writer.write_record(header)?;
     for case in uses {
         let CaseUse { profile, configuration, approach, case, retrieved, ends, trials, outcomes } = case;
-        let description = [profile.label(), configuration.label(), approach_label(*approach), case];
+        let labels = [profile.label(), configuration.label(), approach_label(*approach), case];
         let counts = [retrieved].into_iter().chain(ends).chain([trials]).chain(outcomes);
-        writer.write_record(description.map(str::to_owned).into_iter().chain(counts.map(u32::to_string)))?;
+        writer.write_record(labels.map(str::to_owned).into_iter().chain(counts.map(u32::to_string)))?;
     }
     writer.into_inner().map_err(|error| error.into_error().into())
 }

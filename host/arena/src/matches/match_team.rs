@@ -118,8 +118,8 @@ impl TryFrom<String> for MatchTeam {
 
 /// Names of the enabled parts, from [`Tactics::description`]: a part that is added there is listed here too.
 fn parts(tactics: Tactics) -> BTreeSet<String> {
-    let description = tactics.description();
-    description.split(',').filter(|label| *label != "none").map(str::to_owned).collect()
+    let names = tactics.description();
+    names.split(',').filter(|name| *name != "none").map(str::to_owned).collect()
 }
 
 fn with_parts(parts: &BTreeSet<String>) -> Result<Tactics, String> {

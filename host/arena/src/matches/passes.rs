@@ -41,10 +41,10 @@ pub(super) fn fates_column(passes: &PassCounters) -> String {
 /// 10 that did.
 pub(super) fn calibration_column(passes: &PassCounters) -> String {
     let bins = passes.calibration.iter().enumerate().filter(|(_, bin)| bin.passes > 0);
-    let description: Vec<_> = bins
+    let texts: Vec<_> = bins
         .map(|(tenth, bin)| format!("{tenth}:{}:{}:{}", bin.passes, bin.predicted, bin.received))
         .collect();
-    description.join(" ")
+    texts.join(" ")
 }
 
 /// Parses the two columns.
@@ -59,13 +59,13 @@ pub(super) fn read(fates: &str, calibration: &str) -> PassCounters {
         }
     }
     for bin in calibration.split_whitespace() {
-        let mut description = bin.split(':');
-        let tenth = description.next().and_then(|label| label.parse::<usize>().ok());
+        let mut fields = bin.split(':');
+        let tenth = fields.next().and_then(|field| field.parse::<usize>().ok());
         let Some(slot) = tenth.and_then(|tenth| passes.calibration.get_mut(tenth)) else { continue };
-        let mut label = || description.next();
-        slot.passes += label().and_then(|label| label.parse().ok()).unwrap_or(0);
-        slot.predicted += label().and_then(|label| label.parse::<f64>().ok()).unwrap_or(0.0);
-        slot.received += label().and_then(|label| label.parse().ok()).unwrap_or(0);
+        let mut next = || fields.next();
+        slot.passes += next().and_then(|field| field.parse().ok()).unwrap_or(0);
+        slot.predicted += next().and_then(|field| field.parse::<f64>().ok()).unwrap_or(0.0);
+        slot.received += next().and_then(|field| field.parse().ok()).unwrap_or(0);
     }
     passes
 }

@@ -210,6 +210,6 @@ impl Entry for MatchRow {
 }
 
 fn listed(fouls: &BTreeMap<&'static str, u32>) -> String {
-    let description: Vec<_> = fouls.iter().map(|(kind, n)| format!("{kind}:{n}")).collect();
-    description.join(" ")
+    let texts: Vec<_> = fouls.iter().map(|(kind, n)| format!("{kind}:{n}")).collect();
+    texts.join(" ")
 }

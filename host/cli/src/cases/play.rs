@@ -73,14 +73,14 @@ pub(super) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
         return write_story(&case_trial, &cases, &oppositions);
     }
     let scores = play(args, &case_trial, &cases, &oppositions)?;
-    let description = if args.json {
+    let output = if args.json {
         serde_json::to_string(&scores).map_err(|error| Failure::Output(error.into()))? + "\n"
     } else if args.markdown {
         args.heading(&case_trial, &scores) + &arena::markdown(&scores)
     } else {
         arena::markdown(&scores)
     };
-    print_text(&description)?;
+    print_text(&output)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -74,11 +74,10 @@ mod tests {
         let (zeros, own) = ("0".repeat(32), format!("{}07", "0".repeat(30)));
         for robots in ["udp://127.0.0.1:9", "serial:/dev/ttyACM0"] {
             for key in [None, Some(&*zeros)] {
-                let description = key_for(robots, key, false).unwrap_err();
+                let error = key_for(robots, key, false).unwrap_err();
                 assert!(
-                    description.contains("openssl rand -hex 16")
-                        && description.contains("--insecure-zero-key"),
-                    "{description}"
+                    error.contains("openssl rand -hex 16") && error.contains("--insecure-zero-key"),
+                    "{error}"
                 );
                 assert!(key_for(robots, key, true) == Ok(TeamKey::ZERO));
             }

@@ -218,10 +218,10 @@ mod tests {
         // 100 snapshots of 290 bytes in 8 frames.
         let counts =
             OutCounts { snapshots: 1_100, superseded: 460, frames: 5_800, bytes: 229_000, side_dropped: 0 };
-        let description = too_slow(&line, before, counts, Duration::from_secs(1)).expect("it is too slow");
+        let warning = too_slow(&line, before, counts, Duration::from_secs(1)).expect("it is too slow");
         assert!(
-            description.contains("needs 306000 bit/s") && description.contains("serial:/dev/ttyACM0:460800"),
-            "{description}"
+            warning.contains("needs 306000 bit/s") && warning.contains("serial:/dev/ttyACM0:460800"),
+            "{warning}"
         );
         let kept_up = OutCounts { superseded: 405, ..counts };
         assert_eq!(too_slow(&line, before, kept_up, Duration::from_secs(1)), None);

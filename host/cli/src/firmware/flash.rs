@@ -65,13 +65,13 @@ pub(super) fn run(args: &FlashArgs) -> Result<(), Failure> {
 fn downloads(args: &FlashArgs, image: &Path) -> Vec<Vec<String>> {
     let chip = args.chip.as_deref().unwrap_or(CHIP);
     let call = |file: &Path, more: &[&str]| {
-        let mut description = vec!["download".to_owned(), "--chip".to_owned(), chip.to_owned()];
+        let mut arguments = vec!["download".to_owned(), "--chip".to_owned(), chip.to_owned()];
         if let Some(probe) = &args.probe {
-            description.extend(["--probe".to_owned(), probe.clone()]);
+            arguments.extend(["--probe".to_owned(), probe.clone()]);
         }
-        description.extend(more.iter().map(|label| (*label).to_owned()));
-        description.push(file.display().to_string());
-        description
+        arguments.extend(more.iter().map(|argument| (*argument).to_owned()));
+        arguments.push(file.display().to_string());
+        arguments
     };
     let page = args.page.as_deref().map(|file| {
         let address = format!("{:#010x}", args.page_address.unwrap_or(PAGE_ADDRESS));

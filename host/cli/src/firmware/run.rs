@@ -31,7 +31,7 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     let page = args.page.as_deref().map(|file| check(file).map(|()| file)).transpose()?;
     let qemu = ensure_qemu(Install::ForUser).map_err(failed)?;
     let mut command = Command::new(qemu);
-    command.args(description(&build(Program::Free)?, page, &args.serial)).stdin(Stdio::null());
+    command.args(qemu_arguments(&build(Program::Free)?, page, &args.serial)).stdin(Stdio::null());
     let status = command.status().map_err(FirmwareError::Emulator)?;
     if status.success() { Ok(()) } else { Err(failed(FirmwareError::Ended(status))) }
 }
@@ -46,20 +46,20 @@ fn check(file: &Path) -> Result<(), Failure> {
 }
 
 /// Arguments of QEMU.
-fn description(image: &Path, page: Option<&Path>, serial: &str) -> Vec<String> {
-    let mut description: Vec<String> =
+fn qemu_arguments(image: &Path, page: Option<&Path>, serial: &str) -> Vec<String> {
+    let mut arguments: Vec<String> =
         ["-machine", MACHINE, "-display", "none", "-monitor", "none", "-serial", serial]
             .map(str::to_owned)
             .into();
-    description.extend(["-semihosting-config", "enable=on,target=native", "-kernel"].map(str::to_owned));
-    description.push(image.display().to_string());
+    arguments.extend(["-semihosting-config", "enable=on,target=native", "-kernel"].map(str::to_owned));
+    arguments.push(image.display().to_string());
     if let Some(file) = page {
         // In QEMU's options a doubled comma stands for one.
         let path = file.to_string_lossy().replace(',', ",,");
-        description.push("-device".to_owned());
-        description.push(format!("loader,file={path},addr={PAGE_ADDRESS:#x},force-raw=on"));
+        arguments.push("-device".to_owned());
+        arguments.push(format!("loader,file={path},addr={PAGE_ADDRESS:#x},force-raw=on"));
     }
-    description
+    arguments
 }
 
 #[cfg(test)]
@@ -68,11 +68,11 @@ mod tests {
 
     #[test]
     fn a_page_goes_to_its_address_even_from_a_path_with_a_comma() {
-        let description = description(Path::new("image"), Some(Path::new("a,b.page")), "null");
-        let last = description.last().map(String::as_str);
+        let arguments = qemu_arguments(Path::new("image"), Some(Path::new("a,b.page")), "null");
+        let last = arguments.last().map(String::as_str);
         let expected = format!("loader,file=a,,b.page,addr={PAGE_ADDRESS:#x},force-raw=on");
         assert_eq!(last, Some(expected.as_str()));
-        assert!(description.windows(2).any(|pair| pair == ["-serial", "null"]), "{description:?}");
+        assert!(arguments.windows(2).any(|pair| pair == ["-serial", "null"]), "{arguments:?}");
     }
 
     #[test]
@@ -81,6 +81,6 @@ mod tests {
         std::fs::write(&file, [0xff; 64]).expect("a temporary file");
         let message = check(&file).map_err(|error| error.to_string());
         std::fs::remove_file(&file).expect("our own file");
-        assert!(message.is_err_and(|description| description.contains("firmware provision")));
+        assert!(message.is_err_and(|error| error.contains("firmware provision")));
     }
 }

@@ -116,7 +116,7 @@ pub(crate) fn foul_or_event(name: &str) -> MatchEventKind {
 }
 
 fn whose(description: &str) -> Option<PageTeam> {
-    let has = |colour: &str| description.split(|c: char| !c.is_alphabetic()).any(|label| label == colour);
+    let has = |colour: &str| description.split(|c: char| !c.is_alphabetic()).any(|word| word == colour);
     match (has("blue"), has("yellow")) {
         (true, false) => Some(PageTeam::Blue),
         (false, true) => Some(PageTeam::Yellow),

@@ -98,7 +98,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
                 sheet.referee(&packet);
                 finder.read(&packet, record.at.0 as f64 * 1e-6, &mut match_events);
             }
-            let asked = |h: &&MatchEvent| args.event.as_deref().is_some_and(|label| is_meant(h, label));
+            let asked = |h: &&MatchEvent| args.event.as_deref().is_some_and(|name| is_meant(h, name));
             for match_event in match_events[before..].iter().filter(asked) {
                 met += 1;
                 if met == args.nth
@@ -144,12 +144,12 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         same_decisions: hosts.iter().all(|host| host.difference.is_none()) && strays == 0,
         hosts,
     };
-    let description = if args.json {
+    let output = if args.json {
         serde_json::to_string(&report).map_err(|error| Failure::Output(error.into()))? + "\n"
     } else {
         report.text()
     };
-    print_text(&description)?;
+    print_text(&output)?;
     match report.damage {
         // What could be read is printed above.
         Some(place) => Err(failed(file)(RecordedError::Damaged(place))),
@@ -181,12 +181,12 @@ fn show(
     event: Option<String>,
 ) -> Result<ExitCode, Failure> {
     let moment = Moment::new(at.0 as f64 * 1e-6, event, &host.tracker().world(at), host.game(), hosts);
-    let description = if args.json {
+    let output = if args.json {
         serde_json::to_string(&moment).map_err(|error| Failure::Output(error.into()))? + "\n"
     } else {
         moment.text()
     };
-    print_text(&description)?;
+    print_text(&output)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -34,12 +34,7 @@ struct Group {
 
 impl Ports {
     /// Opens the ports that are free, and adds a message for each of the others.
-    pub(super) fn open(
-        listen: IpAddr,
-        base: u16,
-        legacy: Option<u16>,
-        description: &mut Vec<String>,
-    ) -> Self {
+    pub(super) fn open(listen: IpAddr, base: u16, legacy: Option<u16>, lines: &mut Vec<String>) -> Self {
         let group = |offset: u16, port| {
             let number = if base == 0 { 0 } else { base + offset };
             Group { port, address: SocketAddr::new(listen, number), socket: None, troubled: false }
@@ -60,7 +55,7 @@ impl Ports {
             socket: None,
             troubled: false,
         }));
-        ports.take(description);
+        ports.take(lines);
         ports
     }
 
@@ -83,19 +78,19 @@ impl Ports {
         }
     }
 
-    fn take(&mut self, description: &mut Vec<String>) {
+    fn take(&mut self, lines: &mut Vec<String>) {
         for group in self.doors.iter_mut().filter(|group| group.socket.is_none()) {
             match Port::bind(group.address) {
                 Ok(socket) => {
                     group.address = socket.address();
                     group.socket = Some(socket);
                     if std::mem::take(&mut group.troubled) {
-                        description.push(format!("{} is free and taken now", group.address));
+                        lines.push(format!("{} is free and taken now", group.address));
                     }
                 }
                 Err(error) if !group.troubled => {
                     group.troubled = true;
-                    description.push(format!("{}: {error}; it is tried again every second", group.name()));
+                    lines.push(format!("{}: {error}; it is tried again every second", group.name()));
                 }
                 Err(_) => {}
             }
@@ -103,7 +98,7 @@ impl Ports {
     }
 
     /// Passes received datagrams to the simulator.
-    pub(super) fn listen(&mut self, server: &mut Server, description: &mut Vec<String>) {
+    pub(super) fn listen(&mut self, server: &mut Server, lines: &mut Vec<String>) {
         for group in &mut self.doors {
             let Some(socket) = &mut group.socket else { continue };
             for _ in 0..AT_ONCE {
@@ -111,18 +106,13 @@ impl Ports {
                     Ok(Some(datagram)) => {
                         if let server::Port::Team(team) = group.port {
                             let now = self.began.elapsed();
-                            description.extend(self.commanders.receive(
-                                now,
-                                team,
-                                datagram.from,
-                                datagram.bytes,
-                            ));
+                            lines.extend(self.commanders.receive(now, team, datagram.from, datagram.bytes));
                         }
                         server.handle(group.port, datagram.from, datagram.bytes);
                     }
                     Ok(None) => break,
                     Err(error) => {
-                        description.push(format!("{}: {error}; it is opened again", group.name()));
+                        lines.push(format!("{}: {error}; it is opened again", group.name()));
                         group.socket = None;
                         break;
                     }
@@ -131,7 +121,7 @@ impl Ports {
         }
         if self.tried.elapsed() >= AGAIN {
             self.tried = Instant::now();
-            self.take(description);
+            self.take(lines);
         }
     }
 
@@ -177,21 +167,17 @@ mod tests {
     #[test]
     fn a_taken_port_is_reported_and_the_others_serve() {
         let home: IpAddr = [127, 0, 0, 1].into();
-        let mut description = Vec::new();
-        let first = Ports::open(home, 0, None, &mut description);
-        assert!(description.is_empty(), "{description:?}");
+        let mut lines = Vec::new();
+        let first = Ports::open(home, 0, None, &mut lines);
+        assert!(lines.is_empty(), "{lines:?}");
         let base = first.doors[0].address.port();
-        let second = Ports::open(home, base, None, &mut description);
-        assert_eq!(description.len(), 3, "{description:?}");
-        assert!(
-            description[0].contains("is taken") && description[0].contains(&base.to_string()),
-            "{}",
-            description[0]
-        );
+        let second = Ports::open(home, base, None, &mut lines);
+        assert_eq!(lines.len(), 3, "{lines:?}");
+        assert!(lines[0].contains("is taken") && lines[0].contains(&base.to_string()), "{}", lines[0]);
         drop(first);
         let mut second = second;
-        description.clear();
-        second.take(&mut description);
-        assert_eq!(description.len(), 3, "free again: {description:?}");
+        lines.clear();
+        second.take(&mut lines);
+        assert_eq!(lines.len(), 3, "free again: {lines:?}");
     }
 }

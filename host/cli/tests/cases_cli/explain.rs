@@ -78,11 +78,11 @@ fn settings_are_recorded_and_may_reject_what_lies_outside_the_field() {
 fn people_get_a_table() {
     let input = format!("\n{PROBLEM}\n{{}}\n{}\n", PROBLEM.replace("yellow", "cyan"));
     let run = cases("explain", &directory("explain-table"), &["--set", "thr_c=1400"], input);
-    let description: Vec<String> =
+    let lines: Vec<String> =
         run.lines().iter().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect();
     // Candidates, then misses, the nearest first; each loser with what would make it win.
     assert_eq!(
-        description[..5],
+        lines[..5],
         [
             "line 2: center/pass-around (identity), id 0, of 1 candidate",
             "with thr_c=1400",
@@ -93,12 +93,11 @@ fn people_get_a_table() {
         ]
     );
     let missed = "1 center/pass-around across-x thr_c tm2 = robot 3: 1692.96 mm to go, 292.96 mm too far";
-    assert!(description.iter().any(|line| line == missed), "{description:#?}");
-    let after = |line: &str| {
-        description[description.iter().position(|other| other.starts_with(line)).unwrap() + 1].clone()
-    };
-    assert!(after("4 front/shot").starts_with("would win if "), "{description:#?}");
-    let reported = |line: &str| description.iter().any(|other| other == line);
+    assert!(lines.iter().any(|line| line == missed), "{lines:#?}");
+    let after =
+        |line: &str| lines[lines.iter().position(|other| other.starts_with(line)).unwrap() + 1].clone();
+    assert!(after("4 front/shot").starts_with("would win if "), "{lines:#?}");
+    let reported = |line: &str| lines.iter().any(|other| other == line);
     assert!(reported("line 3: ball: missing; the keys are ball, defending, teammates and opponents"));
     assert!(reported("line 4: no case fits"));
     assert_eq!(run.code, 0);

@@ -233,7 +233,7 @@ fn whoever_has_read_enough_may_close_the_pipe() {
     // The program stops reading when its reader is gone; then our pipe breaks too.
     let _ = stdin.write_all(questions.as_bytes());
     drop(stdin);
-    let mut description = String::new();
-    child.stderr.take().unwrap().read_to_string(&mut description).unwrap();
-    assert_eq!((child.wait().unwrap().code(), description.as_str()), (Some(0), ""));
+    let mut text = String::new();
+    child.stderr.take().unwrap().read_to_string(&mut text).unwrap();
+    assert_eq!((child.wait().unwrap().code(), text.as_str()), (Some(0), ""));
 }

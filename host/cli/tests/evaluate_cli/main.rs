@@ -142,9 +142,9 @@ fn ctrl_c_keeps_what_is_over_and_says_how_to_go_on() {
     let interrupt = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
     assert!(interrupt.expect("kill is there").success());
     let end = child.wait_with_output().expect("it ends");
-    let description = String::from_utf8(end.stderr).expect("UTF-8");
-    assert_eq!(end.status.code(), Some(1), "{} {description}", end.status);
-    assert!(description.contains("goes on from here"), "{description}");
+    let stderr = String::from_utf8(end.stderr).expect("UTF-8");
+    assert_eq!(end.status.code(), Some(1), "{} {stderr}", end.status);
+    assert!(stderr.contains("goes on from here"), "{stderr}");
     let kept = fs::read_to_string(&file).expect("kept");
     assert!(kept.ends_with('\n') && rows_kept(&file) >= 2, "no line is torn");
 }
@@ -217,9 +217,9 @@ fn what_cannot_be_done_is_reported_with_its_hint() {
         [&SHORT[..], &own].concat()
     };
     stdout_of(&short("1", "0"));
-    let description = refused(&short("2", "0.1"), 1);
-    assert!(description.contains("loss, seed") && description.contains("trials-1-of-1.csv"), "{description}");
-    assert!(description.contains("--fresh"), "{description}");
+    let error = refused(&short("2", "0.1"), 1);
+    assert!(error.contains("loss, seed") && error.contains("trials-1-of-1.csv"), "{error}");
+    assert!(error.contains("--fresh"), "{error}");
     stdout_of(&[&short("2", "0.1")[..], &["--fresh"]].concat());
     assert_eq!(json(&out.join("run.json"))["plan"]["seed"], 2);
 

@@ -203,8 +203,8 @@ fn a_recording_seeks_to_its_goal_and_to_the_moment_of_an_address() {
 
 #[test]
 fn a_lost_connection_is_displayed_and_heals() {
-    let description = ["play", "--duration", "600", "--seed", "3", "--listen"];
-    let first = Program::start(&[&description[..], &["127.0.0.1:0"]].concat());
+    let arguments = ["play", "--duration", "600", "--seed", "3", "--listen"];
+    let first = Program::start(&[&arguments[..], &["127.0.0.1:0"]].concat());
     let mut browser = Browser::start().unwrap();
     // At a telephone's width everything is within the screen.
     let mut tab = browser.open(&first.url(""), 390, 844).unwrap();
@@ -214,7 +214,7 @@ fn a_lost_connection_is_displayed_and_heals() {
     let address = first.address().to_owned();
     drop(first);
     tab.wait("!document.getElementById('lost').hidden", 20).unwrap();
-    let _second = Program::start(&[&description[..], &[&address]].concat());
+    let _second = Program::start(&[&arguments[..], &[&address]].concat());
     tab.wait("document.getElementById('lost').hidden && document.getElementById('connection').dataset.state === 'live'", 30).unwrap();
     tab.wait("onetwo.store.scene.t > 0.5", 20).unwrap();
     // A socket without an answer is reported by the browser itself; any other error would be ours.

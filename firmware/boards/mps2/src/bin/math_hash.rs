@@ -43,7 +43,7 @@ mod check {
         // bytes behind its pointer.
         let any = |to, from, len| unsafe { __aeabi_memcpy(to, from, len) };
         // SAFETY: as above; it is called with both offsets 0, where the arrays are aligned to four bytes.
-        let description = |to, from, len| unsafe { __aeabi_memcpy4(to, from, len) };
+        let copy = |to, from, len| unsafe { __aeabi_memcpy4(to, from, len) };
         // The compiler knows the result of `memcpy` and would not check it; through a black box it has to
         // call it.
         let memcpy = core::hint::black_box(memcpy as Memcpy);
@@ -54,7 +54,7 @@ mod check {
         };
         let everywhere = (0..4).flat_map(|to| (0..4).map(move |from| (to, from)));
         (0..LEN_MAX).all(|len| {
-            is_exact(description, 0, 0, len)
+            is_exact(copy, 0, 0, len)
                 && everywhere
                     .clone()
                     .all(|(to, from)| is_exact(any, to, from, len) && is_exact(returning, to, from, len))
