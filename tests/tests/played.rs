@@ -5,6 +5,7 @@ use std::path::Path;
 
 use arena::{CaseNames, CaseTrial, Opposition, Score, markdown};
 use casebase::RetrievalSettings;
+use rules::League;
 
 /// What `onetwo cases play --trials 200 --seed 1 --markdown` wrote.
 const TRIALS: u32 = 200;
@@ -36,6 +37,7 @@ fn the_table_of_played_cases_lists_every_case_against_both_kinds_of_opponents() 
 fn rows_of_the_table_come_out_again() {
     let (file, names) = (file(), names());
     let case_trial = CaseTrial {
+        league: League::FourLegged,
         base: case_library::four_legged(),
         names: CaseNames::new(names.iter().copied()),
         settings: RetrievalSettings::default(),

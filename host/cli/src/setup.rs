@@ -130,15 +130,27 @@ pub(crate) const fn reduction(setup: &Setup) -> Reduction {
     Reduction { symmetry: setup.symmetry, opponents: setup.opponents }
 }
 
-/// The simulator has one field.
+/// The trials' simulator has one field.
 pub(crate) fn refuse_other_fields(library_handle: &LibraryHandle) -> Result<(), Failure> {
-    let (played, field) = (League::FourLegged.field(), library_handle.base().field());
-    let in_mm = |metres: f32| (metres * 1000.0).round() as i32;
-    if [in_mm(played.length), in_mm(played.width)] == [field.length, field.width] {
+    if simulated_league(library_handle).is_ok_and(|league| league == League::FourLegged) {
         Ok(())
     } else {
         Err(Failure::NoSimulator { league: library_handle.league().to_owned() })
     }
+}
+
+/// The league whose simulator has the library's field.
+pub(crate) fn simulated_league(library_handle: &LibraryHandle) -> Result<League, Failure> {
+    let field = library_handle.base().field();
+    let in_mm = |metres: f32| (metres * 1000.0).round() as i32;
+    let same = |league: &League| {
+        let played = league.field();
+        [in_mm(played.length), in_mm(played.width)] == [field.length, field.width]
+    };
+    let leagues = [League::FourLegged, League::DivisionB, League::DivisionA, League::Ssl2013];
+    let named = |league: &League| league.name() == library_handle.league() && same(league);
+    let league = leagues.into_iter().find(named).or_else(|| leagues.into_iter().find(same));
+    league.ok_or_else(|| Failure::NoSimulator { league: library_handle.league().to_owned() })
 }
 
 /// Parses a scenario, as flags take it.

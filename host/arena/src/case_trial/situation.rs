@@ -7,21 +7,44 @@
 //!   about their places and face 20° past the ball.
 //! - Opponents are drawn on their scopes as the scope weighs places: a Gaussian with the scope's radii, cut
 //!   off where the scope ends.
-//! - The role of an opponent is that of the home region its scope's centre lies in; it plays from there, so
-//!   draws outside the region are drawn again. Where no role has its home (own half), it plays from a region
-//!   of its own, as deep as the midfield's, about its scope.
+//! - An opponent stays in a region: draws outside it are drawn again.
 
 use casebase::{Case, PointMm, Scope};
 use geometry::{Angle, Field, Point, Pose, Vector, math};
-use hil_sim::{Conduct, Layout, OpponentRole, Parameters, Placed, Region, Stream};
-use rules::League;
+use hil_sim::{Region, Stream};
+use rules::FieldSpec;
 
-use super::Opposition;
+/// Field and bodies of a league.
+#[derive(Clone, Debug)]
+pub(super) struct Bodies {
+    /// The field.
+    pub(super) field: FieldSpec,
+    /// Least distance of a robot's centre from the ball at the start, m.
+    pub(super) clear_of_ball: f32,
+    /// Least distance between two robots at the start, m.
+    pub(super) apart: f32,
+}
 
-/// Draws a situation of `case`.
-pub(super) fn draw(case: &Case<'_>, opposition: Opposition, parameters: &Parameters, seed: u64) -> Layout {
+/// Start places.
+#[derive(Clone, Debug)]
+pub(super) struct Places {
+    /// The ball.
+    pub(super) ball: Point<Field>,
+    /// The robots of the case, in its order.
+    pub(super) attackers: Vec<Pose<Field>>,
+    /// Opponents, in the order of their scopes: the scope's authored centre, and the drawn place.
+    pub(super) opponents: Vec<[Point<Field>; 2]>,
+}
+
+/// Draws a situation of `case`; `region` of an opponent's authored centre is where it may stand.
+pub(super) fn draw(
+    case: &Case<'_>,
+    bodies: &Bodies,
+    region: impl Fn(Point<Field>) -> Region,
+    seed: u64,
+) -> Places {
     let mut chance = Stream::new(seed, "rehearsal");
-    let field = League::FourLegged.field();
+    let field = &bodies.field;
     let centre: Point<Field> = case.ball().into();
     let ball =
         (0..DRAWS).map(|_| centre + in_core(&mut chance, case.ball_scope())).find(|at| field.contains(*at));
@@ -36,41 +59,38 @@ pub(super) fn draw(case: &Case<'_>, opposition: Opposition, parameters: &Paramet
             let [x, y] = [(); 2].map(|()| SCATTER * chance.normal_within(2.0));
             field.clamp(centre + Vector::new(x, y), 0.0)
         };
-        let at = clear(&mut chance, ball, &taken, draw, |_| true).unwrap_or(centre);
+        let at = clear(&mut chance, bodies, ball, &taken, draw, |_| true).unwrap_or(centre);
         taken.push(at);
         let heading = at.direction_to(ball) + Angle::degrees(LOOKS_PAST_DEG * chance.normal_within(2.0));
         Pose { position: at, heading }
     });
-    let attackers = attackers.collect();
+    let attackers = attackers.collect::<Vec<_>>();
     let opponents = case.opponents().map(|(at, scope)| {
         let (authored, centre): (Point<Field>, _) = (at.into(), place(at));
-        let (role, home) = role_at(authored, parameters);
-        let region = home.unwrap_or_else(|| about(authored));
+        let region = region(authored);
         let draw = |chance: &mut Stream| centre + on_scope(chance, scope);
         let fits = |at: Point<Field>| region.contains(at) && field.contains(at);
-        let at = clear(&mut chance, ball, &taken, draw, fits).unwrap_or_else(|| region.nearest(centre));
+        let at =
+            clear(&mut chance, bodies, ball, &taken, draw, fits).unwrap_or_else(|| region.nearest(centre));
         taken.push(at);
-        let conduct = match (opposition, home) {
-            (Opposition::Standing, _) => Conduct::Standing,
-            (Opposition::Playing, Some(_)) => Conduct::AtHome,
-            (Opposition::Playing, None) => Conduct::Within(region),
-        };
-        Placed { conduct, ..Placed::at_home(role, at, ball) }
+        [authored, at]
     });
-    Layout { ball, attackers, opponents: opponents.collect() }
+    let opponents = opponents.collect();
+    Places { ball, attackers, opponents }
 }
 
 /// The first draw that fits and is clear of the ball and of all robots placed before.
 fn clear(
     chance: &mut Stream,
+    bodies: &Bodies,
     ball: Point<Field>,
     taken: &[Point<Field>],
     draw: impl Fn(&mut Stream) -> Point<Field>,
     fits: impl Fn(Point<Field>) -> bool,
 ) -> Option<Point<Field>> {
     let free = |at: &Point<Field>| {
-        at.distance(ball) >= CLEAR_OF_BALL
-            && taken.iter().all(|other| other.distance(*at) >= APART)
+        at.distance(ball) >= bodies.clear_of_ball
+            && taken.iter().all(|other| other.distance(*at) >= bodies.apart)
             && fits(*at)
     };
     (0..DRAWS).map(|_| draw(chance)).find(free)
@@ -95,24 +115,6 @@ fn in_metres(scope: Scope, x: f32, y: f32) -> Vector<Field> {
     Vector::new(x * scope.x as f32 * 0.001, y * scope.y as f32 * 0.001)
 }
 
-/// The role of an opponent there, and its home if it is in it.
-fn role_at(at: Point<Field>, parameters: &Parameters) -> (OpponentRole, Option<Region>) {
-    let at_home = |role: &OpponentRole| role.home(parameters).contains(at);
-    match [OpponentRole::Goalie, OpponentRole::Defender, OpponentRole::Midfield].into_iter().find(at_home) {
-        Some(role) => (role, Some(role.home(parameters))),
-        None if at.x() > 0.0 => (OpponentRole::Defender, None),
-        None => (OpponentRole::Midfield, None),
-    }
-}
-
-/// A region across the field about a place where no role has its home.
-fn about(at: Point<Field>) -> Region {
-    let field = League::FourLegged.field();
-    let (length, width) = (field.length * 0.5, field.width * 0.5);
-    let middle = at.x().clamp(HALF_DEPTH - length, length - HALF_DEPTH);
-    Region { x: [middle - HALF_DEPTH, middle + HALF_DEPTH], y: [-width, width] }
-}
-
 /// Share of the scope's radii within which the similarity is at least 0.8: √(−ln 0.8).
 const CORE: f32 = 0.472_38;
 /// A scope's border: −ln 0.367 (docs/case-format.md §3).
@@ -122,11 +124,5 @@ const BORDER: f32 = 1.002_393;
 const SCATTER: f32 = 0.15;
 /// Scatter of their headings about the ball, degrees, one standard deviation: an estimate.
 const LOOKS_PAST_DEG: f32 = 20.0;
-/// Least distance of a robot from the ball at the start, m: at 0.1625 they would touch.
-const CLEAR_OF_BALL: f32 = 0.18;
-/// Least distance between robots at the start, m: two radii and a gap.
-const APART: f32 = 0.3;
-/// Half of the midfield's depth, m (`hil-sim/data/four-legged.toml`).
-const HALF_DEPTH: f32 = 0.75;
 /// Number of draws before the middle is taken.
 const DRAWS: usize = 200;

@@ -1,14 +1,16 @@
 //! Tests: drawn situations are those of their cases, and attempts are repeatable and reported correctly.
 
+use brain::Approach;
 use casebase::{PointMm, Symmetry};
-use hil_sim::OpponentRole;
-use rules::League;
+use hil_sim::{Configuration, OpponentRole, Parameters, Scenario};
 
 use super::*;
+use crate::trial::TrialConfig;
 
 fn case_trial(trials: u32) -> CaseTrial<'static> {
     let config = TrialConfig::new(Scenario::Random, Configuration::DefenderGoalie, Approach::Cases, 0);
     CaseTrial {
+        league: League::FourLegged,
         base: config.base,
         names: config.names,
         settings: RetrievalSettings::default(),
@@ -30,7 +32,7 @@ fn a_drawn_situation_lies_in_the_cores_of_its_scopes_and_no_one_touches_anybody(
     let (field, parameters) = (League::FourLegged.field(), Parameters::four_legged());
     for case in case_trial.base.cases().filter(|case| case.symmetry() == Symmetry::Identity) {
         for seed in 0..20 {
-            let layout = situation::draw(&case, Opposition::Playing, parameters, seed);
+            let layout = four_legged::layout(&case, Opposition::Playing, seed);
             let away = PointMm::from(layout.ball);
             assert!(case.ball_scope().exponent(away.minus(case.ball())) <= 0.2232 + 0.002, "{away:?}");
             let opponents: Vec<_> = layout.opponents.iter().map(|placed| placed.pose.position).collect();
@@ -55,7 +57,7 @@ fn a_drawn_situation_lies_in_the_cores_of_its_scopes_and_no_one_touches_anybody(
 fn opponents_have_the_role_whose_home_they_stand_in() {
     let case_trial = case_trial(0);
     let case = case_trial.case(number(&case_trial, "center/wing-switch")).unwrap();
-    let layout = situation::draw(&case, Opposition::Standing, Parameters::four_legged(), 1);
+    let layout = four_legged::layout(&case, Opposition::Standing, 1);
     let roles: Vec<_> = layout.opponents.iter().map(|placed| placed.role).collect();
     assert_eq!(roles, [OpponentRole::Midfield, OpponentRole::Defender]);
     assert!(layout.opponents.iter().all(|placed| placed.conduct == hil_sim::Conduct::Standing));
@@ -66,7 +68,7 @@ fn an_attempt_is_its_seed_and_its_number_whoever_else_plays() {
     let case_trial = case_trial(6);
     let case = case_trial.case(number(&case_trial, "front/shot")).unwrap();
     let all = case_trial.play(&case, Opposition::Playing, &|| ()).unwrap();
-    let fifth = case_trial.attempt(&case, Opposition::Playing, 5, &mut []).unwrap();
+    let fifth = case_trial.attempt(&case, Opposition::Playing, 5, None).unwrap();
     assert_eq!(all[5], fifth);
     let other = CaseTrial { seed: 6, ..case_trial.clone() };
     assert_ne!(other.play(&case, Opposition::Playing, &|| ()).unwrap(), all);

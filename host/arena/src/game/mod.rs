@@ -12,6 +12,7 @@
 mod config;
 mod hand;
 mod holds;
+mod manual_referee;
 pub mod penalty;
 mod recording;
 mod report;
@@ -20,6 +21,7 @@ mod story;
 
 pub use config::{GameConfig, TeamSetup};
 pub use holds::Hold;
+pub(crate) use manual_referee::{ManualReferee, RefereeOrder};
 pub use recording::header;
 pub use report::{BlockedReport, GameReport, PerTeam, TeamReport};
 pub use story::{MatchLog, sentence};

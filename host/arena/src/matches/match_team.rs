@@ -4,11 +4,12 @@
 use std::collections::BTreeSet;
 use std::fmt;
 
+use brain::Approach;
 use host::strategy::{Tactics, Team};
 use serde::{Deserialize, Serialize};
 
 /// A team with its tactics, written as one label: `zone`, `ours`, `ours-without-second-level`,
-/// `ours-with-coerce+pass-ahead`.
+/// `ours-without-cases`, `ours-with-coerce+pass-ahead`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub struct MatchTeam {
@@ -16,6 +17,9 @@ pub struct MatchTeam {
     pub team: Team,
     /// Tactics of the second paper that its host plays.
     pub tactics: Tactics,
+    /// Whether its robots retrieve and play cases (the first paper); else they play reactively where the
+    /// host leaves the play to them.
+    pub cases: bool,
 }
 
 impl MatchTeam {
@@ -24,18 +28,23 @@ impl MatchTeam {
         Self::from(Team::Ours)
     }
 
-    /// Our team once for each part of the second paper, without it where it is usual and with it where it is
-    /// not.
+    /// Our team once for each part of the second paper, and once for the cases: without it where it is usual
+    /// and with it where it is not.
     pub fn ablations() -> Vec<Self> {
-        let usual = parts(Tactics::default());
+        let usual = Self::ours().parts();
         let flipped = |part: &String| {
             let mut parts = usual.clone();
             if !parts.remove(part) {
                 parts.insert(part.clone());
             }
-            Some(Self { team: Team::Ours, tactics: with_parts(&parts).ok()? })
+            Self::of_parts(parts).ok()
         };
-        parts(Tactics::ALL).iter().filter_map(flipped).collect()
+        Self::all_parts().iter().filter_map(flipped).collect()
+    }
+
+    /// What decides the actions of its robots.
+    pub fn approach(self) -> Approach {
+        if self.cases { Approach::Cases } else { Approach::Reactive }
     }
 
     /// Parses its label; the error lists the accepted ones.
@@ -45,13 +54,13 @@ impl MatchTeam {
             format!(
                 "no team `{label}`; take {teams}, or ours with other tactics: ours-with-A+B, ours-without-A+B, \
                  of {}",
-                joined(&parts(Tactics::ALL), ", ")
+                joined(&Self::all_parts(), ", ")
             )
         };
         let Some(changes) = label.strip_prefix("ours-") else {
             return Team::from_label(label).map(Self::from).ok_or_else(wrong);
         };
-        let mut parts = parts(Tactics::default());
+        let mut parts = Self::ours().parts();
         let (with, without) = match changes.split_once("without-") {
             Some((with, without)) => (with.trim_end_matches('-'), Some(without)),
             None => (changes, None),
@@ -62,32 +71,53 @@ impl MatchTeam {
         }
         for part in without.into_iter().flat_map(|without| without.split('+')) {
             // The parts after `without` are checked too: a typing error must not be read as the usual team.
-            with_parts(&BTreeSet::from([part.to_owned()])).map_err(|_| wrong())?;
+            Self::of_parts(BTreeSet::from([part.to_owned()])).map_err(|_| wrong())?;
             parts.remove(part);
         }
-        let tactics = with_parts(&parts).map_err(|_| wrong())?;
-        Ok(Self { team: Team::Ours, tactics })
+        Self::of_parts(parts).map_err(|_| wrong())
     }
 
-    /// The parts of the second paper that this one plays and the other does not; empty between different
-    /// teams.
+    /// The parts that this one plays and the other does not; empty between different teams.
     pub(super) fn beyond(self, other: Self) -> Vec<String> {
         if self.team != other.team {
             return Vec::new();
         }
-        parts(self.tactics).difference(&parts(other.tactics)).cloned().collect()
+        self.parts().difference(&other.parts()).cloned().collect()
+    }
+
+    /// Names of the enabled parts, from [`Tactics::description`] and [`CASES`]: a part that is added there is
+    /// listed here too.
+    fn parts(self) -> BTreeSet<String> {
+        let names = self.tactics.description();
+        let tactics = names.split(',').filter(|name| *name != "none");
+        tactics.chain(self.cases.then_some(CASES)).map(str::to_owned).collect()
+    }
+
+    /// Every part that there is.
+    fn all_parts() -> BTreeSet<String> {
+        Self { tactics: Tactics::ALL, ..Self::ours() }.parts()
+    }
+
+    /// Our team with these parts alone; the error names the one that does not exist.
+    fn of_parts(mut parts: BTreeSet<String>) -> Result<Self, String> {
+        let cases = parts.remove(CASES);
+        let tactics = match parts.is_empty() {
+            true => Tactics::NONE,
+            false => Tactics::parse(&joined(&parts, ","))?,
+        };
+        Ok(Self { team: Team::Ours, tactics, cases })
     }
 }
 
 impl From<Team> for MatchTeam {
     fn from(team: Team) -> Self {
-        Self { team, tactics: Tactics::default() }
+        Self { team, tactics: Tactics::default(), cases: true }
     }
 }
 
 impl fmt::Display for MatchTeam {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (own, usual) = (parts(self.tactics), parts(Tactics::default()));
+        let (own, usual) = (self.parts(), Self::ours().parts());
         let change = |parts: Vec<&String>| parts.into_iter().cloned().collect::<BTreeSet<_>>();
         f.write_str(self.team.label())?;
         for (label, parts) in [
@@ -116,19 +146,12 @@ impl TryFrom<String> for MatchTeam {
     }
 }
 
-/// Names of the enabled parts, from [`Tactics::description`]: a part that is added there is listed here too.
-fn parts(tactics: Tactics) -> BTreeSet<String> {
-    let names = tactics.description();
-    names.split(',').filter(|name| *name != "none").map(str::to_owned).collect()
-}
-
-fn with_parts(parts: &BTreeSet<String>) -> Result<Tactics, String> {
-    if parts.is_empty() { Ok(Tactics::NONE) } else { Tactics::parse(&joined(parts, ",")) }
-}
-
 fn joined(parts: &BTreeSet<String>, between: &str) -> String {
     parts.iter().map(String::as_str).collect::<Vec<_>>().join(between)
 }
+
+/// The name of the first paper's part: cases.
+const CASES: &str = "cases";
 
 #[cfg(test)]
 mod tests {
@@ -137,9 +160,9 @@ mod tests {
     #[test]
     fn every_team_is_read_from_the_word_it_is_written_as() {
         let ablations = MatchTeam::ablations();
-        assert_eq!(ablations.len(), parts(Tactics::ALL).len());
-        let none = MatchTeam { team: Team::Ours, tactics: Tactics::NONE };
-        let all = MatchTeam { team: Team::Ours, tactics: Tactics::ALL };
+        assert_eq!(ablations.len(), MatchTeam::all_parts().len());
+        let none = MatchTeam { tactics: Tactics::NONE, cases: false, ..MatchTeam::ours() };
+        let all = MatchTeam { tactics: Tactics::ALL, ..MatchTeam::ours() };
         let teams = Team::ALL.map(MatchTeam::from);
         for match_team in ablations.iter().chain(&teams).chain([&none, &all]) {
             assert_eq!(MatchTeam::parse(&match_team.to_string()).as_ref(), Ok(match_team), "{match_team}");
@@ -152,8 +175,12 @@ mod tests {
     #[test]
     fn a_word_says_what_differs_from_the_usual_team() {
         let changed = Tactics { second_level: !Tactics::default().second_level, ..Tactics::default() };
-        let label = MatchTeam { team: Team::Ours, tactics: changed }.to_string();
+        let label = MatchTeam { tactics: changed, ..MatchTeam::ours() }.to_string();
         assert!(matches!(&*label, "ours-without-second-level" | "ours-with-second-level"), "{label}");
+        let reactive = MatchTeam::parse("ours-without-cases").unwrap();
+        assert_eq!(reactive, MatchTeam { cases: false, ..MatchTeam::ours() });
+        assert_eq!(reactive.approach(), Approach::Reactive);
+        assert_eq!(MatchTeam::ours().beyond(reactive), ["cases"]);
         let both = MatchTeam::parse("ours-with-coerce-without-threats+second-level").unwrap();
         assert!(both.tactics.coerce && !both.tactics.threats && !both.tactics.second_level);
     }

@@ -106,7 +106,8 @@ impl Matches<'_> {
         config.world = self.plan.world.of_match(planned.seed);
         for team in &mut config.teams {
             team.settings = self.settings.clone();
-            team.tactics = if team.colour == Colour::Blue { blue.tactics } else { yellow.tactics };
+            let match_team = if team.colour == Colour::Blue { blue } else { yellow };
+            (team.tactics, team.approach) = (match_team.tactics, match_team.approach());
         }
         Ok(config)
     }

@@ -9,24 +9,13 @@ use host::strategy::Team;
 use protocol::host::{Directive, RuleRole};
 use protocol::{RobotId, Who};
 use rules::{Colour, League};
-use ssl::referee::Command;
 
 use super::{Skill, Try, TryResult, catches, kicks, placement, save, story};
-use crate::game::{Game, GameConfig, GameError, NoWatcher};
+pub(super) use crate::game::RefereeOrder;
+use crate::game::{Game, GameConfig, GameError, ManualReferee, NoWatcher};
 
 /// Our team.
 pub(super) const US: Colour = Colour::Yellow;
-
-/// The command of the referee.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum RefereeOrder {
-    /// STOP.
-    Stop,
-    /// The ball is in play.
-    Run,
-    /// Our team places the ball there.
-    Place(Point<Field>),
-}
 
 /// How a try begins.
 #[derive(Clone, Debug)]
@@ -155,7 +144,7 @@ pub(super) fn play(
     let robots = start.ours.iter().map(|(number, _)| number + 1).max().unwrap_or(1);
     let mut game = Game::new(&config(&tried, seed, robots), backend)?;
     place(&mut game, &start, robots);
-    let mut referee = Whistle::new(&game);
+    let mut referee = ManualReferee::new(&game);
     // Cameras and radio first: robots and host must know each other.
     game.drill(US, Some(Orders::new()));
     for _ in 0..WARM_UP_TICKS {
@@ -232,55 +221,6 @@ fn place(game: &mut Game<'_>, start: &Start, robots: u8) {
     }
 }
 
-/// A referee that sends the command it is given.
-struct Whistle {
-    packet: ssl::referee::Referee,
-    first_stamp: u64,
-    next: u64,
-}
-
-impl Whistle {
-    fn new(game: &Game<'_>) -> Self {
-        let mut packet = ssl::referee::Referee {
-            stage: ssl::referee::Stage::NormalFirstHalf as i32,
-            command: Command::Stop as i32,
-            next_command: None,
-            ..game.referee().packet()
-        };
-        // Bystanders belong to no team, or our robots would have to leave for them.
-        packet.yellow.max_allowed_bots = Some(u32::from(u8::MAX));
-        Self { first_stamp: packet.packet_timestamp, packet, next: 0 }
-    }
-
-    fn send(&mut self, game: &Game<'_>, referee_order: RefereeOrder) {
-        let command = match referee_order {
-            RefereeOrder::Stop => Command::Stop,
-            RefereeOrder::Run => Command::ForceStart,
-            RefereeOrder::Place(_) => Command::BallPlacementYellow,
-        };
-        self.packet.command = command as i32;
-        self.packet.command_counter += 1;
-        self.packet.command_timestamp = self.first_stamp + game.now().0;
-        if let RefereeOrder::Place(at) = referee_order {
-            let at = ssl::referee::Point { x: at.x() * 1000.0, y: at.y() * 1000.0 };
-            self.packet.designated_position = Some(at);
-            self.packet.next_command = Some(Command::DirectFreeYellow as i32);
-        }
-        self.next = 0;
-    }
-
-    /// Sends its packet when it is due.
-    fn speak(&mut self, game: &mut Game<'_>) {
-        let now = game.now();
-        if now.0 < self.next {
-            return;
-        }
-        self.next = now.0 + PERIOD_US;
-        self.packet.packet_timestamp = self.first_stamp + now.0;
-        game.announce(now, &self.packet, &mut NoWatcher);
-    }
-}
-
 /// A pose of metres and an angle.
 pub(super) fn pose(at: Point<Field>, heading: Angle) -> Pose<Field> {
     Pose { position: at, heading }
@@ -298,8 +238,6 @@ pub(super) fn team_size(league: League) -> u8 {
 
 /// Before a try: cameras' first frames, radio's handshake, and tracks that are sure.
 const WARM_UP_TICKS: u32 = 80;
-/// Between two packets of the referee, µs: as the game controller's.
-const PERIOD_US: u64 = 25_000;
 /// Bystanders keep this far from where a try starts, m: room for a body to pass.
 const BYSTANDERS_OFF: f32 = 0.4;
 /// Ball and dribbler this near, m: as far as a break-beam sensor sees, and a little.

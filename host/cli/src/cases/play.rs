@@ -1,5 +1,5 @@
-//! `onetwo cases play`: self-test of cases. It is played from its own situation by robots that must retrieve
-//! it themselves (four-legged simulator).
+//! `onetwo cases play`: self-test of cases. Each is played from its own situation, in its league's simulator,
+//! by robots that must retrieve it themselves.
 //!
 //! The answer is a text table, Markdown for the file beside the cases, or JSON: a list of scores. The same
 //! seed gives the same answer for any number of jobs. `--story` prints the events of single attempts instead,
@@ -9,16 +9,17 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::process::ExitCode;
 
-use arena::{CaseNames, CaseTrial, Opposition, Score, TextLog};
+use arena::{AttemptError, CaseNames, CaseTrial, Opposition, Score};
 use casebase::Case;
 use clap::Args;
+use rules::League;
 
 use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs};
 use crate::library::LibraryHandle;
 use crate::output::{self, print_text};
 use crate::progress::Progress;
-use crate::setup::refuse_other_fields;
+use crate::setup::simulated_league;
 
 /// Arguments of `cases play`.
 #[derive(Debug, Args)]
@@ -36,7 +37,8 @@ pub(crate) struct PlayArgs {
     /// Random seed.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Opponents that stand in the path, or the paper's scripted opponents; both by default.
+    /// Opponents that stand in the path, or that play: the paper's scripted ones, or a reactive team in the
+    /// Small Size League; both by default.
     #[arg(long, value_parser = opposition)]
     opponents: Option<Opposition>,
     /// Threads; the number of cores by default.
@@ -57,13 +59,13 @@ pub(super) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
     let settings = args.settings.choose()?.settings;
     let library_handle = LibraryHandle::open(&args.library)?;
     let case_trial = CaseTrial {
+        league: simulated_league(&library_handle)?,
         base: library_handle.base(),
         names: CaseNames::new(library_handle.names()),
         settings,
         trials: args.trials,
         seed: args.seed,
     };
-    refuse_other_fields(&library_handle)?;
     let cases = chosen(args, &library_handle, &case_trial)?;
     let oppositions: Vec<_> = Opposition::ALL
         .into_iter()
@@ -125,7 +127,7 @@ fn play(
         bar.set_text(name.clone());
         for kind in oppositions {
             let attempts = pool.install(|| case_trial.play(case, *kind, &|| bar.add(1)));
-            let attempts = attempts.map_err(Failure::Trial)?;
+            let attempts = attempts.map_err(failure)?;
             scores.push(Score::of(name.clone(), kind.label(), &attempts));
         }
     }
@@ -143,12 +145,11 @@ fn write_story(
         for (kind, number) in
             oppositions.iter().flat_map(|kind| (0..case_trial.trials).map(move |n| (*kind, n)))
         {
-            let mut story = TextLog::default();
-            let attempt =
-                case_trial.attempt(case, kind, number, &mut [&mut story]).map_err(Failure::Trial)?;
+            let mut lines = Vec::new();
+            let attempt = case_trial.attempt(case, kind, number, Some(&mut lines)).map_err(failure)?;
             let mut text =
                 format!("{}, opponents {}, attempt {number}\n", case_trial.names.of(case.id()), kind.label());
-            for line in story.take_lines() {
+            for line in lines {
                 let _ = writeln!(text, "{line}");
             }
             let end = attempt.end.map_or("not played", arena::CycleEnd::label);
@@ -157,6 +158,13 @@ fn write_story(
         }
     }
     Ok(ExitCode::SUCCESS)
+}
+
+fn failure(error: AttemptError) -> Failure {
+    match error {
+        AttemptError::FourLegged(error) => Failure::Trial(error),
+        AttemptError::SmallSize(error) => Failure::Game(error),
+    }
 }
 
 impl PlayArgs {
@@ -169,6 +177,10 @@ impl PlayArgs {
             format!("{reached} of {}", of_kind.len())
         };
         let mut command = "onetwo cases play".to_owned();
+        let small_size = case_trial.league != League::FourLegged;
+        if small_size {
+            let _ = write!(command, " --league {}", case_trial.league.name());
+        }
         for name in &self.names {
             let _ = write!(command, " {name}");
         }
@@ -182,12 +194,17 @@ impl PlayArgs {
         if let Some(kind) = self.opponents {
             let _ = write!(command, " --opponents {}", kind.label());
         }
+        let playing = if small_size {
+            "they play reactively, one that starts in its own defence area as keeper"
+        } else {
+            "they are the paper's scripted ones, at home in the region of their role, or in one as deep about their scope \
+             where no role is at home"
+        };
         format!(
             "# Cases played from their own situations\n\n\
              Written by `{command} --markdown` (case base {hash:08x}). Each case is played {trials} times by its own robots alone, \
              which must retrieve it themselves: the ball in the core of its scope (similarity H), robots 150 mm about their places, \
-             opponents drawn on their scopes. *standing*: opponents hold their places. *playing*: they are the paper's scripted ones, \
-             at home in the region of their role, or in one as deep about their scope where no role is at home. Percentages are shares \
+             opponents drawn on their scopes. *standing*: opponents hold their places. *playing*: {playing}. Percentages are shares \
              of all {trials} attempts; *completed* means that every robot did its whole part; *why not* counts what was retrieved \
              instead and why gameplays ended early; the last columns are of completed gameplays, the ball watched until it lies still \
              or is taken.\n\n\
