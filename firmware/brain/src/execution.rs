@@ -338,7 +338,8 @@ impl Execution {
         if belief.busy {
             return Verdict::Running(Intent::Stand { face: None });
         }
-        self.kicked = intent.lets_go();
+        // A kick takes its time to leave: it counts though the order for it has ended.
+        self.kicked |= intent.lets_go();
         Verdict::Running(intent)
     }
 
