@@ -51,11 +51,12 @@ pub(super) struct MatchesArgs {
     #[arg(long, value_name = "TEAM", default_value = "ours", value_parser = MatchTeam::parse)]
     team: MatchTeam,
     /// Opponents, with commas between: reactive, marking, zone (these three by default), idle, ours, or ours
-    /// with other tactics, such as ours-without-second-level or ours-with-coerce+pass-ahead.
+    /// with other tactics, such as ours-without-second-level, ours-without-cases or
+    /// ours-with-coerce+pass-ahead.
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = MatchTeam::parse)]
     opponents: Vec<MatchTeam>,
-    /// Measure what each part of the second paper is worth: our team with one part more or less, for each
-    /// part. Instead of the opponents, or beside those that are named, or one more each in the round robin.
+    /// Measure what the cases and each part of the second paper are worth: our team with one part more or
+    /// less, for each part. Instead of the opponents, or beside those that are named, or one more each in the round robin.
     #[arg(long)]
     ablations: bool,
     /// Each team against each: ours and the opponents.

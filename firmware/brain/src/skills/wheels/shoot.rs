@@ -1,7 +1,7 @@
 //! Shoot: at the widest gap between the posts. Clear: away from the own goal, to the freer side.
 //!
 //! A gap's value is how far every opponent stays from the ball's path, less how far it can move until the
-//! ball passes. SI, field frame.
+//! ball passes, and how far the path stays from the posts. SI, field frame.
 
 use geometry::{Field, GoalEnd, Point, Segment};
 use motion::ball::BallModel;
@@ -20,15 +20,19 @@ pub fn shoot(belief: &Belief, attacked: GoalEnd, patient: bool) -> Intent {
     kick_held(belief, at, if open { OmniKick::Flat(SHOT) } else { OmniKick::None })
 }
 
-/// Target of a shot from `from`, and the free distance beside the ball's path, m.
+/// Target of a shot from `from`, and the free distance beside the ball's path, of opponents and posts, m.
 pub fn target(belief: &Belief, from: Point<Field>, attacked: GoalEnd) -> (Point<Field>, f32) {
     let field = belief.league().field();
     let center = field.goal_center(attacked);
     let half = 0.5 * field.goal_width - INSIDE_POST;
+    // Seen from aside, the path comes nearer to a post than the aim is.
+    let away = center - from;
+    let aslant = away.x().abs() / away.norm().max(f32::MIN_POSITIVE);
     let aims = (0..AIMS).map(|index| {
         let y = half * (2.0 * index as f32 / (AIMS - 1) as f32 - 1.0);
         let at = Point::new(center.x(), y);
-        (at, room(belief, from, at))
+        let post = aslant * (0.5 * field.goal_width - y.abs());
+        (at, room(belief, from, at).min(post))
     });
     aims.reduce(|best, next| if next.1 > best.1 { next } else { best }).unwrap_or((center, 0.0))
 }
@@ -117,6 +121,16 @@ mod tests {
     fn who_stands_behind_the_ball_is_in_nobodys_way() {
         let mut b = belief((2.5, 0.0, 0.0), (2.6, 0.0));
         let _ = b.opponents.push(Point::new(2.3, 0.0));
-        assert_eq!(target(&b, b.dribbler_point(), GoalEnd::Positive).1, ROOM_ENOUGH);
+        let (at, room) = target(&b, b.dribbler_point(), GoalEnd::Positive);
+        assert!(at.y() == 0.0 && room > 0.49, "{at:?} {room}");
+    }
+
+    #[test]
+    fn an_open_goal_is_shot_at_in_its_middle_from_any_side() {
+        for (x, y) in [(2.5, 0.0), (3.5, 1.5), (3.5, -1.5), (0.0, 2.0)] {
+            let b = belief((x, y, 0.0), (x + 0.1, y));
+            let (at, room) = target(&b, b.dribbler_point(), GoalEnd::Positive);
+            assert!(at.y() == 0.0 && room > 0.2, "{at:?} {room}");
+        }
     }
 }
