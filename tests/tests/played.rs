@@ -4,62 +4,98 @@
 use std::path::Path;
 
 use arena::{CaseNames, CaseTrial, Opposition, Score, markdown};
-use casebase::RetrievalSettings;
+use casebase::{CaseBase, RetrievalSettings};
 use rules::League;
 
-/// What `onetwo cases play --trials 200 --seed 1 --markdown` wrote.
-const TRIALS: u32 = 200;
-const SEED: u64 = 1;
-
-fn file() -> String {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../casebase/library/cases/four-legged/played.md");
-    std::fs::read_to_string(file).expect("the table is committed")
+/// A league's table: what `onetwo cases play` wrote.
+struct Table {
+    league: League,
+    base: fn() -> CaseBase<'static>,
+    trials: u32,
+    /// Every n-th case is played again here.
+    repeats: usize,
+    command: &'static str,
 }
 
-fn names() -> &'static [&'static str] {
-    let league = case_library::league("four-legged");
-    league.expect("the built-in league").names
+const TABLES: [Table; 2] = [
+    Table {
+        league: League::FourLegged,
+        base: case_library::four_legged,
+        trials: 200,
+        repeats: 8,
+        command: "cargo run --release -- cases play --trials 200 --seed 1 --markdown \
+                  > casebase/library/cases/four-legged/played.md",
+    },
+    Table {
+        league: League::DivisionB,
+        base: case_library::division_b,
+        trials: 100,
+        repeats: 15,
+        command: "cargo run --release -- cases play --league division-b --trials 100 --seed 1 --markdown \
+                  > casebase/library/cases/division-b/played.md",
+    },
+];
+
+impl Table {
+    fn file(&self) -> String {
+        let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("../casebase/library/cases");
+        let file = directory.join(self.league.name()).join("played.md");
+        std::fs::read_to_string(file).expect("the table is committed")
+    }
+
+    fn names(&self) -> &'static [&'static str] {
+        case_library::league(self.league.name()).expect("the built-in league").names
+    }
+
+    fn again(&self) -> String {
+        format!("if a case, the brain or the simulator changed, write it again: {}", self.command)
+    }
 }
 
 #[test]
 fn the_table_of_played_cases_lists_every_case_against_both_kinds_of_opponents() {
-    let (file, names) = (file(), names());
-    for name in names {
-        for opponents in Opposition::ALL {
-            let row = format!("| {name} | {} | ", opponents.label());
-            assert_eq!(file.matches(&row).count(), 1, "{name} {}; {AGAIN}", opponents.label());
+    for table in &TABLES {
+        let (file, names, again) = (table.file(), table.names(), table.again());
+        for name in names {
+            for opponents in Opposition::ALL {
+                let row = format!("| {name} | {} | ", opponents.label());
+                assert_eq!(file.matches(&row).count(), 1, "{name} {}; {again}", opponents.label());
+            }
         }
+        assert_eq!(file.lines().filter(|line| line.starts_with("| ")).count(), 1 + 2 * names.len(), "{again}");
     }
-    assert_eq!(file.lines().filter(|line| line.starts_with("| ")).count(), 1 + 2 * names.len(), "{AGAIN}");
 }
 
 #[test]
 fn rows_of_the_table_come_out_again() {
-    let (file, names) = (file(), names());
-    let case_trial = CaseTrial {
-        league: League::FourLegged,
-        base: case_library::four_legged(),
-        names: CaseNames::new(names.iter().copied()),
-        settings: RetrievalSettings::default(),
-        trials: TRIALS,
-        seed: SEED,
-    };
-    for authored in (0..names.len()).step_by(8) {
-        let case = case_trial.case(authored).expect("a stored case for every authored one");
-        for opponents in Opposition::ALL {
-            let attempts = case_trial.play(&case, opponents, &|| ()).expect("the simulator runs");
-            let score = Score::of(names[authored].to_owned(), opponents.label(), &attempts);
-            let table = markdown(&[score]);
-            let row = table.lines().last().unwrap_or_default();
-            assert!(file.contains(row), "the file has no row {row}; {AGAIN}");
+    for table in &TABLES {
+        let (file, names, again) = (table.file(), table.names(), table.again());
+        let case_trial = CaseTrial {
+            league: table.league,
+            base: (table.base)(),
+            names: CaseNames::new(names.iter().copied()),
+            settings: RetrievalSettings::default(),
+            trials: table.trials,
+            seed: 1,
+        };
+        for authored in (0..names.len()).step_by(table.repeats) {
+            let case = case_trial.case(authored).expect("a stored case for every authored one");
+            for opponents in Opposition::ALL {
+                let attempts = case_trial.play(&case, opponents, &|| ()).expect("the simulator runs");
+                let score = Score::of(names[authored].to_owned(), opponents.label(), &attempts);
+                let rows = markdown(&[score]);
+                let row = rows.lines().last().unwrap_or_default();
+                assert!(file.contains(row), "the file has no row {row}; {again}");
+            }
         }
     }
 }
 
 #[test]
 fn a_case_completed_by_less_than_sixty_in_a_hundred_says_why_in_its_file() {
-    let file = file();
-    let league = case_library::league("four-legged").expect("built in");
+    let four_legged = &TABLES[0];
+    let file = four_legged.file();
+    let league = case_library::league(four_legged.league.name()).expect("built in");
     for (name, text) in league.names.iter().zip(league.sources) {
         for opponents in Opposition::ALL.map(Opposition::label) {
             let row = file.lines().find(|line| line.starts_with(&format!("| {name} | {opponents} |")));
@@ -78,6 +114,3 @@ fn a_case_completed_by_less_than_sixty_in_a_hundred_says_why_in_its_file() {
         }
     }
 }
-
-const AGAIN: &str = "if a case, the brain or the simulator changed, write it again: \
-    cargo run --release -- cases play --trials 200 --seed 1 --markdown > casebase/library/cases/four-legged/played.md";
