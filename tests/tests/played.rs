@@ -62,7 +62,11 @@ fn the_table_of_played_cases_lists_every_case_against_both_kinds_of_opponents() 
                 assert_eq!(file.matches(&row).count(), 1, "{name} {}; {again}", opponents.label());
             }
         }
-        assert_eq!(file.lines().filter(|line| line.starts_with("| ")).count(), 1 + 2 * names.len(), "{again}");
+        assert_eq!(
+            file.lines().filter(|line| line.starts_with("| ")).count(),
+            1 + 2 * names.len(),
+            "{again}"
+        );
     }
 }
 

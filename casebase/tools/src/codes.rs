@@ -58,6 +58,7 @@ codes! {
     EMPTY "empty" Warning "The library has no case: every retrieval finds nothing."
     TWIN "twin" Warning "Retrieval cannot tell the case, or its mirror image, from another. Take one of the two out."
     SCOPE_IN_PATH "scope-in-path" Warning "An opponent in the centre of its scope blocks the case's own ball path: the condition speaks against the case."
+    SELF_BLOCKING "self-blocking" Warning "In more than a tenth of an opponent's scope the opponent blocks the case's own ball path."
     BIG_SCOPE "big-scope" Warning "A scope over 900 x 700 mm is more than a situation. Split the case."
     BEATEN "beaten" Warning "In the very situation the case describes another one is retrieved. Tell them apart."
     NEVER_RETRIEVED "never-retrieved" Warning "In none of the problems that were drawn was the case retrieved. Tell it apart from what is, or take it out."

@@ -16,7 +16,7 @@ use crate::files::Files;
 use crate::finding::{Finding, Severity};
 use crate::league::CaseLeague;
 use crate::notes::Notes;
-use crate::plans;
+use crate::{plans, self_blocking};
 
 /// Every warning about cases that passed all checks; `report` is called with the number of cases done.
 pub(crate) fn warnings(
@@ -125,7 +125,8 @@ fn gameplays(notes: &mut Notes<'_>, case: &Authored, league: &CaseLeague) {
     });
 }
 
-/// Warns of scopes whose centre blocks the case's own path; returns whether it is free of all of them.
+/// Warns of scopes that block the case's own path, with their centres or a good part of them; returns whether
+/// the path is free of all centres.
 fn scopes_in_path(notes: &mut Notes<'_>, case: &Authored, stored: &Case<'_>, base: &CaseBase<'_>) -> bool {
     let mut free = true;
     for (i, opponent) in case.opponents.iter().enumerate() {
@@ -145,6 +146,17 @@ fn scopes_in_path(notes: &mut Notes<'_>, case: &Authored, stored: &Case<'_>, bas
                 message,
                 "lead the ball around it, or move the scope",
             );
+            continue;
+        }
+        let share = self_blocking::share(stored, base, opponent.at, opponent.scope);
+        if share > self_blocking::WARNS_ABOVE {
+            let message = format!(
+                "in {:.0} % of opp{}'s scope the opponent blocks the case's own ball path",
+                100.0 * share,
+                i + 1
+            );
+            let hint = "make the scope smaller on that side, or lead the ball farther from it";
+            notes.add(code::SELF_BLOCKING, &opponent.span, message, hint);
         }
     }
     free

@@ -53,7 +53,7 @@ fn spelling() {
     expect_error("[450, 250] }", "[450, 250], color = 1 }", code::UNKNOWN_KEY, 3);
     expect_error("defending = \"yellow\"\n", "", code::MISSING_KEY, 1);
     expect_error("at = [-720, 0]\n", "", code::MISSING_KEY, 5);
-    expect_error("scope = [300, 300]", "", code::MISSING_KEY, 13);
+    expect_error("scope = [300, 225]", "", code::MISSING_KEY, 13);
     expect_error("at = [-600, 0], ", "", code::MISSING_KEY, 3);
     expect_error("\"yellow\"", "\"blue\"", code::BAD_DEFENDING, 2);
     expect_error("\"yellow\"", "1", code::WRONG_TYPE, 2);
@@ -101,9 +101,9 @@ fn what_cannot_be_played() {
 fn places_and_scopes() {
     expect_error("at = [-600, 0]", "at = [-2701, 0]", code::OUTSIDE_FIELD, 3);
     expect_error("at = [300, 900]", "at = [300, 1801]", code::OUTSIDE_FIELD, 10);
-    expect_error("at = [-150, 40]", "at = [-150, -1801]", code::OUTSIDE_FIELD, 14);
+    expect_error("at = [-150, -35]", "at = [-150, -1801]", code::OUTSIDE_FIELD, 14);
     expect_error("scope = [450, 250]", "scope = [0, 250]", code::BAD_SCOPE, 3);
-    expect_error("scope = [300, 300]", "scope = [300, -1]", code::BAD_SCOPE, 15);
+    expect_error("scope = [300, 225]", "scope = [300, -1]", code::BAD_SCOPE, 15);
     // A point on the line is inside; far outside is only doubtful for a point of an action.
     let on_line = PASS_AROUND.replace("at = [300, 900]", "at = [300, 1800]");
     assert_eq!(findings(LEAGUE, &[("a/a", &on_line)]), (vec![], false));
@@ -135,7 +135,7 @@ fn the_league() {
 fn every_fault_is_reported_at_once() {
     let text = PASS_AROUND
         .replace("\"yellow\"", "\"blue\"")
-        .replace("[300, 300]", "[0, 0]")
+        .replace("[300, 225]", "[0, 0]")
         .replace("[-720, 0]", "1");
     let (list, refused) = findings(LEAGUE, &[("center/a", &text), ("center/b", "x")]);
     let codes = [(code::BAD_DEFENDING, 2), (code::WRONG_TYPE, 6), (code::BAD_SCOPE, 15), (code::SYNTAX, 1)];
@@ -147,7 +147,7 @@ fn every_fault_is_reported_at_once() {
 fn doubts_do_not_refuse() {
     let with = |old: &str, new: &str| PASS_AROUND.replacen(old, new, 1);
     expect_warning(&with("scope = [450, 250]", "scope = [901, 250]"), code::BIG_SCOPE, 3);
-    expect_warning(&with("at = [-150, 40]", "at = [-150, 440]"), code::SCOPE_IN_PATH, 14);
+    expect_warning(&with("at = [-150, -35]", "at = [-150, 440]"), code::SCOPE_IN_PATH, 14);
     expect_warning(
         &with("\"wait\", { receive", "{ go_to_point = [0, 1801] }, { receive"),
         code::POINT_OUTSIDE,
@@ -176,7 +176,7 @@ fn twins_and_beaten_cases_are_doubtful() {
     let mirrored = "intent = \"the same below\"\ndefending = \"yellow\"\nball = { at = [-600, 0], scope = [450, 250] }\n\
         [[teammates]]\nat = [-720, 0]\ngameplay = [\"get_ball\", { pass_ball = 2 }]\n\
         [[teammates]]\nat = [300, -900]\ngameplay = [{ receive_ball = 1 }, { kick = \"goal\" }]\n\
-        [[opponents]]\nat = [-150, -40]\nscope = [300, 300]\n";
+        [[opponents]]\nat = [-150, 35]\nscope = [300, 225]\n";
     assert_eq!(findings(LEAGUE, &[("center/a", PASS_AROUND), ("center/b", mirrored)]).0, [(code::TWIN, 1)]);
     // Two cases with one robot each. A case is beaten in its own situation by one with the same robots and a
     // higher rank there; here neither is.
@@ -186,9 +186,9 @@ fn twins_and_beaten_cases_are_doubtful() {
     // In the situation of `wide` (ball at [100, 0], robot at [90, 0]) `near` costs 10 mm; `wide` costs
     // nothing.
     assert_eq!(findings(LEAGUE, &[("a/near", &near), ("a/wide", &wide)]), (vec![], false));
-    let scoped = wide.clone() + "[[opponents]]\nat = [100, 900]\nscope = [300, 300]\n";
+    let scoped = wide.clone() + "[[opponents]]\nat = [100, 900]\nscope = [300, 225]\n";
     let third = near.clone()
-        + "[[opponents]]\nat = [0, 900]\nscope = [300, 300]\n[[opponents]]\nat = [0, 1060]\nscope = [300, 300]\n";
+        + "[[opponents]]\nat = [0, 900]\nscope = [300, 225]\n[[opponents]]\nat = [0, 1060]\nscope = [300, 225]\n";
     // With its one opponent at [100, 900], both scopes of `third` are occupied: two conditions beat one.
     assert_eq!(findings(LEAGUE, &[("a/scoped", &scoped), ("a/third", &third)]).0, [(code::BEATEN, 1)]);
 }

@@ -71,7 +71,7 @@ mistakes! {
     a_turn_that_says_no_direction_is_told case "\"wait\"" => "{ turn = { left = 90 } }", UNKNOWN_KEY 11 "{ heading_deg = D } or { face = [x, y] }";
     a_missing_key_is_told case "defending = \"yellow\"\n" => "", MISSING_KEY 1 "add defending";
     a_robot_without_a_place_is_told case "at = [-720, 0]\n" => "", MISSING_KEY 5 "add at";
-    an_opponent_without_a_scope_is_told case "scope = [300, 300]" => "", MISSING_KEY 13 "add scope";
+    an_opponent_without_a_scope_is_told case "scope = [300, 225]" => "", MISSING_KEY 13 "add scope";
     a_team_s_colour_is_no_goal case "\"yellow\"" => "\"blue\"", BAD_DEFENDING 2 "write \"yellow\"";
     a_number_for_a_label_is_told case "\"yellow\"" => "1", WRONG_TYPE 2 "a string in quotes";
     a_fraction_of_a_millimetre_is_told case "[-600, 0]" => "[-600.5, 0]", WRONG_TYPE 3 "a whole number";
@@ -79,7 +79,7 @@ mistakes! {
     two_actions_in_one_table_are_told case "{ pass_ball = 2 }" => "{ pass_ball = 2, kick = \"goal\" }", WRONG_TYPE 7 "{ kick = \"KIND\" }";
     a_huge_number_is_told case "[-720, 0]" => "[-720, 99999999999999999999]", BAD_VALUE 6 "a whole number from";
     a_ball_scope_of_radius_0_is_told case "[450, 250]" => "[450, 0]", BAD_SCOPE 3 "both radii in mm, above 0";
-    an_opponent_scope_below_0_is_told case "[300, 300]" => "[300, -1]", BAD_SCOPE 15 "both radii in mm, above 0";
+    an_opponent_scope_below_0_is_told case "[300, 225]" => "[300, -1]", BAD_SCOPE 15 "both radii in mm, above 0";
     a_pass_to_nobody_is_told case "pass_ball = 2" => "pass_ball = 3", ROBOT_NUMBER 7 "another robot of this case";
     a_pass_to_oneself_is_told case "pass_ball = 2" => "pass_ball = 1", ROBOT_NUMBER 7 "another robot of this case";
     nobody_gets_the_ball case "\"get_ball\"" => "\"wait\"", ONE_GETTER 5 "exactly one robot begin with \"get_ball\"";
@@ -93,19 +93,20 @@ mistakes! {
     a_kind_of_kick_the_league_lacks_is_told case "kick = \"goal\"" => "kick = \"header\"", UNKNOWN_KICK 11 "add [kicks.header] or take one of: forward";
     a_ball_beyond_the_line_is_told case "at = [-600, 0]" => "at = [-2701, 0]", OUTSIDE_FIELD 3 "inside the field";
     a_robot_beyond_the_line_is_told case "at = [300, 900]" => "at = [300, 1801]", OUTSIDE_FIELD 10 "inside the field";
-    an_opponent_beyond_the_line_is_told case "at = [-150, 40]" => "at = [-150, -1801]", OUTSIDE_FIELD 14 "inside the field";
+    an_opponent_beyond_the_line_is_told case "at = [-150, -35]" => "at = [-150, -1801]", OUTSIDE_FIELD 14 "inside the field";
     a_league_without_a_width_is_told league "width = 3600\n" => "", MISSING_KEY 2 "add width";
     a_field_of_no_length_is_told league "length = 5400" => "length = 0", BAD_VALUE 3 "from 1 to 30000";
     a_kick_at_a_corner_is_told league "aim = \"goal\"" => "aim = \"corner\"", BAD_VALUE 33 "goal";
     a_kick_without_its_mirror_image_is_told league "offset = 250\n" => "", NO_PARTNER 42 "a kind of opposite heading_deg or offset";
     a_scope_as_large_as_the_field_is_doubtful case "[450, 250]" => "[901, 250]", BIG_SCOPE 3 "within 900 × 700 mm";
-    an_opponent_in_the_ball_s_way_is_doubtful case "at = [-150, 40]" => "at = [-150, 440]", SCOPE_IN_PATH 14 "move the scope";
+    an_opponent_in_the_ball_s_way_is_doubtful case "at = [-150, -35]" => "at = [-150, 440]", SCOPE_IN_PATH 14 "move the scope";
+    a_scope_half_in_the_ball_s_way_is_doubtful case "at = [-150, -35]" => "at = [-150, 160]", SELF_BLOCKING 14 "make the scope smaller";
     a_point_beyond_the_line_is_doubtful case "\"wait\", {" => "{ go_to_point = [0, 1801] }, {", POINT_OUTSIDE 11 "inside the field";
     a_robot_that_leaves_the_ball_is_doubtful case "\"get_ball\", " => "\"get_ball\", { go_to_point = [0, 0] }, ", LEAVES_BALL 7 "write dribble_to";
     a_primitive_no_body_knows_is_doubtful league "forward_soft" => "bicycle", UNKNOWN_PRIMITIVE 18 "take one of: ";
     a_case_for_nothing_is_doubtful case "Two attackers at the centre line, a defender ahead: pass around it and shoot." => " ", NO_INTENT 1 "what the case is for";
-    an_opponent_on_a_robot_is_doubtful case "at = [-150, 40]" => "at = [-750, 30]", SAME_SPOT 14 "move one of the two";
-    a_pass_over_a_hand_s_breadth_is_doubtful case "at = [300, 900]\ngameplay = [\"wait\", { receive_ball = 1 }, { kick = \"goal\" }]\n\n[[opponents]]\nat = [-150, 40]" => "at = [-600, 99]\ngameplay = [\"wait\", { receive_ball = 1 }, { kick = \"goal\" }]\n\n[[opponents]]\nat = [-150, -440]", SHORT_PASS 7 "dribble";
+    an_opponent_on_a_robot_is_doubtful case "at = [-150, -35]\nscope = [300, 225]" => "at = [-750, 30]\nscope = [100, 100]", SAME_SPOT 14 "move one of the two";
+    a_pass_over_a_hand_s_breadth_is_doubtful case "at = [300, 900]\ngameplay = [\"wait\", { receive_ball = 1 }, { kick = \"goal\" }]\n\n[[opponents]]\nat = [-150, -35]" => "at = [-600, 99]\ngameplay = [\"wait\", { receive_ball = 1 }, { kick = \"goal\" }]\n\n[[opponents]]\nat = [-150, -440]", SHORT_PASS 7 "dribble";
     a_robot_that_fetches_the_ball_for_nothing_is_doubtful case ", { kick = \"goal\" }" => ", { kick = \"forward\" }, \"get_ball\"", IDLE_BALL 11 "dribble_to, pass_ball or kick";
     a_kick_out_of_the_field_is_doubtful case "at = [300, 900]\ngameplay = [\"wait\", { receive_ball = 1 }, { kick = \"goal\" }]" => "at = [300, 950]\ngameplay = [\"wait\", { receive_ball = 1 }, { kick = \"left\" }]", KICK_LEAVES 11 "a shorter kind";
 }
@@ -221,7 +222,7 @@ fn what_editors_of_other_systems_leave_behind_is_no_mistake() {
         assert_eq!(library.map(|library| library.findings), Ok(vec![]));
     }
     // Lines are counted equally with either line ending.
-    let windows = replaced(PASS_AROUND, "[300, 300]", "[300, 0]").replace('\n', "\r\n");
+    let windows = replaced(PASS_AROUND, "[300, 225]", "[300, 0]").replace('\n', "\r\n");
     let finding = only(LEAGUE, &[("center/a", &windows)]);
     assert_finding(&finding, "test/center/a.toml", 15, code::BAD_SCOPE, "above 0");
 }

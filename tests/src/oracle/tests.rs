@@ -54,8 +54,8 @@ gameplay = ["get_ball", { pass_ball = 2 }]
 at = [300, 900]
 gameplay = ["wait", { receive_ball = 1 }, { kick = "goal" }]
 [[opponents]]
-at = [-150, 40]
-scope = [300, 300]
+at = [-150, -35]
+scope = [300, 225]
 "#;
 
 fn library(cases: &[(&str, &str)]) -> Library {

@@ -70,8 +70,8 @@ at = [300, 900]
 gameplay = ["wait", { receive_ball = 1 }, { kick = "goal" }]
 
 [[opponents]]
-at = [-150, 40]
-scope = [300, 300]
+at = [-150, -35]
+scope = [300, 225]
 "#;
 
 /// A library from memory; a finding ends the test.

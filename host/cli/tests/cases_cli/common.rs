@@ -50,8 +50,8 @@ at = [300, 900]
 gameplay = ["wait", { receive_ball = 1 }, { kick = "goal" }]
 
 [[opponents]]                                         # opp1
-at = [-150, 40]
-scope = [300, 300]
+at = [-150, -35]
+scope = [300, 225]
 "#;
 
 /// A case with a robot alone that shoots; applies at every ball position.
