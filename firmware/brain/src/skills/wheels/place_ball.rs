@@ -16,7 +16,8 @@ use rules::limits::ROBOT_RADIUS;
 use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive};
-use methods::{NEAR_ENOUGH, fetch, kick_off, pull, push, strays, wall};
+pub(super) use methods::wall;
+use methods::{NEAR_ENOUGH, fetch, kick_off, pull, push, strays};
 
 /// How far a placement has come.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -103,7 +103,7 @@ pub(super) fn strays(belief: &Belief, ball: &BelievedBall, at: Point<Field>) -> 
 
 /// The direction out of the field, where a ball lies so near a wall or goal that no body gets beside it, or
 /// behind it to push it to `at`.
-pub(super) fn wall(
+pub(in crate::skills::wheels) fn wall(
     field: &FieldSpec,
     ball: Point<Field>,
     at: Point<Field>,
