@@ -24,6 +24,8 @@ pub struct Drivetrain {
     /// Velocity ordered last.
     velocity: Vector<Field>,
     angular: f32,
+    /// The turn that was ordered and has not been measured yet, rad.
+    turns_on: f32,
     stepped: Option<Instant>,
     /// Length of the present step, s.
     step: f32,
@@ -53,6 +55,7 @@ impl Drivetrain {
         if (self.angular - belief.angular).abs() > ASTRAY_TURN {
             self.angular = belief.angular;
         }
+        self.turns_on = (self.turns_on + (self.angular - belief.angular) * step) * (1.0 - step * FORGETS);
         let under_way = self.under_way.take();
         match intent {
             Intent::Stand { face } => self.stand(belief, step, face),
@@ -151,12 +154,14 @@ impl Drivetrain {
             DriveMode::Holding => HOLDING_TURN,
             _ => TURN,
         };
+        // As it will be when this order takes effect.
+        let heading = pose.heading + Angle::new(self.turns_on);
         let angular = match face {
-            Some(face) if (face - pose.heading).abs() > FACED || self.angular.abs() > FACED_RATE => {
+            Some(face) if (face - heading).abs() > FACED || self.angular.abs() > FACED_RATE => {
                 if belief.is_placing() {
-                    turning.rate = math::min(turning.rate, SETTLES * (face - pose.heading).abs());
+                    turning.rate = math::min(turning.rate, SETTLES * (face - heading).abs());
                 }
-                turning.plan(pose.heading, self.angular, face).at(step).1
+                turning.plan(heading, self.angular, face).at(step).1
             }
             Some(_) => 0.0,
             None => {
@@ -260,6 +265,8 @@ const FACED_RATE: f32 = 0.2;
 const ASTRAY: f32 = 0.6;
 /// The same for turning, rad/s.
 const ASTRAY_TURN: f32 = 3.0;
+/// An order that was never carried out is forgotten in this share a second: wheels follow within a tenth.
+const FORGETS: f32 = 8.0;
 /// What is taken for a step, s.
 const STEP_LEAST: f32 = 0.001;
 const STEP_MOST: f32 = 0.03;
