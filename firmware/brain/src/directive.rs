@@ -112,4 +112,13 @@ mod tests {
         assert_eq!(TaskState::default().step(Instant(0), &b, &Directive::Gameplay { hint: None }), None);
         assert_eq!(order(KickOrder::Chip(350)), OmniKick::Chip(3.5));
     }
+
+    #[test]
+    fn a_ball_taken_at_a_board_is_pulled_away_before_it_is_turned() {
+        let at = 3.27 - crate::body::omni::BALL_AT;
+        let mut b = belief((1.0, at, 90.0), (1.0, 3.27));
+        b.holds_ball = true;
+        let Intent::Drive(drive) = get_ball(&b, None) else { panic!() };
+        assert!(drive.to.y() < at - 0.2 && (drive.face.to_degrees() - 90.0).abs() < 1e-3, "{drive:?}");
+    }
 }

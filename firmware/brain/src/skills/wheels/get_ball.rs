@@ -291,4 +291,27 @@ mod tests {
         let Step::Running(Intent::Drive(hasty)) = get_ball(&b, wanted) else { panic!() };
         assert!(hasty.to.x() < 0.0, "{hasty:?}");
     }
+
+    #[test]
+    fn a_ball_at_a_board_is_taken_looking_at_the_board_and_slowly() {
+        // The attacked goal lies along the board: no body fits behind the ball.
+        let b = belief((1.0, 2.0, 90.0), (1.0, 3.27));
+        let wanted = Some(b.ball.unwrap().position.direction_to(Point::new(4.5, 0.0)));
+        let Step::Running(Intent::Drive(drive)) = get_ball(&b, wanted) else { panic!() };
+        assert!((drive.face.to_degrees() - 90.0).abs() < 1e-3, "{drive:?}");
+        let b = belief((1.0, 3.27 - BALL_AT, 90.0), (1.0, 3.27));
+        let Step::Running(Intent::Drive(drive)) = get_ball(&b, wanted) else { panic!() };
+        assert!(drive.speed < 0.2 && drive.dribbler == 1.0, "{drive:?}");
+    }
+
+    #[test]
+    fn beside_an_opponent_that_touches_the_ball_it_is_taken_from_where_a_body_fits() {
+        let mut b = belief((0.5, 0.1, 180.0), (0.0, 0.0));
+        let _ = b.opponents.push(Point::new(0.115, 0.0));
+        let Step::Running(Intent::Drive(drive)) = get_ball(&b, None) else { panic!() };
+        // Straight on it would meet the opponent: its own body comes beside that one.
+        let stands = Point::<Field>::new(0.0, 0.0) - Vector::polar(BALL_AT, drive.face);
+        let apart = stands.distance(Point::new(0.115, 0.0));
+        assert!((0.18..0.25).contains(&apart), "{apart}");
+    }
 }
