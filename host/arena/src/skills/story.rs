@@ -66,4 +66,4 @@ pub(super) fn note_events(lines: &mut Vec<String>, time: f32, game: &Game<'_>) {
 }
 
 /// Ticks of 10 ms between two lines.
-const EVERY: u32 = 2;
+const EVERY: u32 = 10;
