@@ -290,9 +290,9 @@ const SILENCE: Duration = Duration::millis(300);
 /// a velocity that lags in every turn and every start: a larger share brings that error into the control
 /// loop, and bodies sway (4° and 2 cm with 0.4).
 const SHARE: f32 = 0.1;
-/// The change of the turn, rad/s, is weighed with this, s/rad: it is the host's error over the delay of 0.08 s
-/// in noise of a degree. One and the square divide the
-/// share: a turning robot that took the host's heading was 20° off.
+/// The change of the turn, rad/s, is weighed with this, s/rad: the host's error over the delay of 0.08 s in
+/// noise of a degree. One and the square divide the share: a turning robot that took the host's heading was
+/// 20° off.
 const CHANGES_TURN: f32 = 4.0;
 /// The same for the change of the velocity, s/m: 0.06 s in 1.5 cm, which wheels that slip err by themselves.
 const CHANGES_SPEED: f32 = 4.0;

@@ -195,7 +195,8 @@ const CONTESTED: f32 = 0.3;
 const GO_IN: f32 = 0.35;
 /// The same at a wall, m/s: a body that comes on for a centimetre squeezes the ball out of the dribbler.
 const GO_IN_AT_WALL: f32 = 0.12;
-/// From a ball to the centre of an opponent that touches it, m, and of one that leaves a body room everywhere.
+/// From a ball to the centre of an opponent that touches it, m, and of one that leaves room for a body
+/// everywhere.
 const OPPONENT_TOUCHES: f32 = 0.112;
 const BODY_BESIDE: f32 = 0.25;
 /// At a ball that an opponent touches two bodies fit while one looks no farther past the other than this,
