@@ -155,7 +155,7 @@ pub struct Barrier {
 impl Barrier {
     /// The heading nearest to `face` at which a body has room.
     fn nearest(&self, face: Angle) -> Angle {
-        self.towards + Angle::new((face - self.towards).radians().clamp(-self.width, self.width))
+        self.towards + Angle::new(math::clamp((face - self.towards).radians(), -self.width, self.width))
     }
 }
 
