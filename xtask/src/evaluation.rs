@@ -31,7 +31,7 @@ const MATCHES: [(&str, &str); 5] = [
 /// `docs/skills.md`.
 pub(crate) fn write_skills(context: &Context) -> Result<(), Failure> {
     for (section, description) in
-        [("nominal", "--tries 50"), ("random", "--world random --worlds 60 --tries 5")]
+        [("nominal", "--tries 50"), ("random", "--world random --worlds 200 --tries 2")]
     {
         let line = format!("evaluate skills {description} --markdown docs/skills.md --section {section}");
         run(&mut context.cargo(&format!("run --release -- {line}")))?;

@@ -1,12 +1,13 @@
 //! `directive`: execution of the host's directive: each has its skill, some with a small state.
 
-use geometry::{Field, Point, Pose, Segment};
+use geometry::{Field, Point, Pose, Segment, Vector};
 use protocol::Instant;
 use protocol::host::{Directive, KickOrder};
 use protocol::robot_io::OmniKick;
 
 use crate::belief::Belief;
 use crate::body::Intent;
+use crate::body::omni::Drive;
 use crate::skills::Step;
 use crate::skills::wheels::{self, Placement};
 
@@ -46,6 +47,11 @@ fn get_ball(belief: &Belief, face: Option<Point<Field>>) -> Intent {
     let from = belief.ball.map_or(belief.pose.position, |ball| ball.position);
     match wheels::get_ball(belief, Some(from.direction_to(face))) {
         Step::Running(intent) => intent,
+        // No body turns with the ball between a wall and itself: first it comes away from there.
+        Step::Done if wheels::barrier(belief, belief.dribbler_point()).is_some() => {
+            let heading = belief.pose.heading;
+            Drive::holding(belief.pose.position - Vector::polar(COMES_AWAY, heading), heading).into()
+        }
         Step::Done => wheels::kick_held(belief, face, OmniKick::None),
     }
 }
@@ -69,6 +75,9 @@ fn order(kick: KickOrder) -> OmniKick {
         KickOrder::Chip(speed) => OmniKick::Chip(f32::from(speed) * 0.01),
     }
 }
+
+/// How far a robot aims behind itself when it comes away from a wall or an opponent with the ball, m.
+const COMES_AWAY: f32 = 0.3;
 
 #[cfg(test)]
 mod tests {
@@ -102,5 +111,14 @@ mod tests {
         let b = belief((0.0, 0.0, 0.0), (1.0, 0.0));
         assert_eq!(TaskState::default().step(Instant(0), &b, &Directive::Gameplay { hint: None }), None);
         assert_eq!(order(KickOrder::Chip(350)), OmniKick::Chip(3.5));
+    }
+
+    #[test]
+    fn a_ball_taken_at_a_board_is_pulled_away_before_it_is_turned() {
+        let at = 3.27 - crate::body::omni::BALL_AT;
+        let mut b = belief((1.0, at, 90.0), (1.0, 3.27));
+        b.holds_ball = true;
+        let Intent::Drive(drive) = get_ball(&b, None) else { panic!() };
+        assert!(drive.to.y() < at - 0.2 && (drive.face.to_degrees() - 90.0).abs() < 1e-3, "{drive:?}");
     }
 }

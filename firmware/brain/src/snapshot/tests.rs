@@ -114,6 +114,24 @@ fn a_small_error_is_taken_out_bit_by_bit_and_a_large_one_at_once() {
 }
 
 #[test]
+fn a_robot_that_begins_to_turn_does_not_take_the_hosts_heading_that_lags() {
+    let (mut turns, mut stands) = (HostSnapshot::new(me()), HostSnapshot::new(me()));
+    let lags =
+        WireRobot { pose: WirePose { heading: -300, ..WirePose::default() }, ..robot(Side::Ours, 3, 0, 0) };
+    for (snapshot, angular) in [(&mut turns, 5.0), (&mut stands, 0.0)] {
+        snapshot.handle_part(Instant(0), &part(1, 0, &[robot(Side::Ours, 3, 0, 0)]));
+        snapshot.handle_odometry(Instant(10_000), Twist { linear: Vector::default(), angular });
+        snapshot.handle_part(Instant(10_000), &part(2, 0, &[lags]));
+    }
+    let off = |snapshot: &HostSnapshot, by: f32| {
+        (snapshot.own(Instant(10_000)).unwrap().heading - Angle::new(by)).to_degrees()
+    };
+    // It has turned by 0.05 rad, and the host shows 17 degrees less.
+    assert!(off(&turns, 0.05).abs() < 0.1, "{}", off(&turns, 0.05));
+    assert!(off(&stands, 0.0) < -17.0, "{}", off(&stands, 0.0));
+}
+
+#[test]
 fn robots_go_on_by_their_velocity_and_the_ball_slows_down() {
     let mut snapshot = HostSnapshot::new(me());
     snapshot.handle_part(Instant(0), &part(1, 0, &[robot(Side::Theirs, 1, 0, 2000)]));

@@ -1,7 +1,7 @@
 //! `get-ball`, `receive`, `dribble` and `turn-with-ball`: having the ball, and keeping it. Judged by where
 //! ball and robot truly are.
 
-use geometry::{Angle, Field, Point, Vector};
+use geometry::{Angle, Field, Point, Segment, Vector};
 use hil_sim::small_size::Ball;
 use protocol::host::{Directive, RuleRole};
 use rules::League;
@@ -70,8 +70,15 @@ impl GetBall {
         let at = ball.position;
         let description = format!("ball {kind} at ({:.2}, {:.2})", at.x(), at.y());
         let ours = vec![(ROBOT, pose(robot, places.direction()))];
-        let start =
-            Start { description, ours, theirs, ball, referee_order: RefereeOrder::Run, limit: GET_LIMIT };
+        let start = Start {
+            description,
+            ours,
+            theirs,
+            ball,
+            path: None,
+            referee_order: RefereeOrder::Run,
+            limit: GET_LIMIT,
+        };
         Self { start, had: Had::default() }
     }
 }
@@ -123,6 +130,7 @@ impl Receive {
             ours,
             theirs: Vec::new(),
             ball,
+            path: Some(Segment::new(from, at)),
             referee_order: RefereeOrder::Run,
             limit: RECEIVE_LIMIT,
         };
@@ -170,6 +178,7 @@ impl Dribble {
             ours,
             theirs: Vec::new(),
             ball: Ball::at(ball),
+            path: Some(Segment::new(ball, to)),
             referee_order: RefereeOrder::Run,
             limit: LIMIT,
         };
@@ -224,6 +233,7 @@ impl Turn {
             ours,
             theirs: Vec::new(),
             ball: Ball::at(lay),
+            path: None,
             referee_order: RefereeOrder::Run,
             limit: LIMIT,
         };

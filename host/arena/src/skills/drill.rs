@@ -1,7 +1,7 @@
 //! `drill`: one try through the whole loop. A start, a referee with one command, orders by hand or by the
 //! coach, and a judge of the true world. SI units, field frame; our team is yellow and defends −x.
 
-use geometry::{Angle, Field, Point, Pose};
+use geometry::{Angle, Field, Point, Pose, Segment};
 use hil_sim::small_size::{Ball, PhysicsEvent, Robot, World};
 use hil_sim::{Backend, Fnv};
 use host::Drill as Orders;
@@ -28,6 +28,8 @@ pub(super) struct Start {
     pub(super) theirs: Vec<Pose<Field>>,
     /// The ball at the beginning.
     pub(super) ball: Ball,
+    /// Where the ball is to go: nothing else stands there.
+    pub(super) path: Option<Segment<Field>>,
     /// The first command of the referee.
     pub(super) referee_order: RefereeOrder,
     /// Time after which it has failed, s.
@@ -213,7 +215,9 @@ fn place(game: &mut Game<'_>, start: &Start, robots: u8) {
     }
     let in_the_way = |robot: &&Robot| {
         let at = robot.pose.position;
-        robot.present && !taken(robot.who) && needed.iter().any(|place| place.distance(at) < BYSTANDERS_OFF)
+        let near = needed.iter().any(|place| place.distance(at) < BYSTANDERS_OFF)
+            || start.path.is_some_and(|path| path.distance_to(at) < BYSTANDERS_OFF);
+        robot.present && !taken(robot.who) && near
     };
     let removed: Vec<Who> = world.robots().iter().filter(in_the_way).map(|robot| robot.who).collect();
     for who in removed {

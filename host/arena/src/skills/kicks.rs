@@ -53,6 +53,7 @@ impl Kick {
             ours,
             theirs,
             ball: Ball::at(from),
+            path: Some(Segment::new(from, target)),
             referee_order: RefereeOrder::Run,
             limit: LIMIT,
         };

@@ -48,6 +48,7 @@ impl Placement {
             ours: (0..).zip(ours).collect(),
             theirs,
             ball: Ball::at(ball),
+            path: None,
             referee_order: RefereeOrder::Place(target),
             limit: LIMIT,
         };

@@ -1,6 +1,6 @@
 //! `save`: a shot between the posts, and the keeper alone, under the coach. Success: no goal.
 
-use geometry::{Angle, Field, GoalEnd, Point, Vector};
+use geometry::{Angle, Field, GoalEnd, Point, Segment, Vector};
 use hil_sim::small_size::{Ball, World};
 use protocol::host::{Directive, RuleRole};
 use rules::League;
@@ -34,6 +34,7 @@ impl Save {
             ours: vec![(0, keeper)],
             theirs: Vec::new(),
             ball: Ball::at(ball),
+            path: Some(Segment::new(ball, aim)),
             referee_order: RefereeOrder::Stop,
             limit: SHOT_AT + LASTS,
         };

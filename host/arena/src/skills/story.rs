@@ -53,7 +53,9 @@ pub(super) fn note_events(lines: &mut Vec<String>, time: f32, game: &Game<'_>) {
         );
         let seen = host.world().robots().find(|seen| seen.who == robot.who);
         if let Some(seen) = seen {
-            let _ = write!(line, ", seen {:.3} m off", seen.pose.position.distance(robot.pose.position));
+            let turned = (seen.pose.heading - robot.pose.heading).to_degrees();
+            let off = seen.pose.position.distance(robot.pose.position);
+            let _ = write!(line, ", seen {off:.3} m and {turned:.1}° off");
         }
         let given = host.orders().iter().find(|given| given.robot == robot.who.id);
         if let Some(given) = given {

@@ -19,10 +19,17 @@ use crate::skills::wheels::shoot::clear_or_shoot;
 /// Brings the ball to `pose`.
 pub fn dribble(belief: &Belief, pose: Pose<Field>) -> Intent {
     if belief.holds_ball {
-        return Drive::holding(pose.position, pose.heading).into();
+        // Braking, a weak roller loses what rolls freely.
+        let left = belief.pose.position.distance(pose.position);
+        let speed = math::sqrt(2.0 * BRAKES * left) + CREEPS;
+        return Drive { speed, ..Drive::holding(pose.position, pose.heading) }.into();
     }
-    let towards = belief.ball.map(|ball| ball.position.direction_to(pose.position));
-    match get_ball(belief, towards) {
+    let Some(ball) = belief.ball else {
+        // It may lie hidden before this robot: backwards, until cameras see it.
+        let back = belief.pose.position - Vector::polar(STEP_BACK, belief.pose.heading);
+        return Drive { speed: REVEALS, ..Drive::bold(back, belief.pose.heading) }.into();
+    };
+    match get_ball(belief, Some(ball.position.direction_to(pose.position))) {
         Step::Running(intent) => intent,
         Step::Done => Intent::Stand { face: None },
     }
@@ -133,12 +140,18 @@ const AFAR: f32 = 3.0;
 const SPARE: f32 = 0.25;
 /// Deceleration towards that, m/s².
 const SLOWS: f32 = 1.0;
+/// The same at the place where the ball is carried to, m/s²: 0.35 of rolling and 0.5 of the weakest roller.
+const BRAKES: f32 = 0.7;
+/// Remaining speed there, m/s.
+const CREEPS: f32 = 0.05;
 /// Remaining speed then, m/s.
 const CRAWL: f32 = 0.15;
 /// Distance of the step back, m.
 const STEP_BACK: f32 = 0.2;
 /// Speed of the step back, m/s.
 const AWAY: f32 = 0.8;
+/// Speed at which it backs off a ball that cameras may not see for it, m/s.
+const REVEALS: f32 = 0.3;
 /// Nearer than this it keeps its heading, m.
 const TURNS_FROM: f32 = 0.2;
 
@@ -242,5 +255,13 @@ mod tests {
         assert!(turns.kick == OmniKick::Flat(FREED) && !turns.armed, "{turns:?}");
         assert!((turns.face.radians() - TURN).abs() < 1e-3, "{turns:?}");
         assert_eq!(disputed(180.0, 900).kick, KICK, "towards the own goal nothing but what is wanted");
+    }
+
+    #[test]
+    fn a_ball_that_no_camera_sees_is_revealed_by_backing_off() {
+        let mut b = belief((0.0, 0.0, 0.0), (0.0, 0.0));
+        b.ball = None;
+        let back = drive(dribble(&b, Pose::from_mm_deg(1000.0, 0.0, 0.0)));
+        assert!(back.to.x() < -0.1 && back.speed < 0.5, "{back:?}");
     }
 }

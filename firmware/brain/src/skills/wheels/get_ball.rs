@@ -2,7 +2,7 @@
 //!
 //! Rolling: `motion::intercept` finds where the robot can stand beyond the ball in time, facing it; it stops
 //! itself against the roller. Resting: around the ball to a place behind it, as seen from where it will go,
-//! and slowly on from there.
+//! and slowly on from there. Before a wall or an opponent only a body's room is left: from there.
 
 use geometry::{Angle, Field, Point, Segment, Vector, math};
 use motion::ball::{BallModel, BallPath};
@@ -12,6 +12,7 @@ use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive, LIMITS};
 use crate::skills::Step;
+use crate::skills::wheels::place_ball::wall;
 
 /// Where a robot stands on the path to a ball at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +38,9 @@ pub fn get_ball(belief: &Belief, face: Option<Angle>) -> Step {
         Some(face) if !is_contested(belief, &ball) => face,
         _ => belief.pose.position.direction_to(ball.position),
     };
-    match approach(belief, &ball, face, GO_IN) {
+    let barrier = barrier(belief, ball.position);
+    let (face, speed) = barrier.map_or((face, GO_IN), |barrier| (barrier.nearest(face), barrier.speed));
+    match approach(belief, &ball, face, speed) {
         Approach::Around(drive) => Step::Running(drive.into()),
         Approach::In(drive) => Step::Running(Drive { dribbler: 1.0, ..drive }.into()),
     }
@@ -138,6 +141,36 @@ fn time_in_field(belief: &Belief, ball: &BelievedBall, path: &BallPath<Field>) -
     path.time_to(v.norm() * out).unwrap_or(f32::INFINITY)
 }
 
+/// What stands so near a ball that a body fits only on the side away from it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Barrier {
+    /// Where it stands, as seen from the ball.
+    towards: Angle,
+    /// A robot there may look at most this far past it, rad.
+    width: f32,
+    /// So fast it may come to the ball, m/s.
+    speed: f32,
+}
+
+impl Barrier {
+    /// The heading nearest to `face` at which a body has room.
+    fn nearest(&self, face: Angle) -> Angle {
+        self.towards + Angle::new(math::clamp((face - self.towards).radians(), -self.width, self.width))
+    }
+}
+
+/// The barrier at a ball: a board or goal outside the lines, or an opponent.
+pub fn barrier(belief: &Belief, ball: Point<Field>) -> Option<Barrier> {
+    let field = belief.league().field();
+    if !field.contains(ball) {
+        let towards = wall(&field, ball, ball, false, 0.0)?;
+        return Some(Barrier { towards, width: 0.0, speed: GO_IN_AT_WALL });
+    }
+    let (opponent, apart) = belief.nearest_opponent(ball).filter(|(_, apart)| *apart < BODY_BESIDE)?;
+    let width = PAST_OPPONENT * (apart - OPPONENT_TOUCHES) + ASKEW_TOUCHING;
+    Some(Barrier { towards: ball.direction_to(opponent), width, speed: GO_IN })
+}
+
 fn is_contested(belief: &Belief, ball: &BelievedBall) -> bool {
     belief.nearest_opponent(ball.position).is_some_and(|(_, distance)| distance < CONTESTED)
 }
@@ -160,6 +193,17 @@ const ROLLING: f32 = 0.3;
 const CONTESTED: f32 = 0.3;
 /// How fast a robot comes to a resting ball, m/s: slower than would push it out of the roller's reach.
 const GO_IN: f32 = 0.35;
+/// The same at a wall, m/s: a body that comes on for a centimetre squeezes the ball out of the dribbler.
+const GO_IN_AT_WALL: f32 = 0.12;
+/// From a ball to the centre of an opponent that touches it, m, and of one that leaves room for a body
+/// everywhere.
+const OPPONENT_TOUCHES: f32 = 0.112;
+const BODY_BESIDE: f32 = 0.25;
+/// At a ball that an opponent touches two bodies fit while one looks no farther past the other than this,
+/// rad: 52°, by the triangle of ball and centres with a centimetre between the bodies; …
+const ASKEW_TOUCHING: f32 = 0.9;
+/// … and so much farther for each metre between them, rad/m: 110° at 0.2 m.
+const PAST_OPPONENT: f32 = 11.0;
 /// From so far before the ball it goes in, m.
 const GO_IN_FROM: f32 = 0.25;
 /// Between front and ball at the place behind it, m.
@@ -247,5 +291,28 @@ mod tests {
         let _ = b.opponents.push(Point::new(0.2, 0.0));
         let Step::Running(Intent::Drive(hasty)) = get_ball(&b, wanted) else { panic!() };
         assert!(hasty.to.x() < 0.0, "{hasty:?}");
+    }
+
+    #[test]
+    fn a_ball_at_a_board_is_taken_looking_at_the_board_and_slowly() {
+        // The attacked goal lies along the board: no body fits behind the ball.
+        let b = belief((1.0, 2.0, 90.0), (1.0, 3.27));
+        let wanted = Some(b.ball.unwrap().position.direction_to(Point::new(4.5, 0.0)));
+        let Step::Running(Intent::Drive(drive)) = get_ball(&b, wanted) else { panic!() };
+        assert!((drive.face.to_degrees() - 90.0).abs() < 1e-3, "{drive:?}");
+        let b = belief((1.0, 3.27 - BALL_AT, 90.0), (1.0, 3.27));
+        let Step::Running(Intent::Drive(drive)) = get_ball(&b, wanted) else { panic!() };
+        assert!(drive.speed < 0.2 && drive.dribbler == 1.0, "{drive:?}");
+    }
+
+    #[test]
+    fn beside_an_opponent_that_touches_the_ball_it_is_taken_from_where_a_body_fits() {
+        let mut b = belief((0.5, 0.1, 180.0), (0.0, 0.0));
+        let _ = b.opponents.push(Point::new(0.115, 0.0));
+        let Step::Running(Intent::Drive(drive)) = get_ball(&b, None) else { panic!() };
+        // Straight on it would meet the opponent: its own body comes beside that one.
+        let stands = Point::<Field>::new(0.0, 0.0) - Vector::polar(BALL_AT, drive.face);
+        let apart = stands.distance(Point::new(0.115, 0.0));
+        assert!((0.18..0.25).contains(&apart), "{apart}");
     }
 }

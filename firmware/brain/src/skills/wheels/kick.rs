@@ -44,7 +44,8 @@ pub fn pass(belief: &Belief, at: Point<Field>, kick: OmniKick, ready: bool) -> I
     }
     match approach(belief, &ball, face, GO_IN) {
         Approach::In(drive) if ready => {
-            let aimed = (face - belief.pose.heading).abs() < tolerance(ball.position.distance(at));
+            let aimed = (face - belief.pose.heading).abs() < tolerance(ball.position.distance(at))
+                && is_still(belief, 1.0);
             if aimed || ball.position.distance(belief.pose.position) > BALL_AT + CLOSE {
                 Drive { kick: if aimed { kick } else { OmniKick::None }, ..drive }.into()
             } else {
@@ -67,8 +68,7 @@ pub fn kick_held(belief: &Belief, at: Point<Field>, kick: OmniKick) -> Intent {
     let off = (face - belief.pose.heading).abs();
     // A robot that cannot aim well kicks as well as it can.
     let slack = 1.0 + LOOSENS * (belief.held() - AIMS_FOR).max(0.0);
-    let still = belief.angular.abs() < STILL_TURNING * slack && sideways(belief) < STILL_SIDEWAYS * slack;
-    let armed = off < tolerance(me.distance(at)) * slack && still;
+    let armed = off < tolerance(me.distance(at)) * slack && is_still(belief, slack);
     // Armed for as long as it points right, though the break-beam signal may flicker: the kicker acts when
     // the ball is there. The beam reaches farther than kicker and roller: a ball that stays where it is has
     // not come near enough.
@@ -85,6 +85,11 @@ pub fn pass_speed(distance: f32) -> f32 {
 /// Aiming tolerance of a kick over that distance, rad: a robot's width at the end, never more than 3°.
 fn tolerance(distance: f32) -> f32 {
     (AIM_WIDTH / distance.max(0.1)).clamp(AIM_BEST, AIM_WORST)
+}
+
+/// It turns and drifts so slowly, or `slack` times as fast, that a kick goes along its heading.
+fn is_still(belief: &Belief, slack: f32) -> bool {
+    belief.angular.abs() < STILL_TURNING * slack && sideways(belief) < STILL_SIDEWAYS * slack
 }
 
 /// The ball keeps the robot's sideways speed.
@@ -153,6 +158,15 @@ mod tests {
         b.game.phase = Phase::FreeKick(Side::Ours);
         let turning = drive(kick(&b, Point::new(3.0, 0.0), FLAT));
         assert_eq!((turning.kick, turning.to), (OmniKick::None, b.pose.position));
+    }
+
+    #[test]
+    fn a_robot_that_still_turns_past_its_aim_does_not_touch_the_ball_with_the_kicker_armed() {
+        let mut b = belief((-BALL_AT - 0.01, 0.0, 0.0), (0.0, 0.0));
+        b.angular = 2.0;
+        assert_eq!(drive(kick(&b, Point::new(3.0, 0.0), FLAT)).kick, OmniKick::None);
+        b.angular = 0.1;
+        assert_eq!(drive(kick(&b, Point::new(3.0, 0.0), FLAT)).kick, FLAT);
     }
 
     #[test]

@@ -16,7 +16,7 @@ pub(crate) mod testing;
 
 pub use block::block;
 pub use dribble::{carry_to, dribble, let_go_in_time};
-pub use get_ball::{Approach, approach, get_ball};
+pub use get_ball::{Approach, approach, barrier, get_ball};
 pub use go_to::{go_to, keep_off};
 pub use kick::{kick, kick_held, pass, pass_speed};
 pub use place_ball::{Placement, place_ball};

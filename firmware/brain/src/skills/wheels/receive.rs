@@ -24,8 +24,9 @@ pub fn receive(belief: &Belief, at: Point<Field>, then: Option<Point<Field>>) ->
     }
     let Some(ball) = belief.ball else { return Drive::avoiding(at, belief.pose.heading).into() };
     if !comes(belief, &ball, at) {
-        let resting = ball.velocity.norm() < RESTS;
-        if resting && ball.position.distance(at) < FETCHED {
+        // One that has bounced off the front, too: it is not waited for.
+        let slow = ball.velocity.norm() < COMING;
+        if slow && ball.position.distance(at) < FETCHED {
             return match get_ball(belief, None) {
                 Step::Running(intent) => intent,
                 Step::Done => Intent::Stand { face: None },
@@ -154,5 +155,12 @@ mod tests {
         );
         let taken = drive(receive(&b, at, Some(Point::new(4.0, 2.0))));
         assert_eq!(taken.kick, OmniKick::None);
+    }
+
+    #[test]
+    fn a_ball_that_bounced_off_its_front_is_followed_and_not_waited_for() {
+        let b = rolling(belief((0.0, 0.0, 180.0), (-BALL_AT - 0.02, 0.0)), (-0.25, 0.0));
+        let follows = drive(receive(&b, Point::new(-0.05, 0.0), None));
+        assert!(follows.to.x() < 0.0 && follows.face.abs() > 3.0, "{follows:?}");
     }
 }

@@ -19,7 +19,7 @@ pub(super) fn fetch(
     belief: &Belief,
     ball: &BelievedBall,
     at: Point<Field>,
-    kicks: Option<Angle>,
+    kicks: Option<OffWall>,
 ) -> Intent {
     let rolls = ball.velocity.norm() > ROLLING;
     if rolls && placement.grip > FOLLOWS {
@@ -30,7 +30,8 @@ pub(super) fn fetch(
     let ball = if rolls { &resting } else { ball };
     let wall = placement.wall(belief, ball, at);
     let face = match (kicks, wall) {
-        (Some(face), _) | (None, Some(face)) => face,
+        (Some(kick), _) => kick.face,
+        (None, Some(face)) => face,
         _ if placement.pushes(belief, ball, at) => ball.position.direction_to(at),
         _ if ball.position.distance(at) > PLACEMENT_TOLERANCE => at.direction_to(ball.position),
         _ => belief.pose.position.direction_to(ball.position),
@@ -38,8 +39,10 @@ pub(super) fn fetch(
     let speed = if wall.is_some() { GO_IN_AT_WALL } else { GO_IN };
     match approach(belief, ball, face, speed) {
         Approach::Around(drive) => around(belief, ball.position, face, drive).into(),
-        Approach::In(drive) if kicks.is_some() => kicking(placement, drive).into(),
-        Approach::In(drive) => Drive { dribbler: 1.0, ..drive }.into(),
+        Approach::In(drive) => match kicks {
+            Some(kick) => kick.with(drive).into(),
+            None => Drive { dribbler: 1.0, ..drive }.into(),
+        },
     }
 }
 
@@ -56,12 +59,6 @@ fn around(belief: &Belief, ball: Point<Field>, face: Angle, drive: Drive) -> Dri
         return drive;
     }
     Drive { to: ball + inwards * ASIDE, ..drive }
-}
-
-/// The same path, with the kick off a wall: stronger where one has not sufficed.
-pub(super) fn kicking(placement: &Placement, drive: Drive) -> Drive {
-    let speed = OFF_WALL + STRONGER * f32::from(placement.tries);
-    Drive { kick: OmniKick::Flat(speed), dribbler: 0.0, ..drive }
 }
 
 /// Backwards with the ball: straight away from a wall, or to its place, with this share of the acceleration.
@@ -83,11 +80,12 @@ pub(super) fn pull(belief: &Belief, at: Point<Field>, out: Option<Angle>, placem
 }
 
 /// From behind, with what the dribbler holds.
-pub(super) fn push(belief: &Belief, ball: &BelievedBall, at: Point<Field>, grip: f32) -> Intent {
+pub(super) fn push(belief: &Belief, ball: &BelievedBall, at: Point<Field>, placement: &Placement) -> Intent {
     let face = ball.position.direction_to(at);
     // So slow that the ball rests at the place when it rolls on from here, and no slower than it starts at
     // all.
-    let rolls = SLOWS.iter().find(|(held, _)| grip > *held).map_or(ROLLS, |(_, brakes)| *brakes);
+    let holds = SLOWS.iter().find(|(held, _)| !placement.stays && placement.grip > *held);
+    let rolls = holds.map_or(ROLLS, |(_, brakes)| *brakes);
     let left = ball.position.distance(at) - SHORT - LAG * belief.velocity.norm();
     let speed = math::sqrt(2.0 * rolls * left.max(0.0)).clamp(CREEP, PUSH);
     let to = ball.position + Vector::polar(AHEAD - BALL_AT, face);
@@ -103,7 +101,7 @@ pub(super) fn strays(belief: &Belief, ball: &BelievedBall, at: Point<Field>) -> 
 
 /// The direction out of the field, where a ball lies so near a wall or goal that no body gets beside it, or
 /// behind it to push it to `at`.
-pub(super) fn wall(
+pub(in crate::skills::wheels) fn wall(
     field: &FieldSpec,
     ball: Point<Field>,
     at: Point<Field>,
@@ -150,23 +148,60 @@ pub(super) fn wall(
     Some(out.angle())
 }
 
-/// Where a ball that lies at one wall is kicked so that it leaves that wall, on the side of the place; `None`
-/// in corners and goals.
-pub(super) fn kick_off(field: &FieldSpec, ball: Point<Field>, at: Point<Field>, out: Angle) -> Option<Angle> {
+/// A kick that gets a ball off a wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct OffWall {
+    /// The heading of the kick.
+    pub(super) face: Angle,
+    /// Its speed, m/s.
+    pub(super) speed: f32,
+    /// The ball leaves along the only wall beside it.
+    pub(super) one_wall: bool,
+}
+
+impl OffWall {
+    /// The same path, with the kick.
+    pub(super) fn with(self, drive: Drive) -> Drive {
+        Drive { kick: OmniKick::Flat(self.speed), dribbler: 0.0, ..drive }
+    }
+}
+
+/// The kick number `tries` of a ball at walls that lie towards `out`. One wall: askew, so that it leaves that
+/// wall on the side of the place. Two walls, a net: straight into them, so that it comes back as the robot
+/// backs off. `None` before a goal.
+pub(super) fn kick_off(
+    field: &FieldSpec,
+    ball: Point<Field>,
+    at: Point<Field>,
+    out: Angle,
+    tries: u8,
+) -> Option<OffWall> {
     let ahead = Vector::<Field>::polar(1.0, out);
-    let goal = 0.5 * field.goal_width + field.goal_wall + ROBOT_RADIUS;
-    if (ahead.x() * ahead.y()).abs() > ASKEW_OUT || ball.y().abs() < goal && ahead.x().abs() > 0.5 {
+    let nth = f32::from(tries);
+    let (line, post) = (0.5 * field.length, 0.5 * field.goal_width);
+    if ball.y().abs() < post && ball.x().abs() > line {
+        return Some(OffWall { face: out, speed: INTO_NET, one_wall: false });
+    }
+    if (ahead.x() * ahead.y()).abs() > ASKEW_OUT {
+        return Some(OffWall { face: out, speed: INTO_CORNER + STRONGER * nth, one_wall: false });
+    }
+    let goal = post + field.goal_wall + ROBOT_RADIUS;
+    if ball.y().abs() < post && ahead.x().abs() > 0.5 {
         return None;
     }
     // Away from a goal beside it.
-    let towards = if ball.y().abs() < goal + BESIDE_POST && ahead.x().abs() > 0.5 {
+    let towards = if ball.y().abs() < goal + ALONG && ahead.x().abs() > 0.5 {
         Vector::new(0.0, ball.y())
     } else {
         at - ball
     };
-    let left = ahead.cross(towards) > 0.0;
-    let face = out + Angle::new(if left { KICKS_ASKEW } else { -KICKS_ASKEW });
-    stands(field, ball - Vector::polar(BEHIND, face), -TIGHT).then_some(face)
+    let side = if ahead.cross(towards) > 0.0 { 1.0 } else { -1.0 };
+    let askew = KICKS_ASKEW.iter().cycle().skip(usize::from(tries)).take(KICKS_ASKEW.len());
+    let faces = askew.map(|askew| out + Angle::new(side * askew));
+    let fits = |face: &Angle| stands(field, ball - Vector::polar(BEHIND, *face), -TIGHT);
+    let face = { faces }.find(fits);
+    let speed = if face.is_some() { OFF_WALL } else { INTO_CORNER };
+    Some(OffWall { face: face.unwrap_or(out), speed: speed + STRONGER * nth, one_wall: face.is_some() })
 }
 
 /// A body has this much room there beyond what it needs, m.
@@ -195,9 +230,15 @@ pub(super) const NEAR_ENOUGH: f32 = 0.12;
 const OFF_WALL: f32 = 2.2;
 /// … and this much more for each earlier try, m/s.
 const STRONGER: f32 = 0.5;
-/// Off the wall's normal, rad: 40°, more leaves no room for the body, and with less the ball comes back to
-/// it.
-const KICKS_ASKEW: f32 = 0.7;
+/// So far along a wall it rolls then, m: not before a goal.
+const ALONG: f32 = 1.0;
+/// Off the wall's normal, rad: 40°, more leaves no room for the body; beside goals there is room for less
+/// only, and with less the ball comes back to the body.
+const KICKS_ASKEW: [f32; 3] = [0.7, 0.45, 0.25];
+/// Into a corner of boards, m/s: it comes back with 0.3 to 0.6 of it, as fast as a robot backs off by then.
+const INTO_CORNER: f32 = 1.0;
+/// Into a net, m/s, which gives back a twentieth to a tenth.
+const INTO_NET: f32 = 6.0;
 /// Product of a direction's shares along two walls, beyond which it points between them.
 const ASKEW_OUT: f32 = 0.2;
 /// How fast a ball is pushed at first, m/s.
@@ -206,11 +247,11 @@ const PUSH: f32 = 2.0;
 const HELD: f32 = 0.16;
 /// A ball before the front does not get lost by speeding up: share of the acceleration.
 const PUSHES: f32 = 1.6;
-/// A pushed ball is slowed down by this on its path, m/s²: about as field surfaces do, so that it stays near
-/// the front.
+/// A pushed ball that no roller holds is slowed down by this on its path, m/s²: about as field surfaces do,
+/// so that it stays near the front.
 const ROLLS: f32 = 0.35;
 /// The same of one that followed with such a share of the acceleration or more, m/s².
-const SLOWS: [(f32, f32); 3] = [(0.3, 1.0), (0.15, 0.7), (0.045, 0.55)];
+const SLOWS: [(f32, f32); 3] = [(0.3, 1.0), (0.15, 0.7), (0.0, 0.55)];
 /// The slowest push, m/s.
 const CREEP: f32 = 0.2;
 /// The ball is ahead of where it is shown by how far it moves in this time, s: camera frame, radio, a step;
@@ -219,7 +260,7 @@ const LAG: f32 = 0.05;
 /// A push ends this far before the place, m: within what the rules allow, and half a second sooner.
 const SHORT: f32 = 0.07;
 /// A push aims this far ahead on the ball's path, m: no less than a robot takes to brake.
-const AHEAD: f32 = 0.7;
+const AHEAD: f32 = 0.9;
 /// A pushed ball this far beside the middle is lost, m; ahead, m.
 const BESIDE: f32 = 0.07;
 const ESCAPED: f32 = 0.5;
@@ -274,16 +315,26 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_is_kicked_off_one_wall_to_the_side_of_the_place_and_not_into_corners_or_goals() {
+    fn a_ball_is_kicked_off_a_wall_to_the_side_of_the_place_and_straight_into_corners_and_nets() {
         let field = League::DivisionB.field();
         let at = Point::new(0.0, 0.0);
-        let kick = |ball: Point<Field>| kick_off(&field, ball, at, wall(&field, ball, at, true, 0.0)?);
-        let face = kick(Point::new(2.0, 3.27)).unwrap();
-        assert!((face.to_degrees() - 130.1).abs() < 0.1, "{}", face.to_degrees());
-        assert_eq!(kick(Point::new(4.75, 3.25)), None);
-        assert_eq!(kick(Point::new(4.6, 0.2)), None);
+        let kick = |ball: Point<Field>, tries: u8| {
+            kick_off(&field, ball, at, wall(&field, ball, at, true, 0.0)?, tries)
+        };
+        let face = |ball: (f32, f32), tries: u8| {
+            kick(Point::new(ball.0, ball.1), tries).map(|kick| kick.face.to_degrees())
+        };
+        assert!((face((2.0, 3.27), 0).unwrap() - 130.1).abs() < 0.1);
+        assert!((face((2.0, 3.27), 1).unwrap() - 115.8).abs() < 0.1, "no try is like the one before");
+        let corner = kick(Point::new(4.75, 3.25), 0).unwrap();
+        assert!((corner.face.to_degrees() - 45.0).abs() < 0.1 && corner.speed < 1.5, "{corner:?}");
+        let net = kick(Point::new(4.6, 0.2), 0).unwrap();
+        assert!(net.face.abs() < 1e-3 && net.speed > 5.0, "{net:?}");
+        assert_eq!(kick(Point::new(4.45, 0.2), 0), None, "it would go into the goal");
         // Beside the goal: away from it.
-        assert!(kick(Point::new(4.7, 0.75)).unwrap().to_degrees() > 30.0);
+        assert!(face((4.7, 0.75), 0).unwrap() > 30.0);
+        // Between the goal's wall and the board: into that pocket.
+        assert!((face((-4.78, 0.57), 0).unwrap() + 135.0).abs() < 0.1);
     }
 
     #[test]
@@ -300,7 +351,8 @@ mod tests {
     #[test]
     fn a_push_ends_so_slowly_that_the_ball_rests_at_its_place() {
         let b = belief((0.0, 0.0, 0.0), (BALL_AT, 0.0));
-        let Intent::Drive(drive) = push(&b, &b.ball.unwrap(), Point::new(BALL_AT + 0.08, 0.0), 0.04) else {
+        let stays = Placement { stays: true, ..Placement::default() };
+        let Intent::Drive(drive) = push(&b, &b.ball.unwrap(), Point::new(BALL_AT + 0.08, 0.0), &stays) else {
             panic!("drives")
         };
         assert!(drive.speed * drive.speed / (2.0 * ROLLS) < 0.09, "{}", drive.speed);
