@@ -137,7 +137,12 @@ impl Drivetrain {
             self.under_way = Some(CurrentPath { drive: *drive, towards: path.motion.to(), winds });
         }
         let there = rests && from.distance(path.goal) < THERE;
-        let velocity = if there { Vector::default() } else { short_of_bodies(belief, path.next.velocity) };
+        // While we place the ball the others keep off, and the step has no time for it.
+        let velocity = match path.next.velocity {
+            _ if there => Vector::default(),
+            next if belief.is_placing() => next,
+            next => short_of_bodies(belief, next),
+        };
         self.wanted(belief, step, velocity, Some(drive.face), drive)
     }
 
