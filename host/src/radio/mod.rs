@@ -303,7 +303,7 @@ impl Radio {
         // from it.
         let most = if audience.is_empty() { 1 } else { PARTS_MAX };
         for part in
-            snapshot::parts(self.snapshot, audience.len(), &there, &latest.situation).into_iter().take(most)
+            snapshot::parts(self.snapshot, &audience, &there, &latest.situation).into_iter().take(most)
         {
             self.send_message(now, To::All, &HostMessage::World(part));
         }

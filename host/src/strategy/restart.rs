@@ -30,7 +30,10 @@ const PENALTY_INSIDE: f32 = 0.1;
 const ROOM_TO_PASS: f32 = 0.04;
 /// Step by which the direction off the ball is turned, degrees: 24 of them are a full turn.
 const TURN_STEP_DEG: f32 = 15.0;
-/// Distance of field players from the halfway line at kick-off, m: far enough from an opponent to receive a
+/// Distance of the two receivers from the halfway line at kick-off, m: a kicker that passes to them lines up
+/// beside the halfway line, not beyond the ball.
+const KICKOFF_BESIDE: f32 = 0.35;
+/// Distance of other field players from the halfway line at kick-off, m: far enough from an opponent to receive a
 /// pass.
 const KICKOFF_BACK: f32 = 0.9;
 
@@ -66,8 +69,8 @@ pub fn take(view: &View, ball: &ViewBall, target: Option<Target>) -> (Task, Orde
 pub fn kickoff_places(view: &View) -> [Point<Attack>; 6] {
     let (x, wing) = (-KICKOFF_BACK, view.field.width * 0.5);
     [
-        Point::new(x, wing * 0.55),
-        Point::new(x, -wing * 0.55),
+        Point::new(-KICKOFF_BESIDE, wing * 0.55),
+        Point::new(-KICKOFF_BESIDE, -wing * 0.55),
         Point::new(x - 0.8, 0.0),
         Point::new(x - 0.3, wing * 0.8),
         Point::new(x - 0.3, -wing * 0.8),

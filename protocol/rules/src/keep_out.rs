@@ -246,12 +246,12 @@ impl List {
         self.add(why, Shape::Box { low: Point::new(low, -y), high: Point::new(high, y) });
     }
 
-    /// The kicker may be in the whole circle, whose far half a box cannot describe; the largest upright
-    /// square in it is left open.
+    /// The kicker may be in the whole circle, whose far half a box cannot describe; a flat upright rectangle
+    /// in it is left open, wide enough that a body passes the ball on either side.
     fn kicker(&mut self, s: &Situation) {
-        let side = s.field.center_radius * core::f32::consts::FRAC_1_SQRT_2;
+        let side = s.field.center_radius * KICKER_BESIDE;
         let other = s.own.opposite();
-        let far = side * other.sign() as f32;
+        let far = s.field.center_radius * KICKER_BEYOND * other.sign() as f32;
         self.half_plane(s, KeepOutReason::OtherHalf, far, other);
         let wall = s.field.width * 0.5 + s.field.margin;
         for (low, high) in [(-wall, -side), (side, wall)] {
@@ -296,6 +296,11 @@ impl List {
         }
     }
 }
+
+/// Half width and depth of the rectangle in the far half of the centre circle, as shares of its radius: its
+/// corners lie on the circle.
+const KICKER_BESIDE: f32 = 0.88;
+const KICKER_BEYOND: f32 = 0.475;
 
 #[cfg(test)]
 mod tests;

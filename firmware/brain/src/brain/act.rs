@@ -17,12 +17,16 @@ impl Brain<'_> {
     /// The intent of this step.
     pub(super) fn act(&mut self, now: Instant) -> Intent {
         let intent = self.choose(now);
+        if !cfg!(feature = "omni") || self.host.is_none() {
+            return intent;
+        }
         // Placing a ball is not play: the ball may be held and carried without a limit.
-        if cfg!(feature = "omni") && self.host.is_some() && self.belief.game.phase == Phase::Run {
+        let intent = if self.belief.game.phase == Phase::Run {
             wheels::let_go_in_time(&mut self.belief, intent)
         } else {
             intent
-        }
+        };
+        wheels::release(&self.belief, intent)
     }
 
     /// The intent of the host's directive, the case or the reactive behaviour.

@@ -120,7 +120,9 @@ impl Coach {
         if let Some((task, why)) = self.coerce(plan, id, &ball) {
             return plan.order(id, Role::Kicker, task, why);
         }
-        let wait = if penalty { Duration(0) } else { TEAMMATES_GET_READY };
+        // At a kick-off all have stood in their places since it was prepared.
+        let free_kick = matches!(view.phase, Phase::FreeKick(_));
+        let wait = if free_kick { TEAMMATES_GET_READY } else { Duration(0) };
         let stands =
             self.ahead.is_some() || self.aim.is_some_and(|(since, _)| view.now.since(since) < AIM_STANDS);
         if self.age(view) >= wait && !stands {

@@ -95,6 +95,8 @@ fn at_a_kick_off_only_the_kicker_is_in_the_circle() {
         let kicker = |x, y| why(&field, phase, RuleRole::Kicker, (x, y));
         assert_eq!(kicker(-0.12, 0.0), None);
         assert_eq!(kicker(0.12, 0.0), None, "the whole circle is the kicker's");
+        // Around the ball 0.17 m off, and 0.04 m beside that, as robots do.
+        assert_eq!(kicker(0.08, 0.22), None, "a body passes beside the ball");
         assert_eq!(kicker(0.5, 0.0), Some(KeepOutReason::OtherHalf));
         assert_eq!(kicker(0.0, 0.6), Some(KeepOutReason::OtherHalf));
     }

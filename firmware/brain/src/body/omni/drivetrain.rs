@@ -10,6 +10,7 @@ use motion::avoid::{self, Course, Restraint, RouteVerdict};
 use motion::trajectory::{CalcMotion, FreeLimits, Motion, TurnLimits};
 use protocol::Instant;
 use protocol::robot_io::{OmniKick, WHEELED_STEP};
+use rules::limits::ROBOT_RADIUS;
 use rules::{FieldSpec, Phase, RobotSpec, RuleRole, Side};
 
 use super::surroundings::Surroundings;
@@ -141,7 +142,12 @@ impl Drivetrain {
             self.under_way = Some(CurrentPath { drive: *drive, towards: path.motion.to(), winds });
         }
         let there = rests && from.distance(path.goal) < THERE;
-        let velocity = if there { Vector::default() } else { path.next.velocity };
+        // While we place the ball the others keep off, and the step has no time for it.
+        let velocity = match path.next.velocity {
+            _ if there => Vector::default(),
+            next if belief.is_placing() => next,
+            next => short_of_bodies(belief, next),
+        };
         self.wanted(belief, step, velocity, Some(drive.face), drive)
     }
 
@@ -181,6 +187,30 @@ impl Drivetrain {
     }
 }
 
+/// `velocity`, slowed towards robots that it would reach too fast: paths take them to keep their velocity, and
+/// both may turn towards each other before either has noticed.
+fn short_of_bodies(belief: &Belief, mut velocity: Vector<Field>) -> Vector<Field> {
+    for other in &belief.others {
+        let off = other.pose.position - belief.pose.position;
+        let square = off.dot(off);
+        if square > NOTICES * NOTICES || square < f32::MIN_POSITIVE {
+            continue;
+        }
+        let distance = math::sqrt(square);
+        let along = off * (1.0 / distance);
+        let (own, theirs) = (velocity.dot(along), other.velocity.dot(along));
+        let closing = own - theirs;
+        let gap = distance - 2.0 * ROBOT_RADIUS - LATE * closing;
+        let most = TOUCHES_AT + math::sqrt(2.0 * BOTH_BRAKE * math::max(gap, 0.0));
+        // Who comes at a robot that stands has to slow down itself.
+        let kept = math::max(most + theirs, 0.0);
+        if own > kept {
+            velocity += along * (kept - own);
+        }
+    }
+    velocity
+}
+
 /// Angle by which the body has turned in the middle of a step of `step` seconds.
 fn half_turn(angular: f32, step: f32) -> Angle {
     Angle::new(0.5 * (angular * step))
@@ -203,6 +233,14 @@ fn efforts(belief: &Belief, field: &FieldSpec) -> (u32, u32) {
     (effort, if stopped { EFFORT_STOPPED_TO_LEAVE } else { EFFORT_TO_LEAVE })
 }
 
+/// Robots within this distance are slowed for, m: two that close at 3 m/s are a third of a second apart.
+const NOTICES: f32 = 1.0;
+/// Time until an order for the wheels shows, s: cameras, radio and wheels are 0.05 to 0.15 s late.
+const LATE: f32 = 0.12;
+/// Bodies touch no faster than this, m/s: a crash is a foul above 1.5 (rules), less the errors of velocities.
+const TOUCHES_AT: f32 = 1.0;
+/// Deceleration down to that, m/s²: what weak brakes do (estimate).
+const BOTH_BRAKE: f32 = 2.0;
 /// In play: eight pieces among three obstacles, five among a dozen; only what stands near the path is an
 /// obstacle. The interception of a moving ball is computed in the same step.
 const EFFORT_BALL_MOVES: u32 = 100;
@@ -281,6 +319,7 @@ mod tests {
     extern crate std;
 
     use super::*;
+    use crate::belief::Other;
     use crate::skills::wheels::testing::belief;
 
     /// How far off its aim a robot still swings 1.2 s after the beginning of a quarter turn, degrees, with
@@ -309,5 +348,27 @@ mod tests {
         for late in [0, 2, 6] {
             assert!(swings(late) < 1.0, "{late} steps: {} degrees", swings(late));
         }
+    }
+
+    /// The speed towards an opponent `apart` m ahead that comes with `theirs` m/s, of a robot that wants 3.
+    fn towards(apart: f32, theirs: f32) -> f32 {
+        let mut b = belief((0.0, 0.0, 0.0), (-2.0, 0.0));
+        let pose = geometry::Pose::from_mm_deg(apart * 1000.0, 0.0, 0.0);
+        let _ = b.others.push(Other {
+            side: Side::Theirs,
+            id: protocol::RobotId::ZERO,
+            pose,
+            velocity: Vector::new(-theirs, 0.0),
+        });
+        short_of_bodies(&b, Vector::new(3.0, 0.5)).x()
+    }
+
+    #[test]
+    fn a_robot_slows_before_another_and_not_for_one_that_it_follows() {
+        assert_eq!(towards(1.2, 0.0), 3.0, "far away");
+        assert!(towards(0.6, 0.0) < 2.1 && towards(0.2, 0.0) <= 1.0, "{}", towards(0.6, 0.0));
+        assert!(towards(0.6, 2.0) < 0.1, "head on it brakes: {}", towards(0.6, 2.0));
+        assert!(towards(0.3, 3.0) >= 0.0, "and does not flee");
+        assert_eq!(towards(0.4, -3.0), 3.0, "it follows as fast as the other drives");
     }
 }

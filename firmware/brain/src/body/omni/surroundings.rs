@@ -199,7 +199,7 @@ const ASIDE: f32 = 0.3;
 const ASIDE_FOR: f32 = 0.4;
 /// A moving robot may be elsewhere than received, by its velocity's error over this time, s: two camera
 /// frames.
-const STRAYS_FOR: f32 = 0.025;
+const STRAYS_FOR: f32 = 0.1;
 /// At 3 m/s and 3.5 m/s² a robot stops in 0.43 s times its speed, s.
 const STOPS_IN: f32 = 0.5;
 /// Goal walls matter within this distance of the goal line, m.

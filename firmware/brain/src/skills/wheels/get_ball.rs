@@ -167,7 +167,8 @@ pub fn barrier(belief: &Belief, ball: Point<Field>) -> Option<Barrier> {
         return Some(Barrier { towards, width: 0.0, speed: GO_IN_AT_WALL });
     }
     let (opponent, apart) = belief.nearest_opponent(ball).filter(|(_, apart)| *apart < BODY_BESIDE)?;
-    let width = PAST_OPPONENT * (apart - OPPONENT_TOUCHES) + ASKEW_TOUCHING;
+    // Bodies may be seen nearer than they can be.
+    let width = (PAST_OPPONENT * (apart - OPPONENT_TOUCHES) + ASKEW_TOUCHING).max(0.0);
     Some(Barrier { towards: ball.direction_to(opponent), width, speed: GO_IN })
 }
 

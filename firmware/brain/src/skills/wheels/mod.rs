@@ -10,6 +10,7 @@ mod go_to;
 mod kick;
 mod place_ball;
 mod receive;
+mod release;
 mod shoot;
 #[cfg(test)]
 pub(crate) mod testing;
@@ -21,4 +22,5 @@ pub use go_to::{go_to, keep_off};
 pub use kick::{kick, kick_held, pass, pass_speed};
 pub use place_ball::{Placement, place_ball};
 pub use receive::{receive, take_pass};
+pub use release::release;
 pub use shoot::{clear_or_shoot, shoot, target};

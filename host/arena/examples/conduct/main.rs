@@ -4,7 +4,10 @@
 //!
 //! `cargo run --release -p onetwo-arena --example conduct -- LEAGUE WORLD OPPONENT FIRST_SEED COUNT SECONDS`,
 //! as in `conduct division-b random ours 1 200 120`; ours is blue, and with `random` each match has the
-//! random world of its own seed. `conduct LEAGUE WORLD` prints that world's numbers.
+//! random world of its own seed. `story` as a seventh argument adds each offence, each ball out and each stop
+//! for no progress with the robots around it. `conduct LEAGUE WORLD` prints that world's numbers.
+
+mod stoppages;
 
 use std::collections::BTreeMap;
 
@@ -15,8 +18,9 @@ use hil_sim::small_size::worlds::{WorldChoice, WorldModel};
 use host::strategy::Team;
 use rayon::prelude::*;
 use rules::{Colour, League, Phase};
+use stoppages::Stoppages;
 
-const USAGE: &str = "usage: conduct LEAGUE WORLD OPPONENT FIRST_SEED COUNT SECONDS, as in `conduct division-b random ours 1 200 120`";
+const USAGE: &str = "usage: conduct LEAGUE WORLD OPPONENT FIRST_SEED COUNT SECONDS [story], as in `conduct division-b random ours 1 200 120`";
 
 fn main() -> Result<(), String> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -25,7 +29,11 @@ fn main() -> Result<(), String> {
         println!("{:#?}", WorldModel::of(named(league)?, &world));
         return Ok(());
     }
-    let [league, world, opponent, first, count, seconds] = &arguments[..] else { return Err(USAGE.into()) };
+    let (story, arguments) = match arguments.split_last() {
+        Some((last, before)) if last == "story" => (true, before),
+        _ => (false, &arguments[..]),
+    };
+    let [league, world, opponent, first, count, seconds] = arguments else { return Err(USAGE.into()) };
     let league = named(league)?;
     let teams = [Team::Ours, Team::Reactive, Team::Marking, Team::Zone, Team::Idle];
     let opponent = teams.into_iter().find(|team| team.label() == opponent).ok_or(USAGE)?;
@@ -44,6 +52,12 @@ fn main() -> Result<(), String> {
         .collect::<Result<_, String>>()?;
     for (report, account) in &played {
         print_conduct(report, account);
+        for line in account.stoppages.story.iter().filter(|_| story) {
+            println!("    {line}");
+        }
+        for stoppage in account.stoppages.all.iter().filter(|_| story) {
+            println!("    {}", stoppage.line());
+        }
     }
     sum(&played);
     Ok(())
@@ -62,6 +76,7 @@ fn one(config: &GameConfig) -> Result<(GameReport, Account), String> {
     let mut account = Account::default();
     let report =
         play(config, &mut NativeBackend::new(base), &mut account).map_err(|error| error.to_string())?;
+    account.stoppages.end();
     Ok((report, account))
 }
 
@@ -71,6 +86,7 @@ struct Account {
     seen: usize,
     events: BTreeMap<&'static str, u32>,
     phases: BTreeMap<&'static str, f64>,
+    stoppages: Stoppages,
 }
 
 impl Watcher for Account {
@@ -81,6 +97,7 @@ impl Watcher for Account {
             *self.events.entry(event.what.kind().label()).or_default() += 1;
         }
         self.seen = events.len();
+        self.stoppages.look(game);
     }
 }
 
@@ -193,4 +210,5 @@ fn sum(played: &[(GameReport, Account)]) {
         100.0 * placed as f32 / (placed + failed).max(1) as f32
     );
     println!("events a match: {events:.2?}");
+    stoppages::print(played.len(), all, played.iter().map(|(_, account)| &account.stoppages));
 }

@@ -1,0 +1,125 @@
+//! Release: the last check of what a robot does with the ball in play. A kick that its receiver misses stays
+//! in the field, and a dispute about the ball that no kick decides ends. SI, field frame.
+
+use geometry::{Field, Point, Vector};
+use motion::ball::BallModel;
+use protocol::robot_io::OmniKick;
+use rules::{Phase, Side};
+
+use crate::belief::Belief;
+use crate::body::Intent;
+use crate::body::omni::Drive;
+
+/// Any skill's intent, with the kick limited to what stays in the field; in a long dispute, away from the
+/// ball.
+pub fn release(belief: &Belief, intent: Intent) -> Intent {
+    let Intent::Drive(drive) = intent else { return intent };
+    if gives_way(belief) {
+        let heading = belief.pose.heading;
+        let back = belief.pose.position - Vector::polar(STEP_BACK, heading);
+        return Drive { speed: AWAY, ..Drive::bold(back, heading) }.into();
+    }
+    let OmniKick::Flat(speed) = drive.kick else { return intent };
+    if !drive.armed || belief.game.phase == Phase::BallPlacement(Side::Ours) {
+        return intent;
+    }
+    let most = stays_inside(belief, belief.dribbler_point());
+    Drive { kick: OmniKick::Flat(speed.min(most)), ..drive }.into()
+}
+
+/// The fastest kick from `from` along the robot's heading that rests within the lines, m/s; none is too fast
+/// at the opponents' goal.
+fn stays_inside(belief: &Belief, from: Point<Field>) -> f32 {
+    let field = belief.league().field();
+    let along = Vector::<Field>::polar(1.0, belief.pose.heading);
+    let to_line = |at: f32, along: f32, line: f32| {
+        if along.abs() < PARALLEL { f32::INFINITY } else { (line * along.signum() - at) / along }
+    };
+    let to_goal_line = to_line(from.x(), along.x(), 0.5 * field.length);
+    let to_touch_line = to_line(from.y(), along.y(), 0.5 * field.width);
+    let own = belief.game.defending.sign() as f32;
+    let ahead = along.x() * own < 0.0;
+    let crosses = from.y() + along.y() * to_goal_line;
+    if ahead && crosses.abs() < 0.5 * field.goal_width + BESIDE_POST {
+        return f32::INFINITY;
+    }
+    let room = to_goal_line.min(to_touch_line) - INSIDE;
+    BallModel::default().kick_speed(room.max(ROLLS_AT_LEAST), 0.0)
+}
+
+/// Whether it leaves a disputed ball to the opponent: two robots of equal programs kick at the same moment,
+/// and the ball stays between them. The one in the opponents' half goes first.
+fn gives_way(belief: &Belief) -> bool {
+    let Some(ball) = belief.ball else { return false };
+    let own = belief.game.defending.sign() as f32;
+    let own_half = ball.position.x() * own > 0.0;
+    belief.game.phase == Phase::Run && belief.disputed() > if own_half { KEEPS_FOR } else { DISPUTES_FOR }
+}
+
+/// A heading this parallel to a line does not cross it.
+const PARALLEL: f32 = 1e-3;
+/// Beside a post, m: a shot that misses by less counts as one.
+const BESIDE_POST: f32 = 0.1;
+/// From the line to where the ball rests, m: more than a ball's radius, and kicks scatter.
+const INSIDE: f32 = 0.2;
+/// A kick rolls at least this far, m: out of the dribbler's reach.
+const ROLLS_AT_LEAST: f32 = 0.8;
+/// Time for which a robot disputes the ball in the opponents' half, s: after the kicks of
+/// [`let_go_in_time`](super::let_go_in_time), and half of what is no progress in division A; …
+const DISPUTES_FOR: f32 = 2.4;
+/// … and in its own half, s.
+const KEEPS_FOR: f32 = 3.4;
+/// Distance of the step back, m: until the dispute is over (0.2 m from robot to ball).
+const STEP_BACK: f32 = 0.25;
+/// Its speed, m/s.
+const AWAY: f32 = 0.8;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::omni::BALL_AT;
+    use crate::skills::wheels::testing::belief;
+    use geometry::GoalEnd;
+    use protocol::{Duration, Instant};
+
+    const FAST: OmniKick = OmniKick::Flat(6.0);
+
+    /// The kick of a robot of the team that attacks +x, with the ball.
+    fn kicked(me: (f32, f32, f32), kick: OmniKick) -> OmniKick {
+        let mut b = belief(me, (me.0, me.1));
+        (b.game.phase, b.game.defending, b.holds_ball) = (Phase::Run, GoalEnd::Negative, true);
+        let drive = Drive { kick, armed: true, ..Drive::holding(b.pose.position, b.pose.heading) };
+        let Intent::Drive(drive) = release(&b, drive.into()) else { panic!() };
+        drive.kick
+    }
+
+    #[test]
+    fn a_kick_towards_a_line_rests_before_it_and_a_shot_is_as_fast_as_ever() {
+        // From y = 1 m to the touch line at 3 m, less the robot's front and 0.2 m.
+        let OmniKick::Flat(speed) = kicked((0.0, 1.0, 90.0), FAST) else { panic!() };
+        let rests =
+            BallModel::default().kicked(Point::<Field>::new(0.0, 0.0), Vector::new(speed, 0.0)).rest().x();
+        assert!((rests - (2.0 - BALL_AT - INSIDE)).abs() < 0.02, "{speed} m/s rests after {rests} m");
+        assert_eq!(kicked((2.0, 0.0, 0.0), FAST), FAST, "at their goal");
+        assert_eq!(kicked((-3.0, 1.0, 0.0), OmniKick::Flat(2.0)), OmniKick::Flat(2.0), "slow enough");
+        assert_ne!(kicked((-2.0, 0.0, 180.0), FAST), FAST, "at the own goal");
+        let OmniKick::Flat(least) = kicked((0.0, 2.95, 90.0), FAST) else { panic!() };
+        assert!(least > 0.9, "{least}: it leaves the dribbler");
+    }
+
+    #[test]
+    fn a_dispute_is_given_up_in_the_opponents_half_before_it_is_in_the_own() {
+        let armed = |x: f32, ms: u64| {
+            let mut b = belief((x, 0.0, 0.0), (x + BALL_AT, 0.0));
+            (b.game.phase, b.game.defending) = (Phase::Run, GoalEnd::Negative);
+            let _ = b.opponents.push(Point::new(x + 2.0 * BALL_AT, 0.0));
+            b.dispute(Instant(0));
+            b.dispute(Instant(0) + Duration::millis(ms));
+            let drive = Drive { kick: FAST, armed: true, ..Drive::holding(b.pose.position, b.pose.heading) };
+            let Intent::Drive(drive) = release(&b, drive.into()) else { panic!() };
+            drive.kick != OmniKick::None
+        };
+        assert!(armed(1.0, 2_300) && !armed(1.0, 2_500), "the opponents' half");
+        assert!(armed(-1.0, 3_300) && !armed(-1.0, 3_500), "the own half");
+    }
+}
