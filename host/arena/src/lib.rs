@@ -19,6 +19,7 @@
 //! inside a brain.
 #![forbid(unsafe_code)]
 
+mod activity;
 mod backups;
 mod case_trial;
 mod cycles;
@@ -34,6 +35,7 @@ pub mod skills;
 mod story;
 mod trial;
 
+pub use activity::ActivityReport;
 pub use case_trial::{Attempt, CaseTrial, Opposition, Retrieved, Score, markdown};
 pub use cycles::{CycleEnd, CycleEvent, CycleLog, CycleSeen};
 pub use names::{CaseNames, Cast, letter};

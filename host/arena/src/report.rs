@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use hil_sim::{Configuration, Scenario, TrialOutcome};
 use serde::{Serialize, Serializer};
 
+use crate::activity::ActivityReport;
 use crate::cycles::CycleSeen;
 use crate::names::{CaseNames, letter, symmetry};
 
@@ -48,6 +49,8 @@ pub struct TrialReport {
     pub case_base: String,
     /// How long the attackers played without a case, and why; null for approaches without cases.
     pub default: Option<DefaultReport>,
+    /// What its time was spent on, s.
+    pub activity: ActivityReport,
 }
 
 /// Number of each opponent's possessions (paper §5.1.4; docs/papers.md R33); 0 where it does not play.
