@@ -303,8 +303,13 @@ impl Execution {
                     KickAim::Goal { .. } => {
                         timers.set_if_idle(Timer::PassPatience, scene.now, scene.body.spec().shot_patience);
                         let patient = !timers.has_fired(Timer::PassPatience);
-                        let attacked = scene.case.defending().opposite();
-                        self.release(belief, scene.body.shoot_leg(belief, attacked, (&kick, end), patient))
+                        match scene.body.shoot_leg(scene, (&kick, end), patient) {
+                            Some(intent) => self.release(belief, intent),
+                            None if self.kicked || belief.busy => {
+                                self.release(belief, Intent::Stand { face: None })
+                            }
+                            None => Verdict::Failed(AbortReason::Timeout),
+                        }
                     }
                     KickAim::Heading { .. } => {
                         self.release(belief, scene.body.kick(belief, &kick, along, end))

@@ -14,6 +14,7 @@ use protocol::robot_io::{LeggedKick, OmniKick};
 use rules::League;
 
 use crate::belief::Belief;
+use crate::execution::ActionScene;
 use crate::skills::{Reception, Step};
 pub use actuation::Actuation;
 pub use kind::BodyKind;
@@ -126,16 +127,16 @@ pub trait Body: Sync {
     /// Shoots the ball held at the goal, where it is open, or brings it to where that is easier.
     fn shoot(&self, belief: &Belief, attacked: GoalEnd, patient: bool) -> Intent;
 
-    /// A case's shot at goal along the leg that ends at `end`, with its kick `kind`.
+    /// A case's shot at goal along the leg that ends at `leg.1`, with its kick `leg.0`; `patient` while there
+    /// is time left. `None` where there is none, and no shot worth making.
     fn shoot_leg(
         &self,
-        belief: &Belief,
-        attacked: GoalEnd,
+        scene: &ActionScene<'_>,
         leg: (&CaseKick, Point<Field>),
         patient: bool,
-    ) -> Intent {
+    ) -> Option<Intent> {
         let _ = leg;
-        self.shoot(belief, attacked, patient)
+        Some(self.shoot(scene.belief, scene.case.defending().opposite(), patient))
     }
 
     /// The heading from which a kick of that kind sends the ball in that direction.

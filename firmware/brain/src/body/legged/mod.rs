@@ -13,6 +13,7 @@ use rules::League;
 
 use crate::belief::Belief;
 use crate::body::{Body, BodySpec, Intent};
+use crate::execution::ActionScene;
 use crate::skills::legged as skills;
 use crate::skills::{Reception, Step};
 
@@ -53,12 +54,12 @@ impl Body for Legged {
 
     fn shoot_leg(
         &self,
-        belief: &Belief,
-        attacked: GoalEnd,
+        scene: &ActionScene<'_>,
         leg: (&CaseKick, Point<Field>),
         patient: bool,
-    ) -> Intent {
-        skills::case_shot(belief, attacked, leg.1, legged_kick(leg.0), patient)
+    ) -> Option<Intent> {
+        let attacked = scene.case.defending().opposite();
+        skills::case_shot(scene.belief, attacked, leg.1, legged_kick(leg.0), patient)
     }
 
     fn heading_for(&self, kind: &CaseKick, along: Angle) -> Angle {
