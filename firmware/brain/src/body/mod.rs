@@ -14,7 +14,6 @@ use protocol::robot_io::{LeggedKick, OmniKick};
 use rules::League;
 
 use crate::belief::Belief;
-use crate::execution::ActionScene;
 use crate::skills::{Reception, Step};
 pub use actuation::Actuation;
 pub use kind::BodyKind;
@@ -131,12 +130,20 @@ pub trait Body: Sync {
     /// is time left. `None` where there is none, and no shot worth making.
     fn shoot_leg(
         &self,
-        scene: &ActionScene<'_>,
+        belief: &Belief,
+        attacked: GoalEnd,
         leg: (&CaseKick, Point<Field>),
         patient: bool,
     ) -> Option<Intent> {
         let _ = leg;
-        Some(self.shoot(scene.belief, scene.case.defending().opposite(), patient))
+        Some(self.shoot(belief, attacked, patient))
+    }
+
+    /// With the ball held and an opponent about to be at it: the shot that is worth more than to go on with
+    /// the case, which takes `time` s.
+    fn pressed_shot(&self, belief: &Belief, attacked: GoalEnd, time: f32) -> Option<Intent> {
+        let _ = (belief, attacked, time);
+        None
     }
 
     /// The heading from which a kick of that kind sends the ball in that direction.

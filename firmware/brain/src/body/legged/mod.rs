@@ -13,7 +13,6 @@ use rules::League;
 
 use crate::belief::Belief;
 use crate::body::{Body, BodySpec, Intent};
-use crate::execution::ActionScene;
 use crate::skills::legged as skills;
 use crate::skills::{Reception, Step};
 
@@ -54,12 +53,16 @@ impl Body for Legged {
 
     fn shoot_leg(
         &self,
-        scene: &ActionScene<'_>,
+        belief: &Belief,
+        attacked: GoalEnd,
         leg: (&CaseKick, Point<Field>),
         patient: bool,
     ) -> Option<Intent> {
-        let attacked = scene.case.defending().opposite();
-        skills::case_shot(scene.belief, attacked, leg.1, legged_kick(leg.0), patient)
+        skills::case_shot(belief, attacked, leg.1, legged_kick(leg.0), patient)
+    }
+
+    fn pressed_shot(&self, belief: &Belief, attacked: GoalEnd, time: f32) -> Option<Intent> {
+        skills::pressed_shot(belief, attacked, time)
     }
 
     fn heading_for(&self, kind: &CaseKick, along: Angle) -> Angle {

@@ -167,10 +167,29 @@ impl<'b> Holding<'b> {
     }
 }
 
+/// With the ball held and an opponent about to be at it: the shot that is worth more than to go on with the
+/// case, which takes `time` s; before a goalkeeper only one that is made at once anywhere.
+pub fn pressed_shot(belief: &Belief, attacked: GoalEnd, time: f32) -> Option<Intent> {
+    let holding = Holding::new(belief, attacked);
+    let (walks, _) = holding.presser?;
+    if walks > PRESSED_FOR {
+        return None;
+    }
+    let best = shot::best_shot(belief, attacked)?;
+    if holding.guarded && best.chance < GOOD_SHOT {
+        return None;
+    }
+    let shot = holding.shot(best.direction, best.kick, best.chance);
+    let go_on = holding.still_held(time, belief.pose.heading) * holding.goal(GOOD_SHOT);
+    (shot.worth > 0.0 && shot.worth > go_on).then_some(shot.intent)
+}
+
 /// Probability of a goal, as [`shot`] estimates it, at which a shot is worth a lost ball: of the shots
 /// estimated at 0.10 to 0.15 in the paper's scenarios 0.31 came to goal; of the balls that opponents took out
 /// of our legs 0.19 to 0.31 did later.
 const LOST: f32 = FAIR_SHOT;
+/// A holder is pressed by an opponent that is at the ball within this time, s: a kick's, and a look.
+const PRESSED_FOR: f32 = 1.0;
 /// An opponent whose centre is this near the ball closes its legs on it, m: the grab's reach and a step.
 const GRABS_WITHIN: f32 = 0.3;
 /// Hazard of an opponent at a held ball, 1/s: a grab of 0.5 s takes it in 0.375 of tries (0.75 of grabs
@@ -265,5 +284,20 @@ mod tests {
         assert_eq!(shot(&closed, 0.0, false), None);
         let open = belief(1.4, 0.6, -0.5, &[(2.1, 0.6)]);
         assert!(shot(&open, -0.3, false).is_some());
+    }
+
+    #[test]
+    fn a_pressed_holder_shoots_where_that_is_worth_more_than_to_go_on() {
+        let pressed = belief(1.4, 0.0, 0.0, &[(1.5, 0.22)]);
+        let shoots = |belief: &Belief| pressed_shot(belief, GoalEnd::Positive, 2.0);
+        assert!(
+            matches!(shoots(&pressed), Some(Intent::Kick(_) | Intent::Turn { .. })),
+            "{:?}",
+            shoots(&pressed)
+        );
+        assert_eq!(shoots(&belief(1.4, 0.0, 0.0, &[(0.4, 0.0)])), None, "nobody presses it");
+        assert_eq!(shoots(&belief(-1.4, 0.0, 0.0, &[(-1.3, 0.22)])), None, "the goal is far");
+        let guarded = belief(1.5, 0.0, 0.0, &[(1.6, 0.22), (2.05, 0.0)]);
+        assert_eq!(shoots(&guarded), None, "before a goalkeeper it goes on without a good shot");
     }
 }

@@ -12,7 +12,7 @@ use motion::legged::{
     HOLD_DISTANCE, KICK_ANGLE_SPREAD, KICK_LENGTH_SPREAD, WALK_ACCELERATION, WALK_FORWARD, WALK_SIDEWAYS,
 };
 use motion::rolling::RollingBall;
-use protocol::robot_io::LeggedKick;
+use protocol::robot_io::{LeggedKick, OPPONENTS_MAX};
 
 use crate::belief::Belief;
 use crate::body::{Intent, legged};
@@ -81,7 +81,7 @@ pub(super) fn shooting_place(belief: &Belief, attacked: GoalEnd) -> Point<Field>
 
 /// The shot at the goal at `attacked` with the best probability, less the cost of turning for it; `None` from
 /// behind the goal line.
-fn best_shot(belief: &Belief, attacked: GoalEnd) -> Option<Shot> {
+pub(super) fn best_shot(belief: &Belief, attacked: GoalEnd) -> Option<Shot> {
     best_of(belief, &Fan::new(belief, attacked)?)
 }
 
@@ -134,7 +134,6 @@ fn reaches(length: f32, distance: f32) -> f32 {
 
 /// Directions from the robot into the goal, from its right post to its left.
 struct Fan {
-    from: Point<Field>,
     right: Angle,
     /// Angle between neighbouring rays, rad.
     step: f32,
@@ -144,7 +143,8 @@ struct Fan {
     density: [f32; RAYS],
     /// Distance to the goal's centre, or where no goalkeeper guards it to its area, m.
     distance: f32,
-    attacked: GoalEnd,
+    /// From the robot to where each opponent will be when the ball leaves.
+    opponents: heapless::Vec<Vector<Field>, OPPONENTS_MAX>,
 }
 
 impl Fan {
@@ -167,9 +167,17 @@ impl Fan {
             let z = step * off as f32 / KICK_ANGLE_SPREAD;
             math::exp(-0.5 * z * z)
         });
-        let guarded = belief.opponents.iter().any(|at| keeps_goal(belief, attacked, *at));
+        let mut guarded = false;
+        // As many as the belief has room for.
+        let opponents = (belief.opponents.iter())
+            .map(|at| {
+                let keeps = keeps_goal(belief, attacked, *at);
+                guarded |= keeps;
+                comes(belief, *at, keeps) - from
+            })
+            .collect();
         let distance = from.distance(center) - if guarded { 0.0 } else { field.penalty_depth };
-        Some(Self { from, right, step, along, density, distance, attacked })
+        Some(Self { right, step, along, density, distance, opponents })
     }
 
     fn ray(&self, index: usize) -> Angle {
@@ -180,13 +188,12 @@ impl Fan {
     /// opponent.
     fn free_rays(&self, belief: &Belief, off: Angle, length: f32) -> [bool; RAYS] {
         let mut free = [true; RAYS];
-        let (sin, cos) = off.sin_cos();
         let rolling = RollingBall { deceleration: belief.league().ball().rolling_deceleration };
         let speed = rolling.speed_for(length);
         let body = belief.league().robot().radius + belief.league().ball().radius;
-        for &opponent in &belief.opponents {
-            let to = self.comes(belief, opponent) - self.from;
+        for &to in &self.opponents {
             if is_at_holder(to) {
+                let (sin, cos) = off.sin_cos();
                 for (along, free) in self.along.iter().zip(&mut free) {
                     // The ball leaves from before the holder's body, whose heading is `off` beside the kick.
                     let (x, y) = (along.x(), along.y());
@@ -205,19 +212,6 @@ impl Fan {
             }
         }
         free
-    }
-
-    /// Where an opponent will be when the ball leaves: until then it walks at the ball, a goalkeeper to where
-    /// it stands opposite the ball.
-    fn comes(&self, belief: &Belief, at: Point<Field>) -> Point<Field> {
-        let Some(ball) = belief.ball.map(|ball| ball.position) else { return at };
-        let (way, speed) = if keeps_goal(belief, self.attacked, at) {
-            (Vector::new(0.0, ball.y() - at.y()), WALK_SIDEWAYS)
-        } else {
-            let way = ball - at;
-            (way.clamped((way.norm() - AT_BALL).max(0.0)), WALK_FORWARD)
-        };
-        at + way.clamped(speed * KICK_TIME)
     }
 
     /// The share of kicks aimed along ray `aim` that run along free rays.
@@ -246,6 +240,19 @@ pub(super) fn is_at_holder(to: Vector<Field>) -> bool {
 /// rolls past its body.
 pub(super) fn meets_at_ball(to: Vector<Field>, along: Vector<Field>) -> bool {
     along.dot(to) > 0.0 && along.cross(to).abs() < HOLD_DISTANCE
+}
+
+/// Where an opponent will be when the ball leaves: until then it walks at the ball, a goalkeeper to where it
+/// stands opposite the ball.
+fn comes(belief: &Belief, at: Point<Field>, keeps: bool) -> Point<Field> {
+    let Some(ball) = belief.ball.map(|ball| ball.position) else { return at };
+    let (way, speed) = if keeps {
+        (Vector::new(0.0, ball.y() - at.y()), WALK_SIDEWAYS)
+    } else {
+        let way = ball - at;
+        (way.clamped((way.norm() - AT_BALL).max(0.0)), WALK_FORWARD)
+    };
+    at + way.clamped(speed * KICK_TIME)
 }
 
 /// Distance that a robot that now stands walks sideways within `time`, m.
