@@ -90,8 +90,7 @@ fn a_held_ball_is_answered_by_the_next_case_whose_getter_holds_it() {
             let free = retrieve(&trial.oracle, &problem, &Rules::default());
             let rules = Rules { holder: Some(holder), ..Rules::default() };
             let expected = retrieve(&trial.oracle, &problem, &rules);
-            let best =
-                casebase::retrieve_for(&base, &translated(&problem), &settings, RobotId::new(holder));
+            let best = casebase::retrieve_for(&base, &translated(&problem), &settings, RobotId::new(holder));
             let got = Retrieval { best, candidates: expected.candidates as u16 };
             let agreed = agree(&expected, &got);
             assert!(agreed.is_ok() || expected.near_tie.is_some(), "problem {number}: {agreed:?}");

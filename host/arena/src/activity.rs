@@ -5,28 +5,8 @@
 
 use hil_sim::TICK_US;
 use hil_sim::four_legged::world::{LeggedWorld, Side};
-use serde::Serialize;
 
-use crate::report::in_seconds;
-
-/// Seconds of a trial by activity; their sum is its duration.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct ActivityReport {
-    /// All robots stand still after a cycle, as the paper's (§5.3).
-    pub pause: f64,
-    /// A robot of each team is within reach of a ball that does not get away.
-    pub duel: f64,
-    /// An attacker holds the ball, without an opponent within reach: carries, turns, waits, kicks.
-    pub held: f64,
-    /// An opponent holds it, without an attacker within reach.
-    pub theirs: f64,
-    /// It rolls.
-    pub rolls: f64,
-    /// It rests within an attacker's reach: last steps, turns about it, grabs.
-    pub at_ball: f64,
-    /// It rests out of the attackers' reach: they walk to it.
-    pub walk: f64,
-}
+use crate::report::{ActivityReport, in_seconds};
 
 /// What the ball is in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

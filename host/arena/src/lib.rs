@@ -35,13 +35,14 @@ pub mod skills;
 mod story;
 mod trial;
 
-pub use activity::ActivityReport;
 pub use case_trial::{Attempt, CaseTrial, Opposition, Retrieved, Score, markdown};
 pub use cycles::{CycleEnd, CycleEvent, CycleLog, CycleSeen};
 pub use names::{CaseNames, Cast, letter};
 pub use picture::picture;
 pub use recording::{RecordedKick, RecordedSample, Recording, Start};
-pub use report::{Backups, CaseCounts, Causes, CycleReport, DefaultReport, Possession, TrialReport};
+pub use report::{
+    ActivityReport, Backups, CaseCounts, Causes, CycleReport, DefaultReport, Possession, TrialReport,
+};
 pub use story::TextLog;
 pub use trial::{
     APPROACHES, Moment, TEAM, TrialConfig, Watcher, approach_from_label, approach_label, positioning_label,
