@@ -6,7 +6,7 @@
 //! are adapted by the ball the coordinator used. Field frame, SI.
 
 use casebase::{Action, Case, CaseBase, CaseRobot, KickAim, Leg, PointMm, TurnTarget};
-use geometry::{Angle, Field, Point};
+use geometry::{Angle, Field, Point, math};
 use protocol::team::{AbortReason, Play, Progress};
 use protocol::{CycleId, Duration, Instant, RobotId};
 
@@ -96,6 +96,8 @@ pub struct Execution {
     held: bool,
     kicked: bool,
     started: bool,
+    /// The ball leaves by a shot instead of the action.
+    shot_pressed: bool,
     /// The hand-overs of the actions looked up last, by their number: finding one walks the whole case.
     partners: [Option<(usize, Partner)>; 2],
 }
@@ -106,7 +108,16 @@ type Partner = Option<(CaseRobot, usize)>;
 impl Execution {
     /// At the beginning of `part`.
     pub fn new(part: CaseRobot) -> Self {
-        Self { part, done: 0, place: None, held: false, kicked: false, started: false, partners: [None; 2] }
+        Self {
+            part,
+            done: 0,
+            place: None,
+            held: false,
+            kicked: false,
+            started: false,
+            shot_pressed: false,
+            partners: [None; 2],
+        }
     }
 
     /// The case robot it plays.
@@ -125,6 +136,9 @@ impl Execution {
             let Some(action) = scene.case.action(self.part, self.done) else {
                 return ActionOutcome::Finished;
             };
+            if let Some(outcome) = self.shoot_if_pressed(scene, action) {
+                return outcome;
+            }
             if !self.started {
                 if !self.may_start(scene, timers, self.done) {
                     return ActionOutcome::Running(self.hold(scene));
@@ -151,6 +165,31 @@ impl Execution {
         ActionOutcome::Running(self.hold(scene))
     }
 
+    /// Carrying the ball or waiting with it for a receiver, while an opponent comes for it: a shot, where
+    /// that is worth more. It ends the case.
+    fn shoot_if_pressed(&mut self, scene: &ActionScene<'_>, action: Action) -> Option<ActionOutcome> {
+        let (belief, spec) = (scene.belief, scene.body.spec());
+        if !belief.holds_ball {
+            return self.shot_pressed.then_some(ActionOutcome::Failed(AbortReason::OpponentOnBall));
+        }
+        if belief.busy {
+            return self.shot_pressed.then_some(ActionOutcome::Running(Intent::Stand { face: None }));
+        }
+        let time = match action {
+            Action::DribbleTo(point) => {
+                let (at, to) = (belief.pose.position, scene.adapt(point));
+                let turn = (at.direction_to(to) - belief.pose.heading).abs();
+                at.distance(to) / spec.carry_speed + turn * spec.turn / math::FRAC_PI_2
+            }
+            Action::PassBall(_) => PASS_PATIENCE.as_secs_f32() + spec.kick,
+            _ => return None,
+        };
+        let attacked = scene.case.defending().opposite();
+        let intent = scene.body.pressed_shot(belief, attacked, time)?;
+        self.shot_pressed = intent.lets_go();
+        Some(ActionOutcome::Running(intent))
+    }
+
     fn advance(&mut self, scene: &ActionScene<'_>, timers: &mut TimerTable, action: Action) {
         if matches!(
             action,
@@ -160,7 +199,7 @@ impl Execution {
         }
         self.done += 1;
         self.held = scene.belief.holds_ball;
-        (self.kicked, self.started) = (false, false);
+        (self.kicked, self.started, self.shot_pressed) = (false, false, false);
         for timer in [Timer::Action, Timer::PassPatience, Timer::OpponentHolds] {
             timers.clear(timer);
         }
@@ -304,7 +343,13 @@ impl Execution {
                         timers.set_if_idle(Timer::PassPatience, scene.now, scene.body.spec().shot_patience);
                         let patient = !timers.has_fired(Timer::PassPatience);
                         let attacked = scene.case.defending().opposite();
-                        self.release(belief, scene.body.shoot_leg(belief, attacked, (&kick, end), patient))
+                        match scene.body.shoot_leg(belief, attacked, (&kick, end), patient) {
+                            Some(intent) => self.release(belief, intent),
+                            None if self.kicked || belief.busy => {
+                                self.release(belief, Intent::Stand { face: None })
+                            }
+                            None => Verdict::Failed(AbortReason::Timeout),
+                        }
                     }
                     KickAim::Heading { .. } => {
                         self.release(belief, scene.body.kick(belief, &kick, along, end))

@@ -19,6 +19,7 @@
 //! inside a brain.
 #![forbid(unsafe_code)]
 
+mod activity;
 mod backups;
 mod case_trial;
 mod cycles;
@@ -39,7 +40,9 @@ pub use cycles::{CycleEnd, CycleEvent, CycleLog, CycleSeen};
 pub use names::{CaseNames, Cast, letter};
 pub use picture::picture;
 pub use recording::{RecordedKick, RecordedSample, Recording, Start};
-pub use report::{Backups, CaseCounts, Causes, CycleReport, DefaultReport, Possession, TrialReport};
+pub use report::{
+    ActivityReport, Backups, CaseCounts, Causes, CycleReport, DefaultReport, Possession, TrialReport,
+};
 pub use story::TextLog;
 pub use trial::{
     APPROACHES, Moment, TEAM, TrialConfig, Watcher, approach_from_label, approach_label, positioning_label,

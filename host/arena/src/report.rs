@@ -48,6 +48,8 @@ pub struct TrialReport {
     pub case_base: String,
     /// How long the attackers played without a case, and why; null for approaches without cases.
     pub default: Option<DefaultReport>,
+    /// What its time was spent on, s.
+    pub activity: ActivityReport,
 }
 
 /// Number of each opponent's possessions (paper §5.1.4; docs/papers.md R33); 0 where it does not play.
@@ -143,6 +145,25 @@ pub struct DefaultReport {
     pub spells: u32,
     /// Causes, by decision; a spell has one every quarter of a second or so.
     pub causes: Causes,
+}
+
+/// Seconds of a trial by activity; their sum is its duration.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct ActivityReport {
+    /// All robots stand still after a cycle, as the paper's (§5.3).
+    pub pause: f64,
+    /// A robot of each team is within reach of a ball that does not get away.
+    pub duel: f64,
+    /// An attacker holds the ball, without an opponent within reach: carries, turns, waits, kicks.
+    pub held: f64,
+    /// An opponent holds it, without an attacker within reach.
+    pub theirs: f64,
+    /// It rolls.
+    pub rolls: f64,
+    /// It rests within an attacker's reach: last steps, turns about it, grabs.
+    pub at_ball: f64,
+    /// It rests out of the attackers' reach: they walk to it.
+    pub walk: f64,
 }
 
 /// How often no case fitted, by the farthest that any case came.

@@ -13,6 +13,7 @@ use protocol::link::overhear;
 use protocol::team::{Beacon, Closure, TeamMessage};
 use protocol::{Duration, RobotId, TeamId};
 
+use crate::activity::ActivityCount;
 use crate::backups::BackupCount;
 use crate::cycles::{CycleEnd, CycleEvent, CycleLog};
 use crate::defaults::{self, DefaultWatch};
@@ -168,6 +169,9 @@ pub(crate) struct Game<'c, 'a> {
     backend: &'static str,
     simulation: Simulation<'a>,
     cast: Cast,
+    activity: ActivityCount,
+    /// Seconds from kick-off until which all robots stand still after a cycle.
+    paused_until: f32,
     backups: BackupCount,
     cycles: CycleLog,
     defaults: DefaultWatch,
@@ -191,6 +195,8 @@ impl<'c, 'a> Game<'c, 'a> {
         Ok(Self {
             config,
             backend: name,
+            activity: ActivityCount::default(),
+            paused_until: 0.0,
             backups: BackupCount::new(cast.attackers.iter().copied()),
             simulation,
             cast,
@@ -217,8 +223,10 @@ impl<'c, 'a> Game<'c, 'a> {
             }
             self.beacons.push((from, beacon));
         }
-        self.pause_opponents();
+        self.pause();
         self.watch_defaults();
+        let paused = self.simulation.time() <= self.paused_until;
+        self.activity.tick(self.simulation.world(), paused);
         let moment = self.moment();
         for watcher in watchers.iter_mut() {
             watcher.watch(&moment);
@@ -226,10 +234,10 @@ impl<'c, 'a> Game<'c, 'a> {
         Ok(())
     }
 
-    /// Where the attackers pause after a gameplay, the opponents stop with them.
-    fn pause_opponents(&mut self) {
+    /// Where the attackers pause after a gameplay, the opponents may stop with them.
+    fn pause(&mut self) {
         let pause = self.config.pause_after_cycle;
-        if !self.config.opponents_pause || pause == Duration(0) {
+        if pause == Duration(0) {
             return;
         }
         let paused_after = |events: &CycleEvent| {
@@ -239,7 +247,10 @@ impl<'c, 'a> Game<'c, 'a> {
             matches!(end, Some((_, CycleEnd::Closed(closure))) if closure != Closure::NoCase)
         };
         if self.events.iter().any(paused_after) {
-            self.simulation.stop_opponents(pause);
+            self.paused_until = self.simulation.time() + pause.as_secs_f32();
+            if self.config.opponents_pause {
+                self.simulation.stop_opponents(pause);
+            }
         }
     }
 
@@ -311,6 +322,7 @@ impl<'c, 'a> Game<'c, 'a> {
             positioning: positioning_label(config.positioning),
             case_base: format!("{:08x}", config.base.hash()),
             default: (config.approach != Approach::Reactive).then(|| self.defaults.report()),
+            activity: self.activity.report(),
         }
     }
 }

@@ -133,7 +133,9 @@ const MIDFIELD: Column = Column::mean("midfield's possession", "a trial", Measur
 const DEFENDER: Column = Column::mean("defender's possession", "a trial", Measure::Possession);
 const TIME: Column = Column::mean("time", "s", Measure::Time);
 
-const TABLE_1: [Column; 8] = [GOAL, CLOSE, BLOCK, OUT, TIMEOUT, TO_GOAL, POSSESSION, TIME];
+const DUELS: Column = Column::described("duels", "%", 0, |row| row.duel_time);
+
+const TABLE_1: [Column; 9] = [GOAL, CLOSE, BLOCK, OUT, TIMEOUT, TO_GOAL, POSSESSION, TIME, DUELS];
 const TABLE_2: [Column; 3] = [
     Column::described("A backs up", "a trial", 1, |row| row.backups_a),
     Column::described("B backs up", "a trial", 1, |row| row.backups_b),
@@ -147,9 +149,9 @@ const TABLE_3: [Column; 6] = [
     Column::described("no case found", "a trial", 1, |row| row.none),
     Column::described("time without a case", "%", 1, |row| row.default_time),
 ];
-const TABLE_4: [Column; 3] = [TO_GOAL, OUT, TIMEOUT];
+const TABLE_4: [Column; 4] = [TO_GOAL, OUT, TIMEOUT, DUELS];
 const TABLE_5: [Column; 3] = [MIDFIELD, DEFENDER, TIME];
-const TABLE_6: [Column; 9] = [
+const TABLE_6: [Column; 10] = [
     GOAL,
     CLOSE,
     BLOCK,
@@ -159,4 +161,5 @@ const TABLE_6: [Column; 9] = [
     Column::described("out by opponents", "trials", 0, |row| row.out_by_opponents.map(f64::from)),
     Column::described("out by attackers", "trials", 0, |row| row.out_by_attackers.map(f64::from)),
     POSSESSION,
+    DUELS,
 ];

@@ -126,16 +126,24 @@ pub trait Body: Sync {
     /// Shoots the ball held at the goal, where it is open, or brings it to where that is easier.
     fn shoot(&self, belief: &Belief, attacked: GoalEnd, patient: bool) -> Intent;
 
-    /// A case's shot at goal along the leg that ends at `end`, with its kick `kind`.
+    /// A case's shot at goal along the leg that ends at `leg.1`, with its kick `leg.0`; `patient` while there
+    /// is time left. `None` where there is none, and no shot worth making.
     fn shoot_leg(
         &self,
         belief: &Belief,
         attacked: GoalEnd,
         leg: (&CaseKick, Point<Field>),
         patient: bool,
-    ) -> Intent {
+    ) -> Option<Intent> {
         let _ = leg;
-        self.shoot(belief, attacked, patient)
+        Some(self.shoot(belief, attacked, patient))
+    }
+
+    /// With the ball held and an opponent about to be at it: the shot that is worth more than to go on with
+    /// the case, which takes `time` s.
+    fn pressed_shot(&self, belief: &Belief, attacked: GoalEnd, time: f32) -> Option<Intent> {
+        let _ = (belief, attacked, time);
+        None
     }
 
     /// The heading from which a kick of that kind sends the ball in that direction.

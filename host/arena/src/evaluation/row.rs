@@ -67,6 +67,20 @@ pub struct TrialRow {
     pub trace_hash: String,
     /// The cases played, in order: `region/name:how-it-ended`, a blank between two.
     pub plays: String,
+    /// Seconds in which all robots stood still after a cycle; the next six are seconds too.
+    pub pause_s: f64,
+    /// In which a robot of each team was within reach of a ball that did not get away.
+    pub duel_s: f64,
+    /// In which an attacker held the ball, without an opponent within reach.
+    pub held_s: f64,
+    /// In which an opponent held it, without an attacker within reach.
+    pub theirs_s: f64,
+    /// In which it rolled.
+    pub rolls_s: f64,
+    /// In which it rested within an attacker's reach.
+    pub at_ball_s: f64,
+    /// In which it rested out of the attackers' reach.
+    pub walk_s: f64,
 }
 
 impl TrialRow {
@@ -101,6 +115,13 @@ impl TrialRow {
             no_case_held: cause(|default| default.causes.held),
             trace_hash: report.trace_hash.clone(),
             plays: plays(&report.cycles),
+            pause_s: report.activity.pause,
+            duel_s: report.activity.duel,
+            held_s: report.activity.held,
+            theirs_s: report.activity.theirs,
+            rolls_s: report.activity.rolls,
+            at_ball_s: report.activity.at_ball,
+            walk_s: report.activity.walk,
         }
     }
 
@@ -179,6 +200,13 @@ pub(super) mod tests {
             no_case_held: Some(0),
             trace_hash: String::new(),
             plays: String::new(),
+            pause_s: 0.0,
+            duel_s: 2.5,
+            held_s: 2.0,
+            theirs_s: 0.5,
+            rolls_s: 1.0,
+            at_ball_s: 1.0,
+            walk_s: 3.0,
         }
     }
 }

@@ -47,9 +47,13 @@ fn layout(table: u8) -> (&'static str, Vec<Column>) {
     let defender = || Column::mean(Measure::Possession, "defender", |row| row.possession_mean);
     let midfield = || Column::mean(Measure::MidfieldPossession, "midfield", |row| row.possession2_mean);
     let time = || Column::mean(Measure::Time, "time s", |row| row.time_mean);
+    let duel = || Column::plain("duel %", 0, |row| row.duel_time);
     let put_out = |title, value| Column::plain(title, 0, value);
     match table {
-        1 => ("defender and goalie", vec![goal(), close(), block(), out(), to_goal(), defender(), time()]),
+        1 => (
+            "defender and goalie",
+            vec![goal(), close(), block(), out(), to_goal(), defender(), time(), duel()],
+        ),
         2 => (
             "backing up, a trial",
             vec![
@@ -70,7 +74,7 @@ fn layout(table: u8) -> (&'static str, Vec<Column>) {
         ),
         4 => (
             "two defenders, at most 60 s",
-            vec![to_goal(), out(), Column::share(Measure::Timeout, "timeout %", |row| row.timeout)],
+            vec![to_goal(), out(), Column::share(Measure::Timeout, "timeout %", |row| row.timeout), duel()],
         ),
         5 => ("two defenders, without those that ran out of time", vec![midfield(), defender(), time()]),
         _ => (
@@ -84,6 +88,7 @@ fn layout(table: u8) -> (&'static str, Vec<Column>) {
                 put_out("by them", |row| row.out_by_opponents.map(f64::from)),
                 put_out("by us", |row| row.out_by_attackers.map(f64::from)),
                 defender(),
+                duel(),
             ],
         ),
     }

@@ -133,6 +133,21 @@ pub struct TableRow {
     pub to_goal_low: Option<f64>,
     /// Upper end of `to_goal`'s.
     pub to_goal_high: Option<f64>,
+    /// Duels, percent of all time (a robot of each team within reach of a ball that does not get away); the
+    /// other six are percent of all time too, and all seven are 100.
+    pub duel_time: Option<f64>,
+    /// An attacker holds the ball, without an opponent within reach.
+    pub held_time: Option<f64>,
+    /// An opponent holds it, without an attacker within reach.
+    pub theirs_time: Option<f64>,
+    /// It rolls.
+    pub rolls_time: Option<f64>,
+    /// It rests within an attacker's reach.
+    pub at_ball_time: Option<f64>,
+    /// It rests out of the attackers' reach.
+    pub walk_time: Option<f64>,
+    /// All robots stand still after a cycle.
+    pub pause_time: Option<f64>,
 }
 
 /// A mean with its spread.
@@ -253,6 +268,13 @@ impl TableRow {
             timeout_high: None,
             to_goal_low: None,
             to_goal_high: None,
+            duel_time: None,
+            held_time: None,
+            theirs_time: None,
+            rolls_time: None,
+            at_ball_time: None,
+            walk_time: None,
+            pause_time: None,
         }
     }
 
@@ -300,6 +322,7 @@ impl TableRow {
             self.fill_cases(rows);
         }
         self.fill_intervals();
+        self.fill_activities(rows);
         let to_goal = || rows.iter().filter(|row| row.to_goal());
         self.time_to_goal_mean = Mean::of(to_goal().map(|row| row.time_s)).mean;
     }
@@ -315,6 +338,20 @@ impl TableRow {
         (self.out_low, self.out_high) = ends(Measure::Out, self);
         (self.timeout_low, self.timeout_high) = ends(Measure::Timeout, self);
         (self.to_goal_low, self.to_goal_high) = ends(Measure::ToGoal, self);
+    }
+
+    fn fill_activities(&mut self, rows: &[&TrialRow]) {
+        let time: f64 = rows.iter().map(|row| row.time_s).sum();
+        let share = |of: fn(&TrialRow) -> f64| {
+            (time > 0.0).then(|| rounded(100.0 * rows.iter().map(|row| of(row)).sum::<f64>() / time))
+        };
+        self.duel_time = share(|row| row.duel_s);
+        self.held_time = share(|row| row.held_s);
+        self.theirs_time = share(|row| row.theirs_s);
+        self.rolls_time = share(|row| row.rolls_s);
+        self.at_ball_time = share(|row| row.at_ball_s);
+        self.walk_time = share(|row| row.walk_s);
+        self.pause_time = share(|row| row.pause_s);
     }
 
     fn fill_cases(&mut self, rows: &[&TrialRow]) {

@@ -57,8 +57,12 @@ impl Body for Legged {
         attacked: GoalEnd,
         leg: (&CaseKick, Point<Field>),
         patient: bool,
-    ) -> Intent {
+    ) -> Option<Intent> {
         skills::case_shot(belief, attacked, leg.1, legged_kick(leg.0), patient)
+    }
+
+    fn pressed_shot(&self, belief: &Belief, attacked: GoalEnd, time: f32) -> Option<Intent> {
+        skills::pressed_shot(belief, attacked, time)
     }
 
     fn heading_for(&self, kind: &CaseKick, along: Angle) -> Angle {

@@ -6,7 +6,7 @@ mod kick;
 mod receive;
 mod shot;
 
-pub use case_shot::case_shot;
+pub use case_shot::{case_shot, pressed_shot};
 pub use get_ball::{get_ball, interception_point};
 pub use kick::{aim, carry_to, pass, shoot};
 pub use receive::receive;

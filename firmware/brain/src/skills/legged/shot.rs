@@ -1,14 +1,18 @@
 //! `shot`: aim of a shot between the posts. The open angle of the goal, as kicks scatter. Field frame, SI.
 //!
 //! Rays from the robot fan over the goal opening. A ray is free where no opponent can be at it when the ball
-//! passes: each covers its body and what it walks sideways until then. A kick in one of these directions
-//! deviates as kicks do (motion's spread); its probability is the share of such kicks that run along free
-//! rays, times the probability of rolling far enough.
+//! passes: each covers its body and what it walks sideways until then, from where it will be when the ball
+//! leaves. An opponent at the ball covers only what lies before the ball: one abreast of it lets it pass. A
+//! kick in one of these directions deviates as kicks do (motion's spread); its probability is the share of
+//! such kicks that run along free rays, times the probability of rolling far enough: to the goal, or where no
+//! goalkeeper guards it into its area, from where it is brought in.
 
 use geometry::{Angle, Field, GoalEnd, Point, Vector, math};
-use motion::legged::{KICK_ANGLE_SPREAD, KICK_LENGTH_SPREAD, WALK_ACCELERATION, WALK_SIDEWAYS};
+use motion::legged::{
+    HOLD_DISTANCE, KICK_ANGLE_SPREAD, KICK_LENGTH_SPREAD, WALK_ACCELERATION, WALK_FORWARD, WALK_SIDEWAYS,
+};
 use motion::rolling::RollingBall;
-use protocol::robot_io::LeggedKick;
+use protocol::robot_io::{LeggedKick, OPPONENTS_MAX};
 
 use crate::belief::Belief;
 use crate::body::{Intent, legged};
@@ -77,7 +81,7 @@ pub(super) fn shooting_place(belief: &Belief, attacked: GoalEnd) -> Point<Field>
 
 /// The shot at the goal at `attacked` with the best probability, less the cost of turning for it; `None` from
 /// behind the goal line.
-fn best_shot(belief: &Belief, attacked: GoalEnd) -> Option<Shot> {
+pub(super) fn best_shot(belief: &Belief, attacked: GoalEnd) -> Option<Shot> {
     best_of(belief, &Fan::new(belief, attacked)?)
 }
 
@@ -86,7 +90,7 @@ fn best_of(belief: &Belief, fan: &Fan) -> Option<Shot> {
     let mut best: Option<(f32, Shot)> = None;
     for kick in SHOTS {
         let (off, length) = legged::nominal(kick);
-        let (free, far) = (fan.free_rays(belief, length), reaches(length, fan.distance));
+        let (free, far) = (fan.free_rays(belief, off, length), reaches(length, fan.distance));
         for aim in (0..RAYS).step_by(2) {
             let direction = fan.ray(aim);
             let chance = far * fan.chance(&free, aim);
@@ -109,11 +113,11 @@ pub(super) fn chance_along(
     kick: LeggedKick,
 ) -> Option<(f32, Shot)> {
     let fan = Fan::new(belief, attacked)?;
-    let (_, length) = legged::nominal(kick);
+    let (off, length) = legged::nominal(kick);
     let ray = (direction - fan.right).radians() / fan.step.max(f32::MIN_POSITIVE);
     let chance = match math::round_to_i32(ray) {
         aim @ 0.. if (aim as usize) < RAYS => {
-            reaches(length, fan.distance) * fan.chance(&fan.free_rays(belief, length), aim as usize)
+            reaches(length, fan.distance) * fan.chance(&fan.free_rays(belief, off, length), aim as usize)
         }
         // Beside the goal.
         _ => 0.0,
@@ -130,7 +134,6 @@ fn reaches(length: f32, distance: f32) -> f32 {
 
 /// Directions from the robot into the goal, from its right post to its left.
 struct Fan {
-    from: Point<Field>,
     right: Angle,
     /// Angle between neighbouring rays, rad.
     step: f32,
@@ -138,8 +141,10 @@ struct Fan {
     along: [Vector<Field>; RAYS],
     /// Probability density of a kick by the number of rays off its aim; 1 for none.
     density: [f32; RAYS],
-    /// Distance to the goal's centre, m.
+    /// Distance to the goal's centre, or where no goalkeeper guards it to its area, m.
     distance: f32,
+    /// From the robot to where each opponent will be when the ball leaves.
+    opponents: heapless::Vec<Vector<Field>, OPPONENTS_MAX>,
 }
 
 impl Fan {
@@ -162,21 +167,41 @@ impl Fan {
             let z = step * off as f32 / KICK_ANGLE_SPREAD;
             math::exp(-0.5 * z * z)
         });
-        Some(Self { from, right, step, along, density, distance: from.distance(center) })
+        let mut guarded = false;
+        // As many as the belief has room for.
+        let opponents = (belief.opponents.iter())
+            .map(|at| {
+                let keeps = keeps_goal(belief, attacked, *at);
+                guarded |= keeps;
+                comes(belief, *at, keeps) - from
+            })
+            .collect();
+        let distance = from.distance(center) - if guarded { 0.0 } else { field.penalty_depth };
+        Some(Self { right, step, along, density, distance, opponents })
     }
 
     fn ray(&self, index: usize) -> Angle {
         self.right + Angle::new(self.step * index as f32)
     }
 
-    /// The rays along which a ball kicked that far passes every opponent.
-    fn free_rays(&self, belief: &Belief, length: f32) -> [bool; RAYS] {
+    /// The rays along which a ball that is kicked that far, at that angle from the heading, passes every
+    /// opponent.
+    fn free_rays(&self, belief: &Belief, off: Angle, length: f32) -> [bool; RAYS] {
         let mut free = [true; RAYS];
         let rolling = RollingBall { deceleration: belief.league().ball().rolling_deceleration };
         let speed = rolling.speed_for(length);
         let body = belief.league().robot().radius + belief.league().ball().radius;
-        for &opponent in &belief.opponents {
-            let to = opponent - self.from;
+        for &to in &self.opponents {
+            if is_at_holder(to) {
+                let (sin, cos) = off.sin_cos();
+                for (along, free) in self.along.iter().zip(&mut free) {
+                    // The ball leaves from before the holder's body, whose heading is `off` beside the kick.
+                    let (x, y) = (along.x(), along.y());
+                    let heading = Vector::new(cos * x + sin * y, cos * y - sin * x);
+                    *free &= !meets_at_ball(to - heading * HOLD_DISTANCE, *along);
+                }
+                continue;
+            }
             // A ball that stops before the opponent is certainly covered.
             let Some(time) = rolling.travel_time(speed, to.norm()) else { continue };
             let covered = body + sidestep(time);
@@ -197,6 +222,39 @@ impl Fan {
     }
 }
 
+/// Whether an opponent there is a goalkeeper: in its area, or with its body on the area's edge, from where it
+/// meets balls.
+pub(super) fn keeps_goal(belief: &Belief, attacked: GoalEnd, at: Point<Field>) -> bool {
+    let (field, radius) = (belief.league().field(), belief.league().robot().radius);
+    let to = field.goal_center(attacked) - at;
+    to.x().abs() < field.penalty_depth + radius && to.y().abs() < 0.5 * field.penalty_width + radius
+}
+
+/// Whether an opponent at `to` from the holder's centre is in contact with it, or about to be.
+pub(super) fn is_at_holder(to: Vector<Field>) -> bool {
+    to.norm() < AT_HOLDER
+}
+
+/// Whether a ball kicked `along` meets an opponent at the holder that stands at `to` from the ball. Such an
+/// opponent faces the ball, which lies between its front legs as deep as in a hold: what does not lead deeper
+/// rolls past its body.
+pub(super) fn meets_at_ball(to: Vector<Field>, along: Vector<Field>) -> bool {
+    along.dot(to) > 0.0 && along.cross(to).abs() < HOLD_DISTANCE
+}
+
+/// Where an opponent will be when the ball leaves: until then it walks at the ball, a goalkeeper to where it
+/// stands opposite the ball.
+fn comes(belief: &Belief, at: Point<Field>, keeps: bool) -> Point<Field> {
+    let Some(ball) = belief.ball.map(|ball| ball.position) else { return at };
+    let (way, speed) = if keeps {
+        (Vector::new(0.0, ball.y() - at.y()), WALK_SIDEWAYS)
+    } else {
+        let way = ball - at;
+        (way.clamped((way.norm() - AT_BALL).max(0.0)), WALK_FORWARD)
+    };
+    at + way.clamped(speed * KICK_TIME)
+}
+
 /// Distance that a robot that now stands walks sideways within `time`, m.
 fn sidestep(time: f32) -> f32 {
     let time = (time - REACTION).max(0.0);
@@ -213,7 +271,7 @@ const SHOTS: [LeggedKick; 3] = [LeggedKick::ForwardHard, LeggedKick::Left, Legge
 /// A shot with this probability is taken at once: about the best there is against a well-placed goalkeeper.
 pub(super) const GOOD_SHOT: f32 = 0.3;
 /// A shot with this probability is taken if an opponent is about to take the ball.
-const FAIR_SHOT: f32 = 0.12;
+pub(super) const FAIR_SHOT: f32 = 0.12;
 /// An opponent whose centre is this near the robot's is about to take the ball, m: two bodies and a second's
 /// walk.
 const PRESSED_WITHIN: f32 = 0.6;
@@ -230,6 +288,13 @@ const RAYS: usize = 15;
 /// Probability of a goal that a shot gives up to turn 1 rad less: with the ball that takes 1 s, in which a
 /// goalkeeper walks half a goal's width.
 const TURN_PRICE: f32 = 0.1;
+/// From the order to ball contact, s: the body's.
+pub(super) const KICK_TIME: f32 = 0.4;
+/// An opponent whose centre is this near the holder's touches it within a kick's time, m: two radii and half
+/// a step.
+const AT_HOLDER: f32 = 0.3;
+/// An opponent at the ball comes no nearer to it, m: body and ball, less than a grab's reach.
+const AT_BALL: f32 = 0.16;
 /// Time that a standing robot needs to perceive a kick and to lift a leg, s.
 const REACTION: f32 = 0.3;
 /// Square root of 2π, √(2π).
@@ -256,11 +321,13 @@ mod tests {
 
     #[test]
     fn an_empty_goal_is_as_wide_as_it_looks_to_a_scattering_kick() {
-        // From 1 m the posts (less the ball) stand at ±19.7°: a deviation of 10° stays within in 95 of 100; a
-        // hard kick of 2.15 ± 0.645 m rolls 1 m in 96 of 100.
-        assert!((chance(&belief(1.7, 0.0, &[])) - 0.95 * 0.963).abs() < 0.03);
-        // From 2.15 m every second hard kick gets there, and the posts stand at ±9.4°: 65 of 100.
-        assert!((chance(&belief(0.55, 0.0, &[])) - 0.5 * 0.65).abs() < 0.03);
+        // From 1 m the posts (less the ball) stand at ±19.7°: a deviation of 10° stays within in 95 of 100,
+        // and nearly every hard kick of 2.15 ± 0.645 m rolls the 0.35 m to the area before the goal.
+        assert!((chance(&belief(1.7, 0.0, &[])) - 0.95 * 0.99).abs() < 0.03);
+        // From 2.15 m 84 of 100 roll the 1.5 m to it, and the posts stand at ±9.4°: 65 of 100.
+        assert!((chance(&belief(0.55, 0.0, &[])) - 0.84 * 0.65).abs() < 0.04);
+        // Guarded, it is the goal that counts: a goalkeeper out of the way leaves half of the hard kicks.
+        assert!((chance(&belief(0.55, 0.0, &[(2.65, 0.75)])) - 0.5 * 0.65).abs() < 0.03);
     }
 
     #[test]
@@ -275,6 +342,42 @@ mod tests {
     fn against_a_goalie_opposite_the_ball_the_best_place_is_aside_of_the_goals_middle() {
         let opposite = |y: f32| chance(&belief(1.4, y, &[(2.05, y)]));
         assert!(opposite(0.6) > 0.4 && opposite(0.6) > opposite(0.3) && opposite(0.3) > opposite(0.0));
+    }
+
+    #[test]
+    fn an_opponent_abreast_of_a_held_ball_lets_a_kick_pass_and_one_before_it_does_not() {
+        // The holder at 1.4 m faces the goal, the ball 0.13 m ahead of it, another body in contact with its
+        // own.
+        let with = |beside: f32| {
+            let at = Vector::<Field>::polar(0.24, Angle::new(beside));
+            let mut held = belief(1.4, 0.0, &[(1.4 + at.x(), at.y())]);
+            held.ball = Some(crate::belief::BelievedBall {
+                position: Point::new(1.53, 0.0),
+                velocity: Vector::default(),
+                rest: Point::new(1.53, 0.0),
+            });
+            chance_along(&held, GoalEnd::Positive, Angle::ZERO, LeggedKick::ForwardHard).unwrap().0
+        };
+        assert!(with(1.0) > 0.6, "{}", with(1.0));
+        assert!(with(0.2) < 0.3, "{}", with(0.2));
+    }
+
+    #[test]
+    fn a_goalkeeper_on_its_way_is_where_it_will_be_when_the_ball_leaves() {
+        let chance = |keeper: f32| chance(&belief_with_ball(1.4, 0.5, &[(2.05, keeper)]));
+        // Opposite the ball it stays; 0.3 m aside it comes 0.08 m nearer while the leg swings.
+        let (walks, stands) = (chance(0.2), best_shot(&belief(1.4, 0.5, &[(2.05, 0.2)]), GoalEnd::Positive));
+        assert!(walks < stands.unwrap().chance, "{walks}");
+        assert!(keeps_goal(&belief(0.0, 0.0, &[]), GoalEnd::Positive, Point::new(2.049, 0.66)));
+        assert!(!keeps_goal(&belief(0.0, 0.0, &[]), GoalEnd::Positive, Point::new(1.9, 0.3)));
+    }
+
+    fn belief_with_ball(x: f32, y: f32, opponents: &[(f32, f32)]) -> Belief {
+        let mut belief = belief(x, y, opponents);
+        let at = Point::new(x + 0.13, y);
+        belief.ball =
+            Some(crate::belief::BelievedBall { position: at, velocity: Vector::default(), rest: at });
+        belief
     }
 
     #[test]
