@@ -193,7 +193,7 @@ fn short_of_bodies(belief: &Belief, mut velocity: Vector<Field>) -> Vector<Field
     for other in &belief.others {
         let off = other.pose.position - belief.pose.position;
         let square = off.dot(off);
-        if square > NOTICES * NOTICES || square < f32::MIN_POSITIVE {
+        if !(f32::MIN_POSITIVE..=NOTICES * NOTICES).contains(&square) {
             continue;
         }
         let distance = math::sqrt(square);

@@ -168,14 +168,13 @@ impl Fan {
             math::exp(-0.5 * z * z)
         });
         let mut guarded = false;
-        // As many as the belief has room for.
-        let opponents = (belief.opponents.iter())
-            .map(|at| {
-                let keeps = keeps_goal(belief, attacked, *at);
-                guarded |= keeps;
-                comes(belief, *at, keeps) - from
-            })
-            .collect();
+        let mut opponents = heapless::Vec::new();
+        for at in &belief.opponents {
+            let keeps = keeps_goal(belief, attacked, *at);
+            guarded |= keeps;
+            // As many as the belief has room for.
+            let _room = opponents.push(comes(belief, *at, keeps) - from);
+        }
         let distance = from.distance(center) - if guarded { 0.0 } else { field.penalty_depth };
         Some(Self { right, step, along, density, distance, opponents })
     }
