@@ -302,8 +302,7 @@ impl Radio {
         // Without robots one part goes out to an empty audience: a base station learns the host's address
         // from it.
         let most = if audience.is_empty() { 1 } else { PARTS_MAX };
-        for part in
-            snapshot::parts(self.snapshot, &audience, &there, &latest.situation).into_iter().take(most)
+        for part in snapshot::parts(self.snapshot, audience, &there, &latest.situation).into_iter().take(most)
         {
             self.send_message(now, To::All, &HostMessage::World(part));
         }

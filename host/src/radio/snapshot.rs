@@ -31,7 +31,7 @@ pub struct RadioSituation {
 /// The parts of a snapshot for these robots.
 pub(super) fn parts(
     snapshot: u8,
-    audience: &Audience,
+    audience: Audience,
     world: &World,
     situation: &RadioSituation,
 ) -> heapless::Vec<WorldPart, PARTS_MAX> {
@@ -53,7 +53,7 @@ pub(super) fn parts(
 }
 
 /// The robots of a snapshot: all addressees, and those nearest to any of them.
-fn sent(world: &World, us: Colour, audience: &Audience) -> heapless::Vec<WireRobot, PARTS_ROBOTS_MAX> {
+fn sent(world: &World, us: Colour, audience: Audience) -> heapless::Vec<WireRobot, PARTS_ROBOTS_MAX> {
     let hears = |robot: &Robot| robot.who.colour == us && audience.has(robot.who.id);
     let near = |robot: &Robot| {
         let to = |other: &Robot| other.pose.position.distance(robot.pose.position);
@@ -115,7 +115,7 @@ mod tests {
             world.put(robot(Colour::Yellow, id, -5.5, 0.5 * id as f32 - 9.0));
         }
         let audience: Audience = RobotId::all().take(11).collect();
-        let sent = sent(&world, Colour::Blue, &audience);
+        let sent = sent(&world, Colour::Blue, audience);
         assert_eq!(sent.len(), PARTS_ROBOTS_MAX);
         for side in [Side::Ours, Side::Theirs] {
             let numbers: Vec<u8> = sent

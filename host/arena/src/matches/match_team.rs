@@ -101,10 +101,7 @@ impl MatchTeam {
     /// Our team with these parts alone; the error names the one that does not exist.
     fn of_parts(mut parts: BTreeSet<String>) -> Result<Self, String> {
         let cases = parts.remove(CASES);
-        let tactics = match parts.is_empty() {
-            true => Tactics::NONE,
-            false => Tactics::parse(&joined(&parts, ","))?,
-        };
+        let tactics = if parts.is_empty() { Tactics::NONE } else { Tactics::parse(&joined(&parts, ","))? };
         Ok(Self { team: Team::Ours, tactics, cases })
     }
 }
