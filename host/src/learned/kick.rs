@@ -2,9 +2,11 @@
 //! the tracker saw, by the ball's places 0.05–0.3 s after the kick. m, m/s, s.
 
 use geometry::{Field, Point, Vector};
+use motion::ball::BallModel;
+use motion::ball::inside::fastest_inside;
 use protocol::host::{Directive, HostCommand, KickOrder};
 use protocol::{Duration, Instant, RobotId, Who};
-use rules::Colour;
+use rules::{Colour, FieldSpec};
 
 use super::samples::{Estimate, Samples};
 use crate::world::{Kick, World};
@@ -35,8 +37,15 @@ struct Watched {
 }
 
 impl Kicks {
-    pub(super) fn see(&mut self, now: Instant, world: &World, us: Colour, commands: &[HostCommand]) {
-        self.watch(world, us);
+    pub(super) fn see(
+        &mut self,
+        now: Instant,
+        world: &World,
+        us: Colour,
+        field: &FieldSpec,
+        commands: &[HostCommand],
+    ) {
+        self.watch(world, us, field);
         for command in commands {
             if let Directive::Kick { kick: KickOrder::Flat(speed), .. }
             | Directive::Pass { kick: KickOrder::Flat(speed), ready: true, .. } = command.directive
@@ -46,7 +55,7 @@ impl Kicks {
         }
     }
 
-    fn watch(&mut self, world: &World, us: Colour) {
+    fn watch(&mut self, world: &World, us: Colour, field: &FieldSpec) {
         let Some(ball) = &world.ball else {
             self.watched = None;
             return;
@@ -54,7 +63,7 @@ impl Kicks {
         let kick = ball.kicked.filter(|kick| !kick.is_chip());
         if let Some(kick) = kick.filter(|kick| self.is_new(kick)) {
             self.known = Some((kick.at, kick.by));
-            self.watched = self.begin(&kick, us);
+            self.watched = self.begin(&kick, us, field);
         }
         let Some(watched) = &mut self.watched else { return };
         if kick.is_none() || ball.height > 0.0 {
@@ -84,11 +93,15 @@ impl Kicks {
         })
     }
 
-    fn begin(&self, kick: &Kick, us: Colour) -> Option<Watched> {
+    fn begin(&self, kick: &Kick, us: Colour, field: &FieldSpec) -> Option<Watched> {
         let who = kick.by.filter(|who| who.colour == us)?;
         let (at, ordered) = self.ordered[who.id.index()]?;
         let fits = kick.at.since(at).0 <= ORDERED.0 && ordered >= SLOWEST;
         let along = kick.velocity.unit().filter(|_| fits)?;
+        // Where it would leave the field, the robot kicks more gently than ordered.
+        if ordered > fastest_inside(&BallModel::default(), field, kick.from, along, |_| true) {
+            return None;
+        }
         Some(Watched {
             robot: who.id,
             ordered,
@@ -191,7 +204,7 @@ mod tests {
             };
             let mut lies = World::empty(Instant(time), models);
             lies.ball = Some(Ball::at_rest(Point::new(0.0, 0.0), Instant(time)));
-            learned.see(Instant(time), &lies, US, &[command]);
+            learned.see(Instant(time), &lies, US, &field, &[command]);
             let at = time + 100_000;
             let path = models.ground.kicked(Point::<Field>::new(0.0, 0.0), Vector::new(*kicked, 0.0));
             for step in 1..60_u64 {
@@ -213,7 +226,7 @@ mod tests {
                 };
                 let mut world = World::empty(Instant(now), models);
                 world.ball = Some(ball);
-                learned.see(Instant(now), &world, US, &[]);
+                learned.see(Instant(now), &world, US, &field, &[]);
             }
             time = at + 2_000_000;
         }

@@ -19,7 +19,7 @@ mod samples;
 
 use protocol::host::HostCommand;
 use protocol::{Instant, RobotId};
-use rules::{Colour, Phase, Side};
+use rules::{Colour, FieldSpec, Phase, Side};
 
 use crate::world::World;
 
@@ -41,10 +41,10 @@ impl Learned {
         &mut self,
         now: Instant,
         (world, us): (&World, Colour),
-        phase: Phase<Side>,
+        (phase, field): (Phase<Side>, &FieldSpec),
         commands: &[HostCommand],
     ) {
-        self.kicks.see(now, world, us, commands);
+        self.kicks.see(now, world, us, field, commands);
         self.latencies.see(now, world, us, phase, commands);
         self.friction.see(world);
     }

@@ -1,6 +1,6 @@
 //! `snapshot`: packs a snapshot into parts that fit into frames: ours first, then theirs, lowest number
-//! first, spread over as few parts as hold them. Where more robots stand about than robots take (both teams of
-//! division A, and bystanders), those nearest to the addressees are sent: the others are no obstacles yet.
+//! first, spread over as few parts as hold them. Where more robots stand about than robots take (both teams
+//! of division A, and bystanders), those nearest to the addressees are sent: the others are no obstacles yet.
 //! Field frame.
 
 use geometry::{Field, Point};

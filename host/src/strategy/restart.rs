@@ -33,8 +33,8 @@ const TURN_STEP_DEG: f32 = 15.0;
 /// Distance of the two receivers from the halfway line at kick-off, m: a kicker that passes to them lines up
 /// beside the halfway line, not beyond the ball.
 const KICKOFF_BESIDE: f32 = 0.35;
-/// Distance of other field players from the halfway line at kick-off, m: far enough from an opponent to receive a
-/// pass.
+/// Distance of other field players from the halfway line at kick-off, m: far enough from an opponent to
+/// receive a pass.
 const KICKOFF_BACK: f32 = 0.9;
 
 /// Waiting place of our kicker for its restart from `ball`: behind it, as seen from their goal.

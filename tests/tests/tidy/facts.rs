@@ -178,6 +178,10 @@ const FACTS: [Fact; 10] = [
             ("firmware/brain/src/skills/wheels/get_ball.rs", "CLOSING_BRAKE"),
             // m, not m/s².
             ("firmware/motion/src/avoid/item.rs", "BRAKE_SKIN"),
+            // What both of two robots that close are trusted with.
+            ("firmware/brain/src/body/omni/drivetrain.rs", "BOTH_BRAKE"),
+            // How gently a carried ball is brought to its place.
+            ("firmware/brain/src/skills/wheels/dribble.rs", "BRAKES"),
         ],
     },
     Fact {
@@ -227,6 +231,11 @@ const FACTS: [Fact; 10] = [
             ("firmware/brain/src/skills/legged/get_ball.rs", "STAND_OFF"),
             // Start and end of a path.
             ("firmware/motion/src/avoid/item.rs", "TOUCH"),
+            // A speed of bodies, and an angle beside an opponent.
+            ("firmware/brain/src/body/omni/drivetrain.rs", "TOUCHES_AT"),
+            ("firmware/brain/src/skills/wheels/get_ball.rs", "ASKEW_TOUCHING"),
+            // From where a pushed ball rolls on by itself.
+            ("firmware/brain/src/skills/wheels/place_ball.rs", "PUSHED"),
             // A share of a radius.
             ("host/src/strategy/pass/bridge.rs", "FIRST_STEP"),
             // Off the goal line: a body, and less than a ball.

@@ -1,5 +1,5 @@
-//! `course`: progress of an attempt: the first retrieval, its gameplay, and the ball until it lies still or is
-//! taken.
+//! `course`: progress of an attempt: the first retrieval, its gameplay, and the ball until it lies still or
+//! is taken.
 
 use casebase::Case;
 use hil_sim::TrialOutcome;

@@ -56,7 +56,8 @@ pub(super) struct MatchesArgs {
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = MatchTeam::parse)]
     opponents: Vec<MatchTeam>,
     /// Measure what the cases and each part of the second paper are worth: our team with one part more or
-    /// less, for each part. Instead of the opponents, or beside those that are named, or one more each in the round robin.
+    /// less, for each part. Instead of the opponents, or beside those that are named, or one more each in the
+    /// round robin.
     #[arg(long)]
     ablations: bool,
     /// Each team against each: ours and the opponents.

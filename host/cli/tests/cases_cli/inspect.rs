@@ -66,7 +66,7 @@ fn a_case_is_displayed_with_its_intent_its_gameplays_and_the_balls_path() {
          ball       (-600, 0)  scope 450 x 250\n\
          tm1        (-720, 0)  get_ball; pass_ball to tm2\n\
          tm2       (300, 900)  wait; receive_ball from tm1; kick goal (at the goal)\n\
-         opp1      (-150, -35)  scope 300 x 225\n\
+         opp1     (-150, -35)  scope 300 x 225\n\
          \n\
          path of the ball\n\
          leg 1 tm1 passes to tm2: (-600, 0) to (300, 900), 1273 mm, radius 100 to 300\n\
@@ -222,7 +222,7 @@ fn the_version_names_the_commit_and_wrong_usage_is_distinguished_from_failure() 
 
 #[test]
 fn findings_are_reported_as_data_and_their_codes_are_explained() {
-    let faulty = PASS_AROUND.replacen("[300, 300]", "[0, 300]", 1);
+    let faulty = PASS_AROUND.replacen("[300, 225]", "[0, 225]", 1);
     let directory = library("findings-as-data", &[("center/a.toml", &faulty)]);
     let run = cases("check", &directory, &["--json"], "");
     assert_eq!(run.code, 1);

@@ -58,7 +58,7 @@ fn broken_case_files_are_refused() {
         ("{ pass_ball = 2 }", "{ pass_ball = 2, kick = \"goal\" }"),
         ("{ pass_ball = 2 }", "{ pass_ball = 5 }"),
         ("\"wait\"", "{ turn = { left = 90 } }"),
-        ("scope = [300, 300]", ""),
+        ("scope = [300, 225]", ""),
     ] {
         schema.refuses(PASS_AROUND, old, new);
     }

@@ -187,8 +187,8 @@ impl Drivetrain {
     }
 }
 
-/// `velocity`, slowed towards robots that it would reach too fast: paths take them to keep their velocity, and
-/// both may turn towards each other before either has noticed.
+/// `velocity`, slowed towards robots that it would reach too fast: paths take them to keep their velocity,
+/// and both may turn towards each other before either has noticed.
 fn short_of_bodies(belief: &Belief, mut velocity: Vector<Field>) -> Vector<Field> {
     for other in &belief.others {
         let off = other.pose.position - belief.pose.position;

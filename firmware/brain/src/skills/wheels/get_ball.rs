@@ -7,6 +7,7 @@
 use geometry::{Angle, Field, Point, Segment, Vector, math};
 use motion::ball::{BallModel, BallPath};
 use motion::intercept::{InterceptVerdict, Interception};
+use rules::contact;
 
 use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
@@ -168,7 +169,7 @@ pub fn barrier(belief: &Belief, ball: Point<Field>) -> Option<Barrier> {
     }
     let (opponent, apart) = belief.nearest_opponent(ball).filter(|(_, apart)| *apart < BODY_BESIDE)?;
     // Bodies may be seen nearer than they can be.
-    let width = (PAST_OPPONENT * (apart - OPPONENT_TOUCHES) + ASKEW_TOUCHING).max(0.0);
+    let width = (PAST_OPPONENT * (apart - contact::CENTERS) + ASKEW_TOUCHING).max(0.0);
     Some(Barrier { towards: ball.direction_to(opponent), width, speed: GO_IN })
 }
 
@@ -196,9 +197,7 @@ const CONTESTED: f32 = 0.3;
 const GO_IN: f32 = 0.35;
 /// The same at a wall, m/s: a body that comes on for a centimetre squeezes the ball out of the dribbler.
 const GO_IN_AT_WALL: f32 = 0.12;
-/// From a ball to the centre of an opponent that touches it, m, and of one that leaves room for a body
-/// everywhere.
-const OPPONENT_TOUCHES: f32 = 0.112;
+/// An opponent's centre this far from the ball leaves room for a body everywhere, m.
 const BODY_BESIDE: f32 = 0.25;
 /// At a ball that an opponent touches two bodies fit while one looks no farther past the other than this,
 /// rad: 52°, by the triangle of ball and centres with a centimetre between the bodies; …

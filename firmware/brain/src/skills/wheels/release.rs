@@ -3,6 +3,7 @@
 
 use geometry::{Field, Point, Vector};
 use motion::ball::BallModel;
+use motion::ball::inside::fastest_inside;
 use protocol::robot_io::OmniKick;
 use rules::{Phase, Side};
 
@@ -30,21 +31,9 @@ pub fn release(belief: &Belief, intent: Intent) -> Intent {
 /// The fastest kick from `from` along the robot's heading that rests within the lines, m/s; none is too fast
 /// at the opponents' goal.
 fn stays_inside(belief: &Belief, from: Point<Field>) -> f32 {
-    let field = belief.league().field();
     let along = Vector::<Field>::polar(1.0, belief.pose.heading);
-    let to_line = |at: f32, along: f32, line: f32| {
-        if along.abs() < PARALLEL { f32::INFINITY } else { (line * along.signum() - at) / along }
-    };
-    let to_goal_line = to_line(from.x(), along.x(), 0.5 * field.length);
-    let to_touch_line = to_line(from.y(), along.y(), 0.5 * field.width);
-    let own = belief.game.defending.sign() as f32;
-    let ahead = along.x() * own < 0.0;
-    let crosses = from.y() + along.y() * to_goal_line;
-    if ahead && crosses.abs() < 0.5 * field.goal_width + BESIDE_POST {
-        return f32::INFINITY;
-    }
-    let room = to_goal_line.min(to_touch_line) - INSIDE;
-    BallModel::default().kick_speed(room.max(ROLLS_AT_LEAST), 0.0)
+    let attacked = belief.game.defending.opposite();
+    fastest_inside(&BallModel::default(), &belief.league().field(), from, along, |end| end == attacked)
 }
 
 /// Whether it leaves a disputed ball to the opponent: two robots of equal programs kick at the same moment,
@@ -56,14 +45,6 @@ fn gives_way(belief: &Belief) -> bool {
     belief.game.phase == Phase::Run && belief.disputed() > if own_half { KEEPS_FOR } else { DISPUTES_FOR }
 }
 
-/// A heading this parallel to a line does not cross it.
-const PARALLEL: f32 = 1e-3;
-/// Beside a post, m: a shot that misses by less counts as one.
-const BESIDE_POST: f32 = 0.1;
-/// From the line to where the ball rests, m: more than a ball's radius, and kicks scatter.
-const INSIDE: f32 = 0.2;
-/// A kick rolls at least this far, m: out of the dribbler's reach.
-const ROLLS_AT_LEAST: f32 = 0.8;
 /// Time for which a robot disputes the ball in the opponents' half, s: after the kicks of
 /// [`let_go_in_time`](super::let_go_in_time), and half of what is no progress in division A; …
 const DISPUTES_FOR: f32 = 2.4;
@@ -80,6 +61,7 @@ mod tests {
     use crate::body::omni::BALL_AT;
     use crate::skills::wheels::testing::belief;
     use geometry::GoalEnd;
+    use motion::ball::inside::INSIDE;
     use protocol::{Duration, Instant};
 
     const FAST: OmniKick = OmniKick::Flat(6.0);
