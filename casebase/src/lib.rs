@@ -48,7 +48,7 @@ pub use point::{PointMm, Scope};
 pub use problem::{PROBLEM_OPPONENTS_MAX, PROBLEM_TEAMMATES_MAX, Problem};
 pub use query::adapted_position;
 pub use rank::{Correspondence, Match, rank_order};
-pub use retrieve::{Retrieval, retrieve, retrieve_best, retrieve_for};
+pub use retrieve::{Retrieval, retrieve, retrieve_best};
 pub use settings::{
     CorrespondenceRule, CostRule, Criterion, FreePathRule, OutOfField, RetrievalSettings, ScopeRule,
     SettingError,

@@ -7,7 +7,7 @@
 
 use core::ops::ControlFlow;
 
-use protocol::{CaseId, RobotId};
+use protocol::CaseId;
 
 use crate::problem::Problem;
 use crate::query::{Found, Query};
@@ -71,33 +71,16 @@ fn candidate(query: &Query<'_>, case: &Stored<'_, '_>) -> Option<Found> {
 }
 
 /// The best case alone, without counting the candidates: cases that cannot win are skipped.
-pub fn retrieve_best(base: &CaseBase<'_>, problem: &Problem, settings: &RetrievalSettings) -> Option<Match> {
-    retrieve_for(base, problem, settings, None)
-}
-
-/// The best case alone for a ball that `holder` holds, if a robot does: of the candidates in whose
-/// correspondence that robot gets the ball (docs/case-format.md §3).
 #[inline(never)]
-pub fn retrieve_for(
-    base: &CaseBase<'_>,
-    problem: &Problem,
-    settings: &RetrievalSettings,
-    holder: Option<RobotId>,
-) -> Option<Match> {
+pub fn retrieve_best(base: &CaseBase<'_>, problem: &Problem, settings: &RetrievalSettings) -> Option<Match> {
+    if !are_the_papers(settings) {
+        return retrieve(base, problem, settings).best;
+    }
     Query::with(problem, settings, |query| {
-        if !are_the_papers(settings) || !CaseBase::index_serves(query.key.limit) {
-            let mut best: Option<Found> = None;
-            each_near(base, query, |case| {
-                if let Some(found) = candidate(query, &case)
-                    && gets_ball(&case, &found.players, holder)
-                    && best.as_ref().is_none_or(|best| key_order(&found.key, &best.key, settings).is_lt())
-                {
-                    best = Some(found);
-                }
-            });
-            return best.map(Found::into_match);
+        if !CaseBase::index_serves(query.key.limit) {
+            return retrieve(base, problem, settings).best;
         }
-        let mut race = Race { base, query, holder, class: Class(0), best: None };
+        let mut race = Race { base, query, class: Class(0), best: None };
         let key = query.key;
         let (list, flip) = base.near(key.ball, problem.defending);
         for id in list {
@@ -109,15 +92,6 @@ pub fn retrieve_for(
             }
         }
         race.best.map(Found::into_match)
-    })
-}
-
-/// Whether the robot that holds the ball, if one does, is the one that gets it in that correspondence.
-#[inline]
-fn gets_ball(case: &Stored<'_, '_>, players: &[RobotId], holder: Option<RobotId>) -> bool {
-    holder.is_none_or(|holder| {
-        let getter = case.case().map(|case| case.getter().index());
-        getter.and_then(|getter| players.get(getter)) == Some(&holder)
     })
 }
 
@@ -194,8 +168,6 @@ impl Class {
 struct Race<'q, 'a> {
     base: &'q CaseBase<'a>,
     query: &'q Query<'q>,
-    /// The robot that holds the ball.
-    holder: Option<RobotId>,
     /// The class of the best candidate so far.
     class: Class,
     best: Option<Found>,
@@ -238,9 +210,6 @@ impl<'a> Race<'_, 'a> {
             return;
         }
         let Some(players) = query.least_sum(case, nearest) else { return };
-        if !gets_ball(case, &players.ids, self.holder) {
-            return;
-        }
         let key = Key {
             conditions: class.conditions(),
             teammates: case.teammates(),

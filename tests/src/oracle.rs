@@ -15,7 +15,7 @@ use std::cmp::Ordering;
 
 use serde_json::{Map, Value, json};
 
-use library::{Action, Case, Library, Point, Radii, Robot};
+use library::{Case, Library, Point, Radii};
 use problem::Problem;
 use walk::Leg;
 
@@ -63,8 +63,6 @@ pub struct Rules {
     pub longest: bool,
     /// Order of the criteria (`ranking`).
     pub ranking: [Criterion; 3],
-    /// The robot that holds the ball: the one that must get it in the correspondence.
-    pub holder: Option<u8>,
 }
 
 /// A step of the ranking.
@@ -87,7 +85,6 @@ impl Default for Rules {
             scopes_absolute: false,
             longest: false,
             ranking: [Criterion::Conditions, Criterion::Teammates, Criterion::IntervalCost],
-            holder: None,
         }
     }
 }
@@ -159,11 +156,6 @@ fn candidate(
     // After the free path, which is cheaper; which of the two rejects a case is irrelevant.
     let adapted: Vec<Point> = case.robots.iter().map(|robot| shifted(robot.at)).collect();
     let (correspondence, cost) = correspondence(&adapted, &problem.teammates, rules, close)?;
-    let begins_with_it = |robot: &Robot| robot.gameplay.first() == Some(&Action::GetBall);
-    let getter = case.robots.iter().position(begins_with_it)?;
-    if rules.holder.is_some_and(|holder| correspondence[getter] != holder) {
-        return None;
-    }
     let occupied = |&&(centre, radii): &&(Point, Radii)| {
         let centre = if rules.scopes_absolute { centre } else { shifted(centre) };
         let within = |&opponent: &Point| {

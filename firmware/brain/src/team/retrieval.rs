@@ -64,14 +64,19 @@ pub fn accept(
 /// The coordinator's decision about `problem`.
 ///
 /// A robot that holds the ball can give it away only by a kick: a case in which another robot must get the
-/// ball first cannot start, and the next candidate is taken.
+/// ball first cannot start, and counts as none.
 pub fn decide(
     base: &CaseBase<'_>,
     problem: &Problem,
     settings: &RetrievalSettings,
     holder: Option<RobotId>,
 ) -> Decision {
-    let Some(best) = casebase::retrieve_for(base, problem, settings, holder) else { return Decision::NoCase };
+    let Some(best) = casebase::retrieve_best(base, problem, settings) else { return Decision::NoCase };
+    let getter =
+        base.case(best.case).and_then(|case| best.correspondence.get(case.getter().index()).copied());
+    if holder.is_some() && holder != getter {
+        return Decision::NoCase;
+    }
     let mut robots = heapless::Vec::new();
     for robot in &best.correspondence {
         // As many as a case may have, in both.
