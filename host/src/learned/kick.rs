@@ -190,6 +190,7 @@ mod tests {
     /// flying where `chip`.
     fn learn(kicks: &[(f32, f32)], noise: f32, chip: bool) -> Kicks {
         let (mut learned, models) = (Kicks::default(), BallModels::default());
+        let field = rules::League::DivisionB.field();
         let mut time = 1_000_000_u64;
         for (n, (ordered, kicked)) in kicks.iter().enumerate() {
             let command = HostCommand {

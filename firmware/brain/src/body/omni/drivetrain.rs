@@ -243,19 +243,19 @@ const TOUCHES_AT: f32 = 1.0;
 const BOTH_BRAKE: f32 = 2.0;
 /// In play: eight pieces among three obstacles, five among a dozen; only what stands near the path is an
 /// obstacle. The interception of a moving ball is computed in the same step.
-const EFFORT_BALL_MOVES: u32 = 100;
+const EFFORT_BALL_MOVES: u32 = 94;
 /// The same while the ball is stationary.
-const EFFORT_BALL_RESTS: u32 = 115;
+const EFFORT_BALL_RESTS: u32 = 106;
 /// The same while the ball is not in play: neither a case nor an interception is computed then.
-const EFFORT_STOPPED: u32 = 230;
+const EFFORT_STOPPED: u32 = 200;
 /// Behind a goal line.
-const EFFORT_BEHIND_GOAL: u32 = 312;
+const EFFORT_BEHIND_GOAL: u32 = 296;
 /// The same for a robot that places the ball or kicks a restart: it also plans a path behind the ball.
-const EFFORT_TAKING: u32 = 200;
+const EFFORT_TAKING: u32 = 180;
 /// A path out of a forbidden region while the ball is not in play.
-const EFFORT_STOPPED_TO_LEAVE: u32 = 460;
+const EFFORT_STOPPED_TO_LEAVE: u32 = 400;
 /// A path out of a forbidden region in play, where a step may retrieve a case too.
-const EFFORT_TO_LEAVE: u32 = 125;
+const EFFORT_TO_LEAVE: u32 = 38;
 /// A ball faster than this is intercepted, m/s.
 const BALL_MOVES: f32 = 0.05;
 

@@ -3,7 +3,7 @@
 //! A gap's value is how far every opponent stays from the ball's path, less how far it can move until the
 //! ball passes, and how far the path stays from the posts. SI, field frame.
 
-use geometry::{Field, GoalEnd, Point, Segment};
+use geometry::{Field, GoalEnd, Point, math};
 use motion::ball::BallModel;
 use protocol::robot_io::OmniKick;
 use rules::{RobotSpec, contact};
@@ -61,16 +61,20 @@ pub fn clear_or_shoot(belief: &Belief, attacked: GoalEnd) -> Intent {
 /// Distance that opponents leave free beside a ball's path, m; what no opponent can reach counts as
 /// [`ROOM_ENOUGH`].
 fn room(belief: &Belief, from: Point<Field>, to: Point<Field>) -> f32 {
-    let line = Segment::new(from, to);
+    let path = to - from;
+    let length = path.norm();
+    let along = path * (1.0 / length.max(f32::MIN_POSITIVE));
     let mut room = ROOM_ENOUGH;
     for &opponent in &belief.opponents {
-        let share = line.share_of(opponent);
-        if share <= 0.0 {
+        let off = opponent - from;
+        let ahead = off.dot(along);
+        // Behind the ball, or behind its target.
+        if ahead <= 0.0 || ahead > length + BODY {
             continue;
         }
-        let time = (line.closest_to(opponent).distance(from) / (FAIR_SPEED) - REACTION).max(0.0);
+        let time = math::max(ahead * (1.0 / FAIR_SPEED) - REACTION, 0.0);
         let reach = BODY + 0.5 * OPPONENT_ACCELERATION * time * time;
-        room = room.min(line.distance_to(opponent) - reach);
+        room = math::min(room, along.cross(off).abs() - reach);
     }
     room
 }
