@@ -83,8 +83,8 @@ mod tests {
 
     #[test]
     fn cases_with_passes_take_a_quarter_more() {
-        // Division B's have two and three robots that pass, and no single pushes: docs/architecture.md §9 is about the 136 of
-        // the four-legged league.
+        // Division B's have two and three robots that pass, and no single pushes; docs/architecture.md §9 is
+        // about the 136 of the four-legged league.
         for league in LEAGUES.iter().filter(|league| !league.names.is_empty()) {
             let bytes = league.base().bytes_per_case();
             assert!(bytes <= 120.0, "{}: {bytes} bytes a stored case", league.name);

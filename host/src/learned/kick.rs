@@ -99,9 +99,7 @@ impl Kicks {
         let fits = kick.at.since(at).0 <= ORDERED.0 && ordered >= SLOWEST;
         let along = kick.velocity.unit().filter(|_| fits)?;
         // Where it would leave the field, the robot kicks more gently than ordered.
-        if ordered > fastest_inside(&BallModel::default(), field, kick.from, along, |_| true) {
-            return None;
-        }
+        let ordered = ordered.min(fastest_inside(&BallModel::default(), field, kick.from, along, |_| true));
         Some(Watched {
             robot: who.id,
             ordered,

@@ -5,8 +5,8 @@ use rules::FieldSpec;
 
 use super::BallModel;
 
-/// The fastest flat kick from `from` along `along` (length 1) that rests within the lines, m/s; infinite where
-/// it goes into the goal at an end that `goals` admits.
+/// The fastest flat kick from `from` along `along` (length 1) that rests within the lines, m/s; infinite
+/// where it goes into the goal at an end that `goals` admits.
 pub fn fastest_inside(
     model: &BallModel,
     field: &FieldSpec,

@@ -249,7 +249,7 @@ const EFFORT_BALL_RESTS: u32 = 106;
 /// The same while the ball is not in play: neither a case nor an interception is computed then.
 const EFFORT_STOPPED: u32 = 200;
 /// Behind a goal line.
-const EFFORT_BEHIND_GOAL: u32 = 296;
+const EFFORT_BEHIND_GOAL: u32 = 312;
 /// The same for a robot that places the ball or kicks a restart: it also plans a path behind the ball.
 const EFFORT_TAKING: u32 = 180;
 /// A path out of a forbidden region while the ball is not in play.
