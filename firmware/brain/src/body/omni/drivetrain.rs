@@ -230,7 +230,12 @@ fn efforts(belief: &Belief, field: &FieldSpec) -> (u32, u32) {
         _ if ball_moves => EFFORT_BALL_MOVES,
         _ => EFFORT_BALL_RESTS,
     };
-    (effort, if stopped { EFFORT_STOPPED_TO_LEAVE } else { EFFORT_TO_LEAVE })
+    let to_leave = match effort {
+        EFFORT_BEHIND_GOAL if stopped => EFFORT_BEHIND_GOAL_TO_LEAVE,
+        _ if stopped => EFFORT_STOPPED_TO_LEAVE,
+        _ => EFFORT_TO_LEAVE,
+    };
+    (effort, to_leave)
 }
 
 /// Robots within this distance are slowed for, m: two that close at 3 m/s are a third of a second apart.
@@ -254,6 +259,8 @@ const EFFORT_BEHIND_GOAL: u32 = 312;
 const EFFORT_TAKING: u32 = 180;
 /// A path out of a forbidden region while the ball is not in play.
 const EFFORT_STOPPED_TO_LEAVE: u32 = 400;
+/// The same behind a goal line.
+const EFFORT_BEHIND_GOAL_TO_LEAVE: u32 = 460;
 /// A path out of a forbidden region in play, where a step may retrieve a case too.
 const EFFORT_TO_LEAVE: u32 = 38;
 /// A ball faster than this is intercepted, m/s.
