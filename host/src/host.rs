@@ -312,7 +312,7 @@ impl Host {
             Some(drill) => drill.iter().cloned().map(command).collect(),
             None => self.orders.iter().map(coached).collect(),
         };
-        self.learned.see(now, (&snapshot, us), (game.phase, &view.field), &commands);
+        self.learned.see(now, (&snapshot, us), game.phase, &commands);
         if self.settings.learns
             && let Some(known) = self.learned.friction()
             && self.roll.is_none_or(|roll| (known.value - roll).abs() > roll * ROLL_CHANGES)

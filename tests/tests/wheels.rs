@@ -108,8 +108,7 @@ fn a_robot_in_the_way_is_passed_without_touching_it() {
     surface.opponent(2, 0.3, -0.3, 0.0);
     surface.give_order(1, RuleRole::Player, go_to(1.5, 0.0, 0.0));
     let took = surface.until(4.0, |c| c.ours(1).pose.position.distance(Point::new(1.5, 0.0)) < 0.02);
-    // Bodies beside the path slow it down.
-    assert!(took.is_some_and(|took| took < 3.5), "{took:?}");
+    assert!(took.is_some_and(|took| took < 3.2), "{took:?}");
     assert!(surface.events.is_empty(), "{:?}", surface.events);
 }
 
@@ -143,7 +142,7 @@ fn a_rolling_ball_is_met_and_had() {
 
 #[test]
 fn a_kick_goes_where_it_was_aimed_with_the_speed_asked() {
-    for (target, speed) in [((4.5, 0.3), 600), ((0.0, -2.0), 180), ((-3.0, 2.0), 240)] {
+    for (target, speed) in [((4.5, 0.3), 600), ((0.0, -2.0), 300), ((-3.0, 2.0), 450)] {
         let mut surface = surface((0.5, 0.2), &[(1, -0.5, -0.4, 0.0)]);
         surface.give_order(
             1,

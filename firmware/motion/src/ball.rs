@@ -6,7 +6,6 @@
 //! a_s). Lines and robots on its path are for the caller to find; a path continues until the ball stops.
 
 pub mod chip;
-pub mod inside;
 
 use geometry::{Point, Vector, math};
 

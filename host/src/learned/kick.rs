@@ -2,11 +2,9 @@
 //! the tracker saw, by the ball's places 0.05–0.3 s after the kick. m, m/s, s.
 
 use geometry::{Field, Point, Vector};
-use motion::ball::BallModel;
-use motion::ball::inside::fastest_inside;
 use protocol::host::{Directive, HostCommand, KickOrder};
 use protocol::{Duration, Instant, RobotId, Who};
-use rules::{Colour, FieldSpec};
+use rules::Colour;
 
 use super::samples::{Estimate, Samples};
 use crate::world::{Kick, World};
@@ -37,15 +35,8 @@ struct Watched {
 }
 
 impl Kicks {
-    pub(super) fn see(
-        &mut self,
-        now: Instant,
-        world: &World,
-        us: Colour,
-        field: &FieldSpec,
-        commands: &[HostCommand],
-    ) {
-        self.watch(world, us, field);
+    pub(super) fn see(&mut self, now: Instant, world: &World, us: Colour, commands: &[HostCommand]) {
+        self.watch(world, us);
         for command in commands {
             if let Directive::Kick { kick: KickOrder::Flat(speed), .. }
             | Directive::Pass { kick: KickOrder::Flat(speed), ready: true, .. } = command.directive
@@ -55,7 +46,7 @@ impl Kicks {
         }
     }
 
-    fn watch(&mut self, world: &World, us: Colour, field: &FieldSpec) {
+    fn watch(&mut self, world: &World, us: Colour) {
         let Some(ball) = &world.ball else {
             self.watched = None;
             return;
@@ -63,7 +54,7 @@ impl Kicks {
         let kick = ball.kicked.filter(|kick| !kick.is_chip());
         if let Some(kick) = kick.filter(|kick| self.is_new(kick)) {
             self.known = Some((kick.at, kick.by));
-            self.watched = self.begin(&kick, us, field);
+            self.watched = self.begin(&kick, us);
         }
         let Some(watched) = &mut self.watched else { return };
         if kick.is_none() || ball.height > 0.0 {
@@ -93,13 +84,11 @@ impl Kicks {
         })
     }
 
-    fn begin(&self, kick: &Kick, us: Colour, field: &FieldSpec) -> Option<Watched> {
+    fn begin(&self, kick: &Kick, us: Colour) -> Option<Watched> {
         let who = kick.by.filter(|who| who.colour == us)?;
         let (at, ordered) = self.ordered[who.id.index()]?;
         let fits = kick.at.since(at).0 <= ORDERED.0 && ordered >= SLOWEST;
         let along = kick.velocity.unit().filter(|_| fits)?;
-        // Where it would leave the field, the robot kicks more gently than ordered.
-        let ordered = ordered.min(fastest_inside(&BallModel::default(), field, kick.from, along, |_| true));
         Some(Watched {
             robot: who.id,
             ordered,
@@ -188,7 +177,6 @@ mod tests {
     /// flying where `chip`.
     fn learn(kicks: &[(f32, f32)], noise: f32, chip: bool) -> Kicks {
         let (mut learned, models) = (Kicks::default(), BallModels::default());
-        let field = rules::League::DivisionB.field();
         let mut time = 1_000_000_u64;
         for (n, (ordered, kicked)) in kicks.iter().enumerate() {
             let command = HostCommand {
@@ -203,7 +191,7 @@ mod tests {
             };
             let mut lies = World::empty(Instant(time), models);
             lies.ball = Some(Ball::at_rest(Point::new(0.0, 0.0), Instant(time)));
-            learned.see(Instant(time), &lies, US, &field, &[command]);
+            learned.see(Instant(time), &lies, US, &[command]);
             let at = time + 100_000;
             let path = models.ground.kicked(Point::<Field>::new(0.0, 0.0), Vector::new(*kicked, 0.0));
             for step in 1..60_u64 {
@@ -225,7 +213,7 @@ mod tests {
                 };
                 let mut world = World::empty(Instant(now), models);
                 world.ball = Some(ball);
-                learned.see(Instant(now), &world, US, &field, &[]);
+                learned.see(Instant(now), &world, US, &[]);
             }
             time = at + 2_000_000;
         }

@@ -19,7 +19,7 @@ mod samples;
 
 use protocol::host::HostCommand;
 use protocol::{Instant, RobotId};
-use rules::{Colour, FieldSpec, Phase, Side};
+use rules::{Colour, Phase, Side};
 
 use crate::world::World;
 
@@ -41,10 +41,10 @@ impl Learned {
         &mut self,
         now: Instant,
         (world, us): (&World, Colour),
-        (phase, field): (Phase<Side>, &FieldSpec),
+        phase: Phase<Side>,
         commands: &[HostCommand],
     ) {
-        self.kicks.see(now, world, us, field, commands);
+        self.kicks.see(now, world, us, commands);
         self.latencies.see(now, world, us, phase, commands);
         self.friction.see(world);
     }

@@ -1,6 +1,7 @@
 //! Choice of the intent: the host's directive, this robot's part in a case, or the reactive behaviour.
 
 use protocol::Instant;
+use protocol::host::Directive;
 use protocol::team::{AbortReason, Closure, Decision, Progress, Status};
 use rules::Phase;
 
@@ -26,7 +27,9 @@ impl Brain<'_> {
         } else {
             intent
         };
-        wheels::release(&self.belief, intent)
+        let directive = self.host.as_ref().and_then(|host| host.directive(now));
+        let ordered = matches!(directive, Some(Directive::Kick { .. } | Directive::Pass { .. }));
+        wheels::release(&self.belief, intent, ordered)
     }
 
     /// The intent of the host's directive, the case or the reactive behaviour.

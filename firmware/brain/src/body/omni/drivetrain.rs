@@ -196,6 +196,12 @@ fn short_of_bodies(belief: &Belief, mut velocity: Vector<Field>) -> Vector<Field
         if !(f32::MIN_POSITIVE..=NOTICES * NOTICES).contains(&square) {
             continue;
         }
+        // One that is passed beside is no obstacle ahead.
+        let relative = velocity - other.velocity;
+        let across = off.cross(relative);
+        if across * across > PASSES * PASSES * relative.dot(relative) {
+            continue;
+        }
         let distance = math::sqrt(square);
         let along = off * (1.0 / distance);
         let (own, theirs) = (velocity.dot(along), other.velocity.dot(along));
@@ -240,6 +246,8 @@ fn efforts(belief: &Belief, field: &FieldSpec) -> (u32, u32) {
 
 /// Robots within this distance are slowed for, m: two that close at 3 m/s are a third of a second apart.
 const NOTICES: f32 = 1.0;
+/// Centres that pass this far apart do not touch, m: two radii, and what positions and directions err by.
+const PASSES: f32 = 2.0 * ROBOT_RADIUS + 0.05;
 /// Time until an order for the wheels shows, s: cameras, radio and wheels are 0.05 to 0.15 s late.
 const LATE: f32 = 0.12;
 /// Bodies touch no faster than this, m/s: a crash is a foul above 1.5 (rules), less the errors of velocities.

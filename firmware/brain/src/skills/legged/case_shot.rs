@@ -295,7 +295,7 @@ mod tests {
             "{:?}",
             shoots(&pressed)
         );
-        assert_eq!(shoots(&belief(1.4, 0.0, 0.0, &[(0.4, 0.0)])), None, "nobody presses it");
+        assert_eq!(shoots(&belief(1.4, 0.0, 0.0, &[(0.4, 0.0)])), None, "no opponent presses it");
         assert_eq!(shoots(&belief(-1.4, 0.0, 0.0, &[(-1.3, 0.22)])), None, "the goal is far");
         let guarded = belief(1.5, 0.0, 0.0, &[(1.6, 0.22), (2.05, 0.0)]);
         assert_eq!(shoots(&guarded), None, "before a goalkeeper it goes on without a good shot");

@@ -3,7 +3,6 @@
 
 use geometry::{Field, Point, Vector};
 use motion::ball::BallModel;
-use motion::ball::inside::fastest_inside;
 use protocol::robot_io::OmniKick;
 use rules::{Phase, Side};
 
@@ -11,9 +10,9 @@ use crate::belief::Belief;
 use crate::body::Intent;
 use crate::body::omni::Drive;
 
-/// Any skill's intent, with the kick limited to what stays in the field; in a long dispute, away from the
-/// ball.
-pub fn release(belief: &Belief, intent: Intent) -> Intent {
+/// Any skill's intent; in a long dispute, away from the ball. A kick that the host has not `ordered` is limited
+/// to what stays in the field.
+pub fn release(belief: &Belief, intent: Intent, ordered: bool) -> Intent {
     let Intent::Drive(drive) = intent else { return intent };
     if gives_way(belief) {
         let heading = belief.pose.heading;
@@ -21,7 +20,7 @@ pub fn release(belief: &Belief, intent: Intent) -> Intent {
         return Drive { speed: AWAY, ..Drive::bold(back, heading) }.into();
     }
     let OmniKick::Flat(speed) = drive.kick else { return intent };
-    if !drive.armed || belief.game.phase == Phase::BallPlacement(Side::Ours) {
+    if ordered || !drive.armed || belief.game.phase == Phase::BallPlacement(Side::Ours) {
         return intent;
     }
     let most = stays_inside(belief, belief.dribbler_point());
@@ -31,9 +30,21 @@ pub fn release(belief: &Belief, intent: Intent) -> Intent {
 /// The fastest kick from `from` along the robot's heading that rests within the lines, m/s; none is too fast
 /// at the opponents' goal.
 fn stays_inside(belief: &Belief, from: Point<Field>) -> f32 {
+    let field = belief.league().field();
     let along = Vector::<Field>::polar(1.0, belief.pose.heading);
-    let attacked = belief.game.defending.opposite();
-    fastest_inside(&BallModel::default(), &belief.league().field(), from, along, |end| end == attacked)
+    let to_line = |at: f32, along: f32, line: f32| {
+        if along.abs() < PARALLEL { f32::INFINITY } else { (line * along.signum() - at) / along }
+    };
+    let to_goal_line = to_line(from.x(), along.x(), 0.5 * field.length);
+    let to_touch_line = to_line(from.y(), along.y(), 0.5 * field.width);
+    let own = belief.game.defending.sign() as f32;
+    let ahead = along.x() * own < 0.0;
+    let crosses = from.y() + along.y() * to_goal_line;
+    if ahead && crosses.abs() < 0.5 * field.goal_width + BESIDE_POST {
+        return f32::INFINITY;
+    }
+    let room = to_goal_line.min(to_touch_line) - INSIDE;
+    BallModel::default().kick_speed(room.max(ROLLS_AT_LEAST), 0.0)
 }
 
 /// Whether it leaves a disputed ball to the opponent: two robots of equal programs kick at the same moment,
@@ -45,6 +56,14 @@ fn gives_way(belief: &Belief) -> bool {
     belief.game.phase == Phase::Run && belief.disputed() > if own_half { KEEPS_FOR } else { DISPUTES_FOR }
 }
 
+/// A heading this parallel to a line does not cross it.
+const PARALLEL: f32 = 1e-3;
+/// Beside a post, m: a shot that misses by less counts as one.
+const BESIDE_POST: f32 = 0.1;
+/// From the line to where the ball rests, m: more than a ball's radius, and kicks scatter.
+const INSIDE: f32 = 0.2;
+/// A kick rolls at least this far, m: out of the dribbler's reach.
+const ROLLS_AT_LEAST: f32 = 0.8;
 /// Time for which a robot disputes the ball in the opponents' half, s: after the kicks of
 /// [`let_go_in_time`](super::let_go_in_time), and half of what is no progress in division A; …
 const DISPUTES_FOR: f32 = 2.4;
@@ -61,7 +80,6 @@ mod tests {
     use crate::body::omni::BALL_AT;
     use crate::skills::wheels::testing::belief;
     use geometry::GoalEnd;
-    use motion::ball::inside::INSIDE;
     use protocol::{Duration, Instant};
 
     const FAST: OmniKick = OmniKick::Flat(6.0);
@@ -71,7 +89,7 @@ mod tests {
         let mut b = belief(me, (me.0, me.1));
         (b.game.phase, b.game.defending, b.holds_ball) = (Phase::Run, GoalEnd::Negative, true);
         let drive = Drive { kick, armed: true, ..Drive::holding(b.pose.position, b.pose.heading) };
-        let Intent::Drive(drive) = release(&b, drive.into()) else { panic!() };
+        let Intent::Drive(drive) = release(&b, drive.into(), false) else { panic!() };
         drive.kick
     }
 
@@ -85,6 +103,10 @@ mod tests {
         assert_eq!(kicked((2.0, 0.0, 0.0), FAST), FAST, "at their goal");
         assert_eq!(kicked((-3.0, 1.0, 0.0), OmniKick::Flat(2.0)), OmniKick::Flat(2.0), "slow enough");
         assert_ne!(kicked((-2.0, 0.0, 180.0), FAST), FAST, "at the own goal");
+        let mut b = belief((0.0, 1.0, 90.0), (0.0, 1.1));
+        b.game.phase = Phase::Run;
+        let ordered = Drive { kick: FAST, armed: true, ..Drive::holding(b.pose.position, b.pose.heading) };
+        assert_eq!(release(&b, ordered.into(), true), ordered.into(), "the host answers for its speeds");
         let OmniKick::Flat(least) = kicked((0.0, 2.95, 90.0), FAST) else { panic!() };
         assert!(least > 0.9, "{least}: it leaves the dribbler");
     }
@@ -98,7 +120,7 @@ mod tests {
             b.dispute(Instant(0));
             b.dispute(Instant(0) + Duration::millis(ms));
             let drive = Drive { kick: FAST, armed: true, ..Drive::holding(b.pose.position, b.pose.heading) };
-            let Intent::Drive(drive) = release(&b, drive.into()) else { panic!() };
+            let Intent::Drive(drive) = release(&b, drive.into(), false) else { panic!() };
             drive.kick != OmniKick::None
         };
         assert!(armed(1.0, 2_300) && !armed(1.0, 2_500), "the opponents' half");
