@@ -2,9 +2,9 @@
 //! A match without them is the same to the bit; one with them cannot be repeated from its seed.
 
 use geometry::{Field, Point, Pose, Vector};
-use hil_sim::Backend;
 use hil_sim::small_size::Ball;
 use hil_sim::small_size::referee::{Card, Restart};
+use hil_sim::{Backend, LinkLoss};
 use protocol::{Duration, RobotId, Who};
 use rules::Colour;
 use rules::state::RefereeCommand;
@@ -91,6 +91,11 @@ impl<'a> Game<'a> {
         for team in &mut self.teams {
             team.lose(share);
         }
+    }
+
+    /// Of a team's radio these links have their own loss from now on, and no others.
+    pub fn lose_links(&mut self, team: Colour, links: Vec<LinkLoss>) {
+        self.teams[team as usize].lose_links(links);
     }
 
     /// Whether vision's packets are lost before both hosts from now on.

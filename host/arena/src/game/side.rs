@@ -4,7 +4,7 @@
 use geometry::{Angle, GoalEnd, Pose};
 use hil_sim::small_size::World;
 use hil_sim::small_size::worlds::LinkModel;
-use hil_sim::{Air, AirSettings, Backend, Mcu, TraceHash};
+use hil_sim::{Air, AirSettings, Backend, LinkLoss, Mcu, TraceHash};
 use host::radio::{RadioSettings, Relay, To};
 use host::{Host, HostSettings, Input};
 use protocol::lockstep::TickIn;
@@ -98,6 +98,12 @@ impl<'a> Team<'a> {
     /// Its radio loses this share of packets from now on.
     pub(super) fn lose(&mut self, share: f32) {
         let settings = AirSettings { loss: share, ..self.air.settings().clone() };
+        self.air.set(settings);
+    }
+
+    /// These links of its radio have their own loss from now on, and no others.
+    pub(super) fn lose_links(&mut self, links: Vec<LinkLoss>) {
+        let settings = AirSettings { links, ..self.air.settings().clone() };
         self.air.set(settings);
     }
 
