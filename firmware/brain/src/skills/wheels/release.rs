@@ -10,8 +10,8 @@ use crate::belief::Belief;
 use crate::body::Intent;
 use crate::body::omni::Drive;
 
-/// Any skill's intent; in a long dispute, away from the ball. A kick that the host has not `ordered` is limited
-/// to what stays in the field.
+/// Any skill's intent; in a long dispute, away from the ball. A kick that the host has not `ordered` is
+/// limited to what stays in the field.
 pub fn release(belief: &Belief, intent: Intent, ordered: bool) -> Intent {
     let Intent::Drive(drive) = intent else { return intent };
     if gives_way(belief) {
