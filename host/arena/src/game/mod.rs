@@ -9,6 +9,7 @@
 //! [`Game`] is the match, tick by tick; [`play`] runs it to its end and returns a [`GameReport`]. A
 //! [`Watcher`] gets everything that may be stored or displayed, and changes nothing.
 
+pub mod attack;
 mod config;
 mod hand;
 mod holds;
@@ -37,6 +38,7 @@ use protocol::{Instant, RobotId, Who};
 use rules::Colour;
 use ssl::Message;
 
+use attack::AttackWatch;
 use holds::Holds;
 use side::Team;
 
@@ -69,6 +71,7 @@ pub struct Game<'a> {
     tick: u32,
     events: Vec<PhysicsEvent>,
     holds: Holds,
+    attack: AttackWatch,
     /// Vision's packets reach no host.
     blind: bool,
     config: GameConfig,
@@ -125,6 +128,7 @@ impl<'a> Game<'a> {
             tick: 0,
             events: Vec::new(),
             holds: Holds::default(),
+            attack: AttackWatch::default(),
             blind: false,
             config: config.clone(),
         })
@@ -187,6 +191,9 @@ impl<'a> Game<'a> {
         let mut holds = std::mem::take(&mut self.holds);
         holds.look(self);
         self.holds = holds;
+        let mut attack = std::mem::take(&mut self.attack);
+        attack.look(self);
+        self.attack = attack;
         watcher.tick(self);
         Ok(())
     }

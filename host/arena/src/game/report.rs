@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use hil_sim::small_size::referee::{Blocked, Kind, Metrics, RefereeEvent};
+use hil_sim::small_size::referee::{Blocked, Kind, RefereeEvent};
 use host::strategy::Team;
 use host::strategy::counters::PlayCounters;
 use rules::Colour;
 use serde::Serialize;
 
+use super::attack::AttackCounts;
 use super::holds::{Hold, Holds};
 use super::{Game, GameConfig};
 
@@ -120,12 +121,15 @@ pub struct TeamReport {
     pub longest_hold_s: f32,
     /// Number of its spells that lasted for 2.5 s and longer.
     pub holds_over_2_5s: u32,
+    /// How its possessions ended, its kicks, shots and left balls.
+    pub attack: AttackCounts,
     /// Passes of its restarts as its host followed them, planned free kicks, and changes of role.
     pub play: PlayCounters,
 }
 
 impl TeamReport {
-    fn of(metrics: &Metrics, holds: &Holds, team: Colour, play: PlayCounters) -> Self {
+    fn of(game: &Game<'_>, holds: &Holds, team: Colour) -> Self {
+        let metrics = game.referee().metrics();
         let own = metrics.team(team);
         Self {
             possession_s: own.possession_s,
@@ -138,7 +142,8 @@ impl TeamReport {
             attack_ratio: metrics.attack_ratio(team),
             longest_hold_s: holds.longest(team),
             holds_over_2_5s: holds.over(team),
-            play,
+            attack: game.attack.of(team).clone(),
+            play: *game.host(team).counters(),
         }
     }
 }
@@ -163,7 +168,7 @@ impl GameReport {
             long_holds: holds.long().to_vec(),
             no_progress: game.referee().events().iter().filter(no_progress).count() as u32,
             teams: PerTeam::of(|team| config.plays(team)),
-            metrics: PerTeam::of(|team| TeamReport::of(metrics, &holds, team, *game.host(team).counters())),
+            metrics: PerTeam::of(|team| TeamReport::of(game, &holds, team)),
             league: config.league.name(),
             seed: config.seed,
             world: config.world.to_string(),

@@ -1,0 +1,121 @@
+//! `counts`: numbers of a team's possessions by their end, kicks by speed and length, and shots.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+/// How a possession ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PossessionEnd {
+    /// With a goal.
+    Goal,
+    /// With a shot that scored no goal.
+    Shot,
+    /// With a kick to an opponent.
+    KickToOpponent,
+    /// The opponents took the ball from a robot at it, or in a scrum.
+    Tackle,
+    /// The opponents came to a ball that no robot of the team was at.
+    Left,
+    /// The ball went out.
+    Out,
+    /// The referee stopped play for another reason.
+    Referee,
+}
+
+impl PossessionEnd {
+    /// Its name for programs.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Goal => "goal",
+            Self::Shot => "shot",
+            Self::KickToOpponent => "kick-to-opponent",
+            Self::Tackle => "tackle",
+            Self::Left => "left",
+            Self::Out => "out",
+            Self::Referee => "referee",
+        }
+    }
+}
+
+/// Shots by what was open, and what became of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct ShotCounts {
+    /// No line to the goal was free.
+    pub closed: u32,
+    /// Less than half of the lines were free.
+    pub partly_open: u32,
+    /// Half of the lines or more were free.
+    pub open: u32,
+    /// Shots at the first touch of a teammate's kick.
+    pub volleys: u32,
+    /// Goals by shots.
+    pub goals: u32,
+}
+
+impl ShotCounts {
+    pub(super) fn add(&mut self, open: f32, volley: bool) {
+        let count = if open <= 0.0 {
+            &mut self.closed
+        } else if open < 0.5 {
+            &mut self.partly_open
+        } else {
+            &mut self.open
+        };
+        *count += 1;
+        self.volleys += u32::from(volley);
+    }
+
+    /// Number of shots.
+    pub fn all(&self) -> u32 {
+        self.closed + self.partly_open + self.open
+    }
+}
+
+/// What a team made of the ball in a match.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct AttackCounts {
+    /// Possessions by their end.
+    pub ends: BTreeMap<&'static str, u32>,
+    /// Their time, s.
+    pub possessed_s: f32,
+    /// Kicks that are no shots, by speed, length and who had the ball next: `2-3:4-5:team`, m/s and m.
+    pub kicks: BTreeMap<String, u32>,
+    /// Shots at the goal.
+    pub shots: ShotCounts,
+    /// Balls that a robot had and left.
+    pub left_balls: u32,
+}
+
+impl AttackCounts {
+    pub(super) fn ended(&mut self, end: PossessionEnd, lasted: f32) {
+        *self.ends.entry(end.label()).or_default() += 1;
+        self.possessed_s += lasted;
+    }
+
+    pub(super) fn kick(&mut self, speed: f32, length: f32, to_team: bool) {
+        let bin = |value: f32| (value as u32).min(6);
+        let (speed, length) = (bin(speed), bin(length));
+        let next = if to_team { "team" } else { "lost" };
+        *self.kicks.entry(format!("{speed}-{}:{length}-{}:{next}", speed + 1, length + 1)).or_default() += 1;
+    }
+
+    /// Number of kicks that the team had next, and of all kicks that are no shots.
+    pub fn kicks_that_reached(&self) -> [u32; 2] {
+        let sum = |which: &dyn Fn(&str) -> bool| {
+            self.kicks.iter().filter(|(name, _)| which(name)).map(|(_, n)| n).sum()
+        };
+        [sum(&|name| name.ends_with(":team")), sum(&|_| true)]
+    }
+
+    /// Number of possessions.
+    pub fn possessions(&self) -> u32 {
+        self.ends.values().sum()
+    }
+
+    /// Number of possessions with this end.
+    pub fn ended_by(&self, end: PossessionEnd) -> u32 {
+        self.ends.get(end.label()).copied().unwrap_or(0)
+    }
+}

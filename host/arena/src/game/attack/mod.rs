@@ -1,0 +1,295 @@
+//! `attack`: what a team makes of the ball: how its possessions end, where its kicks go, what its shots were
+//! worth, and which balls it leaves. From the true world. s, m, m/s, field frame.
+//!
+//! | word | meaning |
+//! |---|---|
+//! | possession | from the moment at which robots of one team alone are at the ball, or one of them kicks it, until the other team is, or play stops; of 0.25 s and longer |
+//! | at the ball | the ball on the ground within [`AT_BALL`] of a robot's centre |
+//! | kick | faster than 1 m/s, and 0.5 m long before another robot touches it or play stops |
+//! | shot | a kick faster than 3 m/s at a point of the goal line within 0.25 m beside the posts |
+//! | volley | a shot within 0.12 s of the ball's arrival from a teammate's kick |
+//! | open | share of the goal's opening to which no opponent's body blocks the line at the kick |
+//! | left ball | a robot has the ball with no opponent within 0.45 m of it, and 0.8 s later the ball still lies there and the robot is more than 0.25 m away |
+
+mod counts;
+mod left;
+
+use geometry::{Field, Point, Segment, Vector};
+use hil_sim::small_size::PhysicsEvent;
+use protocol::Who;
+use rules::limits::{BALL_RADIUS, ROBOT_HEIGHT, ROBOT_RADIUS};
+use rules::{Colour, Phase};
+
+pub use counts::{AttackCounts, PossessionEnd, ShotCounts};
+
+use super::Game;
+use left::LeftBalls;
+
+/// Counts of both teams, and the play that is running.
+#[derive(Clone, Debug, Default)]
+pub(super) struct AttackWatch {
+    counts: [AttackCounts; 2],
+    possession: Option<Possession>,
+    flight: Option<Flight>,
+    /// The team that alone is at the ball, but does not possess it yet, since when.
+    claims: Option<(Colour, f64)>,
+    /// The robot at the ball, and since when.
+    holder: Option<(Who, f64)>,
+    goals: [u32; 2],
+    left: LeftBalls,
+}
+
+/// The ball of one team.
+#[derive(Clone, Copy, Debug)]
+struct Possession {
+    team: Colour,
+    since: f64,
+    /// Last moment at which one of its robots was at the ball.
+    last_at_ball: f64,
+    /// Last moment at which an opponent was near the ball while one of its robots was at it.
+    pressed: f64,
+}
+
+/// A kicked ball that no other robot has touched.
+#[derive(Clone, Copy, Debug)]
+struct Flight {
+    by: Who,
+    from: Point<Field>,
+    speed: f32,
+    shot: bool,
+}
+
+impl Flight {
+    fn is_kick(&self, ball: Point<Field>) -> bool {
+        self.from.distance(ball) >= KICK_LENGTH
+    }
+}
+
+impl AttackWatch {
+    /// Takes a tick of the match.
+    pub(super) fn look(&mut self, game: &Game<'_>) {
+        let now = game.time();
+        let score = COLOURS.map(|team| game.referee().accounts().of(team).score);
+        let scored = COLOURS.into_iter().find(|team| score[*team as usize] > self.goals[*team as usize]);
+        self.goals = score;
+        let ball = game.world().ball.position;
+        let plays = matches!(game.referee().phase(), Phase::Run | Phase::FreeKick(_) | Phase::Kickoff(_));
+        for event in game.events() {
+            match *event {
+                PhysicsEvent::Kicked { robot, at, velocity, .. } => {
+                    self.kicked(game, now, robot, at, velocity);
+                }
+                PhysicsEvent::Touched { robot, at } => self.touched(now, robot, at),
+                _ => {}
+            }
+        }
+        if !plays || scored.is_some() {
+            self.stopped(now, ball, scored, out(game, ball));
+            return;
+        }
+        self.control(game, now);
+        let robots = game.world().robots().iter().filter(|robot| robot.present);
+        let run = game.referee().phase() == Phase::Run;
+        let robots = robots.map(|robot| (robot.who, robot.pose.position));
+        for team in self.left.look(now, ball, robots, run) {
+            self.counts[team as usize].left_balls += 1;
+        }
+    }
+
+    /// The counts of a team.
+    pub(super) fn of(&self, team: Colour) -> &AttackCounts {
+        &self.counts[team as usize]
+    }
+
+    fn kicked(&mut self, game: &Game<'_>, now: f64, by: Who, at: Point<Field>, velocity: Vector<Field>) {
+        let speed = velocity.norm();
+        if speed < KICK_SPEED {
+            return;
+        }
+        let came = self.flight.filter(|flight| flight.by.colour == by.colour && flight.by != by);
+        let arrived = self.holder.filter(|(who, _)| *who == by).map_or(now, |(_, since)| since);
+        self.land(at, Some(by));
+        self.possess(now, by.colour);
+        let shot = speed > SHOT_SPEED && is_at_goal(game, by.colour, at, velocity);
+        if shot {
+            let volley = came.is_some() && now - arrived < VOLLEY_WITHIN;
+            self.counts[by.colour as usize].shots.add(open_share(game, by.colour, at), volley);
+        }
+        self.flight = Some(Flight { by, from: at, speed, shot });
+    }
+
+    fn touched(&mut self, now: f64, by: Who, at: Point<Field>) {
+        if self.flight.is_some_and(|flight| flight.by != by) {
+            self.land(at, Some(by));
+        }
+        if self.holder.is_none_or(|(who, _)| who != by) {
+            self.holder = Some((by, now));
+        }
+    }
+
+    /// The flight is over: a robot has the ball, or play has stopped.
+    fn land(&mut self, at: Point<Field>, by: Option<Who>) {
+        let Some(flight) = self.flight else { return };
+        let to_team = by.is_some_and(|by| by.colour == flight.by.colour);
+        if flight.is_kick(at) && !flight.shot {
+            self.counts[flight.by.colour as usize].kick(flight.speed, flight.from.distance(at), to_team);
+        }
+        // A ball at the opponents is theirs when they control it: until then it was lost by this kick.
+        if to_team {
+            self.flight = None;
+        }
+    }
+
+    /// Who has the ball: the team whose robots alone are at it, after [`CONTROLS_AFTER`].
+    fn control(&mut self, game: &Game<'_>, now: f64) {
+        let ball = &game.world().ball;
+        let robots = game.world().robots().iter().filter(|robot| robot.present);
+        let (mut at, mut near, mut nearest) = ([false; 2], [false; 2], None);
+        for robot in robots.filter(|_| ball.height < ROBOT_HEIGHT) {
+            let distance = robot.pose.position.distance(ball.position);
+            at[robot.who.colour as usize] |= distance < AT_BALL;
+            near[robot.who.colour as usize] |= distance < PRESSES_WITHIN;
+            if distance < AT_BALL && nearest.is_none_or(|(_, least)| distance < least) {
+                nearest = Some((robot.who, distance));
+            }
+        }
+        match nearest {
+            Some((who, _)) if self.holder.is_none_or(|(holder, _)| holder != who) => {
+                self.holder = Some((who, now));
+            }
+            None => self.holder = None,
+            Some(_) => {}
+        }
+        if let Some(possession) = &mut self.possession
+            && at[possession.team as usize]
+        {
+            possession.last_at_ball = now;
+            if near[possession.team.other() as usize] {
+                possession.pressed = now;
+            }
+        }
+        let alone = COLOURS.into_iter().find(|team| at[*team as usize] && !at[team.other() as usize]);
+        let Some(team) = alone.filter(|team| self.possession.is_none_or(|own| own.team != *team)) else {
+            self.claims = None;
+            return;
+        };
+        let since = match self.claims {
+            Some((claimer, since)) if claimer == team => since,
+            _ => now,
+        };
+        self.claims = Some((team, since));
+        if now - since >= CONTROLS_AFTER {
+            self.possess(now, team);
+        }
+    }
+
+    /// The team has the ball; the other team's possession is over.
+    fn possess(&mut self, now: f64, team: Colour) {
+        if self.possession.is_some_and(|own| own.team == team) {
+            return;
+        }
+        if let Some(lost) = self.possession {
+            let flight = self.flight.take().filter(|flight| flight.by.colour == lost.team);
+            let end = match flight {
+                Some(flight) if flight.shot => PossessionEnd::Shot,
+                Some(_) => PossessionEnd::KickToOpponent,
+                None if now - lost.pressed < PRESSED_WITHIN => PossessionEnd::Tackle,
+                None => PossessionEnd::Left,
+            };
+            self.end(lost, now, end);
+        }
+        let far = f64::NEG_INFINITY;
+        self.possession = Some(Possession { team, since: now, last_at_ball: now, pressed: far });
+        self.claims = None;
+    }
+
+    fn stopped(&mut self, now: f64, ball: Point<Field>, scored: Option<Colour>, out: bool) {
+        let flight = self.flight;
+        self.land(ball, None);
+        let shot = flight.filter(|flight| flight.shot).map(|flight| flight.by.colour);
+        if let Some(team) = scored.filter(|team| shot == Some(*team)) {
+            self.counts[team as usize].shots.goals += 1;
+        }
+        if let Some(own) = self.possession.take() {
+            let end = if scored == Some(own.team) {
+                PossessionEnd::Goal
+            } else if shot == Some(own.team) {
+                PossessionEnd::Shot
+            } else if out {
+                PossessionEnd::Out
+            } else {
+                PossessionEnd::Referee
+            };
+            self.end(own, now, end);
+        }
+        (self.flight, self.claims, self.holder) = (None, None, None);
+        self.left.forget();
+    }
+
+    fn end(&mut self, possession: Possession, now: f64, end: PossessionEnd) {
+        let lasted = now - possession.since;
+        if lasted >= POSSESSION_LASTS {
+            self.counts[possession.team as usize].ended(end, lasted as f32);
+        }
+    }
+}
+
+fn out(game: &Game<'_>, ball: Point<Field>) -> bool {
+    let field = game.config.league.field();
+    field.clamp(ball, -BALL_RADIUS).distance(ball) > 0.0
+}
+
+/// Whether a ball from `at` crosses the goal line that `team` attacks between the posts or just beside them.
+fn is_at_goal(game: &Game<'_>, team: Colour, at: Point<Field>, velocity: Vector<Field>) -> bool {
+    let field = game.config.league.field();
+    let sign = game.referee().own_end(team).opposite().sign() as f32;
+    let forward = velocity.x() * sign;
+    if forward <= 0.0 {
+        return false;
+    }
+    let time = (0.5 * field.length - at.x() * sign) / forward;
+    let across = at.y() + velocity.y() * time;
+    time > 0.0 && across.abs() < 0.5 * field.goal_width + BESIDE_POST
+}
+
+/// The share of the goal's opening to which the line from `at` is free of opponents' bodies, 0–1.
+fn open_share(game: &Game<'_>, team: Colour, at: Point<Field>) -> f32 {
+    let field = game.config.league.field();
+    let x = 0.5 * field.length * game.referee().own_end(team).opposite().sign() as f32;
+    let half = 0.5 * field.goal_width - BALL_RADIUS;
+    let opponents = game.world().robots().iter().filter(|robot| robot.present && robot.who.colour != team);
+    let bodies: Vec<_> = opponents.map(|robot| robot.pose.position).collect();
+    let free = (0..LINES).filter(|i| {
+        let y = half * (2.0 * (*i as f32 + 0.5) / LINES as f32 - 1.0);
+        let line = Segment::new(at, Point::new(x, y));
+        bodies.iter().all(|body| line.distance_to(*body) > ROBOT_RADIUS + BALL_RADIUS)
+    });
+    free.count() as f32 / LINES as f32
+}
+
+const COLOURS: [Colour; 2] = [Colour::Yellow, Colour::Blue];
+/// A robot whose centre is within this of the ball is at it, m: front plate and ball's radius are 0.09 to
+/// 0.111.
+const AT_BALL: f32 = 0.125;
+/// An opponent this near the ball presses its owner, m.
+const PRESSES_WITHIN: f32 = 0.35;
+/// A ball lost within this time of being pressed was lost in a tackle or scrum, s.
+const PRESSED_WITHIN: f64 = 0.5;
+/// A team alone at the ball for this long has it, s: longer than a deflection.
+const CONTROLS_AFTER: f64 = 0.05;
+/// Shorter possessions are deflections, s.
+const POSSESSION_LASTS: f64 = 0.25;
+/// A kick is faster than this, m/s, and longer than this, m.
+const KICK_SPEED: f32 = 1.0;
+const KICK_LENGTH: f32 = 0.5;
+/// A shot is faster than this, m/s, …
+const SHOT_SPEED: f32 = 3.0;
+/// … and misses a post by less than this, m.
+const BESIDE_POST: f32 = 0.25;
+/// A volley leaves within this of the ball's arrival, s.
+const VOLLEY_WITHIN: f64 = 0.12;
+/// Lines to the goal's opening that are looked at.
+const LINES: usize = 20;
+
+#[cfg(test)]
+mod tests;
