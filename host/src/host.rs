@@ -291,7 +291,8 @@ impl Host {
             .allowing(self.allowed(us))
             .allowing_them(self.allowed(us.other()))
             .proposing(self.proposed(now, Flip::defending(game.defending)));
-        let view = View { never_answered: self.never_answered(&view.field, game.defending), ..view };
+        let never_answered = self.never_answered(&view.field, game.defending);
+        let view = View { never_answered, contact: self.in_contact(now), ..view };
         self.orders = self.coach.decide(&view);
         if !self.halted {
             self.requests.look(&view, self.listener.game().team(us).substitutions_left);
@@ -336,13 +337,23 @@ impl Host {
 
     /// Estimates the place of a ball that no camera sees.
     fn remember_ball(&mut self, now: Instant) {
-        let feels = |robot: RobotId| {
-            let reported = &self.robots[robot.index()].telemetry;
-            reported.as_ref().is_some_and(|(at, reported)| {
-                now.since(*at) < TELEMETRY_LEASE && reported.condition.has(Condition::BALL_CONTACT)
-            })
-        };
+        let contact = self.in_contact(now);
+        let feels = |robot: RobotId| contact.has(robot);
         self.hidden.fill(now, &mut self.world, self.settings.us, self.listener.game(), feels);
+    }
+
+    /// Our robots whose sensors feel the ball, as they reported.
+    fn in_contact(&self, now: Instant) -> RobotSet {
+        let mut set = RobotSet::default();
+        for robot in RobotId::all() {
+            let reported = &self.robots[robot.index()].telemetry;
+            if reported.as_ref().is_some_and(|(at, reported)| {
+                now.since(*at) < TELEMETRY_LEASE && reported.condition.has(Condition::BALL_CONTACT)
+            }) {
+                set.insert(robot);
+            }
+        }
+        set
     }
 
     fn our_game(&self) -> ViewGame {

@@ -15,6 +15,7 @@ mod defence;
 mod open_play;
 mod penalty;
 mod plan;
+mod rated_play;
 mod set_piece;
 
 use geometry::{Attack, Point};
@@ -28,6 +29,7 @@ use super::counters::Sent;
 use super::opponents::{OpponentModel, Team};
 use super::order::{Order, OrderReason, Role, Task};
 use super::pass::{Kicks, PassConstants, Searches};
+use super::possession::Possession;
 use super::support::{self, Target};
 use super::tactics::Tactics;
 use super::threat;
@@ -38,6 +40,7 @@ use attack::Intent;
 use cap::Cap;
 use defence::Clearing;
 use plan::Plan;
+use rated_play::Chosen;
 
 /// All orders of one moment, by robot.
 pub type Orders = heapless::Vec<Order, ROBOTS_MAX>;
@@ -102,10 +105,16 @@ pub struct Coach {
     double_touch_blocked: Option<RobotId>,
     /// The shot, pass or case chosen for the ball of open play.
     intent: Option<Intent>,
+    /// Who has the ball of open play.
+    possession: Possession,
+    /// The action chosen from the rated list.
+    chosen: Option<Chosen>,
     /// Whether the ball that is before our area is left to the keeper.
     keepers: Option<bool>,
     /// Where supporters stand while the ball is not in play.
     settled: Option<Settled>,
+    /// Where supporters stood last in open play.
+    stood: heapless::Vec<Point<Attack>, ROBOTS_MAX>,
     /// Target of the clearance of a ball in our area or before it.
     clearing: Option<Clearing>,
 }
@@ -113,11 +122,16 @@ pub struct Coach {
 impl Coach {
     /// The coach of `team`, by a league's rules; `tactics` applies to our own team only.
     pub fn new(team: Team, tactics: Tactics, league: League) -> Self {
+        let tactics = if team == Team::Ours { tactics } else { Tactics::NONE };
+        let mut constants = PassConstants::of(league);
+        if tactics.rated {
+            constants.arrival = ARRIVES_WITH;
+        }
         Self {
             team,
             model: OpponentModel::of(team),
-            tactics: if team == Team::Ours { tactics } else { Tactics::NONE },
-            kicks: Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default()),
+            tactics,
+            kicks: Kicks::new(constants, BallModel::default(), ChipModel::default()),
             searches: Searches::new(SEARCH_SEED),
             threats: threat::Memory::default(),
             bench: Bench::default(),
@@ -137,8 +151,11 @@ impl Coach {
             pass: None,
             double_touch_blocked: None,
             intent: None,
+            possession: Possession::Free,
+            chosen: None,
             keepers: None,
             settled: None,
+            stood: heapless::Vec::new(),
             clearing: None,
         }
     }
@@ -178,6 +195,7 @@ impl Coach {
                 Some(model) => {
                     plan.orders.extend(model.open_play(view, &mut plan.free, self.double_touch_blocked));
                 }
+                None if self.tactics.rated => self.rated_play(&mut plan),
                 None => self.open_play(&mut plan),
             },
             Phase::BallPlacement(Side::Ours) => self.place_ball(&mut plan),
@@ -214,7 +232,7 @@ impl Coach {
             };
             self.phase = Some(view.phase);
             self.aim = None;
-            self.intent = None;
+            (self.intent, self.chosen, self.possession) = (None, None, Possession::Free);
             self.placing = None;
             (self.ahead, self.gave_up) = (None, false);
             self.cap.forget();
@@ -286,6 +304,35 @@ impl Coach {
         });
     }
 
+    /// Sends all remaining robots to where a pass from `from` by `passer` would be worth most.
+    fn support_pass(&mut self, plan: &mut Plan<'_>, from: Point<Attack>, passer: Option<RobotId>) {
+        let (view, wanted) = (plan.view, plan.free.len());
+        if wanted == 0 {
+            return;
+        }
+        let settled = self.settled.take().filter(|settled| {
+            settled.places.len() >= wanted
+                && settled.from.distance(from) < SETTLED_FROM
+                && view.now.since(settled.since) < MOVES_EVERY
+        });
+        let settled = settled.unwrap_or_else(|| {
+            let free: heapless::Vec<RobotId, ROBOTS_MAX> = plan.free.iter().copied().collect();
+            let others = view.without(&free);
+            let places = support::pass_places(&others, &self.kicks, from, passer, wanted, &self.stood);
+            self.stood = places.iter().map(|(at, _)| *at).collect();
+            Settled { from, since: view.now, places }
+        });
+        let rated = settled.places.clone();
+        self.settled = Some(settled);
+        let places: heapless::Vec<_, ROBOTS_MAX> = rated.iter().map(|(at, _)| *at).collect();
+        self.fill(plan, &places, |i| {
+            (
+                Role::Support(i as u8),
+                OrderReason::FreePlace { worth: rated.get(i).map_or(0.0, |(_, worth)| *worth) },
+            )
+        });
+    }
+
     /// Sends remaining robots to places in order; a robot that had a place keeps it.
     fn fill(
         &mut self,
@@ -305,6 +352,8 @@ impl Coach {
     }
 }
 
+/// A pass of the rated list arrives with this speed, m/s.
+const ARRIVES_WITH: f32 = 3.0;
 /// Most robots that get a place in order: all field players, as behind a penalty of the opponents.
 const OTHERS: usize = 10;
 /// A robot's centre this near the ball touches it, m.
@@ -320,6 +369,8 @@ const PASS_STOPPED: f32 = 0.3;
 const SETTLED_FROM: f32 = 0.5;
 /// … and no longer than this: to cross half of division A's field and stop.
 const SETTLED_FOR: Duration = Duration::millis(6000);
+/// In open play places are searched again at this interval.
+const MOVES_EVERY: Duration = Duration::millis(200);
 /// Seed of all searches for places: one seed, one match.
 const SEARCH_SEED: u64 = 1;
 

@@ -18,11 +18,14 @@ pub mod defence;
 pub mod opponents;
 mod order;
 pub mod pass;
+pub mod possession;
+pub mod rated;
 pub mod restart;
 pub mod roles;
 pub mod support;
 mod tactics;
 pub mod threat;
+pub mod value;
 pub mod view;
 
 pub use coach::{Coach, Orders};

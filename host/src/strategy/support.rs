@@ -7,6 +7,7 @@ use protocol::RobotId;
 use protocol::host::KickOrder;
 
 use super::defence::room_along;
+use super::pass::{Kicks, PassScene};
 use super::view::{ROBOTS_MAX, View, ViewRobot};
 
 /// Places for teammates of a robot with the ball at `ball`, best first, apart from each other; with their
@@ -28,6 +29,41 @@ pub fn places(
                 best = Some((place, worth));
             }
         }
+        let Some(best) = best else { break };
+        // As many as ROBOTS_MAX fit.
+        let _ = chosen.push(best);
+    }
+    chosen
+}
+
+/// Places at which a robot that stood there would be passed to with the greatest value, best first, apart from
+/// each other; those within half a metre of `stood` count a little more.
+pub fn pass_places(
+    view: &View,
+    kicks: &Kicks,
+    ball: Point<Attack>,
+    passer: Option<RobotId>,
+    wanted: usize,
+    stood: &[Point<Attack>],
+) -> heapless::Vec<(Point<Attack>, f32), ROBOTS_MAX> {
+    let mut chosen: heapless::Vec<(Point<Attack>, f32), ROBOTS_MAX> = heapless::Vec::new();
+    // No robot of ours: the receivers are those that are sent there.
+    let nobody = ViewRobot::at_rest(RobotId::ZERO, ball);
+    let scene = PassScene::of(view, kicks, ball, passer, &nobody).keeping();
+    let rated: heapless::Vec<(Point<Attack>, f32), { GRID.0 * GRID.1 }> = grid(view, ball)
+        .chain(stood.iter().copied().filter(|at| at.distance(ball) > PASS_SHORTEST))
+        .take(GRID.0 * GRID.1)
+        .map(|at| {
+            let kept = stood.iter().any(|stood| stood.distance(at) < STAYS);
+            (at, scene.received_at(at).rate(at).value() * if kept { STAYING } else { 1.0 })
+        })
+        .collect();
+    for _ in 0..wanted.min(ROBOTS_MAX) {
+        let apart = |at: Point<Attack>| chosen.iter().all(|(other, _)| other.distance(at) >= APART);
+        let best = rated.iter().filter(|(at, _)| apart(*at)).fold(None, |best, next| match best {
+            Some((_, most)) if most >= next.1 => best,
+            _ => Some(*next),
+        });
         let Some(best) = best else { break };
         // As many as ROBOTS_MAX fit.
         let _ = chosen.push(best);
@@ -178,6 +214,9 @@ pub const SHOT: KickOrder = KickOrder::Flat(620);
 const GRID: (usize, usize) = (12, 7);
 /// Least distance between teammates, m.
 const APART: f32 = 1.2;
+/// A place this near to where a supporter stood, m, counts more by this factor.
+const STAYS: f32 = 0.5;
+const STAYING: f32 = 1.2;
 /// Room above this gives no further value, m.
 const ROOM_GOOD: f32 = 0.7;
 /// Supporters stay this far off the areas, m: the rules' 0.2 m, a body and as much margin.

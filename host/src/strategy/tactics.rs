@@ -27,6 +27,9 @@ pub struct Tactics {
     /// Where a case is played, its next pass as refined by pass location and pass-ahead (docs/papers.md §8).
     #[serde(default)]
     pub bridge: bool,
+    /// Open play by possession and one rated list of actions; else by the thresholds of `attack`.
+    #[serde(default)]
+    pub rated: bool,
 }
 
 impl Tactics {
@@ -38,6 +41,7 @@ impl Tactics {
         coerce: false,
         attack: false,
         bridge: false,
+        rated: false,
     };
     /// All parts of the paper; the default has fewer.
     pub const ALL: Self = Self {
@@ -47,6 +51,7 @@ impl Tactics {
         coerce: true,
         attack: true,
         bridge: true,
+        rated: true,
     };
 
     /// None: the meaning of a header without tactics.
@@ -56,7 +61,7 @@ impl Tactics {
 
     /// As text that [`Tactics::parse`] reads.
     pub fn description(&self) -> String {
-        let Self { threats, second_level, pass_ahead, coerce, attack, bridge } = *self;
+        let Self { threats, second_level, pass_ahead, coerce, attack, bridge, rated } = *self;
         let named = [
             (threats, "threats"),
             (second_level, "second-level"),
@@ -64,6 +69,7 @@ impl Tactics {
             (coerce, "coerce"),
             (attack, "attack"),
             (bridge, "bridge"),
+            (rated, "rated"),
         ];
         let description: Vec<_> = named.into_iter().filter(|(on, _)| *on).map(|(_, name)| name).collect();
         if description.is_empty() { "none".to_owned() } else { description.join(",") }
@@ -86,9 +92,10 @@ impl Tactics {
                 "coerce" => &mut tactics.coerce,
                 "attack" => &mut tactics.attack,
                 "bridge" => &mut tactics.bridge,
+                "rated" => &mut tactics.rated,
                 _ => {
                     return Err(format!(
-                        "`{label}` is no tactic; none, all, usual, or some of threats, second-level, pass-ahead, coerce, attack, bridge"
+                        "`{label}` is no tactic; none, all, usual, or some of threats, second-level, pass-ahead, coerce, attack, bridge, rated"
                     ));
                 }
             };
@@ -103,7 +110,7 @@ impl Default for Tactics {
     /// against our team without it: threats and their second level gain goals, attack gains shots and ground;
     /// the effects of pass-ahead, coerce and the bridge are not significant.
     fn default() -> Self {
-        Self { threats: true, second_level: true, attack: true, ..Self::NONE }
+        Self { threats: true, second_level: true, attack: true, rated: true, ..Self::NONE }
     }
 }
 

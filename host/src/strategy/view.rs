@@ -156,6 +156,8 @@ pub struct View {
     pub theirs_allowed: usize,
     /// Our robots that play a case now, as they report.
     pub in_play: RobotSet,
+    /// Our robots whose sensors feel the ball.
+    pub contact: RobotSet,
     /// The next pass of that case, where the tactics include the bridge between the papers.
     pub proposal: Option<CasePass>,
     /// Dimensions of the field.
@@ -202,6 +204,7 @@ impl View {
             allowed: ROBOTS_MAX,
             theirs_allowed: ROBOTS_MAX,
             in_play,
+            contact: RobotSet::default(),
             proposal: None,
             field,
         }
@@ -231,6 +234,7 @@ impl View {
             allowed: ROBOTS_MAX,
             theirs_allowed: ROBOTS_MAX,
             in_play: RobotSet::default(),
+            contact: RobotSet::default(),
             proposal: None,
             field,
         }

@@ -13,6 +13,7 @@ use std::collections::BTreeMap;
 
 use arena::game::attack::AttackCounts;
 use arena::game::{Game, GameConfig, GameReport, Watcher, play};
+use arena::matches::MatchTeam;
 use casebase::CaseBase;
 use hil_sim::NativeBackend;
 use hil_sim::small_size::worlds::{WorldChoice, WorldModel};
@@ -36,14 +37,16 @@ fn main() -> Result<(), String> {
     };
     let [league, world, opponent, first, count, seconds] = arguments else { return Err(USAGE.into()) };
     let league = named(league)?;
-    let teams = [Team::Ours, Team::Reactive, Team::Marking, Team::Zone, Team::Idle];
-    let opponent = teams.into_iter().find(|team| team.label() == opponent).ok_or(USAGE)?;
+    let opponent = MatchTeam::parse(opponent)?;
     let number = |text: &str| text.parse::<u64>().map_err(|error| format!("{text}: {error}; {USAGE}"));
     let (first, count, seconds) = (number(first)?, number(count)?, number(seconds)?);
     let played: Vec<(GameReport, Account)> = (first..first + count)
         .into_par_iter()
         .map(|seed| {
-            let mut config = GameConfig::new(league, seed, seconds as f64).between(Team::Ours, opponent);
+            let mut config = GameConfig::new(league, seed, seconds as f64).between(Team::Ours, opponent.team);
+            for team in config.teams.iter_mut().filter(|team| team.colour == Colour::Yellow) {
+                (team.tactics, team.approach) = (opponent.tactics, opponent.approach());
+            }
             config.world = match world.as_str() {
                 "random" => format!("random:{seed}").parse().map_err(|error| format!("{error}"))?,
                 world => world.parse::<WorldChoice>().map_err(|error| format!("{error}"))?,

@@ -56,7 +56,7 @@ impl Coach {
             return usual;
         }
         self.searches.forget();
-        let offers = self.searches.offers(view, &self.kicks, ball.position, kicker, SAMPLES);
+        let offers = self.searches.offers(view, &self.kicks, ball.position, kicker, SAMPLES, false);
         let best = offers.iter().find(|offer| offer.rating.receive() > LIKELY);
         let Some(best) = best else { return usual };
         self.ahead = Some(Ahead::new(best.receiver, best.rating, view.now, None));

@@ -15,9 +15,11 @@ use super::super::order::{OrderReason, Role, Task};
 use super::super::pass::bridge::{RADIUS, refine};
 use super::super::pass::shot::shot;
 use super::super::pass::{PassScene, Rating, SAMPLES};
+use super::super::rated::Action;
 use super::super::support;
 
 use super::super::view::{CasePass, View, ViewBall};
+use super::rated_play::Chosen;
 use super::{Coach, Pass, Plan};
 
 /// The shot, pass or case chosen in open play, its robot, and since when.
@@ -90,7 +92,7 @@ impl Coach {
     }
 
     /// The passer's task, with an order for the receiver too; `None` where there is no receiver any more.
-    fn pass_to(
+    pub(super) fn pass_to(
         &self,
         plan: &mut Plan<'_>,
         receiver: RobotId,
@@ -108,20 +110,30 @@ impl Coach {
         Some(Task::Pass { at: rating.at, receiver, kick: rating.kick.order(), ready })
     }
 
+    /// The pass that is chosen: passer, place of the ball, receiver, rating.
+    fn passing(&self) -> Option<(RobotId, Point<Attack>, RobotId, Rating)> {
+        if let Some(Chosen { who, from, action: Action::Pass { receiver, rating }, .. }) = self.chosen {
+            return Some((who, from, receiver, rating));
+        }
+        let Intent { who, from, what, .. } = self.intent?;
+        let (receiver, rating) = what.pass()?;
+        Some((who, from, receiver, rating))
+    }
+
     /// Detects that the pass of open play leaves: from then on its receiver is ordered to receive it.
     pub(super) fn see_pass_leave(&mut self, view: &View) {
-        let (Some(Intent { who, from, what, .. }), Some(ball), None) = (self.intent, view.ball, self.pass)
+        let (Some((who, from, receiver, rating)), Some(ball), None) =
+            (self.passing(), view.ball, self.pass)
         else {
             return;
         };
-        let Some((receiver, rating)) = what.pass() else { return };
         let Some(passer) = view.our(who) else { return };
         let speed = ball.velocity.norm();
         let along = (rating.at - from).unit().map_or(0.0, |direction| ball.velocity.dot(direction));
         if speed < LEFT_WITH || along < speed * LEFT_ALONG || ball.position.distance(passer.position) < LEFT {
             return;
         }
-        self.intent = None;
+        (self.intent, self.chosen) = (None, None);
         let then = rating.shot.one_touch.then_some(rating.shot.aim);
         self.pass = Some(Pass { receiver, at: rating.at, then, since: view.now });
         self.sent = Some(Sent {
@@ -171,7 +183,7 @@ impl Coach {
     fn likeliest(&mut self, view: &View, who: RobotId, ball: &ViewBall) -> What {
         let shot = shot(view, &self.kicks, ball.position);
         self.searches.forget();
-        let offers = self.searches.offers(view, &self.kicks, ball.position, who, SAMPLES);
+        let offers = self.searches.offers(view, &self.kicks, ball.position, who, SAMPLES, false);
         // Defenders are not receivers.
         let pass = offers
             .iter()

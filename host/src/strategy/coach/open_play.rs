@@ -35,9 +35,7 @@ impl Coach {
             self.defend(plan, false);
             return plan.all_robots(Role::Player, Task::Gameplay, OrderReason::OpenPlay);
         }
-        let forbidden = view.in_their_area(ball.position, THEIRS) || view.in_our_area(ball.position, 0.0);
-        if forbidden || keepers || is_shot_at_us(view, &ball) {
-            // Only a keeper may, or can, play it; a robot that blocks a shot stays there.
+        if keepers || self.is_left_to_the_keeper(view, &ball) {
             self.first = None;
             self.defend(plan, self.attacked || keepers);
             return self.support(plan, ball.position);
@@ -77,6 +75,12 @@ impl Coach {
         plan.all_robots(Role::Player, Task::Gameplay, OrderReason::OpenPlay);
     }
 
+    /// Only a keeper may, or can, play the ball; a robot that blocks a shot stays there.
+    pub(super) fn is_left_to_the_keeper(&self, view: &View, ball: &ViewBall) -> bool {
+        let forbidden = view.in_their_area(ball.position, THEIRS) || view.in_our_area(ball.position, 0.0);
+        forbidden || is_shot_at_us(view, ball)
+    }
+
     /// Updates whether the ball is theirs: one of them is clearly sooner at it than ours, `ours` s from now.
     fn see_whose_ball(&mut self, view: &View, ours: f32) {
         let Some(ball) = view.ball else { return };
@@ -96,7 +100,7 @@ fn is_shot_at_us(view: &View, ball: &ViewBall) -> bool {
         && comes_at_goal(view, ball.position, ball.velocity)
 }
 
-fn best_place(view: &View, ball: Point<Attack>) -> (Point<Attack>, f32) {
+pub(super) fn best_place(view: &View, ball: Point<Attack>) -> (Point<Attack>, f32) {
     support::places(view, ball, 1).first().copied().unwrap_or((Point::new(0.0, 0.0), 0.0))
 }
 

@@ -8,6 +8,7 @@ use geometry::{Attack, Field, GoalEnd, Point, Shape, Vector};
 use protocol::RobotId;
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 
+use super::super::value;
 use super::super::view::{ROBOTS_MAX, View, ViewRobot};
 use super::conditions as given;
 use super::constants::PassConstants;
@@ -41,6 +42,8 @@ pub struct Rating {
     pub spoiler: (Spoiler, f32),
     /// The shot after the reception.
     pub shot: ShotFrom,
+    /// What having the ball there is worth without a shot, 0–1; 0 where only goals count.
+    pub held: f32,
 }
 
 /// A shot from where a pass is received.
@@ -80,9 +83,10 @@ impl Rating {
         self.goal_factors.iter().product()
     }
 
-    /// P(goal | x), the value that is maximised.
+    /// The value that is maximised: P(goal | x), or with what having the ball there is worth, where that is
+    /// more.
     pub fn value(&self) -> f32 {
-        self.receive() * self.goal()
+        self.receive() * self.goal().max(self.held)
     }
 }
 
@@ -99,6 +103,8 @@ pub struct PassScene<'k> {
     half: [f32; 2],
     opening: GoalOpening,
     shot: FlatKick,
+    /// Whether having the ball is worth something too.
+    keeps: bool,
 }
 
 impl<'k> PassScene<'k> {
@@ -146,7 +152,19 @@ impl<'k> PassScene<'k> {
                 body: ROBOT_RADIUS + BALL_RADIUS,
             },
             shot: kicks.shot(),
+            keeps: false,
         }
+    }
+
+    /// The same, where having the ball is worth something without a shot too.
+    pub fn keeping(self) -> Self {
+        Self { keeps: true, ..self }
+    }
+
+    /// The same for a receiver that stands at `at`.
+    pub fn received_at(&self, at: Point<Attack>) -> Self {
+        let receiver = Mover::new(at, Vector::default(), &self.kicks.constants().receiver);
+        Self { receiver, ..self.clone() }
     }
 
     /// Where the pass starts, x0.
@@ -222,18 +240,19 @@ impl<'k> PassScene<'k> {
             interceptor: None,
             spoiler,
             shot: ShotFrom { aim: goal, angle: 0.0, time: 0.0, one_touch: false },
+            held: if self.keeps { value::of_ours(self.opening.x, at).max(0.0) } else { 0.0 },
         };
         // The product so far, slightly enlarged for rounding: a floor that it does not exceed is not exceeded
         // by the value either.
-        let place = rating.receive_factors[3] * rating.receive_factors[4] * rating.goal_factors[3] * ROUNDING;
-        if place * rating.goal_factors[0] <= floor {
+        let place = rating.receive_factors[3] * rating.receive_factors[4] * ROUNDING;
+        if place * rating.goal().max(rating.held) <= floor {
             return rating;
         }
         rating.shot = self.shot(at, along, c);
         rating.goal_factors[0] = given::beats_the_keeper(rating.shot.time, c);
         rating.goal_factors[1] = given::open_goal(rating.shot.angle, c);
         rating.goal_factors[2] = given::shot_in_time(rating.shot.one_touch, c);
-        let goal = place * rating.goal_factors[0] * rating.goal_factors[1] * rating.goal_factors[2];
+        let goal = place * rating.goal().max(rating.held);
         if goal <= floor {
             return rating;
         }
@@ -269,25 +288,25 @@ impl<'k> PassScene<'k> {
     /// A chip instead, where it is likelier to end in a goal. It gives more time (c3) and passes over
     /// opponents (c2), but bounces: no one-touch shot follows (c3').
     fn chip_if_better(&self, path: &BallPath, rating: &mut Rating, floor: f32, c: &PassConstants) {
-        let flat = rating.receive_factors[1] * rating.receive_factors[2] * rating.goal_factors[2];
-        let most = c.chip_prior * c.turn_prior;
+        let flat = rating.receive_factors[1] * rating.receive_factors[2];
         let others = rating.value() / flat.max(f32::MIN_POSITIVE);
         // Neither above the flat pass, nor above the floor.
-        if flat >= most || others * most <= floor.max(WORTH_A_CHIP) {
+        if flat >= c.chip_prior || others * c.chip_prior <= floor.max(WORTH_A_CHIP) {
             return;
         }
         let Some(kick) = self.kicks.chip(path.length) else { return };
         let interceptor = path.chip(&kick, &self.opponents);
         let ball_time = kick.at(path.length).0;
-        let c2 = given::not_intercepted(interceptor.map_or(SAFE, |found| found.margin), true, c);
-        let c3 = given::time_to_react(ball_time, c);
-        let in_time = given::shot_in_time(false, c);
-        if c2 * c3 * in_time > flat {
-            rating.kick = PassKick::Chip { speed: kick.speed, lands: kick.lands };
-            (rating.receive_factors[1], rating.receive_factors[2]) = (c2, c3);
-            rating.goal_factors[2] = in_time;
-            (rating.ball_time, rating.interceptor) = (ball_time, interceptor);
-            rating.shot.one_touch = false;
+        let mut chip = *rating;
+        chip.receive_factors[1] =
+            given::not_intercepted(interceptor.map_or(SAFE, |found| found.margin), true, c);
+        chip.receive_factors[2] = given::time_to_react(ball_time, c);
+        chip.goal_factors[2] = given::shot_in_time(false, c);
+        if chip.value() > rating.value() {
+            chip.kick = PassKick::Chip { speed: kick.speed, lands: kick.lands };
+            (chip.ball_time, chip.interceptor) = (ball_time, interceptor);
+            chip.shot.one_touch = false;
+            *rating = chip;
         }
     }
 

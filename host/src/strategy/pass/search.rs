@@ -119,7 +119,7 @@ impl Searches {
     }
 
     /// The offer of every robot except `passer` and our keeper for a pass from `from`, best first; of equal
-    /// ones the lower number.
+    /// ones the lower number; `keeps`: having the ball is worth something without a shot too.
     pub fn offers(
         &mut self,
         view: &View,
@@ -127,12 +127,14 @@ impl Searches {
         from: Point<Attack>,
         passer: RobotId,
         samples: u32,
+        keeps: bool,
     ) -> heapless::Vec<Offer, ROBOTS_MAX> {
         let mut offers: heapless::Vec<Offer, ROBOTS_MAX> = heapless::Vec::new();
         for teammate in
             view.ours.iter().filter(|teammate| teammate.id != passer && teammate.id != view.keeper)
         {
             let scene = PassScene::of(view, kicks, from, Some(passer), teammate);
+            let scene = if keeps { scene.keeping() } else { scene };
             let rating = self.each[teammate.id.index()].step(&scene, samples);
             let worse = |other: &Offer| other.rating.value() < rating.value();
             let place = offers.iter().position(worse).unwrap_or(offers.len());
@@ -182,7 +184,7 @@ mod tests {
         let run = |seed| {
             let mut searches = Searches::new(seed);
             (0..10)
-                .map(|_| searches.offers(&view, &kicks, Point::new(0.5, 0.0), view.ours[1].id, SAMPLES))
+                .map(|_| searches.offers(&view, &kicks, Point::new(0.5, 0.0), view.ours[1].id, SAMPLES, false))
                 .last()
                 .unwrap()
         };
@@ -206,7 +208,7 @@ mod tests {
             }
         }
         let mut search = Search::new(3);
-        let found = (0..10).map(|_| search.step(&scene, SAMPLES)).last().unwrap().value();
+        let found = (0..10).map(|_| search.step(&scene, SAMPLES, false)).last().unwrap().value();
         assert!(found > 0.97 * best, "{found} of {best}");
     }
 

@@ -1,0 +1,173 @@
+//! `rated_play`: open play by possession and one rated list of actions: the robot that has the ball, or is
+//! first behind it, takes the best action, and keeps it until another is clearly better. Attack frame, SI
+//! units.
+
+use geometry::{Attack, Point};
+use protocol::{Duration, Instant, RobotId};
+
+use super::super::order::{OrderReason, Role, Task};
+use super::super::possession::{Arrival, Possession, arrival};
+use super::super::rated::{self, Action};
+use super::super::view::{View, ViewBall, ViewRobot};
+use super::super::{roles, support};
+use super::{Coach, Plan};
+
+/// The action that was chosen, and for which ball.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Chosen {
+    pub(super) who: RobotId,
+    /// When the list was rated last.
+    rated: Instant,
+    pub(super) from: Point<Attack>,
+    pub(super) action: Action,
+    worth: f32,
+}
+
+impl Coach {
+    /// Open play: the keeper, the robot that plays the ball, its receiver, two defenders, supporters.
+    pub(super) fn rated_play(&mut self, plan: &mut Plan<'_>) {
+        let view = plan.view;
+        let Some(ball) = view.ball else { return self.defend(plan, false) };
+        self.possession = self.possession.next(view, view.contact);
+        if let Some(blocked) = self.double_touch_blocked
+            && plan.take(blocked)
+        {
+            let (at, worth) = super::open_play::best_place(view, ball.position);
+            let why = OrderReason::FreePlace { worth };
+            plan.order(blocked, Role::DoubleTouchBlocked, plan.facing_ball(at), why);
+        }
+        self.see_pass_leave(view);
+        let keepers = self.is_keepers(view, &ball);
+        if let Some(pass) = self.pass
+            && plan.take(pass.receiver)
+        {
+            self.first = Some(pass.receiver);
+            let why = OrderReason::BestTarget { room: support::worth(view, ball.position, pass.at) };
+            plan.order(pass.receiver, Role::Receiver, Task::Receive { at: pass.at, then: pass.then }, why);
+            self.defend(plan, false);
+            return self.support_pass(plan, pass.at, None);
+        }
+        if self.is_left_to_the_keeper(view, &ball) || keepers {
+            self.first = None;
+            self.defend(plan, self.attacked || keepers);
+            return self.support_pass(plan, ball.position, None);
+        }
+        let first = self.first_at(view, plan, &ball);
+        self.first = first.map(|(id, _)| id);
+        self.see_whose(view, &ball, first.map_or(f32::INFINITY, |(_, arrival)| arrival.seconds));
+        if let Some((id, arrival)) = first
+            && plan.take(id)
+        {
+            let clears = self.clears_before_our_area(view, id, &ball);
+            if let Some((task, why)) = clears.or_else(|| self.act(plan, id, &ball, &arrival)) {
+                plan.order(id, Role::Player, task, why);
+                self.defend(plan, self.attacked);
+                return self.support_pass(plan, arrival.ball, Some(id));
+            }
+            let why = OrderReason::SoonestAtBall { seconds: arrival.seconds };
+            plan.order(id, Role::Player, Task::Gameplay, why);
+        }
+        // A robot that plays a case plays it to its end.
+        for robot in view.ours.iter().filter(|robot| view.in_play.has(robot.id)) {
+            if plan.free.len() > 2 && plan.take(robot.id) {
+                plan.order(robot.id, Role::Player, Task::Gameplay, OrderReason::OpenPlay);
+            }
+        }
+        self.defend(plan, self.attacked);
+        plan.all_robots(Role::Player, Task::Gameplay, OrderReason::OpenPlay);
+    }
+
+    /// The robot that plays the ball: who has it, else who is first behind it.
+    fn first_at(&self, view: &View, plan: &Plan<'_>, ball: &ViewBall) -> Option<(RobotId, Arrival)> {
+        // A keeper that left its goal for a ball could be passed by it.
+        let may = |robot: &&ViewRobot| plan.free.contains(&robot.id) && robot.id != view.keeper;
+        if let Some(owner) = self.possession.owner().and_then(|id| view.our(id)).filter(|r| may(r)) {
+            return Some((owner.id, Arrival { seconds: 0.0, ball: ball.position }));
+        }
+        let limits = &self.kicks.constants().receiver;
+        let of = |robot: &ViewRobot| arrival(robot, ball, self.kicks.ground(), limits, view.their_goal());
+        let bound = |robot: &ViewRobot| if view.in_play.has(robot.id) { BOUND } else { 0.0 };
+        let soonest = roles::choose(view.ours.iter().filter(may), self.first, roles::WORTH, |robot| {
+            of(robot).seconds - bound(robot)
+        });
+        soonest.and_then(|(id, _)| view.our(id)).map(|robot| (robot.id, of(robot)))
+    }
+
+    /// Updates whether the ball is theirs: they have it, or one of them is clearly sooner at it.
+    fn see_whose(&mut self, view: &View, ball: &ViewBall, ours: f32) {
+        self.attacked = match self.possession {
+            Possession::Ours(..) => false,
+            Possession::Theirs(..) => true,
+            Possession::Contested(..) | Possession::Free => {
+                let limits = &self.kicks.constants().opponent;
+                let goal = view.our_goal();
+                let theirs = view
+                    .theirs
+                    .iter()
+                    .map(|robot| arrival(robot, ball, self.kicks.ground(), limits, goal).seconds);
+                let worth = if self.attacked { -roles::WORTH } else { roles::WORTH };
+                theirs.fold(f32::INFINITY, f32::min) + worth < ours
+            }
+        };
+    }
+
+    /// The task of the best action; `None`: it plays on.
+    fn act(
+        &mut self,
+        plan: &mut Plan<'_>,
+        who: RobotId,
+        ball: &ViewBall,
+        arrival: &Arrival,
+    ) -> Option<(Task, OrderReason)> {
+        let view = plan.view;
+        let from = if self.possession.owner() == Some(who) { ball.position } else { arrival.ball };
+        match self.choose(view, who, from) {
+            Action::PlayOn => None,
+            Action::Shot { at, goal } => {
+                Some((Task::Kick { at, kick: support::SHOT }, OrderReason::Chances { receive: 1.0, goal }))
+            }
+            Action::Pass { receiver, rating } => {
+                let why = OrderReason::Chances { receive: rating.receive(), goal: rating.goal() };
+                Some((self.pass_to(plan, receiver, &rating, why)?, why))
+            }
+        }
+    }
+
+    /// The earlier choice, unless another action is clearly better now.
+    fn choose(&mut self, view: &View, who: RobotId, from: Point<Attack>) -> Action {
+        let kept = self.chosen.filter(|chosen| chosen.who == who && chosen.from.distance(from) < MOVED);
+        if let Some(chosen) = kept
+            && view.now.since(chosen.rated) < RATED_EVERY
+        {
+            return chosen.action;
+        }
+        if kept.is_none() {
+            self.searches.forget();
+        }
+        let again = kept.and_then(|chosen| {
+            let worth = rated::rate_again(view, &self.kicks, who, chosen.from, &chosen.action)?;
+            Some((chosen, worth))
+        });
+        let defenders = self.defenders;
+        let list = rated::rate(view, &self.kicks, &mut self.searches, who, from, |id| {
+            !defenders.contains(&Some(id))
+        });
+        let best = list.first().map_or((Action::PlayOn, 0.0), |best| (best.action, best.worth));
+        let (action, worth, from) = match again {
+            Some((chosen, worth)) if best.1 < worth + CLEARLY => (chosen.action, worth, chosen.from),
+            _ => (best.0, best.1, from),
+        };
+        self.chosen = Some(Chosen { who, rated: view.now, from, action, worth });
+        action
+    }
+}
+
+/// A robot that plays a case counts as this much nearer to the ball, s: a change of robots would end the
+/// case.
+const BOUND: f32 = 0.5;
+/// Interval at which the list is rated.
+const RATED_EVERY: Duration = Duration::millis(50);
+/// A ball that moved by more than this is a new situation, m.
+const MOVED: f32 = 0.3;
+/// Another action is better by at least this: a robot that turns round loses half a second.
+const CLEARLY: f32 = 0.02;
