@@ -28,7 +28,11 @@ impl Brain<'_> {
             intent
         };
         let directive = self.host.as_ref().and_then(|host| host.directive(now));
-        let ordered = matches!(directive, Some(Directive::Kick { .. } | Directive::Pass { .. }));
+        // A ball that is redirected does not leave along the heading.
+        let ordered = matches!(
+            directive,
+            Some(Directive::Kick { .. } | Directive::Pass { .. } | Directive::Receive { then: Some(_), .. })
+        );
         wheels::release(&self.belief, intent, ordered)
     }
 

@@ -20,7 +20,6 @@ pub(super) struct Chosen {
     rated: Instant,
     pub(super) from: Point<Attack>,
     pub(super) action: Action,
-    worth: f32,
 }
 
 impl Coach {
@@ -153,11 +152,11 @@ impl Coach {
             !defenders.contains(&Some(id))
         });
         let best = list.first().map_or((Action::PlayOn, 0.0), |best| (best.action, best.worth));
-        let (action, worth, from) = match again {
-            Some((chosen, worth)) if best.1 < worth + CLEARLY => (chosen.action, worth, chosen.from),
-            _ => (best.0, best.1, from),
+        let (action, from) = match again {
+            Some((chosen, worth)) if best.1 < worth + CLEARLY => (chosen.action, chosen.from),
+            _ => (best.0, from),
         };
-        self.chosen = Some(Chosen { who, rated: view.now, from, action, worth });
+        self.chosen = Some(Chosen { who, rated: view.now, from, action });
         action
     }
 }

@@ -33,8 +33,8 @@ pub(super) struct AttackWatch {
     flight: Option<Flight>,
     /// The team that alone is at the ball, but does not possess it yet, since when.
     claims: Option<(Colour, f64)>,
-    /// The robot at the ball, and since when.
-    holder: Option<(Who, f64)>,
+    /// The robot that a teammate's kick has reached last, and when.
+    received: Option<(Who, f64)>,
     goals: [u32; 2],
     left: LeftBalls,
 }
@@ -44,8 +44,6 @@ pub(super) struct AttackWatch {
 struct Possession {
     team: Colour,
     since: f64,
-    /// Last moment at which one of its robots was at the ball.
-    last_at_ball: f64,
     /// Last moment at which an opponent was near the ball while one of its robots was at it.
     pressed: f64,
 }
@@ -106,13 +104,14 @@ impl AttackWatch {
         if speed < KICK_SPEED {
             return;
         }
-        let came = self.flight.filter(|flight| flight.by.colour == by.colour && flight.by != by);
-        let arrived = self.holder.filter(|(who, _)| *who == by).map_or(now, |(_, since)| since);
-        self.land(at, Some(by));
+        if self.flight.is_some_and(|flight| flight.by != by) {
+            self.land(now, at, Some(by));
+        }
+        let arrived = self.received.filter(|(who, _)| *who == by).map_or(f64::NEG_INFINITY, |(_, at)| at);
         self.possess(now, by.colour);
         let shot = speed > SHOT_SPEED && is_at_goal(game, by.colour, at, velocity);
         if shot {
-            let volley = came.is_some() && now - arrived < VOLLEY_WITHIN;
+            let volley = now - arrived < VOLLEY_WITHIN;
             self.counts[by.colour as usize].shots.add(open_share(game, by.colour, at), volley);
         }
         self.flight = Some(Flight { by, from: at, speed, shot });
@@ -120,15 +119,12 @@ impl AttackWatch {
 
     fn touched(&mut self, now: f64, by: Who, at: Point<Field>) {
         if self.flight.is_some_and(|flight| flight.by != by) {
-            self.land(at, Some(by));
-        }
-        if self.holder.is_none_or(|(who, _)| who != by) {
-            self.holder = Some((by, now));
+            self.land(now, at, Some(by));
         }
     }
 
     /// The flight is over: a robot has the ball, or play has stopped.
-    fn land(&mut self, at: Point<Field>, by: Option<Who>) {
+    fn land(&mut self, now: f64, at: Point<Field>, by: Option<Who>) {
         let Some(flight) = self.flight else { return };
         let to_team = by.is_some_and(|by| by.colour == flight.by.colour);
         if flight.is_kick(at) && !flight.shot {
@@ -136,6 +132,7 @@ impl AttackWatch {
         }
         // A ball at the opponents is theirs when they control it: until then it was lost by this kick.
         if to_team {
+            self.received = by.map(|by| (by, now));
             self.flight = None;
         }
     }
@@ -144,29 +141,17 @@ impl AttackWatch {
     fn control(&mut self, game: &Game<'_>, now: f64) {
         let ball = &game.world().ball;
         let robots = game.world().robots().iter().filter(|robot| robot.present);
-        let (mut at, mut near, mut nearest) = ([false; 2], [false; 2], None);
+        let (mut at, mut near) = ([false; 2], [false; 2]);
         for robot in robots.filter(|_| ball.height < ROBOT_HEIGHT) {
             let distance = robot.pose.position.distance(ball.position);
             at[robot.who.colour as usize] |= distance < AT_BALL;
             near[robot.who.colour as usize] |= distance < PRESSES_WITHIN;
-            if distance < AT_BALL && nearest.is_none_or(|(_, least)| distance < least) {
-                nearest = Some((robot.who, distance));
-            }
-        }
-        match nearest {
-            Some((who, _)) if self.holder.is_none_or(|(holder, _)| holder != who) => {
-                self.holder = Some((who, now));
-            }
-            None => self.holder = None,
-            Some(_) => {}
         }
         if let Some(possession) = &mut self.possession
             && at[possession.team as usize]
+            && near[possession.team.other() as usize]
         {
-            possession.last_at_ball = now;
-            if near[possession.team.other() as usize] {
-                possession.pressed = now;
-            }
+            possession.pressed = now;
         }
         let alone = COLOURS.into_iter().find(|team| at[*team as usize] && !at[team.other() as usize]);
         let Some(team) = alone.filter(|team| self.possession.is_none_or(|own| own.team != *team)) else {
@@ -198,14 +183,13 @@ impl AttackWatch {
             };
             self.end(lost, now, end);
         }
-        let far = f64::NEG_INFINITY;
-        self.possession = Some(Possession { team, since: now, last_at_ball: now, pressed: far });
+        self.possession = Some(Possession { team, since: now, pressed: f64::NEG_INFINITY });
         self.claims = None;
     }
 
     fn stopped(&mut self, now: f64, ball: Point<Field>, scored: Option<Colour>, out: bool) {
         let flight = self.flight;
-        self.land(ball, None);
+        self.land(now, ball, None);
         let shot = flight.filter(|flight| flight.shot).map(|flight| flight.by.colour);
         if let Some(team) = scored.filter(|team| shot == Some(*team)) {
             self.counts[team as usize].shots.goals += 1;
@@ -222,7 +206,7 @@ impl AttackWatch {
             };
             self.end(own, now, end);
         }
-        (self.flight, self.claims, self.holder) = (None, None, None);
+        (self.flight, self.claims, self.received) = (None, None, None);
         self.left.forget();
     }
 
