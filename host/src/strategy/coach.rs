@@ -195,7 +195,7 @@ impl Coach {
                 Some(model) => {
                     plan.orders.extend(model.open_play(view, &mut plan.free, self.double_touch_blocked));
                 }
-                None if self.tactics.rated => self.rated_play(&mut plan),
+                None if self.tactics.attack && self.tactics.rated => self.rated_play(&mut plan),
                 None => self.open_play(&mut plan),
             },
             Phase::BallPlacement(Side::Ours) => self.place_ball(&mut plan),
@@ -353,7 +353,7 @@ impl Coach {
 }
 
 /// A pass of the rated list arrives with this speed, m/s.
-const ARRIVES_WITH: f32 = 3.0;
+const ARRIVES_WITH: f32 = 3.5;
 /// Most robots that get a place in order: all field players, as behind a penalty of the opponents.
 const OTHERS: usize = 10;
 /// A robot's centre this near the ball touches it, m.

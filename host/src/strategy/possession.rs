@@ -196,8 +196,13 @@ mod tests {
         let mut view = view((3.0, 0.0), &[(0.0, 0.0)], &[]);
         let ball = view.ball.as_mut().unwrap();
         ball.velocity = Vector::new(-2.0, 0.0);
-        let found =
-            arrival(&view.ours[0], &view.ball.unwrap(), &BallModel::default(), &FreeLimits::default(), goal());
+        let found = arrival(
+            &view.ours[0],
+            &view.ball.unwrap(),
+            &BallModel::default(),
+            &FreeLimits::default(),
+            goal(),
+        );
         assert!(found.seconds < 1.75 && found.ball.x() > 0.1, "{found:?}");
         // It need not wait: driving towards the ball it meets it sooner than it would arrive.
         assert!(found.seconds < 1.71, "{found:?}");

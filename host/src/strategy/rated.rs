@@ -8,10 +8,11 @@ use geometry::{Attack, Point, Segment};
 use protocol::RobotId;
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 
+use super::pass::bridge::{RADIUS, refine};
 use super::pass::shot::shot;
 use super::pass::{Kicks, PassScene, Rating, SAMPLES, Searches};
 use super::value;
-use super::view::{ROBOTS_MAX, View};
+use super::view::{CasePass, ROBOTS_MAX, View};
 
 /// An action of the robot with the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,8 +31,28 @@ pub enum Action {
         /// Place, kick and probabilities.
         rating: Rating,
     },
+    /// The pass of the case that is played, near its place.
+    OfCase {
+        /// The case's pass.
+        pass: CasePass,
+        /// Place, kick and probabilities.
+        rating: Rating,
+        /// Distance from the case's own place, m.
+        moved: f32,
+    },
     /// To keep the ball: by a case, or by what the robots do without one.
     PlayOn,
+}
+
+impl Action {
+    /// The receiver of its pass, and the pass's rating.
+    pub fn pass(&self) -> Option<(RobotId, Rating)> {
+        match *self {
+            Self::Pass { receiver, rating } => Some((receiver, rating)),
+            Self::OfCase { pass, rating, .. } => Some((pass.receiver.0, rating)),
+            Self::Shot { .. } | Self::PlayOn => None,
+        }
+    }
 }
 
 /// An action with its worth.
@@ -44,9 +65,10 @@ pub struct Rated {
 }
 
 /// All actions, best first.
-pub type RatedList = heapless::Vec<Rated, { ROBOTS_MAX + 2 }>;
+pub type RatedList = heapless::Vec<Rated, { ROBOTS_MAX + 3 }>;
 
-/// Rates all actions of `who` for a ball at `from`; a teammate of which `receives` is not true gets no pass.
+/// Rates all actions of `who` for a ball at `from`; a teammate of which `receives` is not true gets no pass;
+/// `proposal`: the next pass of a case that `who` plays.
 pub fn rate(
     view: &View,
     kicks: &Kicks,
@@ -54,22 +76,34 @@ pub fn rate(
     who: RobotId,
     from: Point<Attack>,
     receives: impl Fn(RobotId) -> bool,
+    proposal: Option<CasePass>,
 ) -> RatedList {
     let mut list = RatedList::new();
     let mut add = |action, worth| {
         let place = list.iter().position(|other: &Rated| other.worth < worth).unwrap_or(list.len());
-        // A pass a robot, and two more.
+        // A pass a robot, and three more.
         let _ = list.insert(place, Rated { action, worth });
     };
     let found = shot(view, kicks, from);
     let goal = found.value();
-    add(Action::Shot { at: found.aim, goal }, shot_worth(view, from, found.aim, goal));
+    // At a closed goal no shot is in the list: 3 of 41 scored.
+    if found.angle > 0.0 {
+        add(Action::Shot { at: found.aim, goal }, shot_worth(view, from, found.aim, goal));
+    }
     add(Action::PlayOn, play_on(view, from));
     for offer in searches.offers(view, kicks, from, who, SAMPLES, true) {
         if receives(offer.receiver) {
             let (receiver, rating) = (offer.receiver, offer.rating);
             add(Action::Pass { receiver, rating }, pass_worth(view, from, &rating));
         }
+    }
+    if let Some(pass) = proposal
+        && let Some(receiver) = view.our(pass.receiver.0)
+    {
+        let scene = PassScene::of(view, kicks, from, Some(who), receiver).keeping();
+        let refined = refine(&scene, pass.at, RADIUS);
+        let (rating, moved) = (refined.best, refined.moved());
+        add(Action::OfCase { pass, rating, moved }, pass_worth(view, from, &rating));
     }
     list
 }
@@ -87,8 +121,9 @@ pub fn rate_again(
             let goal = shot(view, kicks, from).value();
             shot_worth(view, from, *at, goal)
         }
-        Action::Pass { receiver, rating } => {
-            let receiver = view.our(*receiver)?;
+        Action::Pass { .. } | Action::OfCase { .. } => {
+            let (receiver, rating) = action.pass()?;
+            let receiver = view.our(receiver)?;
             let scene = PassScene::of(view, kicks, from, Some(who), receiver).keeping();
             pass_worth(view, from, &scene.rate(rating.at))
         }
@@ -140,3 +175,71 @@ const PRESSED: f32 = 0.7;
 const LOST_CONTESTED: f32 = 0.4;
 const LOST_PRESSED: f32 = 0.2;
 const LOST_FREE: f32 = 0.0;
+
+#[cfg(test)]
+mod tests {
+    use super::super::pass::PassConstants;
+    use super::super::view::tests::view;
+    use super::*;
+    use casebase::CaseRobot;
+    use motion::ball::BallModel;
+    use motion::ball::chip::ChipModel;
+    use protocol::CaseId;
+    use rules::League;
+
+    const WALL: [(f32, f32); 4] = [(4.4, 0.0), (2.4, 0.0), (2.45, 0.2), (2.45, -0.2)];
+
+    fn kicks() -> Kicks {
+        Kicks::new(PassConstants::of(League::DivisionB), BallModel::default(), ChipModel::default())
+    }
+
+    /// Our 1 has the ball at (2, 0), our 2 stands at `teammate`.
+    fn list(teammate: (f32, f32), theirs: &[(f32, f32)], case: Option<Point<Attack>>) -> RatedList {
+        let view = view((2.0, 0.0), &[(-4.4, 0.0), (1.9, 0.0), teammate], theirs);
+        let part = |part, robot: usize| (view.ours[robot].id, CaseRobot::new(part).unwrap());
+        let proposal =
+            case.map(|at| CasePass { case: CaseId(1), passer: part(0, 1), receiver: part(1, 2), at });
+        let from = Point::new(2.0, 0.0);
+        rate(&view, &kicks(), &mut Searches::new(1), view.ours[1].id, from, |_| true, proposal)
+    }
+
+    #[test]
+    fn an_open_goal_is_shot_at_and_worth_more_than_keeping_the_ball() {
+        let list = list((-2.0, 2.0), &[(4.4, 0.4)], None);
+        assert!(matches!(list[0].action, Action::Shot { goal, .. } if goal > 0.1), "{list:?}");
+        assert!(list.windows(2).all(|pair| pair[0].worth >= pair[1].worth), "best first");
+    }
+
+    #[test]
+    fn a_closed_goal_is_not_shot_at_and_a_free_teammate_before_it_is_passed_to() {
+        let list = list((3.0, 1.8), &WALL, None);
+        assert!(list.iter().all(|rated| !matches!(rated.action, Action::Shot { .. })), "{list:?}");
+        assert!(
+            matches!(list[0].action, Action::Pass { receiver, .. } if receiver.number() == 2),
+            "{list:?}"
+        );
+    }
+
+    #[test]
+    fn who_has_only_a_marked_teammate_far_behind_plays_on() {
+        let marked = [WALL[0], WALL[1], WALL[2], WALL[3], (-1.8, 2.0)];
+        let list = list((-2.0, 2.0), &marked, None);
+        assert_eq!(list[0].action, Action::PlayOn, "{list:?}");
+        assert_eq!(list.len(), 2, "a pass is in the list with its worth: {list:?}");
+    }
+
+    #[test]
+    fn the_pass_of_a_case_is_rated_as_any_other_to_that_place() {
+        let at = Point::new(3.0, 1.6);
+        let list = list((3.0, 1.8), &WALL, Some(at));
+        let of_case = list.iter().find(|rated| matches!(rated.action, Action::OfCase { .. })).unwrap();
+        let (receiver, rating) = of_case.action.pass().unwrap();
+        assert!(receiver.number() == 2 && rating.at.distance(at) <= RADIUS);
+        let view = view((2.0, 0.0), &[(-4.4, 0.0), (1.9, 0.0), (3.0, 1.8)], &WALL);
+        let kicks = kicks();
+        let scene =
+            PassScene::of(&view, &kicks, Point::new(2.0, 0.0), Some(view.ours[1].id), &view.ours[2]);
+        let same = pass_worth(&view, Point::new(2.0, 0.0), &scene.keeping().rate(rating.at));
+        assert!((same - of_case.worth).abs() < 1e-6, "{same} {}", of_case.worth);
+    }
+}

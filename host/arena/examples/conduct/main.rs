@@ -249,9 +249,19 @@ fn sum(played: &[(GameReport, Account)]) {
     for (report, _) in played {
         passes.add(&report.metrics.blue.play.passes);
     }
-    println!("our passes: flat {:?}, chip {:?}, calibration error {:?}", passes.flat, passes.chip, passes.calibration_error());
+    println!(
+        "our passes: flat {:?}, chip {:?}, calibration error {:?}",
+        passes.flat,
+        passes.chip,
+        passes.calibration_error()
+    );
     for (tenth, bin) in passes.calibration.iter().enumerate().filter(|(_, bin)| bin.passes > 0) {
-        println!("    P {tenth}: {} predicted {:.2} seen {:.2}", bin.passes, bin.predicted / f64::from(bin.passes), f64::from(bin.received) / f64::from(bin.passes));
+        println!(
+            "    P {tenth}: {} predicted {:.2} seen {:.2}",
+            bin.passes,
+            bin.predicted / f64::from(bin.passes),
+            f64::from(bin.received) / f64::from(bin.passes)
+        );
     }
     let attack: Vec<_> = played.iter().flat_map(|(r, _)| [&r.metrics.yellow.attack]).collect();
     println!("theirs: {}", attack_line(&attack, n));

@@ -15,7 +15,6 @@ use super::super::order::{OrderReason, Role, Task};
 use super::super::pass::bridge::{RADIUS, refine};
 use super::super::pass::shot::shot;
 use super::super::pass::{PassScene, Rating, SAMPLES};
-use super::super::rated::Action;
 use super::super::support;
 
 use super::super::view::{CasePass, View, ViewBall};
@@ -112,7 +111,8 @@ impl Coach {
 
     /// The pass that is chosen: passer, place of the ball, receiver, rating.
     fn passing(&self) -> Option<(RobotId, Point<Attack>, RobotId, Rating)> {
-        if let Some(Chosen { who, from, action: Action::Pass { receiver, rating }, .. }) = self.chosen {
+        if let Some(Chosen { who, from, action, .. }) = self.chosen {
+            let (receiver, rating) = action.pass()?;
             return Some((who, from, receiver, rating));
         }
         let Intent { who, from, what, .. } = self.intent?;
@@ -122,8 +122,7 @@ impl Coach {
 
     /// Detects that the pass of open play leaves: from then on its receiver is ordered to receive it.
     pub(super) fn see_pass_leave(&mut self, view: &View) {
-        let (Some((who, from, receiver, rating)), Some(ball), None) =
-            (self.passing(), view.ball, self.pass)
+        let (Some((who, from, receiver, rating)), Some(ball), None) = (self.passing(), view.ball, self.pass)
         else {
             return;
         };

@@ -129,6 +129,12 @@ impl Coach {
                 let why = OrderReason::Chances { receive: rating.receive(), goal: rating.goal() };
                 Some((self.pass_to(plan, receiver, &rating, why)?, why))
             }
+            Action::OfCase { pass, rating, moved } => {
+                let (receive, goal) = (rating.receive(), rating.goal());
+                let why = |part| OrderReason::OfCase { case: pass.case, part, moved, receive, goal };
+                let (receiver, part) = pass.receiver;
+                Some((self.pass_to(plan, receiver, &rating, why(part))?, why(pass.passer.1)))
+            }
         }
     }
 
@@ -148,9 +154,9 @@ impl Coach {
             Some((chosen, worth))
         });
         let defenders = self.defenders;
-        let list = rated::rate(view, &self.kicks, &mut self.searches, who, from, |id| {
-            !defenders.contains(&Some(id))
-        });
+        let receives = |id| !defenders.contains(&Some(id));
+        let proposal = view.proposal.filter(|pass| self.tactics.bridge && pass.passer.0 == who);
+        let list = rated::rate(view, &self.kicks, &mut self.searches, who, from, receives, proposal);
         let best = list.first().map_or((Action::PlayOn, 0.0), |best| (best.action, best.worth));
         let (action, from) = match again {
             Some((chosen, worth)) if best.1 < worth + CLEARLY => (chosen.action, chosen.from),

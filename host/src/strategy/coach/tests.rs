@@ -67,8 +67,16 @@ fn in_halt_everyone_stands() {
 }
 
 #[test]
-fn in_open_play_there_are_a_keeper_two_defenders_and_three_who_play_cases() {
+fn in_open_play_there_are_a_keeper_two_defenders_one_who_plays_the_ball_and_two_for_its_passes() {
     let orders = coach().decide(&view((0.0, 0.0), &OURS, &THEIRS));
+    let of = |which: fn(&Order) -> bool| orders.iter().filter(|order| which(order)).count();
+    assert_eq!(of(|order| order.role == Role::Keeper), 1);
+    assert_eq!(of(|order| matches!(order.role, Role::Defender(_))), 2);
+    assert_eq!(of(|order| order.role == Role::Player), 1);
+    assert_eq!(of(|order| matches!(order.role, Role::Support(_) | Role::Receiver)), 2);
+    // Without the rated list and the attack, they play cases.
+    let cases = Tactics { rated: false, attack: false, ..Tactics::default() };
+    let orders = Coach::new(Team::Ours, cases, League::DivisionB).decide(&view((0.0, 0.0), &OURS, &THEIRS));
     let of = |task: fn(&Order) -> bool| orders.iter().filter(|order| task(order)).count();
     assert_eq!(of(|order| order.role == Role::Keeper), 1);
     assert_eq!(of(|order| matches!(order.role, Role::Defender(_))), 2);
@@ -221,7 +229,7 @@ fn a_pass_ahead_leaves_when_its_receiver_will_be_there_and_whoever_receives_it_i
 #[test]
 fn a_shot_at_our_goal_makes_no_one_leave_its_place_and_the_keeper_stays_one() {
     let mut coach = coach();
-    let mut view = view((-1.5, 0.2), &OURS, &[(4.4, 0.0), (-1.3, 0.2)]);
+    let mut view = view((0.0, 0.2), &OURS, &[(4.4, 0.0), (0.2, 0.2)]);
     let before: Vec<_> = coach.decide(&view).iter().map(|order| order.role).collect();
     assert_eq!(
         (before[0], before[1..3].iter().all(|role| matches!(role, Role::Defender(_)))),
@@ -263,7 +271,8 @@ fn a_ball_that_lies_before_our_area_is_the_keepers_unless_a_field_player_is_ther
     // Without a keeper a field player tries.
     let mut alone = view((-3.3, 0.2), &OURS, &THEIRS);
     alone.keeper = RobotId::new(9).unwrap();
-    assert!(coach().decide(&alone).iter().any(|order| order.task == Task::Gameplay));
+    let plays = |order: &Order| matches!(order.task, Task::Kick { .. } | Task::Pass { .. } | Task::Gameplay);
+    assert!(coach().decide(&alone).iter().any(plays));
 }
 
 /// Our 3 stands behind the ball at (2, 0), our 4 and 5 at these places; with these opponents.
@@ -314,7 +323,7 @@ fn where_a_case_is_played_its_pass_goes_near_its_place_to_its_receiver_if_the_br
         let part = |part, robot: usize| (seen.ours[robot].id, CaseRobot::new(part).unwrap());
         let pass = CasePass { case: CaseId(12), passer: part(0, passer), receiver: part(1, 5), at };
         let seen = seen.proposing(Some(pass));
-        let tactics = Tactics { bridge, ..Tactics::default() };
+        let tactics = Tactics { bridge, rated: false, ..Tactics::default() };
         Coach::new(Team::Ours, tactics, League::DivisionB).decide(&seen)
     };
     let orders = decide(true, 3);

@@ -184,7 +184,9 @@ mod tests {
         let run = |seed| {
             let mut searches = Searches::new(seed);
             (0..10)
-                .map(|_| searches.offers(&view, &kicks, Point::new(0.5, 0.0), view.ours[1].id, SAMPLES, false))
+                .map(|_| {
+                    searches.offers(&view, &kicks, Point::new(0.5, 0.0), view.ours[1].id, SAMPLES, false)
+                })
                 .last()
                 .unwrap()
         };
@@ -208,7 +210,7 @@ mod tests {
             }
         }
         let mut search = Search::new(3);
-        let found = (0..10).map(|_| search.step(&scene, SAMPLES, false)).last().unwrap().value();
+        let found = (0..10).map(|_| search.step(&scene, SAMPLES)).last().unwrap().value();
         assert!(found > 0.97 * best, "{found} of {best}");
     }
 
