@@ -1,5 +1,5 @@
-//! Release: the last check of what a robot does with the ball in play. A kick that its receiver misses stays
-//! in the field, and a dispute about the ball that no kick decides ends. SI, field frame.
+//! `release`: the last check of a kick in play: a ball that its receiver misses stays in the field. SI, field
+//! frame.
 
 use geometry::{Field, Point, Vector};
 use motion::ball::BallModel;
@@ -10,15 +10,9 @@ use crate::belief::Belief;
 use crate::body::Intent;
 use crate::body::omni::Drive;
 
-/// Any skill's intent; in a long dispute, away from the ball. A kick that the host has not `ordered` is
-/// limited to what stays in the field.
+/// Any skill's intent; a kick that the host has not `ordered` is limited to what stays in the field.
 pub fn release(belief: &Belief, intent: Intent, ordered: bool) -> Intent {
     let Intent::Drive(drive) = intent else { return intent };
-    if gives_way(belief) {
-        let heading = belief.pose.heading;
-        let back = belief.pose.position - Vector::polar(STEP_BACK, heading);
-        return Drive { speed: AWAY, ..Drive::bold(back, heading) }.into();
-    }
     let OmniKick::Flat(speed) = drive.kick else { return intent };
     if ordered || !drive.armed || belief.game.phase == Phase::BallPlacement(Side::Ours) {
         return intent;
@@ -47,15 +41,6 @@ fn stays_inside(belief: &Belief, from: Point<Field>) -> f32 {
     BallModel::default().kick_speed(room.max(ROLLS_AT_LEAST), 0.0)
 }
 
-/// Whether it leaves a disputed ball to the opponent: two robots of equal programs kick at the same moment,
-/// and the ball stays between them. The one in the opponents' half goes first.
-fn gives_way(belief: &Belief) -> bool {
-    let Some(ball) = belief.ball else { return false };
-    let own = belief.game.defending.sign() as f32;
-    let own_half = ball.position.x() * own > 0.0;
-    belief.game.phase == Phase::Run && belief.disputed() > if own_half { KEEPS_FOR } else { DISPUTES_FOR }
-}
-
 /// A heading this parallel to a line does not cross it.
 const PARALLEL: f32 = 1e-3;
 /// Beside a post, m: a shot that misses by less counts as one.
@@ -64,15 +49,6 @@ const BESIDE_POST: f32 = 0.1;
 const INSIDE: f32 = 0.2;
 /// A kick rolls at least this far, m: out of the dribbler's reach.
 const ROLLS_AT_LEAST: f32 = 0.8;
-/// Time for which a robot disputes the ball in the opponents' half, s: after the kicks of
-/// [`let_go_in_time`](super::let_go_in_time), and half of what is no progress in division A; …
-const DISPUTES_FOR: f32 = 2.4;
-/// … and in its own half, s.
-const KEEPS_FOR: f32 = 3.4;
-/// Distance of the step back, m: until the dispute is over (0.2 m from robot to ball).
-const STEP_BACK: f32 = 0.25;
-/// Its speed, m/s.
-const AWAY: f32 = 0.8;
 
 #[cfg(test)]
 mod tests {
@@ -80,7 +56,6 @@ mod tests {
     use crate::body::omni::BALL_AT;
     use crate::skills::wheels::testing::belief;
     use geometry::GoalEnd;
-    use protocol::{Duration, Instant};
 
     const FAST: OmniKick = OmniKick::Flat(6.0);
 
@@ -109,21 +84,5 @@ mod tests {
         assert_eq!(release(&b, ordered.into(), true), ordered.into(), "the host answers for its speeds");
         let OmniKick::Flat(least) = kicked((0.0, 2.95, 90.0), FAST) else { panic!() };
         assert!(least > 0.9, "{least}: it leaves the dribbler");
-    }
-
-    #[test]
-    fn a_dispute_is_given_up_in_the_opponents_half_before_it_is_in_the_own() {
-        let armed = |x: f32, ms: u64| {
-            let mut b = belief((x, 0.0, 0.0), (x + BALL_AT, 0.0));
-            (b.game.phase, b.game.defending) = (Phase::Run, GoalEnd::Negative);
-            let _ = b.opponents.push(Point::new(x + 2.0 * BALL_AT, 0.0));
-            b.dispute(Instant(0));
-            b.dispute(Instant(0) + Duration::millis(ms));
-            let drive = Drive { kick: FAST, armed: true, ..Drive::holding(b.pose.position, b.pose.heading) };
-            let Intent::Drive(drive) = release(&b, drive.into(), false) else { panic!() };
-            drive.kick != OmniKick::None
-        };
-        assert!(armed(1.0, 2_300) && !armed(1.0, 2_500), "the opponents' half");
-        assert!(armed(-1.0, 3_300) && !armed(-1.0, 3_500), "the own half");
     }
 }
