@@ -1,7 +1,7 @@
 //! `check`: errors that make a case unplayable, beyond the syntax of its file (docs/case-format.md §1.2).
 
-use casebase::plan_simulation::{PlanError, Script, plan_simulation};
-use casebase::{Action, CaseRobot, Symmetry};
+use casebase::plan_simulation::{PlanError, PlanStep, Script, Spot, plan_simulation};
+use casebase::{Action, CaseRobot, LegKind, Symmetry};
 
 use crate::authored::Authored;
 use crate::codes::code;
@@ -41,7 +41,8 @@ pub(crate) fn errors(file: &SourceFile, case: &Authored, league: &CaseLeague) ->
     }
 
     let script = case.mirrored(Symmetry::Identity, league);
-    if let Err(problem) = plan_simulation(&script, league, |_| {}) {
+    let mut legs = Vec::new();
+    if let Err(problem) = plan_simulation(&script, league, |step| legs.push(step)) {
         let (code, at, hint) = match problem {
             // The one getter was found above.
             PlanError::NoGetter => return findings,
@@ -68,6 +69,25 @@ pub(crate) fn errors(file: &SourceFile, case: &Authored, league: &CaseLeague) ->
         let (_, span) = &case.teammates[robot.index()].gameplay[index];
         let label = script.action(robot, index).map_or("", |action| action.label());
         error(code, span, format!("{problem} ({label})"), hint);
+    }
+    for step in legs {
+        let PlanStep::Leg { robot, action, from, to, kind, .. } = step else { continue };
+        let (what, reach) = match kind {
+            LegKind::Pass(_) => ("pass", league.pass_reach),
+            LegKind::Kick(id) => ("kick", league.reach(id)),
+        };
+        let on_field = |spot: Spot| {
+            let [x, y] = if spot.on_field { [0.0; 2] } else { case.ball.to_f32() };
+            [spot.at[0] + x, spot.at[1] + y]
+        };
+        let ([from_x, from_y], [to_x, to_y]) = (on_field(from), on_field(to));
+        let length = (to_x - from_x).hypot(to_y - from_y);
+        if let Some(reach) = reach.filter(|reach| length > *reach as f32) {
+            let message = format!("the {what} ends {length:.0} mm away, and rolls {reach} mm");
+            let (_, span) = &case.teammates[robot.index()].gameplay[action];
+            let hint = "move the ball or the receiver nearer, or carry the ball there before";
+            error(code::BEYOND_REACH, span, message, hint);
+        }
     }
     findings
 }

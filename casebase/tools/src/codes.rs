@@ -52,6 +52,7 @@ codes! {
     PASS_UNANSWERED "pass-unanswered" Error "A pass that the other robot does not come to receive, or only after something that waits for the pass."
     RECEIVE_UNANSWERED "receive-unanswered" Error "A robot waits for a pass that no robot plays."
     UNKNOWN_KICK "unknown-kick" Error "A kind of kick that league.toml does not have. Add [kicks.KIND] or take a known one."
+    BEYOND_REACH "beyond-reach" Error "A pass or a kick at the goal that ends farther away than league.toml says it rolls. Move the ball or the receiver nearer."
     OUTSIDE_FIELD "outside-field" Error "A position beyond the lines (on a line is inside). Move it inside the field."
     NO_PARTNER "no-partner" Error "A kind of kick to one side without its mirror image. Add the opposite kind, equal in length and radii."
     TOO_MANY_KICKS "too-many-kicks" Error "More kinds of kicks than a table holds. Take some out."

@@ -22,9 +22,9 @@ pub const FIELD: &[&str] = &["length", "width", "margin", "goal_width", "penalty
 /// Keys of `penalty_area` of `[field]`.
 pub const PENALTY_AREA: &[&str] = &["depth", "width"];
 /// Keys of `[pass]` in `league.toml`.
-pub const PASS: &[&str] = &["r_min", "r_max"];
+pub const PASS: &[&str] = &["r_min", "r_max", "reach"];
 /// `[kicks.KIND]` at the goal.
-pub const KICK_AT_GOAL: &[&str] = &["aim", "offset", "r_min", "r_max", "primitive"];
+pub const KICK_AT_GOAL: &[&str] = &["aim", "offset", "r_min", "r_max", "reach", "primitive"];
 /// `[kicks.KIND]` along a heading.
 pub const KICK_AHEAD: &[&str] = &["heading_deg", "length", "r_min", "r_max", "primitive"];
 /// Keys of `[problems]` in `league.toml`.
@@ -32,7 +32,7 @@ pub const PROBLEMS: &[&str] = &["teammates", "opponents"];
 /// A rectangle of `[problems]`.
 pub const RECTANGLE: &[&str] = &["x", "y"];
 /// Optional keys, in any table.
-pub const OPTIONAL: &[&str] = &["opponents", "margin", "offset", "primitive", "kicks", "problems"];
+pub const OPTIONAL: &[&str] = &["opponents", "margin", "offset", "primitive", "kicks", "problems", "reach"];
 
 /// Coordinates and radii in files, mm: a kilometre in either direction, so that no sum of a few of them
 /// overflows.

@@ -19,10 +19,14 @@ pub struct CaseLeague {
     pub field: FieldMm,
     /// Radii r_min and r_max of passes, mm.
     pub pass: Pass,
+    /// How far a pass rolls at most, mm, where the file says so; so far its receiver may stand.
+    pub pass_reach: Option<i32>,
     /// Kick kinds by name, in the order of their names: this order is their [`KickId`]s.
     pub kicks: Vec<(String, CaseKick)>,
     /// Areas of the robots in drawn problems, where the file contains them.
     pub lineup: Option<Lineup>,
+    /// How far each kind at the goal rolls, mm, where the file says so.
+    reaches: Vec<Option<i32>>,
     /// The kind that replaces each under a single reflection.
     partners: Vec<KickId>,
 }
@@ -39,6 +43,11 @@ impl CaseLeague {
     /// A kick kind by its name.
     pub fn kick_id(&self, name: &str) -> Option<KickId> {
         self.kicks.iter().position(|(known, _)| known == name).map(|at| KickId(at as u8))
+    }
+
+    /// How far a kind at the goal rolls, mm, where the file says so.
+    pub(crate) fn reach(&self, id: KickId) -> Option<i32> {
+        self.reaches.get(usize::from(id.0)).copied().flatten()
     }
 
     /// The kind that replaces it under a single reflection.
@@ -65,6 +74,7 @@ fn read_league(reader: &mut Reader<'_>, root: &Table<'_, '_>) -> Option<CaseLeag
     let pass = root.required(reader, "pass").and_then(|value| read_pass(reader, value));
     let lineup = root.optional("problems").and_then(|value| Lineup::read(reader, value));
     let mut kicks = Vec::new();
+    let mut reaches = Vec::new();
     let mut spans = Vec::new();
     if let Some(table) = root.optional("kicks").and_then(|value| reader.table(value, "kicks")) {
         let mut entries = table.entries();
@@ -74,8 +84,9 @@ fn read_league(reader: &mut Reader<'_>, root: &Table<'_, '_>) -> Option<CaseLeag
             reader.error(code::TOO_MANY_KICKS, span.clone(), message, "take some out");
         }
         for (name, span, value) in entries {
-            if let Some(kick) = read_kick(reader, &format!("kicks.{name}"), value) {
+            if let Some((kick, reach)) = read_kick(reader, &format!("kicks.{name}"), value) {
                 kicks.push((name.to_owned(), kick));
+                reaches.push(reach);
                 spans.push(span);
             }
         }
@@ -90,7 +101,8 @@ fn read_league(reader: &mut Reader<'_>, root: &Table<'_, '_>) -> Option<CaseLeag
             reader.error(code::NO_PARTNER, span, message, hint);
         }
     }
-    Some(CaseLeague { field: field?, pass: pass?, kicks, lineup, partners })
+    let (pass, pass_reach) = pass?;
+    Some(CaseLeague { field: field?, pass, pass_reach, kicks, lineup, reaches, partners })
 }
 
 fn read_field(reader: &mut Reader<'_>, value: Value<'_, '_>) -> Option<FieldMm> {
@@ -112,15 +124,24 @@ fn read_field(reader: &mut Reader<'_>, value: Value<'_, '_>) -> Option<FieldMm> 
     Some(FieldMm { length, width, margin, goal_width, penalty_depth, penalty_width })
 }
 
-fn read_pass(reader: &mut Reader<'_>, value: Value<'_, '_>) -> Option<Pass> {
+fn read_pass(reader: &mut Reader<'_>, value: Value<'_, '_>) -> Option<(Pass, Option<i32>)> {
     let table = reader.table(value, "pass")?;
     table.refuse_others(reader, keys::PASS);
     let (r_min, r_max) = (table.whole(reader, "r_min", &POSITIVE), table.whole(reader, "r_max", &POSITIVE));
-    Some(Pass { r_min: r_min?, r_max: r_max? })
+    let reach = read_reach(reader, &table)?;
+    Some((Pass { r_min: r_min?, r_max: r_max? }, reach))
 }
 
-fn read_kick(reader: &mut Reader<'_>, name: &str, value: Value<'_, '_>) -> Option<CaseKick> {
+/// The distance in `reach`, `None` within where there is none.
+#[allow(clippy::option_option, reason = "a fault is not an absent key")]
+fn read_reach(reader: &mut Reader<'_>, table: &Table<'_, '_>) -> Option<Option<i32>> {
+    let Some(value) = table.optional("reach") else { return Some(None) };
+    reader.whole(value, &table.name_of("reach"), &POSITIVE).map(Some)
+}
+
+fn read_kick(reader: &mut Reader<'_>, name: &str, value: Value<'_, '_>) -> Option<(CaseKick, Option<i32>)> {
     let table = reader.table(value, name)?;
+    let mut reach = None;
     let (r_min, r_max) = (table.whole(reader, "r_min", &POSITIVE), table.whole(reader, "r_max", &POSITIVE));
     let primitive = table.optional("primitive").and_then(|value| read_primitive(reader, name, value));
     let aim = if let Some(value) = table.optional("aim") {
@@ -138,6 +159,7 @@ fn read_kick(reader: &mut Reader<'_>, name: &str, value: Value<'_, '_>) -> Optio
         }
         let offset =
             table.optional("offset").map_or(Some(0), |value| reader.whole(value, "offset", &COORDINATES));
+        reach = read_reach(reader, &table)?;
         KickAim::Goal { offset_mm: offset? }
     } else {
         table.refuse_others(reader, keys::KICK_AHEAD);
@@ -145,7 +167,8 @@ fn read_kick(reader: &mut Reader<'_>, name: &str, value: Value<'_, '_>) -> Optio
         let length_mm = table.whole(reader, "length", &(0..=*POSITIVE.end()));
         KickAim::Heading { degrees: degrees?, length_mm: length_mm? }
     };
-    Some(CaseKick { aim, r_min: r_min?, r_max: r_max?, primitive: primitive.unwrap_or_default() })
+    let primitive = primitive.unwrap_or_default();
+    Some((CaseKick { aim, r_min: r_min?, r_max: r_max?, primitive }, reach))
 }
 
 fn read_primitive(reader: &mut Reader<'_>, name: &str, value: Value<'_, '_>) -> Option<Primitive> {

@@ -123,6 +123,7 @@ const OTHERS: &[(&str, &str)] = &[
     ("no case", code::EMPTY),
     ("odd name", code::FILE_NAME),
     ("too many kicks", code::TOO_MANY_KICKS),
+    ("beyond reach", code::BEYOND_REACH),
 ];
 
 /// In `findings.rs`: a directory, a case or a second case is needed. The last one in `sampled.rs`.
@@ -160,6 +161,19 @@ fn a_fifth_robot_and_a_fifth_opponent_are_reported() {
     assert_finding(&appended(&robots), "test/center/a.toml", 25, code::TOO_MANY_TEAMMATES, "leave out");
     let opponents = "\n[[opponents]]\nat = [0, 1500]\nscope = [9, 9]\n".repeat(4);
     assert_finding(&appended(&opponents), "test/center/a.toml", 29, code::TOO_MANY_OPPONENTS, "justify");
+}
+
+#[test]
+fn a_shot_and_a_pass_beyond_their_reach_are_reported() {
+    let kick = |reach: &str| replaced(LEAGUE, "aim = \"goal\"", &format!("aim = \"goal\"\nreach = {reach}"));
+    let cases = [("center/a", PASS_AROUND)];
+    // From [300, 900] to the middle of the goal at 2700.
+    assert_finding(&only(&kick("2563"), &cases), "test/center/a.toml", 11, code::BEYOND_REACH, "nearer");
+    assert!(build(&Files::from_texts("test", &kick("2564"), &cases)).is_ok());
+    // From [-600, 0] to the receiver at [300, 900].
+    let pass = |reach: &str| replaced(LEAGUE, "[pass]", &format!("[pass]\nreach = {reach}"));
+    assert_finding(&only(&pass("1272"), &cases), "test/center/a.toml", 7, code::BEYOND_REACH, "nearer");
+    assert!(build(&Files::from_texts("test", &pass("1273"), &cases)).is_ok());
 }
 
 #[test]

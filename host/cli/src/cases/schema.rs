@@ -89,7 +89,7 @@ fn league() -> Value {
             "penalty_area" => object(keys::PENALTY_AREA, |_| integer(&keys::INNER, "mm")),
             _ => integer(&keys::INNER, "mm"),
         }),
-        "pass" => object(keys::PASS, |_| integer(&keys::POSITIVE, "Radius in mm.")),
+        "pass" => object(keys::PASS, kick),
         "kicks" => {
             let kinds = [keys::KICK_AT_GOAL, keys::KICK_AHEAD];
             json!({ "type": "object", "additionalProperties": any(kinds.map(|kind| object(kind, kick))) })
@@ -114,6 +114,7 @@ fn kick(key: &str) -> Value {
         }
         "heading_deg" => integer(&keys::DEGREES, "Degrees from the direction of attack, left > 0."),
         "length" => integer(&(0..=*keys::POSITIVE.end()), "mm"),
+        "reach" => integer(&keys::POSITIVE, "How far it rolls, mm."),
         _ => integer(&keys::POSITIVE, "Radius in mm."),
     }
 }
