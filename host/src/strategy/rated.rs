@@ -237,8 +237,7 @@ mod tests {
         assert!(receiver.number() == 2 && rating.at.distance(at) <= RADIUS);
         let view = view((2.0, 0.0), &[(-4.4, 0.0), (1.9, 0.0), (3.0, 1.8)], &WALL);
         let kicks = kicks();
-        let scene =
-            PassScene::of(&view, &kicks, Point::new(2.0, 0.0), Some(view.ours[1].id), &view.ours[2]);
+        let scene = PassScene::of(&view, &kicks, Point::new(2.0, 0.0), Some(view.ours[1].id), &view.ours[2]);
         let same = pass_worth(&view, Point::new(2.0, 0.0), &scene.keeping().rate(rating.at));
         assert!((same - of_case.worth).abs() < 1e-6, "{same} {}", of_case.worth);
     }

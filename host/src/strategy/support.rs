@@ -36,8 +36,8 @@ pub fn places(
     chosen
 }
 
-/// Places at which a robot that stood there would be passed to with the greatest value, best first, apart from
-/// each other; those within half a metre of `stood` count a little more.
+/// Places at which a robot that stood there would be passed to with the greatest value, best first, apart
+/// from each other; those within half a metre of `stood` count a little more.
 pub fn pass_places(
     view: &View,
     kicks: &Kicks,

@@ -1,5 +1,5 @@
-//! `value`: what having the ball at a place is worth: P(goal for) − P(goal against) within 10 s. Attack frame,
-//! m.
+//! `value`: what having the ball at a place is worth: P(goal for) − P(goal against) within 10 s. m, attack
+//! frame.
 //!
 //! Both are fitted on 30 matches of 300 s (division B, nominal world, seeds 101 to 110 against `ours`, `zone`
 //! and `reactive`): 7,733 moments half a second apart in which one team had the ball, with the goals of the

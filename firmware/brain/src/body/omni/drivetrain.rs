@@ -258,7 +258,7 @@ const BOTH_BRAKE: f32 = 2.0;
 /// obstacle. The interception of a moving ball is computed in the same step.
 const EFFORT_BALL_MOVES: u32 = 94;
 /// The same while the ball is stationary.
-const EFFORT_BALL_RESTS: u32 = 106;
+const EFFORT_BALL_RESTS: u32 = 126;
 /// The same while the ball is not in play: neither a case nor an interception is computed then.
 const EFFORT_STOPPED: u32 = 200;
 /// Behind a goal line.
