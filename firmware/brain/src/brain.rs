@@ -186,13 +186,9 @@ impl<'a> Brain<'a> {
         self.spoken.beacon(now);
         let beacon = self.beacon(now);
         if self.cycle.closure().is_some() && self.reported_end_of != self.cycle.id() {
-            // The end is announced before the next cycle starts: a teammate that receives only the start
-            // would not know why.
+            // The end is announced before the next cycle starts, which it does in the next step: a teammate
+            // that receives only the start would not know why.
             self.reported_end_of = self.cycle.id();
-            // One message a step where steps are short: sealing costs time, and the next step comes soon.
-            if !self.has_short_steps() {
-                self.coordinate(now);
-            }
         }
         Some(TeamMessage::Beacon(beacon))
     }
