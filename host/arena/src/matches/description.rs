@@ -1,6 +1,7 @@
 //! `description`: match results as Markdown tables. Markdown tables, for terminals and documents alike: ours
 //! beside the paper's Tables 1 and 2 (Biswas et al. 2014 §6), passes, fouls, and what each part is worth.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use super::effect::{Change, Effect};
@@ -8,6 +9,7 @@ use super::match_team::MatchTeam;
 use super::outcome::{Estimate, Outcome};
 use super::paper::{PAPER, PAPER_PASSES};
 use super::passes::{Passes, Share};
+use crate::game::attack::PossessionEnd as E;
 
 /// All tables; `ours` are the passes of our team.
 pub fn markdown(outcomes: &[Outcome], effects: &[Effect], ours: &Passes) -> String {
@@ -16,6 +18,7 @@ pub fn markdown(outcomes: &[Outcome], effects: &[Effect], ours: &Passes) -> Stri
     standings(&mut text, outcomes);
     scores(&mut text, outcomes);
     play(&mut text, outcomes);
+    attack(&mut text, outcomes);
     passes(&mut text, outcomes);
     planned(&mut text, outcomes);
     calibration(&mut text, ours);
@@ -132,6 +135,44 @@ fn play(text: &mut String, outcomes: &[Outcome]) {
             o.opponent
         );
     }
+}
+
+/// How possessions end, where kicks go and what shots are worth, from the true world.
+fn attack(text: &mut String, outcomes: &[Outcome]) {
+    *text += "\n| team | against | possessions a match | goal | shot | kick to an opponent | tackle | left | out | stopped | kicks a match | reach the team | shots over 3 m/s a match | goal closed | half open | volleys | score | left balls a match |\n\
+              |---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+    for o in outcomes {
+        let [own, theirs] = &o.attack;
+        for (team, against, counts) in [(o.own, o.opponent, own), (o.opponent, o.own, theirs)] {
+            print!(text, "| {team} | {against} | {} |", attack_cells(counts, o.matches).join(" | "));
+        }
+    }
+}
+
+fn attack_cells(counts: &BTreeMap<String, u32>, matches: u32) -> Vec<String> {
+    let sum = |which: &dyn Fn(&str) -> bool| {
+        counts.iter().filter(|(name, _)| which(name)).map(|(_, n)| *n).sum::<u32>()
+    };
+    let of = |name: &str| counts.get(name).copied().unwrap_or(0);
+    let a_match = |n: u32| format!("{:.1}", f64::from(n) / f64::from(matches.max(1)));
+    let share = |part: u32, whole: u32| match whole {
+        0 => "–".to_owned(),
+        whole => format!("{:.0} %", 100.0 * f64::from(part) / f64::from(whole)),
+    };
+    let possessions = sum(&|name| name.starts_with("end."));
+    let ends = [E::Goal, E::Shot, E::KickToOpponent, E::Tackle, E::Left, E::Out, E::Referee];
+    let ends = ends.map(|end| share(of(&format!("end.{}", end.label())), possessions));
+    let kicks = sum(&|name| name.starts_with("kick."));
+    let reached = sum(&|name| name.starts_with("kick.") && name.ends_with("/team"));
+    let shots = of("shot.closed") + of("shot.partly-open") + of("shot.open");
+    let of_shots =
+        ["shot.closed", "shot.open", "shot.volley", "shot.goal"].map(|name| share(of(name), shots));
+    let mut cells = vec![a_match(possessions)];
+    cells.extend(ends);
+    cells.extend([a_match(kicks), share(reached, kicks), a_match(shots)]);
+    cells.extend(of_shots);
+    cells.push(a_match(of("left-ball")));
+    cells
 }
 
 /// Each side of each pair, with its passes.

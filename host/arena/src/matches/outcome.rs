@@ -78,6 +78,8 @@ pub struct Outcome {
     pub losses: [Option<Estimate>; 2],
     /// Share of the match with the ball in play.
     pub ball_in_play: Option<Estimate>,
+    /// How possessions ended, kicks, shots and left balls, all matches, own and theirs.
+    pub attack: [BTreeMap<String, u32>; 2],
     /// Passes of restarts, planned free kicks and P(receive) against observed shares, own and theirs.
     pub restarts: [Passes; 2],
     /// Offences by kind, all matches, own and theirs.
@@ -110,7 +112,7 @@ fn outcome(own: MatchTeam, opponent: MatchTeam, rows: &[&MatchRow]) -> Outcome {
     let ends = |end: std::cmp::Ordering| {
         rows.iter().filter(|row| row.goals.cmp(&row.goals_against) == end).count() as u32
     };
-    let fouls = |of: fn(&MatchRow) -> &str| {
+    let summed = |of: fn(&MatchRow) -> &str| {
         let mut all = BTreeMap::new();
         for (kind, n) in rows.iter().flat_map(|row| counted(of(row))) {
             *all.entry(kind.to_owned()).or_default() += n;
@@ -141,8 +143,9 @@ fn outcome(own: MatchTeam, opponent: MatchTeam, rows: &[&MatchRow]) -> Outcome {
         passes: both(|row| row.passes, |row| row.passes_against),
         losses: both(|row| row.losses, |row| row.losses_against),
         ball_in_play: share(|row| Some(f64::from(row.ball_in_play))),
+        attack: [summed(|row| &row.attack), summed(|row| &row.attack_against)],
         restarts: played(rows).map(|play| Passes::of(&play)),
-        fouls: [fouls(|row| &row.fouls), fouls(|row| &row.fouls_against)],
+        fouls: [summed(|row| &row.fouls), summed(|row| &row.fouls_against)],
     }
 }
 

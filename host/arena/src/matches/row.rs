@@ -1,8 +1,6 @@
 //! `row`: one row of `matches.csv`: the two teams, and every measure of both sides. s; `own` is the first of
 //! the pair.
 
-use std::collections::BTreeMap;
-
 use host::strategy::counters::{CapCounters, PlayCounters};
 use serde::{Deserialize, Serialize};
 
@@ -56,6 +54,11 @@ pub struct MatchRow {
     pub losses: u32,
     /// Balls that the opponents lost.
     pub losses_against: u32,
+    /// How possessions ended, where kicks went, what shots were worth, and left balls: `end.shot:3
+    /// kick.2-3/4-5/team:2 shot.volley:1 left-ball:1`.
+    pub attack: String,
+    /// The same of the opponents.
+    pub attack_against: String,
     /// Passes of restarts as the host followed them, by kick and fate: `flat.received:3 chip.out:1`.
     pub restart_passes: String,
     /// Passes of the opponents' restarts, in the same form.
@@ -123,6 +126,8 @@ impl MatchRow {
             passes_against: theirs.passes,
             losses: own.losses,
             losses_against: theirs.losses,
+            attack: listed(own.attack.named()),
+            attack_against: listed(theirs.attack.named()),
             restart_passes: passes::fates_column(&own.play.passes),
             restart_passes_against: passes::fates_column(&theirs.play.passes),
             calibration: passes::calibration_column(&own.play.passes),
@@ -137,8 +142,8 @@ impl MatchRow {
             cap_reuse_successes_against: theirs.play.cap.reuse_successes,
             role_changes: own.play.role_changes,
             role_changes_against: theirs.play.role_changes,
-            fouls: listed(fouls),
-            fouls_against: listed(fouls_against),
+            fouls: listed(fouls.iter().map(|(kind, n)| (*kind, *n))),
+            fouls_against: listed(fouls_against.iter().map(|(kind, n)| (*kind, *n))),
             trace_hash: report.trace_hash.clone(),
         }
     }
@@ -191,7 +196,7 @@ impl MatchRow {
 
 impl Entry for MatchRow {
     type Identity = MatchIdentity;
-    const MARK: &'static str = "# onetwo matches 2 ";
+    const MARK: &'static str = "# onetwo matches 3 ";
     fn number(&self) -> usize {
         self.number
     }
@@ -209,7 +214,7 @@ impl Entry for MatchRow {
     }
 }
 
-fn listed(fouls: &BTreeMap<&'static str, u32>) -> String {
-    let texts: Vec<_> = fouls.iter().map(|(kind, n)| format!("{kind}:{n}")).collect();
+fn listed<T: std::fmt::Display>(counts: impl Iterator<Item = (T, u32)>) -> String {
+    let texts: Vec<_> = counts.map(|(name, n)| format!("{name}:{n}")).collect();
     texts.join(" ")
 }

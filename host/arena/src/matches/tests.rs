@@ -129,6 +129,9 @@ fn row(number: usize, goals: [u32; 2], halves: [f32; 2], shots: [u32; 2]) -> Mat
         passes_against: 0,
         losses: 0,
         losses_against: 0,
+        attack: "end.shot:3 end.tackle:1 kick.2-3/1-2/team:3 kick.2-3/1-2/lost:1 shot.open:2 shot.goal:1 left-ball:1"
+            .to_owned(),
+        attack_against: String::new(),
         restart_passes: "flat.received:3 flat.out:1".to_owned(),
         restart_passes_against: "chip.received:1".to_owned(),
         calibration: "9:4:3.6:3".to_owned(),
@@ -193,6 +196,10 @@ fn ratios_goals_and_intervals_are_those_counted_by_hand() {
     assert!(text.contains("| ours | zone | flat | 12 | 12 | 9 | 0.75 (0.47 to 0.91) |"), "{text}");
     assert!(text.contains("| zone | ours | chip | 3 | 3 | 3 | 1.00 (0.44 to 1.00) |"), "{text}");
     assert!(text.contains("| ours | zone | 3 | 6 | 3 | 0.50 (0.19 to 0.81) | 3 | 0 |"), "{text}");
+    assert!(
+        text.contains("| ours | zone | 4.0 | 0 % | 75 % | 0 % | 25 % | 0 % | 0 % | 0 % | 4.0 | 75 % | 2.0 | 0 % | 100 % | 0 % | 50 % | 1.0 |"),
+        "{text}"
+    );
     assert!(text.contains("| 0.9 to 1.0 | 12 | 0.90 | 9 | 0.75 (0.47 to 0.91) |"), "{text}");
     assert!(text.contains("Team F (RR)") && text.contains("| Team H | 1 | 11 | 11 |"), "{text}");
     assert!(plot(&[outcome]).contains("ours – zone"));

@@ -80,7 +80,7 @@ pub struct AttackCounts {
     pub ends: BTreeMap<&'static str, u32>,
     /// Their time, s.
     pub possessed_s: f32,
-    /// Kicks that are no shots, by speed, length and who had the ball next: `2-3:4-5:team`, m/s and m.
+    /// Kicks that are no shots, by speed, length and who had the ball next: `2-3/4-5/team`, m/s and m.
     pub kicks: BTreeMap<String, u32>,
     /// Shots at the goal.
     pub shots: ShotCounts,
@@ -98,7 +98,7 @@ impl AttackCounts {
         let bin = |value: f32| (value as u32).min(6);
         let (speed, length) = (bin(speed), bin(length));
         let next = if to_team { "team" } else { "lost" };
-        *self.kicks.entry(format!("{speed}-{}:{length}-{}:{next}", speed + 1, length + 1)).or_default() += 1;
+        *self.kicks.entry(format!("{speed}-{}/{length}-{}/{next}", speed + 1, length + 1)).or_default() += 1;
     }
 
     /// Number of kicks that the team had next, and of all kicks that are no shots.
@@ -106,7 +106,23 @@ impl AttackCounts {
         let sum = |which: &dyn Fn(&str) -> bool| {
             self.kicks.iter().filter(|(name, _)| which(name)).map(|(_, n)| n).sum()
         };
-        [sum(&|name| name.ends_with(":team")), sum(&|_| true)]
+        [sum(&|name| name.ends_with("/team")), sum(&|_| true)]
+    }
+
+    /// All counts by name: `end.shot`, `kick.2-3/4-5/team`, `shot.volley`, `left-ball`, …
+    pub fn named(&self) -> impl Iterator<Item = (String, u32)> + '_ {
+        let ends = self.ends.iter().map(|(end, n)| (format!("end.{end}"), *n));
+        let kicks = self.kicks.iter().map(|(kick, n)| (format!("kick.{kick}"), *n));
+        let ShotCounts { closed, partly_open, open, volleys, goals } = self.shots;
+        let others = [
+            ("shot.closed", closed),
+            ("shot.partly-open", partly_open),
+            ("shot.open", open),
+            ("shot.volley", volleys),
+            ("shot.goal", goals),
+            ("left-ball", self.left_balls),
+        ];
+        ends.chain(kicks).chain(others.map(|(name, n)| (name.to_owned(), n))).filter(|(_, n)| *n > 0)
     }
 
     /// Number of possessions.

@@ -57,6 +57,8 @@ fn possessions_end_by_what_the_last_owner_did() {
     assert_eq!((blue.ended_by(PossessionEnd::Tackle), blue.ended_by(PossessionEnd::KickToOpponent)), (1, 1));
     assert_eq!((yellow.ended_by(PossessionEnd::Left), yellow.ended_by(PossessionEnd::Goal)), (1, 1));
     assert_eq!((blue.kicks_that_reached(), yellow.kicks_that_reached()), ([0, 1], [1, 1]));
-    assert_eq!(yellow.kicks.keys().collect::<Vec<_>>(), ["2-3:1-2:team"]);
+    assert_eq!(yellow.kicks.keys().collect::<Vec<_>>(), ["2-3/1-2/team"]);
     assert_eq!((yellow.shots.goals, yellow.possessions()), (1, 2));
+    let named: Vec<_> = yellow.named().map(|(name, n)| format!("{name}:{n}")).collect();
+    assert_eq!(named.join(" "), "end.goal:1 end.left:1 kick.2-3/1-2/team:1 shot.goal:1");
 }
