@@ -7,7 +7,7 @@
 
 use geometry::{Field, Point, Segment};
 
-use casebase::{Action, KickAim};
+use casebase::{Action, KickAim, LegKind};
 
 use crate::estimate;
 use crate::execution::ActionScene;
@@ -48,8 +48,12 @@ fn gameplay_until_shot(scene: &ActionScene<'_>) -> f32 {
     if shoots {
         return duration;
     }
-    let left = scene.case.legs(scene.ball_used()).last().map(|leg| leg.end());
-    duration + left.map_or(0.0, |ball| until_shot(scene, ball))
+    let last = scene.case.legs(scene.ball_used()).last();
+    // Who has received a pass has the ball at its feet.
+    last.map_or(duration, |leg| {
+        let grabbed = if matches!(leg.kind, LegKind::Pass(_)) { scene.body.spec().grab } else { 0.0 };
+        duration + until_shot(scene, leg.end()) - grabbed
+    })
 }
 
 /// Expected seconds from reaching a ball at `ball` until a shot: grabs, and short kicks on until the goal is
