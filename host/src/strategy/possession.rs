@@ -106,19 +106,16 @@ pub fn arrival(
     let mover = Mover::new(robot.position, robot.velocity, limits);
     let path = ground.rolling(ball.position, ball.velocity);
     let speed = ball.velocity.norm();
-    let mut time = 0.0;
-    while speed > RESTS {
-        let (distance, left) = path.progress(time);
-        if left < RESTS {
-            break;
-        }
-        let at = ball.position + path.along() * distance;
+    let (mut time, mut progress) = (0.0, (0.0, speed));
+    while progress.1 > RESTS {
+        let at = ball.position + path.along() * progress.0;
         // A rolling ball is met on its path.
         let behind = at + path.along() * BEHIND;
         if mover.time_to(behind) <= time {
             return Arrival { seconds: time, ball: at };
         }
         time += STEP;
+        progress = path.progress(time);
     }
     let at = if speed > RESTS { path.rest() } else { ball.position };
     let aim = (goal - at).unit().unwrap_or_default();

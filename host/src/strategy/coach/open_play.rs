@@ -35,7 +35,7 @@ impl Coach {
             self.defend(plan, false);
             return plan.all_robots(Role::Player, Task::Gameplay, OrderReason::OpenPlay);
         }
-        if keepers || self.is_left_to_the_keeper(view, &ball) {
+        if keepers || is_left_to_the_keeper(view, &ball) {
             self.first = None;
             self.defend(plan, self.attacked || keepers);
             return self.support(plan, ball.position);
@@ -75,12 +75,6 @@ impl Coach {
         plan.all_robots(Role::Player, Task::Gameplay, OrderReason::OpenPlay);
     }
 
-    /// Only a keeper may, or can, play the ball; a robot that blocks a shot stays there.
-    pub(super) fn is_left_to_the_keeper(&self, view: &View, ball: &ViewBall) -> bool {
-        let forbidden = view.in_their_area(ball.position, THEIRS) || view.in_our_area(ball.position, 0.0);
-        forbidden || is_shot_at_us(view, ball)
-    }
-
     /// Updates whether the ball is theirs: one of them is clearly sooner at it than ours, `ours` s from now.
     fn see_whose_ball(&mut self, view: &View, ours: f32) {
         let Some(ball) = view.ball else { return };
@@ -89,6 +83,12 @@ impl Coach {
         let worth = if self.attacked { -roles::WORTH } else { roles::WORTH };
         self.attacked = theirs + worth < ours;
     }
+}
+
+/// Only a keeper may, or can, play the ball; a robot that blocks a shot stays there.
+pub(super) fn is_left_to_the_keeper(view: &View, ball: &ViewBall) -> bool {
+    let forbidden = view.in_their_area(ball.position, THEIRS) || view.in_our_area(ball.position, 0.0);
+    forbidden || is_shot_at_us(view, ball)
 }
 
 /// Whether a shot moves at our goal: a robot that ran after it would open the line that it blocks.

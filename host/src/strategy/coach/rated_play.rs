@@ -10,6 +10,7 @@ use super::super::possession::{Arrival, Possession, arrival};
 use super::super::rated::{self, Action};
 use super::super::view::{View, ViewBall, ViewRobot};
 use super::super::{roles, support};
+use super::open_play::{best_place, is_left_to_the_keeper};
 use super::{Coach, Plan};
 
 /// The action that was chosen, and for which ball.
@@ -31,7 +32,7 @@ impl Coach {
         if let Some(blocked) = self.double_touch_blocked
             && plan.take(blocked)
         {
-            let (at, worth) = super::open_play::best_place(view, ball.position);
+            let (at, worth) = best_place(view, ball.position);
             let why = OrderReason::FreePlace { worth };
             plan.order(blocked, Role::DoubleTouchBlocked, plan.facing_ball(at), why);
         }
@@ -46,7 +47,7 @@ impl Coach {
             self.defend(plan, false);
             return self.support_pass(plan, pass.at, None);
         }
-        if self.is_left_to_the_keeper(view, &ball) || keepers {
+        if keepers || is_left_to_the_keeper(view, &ball) {
             self.first = None;
             self.defend(plan, self.attacked || keepers);
             return self.support_pass(plan, ball.position, None);
