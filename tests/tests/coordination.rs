@@ -6,6 +6,8 @@
 //! match-tests --test coordination` repeats it alone, and `ONETWO_SEEDS=6000 cargo test --release -p
 //! match-tests --test coordination -- --nocapture` is a longer run.
 
+use std::collections::BTreeSet;
+
 use brain::BrainConfig;
 use hil_sim::{
     AirSettings, Configuration, Fault, NativeBackend, Noise, Parameters, Scenario, ScheduledFault,
@@ -86,11 +88,11 @@ fn halves_of_a_partition_are_one_team_again_within_a_second_of_healing() {
             ScheduledFault { tick: heal, fault: Fault::Air(AirSettings::default()) },
         ];
         let mut simulation = team.simulation(AirSettings::default(), faults);
-        let mut watcher = Watcher::new(Air::Lossy);
+        let mut observer = Observer::new(Air::Lossy);
         let mut united = None;
         for tick in 0..TICKS {
-            step(&team, &mut simulation, &mut watcher);
-            let newest = watcher.newest_by_robot();
+            observer.step(&team, &mut simulation);
+            let newest = observer.watcher.newest_by_robot();
             let same = newest.windows(2).all(|pair| pair[0] == pair[1]);
             if tick > heal && same && united.is_none() {
                 united = Some(u64::from(tick - heal) * TICK_US);
@@ -100,7 +102,7 @@ fn halves_of_a_partition_are_one_team_again_within_a_second_of_healing() {
         if united > RECOVER_WITHIN.0 {
             return Err(format!("not one team {} ms after healing", united / 1000));
         }
-        report(&watcher)
+        report(&observer.watcher)
     });
 }
 
@@ -200,11 +202,11 @@ fn for_each_seed(trial: impl Fn(u64) -> Result<Counters, String>) -> Counters {
 
 fn watch(team: &Team, air: AirSettings, faults: Vec<ScheduledFault>, kind: Air) -> Result<Counters, String> {
     let mut simulation = team.simulation(air, faults);
-    let mut watcher = Watcher::new(kind);
+    let mut observer = Observer::new(kind);
     for _ in 0..TICKS {
-        step(team, &mut simulation, &mut watcher);
+        observer.step(team, &mut simulation);
     }
-    report(&watcher)
+    report(&observer.watcher)
 }
 
 fn report(watcher: &Watcher) -> Result<Counters, String> {
@@ -221,37 +223,60 @@ fn report(watcher: &Watcher) -> Result<Counters, String> {
     })
 }
 
-/// One tick of the trial, observed by the watcher.
-fn step(team: &Team, simulation: &mut Simulation<'_>, watcher: &mut Watcher) {
-    let tick = simulation.step().expect("native computers do not fail");
-    let now = Instant(u64::from(tick.number) * TICK_US);
-    if tick.number == 0 {
-        for id in &team.ids {
-            watcher.see(now, &Seen::Booted(*id));
-        }
+/// What a watcher is told of a trial: each beacon that a robot received and could believe.
+struct Observer {
+    watcher: Watcher,
+    /// Receiver and sender, where the sender has greeted the receiver since both booted: without that no
+    /// robot believes a beacon (docs/security.md).
+    greeted: BTreeSet<(RobotId, RobotId)>,
+}
+
+impl Observer {
+    fn new(kind: Air) -> Self {
+        Self { watcher: Watcher::new(kind), greeted: BTreeSet::new() }
     }
-    for fault in &tick.faults {
-        match fault {
-            Fault::Crash(id) => watcher.see(now, &Seen::Crashed(*id)),
-            Fault::Return(id) => watcher.see(now, &Seen::Booted(*id)),
-            Fault::Air(_) | Fault::FlipOrderBit { .. } => {}
+
+    /// One tick of the trial.
+    fn step(&mut self, team: &Team, simulation: &mut Simulation<'_>) {
+        let tick = simulation.step().expect("native computers do not fail");
+        let now = Instant(u64::from(tick.number) * TICK_US);
+        if tick.number == 0 {
+            for id in &team.ids {
+                self.watcher.see(now, &Seen::Booted(*id));
+            }
         }
-    }
-    for received in &tick.received {
-        if let Ok((from, TeamMessage::Beacon(beacon))) =
-            overhear(&received.packet, TEAM, &TeamKey::ZERO.of_team())
-        {
-            watcher.see(now, &Seen::Received(received.to, from, beacon));
+        for fault in &tick.faults {
+            match fault {
+                Fault::Crash(id) => self.watcher.see(now, &Seen::Crashed(*id)),
+                Fault::Return(id) => {
+                    self.greeted.retain(|(to, from)| to != id && from != id);
+                    self.watcher.see(now, &Seen::Booted(*id));
+                }
+                Fault::Air(_) | Fault::FlipOrderBit { .. } => {}
+            }
         }
-    }
-    for sent in &tick.sent {
-        if let Ok((from, TeamMessage::Beacon(beacon))) =
-            overhear(&sent.packet, TEAM, &TeamKey::ZERO.of_team())
-        {
-            watcher.see(now, &Seen::Sent(from, beacon));
+        for received in &tick.received {
+            match overhear(&received.packet, TEAM, &TeamKey::ZERO.of_team()) {
+                Ok((from, TeamMessage::Beacon(beacon))) if self.greeted.contains(&(received.to, from)) => {
+                    self.watcher.see(now, &Seen::Received(received.to, from, beacon));
+                }
+                Ok((from, TeamMessage::Handshake(handshake)))
+                    if handshake.teammates.iter().any(|known| known.who == received.to) =>
+                {
+                    self.greeted.insert((received.to, from));
+                }
+                _ => {}
+            }
         }
+        for sent in &tick.sent {
+            if let Ok((from, TeamMessage::Beacon(beacon))) =
+                overhear(&sent.packet, TEAM, &TeamKey::ZERO.of_team())
+            {
+                self.watcher.see(now, &Seen::Sent(from, beacon));
+            }
+        }
+        self.watcher.end_of_step(now);
     }
-    watcher.end_of_step(now);
 }
 
 /// The coordinator of the newest cycle at that tick, found by running the same trial up to it.

@@ -147,17 +147,17 @@ impl<'a> Brain<'a> {
         self.beacon_due |= self.spoken.has_turn(self.config.robot, self.actuation.beacon_steps());
     }
 
-    /// What it wants of its body. Where steps are short, a step does not both plan and do something else that
-    /// takes long: a step in which a gameplay starts or ends brakes for 10 ms; a step that retrieved or
-    /// received many frames reuses its path.
+    /// What it wants of its body. A step does not both plan and do something else that takes long: a step in
+    /// which a gameplay starts or ends stands; where steps are short, one that retrieved or received many
+    /// frames reuses its path.
     fn intent(&mut self, now: Instant) -> Intent {
         let since = core::mem::take(&mut self.since);
         let received_most = if self.actuation.winds() { RECEIVED_MOST_WINDING } else { RECEIVED_MOST };
         let is_busy = since.retrieved || since.received > received_most;
-        if !self.has_short_steps() {
-            self.act(now)
-        } else if since.turned {
+        if since.turned {
             Intent::Stand { face: None }
+        } else if !self.has_short_steps() {
+            self.act(now)
         } else if is_busy && self.exit_heading > 0 {
             self.exit_heading -= 1;
             Intent::KeepPath
@@ -186,9 +186,13 @@ impl<'a> Brain<'a> {
         self.spoken.beacon(now);
         let beacon = self.beacon(now);
         if self.cycle.closure().is_some() && self.reported_end_of != self.cycle.id() {
-            // The end is announced before the next cycle starts, which it does in the next step: a teammate
-            // that receives only the start would not know why.
+            // The end is announced before the next cycle starts: a teammate that receives only the start
+            // would not know why.
             self.reported_end_of = self.cycle.id();
+            // One message a step where steps are short: sealing costs time, and the next step comes soon.
+            if !self.has_short_steps() {
+                self.coordinate(now);
+            }
         }
         Some(TeamMessage::Beacon(beacon))
     }

@@ -133,7 +133,7 @@ pub fn rate_again(
 
 fn shot_worth(view: &View, from: Point<Attack>, aim: Point<Attack>, goal: f32) -> f32 {
     let half = view.field.length * 0.5;
-    // Whom it hits has it; else their keeper.
+    // The first robot in its path has it; else their keeper.
     let line = Segment::new(from, aim);
     let blocker = view
         .theirs

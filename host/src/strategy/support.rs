@@ -48,8 +48,8 @@ pub fn pass_places(
 ) -> heapless::Vec<(Point<Attack>, f32), ROBOTS_MAX> {
     let mut chosen: heapless::Vec<(Point<Attack>, f32), ROBOTS_MAX> = heapless::Vec::new();
     // No robot of ours: the receivers are those that are sent there.
-    let nobody = ViewRobot::at_rest(RobotId::ZERO, ball);
-    let scene = PassScene::of(view, kicks, ball, passer, &nobody).keeping();
+    let placeholder = ViewRobot::at_rest(RobotId::ZERO, ball);
+    let scene = PassScene::of(view, kicks, ball, passer, &placeholder).keeping();
     let rated: heapless::Vec<(Point<Attack>, f32), { GRID.0 * GRID.1 }> = grid(view, ball)
         .chain(stood.iter().copied().filter(|at| at.distance(ball) > PASS_SHORTEST))
         .take(GRID.0 * GRID.1)

@@ -110,7 +110,7 @@ impl Default for Tactics {
     /// against our team without it: threats and their second level gain goals, attack gains shots and ground;
     /// the effects of pass-ahead, coerce and the bridge are not significant.
     fn default() -> Self {
-        Self { threats: true, second_level: true, attack: true, rated: true, ..Self::NONE }
+        Self { threats: true, second_level: true, attack: true, ..Self::NONE }
     }
 }
 

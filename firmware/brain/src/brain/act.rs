@@ -71,11 +71,9 @@ impl Brain<'_> {
                 if let Some(state) = self.cycle.aborted(reason) {
                     self.adopt(now, &state);
                 }
-                if self.has_short_steps() {
-                    // This step ends a gameplay, so the robot brakes as in every such step.
-                    self.since.turned = false;
-                    return Intent::Stand { face: None };
-                }
+                // This step ends a gameplay, and may begin the next: the robot stands in it.
+                self.since.turned = false;
+                return Intent::Stand { face: None };
             }
             ReuseRequest::Nothing => {}
         }
