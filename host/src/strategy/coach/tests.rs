@@ -17,6 +17,10 @@ fn coach() -> Coach {
     Coach::new(Team::Ours, Tactics::default(), League::DivisionB)
 }
 
+/// The default with the rated list.
+const RATED: Tactics =
+    Tactics { threats: true, second_level: true, attack: true, rated: true, ..Tactics::NONE };
+
 fn phases() -> Vec<Phase<Side>> {
     let by = |side| {
         [
@@ -67,20 +71,37 @@ fn in_halt_everyone_stands() {
 }
 
 #[test]
-fn in_open_play_there_are_a_keeper_two_defenders_one_who_plays_the_ball_and_two_for_its_passes() {
+fn in_open_play_there_are_a_keeper_two_defenders_and_three_who_play_cases() {
     let orders = coach().decide(&view((0.0, 0.0), &OURS, &THEIRS));
+    let of = |task: fn(&Order) -> bool| orders.iter().filter(|order| task(order)).count();
+    assert_eq!(of(|order| order.role == Role::Keeper), 1);
+    assert_eq!(of(|order| matches!(order.role, Role::Defender(_))), 2);
+    assert_eq!(of(|order| order.task == Task::Gameplay), 3);
+}
+
+#[test]
+fn by_the_rated_list_one_plays_the_ball_and_two_stand_for_its_passes() {
+    let orders = Coach::new(Team::Ours, RATED, League::DivisionB).decide(&view((0.0, 0.0), &OURS, &THEIRS));
     let of = |which: fn(&Order) -> bool| orders.iter().filter(|order| which(order)).count();
     assert_eq!(of(|order| order.role == Role::Keeper), 1);
     assert_eq!(of(|order| matches!(order.role, Role::Defender(_))), 2);
     assert_eq!(of(|order| order.role == Role::Player), 1);
     assert_eq!(of(|order| matches!(order.role, Role::Support(_) | Role::Receiver)), 2);
-    // Without the rated list and the attack, they play cases.
-    let cases = Tactics { rated: false, attack: false, ..Tactics::default() };
-    let orders = Coach::new(Team::Ours, cases, League::DivisionB).decide(&view((0.0, 0.0), &OURS, &THEIRS));
-    let of = |task: fn(&Order) -> bool| orders.iter().filter(|order| task(order)).count();
-    assert_eq!(of(|order| order.role == Role::Keeper), 1);
-    assert_eq!(of(|order| matches!(order.role, Role::Defender(_))), 2);
-    assert_eq!(of(|order| order.task == Task::Gameplay), 3);
+}
+
+#[test]
+fn by_the_rated_list_a_robot_with_the_ball_keeps_it_though_another_is_nearer_to_its_rest() {
+    let mut coach = Coach::new(Team::Ours, RATED, League::DivisionB);
+    // Our 3 has it before its front plate; our 4 is behind it.
+    let mut view = view((-0.4, 0.0), &OURS, &THEIRS);
+    view.ours[4].position = Point::new(-0.7, 0.15);
+    for _ in 0..3 {
+        let orders = coach.decide(&view);
+        let players: Vec<_> = orders.iter().filter(|order| order.role == Role::Player).collect();
+        assert_eq!(players.iter().map(|order| order.robot.number()).collect::<Vec<_>>(), [3], "{players:?}");
+        view.now = Instant(view.now.0 + 10_000);
+        view.ball.as_mut().unwrap().rest = Point::new(-0.6, 0.15);
+    }
 }
 
 #[test]
@@ -323,7 +344,7 @@ fn where_a_case_is_played_its_pass_goes_near_its_place_to_its_receiver_if_the_br
         let part = |part, robot: usize| (seen.ours[robot].id, CaseRobot::new(part).unwrap());
         let pass = CasePass { case: CaseId(12), passer: part(0, passer), receiver: part(1, 5), at };
         let seen = seen.proposing(Some(pass));
-        let tactics = Tactics { bridge, rated: false, ..Tactics::default() };
+        let tactics = Tactics { bridge, ..Tactics::default() };
         Coach::new(Team::Ours, tactics, League::DivisionB).decide(&seen)
     };
     let orders = decide(true, 3);
