@@ -4,7 +4,7 @@
 //! | word | meaning |
 //! |---|---|
 //! | possession | from the moment at which robots of one team alone are at the ball, or one of them kicks it, until the other team is, or play stops; of 0.25 s and longer |
-//! | at the ball | the ball on the ground within [`AT_BALL`] of a robot's centre |
+//! | at the ball | the ball on the ground within 0.125 m of a robot's centre |
 //! | kick | faster than 1 m/s, and 0.5 m long before another robot touches it or play stops |
 //! | shot | a kick faster than 3 m/s at a point of the goal line within 0.25 m beside the posts |
 //! | volley | a shot within 0.12 s of the ball's arrival from a teammate's kick |
