@@ -6,7 +6,7 @@
 //! match-tests --test coordination` repeats it alone, and `ONETWO_SEEDS=6000 cargo test --release -p
 //! match-tests --test coordination -- --nocapture` is a longer run.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use brain::BrainConfig;
 use hil_sim::{
@@ -14,6 +14,7 @@ use hil_sim::{
     Simulation, SimulationConfig, Stream, TICK_US,
 };
 use match_tests::invariants::{Air, RECOVER_WITHIN, Seen, Watcher};
+use match_tests::swarm::honest::{Believed, Honest, Sayings};
 use protocol::frame::TeamKey;
 use protocol::link::overhear;
 use protocol::team::TeamMessage;
@@ -88,10 +89,10 @@ fn halves_of_a_partition_are_one_team_again_within_a_second_of_healing() {
             ScheduledFault { tick: heal, fault: Fault::Air(AirSettings::default()) },
         ];
         let mut simulation = team.simulation(AirSettings::default(), faults);
-        let mut observer = Observer::new(Air::Lossy);
+        let mut observer = Observer::new(Air::Lossy, &team);
         let mut united = None;
         for tick in 0..TICKS {
-            observer.step(&team, &mut simulation);
+            observer.step(&mut simulation);
             let newest = observer.watcher.newest_by_robot();
             let same = newest.windows(2).all(|pair| pair[0] == pair[1]);
             if tick > heal && same && united.is_none() {
@@ -202,9 +203,9 @@ fn for_each_seed(trial: impl Fn(u64) -> Result<Counters, String>) -> Counters {
 
 fn watch(team: &Team, air: AirSettings, faults: Vec<ScheduledFault>, kind: Air) -> Result<Counters, String> {
     let mut simulation = team.simulation(air, faults);
-    let mut observer = Observer::new(kind);
+    let mut observer = Observer::new(kind, team);
     for _ in 0..TICKS {
-        observer.step(team, &mut simulation);
+        observer.step(&mut simulation);
     }
     report(&observer.watcher)
 }
@@ -223,25 +224,28 @@ fn report(watcher: &Watcher) -> Result<Counters, String> {
     })
 }
 
-/// What a watcher is told of a trial: each beacon that a robot received and could believe.
+/// Tells a watcher what happens in a trial: each beacon that a robot received and may believe.
 struct Observer {
     watcher: Watcher,
-    /// Receiver and sender, where the sender has greeted the receiver since both booted: without that no
-    /// robot believes a beacon (docs/security.md).
-    greeted: BTreeSet<(RobotId, RobotId)>,
+    /// All packets sent so far.
+    sayings: Sayings,
+    /// Each robot as a receiver, with its epoch.
+    receivers: BTreeMap<RobotId, (u32, Honest)>,
 }
 
 impl Observer {
-    fn new(kind: Air) -> Self {
-        Self { watcher: Watcher::new(kind), greeted: BTreeSet::new() }
+    fn new(kind: Air, team: &Team) -> Self {
+        let epoch = BrainConfig::new(RobotId::ZERO, TEAM).epoch;
+        let receivers = team.ids.iter().map(|&id| (id, (epoch, Honest::new(id, epoch)))).collect();
+        Self { watcher: Watcher::new(kind), sayings: Sayings::default(), receivers }
     }
 
     /// One tick of the trial.
-    fn step(&mut self, team: &Team, simulation: &mut Simulation<'_>) {
+    fn step(&mut self, simulation: &mut Simulation<'_>) {
         let tick = simulation.step().expect("native computers do not fail");
         let now = Instant(u64::from(tick.number) * TICK_US);
         if tick.number == 0 {
-            for id in &team.ids {
+            for id in self.receivers.keys() {
                 self.watcher.see(now, &Seen::Booted(*id));
             }
         }
@@ -249,26 +253,24 @@ impl Observer {
             match fault {
                 Fault::Crash(id) => self.watcher.see(now, &Seen::Crashed(*id)),
                 Fault::Return(id) => {
-                    self.greeted.retain(|(to, from)| to != id && from != id);
+                    if let Some((epoch, receiver)) = self.receivers.get_mut(id) {
+                        *epoch += 1;
+                        *receiver = Honest::new(*id, *epoch);
+                    }
                     self.watcher.see(now, &Seen::Booted(*id));
                 }
                 Fault::Air(_) | Fault::FlipOrderBit { .. } => {}
             }
         }
         for received in &tick.received {
-            match overhear(&received.packet, TEAM, &TeamKey::ZERO.of_team()) {
-                Ok((from, TeamMessage::Beacon(beacon))) if self.greeted.contains(&(received.to, from)) => {
-                    self.watcher.see(now, &Seen::Received(received.to, from, beacon));
-                }
-                Ok((from, TeamMessage::Handshake(handshake)))
-                    if handshake.teammates.iter().any(|known| known.who == received.to) =>
-                {
-                    self.greeted.insert((received.to, from));
-                }
-                _ => {}
+            let receiver = self.receivers.get_mut(&received.to);
+            let believed = receiver.and_then(|(_, robot)| robot.receive(&received.packet, &self.sayings));
+            if let Some(Believed::Teammate(from, TeamMessage::Beacon(beacon))) = believed {
+                self.watcher.see(now, &Seen::Received(received.to, from, beacon));
             }
         }
         for sent in &tick.sent {
+            self.sayings.add(&sent.packet);
             if let Ok((from, TeamMessage::Beacon(beacon))) =
                 overhear(&sent.packet, TEAM, &TeamKey::ZERO.of_team())
             {

@@ -293,15 +293,7 @@ impl Coach {
             since: view.now,
             places: support::places(view, from, wanted),
         });
-        let rated = settled.places.clone();
-        self.settled = Some(settled);
-        let places: heapless::Vec<_, ROBOTS_MAX> = rated.iter().map(|(at, _)| *at).collect();
-        self.fill(plan, &places, |i| {
-            (
-                Role::Support(i as u8),
-                OrderReason::FreePlace { worth: rated.get(i).map_or(0.0, |(_, worth)| *worth) },
-            )
-        });
+        self.fill_support(plan, settled);
     }
 
     /// Sends all remaining robots to where a pass from `from` by `passer` would be worth most.
@@ -322,6 +314,11 @@ impl Coach {
             self.stood = places.iter().map(|(at, _)| *at).collect();
             Settled { from, since: view.now, places }
         });
+        self.fill_support(plan, settled);
+    }
+
+    /// Sends remaining robots to these places as supporters, and keeps the places.
+    fn fill_support(&mut self, plan: &mut Plan<'_>, settled: Settled) {
         let rated = settled.places.clone();
         self.settled = Some(settled);
         let places: heapless::Vec<_, ROBOTS_MAX> = rated.iter().map(|(at, _)| *at).collect();

@@ -11,7 +11,7 @@ use protocol::{Duration, Instant, RobotId};
 use rules::contact;
 
 use super::pass::reach::Mover;
-use super::view::{RobotSet, View, ViewBall, ViewRobot};
+use super::view::{RobotSet, View, ViewBall, ViewRobot, nearest};
 
 /// Who has the ball.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -40,10 +40,7 @@ impl Possession {
                 let margin = if held == Some(robot.id) { KEEPS } else { 0.0 };
                 has(robot, &ball, margin) || feels(robot.id) && robot.position.distance(ball.position) < FELT
             });
-            has.min_by(|a, b| {
-                a.position.distance(ball.position).total_cmp(&b.position.distance(ball.position))
-            })
-            .map(|robot| robot.id)
+            nearest(has, ball.position).map(|(robot, _)| robot.id)
         };
         let ours = of(&view.ours, held, &|id| contact.has(id));
         let theirs = of(&view.theirs, None, &|_| false);
@@ -81,7 +78,7 @@ fn has(robot: &ViewRobot, ball: &ViewBall, margin: f32) -> bool {
     let (ahead, across) = (off.dot(heading), heading.cross(off));
     ahead > 0.0
         && ahead < contact::TOUCHES_WITHIN + margin
-        && across.abs() < MOUTH + margin
+        && across.abs() < OPENING_HALF + margin
         && (ball.velocity - robot.velocity).norm() < GOES_ALONG
 }
 
@@ -128,8 +125,8 @@ pub fn arrival(
     Arrival { seconds: there.max(if speed > RESTS { time } else { 0.0 }), ball: at }
 }
 
-/// Half the width of a ball's place before the front plate, m: the plate is 0.12 to 0.16 wide.
-const MOUTH: f32 = 0.06;
+/// Half the width of the dribbler opening, m: front plates are 0.12 to 0.16 wide.
+const OPENING_HALF: f32 = 0.06;
 /// A robot that has the ball keeps it while that is this much farther off, m: a ball bounces off the roller.
 const KEEPS: f32 = 0.03;
 /// A ball felt by the sensor of a robot is at most this far from its centre, m: cameras err by less.

@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 
 use arena::game::attack::AttackCounts;
 use arena::game::{Game, GameConfig, GameReport, Watcher, play};
-use arena::matches::MatchTeam;
+use arena::matches::{AttackRow, MatchTeam, attack_table};
 use casebase::CaseBase;
 use hil_sim::NativeBackend;
 use hil_sim::small_size::worlds::{WorldChoice, WorldModel};
@@ -63,7 +63,7 @@ fn main() -> Result<(), String> {
             println!("    {}", stoppage.line());
         }
     }
-    sum(&played);
+    sum(&played, opponent);
     Ok(())
 }
 
@@ -162,36 +162,19 @@ fn print_conduct(report: &GameReport, account: &Account) {
     }
 }
 
-/// Possessions by their end, kicks, shots and left balls of a team.
-fn attack_line(all: &[&AttackCounts], n: f32) -> String {
-    let mut ends = BTreeMap::<&str, u32>::new();
-    for (end, count) in all.iter().flat_map(|counts| &counts.ends) {
-        *ends.entry(end).or_default() += count;
+/// The counts of one colour's attack, over all matches.
+fn attack_of(
+    played: &[(GameReport, Account)],
+    of: impl Fn(&GameReport) -> &AttackCounts,
+) -> BTreeMap<String, u32> {
+    let mut sum = BTreeMap::new();
+    for (name, n) in played.iter().flat_map(|(report, _)| of(report).named()) {
+        *sum.entry(name).or_default() += n;
     }
-    let of = |which: &dyn Fn(&AttackCounts) -> u32| all.iter().map(|counts| which(counts)).sum::<u32>();
-    let percent = |part: u32, whole: u32| 100.0 * part as f32 / whole.max(1) as f32;
-    let possessions: u32 = ends.values().sum();
-    let ends: Vec<_> =
-        ends.iter().map(|(end, count)| format!("{end} {:.0} %", percent(*count, possessions))).collect();
-    let shots = of(&|counts| counts.shots.all());
-    format!(
-        "{:.1} possessions a match of {:.1} s: {}; kicks {:.1}, {:.0} % reach the team; left balls {:.1}; shots {:.1}: closed {:.0} %, \
-         open {:.0} %, volleys {:.0} %, goals {:.0} %",
-        possessions as f32 / n,
-        all.iter().map(|counts| counts.possessed_s).sum::<f32>() / possessions.max(1) as f32,
-        ends.join(", "),
-        of(&|counts| counts.kicks_that_reached()[1]) as f32 / n,
-        percent(of(&|counts| counts.kicks_that_reached()[0]), of(&|counts| counts.kicks_that_reached()[1])),
-        of(&|counts| counts.left_balls) as f32 / n,
-        shots as f32 / n,
-        percent(of(&|counts| counts.shots.closed), shots),
-        percent(of(&|counts| counts.shots.open), shots),
-        percent(of(&|counts| counts.shots.volleys), shots),
-        percent(of(&|counts| counts.shots.goals), shots),
-    )
+    sum
 }
 
-fn sum(played: &[(GameReport, Account)]) {
+fn sum(played: &[(GameReport, Account)], opponent: MatchTeam) {
     let n = played.len() as f32;
     let sorted = |of: &dyn Fn(&GameReport) -> f32| {
         let mut values: Vec<f32> = played.iter().map(|(report, _)| of(report)).collect();
@@ -243,8 +226,11 @@ fn sum(played: &[(GameReport, Account)]) {
         100.0 * placed as f32 / (placed + failed).max(1) as f32
     );
     println!("events a match: {events:.2?}");
-    let attack: Vec<_> = played.iter().flat_map(|(r, _)| [&r.metrics.blue.attack]).collect();
-    println!("ours: {}", attack_line(&attack, n));
+    let blue = attack_of(played, |report| &report.metrics.blue.attack);
+    let yellow = attack_of(played, |report| &report.metrics.yellow.attack);
+    let row = |team, against, counts| AttackRow { team, against, counts, matches: played.len() as u32 };
+    let ours = MatchTeam::ours();
+    println!("{}", attack_table(&[row(ours, opponent, &blue), row(opponent, ours, &yellow)]));
     let mut passes = host::strategy::pass::PassCounters::default();
     for (report, _) in played {
         passes.add(&report.metrics.blue.play.passes);
@@ -263,7 +249,5 @@ fn sum(played: &[(GameReport, Account)]) {
             f64::from(bin.received) / f64::from(bin.passes)
         );
     }
-    let attack: Vec<_> = played.iter().flat_map(|(r, _)| [&r.metrics.yellow.attack]).collect();
-    println!("theirs: {}", attack_line(&attack, n));
     stoppages::print(played.len(), all, played.iter().map(|(_, account)| &account.stoppages));
 }

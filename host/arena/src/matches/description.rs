@@ -139,14 +139,44 @@ fn play(text: &mut String, outcomes: &[Outcome]) {
 
 /// How possessions end, where kicks go and what shots are worth, from the true world.
 fn attack(text: &mut String, outcomes: &[Outcome]) {
-    *text += "\n| team | against | possessions a match | goal | shot | kick to an opponent | tackle | left | out | stopped | kicks a match | reach the team | shots over 3 m/s a match | goal closed | half open | volleys | score | left balls a match |\n\
-              |---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
-    for o in outcomes {
-        let [own, theirs] = &o.attack;
-        for (team, against, counts) in [(o.own, o.opponent, own), (o.opponent, o.own, theirs)] {
-            print!(text, "| {team} | {against} | {} |", attack_cells(counts, o.matches).join(" | "));
-        }
+    let rows: Vec<_> = outcomes
+        .iter()
+        .flat_map(|o| {
+            [(o.own, o.opponent, &o.attack[0]), (o.opponent, o.own, &o.attack[1])]
+                .map(|side| (side, o.matches))
+        })
+        .map(|((team, against, counts), matches)| AttackRow { team, against, counts, matches })
+        .collect();
+    *text += &attack_table(&rows);
+}
+
+/// One team's sums of [`AttackCounts::named`](crate::game::attack::AttackCounts::named) against another.
+#[derive(Clone, Copy, Debug)]
+pub struct AttackRow<'a> {
+    /// The team whose counts these are.
+    pub team: MatchTeam,
+    /// The team that it played against.
+    pub against: MatchTeam,
+    /// The sums over all matches, by name.
+    pub counts: &'a BTreeMap<String, u32>,
+    /// Number of matches.
+    pub matches: u32,
+}
+
+/// The Markdown table of how possessions end, where kicks go and what shots are worth.
+pub fn attack_table(rows: &[AttackRow<'_>]) -> String {
+    let mut text = "\n| team | against | possessions a match | goal | shot | kick to an opponent | tackle | left | out | stopped | kicks a match | reach the team | shots over 3 m/s a match | goal closed | half open | volleys | score | left balls a match |\n\
+              |---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n".to_owned();
+    for row in rows {
+        print!(
+            text,
+            "| {} | {} | {} |",
+            row.team,
+            row.against,
+            attack_cells(row.counts, row.matches).join(" | ")
+        );
     }
+    text
 }
 
 fn attack_cells(counts: &BTreeMap<String, u32>, matches: u32) -> Vec<String> {

@@ -27,7 +27,7 @@ use rules::Colour;
 use serde::{Deserialize, Serialize};
 
 pub use calibration::calibration_plot;
-pub use description::markdown;
+pub use description::{AttackRow, attack_table, markdown};
 pub use effect::{Change, Effect, effects};
 pub use match_team::MatchTeam;
 pub use outcome::{Estimate, Outcome, our_passes, outcomes};

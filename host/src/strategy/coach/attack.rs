@@ -15,9 +15,9 @@ use super::super::order::{OrderReason, Role, Task};
 use super::super::pass::bridge::{RADIUS, refine};
 use super::super::pass::shot::shot;
 use super::super::pass::{PassScene, Rating, SAMPLES};
+use super::super::rated::Action;
 use super::super::support;
-
-use super::super::view::{CasePass, View, ViewBall};
+use super::super::view::{View, ViewBall};
 use super::rated_play::Chosen;
 use super::{Coach, Pass, Plan};
 
@@ -28,30 +28,7 @@ pub(super) struct Intent {
     since: Instant,
     /// Where the ball was then.
     from: Point<Attack>,
-    what: What,
-}
-
-#[derive(Clone, Copy, Debug)]
-enum What {
-    /// A shot at a point of the goal line, with its P(goal).
-    Shot { at: Point<Attack>, goal: f32 },
-    /// A pass to the place with the greatest P(goal).
-    Pass { receiver: RobotId, rating: Rating },
-    /// The pass of the case that is played, and the distance from its place.
-    OfCase { pass: CasePass, rating: Rating, moved: f32 },
-    /// Neither: a case is played.
-    Case,
-}
-
-impl What {
-    /// The receiver of its pass, and its rating.
-    fn pass(self) -> Option<(RobotId, Rating)> {
-        match self {
-            Self::Pass { receiver, rating } => Some((receiver, rating)),
-            Self::OfCase { pass, rating, .. } => Some((pass.receiver.0, rating)),
-            Self::Shot { .. } | Self::Case => None,
-        }
-    }
+    action: Action,
 }
 
 impl Coach {
@@ -66,24 +43,24 @@ impl Coach {
         if !self.tactics.attack {
             return None;
         }
-        let view = plan.view;
-        match self.intends(view, who, ball) {
-            What::Case => None,
-            What::Shot { at, goal } => {
+        let action = self.intends(plan.view, who, ball);
+        self.order_action(plan, &action)
+    }
+
+    /// The task of an action, with an order for the receiver too; `None` to play on.
+    pub(super) fn order_action(&self, plan: &mut Plan<'_>, action: &Action) -> Option<(Task, OrderReason)> {
+        match *action {
+            Action::PlayOn => None,
+            Action::Shot { at, goal } => {
                 Some((Task::Kick { at, kick: support::SHOT }, OrderReason::Chances { receive: 1.0, goal }))
             }
-            What::Pass { receiver, rating } => {
+            Action::Pass { receiver, rating } => {
                 let why = OrderReason::Chances { receive: rating.receive(), goal: rating.goal() };
                 Some((self.pass_to(plan, receiver, &rating, why)?, why))
             }
-            What::OfCase { pass, rating, moved } => {
-                let why = |part| OrderReason::OfCase {
-                    case: pass.case,
-                    part,
-                    moved,
-                    receive: rating.receive(),
-                    goal: rating.goal(),
-                };
+            Action::OfCase { pass, rating, moved } => {
+                let (receive, goal) = (rating.receive(), rating.goal());
+                let why = |part| OrderReason::OfCase { case: pass.case, part, moved, receive, goal };
                 let (receiver, part) = pass.receiver;
                 Some((self.pass_to(plan, receiver, &rating, why(part))?, why(pass.passer.1)))
             }
@@ -91,7 +68,7 @@ impl Coach {
     }
 
     /// The passer's task, with an order for the receiver too; `None` where there is no receiver any more.
-    pub(super) fn pass_to(
+    fn pass_to(
         &self,
         plan: &mut Plan<'_>,
         receiver: RobotId,
@@ -115,8 +92,8 @@ impl Coach {
             let (receiver, rating) = action.pass()?;
             return Some((who, from, receiver, rating));
         }
-        let Intent { who, from, what, .. } = self.intent?;
-        let (receiver, rating) = what.pass()?;
+        let Intent { who, from, action, .. } = self.intent?;
+        let (receiver, rating) = action.pass()?;
         Some((who, from, receiver, rating))
     }
 
@@ -149,27 +126,27 @@ impl Coach {
 
     /// The earlier choice where it is still valid, so that a robot that moves around the ball does not turn
     /// back.
-    fn intends(&mut self, view: &View, who: RobotId, ball: &ViewBall) -> What {
+    fn intends(&mut self, view: &View, who: RobotId, ball: &ViewBall) -> Action {
         if let Some(intent) = self.intent
             && intent.who == who
             && intent.from.distance(ball.position) < MOVED
             && self.stands(view, &intent, ball)
         {
-            return intent.what;
+            return intent.action;
         }
-        let what = self.likeliest(view, who, ball);
-        self.intent = Some(Intent { who, since: view.now, from: ball.position, what });
-        what
+        let action = self.likeliest(view, who, ball);
+        self.intent = Some(Intent { who, since: view.now, from: ball.position, action });
+        action
     }
 
     fn stands(&self, view: &View, intent: &Intent, ball: &ViewBall) -> bool {
-        let held = match intent.what {
-            What::Case => ASKED_AGAIN,
-            What::Shot { .. } | What::Pass { .. } => HELD,
-            What::OfCase { .. } => CASE_HELD,
+        let held = match intent.action {
+            Action::PlayOn => ASKED_AGAIN,
+            Action::Shot { .. } | Action::Pass { .. } => HELD,
+            Action::OfCase { .. } => CASE_HELD,
         };
         let likely = || {
-            let Some((receiver, rating)) = intent.what.pass() else { return true };
+            let Some((receiver, rating)) = intent.action.pass() else { return true };
             let receive = view.our(receiver).map_or(0.0, |teammate| {
                 let scene = PassScene::of(view, &self.kicks, ball.position, Some(intent.who), teammate);
                 scene.rate(rating.at).receive()
@@ -179,7 +156,7 @@ impl Coach {
         view.now.since(intent.since) < held && likely()
     }
 
-    fn likeliest(&mut self, view: &View, who: RobotId, ball: &ViewBall) -> What {
+    fn likeliest(&mut self, view: &View, who: RobotId, ball: &ViewBall) -> Action {
         let shot = shot(view, &self.kicks, ball.position);
         self.searches.forget();
         let offers = self.searches.offers(view, &self.kicks, ball.position, who, SAMPLES, false);
@@ -190,23 +167,23 @@ impl Coach {
         let goal = shot.value();
         match pass.map(|pass| (pass, pass.rating.value())) {
             Some((pass, value)) if value > goal.max(WORTH_IT) => {
-                What::Pass { receiver: pass.receiver, rating: pass.rating }
+                Action::Pass { receiver: pass.receiver, rating: pass.rating }
             }
-            _ if goal > WORTH_IT => What::Shot { at: shot.aim, goal },
-            _ => self.of_the_case(view, who, ball).unwrap_or(What::Case),
+            _ if goal > WORTH_IT => Action::Shot { at: shot.aim, goal },
+            _ => self.of_the_case(view, who, ball).unwrap_or(Action::PlayOn),
         }
     }
 
     /// The next pass of the case that `who` plays, refined near the case's place for it, if it is then likely
     /// to arrive.
-    fn of_the_case(&self, view: &View, who: RobotId, ball: &ViewBall) -> Option<What> {
+    fn of_the_case(&self, view: &View, who: RobotId, ball: &ViewBall) -> Option<Action> {
         let pass = view.proposal.filter(|pass| self.tactics.bridge && pass.passer.0 == who)?;
         let receiver = pass.receiver.0;
         let teammate = view.our(receiver).filter(|_| !self.defenders.contains(&Some(receiver)))?;
         let scene = PassScene::of(view, &self.kicks, ball.position, Some(who), teammate);
         let refined = refine(&scene, pass.at, RADIUS);
         let rating = refined.best;
-        (rating.receive() > LIKELY).then_some(What::OfCase { pass, rating, moved: refined.moved() })
+        (rating.receive() > LIKELY).then_some(Action::OfCase { pass, rating, moved: refined.moved() })
     }
 }
 

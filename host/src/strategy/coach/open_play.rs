@@ -13,25 +13,10 @@ impl Coach {
     pub(super) fn open_play(&mut self, plan: &mut Plan<'_>) {
         let view = plan.view;
         let Some(ball) = view.ball else { return self.defend(plan, false) };
-        if let Some(double_touch_blocked) = self.double_touch_blocked
-            && plan.take(double_touch_blocked)
-        {
-            let (at, worth) = best_place(view, ball.position);
-            plan.order(
-                double_touch_blocked,
-                Role::DoubleTouchBlocked,
-                plan.facing_ball(at),
-                OrderReason::FreePlace { worth },
-            );
-        }
+        self.order_double_touch_blocked(plan, &ball);
         self.see_pass_leave(view);
         let keepers = self.is_keepers(view, &ball);
-        if let Some(pass) = self.pass
-            && plan.take(pass.receiver)
-        {
-            self.first = Some(pass.receiver);
-            let why = OrderReason::BestTarget { room: support::worth(view, ball.position, pass.at) };
-            plan.order(pass.receiver, Role::Receiver, Task::Receive { at: pass.at, then: pass.then }, why);
+        if self.order_receiver(plan, &ball).is_some() {
             self.defend(plan, false);
             return plan.all_robots(Role::Player, Task::Gameplay, OrderReason::OpenPlay);
         }
@@ -75,6 +60,26 @@ impl Coach {
         plan.all_robots(Role::Player, Task::Gameplay, OrderReason::OpenPlay);
     }
 
+    /// The robot that must not touch the ball twice goes where a pass can come.
+    pub(super) fn order_double_touch_blocked(&self, plan: &mut Plan<'_>, ball: &ViewBall) {
+        if let Some(blocked) = self.double_touch_blocked
+            && plan.take(blocked)
+        {
+            let (at, worth) = best_place(plan.view, ball.position);
+            let why = OrderReason::FreePlace { worth };
+            plan.order(blocked, Role::DoubleTouchBlocked, plan.facing_ball(at), why);
+        }
+    }
+
+    /// The receiver of a pass that is on its way is first at the ball; the place of the reception.
+    pub(super) fn order_receiver(&mut self, plan: &mut Plan<'_>, ball: &ViewBall) -> Option<Point<Attack>> {
+        let pass = self.pass.filter(|pass| plan.take(pass.receiver))?;
+        self.first = Some(pass.receiver);
+        let why = OrderReason::BestTarget { room: support::worth(plan.view, ball.position, pass.at) };
+        plan.order(pass.receiver, Role::Receiver, Task::Receive { at: pass.at, then: pass.then }, why);
+        Some(pass.at)
+    }
+
     /// Updates whether the ball is theirs: one of them is clearly sooner at it than ours, `ours` s from now.
     fn see_whose_ball(&mut self, view: &View, ours: f32) {
         let Some(ball) = view.ball else { return };
@@ -100,7 +105,7 @@ fn is_shot_at_us(view: &View, ball: &ViewBall) -> bool {
         && comes_at_goal(view, ball.position, ball.velocity)
 }
 
-pub(super) fn best_place(view: &View, ball: Point<Attack>) -> (Point<Attack>, f32) {
+fn best_place(view: &View, ball: Point<Attack>) -> (Point<Attack>, f32) {
     support::places(view, ball, 1).first().copied().unwrap_or((Point::new(0.0, 0.0), 0.0))
 }
 

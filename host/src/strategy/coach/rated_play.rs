@@ -8,9 +8,9 @@ use protocol::{Duration, Instant, RobotId};
 use super::super::order::{OrderReason, Role, Task};
 use super::super::possession::{Arrival, Possession, arrival};
 use super::super::rated::{self, Action};
+use super::super::roles;
 use super::super::view::{View, ViewBall, ViewRobot};
-use super::super::{roles, support};
-use super::open_play::{best_place, is_left_to_the_keeper};
+use super::open_play::is_left_to_the_keeper;
 use super::{Coach, Plan};
 
 /// The action that was chosen, and for which ball.
@@ -29,23 +29,12 @@ impl Coach {
         let view = plan.view;
         let Some(ball) = view.ball else { return self.defend(plan, false) };
         self.possession = self.possession.next(view, view.contact);
-        if let Some(blocked) = self.double_touch_blocked
-            && plan.take(blocked)
-        {
-            let (at, worth) = best_place(view, ball.position);
-            let why = OrderReason::FreePlace { worth };
-            plan.order(blocked, Role::DoubleTouchBlocked, plan.facing_ball(at), why);
-        }
+        self.order_double_touch_blocked(plan, &ball);
         self.see_pass_leave(view);
         let keepers = self.is_keepers(view, &ball);
-        if let Some(pass) = self.pass
-            && plan.take(pass.receiver)
-        {
-            self.first = Some(pass.receiver);
-            let why = OrderReason::BestTarget { room: support::worth(view, ball.position, pass.at) };
-            plan.order(pass.receiver, Role::Receiver, Task::Receive { at: pass.at, then: pass.then }, why);
+        if let Some(at) = self.order_receiver(plan, &ball) {
             self.defend(plan, false);
-            return self.support_pass(plan, pass.at, None);
+            return self.support_pass(plan, at, None);
         }
         if keepers || is_left_to_the_keeper(view, &ball) {
             self.first = None;
@@ -119,24 +108,9 @@ impl Coach {
         ball: &ViewBall,
         arrival: &Arrival,
     ) -> Option<(Task, OrderReason)> {
-        let view = plan.view;
         let from = if self.possession.owner() == Some(who) { ball.position } else { arrival.ball };
-        match self.choose(view, who, from) {
-            Action::PlayOn => None,
-            Action::Shot { at, goal } => {
-                Some((Task::Kick { at, kick: support::SHOT }, OrderReason::Chances { receive: 1.0, goal }))
-            }
-            Action::Pass { receiver, rating } => {
-                let why = OrderReason::Chances { receive: rating.receive(), goal: rating.goal() };
-                Some((self.pass_to(plan, receiver, &rating, why)?, why))
-            }
-            Action::OfCase { pass, rating, moved } => {
-                let (receive, goal) = (rating.receive(), rating.goal());
-                let why = |part| OrderReason::OfCase { case: pass.case, part, moved, receive, goal };
-                let (receiver, part) = pass.receiver;
-                Some((self.pass_to(plan, receiver, &rating, why(part))?, why(pass.passer.1)))
-            }
-        }
+        let action = self.choose(plan.view, who, from);
+        self.order_action(plan, &action)
     }
 
     /// The earlier choice, unless another action is clearly better now.

@@ -250,7 +250,7 @@ fn a_pass_ahead_leaves_when_its_receiver_will_be_there_and_whoever_receives_it_i
 #[test]
 fn a_shot_at_our_goal_makes_no_one_leave_its_place_and_the_keeper_stays_one() {
     let mut coach = coach();
-    let mut view = view((0.0, 0.2), &OURS, &[(4.4, 0.0), (0.2, 0.2)]);
+    let mut view = view((-1.5, 0.2), &OURS, &[(4.4, 0.0), (-1.3, 0.2)]);
     let before: Vec<_> = coach.decide(&view).iter().map(|order| order.role).collect();
     assert_eq!(
         (before[0], before[1..3].iter().all(|role| matches!(role, Role::Defender(_)))),
@@ -292,8 +292,7 @@ fn a_ball_that_lies_before_our_area_is_the_keepers_unless_a_field_player_is_ther
     // Without a keeper a field player tries.
     let mut alone = view((-3.3, 0.2), &OURS, &THEIRS);
     alone.keeper = RobotId::new(9).unwrap();
-    let plays = |order: &Order| matches!(order.task, Task::Kick { .. } | Task::Pass { .. } | Task::Gameplay);
-    assert!(coach().decide(&alone).iter().any(plays));
+    assert!(coach().decide(&alone).iter().any(|order| order.task == Task::Gameplay));
 }
 
 /// Our 3 stands behind the ball at (2, 0), our 4 and 5 at these places; with these opponents.

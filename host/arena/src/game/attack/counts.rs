@@ -66,11 +66,6 @@ impl ShotCounts {
         *count += 1;
         self.volleys += u32::from(volley);
     }
-
-    /// Number of shots.
-    pub fn all(&self) -> u32 {
-        self.closed + self.partly_open + self.open
-    }
 }
 
 /// What a team made of the ball in a match.
@@ -101,14 +96,6 @@ impl AttackCounts {
         *self.kicks.entry(format!("{speed}-{}/{length}-{}/{next}", speed + 1, length + 1)).or_default() += 1;
     }
 
-    /// Number of kicks that the team had next, and of all kicks that are no shots.
-    pub fn kicks_that_reached(&self) -> [u32; 2] {
-        let sum = |which: &dyn Fn(&str) -> bool| {
-            self.kicks.iter().filter(|(name, _)| which(name)).map(|(_, n)| n).sum()
-        };
-        [sum(&|name| name.ends_with("/team")), sum(&|_| true)]
-    }
-
     /// All counts by name: `end.shot`, `kick.2-3/4-5/team`, `shot.volley`, `left-ball`, …
     pub fn named(&self) -> impl Iterator<Item = (String, u32)> + '_ {
         let ends = self.ends.iter().map(|(end, n)| (format!("end.{end}"), *n));
@@ -123,15 +110,5 @@ impl AttackCounts {
             ("left-ball", self.left_balls),
         ];
         ends.chain(kicks).chain(others.map(|(name, n)| (name.to_owned(), n))).filter(|(_, n)| *n > 0)
-    }
-
-    /// Number of possessions.
-    pub fn possessions(&self) -> u32 {
-        self.ends.values().sum()
-    }
-
-    /// Number of possessions with this end.
-    pub fn ended_by(&self, end: PossessionEnd) -> u32 {
-        self.ends.get(end.label()).copied().unwrap_or(0)
     }
 }
