@@ -32,7 +32,7 @@ pub struct Drivetrain {
     stepped: Option<Instant>,
     /// Length of the present step, s.
     step: f32,
-    /// The path in use; `None` while the robot stands or brakes.
+    /// The path in use; `None` while the robot stands.
     under_way: Option<CurrentPath>,
 }
 
@@ -40,8 +40,8 @@ pub struct Drivetrain {
 #[derive(Clone, Copy, Debug)]
 struct CurrentPath {
     drive: Drive,
-    /// The goal, or a point past the first corner of the path to it.
-    towards: Point<Field>,
+    /// The goal, or a point past the first corner of the path to it; `None` while the robot brakes.
+    towards: Option<Point<Field>>,
     /// Whether it leads around something.
     winds: bool,
 }
@@ -65,7 +65,7 @@ impl Drivetrain {
         match intent {
             Intent::Stand { face } => self.stand(belief, step, face),
             Intent::KeepPath => match under_way {
-                Some(path) => self.exit_heading(belief, step, path),
+                Some(path) => self.keep_path(belief, step, path),
                 None => self.stand(belief, step, None),
             },
             Intent::Turn { heading } => {
@@ -101,17 +101,26 @@ impl Drivetrain {
     }
 
     fn stand(&mut self, belief: &Belief, step: f32, face: Option<Angle>) -> Wanted {
-        let speed = (self.velocity.norm() - LIMITS.braking * step).max(0.0);
-        self.wanted(belief, step, self.velocity.clamped(speed), face, &held_or_free(belief))
+        self.wanted(belief, step, self.braked(step), face, &held_or_free(belief))
     }
 
-    /// Follows the same path without planning.
-    fn exit_heading(&mut self, belief: &Belief, step: f32, path: CurrentPath) -> Wanted {
+    /// The velocity after a step of braking.
+    fn braked(&self, step: f32) -> Vector<Field> {
+        self.velocity.clamped((self.velocity.norm() - LIMITS.braking * step).max(0.0))
+    }
+
+    /// Follows the same path, and turns to the same heading, without planning.
+    fn keep_path(&mut self, belief: &Belief, step: f32, path: CurrentPath) -> Wanted {
         self.under_way = Some(path);
         let CurrentPath { drive, towards, .. } = path;
-        let from = belief.pose.position + self.moves_on;
-        let motion = limits(belief, &drive).plan(from, self.velocity, towards);
-        self.wanted(belief, step, motion.at(step).velocity, Some(drive.face), &drive)
+        let velocity = match towards {
+            Some(to) => {
+                let from = belief.pose.position + self.moves_on;
+                limits(belief, &drive).plan(from, self.velocity, to).at(step).velocity
+            }
+            None => self.braked(step),
+        };
+        self.wanted(belief, step, velocity, Some(drive.face), &drive)
     }
 
     fn follow(&mut self, belief: &Belief, step: f32, drive: &Drive) -> Wanted {
@@ -119,6 +128,7 @@ impl Drivetrain {
         let rests = self.velocity.norm() < THERE_SPEED;
         if rests && from.distance(drive.to) < THERE && !is_moved_by_the_rules(belief.game.phase) {
             // No plan is needed.
+            self.under_way = Some(CurrentPath { drive: *drive, towards: None, winds: false });
             return self.wanted(belief, step, Vector::default(), Some(drive.face), drive);
         }
         let field = belief.league().field();
@@ -137,10 +147,12 @@ impl Drivetrain {
             effort_to_leave,
             checks: if effort >= EFFORT_TAKING { avoid::CHECKS_LONG } else { avoid::CHECKS_MAX },
         });
-        if path.restraint == Restraint::None {
-            let winds = path.verdict != RouteVerdict::Direct;
-            self.under_way = Some(CurrentPath { drive: *drive, towards: path.motion.to(), winds });
-        }
+        let is_free = path.restraint == Restraint::None;
+        self.under_way = Some(CurrentPath {
+            drive: *drive,
+            towards: is_free.then(|| path.motion.to()),
+            winds: is_free && path.verdict != RouteVerdict::Direct,
+        });
         let there = rests && from.distance(path.goal) < THERE;
         // While we place the ball the others keep off, and the step has no time for it.
         let velocity = match path.next.velocity {
@@ -363,6 +375,23 @@ mod tests {
         for late in [0, 2, 6] {
             assert!(swings(late) < 1.0, "{late} steps: {} degrees", swings(late));
         }
+    }
+
+    #[test]
+    fn a_robot_on_its_spot_turns_as_far_when_every_second_step_has_no_time_to_plan() {
+        let turned = |keeps: bool| {
+            let b = belief((0.0, 0.0, 0.0), (2.0, 0.0));
+            let mut drivetrain = Drivetrain::default();
+            (1..=20_u64).fold(0.0, |_, tick| {
+                let turns = Drive::holding(b.pose.position, Angle::degrees(90.0)).into();
+                let intent = if keeps && tick % 2 == 0 { Intent::KeepPath } else { turns };
+                let wanted = drivetrain.actuate(Instant(tick * 10_000), &b, intent);
+                drivetrain.set_speed_order(&b, wanted.twist);
+                wanted.twist.angular
+            })
+        };
+        assert!(turned(false) > 1.0, "{} rad/s", turned(false));
+        assert_eq!(turned(true), turned(false));
     }
 
     /// The speed towards an opponent `apart` m ahead that comes with `theirs` m/s, of a robot that wants 3.
