@@ -3,6 +3,7 @@
 
 use heapless::Vec;
 use protocol::RobotId;
+use protocol::decision::{DecisionReport, Grounds};
 use serde::{Deserialize, Serialize};
 
 use crate::{GoalEnd, PointMm};
@@ -23,4 +24,16 @@ pub struct Problem {
     pub teammates: Vec<(RobotId, PointMm), PROBLEM_TEAMMATES_MAX>,
     /// Opp: the opponents' positions, mm, field frame, in any order.
     pub opponents: Vec<PointMm, PROBLEM_OPPONENTS_MAX>,
+}
+
+impl Problem {
+    /// The problem on which a robot decided; `None` where it knew of no ball.
+    pub fn of(report: &DecisionReport) -> Option<Self> {
+        (report.grounds != Grounds::NoBall).then(|| Self {
+            ball: report.ball.into(),
+            defending: report.defending,
+            teammates: report.teammates.iter().map(|(id, at)| (*id, (*at).into())).collect(),
+            opponents: report.opponents.iter().map(|at| (*at).into()).collect(),
+        })
+    }
 }

@@ -8,6 +8,7 @@
 use std::fmt;
 
 use brain::BrainConfig;
+use protocol::decision::DecisionReport;
 use protocol::link::Packet;
 use protocol::lockstep::{AIR_OUT_MAX, TickIn};
 use protocol::robot_io::ActuatorFrame;
@@ -19,6 +20,11 @@ pub trait Mcu {
 
     /// Its answer to the tick posted last.
     fn collect(&mut self) -> Result<Reply, McuError>;
+
+    /// Its newest decision as coordinator, where the computer can be looked into: nothing is sent for it.
+    fn decision(&self) -> Option<DecisionReport> {
+        None
+    }
 
     /// Posts a tick and collects the answer.
     fn exchange(&mut self, tick: &TickIn<'_>) -> Result<Reply, McuError> {

@@ -5,6 +5,7 @@
 use brain::{BrainConfig, Station};
 use casebase::CaseBase;
 use protocol::Instant;
+use protocol::decision::DecisionReport;
 use protocol::lockstep::TickIn;
 
 use crate::mcu::{Backend, Mcu, McuError, Reply};
@@ -83,5 +84,9 @@ impl Mcu for NativeMcu<'_> {
 
     fn collect(&mut self) -> Result<Reply, McuError> {
         Ok(std::mem::take(&mut self.reply))
+    }
+
+    fn decision(&self) -> Option<DecisionReport> {
+        self.station.brain().decision()
     }
 }

@@ -11,6 +11,7 @@ mod state;
 
 use casebase::CaseBase;
 use geometry::{GoalEnd, Point};
+use protocol::decision::{Assembler, DecisionReport};
 use protocol::frame::TeamKey;
 use protocol::host::{Condition, Directive, HostCommand, RuleRole, Telemetry};
 use protocol::link::Packet;
@@ -126,6 +127,8 @@ pub struct Host {
 struct Known {
     beacon: Option<(Instant, Beacon)>,
     telemetry: Option<(Instant, Telemetry)>,
+    assembler: Assembler,
+    decision: Option<DecisionReport>,
 }
 
 impl Host {
@@ -266,6 +269,13 @@ impl Host {
                 InputVerdict::Robot(robot)
             }
             Ok(radio::RadioReceived::Handshake(robot)) => InputVerdict::Robot(robot),
+            Ok(radio::RadioReceived::Decision(robot, part)) => {
+                let known = &mut self.robots[robot.index()];
+                if let Some(report) = known.assembler.receive(&part) {
+                    known.decision = Some(report);
+                }
+                InputVerdict::Robot(robot)
+            }
             Err(refusal) => InputVerdict::Refused(refusal),
         }
     }
@@ -292,7 +302,8 @@ impl Host {
             .allowing_them(self.allowed(us.other()))
             .proposing(self.proposed(now, Flip::defending(game.defending)));
         let never_answered = self.never_answered(&view.field, game.defending);
-        let view = View { never_answered, contact: self.in_contact(now), ..view };
+        let (contact, knows_cases) = (self.in_contact(now), self.knows_cases(now));
+        let view = View { never_answered, contact, knows_cases, ..view };
         self.orders = self.coach.decide(&view);
         if !self.halted {
             self.requests.look(&view, self.listener.game().team(us).substitutions_left);
@@ -399,6 +410,18 @@ impl Host {
             }
         }
         playing
+    }
+
+    /// Robots that carry the case base that this host knows.
+    fn knows_cases(&self, now: Instant) -> RobotSet {
+        let mut knowing = RobotSet::default();
+        for robot in RobotId::all() {
+            let Some((received, beacon)) = &self.robots[robot.index()].beacon else { continue };
+            if now.since(*received) < PRESENCE_LEASE && beacon.case_base == self.cases.hash() {
+                knowing.insert(robot);
+            }
+        }
+        knowing
     }
 
     /// The next pass of the case that our robots play, where the tactics include the bridge.

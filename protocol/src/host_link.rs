@@ -145,13 +145,14 @@ impl HostLink {
             return Err(Refusal::Epoch { seen: frame.epoch, current });
         }
         if TeamMessage::is_for_host(frame.payload) {
-            self.open_telemetry(now, packet, &frame, robot)
+            self.open_own(now, packet, &frame, robot)
         } else {
             self.open_shared(packet, &frame, robot)
         }
     }
 
-    fn open_telemetry(
+    /// Telemetry and reports, under the robot's own key.
+    fn open_own(
         &mut self,
         now: Instant,
         packet: &[u8],
@@ -162,8 +163,17 @@ impl HostLink {
         if !frame.is_genuine(packet, self.keys.of(robot), robot) {
             return Err(Refusal::Tag);
         }
-        let Some(TeamMessage::Telemetry(telemetry)) = decode(frame.payload) else {
-            return Err(Refusal::Payload);
+        let telemetry = match decode(frame.payload) {
+            Some(TeamMessage::Telemetry(telemetry)) => telemetry,
+            // Only telemetry proves that a robot is live.
+            Some(_) if self.own.epoch(frame.sender) != Some(frame.epoch) => {
+                return Err(Refusal::Unauthenticated { epoch: frame.epoch });
+            }
+            Some(message) => {
+                self.own.accept(frame);
+                return Ok(Opened::Believed(robot, message));
+            }
+            None => return Err(Refusal::Payload),
         };
         let Telemetry { host, clock, .. } = telemetry;
         let offset = ((now.0 >> TICK_BITS).saturating_sub(self.zero) as u32).wrapping_sub(clock);

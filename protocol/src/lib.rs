@@ -4,16 +4,18 @@
 //! the wire; [`key`] derives the keys, [`frame`] is the radio's envelope (sender, epoch, counter, tags),
 //! [`link`] and [`host_link`] are its two ends ([`peer`]: which teammates are trusted;
 //! [`host_clock`]: the age of a frame of the host), [`serial`] puts it on a line; [`team`] has the messages
-//! between robots, [`mod@host`] those between host and robots; [`robot_io`] is what a body gives its brain
-//! and takes from it; [`lockstep`] carries the latter between simulator and computer, [`provision`] is a
-//! robot's identity in its flash, [`slot`] is where a computer finds a case table that was not built into it.
-//! The bytes are written down in `protocol/SPEC.md`, and tests hold the code to them.
+//! between robots, [`mod@host`] those between host and robots, [`decision`] what a coordinator decided on;
+//! [`robot_io`] is what a body gives its brain and takes from it; [`lockstep`] carries the latter between
+//! simulator and computer, [`provision`] is a robot's identity in its flash, [`slot`] is where a
+//! computer finds a case table that was not built into it. The bytes are written down in `protocol/SPEC.md`,
+//! and tests hold the code to them.
 //!
 //! **Invariants.** No I/O, no clock, no allocation; no input from outside can panic.
 #![cfg_attr(doctest, doc = include_str!("../README.md"))]
 #![no_std]
 #![forbid(unsafe_code)]
 
+pub mod decision;
 pub mod frame;
 pub mod host;
 pub mod host_clock;

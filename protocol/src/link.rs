@@ -78,9 +78,8 @@ impl Link {
         let Ok(payload) = postcard::to_slice(message, &mut payload) else { return Packet::new() };
         self.counter = self.counter.wrapping_add(1);
         let sender = Sender::Robot(self.me);
-        // Telemetry about its own body goes to the host alone, and no teammate can send it in its name.
-        let key =
-            if matches!(message, TeamMessage::Telemetry(_)) { &self.keys.host } else { &self.keys.team };
+        // What it tells of itself goes to the host alone, and no teammate can send it in its name.
+        let key = if TeamMessage::is_for_host(payload) { &self.keys.host } else { &self.keys.team };
         let (team, epoch, counter) = (self.team, self.epoch, self.counter);
         packet(&Frame { team, sender, audience: None, epoch, counter, payload }, key)
     }

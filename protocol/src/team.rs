@@ -3,13 +3,14 @@
 //! Teammates need one message, the [`Beacon`]: pose, ball, availability, the running cycle as this robot
 //! knows it, and the robot's own progress. Nothing is sent once: a lost packet only delays. What a robot
 //! knows of the cycle is a value that only grows ([`CycleState::is_newer_than`]), so that packets may be
-//! lost, doubled and reordered, and any robot may pass on the coordinator's announcements. [`Telemetry`] is
-//! for the host; teammates ignore it. A [`Handshake`] is how teammates come to trust each other
-//! after a boot ([`crate::peer`]).
+//! lost, doubled and reordered, and any robot may pass on the coordinator's announcements. [`Telemetry`] and
+//! [`DecisionPart`] are for the host; teammates ignore them. A [`Handshake`] is how teammates come to trust
+//! each other after a boot ([`crate::peer`]).
 
 use geometry::{Field, Vector, math};
 use serde::{Deserialize, Serialize};
 
+use crate::decision::DecisionPart;
 use crate::host::Telemetry;
 pub use crate::ids::CASE_ROBOTS_MAX;
 use crate::quantized::{WirePoint, WirePose};
@@ -32,13 +33,15 @@ pub enum TeamMessage {
     Telemetry(Telemetry),
     /// Handshake to teammates that do not know yet that the sender is live.
     Handshake(Handshake),
+    /// To the host: a part of the problem that the sender decided on.
+    Decision(DecisionPart),
 }
 
 impl TeamMessage {
     /// Whether a payload that is one of these is meant for the host alone, by its first byte: the variant's
     /// number.
     pub(crate) const fn is_for_host(payload: &[u8]) -> bool {
-        matches!(*payload, [1, ..])
+        matches!(*payload, [1 | 3, ..])
     }
 }
 
@@ -257,7 +260,7 @@ pub enum AbortReason {
     BallOutOfScope,
     /// Before the first touch: an opponent stands in the ball's path.
     PathBlocked,
-    /// A robot involved, or the coordinator, is gone or has restarted.
+    /// A robot involved, or the coordinator, is gone, has restarted, or has lost its host.
     RobotLost,
     /// The holder lost the ball, or an action failed.
     ActionFailed,
@@ -271,6 +274,10 @@ pub enum AbortReason {
     NoDecision,
     /// A robot carries another case base and cannot verify the case.
     UnknownCase,
+    /// The host gave the robot that stopped it another order.
+    Reassigned,
+    /// The referee stopped the game.
+    GameStopped,
 }
 
 /// Progress of a robot in its cycle (paper §4.2, Fig. 10).

@@ -2,6 +2,7 @@
 //! directions.
 
 use geometry::{GoalEnd, Vector};
+use protocol::decision::{DecisionReport, Grounds};
 use protocol::frame::{Audience, Frame, Key, Sender, TeamKey};
 use protocol::host::{
     Condition, Directive, Hint, HostCommand, HostMessage, KickOrder, RuleRole, Telemetry, Welcome, WireBall,
@@ -194,6 +195,16 @@ fn robots_messages_have_the_bytes_of_the_specification() {
     let teammate = |who, boot_epoch, bond| KnownEpoch { who: robot(who), boot_epoch, bond };
     let teammates =
         [teammate(1, 9, Bond::Received), teammate(3, 258, Bond::Believed), teammate(12, 1, Bond::Mutual)];
+    let report = DecisionReport {
+        cycle: CycleId { counter: 7, proposer: robot(1) },
+        grounds: Grounds::Retrieved,
+        case: None,
+        defending: GoalEnd::Negative,
+        ball: WirePoint { x: -600, y: 10 },
+        teammates: [(robot(3), WirePoint { x: -700, y: 0 })].into_iter().collect(),
+        opponents: [WirePoint { x: 100, y: 0 }].into_iter().collect(),
+    };
+    both_ways("decision", &TeamMessage::Decision(report.packed().part(0)));
     both_ways("handshake", &TeamMessage::Handshake(Handshake { teammates: teammates.into_iter().collect() }));
 }
 
@@ -272,8 +283,8 @@ fn a_frame_to_several_robots_has_the_bytes_of_the_specification() {
 #[test]
 fn every_example_of_the_specification_is_checked() {
     let examples = SPEC.matches("```hex ").count();
-    // Five of robots, two worlds, a welcome, two keys, three frames and a line.
-    assert_eq!(examples, 5 + worlds().len() + 1 + 2 + 4 + commands().len());
+    // Six of robots, two worlds, a welcome, two keys, three frames and a line.
+    assert_eq!(examples, 6 + worlds().len() + 1 + 2 + 4 + commands().len());
 }
 
 fn hex(bytes: &[u8]) -> String {

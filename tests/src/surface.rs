@@ -185,8 +185,8 @@ impl<'a> Surface<'a> {
                     TeamMessage::Telemetry(telemetry) => {
                         self.telemetry.insert(id, (now, *telemetry));
                     }
-                    // Handled by the link, not by the brain: there is no link here.
-                    TeamMessage::Handshake(_) => {}
+                    // Handled by the link, and by the host: there are none here.
+                    TeamMessage::Handshake(_) | TeamMessage::Decision(_) => {}
                 }
                 self.air.push((id, message));
             }

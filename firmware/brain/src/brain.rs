@@ -5,6 +5,7 @@
 
 mod act;
 mod coordinate;
+mod explained;
 mod telemeter;
 
 use casebase::{CaseBase, Problem};
@@ -25,6 +26,7 @@ use crate::team::monitor::Monitor;
 use crate::team::{Cycle, retrieval};
 use crate::teammates::Teammates;
 use crate::timer::{Timer, TimerTable};
+use explained::Explained;
 use telemeter::Spoken;
 
 /// Inputs since the last step, besides time.
@@ -63,8 +65,10 @@ pub struct Brain<'a> {
     /// Inputs since its last step.
     since: Since,
     /// Number of steps that may still reuse the path before a step must plan: up to [`ONWARDS_MOST`].
-    exit_heading: u8,
+    reuses_left: u8,
     spoken: Spoken,
+    /// Its newest decision, with the problem.
+    explained: Option<Explained>,
 }
 
 impl<'a> Brain<'a> {
@@ -92,8 +96,9 @@ impl<'a> Brain<'a> {
             actuators: None,
             beacon_due: false,
             since: Since::default(),
-            exit_heading: ONWARDS_MOST,
+            reuses_left: ONWARDS_MOST,
             spoken: Spoken::default(),
+            explained: None,
         }
     }
 
@@ -158,11 +163,11 @@ impl<'a> Brain<'a> {
             Intent::Stand { face: None }
         } else if !self.has_short_steps() {
             self.act(now)
-        } else if is_busy && self.exit_heading > 0 {
-            self.exit_heading -= 1;
+        } else if is_busy && self.reuses_left > 0 {
+            self.reuses_left -= 1;
             Intent::KeepPath
         } else {
-            self.exit_heading = ONWARDS_MOST.min(self.exit_heading + 1);
+            self.reuses_left = ONWARDS_MOST.min(self.reuses_left + 1);
             self.act(now)
         }
     }
@@ -181,7 +186,8 @@ impl<'a> Brain<'a> {
     /// The next message to teammates.
     pub fn poll_message(&mut self, now: Instant) -> Option<TeamMessage> {
         if !core::mem::take(&mut self.beacon_due) {
-            return self.telemetry(now).map(TeamMessage::Telemetry);
+            let telemetry = self.telemetry(now).map(TeamMessage::Telemetry);
+            return telemetry.or_else(|| self.explanation(now).map(TeamMessage::Decision));
         }
         self.spoken.beacon(now);
         let beacon = self.beacon(now);

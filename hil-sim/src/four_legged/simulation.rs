@@ -10,6 +10,7 @@
 use std::fmt;
 
 use brain::BrainConfig;
+use protocol::decision::DecisionReport;
 use protocol::link::Packet;
 use protocol::lockstep::TickIn;
 use protocol::robot_io::ActuatorFrame;
@@ -233,6 +234,12 @@ impl<'a> Simulation<'a> {
     /// The attackers' ids, in the order of [`LeggedWorld::walkers`], and whether their computers run.
     pub fn attackers(&self) -> impl Iterator<Item = (RobotId, bool)> {
         self.robots.iter().map(|robot| (robot.config.robot, robot.computer.is_some()))
+    }
+
+    /// The newest decision of each attacker whose computer can be looked into.
+    pub fn decisions(&self) -> impl Iterator<Item = (RobotId, DecisionReport)> {
+        let decision = |robot: &Robot<'a>| Some((robot.config.robot, robot.computer.as_ref()?.decision()?));
+        self.robots.iter().filter_map(decision)
     }
 
     /// The opponents' roles; they follow the attackers in [`LeggedWorld::walkers`].

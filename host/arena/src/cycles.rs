@@ -34,7 +34,7 @@ pub enum CycleEnd {
 
 impl CycleEnd {
     /// The labels of all ends that a play of a case can have.
-    pub const DESCRIPTION: [&'static str; 12] = [
+    pub const DESCRIPTION: [&'static str; 14] = [
         "finished",
         "ball-out-of-scope",
         "path-blocked",
@@ -45,6 +45,8 @@ impl CycleEnd {
         "timeout",
         "no-decision",
         "unknown-case",
+        "reassigned",
+        "game-stopped",
         "superseded",
         "trial-over",
     ];
@@ -73,6 +75,8 @@ const fn abort_label(reason: AbortReason) -> &'static str {
         AbortReason::Timeout => "timeout",
         AbortReason::NoDecision => "no-decision",
         AbortReason::UnknownCase => "unknown-case",
+        AbortReason::Reassigned => "reassigned",
+        AbortReason::GameStopped => "game-stopped",
     }
 }
 
@@ -219,6 +223,8 @@ mod tests {
             Why::Timeout,
             Why::NoDecision,
             Why::UnknownCase,
+            Why::Reassigned,
+            Why::GameStopped,
         ];
         let aborted = aborted.map(|reason| CycleEnd::Closed(Closure::Aborted { by, reason }));
         let all = [CycleEnd::Closed(Closure::Finished)].into_iter().chain(aborted);

@@ -1,6 +1,8 @@
 //! `trial`: a trial of the first paper (Ros et al. 2009 §5.1;
 //! docs/architecture.md §7, docs/case-format.md §5). Robots 1, 2, … are A, B, … and attack +x.
 
+use std::collections::BTreeMap;
+
 use brain::{Approach, BrainConfig, Positioning};
 use casebase::{CaseBase, RetrievalSettings};
 use hil_sim::{
@@ -8,6 +10,8 @@ use hil_sim::{
     ScheduledFault, Simulation, SimulationConfig, SimulationError, Tick, TrialOutcome, TrialVerdict,
     four_legged::world::LeggedWorld,
 };
+use protocol::CycleId;
+use protocol::decision::DecisionReport;
 use protocol::frame::{TeamKey, TeamKeys};
 use protocol::link::overhear;
 use protocol::team::{Beacon, Closure, TeamMessage};
@@ -145,6 +149,8 @@ pub struct Moment<'a> {
     pub cycles: &'a CycleLog,
     /// Changes of the cycles by these beacons.
     pub events: &'a [CycleEvent],
+    /// The decisions that attackers made in this tick, with their problems; none of emulated robots.
+    pub decisions: &'a [(RobotId, DecisionReport)],
 }
 
 /// Plays a trial to its end.
@@ -177,6 +183,9 @@ pub(crate) struct Game<'c, 'a> {
     defaults: DefaultWatch,
     beacons: Vec<(RobotId, Beacon)>,
     events: Vec<CycleEvent>,
+    decisions: Vec<(RobotId, DecisionReport)>,
+    /// The newest decided cycle of each robot.
+    decided: BTreeMap<RobotId, CycleId>,
     keys: TeamKeys,
 }
 
@@ -204,6 +213,8 @@ impl<'c, 'a> Game<'c, 'a> {
             defaults: DefaultWatch::default(),
             beacons: Vec::new(),
             events: Vec::new(),
+            decisions: Vec::new(),
+            decided: BTreeMap::new(),
             keys: TeamKey::ZERO.of_team(),
         })
     }
@@ -222,6 +233,12 @@ impl<'c, 'a> Game<'c, 'a> {
                 self.events.push(self.cycles.receive(tick.time, state));
             }
             self.beacons.push((from, beacon));
+        }
+        self.decisions.clear();
+        for (robot, decision) in self.simulation.decisions() {
+            if self.decided.insert(robot, decision.cycle) != Some(decision.cycle) {
+                self.decisions.push((robot, decision));
+            }
         }
         self.pause();
         self.watch_defaults();
@@ -280,6 +297,7 @@ impl<'c, 'a> Game<'c, 'a> {
             beacons: &self.beacons,
             cycles: &self.cycles,
             events: &self.events,
+            decisions: &self.decisions,
         }
     }
 

@@ -39,7 +39,7 @@ mod viewers;
 pub use archive::ArchiveSample;
 pub use deferred_scene::DeferredScene;
 pub use limits::Limits;
-pub use match_event::{MatchEvent, MatchEventKind};
+pub use match_event::{DecisionNote, MatchEvent, MatchEventKind};
 pub use page::{ExplanationService, Page, PageError, PageSettings};
 pub use problem::{Freeze, problem, skeleton};
 pub use request::{PageTeam, Powers, Refused, UserRequest};

@@ -23,12 +23,42 @@ pub struct MatchEvent {
     /// The situation that was retrieved with, as `onetwo cases explain` takes it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub problem: Option<serde_json::Value>,
+    /// The decision made in it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub decided: Option<DecisionNote>,
+}
+
+/// What a team's coordinator decided on a problem.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct DecisionNote {
+    /// The problem is the coordinator's own, as it reported it; else the host has rebuilt it from its own
+    /// view, and the decision may have rested on another.
+    pub reported: bool,
+    /// Number of the coordinator.
+    pub by: u8,
+    /// The team's number of the cycle.
+    pub cycle: u32,
+    /// Id of the stored case that is played; none where no case is.
+    pub id: Option<u16>,
+    /// Why the decision is not simply retrieval's answer to the problem; empty where it is.
+    pub grounds: String,
+    /// The problem, as `onetwo cases explain` takes it; none where the coordinator knew of no ball.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub problem: Option<serde_json::Value>,
 }
 
 impl MatchEvent {
     /// A fault at `t` seconds since the start, of no team and no place.
     pub fn fault(t: f64, description: String) -> Self {
-        Self { t, kind: MatchEventKind::Fault, team: None, description, at: None, problem: None }
+        Self {
+            t,
+            kind: MatchEventKind::Fault,
+            team: None,
+            description,
+            at: None,
+            problem: None,
+            decided: None,
+        }
     }
 }
 

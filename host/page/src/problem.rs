@@ -34,18 +34,27 @@ struct Problem {
     defending: &'static str,
     teammates: BTreeMap<u8, [i32; 2]>,
     opponents: Vec<[i32; 2]>,
+    /// Field players that cannot be given a part now: their host leads them elsewhere, or they are silent.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    unavailable: BTreeMap<u8, [i32; 2]>,
 }
 
-/// The moment as that team's problem; `None` without a ball. Its keeper is left out: it plays no cases.
+/// The moment as that team's problem; `None` without a ball. Its keeper is left out: it plays no cases;
+/// robots that are not available are named apart.
 pub fn problem(scene: &Scene, team: PageTeam) -> Option<String> {
     let ball = scene.ball.as_ref()?;
-    let teammates = field_players(scene, team).take(PROBLEM_ROBOTS_MAX);
+    let listed = |robot: &SceneRobot| (robot.id, mm(robot.at));
+    let (teammates, unavailable): (Vec<_>, Vec<_>) = field_players(scene, team).partition(|robot| {
+        // Where nothing is known of a team but positions, all of it may play.
+        robot.detail.as_ref().is_none_or(|detail| detail.available)
+    });
     let opponents = scene.robots.iter().filter(|robot| robot.team != team).take(PROBLEM_ROBOTS_MAX);
     let problem = Problem {
         ball: mm(ball.at),
         defending: defending(scene, team),
-        teammates: teammates.map(|robot| (robot.id, mm(robot.at))).collect(),
+        teammates: teammates.into_iter().take(PROBLEM_ROBOTS_MAX).map(listed).collect(),
         opponents: opponents.map(|robot| mm(robot.at)).collect(),
+        unavailable: unavailable.into_iter().map(listed).collect(),
     };
     serde_json::to_string(&problem).ok()
 }
@@ -169,6 +178,16 @@ pub(crate) mod tests {
         );
         let no_ball = Scene { ball: None, ..scene() };
         assert_eq!(problem(&no_ball, PageTeam::Blue), None);
+    }
+
+    #[test]
+    fn a_robot_that_is_not_available_is_named_apart() {
+        let mut scene = scene();
+        let detail = |available| Some(crate::RobotDetail { available, ..crate::RobotDetail::default() });
+        (scene.robots[1].detail, scene.robots[2].detail) = (detail(true), detail(false));
+        let line = problem(&scene, PageTeam::Blue).unwrap();
+        assert!(line.contains(r#""teammates":{"3":[1000,300]},"#), "{line}");
+        assert!(line.ends_with(r#""unavailable":{"5":[500,500]}}"#), "{line}");
     }
 
     #[test]

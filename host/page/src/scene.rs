@@ -5,6 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::match_event::DecisionNote;
 use crate::request::PageTeam;
 use crate::shape::Layer;
 
@@ -128,6 +129,9 @@ pub struct RobotDetail {
     pub part: String,
     /// Its reactive behaviour while it plays no case.
     pub reactive: String,
+    /// It can be given a part in a case now: its host lets it, and it reports so.
+    #[serde(default)]
+    pub available: bool,
     /// Target and planned path.
     pub intent: Intent,
     /// Timers of its role and state, s.
@@ -273,6 +277,9 @@ pub struct Cycle {
     pub players: Vec<u8>,
     /// Since it started, s.
     pub seconds: f32,
+    /// The team's newest decision, with its problem.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub decided: Option<DecisionNote>,
 }
 
 /// A number to be displayed and plotted.

@@ -185,6 +185,7 @@ fn what_has_passed_is_asked_for_by_the_second() {
         description: "goal".into(),
         at: None,
         problem: None,
+        decided: None,
     });
     for i in 0..50 {
         page.keep(scene(f64::from(i) * 0.04));

@@ -14,25 +14,54 @@ export function dialog(title, ...body) {
   if (!byId("dialog").open) byId("dialog").showModal();
 }
 
-export const explainHappening = (happening) => open(JSON.stringify(happening.problem), `${happening.words}, at ${clock(happening.t)}`);
+export const explainEvent = (one) => open(`${one.words}, at ${clock(one.t)}`, one.decided ?? { problem: one.problem });
 
+/** The newest decision on its own problem; apart from it, what this moment would give. */
 export async function explainNow(team) {
-  try {
-    const problem = await post("/api/freeze", JSON.stringify({ t: time.at, team, what: "problem" }));
-    await open(problem, `${team} at ${clock(time.at)}`);
-  } catch (error) {
-    changed("refused", error.message);
-  }
+  const cycle = store.scene?.cycles.find((one) => one.team === team);
+  const frozen = async () => JSON.parse(await post("/api/freeze", JSON.stringify({ t: time.at, team, what: "problem" })));
+  await open(`${team} at ${clock(time.at)}`, cycle?.decided, cycle, frozen);
 }
 
-async function open(problem, title) {
+async function open(title, decided, cycle, frozen) {
   try {
-    const answer = JSON.parse(await post("/api/explain", problem));
-    if (answer.error) throw new Error(answer.error);
-    dialog(title, body(answer, problem, false));
+    const parts = [];
+    if (cycle?.state === "playing") parts.push(el("p", { id: "playing" }, `Playing ${cycle.case}${cycle.symmetry === "identity" ? "" : ` · ${cycle.symmetry}`}, cycle ${cycle.number}.`));
+    if (decided) parts.push(...await decision(decided));
+    if (frozen) {
+      const problem = await frozen();
+      parts.push(part("would-be", "What would be retrieved now", "On what the host sees, with the robots that are available now.", await ask(problem), problem, {}));
+    }
+    dialog(title, ...parts);
   } catch (error) {
     changed("refused", `no explanation: ${error.message}`);
   }
+}
+
+async function ask(problem) {
+  const answer = JSON.parse(await post("/api/explain", JSON.stringify(problem)));
+  if (answer.error) throw new Error(answer.error);
+  return answer;
+}
+
+async function decision(decided) {
+  const source = decided.by === undefined ? "" : decided.reported
+    ? `On robot ${decided.by}'s own problem, as it reported it.`
+    : `Robot ${decided.by} reported no problem: this one is rebuilt by the host, and the robot may have decided on another.`;
+  if (!decided.problem) return [el("p", { id: "decided" }, `No case: ${decided.grounds}.`)];
+  const heading = decided.cycle === undefined ? "" : `Decided in cycle ${decided.cycle}`;
+  return [part("decided", heading, source, await ask(decided.problem), decided.problem, decided)];
+}
+
+/** An explanation of one problem, with the decision that rests on it where there is one. */
+function part(id, heading, source, answer, problem, decided) {
+  const same = decided.id === undefined || (decided.id ?? null) === answer.winner || decided.grounds !== "";
+  return el("section", { id },
+    heading ? el("h3", {}, heading) : null,
+    source ? el("p", { class: "muted" }, source) : null,
+    decided.grounds ? el("p", { class: "grounds" }, `${decided.grounds}.`) : null,
+    same ? null : el("p", { class: "bad" }, decided.reported ? "The robots decided otherwise: they retrieve with other cases or settings than this page." : "The robots decided otherwise."),
+    body(answer, JSON.stringify(problem), false));
 }
 
 /** How near a case that is none was to be one: the later the check, the nearer; then by its margin. */
@@ -48,11 +77,11 @@ function body(answer, problem, every) {
   ]);
   const winner = rows.find((row) => row.id === answer.winner);
   const rest = rows.length - shown.length;
-  return el("div", { id: "explanation" },
-    el("p", {}, winner ? `${winner.case} is the best of ${answer.candidates} that fit.` : "No case fits; the robots play without one."),
+  return el("div", { class: "explanation" },
+    el("p", {}, winner ? `${winner.case} is the best of ${answer.candidates} that fit.` : "No case fits."),
     table(["rank", "case", "verdict", "why"], cells),
     el("p", { class: "field-set" },
-      rest > 0 ? el("button", { onclick: (event) => event.target.closest("#explanation").replaceWith(body(answer, problem, true)) }, `${rest} more`) : null,
+      rest > 0 ? el("button", { onclick: (event) => event.target.closest(".explanation").replaceWith(body(answer, problem, true)) }, `${rest} more`) : null,
       el("button", { onclick: () => navigator.clipboard?.writeText(problem).then(() => changed("told", "the problem is copied")) }, "Copy the problem")),
     el("p", { class: "muted" }, "The same on a terminal: paste the problem into onetwo cases explain --league LEAGUE."));
 }

@@ -1,7 +1,7 @@
 // How does the match stand? Score, stage, possession, ratios, and everything that happened.
 
 import { byId, clock, el, fill, number, say, table } from "./dom.js";
-import { explainHappening } from "./explain.js";
+import { explainEvent } from "./explain.js";
 import { changed, store } from "./store.js";
 import { seek } from "./transport.js";
 import { tone } from "./timeline.js";
@@ -83,5 +83,5 @@ function showHappenings() {
   fill(byId("happenings"), `${list.length} ${list[0]?.t} ${[...hidden]} ${store.state.life} ${document.documentElement.dataset.theme}`, () => list.map((happening) =>
     el("li", { class: happening.kind, onclick: () => seek(Math.max(0, happening.t - 1), true) },
       el("time", {}, clock(happening.t)), el("span", { class: "dot", style: `background:${tone(happening)}` }), el("span", { class: "words" }, happening.words),
-      happening.problem ? el("button", { class: "ask", onclick: (event) => { event.stopPropagation(); explainHappening(happening); } }, "why?") : null)));
+      happening.problem ? el("button", { class: "ask", onclick: (event) => { event.stopPropagation(); explainEvent(happening); } }, "why?") : null)));
 }

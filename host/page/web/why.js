@@ -1,7 +1,7 @@
 // What is every robot thinking? Its role, what it is told and why, the state of its case; and each team's cycle.
 
 import { byId, el, fill, number } from "./dom.js";
-import { explainHappening, explainNow } from "./explain.js";
+import { explainEvent, explainNow } from "./explain.js";
 import { choose, isChosen, store } from "./store.js";
 
 export function showWhy() {
@@ -44,7 +44,7 @@ function cycleBox(cycle) {
       el("span", { class: "muted" }, `cycle ${cycle.number}, led by ${cycle.coordinator}`)),
     el("div", { class: "row" },
       ...cycle.players.map((id, i) => el("span", { class: `chip ${cycle.team}`, title: `case robot ${i + 1}` }, String(id))),
-      cycle.case && last?.problem ? el("button", { onclick: () => explainHappening(last), "data-retrieval": cycle.team }, "Why this case?") : null));
+      cycle.case && last?.problem ? el("button", { onclick: () => explainEvent(last), "data-retrieval": cycle.team }, "Why this case?") : null));
 }
 
 function card(robot) {

@@ -1,5 +1,6 @@
 //! `state`: read access to the host's state.
 
+use protocol::decision::DecisionReport;
 use protocol::host::Telemetry;
 use protocol::team::Beacon;
 use protocol::{Instant, RobotId};
@@ -83,6 +84,11 @@ impl Host {
     /// The newest beacon of one of our robots.
     pub fn beacon(&self, robot: RobotId) -> Option<&Beacon> {
         self.robots[robot.index()].beacon.as_ref().map(|(_, beacon)| beacon)
+    }
+
+    /// The newest decision that one of our robots made and reported whole, with the problem it decided on.
+    pub fn decision(&self, robot: RobotId) -> Option<&DecisionReport> {
+        self.robots[robot.index()].decision.as_ref()
     }
 
     /// The values learned of its robots and the field.

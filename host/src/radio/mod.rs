@@ -21,6 +21,7 @@ mod quality;
 mod snapshot;
 mod warning;
 
+use protocol::decision::DecisionPart;
 use protocol::frame::{Audience, Frame, Refusal, Sender, TeamKey};
 use protocol::host::{HostCommand, HostMessage, PARTS_MAX, Telemetry};
 use protocol::host_link::{HostLink, Opened};
@@ -109,6 +110,8 @@ pub enum RadioReceived {
     Telemetry(RobotId, Telemetry),
     /// To its teammates: its boot epoch.
     Handshake(RobotId),
+    /// To the host: a part of the problem it decided on.
+    Decision(RobotId, DecisionPart),
 }
 
 /// The host's radio: queue of frames, links to robots, refusals.
@@ -242,6 +245,7 @@ impl Radio {
                 self.relay(now, robot, packet);
                 Ok(RadioReceived::Handshake(robot))
             }
+            TeamMessage::Decision(part) => Ok(RadioReceived::Decision(robot, part)),
             TeamMessage::Telemetry(telemetry) => {
                 let departed = self.departures[usize::from(telemetry.snapshot)];
                 self.refusals.report(now, robot, &telemetry);

@@ -108,7 +108,7 @@ fn pictures(program: &str, directory: &Path) -> Reported<()> {
     tab.eval(
         "(document.querySelector('[data-retrieval]') ?? document.querySelector('[data-explain]')).click()",
     )?;
-    tab.wait("document.querySelectorAll('#explanation tbody tr').length > 0", 20)?;
+    tab.wait("document.querySelectorAll('#decided tbody tr').length > 0", 20)?;
     take(&mut tab, &directory.join("why.png"))?;
     tab.click("#dialog button")?;
     for (key, name) in [("2", "match.png"), ("3", "health.png"), ("4", "control.png")] {

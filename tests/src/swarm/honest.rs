@@ -101,7 +101,7 @@ impl Honest {
         let known = self.newest[sender].is_some_and(|(epoch, _)| epoch == this.0);
         if sender < 16 {
             let message: TeamMessage = postcard::from_bytes(payload).ok()?;
-            if matches!(message, TeamMessage::Telemetry(_)) {
+            if matches!(message, TeamMessage::Telemetry(_) | TeamMessage::Decision(_)) {
                 // Sealed with a key that teammates do not have.
                 return None;
             }
@@ -110,7 +110,7 @@ impl Honest {
                     .teammates
                     .iter()
                     .any(|teammate| (teammate.who, teammate.boot_epoch) == (self.me, self.boot_epoch)),
-                TeamMessage::Beacon(_) | TeamMessage::Telemetry(_) => false,
+                TeamMessage::Beacon(_) | TeamMessage::Telemetry(_) | TeamMessage::Decision(_) => false,
             };
             if !known && !names_me {
                 return None;

@@ -1,13 +1,14 @@
 //! Coordination of the team: being present, proposing, deciding, closing and aborting cycles (paper §4;
 //! docs/architecture.md §5).
 
-use casebase::CaseRobot;
+use casebase::{CaseRobot, Problem};
+use protocol::decision::Grounds;
 use protocol::team::{
     AbortReason, Beacon, Closure, CycleState, Decision, PRESENCE_LEASE, Play, Progress, Status,
 };
 use protocol::{Duration, Instant, RobotId};
 
-use super::Brain;
+use super::{Brain, explained::Explained};
 use crate::config::Approach;
 use crate::estimate;
 use crate::execution::{ActionScene, Execution};
@@ -59,7 +60,9 @@ impl Brain<'_> {
         self.timers.set(Timer::Reuse, now + estimate::limit(expected));
     }
 
-    /// Coordination of the team: being present, proposing, deciding, closing, aborting.
+    /// Coordination of the team: being present, proposing, deciding, closing, aborting. Not inlined: what it
+    /// keeps on the stack shall not lie under the steps that plan a path.
+    #[inline(never)]
     pub(super) fn coordinate(&mut self, now: Instant) {
         if !self.awake {
             if !self.timers.has_fired(Timer::Boot) {
@@ -71,8 +74,8 @@ impl Brain<'_> {
         }
         let available = self.is_available(now);
         if self.was_available && !available && self.takes_part() {
-            // The host leads this robot elsewhere: teammates must not wait for it.
-            if let Some(state) = self.cycle.aborted(AbortReason::RobotLost) {
+            // Teammates must not wait for this robot.
+            if let Some(state) = self.cycle.aborted(self.reason_to_leave(now)) {
                 self.adopt(now, &state);
             }
         }
@@ -106,6 +109,16 @@ impl Brain<'_> {
         })
     }
 
+    /// Why it is not available: what the host, or the silence of the host, has changed.
+    fn reason_to_leave(&self, now: Instant) -> AbortReason {
+        let Some(host) = self.host.as_ref() else { return AbortReason::RobotLost };
+        match host.directive(now) {
+            None => AbortReason::RobotLost,
+            Some(_) if host.phase() != Some(Phase::Run) => AbortReason::GameStopped,
+            Some(_) => AbortReason::Reassigned,
+        }
+    }
+
     /// Proposal, decision or end of the cycle, where it is this robot's to announce.
     fn next_state(&mut self, now: Instant) -> Option<CycleState> {
         let me = self.config.robot;
@@ -120,20 +133,11 @@ impl Brain<'_> {
             Some(Decision::Undecided) if self.cycle.is_mine_to_decide() => {
                 self.since.retrieved = true;
                 let holder = self.holder(now);
-                let decision = self.problem(now).map_or(Decision::NoCase, |problem| {
-                    let hint = self.hint(now);
-                    hint.and_then(|hint| retrieval::accept(&self.base, &problem, hint, holder))
-                        .unwrap_or_else(|| {
-                            if self.ball_is_nobodys(holder) {
-                                return Decision::NoCase;
-                            }
-                            retrieval::decide(&self.base, &problem, &self.config.settings, holder)
-                        })
-                });
-                let decision = match decision {
-                    Decision::Play(play) if self.shoots_sooner_without(now, &play) => Decision::NoCase,
-                    other => other,
-                };
+                let problem = self.problem(now);
+                let (decision, grounds) = (problem.as_ref())
+                    .map_or((Decision::NoCase, Grounds::NoBall), |problem| self.decide(now, problem, holder));
+                self.explained = (self.cycle.id())
+                    .map(|cycle| Explained::new(cycle, &decision, grounds, problem.as_ref()));
                 self.cycle.decided(decision)
             }
             Some(Decision::Undecided) => None,
@@ -145,6 +149,22 @@ impl Brain<'_> {
                 let over = self.cycle.is_mine_to_decide() && self.all_have_finished(now);
                 if over { self.cycle.closed(Closure::Finished) } else { None }
             }
+        }
+    }
+
+    /// What is to be played, and what that rests on.
+    fn decide(&self, now: Instant, problem: &Problem, holder: Option<RobotId>) -> (Decision, Grounds) {
+        let proposed = self.hint(now).and_then(|hint| retrieval::accept(&self.base, problem, hint, holder));
+        let (decision, grounds) = match proposed {
+            Some(decision) => (decision, Grounds::Proposed),
+            None if self.ball_is_nobodys(holder) => (Decision::NoCase, Grounds::BallRolls),
+            None => retrieval::decide(&self.base, problem, &self.config.settings, holder),
+        };
+        match decision {
+            Decision::Play(play) if self.shoots_sooner_without(now, &play) => {
+                (Decision::NoCase, Grounds::ShootsSooner)
+            }
+            other => (other, grounds),
         }
     }
 

@@ -15,6 +15,8 @@ use crate::governor::{LimitReason, Ruling};
 #[derive(Clone, Debug, Default)]
 pub(super) struct Spoken {
     beacon: Option<Instant>,
+    /// When a part of a decision was sent.
+    explained: Option<Instant>,
     /// Step counter, wrapping: see [`Spoken::has_turn`].
     steps: u8,
     telemetry: Option<(Instant, Condition)>,
@@ -50,6 +52,16 @@ impl Spoken {
 
     pub(super) fn beacon(&mut self, now: Instant) {
         self.beacon = Some(now);
+    }
+
+    pub(super) fn explained(&mut self, now: Instant) {
+        self.explained = Some(now);
+    }
+
+    /// Whether this step has a message already: sealing costs time, and the next step comes soon.
+    pub(super) fn spoke_at(&self, now: Instant) -> bool {
+        let telemetry = self.telemetry.map(|(at, _)| at);
+        [self.beacon, telemetry, self.explained].contains(&Some(now))
     }
 }
 

@@ -4,6 +4,7 @@
 //! would only abort. For a stationary ball it is the paper's own ball position.
 
 use casebase::{CaseBase, GoalEnd, Problem, RetrievalSettings};
+use protocol::decision::Grounds;
 use protocol::host::Hint;
 use protocol::team::{Decision, Play};
 use protocol::{Instant, RobotId};
@@ -61,7 +62,7 @@ pub fn accept(
     })
 }
 
-/// The coordinator's decision about `problem`.
+/// The coordinator's decision about `problem`, and what it rests on.
 ///
 /// A robot that holds the ball can give it away only by a kick: a case in which another robot must get the
 /// ball first cannot start, and counts as none.
@@ -70,17 +71,20 @@ pub fn decide(
     problem: &Problem,
     settings: &RetrievalSettings,
     holder: Option<RobotId>,
-) -> Decision {
-    let Some(best) = casebase::retrieve_best(base, problem, settings) else { return Decision::NoCase };
+) -> (Decision, Grounds) {
+    let Some(best) = casebase::retrieve_best(base, problem, settings) else {
+        return (Decision::NoCase, Grounds::Retrieved);
+    };
     let getter =
         base.case(best.case).and_then(|case| best.correspondence.get(case.getter().index()).copied());
-    if holder.is_some() && holder != getter {
-        return Decision::NoCase;
+    if let Some(holder) = holder.filter(|_| holder != getter) {
+        return (Decision::NoCase, Grounds::Holds(holder));
     }
     let mut robots = heapless::Vec::new();
     for robot in &best.correspondence {
         // As many as a case may have, in both.
         let _room = robots.push(*robot);
     }
-    Decision::Play(Play { case: best.case, ball: problem.ball.into(), robots })
+    let play = Play { case: best.case, ball: problem.ball.into(), robots };
+    (Decision::Play(play), Grounds::Retrieved)
 }

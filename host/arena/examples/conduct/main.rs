@@ -45,7 +45,7 @@ fn main() -> Result<(), String> {
         .map(|seed| {
             let mut config = GameConfig::new(league, seed, seconds as f64).between(Team::Ours, opponent.team);
             for team in config.teams.iter_mut().filter(|team| team.colour == Colour::Yellow) {
-                (team.tactics, team.approach) = (opponent.tactics, opponent.approach());
+                (team.tactics, team.approach) = (opponent.host_tactics(), opponent.approach());
             }
             config.world = match world.as_str() {
                 "random" => format!("random:{seed}").parse().map_err(|error| format!("{error}"))?,

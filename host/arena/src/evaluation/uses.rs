@@ -125,11 +125,12 @@ mod tests {
             lines.next(),
             Some(
                 "profile,configuration,approach,case,retrieved,finished,ball-out-of-scope,path-blocked,robot-lost,\
-                 action-failed,opponent-on-ball,ball-at-rest,timeout,no-decision,unknown-case,superseded,trial-over,\
+                 action-failed,opponent-on-ball,ball-at-rest,timeout,no-decision,unknown-case,reassigned,game-stopped,\
+                 superseded,trial-over,\
                  trials,trials_goal,trials_close,trials_block,trials_out,trials_timeout"
             )
         );
-        assert_eq!(lines.next(), Some("simulated,dg,cbr,a/x,3,2,0,0,0,0,0,0,1,0,0,0,0,2,1,0,0,1,0"));
+        assert_eq!(lines.next(), Some("simulated,dg,cbr,a/x,3,2,0,0,0,0,0,0,1,0,0,0,0,0,0,2,1,0,0,1,0"));
     }
 
     #[test]

@@ -47,6 +47,11 @@ impl MatchTeam {
         if self.cases { Approach::Cases } else { Approach::Reactive }
     }
 
+    /// What its host plays: a host whose robots play no cases proposes none.
+    pub fn host_tactics(self) -> Tactics {
+        Tactics { bridge: self.tactics.bridge && self.cases, ..self.tactics }
+    }
+
     /// Parses its label; the error lists the accepted ones.
     pub fn parse(label: &str) -> Result<Self, String> {
         let wrong = || {
@@ -178,6 +183,8 @@ mod tests {
         assert_eq!(reactive, MatchTeam { cases: false, ..MatchTeam::ours() });
         assert_eq!(reactive.approach(), Approach::Reactive);
         assert_eq!(MatchTeam::ours().beyond(reactive), ["cases"]);
+        let bridge = |label| MatchTeam::parse(label).unwrap().host_tactics().bridge;
+        assert!(bridge("ours-with-bridge") && !bridge("ours-with-bridge-without-cases"));
         let both = MatchTeam::parse("ours-with-coerce-without-threats+second-level").unwrap();
         assert!(both.tactics.coerce && !both.tactics.threats && !both.tactics.second_level);
     }

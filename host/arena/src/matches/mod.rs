@@ -107,7 +107,7 @@ impl Matches<'_> {
         for team in &mut config.teams {
             team.settings = self.settings.clone();
             let match_team = if team.colour == Colour::Blue { blue } else { yellow };
-            (team.tactics, team.approach) = (match_team.tactics, match_team.approach());
+            (team.tactics, team.approach) = (match_team.host_tactics(), match_team.approach());
         }
         Ok(config)
     }

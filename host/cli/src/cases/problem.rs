@@ -1,9 +1,9 @@
 //! `problem`: parser of problem lines (docs/case-format.md §5.1, `cases retrieve`).
 //!
-//! A problem is one JSON object with exactly the keys `ball`, `defending`, `teammates` and `opponents`;
-//! integers in mm, field frame. Strict: a missing, unknown or repeated key, a repeated robot or a number that
-//! is no integer is malformed, and the error names its place, such as `teammates.3`. List places count from
-//! 1, as lines do.
+//! A problem is one JSON object with the keys `ball`, `defending`, `teammates` and `opponents`; integers in
+//! mm, field frame. `unavailable` may name robots besides, as `teammates` does: they take no part in
+//! retrieval. Strict: a missing, unknown or repeated key, a repeated robot or a number that is no integer is
+//! malformed, and the error names its place, such as `teammates.3`. List places count from 1, as lines do.
 
 use std::fmt;
 
@@ -12,17 +12,21 @@ use foreign::excerpt;
 use protocol::RobotId;
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::value::RawValue;
+use serde_json::{Value, json};
 
 /// Parses the problem of a line.
 pub(crate) fn parse(line: &str) -> Result<Problem, Malformed> {
     let Members(members) = serde_json::from_str(line).map_err(|error| not_an_object(&error))?;
     let (mut ball, mut defending, mut teammates, mut opponents) = (None, None, None, None);
+    let mut unavailable = None;
     for (key, value) in members {
         match key.as_str() {
             "ball" => fill(&mut ball, &key, point(value, &key)?)?,
             "defending" => fill(&mut defending, &key, goal_end(value)?)?,
             "teammates" => fill(&mut teammates, &key, robots(value)?)?,
             "opponents" => fill(&mut opponents, &key, points(value)?)?,
+            // Robots on the field that take no part in retrieval.
+            "unavailable" => fill(&mut unavailable, &key, robots(value)?)?,
             _ => return Err(Malformed::at(&key, format!("unknown key; the keys are {KEYS}"))),
         }
     }
@@ -32,6 +36,19 @@ pub(crate) fn parse(line: &str) -> Result<Problem, Malformed> {
         defending: defending.ok_or_else(|| missing("defending"))?,
         teammates: teammates.ok_or_else(|| missing("teammates"))?,
         opponents: opponents.ok_or_else(|| missing("opponents"))?,
+    })
+}
+
+/// A problem as [`parse`] takes it.
+pub(crate) fn value(problem: &Problem) -> Value {
+    let mm = |at: &PointMm| [at.x, at.y];
+    let teammates: serde_json::Map<String, Value> =
+        problem.teammates.iter().map(|(id, at)| (id.number().to_string(), json!(mm(at)))).collect();
+    json!({
+        "ball": mm(&problem.ball),
+        "defending": problem.defending.label(),
+        "teammates": teammates,
+        "opponents": problem.opponents.iter().map(mm).collect::<Vec<_>>(),
     })
 }
 

@@ -145,7 +145,8 @@ impl Composer {
                 let host = moment.hosts.iter().find(|host| host.settings().us == colour);
                 let played = plays.iter().find(|(team, _)| *team == colour).map(|(_, played)| played);
                 let at = robot.pose.position;
-                let detail = host.and_then(|host| minds::detail(host, robot, played, names, clocks, t));
+                let detail =
+                    host.and_then(|host| minds::detail(host, robot, played, names, clocks, (now, t)));
                 let (detail, aim) = detail.unzip();
                 aims.extend(aim.flatten());
                 SceneRobot {

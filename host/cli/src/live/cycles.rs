@@ -1,17 +1,21 @@
 //! `cycles`: a team's cycles for the page. From its robots' own beacons, by arena's log.
 
 use arena::{CycleEvent, CycleLog};
-use casebase::CaseBase;
+use casebase::{CaseBase, PROBLEM_OPPONENTS_MAX, PROBLEM_TEAMMATES_MAX, Problem};
 use host::Host;
-use page::{Cycle, MatchEvent, MatchEventKind};
-use protocol::team::{CycleState, Status};
-use protocol::{Instant, RobotId};
+use host::world::Robot;
+use page::{Cycle, DecisionNote, MatchEvent, MatchEventKind};
+use protocol::decision::DecisionReport;
+use protocol::quantized::WirePoint;
+use protocol::team::CycleState;
+use protocol::{CycleId, RobotId};
 use rules::Colour;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::layers::Played;
 use super::names::Names;
-use super::{description, team};
+use super::{description, minds, team};
+use crate::cases;
 
 /// Cycles of one team.
 #[derive(Debug, Default)]
@@ -21,7 +25,27 @@ pub(super) struct TeamCycles {
     /// In open play a team without a fitting case retries again and again: reported once until a case is
     /// played.
     reported_none: bool,
+    /// A decision whose problem its coordinator has not reported whole yet.
+    awaited: Option<Awaited>,
+    /// The newest decision.
+    decided: Option<DecisionNote>,
 }
+
+/// A decision on the radio, with the event that tells of it.
+#[derive(Debug)]
+struct Awaited {
+    id: CycleId,
+    /// When it was received, s.
+    at: f64,
+    /// As the host saw the situation, in case no report comes.
+    rebuilt: DecisionNote,
+    /// Left out for one more "no case fits".
+    event: Option<MatchEvent>,
+}
+
+/// A coordinator's report is waited for as long as this, s: it sends each part twice, within 0.2 s of the
+/// decision even where beacons and telemetry take every second step.
+const REPORT_WITHIN_S: f64 = 0.3;
 
 impl TeamCycles {
     /// Takes the newest reports of the robots; new events go to `into`.
@@ -36,46 +60,76 @@ impl TeamCycles {
             let event = self.log.receive(t as f32, state);
             self.report(event, host, t, names, into);
         }
+        self.receive_report(host, t, into);
+    }
+
+    /// The awaited decision's problem has come, or will not come any more.
+    fn receive_report(&mut self, host: &Host, t: f64, into: &mut Vec<MatchEvent>) {
+        let report = |awaited: &Awaited| {
+            let of = |id: RobotId| host.decision(id).filter(|report| report.cycle == awaited.id);
+            RobotId::all().find_map(|id| Some(reported(id, of(id)?)))
+        };
+        if let Some(note) = self.awaited.as_ref().and_then(report) {
+            self.tell(Some(note), into);
+        } else if self
+            .awaited
+            .as_ref()
+            .is_some_and(|awaited| !(0.0..REPORT_WITHIN_S).contains(&(t - awaited.at)))
+        {
+            self.tell(None, into);
+        }
+    }
+
+    /// Tells the awaited decision, with its own problem where there is one.
+    fn tell(&mut self, own: Option<DecisionNote>, into: &mut Vec<MatchEvent>) {
+        let Some(Awaited { rebuilt, event, .. }) = self.awaited.take() else { return };
+        let note = own.unwrap_or(rebuilt);
+        self.decided = Some(note.clone());
+        let tell = |event| MatchEvent { problem: note.problem.clone(), decided: Some(note), ..event };
+        into.extend(event.map(tell));
     }
 
     fn report(&mut self, event: CycleEvent, host: &Host, t: f64, names: &Names, into: &mut Vec<MatchEvent>) {
         let us = host.settings().us;
-        let mut add = |kind, description: String, at, problem| {
-            into.push(MatchEvent { t, kind, team: Some(team(us)), description, at, problem });
+        let made = |kind, description: String, at| {
+            let team = Some(team(us));
+            MatchEvent { t, kind, team, description, at, problem: None, decided: None }
         };
         let of = |i: usize| self.log.cycles().get(i);
         match event {
             CycleEvent::Decided(i) => {
                 let Some(cycle) = of(i) else { return };
-                if let Some(play) = &cycle.play {
+                let (id, seen) = (cycle.id, host.world().ball.map(|ball| WirePoint::from(ball.position)));
+                let mut rebuilt = DecisionNote {
+                    by: cycle.coordinator.number(),
+                    cycle: id.counter,
+                    ..DecisionNote::default()
+                };
+                let event = if let Some(play) = &cycle.play {
+                    rebuilt.id = Some(play.case.0);
+                    rebuilt.problem = Some(problem(host, play.ball));
                     self.reported_none = false;
                     let players: Vec<_> = play.robots.iter().map(|id| id.number().to_string()).collect();
                     let description =
                         format!("{}: {} by {}", us.label(), names.of(play.case), players.join(", "));
                     let ball: geometry::Point<geometry::Field> = play.ball.into();
-                    add(
-                        MatchEventKind::Case,
-                        description,
-                        Some([ball.x(), ball.y()]),
-                        Some(problem(host, play.ball.into())),
-                    );
-                } else if cycle.no_case && !self.reported_none {
-                    self.reported_none = true;
-                    let ball = host.world().ball.map(|ball| ball.position);
-                    let problem =
-                        ball.map(|ball| problem(host, protocol::quantized::WirePoint::from(ball).into()));
-                    add(MatchEventKind::Cycle, format!("{}: no case fits", us.label()), None, problem);
-                }
+                    Some(made(MatchEventKind::Case, description, Some([ball.x(), ball.y()])))
+                } else {
+                    rebuilt.problem = seen.map(|ball| problem(host, ball));
+                    let first = !std::mem::replace(&mut self.reported_none, true);
+                    let description = || format!("{}: no case fits", us.label());
+                    first.then(|| made(MatchEventKind::Cycle, description(), None))
+                };
+                self.tell(None, into);
+                self.awaited = Some(Awaited { id, at: t, rebuilt, event });
             }
             CycleEvent::Ended(i) => {
                 let Some(cycle) = of(i).filter(|cycle| cycle.play.is_some()) else { return };
                 if let Some((_, end)) = cycle.end {
-                    add(
-                        MatchEventKind::Cycle,
-                        format!("{}: case {}", us.label(), end.label().replace('-', " ")),
-                        None,
-                        None,
-                    );
+                    let description = format!("{}: case {}", us.label(), end.label().replace('-', " "));
+                    let event = made(MatchEventKind::Cycle, description, None);
+                    self.tell(None, into);
+                    into.push(event);
                 }
             }
             CycleEvent::Nothing | CycleEvent::Began(_) => {}
@@ -105,6 +159,7 @@ impl TeamCycles {
             meant: play.map(|play| names.meant(play.case)).unwrap_or_default(),
             players: play.map(|play| play.robots.iter().map(|id| id.number()).collect()).unwrap_or_default(),
             seconds: (t - began) as f32,
+            decided: self.decided.clone(),
         })
     }
 
@@ -115,32 +170,30 @@ impl TeamCycles {
     }
 }
 
-/// The situation that a team retrieves in, as `cases explain` takes it: robots that take part, and the ball
+/// A coordinator's own report of its decision.
+pub(super) fn reported(by: RobotId, report: &DecisionReport) -> DecisionNote {
+    DecisionNote {
+        reported: true,
+        by: by.number(),
+        cycle: report.cycle.counter,
+        id: report.case.map(|case| case.0),
+        grounds: description::grounds(report.grounds),
+        problem: Problem::of(report).map(|problem| cases::problem::value(&problem)),
+    }
+}
+
+/// The situation that a team retrieves in as its host sees it: robots that take part, and the ball
 /// position that is sent.
-fn problem(host: &Host, ball: casebase::PointMm) -> Value {
+fn problem(host: &Host, ball: WirePoint) -> Value {
     let us = host.settings().us;
-    let mm = |at: geometry::Point<geometry::Field>| {
-        let at: protocol::quantized::WirePoint = at.into();
-        [at.x, at.y]
-    };
     let world = host.world();
-    let now: Instant = world.time;
-    let offers = |id: RobotId| {
-        let received = host.quality(id).is_some_and(|quality| quality.is_present(now));
-        received && host.beacon(id).is_some_and(|beacon| beacon.status.has(Status::AVAILABLE))
-    };
-    let teammates: serde_json::Map<String, Value> = world
-        .ours(us)
-        .filter(|robot| offers(robot.who.id))
-        .map(|robot| (robot.who.id.number().to_string(), json!(mm(robot.pose.position))))
-        .collect();
-    let opponents: Vec<_> = world.theirs(us).map(|robot| mm(robot.pose.position)).take(11).collect();
-    let game = host.game();
-    let own = game.own_goal(us).unwrap_or(host.settings().defending);
-    json!({
-        "ball": [ball.x, ball.y],
-        "defending": own.label(),
-        "teammates": teammates,
-        "opponents": opponents,
+    let available = |id: RobotId| minds::is_available(host, id, world.time);
+    let place = |robot: &Robot| WirePoint::from(robot.pose.position).into();
+    let ours = world.ours(us).filter(|robot| available(robot.who.id));
+    cases::problem::value(&Problem {
+        ball: ball.into(),
+        defending: host.game().own_goal(us).unwrap_or(host.settings().defending),
+        teammates: ours.map(|robot| (robot.who.id, place(robot))).take(PROBLEM_TEAMMATES_MAX).collect(),
+        opponents: world.theirs(us).map(place).take(PROBLEM_OPPONENTS_MAX).collect(),
     })
 }

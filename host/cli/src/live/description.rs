@@ -2,6 +2,7 @@
 
 use casebase::{Action, Case, CaseRobot};
 use host::strategy::{Flip, OrderReason, Role};
+use protocol::decision::Grounds;
 use protocol::host::{Directive, KickOrder};
 use protocol::quantized::WirePoint;
 use protocol::team::{AbortReason, Closure, Decision, Progress};
@@ -53,6 +54,7 @@ pub(crate) fn why(why: &OrderReason) -> String {
         OrderReason::Threat(_)
         | OrderReason::Chances { .. }
         | OrderReason::OfCase { .. }
+        | OrderReason::PlaysCase { .. }
         | OrderReason::Coerces { .. }
         | OrderReason::Coercing { .. } => why.to_string(),
         // Reasons without a label of their own are printed by their name.
@@ -150,17 +152,33 @@ pub(super) fn decision(decision: &Decision) -> String {
     }
 }
 
+/// Why a decision is not simply retrieval's answer; empty where it is.
+pub(super) fn grounds(grounds: Grounds) -> String {
+    match grounds {
+        Grounds::Retrieved => String::new(),
+        Grounds::Holds(robot) => {
+            format!("robot {} holds the ball, and the best case gives it to another: no case", robot.number())
+        }
+        Grounds::BallRolls => "the ball was rolling and no robot had it: not retrieved".to_owned(),
+        Grounds::Proposed => "the host proposed the case".to_owned(),
+        Grounds::ShootsSooner => "without a case it expected to shoot sooner: no case".to_owned(),
+        Grounds::NoBall => "the coordinator saw no ball".to_owned(),
+    }
+}
+
 fn abort(reason: AbortReason) -> &'static str {
     match reason {
         AbortReason::BallOutOfScope => "the ball left the case's scope",
         AbortReason::PathBlocked => "an opponent blocks the ball's path",
-        AbortReason::RobotLost => "a robot is gone",
+        AbortReason::RobotLost => "a robot is gone, or its host is silent",
         AbortReason::ActionFailed => "an action failed",
         AbortReason::OpponentOnBall => "an opponent has the ball",
         AbortReason::BallAtRest => "the ball lies where no robot expects it",
         AbortReason::Timeout => "it took too long",
         AbortReason::NoDecision => "its coordinator is silent",
         AbortReason::UnknownCase => "a robot does not know the case",
+        AbortReason::Reassigned => "its host gave it another order",
+        AbortReason::GameStopped => "the referee stopped the game",
     }
 }
 

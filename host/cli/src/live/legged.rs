@@ -4,14 +4,15 @@
 use arena::{CycleEvent, Moment, TrialReport, Watcher};
 use casebase::CaseBase;
 use page::{
-    Cycle, Intent, Match, MatchEvent, MatchEventKind, Page, PageTeam, RobotDetail, Scene, SceneRobot, Shape,
-    Tone, milli,
+    Cycle, DecisionNote, Intent, Match, MatchEvent, MatchEventKind, Page, PageTeam, RobotDetail, Scene,
+    SceneRobot, Shape, Tone, milli,
 };
 use protocol::RobotId;
 use protocol::team::{Beacon, CycleState, Role};
 use rules::{Colour, League};
 
 use super::composer::field_of;
+use super::cycles::reported;
 use super::description;
 use super::layers::{self, Played};
 
@@ -25,14 +26,18 @@ pub(crate) struct Legged {
     beacons: Vec<(RobotId, Beacon)>,
     newest: Option<CycleState>,
     trail: Vec<[f32; 2]>,
+    decided: Option<DecisionNote>,
 }
 
 impl Legged {
     pub(crate) fn new(page: Page, base: CaseBase<'static>) -> Self {
-        Self { page, base, beacons: Vec::new(), newest: None, trail: Vec::new() }
+        Self { page, base, beacons: Vec::new(), newest: None, trail: Vec::new(), decided: None }
     }
 
     fn receive(&mut self, moment: &Moment<'_>) {
+        if let Some((robot, report)) = moment.decisions.last() {
+            self.decided = Some(reported(*robot, report));
+        }
         for (from, beacon) in moment.beacons {
             if let Some(state) = &beacon.cycle
                 && state.is_newer_than(self.newest.as_ref())
@@ -60,7 +65,10 @@ impl Legged {
                 }
                 _ => continue,
             };
-            let problem = (kind == MatchEventKind::Case).then(|| problem(moment));
+            let own = self.decided.as_ref().filter(|decided| decided.cycle == cycle.id.counter);
+            let decided = own.filter(|_| kind == MatchEventKind::Case).cloned();
+            let rebuilt = || (kind == MatchEventKind::Case).then(|| problem(moment));
+            let problem = decided.as_ref().and_then(|decided| decided.problem.clone()).or_else(rebuilt);
             self.page.push(MatchEvent {
                 t,
                 kind,
@@ -68,6 +76,7 @@ impl Legged {
                 description,
                 at: None,
                 problem,
+                decided,
             });
         }
     }
@@ -131,6 +140,7 @@ impl Legged {
             state: description::decision(&state.decision),
             case: play.map(|play| moment.config.names.of(play.case)).unwrap_or_default(),
             players: play.map(|play| play.robots.iter().map(|id| id.number()).collect()).unwrap_or_default(),
+            decided: self.decided.clone(),
             ..Cycle::default()
         });
         let layers =
@@ -198,6 +208,7 @@ impl Watcher for Legged {
             description,
             at: None,
             problem: None,
+            decided: None,
         });
         let mut scene = self.scene(moment, t + 0.04);
         scene.layers.push(page::Layer {

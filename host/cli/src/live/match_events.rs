@@ -49,7 +49,7 @@ impl EventFeed {
                 _ => name,
             };
             let team = whose(&description);
-            into.push(MatchEvent { t, kind, team, description, at: None, problem: None });
+            into.push(MatchEvent { t, kind, team, description, at: None, problem: None, decided: None });
         }
     }
 
@@ -64,6 +64,7 @@ impl EventFeed {
                 description: sentence(event),
                 at: Some([milli(event.place.x()), milli(event.place.y())]),
                 problem: None,
+                decided: None,
             });
         }
         self.events = referee.events().len();
@@ -89,6 +90,7 @@ impl EventFeed {
             ),
             at: Some([milli(kick.from.x()), milli(kick.from.y())]),
             problem: None,
+            decided: None,
         });
     }
 }

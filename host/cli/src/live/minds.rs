@@ -6,7 +6,7 @@ use host::Host;
 use host::world::Robot;
 use page::{Intent, RobotDetail, Timer, Vitals, milli};
 use protocol::host::Condition;
-use protocol::team::{Progress, Role};
+use protocol::team::{Progress, Role, Status};
 use protocol::{Instant, RobotId};
 use rules::{Colour, RuleRole};
 
@@ -38,7 +38,7 @@ pub(super) fn detail(
     played: Option<&Played<'_>>,
     names: &Names,
     clocks: &mut Clocks,
-    t: f64,
+    (now, t): (Instant, f64),
 ) -> Option<(RobotDetail, Option<Aim>)> {
     let id = robot.who.id;
     let order = host.orders().iter().find(|order| order.robot == id)?;
@@ -81,10 +81,17 @@ pub(super) fn detail(
             Some(Role::Supporter) => "backs up".to_owned(),
             Some(Role::None) | None => String::new(),
         },
+        available: is_available(host, id, now),
         intent: Intent { path, ball_to },
         timers,
     };
     Some((detail, aim))
+}
+
+/// Whether a robot can be given a part in a case, as far as its host knows.
+pub(super) fn is_available(host: &Host, id: RobotId, now: Instant) -> bool {
+    let received = host.quality(id).is_some_and(|quality| quality.is_present(now));
+    received && host.beacon(id).is_some_and(|beacon| beacon.status.has(Status::AVAILABLE))
 }
 
 /// State of a robot and its link.

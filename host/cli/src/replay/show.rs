@@ -78,6 +78,7 @@ impl Projector {
             description,
             at: None,
             problem: None,
+            decided: None,
         });
         self.due = f64::NEG_INFINITY;
         self.look(now, feed, hosts);

@@ -62,8 +62,16 @@ fn a_match_is_watched_asked_and_touched() {
       return stays;
     })()";
     assert_eq!(tab.eval(pressed).unwrap().as_bool(), Some(true));
+    // From the first decision that had a ball on; by the click a later one may name the reason why it had
+    // no problem. What would be retrieved at this moment is there always.
+    tab.wait("onetwo.store.scene.cycles.some((c) => c.team === 'blue' && c.decided?.problem)", 60).unwrap();
     tab.click("[data-explain=blue]").unwrap();
-    tab.wait("document.getElementById('dialog').open && document.querySelectorAll('#explanation tbody tr').length > 5", 20).unwrap();
+    tab.wait("document.querySelectorAll('#would-be tbody tr').length > 5", 20).unwrap();
+    tab.wait(
+        "document.getElementById('dialog').open && (document.querySelectorAll('#decided tbody tr').length > 5 || document.getElementById('decided')?.tagName === 'P')",
+        20,
+    )
+    .unwrap();
     tab.click("#dialog button").unwrap();
     tab.wait("!document.getElementById('dialog').open", 5).unwrap();
 

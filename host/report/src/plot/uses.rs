@@ -111,16 +111,16 @@ mod tests {
             configuration: Configuration::DefenderGoalie,
             approach: Approach::Cases,
             case: "a/b".to_owned(),
-            retrieved: 78,
-            // 1 to 12, in the order of `CycleEnd::DESCRIPTION`.
+            retrieved: 105,
+            // 1 to 14, in the order of `CycleEnd::DESCRIPTION`.
             ends: std::array::from_fn(|i| i as u32 + 1),
             trials: 9,
             outcomes: [0; 5],
         };
         let plays: Vec<_> = ENDS.iter().map(|(_, _, description)| ends(&case, description)).collect();
-        // Robot lost 4, ball at rest 7, timeout 8, no decision 9, unknown case 10, superseded 11 are anything
-        // else.
-        assert_eq!(plays, [1, 2, 3, 5, 6, 4 + 7 + 8 + 9 + 10 + 11, 12]);
+        // Robot lost 4, ball at rest 7, timeout 8, no decision 9, unknown case 10, reassigned 11, game
+        // stopped 12, superseded 13 are anything else.
+        assert_eq!(plays, [1, 2, 3, 5, 6, 4 + 7 + 8 + 9 + 10 + 11 + 12 + 13, 14]);
         assert_eq!(plays.iter().sum::<u32>(), case.retrieved);
         assert!(panel(&[&case], 3).unwrap().height > ROW);
         assert!(panel(&[], 34).is_none());

@@ -18,7 +18,7 @@ use crate::skills::{Reception, Step};
 pub fn receive(belief: &Belief, at: Point<Field>, then: Option<Point<Field>>) -> Intent {
     if belief.holds_ball {
         return match then {
-            Some(then) => kick_held(belief, then, exit_heading(belief, then).0),
+            Some(then) => kick_held(belief, then, redirecting_kick(belief, then).0),
             None => Intent::Stand { face: None },
         };
     }
@@ -41,7 +41,7 @@ pub fn receive(belief: &Belief, at: Point<Field>, then: Option<Point<Field>>) ->
     let meeting_point = line.closest_to(at);
     let direction = ball.velocity.unit().unwrap_or_default();
     if let Some(then) = then
-        && let (kick, speed) = exit_heading(belief, then)
+        && let (kick, speed) = redirecting_kick(belief, then)
         && let Some(face) = deflection(&ball, meeting_point, then, speed)
     {
         let place = meeting_point - Vector::polar(BALL_AT, face);
@@ -74,7 +74,7 @@ fn comes(belief: &Belief, ball: &BelievedBall, at: Point<Field>) -> bool {
 }
 
 /// The kick that redirects it, and its speed, m/s.
-fn exit_heading(belief: &Belief, then: Point<Field>) -> (OmniKick, f32) {
+fn redirecting_kick(belief: &Belief, then: Point<Field>) -> (OmniKick, f32) {
     let field = belief.league().field();
     let goal = field.goal_center(belief.game.defending.opposite());
     // At their goal at full speed, else as a pass.
