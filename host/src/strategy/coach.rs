@@ -18,6 +18,7 @@ mod plan;
 mod rated_play;
 mod set_piece;
 
+use casebase::CaseBase;
 use geometry::{Attack, Point};
 use motion::ball::BallModel;
 use motion::ball::chip::ChipModel;
@@ -35,6 +36,7 @@ use super::tactics::Tactics;
 use super::threat;
 use super::view::{ROBOTS_MAX, View, ViewRobot, nearest};
 use super::{restart, roles};
+use crate::proposal::cases_of;
 use ahead::Ahead;
 use attack::Intent;
 use cap::Cap;
@@ -75,6 +77,8 @@ pub struct Coach {
     tactics: Tactics,
     /// Models of kicks and rolling balls, for the values of passes.
     kicks: Kicks,
+    /// The cases that come with the league.
+    cases: CaseBase<'static>,
     searches: Searches,
     threats: threat::Memory,
     bench: Bench,
@@ -95,6 +99,8 @@ pub struct Coach {
     placing: Option<(f32, Instant)>,
     /// Whether opponents have the ball.
     attacked: bool,
+    /// Whether a primary defender has joined the attack.
+    attacks: bool,
     /// The pass of our restart that is running.
     pass: Option<Pass>,
     /// Where the ball of our restart lay.
@@ -132,6 +138,7 @@ impl Coach {
             model: OpponentModel::of(team),
             tactics,
             kicks: Kicks::new(constants, BallModel::default(), ChipModel::default()),
+            cases: cases_of(league),
             searches: Searches::new(SEARCH_SEED),
             threats: threat::Memory::default(),
             bench: Bench::default(),
@@ -148,6 +155,7 @@ impl Coach {
             gave_up: false,
             placing: None,
             attacked: false,
+            attacks: false,
             pass: None,
             double_touch_blocked: None,
             intent: None,

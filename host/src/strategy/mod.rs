@@ -21,6 +21,7 @@ pub mod pass;
 pub mod possession;
 pub mod rated;
 pub mod restart;
+pub mod retrieved;
 pub mod roles;
 pub mod support;
 mod tactics;

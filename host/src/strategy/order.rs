@@ -8,6 +8,7 @@ use geometry::{Angle, Attack, Point};
 use protocol::host::{Directive, KickOrder, RuleRole};
 use protocol::{CaseId, RobotId};
 
+use super::retrieved::CastCase;
 use super::threat::Guards;
 use super::view::Flip;
 
@@ -108,6 +109,11 @@ pub enum OrderReason {
         /// P(goal | receive): probability of a goal then.
         goal: f32,
     },
+    /// Plays a case that is worth as much as any other action.
+    PlaysCase {
+        /// The stored case proposed.
+        case: CaseId,
+    },
     /// This opponent follows it and shall be drawn off the path.
     Coerces {
         /// The opponent that follows the robot.
@@ -191,6 +197,8 @@ pub enum Task {
     },
     /// Play cases with the teammates.
     Gameplay,
+    /// The same, with the host's proposal of a case.
+    Case(CastCase),
 }
 
 impl Task {
@@ -210,6 +218,7 @@ impl Task {
             Self::Block { from, to } => Directive::Block { from: flip.to_wire(from), to: flip.to_wire(to) },
             Self::PlaceBall { at } => Directive::PlaceBall { at: flip.to_wire(at) },
             Self::Gameplay => Directive::Gameplay { hint: None },
+            Self::Case(cast) => Directive::Gameplay { hint: Some(cast.hint()) },
         }
     }
 }
@@ -236,6 +245,7 @@ impl fmt::Display for OrderReason {
                 f,
                 "{part} of case {case}, its pass moved by {moved:.2} m: received with {receive:.2}, then a goal with {goal:.2}"
             ),
+            Self::PlaysCase { case } => write!(f, "case {case} is the best action"),
             Self::Coerces { marker } => write!(f, "opponent {marker} follows it, out of the play"),
             Self::Coercing { arrived, of } => {
                 write!(f, "{arrived} of {of} are where opponents shall follow them")

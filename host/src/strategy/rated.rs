@@ -11,6 +11,7 @@ use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 use super::pass::bridge::{RADIUS, refine};
 use super::pass::shot::shot;
 use super::pass::{Kicks, PassScene, Rating, SAMPLES, Searches};
+use super::retrieved::{CaseStep, CastCase};
 use super::value;
 use super::view::{CasePass, ROBOTS_MAX, View};
 
@@ -40,7 +41,9 @@ pub enum Action {
         /// Distance from the case's own place, m.
         moved: f32,
     },
-    /// To keep the ball: by a case, or by what the robots do without one.
+    /// The case that the robots would retrieve.
+    Case(CastCase),
+    /// To keep the ball: by the case that is played, or by what the robots do without one.
     PlayOn,
 }
 
@@ -50,7 +53,7 @@ impl Action {
         match *self {
             Self::Pass { receiver, rating } => Some((receiver, rating)),
             Self::OfCase { pass, rating, .. } => Some((pass.receiver.0, rating)),
-            Self::Shot { .. } | Self::PlayOn => None,
+            Self::Shot { .. } | Self::Case(_) | Self::PlayOn => None,
         }
     }
 }
@@ -64,11 +67,19 @@ pub struct Rated {
     pub worth: f32,
 }
 
+/// What cases propose to the robot that plays the ball.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct OfCases {
+    /// The next pass of the case that it plays.
+    pub pass: Option<CasePass>,
+    /// The case that it would play.
+    pub retrieved: Option<CastCase>,
+}
+
 /// All actions, best first.
-pub type RatedList = heapless::Vec<Rated, { ROBOTS_MAX + 3 }>;
+pub type RatedList = heapless::Vec<Rated, { ROBOTS_MAX + 4 }>;
 
 /// Rates all actions of `who` for a ball at `from`; a teammate of which `receives` is not true gets no pass;
-/// `proposal`: the next pass of a case that `who` plays.
 pub fn rate(
     view: &View,
     kicks: &Kicks,
@@ -76,12 +87,12 @@ pub fn rate(
     who: RobotId,
     from: Point<Attack>,
     receives: impl Fn(RobotId) -> bool,
-    proposal: Option<CasePass>,
+    of_cases: OfCases,
 ) -> RatedList {
     let mut list = RatedList::new();
     let mut add = |action, worth| {
         let place = list.iter().position(|other: &Rated| other.worth < worth).unwrap_or(list.len());
-        // A pass a robot, and three more.
+        // A pass a robot, and four more.
         let _ = list.insert(place, Rated { action, worth });
     };
     let found = shot(view, kicks, from);
@@ -97,13 +108,18 @@ pub fn rate(
             add(Action::Pass { receiver, rating }, pass_worth(view, from, &rating));
         }
     }
-    if let Some(pass) = proposal
+    if let Some(pass) = of_cases.pass
         && let Some(receiver) = view.our(pass.receiver.0)
     {
         let scene = PassScene::of(view, kicks, from, Some(who), receiver).keeping();
         let refined = refine(&scene, pass.at, RADIUS);
         let (rating, moved) = (refined.best, refined.moved());
         add(Action::OfCase { pass, rating, moved }, pass_worth(view, from, &rating));
+    }
+    if let Some(cast) = of_cases.retrieved
+        && let Some(worth) = case_worth(view, kicks, who, from, &cast)
+    {
+        add(Action::Case(cast), worth);
     }
     list
 }
@@ -127,7 +143,26 @@ pub fn rate_again(
             let scene = PassScene::of(view, kicks, from, Some(who), receiver).keeping();
             pass_worth(view, from, &scene.rate(rating.at))
         }
+        Action::Case(cast) => case_worth(view, kicks, who, from, cast)?,
         Action::PlayOn => play_on(view, from),
+    })
+}
+
+/// A case is worth what its first step with the ball is worth; `None` where its receiver is gone.
+fn case_worth(view: &View, kicks: &Kicks, who: RobotId, from: Point<Attack>, cast: &CastCase) -> Option<f32> {
+    let half = view.field.length * 0.5;
+    Some(match cast.step {
+        CaseStep::Pass { from, receiver, at } => {
+            let scene = PassScene::of(view, kicks, from, Some(who), view.our(receiver)?).keeping();
+            pass_worth(view, from, &scene.rate(at))
+        }
+        CaseStep::Shot { from } => {
+            let found = shot(view, kicks, from);
+            shot_worth(view, from, found.aim, found.value())
+        }
+        // Either team may be first at it.
+        CaseStep::Kick { to } => 0.5 * (value::of_ours(half, to) + value::of_theirs(half, to)),
+        CaseStep::Hold => play_on(view, from),
     })
 }
 
@@ -141,7 +176,8 @@ fn shot_worth(view: &View, from: Point<Attack>, aim: Point<Attack>, goal: f32) -
         .filter(|robot| line.distance_to(robot.position) < ROBOT_RADIUS + BALL_RADIUS)
         .map(|robot| robot.position)
         .min_by(|a, b| a.distance(from).total_cmp(&b.distance(from)));
-    goal + (1.0 - goal) * value::of_theirs(half, blocker.unwrap_or(aim))
+    // One that misses is theirs at rest, as any restart: worth nothing to either.
+    goal + (1.0 - goal) * blocker.map_or(0.0, |at| value::of_theirs(half, at))
 }
 
 fn pass_worth(view: &View, from: Point<Attack>, rating: &Rating) -> f32 {
@@ -155,23 +191,26 @@ fn pass_worth(view: &View, from: Point<Attack>, rating: &Rating) -> f32 {
 
 fn play_on(view: &View, from: Point<Attack>) -> f32 {
     let half = view.field.length * 0.5;
-    let near = view.nearest_theirs(from).map_or(f32::INFINITY, |(_, distance)| distance);
     // What is lost with a ball that is lost.
     let difference = value::of_ours(half, from) - value::of_theirs(half, from);
-    let lost = if near < CONTESTED {
+    value::of_ours(half, from) - lost(view, from) * difference.max(0.0)
+}
+
+/// Share of the balls at `from` that are lost beyond the mean of all moments with the ball.
+fn lost(view: &View, from: Point<Attack>) -> f32 {
+    let near = view.nearest_theirs(from).map_or(f32::INFINITY, |(_, distance)| distance);
+    if near < CONTESTED {
         LOST_CONTESTED
     } else if near < PRESSED {
         LOST_PRESSED
     } else {
         LOST_FREE
-    };
-    value::of_ours(half, from) - lost * difference.max(0.0)
+    }
 }
 
 /// An opponent this near the ball, m, disputes it, or presses its owner.
 const CONTESTED: f32 = 0.25;
 const PRESSED: f32 = 0.7;
-/// Shares of the balls that are lost beyond the mean of all moments with the ball.
 const LOST_CONTESTED: f32 = 0.4;
 const LOST_PRESSED: f32 = 0.2;
 const LOST_FREE: f32 = 0.0;
@@ -197,10 +236,17 @@ mod tests {
     fn list(teammate: (f32, f32), theirs: &[(f32, f32)], case: Option<Point<Attack>>) -> RatedList {
         let view = view((2.0, 0.0), &[(-4.4, 0.0), (1.9, 0.0), teammate], theirs);
         let part = |part, robot: usize| (view.ours[robot].id, CaseRobot::new(part).unwrap());
-        let proposal =
-            case.map(|at| CasePass { case: CaseId(1), passer: part(0, 1), receiver: part(1, 2), at });
+        let pass = case.map(|at| CasePass { case: CaseId(1), passer: part(0, 1), receiver: part(1, 2), at });
         let from = Point::new(2.0, 0.0);
-        rate(&view, &kicks(), &mut Searches::new(1), view.ours[1].id, from, |_| true, proposal)
+        rate(
+            &view,
+            &kicks(),
+            &mut Searches::new(1),
+            view.ours[1].id,
+            from,
+            |_| true,
+            OfCases { pass, retrieved: None },
+        )
     }
 
     #[test]
@@ -240,5 +286,36 @@ mod tests {
         let scene = PassScene::of(&view, &kicks, Point::new(2.0, 0.0), Some(view.ours[1].id), &view.ours[2]);
         let same = pass_worth(&view, Point::new(2.0, 0.0), &scene.keeping().rate(rating.at));
         assert!((same - of_case.worth).abs() < 1e-6, "{same} {}", of_case.worth);
+    }
+
+    #[test]
+    fn a_case_is_worth_what_its_first_step_is_worth_in_the_list() {
+        let seen = view((2.0, 0.0), &[(-4.4, 0.0), (1.9, 0.0), (3.0, 1.8)], &WALL);
+        let (kicks, from, who) = (kicks(), Point::new(2.0, 0.0), seen.ours[1].id);
+        let cast = |step| CastCase { case: CaseId(3), robots: [Some(who), None, None, None], step };
+        let at = Point::new(3.0, 1.6);
+        let worth = |step| case_worth(&seen, &kicks, who, from, &cast(step));
+        let pass = CaseStep::Pass { from, receiver: seen.ours[2].id, at };
+        let scene = PassScene::of(&seen, &kicks, from, Some(who), &seen.ours[2]).keeping();
+        assert_eq!(worth(pass), Some(pass_worth(&seen, from, &scene.rate(at))));
+        assert_eq!(worth(CaseStep::Hold), Some(play_on(&seen, from)));
+        let found = shot(&seen, &kicks, from);
+        assert_eq!(worth(CaseStep::Shot { from }), Some(shot_worth(&seen, from, found.aim, found.value())));
+        let gone = CaseStep::Pass { from, receiver: RobotId::new(9).unwrap(), at };
+        assert_eq!(worth(gone), None, "its receiver is not there");
+        let list = rate(
+            &seen,
+            &kicks,
+            &mut Searches::new(1),
+            who,
+            from,
+            |_| true,
+            OfCases { pass: None, retrieved: Some(cast(pass)) },
+        );
+        assert!(
+            list.iter()
+                .any(|rated| Some(rated.worth) == worth(pass) && matches!(rated.action, Action::Case(_))),
+            "{list:?}"
+        );
     }
 }

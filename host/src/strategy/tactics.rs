@@ -24,7 +24,8 @@ pub struct Tactics {
     /// else cases are played.
     #[serde(default)]
     pub attack: bool,
-    /// Where a case is played, its next pass as refined by pass location and pass-ahead (docs/papers.md §8).
+    /// Where a case is played, its next pass as refined by pass location and pass-ahead (docs/papers.md §8);
+    /// with `rated`, the case that robots would retrieve is one of the rated actions.
     #[serde(default)]
     pub bridge: bool,
     /// Open play by possession and one rated list of actions; else by the thresholds of `attack`.
@@ -108,7 +109,8 @@ impl Tactics {
 impl Default for Tactics {
     /// The parts that win matches. `docs/matches.md` (`cargo xtask matches`) has the value of each part
     /// against our team without it: threats and their second level gain goals, attack gains shots and ground;
-    /// the effects of pass-ahead, coerce and the bridge are not significant.
+    /// the effects of pass-ahead, coerce and the bridge are not significant. The rated list wins more goals,
+    /// and leaves the ball in play for less of the time and to cases hardly ever (docs/strategy.md).
     fn default() -> Self {
         Self { threats: true, second_level: true, attack: true, ..Self::NONE }
     }

@@ -37,6 +37,11 @@ impl Flip {
         Self { sign: goal.attack_sign() as f32 }
     }
 
+    /// The goal that the team defends.
+    pub fn defends(self) -> GoalEnd {
+        if self.sign < 0.0 { GoalEnd::Positive } else { GoalEnd::Negative }
+    }
+
     /// A place in the attack frame.
     pub fn point(self, p: Point<Field>) -> Point<Attack> {
         Point::new(p.x() * self.sign, p.y() * self.sign)
@@ -160,6 +165,10 @@ pub struct View {
     pub contact: RobotSet,
     /// The next pass of that case, where the tactics include the bridge between the papers.
     pub proposal: Option<CasePass>,
+    /// Our robots that carry the case base that the host knows.
+    pub knows_cases: RobotSet,
+    /// Between the attack frame and the field.
+    pub flip: Flip,
     /// Dimensions of the field.
     pub field: FieldSpec,
 }
@@ -206,6 +215,8 @@ impl View {
             in_play,
             contact: RobotSet::default(),
             proposal: None,
+            knows_cases: RobotSet::default(),
+            flip,
             field,
         }
     }
@@ -236,6 +247,8 @@ impl View {
             in_play: RobotSet::default(),
             contact: RobotSet::default(),
             proposal: None,
+            knows_cases: RobotSet::default(),
+            flip: Flip::defending(GoalEnd::Negative),
             field,
         }
     }

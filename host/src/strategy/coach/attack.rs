@@ -58,6 +58,15 @@ impl Coach {
                 let why = OrderReason::Chances { receive: rating.receive(), goal: rating.goal() };
                 Some((self.pass_to(plan, receiver, &rating, why)?, why))
             }
+            Action::Case(cast) => {
+                let why = OrderReason::PlaysCase { case: cast.case };
+                for robot in cast.robots.iter().flatten().copied() {
+                    if plan.take(robot) {
+                        plan.order(robot, Role::Player, Task::Case(cast), why);
+                    }
+                }
+                Some((Task::Case(cast), why))
+            }
             Action::OfCase { pass, rating, moved } => {
                 let (receive, goal) = (rating.receive(), rating.goal());
                 let why = |part| OrderReason::OfCase { case: pass.case, part, moved, receive, goal };
@@ -109,7 +118,6 @@ impl Coach {
         if speed < LEFT_WITH || along < speed * LEFT_ALONG || ball.position.distance(passer.position) < LEFT {
             return;
         }
-        (self.intent, self.chosen) = (None, None);
         let then = rating.shot.one_touch.then_some(rating.shot.aim);
         self.pass = Some(Pass { receiver, at: rating.at, then, since: view.now });
         self.sent = Some(Sent {
@@ -122,6 +130,7 @@ impl Coach {
             likely: rating.receive(),
             planned: None,
         });
+        (self.intent, self.chosen) = (None, None);
     }
 
     /// The earlier choice where it is still valid, so that a robot that moves around the ball does not turn
@@ -141,7 +150,7 @@ impl Coach {
 
     fn stands(&self, view: &View, intent: &Intent, ball: &ViewBall) -> bool {
         let held = match intent.action {
-            Action::PlayOn => ASKED_AGAIN,
+            Action::PlayOn | Action::Case(_) => ASKED_AGAIN,
             Action::Shot { .. } | Action::Pass { .. } => HELD,
             Action::OfCase { .. } => CASE_HELD,
         };

@@ -4,7 +4,7 @@
 use geometry::{Attack, Point};
 use protocol::{Duration, Instant, RobotId};
 use rules::limits::ROBOT_RADIUS;
-use rules::{Phase, contact};
+use rules::{Phase, Side, contact};
 
 use super::super::order::{OrderReason, Role, Task};
 use super::super::threat::{self, receiving::comes_at_goal};
@@ -180,14 +180,27 @@ impl Coach {
         (task, why)
     }
 
+    /// Number of primary defenders: one where we attack in their half.
+    fn stay_back(&mut self, view: &View) -> usize {
+        let ours = match view.phase {
+            Phase::Run => !self.attacked,
+            Phase::FreeKick(side) => side == Side::Ours,
+            _ => false,
+        };
+        let limit = if self.attacks { -HALFWAY_HELD } else { HALFWAY_HELD };
+        self.attacks = self.tactics.rated && ours && view.ball.is_some_and(|ball| ball.position.x() > limit);
+        if self.attacks { 1 } else { 2 }
+    }
+
     /// The two robots nearest to the defenders' places; a robot that was one stays one.
-    pub(super) fn primaries(&self, plan: &Plan<'_>) -> RobotSet {
+    pub(super) fn primaries(&mut self, plan: &Plan<'_>) -> RobotSet {
         let view = plan.view;
         let mut free = plan.free.clone();
         free.retain(|id| *id != view.keeper);
         let (places, _) = defence::defenders(view);
         let mut team = RobotSet::default();
-        for id in roles::assign(view, &mut free, &places, &self.defenders).into_iter().flatten() {
+        let stay = self.stay_back(view);
+        for id in roles::assign(view, &mut free, &places, &self.defenders).into_iter().flatten().take(stay) {
             team.insert(id);
         }
         team
@@ -204,6 +217,8 @@ fn lies_before_our_area(view: &View, ball: &ViewBall) -> bool {
         && view.in_our_area(ball.position, KEEPERS)
 }
 
+/// The ball is in the other half once it is this far beyond the halfway line, m.
+const HALFWAY_HELD: f32 = 0.3;
 /// Outside our area, but nearer to it than this, the ball is cleared, m, by the keeper if it is there first:
 /// a field player's centre is 0.11 m behind the ball it kicks and 0.17 m when it lines up, and there is no
 /// room to go around it on the goal's side.

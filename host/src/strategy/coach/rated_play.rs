@@ -7,7 +7,8 @@ use protocol::{Duration, Instant, RobotId};
 
 use super::super::order::{OrderReason, Role, Task};
 use super::super::possession::{Arrival, Possession, arrival};
-use super::super::rated::{self, Action};
+use super::super::rated::{self, Action, OfCases};
+use super::super::retrieved;
 use super::super::roles;
 use super::super::view::{View, ViewBall, ViewRobot};
 use super::open_play::is_left_to_the_keeper;
@@ -109,12 +110,13 @@ impl Coach {
         arrival: &Arrival,
     ) -> Option<(Task, OrderReason)> {
         let from = if self.possession.owner() == Some(who) { ball.position } else { arrival.ball };
-        let action = self.choose(plan.view, who, from);
+        let action = self.choose(plan, who, from);
         self.order_action(plan, &action)
     }
 
     /// The earlier choice, unless another action is clearly better now.
-    fn choose(&mut self, view: &View, who: RobotId, from: Point<Attack>) -> Action {
+    fn choose(&mut self, plan: &Plan<'_>, who: RobotId, from: Point<Attack>) -> Action {
+        let view = plan.view;
         let kept = self.chosen.filter(|chosen| chosen.who == who && chosen.from.distance(from) < MOVED);
         if let Some(chosen) = kept
             && view.now.since(chosen.rated) < RATED_EVERY
@@ -130,9 +132,18 @@ impl Coach {
         });
         let defenders = self.defenders;
         let receives = |id| !defenders.contains(&Some(id));
-        let proposal = view.proposal.filter(|pass| self.tactics.bridge && pass.passer.0 == who);
-        let list = rated::rate(view, &self.kicks, &mut self.searches, who, from, receives, proposal);
+        let pass = view.proposal.filter(|pass| self.tactics.bridge && pass.passer.0 == who);
+        let may = |id| id == who || plan.free.contains(&id) && id != view.keeper && receives(id);
+        let retrieved = (self.tactics.bridge && !view.in_play.has(who))
+            .then(|| retrieved::retrieve(view, &self.cases, who, from, may))
+            .flatten();
+        let of_cases = OfCases { pass, retrieved };
+        let list = rated::rate(view, &self.kicks, &mut self.searches, who, from, receives, of_cases);
         let best = list.first().map_or((Action::PlayOn, 0.0), |best| (best.action, best.worth));
+        // Among equals a case: its robots know their parts before the ball leaves.
+        let case = list.iter().find(|rated| matches!(rated.action, Action::Case(_)));
+        let best =
+            case.filter(|case| best.1 < case.worth + CLEARLY).map_or(best, |case| (case.action, case.worth));
         let (action, from) = match again {
             Some((chosen, worth)) if best.1 < worth + CLEARLY => (chosen.action, chosen.from),
             _ => (best.0, from),

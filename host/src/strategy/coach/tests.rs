@@ -3,12 +3,13 @@
 use super::*;
 use crate::strategy::pass::bridge::RADIUS;
 use crate::strategy::threat::Guards;
-use crate::strategy::view::CasePass;
 use crate::strategy::view::ViewBall;
 use crate::strategy::view::tests::view;
+use crate::strategy::view::{CasePass, RobotSet};
 use casebase::CaseRobot;
 use geometry::Vector;
 use protocol::CaseId;
+use protocol::host::Directive;
 
 const OURS: [(f32, f32); 6] = [(-4.4, 0.0), (-3.0, 0.5), (-3.0, -0.5), (-0.5, 0.0), (0.5, 1.5), (0.5, -1.5)];
 const THEIRS: [(f32, f32); 3] = [(4.4, 0.0), (2.0, 1.0), (1.0, -1.0)];
@@ -17,9 +18,13 @@ fn coach() -> Coach {
     Coach::new(Team::Ours, Tactics::default(), League::DivisionB)
 }
 
-/// The default with the rated list.
+/// The default with the rated list, cases in it.
 const RATED: Tactics =
-    Tactics { threats: true, second_level: true, attack: true, rated: true, ..Tactics::NONE };
+    Tactics { threats: true, second_level: true, attack: true, bridge: true, rated: true, ..Tactics::NONE };
+
+fn by_the_list() -> Coach {
+    Coach::new(Team::Ours, RATED, League::DivisionB)
+}
 
 fn phases() -> Vec<Phase<Side>> {
     let by = |side| {
@@ -81,7 +86,7 @@ fn in_open_play_there_are_a_keeper_two_defenders_and_three_who_play_cases() {
 
 #[test]
 fn by_the_rated_list_one_plays_the_ball_and_two_stand_for_its_passes() {
-    let orders = Coach::new(Team::Ours, RATED, League::DivisionB).decide(&view((0.0, 0.0), &OURS, &THEIRS));
+    let orders = by_the_list().decide(&view((0.0, 0.0), &OURS, &THEIRS));
     let of = |which: fn(&Order) -> bool| orders.iter().filter(|order| which(order)).count();
     assert_eq!(of(|order| order.role == Role::Keeper), 1);
     assert_eq!(of(|order| matches!(order.role, Role::Defender(_))), 2);
@@ -91,7 +96,7 @@ fn by_the_rated_list_one_plays_the_ball_and_two_stand_for_its_passes() {
 
 #[test]
 fn by_the_rated_list_a_robot_with_the_ball_keeps_it_though_another_is_nearer_to_its_rest() {
-    let mut coach = Coach::new(Team::Ours, RATED, League::DivisionB);
+    let mut coach = by_the_list();
     // Our 3 has it before its front plate; our 4 is behind it.
     let mut view = view((-0.4, 0.0), &OURS, &THEIRS);
     view.ours[4].position = Point::new(-0.7, 0.15);
@@ -102,6 +107,47 @@ fn by_the_rated_list_a_robot_with_the_ball_keeps_it_though_another_is_nearer_to_
         view.now = Instant(view.now.0 + 10_000);
         view.ball.as_mut().unwrap().rest = Point::new(-0.6, 0.15);
     }
+}
+
+#[test]
+fn in_the_other_half_one_defender_joins_the_attack_until_the_ball_is_theirs() {
+    let mut coach = by_the_list();
+    let mut ours = OURS;
+    ours[3] = (1.9, 0.0);
+    let defenders = |orders: &Orders| orders.iter().filter(|o| matches!(o.role, Role::Defender(_))).count();
+    let mut view = view((2.0, 0.0), &ours, &THEIRS);
+    assert_eq!(defenders(&coach.decide(&view)), 1);
+    view.theirs[1].position = Point::new(2.1, 0.0);
+    view.theirs[1].heading = geometry::Angle::HALF_TURN;
+    view.ours[3].position = Point::new(0.5, 0.0);
+    for _ in 0..3 {
+        view.now = Instant(view.now.0 + 10_000);
+        coach.decide(&view);
+    }
+    assert_eq!(defenders(&coach.decide(&view)), 2);
+}
+
+#[test]
+fn among_equals_a_case_is_proposed_to_the_robots_that_play_it() {
+    // Balls before the goal, until one lies where the robots would retrieve a shot of our 3 alone: the same
+    // shot is no better.
+    let before_the_goal = |i: u8| {
+        let ball = (2.0 + 0.2 * f32::from(i % 9), 0.4 * f32::from(i / 9) - 1.2);
+        let mut view = view(ball, &OURS, &[(4.4, 0.1)]);
+        view.ours[3].position = Point::new(ball.0 - 0.15, ball.1);
+        view.ours.iter().for_each(|robot| view.knows_cases.insert(robot.id));
+        view
+    };
+    let of_a_case = |view: &View| matches!(by_the_list().decide(view)[3].task, Task::Case(_));
+    let mut view = (0..63).map(before_the_goal).find(of_a_case).unwrap();
+    let orders = by_the_list().decide(&view);
+    let Task::Case(cast) = orders[3].task else { panic!("{:?}", orders[3]) };
+    assert!(cast.has(orders[3].robot));
+    assert!(matches!(orders[3].why, OrderReason::PlaysCase { case } if case == cast.case));
+    let Directive::Gameplay { hint: Some(hint) } = orders[3].task.directive(view.flip) else { panic!() };
+    assert_eq!((hint.case, hint.robots.first()), (cast.case, Some(&orders[3].robot)));
+    view.knows_cases = RobotSet::default();
+    assert!(matches!(by_the_list().decide(&view)[3].task, Task::Kick { .. }));
 }
 
 #[test]
@@ -249,8 +295,15 @@ fn a_pass_ahead_leaves_when_its_receiver_will_be_there_and_whoever_receives_it_i
 
 #[test]
 fn a_shot_at_our_goal_makes_no_one_leave_its_place_and_the_keeper_stays_one() {
-    let mut coach = coach();
-    let mut view = view((-1.5, 0.2), &OURS, &[(4.4, 0.0), (-1.3, 0.2)]);
+    for coach in [coach(), by_the_list()] {
+        shot_at_our_goal(coach);
+    }
+}
+
+fn shot_at_our_goal(mut coach: Coach) {
+    let mut ours = OURS;
+    ours[3] = (-1.8, 0.2);
+    let mut view = view((-1.5, 0.2), &ours, &[(4.4, 0.0), (-1.3, 0.2)]);
     let before: Vec<_> = coach.decide(&view).iter().map(|order| order.role).collect();
     assert_eq!(
         (before[0], before[1..3].iter().all(|role| matches!(role, Role::Defender(_)))),
@@ -292,6 +345,8 @@ fn a_ball_that_lies_before_our_area_is_the_keepers_unless_a_field_player_is_ther
     // Without a keeper a field player tries.
     let mut alone = view((-3.3, 0.2), &OURS, &THEIRS);
     alone.keeper = RobotId::new(9).unwrap();
+    let tries = |order: &Order| order.role == Role::Player && order.task != Task::Stand;
+    assert!(by_the_list().decide(&alone).iter().any(tries));
     assert!(coach().decide(&alone).iter().any(|order| order.task == Task::Gameplay));
 }
 
