@@ -176,6 +176,50 @@ impl Status {
     pub const fn has(self, other: Self) -> bool {
         self.0 & other.0 == other.0
     }
+
+    /// With the rule that chose the last shot of the sender's case (bits 3 to 5).
+    #[must_use]
+    pub const fn with_shot(self, rule: ShotRule) -> Self {
+        Self(self.0 & !(7 << SHOT_SHIFT) | (rule as u8) << SHOT_SHIFT)
+    }
+
+    /// The rule that chose the last shot of the sender's case; `None` of a number without a meaning.
+    pub const fn shot(self) -> Option<ShotRule> {
+        Some(match self.0 >> SHOT_SHIFT & 7 {
+            0 => ShotRule::NoShot,
+            1 => ShotRule::Leg,
+            2 => ShotRule::Likelier,
+            3 => ShotRule::Gap,
+            4 => ShotRule::PushOn,
+            5 => ShotRule::OutOfTime,
+            6 => ShotRule::Pressed,
+            _ => return None,
+        })
+    }
+}
+
+/// First bit of the rule of a shot in a [`Status`].
+const SHOT_SHIFT: u8 = 3;
+
+/// Why the holder of a case's ball does what it does with a shot at goal, by the number on the air.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum ShotRule {
+    /// It has not come to a shot.
+    #[default]
+    NoShot = 0,
+    /// The leg that retrieval checked is kicked.
+    Leg = 1,
+    /// Another shot is likelier a goal than the leg.
+    Likelier = 2,
+    /// The ball is carried to, or kept at, where a gap will open: worth more than a shot now.
+    Gap = 3,
+    /// The ball is pushed on towards the goal: worth more than a shot from afar.
+    PushOn = 4,
+    /// Its time was up.
+    OutOfTime = 5,
+    /// An opponent comes for the ball before the case's action is done: shot instead of it.
+    Pressed = 6,
 }
 
 /// A retrieve–reuse cycle as one robot knows it.
@@ -337,6 +381,18 @@ mod tests {
 
     fn robot(n: u8) -> RobotId {
         RobotId::new(n).unwrap()
+    }
+
+    #[test]
+    fn a_status_carries_the_rule_of_a_shot_beside_its_bits() {
+        let bits = Status::AVAILABLE.with(Status::HOLDS_BALL);
+        for number in 0..7 {
+            let carried = Status(bits.0 | number << 3);
+            let rule = carried.shot().unwrap();
+            assert_eq!((rule as u8, bits.with_shot(ShotRule::Pressed).with_shot(rule)), (number, carried));
+            assert!(carried.has(bits) && !carried.has(Status::RETRIEVER));
+        }
+        assert_eq!(Status(7 << 3).shot(), None);
     }
 
     /// The longest beacon there can be.

@@ -7,7 +7,7 @@
 
 use casebase::{Action, Case, CaseBase, CaseRobot, KickAim, Leg, PointMm, TurnTarget};
 use geometry::{Angle, Field, Point, math};
-use protocol::team::{AbortReason, Play, Progress};
+use protocol::team::{AbortReason, Play, Progress, ShotRule};
 use protocol::{CycleId, Duration, Instant, RobotId};
 
 use crate::belief::Belief;
@@ -98,6 +98,8 @@ pub struct Execution {
     started: bool,
     /// The ball leaves by a shot instead of the action.
     shot_pressed: bool,
+    /// The rule of the last shot, made or prepared.
+    shot_rule: ShotRule,
     /// The hand-overs of the actions looked up last, by their number: finding one walks the whole case.
     partners: [Option<(usize, Partner)>; 2],
 }
@@ -116,6 +118,7 @@ impl Execution {
             kicked: false,
             started: false,
             shot_pressed: false,
+            shot_rule: ShotRule::NoShot,
             partners: [None; 2],
         }
     }
@@ -123,6 +126,11 @@ impl Execution {
     /// The case robot it plays.
     pub fn part(&self) -> CaseRobot {
         self.part
+    }
+
+    /// The rule that chose the last shot, made or prepared.
+    pub fn shot_rule(&self) -> ShotRule {
+        self.shot_rule
     }
 
     /// Number of actions done.
@@ -187,6 +195,7 @@ impl Execution {
         let attacked = scene.case.defending().opposite();
         let intent = scene.body.pressed_shot(belief, attacked, time)?;
         self.shot_pressed = intent.lets_go();
+        self.shot_rule = ShotRule::Pressed;
         Some(ActionOutcome::Running(intent))
     }
 
@@ -344,7 +353,13 @@ impl Execution {
                         let patient = !timers.has_fired(Timer::PassPatience);
                         let attacked = scene.case.defending().opposite();
                         match scene.body.shoot_leg(belief, attacked, (&kick, end), patient) {
-                            Some(intent) => self.release(belief, intent),
+                            Some((intent, rule)) => {
+                                // The order that let it go stays the reason while the ball leaves.
+                                if !self.kicked && belief.holds_ball && !belief.busy {
+                                    self.shot_rule = rule;
+                                }
+                                self.release(belief, intent)
+                            }
                             None if self.kicked || belief.busy => {
                                 self.release(belief, Intent::Stand { face: None })
                             }

@@ -1,7 +1,7 @@
 //! `cycles`: log of a team's retrieve–reuse cycles. Derived from overheard beacons alone (paper §4;
 //! docs/architecture.md §5).
 
-use protocol::team::{AbortReason, Closure, CycleState, Decision, Play};
+use protocol::team::{AbortReason, Closure, CycleState, Decision, Play, ShotRule};
 use protocol::{CycleId, RobotId};
 
 /// A cycle as seen from outside.
@@ -19,6 +19,8 @@ pub struct CycleSeen {
     pub start: f32,
     /// Time and kind of its end, once it has ended.
     pub end: Option<(f32, CycleEnd)>,
+    /// The rule of its last shot at goal, made or prepared.
+    pub shot: ShotRule,
 }
 
 /// How a cycle ended.
@@ -61,6 +63,19 @@ impl CycleEnd {
             Self::TrialOver => "trial-over",
         }
     }
+}
+
+/// The label of the rule of a shot; none where it did not come to one.
+pub(crate) const fn shot_label(rule: ShotRule) -> Option<&'static str> {
+    Some(match rule {
+        ShotRule::NoShot => return None,
+        ShotRule::Leg => "leg",
+        ShotRule::Likelier => "likelier-shot",
+        ShotRule::Gap => "waited-for-gap",
+        ShotRule::PushOn => "pushed-on",
+        ShotRule::OutOfTime => "out-of-time",
+        ShotRule::Pressed => "pressed",
+    })
 }
 
 /// The label of an abort reason.
@@ -112,7 +127,8 @@ impl CycleLog {
                 for older in &mut self.cycles[..place] {
                     older.end = older.end.or(Some((time, CycleEnd::Superseded)));
                 }
-                let cycle = CycleSeen { id, coordinator, play: None, no_case: false, start: time, end };
+                let shot = ShotRule::NoShot;
+                let cycle = CycleSeen { id, coordinator, play: None, no_case: false, start: time, end, shot };
                 self.cycles.insert(place, cycle);
                 (place, true)
             }
@@ -138,6 +154,15 @@ impl CycleLog {
             () if !decided_before && (cycle.play.is_some() || cycle.no_case) => CycleEvent::Decided(place),
             () if began => CycleEvent::Began(place),
             () => CycleEvent::Nothing,
+        }
+    }
+
+    /// A robot of cycle `id` reported by what rule it shoots.
+    pub fn shoots(&mut self, id: CycleId, rule: ShotRule) {
+        if rule != ShotRule::NoShot
+            && let Ok(place) = self.cycles.binary_search_by_key(&id, |cycle| cycle.id)
+        {
+            self.cycles[place].shot = rule;
         }
     }
 

@@ -122,7 +122,7 @@ mod tests {
 
     fn cycle(counter: u32, no_case: bool, play: bool) -> CycleSeen {
         use protocol::quantized::WirePoint;
-        use protocol::team::Play;
+        use protocol::team::{Play, ShotRule};
         let id = RobotId::new(1).unwrap();
         let play = play.then(|| Play {
             case: protocol::CaseId(0),
@@ -136,6 +136,7 @@ mod tests {
             no_case,
             start: 0.0,
             end: None,
+            shot: ShotRule::NoShot,
         }
     }
 

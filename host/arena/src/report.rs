@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use hil_sim::{Configuration, Scenario, TrialOutcome};
 use serde::{Serialize, Serializer};
 
-use crate::cycles::CycleSeen;
+use crate::cycles::{CycleSeen, shot_label};
 use crate::names::{CaseNames, letter, symmetry};
 
 /// A trial's result. Fields may be added at the end, never renamed.
@@ -116,6 +116,9 @@ pub struct CycleReport {
     pub end_s: f64,
     /// `finished`, `no-case`, why it was aborted (`ball-out-of-scope`, …), `superseded` or `trial-over`.
     pub end: &'static str,
+    /// The rule of its last shot at goal: `leg` (as retrieval checked it), `likelier-shot`,
+    /// `waited-for-gap`, `pushed-on`, `out-of-time` or `pressed`; null where it did not come to one.
+    pub shot: Option<&'static str>,
 }
 
 impl CycleReport {
@@ -132,6 +135,7 @@ impl CycleReport {
             start_s: in_seconds(cycle.start),
             end_s: in_seconds(end_s),
             end,
+            shot: shot_label(cycle.shot),
         }
     }
 }

@@ -10,7 +10,7 @@ use protocol::RobotId;
 use protocol::robot_io::LeggedKick;
 use protocol::team::{Play, Progress};
 
-use crate::cycles::{CycleEvent, CycleSeen};
+use crate::cycles::{CycleEvent, CycleSeen, shot_label};
 use crate::names::symmetry;
 use crate::report::TrialReport;
 use crate::trial::{Moment, Watcher};
@@ -83,7 +83,8 @@ impl TextLog {
             (CycleEvent::Decided(_), Some(play)) => self.decided(moment, cycle, play),
             (CycleEvent::Ended(_), Some(_)) => {
                 let end = cycle.end.map_or("", |(_, end)| end.label());
-                self.add(moment.tick.time, format!("cycle {} is over: {end}", cycle.id));
+                let shot = shot_label(cycle.shot).map_or(String::new(), |rule| format!(" (shot: {rule})"));
+                self.add(moment.tick.time, format!("cycle {} is over: {end}{shot}", cycle.id));
             }
             _ if cycle.no_case && !self.without_case => {
                 self.without_case = true;

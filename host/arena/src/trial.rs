@@ -231,6 +231,7 @@ impl<'c, 'a> Game<'c, 'a> {
             self.backups.receive(tick.time, from, beacon.role);
             if let Some(state) = &beacon.cycle {
                 self.events.push(self.cycles.receive(tick.time, state));
+                self.cycles.shoots(state.id, beacon.status.shot().unwrap_or_default());
             }
             self.beacons.push((from, beacon));
         }

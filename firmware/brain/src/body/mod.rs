@@ -11,6 +11,7 @@ use casebase::CaseKick;
 use geometry::{Angle, Field, GoalEnd, Point};
 use protocol::Duration;
 use protocol::robot_io::{LeggedKick, OmniKick};
+use protocol::team::ShotRule;
 use rules::League;
 
 use crate::belief::Belief;
@@ -126,17 +127,18 @@ pub trait Body: Sync {
     /// Shoots the ball held at the goal, where it is open, or brings it to where that is easier.
     fn shoot(&self, belief: &Belief, attacked: GoalEnd, patient: bool) -> Intent;
 
-    /// A case's shot at goal along the leg that ends at `leg.1`, with its kick `leg.0`; `patient` while there
-    /// is time left. `None` where there is none, and no shot worth making.
+    /// A case's shot at goal along the leg that ends at `leg.1`, with its kick `leg.0`, and the rule that
+    /// chose it, which only legged robots tell; `patient` while there is time left. `None` where there is
+    /// none, and no shot worth making.
     fn shoot_leg(
         &self,
         belief: &Belief,
         attacked: GoalEnd,
         leg: (&CaseKick, Point<Field>),
         patient: bool,
-    ) -> Option<Intent> {
+    ) -> Option<(Intent, ShotRule)> {
         let _ = leg;
-        Some(self.shoot(belief, attacked, patient))
+        Some((self.shoot(belief, attacked, patient), ShotRule::NoShot))
     }
 
     /// With the ball held and an opponent about to be at it: the shot that is worth more than to go on with

@@ -86,6 +86,11 @@ impl Brain<'_> {
         if self.belief.holds_ball {
             status = status.with(Status::HOLDS_BALL);
         }
+        if cfg!(feature = "legged")
+            && let Some(execution) = &self.execution
+        {
+            status = status.with_shot(execution.shot_rule());
+        }
         Beacon {
             pose: self.belief.pose.into(),
             ball: self.belief.ball.map(|ball| BallReport {

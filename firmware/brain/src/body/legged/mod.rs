@@ -9,6 +9,7 @@ use motion::rolling::RollingBall;
 use protocol::Duration;
 use protocol::quantized::from_mm;
 use protocol::robot_io::LeggedKick;
+use protocol::team::ShotRule;
 use rules::League;
 
 use crate::belief::Belief;
@@ -57,7 +58,7 @@ impl Body for Legged {
         attacked: GoalEnd,
         leg: (&CaseKick, Point<Field>),
         patient: bool,
-    ) -> Option<Intent> {
+    ) -> Option<(Intent, ShotRule)> {
         skills::case_shot(belief, attacked, leg.1, legged_kick(leg.0), patient)
     }
 

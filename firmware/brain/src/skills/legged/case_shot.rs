@@ -12,6 +12,7 @@ use geometry::{Angle, Field, GoalEnd, Point, Segment, Vector, math};
 use motion::legged::HOLD_DISTANCE;
 use motion::legged::{CARRY_SPEED, CARRY_TURN_RATE, WALK_FORWARD};
 use protocol::robot_io::LeggedKick;
+use protocol::team::ShotRule;
 
 use super::shot::{self, FAIR_SHOT, GOOD_SHOT, KICK_TIME};
 use crate::belief::Belief;
@@ -23,6 +24,7 @@ use crate::skills::legged as skills;
 struct Choice {
     worth: f32,
     intent: Intent,
+    rule: ShotRule,
 }
 
 impl Choice {
@@ -32,28 +34,30 @@ impl Choice {
     }
 }
 
-/// The shot of a leg that ends at `end`, kicked with `kick`; `patient` while there is time left. `None` where
-/// there is none, and no shot worth making.
+/// The shot of a leg that ends at `end`, kicked with `kick`, and the rule that chose it; `patient` while there
+/// is time left. `None` where there is none, and no shot worth making.
 pub fn case_shot(
     belief: &Belief,
     attacked: GoalEnd,
     end: Point<Field>,
     kick: LeggedKick,
     patient: bool,
-) -> Option<Intent> {
+) -> Option<(Intent, ShotRule)> {
     let along = belief.pose.position.direction_to(end);
     let Some((chance, best)) = shot::chance_along(belief, attacked, along, kick) else {
-        return patient.then(|| skills::shoot(belief, along, kick));
+        return patient.then(|| (skills::shoot(belief, along, kick), ShotRule::Leg));
     };
     let holding = Holding::new(belief, attacked);
     let other = holding.shot(best.direction, best.kick, best.chance);
     if !patient {
-        return (best.chance >= FAIR_SHOT).then_some(other.intent);
+        return (best.chance >= FAIR_SHOT).then_some((other.intent, ShotRule::OutOfTime));
     }
     // Asking for twice the probability was measured: it costs 2 to 5 points to goal against a goalkeeper.
-    let shot = if best.chance > chance { other } else { holding.shot(along, kick, chance) };
+    let leg = Choice { rule: ShotRule::Leg, ..holding.shot(along, kick, chance) };
+    let shot = if best.chance > chance { other } else { leg };
     let later = holding.waiting(best.chance).unwrap_or_else(|| holding.pushing_on());
-    Some(shot.or(later).intent)
+    let Choice { intent, rule, .. } = shot.or(later);
+    Some((intent, rule))
 }
 
 /// A robot with the ball, and the opponent that will be at it first.
@@ -98,18 +102,19 @@ impl<'b> Holding<'b> {
     }
 
     /// A kick whose ball is worth `worth`, once the robot has turned to `heading`.
-    fn kick(&self, heading: Angle, intent: Intent, worth: f32) -> Choice {
+    fn kick(&self, heading: Angle, (intent, rule): (Intent, ShotRule), worth: f32) -> Choice {
         let turn = heading - self.belief.pose.heading;
         let on_the_way = self.belief.pose.heading + Angle::new(0.5 * turn.radians());
         let held = self.still_held(turn.abs() / CARRY_TURN_RATE + KICK_TIME, on_the_way);
         // What is worth less than a lost ball is no better for the chance of losing it before.
-        Choice { worth: if worth > 0.0 { held * worth } else { worth }, intent }
+        Choice { worth: if worth > 0.0 { held * worth } else { worth }, intent, rule }
     }
 
     /// A shot that is a goal with that probability.
     fn shot(&self, along: Angle, kick: LeggedKick, chance: f32) -> Choice {
         let heading = along - legged::nominal(kick).0;
-        self.kick(heading, skills::shoot(self.belief, along, kick), self.goal(chance))
+        let shoots = skills::shoot(self.belief, along, kick);
+        self.kick(heading, (shoots, ShotRule::Likelier), self.goal(chance))
     }
 
     /// Carrying the ball to the best place for shots, or waiting there for the far post, where the best shot
@@ -125,7 +130,8 @@ impl<'b> Holding<'b> {
         };
         // The gap that it waits for comes or does not: even odds.
         let then = self.goal(0.5 * (GOOD_SHOT + chance));
-        Some(Choice { worth: self.still_held(time + KICK_TIME, heading) * then, intent })
+        let worth = self.still_held(time + KICK_TIME, heading) * then;
+        Some(Choice { worth, intent, rule: ShotRule::Gap })
     }
 
     /// A short kick towards the best place for shots, where that is far.
@@ -133,7 +139,8 @@ impl<'b> Holding<'b> {
         let place = shot::shooting_place(self.belief, self.attacked);
         let along = self.belief.pose.position.direction_to(place);
         let worth = self.after(along, legged::nominal(LeggedKick::ForwardSoft).1);
-        self.kick(along, skills::push_on(self.belief, self.attacked), worth)
+        let pushes = skills::push_on(self.belief, self.attacked);
+        self.kick(along, (pushes, ShotRule::PushOn), worth)
     }
 
     /// What a ball is worth that is kicked `length` m ahead in that direction, not at the goal: a good shot,
@@ -231,8 +238,25 @@ mod tests {
         belief
     }
 
-    fn shot(belief: &Belief, y: f32, patient: bool) -> Option<Intent> {
+    fn chosen(belief: &Belief, y: f32, patient: bool) -> Option<(Intent, ShotRule)> {
         case_shot(belief, GoalEnd::Positive, Point::new(2.7, y), LeggedKick::ForwardHard, patient)
+    }
+
+    fn shot(belief: &Belief, y: f32, patient: bool) -> Option<Intent> {
+        chosen(belief, y, patient).map(|(intent, _)| intent)
+    }
+
+    #[test]
+    fn every_shot_names_the_rule_that_chose_it() {
+        let rule = |belief: &Belief, y, patient| chosen(belief, y, patient).map(|(_, rule)| rule);
+        // Through the middle no shot is likelier than the leg; beside a post the middle is.
+        let unguarded = belief(1.4, 0.0, 0.0, &[]);
+        assert_eq!(rule(&unguarded, 0.0, true), Some(ShotRule::Leg));
+        assert_eq!(rule(&unguarded, 0.3, true), Some(ShotRule::Likelier));
+        assert_eq!(rule(&unguarded, 0.0, false), Some(ShotRule::OutOfTime));
+        // Aside of the goal's middle, with the goalkeeper opposite, the far post will open.
+        assert_eq!(rule(&belief(1.4, 0.6, -0.3, &[(2.1, 0.33)]), 0.0, true), Some(ShotRule::Gap));
+        assert_eq!(rule(&belief(-1.4, 0.0, 0.0, &[]), 0.0, true), Some(ShotRule::PushOn));
     }
 
     #[test]
