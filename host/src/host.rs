@@ -348,21 +348,15 @@ impl Host {
 
     /// Estimates the place of a ball that no camera sees.
     fn remember_ball(&mut self, now: Instant) {
-        let contact = self.in_contact(now);
-        let feels = |robot: RobotId| contact.has(robot);
+        let feels = |robot: RobotId| feels(now, &self.robots[robot.index()]);
         self.hidden.fill(now, &mut self.world, self.settings.us, self.listener.game(), feels);
     }
 
     /// Our robots whose sensors feel the ball, as they reported.
     fn in_contact(&self, now: Instant) -> RobotSet {
         let mut set = RobotSet::default();
-        for robot in RobotId::all() {
-            let reported = &self.robots[robot.index()].telemetry;
-            if reported.as_ref().is_some_and(|(at, reported)| {
-                now.since(*at) < TELEMETRY_LEASE && reported.condition.has(Condition::BALL_CONTACT)
-            }) {
-                set.insert(robot);
-            }
+        for robot in RobotId::all().filter(|robot| feels(now, &self.robots[robot.index()]) == Some(true)) {
+            set.insert(robot);
         }
         set
     }
@@ -436,6 +430,12 @@ impl Host {
         let reported: heapless::Vec<_, { RobotId::COUNT }> = fresh.collect();
         proposal(&self.cases, &reported, flip)
     }
+}
+
+/// Whether a robot's sensor detects the ball, as it reported lately.
+fn feels(now: Instant, robot: &Known) -> Option<bool> {
+    let (at, reported) = robot.telemetry.as_ref()?;
+    (now.since(*at) < TELEMETRY_LEASE).then(|| reported.condition.has(Condition::BALL_CONTACT))
 }
 
 /// The ball's place if cameras see it; the estimated place of a hidden ball does not count.

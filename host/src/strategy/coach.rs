@@ -17,6 +17,7 @@ mod penalty;
 mod plan;
 mod rated_play;
 mod set_piece;
+mod uncover;
 
 use casebase::CaseBase;
 use geometry::{Attack, Point};
@@ -43,6 +44,7 @@ use cap::Cap;
 use defence::Clearing;
 use plan::Plan;
 use rated_play::Chosen;
+use uncover::Uncovering;
 
 /// All orders of one moment, by robot.
 pub type Orders = heapless::Vec<Order, ROBOTS_MAX>;
@@ -123,6 +125,8 @@ pub struct Coach {
     stood: heapless::Vec<Point<Attack>, ROBOTS_MAX>,
     /// Target of the clearance of a ball in our area or before it.
     clearing: Option<Clearing>,
+    /// The robot that makes way so that cameras see the ball.
+    uncovering: Option<Uncovering>,
 }
 
 impl Coach {
@@ -165,6 +169,7 @@ impl Coach {
             settled: None,
             stood: heapless::Vec::new(),
             clearing: None,
+            uncovering: None,
         }
     }
 

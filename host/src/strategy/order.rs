@@ -109,6 +109,8 @@ pub enum OrderReason {
         /// P(goal | receive): probability of a goal then.
         goal: f32,
     },
+    /// The ball beside it is hidden from all cameras, and it does not have it: it makes way for their view.
+    Uncovers,
     /// Plays a case that is worth as much as any other action.
     PlaysCase {
         /// The stored case proposed.
@@ -245,6 +247,7 @@ impl fmt::Display for OrderReason {
                 f,
                 "{part} of case {case}, its pass moved by {moved:.2} m: received with {receive:.2}, then a goal with {goal:.2}"
             ),
+            Self::Uncovers => f.write_str("makes way so that cameras see the ball beside it"),
             Self::PlaysCase { case } => write!(f, "case {case} is the best action"),
             Self::Coerces { marker } => write!(f, "opponent {marker} follows it, out of the play"),
             Self::Coercing { arrived, of } => {

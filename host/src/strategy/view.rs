@@ -4,7 +4,7 @@
 use casebase::CaseRobot;
 use geometry::{Angle, Attack, Field, GoalEnd, Point, Pose, Vector};
 use protocol::quantized::{WirePoint, WirePose};
-use protocol::{CaseId, Instant, RobotId};
+use protocol::{CaseId, Duration, Instant, RobotId};
 use rules::{Colour, FieldSpec, Phase, Side};
 
 use crate::world::World;
@@ -84,12 +84,15 @@ pub struct ViewBall {
     pub rest: Point<Attack>,
     /// Height above the ground, m.
     pub height: f32,
+    /// Time since a camera saw it.
+    pub unseen: Duration,
 }
 
 impl ViewBall {
     /// A ball at standstill.
     pub fn at_rest(position: Point<Attack>) -> Self {
-        Self { position, velocity: Vector::default(), rest: position, height: 0.0 }
+        let unseen = Duration(0);
+        Self { position, velocity: Vector::default(), rest: position, height: 0.0, unseen }
     }
 }
 
@@ -200,6 +203,7 @@ impl View {
                 velocity: flip.vector(ball.velocity),
                 rest: flip.point(ball.rest(&world.models)),
                 height: ball.height,
+                unseen: world.time.since(ball.seen),
             }),
             ours: world.ours(us).filter(|robot| fit.has(robot.who.id)).map(robot).collect(),
             uncommanded: world

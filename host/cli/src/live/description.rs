@@ -52,6 +52,7 @@ pub(crate) fn why(why: &OrderReason) -> String {
         OrderReason::DoubleTouch => "it took our restart and must not touch the ball again yet".to_owned(),
         OrderReason::TooMany { allowed } => format!("the referee lets us have {allowed}"),
         OrderReason::Threat(_)
+        | OrderReason::Uncovers
         | OrderReason::Chances { .. }
         | OrderReason::OfCase { .. }
         | OrderReason::PlaysCase { .. }

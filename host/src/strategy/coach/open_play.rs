@@ -14,6 +14,7 @@ impl Coach {
         let view = plan.view;
         let Some(ball) = view.ball else { return self.defend(plan, false) };
         self.order_double_touch_blocked(plan, &ball);
+        self.order_uncovering(plan, &ball);
         self.see_pass_leave(view);
         let keepers = self.is_keepers(view, &ball);
         if self.order_receiver(plan, &ball).is_some() {

@@ -31,6 +31,7 @@ impl Coach {
         let Some(ball) = view.ball else { return self.defend(plan, false) };
         self.possession = self.possession.next(view, view.contact);
         self.order_double_touch_blocked(plan, &ball);
+        self.order_uncovering(plan, &ball);
         self.see_pass_leave(view);
         let keepers = self.is_keepers(view, &ball);
         if let Some(at) = self.order_receiver(plan, &ball) {

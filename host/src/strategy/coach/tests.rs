@@ -313,7 +313,7 @@ fn shot_at_our_goal(mut coach: Coach) {
     // keeper would be soonest.
     let velocity = Vector::new(-6.0, -0.3);
     let ball =
-        ViewBall { position: Point::new(-2.0, 0.175), velocity, rest: Point::new(-20.0, -0.7), height: 0.0 };
+        ViewBall { velocity, rest: Point::new(-20.0, -0.7), ..ViewBall::at_rest(Point::new(-2.0, 0.175)) };
     view.ball = Some(ball);
     let orders = coach.decide(&view);
     let roles: Vec<_> = orders.iter().map(|order| order.role).collect();
@@ -428,7 +428,7 @@ fn a_pass_of_open_play_that_has_left_is_its_receivers_and_is_reported_to_the_boo
     assert_eq!(coach.take_sent(), None);
     let offset = (at - Point::new(2.0, 0.0)).unit().unwrap();
     let position = Point::new(2.0, 0.0) + offset * 0.2;
-    view.ball = Some(ViewBall { position, velocity: offset * 3.0, rest: at + offset, height: 0.0 });
+    view.ball = Some(ViewBall { velocity: offset * 3.0, rest: at + offset, ..ViewBall::at_rest(position) });
     view.now = Instant(view.now.0 + 50_000);
     let orders = coach.decide(&view);
     assert!(matches!(orders[4].task, Task::Receive { at: there, .. } if there == at), "{:?}", orders[4]);

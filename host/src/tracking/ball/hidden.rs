@@ -1,14 +1,16 @@
 //! `hidden`: position of a ball that no camera sees: under a robot, or where it was placed; field frame, SI.
 //!
 //! With one of our robots, it is at the robot whose sensor detects it, and after release where that robot
-//! detected it last; with theirs, at the one whose front was at it when it vanished. At a restart after a
+//! detected it last; with theirs, at the one whose front was at it when it vanished. Tracking leaves a ball that
+//! vanished at a robot's front there; where that robot is ours and its sensor does not detect the ball, the
+//! opponent beside it has taken it, or it lies where it was last seen. At a restart after a
 //! placement it lies where it was placed: the robot that brought it there hid it on the path, and the last
 //! visible place is metres off. Else it lies at its stop position. Without this a robot that must keep off
 //! the ball would approach it as soon as it is hidden, and one that backs off a ball it hides would search it
 //! elsewhere.
 
 use geometry::{Field, Point, Vector};
-use protocol::{Instant, RobotId, Who};
+use protocol::{Duration, Instant, RobotId, Who};
 use rules::{Colour, Phase};
 
 use crate::referee::Game;
@@ -27,14 +29,14 @@ pub(crate) struct HiddenBall {
 
 impl HiddenBall {
     /// Puts a ball into a world without one, for the team `us`; `feels` returns whether one of its robots has
-    /// the ball.
+    /// the ball, `None` where it has not reported lately.
     pub(crate) fn fill(
         &mut self,
         now: Instant,
         world: &mut World,
         us: Colour,
         game: &Game,
-        feels: impl Fn(RobotId) -> bool,
+        feels: impl Fn(RobotId) -> Option<bool>,
     ) {
         match game.phase {
             Phase::BallPlacement(_) => self.placed = game.placement.or(self.placed),
@@ -42,12 +44,17 @@ impl HiddenBall {
             _ => self.placed = None,
         }
         if let Some(ball) = world.ball {
-            self.last = Some(ball);
             let hides = |robot: &&Robot| dribbler_point(robot).distance(ball.position) < HIDES;
-            self.by = world.theirs(us).find(hides).map(|robot| robot.who);
-            return;
+            let without = |robot: &Robot| hides(&robot) && feels(robot.who.id) == Some(false);
+            if now.since(ball.seen) < UNFELT || !world.ours(us).any(without) {
+                self.last = Some(ball);
+                self.by = world.theirs(us).find(hides).map(|robot| robot.who);
+                return;
+            }
+            self.by = self.by.or_else(|| self.taken_by(world, us));
+            world.ball = None;
         }
-        let holder = world.ours(us).find(|robot| feels(robot.who.id));
+        let holder = world.ours(us).find(|robot| feels(robot.who.id) == Some(true));
         if let (Some(robot), Some(last)) = (holder, &mut self.last) {
             // Where it lies if it is released: a ball released at speed is soon visible.
             (last.position, last.velocity) = (dribbler_point(robot), Vector::default());
@@ -66,6 +73,15 @@ impl HiddenBall {
         let seen = self.last.map_or(now, |last| last.seen);
         world.ball = Some(Ball { velocity, confidence: 0.0, ..Ball::at_rest(position, seen) });
     }
+
+    /// The opponent that has taken a ball which vanished between it and one of ours: whose front is nearest to
+    /// where it was last seen, and near.
+    fn taken_by(&self, world: &World, us: Colour) -> Option<Who> {
+        let last = self.last?.position;
+        let fronts = world.theirs(us).map(|robot| (dribbler_point(robot).distance(last), robot.who));
+        let near = fronts.filter(|(off, _)| *off < TAKES);
+        near.reduce(|best, next| if next.0 < best.0 { next } else { best }).map(|(_, who)| who)
+    }
 }
 
 /// The middle of a robot's front, where a ball at the dribbler is.
@@ -76,13 +92,18 @@ fn dribbler_point(robot: &Robot) -> Point<Field> {
 /// A ball this near the middle of a robot's front may lie in its dribbler opening, m: the opening's half
 /// width and the vision's noise.
 const HIDES: f32 = 0.06;
+/// Time unseen after which a robot's sensor decides whether it has the ball: two telemetry periods, and vision's
+/// delay.
+const UNFELT: Duration = Duration::millis(300);
+/// An opponent's front is this near a ball that it takes off ours, m: a robot's diameter.
+const TAKES: f32 = 2.0 * rules::limits::ROBOT_RADIUS;
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use geometry::Pose;
 
-    const NO_ROBOT: fn(RobotId) -> bool = |_| false;
+    const NO_ROBOT: fn(RobotId) -> Option<bool> = |_| Some(false);
 
     fn robot(who: Who, x: f32) -> Robot {
         Robot {
@@ -103,7 +124,7 @@ mod tests {
         hidden: &mut HiddenBall,
         world: &World,
         phase: Phase<Colour>,
-        feels: fn(RobotId) -> bool,
+        feels: fn(RobotId) -> Option<bool>,
     ) -> Option<f32> {
         let mut world = world.clone();
         let placement = matches!(phase, Phase::BallPlacement(_)).then(|| Point::new(-4.0, 0.0));
@@ -125,12 +146,38 @@ mod tests {
         assert_eq!(x_of(&mut hidden, &world, Phase::Run, NO_ROBOT), Some(3.0));
         world.ball = None;
         assert_eq!(x_of(&mut hidden, &world, Phase::Run, NO_ROBOT), Some(3.0));
-        assert_eq!(x_of(&mut hidden, &world, Phase::Run, |_| true), Some(1.09));
+        assert_eq!(x_of(&mut hidden, &world, Phase::Run, |_| Some(true)), Some(1.09));
         assert_eq!(x_of(&mut hidden, &world, Phase::Run, NO_ROBOT), Some(1.09), "let go, and still hidden");
         world.ball = Some(ball(2.1));
         x_of(&mut hidden, &world, Phase::Run, NO_ROBOT);
         world.ball = None;
         assert_eq!(x_of(&mut hidden, &world, Phase::Run, NO_ROBOT), Some(2.09));
+    }
+
+    #[test]
+    fn a_ball_that_vanished_at_ours_unfelt_is_at_the_opponent_beside_it_or_where_it_was_seen() {
+        let (ours, theirs) = (Who::yellow(RobotId::ZERO), Who::blue(RobotId::ZERO));
+        let (mut hidden, mut world) = (HiddenBall::default(), World::default());
+        world.put(robot(ours, 1.0));
+        world.ball = Some(ball(1.08));
+        let mut at = |ms: u64, world: &World, feels: fn(RobotId) -> Option<bool>| {
+            let mut world = world.clone();
+            let now = Instant(ms * 1000);
+            hidden.fill(now, &mut world, Colour::Yellow, &Game::default(), feels);
+            (world.ball.unwrap().position.x() * 1000.0).round()
+        };
+        assert_eq!(at(100, &world, NO_ROBOT), 1080.0, "just vanished");
+        // It moves off; tracking carries the ball along.
+        world.put(robot(ours, 1.5));
+        world.ball = Some(ball(1.58));
+        assert_eq!(at(400, &world, |_| Some(true)), 1580.0, "felt");
+        assert_eq!(at(400, &world, |_| None), 1580.0, "it has not reported");
+        world.put(robot(ours, 2.0));
+        world.ball = Some(ball(2.08));
+        assert_eq!(at(500, &world, NO_ROBOT), 1580.0, "where it was last believed");
+        world.put(robot(theirs, 1.45));
+        world.ball = Some(ball(2.08));
+        assert_eq!(at(600, &world, NO_ROBOT), 1540.0, "the opponent's front was beside it");
     }
 
     #[test]
