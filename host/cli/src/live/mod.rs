@@ -41,11 +41,13 @@ use crate::output::note;
 use crate::stop::stopped_by_hand;
 
 pub(crate) use composer::{Composer, Moment};
+pub(crate) use cycles::{TeamCycles, reported};
 use description::spaced;
 pub(crate) use explanations::CaseExplanations;
 pub(crate) use gauges::tick;
 pub(crate) use legged::Legged;
 pub(crate) use match_runner::{End, MatchRunner, RestartWatcher, command_of};
+pub(crate) use names::Names;
 
 /// Period of scenes, s: smooth motion, with the page interpolating in between.
 pub(crate) const SCENE_EVERY_S: f64 = 0.04;
