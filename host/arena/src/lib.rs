@@ -9,6 +9,8 @@
 //!
 //! [`game`] plays matches of the Small Size League, a host and its robots on each side.
 //!
+//! [`ledger`] counts what became of every case that was played.
+//!
 //! [`mod@matches`] plays many of them and reports the results, in the form of the second paper's Table 2.
 //!
 //! [`skills`] plays tries of single skills through the whole loop, in worlds of any physics.
@@ -20,12 +22,14 @@
 #![forbid(unsafe_code)]
 
 mod activity;
+pub mod attack;
 mod backups;
 mod case_trial;
 mod cycles;
 mod defaults;
 pub mod evaluation;
 pub mod game;
+pub mod ledger;
 pub mod matches;
 mod names;
 mod picture;

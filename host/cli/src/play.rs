@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 
+use arena::CaseNames;
 use arena::game::{self, Game, GameConfig, GameReport, MatchLog, Watcher, Watchers};
 use casebase::CaseBase;
 use clap::Args;
@@ -120,6 +121,9 @@ pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
     }
     let library_handle = cases(&args.directory, args.league)?;
     let base = library_handle.as_ref().map_or_else(CaseBase::default, LibraryHandle::base);
+    if let Some(library_handle) = &library_handle {
+        config.names = CaseNames::new(library_handle.names());
+    }
     hint_at_foreign_cases(&config, &base);
     let mut backend = NativeBackend::new(base);
     let mut recording = args.record.as_ref().map(|stem| record(stem, &config)).transpose()?;
@@ -271,6 +275,7 @@ fn write_report(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> i
             "{name}: {} shots, {} chances, {} passes, {:.0} s of possession; {fouls}",
             metrics.shots, metrics.chances, metrics.passes, metrics.possession_s
         )?;
+        writeln!(out, "{name}: {}", metrics.cases.summary())?;
     }
     for block in &report.blocked {
         let phase = format!("blocked for {:.1} s from {:.1} s", block.lasted_s, block.from_s);

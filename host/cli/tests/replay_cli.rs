@@ -2,8 +2,9 @@
 
 use std::collections::BTreeSet;
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use host::radio::To;
 use host::record::header::{HostHeader, RecordingHeader};
@@ -291,4 +292,108 @@ fn hosts_that_refine_passes_of_cases_decide_the_same_again() {
         return;
     }
     panic!("no case's pass in seven minutes");
+}
+
+/// A match that is played and recorded: the report of `play`, and the trace.
+fn recorded(name: &str, seed: &str) -> (Value, String) {
+    let stem = scratch(name).display().to_string();
+    let out = Command::new(env!("CARGO_BIN_EXE_onetwo"))
+        .args(["play", "--json", "--duration", "90", "--seed", seed, "--record", &stem])
+        // Robots that are left to themselves play most cases.
+        .args(["--blue-tactics", "none", "--yellow-tactics", "none"])
+        .output()
+        .expect("the program starts");
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    (serde_json::from_slice(&out.stdout).expect("a report"), format!("{stem}.trace"))
+}
+
+/// What another verb answers to these lines.
+fn asked(arguments: &[&str], lines: &str) -> Vec<Value> {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_onetwo"))
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let mut input = child.stdin.take().expect("a pipe");
+    let lines = lines.to_owned();
+    let writer = std::thread::spawn(move || input.write_all(lines.as_bytes()));
+    let out = child.wait_with_output().expect("answers");
+    assert!(out.status.success() && writer.join().expect("a thread").is_ok());
+    let text = String::from_utf8(out.stdout).expect("words in UTF-8");
+    text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect()
+}
+
+#[test]
+fn from_its_trace_a_match_gives_the_same_ledger_and_problems_that_explain_its_decisions() {
+    let (played, file) = recorded("ledger", "5");
+    let replayed = json(&[&file], 0);
+    for team in ["blue", "yellow"] {
+        let (played, replayed) = (&played["metrics"][team]["cases"], &replayed["cases"][team]);
+        for key in ["retrieved", "no_case", "no_case_by_opponents", "no_case_because"] {
+            assert_eq!(played[key], replayed[key], "{team} {key}");
+        }
+        let uses = |table: &Value| {
+            let lines = table["cases"].as_array().expect("a list").iter();
+            lines
+                .map(|line| {
+                    [&line["case"], &line["retrieved"], &line["finished"], &line["ends"]].map(Clone::clone)
+                })
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(uses(played), uses(replayed), "{team}");
+        let opponents = |table: &Value| {
+            let lines = table["cases"].as_array().expect("a list").iter();
+            let keys = |line: &Value| {
+                line["by_opponents"].as_object().map(|by| by.keys().cloned().collect::<Vec<_>>())
+            };
+            lines.map(keys).collect::<Vec<_>>()
+        };
+        assert_eq!(opponents(played), opponents(replayed), "{team}");
+    }
+    let decisions = replayed["decisions"].as_array().expect("a list");
+    let counted = |table: &Value| table["retrieved"].as_u64().zip(table["no_case"].as_u64());
+    let of_cycles: u64 = [&replayed["cases"]["blue"], &replayed["cases"]["yellow"]]
+        .into_iter()
+        .filter_map(counted)
+        .map(|(cases, none)| cases + none)
+        .sum();
+    assert_eq!(decisions.len() as u64, of_cycles, "every cycle that was decided is a decision");
+    let out = onetwo(&[&file, "--problems"]);
+    let lines = String::from_utf8(out.stdout).expect("words in UTF-8");
+    let with_problem: Vec<&Value> =
+        decisions.iter().filter(|decision| !decision["problem"].is_null()).collect();
+    assert_eq!(lines.lines().count(), with_problem.len());
+    let answers = asked(&["cases", "retrieve", "--league", "division-b"], &lines);
+    let explained = asked(&["cases", "explain", "--json", "--league", "division-b"], &lines);
+    let mut checked = 0;
+    for ((decision, answer), explained) in with_problem.iter().zip(&answers).zip(&explained) {
+        assert!(answer.get("error").is_none(), "{answer}");
+        // A host that proposes a case, or a rule about the ball, decides on other grounds than retrieval.
+        if decision["reported"] == true && decision["grounds"] == "" {
+            assert_eq!(decision["id"], answer["id"], "{decision}");
+            assert_eq!(decision["id"], explained["winner"], "{decision}");
+            checked += 1;
+        }
+    }
+    assert!(checked > 40, "{checked} of {}", with_problem.len());
+    let blue = onetwo(&[&file, "--problems", "--team", "blue"]);
+    let of_blue = with_problem.iter().filter(|decision| decision["team"] == "blue").count();
+    assert_eq!(String::from_utf8_lossy(&blue.stdout).lines().count(), of_blue);
+    gaps_are_played(&lines);
+    assert!(refused(&[&recording("grsim_divB_22s.log.gz"), "--problems"]).contains("no trace"));
+}
+
+/// The problems of a match in `cases coverage`: its gaps are problems of the match without a case.
+fn gaps_are_played(lines: &str) {
+    let file = scratch("problems.jsonl");
+    fs::write(&file, lines).expect("a file");
+    let file = file.display().to_string();
+    let gaps = ["cases", "coverage", "--league", "division-b", "--from", &file, "--gaps", "5"];
+    let out = Command::new(env!("CARGO_BIN_EXE_onetwo")).args(gaps).output().expect("the program starts");
+    let gaps = String::from_utf8(out.stdout).expect("words in UTF-8");
+    assert!(gaps.lines().count() > 0, "{}", String::from_utf8_lossy(&out.stderr));
+    assert!(gaps.lines().all(|gap| lines.lines().any(|line| line == gap)), "{gaps}");
+    let answers = asked(&["cases", "retrieve", "--league", "division-b"], &gaps);
+    assert!(answers.iter().all(|answer| answer["case"].is_null()), "{answers:?}");
 }

@@ -44,6 +44,8 @@ pub(crate) struct Kept {
     open: Option<(u32, Vec<Encoded>)>,
     pub(crate) match_events: Vec<MatchEvent>,
     pub(crate) samples: Vec<ArchiveSample>,
+    /// Tables of cases, gzipped, by the time up to which they count.
+    cases: Vec<(f64, Arc<[u8]>)>,
     /// Time of the first and the last scene, s.
     pub(crate) span: Option<(f64, f64)>,
     /// Number of restarts.
@@ -54,6 +56,7 @@ pub(crate) struct Kept {
 enum Mail {
     DeferredScene(Box<DeferredScene>),
     MatchEvent(Box<MatchEvent>),
+    Cases(f64, String),
     Clear,
 }
 
@@ -103,6 +106,11 @@ impl Archive {
         let _ = self.mail.send(Mail::MatchEvent(Box::new(match_event)));
     }
 
+    /// Takes tables of cases.
+    pub(crate) fn keep_cases(&self, t: f64, tables: String) {
+        let _ = self.mail.send(Mail::Cases(t, tables));
+    }
+
     /// Drops everything: another match starts.
     pub(crate) fn clear(&self) {
         let _ = self.mail.send(Mail::Clear);
@@ -142,6 +150,10 @@ impl Worker {
                         kept.match_events.push(*match_event);
                     }
                 }),
+                Mail::Cases(t, tables) => {
+                    let tables = gzip(&tables);
+                    look(&self.kept, |kept| kept.add_cases(t, tables));
+                }
                 Mail::Clear => {
                     look(&self.kept, |kept| {
                         *kept = Kept { generation: kept.generation + 1, ..Kept::default() }
@@ -178,7 +190,7 @@ impl Kept {
 
     fn close(&mut self) {
         let Some((second, texts)) = self.open.take() else { return };
-        self.seconds.insert(second, gzip(&texts));
+        self.seconds.insert(second, gzip(&list(&texts)));
         while self.seconds.len() > SECONDS_MAX
             && let Some((dropped, _)) = self.seconds.pop_first()
         {
@@ -189,7 +201,23 @@ impl Kept {
     /// The scenes of a second as a JSON list, gzipped.
     pub(crate) fn second(&self, second: u32) -> Option<Arc<[u8]>> {
         let open = self.open.as_ref().filter(|(open, _)| *open == second);
-        open.map(|(_, texts)| gzip(texts)).or_else(|| self.seconds.get(&second).cloned())
+        open.map(|(_, texts)| gzip(&list(texts))).or_else(|| self.seconds.get(&second).cloned())
+    }
+
+    fn add_cases(&mut self, t: f64, tables: Arc<[u8]>) {
+        if self.cases.last().is_some_and(|(_, last)| *last == tables) {
+            return;
+        }
+        self.cases.push((t, tables));
+        if self.cases.len() > SECONDS_MAX {
+            self.cases.remove(0);
+        }
+    }
+
+    /// The newest tables of cases that count up to `t` at most, gzipped.
+    pub(crate) fn cases_at(&self, t: f64) -> Option<Arc<[u8]>> {
+        let after = self.cases.partition_point(|(at, _)| *at <= t + 1e-6);
+        Some(self.cases.get(after.checked_sub(1)?)?.1.clone())
     }
 
     /// The last scene at or before `t`.
@@ -211,18 +239,16 @@ fn sample(scene: &Scene) -> ArchiveSample {
     ArchiveSample { t: scene.t, values: values.collect() }
 }
 
-fn gzip(texts: &[Encoded]) -> Arc<[u8]> {
+/// These scenes as a JSON list.
+fn list(texts: &[Encoded]) -> String {
+    let texts: Vec<&str> = texts.iter().map(|(_, text)| &**text).collect();
+    format!("[{}]", texts.join(","))
+}
+
+fn gzip(text: &str) -> Arc<[u8]> {
     let mut out = GzEncoder::new(Vec::new(), Compression::fast());
-    let mut write = || -> std::io::Result<()> {
-        out.write_all(b"[")?;
-        for (i, (_, text)) in texts.iter().enumerate() {
-            out.write_all(if i == 0 { b"" } else { b"," })?;
-            out.write_all(text.as_bytes())?;
-        }
-        out.write_all(b"]")
-    };
     // Writing to memory cannot fail.
-    let _ = write();
+    let _ = out.write_all(text.as_bytes());
     out.finish().unwrap_or_default().into()
 }
 
@@ -249,6 +275,24 @@ mod tests {
         }
         assert_eq!(kept.scene_at(7.0), None);
         assert_eq!(kept.samples.len(), 3, "one a second");
+    }
+
+    #[test]
+    fn tables_of_cases_are_those_of_the_moment() {
+        let mut kept = Kept::default();
+        assert_eq!(kept.cases_at(9.0), None);
+        for (t, text) in [(1.0, "a"), (2.0, "b"), (3.0, "b"), (4.0, "a")] {
+            kept.add_cases(t, gzip(text));
+        }
+        let at = |t| kept.cases_at(t).map(|tables| tables == gzip("a"));
+        assert_eq!(
+            [0.5, 1.0, 1.9, 3.5, 4.0, 99.0].map(at),
+            [None, Some(true), Some(true), Some(false), Some(true), Some(true)]
+        );
+        for t in 0..SECONDS_MAX + 10 {
+            kept.add_cases(10.0 + t as f64, gzip(&t.to_string()));
+        }
+        assert_eq!(kept.cases.len(), SECONDS_MAX);
     }
 
     #[test]

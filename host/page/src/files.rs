@@ -50,6 +50,7 @@ files! {
     "transport.js": SCRIPT,
     "keys.js": SCRIPT,
     "bench.js": SCRIPT,
+    "cases.js": SCRIPT,
     "dom.js": SCRIPT,
 }
 

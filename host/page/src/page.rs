@@ -161,6 +161,11 @@ impl Page {
         self.archive.keep_event(match_event);
     }
 
+    /// Passes what became of every case up to `t` to the page, as JSON. Never waits.
+    pub fn keep_cases(&self, t: f64, tables: String) {
+        self.archive.keep_cases(t, tables);
+    }
+
     /// Drops the history: another match starts.
     pub fn clear(&mut self) {
         self.pushed = 0;

@@ -27,6 +27,7 @@ pub(crate) fn answer(shared: &Shared, head: &Head, body: Vec<u8>, within: Durati
         "/api/state" => allowed("GET, HEAD", reads, &|| state(shared, head)),
         "/api/happenings" => allowed("GET, HEAD", reads, &|| match_events(shared, head)),
         "/api/plots" => allowed("GET, HEAD", reads, &|| plots(shared)),
+        "/api/cases" => allowed("GET, HEAD", reads, &|| cases(shared, head)),
         "/api/freeze" => allowed("POST", head.method == "POST", &|| freeze(shared, &body)),
         "/api/explain" if head.method == "POST" => explain(shared, body, within),
         "/api/explain" => allowed("POST", false, &|| Answer::bare(Status::OK)),
@@ -84,6 +85,17 @@ fn match_events(shared: &Shared, head: &Head) -> Answer {
 fn plots(shared: &Shared) -> Answer {
     let text = look(&shared.kept, |kept| serde_json::to_string(&kept.samples).unwrap_or_default());
     Answer::of(JSON, text.into_bytes())
+}
+
+/// What became of every case up to a moment; an empty object before anything is known.
+fn cases(shared: &Shared, head: &Head) -> Answer {
+    let Ok(at) = head.asked("at").unwrap_or("0").parse::<f64>() else {
+        return Answer::description(Status::BAD_REQUEST, "at: expected seconds");
+    };
+    match look(&shared.kept, |kept| kept.cases_at(at)) {
+        Some(bytes) => Answer::of(JSON, bytes.to_vec()).with("content-encoding", "gzip"),
+        None => Answer::of(JSON, b"{}".to_vec()),
+    }
 }
 
 fn explain(shared: &Shared, body: Vec<u8>, within: Duration) -> Answer {

@@ -8,7 +8,7 @@ import { ask } from "./link.js";
 import { changed, store } from "./store.js";
 import { goLive, jump, mark, seek, time, toggle } from "./transport.js";
 
-const TABS = ["why", "match", "health", "control"];
+const TABS = ["why", "match", "health", "control", "cases"];
 
 export function startKeys(camera, showTab) {
   const flip = () => { camera.flipped = !camera.flipped; changed("frame"); };
@@ -25,7 +25,7 @@ export function startKeys(camera, showTab) {
     g: ["g", "next goal; with shift the one before", () => jump(1, "goal")], G: ["", "", () => jump(-1, "goal")],
     b: ["b", "bookmark this moment", mark], c: ["c", "copy this moment's address", () => byId("link").click()],
     y: ["y", "layers", toggleLayers], f: ["f", "turn the field round", flip], 0: ["0", "whole field", fit], "+": ["+ −", "zoom", () => zoom(1.25)], "-": ["", "", () => zoom(0.8)],
-    1: ["1 – 4", "why, match, health, control", () => showTab(TABS[0])], 2: ["", "", () => showTab(TABS[1])], 3: ["", "", () => showTab(TABS[2])], 4: ["", "", () => showTab(TABS[3])],
+    1: ["1 – 5", "why, match, health, control, cases", () => showTab(TABS[0])], 2: ["", "", () => showTab(TABS[1])], 3: ["", "", () => showTab(TABS[2])], 4: ["", "", () => showTab(TABS[3])], 5: ["", "", () => showTab(TABS[4])],
     t: ["t", "light or dark", toggleTheme], "?": ["?", "this list", () => help()],
   };
   const help = () => showKeys(Object.values(keys).filter(([name]) => name));

@@ -2,6 +2,7 @@
 
 import { bench } from "./bench.js";
 import { Camera } from "./camera.js";
+import { showCases } from "./cases.js";
 import { startColours } from "./colours.js";
 import { startControl, showControl } from "./control.js";
 import { byId } from "./dom.js";
@@ -59,7 +60,7 @@ function draw() {
   frames += 1;
 }
 
-const TABS = ["why", "match", "health", "control"];
+const TABS = ["why", "match", "health", "control", "cases"];
 
 function showTab(asked) {
   const name = TABS.includes(asked) ? asked : TABS[0];
@@ -86,7 +87,7 @@ on("layers", want);
 on("colours", want);
 on("chosen", () => { want(); changed("panels"); });
 on("state", () => { want(); changed("panels"); });
-on("panels", () => { showBoard(); showWhy(); showMatch(); showHealth(); showControl(); });
+on("panels", () => { showBoard(); showWhy(); showMatch(); showHealth(); showControl(); showCases(); });
 on("refused", tell);
 on("told", tell);
 new ResizeObserver(want).observe(canvas);

@@ -111,7 +111,7 @@ fn pictures(program: &str, directory: &Path) -> Reported<()> {
     tab.wait("document.querySelectorAll('#decided tbody tr').length > 0", 20)?;
     take(&mut tab, &directory.join("why.png"))?;
     tab.click("#dialog button")?;
-    for (key, name) in [("2", "match.png"), ("3", "health.png"), ("4", "control.png")] {
+    for (key, name) in [("2", "match.png"), ("3", "health.png"), ("4", "control.png"), ("5", "cases.png")] {
         tab.key(key)?;
         take(&mut tab, &directory.join(name))?;
     }

@@ -104,11 +104,14 @@ impl<'b> Tab<'b> {
         self.ask("Input.dispatchMouseEvent", &what).map(drop)
     }
 
-    /// Presses a key of one letter.
+    /// Presses a key of one letter, or `Enter`.
     pub fn key(&mut self, key: &str) -> Result<(), BrowserError> {
+        // A button is pressed by the key's code, which letters do without.
+        let (text, code) = if key == "Enter" { ("\r", 13) } else { (key, 0) };
         for kind in ["keyDown", "keyUp"] {
-            let text = if kind == "keyDown" { key } else { "" };
-            self.ask("Input.dispatchKeyEvent", &json!({ "type": kind, "key": key, "text": text }))?;
+            let text = if kind == "keyDown" { text } else { "" };
+            let what = json!({ "type": kind, "key": key, "text": text, "windowsVirtualKeyCode": code });
+            self.ask("Input.dispatchKeyEvent", &what)?;
         }
         Ok(())
     }

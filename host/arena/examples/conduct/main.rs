@@ -11,7 +11,7 @@ mod stoppages;
 
 use std::collections::BTreeMap;
 
-use arena::game::attack::AttackCounts;
+use arena::attack::AttackCounts;
 use arena::game::{Game, GameConfig, GameReport, Watcher, play};
 use arena::matches::{AttackRow, MatchTeam, attack_table};
 use casebase::CaseBase;

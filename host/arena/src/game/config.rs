@@ -10,6 +10,8 @@ use host::strategy::{Tactics, Team};
 use protocol::{Duration, TeamId};
 use rules::{Colour, League};
 
+use crate::names::CaseNames;
+
 /// A match to be played.
 #[derive(Clone, Debug)]
 pub struct GameConfig {
@@ -27,6 +29,8 @@ pub struct GameConfig {
     pub air: AirSettings,
     /// The world of the family that it is played in.
     pub world: WorldChoice,
+    /// Names of the cases that its robots play, for reports; by default those that come with the league.
+    pub names: CaseNames,
 }
 
 /// Configuration of one side of a match.
@@ -73,6 +77,12 @@ impl GameConfig {
             teams: [team(Colour::Yellow), team(Colour::Blue)],
             air: AirSettings::default(),
             world: WorldChoice::Nominal,
+            names: CaseNames::new(
+                case_library::league(league.name())
+                    .map_or(&[][..], |built_in| built_in.names)
+                    .iter()
+                    .copied(),
+            ),
         }
     }
 }

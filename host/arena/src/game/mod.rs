@@ -9,7 +9,6 @@
 //! [`Game`] is the match, tick by tick; [`play`] runs it to its end and returns a [`GameReport`]. A
 //! [`Watcher`] gets everything that may be stored or displayed, and changes nothing.
 
-pub mod attack;
 mod config;
 mod hand;
 mod holds;
@@ -38,9 +37,11 @@ use protocol::{Instant, RobotId, Who};
 use rules::Colour;
 use ssl::Message;
 
-use attack::AttackWatch;
 use holds::Holds;
 use side::Team;
+
+use crate::attack::{BallContact, BallLook};
+use crate::ledger::MatchLedger;
 
 /// Steps of physics in a tick of brains.
 pub const STEPS_A_TICK: u64 = 10;
@@ -71,7 +72,7 @@ pub struct Game<'a> {
     tick: u32,
     events: Vec<PhysicsEvent>,
     holds: Holds,
-    attack: AttackWatch,
+    ledger: MatchLedger,
     /// Vision's packets reach no host.
     blind: bool,
     config: GameConfig,
@@ -128,7 +129,7 @@ impl<'a> Game<'a> {
             tick: 0,
             events: Vec::new(),
             holds: Holds::default(),
-            attack: AttackWatch::default(),
+            ledger: MatchLedger::default(),
             blind: false,
             config: config.clone(),
         })
@@ -164,6 +165,11 @@ impl<'a> Game<'a> {
         &self.events
     }
 
+    /// What became of every case, and what the teams made of the ball.
+    pub fn ledger(&self) -> &MatchLedger {
+        &self.ledger
+    }
+
     /// Which robots held the ball in play, and for how long.
     fn holds(&self) -> &Holds {
         &self.holds
@@ -191,11 +197,38 @@ impl<'a> Game<'a> {
         let mut holds = std::mem::take(&mut self.holds);
         holds.look(self);
         self.holds = holds;
-        let mut attack = std::mem::take(&mut self.attack);
-        attack.look(self);
-        self.attack = attack;
+        let mut ledger = std::mem::take(&mut self.ledger);
+        self.keep(&mut ledger);
+        self.ledger = ledger;
         watcher.tick(self);
         Ok(())
+    }
+
+    /// Takes this tick into the ledger.
+    fn keep(&self, ledger: &mut MatchLedger) {
+        let present = self.world.robots().iter().filter(|robot| robot.present);
+        let robots: Vec<_> = present.map(|robot| (robot.who, robot.pose.position)).collect();
+        let contact = |event: &PhysicsEvent| match *event {
+            PhysicsEvent::Kicked { robot, at, velocity, .. } => {
+                Some(BallContact::Kicked { by: robot, at: self.time(), from: at, velocity })
+            }
+            PhysicsEvent::Touched { robot, at } => Some(BallContact::Touched { by: robot, at }),
+            _ => None,
+        };
+        let contacts: Vec<_> = self.events.iter().filter_map(contact).collect();
+        let colours = [Colour::Yellow, Colour::Blue];
+        let look = BallLook {
+            now: self.time(),
+            field: &self.config.league.field(),
+            ball: self.world.ball.position,
+            height: self.world.ball.height,
+            robots: &robots,
+            phase: self.referee.phase(),
+            score: colours.map(|team| self.referee.accounts().of(team).score),
+            own_ends: colours.map(|team| self.referee.own_end(team)),
+            contacts: &contacts,
+        };
+        ledger.look(&look, &colours.map(|team| self.host(team)));
     }
 
     /// The same without the referee, as drills have one of their own.

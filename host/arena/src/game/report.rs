@@ -8,9 +8,11 @@ use host::strategy::counters::PlayCounters;
 use rules::Colour;
 use serde::Serialize;
 
-use super::attack::AttackCounts;
 use super::holds::{Hold, Holds};
 use super::{Game, GameConfig};
+use crate::attack::AttackCounts;
+use crate::ledger::CaseTable;
+use crate::names::CaseNames;
 
 /// Result of a match.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -125,10 +127,12 @@ pub struct TeamReport {
     pub attack: AttackCounts,
     /// Passes of its restarts as its host followed them, planned free kicks, and changes of role.
     pub play: PlayCounters,
+    /// What became of every case that its robots played.
+    pub cases: CaseTable,
 }
 
 impl TeamReport {
-    fn of(game: &Game<'_>, holds: &Holds, team: Colour) -> Self {
+    fn of(game: &Game<'_>, holds: &Holds, names: &CaseNames, team: Colour) -> Self {
         let metrics = game.referee().metrics();
         let own = metrics.team(team);
         Self {
@@ -142,8 +146,9 @@ impl TeamReport {
             attack_ratio: metrics.attack_ratio(team),
             longest_hold_s: holds.longest(team),
             holds_over_2_5s: holds.over(team),
-            attack: game.attack.of(team).clone(),
+            attack: game.ledger().attack().of(team).clone(),
             play: *game.host(team).counters(),
+            cases: game.ledger().team(team).table(names, true),
         }
     }
 }
@@ -168,7 +173,7 @@ impl GameReport {
             long_holds: holds.long().to_vec(),
             no_progress: game.referee().events().iter().filter(no_progress).count() as u32,
             teams: PerTeam::of(|team| config.plays(team)),
-            metrics: PerTeam::of(|team| TeamReport::of(game, &holds, team)),
+            metrics: PerTeam::of(|team| TeamReport::of(game, &holds, &config.names, team)),
             league: config.league.name(),
             seed: config.seed,
             world: config.world.to_string(),

@@ -4,12 +4,13 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+use super::case_table::case_tables;
 use super::effect::{Change, Effect};
 use super::match_team::MatchTeam;
 use super::outcome::{Estimate, Outcome};
 use super::paper::{PAPER, PAPER_PASSES};
 use super::passes::{Passes, Share};
-use crate::game::attack::PossessionEnd as E;
+use crate::attack::PossessionEnd as E;
 
 /// All tables; `ours` are the passes of our team.
 pub fn markdown(outcomes: &[Outcome], effects: &[Effect], ours: &Passes) -> String {
@@ -19,6 +20,7 @@ pub fn markdown(outcomes: &[Outcome], effects: &[Effect], ours: &Passes) -> Stri
     scores(&mut text, outcomes);
     play(&mut text, outcomes);
     attack(&mut text, outcomes);
+    text += &case_tables(outcomes);
     passes(&mut text, outcomes);
     planned(&mut text, outcomes);
     calibration(&mut text, ours);
@@ -150,7 +152,7 @@ fn attack(text: &mut String, outcomes: &[Outcome]) {
     *text += &attack_table(&rows);
 }
 
-/// One team's sums of [`AttackCounts::named`](crate::game::attack::AttackCounts::named) against another.
+/// One team's sums of [`AttackCounts::named`](crate::attack::AttackCounts::named) against another.
 #[derive(Clone, Copy, Debug)]
 pub struct AttackRow<'a> {
     /// The team whose counts these are.

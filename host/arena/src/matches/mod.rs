@@ -8,6 +8,7 @@
 //! number of threads, shards and interrupts.
 
 mod calibration;
+mod case_table;
 mod description;
 mod effect;
 mod match_team;
@@ -27,6 +28,7 @@ use rules::Colour;
 use serde::{Deserialize, Serialize};
 
 pub use calibration::calibration_plot;
+pub use case_table::case_table;
 pub use description::{AttackRow, attack_table, markdown};
 pub use effect::{Change, Effect, effects};
 pub use match_team::MatchTeam;
@@ -39,6 +41,7 @@ pub use row::MatchRow;
 
 use crate::evaluation::{EvaluationError, RunProgress, Shard, play_open};
 use crate::game::{GameConfig, NoWatcher, play};
+use crate::names::CaseNames;
 
 /// All settings that the matches of a plan depend on.
 #[derive(Clone, Debug)]
@@ -51,6 +54,8 @@ pub struct Matches<'a> {
     pub settings: RetrievalSettings,
     /// Version and commit of the program: matches of two programs are never mixed.
     pub program: String,
+    /// Names of the cases.
+    pub names: CaseNames,
 }
 
 /// Identity of the evaluation of a file of matches.
@@ -104,6 +109,7 @@ impl Matches<'_> {
         let config = GameConfig::new(league, planned.seed, self.plan.duration_s);
         let mut config = config.between(blue.team, yellow.team);
         config.world = self.plan.world.of_match(planned.seed);
+        config.names = self.names.clone();
         for team in &mut config.teams {
             team.settings = self.settings.clone();
             let match_team = if team.colour == Colour::Blue { blue } else { yellow };

@@ -12,6 +12,7 @@ use super::passes::{self, CONFIDENCE, Passes, counted};
 use super::plan::MatchPlan;
 use super::row::MatchRow;
 use crate::evaluation::statistics::{Sample, paired, student};
+use crate::ledger::CaseTable;
 
 /// Mean over matches of a number that is never below 0, or of a share, never above 1; its interval is clipped
 /// there.
@@ -84,6 +85,8 @@ pub struct Outcome {
     pub restarts: [Passes; 2],
     /// Offences by kind, all matches, own and theirs.
     pub fouls: [BTreeMap<String, u32>; 2],
+    /// What became of every case, all matches, own and theirs.
+    pub cases: [CaseTable; 2],
 }
 
 /// One for each pair of the plan, in its order.
@@ -119,6 +122,13 @@ fn outcome(own: MatchTeam, opponent: MatchTeam, rows: &[&MatchRow]) -> Outcome {
         }
         all
     };
+    let cases = |of: fn(&MatchRow) -> &str| {
+        let mut all = CaseTable::default();
+        for row in rows {
+            all.merge(&CaseTable::read(of(row)));
+        }
+        all
+    };
     let differences = Sample::of(rows.iter().map(|row| f64::from(row.goals) - f64::from(row.goals_against)));
     let (shots, against) = (total(|row| row.shots), total(|row| row.shots_against));
     Outcome {
@@ -146,6 +156,7 @@ fn outcome(own: MatchTeam, opponent: MatchTeam, rows: &[&MatchRow]) -> Outcome {
         attack: [summed(|row| &row.attack), summed(|row| &row.attack_against)],
         restarts: played(rows).map(|play| Passes::of(&play)),
         fouls: [summed(|row| &row.fouls), summed(|row| &row.fouls_against)],
+        cases: [cases(|row| &row.cases), cases(|row| &row.cases_against)],
     }
 }
 

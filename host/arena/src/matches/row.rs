@@ -93,6 +93,10 @@ pub struct MatchRow {
     pub fouls_against: String,
     /// Equal for equal matches.
     pub trace_hash: String,
+    /// What became of every case, as [`CaseTable::column`](crate::ledger::CaseTable::column) writes it.
+    pub cases: String,
+    /// The same of the opponents' cases.
+    pub cases_against: String,
 }
 
 impl MatchRow {
@@ -145,6 +149,8 @@ impl MatchRow {
             fouls: listed(fouls.iter().map(|(kind, n)| (*kind, *n))),
             fouls_against: listed(fouls_against.iter().map(|(kind, n)| (*kind, *n))),
             trace_hash: report.trace_hash.clone(),
+            cases: own.cases.column(),
+            cases_against: theirs.cases.column(),
         }
     }
 
@@ -196,7 +202,7 @@ impl MatchRow {
 
 impl Entry for MatchRow {
     type Identity = MatchIdentity;
-    const MARK: &'static str = "# onetwo matches 3 ";
+    const MARK: &'static str = "# onetwo matches 4 ";
     fn number(&self) -> usize {
         self.number
     }

@@ -40,6 +40,7 @@ impl Directory {
             base,
             settings: RetrievalSettings::default(),
             program: "test".to_owned(),
+            names: CaseNames::default(),
         };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| matches.play_shard(shard, &self.0.join(shard.file_name()), GO_ON)).unwrap()
@@ -89,6 +90,7 @@ fn matches_of_different_worlds_are_of_different_evaluations_and_a_plan_keeps_its
             base: case_library::division_b(),
             settings: RetrievalSettings::default(),
             program: "test".to_owned(),
+            names: CaseNames::default(),
         }
     };
     let named: WorldPlan = "grsim".parse().unwrap();
@@ -149,6 +151,9 @@ fn row(number: usize, goals: [u32; 2], halves: [f32; 2], shots: [u32; 2]) -> Mat
         fouls: "bot_pushed_bot:2".to_owned(),
         fouls_against: String::new(),
         trace_hash: String::new(),
+        cases: "center/pass@6:retrieved=2,pass=1,arrived=1,end.finished=1,end.timeout=1,then.goal=1,then.loss=1"
+            .to_owned(),
+        cases_against: String::new(),
     }
 }
 
@@ -170,6 +175,15 @@ fn ratios_goals_and_intervals_are_those_counted_by_hand() {
     let outcome = outcomes(&plan, &rows).remove(0);
     assert_eq!(outcome.won_drawn_lost, [2, 1, 0]);
     assert_eq!(outcome.goals, [6, 1]);
+    let line = &outcome.cases[0].cases[0];
+    assert_eq!((&*line.case, line.all.retrieved, line.all.ends["timeout"]), ("center/pass", 6, 3));
+    assert_eq!(line.all.followed_by, [("goal".to_owned(), 3), ("loss".to_owned(), 3)].into());
+    let table = case_table(outcome.own, &outcome.cases[0]);
+    assert!(
+        table.contains("| center/pass | 6 | 3 | 3 timeout | 3 | 3 | 3 | 0 | 3 | 0 | 0 | 6: 6 |"),
+        "{table}"
+    );
+    assert_eq!(outcome.cases[1].retrieved, 0);
     // 2, 1 and 3: mean 2, spread 1; t(2) at 97.5 % is 4.3027, over √3 2.4841.
     let offence = outcome.offence_ratio.unwrap();
     assert!((offence.mean - 2.0).abs() < 1e-9);

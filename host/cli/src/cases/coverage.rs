@@ -24,8 +24,9 @@ use crate::picture::{self, SnapshotError};
 pub(crate) struct CoverageArgs {
     #[command(flatten)]
     survey: SurveyArgs,
-    /// Print the N worst holes as problems, one a line, as `cases retrieve` reads them; one of each cell,
-    /// worst first.
+    /// Print the N worst holes as problems, one a line, as `cases retrieve` reads them; one of each cell, the
+    /// largest share of problems without a case first, with --from the most such problems. Balls that no
+    /// field player may play (out, in a goal, in a defence area) are left out.
     #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "10", conflicts_with = "json")]
     gaps: Option<usize>,
     /// Print one JSON object instead of maps and tables.
@@ -53,7 +54,10 @@ enum Map {
 }
 
 pub(super) fn run(args: &CoverageArgs) -> Result<ExitCode, Failure> {
-    let trial = Trial::open(&args.survey)?;
+    let mut trial = Trial::open(&args.survey)?;
+    if args.gaps.is_some() {
+        trial.only_playable();
+    }
     let (counters, cells) = trial.count()?;
     if let Some(file) = &args.out {
         let is_table = picture::has_extension(file, "csv");
@@ -70,12 +74,16 @@ pub(super) fn run(args: &CoverageArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The cells with holes, the largest share first (ties: more holes, then the lower cell).
-fn worst(counters: &Counters) -> Vec<(usize, &CellCounters)> {
+/// The cells with holes, the largest share first (ties: more holes, then the lower cell); of played problems
+/// the most holes first: a place counts by how often a team was there without a case.
+fn worst(counters: &Counters, played: bool) -> Vec<(usize, &CellCounters)> {
     let mut cells: Vec<_> = counters.cells.iter().enumerate().filter(|(_, cell)| cell.none > 0).collect();
     // a/b against c/d without a division: a·d against c·b.
+    let share = |a: &CellCounters, b: &CellCounters| (b.none * a.problems).cmp(&(a.none * b.problems));
     cells.sort_by(|(i, a), (j, b)| {
-        (b.none * a.problems).cmp(&(a.none * b.problems)).then(b.none.cmp(&a.none)).then(i.cmp(j))
+        let (most, largest) = (b.none.cmp(&a.none), share(a, b));
+        let order = if played { most.then(largest) } else { largest.then(most) };
+        order.then(i.cmp(j))
     });
     cells
 }
@@ -86,7 +94,9 @@ fn write_gaps(
     counters: &Counters,
     count: usize,
 ) -> io::Result<()> {
-    let holes = worst(counters).into_iter().filter_map(|(_, cell)| trial.problem(cell.first_hole?));
+    let holes = worst(counters, trial.is_recorded())
+        .into_iter()
+        .filter_map(|(_, cell)| trial.problem(cell.first_hole?));
     for problem in holes.take(count) {
         writeln!(output, "{}", problem_line(&problem))?;
     }

@@ -9,6 +9,7 @@ mod lines;
 mod list;
 pub(crate) mod new;
 mod play;
+mod playable;
 pub(crate) mod problem;
 mod render;
 mod retrieve;
@@ -19,6 +20,7 @@ mod survey;
 mod whatif;
 
 pub(crate) use explain::explained;
+pub(crate) use survey::problem_line;
 
 use std::process::ExitCode;
 

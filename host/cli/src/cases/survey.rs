@@ -12,6 +12,7 @@ use clap::{Args, value_parser};
 use rayon::prelude::*;
 
 use super::lines::for_each_problem;
+use super::playable::Playable;
 use crate::Failure;
 use crate::args::{Chosen, LibraryArgs, SettingsArgs};
 use crate::failure::{FromError, LineFault, SurveyError};
@@ -31,7 +32,8 @@ pub(crate) struct SurveyArgs {
     /// Random seed: the same seed draws the same problems.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Recorded problems instead of drawn ones: a file of lines as `cases retrieve` takes them.
+    /// Recorded problems instead of drawn ones: a file of lines as `cases retrieve` takes them and `onetwo
+    /// replay --problems` prints them.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["problems", "seed"])]
     from: Option<PathBuf>,
     /// Only problems of the team that defends this goal.
@@ -55,6 +57,8 @@ pub(crate) struct Trial<'a> {
     pub(crate) library_handle: LibraryHandle,
     pub(crate) chosen: Chosen,
     source: Source,
+    /// Where the ball of a problem must lie; anywhere by default.
+    places: Option<Playable>,
 }
 
 #[derive(Debug)]
@@ -74,7 +78,7 @@ impl<'a> Trial<'a> {
             Some(file) => Source::Recorded(recorded(file)?),
             None => Source::Drawn(sampler(&library_handle, args.seed)?),
         };
-        Ok(Self { args, library_handle, chosen, source })
+        Ok(Self { args, library_handle, chosen, source, places: None })
     }
 
     /// Number of problems before those of the other team are left out.
@@ -83,6 +87,16 @@ impl<'a> Trial<'a> {
             Source::Drawn(_) => self.args.problems,
             Source::Recorded(problems) => problems.len() as u64,
         }
+    }
+
+    /// Leaves out problems whose ball lies where no field player of the team may play it.
+    pub(crate) fn only_playable(&mut self) {
+        self.places = Some(Playable::new(self.library_handle.league(), self.library_handle.base().field()));
+    }
+
+    /// Whether the problems were recorded: played, not drawn.
+    pub(crate) fn is_recorded(&self) -> bool {
+        matches!(self.source, Source::Recorded(_))
     }
 
     /// The seed, if problems were drawn.
@@ -99,7 +113,10 @@ impl<'a> Trial<'a> {
         if let Some(teammates) = self.args.teammates {
             problem.teammates.truncate(usize::from(teammates));
         }
-        self.args.defending.is_none_or(|goal| goal == problem.defending).then_some(problem)
+        let allowed = |places: &Playable| places.allows(problem.ball, problem.defending);
+        let wanted = self.args.defending.is_none_or(|goal| goal == problem.defending)
+            && self.places.as_ref().is_none_or(allowed);
+        wanted.then_some(problem)
     }
 
     /// All counts, and the grid they are counted over.

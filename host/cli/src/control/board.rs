@@ -6,13 +6,14 @@ use host::Host;
 use page::{MatchEvent, Page, Powers, UserRequest};
 
 use crate::library::LibraryHandle;
-use crate::live::{CaseExplanations, Composer, Moment, PageArgs, SCENE_EVERY_S, tick};
+use crate::live::{CaseExplanations, Composer, LedgerFeed, Moment, PageArgs, SCENE_EVERY_S, tick};
 use crate::output::note;
 
 /// A page and its composer.
 pub(super) struct Board {
     page: Page,
     composer: Composer,
+    ledger: LedgerFeed,
     drawn_at: Option<Instant>,
     /// Time an input takes, as a sliding mean.
     took: Duration,
@@ -28,9 +29,10 @@ impl Board {
     ) -> Option<Self> {
         let open = || {
             let composer = Composer::new(library_handle.as_ref());
+            let ledger = LedgerFeed::new(library_handle.as_ref());
             let page =
                 args.open(title, false, Powers::Halt, CaseExplanations::new(library_handle, settings))?;
-            Ok::<_, crate::Failure>(Self { page, composer, drawn_at: None, took: Duration::ZERO })
+            Ok::<_, crate::Failure>(Self { page, composer, ledger, drawn_at: None, took: Duration::ZERO })
         };
         open().map_err(|failure| note!("page     there is none: {failure}")).ok()
     }
@@ -57,9 +59,10 @@ impl Board {
     /// Sends the scene to the page if it is due; true: a viewer asks for HALT.
     pub(super) fn look(&mut self, now: protocol::Instant, host: &Host, alarms: Vec<String>) -> bool {
         let every = Duration::from_secs_f64(SCENE_EVERY_S);
+        let t = now.0 as f64 * 1e-6;
+        self.ledger.look(t, host, &[host]);
         if self.drawn_at.is_none_or(|drawn_at| drawn_at.elapsed() >= every) {
             self.drawn_at = Some(Instant::now());
-            let t = now.0 as f64 * 1e-6;
             let gauges = vec![tick(self.took)];
             let moment = Moment { t, now, feed: host, hosts: &[host], truth: None, referee: None, gauges };
             let mut deferred_scene = self.composer.compose(moment);
@@ -68,6 +71,7 @@ impl Board {
                 self.page.push(match_event);
             }
             self.page.show(deferred_scene);
+            self.ledger.send(t, &[host], false, &self.page);
         }
         let mut halt = false;
         while let Some(request) = self.page.next_request() {

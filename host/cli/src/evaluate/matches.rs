@@ -6,6 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use arena::CaseNames;
 use arena::evaluation::{EvaluationError, Shard, csv_hash, merge, to_csv};
 use arena::matches::{
     Effect, MatchIdentity, MatchPlan, MatchRow, MatchTeam, Matches, Outcome, PAPER, PAPER_PASSES, Passes,
@@ -100,6 +101,7 @@ pub(super) fn run(args: &MatchesArgs) -> Result<ExitCode, Failure> {
         base: library_handle.as_ref().map_or_else(CaseBase::default, LibraryHandle::base),
         settings: args.settings.choose()?.settings,
         program: VERSION.to_owned(),
+        names: CaseNames::new(library_handle.as_ref().map_or_else(Vec::new, LibraryHandle::names)),
     };
     let directory = args.work.directory()?;
     let file = directory.join(args.shard.file_name());

@@ -25,6 +25,8 @@ pub(crate) enum RecordedError {
     NoKey,
     /// A log was to be checked as a trace.
     NoTrace,
+    /// A log was asked for the decisions of robots.
+    NoDecisions,
     /// The league of the log has no rules.
     NoRules,
     /// A log without a message.
@@ -104,6 +106,9 @@ impl fmt::Display for RecordedError {
             ),
             Self::NoTrace => f.write_str(
                 "no trace, and only a trace can be checked: give the NAME.trace that `--record NAME` wrote",
+            ),
+            Self::NoDecisions => f.write_str(
+                "no trace, and only a trace holds what robots decided: give the NAME.trace that `--record NAME` wrote",
             ),
             Self::NoRules => f.write_str("its league has no rules of the Small Size League"),
             Self::Empty => f.write_str("holds no message"),

@@ -19,7 +19,7 @@ use crate::cases;
 
 /// Cycles of one team.
 #[derive(Debug, Default)]
-pub(super) struct TeamCycles {
+pub(crate) struct TeamCycles {
     log: CycleLog,
     newest: Option<(CycleState, f64)>,
     /// In open play a team without a fitting case retries again and again: reported once until a case is
@@ -29,6 +29,8 @@ pub(super) struct TeamCycles {
     awaited: Option<Awaited>,
     /// The newest decision.
     decided: Option<DecisionNote>,
+    /// The decisions told by the last call, with the times at which they were received.
+    told: Vec<(f64, DecisionNote)>,
 }
 
 /// A decision on the radio, with the event that tells of it.
@@ -49,7 +51,10 @@ const REPORT_WITHIN_S: f64 = 0.3;
 
 impl TeamCycles {
     /// Takes the newest reports of the robots; new events go to `into`.
-    pub(super) fn receive(&mut self, host: &Host, t: f64, names: &Names, into: &mut Vec<MatchEvent>) {
+    pub(crate) fn receive(&mut self, host: &Host, t: f64, names: &Names, into: &mut Vec<MatchEvent>) {
+        self.told.clear();
+        // A report may come with the beacon of the next decision.
+        self.receive_report(host, t, into);
         for robot in RobotId::all() {
             let Some(state) = host.beacon(robot).and_then(|beacon| beacon.cycle.as_ref()) else { continue };
             if state.is_newer_than(self.newest.as_ref().map(|(state, _)| state)) {
@@ -61,6 +66,16 @@ impl TeamCycles {
             self.report(event, host, t, names, into);
         }
         self.receive_report(host, t, into);
+    }
+
+    /// Every decision that the last call of [`Self::receive`] told, those without an event among them.
+    pub(crate) fn told(&self) -> &[(f64, DecisionNote)] {
+        &self.told
+    }
+
+    /// The decision whose report was still awaited at the end of a recording, as the host saw it.
+    pub(crate) fn left(&self) -> Option<(f64, &DecisionNote)> {
+        self.awaited.as_ref().map(|awaited| (awaited.at, &awaited.rebuilt))
     }
 
     /// The awaited decision's problem has come, or will not come any more.
@@ -82,8 +97,9 @@ impl TeamCycles {
 
     /// Tells the awaited decision, with its own problem where there is one.
     fn tell(&mut self, own: Option<DecisionNote>, into: &mut Vec<MatchEvent>) {
-        let Some(Awaited { rebuilt, event, .. }) = self.awaited.take() else { return };
+        let Some(Awaited { at, rebuilt, event, .. }) = self.awaited.take() else { return };
         let note = own.unwrap_or(rebuilt);
+        self.told.push((at, note.clone()));
         self.decided = Some(note.clone());
         let tell = |event| MatchEvent { problem: note.problem.clone(), decided: Some(note), ..event };
         into.extend(event.map(tell));
@@ -171,7 +187,7 @@ impl TeamCycles {
 }
 
 /// A coordinator's own report of its decision.
-pub(super) fn reported(by: RobotId, report: &DecisionReport) -> DecisionNote {
+pub(crate) fn reported(by: RobotId, report: &DecisionReport) -> DecisionNote {
     DecisionNote {
         reported: true,
         by: by.number(),

@@ -21,7 +21,7 @@ use rules::state::RefereeCommand;
 
 use self::situation::{Sides, of_case};
 use super::gauges::{gauge, tick};
-use super::{Composer, Moment, SCENE_EVERY_S, colour};
+use super::{Composer, LedgerFeed, Moment, SCENE_EVERY_S, colour};
 use crate::Failure;
 use crate::library::LibraryHandle;
 use crate::stop::stopped_by_hand;
@@ -133,7 +133,11 @@ impl<'s> MatchRunner<'s> {
         let base = self.library_handle.map_or_else(CaseBase::default, LibraryHandle::lasting_base);
         let mut backend = NativeBackend::new(base);
         let mut game = Game::new(&config, &mut backend).map_err(Failure::Game)?;
-        let mut feed = Feed { composer: Composer::new(self.library_handle), t: 0.0 };
+        let mut feed = Feed {
+            composer: Composer::new(self.library_handle),
+            ledger: LedgerFeed::new(self.library_handle),
+            t: 0.0,
+        };
         let ticks = (config.duration_s * 1e6 / TICK_US as f64) as u64;
         let mut displayed = f64::NEG_INFINITY;
         let stopped = stopped_by_hand();
@@ -164,6 +168,7 @@ impl<'s> MatchRunner<'s> {
             }
         }
         self.show(&game, &mut feed, controls);
+        self.tell_cases(&game, &mut feed, true);
         Ok(GameReport::of(&config, &game))
     }
 
@@ -187,6 +192,12 @@ impl<'s> MatchRunner<'s> {
         deferred_scene.scene.speed = controls.speed;
         deferred_scene.scene.seed = Some(self.config.seed);
         self.page.show(deferred_scene);
+        self.tell_cases(game, feed, false);
+    }
+
+    fn tell_cases(&self, game: &Game<'_>, feed: &mut Feed, over: bool) {
+        let hosts = [game.host(Colour::Blue), game.host(Colour::Yellow)];
+        feed.ledger.send_of(game.ledger(), game.time(), &hosts, over, &self.page);
     }
 
     fn obey<'b>(
@@ -316,6 +327,7 @@ pub(crate) trait RestartWatcher {
 /// Takes the packets that both teams receive.
 struct Feed {
     composer: Composer,
+    ledger: LedgerFeed,
     t: f64,
 }
 

@@ -10,6 +10,7 @@ pub(crate) mod description;
 mod explanations;
 mod gauges;
 mod layers;
+mod ledger_feed;
 mod legged;
 mod match_events;
 mod match_runner;
@@ -41,11 +42,14 @@ use crate::output::note;
 use crate::stop::stopped_by_hand;
 
 pub(crate) use composer::{Composer, Moment};
+pub(crate) use cycles::{TeamCycles, reported};
 use description::spaced;
 pub(crate) use explanations::CaseExplanations;
 pub(crate) use gauges::tick;
+pub(crate) use ledger_feed::LedgerFeed;
 pub(crate) use legged::Legged;
 pub(crate) use match_runner::{End, MatchRunner, RestartWatcher, command_of};
+pub(crate) use names::Names;
 
 /// Period of scenes, s: smooth motion, with the page interpolating in between.
 pub(crate) const SCENE_EVERY_S: f64 = 0.04;

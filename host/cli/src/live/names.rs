@@ -12,7 +12,8 @@ pub(crate) struct Names {
 }
 
 impl Names {
-    pub(super) fn new(library_handle: Option<&LibraryHandle>) -> Self {
+    /// Of this library; none without one.
+    pub(crate) fn new(library_handle: Option<&LibraryHandle>) -> Self {
         let Some(library_handle) = library_handle else { return Self::default() };
         let names = library_handle.names();
         let meant = (0..names.len())

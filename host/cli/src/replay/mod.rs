@@ -6,6 +6,7 @@
 
 mod clock;
 mod decided;
+mod decisions;
 mod league_log;
 pub(crate) mod match_event;
 mod moment;
@@ -52,6 +53,10 @@ pub(crate) struct ReplayArgs {
     /// Which of several such events, from 1.
     #[arg(long, value_name = "N", default_value_t = 1, requires = "event", value_parser = clap::value_parser!(u32).range(1..))]
     nth: u32,
+    /// Print the problems that the robots of a trace decided on, one a line, as `cases retrieve` and
+    /// `cases coverage --from` read them; with --team, that team's.
+    #[arg(long, conflicts_with_all = ["json", "at", "event", "watch"])]
+    problems: bool,
     /// Feed the host of this team with a log file's messages, and print what it would have sent.
     #[arg(long, value_name = "COLOUR", value_parser = colour)]
     team: Option<Colour>,
@@ -81,6 +86,9 @@ pub(crate) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     }
     if args.check {
         return Err(failed(&args.file)(RecordedError::NoTrace));
+    }
+    if args.problems {
+        return Err(failed(&args.file)(RecordedError::NoDecisions));
     }
     league_log::run(args)
 }

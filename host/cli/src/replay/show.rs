@@ -22,7 +22,9 @@ use super::clock::LogClock;
 use super::{ReplayArgs, TRACE, begins, failed, open, trace};
 use crate::Failure;
 use crate::failure::RecordedError;
-use crate::live::{CaseExplanations, Composer, Moment, PageArgs, SCENE_EVERY_S, library_handle_of, stay};
+use crate::live::{
+    CaseExplanations, Composer, LedgerFeed, Moment, PageArgs, SCENE_EVERY_S, library_handle_of, stay,
+};
 use crate::output::note;
 use crate::stop::stopped_by_hand;
 
@@ -35,6 +37,7 @@ pub(super) fn run(args: &ReplayArgs, page: &PageArgs) -> Result<ExitCode, Failur
 struct Projector {
     page: Page,
     composer: Composer,
+    ledger: LedgerFeed,
     due: f64,
     /// The file is cut or damaged.
     broken: bool,
@@ -44,15 +47,17 @@ impl Projector {
     fn new(args: &ReplayArgs, page: &PageArgs, league: League) -> Result<Self, Failure> {
         let library_handle = library_handle_of(league, None)?;
         let composer = Composer::new(library_handle.as_ref());
+        let ledger = LedgerFeed::new(library_handle.as_ref());
         let name = args.file.file_name().map(|name| name.to_string_lossy().into_owned());
         let explanations = CaseExplanations::new(library_handle, casebase::RetrievalSettings::default());
         let page = page.open(name.unwrap_or_default(), true, Powers::None, explanations)?;
-        Ok(Self { page, composer, due: f64::NEG_INFINITY, broken: false })
+        Ok(Self { page, composer, ledger, due: f64::NEG_INFINITY, broken: false })
     }
 
     /// Displays the moment after a message, if the last scene is long enough ago.
     fn look(&mut self, now: Instant, feed: &Host, hosts: &[&Host]) {
         let t = now.0 as f64 * 1e-6;
+        self.ledger.look(t, feed, hosts);
         if t < self.due {
             return;
         }
@@ -63,6 +68,12 @@ impl Projector {
             self.page.push(match_event);
         }
         self.page.keep(deferred_scene);
+        self.ledger.send(t, hosts, false, &self.page);
+    }
+
+    /// Every record was read: what became of every case is final.
+    fn close(&mut self, now: Instant, hosts: &[&Host]) {
+        self.ledger.send(now.0 as f64 * 1e-6, hosts, true, &self.page);
     }
 
     /// Reports that the file is truncated, and where: it is not the end of the match.
@@ -127,6 +138,8 @@ fn show_trace(args: &ReplayArgs, page: &PageArgs) -> Result<ExitCode, Failure> {
             projector.breaks_off(now, &damage, feed, &hosts);
         }
     }
+    let hosts: Vec<&Host> = (0..header.hosts.len()).filter_map(|i| recheck.host(i)).collect();
+    projector.close(now, &hosts);
     recheck.finish(true);
     let same = recheck.results().all(|(_, difference)| difference.is_none());
     let description = if same {

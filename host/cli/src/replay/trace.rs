@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
 
+use arena::ledger::CaseTable;
 use foreign::{excerpt, printable};
 use hil_sim::small_size::worlds::WorldChoice;
 use host::Host;
@@ -19,12 +20,14 @@ use ssl::Message;
 use ssl::referee::Referee;
 use ssl::vision::WrapperPacket;
 
+use super::decisions::{Decision, Decisions};
 use super::match_event::{Finder, MatchEvent, is_meant};
 use super::moment::Moment;
 use super::sheet::Sheet;
 use super::{ReplayArgs, failed, is_gzipped, open};
 use crate::Failure;
 use crate::failure::{Asked, Missing, RecordedError};
+use crate::live::library_handle_of;
 use crate::output::{note, print_text};
 use crate::progress::Progress;
 
@@ -47,6 +50,10 @@ struct Report<'a> {
     match_events: &'a [MatchEvent],
     hosts: Vec<Outcome>,
     same_decisions: bool,
+    /// What became of every case, by team.
+    cases: BTreeMap<&'static str, CaseTable>,
+    /// Every decision, with its problem.
+    decisions: &'a [Decision],
 }
 
 #[derive(Debug, Serialize)]
@@ -72,6 +79,8 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     let first_shown =
         header.hosts.iter().position(|host| Some(&*host.colour) == args.team.map(rules::Colour::label));
     let first_shown = first_shown.unwrap_or(0);
+    let league = header.league().map_err(RecordedError::Header).map_err(failed(file))?;
+    let mut decisions = Decisions::new(library_handle_of(league, None)?.as_ref());
     let bar = Progress::open();
     for record in reader.by_ref() {
         bar.add(1);
@@ -85,6 +94,9 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         let (first, last) = span.get_or_insert((record.at, record.at));
         (*first, *last) = ((*first).min(record.at), (*last).max(record.at));
         *records.entry(label(record.kind)).or_insert(0) += 1;
+        if let Some(feed) = recheck.host(first_shown) {
+            decisions.look(record.at, feed, &all(&recheck));
+        }
         strays += u64::from(!recheck.feed(&record));
         if record.kind == RecordKind::Vision
             && usize::from(record.host) == first_shown
@@ -121,7 +133,11 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         };
         return Err(failed(file)(RecordedError::NotThere(Missing { asked, damage })));
     }
+    if let Some(feed) = recheck.host(first_shown) {
+        decisions.finish(feed, &all(&recheck));
+    }
     recheck.finish(damage.is_some());
+    let cases = decisions.tables(&all(&recheck));
     let hosts: Vec<Outcome> = (header.hosts.iter().zip(recheck.results()))
         .map(|(host, (counts, difference))| Outcome {
             colour: host.colour.clone(),
@@ -143,8 +159,12 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         match_events: &match_events,
         same_decisions: hosts.iter().all(|host| host.difference.is_none()) && strays == 0,
         hosts,
+        cases,
+        decisions: &decisions.all,
     };
-    let output = if args.json {
+    let output = if args.problems {
+        problems(args, &decisions)
+    } else if args.json {
         serde_json::to_string(&report).map_err(|error| Failure::Output(error.into()))? + "\n"
     } else {
         report.text()
@@ -156,6 +176,26 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         None if report.same_decisions => Ok(ExitCode::SUCCESS),
         None => Ok(ExitCode::FAILURE),
     }
+}
+
+/// The problems of the trace, one a line; on stderr how many of them robots did not report.
+fn problems(args: &ReplayArgs, decisions: &Decisions) -> String {
+    let wanted = |decision: &&Decision| args.team.is_none_or(|team| team.label() == decision.team);
+    let (mut text, mut rebuilt) = (String::new(), 0);
+    for decision in decisions.all.iter().filter(wanted) {
+        if let Some(line) = decision.problem_line() {
+            text += &line;
+            text.push('\n');
+            rebuilt += u32::from(!decision.note.reported);
+        }
+    }
+    if rebuilt > 0 {
+        note!(
+            "{rebuilt} of {} problems were not reported: they are as the host saw them",
+            text.lines().count()
+        );
+    }
+    text
 }
 
 /// A trace that is not compressed has no end mark. If packets to robots are missing after its last input, it
@@ -255,6 +295,9 @@ impl Report<'_> {
                 ),
                 Some(difference) => writeln!(out, "{}: other decisions {difference}", host.colour),
             };
+        }
+        for (team, table) in &self.cases {
+            let _ = writeln!(out, "{team}: {}", table.summary());
         }
         out
     }

@@ -97,3 +97,28 @@ fn what_cannot_be_counted_is_refused_in_words() {
         assert!(run.stderr.contains(description), "{more:?}: {}", run.stderr);
     }
 }
+
+#[test]
+fn gaps_of_played_problems_are_places_where_the_ball_was_often_and_could_be_played() {
+    let directory = library("played", &[("center/pass-around.toml", PASS_AROUND)]);
+    let alone = PROBLEM.replace(r#"{"1":[-700,0],"3":[200,800]}"#, r#"{"1":[-700,0]}"#);
+    let far = PROBLEM.replace("[-600,10]", "[-2000,1500]");
+    let out = PROBLEM.replace("[-600,10]", "[-3000,1500]");
+    assert!([&alone, &far, &out].into_iter().all(|other| other != PROBLEM));
+    // Out of the field nine times; in one cell three of five times without a case, in another once of once.
+    let mut lines = vec![out.as_str(); 9];
+    lines.extend([&far, PROBLEM, &alone, &alone, &alone, PROBLEM]);
+    let file = directory.join("played.jsonl");
+    fs::write(&file, lines.join("\n")).unwrap();
+    let gaps = cases("coverage", &directory, &["--from", file.to_str().unwrap(), "--gaps", "10"], "");
+    assert_eq!((gaps.code, gaps.lines()), (0, vec![alone.trim(), far.trim()]), "{}", gaps.stderr);
+    // Drawn problems: all of them can be played, by the rules of a league that has such.
+    let drawn =
+        onetwo(&["cases", "coverage", "--league", "division-b", "--problems", "20000", "--gaps", "400"]);
+    let balls = drawn.stdout.lines().map(|line| json(line)["ball"].clone());
+    let balls: Vec<[i64; 2]> = balls.map(|ball| serde_json::from_value(ball).unwrap()).collect();
+    assert!(balls.len() > 50, "{}", balls.len());
+    let inside =
+        balls.iter().filter(|[x, y]| x.abs() > 3800 && y.abs() < 700 || x.abs() > 4522 || y.abs() > 3022);
+    assert_eq!(inside.count(), 0);
+}

@@ -86,7 +86,16 @@ fn a_match_is_watched_asked_and_touched() {
     explained_on_the_field(&mut tab);
     control(&mut tab);
     look_back(&mut tab);
+    cases(&mut tab);
     no_errors(&mut tab);
+}
+
+/// What became of every case follows the running match.
+fn cases(tab: &mut Tab<'_>) {
+    tab.key("5").unwrap();
+    tab.wait("!document.getElementById('tab-cases').hidden", 5).unwrap();
+    let counted = "/^[1-9][0-9]* decisions/.test(document.querySelector('[data-no-case=blue]')?.textContent)";
+    tab.wait(counted, 60).unwrap();
 }
 
 /// What maps and labels mean at a place is displayed where the pointer is; texts do not overlap.
@@ -229,4 +238,54 @@ fn a_lost_connection_is_displayed_and_heals() {
     let reported: Vec<_> =
         tab.errors().into_iter().filter(|error| !error.contains("ERR_CONNECTION")).collect();
     assert_eq!(reported, Vec::<String>::new());
+}
+
+#[test]
+fn the_cases_of_a_recording_are_counted_up_to_the_moment_and_open_by_key() {
+    let stem = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("page-browser-cases");
+    let stem = stem.to_str().unwrap();
+    let trace = format!("{stem}.trace");
+    let tactics = ["--blue-tactics", "none", "--yellow-tactics", "none"];
+    let play = ["play", "--headless", "--duration", "60", "--seed", "5", "--record", stem];
+    program::onetwo(&[&play[..], &tactics].concat(), "");
+    let replayed = program::onetwo(&["replay", &trace, "--json"], "");
+    let replayed: serde_json::Value = serde_json::from_str(&replayed).unwrap();
+    let program = Program::start(&["replay", &trace, "--watch", "--listen", "127.0.0.1:0"]);
+    let mut browser = Browser::start().unwrap();
+    let mut tab = browser.open(&program.url("?tab=cases&theme=light#t=0.50"), 1400, 900).unwrap();
+    program.wait_for("the page stays");
+    // Before the first decision there is nothing to count.
+    tab.wait(
+        "document.querySelector('#tab-cases')?.textContent && !document.querySelector('.case-name')",
+        30,
+    )
+    .unwrap();
+    tab.eval("location.hash = '#t=59.90'").unwrap();
+    tab.wait("document.querySelector('.case-name')", 30).unwrap();
+    for team in ["blue", "yellow"] {
+        let cases = &replayed["cases"][team];
+        let line = &cases["cases"][0];
+        let (case, retrieved) = (line["case"].as_str().unwrap(), &line["retrieved"]);
+        let row = format!(
+            "document.querySelector('[data-case=\"{team} {case}\"]').closest('tr').children[1].textContent"
+        );
+        tab.wait(&format!("{row} === '{retrieved}'"), 10).unwrap();
+        let none = format!("document.querySelector('[data-no-case={team}]').textContent");
+        assert!(tab.eval(&none).unwrap().as_str().unwrap().starts_with(&format!("{} ", cases["no_case"])));
+    }
+    // By key alone: another tab and back, a case, and its ends.
+    tab.key("2").unwrap();
+    tab.key("5").unwrap();
+    tab.wait("!document.getElementById('tab-cases').hidden", 5).unwrap();
+    tab.eval("document.querySelector('.case-name').focus()").unwrap();
+    tab.key("Enter").unwrap();
+    let ends = &replayed["cases"]["blue"]["cases"][0]["ends"];
+    let (end, n) = ends.as_object().unwrap().iter().next().unwrap();
+    let described = format!("{n} {}", end.replace('-', " "));
+    tab.wait(&format!("document.querySelector('[data-detail]')?.textContent.includes('{described}')"), 5)
+        .unwrap();
+    assert_eq!(tab.eval("document.activeElement.getAttribute('aria-expanded')").unwrap(), "true");
+    tab.key("Enter").unwrap();
+    tab.wait("!document.querySelector('[data-detail]')", 5).unwrap();
+    no_errors(&mut tab);
 }

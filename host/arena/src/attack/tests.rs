@@ -43,7 +43,14 @@ fn possessions_end_by_what_the_last_owner_did() {
     watch.possession.as_mut().unwrap().pressed = 0.9;
     watch.possess(1.0, Colour::Yellow);
     // Yellow kicks to a teammate, who leaves it; blue comes later.
-    let flight = |colour, id, shot| Flight { by: who(colour, id), from: at(0.0, 0.0), speed: 2.5, shot };
+    let flight = |colour, id, shot| Flight {
+        by: who(colour, id),
+        at: 0.0,
+        from: at(0.0, 0.0),
+        speed: 2.5,
+        shot,
+        landed: false,
+    };
     watch.flight = Some(flight(Colour::Yellow, 1, false));
     watch.touched(2.0, who(Colour::Yellow, 2), at(1.5, 0.0));
     watch.possess(4.0, Colour::Blue);

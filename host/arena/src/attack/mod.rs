@@ -1,5 +1,6 @@
 //! `attack`: what a team makes of the ball: how its possessions end, where its kicks go, what its shots were
-//! worth, and which balls it leaves. From the true world. s, m, m/s, field frame.
+//! worth, and which balls it leaves. In a simulated match from the true world; of a recording, and on a real
+//! field, as a host sees it ([`HostView`]). s, m, m/s, field frame.
 //!
 //! | word | meaning |
 //! |---|---|
@@ -12,22 +13,59 @@
 //! | left ball | a robot has the ball with no opponent within 0.45 m of it, and 0.8 s later the ball still lies there and the robot is more than 0.25 m away |
 
 mod counts;
+mod host_view;
 mod left;
+mod look;
 
 use geometry::{Field, Point, Segment, Vector};
-use hil_sim::small_size::PhysicsEvent;
 use protocol::Who;
 use rules::limits::{BALL_RADIUS, ROBOT_HEIGHT, ROBOT_RADIUS};
 use rules::{Colour, Phase};
 
 pub use counts::{AttackCounts, PossessionEnd, ShotCounts};
+pub use host_view::HostView;
+pub use look::{BallContact, BallLook};
 
-use super::Game;
 use left::LeftBalls;
+
+/// What became of the ball, as it becomes known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BallEvent {
+    /// A kick that is no shot is over: another robot has the ball, or play has stopped.
+    Kick {
+        /// The robot that kicked.
+        by: Who,
+        /// When it kicked.
+        at: f64,
+        /// A teammate has the ball.
+        arrived: bool,
+    },
+    /// A shot was made.
+    Shot {
+        /// The robot that shot.
+        by: Who,
+    },
+    /// A team's possession is over, deflections among them.
+    Lost {
+        /// The team that had the ball.
+        team: Colour,
+        /// How its possession ended.
+        end: PossessionEnd,
+    },
+    /// The team has scored.
+    Goal {
+        /// The team that scored.
+        team: Colour,
+    },
+    /// Play has stopped.
+    Stopped,
+    /// Play goes on after a stop.
+    Resumed,
+}
 
 /// Counts of both teams, and the play that is running.
 #[derive(Clone, Debug, Default)]
-pub(super) struct AttackWatch {
+pub struct AttackWatch {
     counts: [AttackCounts; 2],
     possession: Option<Possession>,
     flight: Option<Flight>,
@@ -37,6 +75,8 @@ pub(super) struct AttackWatch {
     received: Option<(Who, f64)>,
     goals: [u32; 2],
     left: LeftBalls,
+    runs: bool,
+    events: Vec<BallEvent>,
 }
 
 /// The ball of one team.
@@ -52,9 +92,12 @@ struct Possession {
 #[derive(Clone, Copy, Debug)]
 struct Flight {
     by: Who,
+    at: f64,
     from: Point<Field>,
     speed: f32,
     shot: bool,
+    /// It was reported as over, though the ball is not controlled yet.
+    landed: bool,
 }
 
 impl Flight {
@@ -64,57 +107,66 @@ impl Flight {
 }
 
 impl AttackWatch {
-    /// Takes a tick of the match.
-    pub(super) fn look(&mut self, game: &Game<'_>) {
-        let now = game.time();
-        let score = COLOURS.map(|team| game.referee().accounts().of(team).score);
-        let scored = COLOURS.into_iter().find(|team| score[*team as usize] > self.goals[*team as usize]);
-        self.goals = score;
-        let ball = game.world().ball.position;
-        let plays = matches!(game.referee().phase(), Phase::Run | Phase::FreeKick(_) | Phase::Kickoff(_));
-        for event in game.events() {
-            match *event {
-                PhysicsEvent::Kicked { robot, at, velocity, .. } => {
-                    self.kicked(game, now, robot, at, velocity);
-                }
-                PhysicsEvent::Touched { robot, at } => self.touched(now, robot, at),
-                _ => {}
+    /// Takes a moment of the match; the events up to it replace those of the moment before.
+    pub fn look(&mut self, look: &BallLook<'_>) {
+        self.events.clear();
+        let now = look.now;
+        let scored = COLOURS.into_iter().find(|team| look.score[*team as usize] > self.goals[*team as usize]);
+        self.goals = look.score;
+        let plays = matches!(look.phase, Phase::Run | Phase::FreeKick(_) | Phase::Kickoff(_));
+        if plays && !self.runs {
+            self.events.push(BallEvent::Resumed);
+        }
+        for contact in look.contacts {
+            match *contact {
+                BallContact::Kicked { by, at, from, velocity } => self.kicked(look, at, by, from, velocity),
+                BallContact::Touched { by, at } => self.touched(now, by, at),
             }
         }
         if !plays || scored.is_some() {
-            self.stopped(now, ball, scored, out(game, ball));
+            self.stopped(now, look.ball, scored, look.is_out());
+            self.events.extend(scored.map(|team| BallEvent::Goal { team }));
+            if self.runs {
+                self.events.push(BallEvent::Stopped);
+            }
+            self.runs = false;
             return;
         }
-        self.control(game, now);
-        let robots = game.world().robots().iter().filter(|robot| robot.present);
-        let run = game.referee().phase() == Phase::Run;
-        let robots = robots.map(|robot| (robot.who, robot.pose.position));
-        for team in self.left.look(now, ball, robots, run) {
+        self.runs = true;
+        self.control(look);
+        let run = look.phase == Phase::Run;
+        for team in self.left.look(now, look.ball, look.robots.iter().copied(), run) {
             self.counts[team as usize].left_balls += 1;
         }
     }
 
+    /// Events of the last moment.
+    pub fn events(&self) -> &[BallEvent] {
+        &self.events
+    }
+
     /// The counts of a team.
-    pub(super) fn of(&self, team: Colour) -> &AttackCounts {
+    pub fn of(&self, team: Colour) -> &AttackCounts {
         &self.counts[team as usize]
     }
 
-    fn kicked(&mut self, game: &Game<'_>, now: f64, by: Who, at: Point<Field>, velocity: Vector<Field>) {
-        let speed = velocity.norm();
+    fn kicked(&mut self, look: &BallLook<'_>, at: f64, by: Who, from: Point<Field>, velocity: Vector<Field>) {
+        let (now, speed) = (look.now, velocity.norm());
         if speed < KICK_SPEED {
             return;
         }
         if self.flight.is_some_and(|flight| flight.by != by) {
-            self.land(now, at, Some(by));
+            self.land(now, from, Some(by));
         }
         let arrived = self.received.filter(|(who, _)| *who == by).map_or(f64::NEG_INFINITY, |(_, at)| at);
         self.possess(now, by.colour);
-        let shot = speed > SHOT_SPEED && is_at_goal(game, by.colour, at, velocity);
+        let shot = speed > SHOT_SPEED && is_at_goal(look, by.colour, from, velocity);
         if shot {
             let volley = now - arrived < VOLLEY_WITHIN;
-            self.counts[by.colour as usize].shots.add(open_share(game, by.colour, at), volley);
+            self.counts[by.colour as usize].shots.add(open_share(look, by.colour, from), volley);
+            self.events.push(BallEvent::Shot { by });
         }
-        self.flight = Some(Flight { by, from: at, speed, shot });
+        self.flight = Some(Flight { by, at, from, speed, shot, landed: false });
     }
 
     fn touched(&mut self, now: f64, by: Who, at: Point<Field>) {
@@ -125,10 +177,15 @@ impl AttackWatch {
 
     /// The flight is over: a robot has the ball, or play has stopped.
     fn land(&mut self, now: f64, at: Point<Field>, by: Option<Who>) {
-        let Some(flight) = self.flight else { return };
+        let Some(flight) = &mut self.flight else { return };
+        let first = !std::mem::replace(&mut flight.landed, true);
+        let flight = *flight;
         let to_team = by.is_some_and(|by| by.colour == flight.by.colour);
         if flight.is_kick(at) && !flight.shot {
             self.counts[flight.by.colour as usize].kick(flight.speed, flight.from.distance(at), to_team);
+            if first {
+                self.events.push(BallEvent::Kick { by: flight.by, at: flight.at, arrived: to_team });
+            }
         }
         // A ball at the opponents is theirs when they control it: until then it was lost by this kick.
         if to_team {
@@ -138,14 +195,13 @@ impl AttackWatch {
     }
 
     /// Who has the ball: the team whose robots alone are at it, after [`CONTROLS_AFTER`].
-    fn control(&mut self, game: &Game<'_>, now: f64) {
-        let ball = &game.world().ball;
-        let robots = game.world().robots().iter().filter(|robot| robot.present);
+    fn control(&mut self, look: &BallLook<'_>) {
+        let now = look.now;
         let (mut at, mut near) = ([false; 2], [false; 2]);
-        for robot in robots.filter(|_| ball.height < ROBOT_HEIGHT) {
-            let distance = robot.pose.position.distance(ball.position);
-            at[robot.who.colour as usize] |= distance < AT_BALL;
-            near[robot.who.colour as usize] |= distance < PRESSES_WITHIN;
+        for (who, place) in look.robots.iter().filter(|_| look.height < ROBOT_HEIGHT) {
+            let distance = place.distance(look.ball);
+            at[who.colour as usize] |= distance < AT_BALL;
+            near[who.colour as usize] |= distance < PRESSES_WITHIN;
         }
         if let Some(possession) = &mut self.possession
             && at[possession.team as usize]
@@ -212,21 +268,17 @@ impl AttackWatch {
 
     fn end(&mut self, possession: Possession, now: f64, end: PossessionEnd) {
         let lasted = now - possession.since;
+        self.events.push(BallEvent::Lost { team: possession.team, end });
         if lasted >= POSSESSION_LASTS {
             self.counts[possession.team as usize].ended(end, lasted as f32);
         }
     }
 }
 
-fn out(game: &Game<'_>, ball: Point<Field>) -> bool {
-    let field = game.config.league.field();
-    field.clamp(ball, -BALL_RADIUS).distance(ball) > 0.0
-}
-
 /// Whether a ball from `at` crosses the goal line that `team` attacks between the posts or just beside them.
-fn is_at_goal(game: &Game<'_>, team: Colour, at: Point<Field>, velocity: Vector<Field>) -> bool {
-    let field = game.config.league.field();
-    let sign = game.referee().own_end(team).opposite().sign() as f32;
+fn is_at_goal(look: &BallLook<'_>, team: Colour, at: Point<Field>, velocity: Vector<Field>) -> bool {
+    let field = look.field;
+    let sign = look.own_ends[team as usize].opposite().sign() as f32;
     let forward = velocity.x() * sign;
     if forward <= 0.0 {
         return false;
@@ -237,12 +289,12 @@ fn is_at_goal(game: &Game<'_>, team: Colour, at: Point<Field>, velocity: Vector<
 }
 
 /// The share of the goal's opening to which the line from `at` is free of opponents' bodies, 0–1.
-fn open_share(game: &Game<'_>, team: Colour, at: Point<Field>) -> f32 {
-    let field = game.config.league.field();
-    let x = 0.5 * field.length * game.referee().own_end(team).opposite().sign() as f32;
+fn open_share(look: &BallLook<'_>, team: Colour, at: Point<Field>) -> f32 {
+    let field = look.field;
+    let x = 0.5 * field.length * look.own_ends[team as usize].opposite().sign() as f32;
     let half = 0.5 * field.goal_width - BALL_RADIUS;
-    let opponents = game.world().robots().iter().filter(|robot| robot.present && robot.who.colour != team);
-    let bodies: Vec<_> = opponents.map(|robot| robot.pose.position).collect();
+    let opponents = look.robots.iter().filter(|(who, _)| who.colour != team);
+    let bodies: Vec<_> = opponents.map(|(_, place)| *place).collect();
     let free = (0..LINES).filter(|i| {
         let y = half * (2.0 * (*i as f32 + 0.5) / LINES as f32 - 1.0);
         let line = Segment::new(at, Point::new(x, y));
