@@ -181,11 +181,9 @@ impl AttackWatch {
         let first = !std::mem::replace(&mut flight.landed, true);
         let flight = *flight;
         let to_team = by.is_some_and(|by| by.colour == flight.by.colour);
-        if flight.is_kick(at) && !flight.shot {
+        if first && flight.is_kick(at) && !flight.shot {
             self.counts[flight.by.colour as usize].kick(flight.speed, flight.from.distance(at), to_team);
-            if first {
-                self.events.push(BallEvent::Kick { by: flight.by, at: flight.at, arrived: to_team });
-            }
+            self.events.push(BallEvent::Kick { by: flight.by, at: flight.at, arrived: to_team });
         }
         // A ball at the opponents is theirs when they control it: until then it was lost by this kick.
         if to_team {

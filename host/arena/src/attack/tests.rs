@@ -67,3 +67,18 @@ fn possessions_end_by_what_the_last_owner_did() {
     assert_eq!(named(Colour::Blue), "end.kick-to-opponent:1 end.tackle:1 kick.2-3/1-2/lost:1");
     assert_eq!(named(Colour::Yellow), "end.goal:1 end.left:1 kick.2-3/1-2/team:1 shot.goal:1");
 }
+
+#[test]
+fn a_kick_is_counted_once_by_who_touches_it_first() {
+    let mut watch = AttackWatch::default();
+    watch.possess(0.0, Colour::Blue);
+    let by = who(Colour::Blue, 1);
+    watch.flight = Some(Flight { by, at: 0.0, from: at(0.0, 0.0), speed: 2.5, shot: false, landed: false });
+    // It passes from opponent to opponent before one of them has it, and goes out.
+    watch.touched(1.0, who(Colour::Yellow, 2), at(1.5, 0.0));
+    watch.touched(1.02, who(Colour::Yellow, 3), at(1.7, 0.0));
+    watch.stopped(2.0, at(1.8, 3.1), None, true);
+    let kicks: Vec<_> = watch.of(Colour::Blue).named().filter(|(name, _)| name.starts_with("kick")).collect();
+    assert_eq!(kicks.len(), 1, "{kicks:?}");
+    assert_eq!((kicks[0].0.as_str(), kicks[0].1), ("kick.2-3/1-2/lost", 1));
+}
