@@ -7,7 +7,7 @@ use protocol::{Duration, Instant, RobotId};
 
 use super::super::order::{OrderReason, Role, Task};
 use super::super::possession::{Arrival, Possession, arrival};
-use super::super::rated::{self, Action, OfCases};
+use super::super::rated::{self, Action, OfCases, Rated};
 use super::super::retrieved;
 use super::super::roles;
 use super::super::view::{View, ViewBall, ViewRobot};
@@ -75,7 +75,7 @@ impl Coach {
             return Some((owner.id, Arrival { seconds: 0.0, ball: ball.position }));
         }
         let limits = &self.kicks.constants().receiver;
-        let of = |robot: &ViewRobot| arrival(robot, ball, self.kicks.ground(), limits, view.their_goal());
+        let of = |robot: &ViewRobot| arrival(robot, (ball, view), self.kicks.ground(), limits, view.their_goal());
         let bound = |robot: &ViewRobot| if view.in_play.has(robot.id) { BOUND } else { 0.0 };
         let soonest = roles::choose(view.ours.iter().filter(may), self.first, roles::WORTH, |robot| {
             of(robot).seconds - bound(robot)
@@ -94,7 +94,7 @@ impl Coach {
                 let theirs = view
                     .theirs
                     .iter()
-                    .map(|robot| arrival(robot, ball, self.kicks.ground(), limits, goal).seconds);
+                    .map(|robot| arrival(robot, (ball, view), self.kicks.ground(), limits, goal).seconds);
                 let worth = if self.attacked { -roles::WORTH } else { roles::WORTH };
                 theirs.fold(f32::INFINITY, f32::min) + worth < ours
             }
@@ -117,18 +117,21 @@ impl Coach {
     /// The earlier choice, unless another action is clearly better now.
     fn choose(&mut self, plan: &Plan<'_>, who: RobotId, from: Point<Attack>) -> Action {
         let view = plan.view;
-        let kept = self.chosen.filter(|chosen| chosen.who == who && chosen.from.distance(from) < MOVED);
+        let kept = self.chosen.filter(|chosen| chosen.who == who);
         if let Some(chosen) = kept
             && view.now.since(chosen.rated) < RATED_EVERY
         {
             return chosen.action;
         }
-        if kept.is_none() {
+        // A ball that moved is played from where it is; what was chosen for it is still compared.
+        let there = kept.map(|chosen| chosen.from).filter(|there| there.distance(from) < MOVED);
+        if there.is_none() {
             self.searches.forget();
         }
         let again = kept.and_then(|chosen| {
-            let worth = rated::rate_again(view, &self.kicks, who, chosen.from, &chosen.action)?;
-            Some((chosen, worth))
+            let again = rated::rate_again(view, &self.kicks, who, there.unwrap_or(from), &chosen.action)?;
+            // Kick and volley stay as ordered while the ball is where it was.
+            Some(if there.is_some() { Rated { action: chosen.action, ..again } } else { again })
         });
         let defenders = self.defenders;
         let receives = |id| !defenders.contains(&Some(id));
@@ -145,7 +148,7 @@ impl Coach {
         let best =
             case.filter(|case| best.1 < case.worth + CLEARLY).map_or(best, |case| (case.action, case.worth));
         let (action, from) = match again {
-            Some((chosen, worth)) if best.1 < worth + CLEARLY => (chosen.action, chosen.from),
+            Some(again) if best.1 < again.worth + CLEARLY => (again.action, there.unwrap_or(from)),
             _ => (best.0, from),
         };
         self.chosen = Some(Chosen { who, rated: view.now, from, action });
