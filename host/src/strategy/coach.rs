@@ -111,6 +111,8 @@ pub struct Coach {
     double_touch_blocked: Option<RobotId>,
     /// The shot, pass or case chosen for the ball of open play.
     intent: Option<Intent>,
+    /// The passer of open play that was at the ball last, and when.
+    at_ball: Option<(RobotId, Instant)>,
     /// Who has the ball of open play.
     possession: Possession,
     /// The action chosen from the rated list.
@@ -159,6 +161,7 @@ impl Coach {
             pass: None,
             double_touch_blocked: None,
             intent: None,
+            at_ball: None,
             possession: Possession::Free,
             chosen: None,
             keepers: None,

@@ -113,9 +113,15 @@ impl Coach {
             return;
         };
         let Some(passer) = view.our(who) else { return };
+        if ball.position.distance(passer.position) < LEFT {
+            self.at_ball = Some((who, view.now));
+            return;
+        }
+        // A ball that rolls by, or that opponents kicked, is no pass.
+        let had = self.at_ball.is_some_and(|(id, at)| id == who && view.now.since(at) < LEFT_SINCE);
         let speed = ball.velocity.norm();
         let along = (rating.at - from).unit().map_or(0.0, |direction| ball.velocity.dot(direction));
-        if speed < LEFT_WITH || along < speed * LEFT_ALONG || ball.position.distance(passer.position) < LEFT {
+        if !had || speed < LEFT_WITH * rating.kick.speed() || along < speed * LEFT_ALONG {
             return;
         }
         let then = rating.shot.one_touch.then_some(rating.shot.aim);
@@ -217,7 +223,9 @@ const MOVED: f32 = 0.3;
 const TOGETHER: f32 = 0.1;
 /// A pass has left when the ball is this far from the passer's centre, m (touching it is 0.11 m off), …
 const LEFT: f32 = 0.15;
-/// … this fast, m/s: the slowest pass is kicked with 1, …
-const LEFT_WITH: f32 = 1.0;
+/// … from a robot that was at it this recently, …
+const LEFT_SINCE: Duration = Duration::millis(300);
+/// … with this share of the speed ordered: a chip keeps 0.7 of it along the ground, …
+const LEFT_WITH: f32 = 0.5;
 /// … and, by the cosine, rolls in the direction ordered: within 26°.
 const LEFT_ALONG: f32 = 0.9;
