@@ -360,8 +360,9 @@ impl Coach {
     }
 }
 
-/// A pass of the rated list arrives with this speed, m/s.
-const ARRIVES_WITH: f32 = 3.5;
+/// A pass of the rated list arrives with this speed, m/s: at 3.5 the ball was in play for 49 % of 20 matches of
+/// 120 s against itself, at 2.5 for 52 %, at 2 for 54 % with two thirds of the goals.
+const ARRIVES_WITH: f32 = 2.5;
 /// Most robots that get a place in order: all field players, as behind a penalty of the opponents.
 const OTHERS: usize = 10;
 /// A robot's centre this near the ball touches it, m.
