@@ -55,7 +55,8 @@ impl Tactics {
         rated: true,
     };
 
-    /// Open play by thresholds and cases: a reference opponent that stays as it is when the usual tactics change.
+    /// Open play by thresholds and cases: a reference opponent that stays as it is when the usual tactics
+    /// change.
     pub const ROUND_1: Self = Self { threats: true, second_level: true, attack: true, ..Self::NONE };
 
     /// None: the meaning of a header without tactics.
