@@ -237,8 +237,8 @@ mod tests {
     use super::super::tests::attack;
     use super::*;
 
-    /// A pass from (2, 0) to our 4 that leaves with this speed, m/s, from our 3 that was at the ball, or was not;
-    /// the orders then, and where it was to go.
+    /// A pass from (2, 0) to our 4 that leaves with this speed, m/s, from our 3 that was at the ball, or was
+    /// not; the orders then, and where it was to go.
     fn pass_leaves(speed: f32, was_at_it: bool) -> (Coach, View, Orders, Point<Attack>) {
         let wall = [(4.4, 0.0), (2.4, 0.0), (2.45, 0.2), (2.45, -0.2)];
         let (mut coach, mut view, orders) = attack([(3.0, 1.8), (-2.0, -2.0)], &wall, Tactics::default());
