@@ -113,6 +113,8 @@ pub struct Coach {
     double_touch_blocked: Option<RobotId>,
     /// The shot, pass or case chosen for the ball of open play.
     intent: Option<Intent>,
+    /// The passer of open play that was at the ball last, and when.
+    at_ball: Option<(RobotId, Instant)>,
     /// Who has the ball of open play.
     possession: Possession,
     /// The action chosen from the rated list.
@@ -163,6 +165,7 @@ impl Coach {
             pass: None,
             double_touch_blocked: None,
             intent: None,
+            at_ball: None,
             possession: Possession::Free,
             chosen: None,
             keepers: None,
@@ -362,8 +365,9 @@ impl Coach {
     }
 }
 
-/// A pass of the rated list arrives with this speed, m/s.
-const ARRIVES_WITH: f32 = 3.5;
+/// A pass of the rated list arrives with this speed, m/s. In 20 matches of 120 s against itself the ball was
+/// in play for 49 % at 3.5, 52 % at 2.5, and 54 % at 2 with two thirds of the goals.
+const ARRIVES_WITH: f32 = 2.5;
 /// Most robots that get a place in order: all field players, as behind a penalty of the opponents.
 const OTHERS: usize = 10;
 /// A robot's centre this near the ball touches it, m.

@@ -32,5 +32,5 @@ pub mod view;
 pub use coach::{Coach, Orders};
 pub use opponents::Team;
 pub use order::{Order, OrderReason, Role, Task};
-pub use tactics::Tactics;
+pub use tactics::{ROUND_1, Tactics};
 pub use view::{Flip, View};

@@ -92,10 +92,10 @@ pub struct Arrival {
 }
 
 /// The soonest time at which `robot` can be behind the ball to play it towards `goal`, along the whole of the
-/// ball's path.
+/// ball's path on the field; for a ball that no robot plays before it leaves, at the line.
 pub fn arrival(
     robot: &ViewRobot,
-    ball: &ViewBall,
+    (ball, view): (&ViewBall, &View),
     ground: &BallModel,
     limits: &FreeLimits,
     goal: Point<Attack>,
@@ -106,6 +106,10 @@ pub fn arrival(
     let (mut time, mut progress) = (0.0, (0.0, speed));
     while progress.1 > RESTS {
         let at = ball.position + path.along() * progress.0;
+        let on_field = view.clamp(at, 0.0);
+        if on_field != at {
+            return Arrival { seconds: mover.time_to(on_field).max(time), ball: on_field };
+        }
         // A rolling ball is met on its path.
         let behind = at + path.along() * BEHIND;
         if mover.time_to(behind) <= time {
@@ -152,6 +156,24 @@ mod tests {
         Point::new(4.5, 0.0)
     }
 
+    /// The arrival of our robot `i`.
+    fn of(view: &View, i: usize) -> Arrival {
+        let ball = view.ball.unwrap();
+        arrival(&view.ours[i], (&ball, view), &BallModel::default(), &FreeLimits::default(), goal())
+    }
+
+    #[test]
+    fn a_ball_that_leaves_the_field_is_played_at_the_line_at_the_latest() {
+        // 5 m/s over the touch line after 3 m: it would come to rest 36 m away.
+        let mut view = view((0.0, 0.0), &[(-4.0, -2.0)], &[]);
+        for speed in [4.9, 5.0, 5.1] {
+            view.ball.as_mut().unwrap().velocity = Vector::new(0.0, speed);
+            let found = of(&view, 0);
+            assert!(found.ball.distance(Point::new(0.0, 3.0)) < 1e-3, "{found:?}");
+            assert!(found.seconds < 5.0, "{found:?}");
+        }
+    }
+
     #[test]
     fn a_robot_with_the_ball_before_its_plate_has_it_and_one_with_it_behind_has_not() {
         let mut view = view((0.1, 0.0), &[(0.0, 0.0)], &[(1.0, 0.0)]);
@@ -190,13 +212,7 @@ mod tests {
         let mut view = view((3.0, 0.0), &[(0.0, 0.0)], &[]);
         let ball = view.ball.as_mut().unwrap();
         ball.velocity = Vector::new(-2.0, 0.0);
-        let found = arrival(
-            &view.ours[0],
-            &view.ball.unwrap(),
-            &BallModel::default(),
-            &FreeLimits::default(),
-            goal(),
-        );
+        let found = of(&view, 0);
         assert!(found.seconds < 1.75 && found.ball.x() > 0.1, "{found:?}");
         // It need not wait: driving towards the ball it meets it sooner than it would arrive.
         assert!(found.seconds < 1.71, "{found:?}");
@@ -205,10 +221,7 @@ mod tests {
     #[test]
     fn behind_a_resting_ball_is_sooner_than_before_it() {
         let view = view((0.0, 0.0), &[(-0.5, 0.0), (0.5, 0.0)], &[]);
-        let of = |i: usize| {
-            arrival(&view.ours[i], &view.ball.unwrap(), &BallModel::default(), &FreeLimits::default(), goal())
-                .seconds
-        };
+        let of = |i: usize| of(&view, i).seconds;
         assert!(of(0) + 0.3 < of(1), "{} {}", of(0), of(1));
     }
 }

@@ -124,28 +124,36 @@ pub fn rate(
     list
 }
 
-/// The worth now of an action that was chosen earlier; `None` where its receiver is gone.
+/// An action that was chosen earlier, rated now for a ball at `from`; `None` where its receiver is gone.
 pub fn rate_again(
     view: &View,
     kicks: &Kicks,
     who: RobotId,
     from: Point<Attack>,
     action: &Action,
-) -> Option<f32> {
-    Some(match action {
+) -> Option<Rated> {
+    let again = |receiver: RobotId, at| {
+        let scene = PassScene::of(view, kicks, from, Some(who), view.our(receiver)?).keeping();
+        let rating = scene.rate(at);
+        Some((rating, pass_worth(view, from, &rating)))
+    };
+    let (action, worth) = match *action {
         Action::Shot { at, .. } => {
             let goal = shot(view, kicks, from).value();
-            shot_worth(view, from, *at, goal)
+            (Action::Shot { at, goal }, shot_worth(view, from, at, goal))
         }
-        Action::Pass { .. } | Action::OfCase { .. } => {
-            let (receiver, rating) = action.pass()?;
-            let receiver = view.our(receiver)?;
-            let scene = PassScene::of(view, kicks, from, Some(who), receiver).keeping();
-            pass_worth(view, from, &scene.rate(rating.at))
+        Action::Pass { receiver, rating } => {
+            let (rating, worth) = again(receiver, rating.at)?;
+            (Action::Pass { receiver, rating }, worth)
         }
-        Action::Case(cast) => case_worth(view, kicks, who, from, cast)?,
-        Action::PlayOn => play_on(view, from),
-    })
+        Action::OfCase { pass, rating, moved } => {
+            let (rating, worth) = again(pass.receiver.0, rating.at)?;
+            (Action::OfCase { pass, rating, moved }, worth)
+        }
+        Action::Case(cast) => (*action, case_worth(view, kicks, who, from, &cast)?),
+        Action::PlayOn => (*action, play_on(view, from)),
+    };
+    Some(Rated { action, worth })
 }
 
 /// A case is worth what its first step with the ball is worth; `None` where its receiver is gone.

@@ -55,6 +55,10 @@ impl Tactics {
         rated: true,
     };
 
+    /// Open play by thresholds and cases: a reference opponent that stays as it is when the usual tactics
+    /// change.
+    pub const ROUND_1: Self = Self { threats: true, second_level: true, attack: true, ..Self::NONE };
+
     /// None: the meaning of a header without tactics.
     pub fn none() -> Self {
         Self::NONE
@@ -76,12 +80,13 @@ impl Tactics {
         if description.is_empty() { "none".to_owned() } else { description.join(",") }
     }
 
-    /// From `none`, `all`, `usual`, or names with commas between, such as `threats,pass-ahead`.
+    /// From `none`, `all`, `usual`, [`ROUND_1`], or names with commas between, such as `threats,pass-ahead`.
     pub fn parse(text: &str) -> Result<Self, String> {
         match text {
             "none" => return Ok(Self::NONE),
             "all" => return Ok(Self::ALL),
             "usual" => return Ok(Self::default()),
+            ROUND_1 => return Ok(Self::ROUND_1),
             _ => {}
         }
         let mut tactics = Self::NONE;
@@ -96,7 +101,7 @@ impl Tactics {
                 "rated" => &mut tactics.rated,
                 _ => {
                     return Err(format!(
-                        "`{label}` is no tactic; none, all, usual, or some of threats, second-level, pass-ahead, coerce, attack, bridge, rated"
+                        "`{label}` is no tactic; none, all, usual, {ROUND_1}, or some of threats, second-level, pass-ahead, coerce, attack, bridge, rated"
                     ));
                 }
             };
@@ -112,9 +117,12 @@ impl Default for Tactics {
     /// the effects of pass-ahead, coerce and the bridge are not significant. The rated list wins more goals,
     /// and leaves the ball in play for less of the time and to cases hardly ever (docs/strategy.md).
     fn default() -> Self {
-        Self { threats: true, second_level: true, attack: true, ..Self::NONE }
+        Self::ROUND_1
     }
 }
+
+/// The name of [`Tactics::ROUND_1`].
+pub const ROUND_1: &str = "round-1";
 
 #[cfg(test)]
 mod tests {
@@ -128,6 +136,7 @@ mod tests {
         for tactics in [Tactics::NONE, some, Tactics::ALL] {
             assert_eq!(Tactics::parse(&tactics.description()), Ok(tactics));
         }
+        assert_eq!(Tactics::parse(ROUND_1), Tactics::parse("threats,second-level,attack"));
         assert!(Tactics::parse("threats,").unwrap_err().contains("second-level"));
     }
 

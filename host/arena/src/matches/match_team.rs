@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::fmt;
 
 use brain::Approach;
-use host::strategy::{Tactics, Team};
+use host::strategy::{ROUND_1, Tactics, Team};
 use serde::{Deserialize, Serialize};
 
 /// A team with its tactics, written as one label: `zone`, `ours`, `ours-without-second-level`,
@@ -26,6 +26,11 @@ impl MatchTeam {
     /// Our team with the usual tactics.
     pub fn ours() -> Self {
         Self::from(Team::Ours)
+    }
+
+    /// Our team with [`Tactics::ROUND_1`]: a reference opponent.
+    pub fn round_1() -> Self {
+        Self { tactics: Tactics::ROUND_1, ..Self::ours() }
     }
 
     /// Our team once for each part of the second paper, and once for the cases: without it where it is usual
@@ -57,11 +62,14 @@ impl MatchTeam {
         let wrong = || {
             let teams = Team::ALL.map(Team::label).join(", ");
             format!(
-                "no team `{label}`; take {teams}, or ours with other tactics: ours-with-A+B, ours-without-A+B, \
+                "no team `{label}`; take {teams}, {ROUND_1}, or ours with other tactics: ours-with-A+B, ours-without-A+B, \
                  of {}",
                 joined(&Self::all_parts(), ", ")
             )
         };
+        if label == ROUND_1 {
+            return Ok(Self::round_1());
+        }
         let Some(changes) = label.strip_prefix("ours-") else {
             return Team::from_label(label).map(Self::from).ok_or_else(wrong);
         };
@@ -119,6 +127,9 @@ impl From<Team> for MatchTeam {
 
 impl fmt::Display for MatchTeam {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if *self == Self::round_1() && *self != Self::ours() {
+            return f.write_str(ROUND_1);
+        }
         let (own, usual) = (self.parts(), Self::ours().parts());
         let change = |parts: Vec<&String>| parts.into_iter().cloned().collect::<BTreeSet<_>>();
         f.write_str(self.team.label())?;
@@ -166,9 +177,11 @@ mod tests {
         let none = MatchTeam { tactics: Tactics::NONE, cases: false, ..MatchTeam::ours() };
         let all = MatchTeam { tactics: Tactics::ALL, ..MatchTeam::ours() };
         let teams = Team::ALL.map(MatchTeam::from);
-        for match_team in ablations.iter().chain(&teams).chain([&none, &all]) {
+        let round_1 = MatchTeam::round_1();
+        for match_team in ablations.iter().chain(&teams).chain([&none, &all, &round_1]) {
             assert_eq!(MatchTeam::parse(&match_team.to_string()).as_ref(), Ok(match_team), "{match_team}");
         }
+        assert_eq!(MatchTeam::parse(ROUND_1), Ok(round_1));
         assert!(ablations.iter().all(|ablation| *ablation != MatchTeam::ours()));
         assert!(MatchTeam::ours().beyond(none).contains(&"threats".to_owned()));
         assert_eq!(MatchTeam::ours().beyond(Team::Zone.into()), Vec::<String>::new());

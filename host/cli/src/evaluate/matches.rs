@@ -51,9 +51,9 @@ pub(super) struct MatchesArgs {
     /// The team that plays against the opponents; named as they are.
     #[arg(long, value_name = "TEAM", default_value = "ours", value_parser = MatchTeam::parse)]
     team: MatchTeam,
-    /// Opponents, with commas between: reactive, marking, zone (these three by default), idle, ours, or ours
-    /// with other tactics, such as ours-without-second-level, ours-without-cases or
-    /// ours-with-coerce+pass-ahead.
+    /// Opponents, with commas between: reactive, marking, zone (these three by default), idle, ours, round-1
+    /// (ours by thresholds and cases, whatever is usual), or ours with other tactics, such as
+    /// ours-without-second-level, ours-without-cases or ours-with-coerce+pass-ahead.
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = MatchTeam::parse)]
     opponents: Vec<MatchTeam>,
     /// Measure what the cases and each part of the second paper are worth: our team with one part more or

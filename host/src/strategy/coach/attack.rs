@@ -113,9 +113,15 @@ impl Coach {
             return;
         };
         let Some(passer) = view.our(who) else { return };
+        if ball.position.distance(passer.position) < LEFT {
+            self.at_ball = Some((who, view.now));
+            return;
+        }
+        // A ball that rolls by, or that opponents kicked, is no pass.
+        let had = self.at_ball.is_some_and(|(id, at)| id == who && view.now.since(at) < LEFT_SINCE);
         let speed = ball.velocity.norm();
         let along = (rating.at - from).unit().map_or(0.0, |direction| ball.velocity.dot(direction));
-        if speed < LEFT_WITH || along < speed * LEFT_ALONG || ball.position.distance(passer.position) < LEFT {
+        if !had || speed < LEFT_WITH * rating.kick.speed() || along < speed * LEFT_ALONG {
             return;
         }
         let then = rating.shot.one_touch.then_some(rating.shot.aim);
@@ -217,7 +223,56 @@ const MOVED: f32 = 0.3;
 const TOGETHER: f32 = 0.1;
 /// A pass has left when the ball is this far from the passer's centre, m (touching it is 0.11 m off), …
 const LEFT: f32 = 0.15;
-/// … this fast, m/s: the slowest pass is kicked with 1, …
-const LEFT_WITH: f32 = 1.0;
+/// … from a robot that was at it this recently, …
+const LEFT_SINCE: Duration = Duration::millis(300);
+/// … with this share of the speed ordered: a chip keeps 0.7 of it along the ground, …
+const LEFT_WITH: f32 = 0.5;
 /// … and, by the cosine, rolls in the direction ordered: within 26°.
 const LEFT_ALONG: f32 = 0.9;
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::tactics::Tactics;
+    use super::super::Orders;
+    use super::super::tests::attack;
+    use super::*;
+
+    /// A pass from (2, 0) to our 4 that leaves with this speed, m/s, from our 3 that was at the ball, or was
+    /// not; the orders then, and where it was to go.
+    fn pass_leaves(speed: f32, was_at_it: bool) -> (Coach, View, Orders, Point<Attack>) {
+        let wall = [(4.4, 0.0), (2.4, 0.0), (2.45, 0.2), (2.45, -0.2)];
+        let (mut coach, mut view, orders) = attack([(3.0, 1.8), (-2.0, -2.0)], &wall, Tactics::default());
+        let Task::Pass { at, .. } = orders[3].task else { panic!("{:?}", orders[3]) };
+        assert_eq!(coach.take_sent(), None);
+        if was_at_it {
+            view.ours[3].position = Point::new(1.89, 0.0);
+            coach.decide(&view);
+        }
+        let offset = (at - Point::new(2.0, 0.0)).unit().unwrap();
+        let position = Point::new(2.0, 0.0) + offset * 0.2;
+        view.ball =
+            Some(ViewBall { velocity: offset * speed, rest: at + offset, ..ViewBall::at_rest(position) });
+        view.now = Instant(view.now.0 + 50_000);
+        let orders = coach.decide(&view);
+        (coach, view, orders, at)
+    }
+
+    #[test]
+    fn a_pass_of_open_play_that_has_left_is_its_receivers_and_is_reported_to_the_books_once() {
+        let (mut coach, view, orders, at) = pass_leaves(3.0, true);
+        assert!(matches!(orders[4].task, Task::Receive { at: there, .. } if there == at), "{:?}", orders[4]);
+        let sent = coach.take_sent().unwrap();
+        assert_eq!((sent.passer.number(), sent.receiver.number(), sent.to, sent.planned), (3, 4, at, None));
+        assert!(sent.likely > 0.5);
+        coach.decide(&view);
+        assert_eq!(coach.take_sent(), None);
+    }
+
+    #[test]
+    fn a_ball_that_rolls_by_or_is_pushed_away_is_no_pass() {
+        for (speed, was_at_it) in [(3.0, false), (1.2, true)] {
+            let (mut coach, ..) = pass_leaves(speed, was_at_it);
+            assert_eq!(coach.take_sent(), None, "{speed} m/s, at it before: {was_at_it}");
+        }
+    }
+}

@@ -37,6 +37,13 @@ impl PassKick {
         }
     }
 
+    /// Speed at the kick, m/s.
+    pub fn speed(self) -> f32 {
+        match self {
+            Self::Flat { speed } | Self::Chip { speed, .. } => speed,
+        }
+    }
+
     /// Whether it leaves the ground.
     pub fn is_chip(self) -> bool {
         matches!(self, Self::Chip { .. })
