@@ -127,6 +127,8 @@ pub struct Host {
 struct Known {
     beacon: Option<(Instant, Beacon)>,
     telemetry: Option<(Instant, Telemetry)>,
+    /// When its sensor detected the ball last.
+    felt: Option<Instant>,
     assembler: Assembler,
     decision: Option<DecisionReport>,
 }
@@ -265,7 +267,11 @@ impl Host {
                 InputVerdict::Robot(robot)
             }
             Ok(radio::RadioReceived::Telemetry(robot, telemetry)) => {
-                self.robots[robot.index()].telemetry = Some((now, telemetry));
+                let known = &mut self.robots[robot.index()];
+                if telemetry.condition.has(Condition::BALL_CONTACT) {
+                    known.felt = Some(now);
+                }
+                known.telemetry = Some((now, telemetry));
                 InputVerdict::Robot(robot)
             }
             Ok(radio::RadioReceived::Handshake(robot)) => InputVerdict::Robot(robot),
@@ -348,14 +354,14 @@ impl Host {
 
     /// Estimates the place of a ball that no camera sees.
     fn remember_ball(&mut self, now: Instant) {
-        let feels = |robot: RobotId| feels(now, &self.robots[robot.index()]);
+        let feels = |robot: RobotId| self.robots[robot.index()].feels(now);
         self.hidden.fill(now, &mut self.world, self.settings.us, self.listener.game(), feels);
     }
 
     /// Our robots whose sensors feel the ball, as they reported.
     fn in_contact(&self, now: Instant) -> RobotSet {
         let mut set = RobotSet::default();
-        for robot in RobotId::all().filter(|robot| feels(now, &self.robots[robot.index()]) == Some(true)) {
+        for robot in RobotId::all().filter(|robot| self.robots[robot.index()].feels(now) == Some(true)) {
             set.insert(robot);
         }
         set
@@ -432,12 +438,6 @@ impl Host {
     }
 }
 
-/// Whether a robot's sensor detects the ball, as it reported lately.
-fn feels(now: Instant, robot: &Known) -> Option<bool> {
-    let (at, reported) = robot.telemetry.as_ref()?;
-    (now.since(*at) < TELEMETRY_LEASE).then(|| reported.condition.has(Condition::BALL_CONTACT))
-}
-
 /// The ball's place if cameras see it; the estimated place of a hidden ball does not count.
 fn plainly_seen(now: Instant, ball: Option<Ball>) -> Option<Point<geometry::Field>> {
     ball.filter(|ball| now.since(ball.seen) < PLAINLY && ball.confidence > SURE).map(|ball| ball.position)
@@ -451,8 +451,6 @@ const LIMITS: Limits = match League::DivisionB.limits() {
 /// Minimum time between plans: four cameras that look at once give one plan, not four; half a period of 100
 /// Hz.
 const PLAN_EVERY: Duration = Duration::millis(5);
-/// Age from which a robot's telemetry is ignored.
-const TELEMETRY_LEASE: Duration = Duration::millis(300);
 /// Relative change of the ball's deceleration from which tables are computed again.
 const ROLL_CHANGES: f32 = 0.05;
 /// A ball not seen for this time counts as hidden: the cameras' delay and a few frames.

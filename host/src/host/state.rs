@@ -1,12 +1,12 @@
 //! `state`: read access to the host's state.
 
 use protocol::decision::DecisionReport;
-use protocol::host::Telemetry;
+use protocol::host::{Condition, Telemetry};
 use protocol::team::Beacon;
-use protocol::{Instant, RobotId};
+use protocol::{Duration, Instant, RobotId};
 use rules::{FieldSpec, Phase};
 
-use super::{Host, HostSettings, Undecodable};
+use super::{Host, HostSettings, Known, Undecodable};
 use crate::learned::Learned;
 use crate::radio::{Quality, Radio};
 use crate::referee::{self, Listener};
@@ -106,3 +106,22 @@ impl Host {
         &self.settings
     }
 }
+
+impl Known {
+    /// Whether the robot's sensor detects the ball, as it reported lately; unknown while the sensor may flicker.
+    pub(super) fn feels(&self, now: Instant) -> Option<bool> {
+        let (at, reported) = self.telemetry.as_ref()?;
+        let flickers = self.felt.is_some_and(|felt| now.since(felt) < FLICKERS);
+        match reported.condition.has(Condition::BALL_CONTACT) {
+            _ if now.since(*at) >= TELEMETRY_LEASE => None,
+            true => Some(true),
+            false => (!flickers).then_some(false),
+        }
+    }
+}
+
+/// Age from which a robot's telemetry is ignored.
+const TELEMETRY_LEASE: Duration = Duration::millis(300);
+/// A sensor that touches may miss a ball at the dribbler for this long: its longest gap is 0.14 s in ER-Force's
+/// simulator, and telemetry reports samples of it.
+const FLICKERS: Duration = Duration::millis(600);
