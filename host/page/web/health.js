@@ -27,7 +27,7 @@ function vitals(robots) {
     el("td", { class: v.faults.length ? "bad" : "fine" }, v.faults.join(", ") || [v.ball ? "ball" : "", v.kicker ? "charged" : ""].filter(Boolean).join(", ") || "ok")));
   const head = (words, title) => el("th", { class: "n", title }, words);
   return el("div", { class: "scroll" }, el("table", { class: "tight" },
-    el("thead", {}, el("tr", {}, el("th", {}, ""), head("V", "battery voltage"), head("RTT", "round-trip time of the radio, ms"), head("loss ↓", "frames lost on the way to the robot, %"), head("↑ %", "frames lost on the way from it, %"),
+    el("thead", {}, el("tr", {}, el("th", {}, "robot"), head("V", "battery voltage"), head("RTT", "round-trip time of the radio, ms"), head("loss ↓", "frames lost on the way to the robot, %"), head("↑ %", "frames lost on the way from it, %"),
       head("heard", "since it was last heard, ms"), head("seen", "since a camera last saw it, ms"), el("th", {}, "state"))),
     el("tbody", {}, rows)),
     el("p", { class: "muted" }, "V: battery. RTT: round-trip time of the radio, ms. loss ↓ ↑: frames lost on their way to the robot and from it, %. heard, seen: since it was last heard, last seen by a camera, ms."));

@@ -56,7 +56,7 @@ function show() {
       box.checked = layer.shown;
       return el("label", {}, box, layer.label, el("small", { "data-now": layer.name }));
     };
-    const part = (words, layers) => (layers.length ? [el("h3", {}, words), ...layers.map(row)] : []);
+    const part = (words, layers) => (layers.length ? [el("h2", {}, words), ...layers.map(row)] : []);
     const every = (shown) => () => list.forEach((layer) => setLayer(layer.name, shown));
     return [
       ...part("Field", list.filter((layer) => layer.own)),

@@ -56,7 +56,7 @@ function sheet(game) {
   return [
     blue.possession == null ? null : el("div", { class: "bar", title: "possession" },
       el("i", { class: "blue", style: `width:${blue.possession * 100}%` }), el("i", { class: "yellow", style: `width:${(yellow.possession ?? 0) * 100}%` })),
-    table(["", ["blue", "n"], ["yellow", "n"]], rows.map(([name, a, b]) => [name, [String(a), "n"], [String(b), "n"]])),
+    table(["so far", ["blue", "n"], ["yellow", "n"]], rows.map(([name, a, b]) => [name, [String(a), "n"], [String(b), "n"]])),
     game.in_play == null ? null : el("p", { class: "muted" }, `The ball was in play for ${Math.round(game.in_play * 100)} % of the time.`),
   ];
 }

@@ -45,7 +45,7 @@ fn a_match_that_is_over_says_so_and_offers_what_next() {
     let over = "!document.getElementById('over').hidden && /^Full time [0-9]+ : [0-9]+/.test(document.getElementById('over').textContent)";
     tab.wait(over, 60).unwrap();
     // No scene comes any more, and that is no fault: longer than a silent match is waited for.
-    std::thread::sleep(Duration::from_millis(4_000));
+    std::thread::sleep(Duration::from_secs(4));
     assert!(is(&mut tab, over) && is(&mut tab, "document.getElementById('lost').hidden"));
     assert!(is(&mut tab, "document.getElementById('connection').textContent === 'full time'"));
     assert!(is(&mut tab, "document.getElementById('phase-now').textContent === 'full time'"));
