@@ -18,7 +18,7 @@ use crate::trial::{Moment, Watcher};
 /// Writes the log of a trial while it runs.
 #[derive(Clone, Debug, Default)]
 pub struct TextLog {
-    lines: Vec<String>,
+    lines: Vec<(f32, String)>,
     /// Progress of each robot as last logged.
     progress: Vec<(RobotId, Progress)>,
     /// The last logged decision was that no case fits.
@@ -27,13 +27,16 @@ pub struct TextLog {
 }
 
 impl TextLog {
-    /// The lines since the last call.
+    /// The lines since the last call, in the order of their times: the field reports its events at the end of
+    /// a tick, with the times within it.
     pub fn take_lines(&mut self) -> Vec<String> {
-        std::mem::take(&mut self.lines)
+        let mut lines = std::mem::take(&mut self.lines);
+        lines.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        lines.into_iter().map(|(_, line)| line).collect()
     }
 
     fn add(&mut self, time: f32, text: impl AsRef<str>) {
-        self.lines.push(format!("{time:7.2} s  {}", text.as_ref()));
+        self.lines.push((time, format!("{time:7.2} s  {}", text.as_ref())));
     }
 
     fn opening(&mut self, moment: &Moment<'_>) {

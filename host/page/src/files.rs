@@ -52,6 +52,8 @@ files! {
     "bench.js": SCRIPT,
     "cases.js": SCRIPT,
     "dom.js": SCRIPT,
+    "put.js": SCRIPT,
+    "over.js": SCRIPT,
 }
 
 /// The file with this path; `/` is the page itself.

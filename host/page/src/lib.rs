@@ -44,8 +44,8 @@ pub use page::{ExplanationService, Page, PageError, PageSettings};
 pub use problem::{Freeze, problem, skeleton};
 pub use request::{PageTeam, Powers, Refused, UserRequest};
 pub use scene::{
-    Cycle, Field, Gauge, Intent, Match, PerTeam, Raw, RobotDetail, Scene, SceneBall, SceneRobot, TeamSheet,
-    Timer, Vitals,
+    Cycle, Field, Gauge, Intent, Match, MatchEnd, PerTeam, Raw, RobotDetail, Scene, SceneBall, SceneRobot,
+    TeamSheet, Timer, Vitals,
 };
 pub use shape::{Heat, Layer, Shape, Tone};
 pub use token::{NoToken, Token};

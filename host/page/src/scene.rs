@@ -41,6 +41,16 @@ pub struct Scene {
     pub speed: f32,
     /// Random seed, in a simulation.
     pub seed: Option<u64>,
+    /// The match is over: no scene follows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub over: Option<MatchEnd>,
+}
+
+/// The end of a match that its program does not end with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MatchEnd {
+    /// A viewer may start another match.
+    pub another: bool,
 }
 
 /// The lines of the field, m.

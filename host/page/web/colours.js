@@ -4,8 +4,8 @@
 import { byId } from "./dom.js";
 import { changed, recall, remember } from "./store.js";
 
-const NAMES = ["back", "panel", "raised", "edge", "text", "dim", "carpet", "margin", "line", "mark", "blue", "blue-ink", "yellow",
-  "yellow-ink", "ball", "case", "forbidden", "good", "plain", "accent", "warn", "bad"];
+const NAMES = ["back", "panel", "raised", "edge", "text", "dim", "carpet", "margin", "line", "rim", "blue", "blue-ink", "blue-line", "yellow",
+  "yellow-ink", "yellow-line", "ball", "case", "forbidden", "good", "plain", "accent", "warn", "bad"];
 
 export const colours = {};
 const thin = new Map();
@@ -16,11 +16,14 @@ function read() {
   thin.clear();
 }
 
-/** The colour, let through by so much. */
+/** The colour of lines and words of that name: a team's fill may be too light for them. */
+export const stroke = (name) => colours[`${name}-line`] ?? colours[name] ?? colours.plain;
+
+/** The colour of lines, let through by so much. */
 export function faint(name, share) {
   const key = `${name} ${share}`;
   if (!thin.has(key)) {
-    const value = colours[name] ?? colours.plain;
+    const value = stroke(name);
     const part = (at) => parseInt(value.slice(at, at + 2), 16);
     thin.set(key, `rgba(${part(1)},${part(3)},${part(5)},${share})`);
   }

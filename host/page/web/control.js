@@ -19,7 +19,7 @@ export function showControl() {
   const shown = mayAsk === false && powers !== "none" ? "locked" : powers;
   fill(tab, `${shown} ${life}`, () => ({ simulation, halt, none, locked })[shown]());
   if (shown !== "simulation") return;
-  say(byId("pause"), store.latest?.paused ? "Go on" : "Stand still");
+  say(byId("pause"), store.latest?.paused ? "Resume" : "Pause");
   const speed = byId("speed-now");
   if (speed && store.latest) say(speed, `${store.latest.speed} ×`);
   const robots = store.scene.robots.map((robot) => `${robot.team} ${robot.id}`);
@@ -53,9 +53,9 @@ function simulation() {
   } });
   return [
     el("h2", {}, "Time"),
-    set(press("Stand still", () => ({ ask: "pause", on: !store.latest?.paused }), { id: "pause" }), press("One tick", () => ({ ask: "step", ticks: 1 }), { id: "step" }), press("Ten", () => ({ ask: "step", ticks: 10 }))),
+    set(press("Pause", () => ({ ask: "pause", on: !store.latest?.paused }), { id: "pause" }), press("1 tick", () => ({ ask: "step", ticks: 1 }), { id: "step" }), press("10 ticks", () => ({ ask: "step", ticks: 10 }))),
     set(el("label", {}, "Speed"), speed, el("span", { id: "speed-now" }), press("1 ×", () => ((speed.value = 0), { ask: "speed", factor: 1 }))),
-    set(el("label", {}, "Seed"), seed, press("Begin anew", () => ({ ask: "restart", seed: Number(seed.value) }), { id: "restart" })),
+    set(el("label", {}, "Seed"), seed, press("Restart", () => ({ ask: "restart", seed: Number(seed.value) }), { id: "restart" })),
     ...situations(press, set),
     el("h2", {}, "Referee"),
     set(...COMMANDS.map(([command, words]) => press(words, () => ({ ask: "referee", command }), { "data-command": command }))),

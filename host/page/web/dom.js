@@ -43,6 +43,27 @@ export function fill(target, key, make) {
   return true;
 }
 
+const keys = new WeakMap();
+
+/** Shows `items` in `target`, in their order; an element whose item is still there stays the same element, with its focus and its click. */
+export function keep(target, items, keyOf, make) {
+  const had = new Map([...target.children].map((child) => [keys.get(child), child]));
+  const wanted = new Map();
+  for (const item of items) {
+    let key = keyOf(item);
+    while (wanted.has(key)) key += "'";
+    wanted.set(key, item);
+  }
+  for (const [key, child] of had) if (!wanted.has(key)) child.remove();
+  let place = target.firstChild;
+  for (const [key, item] of wanted) {
+    const child = had.get(key) ?? make(item);
+    keys.set(child, key);
+    if (child === place) place = place.nextSibling;
+    else target.insertBefore(child, place);
+  }
+}
+
 /** 75.4 as 1:15.4. */
 export function clock(seconds, digits = 1) {
   const whole = Math.max(0, seconds);
@@ -52,13 +73,13 @@ export function clock(seconds, digits = 1) {
 
 export const number = (x, digits = 1) => (x == null || !Number.isFinite(x) ? "–" : x.toFixed(digits));
 
-/** A table: heads and rows of cells; a cell is words or `[words, class]`. */
-export function table(heads, rows) {
-  const cell = (tag) => (content) => {
+/** A table: heads and rows of cells; a cell is words or `[words, class]`. With `cards` a narrow screen shows each row as a card. */
+export function table(heads, rows, cards = false) {
+  const cell = (tag) => (content, i) => {
     const [words, kind] = Array.isArray(content) ? content : [content];
-    return el(tag, kind ? { class: kind } : {}, words);
+    return el(tag, { class: kind, "data-head": cards && tag === "td" && words !== "" ? [heads[i]].flat()[0] : null }, words);
   };
-  return el("div", { class: "scroll" }, el("table", {},
+  return el("div", { class: "scroll" }, el("table", cards ? { class: "cards" } : {},
     el("thead", {}, el("tr", {}, heads.map(cell("th")))),
     el("tbody", {}, rows.map((row) => el("tr", {}, row.map(cell("td")))))));
 }

@@ -3,6 +3,7 @@
 import { byId } from "./dom.js";
 import { shows } from "./layers.js";
 import { ask } from "./link.js";
+import { put } from "./put.js";
 import { noteAt, notesOf } from "./shapes.js";
 import { changed, choose, store } from "./store.js";
 import { time } from "./transport.js";
@@ -32,10 +33,12 @@ export function startDrag(canvas, camera) {
   }
 
   function pull(point, last) {
+    const at = camera.from(point).map((x) => Math.round(x * 1000) / 1000);
+    put(held.robot, at);
+    changed("frame");
     const now = performance.now();
     if (!last && now - told < EVERY) return;
     told = now;
-    const at = camera.from(point).map((x) => Math.round(x * 1000) / 1000);
     if (held.ball) ask({ ask: "ball", at });
     else ask({ ask: "robot", team: held.robot.team, id: held.robot.id, at });
   }
@@ -70,6 +73,7 @@ export function startDrag(canvas, camera) {
     if (!moved && fingers.size === 1 && event.type === "pointerup") {
       const found = under(here);
       choose(found?.robot?.team ?? null, found?.robot?.id);
+      if (store.chosen) changed("asked", "why");
       // A finger cannot hover: its touch tells what lies there.
       if (event.pointerType !== "mouse") hover(here);
     }

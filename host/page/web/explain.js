@@ -79,19 +79,19 @@ function body(answer, problem, every) {
   const rest = rows.length - shown.length;
   return el("div", { class: "explanation" },
     el("p", {}, winner ? `${winner.case} is the best of ${answer.candidates} that fit.` : "No case fits."),
-    table(["rank", "case", "verdict", "why"], cells),
+    table(["rank", "case", "verdict", "why"], cells, true),
     el("p", { class: "field-set" },
       rest > 0 ? el("button", { onclick: (event) => event.target.closest(".explanation").replaceWith(body(answer, problem, true)) }, `${rest} more`) : null,
       el("button", { onclick: () => navigator.clipboard?.writeText(problem).then(() => changed("told", "the problem is copied")) }, "Copy the problem")),
     el("p", { class: "muted" }, "The same on a terminal: paste the problem into onetwo cases explain --league LEAGUE."));
 }
 
-const WORDS = { candidate: "fits", path: "way blocked", thr_c: "too far", robots: "too few robots", ball: "other ball" };
+const WORDS = { candidate: "fits", path: "way blocked", thr_c: "too far", robots: "too few robots", ball: "ball out of scope" };
 
 function told(row) {
   switch (row.verdict) {
     case "candidate":
-      return `${row.conditions} conditions, ${row.teammates} teammates, similarity ${number(row.similarity, 2)}, ${number(row.cost / 1000, 2)} m to walk`;
+      return `${row.conditions} conditions, ${row.teammates} teammates, similarity ${number(row.similarity, 2)}, ${number(row.cost / 1000, 2)} m of way in all`;
     case "path":
       return `opponent ${row.opponent} stands ${number(row.inside_mm, 0)} mm inside leg ${row.leg}`;
     case "thr_c":

@@ -1,6 +1,6 @@
 // What does one frame look like? Carpet, lines, layers, robots, ball; all in field coordinates, m.
 
-import { colours, faint } from "./colours.js";
+import { colours, faint, stroke } from "./colours.js";
 import { shows } from "./layers.js";
 import { drawRobots, lerp, robotRadius } from "./robots.js";
 import { drawShapes } from "./shapes.js";
@@ -23,7 +23,8 @@ export function drawFrame(context, camera, ratio, scene, next, share) {
   const layers = scene.layers.filter((layer) => shows(layer.name, layer.on));
   const isMap = (layer) => layer.shapes[0]?.is === "heat";
   for (const layer of layers) if (isMap(layer)) drawShapes(pen, layer);
-  drawLines(context, scene.field, pixel);
+  drawLines(context, scene.field, pixel, defenders(scene.game));
+  drawDirections(pen, scene);
   for (const layer of layers) if (!isMap(layer)) drawShapes(pen, layer);
   if (scene.game.placement) drawPlacement(pen, scene);
   if (shows("raw", false)) drawRaw(pen, scene);
@@ -40,7 +41,12 @@ function drawCarpet(context, field) {
   context.fillRect(-x, -y, 2 * x, 2 * y);
 }
 
-function drawLines(context, field, pixel) {
+/** Whose goal is at -x and at +x; nothing where it is not known. */
+function defenders({ teams }) {
+  return [-1, 1].map((side) => ["blue", "yellow"].find((team) => teams[team].defends === side));
+}
+
+function drawLines(context, field, pixel, owners) {
   const [x, y] = [field.length / 2, field.width / 2];
   context.strokeStyle = colours.line;
   context.lineWidth = Math.max(0.01, 1.2 * pixel);
@@ -54,7 +60,21 @@ function drawLines(context, field, pixel) {
   }
   for (const side of [-1, 1]) area(context, field, side, x);
   context.stroke();
-  for (const side of [-1, 1]) goal(context, field, side, x, pixel);
+  for (const side of [-1, 1]) goal(context, field, side, pixel, owners[side < 0 ? 0 : 1]);
+}
+
+/** Which way a team attacks: its name with an arrow, in the margin beside its own half. */
+function drawDirections({ camera, words }, { field, game }) {
+  const owners = defenders(game);
+  for (const side of [-1, 1]) {
+    const team = owners[side < 0 ? 0 : 1];
+    if (!team) continue;
+    const [from, to] = [camera.to([0, 0]), camera.to([-side, 0])];
+    const arrow = camera.turned ? (to[1] > from[1] ? "↓" : "↑") : to[0] > from[0] ? "→" : "←";
+    // Beside the touch line, or where the field stands upright beside the goal, on the right of the screen: tools are on the left.
+    const at = camera.turned ? [side * (field.length + field.margin) / 2, (camera.flipped ? 1 : -1) * (field.goal_width / 2 + 0.7)] : [side * field.length / 4, (field.width + field.margin) / 2];
+    words.ask({ key: `attacks ${team}`, at: camera.to(at), text: arrow === "←" ? `← ${team} attacks` : `${team} attacks ${arrow}`, tone: team, gap: 0, middle: true, rank: 3 });
+  }
 }
 
 function area(context, field, side, x) {
@@ -70,15 +90,20 @@ function area(context, field, side, x) {
   }
 }
 
-function goal(context, field, side, x, pixel) {
-  context.lineWidth = Math.max(0.02, 2.2 * pixel);
-  context.strokeStyle = colours.dim;
-  const [deep, half] = [side * (x + field.goal_depth), field.goal_width / 2];
+function goal(context, field, side, pixel, team) {
+  const [line, half] = [side * field.length / 2, field.goal_width / 2];
+  const deep = line + side * field.goal_depth;
   context.beginPath();
-  context.moveTo(side * x, -half);
+  context.moveTo(line, -half);
   context.lineTo(deep, -half);
   context.lineTo(deep, half);
-  context.lineTo(side * x, half);
+  context.lineTo(line, half);
+  if (team) {
+    context.fillStyle = faint(team, 0.35);
+    context.fill();
+  }
+  context.lineWidth = Math.max(0.03, 2.6 * pixel);
+  context.strokeStyle = team ? stroke(team) : colours.dim;
   context.stroke();
 }
 
@@ -99,7 +124,7 @@ function drawRaw({ context, pixel }, scene) {
   context.lineWidth = 1.2 * pixel;
   for (const [team, , x, y, heading] of scene.raw.robots) {
     const r = scene.field.robot_radius;
-    context.strokeStyle = colours[team];
+    context.strokeStyle = stroke(team);
     context.strokeRect(x - r, y - r, 2 * r, 2 * r);
     context.beginPath();
     context.moveTo(x, y);
@@ -154,7 +179,7 @@ function drawBall({ context, pixel }, scene, next, share) {
   }
   context.fillStyle = ball.confidence > 0.3 ? colours.ball : faint("ball", 0.4);
   disc(context, x, y, r);
-  context.strokeStyle = colours.back;
+  context.strokeStyle = colours.rim;
   context.lineWidth = pixel;
   context.stroke();
 }

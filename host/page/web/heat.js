@@ -55,6 +55,9 @@ function small(shape) {
 /** Rises in lightness all the way, so that it reads without hue too. */
 const STOPS = [[42, 10, 74], [120, 28, 109], [188, 55, 84], [237, 105, 37], [251, 180, 26], [252, 255, 164]];
 
+/** The scale as a picture, for the legend. */
+export const HEAT_SCALE = `linear-gradient(to right, ${STOPS.map((stop) => `rgb(${stop})`).join(", ")})`;
+
 function heatColour(x) {
   const at = Math.min(0.9999, Math.max(0, x)) * (STOPS.length - 1);
   const [low, share] = [Math.floor(at), at % 1];

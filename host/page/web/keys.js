@@ -6,7 +6,7 @@ import { closeDialog, showKeys } from "./explain.js";
 import { toggleLayers } from "./layers.js";
 import { ask } from "./link.js";
 import { changed, store } from "./store.js";
-import { goLive, jump, mark, seek, time, toggle } from "./transport.js";
+import { goLive, jump, jumpGoal, mark, seek, time, toggle } from "./transport.js";
 
 const TABS = ["why", "match", "health", "control", "cases"];
 
@@ -19,10 +19,10 @@ export function startKeys(camera, showTab) {
     else seek(time.at + 0.04, false);
   };
   const keys = {
-    " ": ["space", "go on, or stand still", toggle], ".": [".", "one tick on", step], l: ["l", "to the newest moment", goLive],
+    " ": ["space", "resume, or pause", toggle], ".": [".", "one tick on", step], l: ["l", "to the newest moment", goLive],
     ArrowLeft: ["← →", "a second back and on; with shift ten", (far) => seek(time.at - (far ? 10 : 1))], ArrowRight: ["", "", (far) => seek(time.at + (far ? 10 : 1))],
-    "[": ["[ ]", "event before and after", () => jump(-1)], "]": ["", "", () => jump(1)],
-    g: ["g", "next goal; with shift the one before", () => jump(1, "goal")], G: ["", "", () => jump(-1, "goal")],
+    "[": ["[ ]", "shown event before and after", () => jump(-1)], "]": ["", "", () => jump(1)],
+    g: ["g", "5 s before the next goal; with shift the one before", () => jumpGoal(1)], G: ["", "", () => jumpGoal(-1)],
     b: ["b", "bookmark this moment", mark], c: ["c", "copy this moment's address", () => byId("link").click()],
     y: ["y", "layers", toggleLayers], f: ["f", "turn the field round", flip], 0: ["0", "whole field", fit], "+": ["+ −", "zoom", () => zoom(1.25)], "-": ["", "", () => zoom(0.8)],
     1: ["1 – 5", "why, match, health, control, cases", () => showTab(TABS[0])], 2: ["", "", () => showTab(TABS[1])], 3: ["", "", () => showTab(TABS[2])], 4: ["", "", () => showTab(TABS[3])], 5: ["", "", () => showTab(TABS[4])],
@@ -32,12 +32,15 @@ export function startKeys(camera, showTab) {
   byId("help").addEventListener("click", help);
   byId("flip").addEventListener("click", flip);
   byId("fit").addEventListener("click", fit);
+  // What a pointer pressed does not keep the focus: the next space is not for it.
+  addEventListener("click", (event) => event.detail > 0 && event.target.closest?.("button, [role=button], input[type=checkbox]")?.blur());
+  addEventListener("change", (event) => event.target.matches?.("select:not(:focus-visible)") && event.target.blur());
   addEventListener("keydown", (event) => {
     if (event.key === "Escape") return closeDialog();
-    const typing = event.target.matches?.("input:not([type=checkbox]), select, textarea");
+    const typing = event.target.matches?.("input:not([type=checkbox]), select, textarea") && !(event.key === " " && event.target.type === "range");
     if (typing || event.ctrlKey || event.metaKey || event.altKey || byId("dialog").open) return;
-    // A button or a box takes the space itself.
-    if (event.key === " " && event.target.matches?.("button, input")) return;
+    // A button or a box takes the space itself where it is seen to have the focus.
+    if (event.key === " " && event.target.matches?.(":is(button, input, [role=button]):focus-visible")) return;
     const found = keys[event.key];
     if (!found) return;
     event.preventDefault();

@@ -1,6 +1,7 @@
 // Which layers are shown? Those of the page and those that the program names; a viewer's choice is kept.
 
-import { byId, el, fill, say } from "./dom.js";
+import { byId, el, fill, number, say } from "./dom.js";
+import { HEAT_SCALE } from "./heat.js";
 import { changed, on, recall, remember, store } from "./store.js";
 
 /** The page's own: name, label, shown at first. */
@@ -18,7 +19,11 @@ let chosen = {};
 /** Whether that layer is drawn. */
 export const shows = (name, otherwise) => chosen[name] ?? otherwise;
 
+/** The map that was switched on last. */
+let lastMap = null;
+
 export function setLayer(name, shown) {
+  if (shown) lastMap = name;
   chosen = { ...chosen, [name]: shown };
   remember("layers", chosen);
   changed("layers");
@@ -51,7 +56,7 @@ function show() {
       box.checked = layer.shown;
       return el("label", {}, box, layer.label, el("small", { "data-now": layer.name }));
     };
-    const part = (words, layers) => (layers.length ? [el("h3", {}, words), ...layers.map(row)] : []);
+    const part = (words, layers) => (layers.length ? [el("h2", {}, words), ...layers.map(row)] : []);
     const every = (shown) => () => list.forEach((layer) => setLayer(layer.name, shown));
     return [
       ...part("Field", list.filter((layer) => layer.own)),
@@ -62,6 +67,20 @@ function show() {
   });
   // In its place: a row that is made anew under a finger would lose the click.
   for (const layer of list) say(panel.querySelector(`[data-now="${CSS.escape(layer.name)}"]`), layer.count === 0 ? "none now" : "");
+}
+
+/** What the colours of the map mean; of two maps one would hide the other, so one alone is shown. */
+export function showLegend() {
+  const maps = (store.scene?.layers ?? []).filter((layer) => layer.shapes[0]?.is === "heat" && shows(layer.name, layer.on));
+  const shown = maps.find((layer) => layer.name === lastMap) ?? maps[0];
+  for (const layer of maps) if (layer !== shown) setLayer(layer.name, false);
+  const legend = byId("legend");
+  legend.hidden = !shown;
+  if (!shown) return;
+  const { note, most } = shown.shapes[0];
+  fill(legend, `${shown.name} ${note} ${most}`, () => [
+    note, el("i", { style: `background:${HEAT_SCALE}` }), el("div", {}, el("span", {}, "0 %"), el("span", { id: "legend-most" }, `${number(most * 100, most < 0.1 ? 1 : 0)} %`)),
+  ]);
 }
 
 export function startLayers() {

@@ -63,6 +63,8 @@ async function catchUp() {
       if (more.length === 0) break;
       store.happenings.push(...more);
     }
+    // What is known late is told late: a decision whose problem came after it, a kick that was fitted.
+    store.happenings.sort((a, b) => a.t - b.t);
     changed("happenings");
   } finally {
     fetching = false;
@@ -105,12 +107,15 @@ function connect() {
 
 function tell() {
   const open = isOpen();
-  const silent = open && !store.state.recorded && store.newest && performance.now() - heard > SILENT;
+  const over = open && store.newest?.over;
+  const silent = open && !over && !store.state.recorded && store.newest && performance.now() - heard > SILENT;
   const state = !open ? (store.newest ? "lost" : "waiting") : silent ? "lost" : "live";
-  const words = { lost: open ? "silent" : "lost", waiting: "connecting", live: store.state.recorded ? "recording" : "connected" }[state];
+  const words = { lost: open ? "silent" : "lost", waiting: "connecting", live: store.state.recorded ? "recording" : over ? "full time" : "connected" }[state];
   const badge = byId("connection");
-  badge.dataset.state = state;
-  say(badge, words);
+  // A host that is reached is not well for that.
+  const alarms = state === "live" ? (store.newest?.alarms ?? []).length : 0;
+  badge.dataset.state = alarms ? "alarm" : state;
+  say(badge, alarms ? `${alarms} alarm${alarms > 1 ? "s" : ""}` : words);
   byId("lost").hidden = state !== "lost";
 }
 

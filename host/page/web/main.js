@@ -10,13 +10,14 @@ import { startDrag } from "./drag.js";
 import { drawFrame } from "./field.js";
 import { showHealth } from "./health.js";
 import { startKeys } from "./keys.js";
-import { all, setLayer, startLayers } from "./layers.js";
+import { all, setLayer, showLegend, startLayers } from "./layers.js";
 import { startLink } from "./link.js";
 import { showBoard, showMatch } from "./match.js";
+import { showOver } from "./over.js";
 import { changed, on, recall, remember, store } from "./store.js";
 import { startTimeline } from "./timeline.js";
 import { advance, startTransport, time } from "./transport.js";
-import { showWhy } from "./why.js";
+import { showChosen, showWhy } from "./why.js";
 
 /** Panels follow so often, ms: nobody reads faster. */
 const PANELS_EVERY = 100;
@@ -85,9 +86,10 @@ function tell(words) {
 on("frame", want);
 on("layers", want);
 on("colours", want);
-on("chosen", () => { want(); changed("panels"); });
+on("chosen", () => { want(); changed("panels"); showChosen(); });
+on("asked", (tab) => { showTab(tab); showChosen(); });
 on("state", () => { want(); changed("panels"); });
-on("panels", () => { showBoard(); showWhy(); showMatch(); showHealth(); showControl(); showCases(); });
+on("panels", () => { showOver(); showLegend(); showBoard(); showWhy(); showMatch(); showHealth(); showControl(); showCases(); });
 on("refused", tell);
 on("told", tell);
 new ResizeObserver(want).observe(canvas);

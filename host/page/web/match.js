@@ -1,14 +1,12 @@
 // How does the match stand? Score, stage, possession, ratios, and everything that happened.
 
-import { byId, clock, el, fill, number, say, table } from "./dom.js";
+import { byId, clock, el, fill, keep, number, say, table } from "./dom.js";
 import { explainEvent } from "./explain.js";
 import { changed, store } from "./store.js";
-import { seek } from "./transport.js";
+import { seek, startOf } from "./transport.js";
 import { tone } from "./timeline.js";
 
 const KINDS = [["goal", "goals"], ["command", "referee"], ["foul", "fouls"], ["case", "cases"], ["kick", "ball"], ["cycle", "cycles"], ["fault", "faults"], ["event", "notes"], ["stage", "stages"]];
-/** Cycles without a case are many and say little. */
-let hidden = new Set(["cycle"]);
 
 export function showBoard() {
   const scene = store.scene;
@@ -18,12 +16,13 @@ export function showBoard() {
     say(byId(`name-${team}`), scene.game.teams[team].name || team);
     say(byId(`score-${team}`), String(scene.game.teams[team].score));
   }
-  say(byId("phase-now"), scene.game.phase || "–");
+  const over = Boolean(scene.over);
+  say(byId("phase-now"), over ? "full time" : scene.game.phase || "–");
   const left = scene.game.stage_left == null ? "" : ` ${clock(scene.game.stage_left, 0)}`;
   // While play runs the referee's clock for an action says nothing.
   const act = scene.game.action_left == null || scene.game.action_left <= 0 || ["run", "halt", "stop"].includes(scene.game.phase) ? "" : ` · ${number(scene.game.action_left)} s left`;
   const next = scene.game.next ? ` · then ${scene.game.next}` : "";
-  say(byId("phase-more"), `${scene.game.stage}${left}${act}${next}`);
+  say(byId("phase-more"), over ? "" : `${scene.game.stage}${left}${act}${next}`);
   const alarms = scene.alarms ?? [];
   byId("alarms").hidden = alarms.length === 0;
   fill(byId("alarms"), JSON.stringify(alarms), () => alarms.map((words) => el("li", {}, words)));
@@ -57,17 +56,16 @@ function sheet(game) {
   return [
     blue.possession == null ? null : el("div", { class: "bar", title: "possession" },
       el("i", { class: "blue", style: `width:${blue.possession * 100}%` }), el("i", { class: "yellow", style: `width:${(yellow.possession ?? 0) * 100}%` })),
-    table(["", ["blue", "n"], ["yellow", "n"]], rows.map(([name, a, b]) => [name, [String(a), "n"], [String(b), "n"]])),
+    table(["so far", ["blue", "n"], ["yellow", "n"]], rows.map(([name, a, b]) => [name, [String(a), "n"], [String(b), "n"]])),
     game.in_play == null ? null : el("p", { class: "muted" }, `The ball was in play for ${Math.round(game.in_play * 100)} % of the time.`),
   ];
 }
 
 function filters() {
   const button = ([kind, words]) => {
-    const made = el("button", { class: hidden.has(kind) ? "" : "on", "data-kind": kind, onclick: () => {
-      hidden = new Set(hidden);
-      if (!hidden.delete(kind)) hidden.add(kind);
-      made.classList.toggle("on", !hidden.has(kind));
+    const made = el("button", { class: store.hidden.has(kind) ? "" : "on", "data-kind": kind, onclick: () => {
+      if (!store.hidden.delete(kind)) store.hidden.add(kind);
+      made.classList.toggle("on", !store.hidden.has(kind));
       changed("panels");
     } }, words);
     return made;
@@ -79,9 +77,12 @@ function filters() {
 const SHOWN = 150;
 
 function showHappenings() {
-  const list = store.happenings.filter((h) => !hidden.has(h.kind) && h.t <= store.scene.t + 0.05).slice(-SHOWN).reverse();
-  fill(byId("happenings"), `${list.length} ${list[0]?.t} ${[...hidden]} ${store.state.life} ${document.documentElement.dataset.theme}`, () => list.map((happening) =>
-    el("li", { class: happening.kind, onclick: () => seek(Math.max(0, happening.t - 1), true) },
-      el("time", {}, clock(happening.t)), el("span", { class: "dot", style: `background:${tone(happening)}` }), el("span", { class: "words" }, happening.words),
-      happening.problem ? el("button", { class: "ask", onclick: (event) => { event.stopPropagation(); explainEvent(happening); } }, "why?") : null)));
+  const shown = store.happenings.filter((h) => !store.hidden.has(h.kind) && h.t <= store.scene.t + 0.05).slice(-SHOWN).reverse();
+  const look = `${store.state.life} ${document.documentElement.dataset.theme}`;
+  keep(byId("happenings"), shown, (happening) => `${look} ${happening.t} ${happening.kind} ${happening.words}`, (happening) => {
+    const go = () => seek(startOf(happening), true);
+    return el("li", { class: happening.kind, onclick: go },
+      el("button", { class: "at", "aria-label": `to ${clock(happening.t)}` }, clock(happening.t)), el("span", { class: "dot", style: `background:${tone(happening)}` }), el("span", { class: "words" }, happening.words),
+      happening.problem ? el("button", { class: "ask", onclick: (event) => { event.stopPropagation(); explainEvent(happening); } }, "why?") : null);
+  });
 }

@@ -1,6 +1,6 @@
 // How is a robot drawn? Hull with a flat front, number, velocity, where it wants to be, what it is.
 
-import { colours, faint } from "./colours.js";
+import { colours, faint, stroke } from "./colours.js";
 import { shows } from "./layers.js";
 import { isChosen } from "./store.js";
 
@@ -8,6 +8,9 @@ export const lerp = (a, b, share) => [a[0] + (b[0] - a[0]) * share, a[1] + (b[1]
 
 /** The flat front stands at this half angle: 0.6 of a robot's width is its mouth's side. */
 const FRONT = 0.61;
+
+/** Half the side of yellow's square, in radii. */
+const PLATE = 0.62;
 
 const turn = (a, b, share) => a + Math.atan2(Math.sin(b - a), Math.cos(b - a)) * share;
 
@@ -37,8 +40,13 @@ export function drawRobots(pen, scene, next, share) {
     context.closePath();
     context.fill();
     context.lineWidth = 1.2 * pixel;
-    context.strokeStyle = colours.back;
+    context.strokeStyle = colours.rim;
     context.stroke();
+    // Told apart without colour: yellow's number stands on a dark square.
+    if (robot.team === "yellow") {
+      context.fillStyle = colours["yellow-ink"];
+      context.fillRect(at[0] - PLATE * radius, at[1] - PLATE * radius, 2 * PLATE * radius, 2 * PLATE * radius);
+    }
     if (robot.vitals?.faults.length) {
       context.strokeStyle = colours.bad;
       context.lineWidth = 2.5 * pixel;
@@ -60,7 +68,7 @@ function drawIntent({ context, pixel }, robot, radius) {
   const { path, ball_to: target } = robot.mind.intent;
   if (path.length > 1) {
     // Thin and whole: dashes of twenty ways are the dearest strokes of a frame.
-    context.strokeStyle = faint(robot.team, isChosen(robot) ? 1 : 0.6);
+    context.strokeStyle = faint(robot.team, isChosen(robot) ? 1 : 0.8);
     context.lineWidth = (isChosen(robot) ? 2.4 : 1.2) * pixel;
     context.beginPath();
     context.moveTo(path[0][0], path[0][1]);
@@ -98,7 +106,7 @@ function drawVelocity({ context, pixel }, robot, at, radius) {
   const [from, to] = [radius, radius + speed * 0.25];
   const [x, y] = [at[0] + ux * to, at[1] + uy * to];
   const head = 4.5 * pixel;
-  context.strokeStyle = colours[robot.team];
+  context.strokeStyle = stroke(robot.team);
   context.lineWidth = 1.8 * pixel;
   context.beginPath();
   context.moveTo(at[0] + ux * from, at[1] + uy * from);
@@ -119,7 +127,7 @@ function drawWords({ context, camera, ratio, words }, scene, next, share, radius
   const roles = shows("roles", true) && camera.scale > 40;
   for (const robot of scene.robots) {
     const at = camera.to(between(robot, next, share)[0]);
-    context.fillStyle = colours[`${robot.team}-ink`];
+    context.fillStyle = colours[robot.team === "yellow" ? "yellow" : "blue-ink"];
     context.fillText(robot.id, at[0], at[1] + size * 0.04);
     words.keepFree(at, radius * camera.scale);
     if (!roles || !robot.mind) continue;

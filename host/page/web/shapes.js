@@ -1,6 +1,6 @@
 // How are a layer's shapes drawn? Any layer that the program names, from plain shapes; what they mean is the program's affair.
 
-import { colours, faint } from "./colours.js";
+import { faint, stroke } from "./colours.js";
 import { drawHeat, heatNote } from "./heat.js";
 import { on } from "./store.js";
 
@@ -68,7 +68,7 @@ const DRAW = {
   },
   line({ context, pixel }, shape) {
     if (shape.points.length < 2) return;
-    context.strokeStyle = colours[shape.tone];
+    context.strokeStyle = stroke(shape.tone);
     context.lineWidth = 1.5 * pixel;
     if (shape.dashed) context.setLineDash([6 * pixel, 4 * pixel]);
     trace(context, shape.points);

@@ -15,6 +15,8 @@ export const store = {
   /** Chosen robot: `{ team, id }`. */
   chosen: null,
   tab: "why",
+  /** Kinds of events that are left out of the list and of jumps: cycles without a case are many and say little. */
+  hidden: new Set(["cycle"]),
 };
 
 const listeners = new Map();

@@ -1,6 +1,6 @@
 // What happened when? A row for each kind of happening under the ruler; a click goes there.
 
-import { colours, faint } from "./colours.js";
+import { colours, faint, stroke } from "./colours.js";
 import { byId, clock } from "./dom.js";
 import { on, store } from "./store.js";
 import { seek, span, time } from "./transport.js";
@@ -14,10 +14,9 @@ let drawn = "";
 const x = (t, width) => LEFT + ((t - span()[0]) / Math.max(1, span()[1] - span()[0])) * (width - LEFT - 8);
 
 export function tone(happening) {
-  if (happening.kind === "goal") return colours.ball;
   if (happening.kind === "foul" || happening.kind === "fault") return colours.forbidden;
   if (happening.kind === "case") return colours.case;
-  return happening.team ? colours[happening.team] : colours.plain;
+  return stroke(happening.team ?? "plain");
 }
 
 export function drawTimeline(force = false) {
@@ -59,7 +58,7 @@ export function drawTimeline(force = false) {
     }
     context.globalAlpha = 1;
   });
-  for (const goal of store.happenings.filter((h) => h.kind === "goal")) flag(context, x(goal.t, width), [width, height], colours.ball, "goal");
+  for (const goal of store.happenings.filter((h) => h.kind === "goal")) flag(context, x(goal.t, width), [width, height], stroke(goal.team ?? "ball"), `goal${goal.team ? ` ${goal.team}` : ""}`);
   for (const mark of store.marks) flag(context, x(mark.t, width), [width, height], colours.accent, "");
   context.fillStyle = colours.text;
   context.fillRect(x(time.at, width) - 1, 0, 2, height);
@@ -78,7 +77,7 @@ function ruler(context, width) {
 
 function flag(context, at, [width, height], colour, words) {
   // At the right edge it waves to the left.
-  const side = at > width - 50 ? -1 : 1;
+  const side = at > width - 84 ? -1 : 1;
   context.fillStyle = colour;
   context.fillRect(at - 1, 12, 2, height - 12);
   context.beginPath();
@@ -90,6 +89,11 @@ function flag(context, at, [width, height], colour, words) {
     context.textAlign = side > 0 ? "left" : "right";
     context.textBaseline = "top";
     context.font = `600 11px system-ui, "DejaVu Sans", sans-serif`;
+    // Upon the marks of the rows, with a rim.
+    context.lineJoin = "round";
+    context.lineWidth = 4;
+    context.strokeStyle = colours.panel;
+    context.strokeText(words, at + side * 11, 10);
     context.fillText(words, at + side * 11, 10);
   }
 }

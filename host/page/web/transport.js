@@ -2,6 +2,7 @@
 
 import { byId, clock, el, fill, say } from "./dom.js";
 import { ask, getJson, post } from "./link.js";
+import { placed } from "./put.js";
 import { changed, on, recall, remember, store } from "./store.js";
 
 /** This moment's address for others: they look on, and do not ask in our place. */
@@ -79,7 +80,7 @@ export function advance(now, passed) {
   if (time.live) {
     if (!store.latest) return false;
     const share = Math.min(1, (now - arrived) / interval);
-    [store.scene, store.next, store.share] = [before, store.latest, share];
+    [store.scene, store.next, store.share] = [placed(before), placed(store.latest), share];
     time.at = store.latest.t;
     return share < 1;
   }
@@ -141,7 +142,9 @@ export function goLive() {
 /** Space: a simulation stands still for everybody, what was kept for this viewer alone. */
 export function toggle() {
   if (time.live) {
-    if (store.state.powers === "simulation") ask({ ask: "pause", on: !store.latest?.paused });
+    // A match that is over is watched once more.
+    if (store.latest?.over) seek(span()[0], true);
+    else if (store.state.powers === "simulation") ask({ ask: "pause", on: !store.latest?.paused });
     else seek(time.at, false);
   } else {
     if (!time.playing && time.at >= span()[1] - 0.01) time.at = span()[0];
@@ -155,11 +158,25 @@ function address() {
   history.replaceState(null, "", `${location.pathname}${location.search}#t=${time.at.toFixed(2)}`);
 }
 
-/** To the happening before or after this moment. */
-export function jump(direction, only = null) {
-  const list = [...store.happenings, ...store.marks].filter((h) => !only || h.kind === only).map((h) => h.t).sort((a, b) => a - b);
+/** To the event before or after this moment, of those that are shown. */
+export function jump(direction) {
+  const list = [...store.happenings, ...store.marks].filter((h) => !store.hidden.has(h.kind)).map((h) => h.t).sort((a, b) => a - b);
   const to = direction > 0 ? list.find((t) => t > time.at + 0.05) : list.findLast((t) => t < time.at - 0.6);
   if (to !== undefined) seek(to);
+}
+
+/** A goal is looked at from so long before it, s. */
+const BEFORE_GOAL = 5;
+export const startOf = (happening) => Math.max(span()[0], happening.t - (happening.kind === "goal" ? BEFORE_GOAL : 1));
+
+/** To the way to the goal before or after this moment; whose goal is told. */
+export function jumpGoal(direction) {
+  const goals = store.happenings.filter((h) => h.kind === "goal");
+  const goal = direction > 0 ? goals.find((h) => startOf(h) > time.at + 0.05) : goals.findLast((h) => startOf(h) < time.at - 0.6);
+  if (goal) seek(startOf(goal));
+  // The start of a recording may be nearer to its first goal.
+  const coming = goal ?? (direction > 0 ? goals.find((h) => h.t > time.at) : undefined);
+  changed("told", coming ? `${clock(coming.t)}: ${coming.words}` : `no goal ${direction > 0 ? "after" : "before"} this moment`);
 }
 
 export function mark() {
@@ -183,7 +200,7 @@ async function freeze(choice) {
 }
 
 function show() {
-  const paused = time.live ? Boolean(store.latest?.paused) : !time.playing;
+  const paused = time.live ? Boolean(store.latest?.paused || store.latest?.over) : !time.playing;
   say(byId("play"), paused ? "▶" : "❚❚");
   byId("live").classList.toggle("on", time.live);
   byId("live").hidden = store.state.recorded;

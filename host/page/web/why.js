@@ -13,7 +13,7 @@ export function showWhy() {
     r.mind.part, r.mind.reactive, isChosen(r) && r.mind.timers.map((t) => t.seconds.toFixed(1))]), scene.cycles.map((c) => [c.team, c.number, c.state, c.case, c.coordinator]), store.state.life]);
   const top = tab.scrollTop;
   const anew = fill(tab, key, () => {
-    if (minds.length === 0) return el("p", { class: "muted" }, "Nobody here tells what it thinks: no host of ours is at work, or its robots are not seen yet.");
+    if (minds.length === 0) return el("p", { class: "muted" }, "Nothing is known of any robot's decisions: no host of ours is at work here, or no robot of its team is seen yet (tab Health, and alarms on the field).");
     return ["blue", "yellow"].flatMap((team) => teamPart(scene, team, minds.filter((robot) => robot.team === team)));
   });
   if (anew) tab.scrollTop = top;
@@ -21,6 +21,16 @@ export function showWhy() {
     const slot = tab.querySelector(`[data-cycle="${cycle.team}"]`);
     if (slot) slot.textContent = `${number(cycle.seconds)} s`;
   }
+}
+
+/** Brings the chosen robot's card into the panel; where the page itself scrolls, it stays where it is. */
+export function showChosen() {
+  const tab = byId("tab-why");
+  const card = tab.querySelector(".card.chosen");
+  if (tab.hidden || !card) return;
+  const [box, at] = [tab.getBoundingClientRect(), card.getBoundingClientRect()];
+  if (at.top < box.top) tab.scrollTop += at.top - box.top - 8;
+  else if (at.bottom > box.bottom) tab.scrollTop += at.bottom - box.bottom + 8;
 }
 
 function teamPart(scene, team, robots) {
@@ -52,7 +62,7 @@ function card(robot) {
   const chosen = isChosen(robot);
   const state = mind.part ? `${mind.state}${mind.step ? `, ${mind.step}` : ""}` : mind.reactive;
   return el("div", { class: `card ${robot.team}${chosen ? " chosen" : ""}`, "data-robot": `${robot.team}${robot.id}`, tabindex: "0", role: "button", "aria-pressed": String(chosen),
-    onclick: () => choose(robot.team, robot.id), onkeydown: (event) => event.key === "Enter" && choose(robot.team, robot.id) },
+    onclick: () => choose(robot.team, robot.id), onkeydown: (event) => [" ", "Enter"].includes(event.key) && event.target.matches(":focus-visible") && choose(robot.team, robot.id) },
     el("div", { class: "top" }, el("b", {}, String(robot.id)), el("span", {}, mind.role), el("span", { class: "state" }, state)),
     el("p", {}, mind.directive),
     mind.why ? el("p", { class: "why" }, mind.why) : null,

@@ -1,7 +1,7 @@
 // Where do words stand on the field so that none hides another, or a robot? Everybody asks for a place, then all are drawn at once:
 // beside what they belong to where there is room, else a little farther off, else not at all.
 
-import { colours, faint } from "./colours.js";
+import { faint, stroke } from "./colours.js";
 import { on } from "./store.js";
 
 const SIZE = 12;
@@ -97,7 +97,7 @@ function pictureOf(text, tone, ratio) {
   context.lineWidth = 3;
   context.strokeStyle = faint("back", 0.8);
   context.strokeText(text, 0, LINE / 2);
-  context.fillStyle = colours[tone] ?? colours.plain;
+  context.fillStyle = stroke(tone);
   context.fillText(text, 0, LINE / 2);
   const picture = { image: canvas.transferToImageBitmap(), wide, rim };
   pictures.set(key, picture);

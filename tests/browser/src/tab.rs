@@ -107,7 +107,11 @@ impl<'b> Tab<'b> {
     /// Presses a key of one letter, or `Enter`.
     pub fn key(&mut self, key: &str) -> Result<(), BrowserError> {
         // A button is pressed by the key's code, which letters do without.
-        let (text, code) = if key == "Enter" { ("\r", 13) } else { (key, 0) };
+        let (text, code) = match key {
+            "Enter" => ("\r", 13),
+            " " => (" ", 32),
+            _ => (key, 0),
+        };
         for kind in ["keyDown", "keyUp"] {
             let text = if kind == "keyDown" { text } else { "" };
             let what = json!({ "type": kind, "key": key, "text": text, "windowsVirtualKeyCode": code });

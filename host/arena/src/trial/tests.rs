@@ -45,6 +45,19 @@ fn watching_changes_nothing() {
 }
 
 #[test]
+fn the_story_of_a_trial_is_in_the_order_of_time() {
+    for seed in 1..=20 {
+        let config = config(seed);
+        let mut story = TextLog::default();
+        run(&config, Box::new(NativeBackend::new(config.base)), &mut [&mut story]).unwrap();
+        let times: Vec<f32> = (story.take_lines().iter())
+            .map(|line| line.split_whitespace().next().unwrap().parse().unwrap())
+            .collect();
+        assert!(times.is_sorted(), "seed {seed}: {times:?}");
+    }
+}
+
+#[test]
 fn every_scenario_against_both_configurations_ends_in_both_approaches() {
     for scenario in Scenario::PAPER.into_iter().chain([Scenario::Random]) {
         for opponents in [Configuration::DefenderGoalie, Configuration::TwoDefenders] {

@@ -1,11 +1,12 @@
 //! `description`: texts of roles, reasons, directives and actions. Short labels; places in m, field frame.
 
+use arena::CycleEnd;
 use casebase::{Action, Case, CaseRobot};
 use host::strategy::{Flip, OrderReason, Role};
 use protocol::decision::Grounds;
 use protocol::host::{Directive, KickOrder};
 use protocol::quantized::WirePoint;
-use protocol::team::{AbortReason, Closure, Decision, Progress};
+use protocol::team::{Closure, Decision, Progress};
 
 /// `(1.20, −0.45)`.
 pub(crate) fn place(at: impl Into<geometry::Point<geometry::Field>>) -> String {
@@ -147,10 +148,16 @@ pub(super) fn decision(decision: &Decision) -> String {
         Decision::NoCase | Decision::Closed(Closure::NoCase) => "no case fits".to_owned(),
         Decision::Play(_) => "playing".to_owned(),
         Decision::Closed(Closure::Finished) => "finished".to_owned(),
-        Decision::Closed(Closure::Aborted { by, reason }) => {
-            format!("stopped by {}: {}", by.number(), abort(*reason))
+        Decision::Closed(closure @ Closure::Aborted { by, .. }) => {
+            format!("stopped by {}: {}", by.number(), end(CycleEnd::Closed(*closure)))
         }
     }
+}
+
+/// An end of a play, in the words that reports use: the same for the team's cycle, the time line and the
+/// ledger of cases.
+pub(super) fn end(end: CycleEnd) -> String {
+    end.label().replace('-', " ")
 }
 
 /// Why a decision is not simply retrieval's answer; empty where it is.
@@ -164,22 +171,6 @@ pub(super) fn grounds(grounds: Grounds) -> String {
         Grounds::Proposed => "the host proposed the case".to_owned(),
         Grounds::ShootsSooner => "without a case it expected to shoot sooner: no case".to_owned(),
         Grounds::NoBall => "the coordinator saw no ball".to_owned(),
-    }
-}
-
-fn abort(reason: AbortReason) -> &'static str {
-    match reason {
-        AbortReason::BallOutOfScope => "the ball left the case's scope",
-        AbortReason::PathBlocked => "an opponent blocks the ball's path",
-        AbortReason::RobotLost => "a robot is gone, or its host is silent",
-        AbortReason::ActionFailed => "an action failed",
-        AbortReason::OpponentOnBall => "an opponent has the ball",
-        AbortReason::BallAtRest => "the ball lies where no robot expects it",
-        AbortReason::Timeout => "it took too long",
-        AbortReason::NoDecision => "its coordinator is silent",
-        AbortReason::UnknownCase => "a robot does not know the case",
-        AbortReason::Reassigned => "its host gave it another order",
-        AbortReason::GameStopped => "the referee stopped the game",
     }
 }
 

@@ -60,8 +60,8 @@ impl Legged {
                     (MatchEventKind::Case, moment.config.names.of(play.case))
                 }
                 (CycleEvent::Ended(_), Some(_)) => {
-                    let end = cycle.end.map_or("", |(_, end)| end.label());
-                    (MatchEventKind::Cycle, format!("case {}", end.replace('-', " ")))
+                    let end = cycle.end.map_or_else(String::new, |(_, end)| description::end(end));
+                    (MatchEventKind::Cycle, format!("case {end}"))
                 }
                 _ => continue,
             };

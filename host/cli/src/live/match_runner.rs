@@ -14,7 +14,7 @@ use casebase::CaseBase;
 use foreign::excerpt;
 use geometry::Point;
 use hil_sim::NativeBackend;
-use page::{MatchEvent, Page, UserRequest};
+use page::{MatchEnd, MatchEvent, Page, UserRequest};
 use protocol::{RobotId, Who};
 use rules::Colour;
 use rules::state::RefereeCommand;
@@ -33,6 +33,8 @@ const BEHIND_MAX_S: f64 = 0.25;
 const SCENE_EVERY_MAX_S: f64 = 0.2;
 /// Longest part of a name sent by a viewer that is quoted in an answer, characters.
 const NAME_LEN: usize = 60;
+/// Answer to a viewer that asks for another match.
+const RECORDED: &str = "a match that is recorded cannot start again";
 /// Period of polling for requests while paused.
 const IDLE: Duration = Duration::from_millis(10);
 
@@ -57,6 +59,8 @@ struct UserControls {
     took: Duration,
     /// Simulated seconds per second of wall time, as reached.
     reached: f32,
+    /// The match ended by itself.
+    over: bool,
 }
 
 /// How a run ends.
@@ -89,6 +93,7 @@ impl<'s> MatchRunner<'s> {
                 clock: (Instant::now(), 0.0),
                 took: Duration::ZERO,
                 reached: self.speed,
+                over: false,
             };
             let report = self.one(&mut controls, watcher)?;
             self.speed = controls.speed;
@@ -108,10 +113,12 @@ impl<'s> MatchRunner<'s> {
     /// requested.
     pub(crate) fn linger(&mut self) -> Option<u64> {
         while !stopped_by_hand().load(Ordering::Relaxed) {
-            if let Some(UserRequest::Restart { seed }) = self.page.next_request()
-                && !self.recorded
-            {
-                return Some(seed.unwrap_or(self.config.seed));
+            match self.page.next_request() {
+                Some(UserRequest::Restart { .. }) if self.recorded => self.page.refuse(RECORDED),
+                Some(UserRequest::Restart { seed }) => return Some(seed.unwrap_or(self.config.seed)),
+                Some(_) if self.recorded => self.page.refuse("the match is over"),
+                Some(_) => self.page.refuse("the match is over: start another one"),
+                None => {}
             }
             thread::sleep(IDLE);
         }
@@ -167,6 +174,7 @@ impl<'s> MatchRunner<'s> {
                 controls.wait(game.time());
             }
         }
+        controls.over = controls.restart.is_none() && !stopped.load(Ordering::Relaxed);
         self.show(&game, &mut feed, controls);
         self.tell_cases(&game, &mut feed, true);
         Ok(GameReport::of(&config, &game))
@@ -191,7 +199,13 @@ impl<'s> MatchRunner<'s> {
         deferred_scene.scene.paused = controls.paused;
         deferred_scene.scene.speed = controls.speed;
         deferred_scene.scene.seed = Some(self.config.seed);
-        self.page.show(deferred_scene);
+        deferred_scene.scene.over = controls.over.then_some(MatchEnd { another: !self.recorded });
+        if controls.over {
+            // No later scene makes up for this one.
+            self.page.keep(deferred_scene);
+        } else {
+            self.page.show(deferred_scene);
+        }
         self.tell_cases(game, feed, false);
     }
 
@@ -225,7 +239,7 @@ impl<'s> MatchRunner<'s> {
                 controls.clock = (Instant::now(), t);
             }
             UserRequest::Restart { .. } if self.recorded => {
-                refused = Some("a match that is recorded cannot start again".into());
+                refused = Some(RECORDED.into());
             }
             UserRequest::Restart { seed } => controls.restart = Some(seed.unwrap_or(self.config.seed)),
             UserRequest::Situation { name } => {

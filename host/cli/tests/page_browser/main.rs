@@ -5,6 +5,7 @@
 //! `cargo xtask test --only page` installs the browser where it can and runs this; plain `cargo test` does
 //! without.
 
+mod look;
 mod program;
 
 use std::time::Duration;
@@ -191,12 +192,14 @@ fn a_recording_seeks_to_its_goal_and_to_the_moment_of_an_address() {
     let mut tab = browser.open(&program.url("?tab=match#t=2.00"), 1200, 800).unwrap();
     tab.wait("window.onetwo?.store.scene && Math.abs(onetwo.store.scene.t - 2) < 0.1", 60).unwrap();
     tab.wait("onetwo.store.happenings.some((h) => h.kind === 'goal')", 30).unwrap();
+    // From 5 s before it, with whose it is.
+    let goal = "onetwo.store.happenings.find((h) => h.kind === 'goal')";
     tab.key("g").unwrap();
-    tab.wait(
-        "Math.abs(onetwo.store.scene.t - onetwo.store.happenings.find((h) => h.kind === 'goal').t) < 0.2",
-        20,
-    )
-    .unwrap();
+    tab.wait(&format!("Math.abs(onetwo.store.scene.t - {goal}.t + 5) < 0.2"), 20).unwrap();
+    let note = format!("document.getElementById('note').textContent.includes({goal}.words)");
+    assert_eq!(tab.eval(&note).unwrap(), true);
+    tab.eval(&format!("location.hash = '#t=' + {goal}.t.toFixed(2)")).unwrap();
+    tab.wait(&format!("Math.abs(onetwo.store.scene.t - {goal}.t) < 0.2"), 20).unwrap();
     assert!(number(&mut tab, "Math.abs(onetwo.store.scene.ball.at[0])") > 2.5, "the ball is in the goal");
     tab.wait("/#t=/.test(location.hash)", 5).unwrap();
     // A moment that is no number, and one after the end: reported, and the last one is displayed.

@@ -155,7 +155,8 @@ impl fmt::Display for Guards {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::FirstLevel { open, uncovered, .. } => {
-                write!(f, "{open:.2} rad of our goal are open to the ball, {uncovered:.2} of them uncovered")
+                let [open, uncovered] = [open, uncovered].map(f32::to_degrees);
+                write!(f, "{open:.0}° of our goal are open to the ball, {uncovered:.0}° of them uncovered")
             }
             Self::Spare => f.write_str("one primary defender suffices; beside it"),
             Self::SecondLevel { opponent, blocks, rank, open, time_to_shoot } => {
@@ -163,10 +164,10 @@ impl fmt::Display for Guards {
                     Blocks::Shot => "the shot of",
                     Blocks::Pass => "the pass to",
                 };
-                let n = rank + 1;
+                let (n, open) = (rank + 1, open.to_degrees());
                 write!(
                     f,
-                    "threat {n}: {what} opponent {opponent}, {open:.2} rad open, {time_to_shoot:.1} s away"
+                    "threat {n}: {what} opponent {opponent}, {open:.0}° open, {time_to_shoot:.1} s away"
                 )
             }
             Self::Held { opponent, primaries_off } => {
