@@ -108,7 +108,8 @@ impl Host {
 }
 
 impl Known {
-    /// Whether the robot's sensor detects the ball, as it reported lately; unknown while the sensor may flicker.
+    /// Whether the robot's sensor detects the ball, as it reported lately; unknown while the sensor may
+    /// flicker.
     pub(super) fn feels(&self, now: Instant) -> Option<bool> {
         let (at, reported) = self.telemetry.as_ref()?;
         let flickers = self.felt.is_some_and(|felt| now.since(felt) < FLICKERS);
@@ -122,6 +123,6 @@ impl Known {
 
 /// Age from which a robot's telemetry is ignored.
 const TELEMETRY_LEASE: Duration = Duration::millis(300);
-/// A sensor that touches may miss a ball at the dribbler for this long: its longest gap is 0.14 s in ER-Force's
-/// simulator, and telemetry reports samples of it.
+/// A sensor that touches may miss a ball at the dribbler for this long: its longest gap is 0.14 s in
+/// ER-Force's simulator, and telemetry reports samples of it.
 const FLICKERS: Duration = Duration::millis(600);

@@ -1,8 +1,9 @@
-//! `uncover`: a robot at a ball that no camera sees and that it does not have makes way. Attack frame, SI units.
+//! `uncover`: a robot at a ball that no camera sees and that it does not have makes way. Attack frame, SI
+//! units.
 //!
-//! A ball that lies between robots may be hidden from all cameras. Each robot then stands before the place where
-//! it believes the ball, which is not at its dribbler, and neither moves: the game stops for no progress. A robot
-//! that steps back shows the ball to the cameras, or leaves it to the other.
+//! A ball that lies between robots may be hidden from all cameras. Each robot then stands before the place
+//! where it believes the ball, which is not at its dribbler, and neither moves: the game stops for no
+//! progress. A robot that steps back shows the ball to the cameras, or leaves it to the other.
 
 use geometry::Attack;
 use geometry::Point;

@@ -1,13 +1,12 @@
 //! `hidden`: position of a ball that no camera sees: under a robot, or where it was placed; field frame, SI.
 //!
 //! With one of our robots, it is at the robot whose sensor detects it, and after release where that robot
-//! detected it last; with theirs, at the one whose front was at it when it vanished. Tracking leaves a ball that
-//! vanished at a robot's front there; where that robot is ours and its sensor does not detect the ball, the
-//! opponent beside it has taken it, or it lies where it was last seen. At a restart after a
-//! placement it lies where it was placed: the robot that brought it there hid it on the path, and the last
-//! visible place is metres off. Else it lies at its stop position. Without this a robot that must keep off
-//! the ball would approach it as soon as it is hidden, and one that backs off a ball it hides would search it
-//! elsewhere.
+//! detected it last; with theirs, at the one whose front was at it when it vanished. Tracking leaves a ball
+//! that vanished at a robot's front there; where that robot is ours and its sensor does not detect the ball,
+//! the opponent beside it has taken it, or it lies where it was last seen. At a restart after a placement it
+//! lies where it was placed: the robot that brought it there hid it on the path, and the last visible place
+//! is metres off. Else it lies at its stop position. Without this a robot that must keep off the ball would
+//! approach it as soon as it is hidden, and one that backs off a ball it hides would search it elsewhere.
 
 use geometry::{Field, Point, Vector};
 use protocol::{Duration, Instant, RobotId, Who};
@@ -74,8 +73,8 @@ impl HiddenBall {
         world.ball = Some(Ball { velocity, confidence: 0.0, ..Ball::at_rest(position, seen) });
     }
 
-    /// The opponent that has taken a ball which vanished between it and one of ours: whose front is nearest to
-    /// where it was last seen, and near.
+    /// The opponent that has taken a ball which vanished between it and one of ours: whose front is nearest
+    /// to where it was last seen, and near.
     fn taken_by(&self, world: &World, us: Colour) -> Option<Who> {
         let last = self.last?.position;
         let fronts = world.theirs(us).map(|robot| (dribbler_point(robot).distance(last), robot.who));
@@ -92,8 +91,8 @@ fn dribbler_point(robot: &Robot) -> Point<Field> {
 /// A ball this near the middle of a robot's front may lie in its dribbler opening, m: the opening's half
 /// width and the vision's noise.
 const HIDES: f32 = 0.06;
-/// Time unseen after which a robot's sensor decides whether it has the ball: two telemetry periods, and vision's
-/// delay.
+/// Time unseen after which a robot's sensor decides whether it has the ball: two telemetry periods, and
+/// vision's delay.
 const UNFELT: Duration = Duration::millis(300);
 /// An opponent's front is this near a ball that it takes off ours, m: a robot's diameter.
 const TAKES: f32 = 2.0 * rules::limits::ROBOT_RADIUS;

@@ -34,8 +34,8 @@ impl Choice {
     }
 }
 
-/// The shot of a leg that ends at `end`, kicked with `kick`, and the rule that chose it; `patient` while there
-/// is time left. `None` where there is none, and no shot worth making.
+/// The shot of a leg that ends at `end`, kicked with `kick`, and the rule that chose it; `patient` while
+/// there is time left. `None` where there is none, and no shot worth making.
 pub fn case_shot(
     belief: &Belief,
     attacked: GoalEnd,
