@@ -14,7 +14,7 @@ use protocol::{RobotId, Who};
 use rules::{Colour, League, Phase};
 
 /// Length of the match, s.
-const SECONDS: f64 = 90.0;
+const SECONDS: f64 = 150.0;
 const COLOURS: [Colour; 2] = [Colour::Yellow, Colour::Blue];
 
 /// The same match by other means: logs of beacons, goals of the referee's accounts, kicks of the physics.
