@@ -244,7 +244,7 @@ fn a_recording_that_breaks_off_says_so() {
 fn match_events(program: &Program) -> String {
     let mut stream = TcpStream::connect(program.address()).unwrap();
     let host = program.address();
-    write!(stream, "GET /api/happenings HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n").unwrap();
+    write!(stream, "GET /api/events HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n").unwrap();
     let mut answer = String::new();
     stream.read_to_string(&mut answer).unwrap();
     answer

@@ -25,7 +25,7 @@ pub(crate) fn answer(shared: &Shared, head: &Head, body: Vec<u8>, within: Durati
     };
     match &*head.path {
         "/api/state" => allowed("GET, HEAD", reads, &|| state(shared, head)),
-        "/api/happenings" => allowed("GET, HEAD", reads, &|| match_events(shared, head)),
+        "/api/events" => allowed("GET, HEAD", reads, &|| match_events(shared, head)),
         "/api/plots" => allowed("GET, HEAD", reads, &|| plots(shared)),
         "/api/cases" => allowed("GET, HEAD", reads, &|| cases(shared, head)),
         "/api/freeze" => allowed("POST", head.method == "POST", &|| freeze(shared, &body)),

@@ -191,8 +191,8 @@ fn what_has_passed_is_asked_for_by_the_second() {
         page.keep(scene(f64::from(i) * 0.04));
     }
     show_scene(&mut page, 2.5);
-    assert!(get(page.address(), "/api/happenings?from=0", "").1.contains("\"kind\":\"goal\""));
-    assert!(get(page.address(), "/api/happenings?from=1", "").1.contains("[]"));
+    assert!(get(page.address(), "/api/events?from=0", "").1.contains("\"kind\":\"goal\""));
+    assert!(get(page.address(), "/api/events?from=1", "").1.contains("[]"));
     assert_eq!(get(page.address(), "/api/second/0", "").0, 200);
     page.clear();
     wait_for(|| get(page.address(), "/api/second/0", "").0 == 404);

@@ -86,12 +86,12 @@ function body(answer, problem, every) {
     el("p", { class: "muted" }, "The same on a terminal: paste the problem into onetwo cases explain --league LEAGUE."));
 }
 
-const WORDS = { candidate: "fits", path: "way blocked", thr_c: "too far", robots: "too few robots", ball: "ball out of scope" };
+const WORDS = { candidate: "fits", path: "path blocked", thr_c: "too far", robots: "too few robots", ball: "ball out of scope" };
 
 function told(row) {
   switch (row.verdict) {
     case "candidate":
-      return `${row.conditions} conditions, ${row.teammates} teammates, similarity ${number(row.similarity, 2)}, ${number(row.cost / 1000, 2)} m of way in all`;
+      return `${row.conditions} conditions, ${row.teammates} teammates, similarity ${number(row.similarity, 2)}, ${number(row.cost / 1000, 2)} m to travel in all`;
     case "path":
       return `opponent ${row.opponent} stands ${number(row.inside_mm, 0)} mm inside leg ${row.leg}`;
     case "thr_c":

@@ -8,7 +8,7 @@ import { ask } from "./link.js";
 import { changed, store } from "./store.js";
 import { goLive, jump, jumpGoal, mark, seek, time, toggle } from "./transport.js";
 
-const TABS = ["why", "match", "health", "control", "cases"];
+export const TABS = ["why", "match", "health", "control", "cases"];
 
 export function startKeys(camera, showTab) {
   const flip = () => { camera.flipped = !camera.flipped; changed("frame"); };

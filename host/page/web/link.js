@@ -43,7 +43,7 @@ async function refresh() {
   const anew = state.life !== store.state.life;
   store.state = state;
   if (anew) {
-    store.happenings = [];
+    store.matchEvents = [];
     store.samples = [];
   }
   store.samples = await getJson("/api/plots");
@@ -59,13 +59,13 @@ async function catchUp() {
   fetching = true;
   try {
     for (;;) {
-      const more = await getJson(`/api/happenings?from=${store.happenings.length}`);
+      const more = await getJson(`/api/events?from=${store.matchEvents.length}`);
       if (more.length === 0) break;
-      store.happenings.push(...more);
+      store.matchEvents.push(...more);
     }
     // What is known late is told late: a decision whose problem came after it, a kick that was fitted.
-    store.happenings.sort((a, b) => a.t - b.t);
-    changed("happenings");
+    store.matchEvents.sort((a, b) => a.t - b.t);
+    changed("match-events");
   } finally {
     fetching = false;
   }
@@ -80,7 +80,7 @@ function take(text) {
   }
   // What comes after an earlier moment is another match.
   if (store.newest && scene.t < store.newest.t - 0.001) refresh().catch(() => {});
-  else if (scene.happened !== store.happenings.length) catchUp().catch(() => {});
+  else if (scene.happened !== store.matchEvents.length) catchUp().catch(() => {});
   store.newest = scene;
   changed("newest", scene);
 }

@@ -9,7 +9,7 @@ import { byId } from "./dom.js";
 import { startDrag } from "./drag.js";
 import { drawFrame } from "./field.js";
 import { showHealth } from "./health.js";
-import { startKeys } from "./keys.js";
+import { startKeys, TABS } from "./keys.js";
 import { all, setLayer, showLegend, startLayers } from "./layers.js";
 import { startLink } from "./link.js";
 import { showBoard, showMatch } from "./match.js";
@@ -60,8 +60,6 @@ function draw() {
   drawFrame(canvas.getContext("2d"), camera, ratio, store.scene, store.next, store.share);
   frames += 1;
 }
-
-const TABS = ["why", "match", "health", "control", "cases"];
 
 function showTab(asked) {
   const name = TABS.includes(asked) ? asked : TABS[0];

@@ -36,9 +36,9 @@ export function showMatch() {
   const tenth = (x) => (x == null ? null : Math.round(x * 10));
   const key = JSON.stringify([blue, yellow].map((t) => [t.score, t.fouls, t.red_cards, t.yellow_cards.map(Math.round), t.allowed, t.timeouts, tenth(t.possession), tenth(t.offence_ratio), tenth(t.attack_ratio), t.counts]))
     + scene.game.phase + Math.round((scene.game.in_play ?? 0) * 100);
-  if (!tab.firstChild) tab.append(el("div", { id: "match-sheet" }), el("h2", {}, "What happened"), filters(), el("ol", { class: "happenings", id: "happenings" }));
+  if (!tab.firstChild) tab.append(el("div", { id: "match-sheet" }), el("h2", {}, "What happened"), filters(), el("ol", { class: "match-events", id: "match-events" }));
   fill(byId("match-sheet"), key, () => sheet(scene.game));
-  showHappenings();
+  showEvents();
 }
 
 function sheet(game) {
@@ -76,13 +76,13 @@ function filters() {
 /** The newest so many that are shown; the time line has all. */
 const SHOWN = 150;
 
-function showHappenings() {
-  const shown = store.happenings.filter((h) => !store.hidden.has(h.kind) && h.t <= store.scene.t + 0.05).slice(-SHOWN).reverse();
+function showEvents() {
+  const shown = store.matchEvents.filter((h) => !store.hidden.has(h.kind) && h.t <= store.scene.t + 0.05).slice(-SHOWN).reverse();
   const look = `${store.state.life} ${document.documentElement.dataset.theme}`;
-  keep(byId("happenings"), shown, (happening) => `${look} ${happening.t} ${happening.kind} ${happening.words}`, (happening) => {
-    const go = () => seek(startOf(happening), true);
-    return el("li", { class: happening.kind, onclick: go },
-      el("button", { class: "at", "aria-label": `to ${clock(happening.t)}` }, clock(happening.t)), el("span", { class: "dot", style: `background:${tone(happening)}` }), el("span", { class: "words" }, happening.words),
-      happening.problem ? el("button", { class: "ask", onclick: (event) => { event.stopPropagation(); explainEvent(happening); } }, "why?") : null);
+  keep(byId("match-events"), shown, (matchEvent) => `${look} ${matchEvent.t} ${matchEvent.kind} ${matchEvent.words}`, (matchEvent) => {
+    const go = () => seek(startOf(matchEvent), true);
+    return el("li", { class: matchEvent.kind, onclick: go },
+      el("button", { class: "at", "aria-label": `to ${clock(matchEvent.t)}` }, clock(matchEvent.t)), el("span", { class: "dot", style: `background:${tone(matchEvent)}` }), el("span", { class: "words" }, matchEvent.words),
+      matchEvent.problem ? el("button", { class: "ask", onclick: (event) => { event.stopPropagation(); explainEvent(matchEvent); } }, "why?") : null);
   });
 }

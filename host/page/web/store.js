@@ -8,7 +8,7 @@ export const store = {
   next: null,
   /** How far it has moved, 0 to 1. */
   share: 0,
-  happenings: [],
+  matchEvents: [],
   samples: [],
   /** Bookmarks: `{ t, words }`. */
   marks: [],

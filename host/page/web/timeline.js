@@ -1,4 +1,4 @@
-// What happened when? A row for each kind of happening under the ruler; a click goes there.
+// Which events, and when? A row for each kind of event under the ruler; a click goes there.
 
 import { colours, faint, stroke } from "./colours.js";
 import { byId, clock } from "./dom.js";
@@ -13,10 +13,10 @@ let drawn = "";
 
 const x = (t, width) => LEFT + ((t - span()[0]) / Math.max(1, span()[1] - span()[0])) * (width - LEFT - 8);
 
-export function tone(happening) {
-  if (happening.kind === "foul" || happening.kind === "fault") return colours.forbidden;
-  if (happening.kind === "case") return colours.case;
-  return stroke(happening.team ?? "plain");
+export function tone(matchEvent) {
+  if (matchEvent.kind === "foul" || matchEvent.kind === "fault") return colours.forbidden;
+  if (matchEvent.kind === "case") return colours.case;
+  return stroke(matchEvent.team ?? "plain");
 }
 
 export function drawTimeline(force = false) {
@@ -24,7 +24,7 @@ export function drawTimeline(force = false) {
   const ratio = devicePixelRatio || 1;
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];
   if (width === 0) return;
-  const key = [width, height, ratio, store.happenings.length, store.marks.length, Math.round(x(time.at, width) * 2), Math.round(span()[1])].join();
+  const key = [width, height, ratio, store.matchEvents.length, store.marks.length, Math.round(x(time.at, width) * 2), Math.round(span()[1])].join();
   if (!force && key === drawn) return;
   drawn = key;
   if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
@@ -47,18 +47,18 @@ export function drawTimeline(force = false) {
     }
     context.fillStyle = faint("plain", 0.07);
     context.fillRect(LEFT, y + 1, width - LEFT - 8, step - 2);
-    for (const happening of store.happenings) {
-      if (!kinds.includes(happening.kind)) continue;
-      context.fillStyle = tone(happening);
-      context.globalAlpha = happening.kind === "cycle" ? 0.45 : 1;
+    for (const matchEvent of store.matchEvents) {
+      if (!kinds.includes(matchEvent.kind)) continue;
+      context.fillStyle = tone(matchEvent);
+      context.globalAlpha = matchEvent.kind === "cycle" ? 0.45 : 1;
       // Yellow stands in the lower half of a row, blue in the upper one.
-      const half = happening.team ? step / 2 - 1.5 : step - 3;
-      const top = y + 1.5 + (happening.team === "yellow" ? step / 2 : 0);
-      context.fillRect(x(happening.t, width) - 1, top, happening.kind === "cycle" ? 1 : 2.2, half);
+      const half = matchEvent.team ? step / 2 - 1.5 : step - 3;
+      const top = y + 1.5 + (matchEvent.team === "yellow" ? step / 2 : 0);
+      context.fillRect(x(matchEvent.t, width) - 1, top, matchEvent.kind === "cycle" ? 1 : 2.2, half);
     }
     context.globalAlpha = 1;
   });
-  for (const goal of store.happenings.filter((h) => h.kind === "goal")) flag(context, x(goal.t, width), [width, height], stroke(goal.team ?? "ball"), `goal${goal.team ? ` ${goal.team}` : ""}`);
+  for (const goal of store.matchEvents.filter((h) => h.kind === "goal")) flag(context, x(goal.t, width), [width, height], stroke(goal.team ?? "ball"), `goal${goal.team ? ` ${goal.team}` : ""}`);
   for (const mark of store.marks) flag(context, x(mark.t, width), [width, height], colours.accent, "");
   context.fillStyle = colours.text;
   context.fillRect(x(time.at, width) - 1, 0, 2, height);
@@ -113,10 +113,10 @@ export function startTimeline() {
   canvas.addEventListener("pointermove", (event) => event.buttons && to(event));
   canvas.addEventListener("mousemove", (event) => {
     const width = canvas.clientWidth;
-    const near = store.happenings.filter((h) => Math.abs(x(h.t, width) - event.offsetX) < 4).slice(-3);
+    const near = store.matchEvents.filter((h) => Math.abs(x(h.t, width) - event.offsetX) < 4).slice(-3);
     canvas.title = near.map((h) => `${clock(h.t)}  ${h.words}`).join("\n") || "Blue in the upper half of a row, yellow in the lower one; a click goes there";
   });
-  on("happenings", () => drawTimeline(true));
+  on("match-events", () => drawTimeline(true));
   on("colours", () => drawTimeline(true));
   on("panels", () => drawTimeline());
 }

@@ -160,18 +160,18 @@ function address() {
 
 /** To the event before or after this moment, of those that are shown. */
 export function jump(direction) {
-  const list = [...store.happenings, ...store.marks].filter((h) => !store.hidden.has(h.kind)).map((h) => h.t).sort((a, b) => a - b);
+  const list = [...store.matchEvents, ...store.marks].filter((h) => !store.hidden.has(h.kind)).map((h) => h.t).sort((a, b) => a - b);
   const to = direction > 0 ? list.find((t) => t > time.at + 0.05) : list.findLast((t) => t < time.at - 0.6);
   if (to !== undefined) seek(to);
 }
 
 /** A goal is looked at from so long before it, s. */
 const BEFORE_GOAL = 5;
-export const startOf = (happening) => Math.max(span()[0], happening.t - (happening.kind === "goal" ? BEFORE_GOAL : 1));
+export const startOf = (matchEvent) => Math.max(span()[0], matchEvent.t - (matchEvent.kind === "goal" ? BEFORE_GOAL : 1));
 
 /** To the way to the goal before or after this moment; whose goal is told. */
 export function jumpGoal(direction) {
-  const goals = store.happenings.filter((h) => h.kind === "goal");
+  const goals = store.matchEvents.filter((h) => h.kind === "goal");
   const goal = direction > 0 ? goals.find((h) => startOf(h) > time.at + 0.05) : goals.findLast((h) => startOf(h) < time.at - 0.6);
   if (goal) seek(startOf(goal));
   // The start of a recording may be nearer to its first goal.
@@ -182,7 +182,7 @@ export function jumpGoal(direction) {
 export function mark() {
   store.marks = [...store.marks, { t: time.at, words: `mark ${store.marks.length + 1}`, kind: "mark" }];
   remember(`marks.${store.state.title}`, store.marks);
-  changed("happenings");
+  changed("match-events");
 }
 
 async function freeze(choice) {

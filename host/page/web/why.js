@@ -44,7 +44,7 @@ function teamPart(scene, team, robots) {
 }
 
 function cycleBox(cycle) {
-  const last = store.happenings.findLast((h) => h.kind === "case" && h.team === cycle.team && h.t <= store.scene.t + 0.05);
+  const last = store.matchEvents.findLast((h) => h.kind === "case" && h.team === cycle.team && h.t <= store.scene.t + 0.05);
   const words = cycle.case ? `${cycle.case}${cycle.symmetry && cycle.symmetry !== "identity" ? ` · ${cycle.symmetry}` : ""}` : "no case";
   return el("div", { class: "cycle" },
     el("div", { class: "name" }, words),

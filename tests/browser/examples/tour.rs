@@ -85,7 +85,7 @@ fn pictures(program: &str, directory: &Path) -> Reported<()> {
     tab.wait(&format!("window.onetwo?.store.latest?.t > {PLAYED_S}"), 240)?;
     tab.eval("fetch('/api/state')")?;
     // A moment in which a case is executed and robots move: the middle of the first such play.
-    tab.wait("onetwo.store.happenings.some((h) => h.kind === 'case')", 60)?;
+    tab.wait("onetwo.store.matchEvents.some((h) => h.kind === 'case')", 60)?;
     let at = tab.eval(BUSY)?.as_f64().unwrap_or(30.0);
     let here = |tab: &mut Tab<'_>, at: f64| -> Reported<()> {
         tab.eval(&format!("location.hash = '#t={at:.2}'"))?;
@@ -125,7 +125,7 @@ fn pictures(program: &str, directory: &Path) -> Reported<()> {
 
 /// The time of a play in the match that was not over at once: a third of its duration.
 const BUSY: &str = "(async () => {
-  const all = onetwo.store.happenings;
+  const all = onetwo.store.matchEvents;
   const plays = all.filter((h) => h.kind === 'case').map((h) => {
     const end = all.find((e) => e.kind === 'cycle' && e.team === h.team && e.t > h.t);
     return [h.t, end ? end.t - h.t : 0];

@@ -87,22 +87,22 @@ fn robots_goals_lists_and_keys_answer_a_hand() {
 /// Rows that are there stay the same elements while the list grows, in the order of time.
 fn lists(tab: &mut Tab<'_>) {
     tab.key("2").unwrap();
-    tab.wait("document.querySelectorAll('#happenings li').length > 2", 60).unwrap();
+    tab.wait("document.querySelectorAll('#match-events li').length > 2", 60).unwrap();
     tab.eval(
-        "window.row = document.querySelector('#happenings li'); window.many = onetwo.store.happenings.length",
+        "window.row = document.querySelector('#match-events li'); window.many = onetwo.store.matchEvents.length",
     )
     .unwrap();
     tab.eval("row.querySelector('button').focus()").unwrap();
-    tab.wait("document.querySelector('#happenings li') !== row", 120).unwrap();
+    tab.wait("document.querySelector('#match-events li') !== row", 120).unwrap();
     assert!(is(tab, "row.isConnected && document.activeElement === row.querySelector('button')"));
-    assert!(is(tab, "onetwo.store.happenings.length > many"));
-    assert!(is(tab, "onetwo.store.happenings.every((h, i, all) => i === 0 || all[i - 1].t <= h.t)"));
+    assert!(is(tab, "onetwo.store.matchEvents.length > many"));
+    assert!(is(tab, "onetwo.store.matchEvents.every((h, i, all) => i === 0 || all[i - 1].t <= h.t)"));
     tab.eval("document.activeElement.blur()").unwrap();
     // Jumps stop at the kinds that are shown.
     let others = "[...document.querySelectorAll('.filters button.on:not([data-kind=command])')]";
     tab.eval(&format!("window.others = {others}; others.forEach((button) => button.click())")).unwrap();
     tab.key("[").unwrap();
-    let at_command = "!onetwo.time.live && onetwo.store.happenings.some((h) => h.kind === 'command' && Math.abs(h.t - onetwo.time.at) < 0.2)";
+    let at_command = "!onetwo.time.live && onetwo.store.matchEvents.some((h) => h.kind === 'command' && Math.abs(h.t - onetwo.time.at) < 0.2)";
     tab.key(" ").unwrap();
     tab.wait(at_command, 5).unwrap();
     tab.eval("others.forEach((button) => button.click())").unwrap();
@@ -183,11 +183,11 @@ fn goals_and_teams(tab: &mut Tab<'_>) {
     let part = |colour: &serde_json::Value, i: usize| colour[i].as_i64().unwrap();
     assert!(part(&blue, 2) > part(&blue, 0) + 20, "blue's goal: {blue}");
     assert!(part(&yellow, 0) > part(&yellow, 2) + 20, "yellow's goal: {yellow}");
-    // A corner of the square: half a radius off the middle along both axes, for the robot that is farthest
-    // from the ball.
+    // A corner of the square, which ends 0.62 of a radius off the middle along both axes: nearer to its edge a
+    // pixel may be blended. Of the robot that is farthest from the ball.
     let corner = |team: &str| {
         pixel(&format!(
-            "(({{ robots, ball, field }}) => {{ const far = (r) => Math.hypot(r.at[0] - ball.at[0], r.at[1] - ball.at[1]); const r = robots.filter((r) => r.team === '{team}').sort((a, b) => far(b) - far(a))[0]; const d = Math.max(field.robot_radius, 7 / onetwo.camera.scale) * 0.52; return [r.at[0] - d, r.at[1] - d]; }})(onetwo.store.scene)"
+            "(({{ robots, ball, field }}) => {{ const far = (r) => Math.hypot(r.at[0] - ball.at[0], r.at[1] - ball.at[1]); const r = robots.filter((r) => r.team === '{team}').sort((a, b) => far(b) - far(a))[0]; const d = Math.max(field.robot_radius, 7 / onetwo.camera.scale) * 0.45; return [r.at[0] - d, r.at[1] - d]; }})(onetwo.store.scene)"
         ))
     };
     let light = |colour: &serde_json::Value| (0..3).map(|i| part(colour, i)).sum::<i64>();
@@ -211,7 +211,7 @@ fn maps(tab: &mut Tab<'_>) {
     tab.wait("document.getElementById('legend').hidden", 5).unwrap();
 }
 
-/// Marks stand out from the carpet by 3 : 1, words from what they stand on by 4.5 : 1, in both themes.
+/// Marks stand out from the field surface by 3 : 1, words from what they stand on by 4.5 : 1, in both themes.
 fn contrast(tab: &mut Tab<'_>) {
     let script = "(() => {
       const style = getComputedStyle(document.documentElement);

@@ -191,9 +191,9 @@ fn a_recording_seeks_to_its_goal_and_to_the_moment_of_an_address() {
     let mut browser = Browser::start().unwrap();
     let mut tab = browser.open(&program.url("?tab=match#t=2.00"), 1200, 800).unwrap();
     tab.wait("window.onetwo?.store.scene && Math.abs(onetwo.store.scene.t - 2) < 0.1", 60).unwrap();
-    tab.wait("onetwo.store.happenings.some((h) => h.kind === 'goal')", 30).unwrap();
+    tab.wait("onetwo.store.matchEvents.some((h) => h.kind === 'goal')", 30).unwrap();
     // From 5 s before it, with whose it is.
-    let goal = "onetwo.store.happenings.find((h) => h.kind === 'goal')";
+    let goal = "onetwo.store.matchEvents.find((h) => h.kind === 'goal')";
     tab.key("g").unwrap();
     tab.wait(&format!("Math.abs(onetwo.store.scene.t - {goal}.t + 5) < 0.2"), 20).unwrap();
     let note = format!("document.getElementById('note').textContent.includes({goal}.words)");
