@@ -35,9 +35,11 @@ pub enum CycleEnd {
 }
 
 impl CycleEnd {
+    /// The label of a play whose robots have done their parts.
+    pub const FINISHED: &'static str = "finished";
     /// The labels of all ends that a play of a case can have.
     pub const DESCRIPTION: [&'static str; 14] = [
-        "finished",
+        Self::FINISHED,
         "ball-out-of-scope",
         "path-blocked",
         "robot-lost",
@@ -56,7 +58,7 @@ impl CycleEnd {
     /// Its label in reports.
     pub const fn label(self) -> &'static str {
         match self {
-            Self::Closed(Closure::Finished) => "finished",
+            Self::Closed(Closure::Finished) => Self::FINISHED,
             Self::Closed(Closure::NoCase) => "no-case",
             Self::Closed(Closure::Aborted { reason, .. }) => abort_label(reason),
             Self::Superseded => "superseded",

@@ -81,6 +81,17 @@ impl MatchLedger {
         &self.teams[team as usize]
     }
 
+    /// The plays of these hosts' teams by case, by the team's name.
+    pub fn tables(
+        &self,
+        hosts: &[&Host],
+        names: &CaseNames,
+        over: bool,
+    ) -> BTreeMap<&'static str, CaseTable> {
+        let teams = hosts.iter().map(|host| host.settings().us);
+        teams.map(|us| (us.label(), self.team(us).table(names, over))).collect()
+    }
+
     fn team_mut(&mut self, team: Colour) -> &mut TeamLedger {
         &mut self.teams[team as usize]
     }

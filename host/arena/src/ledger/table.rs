@@ -63,7 +63,7 @@ impl CaseTally {
     /// Adds a play.
     pub(super) fn count(&mut self, end: &str, (passes, arrived): (u32, u32), followed: Followed) {
         self.retrieved += 1;
-        self.finished += u32::from(end == CycleEnd::DESCRIPTION[0]);
+        self.finished += u32::from(end == CycleEnd::FINISHED);
         self.passes += passes;
         self.passes_arrived += arrived;
         add(&mut self.ends, end, 1);
@@ -162,11 +162,11 @@ impl CaseTable {
         }
     }
 
-    /// `41 cases retrieved, 17 finished, 12 decisions without a case`.
+    /// `decisions: 41 to play a case, 17 of them finished; 12 to play none`.
     pub fn summary(&self) -> String {
         let finished: u32 = self.cases.iter().map(|line| line.all.finished).sum();
         let Self { retrieved, no_case, .. } = self;
-        format!("{retrieved} cases retrieved, {finished} finished, {no_case} decisions without a case")
+        format!("decisions: {retrieved} to play a case, {finished} of them finished; {no_case} to play none")
     }
 
     /// As a column: for each case and number of opponents its counts,
@@ -225,7 +225,7 @@ impl CaseTable {
                     _ => {}
                 }
             }
-            tally.finished = tally.ends.get(CycleEnd::DESCRIPTION[0]).copied().unwrap_or(0);
+            tally.finished = tally.ends.get(CycleEnd::FINISHED).copied().unwrap_or(0);
             if case == NO_CASE {
                 table.no_case += tally.retrieved;
                 *table.no_case_by_opponents.entry(opponents).or_default() += tally.retrieved;

@@ -1,10 +1,8 @@
 //! `ledger_feed`: what became of every case, for the page: a table a second.
 
-use std::collections::BTreeMap;
-
 use arena::CaseNames;
 use arena::game::TICK_US;
-use arena::ledger::{CaseTable, MatchLedger};
+use arena::ledger::MatchLedger;
 use host::Host;
 use page::Page;
 
@@ -65,12 +63,7 @@ impl LedgerFeed {
     }
 
     fn tables(&self, ledger: &MatchLedger, hosts: &[&Host], over: bool) -> String {
-        let table = |host: &&Host| {
-            let us = host.settings().us;
-            (us.label(), ledger.team(us).table(&self.names, over))
-        };
-        let tables: BTreeMap<&str, CaseTable> = hosts.iter().map(table).collect();
         // Names and counts: nothing that JSON cannot hold.
-        serde_json::to_string(&tables).unwrap_or_default()
+        serde_json::to_string(&ledger.tables(hosts, &self.names, over)).unwrap_or_default()
     }
 }

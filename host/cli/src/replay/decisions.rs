@@ -117,11 +117,7 @@ impl Decisions {
 
     /// What became of every case, by team.
     pub(super) fn tables(&self, hosts: &[&Host]) -> BTreeMap<&'static str, CaseTable> {
-        let table = |host: &&Host| {
-            let us = host.settings().us;
-            (us.label(), self.ledger.team(us).table(&self.case_names, true))
-        };
-        hosts.iter().map(table).collect()
+        self.ledger.tables(hosts, &self.case_names, true)
     }
 }
 
