@@ -5,8 +5,7 @@
 //! where it believes the ball, which is not at its dribbler, and neither moves: the game stops for no
 //! progress. A robot that steps back shows the ball to the cameras, or leaves it to the other.
 
-use geometry::Attack;
-use geometry::Point;
+use geometry::{Attack, Point};
 use protocol::{Duration, Instant, RobotId};
 
 use super::super::order::{OrderReason, Role};
