@@ -183,8 +183,8 @@ fn goals_and_teams(tab: &mut Tab<'_>) {
     let part = |colour: &serde_json::Value, i: usize| colour[i].as_i64().unwrap();
     assert!(part(&blue, 2) > part(&blue, 0) + 20, "blue's goal: {blue}");
     assert!(part(&yellow, 0) > part(&yellow, 2) + 20, "yellow's goal: {yellow}");
-    // A corner of the square, which ends 0.62 of a radius off the middle along both axes: nearer to its edge a
-    // pixel may be blended. Of the robot that is farthest from the ball.
+    // A corner of the square, which ends 0.62 of a radius off the middle along both axes: nearer to its edge
+    // a pixel may be blended. Of the robot that is farthest from the ball.
     let corner = |team: &str| {
         pixel(&format!(
             "(({{ robots, ball, field }}) => {{ const far = (r) => Math.hypot(r.at[0] - ball.at[0], r.at[1] - ball.at[1]); const r = robots.filter((r) => r.team === '{team}').sort((a, b) => far(b) - far(a))[0]; const d = Math.max(field.robot_radius, 7 / onetwo.camera.scale) * 0.45; return [r.at[0] - d, r.at[1] - d]; }})(onetwo.store.scene)"
