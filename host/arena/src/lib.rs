@@ -39,7 +39,7 @@ pub mod skills;
 mod story;
 mod trial;
 
-pub use case_trial::{Attempt, AttemptError, CaseTrial, Opposition, Retrieved, Score, markdown};
+pub use case_trial::{Attempt, AttemptError, CaseTrial, Opposition, Retrieved, Score, Tape, markdown};
 pub use cycles::{CycleEnd, CycleEvent, CycleLog, CycleSeen};
 pub use names::{CaseNames, Cast, letter};
 pub use picture::picture;

@@ -14,7 +14,7 @@ use brain::BrainConfig;
 use brain::governor::{LimitReason, Ruling};
 use casebase::CaseBase;
 use hil_sim::{Backend, Bursts, LinkLoss, Mcu, McuError, NativeMcu, Reply, Stream};
-use host::strategy::{Flip, Task};
+use host::strategy::{Flip, Tactics, Task};
 use protocol::frame::Sender;
 use protocol::lockstep::TickIn;
 use protocol::{RobotId, Who};
@@ -135,6 +135,13 @@ fn held(ruling: Ruling) -> bool {
     matches!(ruling, Ruling::Braking(why) if [LimitReason::Silence, LimitReason::NoCommand, LimitReason::Lost].iter().any(|w| why.has(*w)))
 }
 
+/// Open play by thresholds and cases: the bounds on how long robots stand were measured with it.
+fn by_thresholds(seed: u64, seconds: f64) -> GameConfig {
+    let mut config = GameConfig::new(League::DivisionB, seed, seconds);
+    config.teams.iter_mut().for_each(|team| team.tactics = Tactics::ROUND_1);
+    config
+}
+
 /// Which link fails.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fails {
@@ -152,7 +159,7 @@ enum Fails {
 
 /// A match in which `fails` fails from 1 s on.
 fn play(seed: u64, seconds: f64, fails: Fails) -> Stood {
-    let mut config = GameConfig::new(League::DivisionB, seed, seconds);
+    let mut config = by_thresholds(seed, seconds);
     match fails {
         Fails::Bursts => config.air.bursts = Some(Bursts { share: 0.2, ticks: 9.5 }),
         Fails::Late => config.air.delay = [1, 12],
@@ -255,7 +262,7 @@ fn three_matches(fails: Fails) -> Stood {
 /// ticks of 10 ms. Returns for each of them how many robots have an order and how many of them brake because
 /// their host is silent.
 fn silence(seed: u64, ticks: u32, fail: impl Fn(&mut Game<'static>, u32)) -> Vec<(usize, usize)> {
-    let config = GameConfig::new(League::DivisionB, seed, 60.0);
+    let config = by_thresholds(seed, 60.0);
     let (mut backend, rulings) = watched();
     let mut game = Game::new(&config, &mut backend).unwrap();
     let (mut vision_gaps, mut radio_gaps) = (Gaps::new(seed, "vision gaps"), Gaps::new(seed, "radio gaps"));

@@ -12,6 +12,8 @@ use crate::radio::{Quality, Radio};
 use crate::referee::{self, Listener};
 use crate::strategy::Orders;
 use crate::strategy::counters::PlayCounters;
+use crate::strategy::pass::{Ordered, PassVerdict};
+use crate::strategy::rated::Rated;
 use crate::tracking::Tracker;
 use crate::world::World;
 
@@ -26,9 +28,19 @@ impl Host {
         self.books.counters()
     }
 
+    /// Our newest pass with its outcome.
+    pub fn judged_pass(&self) -> Option<&(Ordered, PassVerdict)> {
+        self.books.judged()
+    }
+
     /// The newest orders of all robots, with their reasons.
     pub fn orders(&self) -> &Orders {
         &self.orders
+    }
+
+    /// The robot that plays the ball by the rated list, and its actions, best first.
+    pub fn rated(&self) -> Option<(RobotId, &[Rated])> {
+        self.coach.rated()
     }
 
     /// The game by the referee's packets.

@@ -32,6 +32,7 @@ use super::opponents::{OpponentModel, Team};
 use super::order::{Order, OrderReason, Role, Task};
 use super::pass::{Kicks, PassConstants, Searches};
 use super::possession::Possession;
+use super::rated::RatedList;
 use super::support::{self, Target};
 use super::tactics::Tactics;
 use super::threat;
@@ -119,6 +120,8 @@ pub struct Coach {
     possession: Possession,
     /// The action chosen from the rated list.
     chosen: Option<Chosen>,
+    /// The list that it was chosen from.
+    list: RatedList,
     /// Whether the ball that is before our area is left to the keeper.
     keepers: Option<bool>,
     /// Where supporters stand while the ball is not in play.
@@ -168,6 +171,7 @@ impl Coach {
             at_ball: None,
             possession: Possession::Free,
             chosen: None,
+            list: RatedList::new(),
             keepers: None,
             settled: None,
             stood: heapless::Vec::new(),
@@ -239,12 +243,13 @@ impl Coach {
             );
             self.double_touch_blocked = if view.phase == Phase::Run && taken { self.first } else { None };
             self.pass = match self.aim {
-                Some((_, Target::Teammate { id, at, .. })) if view.phase == Phase::Run && taken => {
+                _ if view.phase != Phase::Run || !taken => None,
+                Some((_, Target::Teammate { id, at, .. })) => {
                     self.sent = self.sent(view, id, at);
                     let shot = self.ahead.map(|ahead| ahead.rating.shot).filter(|shot| shot.one_touch);
                     Some(Pass { receiver: id, at, then: shot.map(|shot| shot.aim), since: view.now })
                 }
-                _ => None,
+                _ => self.passing().map(|pass| self.leaves(view, pass)),
             };
             self.phase = Some(view.phase);
             self.aim = None;

@@ -5,7 +5,7 @@ use rules::{Colour, FieldSpec, Phase, Side};
 use serde::{Deserialize, Serialize};
 
 use super::order::{Order, Role};
-use super::pass::{Ordered, PassCounters, PassWatch};
+use super::pass::{Ordered, PassCounters, PassVerdict, PassWatch};
 use super::view::{Flip, View};
 use crate::world::World;
 use geometry::{Attack, Point};
@@ -25,8 +25,10 @@ pub struct Sent {
     pub flight: f32,
     /// Whether it is a chip.
     pub chip: bool,
-    /// P(receive) as rated at the order.
-    pub likely: f32,
+    /// P(c1) … P(c5) as rated last before the kick.
+    pub conditions: [f32; 5],
+    /// Distance of the opponent nearest to x0, m.
+    pub pressed: f32,
     /// It ends a plan of the Coerce and Attack Planner; whether its receiver coerced before.
     pub planned: Option<bool>,
 }
@@ -60,6 +62,7 @@ pub struct PlayCounters {
 pub struct Bookkeeper {
     counters: PlayCounters,
     watch: Option<(PassWatch, Option<bool>)>,
+    judged: Option<(Ordered, PassVerdict)>,
     roles: [Option<Role>; RobotId::COUNT],
     phase: Option<Phase<Side>>,
 }
@@ -68,6 +71,11 @@ impl Bookkeeper {
     /// The counts so far.
     pub fn counters(&self) -> &PlayCounters {
         &self.counters
+    }
+
+    /// The newest pass with its outcome.
+    pub fn judged(&self) -> Option<&(Ordered, PassVerdict)> {
+        self.judged.as_ref()
     }
 
     /// Takes the next snapshot: the orders in it, and the pass that started.
@@ -92,6 +100,7 @@ impl Bookkeeper {
         let Some((watch, planned)) = &mut self.watch else { return };
         let Some(verdict) = watch.observe(world, field) else { return };
         self.counters.passes.record(watch.ordered(), &verdict);
+        self.judged = Some((*watch.ordered(), verdict));
         if let Some(reused) = *planned {
             let (cap, good) = (&mut self.counters.cap, u32::from(verdict.is_success()));
             cap.attempts += 1;
@@ -113,6 +122,7 @@ fn ordered(sent: &Sent, at: Instant, us: Colour, flip: Flip) -> Ordered {
         to: flip.to_field(sent.to),
         flight: sent.flight,
         chip: sent.chip,
-        likely: sent.likely,
+        conditions: sent.conditions,
+        pressed: sent.pressed,
     }
 }

@@ -240,6 +240,9 @@ impl fmt::Display for OrderReason {
             }
             Self::BestTarget { room } => write!(f, "the best target for the ball, {room:.2} m of room"),
             Self::Threat(guards) => write!(f, "{guards}"),
+            Self::Chances { receive, goal } if receive >= 1.0 => {
+                write!(f, "the best shot: a goal with {goal:.2}")
+            }
             Self::Chances { receive, goal } => {
                 write!(f, "the best pass: received with {receive:.2}, then a goal with {goal:.2}")
             }

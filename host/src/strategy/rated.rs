@@ -4,6 +4,8 @@
 //! An action that succeeds leaves the ball with us at a place, or in the goal; one that fails leaves it with
 //! them where they stop it. [`value`] has the worth of both.
 
+use std::fmt;
+
 use geometry::{Attack, Point, Segment};
 use protocol::RobotId;
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
@@ -67,6 +69,39 @@ pub struct Rated {
     pub worth: f32,
 }
 
+impl Rated {
+    /// The same pass with kick and volley as they were `ordered`; its probabilities are of now.
+    pub fn kicked_as(self, ordered: &Action) -> Self {
+        let Some((_, before)) = ordered.pass() else { return self };
+        let Self { mut action, worth } = self;
+        if let Action::Pass { rating, .. } | Action::OfCase { rating, .. } = &mut action {
+            (rating.kick, rating.shot, rating.ball_time) = (before.kick, before.shot, before.ball_time);
+        }
+        Self { action, worth }
+    }
+}
+
+impl fmt::Display for Rated {
+    /// `pass to 4: +0.121 (received with 0.83, then a goal with 0.14)`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.action {
+            Action::Shot { .. } => f.write_str("shot")?,
+            Action::Pass { receiver, .. } => write!(f, "pass to {receiver}")?,
+            Action::OfCase { pass, .. } => write!(f, "pass of case {} to {}", pass.case, pass.receiver.0)?,
+            Action::Case(cast) => write!(f, "case {}", cast.case)?,
+            Action::PlayOn => f.write_str("keep the ball")?,
+        }
+        write!(f, ": {:+.3}", self.worth)?;
+        match self.action {
+            Action::Shot { goal, .. } => write!(f, " (a goal with {goal:.2})"),
+            Action::Pass { rating, .. } | Action::OfCase { rating, .. } => {
+                write!(f, " (received with {:.2}, then a goal with {:.2})", rating.receive(), rating.goal())
+            }
+            Action::Case(_) | Action::PlayOn => Ok(()),
+        }
+    }
+}
+
 /// What cases propose to the robot that plays the ball.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct OfCases {
@@ -79,7 +114,7 @@ pub struct OfCases {
 /// All actions, best first.
 pub type RatedList = heapless::Vec<Rated, { ROBOTS_MAX + 4 }>;
 
-/// Rates all actions of `who` for a ball at `from`; a teammate of which `receives` is not true gets no pass;
+/// Rates all actions of `who` for a ball at `from`; a teammate of which `receives` is not true gets no pass.
 pub fn rate(
     view: &View,
     kicks: &Kicks,
@@ -192,6 +227,7 @@ fn pass_worth(view: &View, from: Point<Attack>, rating: &Rating) -> f32 {
     let half = view.field.length * 0.5;
     let along = (rating.at - from).unit().unwrap_or_default();
     let lost = rating.interceptor.map_or(rating.at, |found| from + along * found.along);
+    // P(we have it) is true of passes that were chosen; rating all passes by it cost a fifth of the goals.
     let (receive, goal) = (rating.receive(), rating.goal());
     let had = goal.max(value::of_ours(half, rating.at));
     receive * had + (1.0 - receive) * value::of_theirs(half, lost)
@@ -206,7 +242,7 @@ fn play_on(view: &View, from: Point<Attack>) -> f32 {
 
 /// Share of the balls at `from` that are lost beyond the mean of all moments with the ball.
 fn lost(view: &View, from: Point<Attack>) -> f32 {
-    let near = view.nearest_theirs(from).map_or(f32::INFINITY, |(_, distance)| distance);
+    let near = view.theirs_within(from);
     if near < CONTESTED {
         LOST_CONTESTED
     } else if near < PRESSED {

@@ -113,11 +113,11 @@ impl Tactics {
 
 impl Default for Tactics {
     /// The parts that win matches. `docs/matches.md` (`cargo xtask matches`) has the value of each part
-    /// against our team without it: threats and their second level gain goals, attack gains shots and ground;
-    /// the effects of pass-ahead, coerce and the bridge are not significant. The rated list wins more goals,
-    /// and leaves the ball in play for less of the time and to cases hardly ever (docs/strategy.md).
+    /// against our team without it: threats and their second level gain goals; the effects of pass-ahead and
+    /// coerce are not significant. The rated list with cases in it wins more goals than [`Self::ROUND_1`]
+    /// (docs/strategy.md).
     fn default() -> Self {
-        Self::ROUND_1
+        Self { bridge: true, rated: true, ..Self::ROUND_1 }
     }
 }
 

@@ -325,6 +325,11 @@ impl View {
         nearest(self.theirs.iter(), point)
     }
 
+    /// Distance of the nearest opponent from a place, m; infinite without opponents.
+    pub fn theirs_within(&self, point: Point<Attack>) -> f32 {
+        self.nearest_theirs(point).map_or(f32::INFINITY, |(_, distance)| distance)
+    }
+
     /// The nearest place at least `inside` m within the lines.
     pub fn clamp(&self, p: Point<Attack>, inside: f32) -> Point<Attack> {
         let (x, y) = (self.field.length * 0.5 - inside, self.field.width * 0.5 - inside);

@@ -17,17 +17,18 @@ use rules::League;
 
 use super::course::{Course, Moment};
 use super::situation::{self, Bodies};
-use super::{Attempt, CaseTrial, Opposition};
+use super::{Attempt, CaseTrial, Opposition, Tape};
+use crate::recording::Recording;
 use crate::story::TextLog;
 use crate::trial::{Game, TrialConfig, Watcher};
 
-/// Plays an attempt; its events go to `story`.
+/// Plays an attempt, and keeps it on `tape`.
 pub(super) fn attempt<'a>(
     case_trial: &CaseTrial<'a>,
     case: &Case<'a>,
     opposition: Opposition,
     seed: u64,
-    story: Option<&mut Vec<String>>,
+    tape: Option<&mut Tape>,
 ) -> Result<Attempt, SimulationError> {
     let config = TrialConfig {
         layout: Some(layout(case, opposition, seed)),
@@ -38,10 +39,10 @@ pub(super) fn attempt<'a>(
         ..TrialConfig::new(Scenario::Random, Configuration::DefenderGoalie, Approach::Cases, seed)
     }
     .with_library(case_trial.base, case_trial.names.clone());
-    let mut log = TextLog::default();
+    let (mut log, mut recording) = (TextLog::default(), Recording::default());
     let mut watchers: Vec<&mut dyn Watcher> = Vec::new();
-    if story.is_some() {
-        watchers.push(&mut log);
+    if tape.is_some() {
+        watchers.extend([&mut log as &mut dyn Watcher, &mut recording]);
     }
     let mut game = Game::new(&config, Box::new(NativeBackend::new(case_trial.base)))?;
     let start = game.moment().world.ball.position;
@@ -54,8 +55,8 @@ pub(super) fn attempt<'a>(
     let last = TrialVerdict { outcome: TrialOutcome::Timeout, time: game.moment().tick.time };
     let verdict = game.moment().referee.verdict();
     game.end(verdict.unwrap_or(last), &mut watchers);
-    if let Some(story) = story {
-        *story = log.take_lines();
+    if let Some(tape) = tape {
+        *tape = Tape { story: log.take_lines(), samples: recording.samples };
     }
     Ok(attempt)
 }

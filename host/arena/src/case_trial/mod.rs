@@ -26,6 +26,7 @@ use rules::League;
 use crate::cycles::CycleEnd;
 use crate::game::GameError;
 use crate::names::CaseNames;
+use crate::recording::RecordedSample;
 
 hil_sim::labels! {
     /// What the opponents of a case do.
@@ -75,6 +76,15 @@ impl Attempt {
     }
 }
 
+/// An attempt as it went.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tape {
+    /// Its events, a line each.
+    pub story: Vec<String>,
+    /// Ball and robots, oldest first: those of the case in its order, then the opponents.
+    pub samples: Vec<RecordedSample>,
+}
+
 /// Settings of a case self-test.
 #[derive(Clone, Debug)]
 pub struct CaseTrial<'a> {
@@ -114,13 +124,13 @@ impl<'a> CaseTrial<'a> {
         (0..self.trials).into_par_iter().map(attempt).collect()
     }
 
-    /// Plays attempt `number` of a case against `opposition`; its events go to `story`, a line each.
+    /// Plays attempt `number` of a case against `opposition`, and keeps it on `tape`.
     pub fn attempt(
         &self,
         case: &Case<'a>,
         opposition: Opposition,
         number: u32,
-        story: Option<&mut Vec<String>>,
+        tape: Option<&mut Tape>,
     ) -> Result<Attempt, AttemptError> {
         let mut hash = Fnv::default();
         hash.add(self.names.of(case.id()).as_bytes());
@@ -128,9 +138,9 @@ impl<'a> CaseTrial<'a> {
         hash.add(&number.to_le_bytes());
         let seed = hash.value();
         if self.league == League::FourLegged {
-            four_legged::attempt(self, case, opposition, seed, story).map_err(AttemptError::FourLegged)
+            four_legged::attempt(self, case, opposition, seed, tape).map_err(AttemptError::FourLegged)
         } else {
-            small_size::attempt(self, case, opposition, seed, story).map_err(AttemptError::SmallSize)
+            small_size::attempt(self, case, opposition, seed, tape).map_err(AttemptError::SmallSize)
         }
     }
 }

@@ -20,21 +20,22 @@ use rules::{Colour, FieldSpec};
 
 use super::course::{Course, Moment};
 use super::situation::{self, Bodies, Places};
-use super::{Attempt, CaseTrial, Opposition};
+use super::{Attempt, CaseTrial, Opposition, Tape};
 use crate::cycles::{CycleEvent, CycleLog};
 use crate::game::{Game, GameConfig, GameError, ManualReferee, NoWatcher, RefereeOrder, numbers};
+use crate::recording::RecordedSample;
 
 /// The team of the case.
 const US: Colour = Colour::Yellow;
 const THEM: Colour = Colour::Blue;
 
-/// Plays an attempt; its events go to `story`.
+/// Plays an attempt, and keeps it on `tape`.
 pub(super) fn attempt<'a>(
     case_trial: &CaseTrial<'a>,
     case: &Case<'a>,
     opposition: Opposition,
     seed: u64,
-    mut story: Option<&mut Vec<String>>,
+    mut tape: Option<&mut Tape>,
 ) -> Result<Attempt, GameError> {
     let field = case_trial.league.field();
     let bodies = Bodies { field, clear_of_ball: CLEAR_OF_BALL, apart: APART };
@@ -66,12 +67,15 @@ pub(super) fn attempt<'a>(
             let alone = matches!(state, Some(state) if is_no_case(&state.decision)) && time < ACQUAINTED;
             let Some(state) = state.filter(|_| !alone) else { continue };
             let event = log.receive(time, state);
-            if let Some(lines) = story.as_deref_mut() {
-                lines.extend(sentence(case_trial, &log, event, time));
+            if let Some(tape) = tape.as_deref_mut() {
+                tape.story.extend(sentence(case_trial, &log, event, time));
             }
         }
-        if let Some(lines) = story.as_deref_mut() {
-            lines.extend(game.events().iter().filter_map(|event| of_the_ball(event, time)));
+        if let Some(tape) = tape.as_deref_mut() {
+            tape.story.extend(game.events().iter().filter_map(|event| of_the_ball(event, time)));
+            if tape.samples.last().is_none_or(|last| time - last.time >= SAMPLE_EVERY) {
+                tape.samples.push(sample(&game, &places, time));
+            }
         }
         verdict = verdict.or_else(|| Some((judge(&game, &field)?, time)));
         let taken = |event: &PhysicsEvent| matches!(event, PhysicsEvent::Touched { .. });
@@ -89,6 +93,15 @@ pub(super) fn attempt<'a>(
         referee.speak(&mut game);
         game.advance(&mut NoWatcher)?;
     }
+}
+
+/// Ball and robots as they are.
+fn sample(game: &Game<'_>, places: &Places, time: f32) -> RecordedSample {
+    let of = |colour, count: usize| (0..count as u8).map(move |number| Who { colour, id: id(number) });
+    let robots = of(US, places.attackers.len()).chain(of(THEM, places.opponents.len()));
+    let pose = |who| game.world().robot(who).map_or_else(Pose::default, |robot| robot.pose);
+    let ball = game.world().ball.position;
+    RecordedSample { time, ball, holder: None, robots: robots.map(pose).collect() }
 }
 
 fn config(case_trial: &CaseTrial<'_>, places: &Places, opposition: Opposition, seed: u64) -> GameConfig {
@@ -223,6 +236,8 @@ fn of_the_ball(event: &PhysicsEvent, time: f32) -> Option<String> {
 const WARM_UP_TICKS: u32 = 80;
 /// Time after which every robot has received all others' beacons under the new order, s: three periods.
 const ACQUAINTED: f32 = 0.5;
+/// An attempt is kept at this interval, s: smooth to look at.
+const SAMPLE_EVERY: f32 = 0.0395;
 /// Least distance of a robot from the ball at the start, m: at 0.112 they would touch.
 const CLEAR_OF_BALL: f32 = 0.15;
 /// Least distance between robots at the start, m: two radii and a gap.

@@ -75,6 +75,19 @@ fn an_attempt_is_its_seed_and_its_number_whoever_else_plays() {
 }
 
 #[test]
+fn an_attempt_that_is_kept_is_the_same_and_its_tape_shows_the_ball_on_its_way() {
+    let case_trial = case_trial(6);
+    let case = case_trial.case(number(&case_trial, "front/shot")).unwrap();
+    let mut tape = Tape::default();
+    let kept = case_trial.attempt(&case, Opposition::Playing, 5, Some(&mut tape)).unwrap();
+    assert_eq!(kept, case_trial.attempt(&case, Opposition::Playing, 5, None).unwrap());
+    let [first, last] = [tape.samples.first().unwrap(), tape.samples.last().unwrap()];
+    assert!((last.ball.x() - first.ball.x() - kept.progress).abs() < 0.05, "{kept:?}");
+    assert!(tape.samples.is_sorted_by(|a, b| a.time < b.time));
+    assert_eq!(first.robots.len(), case.teammates() + case.opponents().count());
+}
+
+#[test]
 fn a_free_shot_is_retrieved_played_and_brings_the_ball_forward() {
     let case_trial = case_trial(20);
     let case = case_trial.case(number(&case_trial, "front/shot")).unwrap();

@@ -1,5 +1,5 @@
-//! `calibration`: calibration plot of P(receive). One figure: for each tenth of P(receive), how many of the
-//! passes their receiver had, with Wilson's 95 % interval; on the diagonal both agree (Biswas et al. 2014,
+//! `calibration`: calibration plot of P(we have it). One figure: for each tenth of it, how many of the
+//! passes the team had, with Wilson's 95 % interval; on the diagonal both agree (Biswas et al. 2014,
 //! equation 5). px, shares from 0 to 1.
 
 use drawing::{Anchor, Font, Svg, Theme};
@@ -34,10 +34,10 @@ pub fn calibration_plot(passes: &Passes) -> String {
         let middle = at((tenth.tenth as f64 + 0.5) / TENTHS);
         svg.text([middle, SIDE + 8.0], &tenth.seen.of.to_string(), Anchor::Middle, font(colors.ink));
     }
-    svg.text([SIDE / 2.0, -42.0], "P(receive) as predicted", Anchor::Middle, font(colors.ink));
+    svg.text([SIDE / 2.0, -42.0], "P(we have it) as predicted", Anchor::Middle, font(colors.ink));
     let bold = Font { bold: true, ..font(colors.ink) };
-    svg.text([0.0, SIDE + 30.0], "share received; above it, the number of passes", Anchor::Start, bold);
-    let title = "P(receive) as predicted against the share of passes that arrived";
+    svg.text([0.0, SIDE + 30.0], "share that we had; above it, the number of passes", Anchor::Start, bold);
+    let title = "P(we have it) as predicted against the share of passes after which we had the ball";
     svg.finish([-ROOM, -56.0], [SIDE + 20.0, SIDE + 68.0], 1.0, colors.paper, title)
 }
 

@@ -277,7 +277,7 @@ fn planned(text: &mut String, outcomes: &[Outcome]) {
 }
 
 fn calibration(text: &mut String, ours: &Passes) {
-    *text += "\n| P(receive) | passes | predicted | received | share |\n|---|---|---|---|---|\n";
+    *text += "\n| P(we have it) | passes | predicted | had | share |\n|---|---|---|---|---|\n";
     for tenth in &ours.calibration {
         let from = tenth.tenth as f64 / 10.0;
         print!(

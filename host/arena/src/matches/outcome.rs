@@ -81,7 +81,7 @@ pub struct Outcome {
     pub ball_in_play: Option<Estimate>,
     /// How possessions ended, kicks, shots and left balls, all matches, own and theirs.
     pub attack: [BTreeMap<String, u32>; 2],
-    /// Passes of restarts, planned free kicks and P(receive) against observed shares, own and theirs.
+    /// Passes of restarts, planned free kicks and P(we have it) against observed shares, own and theirs.
     pub restarts: [Passes; 2],
     /// Offences by kind, all matches, own and theirs.
     pub fouls: [BTreeMap<String, u32>; 2],

@@ -37,8 +37,8 @@ pub(super) fn fates_column(passes: &PassCounters) -> String {
     text
 }
 
-/// P(receive) by tenths: `9:12:11.2:10` are 12 passes of the tenth from 0.9, with 11.2 expected to arrive and
-/// 10 that did.
+/// P(we have it) by tenths: `9:12:11.2:10` are 12 passes of the tenth from 0.9; 11.2 were expected to be
+/// had, and 10 were.
 pub(super) fn calibration_column(passes: &PassCounters) -> String {
     let bins = passes.calibration.iter().enumerate().filter(|(_, bin)| bin.passes > 0);
     let texts: Vec<_> = bins
@@ -125,12 +125,12 @@ pub struct Kicked {
     pub fates: Fates,
 }
 
-/// Passes whose P(receive) lay in one tenth.
+/// Passes whose P(we have it) lay in one tenth.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Tenth {
     /// 0 for 0 to 0.1, 1 for 0.1 to 0.2, …
     pub tenth: usize,
-    /// Mean of their predicted P(receive).
+    /// Mean of their predicted P(we have it).
     pub predicted: f64,
     /// Those that their receiver received.
     pub seen: Share,
@@ -145,7 +145,7 @@ pub struct Passes {
     pub cap: CapCounters,
     /// Those of its passes that arrived.
     pub cap_arrived: Share,
-    /// P(receive) against observed shares; tenths without passes are left out.
+    /// P(we have it) against observed shares; tenths without passes are left out.
     pub calibration: Vec<Tenth>,
     /// The mean of |predicted − seen| over the tenths, by passes; `None` without passes.
     pub calibration_error: Option<f64>,
@@ -192,7 +192,7 @@ pub(super) fn add(sum: &mut PlayCounters, more: &PlayCounters) {
 mod tests {
     use super::*;
 
-    /// 3 + 1 flat passes, one chip; P(receive) 0.95 thrice and 0.25 once.
+    /// 3 + 1 flat passes, one chip; P(we have it) 0.95 thrice and 0.25 once.
     fn passes() -> PassCounters {
         let mut passes = PassCounters::default();
         (passes.flat.received, passes.flat.late, passes.flat.no_kick, passes.chip.out) = (2, 1, 1, 1);

@@ -63,9 +63,9 @@ pub struct MatchRow {
     pub restart_passes: String,
     /// Passes of the opponents' restarts, in the same form.
     pub restart_passes_against: String,
-    /// Their P(receive) by tenths: tenth, passes, sum of P(receive), received, as in `9:12:11.2:10`.
+    /// Their P(we have it) by tenths: tenth, passes, sum of P(we have it), received, as in `9:12:11.2:10`.
     pub calibration: String,
-    /// P(receive) of the opponents' passes, in the same form.
+    /// P(we have it) of the opponents' passes, in the same form.
     pub calibration_against: String,
     /// Passes of the Coerce and Attack Planner that left.
     pub cap_attempts: u32,

@@ -112,7 +112,8 @@ impl Coach {
             to,
             flight: rating.ball_time,
             chip: self.ahead.is_some() && rating.kick.is_chip(),
-            likely: rating.receive(),
+            conditions: rating.receive_factors,
+            pressed: view.theirs_within(from),
             planned: self.ahead.and_then(|ahead| ahead.planned),
         })
     }

@@ -31,6 +31,9 @@ pub(super) struct Intent {
     action: Action,
 }
 
+/// A pass that is ordered: passer, place of the ball, receiver, rating.
+type Passing = (RobotId, Point<Attack>, RobotId, Rating);
+
 impl Coach {
     /// The task of `who`, first at the ball, with an order for the receiver too; `None` where it plays a
     /// case.
@@ -95,8 +98,8 @@ impl Coach {
         Some(Task::Pass { at: rating.at, receiver, kick: rating.kick.order(), ready })
     }
 
-    /// The pass that is chosen: passer, place of the ball, receiver, rating.
-    fn passing(&self) -> Option<(RobotId, Point<Attack>, RobotId, Rating)> {
+    /// The pass that is chosen.
+    pub(super) fn passing(&self) -> Option<Passing> {
         if let Some(Chosen { who, from, action, .. }) = self.chosen {
             let (receiver, rating) = action.pass()?;
             return Some((who, from, receiver, rating));
@@ -108,10 +111,8 @@ impl Coach {
 
     /// Detects that the pass of open play leaves: from then on its receiver is ordered to receive it.
     pub(super) fn see_pass_leave(&mut self, view: &View) {
-        let (Some((who, from, receiver, rating)), Some(ball), None) = (self.passing(), view.ball, self.pass)
-        else {
-            return;
-        };
+        let (Some(pass), Some(ball), None) = (self.passing(), view.ball, self.pass) else { return };
+        let (who, from, _, rating) = pass;
         let Some(passer) = view.our(who) else { return };
         if ball.position.distance(passer.position) < LEFT {
             self.at_ball = Some((who, view.now));
@@ -124,19 +125,25 @@ impl Coach {
         if !had || speed < LEFT_WITH * rating.kick.speed() || along < speed * LEFT_ALONG {
             return;
         }
-        let then = rating.shot.one_touch.then_some(rating.shot.aim);
-        self.pass = Some(Pass { receiver, at: rating.at, then, since: view.now });
+        self.pass = Some(self.leaves(view, pass));
+        (self.intent, self.chosen) = (None, None);
+    }
+
+    /// The pass that has just left; it is reported too.
+    pub(super) fn leaves(&mut self, view: &View, (passer, from, receiver, rating): Passing) -> Pass {
         self.sent = Some(Sent {
-            passer: who,
+            passer,
             receiver,
             from,
             to: rating.at,
             flight: rating.ball_time,
             chip: rating.kick.is_chip(),
-            likely: rating.receive(),
+            conditions: rating.receive_factors,
+            pressed: view.theirs_within(from),
             planned: None,
         });
-        (self.intent, self.chosen) = (None, None);
+        let then = rating.shot.one_touch.then_some(rating.shot.aim);
+        Pass { receiver, at: rating.at, then, since: view.now }
     }
 
     /// The earlier choice where it is still valid, so that a robot that moves around the ball does not turn
@@ -263,7 +270,7 @@ mod tests {
         assert!(matches!(orders[4].task, Task::Receive { at: there, .. } if there == at), "{:?}", orders[4]);
         let sent = coach.take_sent().unwrap();
         assert_eq!((sent.passer.number(), sent.receiver.number(), sent.to, sent.planned), (3, 4, at, None));
-        assert!(sent.likely > 0.5);
+        assert!(sent.conditions.iter().product::<f32>() > 0.5);
         coach.decide(&view);
         assert_eq!(coach.take_sent(), None);
     }

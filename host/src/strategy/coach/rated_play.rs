@@ -25,6 +25,11 @@ pub(super) struct Chosen {
 }
 
 impl Coach {
+    /// The robot whose actions were rated, and all of them, best first; none while no list is played by.
+    pub fn rated(&self) -> Option<(RobotId, &[Rated])> {
+        self.chosen.map(|chosen| (chosen.who, self.list.as_slice()))
+    }
+
     /// Open play: the keeper, the robot that plays the ball, its receiver, two defenders, supporters.
     pub(super) fn rated_play(&mut self, plan: &mut Plan<'_>) {
         let view = plan.view;
@@ -112,12 +117,24 @@ impl Coach {
         arrival: &Arrival,
     ) -> Option<(Task, OrderReason)> {
         let from = if self.possession.owner() == Some(who) { ball.position } else { arrival.ball };
-        let action = self.choose(plan, who, from);
+        let action = self.choose(plan, who, from, true);
         self.order_action(plan, &action)
     }
 
-    /// The earlier choice, unless another action is clearly better now.
-    fn choose(&mut self, plan: &Plan<'_>, who: RobotId, from: Point<Attack>) -> Action {
+    /// The kicker's task at our kick-off, by the same list; `None` where it has neither pass nor shot.
+    pub(super) fn rated_kickoff(
+        &mut self,
+        plan: &mut Plan<'_>,
+        who: RobotId,
+        ball: &ViewBall,
+    ) -> Option<(Task, OrderReason)> {
+        let action = self.choose(plan, who, ball.position, false);
+        self.order_action(plan, &action)
+    }
+
+    /// The earlier choice, unless another action is clearly better now; whether it `may_play_on`: a ball that
+    /// is not in play is passed or shot.
+    fn choose(&mut self, plan: &Plan<'_>, who: RobotId, from: Point<Attack>, may_play_on: bool) -> Action {
         let view = plan.view;
         let kept = self.chosen.filter(|chosen| chosen.who == who);
         if let Some(chosen) = kept
@@ -133,17 +150,18 @@ impl Coach {
         let again = kept.and_then(|chosen| {
             let again = rated::rate_again(view, &self.kicks, who, there.unwrap_or(from), &chosen.action)?;
             // Kick and volley stay as ordered while the ball is where it was.
-            Some(if there.is_some() { Rated { action: chosen.action, ..again } } else { again })
+            Some(if there.is_some() { again.kicked_as(&chosen.action) } else { again })
         });
         let defenders = self.defenders;
         let receives = |id| !defenders.contains(&Some(id));
         let pass = view.proposal.filter(|pass| self.tactics.bridge && pass.passer.0 == who);
         let may = |id| id == who || plan.free.contains(&id) && id != view.keeper && receives(id);
-        let retrieved = (self.tactics.bridge && !view.in_play.has(who))
+        let retrieved = (self.tactics.bridge && may_play_on && !view.in_play.has(who))
             .then(|| retrieved::retrieve(view, &self.cases, who, from, may))
             .flatten();
         let of_cases = OfCases { pass, retrieved };
-        let list = rated::rate(view, &self.kicks, &mut self.searches, who, from, receives, of_cases);
+        let mut list = rated::rate(view, &self.kicks, &mut self.searches, who, from, receives, of_cases);
+        list.retain(|rated| may_play_on || rated.action != Action::PlayOn);
         let best = list.first().map_or((Action::PlayOn, 0.0), |best| (best.action, best.worth));
         // Among equals a case: its robots know their parts before the ball leaves.
         let case = list.iter().find(|rated| matches!(rated.action, Action::Case(_)));
@@ -154,6 +172,7 @@ impl Coach {
             _ => (best.0, from),
         };
         self.chosen = Some(Chosen { who, rated: view.now, from, action });
+        self.list = list;
         action
     }
 }

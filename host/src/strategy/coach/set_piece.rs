@@ -120,6 +120,12 @@ impl Coach {
         if let Some((task, why)) = self.coerce(plan, id, &ball) {
             return plan.order(id, Role::Kicker, task, why);
         }
+        if self.tactics.rated
+            && matches!(view.phase, Phase::Kickoff(_))
+            && let Some((task, why)) = self.rated_kickoff(plan, id, &ball)
+        {
+            return plan.order(id, Role::Kicker, task, why);
+        }
         // At a kick-off all have stood in their places since it was prepared.
         let free_kick = matches!(view.phase, Phase::FreeKick(_));
         let wait = if free_kick { TEAMMATES_GET_READY } else { Duration(0) };

@@ -18,12 +18,9 @@ fn coach() -> Coach {
     Coach::new(Team::Ours, Tactics::default(), League::DivisionB)
 }
 
-/// The default with the rated list, cases in it.
-const RATED: Tactics =
-    Tactics { threats: true, second_level: true, attack: true, bridge: true, rated: true, ..Tactics::NONE };
-
-fn by_the_list() -> Coach {
-    Coach::new(Team::Ours, RATED, League::DivisionB)
+/// Open play by thresholds and cases.
+fn by_thresholds() -> Coach {
+    Coach::new(Team::Ours, Tactics::ROUND_1, League::DivisionB)
 }
 
 fn phases() -> Vec<Phase<Side>> {
@@ -77,7 +74,7 @@ fn in_halt_everyone_stands() {
 
 #[test]
 fn in_open_play_there_are_a_keeper_two_defenders_and_three_who_play_cases() {
-    let orders = coach().decide(&view((0.0, 0.0), &OURS, &THEIRS));
+    let orders = by_thresholds().decide(&view((0.0, 0.0), &OURS, &THEIRS));
     let of = |task: fn(&Order) -> bool| orders.iter().filter(|order| task(order)).count();
     assert_eq!(of(|order| order.role == Role::Keeper), 1);
     assert_eq!(of(|order| matches!(order.role, Role::Defender(_))), 2);
@@ -86,7 +83,7 @@ fn in_open_play_there_are_a_keeper_two_defenders_and_three_who_play_cases() {
 
 #[test]
 fn by_the_rated_list_one_plays_the_ball_and_two_stand_for_its_passes() {
-    let orders = by_the_list().decide(&view((0.0, 0.0), &OURS, &THEIRS));
+    let orders = coach().decide(&view((0.0, 0.0), &OURS, &THEIRS));
     let of = |which: fn(&Order) -> bool| orders.iter().filter(|order| which(order)).count();
     assert_eq!(of(|order| order.role == Role::Keeper), 1);
     assert_eq!(of(|order| matches!(order.role, Role::Defender(_))), 2);
@@ -95,8 +92,24 @@ fn by_the_rated_list_one_plays_the_ball_and_two_stand_for_its_passes() {
 }
 
 #[test]
+fn the_list_that_an_order_is_from_is_kept_with_what_was_rejected() {
+    let mut coach = coach();
+    let seen = view((0.0, 0.0), &OURS, &THEIRS);
+    assert!(coach.rated().is_none());
+    let orders = coach.decide(&seen);
+    let (who, list) = coach.rated().unwrap();
+    let player = orders.iter().find(|order| order.role == Role::Player).unwrap();
+    assert_eq!(who, player.robot);
+    assert!(list.len() > 2 && list.windows(2).all(|pair| pair[0].worth >= pair[1].worth), "{list:?}");
+    let best = list[0].to_string();
+    assert!(best.contains(&format!("{:+.3}", list[0].worth)), "{best}");
+    coach.decide(&View { phase: Phase::Stop, ..seen });
+    assert!(coach.rated().is_none(), "no list is played by while the ball is not in play");
+}
+
+#[test]
 fn by_the_rated_list_a_robot_with_the_ball_keeps_it_though_another_is_nearer_to_its_rest() {
-    let mut coach = by_the_list();
+    let mut coach = coach();
     // Our 3 has it before its front plate; our 4 is behind it.
     let mut view = view((-0.4, 0.0), &OURS, &THEIRS);
     view.ours[4].position = Point::new(-0.7, 0.15);
@@ -111,7 +124,7 @@ fn by_the_rated_list_a_robot_with_the_ball_keeps_it_though_another_is_nearer_to_
 
 #[test]
 fn in_the_other_half_one_defender_joins_the_attack_until_the_ball_is_theirs() {
-    let mut coach = by_the_list();
+    let mut coach = coach();
     let mut ours = OURS;
     ours[3] = (1.9, 0.0);
     let defenders = |orders: &Orders| orders.iter().filter(|o| matches!(o.role, Role::Defender(_))).count();
@@ -138,16 +151,16 @@ fn among_equals_a_case_is_proposed_to_the_robots_that_play_it() {
         view.ours.iter().for_each(|robot| view.knows_cases.insert(robot.id));
         view
     };
-    let of_a_case = |view: &View| matches!(by_the_list().decide(view)[3].task, Task::Case(_));
+    let of_a_case = |view: &View| matches!(coach().decide(view)[3].task, Task::Case(_));
     let mut view = (0..63).map(before_the_goal).find(of_a_case).unwrap();
-    let orders = by_the_list().decide(&view);
+    let orders = coach().decide(&view);
     let Task::Case(cast) = orders[3].task else { panic!("{:?}", orders[3]) };
     assert!(cast.has(orders[3].robot));
     assert!(matches!(orders[3].why, OrderReason::PlaysCase { case } if case == cast.case));
     let Directive::Gameplay { hint: Some(hint) } = orders[3].task.directive(view.flip) else { panic!() };
     assert_eq!((hint.case, hint.robots.first()), (cast.case, Some(&orders[3].robot)));
     view.knows_cases = RobotSet::default();
-    assert!(matches!(by_the_list().decide(&view)[3].task, Task::Kick { .. }));
+    assert!(matches!(coach().decide(&view)[3].task, Task::Kick { .. }));
 }
 
 #[test]
@@ -295,8 +308,8 @@ fn a_pass_ahead_leaves_when_its_receiver_will_be_there_and_whoever_receives_it_i
 
 #[test]
 fn a_shot_at_our_goal_makes_no_one_leave_its_place_and_the_keeper_stays_one() {
-    for coach in [coach(), by_the_list()] {
-        shot_at_our_goal(coach);
+    for coach in [by_thresholds, coach] {
+        shot_at_our_goal(coach());
     }
 }
 
@@ -346,8 +359,8 @@ fn a_ball_that_lies_before_our_area_is_the_keepers_unless_a_field_player_is_ther
     let mut alone = view((-3.3, 0.2), &OURS, &THEIRS);
     alone.keeper = RobotId::new(9).unwrap();
     let tries = |order: &Order| order.role == Role::Player && order.task != Task::Stand;
-    assert!(by_the_list().decide(&alone).iter().any(tries));
-    assert!(coach().decide(&alone).iter().any(|order| order.task == Task::Gameplay));
+    assert!(coach().decide(&alone).iter().any(tries));
+    assert!(by_thresholds().decide(&alone).iter().any(|order| order.task == Task::Gameplay));
 }
 
 /// Our 3 stands behind the ball at (2, 0), our 4 and 5 at these places; with these opponents.
@@ -366,7 +379,7 @@ pub(super) fn attack(
 #[test]
 fn in_open_play_an_open_goal_is_shot_at_and_a_closed_one_passed_around_and_far_from_both_a_case_is_played() {
     let far = [(-2.0, 2.0), (-2.0, -2.0)];
-    let (_, _, shoots) = attack(far, &[(4.4, 0.3)], Tactics::default());
+    let (_, _, shoots) = attack(far, &[(4.4, 0.3)], Tactics::ROUND_1);
     assert!(
         matches!(shoots[3].task, Task::Kick { at, kick } if at.y() < 0.1 && kick == support::SHOT),
         "{:?}",
@@ -379,15 +392,15 @@ fn in_open_play_an_open_goal_is_shot_at_and_a_closed_one_passed_around_and_far_f
     );
     // A wall before the ball, and a teammate beside it.
     let wall = [(4.4, 0.0), (2.4, 0.0), (2.45, 0.2), (2.45, -0.2)];
-    let (_, _, passes) = attack([(3.0, 1.8), (-2.0, -2.0)], &wall, Tactics::default());
+    let (_, _, passes) = attack([(3.0, 1.8), (-2.0, -2.0)], &wall, Tactics::ROUND_1);
     let Task::Pass { at, receiver, .. } = passes[3].task else { panic!("{:?}", passes[3]) };
     assert_eq!(receiver.number(), 4);
     assert!(matches!(passes[4].task, Task::Receive { at: there, .. } if there == at), "{:?}", passes[4]);
     // All our robots are marked, and the goal closed.
     let closed = [wall[0], wall[1], wall[2], wall[3], (-1.8, 2.0), (-1.8, -2.0)];
-    let (_, _, case) = attack(far, &closed, Tactics::default());
+    let (_, _, case) = attack(far, &closed, Tactics::ROUND_1);
     assert_eq!(case[3].task, Task::Gameplay);
-    let without = Tactics { attack: false, ..Tactics::default() };
+    let without = Tactics { attack: false, ..Tactics::ROUND_1 };
     assert_eq!(attack(far, &[(4.4, 0.3)], without).2[3].task, Task::Gameplay);
 }
 
@@ -402,7 +415,7 @@ fn where_a_case_is_played_its_pass_goes_near_its_place_to_its_receiver_if_the_br
         let part = |part, robot: usize| (seen.ours[robot].id, CaseRobot::new(part).unwrap());
         let pass = CasePass { case: CaseId(12), passer: part(0, passer), receiver: part(1, 5), at };
         let seen = seen.proposing(Some(pass));
-        let tactics = Tactics { bridge, ..Tactics::default() };
+        let tactics = Tactics { bridge, ..Tactics::ROUND_1 };
         Coach::new(Team::Ours, tactics, League::DivisionB).decide(&seen)
     };
     let orders = decide(true, 3);

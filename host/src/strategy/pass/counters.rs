@@ -25,14 +25,14 @@ pub struct Fates {
     pub no_kick: u32,
 }
 
-/// Passes whose P(receive) lay in one tenth.
+/// Passes whose P(we have it) lay in one tenth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bin {
     /// Number of passes kicked.
     pub passes: u32,
-    /// Sum of their P(receive).
+    /// Sum of their P(we have it).
     pub predicted: f64,
-    /// Number of them received.
+    /// Number of them after which the team had the ball.
     pub received: u32,
 }
 
@@ -43,11 +43,11 @@ pub struct PassCounters {
     pub flat: Fates,
     /// Passes through the air.
     pub chip: Fates,
-    /// By predicted P(receive): 0–0.1, …, 0.9–1. Passes that were never kicked are in no bin.
+    /// By predicted P(we have it): 0–0.1, …, 0.9–1. Passes that were never kicked are in no bin.
     pub calibration: [Bin; BINS],
 }
 
-/// Number of calibration bins: tenths of P(receive).
+/// Number of calibration bins: tenths of P(we have it).
 pub const BINS: usize = 10;
 
 impl Fates {
@@ -91,7 +91,7 @@ impl Fates {
 }
 
 impl PassCounters {
-    /// Counts one pass by its kick, verdict and predicted P(receive).
+    /// Counts one pass by its kick, verdict and predicted P(we have it).
     pub fn record(&mut self, pass: &Ordered, verdict: &PassVerdict) {
         let fates = if pass.chip { &mut self.chip } else { &mut self.flat };
         *fates.count(verdict) += 1;
@@ -99,11 +99,11 @@ impl PassCounters {
             return;
         }
         // NaN counts as 0.
-        let bin = ((pass.likely * BINS as f32) as usize).min(BINS - 1);
+        let bin = ((pass.likely() * BINS as f32) as usize).min(BINS - 1);
         let bin = &mut self.calibration[bin];
         bin.passes += 1;
-        bin.predicted += f64::from(pass.likely);
-        bin.received += u32::from(matches!(verdict, PassVerdict::Received { .. }));
+        bin.predicted += f64::from(pass.likely());
+        bin.received += u32::from(verdict.is_success());
     }
 
     /// Adds the passes of another match.
@@ -117,7 +117,7 @@ impl PassCounters {
         }
     }
 
-    /// Difference between P(receive) and the observed share: the mean over the bins of |predicted −
+    /// Difference between P(we have it) and the observed share: the mean over the bins of |predicted −
     /// observed|, each by its passes (expected calibration error); `None` without passes.
     pub fn calibration_error(&self) -> Option<f64> {
         let passes: u32 = self.calibration.iter().map(|bin| bin.passes).sum();
@@ -134,7 +134,8 @@ mod tests {
     use protocol::{Instant, RobotId};
     use rules::Colour;
 
-    fn pass(likely: f32, chip: bool) -> Ordered {
+    /// A pass with this P(receive).
+    fn pass(receive: f32, chip: bool) -> Ordered {
         Ordered {
             at: Instant(0),
             us: Colour::Blue,
@@ -144,7 +145,8 @@ mod tests {
             to: Point::default(),
             flight: 1.0,
             chip,
-            likely,
+            conditions: [receive, 1.0, 1.0, 1.0, 1.0],
+            pressed: 1.0,
         }
     }
 
@@ -154,7 +156,7 @@ mod tests {
     fn passes_are_counted_by_kick_and_fate_and_those_never_kicked_predict_nothing() {
         let mut counters = PassCounters::default();
         counters.record(&pass(0.95, false), &RECEIVED);
-        counters.record(&pass(1.0, false), &PassVerdict::Late { receiver_off: 1.0 });
+        counters.record(&pass(0.98, false), &PassVerdict::Late { receiver_off: 1.0 });
         counters.record(
             &pass(0.2, true),
             &PassVerdict::Intercepted { by: RobotId::ZERO, along: 1.0, after: 0.5 },
@@ -162,25 +164,26 @@ mod tests {
         counters.record(&pass(0.2, true), &PassVerdict::NoKick { after: 5.0, lost_to: None });
         assert_eq!((counters.flat.kicked(), counters.flat.successful(), counters.flat.late), (2, 1, 1));
         assert_eq!((counters.chip.ordered(), counters.chip.kicked(), counters.chip.intercepted), (2, 1, 1));
-        let last = counters.calibration[9];
+        // P(we have it) = 0.4 + 0.5 · P(receive): 0.875, 0.89 and 0.5.
+        let last = counters.calibration[8];
         assert_eq!((last.passes, last.received), (2, 1));
-        assert_eq!(counters.calibration[2].passes, 1);
+        assert_eq!(counters.calibration[5].passes, 1);
     }
 
     #[test]
     fn the_calibration_error_by_hand_and_over_two_matches() {
         let mut one = PassCounters::default();
         assert_eq!(one.calibration_error(), None);
-        // Predicted 0.75 + 0.75, one received: |1.5 − 1| / 2.
-        one.record(&pass(0.75, false), &RECEIVED);
-        one.record(&pass(0.75, false), &PassVerdict::Missed { by: 1.0 });
-        assert!((one.calibration_error().unwrap() - 0.25).abs() < 1e-9);
+        // Predicted 0.4 + 0.5 · 0.9 = 0.85 twice, one had: |1.7 − 1| / 2.
+        one.record(&pass(0.9, false), &RECEIVED);
+        one.record(&pass(0.9, false), &PassVerdict::Missed { by: 1.0 });
+        assert!((one.calibration_error().unwrap() - 0.35).abs() < 1e-6);
         let mut other = PassCounters::default();
-        // Predicted 0.25 + 0.25, none received: with the above (0.5 + 0.5) / 4.
-        other.record(&pass(0.25, true), &PassVerdict::Out { at: Point::default() });
-        other.record(&pass(0.25, true), &PassVerdict::Out { at: Point::default() });
+        // Predicted 0.4 + 0.5 · 0.3 = 0.55 twice, none had: with the above (0.7 + 1.1) / 4.
+        other.record(&pass(0.3, true), &PassVerdict::Out { at: Point::default() });
+        other.record(&pass(0.3, true), &PassVerdict::Out { at: Point::default() });
         one.add(&other);
-        assert!((one.calibration_error().unwrap() - 0.25).abs() < 1e-9);
+        assert!((one.calibration_error().unwrap() - 0.45).abs() < 1e-6);
         assert_eq!((one.chip.out, one.flat.kicked()), (2, 2));
     }
 }

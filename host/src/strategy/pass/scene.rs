@@ -6,6 +6,7 @@
 
 use geometry::{Attack, Field, GoalEnd, Point, Shape, Vector};
 use protocol::RobotId;
+use rules::Phase;
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 
 use super::super::value;
@@ -105,6 +106,8 @@ pub struct PassScene<'k> {
     shot: FlatKick,
     /// Whether having the ball is worth something too.
     keeps: bool,
+    /// Whether the receiver must not start before the kick: at a kick-off it must stay in our half.
+    waits: bool,
 }
 
 impl<'k> PassScene<'k> {
@@ -153,7 +156,14 @@ impl<'k> PassScene<'k> {
             },
             shot: kicks.shot(),
             keeps: false,
+            waits: matches!(view.phase, Phase::PrepareKickoff(_) | Phase::Kickoff(_)),
         }
+    }
+
+    /// P(c3) of a ball that takes `ball_time`: who waits for the kick reacts and drives there meanwhile.
+    fn time_to_react(&self, ball_time: f32, receiver_time: f32, c: &PassConstants) -> f32 {
+        let driving = if self.waits { receiver_time } else { 0.0 };
+        given::time_to_react(ball_time - driving, c)
     }
 
     /// The same, where having the ball is worth something without a shot too.
@@ -267,7 +277,7 @@ impl<'k> PassScene<'k> {
         let flat = self.kicks.flat(length);
         rating.kick = PassKick::Flat { speed: flat.speed };
         rating.ball_time = flat.at(length).0;
-        rating.receive_factors[2] = given::time_to_react(rating.ball_time, c);
+        rating.receive_factors[2] = self.time_to_react(rating.ball_time, rating.receiver_time, c);
         rating.interceptor =
             path.flat_until(&flat, &self.opponents, enough(floor, first * rating.receive_factors[2], c));
         let margin = rating.interceptor.map_or(SAFE, |found| found.margin);
@@ -300,7 +310,7 @@ impl<'k> PassScene<'k> {
         let mut chip = *rating;
         chip.receive_factors[1] =
             given::not_intercepted(interceptor.map_or(SAFE, |found| found.margin), true, c);
-        chip.receive_factors[2] = given::time_to_react(ball_time, c);
+        chip.receive_factors[2] = self.time_to_react(ball_time, rating.receiver_time, c);
         chip.goal_factors[2] = given::shot_in_time(false, c);
         if chip.value() > rating.value() {
             chip.kick = PassKick::Chip { speed: kick.speed, lands: kick.lands };

@@ -9,6 +9,7 @@ use protocol::{Duration, Instant, RobotId, Who};
 use rules::limits::{BALL_RADIUS, ROBOT_HEIGHT};
 use rules::{Colour, FieldSpec, contact};
 
+use super::conditions::ours_after;
 use crate::world::{Ball, World};
 
 /// A pass that was ordered.
@@ -30,8 +31,17 @@ pub struct Ordered {
     pub flight: f32,
     /// Whether it is a chip.
     pub chip: bool,
-    /// P(receive) as rated at the order.
-    pub likely: f32,
+    /// P(c1) … P(c5) as rated last before the kick.
+    pub conditions: [f32; 5],
+    /// Distance of the opponent nearest to x0, m.
+    pub pressed: f32,
+}
+
+impl Ordered {
+    /// P(we have it) as rated last before the kick.
+    pub fn likely(&self) -> f32 {
+        ours_after(self.conditions.iter().product())
+    }
 }
 
 /// Outcome of a pass.

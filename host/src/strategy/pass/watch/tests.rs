@@ -45,7 +45,8 @@ impl Play {
             to: Point::new(2.0, 0.0),
             flight: 0.8,
             chip: false,
-            likely: 0.7,
+            conditions: [0.7, 1.0, 1.0, 1.0, 1.0],
+            pressed: 1.0,
         });
         for tick in 0..1_000_u64 {
             let mut world = World::empty(Instant(tick * 10_000), BallModels::default());
