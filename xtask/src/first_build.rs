@@ -14,9 +14,10 @@ use crate::context::{Context, Failure, line_of, run};
 pub(crate) const WHAT: &str =
     "what a first build compiles and links stays small, and no crate stands in it in two versions";
 
-/// Crates that a first build may compile: half of the 218 that it once had. On Linux; other systems may need
-/// some more.
-const CRATES_MAX: usize = 109;
+/// Crates that a first build may compile. On Linux; other systems may need some more. Half of the 218 that it
+/// once had, and six for what came after: the editor of case files (`toml_edit` and its three crates) and
+/// learning (its own crate, and `similar`).
+const CRATES_MAX: usize = 109 + 6;
 /// Bytes of the program without symbols.
 const PROGRAM_MAX: u64 = 20_000_000;
 

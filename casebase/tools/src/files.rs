@@ -94,6 +94,27 @@ impl Files {
         Self { league: league.to_owned(), rules: file(LEAGUE, rules), cases }.sorted()
     }
 
+    /// The same files with this text as that of the case `name`, which is added where there is none.
+    pub fn with(&self, name: &str, text: &str) -> Self {
+        let mut files = self.clone();
+        let directory = self.rules.path.parent().unwrap_or(Path::new(""));
+        let file = SourceFile {
+            path: directory.join(format!("{name}.toml")),
+            name: name.to_owned(),
+            text: text.to_owned(),
+        };
+        files.cases.retain(|case| case.name != name);
+        files.cases.push(file);
+        files.sorted()
+    }
+
+    /// The same files without the case `name`.
+    pub fn without(&self, name: &str) -> Self {
+        let mut files = self.clone();
+        files.cases.retain(|case| case.name != name);
+        files
+    }
+
     fn sorted(mut self) -> Self {
         self.cases.sort_by(|a, b| a.name.as_bytes().cmp(b.name.as_bytes()));
         self

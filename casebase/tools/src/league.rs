@@ -40,6 +40,11 @@ impl CaseLeague {
         (league.filter(|_| !faulty), reader.findings)
     }
 
+    /// Reads `league.toml`; `None` where it is refused.
+    pub fn of(file: &SourceFile) -> Option<Self> {
+        Self::read(file).0
+    }
+
     /// A kick kind by its name.
     pub fn kick_id(&self, name: &str) -> Option<KickId> {
         self.kicks.iter().position(|(known, _)| known == name).map(|at| KickId(at as u8))

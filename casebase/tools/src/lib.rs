@@ -31,6 +31,7 @@ mod sampled;
 mod self_blocking;
 mod skeleton;
 mod warnings;
+pub mod workbench;
 
 pub use codes::{CODES, CodeEntry, code, entry};
 pub use counterfactual::{Counterfactual, CounterfactualObstacle, Entity, Move, counterfactual};
@@ -38,7 +39,7 @@ pub use encode::Table;
 pub use files::{CASE_FILE_LEN_MAX, Files, SourceFile, SourcePlace};
 pub use finding::{Finding, Severity};
 pub use league::CaseLeague;
-pub use library::{Library, Reduction, build, build_reduced, load, load_telling};
+pub use library::{Library, Reduction, build, build_reduced, build_without_warnings, load, load_telling};
 pub use lineup::{Lineup, Rectangle};
 pub use sample::Sampler;
 pub use sampled::never_retrieved;

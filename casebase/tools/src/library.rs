@@ -49,7 +49,7 @@ pub fn load(directory: &Path) -> Result<Library, Vec<Finding>> {
 
 /// The same; `report` is called with the number of completed steps and the total: two a case file.
 pub fn load_telling(directory: &Path, report: impl FnMut(usize, usize)) -> Result<Library, Vec<Finding>> {
-    build_telling(&Files::read(directory)?, Reduction::NONE, report)
+    build_telling(&Files::read(directory)?, Reduction::NONE, true, report)
 }
 
 /// Which parts of its cases a library keeps: for measuring the value of each.
@@ -69,17 +69,23 @@ impl Reduction {
 /// The library of files that were read, with these parts of its cases alone; without warnings about the
 /// reduced cases.
 pub fn build_reduced(files: &Files, reduction: Reduction) -> Result<Library, Vec<Finding>> {
-    build_telling(files, reduction, |_, _| {})
+    build_telling(files, reduction, false, |_, _| {})
+}
+
+/// The library of files that were read; without warnings, which take most of the time.
+pub fn build_without_warnings(files: &Files) -> Result<Library, Vec<Finding>> {
+    build_telling(files, Reduction::NONE, false, |_, _| {})
 }
 
 /// The library of files that were read.
 pub fn build(files: &Files) -> Result<Library, Vec<Finding>> {
-    build_telling(files, Reduction::NONE, |_, _| {})
+    build_telling(files, Reduction::NONE, true, |_, _| {})
 }
 
 fn build_telling(
     files: &Files,
     reduction: Reduction,
+    doubt: bool,
     mut report: impl FnMut(usize, usize),
 ) -> Result<Library, Vec<Finding>> {
     let steps = 2 * files.cases.len();
@@ -121,7 +127,7 @@ fn build_telling(
         lineup: league.lineup.clone().unwrap_or_else(|| Lineup::guess(league.field, largest)),
         findings,
     };
-    if reduction == Reduction::NONE {
+    if doubt {
         let doubts =
             warnings(files, &cases, &library.base(), &league, |done| report(files.cases.len() + done, steps));
         library.note(doubts);

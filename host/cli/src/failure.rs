@@ -117,6 +117,8 @@ pub(crate) enum Failure {
     Threads(rayon::ThreadPoolBuildError),
     /// An evaluation could not be played, kept or put together.
     Evaluation(EvaluationError),
+    /// Learning failed.
+    Learning(learning::LearnError),
     /// The filters of an evaluation leave nothing.
     NoTrials,
     /// A recording could not be read, or lacks what was requested.
@@ -242,6 +244,7 @@ impl fmt::Display for Failure {
                  5400 x 3600 mm, and theirs is another; take --league four-legged or a library for that field"
             ),
             Self::Evaluation(error) => write!(f, "{error}"),
+            Self::Learning(error) => error.fmt(f),
             Self::NoTrials => f.write_str(
                 "no trial is left: robots' trials (--profile robots) are of scenarios 3 and 4 against dg; \
                  leave out a filter",

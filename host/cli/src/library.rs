@@ -13,12 +13,13 @@ use crate::args::LibraryArgs;
 use crate::progress::Progress;
 
 /// One opened library.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) enum LibraryHandle {
     /// Built into this program; with the case base over its table, which is checked once.
     BuiltIn(&'static League, CaseBase<'static>),
-    /// Read from a directory. It is kept until the program ends, because the case base borrows from it.
-    Directory(&'static Library, CaseBase<'static>),
+    /// Read from a directory, or made from files of one. It is kept until the program ends, because the case
+    /// base borrows from it. The last is the directory of a library that is whole.
+    Directory(&'static Library, CaseBase<'static>, Option<&'static Path>),
 }
 
 impl LibraryHandle {
@@ -44,15 +45,12 @@ impl LibraryHandle {
         };
         let files = match (&args.directory.library, &whole) {
             (Some(directory), _) => Files::read(directory).map_err(refused)?,
-            (None, Self::BuiltIn(league, _)) => {
-                let cases = league.names.iter().zip(league.sources).map(|(name, text)| (*name, *text));
-                Files::from_texts(league.name, league.rules, &cases.collect::<Vec<_>>())
-            }
+            (None, Self::BuiltIn(league, _)) => built_in_files(league),
             (None, Self::Directory(..)) => return Ok(whole),
         };
         let library = case_tools::build_reduced(&files, reduction).map_err(refused)?;
         let library: &'static Library = Box::leak(Box::new(library));
-        Ok(Self::Directory(library, library.base()))
+        Ok(Self::Directory(library, library.base(), None))
     }
 
     /// One league's directory.
@@ -64,10 +62,30 @@ impl LibraryHandle {
             load(directory)
                 .map_err(|findings| Failure::FaultyLibrary { directory: directory.to_owned(), findings })?,
         ));
-        Ok(Self::Directory(library, library.base()))
+        let directory: &'static Path = Box::leak(directory.to_owned().into_boxed_path());
+        Ok(Self::Directory(library, library.base(), Some(directory)))
     }
 
-    fn built_in(league: &'static League) -> Self {
+    /// The directory that it was read from.
+    pub(crate) const fn directory(&self) -> Option<&'static Path> {
+        match self {
+            Self::BuiltIn(..) => None,
+            Self::Directory(_, _, directory) => *directory,
+        }
+    }
+
+    /// Its files: those of its directory as they are now, or those of a built-in league.
+    pub(crate) fn files(&self) -> Result<Files, Vec<Finding>> {
+        match self {
+            Self::BuiltIn(league, _) => Ok(built_in_files(league)),
+            Self::Directory(library, _, None) => Ok(case_library::league(&library.league)
+                .map_or_else(|| Files::from_texts(&library.league, "", &[]), built_in_files)),
+            Self::Directory(_, _, Some(directory)) => Files::read(directory),
+        }
+    }
+
+    /// A built-in league's.
+    pub(crate) fn built_in(league: &'static League) -> Self {
         Self::BuiltIn(league, league.base())
     }
 
@@ -82,14 +100,14 @@ impl LibraryHandle {
     /// The case base over the table.
     pub(crate) const fn base(&self) -> CaseBase<'_> {
         match self {
-            Self::BuiltIn(_, base) | Self::Directory(_, base) => *base,
+            Self::BuiltIn(_, base) | Self::Directory(_, base, _) => *base,
         }
     }
 
     /// The same for the lifetime of the program: built in, or kept until its end.
     pub(crate) const fn lasting_base(&self) -> CaseBase<'static> {
         match self {
-            Self::BuiltIn(_, base) | Self::Directory(_, base) => *base,
+            Self::BuiltIn(_, base) | Self::Directory(_, base, _) => *base,
         }
     }
 
@@ -97,7 +115,7 @@ impl LibraryHandle {
     pub(crate) fn league(&self) -> &str {
         match self {
             Self::BuiltIn(league, _) => league.name,
-            Self::Directory(library, _) => &library.league,
+            Self::Directory(library, ..) => &library.league,
         }
     }
 
@@ -105,7 +123,7 @@ impl LibraryHandle {
     pub(crate) fn names(&self) -> Vec<String> {
         match self {
             Self::BuiltIn(league, _) => league.names.iter().map(ToString::to_string).collect(),
-            Self::Directory(library, _) => library.names.clone(),
+            Self::Directory(library, ..) => library.names.clone(),
         }
     }
 
@@ -114,7 +132,7 @@ impl LibraryHandle {
         let authored = authored(id);
         match self {
             Self::BuiltIn(league, _) => league.names[authored],
-            Self::Directory(library, _) => &library.names[authored],
+            Self::Directory(library, ..) => &library.names[authored],
         }
     }
 
@@ -123,7 +141,7 @@ impl LibraryHandle {
         let kind = usize::from(kind.0);
         match self {
             Self::BuiltIn(league, _) => league.kicks[kind],
-            Self::Directory(library, _) => &library.kicks[kind],
+            Self::Directory(library, ..) => &library.kicks[kind],
         }
     }
 
@@ -132,11 +150,17 @@ impl LibraryHandle {
         let authored = authored(id);
         let source = match self {
             Self::BuiltIn(league, _) => league.sources[authored],
-            Self::Directory(library, _) => &library.sources[authored],
+            Self::Directory(library, ..) => &library.sources[authored],
         };
         let table: toml::Table = source.parse().ok()?;
         Some(table.get("intent")?.as_str()?.to_owned())
     }
+}
+
+/// The files of a built-in league.
+fn built_in_files(league: &League) -> Files {
+    let cases = league.names.iter().zip(league.sources).map(|(name, text)| (*name, *text));
+    Files::from_texts(league.name, league.rules, &cases.collect::<Vec<_>>())
 }
 
 /// Reads one league's directory; with a bar on a terminal's stderr where there are many files, and nothing in

@@ -25,6 +25,7 @@ mod stop;
 mod trial;
 mod verbs;
 mod virtual_robot;
+mod workbench;
 
 use std::process::ExitCode;
 

@@ -6,6 +6,7 @@
 use arena::evaluation::{Profile, Setup};
 use brain::Positioning;
 use case_tools::Reduction;
+use casebase::FieldMm;
 use clap::{Args, ValueEnum};
 use rules::League;
 
@@ -141,16 +142,20 @@ pub(crate) fn refuse_other_fields(library_handle: &LibraryHandle) -> Result<(), 
 
 /// The league whose simulator has the library's field.
 pub(crate) fn simulated_league(library_handle: &LibraryHandle) -> Result<League, Failure> {
-    let field = library_handle.base().field();
+    let league = league_of(library_handle.base().field(), library_handle.league());
+    league.ok_or_else(|| Failure::NoSimulator { league: library_handle.league().to_owned() })
+}
+
+/// The league with that field: the one of that name, if it has it.
+pub(crate) fn league_of(field: FieldMm, name: &str) -> Option<League> {
     let in_mm = |metres: f32| (metres * 1000.0).round() as i32;
     let same = |league: &League| {
         let played = league.field();
         [in_mm(played.length), in_mm(played.width)] == [field.length, field.width]
     };
     let leagues = [League::FourLegged, League::DivisionB, League::DivisionA, League::Ssl2013];
-    let named = |league: &League| league.name() == library_handle.league() && same(league);
-    let league = leagues.into_iter().find(named).or_else(|| leagues.into_iter().find(same));
-    league.ok_or_else(|| Failure::NoSimulator { league: library_handle.league().to_owned() })
+    let named = |league: &League| league.name() == name && same(league);
+    leagues.into_iter().find(named).or_else(|| leagues.into_iter().find(same))
 }
 
 /// Parses a scenario, as flags take it.

@@ -69,7 +69,7 @@ pub(super) fn run(args: &ExplainArgs) -> Result<ExitCode, Failure> {
                     difference.write(output, number)
                 };
             }
-            let mut explanation = Explanation::new(&library_handle, &base, &problem, &chosen);
+            let mut explanation = Explanation::new(&|id| library_handle.name(id), &base, &problem, &chosen);
             let chosen_rows = explanation.listed_first(args.all);
             // A table is read by the operator, a few problems at a time: it has these lines by default, for a
             // handful of cases.
@@ -99,8 +99,18 @@ pub(crate) fn explained(
     chosen: &Chosen,
     line: &str,
 ) -> Result<String, String> {
+    explained_by(&library_handle.base(), &|id| library_handle.name(id), chosen, line)
+}
+
+/// The same over any case base, whose cases have these names.
+pub(crate) fn explained_by<'a>(
+    base: &CaseBase<'_>,
+    name_of: &dyn Fn(CaseId) -> &'a str,
+    chosen: &'a Chosen,
+    line: &str,
+) -> Result<String, String> {
     let problem = super::problem::parse(line).map_err(|malformed| malformed.to_string())?;
-    let explanation = Explanation::new(library_handle, &library_handle.base(), &problem, chosen);
+    let explanation = Explanation::new(name_of, base, &problem, chosen);
     serde_json::to_string(&explanation).map_err(|error| error.to_string())
 }
 
@@ -171,7 +181,7 @@ enum Evidence {
 
 impl<'a> Explanation<'a> {
     fn new(
-        library_handle: &'a LibraryHandle,
+        name_of: &dyn Fn(CaseId) -> &'a str,
         base: &CaseBase<'_>,
         problem: &Problem,
         chosen: &'a Chosen,
@@ -187,7 +197,7 @@ impl<'a> Explanation<'a> {
             let rank = ranks.get(id).copied().unwrap_or(0);
             Some(Row {
                 id: id.0,
-                case: library_handle.name(*id),
+                case: name_of(*id),
                 symmetry: case.symmetry().label(),
                 verdict: verdict.label(),
                 evidence: Evidence::of(verdict, rank, &case, problem, chosen),

@@ -5,6 +5,7 @@ mod check;
 mod coverage;
 mod diff;
 mod explain;
+mod learn;
 mod lines;
 mod list;
 pub(crate) mod new;
@@ -19,7 +20,7 @@ mod stats;
 mod survey;
 mod whatif;
 
-pub(crate) use explain::explained;
+pub(crate) use explain::{explained, explained_by};
 pub(crate) use survey::problem_line;
 
 use std::process::ExitCode;
@@ -55,6 +56,8 @@ pub(crate) enum CasesVerb {
     Coverage(coverage::CoverageArgs),
     /// Count how often each case is retrieved, which are shadowed, and which could be removed.
     Stats(stats::StatsArgs),
+    /// Learn from play: revise, add and forget cases, each change tested in paired trials.
+    Learn(learn::LearnArgs),
     /// Draw a case, and a problem over it, as SVG.
     #[command(after_help = PROBLEM_HELP)]
     Render(render::RenderArgs),
@@ -72,6 +75,7 @@ pub(crate) fn run(verb: &CasesVerb) -> Result<ExitCode, Failure> {
         CasesVerb::Explain(args) => explain::run(args),
         CasesVerb::Coverage(args) => coverage::run(args),
         CasesVerb::Stats(args) => stats::run(args),
+        CasesVerb::Learn(args) => learn::run(args),
         CasesVerb::Render(args) => render::run(args),
     }
 }

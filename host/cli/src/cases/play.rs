@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::process::ExitCode;
 
-use arena::{AttemptError, CaseNames, CaseTrial, Opposition, Score};
+use arena::{AttemptError, CaseNames, CaseTrial, Opposition, Score, Tape};
 use casebase::Case;
 use clap::Args;
 use rules::League;
@@ -145,11 +145,11 @@ fn write_story(
         for (kind, number) in
             oppositions.iter().flat_map(|kind| (0..case_trial.trials).map(move |n| (*kind, n)))
         {
-            let mut lines = Vec::new();
-            let attempt = case_trial.attempt(case, kind, number, Some(&mut lines)).map_err(failure)?;
+            let mut tape = Tape::default();
+            let attempt = case_trial.attempt(case, kind, number, Some(&mut tape)).map_err(failure)?;
             let mut text =
                 format!("{}, opponents {}, attempt {number}\n", case_trial.names.of(case.id()), kind.label());
-            for line in lines {
+            for line in tape.story {
                 let _ = writeln!(text, "{line}");
             }
             let end = attempt.end.map_or("not played", arena::CycleEnd::label);

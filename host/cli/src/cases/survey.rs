@@ -217,7 +217,7 @@ fn recorded(file: &Path) -> Result<Vec<Problem>, Failure> {
 
 fn sampler(library_handle: &LibraryHandle, seed: u64) -> Result<Sampler, Failure> {
     match library_handle {
-        LibraryHandle::Directory(library, _) => Ok(library.sampler(seed)),
+        LibraryHandle::Directory(library, ..) => Ok(library.sampler(seed)),
         LibraryHandle::BuiltIn(league, _) => {
             let cases: Vec<_> = league.names.iter().copied().zip(league.sources.iter().copied()).collect();
             let library =

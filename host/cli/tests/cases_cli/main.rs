@@ -3,6 +3,7 @@
 mod common;
 mod explain;
 mod inspect;
+mod learn;
 mod new;
 mod oracle;
 mod play;

@@ -1,0 +1,128 @@
+//! `workbench`: a case file that a person edits step by step: changes of its text, and what is to be shown of
+//! it after each. No input or output: text in, text and data out.
+//!
+//! The text is the one truth: an [`Edit`] changes it and nothing else of it, a [`Sheet`] is worked out from
+//! it anew, and undo is an earlier text.
+
+mod action_text;
+mod aim;
+mod case_text;
+mod edit;
+mod edit_error;
+mod follow;
+mod part;
+mod sheet;
+
+use std::path::Path;
+
+use casebase::Symmetry;
+
+use crate::authored::Authored;
+use crate::files::Files;
+use crate::finding::Finding;
+use crate::league::CaseLeague;
+use crate::library::{Library, build};
+
+pub use action_text::{ActionText, TurnText};
+pub use case_text::CaseText;
+pub use edit::Edit;
+pub use edit_error::EditError;
+pub use part::Part;
+pub use sheet::{CopySheet, FindingNote, LegSheet, PlacedRobot, RobotSheet, Scoped, Sheet};
+
+/// Longest name of a case, bytes.
+const NAME_MAX: usize = 80;
+
+/// A league's case files, of which one is edited.
+#[derive(Clone, Debug)]
+pub struct Workbench {
+    files: Files,
+    league: CaseLeague,
+    /// Findings before anything was edited.
+    findings: Vec<Finding>,
+}
+
+impl Workbench {
+    /// On these files; the findings where they are refused.
+    pub fn new(files: Files) -> Result<Self, Vec<Finding>> {
+        let findings = build(&files)?.findings;
+        let (league, refused) = CaseLeague::read(&files.rules);
+        Ok(Self { files, league: league.ok_or(refused)?, findings })
+    }
+
+    /// The files.
+    pub fn files(&self) -> &Files {
+        &self.files
+    }
+
+    /// The league's rules.
+    pub fn league(&self) -> &CaseLeague {
+        &self.league
+    }
+
+    /// The library with this text as that of the case `name`; the findings where it is refused.
+    pub fn library(&self, name: &str, text: &str) -> Result<Library, Vec<Finding>> {
+        build(&self.files.with(name, text))
+    }
+
+    /// The text after a change that was made in a symmetric copy.
+    pub fn edited(
+        &self,
+        name: &str,
+        text: &str,
+        edit: Edit,
+        symmetry: Symmetry,
+    ) -> Result<String, EditError> {
+        let edit = edit.under(symmetry);
+        let edit =
+            self.case(name, text).and_then(|case| aim::aimed(&case, &self.league, &edit)).unwrap_or(edit);
+        edit.apply(text)
+    }
+
+    /// What is shown of a text.
+    pub fn sheet(&self, name: &str, text: &str) -> Sheet {
+        let files = self.files.with(name, text);
+        let found = match build(&files) {
+            Ok(library) => library.findings,
+            Err(findings) => findings,
+        };
+        let own = |finding: &&Finding| case_name(&finding.file) == name;
+        let known = |finding: &Finding| {
+            self.findings.iter().any(|old| {
+                (&old.file, old.code, &old.message) == (&finding.file, finding.code, &finding.message)
+            })
+        };
+        let case = self.case(name, text);
+        Sheet {
+            name: name.to_owned(),
+            text: text.to_owned(),
+            intent: case.as_ref().map(|case| case.intent.clone()).unwrap_or_default(),
+            findings: found.iter().filter(own).map(FindingNote::of).collect(),
+            elsewhere: found.iter().filter(|f| !own(f) && !known(f)).map(FindingNote::of).collect(),
+            robots: case.as_ref().map_or_else(Vec::new, |case| sheet::robots(case, &self.league)),
+            copies: case.as_ref().map_or_else(Vec::new, |case| sheet::copies(case, &self.league)),
+        }
+    }
+
+    fn case(&self, name: &str, text: &str) -> Option<Authored> {
+        let files = Files::from_texts("", "", &[(name, text)]);
+        Authored::read(files.cases.first()?, Some(&self.league)).0
+    }
+}
+
+/// `region/name` of a case file's path.
+pub fn case_name(file: &Path) -> String {
+    let stem = file.with_extension("");
+    let parts: Vec<_> = stem.iter().map(|part| part.to_string_lossy()).collect();
+    parts[parts.len().saturating_sub(2)..].join("/")
+}
+
+/// Whether a case may have this name: `region/name` of letters, digits, `-` and `_`.
+pub fn is_case_name(name: &str) -> bool {
+    let plain =
+        |part: &str| !part.is_empty() && part.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c));
+    name.len() <= NAME_MAX && name.split_once('/').is_some_and(|(region, name)| plain(region) && plain(name))
+}
+
+#[cfg(test)]
+mod tests;

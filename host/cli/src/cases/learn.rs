@@ -1,0 +1,189 @@
+//! `onetwo cases learn`: a library made better by play (docs/learning.md). Finished trials are kept in the
+//! output directory: the same command goes on where it was stopped, and shards share the directory.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use arena::evaluation::{EvaluationError, Shard};
+use case_tools::Files;
+use clap::Args;
+use learning::{Evidence, JournalPlayer, Kind, LearnError, LearnSettings, Learned, learn};
+
+use crate::Failure;
+use crate::args::{LibraryArgs, VERSION};
+use crate::library::LibraryHandle;
+use crate::output::print_text;
+use crate::progress::Progress;
+use crate::setup::refuse_other_fields;
+use crate::stop::stopped_by_hand;
+
+/// Arguments of `cases learn`.
+#[derive(Debug, Args)]
+pub(crate) struct LearnArgs {
+    #[command(flatten)]
+    library: LibraryArgs,
+    /// Evidence of earlier play, as `evidence.jsonl` of another run; may be repeated.
+    #[arg(long, value_name = "FILE")]
+    from: Vec<PathBuf>,
+    /// Trials after which no further round starts.
+    #[arg(long, default_value_t = 300_000, value_parser = clap::value_parser!(u64).range(1..))]
+    budget: u64,
+    /// Random seed.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(..1 << 40))]
+    seed: u64,
+    /// The directory that everything is written to: journals, evidence, report and the learned library.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Only these kinds of changes, with commas between: scopes, actions, new, forget.
+    #[arg(long, value_name = "KINDS", value_delimiter = ',', value_parser = kind)]
+    only: Vec<Kind>,
+    /// Expected share of wrong changes among the accepted ones.
+    #[arg(long, default_value_t = 0.1, value_parser = rate)]
+    error_rate: f64,
+    /// Sequential tests that the error rate is shared among.
+    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    tries: u32,
+    /// Every n-th unit of trials from the i-th on; all shards run at the same time in one directory.
+    #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = shard)]
+    shard: Shard,
+    /// Threads; the number of cores by default.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    /// Propose and screen once, and change nothing.
+    #[arg(long)]
+    dry_run: bool,
+    /// Null control: chance decides which outcome of a pair counts as the change's.
+    #[arg(long)]
+    shuffle_outcomes: bool,
+    /// The report as JSON on stdout.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
+    refuse_other_fields(&LibraryHandle::open(&args.library)?)?;
+    let files = files(args)?;
+    let (earlier, earlier_text) = earlier(&args.from)?;
+    let kinds: BTreeSet<Kind> =
+        if args.only.is_empty() { Kind::ALL.into() } else { args.only.iter().copied().collect() };
+    let settings = LearnSettings {
+        seed: args.seed,
+        budget: args.budget,
+        kinds,
+        error_rate: args.error_rate,
+        tries: args.tries,
+        shuffle: args.shuffle_outcomes,
+        dry_run: args.dry_run,
+    };
+    let start =
+        learning::Variant::new(files.clone()).map_err(|e| Failure::Learning(LearnError::Library(e)))?;
+    let mut hash = hil_sim::Fnv::default();
+    hash.add(earlier_text.as_bytes());
+    let identity = serde_json::json!({
+        "program": VERSION, "settings": settings, "library": format!("{:016x}", start.hash),
+        "world": hil_sim::world_hash(), "evidence": hash.to_string(),
+    });
+    make(&args.out)?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.jobs.map_or(0, usize::from)).build();
+    let pool = pool.map_err(Failure::Threads)?;
+    let bar = Progress::of(args.budget, "trials");
+    let on_trials = |trials| bar.add(trials);
+    let learned = pool.install(|| {
+        let (identity, stopped) = (identity.to_string(), stopped_by_hand());
+        let player = JournalPlayer::open(&args.out, &identity, args.shard, args.seed, stopped, &on_trials);
+        let mut player = player.map_err(LearnError::Play)?;
+        learn(files, earlier, &settings, &mut player)
+    });
+    drop(bar);
+    let learned = learned.map_err(Failure::Learning)?;
+    // Every shard has learned the same; the first one writes it.
+    if args.shard.has(0) {
+        write(&learned, &args.out)?;
+    }
+    if args.json {
+        print_text(&format!("{}\n", learning::json(&learned)))?;
+    } else {
+        print_text(&learning::summary(&learned))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The files of the library that the command line names.
+fn files(args: &LearnArgs) -> Result<Files, Failure> {
+    if let Some(directory) = &args.library.directory.library {
+        let refused = |findings| Failure::FaultyLibrary { directory: directory.clone(), findings };
+        // Names and texts alone count: a library learns the same wherever it lies.
+        let files = Files::read(directory).map_err(refused)?;
+        let texts = files.cases.iter().map(|file| (file.name.as_str(), file.text.as_str()));
+        return Ok(Files::from_texts(&files.league, &files.rules.text, &texts.collect::<Vec<_>>()));
+    }
+    let league = case_library::league(&args.library.league)
+        .ok_or_else(|| Failure::UnknownLeague(args.library.league.clone()))?;
+    let texts = league.names.iter().zip(league.sources).map(|(name, text)| (*name, *text));
+    Ok(Files::from_texts(league.name, league.rules, &texts.collect::<Vec<_>>()))
+}
+
+/// The evidence of files, and its text.
+fn earlier(paths: &[PathBuf]) -> Result<(Evidence, String), Failure> {
+    let mut evidence = Evidence::default();
+    for path in paths {
+        let failed = |error| EvaluationError::File { file: path.clone(), error };
+        let text = foreign::read_text(path, EVIDENCE_LEN_MAX).map_err(failed)?;
+        let read = Evidence::from_jsonl(&text).map_err(|what| failed(std::io::Error::other(what)))?;
+        evidence = evidence.merge(read);
+    }
+    let text = evidence.to_jsonl();
+    Ok((evidence, text))
+}
+
+/// Writes evidence, report and library.
+fn write(learned: &Learned, out: &Path) -> Result<(), Failure> {
+    let put = |name: &str, text: &str| {
+        let file = out.join(name);
+        std::fs::write(&file, text).map_err(|error| Failure::from(EvaluationError::File { file, error }))
+    };
+    put("evidence.jsonl", &learned.evidence.to_jsonl())?;
+    put("report.json", &format!("{:#}\n", learning::json(learned)))?;
+    put("report.html", &learning::html(learned))?;
+    let library = &learned.end.files;
+    let directory = out.join(&library.league);
+    if directory.exists() {
+        let failed = |error| EvaluationError::File { file: directory.clone(), error };
+        std::fs::remove_dir_all(&directory).map_err(failed)?;
+    }
+    make(&directory)?;
+    put(&format!("{}/league.toml", library.league), &library.rules.text)?;
+    for file in &library.cases {
+        let path = directory.join(format!("{}.toml", file.name));
+        if let Some(region) = path.parent() {
+            make(region)?;
+        }
+        put(&format!("{}/{}.toml", library.league, file.name), &file.text)?;
+    }
+    Ok(())
+}
+
+fn make(directory: &Path) -> Result<(), Failure> {
+    let made = std::fs::create_dir_all(directory);
+    made.map_err(|error| EvaluationError::File { file: directory.to_owned(), error }.into())
+}
+
+fn kind(label: &str) -> Result<Kind, String> {
+    Kind::from_label(label).ok_or_else(|| {
+        let known: Vec<_> = Kind::ALL.into_iter().map(Kind::label).collect();
+        format!("take some of {}", known.join(", "))
+    })
+}
+
+fn rate(label: &str) -> Result<f64, String> {
+    let rate = label.parse().ok().filter(|rate| (0.0001..=0.5).contains(rate));
+    rate.ok_or_else(|| "take a share from 0.0001 to 0.5".to_owned())
+}
+
+fn shard(label: &str) -> Result<Shard, String> {
+    Shard::from_label(label).ok_or_else(|| "take i/n with i from 1 to n, such as 2/3".to_owned())
+}
+
+/// Longest file of evidence that is read, bytes.
+const EVIDENCE_LEN_MAX: u64 = 1 << 28;

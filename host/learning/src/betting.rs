@@ -1,0 +1,120 @@
+//! `betting`: sequential tests of paired trials by betting, and the error rate over all of them.
+//!
+//! A change is compared with no change on the same starts. Under the null hypothesis that it does not raise
+//! the outcome, a bettor who stakes a fixed share of its capital on every pair in which the outcomes differ
+//! does not gain on average: its capital is an *e-process*, and passes 1/α with a probability of at most α
+//! whenever one looks (Ville; Shafer 2021; Ramdas & Wang 2025). The capital is spread over several shares, so
+//! that small and large effects are both seen soon.
+//!
+//! Over many changes [`threshold`] is that of e-LOND (Xu & Ramdas 2024): the expected share of wrong changes
+//! among the accepted ones stays below the stated rate, for any dependence between the tests.
+
+use serde::Serialize;
+
+/// Shares of the capital that are staked.
+const STAKES: [f64; 5] = [0.05, 0.1, 0.2, 0.35, 0.5];
+
+/// The bettor against "this does not raise the outcome".
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Wager {
+    capital: [f64; STAKES.len()],
+    /// Pairs in which only the trial with the change reached the goal.
+    pub raised: u32,
+    /// Pairs in which only the trial without it did.
+    pub lowered: u32,
+    /// All pairs, equal ones included.
+    pub pairs: u32,
+}
+
+impl Default for Wager {
+    fn default() -> Self {
+        Self { capital: [1.0; STAKES.len()], raised: 0, lowered: 0, pairs: 0 }
+    }
+}
+
+impl Wager {
+    /// Adds a pair: the outcome with the change and the one without it.
+    pub fn add(&mut self, with: bool, without: bool) {
+        self.pairs += 1;
+        let sign = match (with, without) {
+            (true, false) => 1.0,
+            (false, true) => -1.0,
+            _ => return,
+        };
+        self.raised += u32::from(with);
+        self.lowered += u32::from(without);
+        for (capital, stake) in self.capital.iter_mut().zip(STAKES) {
+            *capital *= 1.0 + sign * stake;
+        }
+    }
+
+    /// Adds pairs that were not played because the change has no effect on them.
+    pub fn add_equal(&mut self, pairs: u32) {
+        self.pairs += pairs;
+    }
+
+    /// The e-value: the bettor's capital, 1 at the start.
+    pub fn e_value(&self) -> f64 {
+        self.capital.iter().sum::<f64>() / STAKES.len() as f64
+    }
+
+    /// Estimated gain: points of to-goal, percent of all starts.
+    pub fn gain(&self) -> f64 {
+        let difference = f64::from(self.raised) - f64::from(self.lowered);
+        if self.pairs == 0 { 0.0 } else { 100.0 * difference / f64::from(self.pairs) }
+    }
+
+    /// The difference in standard deviations of chance.
+    pub fn z(&self) -> f64 {
+        let differ = f64::from(self.raised) + f64::from(self.lowered);
+        if differ == 0.0 { 0.0 } else { (f64::from(self.raised) - f64::from(self.lowered)) / differ.sqrt() }
+    }
+}
+
+/// The e-value that a test must reach: `rate` over all tests, `planned` of which are made at most, with
+/// `accepted` before it.
+pub fn threshold(rate: f64, planned: u32, accepted: u32) -> f64 {
+    f64::from(planned.max(1)) / (rate * f64::from(accepted + 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hil_sim::Stream;
+
+    #[test]
+    fn without_an_effect_the_capital_passes_a_threshold_as_rarely_as_promised() {
+        // 2000 bettors look after each of 400 fair pairs.
+        let passed = (0..2000).filter(|seed| {
+            let (mut chance, mut wager) = (Stream::new(*seed, "betting"), Wager::default());
+            (0..400).any(|_| {
+                wager.add(chance.chance(0.4), chance.chance(0.4));
+                wager.e_value() >= 20.0
+            })
+        });
+        let passed = passed.count();
+        assert!(passed <= 100, "{passed} of 2000 at 1/20");
+        assert!(passed > 0, "a bettor that never wins tests nothing");
+    }
+
+    #[test]
+    fn an_effect_of_ten_points_is_found() {
+        let (mut chance, mut wager) = (Stream::new(1, "betting"), Wager::default());
+        for _ in 0..2000 {
+            wager.add(chance.chance(0.45), chance.chance(0.35));
+        }
+        assert!(wager.e_value() > 600.0, "{}", wager.e_value());
+        assert!((5.0..15.0).contains(&wager.gain()), "{}", wager.gain());
+        wager.add_equal(2000);
+        assert!((2.5..7.5).contains(&wager.gain()), "equal pairs count: {}", wager.gain());
+    }
+
+    #[test]
+    fn one_pair_pays_the_mean_of_the_stakes() {
+        let mut wager = Wager::default();
+        wager.add(true, false);
+        assert!((wager.e_value() - 1.24).abs() < 1e-12);
+        assert!((threshold(0.1, 60, 0) - 600.0).abs() < 1e-9);
+        assert!((threshold(0.1, 60, 2) - 200.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,327 @@
+//! `learner`: rounds of learning. Explore, propose, screen, confirm, validate.
+//!
+//! ```text
+//! exploration starts ─► evidence ─► proposals ─► screening (halving) ─► finalists
+//!                                                                          │ fresh starts, sequential test
+//! held-out starts ◄── library ◄── accepted ◄── validation starts ◄── confirmed
+//! ```
+//! Screening chooses and proves nothing: only trials on starts that no proposal was drawn from or chosen by
+//! count in a test. Everything is a function of the files, the settings and the outcomes of trials.
+
+mod judging;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+
+use case_tools::Files;
+use hil_sim::{Configuration, Stream, world_hash};
+use rayon::prelude::*;
+
+use crate::betting::Wager;
+use crate::competence::standings;
+use crate::drafts::{Occasion, SearchSize, search};
+use crate::edit::Edit;
+use crate::evidence::Evidence;
+use crate::proposals::{Kind, Proposal, from_evidence, text_hash};
+use crate::results::{ChangeRecord, CurvePoint, Learned};
+use crate::settings::LearnSettings;
+use crate::starts::{CELLS, StartStream, cell};
+use crate::trial::LearningTrial;
+use crate::variant::{Answer, Variant, VariantError};
+use crate::work::{BATCH, PlayError, Player, Unit, Work};
+
+/// Why learning ended without a result.
+#[derive(Debug)]
+pub enum LearnError {
+    /// The library to learn from is refused.
+    Library(VariantError),
+    /// Trials could not be played.
+    Play(PlayError),
+}
+
+impl From<PlayError> for LearnError {
+    fn from(error: PlayError) -> Self {
+        Self::Play(error)
+    }
+}
+
+impl fmt::Display for LearnError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Library(VariantError::Edit(error)) => error.fmt(f),
+            Self::Library(VariantError::Refused(findings)) => {
+                f.write_str("the library is refused; correct it:")?;
+                findings.iter().try_for_each(|finding| write!(f, "\n  {finding}"))
+            }
+            Self::Play(error) => error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for LearnError {}
+
+/// Learns from a library's files and, if there is any, evidence of earlier play.
+pub fn learn(
+    files: Files,
+    earlier: Evidence,
+    settings: &LearnSettings,
+    player: &mut impl Player,
+) -> Result<Learned, LearnError> {
+    let start = Variant::new(files).map_err(LearnError::Library)?;
+    let mut run = Run {
+        sizes: Sizes::of(settings.budget),
+        settings,
+        player,
+        evidence: earlier,
+        libraries: vec![start.hash],
+        tried: BTreeSet::new(),
+        spent: 0,
+        tests: 0,
+        accepted: 0,
+        used: BTreeMap::new(),
+        changes: Vec::new(),
+        curve: Vec::new(),
+    };
+    let mut current = start.clone();
+    run.measure(&current, 0)?;
+    let mut idle = 0;
+    for round in 1.. {
+        let before = run.changes.len();
+        let next = run.round(&current, round)?;
+        if next.hash != current.hash {
+            run.libraries.push(next.hash);
+            run.measure(&next, round)?;
+        } else if let Some(last) = run.curve.last().cloned() {
+            run.curve.push(CurvePoint { round, spent: run.spent, ..last });
+        }
+        current = next;
+        idle = if run.changes.len() == before { idle + 1 } else { 0 };
+        let exhausted = idle == IDLE_ROUNDS || run.tests >= settings.tries;
+        if settings.dry_run || exhausted || run.spent >= settings.budget {
+            break;
+        }
+    }
+    let Run { evidence, changes, curve, spent, tests, .. } = run;
+    Ok(Learned { settings: settings.clone(), start, end: current, evidence, changes, curve, spent, tests })
+}
+
+/// Numbers of starts a round.
+#[derive(Clone, Copy, Debug)]
+struct Sizes {
+    explore: u32,
+    confirm: u32,
+    validate: u32,
+    held_out: u32,
+    /// Proposals a kind that are screened.
+    proposals: usize,
+    search: SearchSize,
+}
+
+impl Sizes {
+    /// About eight rounds fit a large budget, and two the least.
+    fn of(budget: u64) -> Self {
+        let unit = u64::from(BATCH);
+        let explore = (budget / 100 / unit * unit).clamp(8 * unit, 4096) as u32;
+        Self {
+            explore,
+            confirm: 8 * explore,
+            validate: explore.max(VALIDATE_MIN.min(8 * explore)),
+            held_out: explore,
+            proposals: (explore as usize / 100).clamp(4, 10),
+            search: SearchSize { situations: (explore / 64).clamp(4, 16), rollouts: 8 },
+        }
+    }
+}
+
+/// Least number of validation starts where the budget allows for it: fewer show nothing of single kinds of
+/// starts.
+const VALIDATE_MIN: u32 = 1024;
+/// Rounds without a proposal after which there is nothing left to try: drafts come from other situations each
+/// round.
+const IDLE_ROUNDS: u32 = 3;
+
+struct Run<'r, P> {
+    settings: &'r LearnSettings,
+    sizes: Sizes,
+    player: &'r mut P,
+    evidence: Evidence,
+    /// Hashes of the libraries so far, oldest first.
+    libraries: Vec<u64>,
+    /// Edits that were tried, with the text that they were tried on.
+    tried: BTreeSet<(u64, Edit)>,
+    spent: u64,
+    tests: u32,
+    accepted: u32,
+    /// Starts of each stream that were used up.
+    used: BTreeMap<StartStream, u32>,
+    changes: Vec<ChangeRecord>,
+    curve: Vec<CurvePoint>,
+}
+
+/// Trials of a library on starts of a stream, with what retrieval answered in each.
+struct Played {
+    stream: StartStream,
+    first: u32,
+    trials: Vec<LearningTrial>,
+    answers: Vec<Vec<Answer>>,
+}
+
+struct Candidate {
+    proposal: Proposal,
+    variant: Variant,
+    wager: Wager,
+    /// Played pairs by kind of start.
+    cells: [Wager; CELLS.len()],
+}
+
+impl Candidate {
+    fn new(proposal: Proposal, variant: Variant) -> Self {
+        Self { proposal, variant, wager: Wager::default(), cells: [Wager::default(); CELLS.len()] }
+    }
+}
+
+impl<P: Player> Run<'_, P> {
+    fn round(&mut self, current: &Variant, round: u32) -> Result<Variant, LearnError> {
+        let explored = self.fresh(current, StartStream::Exploration, self.sizes.explore)?;
+        self.collect(current, &explored);
+        let proposals = self.propose(current, &explored, round)?;
+        for proposal in &proposals {
+            self.tried.insert((text_hash(current, &proposal.edit.case), proposal.edit.clone()));
+        }
+        let finalists = self.screen(current, &explored, proposals, round)?;
+        if self.settings.dry_run {
+            return Ok(current.clone());
+        }
+        let confirmed = self.confirm(current, finalists, round)?;
+        let mut next = current.clone();
+        for (candidate, threshold) in confirmed {
+            next = self.validate(next, &candidate, threshold, round)?;
+        }
+        Ok(next)
+    }
+
+    /// Plays starts that no other step has seen, with their decisions.
+    fn fresh(&mut self, variant: &Variant, stream: StartStream, count: u32) -> Result<Played, LearnError> {
+        let used = self.used.entry(stream).or_default();
+        let first = *used;
+        *used += count;
+        self.recorded(variant, stream, first, count)
+    }
+
+    fn recorded(
+        &mut self,
+        variant: &Variant,
+        stream: StartStream,
+        first: u32,
+        count: u32,
+    ) -> Result<Played, LearnError> {
+        let trials = self.starts(variant, stream, &(first..first + count).collect::<Vec<_>>(), true)?;
+        let base = variant.base();
+        let answers = (trials.par_iter())
+            .map(|trial| {
+                let problems = trial.decisions.iter().map(|decision| decision.situation.problem());
+                problems.map(|problem| variant.answer(&base, &problem)).collect()
+            })
+            .collect();
+        Ok(Played { stream, first, trials, answers })
+    }
+
+    fn starts(
+        &mut self,
+        variant: &Variant,
+        stream: StartStream,
+        indices: &[u32],
+        record: bool,
+    ) -> Result<Vec<LearningTrial>, LearnError> {
+        self.spent += indices.len() as u64;
+        let chunks = indices.chunks(BATCH as usize);
+        let units: Vec<_> = chunks
+            .map(|chunk| Unit { variant, work: Work::Starts { stream, indices: chunk.to_vec(), record } })
+            .collect();
+        Ok(self.player.play(&units)?.into_iter().flatten().collect())
+    }
+
+    /// Adds trials to the evidence; in the null control with the outcomes of other trials.
+    fn collect(&mut self, current: &Variant, played: &Played) {
+        let world = world_hash();
+        let mut outcomes: Vec<_> = played.trials.iter().map(|trial| trial.outcome).collect();
+        if self.settings.shuffle {
+            let mut chance = Stream::new(self.settings.seed ^ u64::from(played.first), "shuffle");
+            for i in (1..outcomes.len()).rev() {
+                outcomes.swap(i, chance.whole(0, i as u32) as usize);
+            }
+        }
+        for ((index, trial), outcome) in (played.first..).zip(&played.trials).zip(outcomes) {
+            let opponents = CELLS[cell(index).0].0.label();
+            self.evidence.add(current, &world, opponents, &LearningTrial { outcome, ..trial.clone() });
+        }
+    }
+
+    fn propose(
+        &mut self,
+        current: &Variant,
+        played: &Played,
+        round: u32,
+    ) -> Result<Vec<Proposal>, LearnError> {
+        let known = standings(&self.evidence, &self.libraries);
+        let mut proposals = Vec::new();
+        for kind in self.settings.kinds.clone() {
+            if kind == Kind::New {
+                let mut occasions = Vec::new();
+                for (index, trial) in (played.first..).zip(&played.trials) {
+                    let two_defenders = CELLS[cell(index).0].0 == Configuration::TwoDefenders;
+                    let retrieved = trial.decisions.iter().filter(|decision| decision.retrieved);
+                    occasions.extend(retrieved.map(|decision| Occasion {
+                        situation: decision.situation.clone(),
+                        two_defenders,
+                        without_case: decision.case.is_none(),
+                    }));
+                }
+                let seed = self.settings.seed ^ (u64::from(round) << 32);
+                let (drafts, spent) = search(current, &occasions, self.sizes.search, seed, self.player)?;
+                self.spent += spent;
+                proposals.extend(drafts);
+            } else {
+                let mut all = from_evidence(current, &known, kind, &self.tried);
+                all.truncate(self.sizes.proposals);
+                for proposal in all.iter_mut().filter(|proposal| proposal.kind == Kind::Forget) {
+                    if let Ok(without) = current.edited(&proposal.edit) {
+                        proposal.reason += &successors(&proposal.edit.case, current, &without, played);
+                    }
+                }
+                proposals.extend(all);
+            }
+        }
+        Ok(proposals)
+    }
+
+    fn measure(&mut self, variant: &Variant, round: u32) -> Result<(), LearnError> {
+        let indices: Vec<_> = (0..self.sizes.held_out).collect();
+        let trials = self.starts(variant, StartStream::HeldOut, &indices, false)?;
+        self.curve.push(CurvePoint::of(round, self.spent, &trials));
+        Ok(())
+    }
+}
+
+/// What would take over from a case: the cases that are retrieved in its place, most often first.
+fn successors(case: &str, current: &Variant, without: &Variant, played: &Played) -> String {
+    let base = without.base();
+    let mut counts: BTreeMap<String, u32> = BTreeMap::new();
+    for decision in played.trials.iter().flat_map(|trial| &trial.decisions) {
+        let name = decision.case.and_then(|id| current.names().get(usize::from(id / 4)));
+        if name.is_some_and(|name| name == case) {
+            let answer = without.answer(&base, &decision.situation.problem());
+            *counts.entry(answer.map_or_else(|| "no case".to_owned(), |(name, _, _)| name)).or_default() += 1;
+        }
+    }
+    let mut counts: Vec<_> = counts.into_iter().collect();
+    counts.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
+    let of: u32 = counts.iter().map(|(_, count)| count).sum();
+    let part =
+        |(name, count): &(String, u32)| format!("{name} {:.0} %", 100.0 * f64::from(*count) / f64::from(of));
+    let parts: Vec<_> = counts.iter().take(SUCCESSORS).map(part).collect();
+    if parts.is_empty() { String::new() } else { format!("; in its place: {}", parts.join(", ")) }
+}
+
+/// Most successors of a case that a reason names.
+const SUCCESSORS: usize = 3;

@@ -1,0 +1,40 @@
+//! `learning`: revise and retain: a case library made better by play (docs/learning.md). Runs on the PC.
+//!
+//! [`learn()`] takes a library's files and a [`Player`] of trials and returns a [`Learned`] library, with the
+//! evidence for every change that was accepted and every one that was refused. It does no input or output
+//! itself; [`JournalPlayer`] keeps finished trials in a directory, so that a run may be killed, resumed and
+//! sharded.
+#![forbid(unsafe_code)]
+
+mod betting;
+mod competence;
+mod diff;
+mod drafts;
+mod edit;
+mod evidence;
+mod journal;
+mod learner;
+mod page;
+mod proposals;
+mod results;
+mod settings;
+mod starts;
+mod trial;
+mod variant;
+mod work;
+
+pub use betting::{Wager, threshold};
+pub use competence::{CaseStanding, Standing, standings};
+pub use diff::diff;
+pub use edit::{Change, Edit, EditError};
+pub use evidence::{Evidence, EvidenceCounts, EvidenceKey, Posterior, ScopeRing};
+pub use journal::JournalPlayer;
+pub use learner::{LearnError, learn};
+pub use page::{html, json, summary};
+pub use proposals::{Kind, Proposal};
+pub use results::{ChangeRecord, CurvePoint, Learned, Verdict};
+pub use settings::LearnSettings;
+pub use starts::{CELLS, StartPlan, StartStream, cell, cell_label};
+pub use trial::{LearningTrial, Situation, TrialDecision};
+pub use variant::{Answer, Variant, VariantError};
+pub use work::{PlayError, Player, Unit, Work};

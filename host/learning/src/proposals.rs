@@ -1,0 +1,268 @@
+//! `proposals`: single edits that evidence suggests: scopes grown and shrunk, positions and actions varied,
+//! cases forgotten. mm.
+//!
+//! Ring by ring as Ros & Arcos 2007: the risk ring moves, the security ring stands, so a scope shrinks to
+//! half its area at most in one step. A proposal's weight is the number of plays that it touches times how
+//! far they are from what is usual there; trials decide, weights only say what to try first.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use case_tools::CaseLeague;
+use case_tools::workbench::{ActionText, CaseText, Part};
+use serde::{Deserialize, Serialize};
+
+use crate::competence::CaseStanding;
+use crate::edit::{Change, Edit};
+use crate::variant::Variant;
+
+/// Kinds of changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// Radii of ball and opponents' scopes.
+    Scopes,
+    /// Positions and actions.
+    Actions,
+    /// New cases.
+    New,
+    /// Deleted cases.
+    Forget,
+}
+
+impl Kind {
+    /// All kinds.
+    pub const ALL: [Self; 4] = [Self::Scopes, Self::Actions, Self::New, Self::Forget];
+
+    /// Its name on the command line and in reports.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Scopes => "scopes",
+            Self::Actions => "actions",
+            Self::New => "new",
+            Self::Forget => "forget",
+        }
+    }
+
+    /// The kind with this name.
+    pub fn from_label(label: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.label() == label)
+    }
+}
+
+/// A change to be tried.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Proposal {
+    /// Its kind.
+    pub kind: Kind,
+    /// The edit.
+    pub edit: Edit,
+    /// Why it is tried: the evidence, as a sentence.
+    pub reason: String,
+    /// How much it may be worth, plays times rate.
+    pub weight: f64,
+}
+
+/// Proposals of a kind from evidence, heaviest first, without those of `tried`.
+pub(crate) fn from_evidence(
+    variant: &Variant,
+    standings: &BTreeMap<String, CaseStanding>,
+    kind: Kind,
+    tried: &BTreeSet<(u64, Edit)>,
+) -> Vec<Proposal> {
+    let mut proposals = Vec::new();
+    let kicks = kicks(variant);
+    for file in &variant.files.cases {
+        let (Ok(text), Some(standing)) = (CaseText::read(&file.text), standings.get(&file.name)) else {
+            continue;
+        };
+        if standing.all.plays() < PLAYS_MIN {
+            continue;
+        }
+        let draft = Draft { case: &file.name, text: &text, standing };
+        match kind {
+            Kind::Scopes => draft.scopes(&mut proposals),
+            Kind::Actions => draft.actions(&kicks, &mut proposals),
+            Kind::Forget => draft.forget(&mut proposals),
+            Kind::New => {}
+        }
+    }
+    proposals.retain(|proposal| {
+        !tried.contains(&(text_hash(variant, &proposal.edit.case), proposal.edit.clone()))
+    });
+    proposals.sort_by(|a, b| b.weight.total_cmp(&a.weight).then_with(|| a.edit.cmp(&b.edit)));
+    proposals
+}
+
+/// Hash of a case's text; of an empty one where the library lacks it.
+pub(crate) fn text_hash(variant: &Variant, case: &str) -> u64 {
+    let text = variant.files.cases.iter().find(|file| file.name == case).map(|file| file.text.as_str());
+    let mut hash = hil_sim::Fnv::default();
+    hash.add(text.unwrap_or_default().as_bytes());
+    hash.value()
+}
+
+/// The league's kick kinds.
+fn kicks(variant: &Variant) -> Vec<String> {
+    CaseLeague::of(&variant.files.rules)
+        .map(|league| league.kicks.iter().map(|(name, _)| name.clone()).collect())
+        .unwrap_or_default()
+}
+
+struct Draft<'d> {
+    case: &'d str,
+    text: &'d CaseText,
+    standing: &'d CaseStanding,
+}
+
+impl Draft<'_> {
+    fn push(&self, proposals: &mut Vec<Proposal>, kind: Kind, change: Change, reason: String, weight: f64) {
+        let edit = Edit { case: self.case.to_owned(), change };
+        proposals.push(Proposal { kind, edit, reason, weight });
+    }
+
+    fn scopes(&self, proposals: &mut Vec<Proposal>) {
+        let CaseStanding { risk, met, unmet, .. } = self.standing;
+        let advantage = risk.advantage();
+        let grows = advantage > 0.0;
+        let factor = if grows { GROW } else { SHRINK };
+        let reason = format!(
+            "{:.0} plays with the ball in the risk ring: {:+.1} points against what is usual there",
+            risk.plays(),
+            100.0 * advantage
+        );
+        let weight = risk.plays() * advantage.abs();
+        // Both axes first: one alone moves half as many plays.
+        let axes = [([true, true], 1.0), ([true, false], 0.5), ([false, true], 0.5)];
+        let scope = self.text.scope_of(&Part::Ball);
+        for ([x, y], (axes, part)) in scope.into_iter().flat_map(|scope| axes.map(|axes| (scope, axes))) {
+            let scaled =
+                |value: i32, axis: bool, most: i32| if axis { scale(value, factor, most) } else { value };
+            let radii = [scaled(x, axes[0], BALL_SCOPE_MAX[0]), scaled(y, axes[1], BALL_SCOPE_MAX[1])];
+            if radii != [x, y] {
+                self.push(proposals, Kind::Scopes, Change::BallScope(radii), reason.clone(), weight * part);
+            }
+        }
+        for (n, scope) in (1..).map_while(|n| self.text.scope_of(&Part::Opponent(n))).enumerate() {
+            let (side, factor) =
+                if met.advantage() >= unmet.advantage() { (met, GROW) } else { (unmet, SHRINK) };
+            let radii = scope.map(|value| scale(value, factor, OPPONENT_SCOPE_MAX));
+            let reason = format!(
+                "with an opponent in every scope {:+.1} points in {:.0} plays, else {:+.1} in {:.0}",
+                100.0 * met.advantage(),
+                met.plays(),
+                100.0 * unmet.advantage(),
+                unmet.plays()
+            );
+            let weight = 0.5 * side.plays() * (met.advantage() - unmet.advantage()).abs();
+            if radii != scope {
+                self.push(proposals, Kind::Scopes, Change::OpponentScope(n, radii), reason, weight);
+            }
+        }
+    }
+
+    fn actions(&self, kicks: &[String], proposals: &mut Vec<Proposal>) {
+        let all = self.standing.all;
+        // A variant of a weak case has more to gain; a strong one's may still be better.
+        let weight = all.plays() * (0.05 - all.advantage()).max(0.01);
+        let reason = format!(
+            "{:.0} plays, {:+.1} points against what is usual there",
+            all.plays(),
+            100.0 * all.advantage()
+        );
+        let mut change = |n, i, action: &ActionText| {
+            let change = Change::Action(n, i, action.to_string());
+            self.push(proposals, Kind::Actions, change, reason.clone(), weight);
+        };
+        for n in 0..self.text.robots() {
+            let actions = self.text.actions(n + 1);
+            for (i, action) in actions.iter().enumerate() {
+                for variant in &variants(action, kicks) {
+                    change(n, i, variant);
+                }
+            }
+            if let Some(ActionText::DribbleTo(_)) = actions.last() {
+                for kick in kicks {
+                    change(n, actions.len(), &ActionText::Kick(kick.clone()));
+                }
+            }
+        }
+    }
+
+    fn forget(&self, proposals: &mut Vec<Proposal>) {
+        let all = self.standing.all;
+        if all.advantage() < 0.0 {
+            let reason = format!(
+                "{:.0} plays, {:+.1} points against what is usual there",
+                all.plays(),
+                100.0 * all.advantage()
+            );
+            let weight = all.plays() * -all.advantage();
+            self.push(proposals, Kind::Forget, Change::Forget, reason, weight);
+        }
+    }
+}
+
+/// Variants of an action: its point moved, its kick another.
+fn variants(action: &ActionText, kicks: &[String]) -> Vec<ActionText> {
+    let moved = |[x, y]: [i32; 2]| MOVES.map(|[dx, dy]| [x + dx, y + dy]).into_iter();
+    match action {
+        ActionText::Kick(kind) => {
+            kicks.iter().filter(|other| *other != kind).cloned().map(ActionText::Kick).collect()
+        }
+        ActionText::GoToPoint(at) => moved(*at).map(ActionText::GoToPoint).collect(),
+        ActionText::DribbleTo(at) => moved(*at).map(ActionText::DribbleTo).collect(),
+        _ => Vec::new(),
+    }
+}
+
+fn scale(value: i32, factor: [i32; 2], most: i32) -> i32 {
+    let scaled = value * factor[0] / factor[1] / 10 * 10;
+    // A scope that the author made larger than the limit may only shrink.
+    if factor[0] > factor[1] { scaled.min(most.max(value)) } else { scaled.max(SCOPE_MIN) }
+}
+
+/// Decayed plays below which a case's evidence proposes nothing.
+const PLAYS_MIN: f64 = 20.0;
+/// Factor of a growing radius: half as much area again.
+const GROW: [i32; 2] = [5, 4];
+/// Factor of a shrinking radius: the security ring, half of the area, is what stays.
+const SHRINK: [i32; 2] = [71, 100];
+/// Radii above which `cases check` warns, mm (docs/case-format.md §1.2).
+const BALL_SCOPE_MAX: [i32; 2] = [900, 700];
+/// Largest radius of an opponent's scope, mm: the skeletons' own limit.
+const OPPONENT_SCOPE_MAX: i32 = 700;
+/// Smallest radius, mm: below that a robot's own width decides.
+const SCOPE_MIN: i32 = 120;
+/// How points are moved, mm: a step or two of a robot.
+const MOVES: [[i32; 2]; 6] = [[250, 0], [-250, 0], [0, 250], [0, -250], [250, 250], [250, -250]];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_action_varies_in_its_kick_or_its_point_alone() {
+        let kicks = ["goal", "left", "right"].map(str::to_owned);
+        let varied = |action: &str| -> Vec<String> {
+            variants(&action.parse().unwrap(), &kicks).iter().map(ToString::to_string).collect()
+        };
+        assert_eq!(varied("{ kick = \"left\" }"), ["{ kick = \"goal\" }", "{ kick = \"right\" }"]);
+        let moved = varied("{ dribble_to = [400, -150] }");
+        assert_eq!((moved.len(), moved[0].as_str()), (6, "{ dribble_to = [650, -150] }"));
+        for fixed in ["\"wait\"", "{ pass_ball = 2 }", "{ turn = { face = [1, 2] } }"] {
+            assert!(varied(fixed).is_empty(), "{fixed}");
+        }
+    }
+
+    #[test]
+    fn a_scope_keeps_its_security_ring_when_it_shrinks_and_its_limit_when_it_grows() {
+        let radii = [scale(500, SHRINK, 900), scale(400, SHRINK, 700)];
+        // The inner half of the area, to the next 10 mm.
+        let share = f64::from(radii[0] * radii[1]) / (500.0 * 400.0);
+        assert!((0.47..=0.51).contains(&share), "{share}");
+        assert_eq!(
+            [scale(800, GROW, 900), scale(1000, GROW, 900), scale(130, SHRINK, 900)],
+            [900, 1000, 120]
+        );
+    }
+}

@@ -1,0 +1,119 @@
+//! `results`: what a run of learning has found.
+
+use serde::Serialize;
+
+use crate::betting::Wager;
+use crate::diff::diff;
+use crate::evidence::Evidence;
+use crate::proposals::Proposal;
+use crate::settings::LearnSettings;
+use crate::starts::{CELLS, cell};
+use crate::trial::LearningTrial;
+use crate::variant::Variant;
+
+/// What became of a proposal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// Of a run that changes nothing.
+    Proposed,
+    /// Others were better on the starts that it was drawn from.
+    ScreenedOut,
+    /// The sequential test did not reach its threshold.
+    Unconfirmed,
+    /// It does not fit the library any more after the changes before it.
+    Superseded,
+    /// `cases check` would warn.
+    Warned,
+    /// It lowers a kind of validation starts, or all of them together.
+    Lowers,
+    /// It is in the learned library.
+    Accepted,
+}
+
+/// A proposal and its evidence.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ChangeRecord {
+    /// The round, from 1.
+    pub round: u32,
+    /// The change.
+    pub proposal: Proposal,
+    /// Its pairs: those of the test, or of screening where it was not tested.
+    pub wager: Wager,
+    /// The e-value that the test needed; none where it was not tested.
+    pub needed: Option<f64>,
+    /// What became of it.
+    pub verdict: Verdict,
+    /// Pairs on validation starts, all and by kind of start.
+    pub validation: Option<(Wager, Vec<Wager>)>,
+}
+
+/// The library after a round, on held-out starts.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CurvePoint {
+    /// The round, 0 before the first.
+    pub round: u32,
+    /// Trials so far.
+    pub spent: u64,
+    /// Held-out starts.
+    pub starts: u32,
+    /// Of these, with the ball in or close to the goal, percent.
+    pub to_goal: f64,
+    /// The same of random starts alone.
+    pub to_goal_random: f64,
+    /// Touches of the opponents, a trial.
+    pub touches: f64,
+}
+
+impl CurvePoint {
+    /// The measures of trials on the first held-out starts.
+    pub(crate) fn of(round: u32, spent: u64, trials: &[LearningTrial]) -> Self {
+        let percent = |hits: usize, of: usize| 100.0 * hits as f64 / of.max(1) as f64;
+        let random: Vec<_> =
+            (0..).zip(trials).filter(|(index, _)| cell(*index).0 < 2).map(|(_, trial)| trial).collect();
+        let goals = |trials: &mut dyn Iterator<Item = &LearningTrial>| trials.filter(|t| t.to_goal()).count();
+        debug_assert_eq!(CELLS[1].1, hil_sim::Scenario::Random);
+        let touches: u64 = trials.iter().map(|trial| u64::from(trial.touches)).sum();
+        Self {
+            round,
+            spent,
+            starts: trials.len() as u32,
+            to_goal: percent(goals(&mut trials.iter()), trials.len()),
+            to_goal_random: percent(goals(&mut random.iter().copied()), random.len()),
+            touches: touches as f64 / trials.len().max(1) as f64,
+        }
+    }
+}
+
+/// What a run has learned.
+#[derive(Clone, Debug)]
+pub struct Learned {
+    /// Its settings.
+    pub settings: LearnSettings,
+    /// The library before.
+    pub start: Variant,
+    /// The library after.
+    pub end: Variant,
+    /// The evidence, that of earlier play included.
+    pub evidence: Evidence,
+    /// Every proposal, in the order of decisions.
+    pub changes: Vec<ChangeRecord>,
+    /// The learning curve.
+    pub curve: Vec<CurvePoint>,
+    /// Trials that it took.
+    pub spent: u64,
+    /// Sequential tests among them.
+    pub tests: u32,
+}
+
+impl Learned {
+    /// The changes that are in the learned library.
+    pub fn accepted(&self) -> impl Iterator<Item = &ChangeRecord> {
+        self.changes.iter().filter(|change| change.verdict == Verdict::Accepted)
+    }
+
+    /// What the learned library has in other files or lines, as a unified diff.
+    pub fn diff(&self) -> String {
+        diff(&self.start.files, &self.end.files)
+    }
+}
