@@ -337,7 +337,7 @@ const PURE: [&str; 10] = [
 ];
 
 /// docs/architecture.md §1.2; a crate depends on earlier ones only.
-const LOWEST_FIRST: [&str; 28] = [
+const LOWEST_FIRST: [&str; 29] = [
     "geometry",
     "rules",
     "protocol",
@@ -362,6 +362,7 @@ const LOWEST_FIRST: [&str; 28] = [
     "host",
     "arena",
     "report",
+    "learning",
     "onetwo",
     "match-tests",
     "xtask",

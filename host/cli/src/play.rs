@@ -26,6 +26,7 @@ use crate::live::{CaseExplanations, End, MatchRunner, PageArgs, RestartWatcher, 
 use crate::output::{self, note};
 use crate::progress::Progress;
 use crate::stop::{signal, stopped_by_hand};
+use crate::workbench::SharedLibrary;
 
 /// Settings of a match.
 #[derive(Debug, Args)]
@@ -129,7 +130,7 @@ pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
     let mut recording = args.record.as_ref().map(|stem| record(stem, &config)).transpose()?;
     let mut teller = Teller::new(args);
     if !args.headless && !args.json {
-        return on_page(args, config, library_handle.as_ref(), Watched { teller, recording });
+        return on_page(args, config, library_handle, Watched { teller, recording });
     }
     let stopped = stopped_by_hand();
     let report = {
@@ -165,18 +166,18 @@ pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
 fn on_page(
     args: &PlayArgs,
     config: GameConfig,
-    library_handle: Option<&LibraryHandle>,
+    library_handle: Option<LibraryHandle>,
     mut watched: Watched,
 ) -> Result<ExitCode, Failure> {
     let settings = args.settings.choose()?.settings;
-    let explanations =
-        CaseExplanations::new(library_handle_of(args.league, args.directory.library.as_deref())?, settings);
+    let library = SharedLibrary::new(library_handle);
+    let explanations = CaseExplanations::sharing(library.clone(), settings);
     let world =
         if args.world == WorldChoice::Nominal { String::new() } else { format!(", world {}", args.world) };
     let title = format!("{}, seed {}{world}", args.league.name(), args.seed);
     let page = args.page.open(title, false, Powers::Simulation, explanations)?;
     note!("playing  {}; Ctrl-C ends it", args.league.name());
-    let mut match_runner = MatchRunner::new(config, library_handle, page, args.speed, args.record.is_some());
+    let mut match_runner = MatchRunner::new(config, library, page, args.speed, args.record.is_some());
     loop {
         let (report, over) = match match_runner.play(&mut watched)? {
             End::Over(report) => (report, true),

@@ -54,6 +54,11 @@ files! {
     "dom.js": SCRIPT,
     "put.js": SCRIPT,
     "over.js": SCRIPT,
+    "workbench.js": SCRIPT,
+    "ghost.js": SCRIPT,
+    "draft.js": SCRIPT,
+    "judge.js": SCRIPT,
+    "rehearse.js": SCRIPT,
 }
 
 /// The file with this path; `/` is the page itself.

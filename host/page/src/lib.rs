@@ -35,13 +35,14 @@ mod shape;
 mod socket;
 mod token;
 mod viewers;
+mod workbench;
 
 pub use archive::ArchiveSample;
 pub use deferred_scene::DeferredScene;
 pub use limits::Limits;
 pub use match_event::{DecisionNote, MatchEvent, MatchEventKind};
 pub use page::{ExplanationService, Page, PageError, PageSettings};
-pub use problem::{Freeze, problem, skeleton};
+pub use problem::problem;
 pub use request::{PageTeam, Powers, Refused, UserRequest};
 pub use scene::{
     Cycle, Field, Gauge, Intent, Match, MatchEnd, PerTeam, Raw, RobotDetail, Scene, SceneBall, SceneRobot,
@@ -49,6 +50,7 @@ pub use scene::{
 };
 pub use shape::{Heat, Layer, Shape, Tone};
 pub use token::{NoToken, Token};
+pub use workbench::{MatchProblem, WorkbenchRequest};
 
 /// Rounded to a thousandth: millimetres are enough for the page, and JSON is shorter.
 pub fn milli(x: f32) -> f32 {

@@ -17,6 +17,7 @@ use crate::request::{Powers, UserRequest};
 use crate::server::{Ask, Server, Shared};
 use crate::token::Token;
 use crate::viewers::{Mailbox, Viewers};
+use crate::workbench::WorkbenchRequest;
 
 /// Requests that may wait for the match; further ones are answered that it is busy.
 const REQUESTS_MAX: usize = 256;
@@ -43,6 +44,11 @@ pub trait ExplanationService: Send + Sync {
     /// Explains why a case is retrieved: `problem` as `onetwo cases explain` takes it; the answer as it gives
     /// it with `--json`.
     fn explain(&self, problem: &str) -> Result<String, String>;
+
+    /// Answers a request of the case workbench; JSON in, JSON out.
+    fn workbench(&self, _request: &WorkbenchRequest) -> Result<String, String> {
+        Err("there is no workbench here".to_owned())
+    }
 
     /// The situations that a simulation can be put into, by name.
     fn situations(&self) -> Vec<String> {

@@ -1,33 +1,15 @@
-//! `problem`: export of a moment. As a problem line for `onetwo cases retrieve` and `explain`, or as the
-//! draft of a case file. mm, field frame (docs/case-format.md §1, §5.1).
+//! `problem`: export of a moment as a problem line, for `onetwo cases retrieve` and `explain` and for the
+//! workbench, which drafts a case for it. mm, field frame (docs/case-format.md §5.1).
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use crate::request::PageTeam;
 use crate::scene::{Scene, SceneRobot};
 
-/// Format of the export.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Freeze {
-    /// One line of JSON.
-    Problem,
-    /// A case file to be finished by its author.
-    Case,
-}
-
-/// Most robots of a team in a case file (docs/case-format.md §1).
-const CASE_ROBOTS_MAX: usize = 4;
 /// Most robots of a team in a problem.
 const PROBLEM_ROBOTS_MAX: usize = 11;
-/// The ball's initial scope, mm: as in the example of docs/case-format.md §1.
-const BALL_SCOPE: &str = "[450, 250]";
-/// An opponent's initial scope, mm.
-const OPPONENT_SCOPE: &str = "[300, 300]";
-
 #[derive(Serialize)]
 struct Problem {
     ball: [i32; 2],
@@ -59,55 +41,6 @@ pub fn problem(scene: &Scene, team: PageTeam) -> Option<String> {
     serde_json::to_string(&problem).ok()
 }
 
-/// The moment as a case file of that team: the robots nearest to the ball; the first of them gets it and
-/// passes to the second.
-pub fn skeleton(scene: &Scene, team: PageTeam) -> Option<String> {
-    let ball = scene.ball.as_ref()?;
-    let far = |robot: &SceneRobot| {
-        let (x, y) = (robot.at[0] - ball.at[0], robot.at[1] - ball.at[1]);
-        x * x + y * y
-    };
-    let nearest = |mut robots: Vec<SceneRobot>| {
-        robots.sort_by(|a, b| far(a).total_cmp(&far(b)).then(a.id.cmp(&b.id)));
-        robots.truncate(CASE_ROBOTS_MAX);
-        robots
-    };
-    let teammates = nearest(field_players(scene, team).cloned().collect());
-    let opponents = nearest(scene.robots.iter().filter(|robot| robot.team != team).cloned().collect());
-    if teammates.is_empty() {
-        return None;
-    }
-    let place = |at: [f32; 2]| {
-        let [x, y] = mm(inside(scene, at));
-        format!("[{x}, {y}]")
-    };
-    let mut out = format!(
-        "intent = \"A moment at {:.2} s: say what these robots shall do with it.\"\ndefending = \"{}\"\nball = {{ at = {}, scope = {BALL_SCOPE} }}\n",
-        scene.t,
-        defending(scene, team),
-        place(ball.at)
-    );
-    for (i, robot) in teammates.iter().enumerate() {
-        let plan = match (i, teammates.len()) {
-            (0, 1) => "\"get_ball\"",
-            (0, _) => "\"get_ball\", { pass_ball = 2 }",
-            (1, _) => "\"wait\", { receive_ball = 1 }",
-            _ => "\"wait\"",
-        };
-        let _ = write!(
-            out,
-            "\n[[teammates]] # robot {} of {}\nat = {}\ngameplay = [{plan}]\n",
-            robot.id,
-            label(team),
-            place(robot.at)
-        );
-    }
-    for robot in &opponents {
-        let _ = write!(out, "\n[[opponents]]\nat = {}\nscope = {OPPONENT_SCOPE}\n", place(robot.at));
-    }
-    Some(out)
-}
-
 fn field_players(scene: &Scene, team: PageTeam) -> impl Iterator<Item = &SceneRobot> {
     let keeper = scene.game.teams.of(team).keeper;
     scene.robots.iter().filter(move |robot| robot.team == team && Some(robot.id) != keeper)
@@ -120,18 +53,6 @@ fn defending(scene: &Scene, team: PageTeam) -> &'static str {
         1 => "cyan",
         _ => "yellow",
     }
-}
-
-fn label(team: PageTeam) -> &'static str {
-    match team {
-        PageTeam::Blue => "blue",
-        PageTeam::Yellow => "yellow",
-    }
-}
-
-fn inside(scene: &Scene, [x, y]: [f32; 2]) -> [f32; 2] {
-    let (half, side) = (scene.field.length / 2.0, scene.field.width / 2.0);
-    [x.clamp(-half, half), y.clamp(-side, side)]
 }
 
 fn mm(at: [f32; 2]) -> [i32; 2] {
@@ -188,15 +109,5 @@ pub(crate) mod tests {
         let line = problem(&scene, PageTeam::Blue).unwrap();
         assert!(line.contains(r#""teammates":{"3":[1000,300]},"#), "{line}");
         assert!(line.ends_with(r#""unavailable":{"5":[500,500]}}"#), "{line}");
-    }
-
-    #[test]
-    fn a_skeleton_has_the_nearest_robots_and_one_that_gets_the_ball() {
-        let text = skeleton(&scene(), PageTeam::Yellow).unwrap();
-        assert_eq!(text.matches("get_ball").count(), 1);
-        assert_eq!((text.matches("[[teammates]]").count(), text.matches("[[opponents]]").count()), (2, 3));
-        assert!(text.contains("defending = \"yellow\"\nball = { at = [500, -250]"), "{text}");
-        let first = text.split("[[teammates]]").nth(1).unwrap();
-        assert!(first.starts_with(" # robot 5 of yellow\nat = [-500, 500]"), "{text}");
     }
 }

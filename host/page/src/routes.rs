@@ -9,11 +9,12 @@ use serde_json::json;
 use crate::archive::look;
 use crate::files;
 use crate::http::{Answer, Head, Status};
-use crate::problem::{Freeze, problem, skeleton};
+use crate::problem::problem;
 use crate::request::PageTeam;
 use crate::server::Shared;
+use crate::workbench::{WorkbenchRequest, problems};
 
-/// Happenings in one answer.
+/// Events in one answer.
 const MATCH_EVENTS_A_TIME: usize = 5_000;
 const JSON: &str = "application/json";
 
@@ -29,6 +30,8 @@ pub(crate) fn answer(shared: &Shared, head: &Head, body: Vec<u8>, within: Durati
         "/api/plots" => allowed("GET, HEAD", reads, &|| plots(shared)),
         "/api/cases" => allowed("GET, HEAD", reads, &|| cases(shared, head)),
         "/api/freeze" => allowed("POST", head.method == "POST", &|| freeze(shared, &body)),
+        "/api/workbench" if head.method == "POST" => workbench(shared, head, body, within),
+        "/api/workbench" => allowed("POST", false, &|| Answer::bare(Status::OK)),
         "/api/explain" if head.method == "POST" => explain(shared, body, within),
         "/api/explain" => allowed("POST", false, &|| Answer::bare(Status::OK)),
         path => match path.strip_prefix("/api/second/") {
@@ -99,10 +102,24 @@ fn cases(shared: &Shared, head: &Head) -> Answer {
 }
 
 fn explain(shared: &Shared, body: Vec<u8>, within: Duration) -> Answer {
-    let answer = shared.in_time(within, move |explanations| match std::str::from_utf8(&body) {
+    answered(shared.in_time(within, move |explanations| match std::str::from_utf8(&body) {
         Ok(problem) => explanations.explain(problem),
         Err(_) => Err("a problem is text".to_owned()),
-    });
+    }))
+}
+
+/// What the case workbench asks; what changes something, or takes long, needs the token.
+fn workbench(shared: &Shared, head: &Head, body: Vec<u8>, within: Duration) -> Answer {
+    let (may_ask, powers) = (shared.may_ask(head.asked("token")), shared.settings.powers);
+    let kept = shared.kept.clone();
+    let problems = Box::new(move || problems(&kept));
+    answered(shared.in_time(within, move |explanations| match String::from_utf8(body) {
+        Ok(text) => explanations.workbench(&WorkbenchRequest { text, may_ask, powers, problems }),
+        Err(_) => Err("a request is text".to_owned()),
+    }))
+}
+
+fn answered(answer: Result<Result<String, String>, Status>) -> Answer {
     match answer {
         Ok(Ok(text)) => Answer::of(JSON, text.into_bytes()),
         Ok(Err(description)) => Answer::description(Status::UNPROCESSABLE, description),
@@ -115,20 +132,15 @@ fn explain(shared: &Shared, body: Vec<u8>, within: Duration) -> Answer {
 struct Frozen {
     t: f64,
     team: PageTeam,
-    what: Freeze,
 }
 
 fn freeze(shared: &Shared, body: &[u8]) -> Answer {
     let Ok(asked) = serde_json::from_slice::<Frozen>(body) else {
-        return Answer::description(Status::UNPROCESSABLE, "expected t, team and what");
+        return Answer::description(Status::UNPROCESSABLE, "expected t and team");
     };
     let scene = look(&shared.kept, |kept| kept.scene_at(asked.t));
-    let text = scene.and_then(|scene| match asked.what {
-        Freeze::Problem => problem(&scene, asked.team).map(|line| line + "\n"),
-        Freeze::Case => skeleton(&scene, asked.team),
-    });
-    match text {
-        Some(text) => Answer::description(Status::OK, text),
+    match scene.and_then(|scene| problem(&scene, asked.team)) {
+        Some(line) => Answer::description(Status::OK, line + "\n"),
         None => Answer::description(Status::UNPROCESSABLE, "no ball or no such team at that moment"),
     }
 }

@@ -29,6 +29,8 @@ const GONE: Duration = Duration::from_secs(30);
 const ACCEPT_AGAIN: Duration = Duration::from_millis(50);
 /// The longest message of a viewer, bytes: a request, a problem.
 const LABEL_MAX: usize = 16 * 1024;
+/// The longest request of the case workbench, bytes: a case file, and the one that it replaces.
+const WORKBENCH_MAX: usize = 128 * 1024;
 /// How long the page's own connection may take that wakes its server for the end.
 const WAKE: Duration = Duration::from_millis(200);
 
@@ -177,11 +179,12 @@ fn serve(stream: TcpStream, shared: &Shared, place: Place) {
             return;
         }
         let answered = Instant::now() + limits.request;
+        let most = if head.path == "/api/workbench" { WORKBENCH_MAX } else { LABEL_MAX };
         let body = match guard::check(&head, shared.port) {
             Err(foreign) => {
                 return Answer::description(Status::FORBIDDEN, foreign.description()).end(&mut wire, closes);
             }
-            Ok(()) => head.body(&mut wire, LABEL_MAX, closes.min(answered)),
+            Ok(()) => head.body(&mut wire, most, closes.min(answered)),
         };
         let body = match body {
             Ok(body) => body,

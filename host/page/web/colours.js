@@ -4,7 +4,7 @@
 import { byId } from "./dom.js";
 import { changed, recall, remember } from "./store.js";
 
-const NAMES = ["back", "panel", "raised", "edge", "text", "dim", "carpet", "margin", "line", "rim", "blue", "blue-ink", "blue-line", "yellow",
+const NAMES = ["back", "panel", "raised", "edge", "text", "dim", "surface", "margin", "line", "rim", "blue", "blue-ink", "blue-line", "yellow",
   "yellow-ink", "yellow-line", "ball", "case", "forbidden", "good", "plain", "accent", "warn", "bad"];
 
 export const colours = {};

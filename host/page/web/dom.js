@@ -14,6 +14,18 @@ export function el(tag, attributes = {}, ...children) {
   return made;
 }
 
+const sizes = new WeakMap();
+const sizing = new ResizeObserver((entries) => entries.forEach(({ target, contentRect }) => sizes.set(target, [contentRect.width, contentRect.height].map(Math.round))));
+
+/** Width and height of a canvas, CSS pixels, as last laid out: to measure it would lay out at once all that a frame has changed. */
+export function sizeOf(canvas) {
+  if (!sizes.has(canvas)) {
+    sizes.set(canvas, [canvas.clientWidth, canvas.clientHeight]);
+    sizing.observe(canvas);
+  }
+  return sizes.get(canvas);
+}
+
 /** Sets words only where they differ: the browser lays out nothing that stays. */
 export function say(target, words) {
   if (target.textContent !== words) target.textContent = words;

@@ -1,6 +1,7 @@
 // What does a hand on the field do? Drags ball and robots of a simulation, moves and zooms the picture, chooses robots, asks shapes.
 
 import { byId } from "./dom.js";
+import { dropHeld, grab, pullHeld } from "./ghost.js";
 import { shows } from "./layers.js";
 import { ask } from "./link.js";
 import { put } from "./put.js";
@@ -15,10 +16,14 @@ const EVERY = 40;
 export function startDrag(canvas, camera) {
   const fingers = new Map();
   let held = null;
+  /** Holds a handle of the case on the workbench. */
+  let handle = false;
   let moved = false;
   let told = 0;
+  /** Where the canvas lay when the drag began: measured at every move, it would be laid out as often. */
+  let box = null;
   const spot = (event) => {
-    const box = canvas.getBoundingClientRect();
+    if (fingers.size === 0) box = canvas.getBoundingClientRect();
     return [event.clientX - box.left, event.clientY - box.top];
   };
 
@@ -47,7 +52,8 @@ export function startDrag(canvas, camera) {
     canvas.setPointerCapture(event.pointerId);
     fingers.set(event.pointerId, spot(event));
     moved = false;
-    held = fingers.size === 1 && store.state.powers === "simulation" && time.live ? under(spot(event)) : null;
+    handle = fingers.size === 1 && grab(spot(event), camera);
+    held = !handle && fingers.size === 1 && store.state.powers === "simulation" && time.live ? under(spot(event)) : null;
   });
 
   canvas.addEventListener("pointermove", (event) => {
@@ -57,20 +63,22 @@ export function startDrag(canvas, camera) {
     const way = here.map((x, i) => x - before[i]);
     if (!moved && Math.hypot(...way) < 4) return;
     moved = true;
-    if (held) pull(here, false);
+    if (handle) pullHeld(here, camera);
+    else if (held) pull(here, false);
     else if (fingers.size === 2) {
       const [other] = [...fingers].filter(([id]) => id !== event.pointerId).map(([, at]) => at);
       const far = (at) => Math.hypot(at[0] - other[0], at[1] - other[1]);
       camera.zoomAt(here.map((x, i) => (x + other[i]) / 2), far(here) / Math.max(1, far(before)));
     } else camera.pan = camera.pan.map((x, i) => x + way[i]);
-    if (!held || moved) fingers.set(event.pointerId, here);
+    if (!(held || handle) || moved) fingers.set(event.pointerId, here);
     changed("frame");
   });
 
   const up = (event) => {
     const here = spot(event);
     if (held && moved) pull(here, true);
-    if (!moved && fingers.size === 1 && event.type === "pointerup") {
+    if (handle) dropHeld();
+    else if (!moved && fingers.size === 1 && event.type === "pointerup") {
       const found = under(here);
       choose(found?.robot?.team ?? null, found?.robot?.id);
       if (store.chosen) changed("asked", "why");
@@ -78,7 +86,7 @@ export function startDrag(canvas, camera) {
       if (event.pointerType !== "mouse") hover(here);
     }
     fingers.delete(event.pointerId);
-    held = null;
+    [held, handle] = [null, false];
   };
   canvas.addEventListener("pointerup", up);
   canvas.addEventListener("pointercancel", up);

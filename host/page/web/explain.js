@@ -19,7 +19,7 @@ export const explainEvent = (one) => open(`${one.words}, at ${clock(one.t)}`, on
 /** The newest decision on its own problem; apart from it, what this moment would give. */
 export async function explainNow(team) {
   const cycle = store.scene?.cycles.find((one) => one.team === team);
-  const frozen = async () => JSON.parse(await post("/api/freeze", JSON.stringify({ t: time.at, team, what: "problem" })));
+  const frozen = async () => JSON.parse(await post("/api/freeze", JSON.stringify({ t: time.at, team })));
   await open(`${team} at ${clock(time.at)}`, cycle?.decided, cycle, frozen);
 }
 
@@ -38,7 +38,12 @@ async function open(title, decided, cycle, frozen) {
   }
 }
 
+/** How a terminal names the cases of this match; a directory's path is not told to viewers. */
+let cases = "";
+
 async function ask(problem) {
+  cases ||= await post("/api/workbench", JSON.stringify({ do: "list" })).then(JSON.parse)
+    .then(({ league, saves }) => (saves ? "with the --library of this match" : `--league ${league}`), () => "with the cases of this match");
   const answer = JSON.parse(await post("/api/explain", JSON.stringify(problem)));
   if (answer.error) throw new Error(answer.error);
   return answer;
@@ -73,7 +78,7 @@ function body(answer, problem, every) {
   const shown = every ? rows : rows.slice(0, answer.candidates + NEAREST);
   const cells = shown.map((row) => [
     row.rank ? String(row.rank) : "", `${row.case}${row.symmetry === "identity" ? "" : ` · ${row.symmetry}`}`,
-    [WORDS[row.verdict] ?? row.verdict, row.verdict === "candidate" ? "fine" : "bad"], told(row),
+    [VERDICTS[row.verdict] ?? row.verdict, row.verdict === "candidate" ? "fine" : "bad"], told(row),
   ]);
   const winner = rows.find((row) => row.id === answer.winner);
   const rest = rows.length - shown.length;
@@ -82,13 +87,16 @@ function body(answer, problem, every) {
     table(["rank", "case", "verdict", "why"], cells, true),
     el("p", { class: "field-set" },
       rest > 0 ? el("button", { onclick: (event) => event.target.closest(".explanation").replaceWith(body(answer, problem, true)) }, `${rest} more`) : null,
-      el("button", { onclick: () => navigator.clipboard?.writeText(problem).then(() => changed("told", "the problem is copied")) }, "Copy the problem")),
-    el("p", { class: "muted" }, "The same on a terminal: paste the problem into onetwo cases explain --league LEAGUE."));
+      el("button", { onclick: () => navigator.clipboard?.writeText(problem).then(() => changed("told", "the problem is copied")) }, "Copy the problem"),
+      el("button", { "data-draft-on": "", onclick: () => { closeDialog(); changed("draft-on", JSON.parse(problem)); } }, "Draft a case for it")),
+    el("p", { class: "muted" }, `The same on a terminal: paste the problem into onetwo cases explain ${cases}.`));
 }
 
-const WORDS = { candidate: "fits", path: "path blocked", thr_c: "too far", robots: "too few robots", ball: "ball out of scope" };
+/** Verdicts in words. */
+export const VERDICTS = { candidate: "fits", path: "path blocked", thr_c: "too far", robots: "too few robots", ball: "ball out of scope" };
 
-function told(row) {
+/** The margin of a verdict. */
+export function told(row) {
   switch (row.verdict) {
     case "candidate":
       return `${row.conditions} conditions, ${row.teammates} teammates, similarity ${number(row.similarity, 2)}, ${number(row.cost / 1000, 2)} m to travel in all`;

@@ -1,6 +1,7 @@
-// What does one frame look like? Carpet, lines, layers, robots, ball; all in field coordinates, m.
+// What does one frame look like? Field surface, lines, layers, robots, ball; all in field coordinates, m.
 
 import { colours, faint, stroke } from "./colours.js";
+import { drawGhost, givesWay } from "./ghost.js";
 import { shows } from "./layers.js";
 import { drawRobots, lerp, robotRadius } from "./robots.js";
 import { drawShapes } from "./shapes.js";
@@ -16,11 +17,11 @@ export function drawFrame(context, camera, ratio, scene, next, share) {
   context.setTransform(m[0] * ratio, m[1] * ratio, m[2] * ratio, m[3] * ratio, m[4] * ratio, m[5] * ratio);
   // One CSS pixel in metres.
   const pixel = 1 / camera.scale;
-  drawCarpet(context, scene.field);
+  drawSurface(context, scene.field);
   const words = new Words();
   const pen = { context, pixel, camera, ratio, words, robot: robotRadius(scene.field, pixel) / pixel + 2 };
-  // Maps lie on the carpet, lines on the maps, and all else on the lines.
-  const layers = scene.layers.filter((layer) => shows(layer.name, layer.on));
+  // Maps lie on the field surface, lines on the maps, and all else on the lines.
+  const layers = scene.layers.filter((layer) => shows(layer.name, layer.on) && !givesWay(layer.name));
   const isMap = (layer) => layer.shapes[0]?.is === "heat";
   for (const layer of layers) if (isMap(layer)) drawShapes(pen, layer);
   drawLines(context, scene.field, pixel, defenders(scene.game));
@@ -30,14 +31,15 @@ export function drawFrame(context, camera, ratio, scene, next, share) {
   if (shows("raw", false)) drawRaw(pen, scene);
   drawRobots(pen, scene, next, share);
   if (scene.ball) drawBall(pen, scene, next, share);
+  drawGhost(pen, scene.field);
   words.draw(pen);
 }
 
-function drawCarpet(context, field) {
+function drawSurface(context, field) {
   const [x, y, edge] = [field.length / 2, field.width / 2, field.margin];
   context.fillStyle = colours.margin;
   context.fillRect(-x - edge, -y - edge, 2 * (x + edge), 2 * (y + edge));
-  context.fillStyle = colours.carpet;
+  context.fillStyle = colours.surface;
   context.fillRect(-x, -y, 2 * x, 2 * y);
 }
 
@@ -168,7 +170,7 @@ function drawBall({ context, pixel }, scene, next, share) {
     context.setLineDash([]);
   }
   if (ball.height > 0.03) {
-    // Its shadow stays on the carpet.
+    // Its shadow stays on the field surface.
     context.fillStyle = faint("back", 0.6);
     disc(context, x, y, r);
     context.strokeStyle = colours.ball;

@@ -32,7 +32,7 @@ export async function getJson(path) {
 }
 
 export async function post(path, body) {
-  const answer = await fetch(path, { method: "POST", body });
+  const answer = await fetch(withToken(path), { method: "POST", body });
   const text = await answer.text();
   if (!answer.ok) throw new Error(text);
   return text;

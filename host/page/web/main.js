@@ -5,7 +5,8 @@ import { Camera } from "./camera.js";
 import { showCases } from "./cases.js";
 import { startColours } from "./colours.js";
 import { startControl, showControl } from "./control.js";
-import { byId } from "./dom.js";
+import { byId, sizeOf } from "./dom.js";
+import { showDraft, startDraft } from "./draft.js";
 import { startDrag } from "./drag.js";
 import { drawFrame } from "./field.js";
 import { showHealth } from "./health.js";
@@ -14,12 +15,14 @@ import { all, setLayer, showLegend, startLayers } from "./layers.js";
 import { startLink } from "./link.js";
 import { showBoard, showMatch } from "./match.js";
 import { showOver } from "./over.js";
+import { filmScene } from "./rehearse.js";
 import { changed, on, recall, remember, store } from "./store.js";
 import { startTimeline } from "./timeline.js";
 import { advance, startTransport, time } from "./transport.js";
 import { showChosen, showWhy } from "./why.js";
+import { bench as workbenchState } from "./workbench.js";
 
-/** Panels follow so often, ms: nobody reads faster. */
+/** Panels follow so often, ms: faster than they are read. */
 const PANELS_EVERY = 100;
 
 const camera = new Camera();
@@ -35,29 +38,37 @@ function want() {
   requestAnimationFrame(frame);
 }
 
+/** Times of the script in the newest frames, ms. */
+const spent = [];
+
 function frame(now) {
+  const begun = performance.now();
   wanted = false;
   const more = advance(now, Math.min(0.1, Math.max(0, now - drawnAt) / 1000));
   drawnAt = now;
   byId("waiting").hidden = store.scene !== null;
-  if (store.scene) draw();
+  const film = filmScene(store.scene, now);
+  if (film) draw(film, null);
+  else if (store.scene) draw(store.scene, store.next);
   if (now - panelsAt >= PANELS_EVERY) {
     panelsAt = now;
     changed("panels");
   }
-  if (more) want();
+  if (more || film) want();
+  spent.push(performance.now() - begun);
+  if (spent.length > 600) spent.shift();
 }
 
-function draw() {
+function draw(scene, next) {
   const ratio = devicePixelRatio || 1;
-  const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+  const [width, height] = sizeOf(canvas);
   if (width === 0 || height === 0) return;
   if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
     canvas.width = Math.round(width * ratio);
     canvas.height = Math.round(height * ratio);
   }
-  camera.look(width, height, store.scene.field);
-  drawFrame(canvas.getContext("2d"), camera, ratio, store.scene, store.next, store.share);
+  camera.look(width, height, scene.field);
+  drawFrame(canvas.getContext("2d"), camera, ratio, scene, next, store.share);
   frames += 1;
 }
 
@@ -87,7 +98,7 @@ on("colours", want);
 on("chosen", () => { want(); changed("panels"); showChosen(); });
 on("asked", (tab) => { showTab(tab); showChosen(); });
 on("state", () => { want(); changed("panels"); });
-on("panels", () => { showOver(); showLegend(); showBoard(); showWhy(); showMatch(); showHealth(); showControl(); showCases(); });
+on("panels", () => { showOver(); showLegend(); showBoard(); showWhy(); showMatch(); showHealth(); showControl(); showCases(); showDraft(); });
 on("refused", tell);
 on("told", tell);
 new ResizeObserver(want).observe(canvas);
@@ -99,11 +110,12 @@ startTransport();
 startTimeline();
 startControl();
 startDrag(canvas, camera);
+startDraft(camera);
 startKeys(camera, showTab);
 showTab(new URLSearchParams(location.search).get("tab") ?? recall("tab", "why"));
 startLink();
 // Nothing moves while nothing comes, but clocks and the state of the link are looked at all the same.
 setInterval(() => changed("panels"), 1000);
 
-/** For tests, benches and the curious: what is shown now. */
-window.onetwo = { store, time, camera, bench, layers: all, setLayer, frames: () => frames };
+/** For tests and benches: what is shown now. */
+window.onetwo = { store, time, camera, bench, layers: all, setLayer, frames: () => frames, spent, workbench: workbenchState };

@@ -1,7 +1,7 @@
 // Which events, and when? A row for each kind of event under the ruler; a click goes there.
 
 import { colours, faint, stroke } from "./colours.js";
-import { byId, clock } from "./dom.js";
+import { byId, clock, sizeOf } from "./dom.js";
 import { on, store } from "./store.js";
 import { seek, span, time } from "./transport.js";
 
@@ -22,7 +22,7 @@ export function tone(matchEvent) {
 export function drawTimeline(force = false) {
   const canvas = byId("timeline");
   const ratio = devicePixelRatio || 1;
-  const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+  const [width, height] = sizeOf(canvas);
   if (width === 0) return;
   const key = [width, height, ratio, store.matchEvents.length, store.marks.length, Math.round(x(time.at, width) * 2), Math.round(span()[1])].join();
   if (!force && key === drawn) return;

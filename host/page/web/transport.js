@@ -187,8 +187,10 @@ export function mark() {
 
 async function freeze(choice) {
   const [what, team] = choice.split(" ");
+  if (what === "bench") return changed("draft", team);
   try {
-    const text = await post("/api/freeze", JSON.stringify({ t: time.at, team, what }));
+    const problem = await post("/api/freeze", JSON.stringify({ t: time.at, team }));
+    const text = what === "case" ? JSON.parse(await post("/api/workbench", JSON.stringify({ do: "draft", problem: JSON.parse(problem) }))).text : problem;
     const name = `${what}-${team}-${time.at.toFixed(2)}.${what === "case" ? "toml" : "json"}`;
     const link = el("a", { href: URL.createObjectURL(new Blob([text], { type: "text/plain" })), download: name });
     link.click();

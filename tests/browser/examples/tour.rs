@@ -115,6 +115,12 @@ fn pictures(program: &str, directory: &Path) -> Reported<()> {
         tab.key(key)?;
         take(&mut tab, &directory.join(name))?;
     }
+    tab.key("6")?;
+    tab.wait("document.querySelectorAll('#bench-case option').length > 0", 20)?;
+    // The team of the play at that moment.
+    tab.eval("document.querySelector(`[data-draft=${onetwo.store.scene.cycles.find((c) => c.state === 'playing')?.team ?? 'blue'}]`).click()")?;
+    tab.wait("onetwo.workbench.sheet?.copies.length === 4", 20)?;
+    take(&mut tab, &directory.join("workbench.png"))?;
     tab.key("1")?;
     tab.key("t")?;
     take(&mut tab, &directory.join("light.png"))?;

@@ -86,6 +86,21 @@ impl<'b> Tab<'b> {
         self.mouse("mouseReleased", &at[0], &at[1], 1)
     }
 
+    /// Writes `text` instead of what is in a field, key by key, and leaves it.
+    pub fn write(&mut self, selector: &str, text: &str) -> Result<(), BrowserError> {
+        self.click(selector)?;
+        // Backwards from its end: keys that select are not the same on every system.
+        self.key("End")?;
+        let script = format!("document.querySelector({selector:?}).value.length");
+        for _ in 0..self.eval(&script)?.as_u64().unwrap_or(0) {
+            self.key("Backspace")?;
+        }
+        for letter in text.chars() {
+            self.key(letter.encode_utf8(&mut [0; 4]))?;
+        }
+        self.key("Tab")
+    }
+
     /// Drags from one point to another, CSS pixels.
     pub fn drag(&mut self, from: [f64; 2], to: [f64; 2]) -> Result<(), BrowserError> {
         self.mouse("mousePressed", &json!(from[0]), &json!(from[1]), 1)?;
@@ -104,12 +119,19 @@ impl<'b> Tab<'b> {
         self.ask("Input.dispatchMouseEvent", &what).map(drop)
     }
 
-    /// Presses a key of one letter, or `Enter`.
+    /// Presses a key of one letter, or one by its name, such as `Enter` and `ArrowLeft`.
     pub fn key(&mut self, key: &str) -> Result<(), BrowserError> {
-        // A button is pressed by the key's code, which letters do without.
+        // What the browser itself does with a key goes by its code, which letters do without.
         let (text, code) = match key {
             "Enter" => ("\r", 13),
             " " => (" ", 32),
+            "Backspace" => ("", 8),
+            "Tab" => ("", 9),
+            "End" => ("", 35),
+            "Home" => ("", 36),
+            "ArrowDown" => ("", 40),
+            // A key with a name writes nothing.
+            _ if key.len() > 1 => ("", 0),
             _ => (key, 0),
         };
         for kind in ["keyDown", "keyUp"] {

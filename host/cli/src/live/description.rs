@@ -2,7 +2,7 @@
 
 use arena::CycleEnd;
 use casebase::{Action, Case, CaseRobot};
-use host::strategy::{Flip, OrderReason, Role};
+use host::strategy::{Flip, Order, OrderReason, Role};
 use protocol::decision::Grounds;
 use protocol::host::{Directive, KickOrder};
 use protocol::quantized::WirePoint;
@@ -37,7 +37,26 @@ pub(crate) fn role(role: Role) -> String {
     }
 }
 
-pub(crate) fn why(why: &OrderReason) -> String {
+/// The reason of an order; with all actions and what each is worth, where it is the best of a rated list.
+pub(crate) fn why(host: &host::Host, order: &Order) -> String {
+    let why = reason(&order.why);
+    let by_list = matches!(
+        order.why,
+        OrderReason::Chances { .. }
+            | OrderReason::OfCase { .. }
+            | OrderReason::PlaysCase { .. }
+            | OrderReason::SoonestAtBall { .. }
+    );
+    match host.rated() {
+        Some((who, list)) if by_list && who == order.robot && !list.is_empty() => {
+            let list: Vec<_> = list.iter().map(ToString::to_string).collect();
+            format!("{why}; rated: {}", list.join(", "))
+        }
+        _ => why,
+    }
+}
+
+fn reason(why: &OrderReason) -> String {
     match why {
         OrderReason::Referee => "required by the referee's command".to_owned(),
         OrderReason::SoonestAtBall { seconds } => format!("soonest at the ball, in {seconds:.2} s"),
@@ -189,7 +208,7 @@ mod tests {
         assert_eq!(spaced("FirstHalfPre"), "first half pre");
         assert_eq!(role(Role::Defender(0)), "defender 1");
         assert_eq!(role(Role::Keeper), "keeper");
-        assert_eq!(why(&OrderReason::NoBall), "no ball");
+        assert_eq!(reason(&OrderReason::NoBall), "no ball");
     }
 
     #[test]

@@ -1,31 +1,45 @@
-//! `explanations`: answers to the page's questions about cases, by the same code as `onetwo cases explain`.
+//! `explanations`: answers to the page's questions about cases, by the same code as `onetwo cases explain`,
+//! and its case workbench.
 
 use casebase::RetrievalSettings;
+use page::WorkbenchRequest;
 
 use crate::args::Chosen;
 use crate::cases;
 use crate::library::LibraryHandle;
+use crate::workbench::{CaseWorkbench, SharedLibrary};
 
 /// A library, with settings of retrieval.
 pub(crate) struct CaseExplanations {
-    library_handle: Option<LibraryHandle>,
+    library: SharedLibrary,
     chosen: Chosen,
+    workbench: CaseWorkbench,
 }
 
 impl CaseExplanations {
     /// Over a library, where there is one.
     pub(crate) fn new(library_handle: Option<LibraryHandle>, settings: RetrievalSettings) -> Self {
-        Self { library_handle, chosen: Chosen { settings, changed: Vec::new() } }
+        Self::sharing(SharedLibrary::new(library_handle), settings)
+    }
+
+    /// Over the library of one match after the other.
+    pub(crate) fn sharing(library: SharedLibrary, settings: RetrievalSettings) -> Self {
+        let workbench = CaseWorkbench::new(library.clone(), settings.clone());
+        Self { library, chosen: Chosen { settings, changed: Vec::new() }, workbench }
     }
 }
 
 impl page::ExplanationService for CaseExplanations {
     fn explain(&self, problem: &str) -> Result<String, String> {
-        let library_handle = self.library_handle.as_ref().ok_or("no cases are played here")?;
-        cases::explained(library_handle, &self.chosen, problem)
+        let library_handle = self.library.now().ok_or("no cases are played here")?;
+        cases::explained(&library_handle, &self.chosen, problem)
+    }
+
+    fn workbench(&self, request: &WorkbenchRequest) -> Result<String, String> {
+        self.workbench.answer(request)
     }
 
     fn situations(&self) -> Vec<String> {
-        self.library_handle.as_ref().map_or_else(Vec::new, LibraryHandle::names)
+        self.library.now().map_or_else(Vec::new, |library_handle| library_handle.names())
     }
 }

@@ -9,9 +9,10 @@ use std::sync::atomic::Ordering;
 use std::thread;
 use std::time::{Duration, Instant};
 
+use arena::CaseNames;
 use arena::game::{Game, GameConfig, GameReport, TICK_US, Watcher, Watchers};
 use casebase::CaseBase;
-use foreign::excerpt;
+use foreign::{excerpt, printable};
 use geometry::Point;
 use hil_sim::NativeBackend;
 use page::{MatchEnd, MatchEvent, Page, UserRequest};
@@ -24,7 +25,9 @@ use super::gauges::{gauge, tick};
 use super::{Composer, LedgerFeed, Moment, SCENE_EVERY_S, colour};
 use crate::Failure;
 use crate::library::LibraryHandle;
+use crate::output::note;
 use crate::stop::stopped_by_hand;
+use crate::workbench::SharedLibrary;
 
 /// If the match is farther behind the clock than this, s, the clock is reset: the match does not run faster
 /// to catch up.
@@ -39,9 +42,9 @@ const RECORDED: &str = "a match that is recorded cannot start again";
 const IDLE: Duration = Duration::from_millis(10);
 
 /// A match and its page.
-pub(crate) struct MatchRunner<'s> {
+pub(crate) struct MatchRunner {
     config: GameConfig,
-    library_handle: Option<&'s LibraryHandle>,
+    library: SharedLibrary,
     page: Page,
     speed: f32,
     /// It is recorded: it cannot be restarted.
@@ -71,15 +74,15 @@ pub(crate) enum End {
     ByHand(GameReport),
 }
 
-impl<'s> MatchRunner<'s> {
+impl MatchRunner {
     pub(crate) fn new(
         config: GameConfig,
-        library_handle: Option<&'s LibraryHandle>,
+        library: SharedLibrary,
         page: Page,
         speed: f32,
         recorded: bool,
     ) -> Self {
-        Self { config, library_handle, page, speed, recorded }
+        Self { config, library, page, speed, recorded }
     }
 
     /// Plays until the match is over; `watch` gives the watchers of a match that starts.
@@ -99,8 +102,7 @@ impl<'s> MatchRunner<'s> {
             self.speed = controls.speed;
             match controls.restart {
                 Some(seed) => {
-                    self.config.seed = seed;
-                    self.page.clear();
+                    self.restart(seed);
                     watcher.restart();
                 }
                 None if stopped_by_hand().load(Ordering::Relaxed) => return Ok(End::ByHand(report)),
@@ -125,9 +127,17 @@ impl<'s> MatchRunner<'s> {
         None
     }
 
-    /// Restarts with another seed.
+    /// Restarts with another seed, and with the cases that are on disk now.
     pub(crate) fn restart(&mut self, seed: u64) {
         self.config.seed = seed;
+        if let Err(failure) = self.library.read_again() {
+            let description = format!("the cases stay as they were, their library is refused: {failure}");
+            note!("{}", printable(&description));
+            self.page.refuse(description);
+        }
+        if let Some(library_handle) = self.library.now() {
+            self.config.names = CaseNames::new(library_handle.names());
+        }
         self.page.clear();
     }
 
@@ -137,12 +147,13 @@ impl<'s> MatchRunner<'s> {
         watcher: &mut dyn RestartWatcher,
     ) -> Result<GameReport, Failure> {
         let config = self.config.clone();
-        let base = self.library_handle.map_or_else(CaseBase::default, LibraryHandle::lasting_base);
+        let library_handle = self.library.now();
+        let base = library_handle.as_ref().map_or_else(CaseBase::default, LibraryHandle::lasting_base);
         let mut backend = NativeBackend::new(base);
         let mut game = Game::new(&config, &mut backend).map_err(Failure::Game)?;
         let mut feed = Feed {
-            composer: Composer::new(self.library_handle),
-            ledger: LedgerFeed::new(self.library_handle),
+            composer: Composer::new(library_handle.as_ref()),
+            ledger: LedgerFeed::new(library_handle.as_ref()),
             t: 0.0,
         };
         let ticks = (config.duration_s * 1e6 / TICK_US as f64) as u64;
@@ -243,7 +254,7 @@ impl<'s> MatchRunner<'s> {
             }
             UserRequest::Restart { seed } => controls.restart = Some(seed.unwrap_or(self.config.seed)),
             UserRequest::Situation { name } => {
-                if !situate(game, self.library_handle, name) {
+                if !situate(game, self.library.now().as_ref(), name) {
                     refused = Some(format!(
                         "no situation of the name {} can be set up now",
                         excerpt(name, NAME_LEN)

@@ -70,7 +70,7 @@ pub(super) fn detail(
     let detail = RobotDetail {
         role,
         directive: description::directive(&directive),
-        why: description::why(&order.why),
+        why: description::why(host, order),
         state,
         step,
         part: in_case.map_or_else(String::new, |(played, (robot, _))| {

@@ -22,7 +22,7 @@ impl Decided {
         Some(Self {
             role: description::role(order.role),
             directive: description::directive(&order.task.directive(description::flip(host))),
-            why: description::why(&order.why),
+            why: description::why(host, order),
         })
     }
 

@@ -26,6 +26,7 @@ use rules::{Colour, League};
 pub(crate) use moment::phase_description;
 
 use crate::Failure;
+use crate::args::DirectoryArgs;
 use crate::failure::RecordedError;
 use crate::live::PageArgs;
 
@@ -67,6 +68,8 @@ pub(crate) struct ReplayArgs {
     /// this is done with every trace, and an error with any other file.
     #[arg(long)]
     check: bool,
+    #[command(flatten)]
+    directory: DirectoryArgs,
     /// The key of the team that recorded a trace, if it had one: 32 hexadecimal digits in a file.
     #[arg(long, value_name = "FILE")]
     key_file: Option<PathBuf>,

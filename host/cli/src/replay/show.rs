@@ -45,7 +45,7 @@ struct Projector {
 
 impl Projector {
     fn new(args: &ReplayArgs, page: &PageArgs, league: League) -> Result<Self, Failure> {
-        let library_handle = library_handle_of(league, None)?;
+        let library_handle = library_handle_of(league, args.directory.library.as_deref())?;
         let composer = Composer::new(library_handle.as_ref());
         let ledger = LedgerFeed::new(library_handle.as_ref());
         let name = args.file.file_name().map(|name| name.to_string_lossy().into_owned());

@@ -80,7 +80,8 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         header.hosts.iter().position(|host| Some(&*host.colour) == args.team.map(rules::Colour::label));
     let first_shown = first_shown.unwrap_or(0);
     let league = header.league().map_err(RecordedError::Header).map_err(failed(file))?;
-    let mut decisions = Decisions::new(library_handle_of(league, None)?.as_ref());
+    let mut decisions =
+        Decisions::new(library_handle_of(league, args.directory.library.as_deref())?.as_ref());
     let bar = Progress::open();
     for record in reader.by_ref() {
         bar.add(1);

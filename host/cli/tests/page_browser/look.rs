@@ -223,9 +223,9 @@ fn contrast(tab: &mut Tab<'_>) {
       };
       const ratio = (a, b) => { const [high, low] = [light(a), light(b)].sort((x, y) => y - x); return (high + 0.05) / (low + 0.05); };
       const marks = ['blue-line', 'yellow-line', 'ball', 'case', 'forbidden', 'good', 'plain', 'accent', 'warn', 'bad'];
-      const pairs = marks.flatMap((mark) => ['carpet', 'margin', 'panel'].map((ground) => [mark, ground, 3]));
+      const pairs = marks.flatMap((mark) => ['surface', 'margin', 'panel'].map((ground) => [mark, ground, 3]));
       const words = ['text', 'dim'].flatMap((word) => ['panel', 'back', 'raised'].map((ground) => [word, ground, 4.5]));
-      return [...pairs, ['line', 'carpet', 3], ...words, ['blue-ink', 'blue', 4.5], ['yellow-ink', 'yellow', 4.5]]
+      return [...pairs, ['line', 'surface', 3], ...words, ['blue-ink', 'blue', 4.5], ['yellow-ink', 'yellow', 4.5]]
         .filter(([a, b, least]) => ratio(a, b) < least).map(([a, b]) => `${a} on ${b}: ${ratio(a, b).toFixed(2)}`).join(', ');
     })()";
     for theme in ["dark", "light"] {

@@ -5,6 +5,7 @@
 //! `cargo xtask test --only page` installs the browser where it can and runs this; plain `cargo test` does
 //! without.
 
+mod bench;
 mod look;
 mod program;
 
@@ -214,7 +215,7 @@ fn a_recording_seeks_to_its_goal_and_to_the_moment_of_an_address() {
     .unwrap();
     // A moment is exported as a problem that retrieval accepts.
     let line = tab
-        .eval("fetch('/api/freeze', { method: 'POST', body: JSON.stringify({ t: 2, team: 'blue', what: 'problem' }) }).then((a) => a.text())")
+        .eval("fetch('/api/freeze', { method: 'POST', body: JSON.stringify({ t: 2, team: 'blue' }) }).then((a) => a.text())")
         .unwrap();
     let answer = program::onetwo(&["cases", "retrieve"], line.as_str().unwrap());
     assert!(answer.contains("\"candidates\""), "{answer}");

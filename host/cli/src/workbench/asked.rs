@@ -1,0 +1,96 @@
+//! `asked`: requests of the workbench.
+
+use std::collections::BTreeMap;
+
+use arena::Opposition;
+use case_tools::workbench::Edit;
+use casebase::Symmetry;
+use serde::{Deserialize, Deserializer};
+use serde_json::Value;
+
+/// A request. Texts are those of case files.
+#[derive(Debug, Deserialize)]
+#[serde(tag = "do", rename_all = "snake_case")]
+pub(super) enum Asked {
+    /// The library's cases, and what can be done here.
+    List {},
+    /// A case of the library.
+    Open { name: String },
+    /// A draft for a problem.
+    Draft { problem: Value },
+    /// What is shown of a text.
+    Look { name: String, text: String },
+    /// A change of a text, made in a symmetric copy.
+    Edit { name: String, text: String, symmetry: SymmetryName, edit: Edit },
+    /// Everything that `cases check` finds.
+    Check { name: String, text: String },
+    /// Rank and margins over a problem.
+    Rank { name: String, text: String, problem: Value },
+    /// What it wins of the match's problems.
+    Count { name: String, text: String },
+    /// What other settings of retrieval would change over the match's problems.
+    Settings { values: BTreeMap<String, String> },
+    /// Attempts in the simulator.
+    Rehearse {
+        name: String,
+        text: String,
+        #[serde(deserialize_with = "trials")]
+        trials: u32,
+        #[serde(deserialize_with = "opposition")]
+        opponents: Opposition,
+        seed: u64,
+    },
+    /// How they went so far.
+    Rehearsal {},
+    /// No further ones.
+    Stop {},
+    /// One of them, to be watched.
+    Sample { number: u32 },
+    /// Writes the file; `over`: the text that it replaces.
+    Save { name: String, text: String, over: Option<String> },
+}
+
+impl Asked {
+    /// It changes something, or takes the machine for long.
+    pub(super) const fn needs_token(&self) -> bool {
+        matches!(self, Self::Rehearse { .. } | Self::Stop {} | Self::Save { .. } | Self::Check { .. })
+    }
+}
+
+/// Most attempts of a rehearsal.
+const TRIALS_MAX: u32 = 500;
+
+fn trials<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
+    let trials = u32::deserialize(deserializer)?;
+    if (1..=TRIALS_MAX).contains(&trials) {
+        return Ok(trials);
+    }
+    Err(serde::de::Error::custom("a rehearsal has 1 to 500 attempts"))
+}
+
+fn opposition<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Opposition, D::Error> {
+    let label = String::deserialize(deserializer)?;
+    Opposition::from_label(&label)
+        .ok_or_else(|| serde::de::Error::custom("opponents are standing or playing"))
+}
+
+/// A symmetry by its name.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum SymmetryName {
+    Identity,
+    AcrossX,
+    AcrossY,
+    Both,
+}
+
+impl From<SymmetryName> for Symmetry {
+    fn from(name: SymmetryName) -> Self {
+        match name {
+            SymmetryName::Identity => Self::Identity,
+            SymmetryName::AcrossX => Self::AcrossX,
+            SymmetryName::AcrossY => Self::AcrossY,
+            SymmetryName::Both => Self::Both,
+        }
+    }
+}

@@ -1,0 +1,254 @@
+//! `workbench`: the page's case workbench: files of a library, a draft that is edited, and what retrieval,
+//! simulator and checks say of it. JSON in, JSON out.
+//!
+//! The draft is the viewer's: it comes with every request, so that several viewers can each edit their own.
+//! What is kept here is the library, and one rehearsal.
+
+mod asked;
+mod count;
+mod rehearsal;
+mod save;
+mod shared_library;
+
+use std::sync::{Arc, Mutex, PoisonError, RwLock};
+
+use case_tools::workbench::{FindingNote, Sheet, Workbench, case_name, is_case_name};
+use case_tools::{Finding, Library, SkeletonError, never_retrieved, skeleton};
+use casebase::RetrievalSettings;
+use page::{Powers, WorkbenchRequest};
+use protocol::CaseId;
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use crate::args::{Chosen, described};
+use crate::cases::{self, problem};
+use asked::Asked;
+use count::Problems;
+use rehearsal::{Rehearsal, RehearsalOrder};
+
+pub(crate) use shared_library::SharedLibrary;
+
+/// Problems that are drawn to find out whether a case is ever retrieved, as by `cases check`.
+const DRAWN: u64 = 20_000;
+
+/// The workbench of a page.
+pub(crate) struct CaseWorkbench {
+    library: SharedLibrary,
+    settings: RetrievalSettings,
+    /// The files, read when they are first asked for, and after every saving.
+    bench: RwLock<Option<Arc<Workbench>>>,
+    rehearsal: Mutex<Option<Arc<Rehearsal>>>,
+}
+
+impl CaseWorkbench {
+    pub(crate) fn new(library: SharedLibrary, settings: RetrievalSettings) -> Self {
+        Self { library, settings, bench: RwLock::default(), rehearsal: Mutex::default() }
+    }
+
+    /// Answers a request.
+    pub(crate) fn answer(&self, request: &WorkbenchRequest) -> Result<String, String> {
+        let asked: Asked =
+            serde_json::from_str(&request.text).map_err(|error| format!("no request: {error}"))?;
+        if asked.needs_token() && !request.may_ask {
+            return Err(NO_TOKEN.to_owned());
+        }
+        let answer = match asked {
+            Asked::List {} => self.list(request)?,
+            Asked::Open { name } => self.open(&name)?,
+            Asked::Draft { problem } => self.draft(&problem)?,
+            Asked::Look { name, text } => self.sheet(&name, &text)?,
+            Asked::Edit { name, text, symmetry, edit } => {
+                let edited = self.bench()?.edited(&name, &text, edit, symmetry.into());
+                self.sheet(&name, &edited.map_err(|error| error.to_string())?)?
+            }
+            Asked::Check { name, text } => self.check(&name, &text)?,
+            Asked::Rank { name, text, problem } => self.rank(&name, &text, &problem)?,
+            Asked::Count { name, text } => {
+                let library = self.library_with(&name, &text)?;
+                let bench = self.bench()?;
+                let before = case_tools::build(bench.files()).map_err(|findings| refused(&findings))?;
+                let problems = Problems::of(&(request.problems)());
+                value(&count::wins(&problems, &before, &library, &name, &self.settings))?
+            }
+            Asked::Settings { values } => {
+                let bench = self.bench()?;
+                let library = case_tools::build(bench.files()).map_err(|findings| refused(&findings))?;
+                let mut changed = self.settings.clone();
+                for (name, text) in &values {
+                    changed.set(name, text).map_err(|error| error.to_string())?;
+                }
+                let problems = Problems::of(&(request.problems)());
+                value(&count::changes(&problems, &library, &self.settings, &changed))?
+            }
+            Asked::Rehearse { name, text, trials, opponents, seed } => {
+                if request.powers == Powers::Halt {
+                    return Err(REAL_FIELD.to_owned());
+                }
+                let library = self.library_with(&name, &text)?;
+                let order = RehearsalOrder { name, trials, opponents, seed, settings: self.settings.clone() };
+                let rehearsal = Rehearsal::begin(library, order)?;
+                if let Some(old) = self.rehearsal().replace(rehearsal) {
+                    old.stop();
+                }
+                self.rehearsed()?
+            }
+            Asked::Rehearsal {} => self.rehearsed()?,
+            Asked::Stop {} => {
+                if let Some(rehearsal) = &*self.rehearsal() {
+                    rehearsal.stop();
+                }
+                self.rehearsed()?
+            }
+            Asked::Sample { number } => {
+                let rehearsal = self.rehearsal().clone().ok_or(NO_REHEARSAL)?;
+                rehearsal.sample(number).ok_or("there is no such attempt: rehearse anew")?
+            }
+            Asked::Save { name, text, over } => {
+                let directory = self.library.directory().ok_or(NO_DIRECTORY)?;
+                let sheet = self.bench()?.sheet(&name, &text);
+                save::save(directory, &sheet, over.as_deref())?;
+                // The next request reads what is there now.
+                *self.bench.write().unwrap_or_else(PoisonError::into_inner) = None;
+                self.open(&name)?
+            }
+        };
+        serde_json::to_string(&answer).map_err(|error| error.to_string())
+    }
+
+    fn rehearsal(&self) -> std::sync::MutexGuard<'_, Option<Arc<Rehearsal>>> {
+        self.rehearsal.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn bench(&self) -> Result<Arc<Workbench>, String> {
+        if let Some(bench) = &*self.bench.read().unwrap_or_else(PoisonError::into_inner) {
+            return Ok(bench.clone());
+        }
+        let files = self.library.files()?;
+        let bench = Arc::new(Workbench::new(files).map_err(|findings| refused(&findings))?);
+        *self.bench.write().unwrap_or_else(PoisonError::into_inner) = Some(bench.clone());
+        Ok(bench)
+    }
+
+    fn library_with(&self, name: &str, text: &str) -> Result<Library, String> {
+        named(name)?;
+        self.bench()?.library(name, text).map_err(|findings| refused(&findings))
+    }
+
+    fn list(&self, request: &WorkbenchRequest) -> Result<Value, String> {
+        let bench = self.bench()?;
+        let names: Vec<_> = bench.files().cases.iter().map(|file| &file.name).collect();
+        let kicks: Vec<_> = bench.league().kicks.iter().map(|(name, _)| name).collect();
+        Ok(json!({
+            "league": bench.files().league,
+            "names": names,
+            "kicks": kicks,
+            "saves": self.library.directory().is_some(),
+            "rehearses": request.powers != Powers::Halt,
+            "settings": described(&self.settings),
+        }))
+    }
+
+    fn sheet(&self, name: &str, text: &str) -> Result<Value, String> {
+        named(name)?;
+        value(&Sheeted { sheet: self.bench()?.sheet(name, text), notes: Vec::new() })
+    }
+
+    fn open(&self, name: &str) -> Result<Value, String> {
+        let bench = self.bench()?;
+        let file = bench.files().cases.iter().find(|file| file.name == name);
+        let file = file.ok_or_else(|| format!("there is no case {}", foreign::excerpt(name, 80)))?;
+        self.sheet(name, &file.text)
+    }
+
+    /// A first version for a situation, as by `cases new`.
+    fn draft(&self, problem: &Value) -> Result<Value, String> {
+        let bench = self.bench()?;
+        let draft = skeleton(&bench.files().rules, &read(problem)?).map_err(|error| match error {
+            SkeletonError::NoTeammate => {
+                "no robot of that team is available for a case at this moment".to_owned()
+            }
+            SkeletonError::League(findings) => refused(&findings),
+        })?;
+        let mut name = String::new();
+        for number in 1.. {
+            name = format!("draft/moment-{number}");
+            if bench.files().cases.iter().all(|file| file.name != name) {
+                break;
+            }
+        }
+        value(&Sheeted { sheet: bench.sheet(&name, &draft.text), notes: draft.notes })
+    }
+
+    /// Everything that `cases check` finds in this file, the drawn problems too.
+    fn check(&self, name: &str, text: &str) -> Result<Value, String> {
+        let mut sheet = self.bench()?.sheet(name, text);
+        if let Ok(library) = self.library_with(name, text) {
+            let drawn = library.survey().map_err(|error| error.to_string())?;
+            let sampler = library.sampler(1);
+            let counters = drawn.over((0..DRAWN).map(|number| (number, sampler.problem(number))));
+            let own = |finding: &Finding| case_name(&finding.file) == name;
+            let never = never_retrieved(&library, &counters);
+            sheet.findings.extend(never.iter().filter(|f| own(f)).map(FindingNote::of));
+        }
+        value(&Sheeted { sheet, notes: Vec::new() })
+    }
+
+    /// The verdicts of all cases on one problem, and the ids of the case's copies.
+    fn rank(&self, name: &str, text: &str, problem: &Value) -> Result<Value, String> {
+        let library = self.library_with(name, text)?;
+        let authored = library.names.iter().position(|known| known == name).unwrap_or(0);
+        let chosen = Chosen { settings: self.settings.clone(), changed: Vec::new() };
+        let name_of = |id: CaseId| library.names[usize::from(id.0) / 4].as_str();
+        let answer = cases::explained_by(&library.base(), &name_of, &chosen, &problem.to_string())?;
+        let answer: Value = serde_json::from_str(&answer).map_err(|error| error.to_string())?;
+        Ok(json!({ "ids": (0..4).map(|copy| 4 * authored + copy).collect::<Vec<_>>(), "answer": answer }))
+    }
+
+    fn rehearsed(&self) -> Result<Value, String> {
+        let rehearsal = self.rehearsal().clone().ok_or(NO_REHEARSAL)?;
+        Ok(rehearsal.report())
+    }
+}
+
+/// A sheet, and what a draft leaves out of its situation.
+#[derive(Serialize)]
+struct Sheeted {
+    #[serde(flatten)]
+    sheet: Sheet,
+    notes: Vec<String>,
+}
+
+fn value(answer: &impl Serialize) -> Result<Value, String> {
+    serde_json::to_value(answer).map_err(|error| error.to_string())
+}
+
+fn read(problem: &Value) -> Result<casebase::Problem, String> {
+    problem::parse(&problem.to_string()).map_err(|malformed| malformed.to_string())
+}
+
+fn named(name: &str) -> Result<(), String> {
+    if is_case_name(name) { Ok(()) } else { Err(NAME.to_owned()) }
+}
+
+/// The first of the findings that refuse a library.
+fn refused(findings: &[Finding]) -> String {
+    let errors = findings.iter().filter(|finding| finding.severity == case_tools::Severity::Error);
+    let count = errors.clone().count();
+    let told = |finding: &Finding| {
+        let FindingNote { file, line, message, hint, .. } = FindingNote::of(finding);
+        format!("{file}.toml:{line}: {message}; {hint}")
+    };
+    let first = errors.map(told).next().unwrap_or_default();
+    if count > 1 { format!("{first} (and {} more)", count - 1) } else { first }
+}
+
+const NAME: &str = "a case is named region/name, both of letters, digits, - and _";
+const NO_DIRECTORY: &str = "the cases of this program are built in: to save, start it with --library DIR, a copy of a league's directory";
+const NO_REHEARSAL: &str = "nothing was rehearsed yet";
+const NO_TOKEN: &str =
+    "this page is open to the network: to rehearse and to save, open it by the address with ?token=";
+const REAL_FIELD: &str =
+    "beside a real field nothing is rehearsed: the host needs the machine; use onetwo play";
+
+#[cfg(test)]
+mod tests;
