@@ -13,6 +13,8 @@
 //!
 //! [`mod@matches`] plays many of them and reports the results, in the form of the second paper's Table 2.
 //!
+//! [`scenes`] plays short scenes with several variants of a team and tells what a part of its play is worth.
+//!
 //! [`skills`] plays tries of single skills through the whole loop, in worlds of any physics.
 //!
 //! [`evaluation`] plays the paper's thousands of trials and computes its tables.
@@ -35,6 +37,7 @@ mod names;
 mod picture;
 mod recording;
 mod report;
+pub mod scenes;
 pub mod skills;
 mod story;
 mod trial;

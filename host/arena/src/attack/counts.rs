@@ -55,6 +55,11 @@ pub struct ShotCounts {
 }
 
 impl ShotCounts {
+    /// All shots.
+    pub fn all(&self) -> u32 {
+        self.closed + self.partly_open + self.open
+    }
+
     pub(super) fn add(&mut self, open: f32, volley: bool) {
         let count = if open <= 0.0 {
             &mut self.closed

@@ -66,13 +66,7 @@ pub struct Effect {
 /// One for each pair of the plan whose teams differ by parts that one of them has and the other lacks.
 pub fn effects(plan: &MatchPlan, rows: &[MatchRow]) -> Vec<Effect> {
     let of = |own: MatchTeam, opponent: MatchTeam| {
-        let (more, less) = (own.beyond(opponent), opponent.beyond(own));
-        let (part, own_has) = match (&more[..], &less[..]) {
-            ([], []) => return None,
-            (_, []) => (more.join("+"), true),
-            ([], _) => (less.join("+"), false),
-            _ => return None,
-        };
+        let (part, own_has) = own.part_beside(opponent)?;
         let rows = rows.iter().filter(|row| (row.own, row.opponent) == (own, opponent));
         let sign = if own_has { 1.0 } else { -1.0 };
         let goals = |row: &MatchRow| f64::from(row.goals) - f64::from(row.goals_against);

@@ -90,8 +90,20 @@ impl MatchTeam {
         Self::of_parts(parts).map_err(|_| wrong())
     }
 
+    /// The parts by which this one differs from the other, joined by `+`, and whether it is this one that has
+    /// them; `None` where each has what the other lacks, and between equals and different teams.
+    pub fn part_beside(self, other: Self) -> Option<(String, bool)> {
+        let (more, less) = (self.beyond(other), other.beyond(self));
+        match (&more[..], &less[..]) {
+            ([], []) => None,
+            (_, []) => Some((more.join("+"), true)),
+            ([], _) => Some((less.join("+"), false)),
+            _ => None,
+        }
+    }
+
     /// The parts that this one plays and the other does not; empty between different teams.
-    pub(super) fn beyond(self, other: Self) -> Vec<String> {
+    fn beyond(self, other: Self) -> Vec<String> {
         if self.team != other.team {
             return Vec::new();
         }

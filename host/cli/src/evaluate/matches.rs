@@ -2,7 +2,6 @@
 //! paper's Tables 1 and 2 (Biswas et al. 2014 §6).
 
 use std::fmt::Write as _;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -22,7 +21,7 @@ use serde_json::json;
 
 use super::merge::shards;
 use super::report::insert;
-use super::work::{self, WorkArgs};
+use super::work::{self, WorkArgs, write};
 use crate::Failure;
 use crate::args::{DirectoryArgs, SettingsArgs, VERSION};
 use crate::library::LibraryHandle;
@@ -238,8 +237,4 @@ impl<'a> Made<'a> {
         );
         text
     }
-}
-
-fn write(file: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    fs::write(file, bytes).map_err(|error| EvaluationError::File { file: file.to_owned(), error }.into())
 }

@@ -10,6 +10,7 @@ mod judge;
 mod matches;
 mod merge;
 mod report;
+mod scenes;
 mod skills;
 mod tables;
 mod work;
@@ -43,6 +44,8 @@ enum EvaluateVerb {
     Ablations(ablations::AblationsArgs),
     /// Play matches against other teams and print the results: the second paper's Table 2.
     Matches(Box<matches::MatchesArgs>),
+    /// Measure what each part of our play is worth on short scenes from equal starts.
+    Scenes(scenes::ScenesArgs),
     /// Try single skills in one world or a family of them: how often they succeed, and how fast.
     Skills(skills::SkillsArgs),
 }
@@ -55,6 +58,7 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<ExitCode, Failure> {
         Some(EvaluateVerb::Judge(args)) => judge::run(args),
         Some(EvaluateVerb::Ablations(args)) => ablations::run(args),
         Some(EvaluateVerb::Matches(args)) => matches::run(args),
+        Some(EvaluateVerb::Scenes(args)) => scenes::run(args),
         Some(EvaluateVerb::Skills(args)) => skills::run(args),
     }
 }

@@ -158,6 +158,11 @@ pub(super) fn finish(results: &Results, directory: &Path) -> Result<(), Failure>
     ))
 }
 
+/// Writes a file of results.
+pub(super) fn write(file: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    std::fs::write(file, bytes).map_err(|error| EvaluationError::File { file: file.to_owned(), error }.into())
+}
+
 /// Prints on stdout.
 pub(super) fn print_text(description: &str) -> Result<(), Failure> {
     output::print_text(description)

@@ -72,6 +72,18 @@ impl Coach {
             return self.spread(plan);
         }
         self.first = None;
+        let field_players = plan.free.iter().filter(|id| **id != view.keeper).count();
+        let places =
+            self.model.as_ref().and_then(|model| model.against_free_kick(view, &ball, field_players));
+        if let Some(places) = places {
+            plan.keeper_guards();
+            let at: heapless::Vec<_, ROBOTS_MAX> = places.iter().map(|(at, _, _)| *at).collect();
+            let what = |i: usize| {
+                places.get(i).map_or((Role::Player, OrderReason::Referee), |place| (place.1, place.2))
+            };
+            self.fill(plan, &at, what);
+            return self.spread(plan);
+        }
         if self.tactics.second_level && self.tactics.threats {
             return self.their_free_kick(plan, &ball);
         }

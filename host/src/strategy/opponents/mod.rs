@@ -1,6 +1,6 @@
 //! `opponents`: opponent teams as a reference for our play. They share our view, motion, limits, skills,
-//! keeper and restarts, and differ in open play only; each imitates one property of teams of the league
-//! (Biswas et al. 2014 §6).
+//! keeper and own restarts, and differ in open play and in how they defend against a free kick; each imitates
+//! one property of teams of the league (Biswas et al. 2014 §6).
 //!
 //! [`Team`] names them. Each is a module: `reactive` runs for the ball and shoots, `marking` marks every
 //! opponent, `zone` follows the ball with a wall. Attack frame, m, m/s, s.
@@ -77,11 +77,13 @@ struct Style {
     target: fn(&View, RobotId, Point<Attack>) -> Target,
     /// Where the others stand, most urgent first, while `wanted` of them are free.
     places: fn(&View, &ViewBall, usize) -> Places,
+    /// Whether they stand there against a free kick too; else two defend, one is the wall and the others mark.
+    keeps_places_at_free_kicks: bool,
 }
 
 /// A place to be taken, its role, and the reason.
-type Place = (Point<Attack>, Role, OrderReason);
-type Places = heapless::Vec<Place, ROBOTS_MAX>;
+pub(super) type Place = (Point<Attack>, Role, OrderReason);
+pub(super) type Places = heapless::Vec<Place, ROBOTS_MAX>;
 type Free = heapless::Vec<RobotId, ROBOTS_MAX>;
 
 impl OpponentModel {
@@ -147,6 +149,16 @@ impl OpponentModel {
             }
         }
         orders
+    }
+
+    /// Where `wanted` robots stand against a free kick, most urgent first; `None`: as all teams do.
+    pub(super) fn against_free_kick(&self, view: &View, ball: &ViewBall, wanted: usize) -> Option<Places> {
+        let mut places =
+            self.style.keeps_places_at_free_kicks.then(|| (self.style.places)(view, ball, wanted))?;
+        for (at, _, _) in &mut places {
+            *at = off_areas(view, *at);
+        }
+        Some(places)
     }
 
     /// The robot that goes for the ball; none where only keepers may touch it.

@@ -11,7 +11,7 @@ use crate::strategy::order::{OrderReason, Role};
 use crate::strategy::support::{Target, best_shot};
 use crate::strategy::view::{View, ViewBall};
 
-pub(super) const STYLE: Style = Style { target: shoot_or_clear, places };
+pub(super) const STYLE: Style = Style { target: shoot_or_clear, places, keeps_places_at_free_kicks: false };
 
 /// A shot where one is worth it, else ahead along the freest path: the robot then follows its own ball.
 pub(super) fn shoot_or_clear(view: &View, _robot: RobotId, ball: Point<Attack>) -> Target {

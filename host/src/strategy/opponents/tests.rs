@@ -1,6 +1,10 @@
 //! Tests: each opponent team gives every robot one rule-compliant order and plays in its own style.
 
+use rules::{League, Phase, Side};
+
 use super::*;
+use crate::strategy::Tactics;
+use crate::strategy::coach::Coach;
 use crate::strategy::view::tests::view;
 
 const OURS: [(f32, f32); 6] = [(-4.4, 0.0), (-3.0, 0.5), (-3.0, -0.5), (-0.5, 0.0), (0.5, 1.5), (0.5, -1.5)];
@@ -104,4 +108,39 @@ fn a_team_is_read_by_the_word_it_is_written_with() {
         assert_eq!(serde_json::to_string(&team).unwrap(), format!("\"{}\"", team.label()));
     }
     assert_eq!(Team::from_label("best"), None);
+}
+
+/// A free kick of theirs, 4 m before our goal.
+fn against_free_kick(team: Team) -> Orders {
+    let mut view = view((-0.5, 1.0), &OURS, &THEIRS);
+    view.phase = Phase::FreeKick(Side::Theirs);
+    Coach::new(team, Tactics::NONE, League::DivisionB).decide(&view)
+}
+
+#[test]
+fn three_teams_defend_in_three_ways_against_a_free_kick() {
+    let count =
+        |orders: &Orders, role: fn(&Role) -> bool| orders.iter().filter(|order| role(&order.role)).count();
+    let (wall, marker): (fn(&Role) -> bool, fn(&Role) -> bool) =
+        (|role| *role == Role::Wall, |role| matches!(role, Role::Marker(_)));
+    let of = |team| {
+        let orders = against_free_kick(team);
+        assert_eq!(orders.len(), OURS.len());
+        (count(&orders, wall), count(&orders, marker))
+    };
+    // Three of theirs are outside their area, one 1.1 m from the ball.
+    assert_eq!(of(Team::Reactive), (1, 2));
+    assert_eq!(of(Team::Marking), (0, 3));
+    assert_eq!(of(Team::Zone), (4, 0));
+}
+
+#[test]
+fn no_one_stands_nearer_to_their_free_kick_than_the_rules_permit() {
+    for team in Team::OPPONENTS {
+        for order in against_free_kick(team).iter().filter(|order| order.role != Role::Keeper) {
+            let Task::GoTo { at, .. } = order.task else { panic!("{order:?}") };
+            // 0.5 m from the ball to the nearest part of a robot.
+            assert!(at.distance(Point::new(-0.5, 1.0)) > 0.59, "{team:?} {order:?}");
+        }
+    }
 }

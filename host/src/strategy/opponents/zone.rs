@@ -8,7 +8,7 @@ use crate::strategy::order::{OrderReason, Role};
 use crate::strategy::support;
 use crate::strategy::view::{View, ViewBall};
 
-pub(super) const STYLE: Style = Style { target: support::target, places };
+pub(super) const STYLE: Style = Style { target: support::target, places, keeps_places_at_free_kicks: true };
 
 fn places(view: &View, ball: &ViewBall, wanted: usize) -> Places {
     let goal = view.our_goal();

@@ -1,0 +1,121 @@
+//! `onetwo evaluate scenes`: what each part of our play is worth, on short scenes from equal starts.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use arena::evaluation::{EvaluationError, csv_hash, to_csv};
+use arena::matches::MatchTeam;
+use arena::scenes::{SceneEffect, ScenePlan, scene_effects, scene_table};
+use clap::Args;
+use hil_sim::small_size::worlds::WorldChoice;
+use host::strategy::{ROUND_1, Team};
+use rules::League;
+
+use super::report::insert;
+use super::work::{self, write};
+use crate::Failure;
+use crate::play::league;
+use crate::progress::Progress;
+
+/// Which scenes, and how they are printed.
+#[derive(Debug, Args)]
+pub(super) struct ScenesArgs {
+    /// Field, robots and rules: division-b or ssl-2013. Robots play the cases of division B.
+    #[arg(long, default_value = "division-b", value_parser = league)]
+    league: League,
+    /// Physics: nominal, a profile's name or random:SEED.
+    #[arg(long, default_value = "nominal", value_name = "WORLD")]
+    world: WorldChoice,
+    /// Free kicks against each opponent.
+    #[arg(long, default_value_t = 200, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=100_000))]
+    free_kicks: u32,
+    /// Moments of open play against each opponent.
+    #[arg(long, default_value_t = 500, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=100_000))]
+    open_play: u32,
+    /// The team that the others are compared with.
+    #[arg(long, value_name = "TEAM", default_value = "ours", value_parser = MatchTeam::parse)]
+    team: MatchTeam,
+    /// The same with one part more or less, with commas between, such as ours-with-coerce; by default our
+    /// team once for each part.
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = MatchTeam::parse)]
+    variants: Vec<MatchTeam>,
+    /// Opponents, with commas between; by default reactive (a wall and markers against free kicks), marking
+    /// (man against man), zone (a wall that follows the ball) and round-1 (second-level threats).
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = MatchTeam::parse)]
+    opponents: Vec<MatchTeam>,
+    /// Random seed.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Threads; the number of cores by default.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    /// Write every scene as a row of this CSV file.
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Print a JSON list, an object for each effect, and nothing else.
+    #[arg(long, conflicts_with = "markdown")]
+    json: bool,
+    /// Put the table between the markers of this Markdown file.
+    #[arg(long, value_name = "FILE")]
+    markdown: Option<PathBuf>,
+    /// Name of the markers.
+    #[arg(long, value_name = "NAME", default_value = "scenes", requires = "markdown")]
+    section: String,
+}
+
+pub(super) fn run(args: &ScenesArgs) -> Result<ExitCode, Failure> {
+    let plan = args.plan();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.jobs.map_or(0, usize::from)).build();
+    let pool = pool.map_err(Failure::Threads)?;
+    let (line, done, of) = (Progress::open(), AtomicU64::new(0), plan.len() as u64);
+    line.set_text("playing");
+    let on_played = || line.set(done.fetch_add(1, Ordering::Relaxed) + 1, of);
+    let rows = pool.install(|| plan.play(&on_played)).map_err(Failure::Game)?;
+    drop(line);
+    let csv = to_csv(&rows).map_err(EvaluationError::from)?;
+    if let Some(file) = &args.csv {
+        write(file, &csv)?;
+    }
+    let effects = scene_effects(&plan, &rows);
+    if args.json {
+        let json = serde_json::to_string(&effects).map_err(|error| Failure::Output(error.into()))?;
+        work::print_text(&format!("{json}\n"))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let text = args.text(&plan, &effects, &csv_hash(&csv));
+    if let Some(file) = &args.markdown {
+        insert(file, ("scenes", &args.section), |_| text.clone(), Vec::new())?;
+    }
+    work::print_text(&text)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+impl ScenesArgs {
+    fn plan(&self) -> ScenePlan {
+        let or = |given: &[MatchTeam], usual: Vec<MatchTeam>| {
+            if given.is_empty() { usual } else { given.to_vec() }
+        };
+        let references = Team::OPPONENTS.map(MatchTeam::from).into_iter().chain([MatchTeam::round_1()]);
+        ScenePlan {
+            league: self.league,
+            world: self.world,
+            seed: self.seed,
+            free_kicks: self.free_kicks,
+            open_play: self.open_play,
+            team: self.team,
+            variants: or(&self.variants, MatchTeam::ablations()),
+            opponents: or(&self.opponents, references.collect()),
+        }
+    }
+
+    fn text(&self, plan: &ScenePlan, effects: &[SceneEffect], hash: &str) -> String {
+        format!(
+            "{}\n{} scenes in {}, seed {}, csv hash {hash}; {ROUND_1} is our team by thresholds\n",
+            scene_table(effects),
+            plan.len(),
+            self.world,
+            self.seed
+        )
+    }
+}
