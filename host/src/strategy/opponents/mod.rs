@@ -77,7 +77,8 @@ struct Style {
     target: fn(&View, RobotId, Point<Attack>) -> Target,
     /// Where the others stand, most urgent first, while `wanted` of them are free.
     places: fn(&View, &ViewBall, usize) -> Places,
-    /// Whether they stand there against a free kick too; else two defend, one is the wall and the others mark.
+    /// Whether they stand there against a free kick too; else two defend, one is the wall and the others
+    /// mark.
     keeps_places_at_free_kicks: bool,
 }
 

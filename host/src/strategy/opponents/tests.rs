@@ -119,14 +119,12 @@ fn against_free_kick(team: Team) -> Orders {
 
 #[test]
 fn three_teams_defend_in_three_ways_against_a_free_kick() {
-    let count =
-        |orders: &Orders, role: fn(&Role) -> bool| orders.iter().filter(|order| role(&order.role)).count();
-    let (wall, marker): (fn(&Role) -> bool, fn(&Role) -> bool) =
-        (|role| *role == Role::Wall, |role| matches!(role, Role::Marker(_)));
     let of = |team| {
         let orders = against_free_kick(team);
         assert_eq!(orders.len(), OURS.len());
-        (count(&orders, wall), count(&orders, marker))
+        let wall = orders.iter().filter(|order| order.role == Role::Wall).count();
+        let marks = orders.iter().filter(|order| matches!(order.role, Role::Marker(_))).count();
+        (wall, marks)
     };
     // Three of theirs are outside their area, one 1.1 m from the ball.
     assert_eq!(of(Team::Reactive), (1, 2));
