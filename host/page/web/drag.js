@@ -106,7 +106,7 @@ export function startDrag(canvas, camera) {
     note.style.display = words ? "block" : "none";
     if (!words) return;
     note.textContent = words;
-    // Beside the hand, within the picture.
+    // Beside the pointer, within the picture.
     note.style.left = `${Math.max(4, Math.min(here[0] + 16, canvas.clientWidth - note.offsetWidth - 4))}px`;
     note.style.top = `${here[1] + 16 + note.offsetHeight < canvas.clientHeight ? here[1] + 16 : Math.max(4, here[1] - note.offsetHeight - 16)}px`;
   }

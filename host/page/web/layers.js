@@ -10,7 +10,7 @@ const OWN = [
   ["trail", "ball's trail", true],
   ["ahead", "ball's prediction", true],
   ["velocities", "velocities", true],
-  ["paths", "ways and targets", true],
+  ["paths", "paths and targets", true],
   ["roles", "roles", true],
 ];
 

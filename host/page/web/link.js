@@ -16,7 +16,7 @@ let socket = null;
 let tries = 0;
 let heard = 0;
 
-/** Asks the match for something; false where nobody hears. */
+/** Asks the match for something; false without a connection. */
 export function ask(request) {
   if (socket?.readyState !== WebSocket.OPEN) return false;
   socket.send(JSON.stringify(request));

@@ -83,7 +83,7 @@ on("draft-on", (problem) => inTurn(async () => {
 
 const changing = (text, edit) => request({ do: "edit", name: bench.name, text, symmetry: SYMMETRIES[bench.copy], edit });
 
-/** A drag asks so often at most, ms: the handle follows the hand at once, the rest of the case at this pace. */
+/** A drag asks so often at most, ms: the handle follows the pointer at once, the rest of the case at this pace. */
 const PREVIEW_EVERY = 40;
 
 /** The newest change of a drag that was not asked for yet, and how many drags have ended. */
