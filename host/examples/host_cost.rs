@@ -62,6 +62,7 @@ fn count_this_round(host: &mut Host, round: &[Record]) -> (u64, u64) {
             RecordKind::Referee => Input::Referee(&record.bytes, record.from),
             RecordKind::Robot => Input::Robot(&record.bytes),
             RecordKind::Timeout => Input::Timeout,
+            RecordKind::Orders => Input::Orders(&record.bytes),
             RecordKind::Halt => Input::Halt,
             RecordKind::Sent | RecordKind::Lost => continue,
         };

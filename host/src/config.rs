@@ -15,6 +15,7 @@
 //! referee_silence = "halt"        # after 2 s without a referee; "go-on": its last command is kept
 //! tracker = "224.5.23.2:10010"
 //! game_controller = "127.0.0.1:10008"   # the team's port; left out: no messages to the controller
+//! strategy = "python3 my_team.py" # program that gives the orders; left out: the program's own coach does
 //!
 //! [[calibration]]                 # how a robot deviates from what is ordered
 //! robot = 3
@@ -69,6 +70,8 @@ pub struct TeamSettings {
     pub tracker: Option<SocketAddr>,
     /// The game controller's port for teams.
     pub game_controller: Option<SocketAddr>,
+    /// Command of the strategy that gives the orders ([`crate::external`]).
+    pub strategy: Option<String>,
     /// Deviations of the robots from what is ordered.
     #[serde(default)]
     pub calibration: Vec<Calibration>,
@@ -134,6 +137,8 @@ pub struct TeamConfig {
     pub tracker: SocketAddr,
     /// The game controller's port for teams.
     pub game_controller: Option<SocketAddr>,
+    /// Command of the strategy that gives the orders; none: the coach does.
+    pub strategy: Option<String>,
     /// Ball speed over speed ordered, by robot.
     pub kick: [f32; RobotId::COUNT],
     /// Deceleration of a rolling ball, m/s²; none: from vision.
@@ -215,6 +220,7 @@ impl TeamSettings {
             referee_silence: self.referee_silence.or(below.referee_silence),
             tracker: self.tracker.or(below.tracker),
             game_controller: self.game_controller.or(below.game_controller),
+            strategy: self.strategy.or(below.strategy),
             calibration: if self.calibration.is_empty() { below.calibration } else { self.calibration },
             ball: BallSettings { roll: self.ball.roll.or(below.ball.roll) },
         }
@@ -264,6 +270,7 @@ impl TeamSettings {
             referee_silence: self.referee_silence.as_deref().map_or(Ok(OnSilence::default()), on_silence)?,
             tracker: self.tracker.unwrap_or_else(|| addresses::TRACKER.into()),
             game_controller: self.game_controller,
+            strategy: self.strategy,
             kick,
             roll: self.ball.roll,
         })

@@ -6,6 +6,7 @@
 //! packets: a trace of the inputs is a recording of the decisions.
 
 mod calibration;
+mod commands;
 mod input;
 mod state;
 
@@ -13,13 +14,14 @@ use casebase::CaseBase;
 use geometry::{GoalEnd, Point};
 use protocol::decision::{Assembler, DecisionReport};
 use protocol::frame::TeamKey;
-use protocol::host::{Condition, Directive, HostCommand, RuleRole, Telemetry};
+use protocol::host::{Condition, Directive, RuleRole, Telemetry};
 use protocol::link::Packet;
 use protocol::team::{Beacon, PRESENCE_LEASE, Progress};
 use protocol::{Duration, Instant, RobotId, TeamId};
 use rules::{Colour, FieldSpec, League, Limits, Phase};
 use ssl::Message;
 
+use crate::external::External;
 use crate::field_geometry::VisionGeometry;
 use crate::learned::Learned;
 use crate::proposal::{cases_of, proposal};
@@ -63,6 +65,8 @@ pub struct HostSettings {
     pub radio: RadioSettings,
     /// Which of the second paper's tactics it plays.
     pub tactics: Tactics,
+    /// Whether a strategy in another program gives orders ([`crate::external`]).
+    pub external: bool,
 }
 
 impl HostSettings {
@@ -82,6 +86,7 @@ impl HostSettings {
             team: Team::Ours,
             radio: RadioSettings { key: TeamKey::ZERO, ..RadioSettings::new(TeamId::of(us), epoch) },
             tactics: Tactics::default(),
+            external: false,
         }
     }
 }
@@ -100,6 +105,7 @@ pub struct Host {
     listener: Listener,
     radio: Radio,
     coach: Coach,
+    external: Option<External>,
     robots: [Known; RobotId::COUNT],
     world: World,
     hidden: HiddenBall,
@@ -148,6 +154,7 @@ impl Host {
             tracker: Tracker::default(),
             geometry: VisionGeometry::default(),
             coach: Coach::new(settings.team, settings.tactics, settings.league),
+            external: settings.external.then(|| External::new(settings.league)),
             robots: Default::default(),
             world: World::default(),
             hidden: HiddenBall::default(),
@@ -178,6 +185,7 @@ impl Host {
             Input::Vision(bytes) => self.see(now, bytes),
             Input::Referee(bytes, from) => self.obey(now, bytes, from),
             Input::Robot(bytes) => self.listen(now, bytes),
+            Input::Orders(line) => self.follow(now, line),
             Input::Halt => {
                 self.halt(now);
                 InputVerdict::Halted
@@ -311,25 +319,15 @@ impl Host {
         let (contact, knows_cases) = (self.in_contact(now), self.knows_cases(now));
         let view = View { never_answered, contact, knows_cases, ..view };
         self.orders = self.coach.decide(&view);
+        if let Some(external) = &mut self.external {
+            self.orders = external.plan(&view, std::mem::take(&mut self.orders));
+        }
         if !self.halted {
             self.requests.look(&view, self.listener.game().team(us).substitutions_left);
         }
         let flip = Flip::defending(game.defending);
         self.books.note((&self.world, &view, &view.field), (us, flip), &self.orders, self.coach.take_sent());
-        let command = |(to, rule_role, directive): (RobotId, RuleRole, Directive)| HostCommand {
-            to,
-            defending: game.defending,
-            phase: game.phase,
-            rule_role,
-            directive: self.calibrated(to, directive),
-        };
-        let coached = |order: &crate::strategy::Order| {
-            command((order.robot, order.role.rule_role(), order.task.directive(flip)))
-        };
-        let commands: heapless::Vec<HostCommand, { RobotId::COUNT }> = match &self.drill {
-            Some(drill) => drill.iter().cloned().map(command).collect(),
-            None => self.orders.iter().map(coached).collect(),
-        };
+        let commands = self.commands(&game);
         self.learned.see(now, (&snapshot, us), game.phase, &commands);
         if self.settings.learns
             && let Some(known) = self.learned.friction()

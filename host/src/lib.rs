@@ -9,6 +9,7 @@
 #![forbid(unsafe_code)]
 
 pub mod config;
+pub mod external;
 pub mod field_geometry;
 mod host;
 pub mod learned;

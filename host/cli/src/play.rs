@@ -14,6 +14,7 @@ use clap::Args;
 use hil_sim::NativeBackend;
 use hil_sim::small_size::worlds::WorldChoice;
 use host::record::Recorder;
+use host::shell::StrategyProcess;
 use host::strategy::{Tactics, Team};
 use page::Powers;
 use protocol::Instant;
@@ -70,6 +71,13 @@ pub(crate) struct PlayArgs {
     /// The same for blue.
     #[arg(long, value_name = "TACTICS", default_value = "usual", value_parser = Tactics::parse)]
     blue_tactics: Tactics,
+    /// A program that gives yellow's orders: it gets the view as a line of JSON and answers with one
+    /// (docs/strategy-protocol.md).
+    #[arg(long, value_name = "cmd:COMMAND")]
+    yellow_strategy: Option<String>,
+    /// The same for blue.
+    #[arg(long, value_name = "cmd:COMMAND")]
+    blue_strategy: Option<String>,
     /// Record the match as NAME.log.gz (for the league's tools) and NAME.trace (for `onetwo replay`).
     #[arg(long, value_name = "NAME")]
     record: Option<PathBuf>,
@@ -119,6 +127,8 @@ pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
         team.settings = settings.clone();
         team.tactics = if team.colour == Colour::Blue { args.blue_tactics } else { args.yellow_tactics };
         team.robots = args.robots.unwrap_or(team.robots);
+        let command = if team.colour == Colour::Blue { &args.blue_strategy } else { &args.yellow_strategy };
+        team.strategy = command.as_deref().map(StrategyProcess::starter);
     }
     let library_handle = cases(&args.directory, args.league)?;
     let base = library_handle.as_ref().map_or_else(CaseBase::default, LibraryHandle::base);
@@ -292,6 +302,11 @@ fn write_report(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> i
     for (side, tactics) in [("blue", args.blue_tactics), ("yellow", args.yellow_tactics)] {
         if tactics != Tactics::default() {
             text.extend([" --", side, "-tactics ", &tactics.description()]);
+        }
+    }
+    for (side, command) in [("blue", &args.blue_strategy), ("yellow", &args.yellow_strategy)] {
+        if let Some(command) = command {
+            text.extend([" --", side, "-strategy ", &format!("{command:?}")]);
         }
     }
     writeln!(out, "trace {}, to see it again: onetwo play --seed {}{text}", report.trace_hash, args.seed)

@@ -3,6 +3,7 @@
 use protocol::RobotId;
 use protocol::frame::Refusal;
 
+use crate::external::AnswerError;
 use crate::referee::{self, SenderAddress};
 use crate::tracking;
 
@@ -15,6 +16,8 @@ pub enum Input<'a> {
     Referee(&'a [u8], SenderAddress),
     /// A frame of a robot.
     Robot(&'a [u8]),
+    /// A line of the strategy in another program ([`crate::external`]).
+    Orders(&'a [u8]),
     /// The operator halts our robots until the end of the program.
     Halt,
     /// A deadline that [`Host::poll_timeout`](crate::Host::poll_timeout) announced.
@@ -32,6 +35,10 @@ pub enum InputVerdict {
     Robot(RobotId),
     /// A frame that was refused.
     Refused(Refusal),
+    /// Orders of the strategy in another program.
+    Orders,
+    /// A line of that program that is no answer.
+    NoAnswer(AnswerError),
     /// A datagram that is no message.
     Undecodable,
     /// A deadline was handled.

@@ -55,6 +55,7 @@ enum Owned {
     Vision(Vec<u8>),
     Referee(Vec<u8>, SenderAddress),
     Robot(Vec<u8>),
+    Orders(Vec<u8>),
     Halt,
     Timeout,
 }
@@ -65,6 +66,7 @@ impl Owned {
             Input::Vision(bytes) => Self::Vision(bytes.to_vec()),
             Input::Referee(bytes, from) => Self::Referee(bytes.to_vec(), from),
             Input::Robot(bytes) => Self::Robot(bytes.to_vec()),
+            Input::Orders(line) => Self::Orders(line.to_vec()),
             Input::Halt => Self::Halt,
             Input::Timeout => Self::Timeout,
         }
@@ -75,6 +77,7 @@ impl Owned {
             Self::Vision(bytes) => Input::Vision(bytes),
             Self::Referee(bytes, from) => Input::Referee(bytes, *from),
             Self::Robot(bytes) => Input::Robot(bytes),
+            Self::Orders(line) => Input::Orders(line),
             Self::Halt => Input::Halt,
             Self::Timeout => Input::Timeout,
         }
@@ -86,9 +89,14 @@ impl Entry {
         ENTRY_LEN
             + match self {
                 Self::Received(_, _, bytes) => bytes.len(),
-                Self::Input(_, _, Owned::Vision(bytes) | Owned::Referee(bytes, _) | Owned::Robot(bytes)) => {
-                    bytes.len()
-                }
+                Self::Input(
+                    _,
+                    _,
+                    Owned::Vision(bytes)
+                    | Owned::Referee(bytes, _)
+                    | Owned::Robot(bytes)
+                    | Owned::Orders(bytes),
+                ) => bytes.len(),
                 _ => 0,
             }
     }
@@ -122,7 +130,9 @@ impl BackgroundRecorder {
     /// Something came to the host of that colour.
     pub fn input(&mut self, now: Instant, host: Colour, input: Input<'_>) {
         let len = match input {
-            Input::Vision(bytes) | Input::Referee(bytes, _) | Input::Robot(bytes) => bytes.len(),
+            Input::Vision(bytes) | Input::Referee(bytes, _) | Input::Robot(bytes) | Input::Orders(bytes) => {
+                bytes.len()
+            }
             Input::Halt | Input::Timeout => 0,
         };
         if self.has_record_room(now, len) {

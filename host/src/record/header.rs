@@ -89,6 +89,9 @@ pub struct HostHeader {
     /// The hash of the case base in which its robots' cases were looked up, where its tactics needed one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cases: Option<String>,
+    /// Whether a strategy in another program gave orders.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub external: bool,
 }
 
 /// Why a header builds no host.
@@ -179,6 +182,7 @@ impl HostHeader {
             keyed: radio.key != TeamKey::ZERO,
             tactics: Tactics::NONE,
             cases: None,
+            external: false,
         }
     }
 
@@ -193,6 +197,7 @@ impl HostHeader {
             referee_silence: Some(settings.referee_silence.label().to_owned()),
             tactics: settings.tactics,
             cases: settings.tactics.bridge.then(|| hash_of_cases(settings.league)),
+            external: settings.external,
             ..Self::new(who, &settings.kick, &settings.radio, began)
         }
     }
@@ -218,6 +223,7 @@ impl HostHeader {
             team: self.plays,
             radio: self.radio(key)?,
             tactics: self.tactics,
+            external: self.external,
         })
     }
 

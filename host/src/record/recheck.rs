@@ -142,6 +142,7 @@ impl Recheck {
             RecordKind::Referee => checked.feed_input(record.at, Input::Referee(&record.bytes, record.from)),
             RecordKind::Robot => checked.feed_input(record.at, Input::Robot(&record.bytes)),
             RecordKind::Timeout => checked.feed_input(record.at, Input::Timeout),
+            RecordKind::Orders => checked.feed_input(record.at, Input::Orders(&record.bytes)),
             RecordKind::Halt => checked.feed_input(record.at, Input::Halt),
             RecordKind::Lost => {}
         }

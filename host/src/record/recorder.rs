@@ -93,6 +93,7 @@ impl Recorder {
                 (RecordKind::Referee, [&sender, bytes])
             }
             Input::Robot(bytes) => (RecordKind::Robot, [&[], bytes]),
+            Input::Orders(line) => (RecordKind::Orders, [&[], line]),
             Input::Halt => (RecordKind::Halt, [&[], &[]]),
             Input::Timeout => (RecordKind::Timeout, [&[], &[]]),
         };

@@ -50,14 +50,16 @@ pub enum RecordKind {
     Lost,
     /// The operator halted the host's robots.
     Halt,
+    /// A line of the strategy in another program came in.
+    Orders,
 }
 
 impl RecordKind {
-    const ALL: [Self; 7] =
-        [Self::Vision, Self::Referee, Self::Robot, Self::Timeout, Self::Sent, Self::Lost, Self::Halt];
-
     fn from_byte(byte: u8) -> Option<Self> {
-        Self::ALL.get(usize::from(byte)).copied()
+        use RecordKind as K;
+        [K::Vision, K::Referee, K::Robot, K::Timeout, K::Sent, K::Lost, K::Halt, K::Orders]
+            .get(usize::from(byte))
+            .copied()
     }
 
     /// Whether it is an input of the host.

@@ -11,6 +11,7 @@ pub mod key;
 mod outbox;
 mod serial;
 mod sim;
+mod strategy_process;
 mod udp;
 
 use std::time::Duration;
@@ -24,6 +25,7 @@ pub use error::LinkError;
 pub use outbox::{OutCounts, Outbox};
 pub use serial::SerialLink;
 pub use sim::{SimLink, SimSettings};
+pub use strategy_process::StrategyProcess;
 pub use udp::UdpLink;
 
 /// A link to the robots.

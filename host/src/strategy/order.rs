@@ -130,12 +130,14 @@ pub enum OrderReason {
     },
     /// Open play: the robots choose among themselves.
     OpenPlay,
-    /// It touched the ball last at our restart.
-    DoubleTouch,
     /// The ball's place is unknown.
     NoBall,
     /// The team is the one that only stands still.
     Idle,
+    /// The strategy of another program wants it.
+    External,
+    /// The strategy of another program has not answered.
+    ExternalSilent,
     /// The referee allows us fewer robots.
     TooMany {
         /// Number of robots allowed.
@@ -257,8 +259,9 @@ impl fmt::Display for OrderReason {
                 write!(f, "{arrived} of {of} are where opponents shall follow them")
             }
             Self::OpenPlay => f.write_str("open play: the robots choose among themselves"),
-            Self::DoubleTouch => f.write_str("it touched the ball last at our restart"),
             Self::Idle => f.write_str("the team only stands"),
+            Self::External => f.write_str("ordered by the team's own strategy"),
+            Self::ExternalSilent => f.write_str("the team's own strategy does not answer"),
             Self::NoBall => f.write_str("no ball is seen"),
             Self::TooMany { allowed } => write!(f, "the referee lets us have {allowed}"),
         }

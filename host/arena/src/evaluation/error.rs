@@ -39,6 +39,8 @@ pub enum EvaluationError {
     InUse(PathBuf),
     /// No file to merge was given.
     Nothing,
+    /// The team `strategy` plays, and no command of its strategy is given.
+    NoStrategy,
     /// The files contain a trial twice, with different results.
     Unlike {
         /// Its number in the plan, from 0.
@@ -115,6 +117,7 @@ impl fmt::Display for EvaluationError {
                 write!(f, "{}: another process writes to it; wait for it, or stop it", printable_path(file))
             }
             Self::Nothing => f.write_str("no trials there; name the folders that shards were written to"),
+            Self::NoStrategy => f.write_str("the team `strategy` needs --strategy COMMAND, its program"),
             Self::Unlike { trial } => write!(
                 f,
                 "trial {trial} is there twice and ended differently: the shards were not played by the same program"

@@ -6,6 +6,7 @@ use casebase::RetrievalSettings;
 use hil_sim::AirSettings;
 use hil_sim::small_size::referee::{MatchClock, RefereeSettings};
 use hil_sim::small_size::worlds::WorldChoice;
+use host::external::StrategyStarter;
 use host::strategy::{Tactics, Team};
 use protocol::{Duration, TeamId};
 use rules::{Colour, League};
@@ -48,6 +49,8 @@ pub struct TeamSetup {
     pub settings: RetrievalSettings,
     /// Tactics of the second paper that its host plays.
     pub tactics: Tactics,
+    /// The strategy that gives orders in place of its host's coach.
+    pub strategy: Option<StrategyStarter>,
 }
 
 impl GameConfig {
@@ -64,6 +67,7 @@ impl GameConfig {
             approach: Approach::Cases,
             settings: RetrievalSettings::default(),
             tactics: Tactics::default(),
+            strategy: None,
         };
         let total = Duration((duration_s * 1e6) as u64);
         Self {

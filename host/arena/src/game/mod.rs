@@ -90,6 +90,13 @@ pub enum GameError {
     },
     /// The league has no such matches.
     League(String),
+    /// A team's own strategy cannot be started.
+    Strategy {
+        /// Its command.
+        name: String,
+        /// Why not.
+        error: std::io::Error,
+    },
 }
 
 impl std::fmt::Display for GameError {
@@ -97,6 +104,7 @@ impl std::fmt::Display for GameError {
         match self {
             Self::Computer { who, error } => write!(f, "{} {}: {error}", who.colour.label(), who.id),
             Self::League(description) => f.write_str(description),
+            Self::Strategy { name, error } => write!(f, "the strategy `{name}` does not start: {error}"),
         }
     }
 }

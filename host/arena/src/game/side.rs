@@ -5,6 +5,7 @@ use geometry::{Angle, GoalEnd, Pose};
 use hil_sim::small_size::World;
 use hil_sim::small_size::worlds::LinkModel;
 use hil_sim::{Air, AirSettings, Backend, LinkLoss, Mcu, TraceHash};
+use host::external::{StrategyLink, StrategyStarter};
 use host::radio::{RadioSettings, Relay, To};
 use host::{Host, HostSettings, Input};
 use protocol::lockstep::TickIn;
@@ -17,6 +18,7 @@ use super::{GameConfig, GameError, TICK_US, TeamSetup, Watcher, numbers};
 /// A running team.
 pub(super) struct Team<'a> {
     pub(super) host: Host,
+    strategy: Option<Box<dyn StrategyLink>>,
     colour: Colour,
     air: Air,
     players: Vec<Player<'a>>,
@@ -60,7 +62,11 @@ impl<'a> Team<'a> {
         let settings = host_settings(config, colour);
         let seed = config.seed ^ colour as u64;
         let air = Air::with_host(link.over(&config.air), seed, &ids);
-        Ok(Self { host: Host::new(settings, Instant(0)), colour, air, players })
+        let started = |starter: &StrategyStarter| {
+            starter.start().map_err(|error| GameError::Strategy { name: starter.name().to_owned(), error })
+        };
+        let strategy = setup.strategy.as_ref().map(started).transpose()?;
+        Ok(Self { host: Host::new(settings, Instant(0)), strategy, colour, air, players })
     }
 
     pub(super) fn worst_instructions(&self) -> u32 {
@@ -78,6 +84,12 @@ impl<'a> Team<'a> {
                 To::One(robot) => Some(robot),
             };
             self.air.send_from_host(tick, to, &packet);
+        }
+        // The answer to a view makes no further view.
+        if let (Some(strategy), Some(view)) = (&mut self.strategy, self.host.poll_view())
+            && let Some(answer) = strategy.answer(&view)
+        {
+            self.feed(tick, now, Input::Orders(answer.as_bytes()), watcher);
         }
     }
 
@@ -192,6 +204,7 @@ pub(super) fn host_settings(config: &GameConfig, colour: Colour) -> HostSettings
         team: config.plays(colour),
         radio: RadioSettings { relay: Relay::No, ..usual.radio },
         tactics: config.teams[colour as usize].tactics,
+        external: config.teams[colour as usize].strategy.is_some(),
         ..usual
     }
 }

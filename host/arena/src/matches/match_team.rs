@@ -20,6 +20,8 @@ pub struct MatchTeam {
     /// Whether its robots retrieve and play cases (the first paper); else they play reactively where the
     /// host leaves the play to them.
     pub cases: bool,
+    /// Whether the strategy in another program gives its orders ([`super::MatchPlan::strategy`]).
+    pub strategy: bool,
 }
 
 impl MatchTeam {
@@ -31,6 +33,11 @@ impl MatchTeam {
     /// Our team with [`Tactics::ROUND_1`]: a reference opponent.
     pub fn round_1() -> Self {
         Self { tactics: Tactics::ROUND_1, ..Self::ours() }
+    }
+
+    /// The team of a strategy in another program.
+    pub fn strategy() -> Self {
+        Self { strategy: true, ..Self::ours() }
     }
 
     /// Our team once for each part of the second paper, and once for the cases: without it where it is usual
@@ -62,13 +69,16 @@ impl MatchTeam {
         let wrong = || {
             let teams = Team::ALL.map(Team::label).join(", ");
             format!(
-                "no team `{label}`; take {teams}, {ROUND_1}, or ours with other tactics: ours-with-A+B, ours-without-A+B, \
+                "no team `{label}`; take {teams}, {ROUND_1}, {STRATEGY}, or ours with other tactics: ours-with-A+B, ours-without-A+B, \
                  of {}",
                 joined(&Self::all_parts(), ", ")
             )
         };
         if label == ROUND_1 {
             return Ok(Self::round_1());
+        }
+        if label == STRATEGY {
+            return Ok(Self::strategy());
         }
         let Some(changes) = label.strip_prefix("ours-") else {
             return Team::from_label(label).map(Self::from).ok_or_else(wrong);
@@ -104,7 +114,7 @@ impl MatchTeam {
 
     /// The parts that this one plays and the other does not; empty between different teams.
     fn beyond(self, other: Self) -> Vec<String> {
-        if self.team != other.team {
+        if (self.team, self.strategy) != (other.team, other.strategy) {
             return Vec::new();
         }
         self.parts().difference(&other.parts()).cloned().collect()
@@ -127,18 +137,21 @@ impl MatchTeam {
     fn of_parts(mut parts: BTreeSet<String>) -> Result<Self, String> {
         let cases = parts.remove(CASES);
         let tactics = if parts.is_empty() { Tactics::NONE } else { Tactics::parse(&joined(&parts, ","))? };
-        Ok(Self { team: Team::Ours, tactics, cases })
+        Ok(Self { team: Team::Ours, tactics, cases, strategy: false })
     }
 }
 
 impl From<Team> for MatchTeam {
     fn from(team: Team) -> Self {
-        Self { team, tactics: Tactics::default(), cases: true }
+        Self { team, tactics: Tactics::default(), cases: true, strategy: false }
     }
 }
 
 impl fmt::Display for MatchTeam {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.strategy {
+            return f.write_str(STRATEGY);
+        }
         if *self == Self::round_1() && *self != Self::ours() {
             return f.write_str(ROUND_1);
         }
@@ -175,6 +188,9 @@ fn joined(parts: &BTreeSet<String>, between: &str) -> String {
     parts.iter().map(String::as_str).collect::<Vec<_>>().join(between)
 }
 
+/// The label of the team of a strategy in another program.
+const STRATEGY: &str = "strategy";
+
 /// The name of the first paper's part: cases.
 const CASES: &str = "cases";
 
@@ -187,6 +203,8 @@ mod tests {
         let ablations = MatchTeam::ablations();
         assert_eq!(ablations.len(), MatchTeam::all_parts().len());
         let none = MatchTeam { tactics: Tactics::NONE, cases: false, ..MatchTeam::ours() };
+        assert_eq!(MatchTeam::parse("strategy"), Ok(MatchTeam::strategy()));
+        assert_eq!(MatchTeam::strategy().to_string(), "strategy");
         let all = MatchTeam { tactics: Tactics::ALL, ..MatchTeam::ours() };
         let teams = Team::ALL.map(MatchTeam::from);
         let round_1 = MatchTeam::round_1();

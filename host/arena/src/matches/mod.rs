@@ -24,6 +24,7 @@ use std::path::Path;
 
 use casebase::{CaseBase, RetrievalSettings};
 use hil_sim::NativeBackend;
+use host::shell::StrategyProcess;
 use rules::Colour;
 use serde::{Deserialize, Serialize};
 
@@ -85,6 +86,7 @@ impl MatchIdentity {
             (own.duration_s.to_bits() != theirs.duration_s.to_bits(), "length of a match"),
             (own.pairings != theirs.pairings, "teams"),
             (own.matches != theirs.matches, "number of matches"),
+            (own.strategy != theirs.strategy, "strategy's command"),
         ];
         pairs.into_iter().filter_map(|(differs, what)| differs.then_some(what)).collect()
     }
@@ -114,6 +116,10 @@ impl Matches<'_> {
             team.settings = self.settings.clone();
             let match_team = if team.colour == Colour::Blue { blue } else { yellow };
             (team.tactics, team.approach) = (match_team.host_tactics(), match_team.approach());
+            if match_team.strategy {
+                let command = self.plan.strategy.as_deref().ok_or(EvaluationError::NoStrategy)?;
+                team.strategy = Some(StrategyProcess::starter(command));
+            }
         }
         Ok(config)
     }

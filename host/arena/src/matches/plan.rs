@@ -33,6 +33,9 @@ pub struct MatchPlan {
     pub pairings: Vec<Pairing>,
     /// Number of matches of each pair.
     pub matches: u32,
+    /// The command of the strategy that gives the orders of the team `strategy`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub strategy: Option<String>,
 }
 
 /// A match of a plan.
@@ -125,6 +128,7 @@ mod tests {
             duration_s: 600.0,
             pairings,
             matches: 4,
+            strategy: None,
         };
         let all: Vec<_> = (0..plan.len()).filter_map(|number| plan.get(number)).collect();
         assert_eq!((all.len(), plan.get(12)), (12, None));

@@ -36,6 +36,7 @@ impl Directory {
                     &[Team::Reactive.into(), MatchTeam::parse("ours-without-second-level").unwrap()],
                 ),
                 matches: 2,
+                strategy: None,
             },
             base,
             settings: RetrievalSettings::default(),
@@ -84,6 +85,7 @@ fn matches_of_different_worlds_are_of_different_evaluations_and_a_plan_keeps_its
             duration_s: 4.0,
             pairings: MatchPlan::against(MatchTeam::ours(), &[Team::Reactive.into()]),
             matches: 2,
+            strategy: None,
         };
         Matches {
             plan,
@@ -166,6 +168,7 @@ fn ratios_goals_and_intervals_are_those_counted_by_hand() {
         duration_s: 600.0,
         pairings: MatchPlan::against(MatchTeam::ours(), &[Team::Zone.into()]),
         matches: 3,
+        strategy: None,
     };
     let rows = [
         row(0, [2, 0], [200.0, 100.0], [6, 2]),
@@ -231,6 +234,7 @@ fn a_part_is_worth_what_the_side_with_it_was_ahead() {
         duration_s: 600.0,
         pairings: MatchPlan::against(MatchTeam::ours(), &[without, Team::Zone.into()]),
         matches: 2,
+        strategy: None,
     };
     let of = |row: MatchRow| MatchRow { opponent: without, ..row };
     let rows = [

@@ -33,6 +33,7 @@ pub(super) struct Alarms {
     /// What was dropped recently, and until when that is displayed.
     drops: Vec<(&'static str, u64, Instant)>,
     slow: Option<(String, Instant)>,
+    bad_answer: Option<(String, Instant)>,
     now: Vec<String>,
 }
 
@@ -45,6 +46,11 @@ impl Alarms {
     /// Records that the robots' line is too slow.
     pub(super) fn slow(&mut self, now: Instant, description: String) {
         self.slow = Some((description, now));
+    }
+
+    /// Records that an answer of the team's own strategy was refused.
+    pub(super) fn bad_answer(&mut self, now: Instant, description: String) {
+        self.bad_answer = Some((description, now));
     }
 
     /// Current faults, for the page.
@@ -76,8 +82,13 @@ impl Alarms {
             repeats: finding.is_urgent(),
         }));
         alarms.extend(self.drops(now, dropped));
-        if let Some((description, _)) = self.slow.as_ref().filter(|(_, at)| now.since(*at) < LASTS) {
-            alarms.push(Alarm { matter: "line".to_owned(), description: description.clone(), repeats: true });
+        for (matter, fault) in [("line", &self.slow), ("strategy", &self.bad_answer)] {
+            let lasting = fault.as_ref().filter(|(_, at)| now.since(*at) < LASTS);
+            alarms.extend(lasting.map(|(description, _)| Alarm {
+                matter: matter.to_owned(),
+                description: description.clone(),
+                repeats: true,
+            }));
         }
         self.print(now, alarms)
     }

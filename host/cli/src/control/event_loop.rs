@@ -19,7 +19,7 @@ use host::radio::RadioSettings;
 use host::record::header::RecordingHeader;
 use host::record::{BackgroundRecorder, Recorder};
 use host::referee::team_port::TeamPortRequest;
-use host::shell::{Outbox, SimSettings};
+use host::shell::{Outbox, SimSettings, StrategyProcess};
 use host::tracking::{Publisher, VisionVerdict};
 use host::{Host, HostSettings, Input, InputVerdict};
 use protocol::RobotId;
@@ -46,6 +46,9 @@ use crate::stop::stopped_by_hand;
 
 /// Longest time between two checks for missing sources and Ctrl-C.
 const LOOK: Duration = Duration::from_millis(100);
+/// An answer of the team's own strategy takes at most this long: it is started again if it has hung. Its
+/// robots stand long before ([`host::external::ANSWERS_WITHIN`]).
+const STRATEGY_PATIENCE: Duration = Duration::from_secs(1);
 /// HALT is sent for this time before the program ends: thirty snapshots, so that one of them arrives over a
 /// lossy radio.
 const HALTING: Duration = Duration::from_millis(300);
@@ -86,8 +89,12 @@ pub(super) fn run(
         roll: config.roll,
         learns,
         radio: RadioSettings { key, relay: link.relay(), ..usual.radio },
+        external: config.strategy.is_some(),
         ..usual
     };
+    let strategy =
+        config.strategy.as_deref().map(|command| StrategyProcess::start(command, STRATEGY_PATIENCE));
+    let strategy = strategy.transpose().map_err(NetworkError::Strategy)?;
     let recorder = keeps.record.map(|stem| {
         Recorder::begin(stem, &header(&settings))
             .and_then(BackgroundRecorder::start)
@@ -119,12 +126,17 @@ pub(super) fn run(
         let who = (config.name.clone(), config.colour, config.keeper);
         threads.push(port_for_teams::talk(address, who, asked, mail.clone(), end.clone()));
     }
+    let (view, views) = mpsc::channel();
+    if let Some(strategy) = strategy {
+        threads.push(threads::ask_strategy(strategy, views, mail.clone(), end.clone()));
+    }
     let speaks_by = config.interface.map(|ip| ip.to_string());
     let mut event_loop = EventLoop {
         host: Host::new(settings, protocol::Instant(0)),
         began: Instant::now(),
         out,
         ask,
+        view,
         us: config.colour,
         recorder,
         recording: Ok(()),
@@ -247,6 +259,8 @@ struct EventLoop {
     began: Instant,
     /// Requests to the game controller.
     ask: Sender<TeamPortRequest>,
+    /// Views for the team's own strategy.
+    view: Sender<String>,
     out: Arc<Mutex<Outbox>>,
     us: Colour,
     recorder: Option<BackgroundRecorder>,
@@ -302,6 +316,11 @@ impl EventLoop {
                 self.counts.robots += 1;
                 self.feed(now, Input::Robot(&packet));
             }
+            Mail::Orders(line) => {
+                if let InputVerdict::NoAnswer(error) = self.feed(now, Input::Orders(line.as_bytes())) {
+                    self.alarms.bad_answer(now, format!("strategy  an answer is refused: {error}"));
+                }
+            }
             Mail::Open(source, description_of_path) => self.watch.open(source, &description_of_path),
             Mail::Trouble(source, description) => {
                 let description = self.watch.trouble(source, &description);
@@ -318,7 +337,7 @@ impl EventLoop {
             let received = match input {
                 Input::Vision(bytes) => Some((MessageKind::Vision2014, bytes)),
                 Input::Referee(bytes, _) => Some((MessageKind::Refbox2013, bytes)),
-                Input::Robot(_) | Input::Halt | Input::Timeout => None,
+                Input::Robot(_) | Input::Orders(_) | Input::Halt | Input::Timeout => None,
             };
             if let Some((kind, bytes)) = received {
                 recorder.received(now, kind, bytes);
@@ -332,7 +351,7 @@ impl EventLoop {
             match input {
                 Input::Vision(bytes) => board.vision(bytes),
                 Input::Referee(bytes, _) => board.referee(bytes, now),
-                Input::Robot(_) | Input::Halt | Input::Timeout => {}
+                Input::Robot(_) | Input::Orders(_) | Input::Halt | Input::Timeout => {}
             }
         }
         self.send(now);
@@ -343,6 +362,10 @@ impl EventLoop {
         while let Some(request) = self.host.poll_request() {
             // Without a game controller no thread receives the request.
             let _ = self.ask.send(request);
+        }
+        if let Some(view) = self.host.poll_view() {
+            // Its thread lasts as long as the host asks.
+            let _ = self.view.send(view);
         }
         let mut batch = Vec::new();
         while let Some((to, packet)) = self.host.poll_packet() {

@@ -1,5 +1,6 @@
-//! `inbox`: what arrived from network and robots and waits for the event loop. A bounded lane for each kind;
-//! referee and robots are read before vision. Sizes in bytes, lengths in datagrams.
+//! `inbox`: what arrived from network, robots and the team's own strategy and waits for the event loop. A
+//! bounded lane for each kind; referee, robots and strategy are read before vision. Sizes in bytes, lengths
+//! in datagrams.
 //!
 //! A flood of one kind cannot delay another: the referee's newest packet waits for at most one camera frame
 //! that is being handled. When a lane is full its oldest entry is dropped and counted; a datagram longer than
@@ -25,6 +26,8 @@ const VISION_MAX: usize = 64;
 const REFEREE_MAX: usize = 64;
 /// Frames of robots that wait: 11 robots at 100 Hz for 0.2 s.
 const ROBOTS_MAX: usize = 256;
+/// Answers of the team's own strategy that wait: a newer one supersedes the others.
+const ORDERS_MAX: usize = 1;
 /// Notes for the operator that wait.
 const NOTES_MAX: usize = 256;
 /// Most referee packets and robot frames that are handled in a row while camera frames wait: a flood of one
@@ -59,6 +62,8 @@ pub(super) enum Mail {
     Referee(Vec<u8>, SenderAddress),
     /// A frame of a robot.
     Robot(Packet),
+    /// An answer of the team's own strategy.
+    Orders(String),
     /// How a source is received now.
     Open(Source, String),
     /// Why a source cannot be received.
@@ -111,6 +116,7 @@ impl<T> Lane<T> {
 struct Lanes {
     referee: Lane<(Vec<u8>, SenderAddress)>,
     robots: Lane<Packet>,
+    orders: Lane<String>,
     vision: Lane<Vec<u8>>,
     notes: Lane<Mail>,
     oversized: [u64; 2],
@@ -122,6 +128,7 @@ impl Lanes {
         Self {
             referee: Lane::new(REFEREE_MAX),
             robots: Lane::new(ROBOTS_MAX),
+            orders: Lane::new(ORDERS_MAX),
             vision: Lane::new(VISION_MAX),
             notes: Lane::new(NOTES_MAX),
             oversized: [0; 2],
@@ -136,6 +143,7 @@ impl Lanes {
             Mail::Referee(bytes, _) if bytes.len() > REFEREE_LEN_MAX => self.oversized[1] += 1,
             Mail::Referee(bytes, from) => self.referee.push((bytes, from)),
             Mail::Robot(packet) => self.robots.push(packet),
+            Mail::Orders(line) => self.orders.push(line),
             note => self.notes.push(note),
         }
     }
@@ -148,6 +156,9 @@ impl Lanes {
             }
             if let Some(packet) = self.robots.waiting.pop_front() {
                 return Some(Mail::Robot(packet));
+            }
+            if let Some(line) = self.orders.waiting.pop_front() {
+                return Some(Mail::Orders(line));
             }
         }
         self.in_row = 0;

@@ -96,6 +96,10 @@ pub(crate) struct ControlArgs {
     /// announced to the game controller.
     #[arg(long, value_name = "ADDRESS:PORT")]
     game_controller: Option<SocketAddr>,
+    /// A program that gives the robots' orders, such as `cmd:python3 my_team.py`: it gets the view as a line
+    /// of JSON and answers with one (docs/strategy-protocol.md). While it does not answer, robots stand.
+    #[arg(long, value_name = "cmd:COMMAND")]
+    strategy: Option<String>,
     /// How much faster than ordered a robot's kicks are, such as 3=1.06; may be repeated.
     #[arg(long = "kick", value_name = "ROBOT=FACTOR", value_parser = kick)]
     kicks: Vec<Calibration>,
@@ -211,6 +215,7 @@ fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
         referee_silence: args.referee_silence.clone(),
         tracker: args.tracker,
         game_controller: args.game_controller,
+        strategy: args.strategy.clone(),
         calibration: args.kicks.clone(),
         ball: BallSettings::default(),
     };

@@ -3,11 +3,13 @@
 
 use std::net::SocketAddr;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use host::shell::{LineRate, Link, OutCounts, Outbox};
+use host::external::StrategyLink as _;
+use host::shell::{LineRate, Link, OutCounts, Outbox, StrategyProcess};
 use ssl::net::{Datagram, Interfaces};
 
 use super::inbox::{Inbox, Mail, REFEREE_LEN_MAX, Source, VISION_LEN_MAX};
@@ -70,6 +72,39 @@ pub(super) fn receive(
                         break;
                     }
                 }
+            }
+        }
+    })
+}
+
+/// Asks the team's own strategy about the newest view, until `end`: the host never waits for it.
+pub(super) fn ask_strategy(
+    mut strategy: StrategyProcess,
+    views: Receiver<String>,
+    mail: Arc<Inbox>,
+    end: Arc<AtomicBool>,
+) -> JoinHandle<()> {
+    thread::spawn(move || {
+        let mut starts = strategy.starts();
+        while !end.load(Ordering::Relaxed) {
+            let view = match views.recv_timeout(LOOK) {
+                Ok(view) => view,
+                Err(RecvTimeoutError::Timeout) => continue,
+                Err(RecvTimeoutError::Disconnected) => return,
+            };
+            // Views that came while it planned are old.
+            let newest = views.try_iter().last().unwrap_or(view);
+            let ran = strategy.id().is_some();
+            if let Some(answer) = strategy.answer(&newest) {
+                mail.put(Mail::Orders(answer));
+            } else if ran {
+                mail.put(Mail::Label(
+                    "strategy  it ended or does not answer; it is started again".to_owned(),
+                ));
+            }
+            if strategy.starts() != starts {
+                starts = strategy.starts();
+                mail.put(Mail::Label(format!("strategy  started again, {} times by now", starts - 1)));
             }
         }
     })

@@ -50,6 +50,10 @@ pub(super) struct MatchesArgs {
     /// The team that plays against the opponents; named as they are.
     #[arg(long, value_name = "TEAM", default_value = "ours", value_parser = MatchTeam::parse)]
     team: MatchTeam,
+    /// The program of the team `strategy`, which can be named as team or opponent
+    /// (docs/strategy-protocol.md).
+    #[arg(long, value_name = "cmd:COMMAND")]
+    strategy: Option<String>,
     /// Opponents, with commas between: reactive, marking, zone (these three by default), idle, ours, round-1
     /// (ours by thresholds and cases, whatever is usual), or ours with other tactics, such as
     /// ours-without-second-level, ours-without-cases or ours-with-coerce+pass-ahead.
@@ -140,6 +144,7 @@ impl MatchesArgs {
             duration_s: self.duration,
             pairings,
             matches: self.matches,
+            strategy: self.strategy.clone(),
         }
     }
 

@@ -47,6 +47,8 @@ pub(crate) enum NetworkError {
     Record(PathBuf, io::Error),
     /// This program's own file is unknown, which robots in a simulator are started from.
     Program(io::Error),
+    /// The program of the team's own strategy cannot be started.
+    Strategy(io::Error),
     /// The link to the robots cannot be opened.
     Link(LinkError),
     /// The page cannot be served; the flag of its address.
@@ -88,6 +90,7 @@ impl fmt::Display for NetworkError {
             ),
             Self::Record(stem, error) => write!(f, "--record {}: {error}", stem.display()),
             Self::Program(error) => write!(f, "{error}"),
+            Self::Strategy(error) => write!(f, "--strategy: its program cannot be started: {error}"),
             Self::Link(error) => write!(f, "{error}"),
             Self::Page(error, flag) => write!(f, "{error} ({flag})"),
             Self::Token(error, flag) => write!(f, "{error} ({flag})"),

@@ -165,6 +165,7 @@ impl Composer {
         let ball = world.ball.map(|ball| ball.position);
         layers.push(layers::keep_outs(&field, game.phase, ball, game.placement, game.own_goal(Colour::Blue)));
         layers.extend(moment.truth.map(truth));
+        layers.extend(layers::of_strategies(moment.hosts));
         let rows = |host: &&Host| {
             let us = host.settings().us;
             cycles[us as usize].rows(us, t, base.as_ref(), names)

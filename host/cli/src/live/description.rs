@@ -69,7 +69,6 @@ fn reason(why: &OrderReason) -> String {
             format!("opponent {} stands nearest to our goal unmarked", opponent.number())
         }
         OrderReason::BestTarget { room } => format!("the best target for the ball, {room:.2} m of room"),
-        OrderReason::DoubleTouch => "it took our restart and must not touch the ball again yet".to_owned(),
         OrderReason::TooMany { allowed } => format!("the referee lets us have {allowed}"),
         OrderReason::Threat(_)
         | OrderReason::Uncovers
@@ -77,6 +76,8 @@ fn reason(why: &OrderReason) -> String {
         | OrderReason::OfCase { .. }
         | OrderReason::PlaysCase { .. }
         | OrderReason::Coerces { .. }
+        | OrderReason::External
+        | OrderReason::ExternalSilent
         | OrderReason::Coercing { .. } => why.to_string(),
         // Reasons without a label of their own are printed by their name.
         other => spaced(&format!("{other:?}")),

@@ -60,6 +60,7 @@ pub(super) fn of_hosts(hosts: &[&Host], now: Instant, vision: f32) -> Vec<Gauge>
     }
     for host in hosts {
         learned(&mut out, host);
+        strategy(&mut out, host);
         let group = format!("radio, {}", host.settings().us.label());
         let links: Vec<_> =
             RobotId::all().filter_map(|id| host.quality(id)).filter(|link| link.is_present(now)).collect();
@@ -87,6 +88,14 @@ pub(super) fn of_hosts(hosts: &[&Host], now: Instant, vision: f32) -> Vec<Gauge>
         }
     }
     out
+}
+
+/// Values of the team's own strategy.
+fn strategy(out: &mut Vec<Gauge>, host: &Host) {
+    let Some((_, drawing)) = host.strategy_drawing() else { return };
+    let group = format!("strategy, {}", host.settings().us.label());
+    out.push(gauge(&group, "refused answers", host.refused_answers().0 as f32, "", Some(0.5)));
+    out.extend(drawing.values.iter().map(|(name, value)| gauge(&group, name, *value, "", None)));
 }
 
 /// Learned values of robots and field.

@@ -2,7 +2,9 @@
 //! truth; as plain shapes in m, field frame.
 
 use casebase::{Case, CaseBase, CaseRobot};
-use geometry::{GoalEnd, Point};
+use geometry::{Attack, GoalEnd, Point};
+use host::Host;
+use host::external::StrategyShape;
 use page::{Layer, Shape, Tone, milli};
 use protocol::RobotId;
 use protocol::team::Play;
@@ -123,6 +125,34 @@ pub(super) fn of_cases(plays: &[(Colour, Played<'_>)]) -> [Layer; 3] {
         layer("ball-path", "the ball's path", &|_, played, shapes| played.legs(shapes)),
         layer("adapted", "adapted positions", &|team, played, shapes| played.adapted(team, shapes)),
     ]
+}
+
+/// What the teams' own strategies draw; `None` where no team has one.
+pub(super) fn of_strategies(hosts: &[&Host]) -> Option<Layer> {
+    let drawings: Vec<_> =
+        hosts.iter().filter_map(|host| Some((host.settings().us, host.strategy_drawing()?))).collect();
+    let shapes = drawings.iter().flat_map(|(team, (flip, drawing))| {
+        let place = |[x, y]: [f32; 2]| {
+            let place = flip.to_field(Point::<Attack>::new(x, y));
+            [milli(place.x()), milli(place.y())]
+        };
+        let tone = tone(*team);
+        drawing.shapes.iter().map(move |shape| match shape {
+            StrategyShape::Line { from, to, arrow } => {
+                Shape::Line { points: vec![place(*from), place(*to)], tone, arrow: *arrow, dashed: false }
+            }
+            StrategyShape::Circle { at, radius } => Shape::Ellipse {
+                at: place(*at),
+                radii: [milli(*radius); 2],
+                tone,
+                fill: false,
+                note: String::new(),
+            },
+            StrategyShape::Text { at, text } => Shape::Text { at: place(*at), text: text.clone(), tone },
+        })
+    });
+    let (name, label) = ("strategy".to_owned(), "the team's own strategy".to_owned());
+    (!drawings.is_empty()).then(|| Layer { name, label, on: true, shapes: shapes.collect() })
 }
 
 /// Where field players of each team must not be at the moment.

@@ -254,6 +254,7 @@ fn label(kind: RecordKind) -> &'static str {
         RecordKind::Timeout => "deadlines",
         RecordKind::Sent => "sent",
         RecordKind::Halt => "halts",
+        RecordKind::Orders => "strategy",
         RecordKind::Lost => "lost",
     }
 }

@@ -1,6 +1,9 @@
 //! `running`: a verb of the built program while it runs, and its output on stderr, for the tests of the
 //! command line.
 
+#[allow(dead_code, reason = "each test program takes what it needs of it")]
+pub(crate) mod controller;
+
 use std::io::{BufRead, BufReader};
 use std::net::{SocketAddr, UdpSocket};
 use std::process::{Child, Command, Stdio};

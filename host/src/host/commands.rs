@@ -1,0 +1,68 @@
+//! `commands`: what robots are sent: the coach's orders, those of a strategy in another program, or those of
+//! a drill.
+
+use protocol::host::{Directive, HostCommand, RuleRole};
+use protocol::{Instant, RobotId};
+
+use super::{Host, InputVerdict};
+use crate::external::{AnswerError, StrategyDrawing};
+use crate::radio::RadioSituation;
+use crate::strategy::Flip;
+use crate::strategy::view::ViewGame;
+
+impl Host {
+    /// The newest view as a line for the strategy in another program, once; its answer is
+    /// [`super::Input::Orders`].
+    pub fn poll_view(&mut self) -> Option<String> {
+        self.external.as_mut()?.poll()
+    }
+
+    /// What the strategy in another program shows on the page, and the turn from its frame to the field's.
+    pub fn strategy_drawing(&self) -> Option<(Flip, &StrategyDrawing)> {
+        let drawing = self.external.as_ref()?.drawing();
+        Some((Flip::defending(self.our_game().defending), drawing))
+    }
+
+    /// How many answers of the strategy in another program were refused, and why the last one was.
+    pub fn refused_answers(&self) -> (u64, Option<&AnswerError>) {
+        self.external.as_ref().map_or((0, None), |external| external.refused())
+    }
+
+    /// The orders, or the drill's in their place, as robots get them.
+    pub(super) fn commands(&self, game: &ViewGame) -> heapless::Vec<HostCommand, { RobotId::COUNT }> {
+        let flip = Flip::defending(game.defending);
+        let command = |(to, rule_role, directive): (RobotId, RuleRole, Directive)| HostCommand {
+            to,
+            defending: game.defending,
+            phase: game.phase,
+            rule_role,
+            directive: self.calibrated(to, directive),
+        };
+        let coached = |order: &crate::strategy::Order| {
+            command((order.robot, order.role.rule_role(), order.task.directive(flip)))
+        };
+        match &self.drill {
+            Some(drill) => drill.iter().cloned().map(command).collect(),
+            None => self.orders.iter().map(coached).collect(),
+        }
+    }
+
+    /// Orders of a strategy in another program are sent at once.
+    pub(super) fn follow(&mut self, now: Instant, line: &[u8]) -> InputVerdict {
+        let Some(external) = &mut self.external else { return InputVerdict::Undecodable };
+        match external.answered(now, line) {
+            Err(error) => return InputVerdict::NoAnswer(error),
+            Ok(None) => return InputVerdict::Orders,
+            Ok(Some(orders)) => self.orders = orders,
+        }
+        let game = self.our_game();
+        // The referee has stopped the game since the view was offered: the plan of that moment stands.
+        if self.ordered == self.listener.game().phase {
+            let commands = self.commands(&game);
+            let situation =
+                RadioSituation { us: self.settings.us, phase: game.phase, placement: game.placement };
+            self.radio.offer(now, &self.world, situation, &commands);
+        }
+        InputVerdict::Orders
+    }
+}

@@ -1,0 +1,160 @@
+//! `strategy_process`: a strategy in a program of its own: views go to its standard input, answers come from
+//! its standard output, a line each. One that ends or does not answer is ended and started again.
+
+use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use crate::external::{StrategyLink, StrategyStarter};
+
+/// A strategy's program and its pipes.
+#[derive(Debug)]
+pub struct StrategyProcess {
+    command: String,
+    within: Duration,
+    running: Option<Running>,
+    /// Not started again before this.
+    again: Instant,
+    starts: u32,
+}
+
+#[derive(Debug)]
+struct Running {
+    child: Child,
+    input: ChildStdin,
+    answers: Receiver<String>,
+}
+
+impl StrategyProcess {
+    /// Starts `command` in a shell, with or without `cmd:` before it; an answer that takes longer than
+    /// `within` counts as none.
+    pub fn start(command: &str, within: Duration) -> io::Result<Self> {
+        let command = command.strip_prefix("cmd:").unwrap_or(command);
+        let running = Running::start(command)?;
+        let command = command.to_owned();
+        Ok(Self { command, within, running: Some(running), again: Instant::now(), starts: 1 })
+    }
+
+    /// A starter of this command for matches in the simulator, which wait for the answer.
+    pub fn starter(command: &str) -> StrategyStarter {
+        let own = command.to_owned();
+        StrategyStarter::new(command, move || Ok(Box::new(Self::start(&own, PATIENCE)?)))
+    }
+
+    /// How often it was started.
+    pub fn starts(&self) -> u32 {
+        self.starts
+    }
+
+    /// Its process, while it runs.
+    pub fn id(&self) -> Option<u32> {
+        self.running.as_ref().map(|running| running.child.id())
+    }
+}
+
+impl Running {
+    fn start(command: &str) -> io::Result<Self> {
+        let mut child = Command::new("sh")
+            .arg("-c")
+            .arg(format!("exec {command}"))
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()?;
+        let (Some(input), Some(output)) = (child.stdin.take(), child.stdout.take()) else {
+            return Err(io::Error::other("the program has no standard input and output"));
+        };
+        let (send, answers) = sync_channel(ANSWERS_KEPT);
+        thread::Builder::new().name("strategy".to_owned()).spawn(move || read(output, &send))?;
+        Ok(Self { child, input, answers })
+    }
+
+    /// The answer to a line; `Err`: the program is to be ended.
+    fn ask(&mut self, view: &str, within: Duration) -> Result<String, ()> {
+        // Answers to earlier views came too late.
+        while self.answers.try_recv().is_ok() {}
+        let sent = self.input.write_all(view.as_bytes()).and_then(|()| self.input.write_all(b"\n"));
+        sent.and_then(|()| self.input.flush()).map_err(drop)?;
+        self.answers.recv_timeout(within).map_err(|error| match error {
+            RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected => (),
+        })
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+impl StrategyLink for StrategyProcess {
+    fn answer(&mut self, view: &str) -> Option<String> {
+        if self.running.is_none() && Instant::now() >= self.again {
+            self.again = Instant::now() + AGAIN_AFTER;
+            self.running = Running::start(&self.command).ok();
+            self.starts += u32::from(self.running.is_some());
+        }
+        let answer = self.running.as_mut()?.ask(view, self.within);
+        if answer.is_err() {
+            self.running = None;
+        }
+        answer.ok()
+    }
+}
+
+/// Passes lines on until the program closes its output or writes a line that is too long.
+fn read(output: impl io::Read, send: &SyncSender<String>) {
+    let mut lines = BufReader::new(output);
+    loop {
+        let mut line = Vec::new();
+        let read = lines.by_ref().take(LINE_MAX).read_until(b'\n', &mut line);
+        if read.is_err() || line.last() != Some(&b'\n') {
+            return;
+        }
+        // A program that writes without being asked fills the queue; it then waits.
+        if send.send(String::from_utf8_lossy(&line).trim_end().to_owned()).is_err() {
+            return;
+        }
+    }
+}
+
+/// Longest time for an answer where nothing runs in real time: a program that plans for longer is stuck.
+const PATIENCE: Duration = Duration::from_secs(5);
+/// A program that ended is started again after this time.
+const AGAIN_AFTER: Duration = Duration::from_millis(500);
+/// Longest line of an answer, bytes: 16 orders of 200.
+const LINE_MAX: u64 = 64 * 1024;
+/// Answers that wait to be read.
+const ANSWERS_KEPT: usize = 8;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_program_answers_line_by_line_and_is_started_again_when_it_ends() {
+        // Answers twice, then ends.
+        let command = "sh -c 'for i in 1 2; do read line; echo \"$line back\"; done'";
+        let mut process = StrategyProcess::start(command, Duration::from_secs(5)).unwrap();
+        assert_eq!(process.answer("a").as_deref(), Some("a back"));
+        assert_eq!(process.answer("b").as_deref(), Some("b back"));
+        assert_eq!(process.answer("c"), None);
+        let mut again = None;
+        for _ in 0..100 {
+            again = again.or_else(|| process.answer("d"));
+            thread::sleep(Duration::from_millis(20));
+        }
+        assert_eq!(again.as_deref(), Some("d back"));
+        assert!(process.starts() >= 2);
+    }
+
+    #[test]
+    fn one_that_does_not_answer_is_no_longer_waited_for() {
+        let mut process = StrategyProcess::start("sleep 60", Duration::from_millis(50)).unwrap();
+        assert_eq!(process.answer("a"), None);
+        assert_eq!(process.id(), None, "it was ended");
+    }
+}
