@@ -337,7 +337,7 @@ const PURE: [&str; 10] = [
 ];
 
 /// docs/architecture.md §1.2; a crate depends on earlier ones only.
-const LOWEST_FIRST: [&str; 29] = [
+const LOWEST_FIRST: [&str; 30] = [
     "geometry",
     "rules",
     "protocol",
@@ -363,6 +363,7 @@ const LOWEST_FIRST: [&str; 29] = [
     "arena",
     "report",
     "learning",
+    "team",
     "onetwo",
     "match-tests",
     "xtask",
