@@ -1,14 +1,22 @@
-//! `build`: build script: the commit that this program is built from. Answered by git at build time, for
-//! `onetwo --version` and for everything that records where it came from; "unknown" where there is no git or
-//! no repository of ours.
+//! `build`: build script: the commit that this program is built from, and its date. Answered by git at build
+//! time, for `onetwo --version` and for everything that records where it came from; "unknown" where there is
+//! no git or no repository of ours.
 #![forbid(unsafe_code)]
 
 use std::path::Path;
 use std::process::Command;
 
 fn main() {
-    let commit = if is_tracked() { git(&["rev-parse", "HEAD"]) } else { None };
-    println!("cargo::rustc-env=ONETWO_COMMIT={}", commit.as_deref().unwrap_or("unknown"));
+    let tracked = is_tracked();
+    let answers = [
+        ("ONETWO_COMMIT", &["rev-parse", "HEAD"][..]),
+        ("ONETWO_COMMIT_SHORT", &["rev-parse", "--short=12", "HEAD"]),
+        ("ONETWO_COMMIT_DATE", &["show", "--no-patch", "--format=%cs", "HEAD"]),
+    ];
+    for (name, question) in answers {
+        let answer = if tracked { git(question) } else { None };
+        println!("cargo::rustc-env={name}={}", answer.as_deref().unwrap_or("unknown"));
+    }
     rerun_when_head_moves();
 }
 

@@ -26,6 +26,8 @@
 //! roll = 0.41                     # deceleration of a rolling ball, m/s²; left out: vision's
 //! ```
 
+mod text;
+
 use std::fmt;
 use std::net::{IpAddr, SocketAddr};
 use std::path::PathBuf;

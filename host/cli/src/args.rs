@@ -72,8 +72,18 @@ fn assignment(text: &str) -> Result<(String, String), String> {
     }
 }
 
-/// The package's version and the commit it was built from.
+/// The package's version and the commit it was built from: for files that must not be mixed.
 pub(crate) const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (commit ", env!("ONETWO_COMMIT"), ")");
+
+/// The same for people: the start of the commit's hash, and its date.
+pub(crate) const SHORT_VERSION: &str = concat!(
+    env!("CARGO_PKG_VERSION"),
+    " (",
+    env!("ONETWO_COMMIT_SHORT"),
+    ", ",
+    env!("ONETWO_COMMIT_DATE"),
+    ")"
+);
 
 #[cfg(test)]
 mod tests {

@@ -2,7 +2,7 @@
 
 use clap::{Parser, Subcommand};
 
-use crate::args::VERSION;
+use crate::args::SHORT_VERSION;
 use crate::cases::CasesVerb;
 use crate::control::ControlArgs;
 use crate::evaluate::EvaluateArgs;
@@ -15,7 +15,7 @@ use crate::virtual_robot::VirtualRobotArgs;
 
 /// Case-based robot soccer: robots that choose a gameplay together and play it.
 #[derive(Debug, Parser)]
-#[command(name = "onetwo", version = VERSION, arg_required_else_help = true)]
+#[command(name = "onetwo", version = SHORT_VERSION, arg_required_else_help = true)]
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) verb: Verb,

@@ -183,3 +183,24 @@ fn wrong_settings_are_refused_with_what_would_be_right() {
     let out = Command::new(env!("CARGO_BIN_EXE_onetwo")).args(["simulate", "--cameras", "3"]).output();
     assert_eq!(out.expect("it starts").status.code(), Some(2));
 }
+
+#[test]
+fn settings_are_written_to_a_new_file_that_control_reads_to_the_same_settings() {
+    let file = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("new-team.toml");
+    let _ = std::fs::remove_file(&file);
+    let control = |arguments: &[&str]| {
+        let out = Command::new(env!("CARGO_BIN_EXE_onetwo")).arg("control").args(arguments).output();
+        out.expect("it starts")
+    };
+    let path = file.display().to_string();
+    let written = control(&["--colour", "yellow", "--keeper", "4", "--init", &path]);
+    assert!(written.status.success(), "{}", String::from_utf8_lossy(&written.stderr));
+    let text = std::fs::read_to_string(&file).expect("the file");
+    assert!(text.contains("\ncolour = \"yellow\"") && text.contains("\nkeeper = 4"), "{text}");
+    let printed = control(&["--config", &path, "--print-config"]);
+    assert_eq!(String::from_utf8_lossy(&printed.stdout), text);
+    let again = control(&["--init", &path]);
+    assert_eq!(again.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&again.stderr).contains("exists already and is kept"));
+    assert_eq!(std::fs::read_to_string(&file).expect("the file"), text);
+}

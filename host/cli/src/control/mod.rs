@@ -17,6 +17,8 @@ mod threads;
 mod watch;
 
 use std::ffi::OsString;
+use std::fs::File;
+use std::io::{self, Write as _};
 use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -33,6 +35,7 @@ use crate::args::{DirectoryArgs, SettingsArgs};
 use crate::failure::NetworkError;
 use crate::library::LibraryHandle;
 use crate::live::{PageArgs, library_handle_of};
+use crate::output::{note, print_text, printable_path};
 use crate::simulate::seconds;
 
 /// Our team, and the addresses to receive from and send to. What is not given here is taken from the file,
@@ -42,6 +45,12 @@ pub(crate) struct ControlArgs {
     /// The team's settings file; each setting can be overridden here.
     #[arg(long, value_name = "team.toml")]
     config: Option<PathBuf>,
+    /// Write the settings of this command to a new settings file, each with what it means, and end.
+    #[arg(long, value_name = "team.toml", conflicts_with = "print_config")]
+    init: Option<PathBuf>,
+    /// Print the settings of this command as a settings file, each with what it means, and end.
+    #[arg(long)]
+    print_config: bool,
     /// The team's name, as the game controller knows it.
     #[arg(long)]
     name: Option<String>,
@@ -144,6 +153,15 @@ pub(crate) struct Ids(Vec<RobotId>);
 /// `onetwo control`.
 pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
     let config = configure(args)?;
+    if args.print_config {
+        print_text(&config.to_toml())?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    if let Some(path) = &args.init {
+        init(path, &config.to_toml()).map_err(|error| NetworkError::Init(path.clone(), error))?;
+        note!("the team's settings are in {}", printable_path(path));
+        return Ok(ExitCode::SUCCESS);
+    }
     let usual = Parameters::of(config.league).map_or(0, |parameters| parameters.robots);
     let robots = match &args.ids {
         Some(Ids(ids)) => ids.clone(),
@@ -177,6 +195,11 @@ impl Cases {
                 .collect(),
         })
     }
+}
+
+/// Writes a new file; one that is there is kept.
+fn init(path: &Path, text: &str) -> io::Result<()> {
+    File::create_new(path)?.write_all(text.as_bytes())
 }
 
 /// Longest file of settings that is read, bytes: one with every setting has 1 kB.

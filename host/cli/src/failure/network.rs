@@ -47,6 +47,8 @@ pub(crate) enum NetworkError {
     Record(PathBuf, io::Error),
     /// This program's own file is unknown, which robots in a simulator are started from.
     Program(io::Error),
+    /// The new settings file cannot be written.
+    Init(PathBuf, io::Error),
     /// The program of the team's own strategy cannot be started.
     Strategy(io::Error),
     /// The link to the robots cannot be opened.
@@ -90,6 +92,10 @@ impl fmt::Display for NetworkError {
             ),
             Self::Record(stem, error) => write!(f, "--record {}: {error}", stem.display()),
             Self::Program(error) => write!(f, "{error}"),
+            Self::Init(path, error) if error.kind() == io::ErrorKind::AlreadyExists => {
+                write!(f, "{}: exists already and is kept; name another file", printable_path(path))
+            }
+            Self::Init(path, error) => write!(f, "{}: {error}", printable_path(path)),
             Self::Strategy(error) => write!(f, "--strategy: its program cannot be started: {error}"),
             Self::Link(error) => write!(f, "{error}"),
             Self::Page(error, flag) => write!(f, "{error} ({flag})"),

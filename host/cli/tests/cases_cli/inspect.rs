@@ -207,11 +207,11 @@ fn a_directory_that_is_not_there_fails_the_check_in_words() {
 #[test]
 fn the_version_names_the_commit_and_wrong_usage_is_distinguished_from_failure() {
     let version = onetwo(&["--version"]);
-    let commit =
-        version.stdout.trim().strip_prefix(&format!("onetwo {} (commit ", env!("CARGO_PKG_VERSION")));
-    let commit =
-        commit.and_then(|rest| rest.strip_suffix(')')).unwrap_or_else(|| panic!("{}", version.stdout));
-    assert!(commit == "unknown" || commit.len() == 40, "{commit}");
+    let rest = version.stdout.trim().strip_prefix(&format!("onetwo {} (", env!("CARGO_PKG_VERSION")));
+    let rest = rest.and_then(|rest| rest.strip_suffix(')')).unwrap_or_else(|| panic!("{}", version.stdout));
+    let (commit, date) = rest.split_once(", ").unwrap_or_else(|| panic!("{rest}"));
+    assert!(commit == "unknown" || commit.len() == 12, "{commit}");
+    assert!(date == "unknown" || date.len() == "2026-11-24".len(), "{date}");
     assert_eq!(onetwo(&["--help"]).code, 0);
     for usage in [&[][..], &["dance"], &["cases"], &["cases", "list", "--jsonn"], &["cases", "show"]] {
         let run = onetwo(usage);
