@@ -42,7 +42,7 @@ impl Stream {
         if low >= high {
             return low;
         }
-        low + ((u64::from(self.0.next_u32()) * u64::from(high - low + 1)) >> 32) as u32
+        low + ((u64::from(self.0.next_u32()) * (u64::from(high - low) + 1)) >> 32) as u32
     }
 
     /// Normal with mean 0 and standard deviation 1 (Box–Muller).
@@ -116,5 +116,7 @@ mod tests {
         let mut stream = Stream::new(3, "test");
         let draws: Vec<u32> = (0..200).map(|_| stream.whole(2, 4)).collect();
         assert!((2..=4).all(|k| draws.contains(&k)) && draws.iter().all(|k| (2..=4).contains(k)));
+        let all: Vec<u32> = (0..200).map(|_| stream.whole(0, u32::MAX)).collect();
+        assert!(all.iter().any(|k| *k > u32::MAX / 8 * 7) && all.iter().any(|k| *k < u32::MAX / 8));
     }
 }

@@ -2,8 +2,8 @@
 //! [`serve`] makes a program of it that `onetwo play`, `control` and `evaluate matches` start.
 //!
 //! ```text
-//! onetwo ─ a line of JSON: view, and what our coach orders ─► your program
-//! onetwo ◄─ a line of JSON: orders, drawing, values ────────── your program
+//! host ─ a line of JSON: view, and what our coach orders ─► your program
+//! host ◄─ a line of JSON: orders, drawing, values ────────── your program
 //! ```
 //! A robot without an order of yours does what our coach orders, so that a strategy can begin with one idea.
 //! Attack frame: the team attacks towards +x; m, m/s, rad, s. The lines are described in

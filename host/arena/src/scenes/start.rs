@@ -62,7 +62,11 @@ pub(super) fn draw(
 }
 
 /// Moments of one match, [`APART_S`] apart.
-fn of_match(plan: &ScenePlan, opponent: MatchTeam, number: u32) -> Result<Vec<SceneStart>, GameError> {
+pub(super) fn of_match(
+    plan: &ScenePlan,
+    opponent: MatchTeam,
+    number: u32,
+) -> Result<Vec<SceneStart>, GameError> {
     let mut seed = Stream::new(plan.seed ^ u64::from(number), "scene's match");
     let seed = u64::from(seed.whole(0, u32::MAX));
     // The first half alone: in the second the teams have changed ends.

@@ -43,6 +43,18 @@ fn starts_have_our_robot_nearest_in_open_play_a_lawful_spot_at_free_kicks_and_th
 }
 
 #[test]
+fn every_match_of_starts_and_every_seed_has_moments_of_its_own() {
+    let plan = plan(1, 1, &[]);
+    let moment = |plan: &ScenePlan, number| {
+        let moments = start::of_match(plan, Team::Idle.into(), number).unwrap();
+        format!("{:?}", moments.first().unwrap())
+    };
+    let other = ScenePlan { seed: plan.seed + 100, ..plan.clone() };
+    let moments = [moment(&plan, 0), moment(&plan, 1), moment(&other, 0)];
+    assert!(moments[0] != moments[1] && moments[0] != moments[2] && moments[1] != moments[2], "{moments:#?}");
+}
+
+#[test]
 fn a_team_beside_itself_differs_in_no_scene_on_any_number_of_threads() {
     let mut plan = plan(2, 2, &[]);
     plan.variants = vec![plan.team];
