@@ -19,6 +19,7 @@ mod images;
 mod page;
 mod pictures;
 mod readme;
+mod release;
 mod report;
 mod space;
 mod steps;

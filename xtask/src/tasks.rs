@@ -2,7 +2,9 @@
 //! function.
 
 use crate::context::{Context, Failure};
-use crate::{bench, budgets, cost, emulate, evaluation, example_cost, game_cost, page, pictures, trial_cost};
+use crate::{
+    bench, budgets, cost, emulate, evaluation, example_cost, game_cost, page, pictures, release, trial_cost,
+};
 
 /// An xtask command other than `test`.
 #[derive(Debug)]
@@ -81,7 +83,14 @@ const fn handed_on(
     Task { name, takes, what, run, free: true }
 }
 
-static TASKS: [Task; 19] = [
+static TASKS: [Task; 20] = [
+    handed_on(
+        "release",
+        "[TARGET]...",
+        "build archives for machines without a toolchain: a static program for x86-64 and aarch64 Linux, the robots' images,\n\
+        \x20                manual pages and completions; they lie in target/release-archives",
+        release::build,
+    ),
     handed_on(
         "swarm",
         "[--plan faults|referee] [--seeds N] [--first N] [--jobs J] [--record STEM]",

@@ -21,9 +21,18 @@ pub fn build_image(root: &Path, body: ImageBody) -> Result<PathBuf, BuildError> 
     build_program(root, Program::Robot(body))
 }
 
-/// As [`build_image`], for any program of a board.
+/// As [`build_image`], for any program of a board. An image that came with this program is used as it is.
 pub fn build_program(root: &Path, program: Program) -> Result<PathBuf, BuildError> {
-    build_into(&target_dir(root), root, program)
+    let own = env::current_exe().ok().and_then(|own| shipped(&own, program));
+    own.map_or_else(|| build_into(&target_dir(root), root, program), Ok)
+}
+
+/// The image in the release archive of which `own` is the program.
+fn shipped(own: &Path, program: Program) -> Option<PathBuf> {
+    // A link in a directory of programs leads to the archive.
+    let own = own.canonicalize().ok()?;
+    let image = own.parent()?.parent()?.join(SHIPPED_IMAGES).join(program.name());
+    image.is_file().then_some(image)
 }
 
 fn build_into(target_dir: &Path, root: &Path, program: Program) -> Result<PathBuf, BuildError> {
@@ -226,6 +235,8 @@ fn cannot_build(root: &Path) -> Option<String> {
     output_of(Command::new(cargo_program()).current_dir(root).arg("--version")).err()
 }
 
+/// Where a release archive has its images; its program is in `bin` beside `share`.
+pub const SHIPPED_IMAGES: &str = "share/onetwo/images";
 /// The board that QEMU emulates.
 const PACKAGE: &str = "board-mps2";
 const MANIFEST: &str = "firmware/boards/mps2/Cargo.toml";
@@ -262,6 +273,20 @@ mod tests {
         fs::create_dir_all(image.parent().unwrap()).unwrap();
         fs::write(&image, b"an image").unwrap();
         assert_eq!(build_into(&target, &root, ROBOT).unwrap(), image);
+        fs::remove_dir_all(&root).unwrap();
+    }
+
+    #[test]
+    fn a_release_archive_s_program_takes_the_images_beside_it() {
+        let root = env::temp_dir().join(format!("onetwo-archive-{}", std::process::id()));
+        let (own, images) = (root.join("bin/onetwo"), root.join(SHIPPED_IMAGES));
+        fs::create_dir_all(own.parent().unwrap()).unwrap();
+        fs::write(&own, b"a program").unwrap();
+        assert_eq!(shipped(&own, ROBOT), None);
+        fs::create_dir_all(&images).unwrap();
+        fs::write(images.join(ROBOT.name()), b"an image").unwrap();
+        assert_eq!(shipped(&own, ROBOT), Some(images.canonicalize().unwrap().join(ROBOT.name())));
+        assert_eq!(shipped(&own, Program::Stm32), None);
         fs::remove_dir_all(&root).unwrap();
     }
 

@@ -24,7 +24,7 @@ mod target;
 
 use std::path::{Path, PathBuf};
 
-pub use image::{BuildError, ImageBody, Program, build_image, build_program, target_dir};
+pub use image::{BuildError, ImageBody, Program, SHIPPED_IMAGES, build_image, build_program, target_dir};
 pub use qemu::{MACHINE, QEMU, QemuError, ensure_qemu};
 pub use target::{TargetError, ThumbToolchain, ensure_target};
 

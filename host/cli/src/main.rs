@@ -13,6 +13,8 @@ mod failure;
 mod firmware;
 mod library;
 mod live;
+#[cfg(feature = "manuals")]
+mod manuals;
 mod net;
 mod output;
 mod picture;
@@ -45,6 +47,8 @@ fn main() -> ExitCode {
         Verb::Cases { verb } => cases::run(&verb),
         Verb::Firmware { verb } => firmware::run(&verb),
         Verb::VirtualRobot(args) => virtual_robot::run(&args),
+        #[cfg(feature = "manuals")]
+        Verb::Manuals(args) => manuals::run(&args),
     };
     outcome.unwrap_or_else(|failure| failure.report())
 }

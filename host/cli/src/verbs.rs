@@ -51,6 +51,10 @@ pub(crate) enum Verb {
     /// One robot's brain as a process, in any simulator of the league; `control` starts them.
     #[command(hide = true)]
     VirtualRobot(Box<VirtualRobotArgs>),
+    /// Write manual pages and completions, for release archives.
+    #[cfg(feature = "manuals")]
+    #[command(hide = true)]
+    Manuals(crate::manuals::ManualsArgs),
 }
 
 #[cfg(test)]
