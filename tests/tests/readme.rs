@@ -58,4 +58,10 @@ fn read(path: &str) -> String {
 }
 
 /// Pages whose shell blocks are run.
-const PAGES: [&str; 2] = ["README.md", "docs/commands.md"];
+const PAGES: [&str; 5] = [
+    "README.md",
+    "docs/commands.md",
+    "docs/start/league-team.md",
+    "docs/start/cbr-researcher.md",
+    "docs/start/embedded.md",
+];

@@ -1,5 +1,5 @@
-//! `readme`: check of the documented commands: those of README and docs/commands.md that run the program are
-//! run, in the given order.
+//! `readme`: check of the documented commands: those of README, docs/commands.md and docs/start that run the
+//! program are run, in the given order.
 
 use std::fs;
 
@@ -7,7 +7,7 @@ use crate::context::{Context, Failure, run};
 
 /// The property checked by the step.
 pub(crate) const WHAT: &str =
-    "the commands of README and docs/commands.md run, README's first one among them";
+    "the commands of README, docs/commands.md and docs/start run, README's first one among them";
 
 /// Runs every `cargo run` of the pages' shell blocks; the xtask commands beside them are this program.
 pub(crate) fn check(context: &Context) -> Result<(), Failure> {
@@ -23,7 +23,13 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
 }
 
 /// Pages whose commands are run; tests/tests/readme.rs reads the same.
-const PAGES: [&str; 2] = ["README.md", "docs/commands.md"];
+const PAGES: [&str; 5] = [
+    "README.md",
+    "docs/commands.md",
+    "docs/start/league-team.md",
+    "docs/start/cbr-researcher.md",
+    "docs/start/embedded.md",
+];
 
 /// The arguments after `cargo ` of the lines in README's shell blocks that run the program.
 fn commands(readme: &str) -> Vec<&str> {
