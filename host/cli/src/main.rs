@@ -48,7 +48,7 @@ fn main() -> ExitCode {
         Verb::Firmware { verb } => firmware::run(&verb),
         Verb::VirtualRobot(args) => virtual_robot::run(&args),
         #[cfg(feature = "manuals")]
-        Verb::Manuals(args) => manuals::run(&args),
+        Verb::Manuals(args) => manuals::run(&args, <Cli as clap::CommandFactory>::command()),
     };
     outcome.unwrap_or_else(|failure| failure.report())
 }

@@ -6,13 +6,12 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::{Args, CommandFactory};
+use clap::{Args, Command};
 use clap_complete::Shell;
 
 use crate::failure::Failure;
 use crate::output::{print_text, printable_path};
 use crate::picture::SnapshotError;
-use crate::verbs::Cli;
 
 /// Where to write.
 #[derive(Debug, Args)]
@@ -21,9 +20,9 @@ pub(crate) struct ManualsArgs {
     directory: PathBuf,
 }
 
-/// Writes them.
-pub(crate) fn run(args: &ManualsArgs) -> Result<ExitCode, Failure> {
-    write(&args.directory).map_err(|error| Failure::Picture {
+/// Writes those of `program`.
+pub(crate) fn run(args: &ManualsArgs, program: Command) -> Result<ExitCode, Failure> {
+    write(&args.directory, program).map_err(|error| Failure::Picture {
         file: args.directory.clone(),
         error: SnapshotError::Write(error),
     })?;
@@ -31,13 +30,12 @@ pub(crate) fn run(args: &ManualsArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn write(directory: &Path) -> io::Result<()> {
+fn write(directory: &Path, mut program: Command) -> io::Result<()> {
     let (pages, completions) = (directory.join("man/man1"), directory.join("completions"));
     fs::create_dir_all(&pages)?;
     fs::create_dir_all(&completions)?;
-    clap_mangen::generate_to(Cli::command(), &pages)?;
     for shell in [Shell::Bash, Shell::Zsh, Shell::Fish] {
-        clap_complete::generate_to(shell, &mut Cli::command(), "onetwo", &completions)?;
+        clap_complete::generate_to(shell, &mut program, "onetwo", &completions)?;
     }
-    Ok(())
+    clap_mangen::generate_to(program, &pages)
 }
