@@ -22,7 +22,7 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Pages whose commands are run; tests/tests/readme.rs reads the same.
+/// Pages whose commands are run; tests/tests/readme.rs reads this list.
 const PAGES: [&str; 5] = [
     "README.md",
     "docs/commands.md",
