@@ -84,9 +84,9 @@ pub struct StrategyRobot {
     pub heading: f32,
     /// Velocity of its centre.
     pub velocity: Pair,
-    /// Its sensor feels the ball; of ours alone.
+    /// Its sensor detects the ball; of ours alone.
     #[serde(default)]
-    pub feels_ball: bool,
+    pub ball_contact: bool,
 }
 
 /// Dimensions of the field, m.
@@ -221,12 +221,12 @@ impl StrategyView {
 
     /// A view with the coach's orders.
     pub fn of(league: League, view: &View, usual: &Orders) -> Self {
-        let robot = |robot: &ViewRobot, feels_ball| StrategyRobot {
+        let robot = |robot: &ViewRobot, ball_contact| StrategyRobot {
             robot: robot.id.number(),
             at: pair(robot.position),
             heading: robot.heading.radians(),
             velocity: [robot.velocity.x(), robot.velocity.y()],
-            feels_ball,
+            ball_contact,
         };
         let field = &view.field;
         Self {
@@ -285,7 +285,7 @@ impl StrategyView {
         });
         (view.ours, view.theirs) = (robots(&self.ours), robots(&self.theirs));
         (view.keeper, view.their_keeper) = (keeper(self.keeper), keeper(self.their_keeper));
-        for robot in self.ours.iter().filter(|robot| robot.feels_ball) {
+        for robot in self.ours.iter().filter(|robot| robot.ball_contact) {
             if let Some(id) = RobotId::new(robot.robot) {
                 view.contact.insert(id);
             }

@@ -4,9 +4,9 @@
 //! ```text
 //! plan ─► Host::poll_view ─► the program ─► Input::Orders ─► orders, sent at once
 //! ```
-//! Whoever drives the host carries the lines, so that a trace with them can be replayed. Where no answer has
-//! come for [`ANSWERS_WITHIN`] robots stand in open play, and follow the coach in every other phase, so that
-//! they keep the rules. HALT and timeouts are never asked about.
+//! The program around the host passes the lines on, so that a trace with them can be replayed. Where no
+//! answer has come for [`ANSWERS_WITHIN`] robots stand in open play, and follow the coach in every other
+//! phase, so that they keep the rules. HALT and timeouts are never asked about.
 
 mod answer;
 mod drawing;

@@ -22,7 +22,7 @@ fn view(phase: Phase<Side>) -> View {
     view
 }
 
-/// What our coach would order: everybody goes to its own place.
+/// What our coach would order: each robot goes to its own place.
 fn usual(view: &View) -> Orders {
     let order = |robot: &crate::strategy::view::ViewRobot| Order {
         robot: robot.id,

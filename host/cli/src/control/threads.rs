@@ -99,7 +99,7 @@ pub(super) fn ask_strategy(
                 mail.put(Mail::Orders(answer));
             } else if ran {
                 mail.put(Mail::Label(
-                    "strategy  it ended or does not answer; it is started again".to_owned(),
+                    "strategy  the program ended or does not answer; it is started again".to_owned(),
                 ));
             }
             if strategy.starts() != starts {
