@@ -24,7 +24,7 @@ pub(crate) use recorded::{Asked, Missing, RecordedError};
 pub(crate) use survey::{FromError, LineFault, ProblemError, SurveyError};
 
 use crate::cases::new::DraftError;
-use crate::output::{note, printable_path};
+use crate::output::{print_error, printable_path};
 use crate::picture::SnapshotError;
 use crate::virtual_robot::RobotError;
 
@@ -150,7 +150,7 @@ impl Failure {
         if matches!(self, Self::Output(error) if error.kind() == io::ErrorKind::BrokenPipe) {
             return ExitCode::SUCCESS;
         }
-        note!("error: {self}");
+        print_error(self);
         ExitCode::FAILURE
     }
 }

@@ -37,7 +37,9 @@ use failure::Failure;
 use verbs::{Cli, Verb};
 
 fn main() -> ExitCode {
-    let outcome = match Cli::parse().verb {
+    let Cli { color, verb } = Cli::parse();
+    color.apply();
+    let outcome = match verb {
         Verb::Play(args) => play::run(&args),
         Verb::Trial(args) => trial::run(&args),
         Verb::Evaluate(args) => evaluate::run(&args),

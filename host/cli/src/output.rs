@@ -5,13 +5,60 @@
 //! through [`foreign::printable`] first, so that it cannot end the line. Nothing else in this crate prints (a
 //! test checks this).
 
-use std::fmt::Arguments;
-use std::io::{self, BufWriter, StdoutLock, Write};
+use std::env;
+use std::fmt::{Arguments, Display};
+use std::io::{self, BufWriter, IsTerminal as _, StdoutLock, Write};
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use clap::ValueEnum;
 
 use foreign::{Printable, printable};
 
 use crate::Failure;
+
+/// Whether messages on stderr are coloured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ColorChoice {
+    /// On a terminal, unless `NO_COLOR` is set or `TERM` is `dumb`.
+    Auto,
+    /// Into files and pipes, too.
+    Always,
+    /// Nowhere.
+    Never,
+}
+
+/// Set once, before anything is printed.
+static COLOURED: AtomicBool = AtomicBool::new(false);
+
+impl ColorChoice {
+    /// Colours messages from now on, or does not.
+    pub(crate) fn apply(self) {
+        let set = |name: &str| env::var_os(name).filter(|value| !value.is_empty());
+        let coloured = self.colours(
+            io::stderr().is_terminal(),
+            set("NO_COLOR").is_some(),
+            set("TERM").is_some_and(|value| value == "dumb"),
+        );
+        COLOURED.store(coloured, Ordering::Relaxed);
+    }
+
+    fn colours(self, terminal: bool, no_color: bool, dumb: bool) -> bool {
+        match self {
+            Self::Auto => terminal && !no_color && !dumb,
+            Self::Always => true,
+            Self::Never => false,
+        }
+    }
+}
+
+/// Prints what failed, on stderr, after the word `error:`, which is red and bold where messages are coloured.
+pub(crate) fn print_error(description: &dyn Display) {
+    let (on, off) = if COLOURED.load(Ordering::Relaxed) { ("\u{1b}[1;31m", "\u{1b}[0m") } else { ("", "") };
+    let mut raw = io::stderr().lock();
+    let _ = write!(raw, "{on}error:{off} ");
+    let _ = writeln!(Printable::new(raw), "{description}");
+}
 
 /// Stdout for many lines; it has to be flushed.
 pub(crate) fn lines() -> BufWriter<Printable<StdoutLock<'static>>> {
@@ -47,6 +94,16 @@ mod tests {
     use std::path::{Path, PathBuf};
 
     use super::*;
+
+    #[test]
+    fn colours_are_for_terminals_that_want_them() {
+        assert!(ColorChoice::Auto.colours(true, false, false));
+        assert!(!ColorChoice::Auto.colours(false, false, false), "a pipe");
+        assert!(!ColorChoice::Auto.colours(true, true, false), "NO_COLOR");
+        assert!(!ColorChoice::Auto.colours(true, false, true), "TERM=dumb");
+        assert!(ColorChoice::Always.colours(false, true, true));
+        assert!(!ColorChoice::Never.colours(true, false, false));
+    }
 
     #[test]
     fn a_file_s_name_stays_within_its_line() {

@@ -43,10 +43,10 @@ pub(crate) struct PlayArgs {
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = speed, conflicts_with = "headless")]
     speed: f32,
     /// Length of the match, simulated seconds.
-    #[arg(long, value_name = "SECONDS", default_value_t = 600.0, value_parser = seconds)]
+    #[arg(short, long, value_name = "SECONDS", default_value_t = 600.0, value_parser = seconds)]
     duration: f64,
     /// Random seed.
-    #[arg(long, default_value_t = 1)]
+    #[arg(short, long, default_value_t = 1)]
     seed: u64,
     /// Field, robots and rules: ssl-2013, division-b or division-a.
     #[arg(long, default_value = "division-b", value_parser = league)]
@@ -79,7 +79,7 @@ pub(crate) struct PlayArgs {
     #[arg(long, value_name = "cmd:COMMAND")]
     blue_strategy: Option<String>,
     /// Record the match as NAME.log.gz (for the league's tools) and NAME.trace (for `onetwo replay`).
-    #[arg(long, value_name = "NAME")]
+    #[arg(short, long, value_name = "NAME")]
     record: Option<PathBuf>,
     /// Print the report as JSON, and nothing else; implies --headless.
     #[arg(long)]

@@ -35,7 +35,7 @@ pub(crate) struct TrialArgs {
     #[arg(long, value_enum, default_value_t = ApproachLabel::Cbr)]
     approach: ApproachLabel,
     /// Random seed.
-    #[arg(long, default_value_t = 1)]
+    #[arg(short, long, default_value_t = 1)]
     seed: u64,
     /// Where the attackers' brains run.
     #[arg(long, value_enum, default_value_t = BackendLabel::Native)]

@@ -7,6 +7,7 @@ use crate::cases::CasesVerb;
 use crate::control::ControlArgs;
 use crate::evaluate::EvaluateArgs;
 use crate::firmware::FirmwareVerb;
+use crate::output::ColorChoice;
 use crate::play::PlayArgs;
 use crate::replay::ReplayArgs;
 use crate::simulate::SimulateArgs;
@@ -17,6 +18,9 @@ use crate::virtual_robot::VirtualRobotArgs;
 #[derive(Debug, Parser)]
 #[command(name = "onetwo", version = SHORT_VERSION, arg_required_else_help = true)]
 pub(crate) struct Cli {
+    /// Colour errors on the terminal.
+    #[arg(long, value_name = "WHEN", global = true, default_value = "auto")]
+    pub(crate) color: ColorChoice,
     #[command(subcommand)]
     pub(crate) verb: Verb,
 }

@@ -35,7 +35,7 @@ pub(crate) struct CheckArgs {
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(..=100_000_000))]
     problems: u64,
     /// Random seed: the same seed draws the same problems.
-    #[arg(long, default_value_t = 1)]
+    #[arg(short, long, default_value_t = 1)]
     seed: u64,
     /// Explain a code of a finding, or `all` of them, and check nothing.
     #[arg(long, value_name = "CODE", value_parser = known_code)]

@@ -33,7 +33,7 @@ pub(crate) struct CoverageArgs {
     #[arg(long)]
     json: bool,
     /// Write the map as a figure (FILE.svg, FILE.png), or every cell as a table (FILE.csv).
-    #[arg(long, value_name = "FILE", value_parser = picture_file)]
+    #[arg(short, long, value_name = "FILE", value_parser = picture_file)]
     out: Option<PathBuf>,
     /// What the figure displays.
     #[arg(long, value_enum, default_value = "holes")]

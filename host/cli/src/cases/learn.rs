@@ -30,10 +30,10 @@ pub(crate) struct LearnArgs {
     #[arg(long, default_value_t = 300_000, value_parser = clap::value_parser!(u64).range(1..))]
     budget: u64,
     /// Random seed.
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(..1 << 40))]
+    #[arg(short, long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(..1 << 40))]
     seed: u64,
     /// The directory that everything is written to: journals, evidence, report and the learned library.
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     out: PathBuf,
     /// Only these kinds of changes, with commas between: scopes, actions, new, forget.
     #[arg(long, value_name = "KINDS", value_delimiter = ',', value_parser = kind)]
@@ -48,7 +48,7 @@ pub(crate) struct LearnArgs {
     #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = shard)]
     shard: Shard,
     /// Threads; the number of cores by default.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(short, long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     /// Propose and screen once, and change nothing.
     #[arg(long)]

@@ -25,7 +25,7 @@ pub(crate) struct NewArgs {
     #[arg(long, value_name = "FILE|-")]
     from: PathBuf,
     /// The file to write: `<region>/<name>.toml` in a league's directory; stdout by default.
-    #[arg(long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Overwrite an existing file.
     #[arg(long, requires = "out")]

@@ -32,17 +32,17 @@ pub(crate) struct PlayArgs {
     #[command(flatten)]
     settings: SettingsArgs,
     /// Attempts a case and kind of opposition.
-    #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(short, long, default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     trials: u32,
     /// Random seed.
-    #[arg(long, default_value_t = 1)]
+    #[arg(short, long, default_value_t = 1)]
     seed: u64,
     /// Opponents that stand in the path, or that play: the paper's scripted ones, or a reactive team in the
     /// Small Size League; both by default.
     #[arg(long, value_parser = opposition)]
     opponents: Option<Opposition>,
     /// Threads; the number of cores by default.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(short, long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     /// One JSON list of scores.
     #[arg(long, conflicts_with_all = ["markdown", "story"])]

@@ -30,7 +30,7 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "FILE|-|JSON")]
     problem: Option<String>,
     /// Output file, an .svg or a .png; the SVG on stdout if left out. With --all a directory.
-    #[arg(long, value_name = "FILE|DIR")]
+    #[arg(short, long, value_name = "FILE|DIR")]
     out: Option<PathBuf>,
     /// Draw every authored case into the directory --out, as region/name.svg.
     #[arg(long, requires = "out", conflicts_with_all = ["case", "problem"])]

@@ -30,7 +30,7 @@ pub(crate) struct SurveyArgs {
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = value_parser!(u64).range(1..=100_000_000))]
     problems: u64,
     /// Random seed: the same seed draws the same problems.
-    #[arg(long, default_value_t = 1)]
+    #[arg(short, long, default_value_t = 1)]
     seed: u64,
     /// Recorded problems instead of drawn ones: a file of lines as `cases retrieve` takes them and `onetwo
     /// replay --problems` prints them.
@@ -43,7 +43,7 @@ pub(crate) struct SurveyArgs {
     #[arg(long, value_name = "N", value_parser = value_parser!(u8).range(1..=11))]
     teammates: Option<u8>,
     /// Number of threads; the number of cores by default. The answer is the same.
-    #[arg(long, value_name = "J", value_parser = value_parser!(u16).range(1..=1024))]
+    #[arg(short, long, value_name = "J", value_parser = value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     /// Edge of a cell, mm; a cell holds the balls that are counted together.
     #[arg(long, value_name = "MM", value_parser = value_parser!(i32).range(1..=30_000))]

@@ -124,7 +124,7 @@ pub(crate) struct ControlArgs {
     #[command(flatten)]
     cases: CasesArgs,
     /// Record the match as NAME.log.gz (for the league's tools) and NAME.trace (for `onetwo replay`).
-    #[arg(long, value_name = "NAME")]
+    #[arg(short, long, value_name = "NAME")]
     record: Option<PathBuf>,
     /// Run without the page.
     #[arg(long)]
@@ -132,7 +132,7 @@ pub(crate) struct ControlArgs {
     #[command(flatten)]
     page: PageArgs,
     /// End after this number of seconds; else Ctrl-C ends it, and robots are halted first.
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(short, long, value_name = "SECONDS", value_parser = seconds)]
     duration: Option<f64>,
 }
 

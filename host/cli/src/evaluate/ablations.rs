@@ -24,10 +24,10 @@ use crate::setup::{reduction, refuse_other_fields};
 #[derive(Debug, Args)]
 pub(super) struct AblationsArgs {
     /// Trials a cell of scenario and opponents, and arm.
-    #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    #[arg(short, long, default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     trials: u32,
     /// Random seed.
-    #[arg(long, default_value_t = 1)]
+    #[arg(short, long, default_value_t = 1)]
     seed: u64,
     /// Only these arms, by name; may be repeated. The unchanged team is always played.
     #[arg(long, value_name = "NAME", value_parser = arm)]

@@ -19,10 +19,10 @@ use crate::setup::SetupArgs;
 #[derive(Debug, Args)]
 pub(super) struct JudgeArgs {
     /// Trials a cell of scenario, opponents and approach.
-    #[arg(long, default_value_t = 5000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    #[arg(short, long, default_value_t = 5000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     trials: u32,
     /// Random seed.
-    #[arg(long, default_value_t = 2009)]
+    #[arg(short, long, default_value_t = 2009)]
     seed: u64,
     /// Every n-th trial from the i-th on, for a cluster; `evaluate merge` merges the shards.
     #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = work::shard)]

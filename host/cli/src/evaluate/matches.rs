@@ -39,13 +39,13 @@ pub(super) struct MatchesArgs {
     #[arg(long, value_name = "WORLD", default_value_t)]
     world: WorldPlan,
     /// Matches of each pair of teams.
-    #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(short, long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     matches: u32,
     /// Length of a match, simulated seconds.
-    #[arg(long, value_name = "SECONDS", default_value_t = 600.0, value_parser = seconds)]
+    #[arg(short, long, value_name = "SECONDS", default_value_t = 600.0, value_parser = seconds)]
     duration: f64,
     /// Random seed.
-    #[arg(long, default_value_t = 1)]
+    #[arg(short, long, default_value_t = 1)]
     seed: u64,
     /// The team that plays against the opponents; named as they are.
     #[arg(long, value_name = "TEAM", default_value = "ours", value_parser = MatchTeam::parse)]

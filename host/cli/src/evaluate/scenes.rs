@@ -45,10 +45,10 @@ pub(super) struct ScenesArgs {
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = MatchTeam::parse)]
     opponents: Vec<MatchTeam>,
     /// Random seed.
-    #[arg(long, default_value_t = 1)]
+    #[arg(short, long, default_value_t = 1)]
     seed: u64,
     /// Threads; the number of cores by default.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(short, long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     /// Write every scene as a row of this CSV file.
     #[arg(long, value_name = "FILE")]

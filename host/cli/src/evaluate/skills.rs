@@ -30,7 +30,7 @@ pub(super) struct SkillsArgs {
     #[arg(long, default_value_t = 20, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     tries: u32,
     /// Random seed.
-    #[arg(long, default_value_t = 1)]
+    #[arg(short, long, default_value_t = 1)]
     seed: u64,
     /// Only these skills, with commas between: placement, get-ball, receive, dribble, turn-with-ball, kick,
     /// chip, save.
@@ -40,7 +40,7 @@ pub(super) struct SkillsArgs {
     #[arg(long, default_value_t = 0, value_name = "N")]
     first: u32,
     /// Threads; the number of cores by default.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(short, long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     /// Print a JSON list, a row a skill, and nothing else.
     #[arg(long, conflicts_with_all = ["failures", "story", "markdown"])]

@@ -17,10 +17,10 @@ use crate::setup::{SetupArgs, approach, opponents, profile, scenario};
 pub(super) struct TablesArgs {
     /// Trials a cell of scenario, opponents and approach; by default the paper's: 500, 200 against two
     /// defenders.
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    #[arg(short, long, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     trials: Option<u32>,
     /// Random seed.
-    #[arg(long, default_value_t = 1)]
+    #[arg(short, long, default_value_t = 1)]
     seed: u64,
     /// Every n-th trial from the i-th on, for a cluster; `evaluate merge` merges the shards.
     #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = work::shard)]

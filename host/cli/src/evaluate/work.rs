@@ -26,10 +26,10 @@ use crate::stop::stopped_by_hand;
 #[derive(Debug, Args)]
 pub(super) struct WorkArgs {
     /// Threads; the number of cores by default.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(short, long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     /// The directory that everything is written to; the same command continues there after an interrupt.
-    #[arg(long, value_name = "DIR", default_value = "evaluation")]
+    #[arg(short, long, value_name = "DIR", default_value = "evaluation")]
     out: PathBuf,
     /// Start again: the trials stored in the directory are removed.
     #[arg(long)]

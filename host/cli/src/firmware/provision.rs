@@ -32,7 +32,7 @@ pub(crate) struct ProvisionArgs {
     #[arg(long, value_name = "FILE")]
     key_file: PathBuf,
     /// Output file of the page.
-    #[arg(long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
 }
 

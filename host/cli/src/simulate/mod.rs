@@ -39,7 +39,7 @@ pub(crate) struct SimulateArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=16))]
     robots: Option<u8>,
     /// Random seed.
-    #[arg(long, default_value_t = 1)]
+    #[arg(short, long, default_value_t = 1)]
     seed: u64,
     /// Simulated seconds a second; clients change it by the protocol.
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = speed)]
@@ -102,7 +102,7 @@ pub(crate) struct SimulateArgs {
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080")]
     page: SocketAddr,
     /// End after this number of seconds; else Ctrl-C ends it.
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(short, long, value_name = "SECONDS", value_parser = seconds)]
     duration: Option<f64>,
 }
 
