@@ -133,7 +133,8 @@ fn len(bytes: &[u8]) -> io::Result<u32> {
 #[derive(Debug)]
 pub struct Reader<R: Read> {
     from: R,
-    version: u32,
+    /// The version of the format that the file has.
+    pub version: u32,
     header: String,
     end: Option<TraceEnd>,
     /// Where the next record starts.

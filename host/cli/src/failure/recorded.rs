@@ -35,6 +35,8 @@ pub(crate) enum RecordedError {
     Damaged(String),
     /// The moment or event is not in it.
     NotThere(Missing),
+    /// It cannot be compared with another trace: why, and what to do.
+    Unlike(String),
 }
 
 /// A moment that a recording lacks.
@@ -112,7 +114,7 @@ impl fmt::Display for RecordedError {
             ),
             Self::NoRules => f.write_str("its league has no rules of the Small Size League"),
             Self::Empty => f.write_str("holds no message"),
-            Self::Damaged(place) => f.write_str(place),
+            Self::Damaged(place) | Self::Unlike(place) => f.write_str(place),
             Self::NotThere(Missing { asked, damage: None }) => write!(f, "{asked}"),
             Self::NotThere(Missing { asked, damage: Some(damage) }) => {
                 write!(f, "{asked}; the file is damaged: {damage}")

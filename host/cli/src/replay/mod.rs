@@ -5,6 +5,8 @@
 //! ours (docs/architecture.md §7.4).
 
 mod clock;
+mod compare;
+mod comparison;
 mod decided;
 mod decisions;
 mod league_log;
@@ -14,6 +16,7 @@ mod report;
 mod sheet;
 mod show;
 mod trace;
+mod unlike;
 
 use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
@@ -68,6 +71,10 @@ pub(crate) struct ReplayArgs {
     /// this is done with every trace, and an error with any other file.
     #[arg(long)]
     check: bool,
+    /// Play this trace in step with FILE, and print where they differ first: records, orders, positions and
+    /// decisions on cases, with both values.
+    #[arg(long, value_name = "TRACE", conflicts_with_all = ["watch", "at", "event", "problems", "team"])]
+    compare: Option<PathBuf>,
     #[command(flatten)]
     directory: DirectoryArgs,
     /// The key of the team that recorded a trace, if it had one: 32 hexadecimal digits in a file.
@@ -77,12 +84,16 @@ pub(crate) struct ReplayArgs {
 
 const EXIT_CODES: &str = "\
 Exit codes: 0 the file is whole, and the hosts of a trace decide as recorded; 1 the file is cut or damaged (what could be read is told,
-and where it ends on stderr), hosts decide otherwise, or what was asked for is not in it; 2 wrong usage.";
+and where it ends on stderr), hosts decide otherwise, or what was asked for is not in it; 2 wrong usage.
+With --compare: 0 the traces are equal, 1 they differ, or one of them is damaged or cannot be compared with the other; 2 wrong usage.";
 
 /// `onetwo replay`.
 pub(crate) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     if args.watch {
         return show::run(args, &args.page);
+    }
+    if let Some(other) = &args.compare {
+        return compare::run(args, other);
     }
     if begins(&args.file)?.starts_with(TRACE) {
         return trace::run(args);

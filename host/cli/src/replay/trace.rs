@@ -70,7 +70,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     let mut reader = Reader::new(open(file)?).map_err(RecordedError::Trace).map_err(failed(file))?;
     let header =
         RecordingHeader::from_json(reader.header()).map_err(RecordedError::Header).map_err(failed(file))?;
-    let key = key(args, &header)?;
+    let key = key(args, file, &header)?;
     let mut recheck = Recheck::new(&header, key).map_err(RecordedError::Header).map_err(failed(file))?;
     let (mut finder, mut match_events, mut sheet) = (Finder::default(), Vec::new(), Sheet::default());
     let (mut records, mut strays, mut met) = (BTreeMap::new(), 0, 0);
@@ -201,7 +201,7 @@ fn problems(args: &ReplayArgs, decisions: &Decisions) -> String {
 
 /// A trace that is not compressed has no end mark. If packets to robots are missing after its last input, it
 /// was cut there: the hosts' decisions all come before.
-fn unfinished(file: &Path, recheck: &Recheck) -> Result<Option<String>, Failure> {
+pub(super) fn unfinished(file: &Path, recheck: &Recheck) -> Result<Option<String>, Failure> {
     let cut = !is_gzipped(file)? && recheck.is_unfinished();
     Ok(cut.then(|| {
         "cut after its last input: the packets that followed are missing; all before was read".to_owned()
@@ -209,7 +209,7 @@ fn unfinished(file: &Path, recheck: &Recheck) -> Result<Option<String>, Failure>
 }
 
 /// Every host of the recording in its current state.
-fn all(recheck: &Recheck) -> Vec<&Host> {
+pub(super) fn all(recheck: &Recheck) -> Vec<&Host> {
     (0..).map_while(|number| recheck.host(number)).collect()
 }
 
@@ -232,7 +232,7 @@ fn show(
 }
 
 /// The key that hosts sealed with, if any.
-pub(super) fn key(args: &ReplayArgs, header: &RecordingHeader) -> Result<TeamKey, Failure> {
+pub(super) fn key(args: &ReplayArgs, recording: &Path, header: &RecordingHeader) -> Result<TeamKey, Failure> {
     match &args.key_file {
         Some(file) => {
             let read = host::shell::key::read(file).map_err(RecordedError::Key).map_err(failed(file))?;
@@ -241,12 +241,12 @@ pub(super) fn key(args: &ReplayArgs, header: &RecordingHeader) -> Result<TeamKey
             }
             Ok(read.key)
         }
-        None if header.hosts.iter().any(|host| host.keyed) => Err(failed(&args.file)(RecordedError::NoKey)),
+        None if header.hosts.iter().any(|host| host.keyed) => Err(failed(recording)(RecordedError::NoKey)),
         None => Ok(TeamKey::ZERO),
     }
 }
 
-fn label(kind: RecordKind) -> &'static str {
+pub(super) fn label(kind: RecordKind) -> &'static str {
     match kind {
         RecordKind::Vision => "vision",
         RecordKind::Referee => "referee",
