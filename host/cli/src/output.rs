@@ -10,10 +10,12 @@ use std::fmt::{Arguments, Display};
 use std::io::{self, BufWriter, IsTerminal as _, StdoutLock, Write};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 
 use clap::ValueEnum;
 
 use foreign::{Printable, printable};
+use page::{LogLevel, ProgramLog};
 
 use crate::Failure;
 
@@ -55,6 +57,7 @@ impl ColorChoice {
 /// Prints what failed, on stderr, after the word `error:`, which is red and bold where messages are coloured.
 pub(crate) fn print_error(description: &dyn Display) {
     let (on, off) = if COLOURED.load(Ordering::Relaxed) { ("\u{1b}[1;31m", "\u{1b}[0m") } else { ("", "") };
+    program_log().add(LogLevel::Error, "program", None, &format!("error: {description}"));
     let mut raw = io::stderr().lock();
     let _ = write!(raw, "{on}error:{off} ");
     let _ = writeln!(Printable::new(raw), "{description}");
@@ -71,8 +74,31 @@ pub(crate) fn print_text(description: &str) -> Result<(), Failure> {
     out.write_all(description.as_bytes()).and_then(|()| out.flush()).map_err(Failure::Output)
 }
 
-/// Prints a line on stderr. If stderr is closed the line is lost.
+/// What the program has printed on stderr, for its page: there is one stderr, and one log of it.
+pub(crate) fn program_log() -> Arc<ProgramLog> {
+    static LOG: OnceLock<Arc<ProgramLog>> = OnceLock::new();
+    LOG.get_or_init(Arc::default).clone()
+}
+
+/// The level that a line on stderr tells by its first word.
+fn level(line: &str) -> LogLevel {
+    let first = line.split([':', ' ']).next().unwrap_or_default();
+    match first {
+        "error" => LogLevel::Error,
+        "warning" => LogLevel::Warning,
+        _ => LogLevel::Note,
+    }
+}
+
+/// Prints a line on stderr, and keeps it in the program's log. If stderr is closed the line is only kept.
 pub(crate) fn print_aside(description: Arguments<'_>) {
+    let line = description.to_string();
+    program_log().add(level(&line), "program", None, &line);
+    print_secret(description);
+}
+
+/// Prints a line on stderr that no viewer of the page may read: it has the page's token.
+pub(crate) fn print_secret(description: Arguments<'_>) {
     let mut out = Printable::new(io::stderr().lock());
     let _ = writeln!(out, "{description}");
 }
@@ -109,6 +135,16 @@ mod tests {
     fn a_file_s_name_stays_within_its_line() {
         let name = printable_path(Path::new("a\u{1b}]0;pwn\u{7}\n0.00 s  GOAL"));
         assert_eq!(name, "a\\u001b]0;pwn\\u0007\\n0.00 s  GOAL");
+    }
+
+    #[test]
+    fn a_secret_is_not_kept_for_viewers_and_a_warning_is_one() {
+        super::print_secret(format_args!("page     http://host/?token=0123"));
+        super::note!("warning: the disk is slow");
+        let kept = super::program_log().from(0);
+        assert!(kept.iter().all(|entry| !entry.text.contains("token=")));
+        let warning = kept.iter().find(|entry| entry.text == "warning: the disk is slow");
+        assert_eq!(warning.map(|entry| entry.level), Some(page::LogLevel::Warning));
     }
 
     fn sources(directory: &Path, into: &mut Vec<PathBuf>) {

@@ -15,6 +15,7 @@ use serde::Serialize;
 
 use crate::deferred_scene::DeferredScene;
 use crate::match_event::MatchEvent;
+use crate::request::PageTeam;
 use crate::scene::Scene;
 use crate::viewers::Viewers;
 
@@ -33,7 +34,13 @@ pub struct ArchiveSample {
     pub t: f64,
     /// `group/name` of a gauge, with its value.
     pub values: BTreeMap<String, f32>,
+    /// Numbers of each robot, by team and number (`blue3`), in the order of [`ROBOT_NUMBERS`].
+    pub robots: BTreeMap<String, [Option<f32>; ROBOT_NUMBERS]>,
 }
+
+/// Numbers of a robot in a sample: speed, m/s; battery, V; mean round trip, ms; loss to and from it, percent;
+/// frames and telemetry received a second (these five over 1 s); time since it was heard and seen, ms.
+const ROBOT_NUMBERS: usize = 9;
 
 /// The stored history.
 type Encoded = (f64, Arc<str>);
@@ -236,7 +243,30 @@ impl Kept {
 
 fn sample(scene: &Scene) -> ArchiveSample {
     let values = scene.gauges.iter().map(|gauge| (format!("{}/{}", gauge.group, gauge.name), gauge.value));
-    ArchiveSample { t: scene.t, values: values.collect() }
+    let robots = scene.robots.iter().map(|robot| {
+        let [vx, vy] = robot.velocity;
+        let vitals = robot.vitals.as_ref();
+        let link = |of: &dyn Fn(&crate::LinkWindow) -> crate::Windowed| {
+            vitals.and_then(|vitals| of(&vitals.link)[0])
+        };
+        let numbers = [
+            Some(crate::milli(vx.hypot(vy))),
+            vitals.and_then(|vitals| vitals.battery),
+            link(&|link| link.trip_ms),
+            link(&|link| link.loss_down),
+            link(&|link| link.loss_up),
+            link(&|link| link.frames),
+            link(&|link| link.telemetry),
+            vitals.and_then(|vitals| vitals.silence_ms),
+            vitals.map(|vitals| vitals.unseen_ms),
+        ];
+        let team = match robot.team {
+            PageTeam::Blue => "blue",
+            PageTeam::Yellow => "yellow",
+        };
+        (format!("{team}{}", robot.id), numbers)
+    });
+    ArchiveSample { t: scene.t, values: values.collect(), robots: robots.collect() }
 }
 
 /// These scenes as a JSON list.
@@ -245,7 +275,7 @@ fn list(texts: &[Encoded]) -> String {
     format!("[{}]", texts.join(","))
 }
 
-fn gzip(text: &str) -> Arc<[u8]> {
+pub(crate) fn gzip(text: &str) -> Arc<[u8]> {
     let mut out = GzEncoder::new(Vec::new(), Compression::fast());
     // Writing to memory cannot fail.
     let _ = out.write_all(text.as_bytes());

@@ -27,6 +27,7 @@ mod limits;
 mod match_event;
 mod page;
 mod problem;
+mod program_log;
 mod request;
 mod routes;
 mod scene;
@@ -43,10 +44,11 @@ pub use limits::Limits;
 pub use match_event::{DecisionNote, MatchEvent, MatchEventKind};
 pub use page::{ExplanationService, Page, PageError, PageSettings};
 pub use problem::problem;
+pub use program_log::{LogEntry, LogLevel, ProgramLog};
 pub use request::{PageTeam, Powers, Refused, UserRequest};
 pub use scene::{
-    Cycle, Field, Gauge, Intent, Match, MatchEnd, PerTeam, Raw, RobotDetail, Scene, SceneBall, SceneRobot,
-    TeamSheet, Timer, Vitals,
+    CameraNote, Cycle, Field, Gauge, Intent, LinkWindow, Match, MatchEnd, PerTeam, Raw, RobotDetail, Scene,
+    SceneBall, SceneRobot, TeamSheet, Timer, Vitals, Windowed,
 };
 pub use shape::{Heat, Layer, Shape, Tone};
 pub use token::{NoToken, Token};

@@ -13,6 +13,7 @@ use crate::archive::Archive;
 use crate::deferred_scene::DeferredScene;
 use crate::limits::Limits;
 use crate::match_event::MatchEvent;
+use crate::program_log::ProgramLog;
 use crate::request::{Powers, UserRequest};
 use crate::server::{Ask, Server, Shared};
 use crate::token::Token;
@@ -37,6 +38,8 @@ pub struct PageSettings {
     pub token: Option<Token>,
     /// Bounds on the resources that clients can hold.
     pub limits: Limits,
+    /// What the program reports, for viewers to read.
+    pub log: Arc<ProgramLog>,
 }
 
 /// Answers viewers' questions, on another thread than the match.

@@ -6,7 +6,7 @@ use std::time::Duration;
 use serde::Deserialize;
 use serde_json::json;
 
-use crate::archive::look;
+use crate::archive::{gzip, look};
 use crate::files;
 use crate::http::{Answer, Head, Status};
 use crate::problem::problem;
@@ -28,6 +28,7 @@ pub(crate) fn answer(shared: &Shared, head: &Head, body: Vec<u8>, within: Durati
         "/api/state" => allowed("GET, HEAD", reads, &|| state(shared, head)),
         "/api/events" => allowed("GET, HEAD", reads, &|| match_events(shared, head)),
         "/api/plots" => allowed("GET, HEAD", reads, &|| plots(shared)),
+        "/api/log" => allowed("GET, HEAD", reads, &|| program_log(shared, head)),
         "/api/cases" => allowed("GET, HEAD", reads, &|| cases(shared, head)),
         "/api/freeze" => allowed("POST", head.method == "POST", &|| freeze(shared, &body)),
         "/api/workbench" if head.method == "POST" => workbench(shared, head, body, within),
@@ -86,8 +87,19 @@ fn match_events(shared: &Shared, head: &Head) -> Answer {
 }
 
 fn plots(shared: &Shared) -> Answer {
-    let text = look(&shared.kept, |kept| serde_json::to_string(&kept.samples).unwrap_or_default());
-    Answer::of(JSON, text.into_bytes())
+    // An hour with every robot's numbers has megabytes; encoding waits for no match, which only locks to add.
+    let samples = look(&shared.kept, |kept| kept.samples.clone());
+    let text = serde_json::to_string(&samples).unwrap_or_default();
+    Answer::of(JSON, gzip(&text).to_vec()).with("content-encoding", "gzip")
+}
+
+/// What the program has reported, from an entry on.
+fn program_log(shared: &Shared, head: &Head) -> Answer {
+    let Ok(from) = head.asked("from").unwrap_or("0").parse::<u64>() else {
+        return Answer::description(Status::BAD_REQUEST, "from: expected a whole number");
+    };
+    let entries = shared.settings.log.from(from);
+    Answer::of(JSON, serde_json::to_string(&entries).unwrap_or_default().into_bytes())
 }
 
 /// What became of every case up to a moment; an empty object before anything is known.

@@ -28,6 +28,9 @@ pub struct Scene {
     pub cycles: Vec<Cycle>,
     /// Further overlays, by name.
     pub layers: Vec<Layer>,
+    /// Cameras that have sent something, by number.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cameras: Vec<CameraNote>,
     /// Numbers that are displayed and plotted.
     pub gauges: Vec<Gauge>,
     /// Faults that an operator should act on now, each in a sentence.
@@ -182,6 +185,15 @@ pub struct Vitals {
     pub loss_up: Option<f32>,
     /// Frames received from it a second.
     pub frames: Option<f32>,
+    /// Over the last second, each with the worst such second within ten.
+    #[serde(default)]
+    pub link: LinkWindow,
+    /// Since its last telemetry was received, ms.
+    #[serde(default)]
+    pub telemetry_ms: Option<f32>,
+    /// Its governor has limited what its logic ordered, by its last telemetry.
+    #[serde(default)]
+    pub governed: bool,
     /// Frames that it refused.
     pub refused: u32,
     /// Number of boots seen.
@@ -194,6 +206,44 @@ pub struct Vitals {
     pub ball: bool,
     /// Its kicker is charged.
     pub kicker: bool,
+}
+
+/// A value over the last second, and the worst value over a second within the last ten; each `None` while
+/// nothing was measured.
+pub type Windowed = [Option<f32>; 2];
+
+/// A robot's link over windows of 1 s.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct LinkWindow {
+    /// Mean round trip of a frame, ms; worst is largest.
+    pub trip_ms: Windowed,
+    /// Of our frames that it did not receive, percent; worst is largest.
+    pub loss_down: Windowed,
+    /// Of its frames that we did not receive, percent; worst is largest.
+    pub loss_up: Windowed,
+    /// Frames received from it a second; worst is lowest.
+    pub frames: Windowed,
+    /// Telemetry received from it a second; worst is lowest.
+    pub telemetry: Windowed,
+    /// kbit/s of frames, both directions; worst is largest.
+    pub kbps: Windowed,
+}
+
+/// A camera, by the frames that it sent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct CameraNote {
+    /// Its number.
+    pub id: u32,
+    /// Camera frames received a second; worst is lowest.
+    pub frames: Windowed,
+    /// Mean time from taking a camera frame to sending it, by the sender's clock, ms; worst is largest.
+    pub delay_ms: Windowed,
+    /// Camera frames lost on the way over a second, by their numbers, percent; worst is largest.
+    pub lost: Windowed,
+    /// Camera frames lost so far.
+    pub lost_total: u64,
+    /// Since its last camera frame was received, ms.
+    pub age_ms: f32,
 }
 
 /// Detections of the cameras.

@@ -36,7 +36,8 @@ impl ExplanationService for Silent {
 fn open(limits: Limits, token: Option<Token>) -> Page {
     let listen = SocketAddr::from(([127, 0, 0, 1], 0));
     let (title, powers) = ("a test".to_owned(), Powers::Simulation);
-    let settings = PageSettings { listen, title, recorded: false, powers, token, limits };
+    let settings =
+        PageSettings { listen, title, recorded: false, powers, token, limits, log: Arc::default() };
     Page::open(settings, Arc::new(Silent)).unwrap()
 }
 

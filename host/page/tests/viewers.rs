@@ -32,7 +32,15 @@ impl ExplanationService for Echo {
 fn settings(powers: Powers) -> PageSettings {
     let listen = SocketAddr::from(([127, 0, 0, 1], 0));
     let (token, limits) = (None, Limits::default());
-    PageSettings { listen, title: "a test".to_owned(), recorded: false, powers, token, limits }
+    PageSettings {
+        listen,
+        title: "a test".to_owned(),
+        recorded: false,
+        powers,
+        token,
+        limits,
+        log: Arc::default(),
+    }
 }
 
 fn open(powers: Powers) -> Page {

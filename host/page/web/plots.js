@@ -1,9 +1,12 @@
 // How did a number go over the match? A line a gauge, its limit dashed, the shown moment marked.
 
 import { colours, faint } from "./colours.js";
-import { el, fill, number } from "./dom.js";
+import { Axes, rangeOf, ready } from "./axes.js";
+import { sampleOf } from "./course.js";
+import { clock, el, fill, number } from "./dom.js";
+import { plotGauge } from "./plot.js";
 import { on, store } from "./store.js";
-import { span, time } from "./transport.js";
+import { seek, span, time } from "./transport.js";
 
 let sampled = -1;
 
@@ -14,8 +17,7 @@ on("newest", (scene) => {
   sampled = second;
   const last = store.samples.at(-1);
   if (last && Math.floor(last.t) >= second) return;
-  const values = Object.fromEntries(scene.gauges.map((gauge) => [`${gauge.group}/${gauge.name}`, gauge.value]));
-  store.samples.push({ t: scene.t, values });
+  store.samples.push(sampleOf(scene));
 });
 
 export function plotPart(into, scene) {
@@ -26,8 +28,8 @@ export function plotPart(into, scene) {
     ...gauges.flatMap((gauge) => {
       const name = `${gauge.group}/${gauge.name}`;
       return [
-        el("div", { class: "plot-head" }, el("span", {}, gauge.name), el("b", { "data-value": name }, "")),
-        el("canvas", { class: "plot", "data-plot": name, "data-limit": gauge.limit ?? "" }),
+        el("div", { class: "plot-head" }, el("button", { class: "plain", title: "Show it large, with a cursor", "data-large": name, onclick: () => { plotGauge(name); document.getElementById("plot").focus(); } }, gauge.name), el("b", { "data-value": name }, "")),
+        el("canvas", { class: "plot", role: "img", "aria-label": `Course of ${gauge.name}; a click goes there`, "data-plot": name, "data-unit": gauge.unit, "data-limit": gauge.limit ?? "", onclick: (event) => lies.has(event.target) && seek(lies.get(event.target).timeAt(event.offsetX), false), onpointermove: (event) => hover(event) }),
       ];
     }),
   ]));
@@ -40,46 +42,53 @@ export function plotPart(into, scene) {
   }
 }
 
+/** So many plots are drawn in one frame: all at once would cost it what it has. */
+const AT_ONCE = 3;
+const inSight = new WeakSet();
+const watching = new IntersectionObserver((entries) => entries.forEach(({ target, isIntersecting }) => (isIntersecting ? inSight.add(target) : inSight.delete(target))));
+
 export function drawPlots(into) {
-  const key = `${Math.floor(time.at * 2)} ${store.samples.length} ${into.clientWidth} ${document.documentElement.dataset.theme}`;
-  if (into.dataset.drawn === key) return;
-  into.dataset.drawn = key;
-  for (const canvas of into.querySelectorAll("canvas")) draw(canvas);
+  const key = `${Math.floor(time.at)} ${store.samples.length} ${into.clientWidth} ${document.documentElement.dataset.theme}`;
+  let left = AT_ONCE;
+  for (const canvas of into.querySelectorAll("canvas")) {
+    if (!canvas.dataset.watched) {
+      canvas.dataset.watched = "yes";
+      watching.observe(canvas);
+    }
+    if (left === 0 || canvas.dataset.drawn === key || !inSight.has(canvas)) continue;
+    canvas.dataset.drawn = key;
+    left -= 1;
+    draw(canvas);
+  }
+}
+
+/** Where times lie on each canvas. */
+const lies = new WeakMap();
+
+/** The value at the pointer. */
+function hover(event) {
+  const axes = lies.get(event.target);
+  if (!axes) return;
+  const t = axes.timeAt(event.offsetX);
+  const sample = store.samples.findLast((one) => one.t <= t);
+  const value = sample?.values[event.target.dataset.plot];
+  event.target.title = `${clock(t)}: ${number(value, 2)} ${event.target.dataset.unit}`;
 }
 
 function draw(canvas) {
-  const ratio = devicePixelRatio || 1;
-  const [width, height] = [canvas.clientWidth, canvas.clientHeight];
-  if (width === 0) return;
-  canvas.width = Math.round(width * ratio);
-  canvas.height = Math.round(height * ratio);
-  const context = canvas.getContext("2d");
-  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  const size = [canvas.clientWidth, canvas.clientHeight];
+  const context = ready(canvas, size);
+  if (!context) return;
   const name = canvas.dataset.plot;
   const points = store.samples.filter((sample) => sample.values[name] !== undefined).map((sample) => [sample.t, sample.values[name]]);
   const limit = canvas.dataset.limit === "" ? null : Math.abs(Number(canvas.dataset.limit));
-  const values = points.map(([, value]) => value);
-  const top = Math.max(1e-6, ...values, limit != null && Math.max(...values, 0) > limit * 0.5 ? limit : 0) * 1.1;
-  const low = Math.min(0, ...values);
   const [first, last] = span();
-  const x = (t) => ((t - first) / Math.max(1, last - first)) * (width - 2) + 1;
-  const y = (value) => height - 2 - ((value - low) / (top - low)) * (height - 6);
-  context.fillStyle = faint("plain", 0.07);
-  context.fillRect(0, 0, width, height);
-  if (limit != null && limit <= top) {
-    context.strokeStyle = colours.bad;
-    context.setLineDash([4, 4]);
-    context.beginPath();
-    context.moveTo(0, y(limit));
-    context.lineTo(width, y(limit));
-    context.stroke();
-    context.setLineDash([]);
-  }
-  context.strokeStyle = colours.accent;
-  context.lineWidth = 1.5;
-  context.beginPath();
-  points.forEach(([t, value], i) => (i ? context.lineTo(x(t), y(value)) : context.moveTo(x(t), y(value))));
-  context.stroke();
-  context.fillStyle = colours.text;
-  context.fillRect(x(time.at), 0, 1, height);
+  const axes = new Axes(context, size, [first, Math.max(last, first + 1)], rangeOf(points.map(([, value]) => value), limit), canvas.dataset.unit);
+  lies.set(canvas, axes);
+  context.fillStyle = faint("plain", 0.05);
+  context.fillRect(axes.left, axes.top, axes.right - axes.left, axes.bottom - axes.top);
+  axes.draw();
+  if (limit != null && limit <= axes.high && limit >= axes.low) axes.line(axes.left, axes.y(limit), axes.right, axes.y(limit), colours.bad, [4, 4]);
+  axes.course(points, colours.accent, [], 2.5);
+  axes.line(axes.x(time.at), axes.top, axes.x(time.at), axes.bottom, colours.text);
 }

@@ -33,7 +33,7 @@ use crate::world::World;
 use warning::Refusals;
 
 pub use counters::Counters;
-pub use quality::{Quality, table};
+pub use quality::{LinkTotals, Quality, table};
 pub use snapshot::{PARTS_ROBOTS_MAX, RadioSituation};
 pub use warning::{RadioWarning, RefusalReason};
 

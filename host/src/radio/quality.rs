@@ -40,7 +40,26 @@ pub struct Quality {
     rate: Counters,
     frames: Counters,
     window: Window,
+    totals: LinkTotals,
     start_up: Option<Duration>,
+}
+
+/// Sums over all epochs of a robot that only rise, but for frames that come late: the difference of two
+/// readings is what happened between them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LinkTotals {
+    /// Frames received from it.
+    pub frames: u64,
+    /// Telemetry received from it.
+    pub telemetry: u64,
+    /// Bytes of frames, both directions.
+    pub bytes: u64,
+    /// Parts of our snapshots that it received, and those that it lost.
+    pub down: (u64, u64),
+    /// Its frames that came, and those that were lost.
+    pub up: (u64, u64),
+    /// Round trips measured, and their sum, ms.
+    pub trips: (u64, f64),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -129,6 +148,11 @@ impl Quality {
         &self.frames
     }
 
+    /// Sums so far, for rates over windows of the caller's choice.
+    pub fn totals(&self) -> LinkTotals {
+        LinkTotals { down: (self.down.came, self.down.lost), up: (self.up.came, self.up.lost), ..self.totals }
+    }
+
     /// Time from its first frame to its first telemetry that names our epoch; of its present epoch.
     pub fn start_up(&self) -> Option<Duration> {
         self.start_up
@@ -167,12 +191,15 @@ impl Quality {
         }
         self.roll(now);
         self.window.frames += 1;
+        self.totals.frames += 1;
+        self.totals.bytes += len as u64;
         self.window.bytes += len as u32;
     }
 
     /// Takes its telemetry; `departed` is when the snapshot that it names went out.
     pub(super) fn report(&mut self, now: Instant, telemetry: Telemetry, departed: Option<Instant>) {
         self.present_at = Some(now);
+        self.totals.telemetry += 1;
         if telemetry.received > 0
             && let (Some(departed), Some(session)) = (departed, self.session)
         {
@@ -181,6 +208,8 @@ impl Quality {
             let overdue = now.since(departed) > TRIP_MAX;
             if telemetry.silence < u16::MAX && !overdue {
                 self.trip.add(trip.0 as f64 * 1e-3);
+                self.totals.trips.0 += 1;
+                self.totals.trips.1 += trip.0 as f64 * 1e-3;
                 self.start_up = self.start_up.or(Some(now.since(session.since)));
             }
         }
@@ -196,6 +225,7 @@ impl Quality {
         if self.received_at.is_some() {
             self.roll(now);
             self.window.bytes += len as u32;
+            self.totals.bytes += len as u64;
         }
     }
 

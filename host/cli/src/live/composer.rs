@@ -11,12 +11,14 @@ use host::referee::Game;
 use host::sanity::Sanity;
 use host::world::{Ball, World};
 use page::{
-    DeferredScene, Field, Gauge, Layer, Match, MatchEvent, Scene, SceneRobot, Shape, TeamSheet, milli,
+    DeferredScene, Field, Gauge, Layer, LogLevel, Match, MatchEvent, Scene, SceneRobot, Shape, TeamSheet,
+    milli,
 };
 use protocol::Instant;
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 use rules::{AreaForm, Colour, FieldSpec};
 
+use super::cameras::Cameras;
 use super::cycles::TeamCycles;
 use super::gauges::{self, Rate};
 use super::layers;
@@ -26,8 +28,10 @@ use super::names::Names;
 use super::overlay_builder::{OverlayBuilder, Picture};
 use super::possession::Possession;
 use super::raw::Images;
+use super::windows::Links;
 use super::{spaced, team};
 use crate::library::LibraryHandle;
+use crate::output::program_log;
 use crate::replay::phase_description;
 
 /// Length of the ball's trail, s.
@@ -58,6 +62,8 @@ pub(crate) struct Composer {
     base: Option<CaseBase<'static>>,
     names: Names,
     images: Images,
+    cameras: Cameras,
+    links: Links,
     rate: Rate,
     trail: VecDeque<(f64, [f32; 2])>,
     events: EventFeed,
@@ -68,6 +74,8 @@ pub(crate) struct Composer {
     possession: Possession,
     overlay_builder: OverlayBuilder,
     match_events: Vec<MatchEvent>,
+    /// What alarms were about when a scene was composed last.
+    alarmed: Vec<String>,
 }
 
 impl Composer {
@@ -77,6 +85,8 @@ impl Composer {
             base: library_handle.map(LibraryHandle::lasting_base),
             names: Names::new(library_handle),
             images: Images::default(),
+            cameras: Cameras::default(),
+            links: Links::default(),
             rate: Rate::default(),
             trail: VecDeque::new(),
             events: EventFeed::default(),
@@ -87,12 +97,14 @@ impl Composer {
             possession: Possession::default(),
             overlay_builder: OverlayBuilder::default(),
             match_events: Vec::new(),
+            alarmed: Vec::new(),
         }
     }
 
     /// A datagram of the vision.
     pub(crate) fn vision(&mut self, bytes: &[u8]) {
         self.images.receive(bytes);
+        self.cameras.receive(bytes);
     }
 
     /// A datagram of the referee; `own` where the simulation's referee is part of the moment too.
@@ -112,18 +124,29 @@ impl Composer {
         for host in moment.hosts {
             self.cycles[host.settings().us as usize].receive(host, t, &self.names, &mut self.match_events);
             for description in self.faults.look(host, now) {
+                program_log().add(LogLevel::Warning, "robots", Some(t), &description);
                 let team = Some(team(host.settings().us));
                 self.match_events.push(MatchEvent { team, ..MatchEvent::fault(t, description) });
             }
         }
-        let mut alarms = Vec::new();
+        let (mut alarms, mut alarmed) = (Vec::new(), Vec::new());
         for host in moment.hosts {
             let us = host.settings().us;
             let found = self.sanity[us as usize].look(now, host);
+            for found in &found {
+                // The text changes with its figures; the heading stays.
+                let (source, heading) = (format!("{} host", us.label()), found.heading());
+                let matter = format!("{source}: {heading}");
+                if !self.alarmed.contains(&matter) {
+                    program_log().add(LogLevel::Alarm, &source, Some(t), &format!("{heading}: {found}"));
+                }
+                alarmed.push(matter);
+            }
             alarms.extend(
                 found.iter().map(|found| format!("{} host: {}: {found}", us.label(), found.heading())),
             );
         }
+        self.alarmed = alarmed;
         if let Some(referee) = moment.referee {
             self.events.referee(referee, t, &mut self.match_events);
         }
@@ -137,6 +160,7 @@ impl Composer {
             .into_iter()
             .filter_map(|team| Some((team, played(team)?)))
             .collect();
+        let links = moment.hosts.iter().map(|host| self.links.look(t, host)).collect::<Vec<_>>();
         let mut aims = Vec::new();
         let robots = world
             .robots()
@@ -157,7 +181,11 @@ impl Composer {
                     velocity: [milli(robot.velocity.x()), milli(robot.velocity.y())],
                     confidence: milli(robot.confidence),
                     detail,
-                    vitals: host.and_then(|host| minds::vitals(host, robot, now)),
+                    vitals: host.and_then(|host| {
+                        let link = moment.hosts.iter().position(|other| other.settings().us == colour);
+                        let link = link.and_then(|i| links[i].get(&robot.who.id.number())).copied();
+                        minds::vitals(host, robot, now, link.unwrap_or_default())
+                    }),
                 }
             })
             .collect();
@@ -186,6 +214,7 @@ impl Composer {
             game: sheet(game, moment.referee, &self.possession),
             cycles,
             layers,
+            cameras: self.cameras.look(t),
             gauges,
             alarms,
             ..Scene::default()

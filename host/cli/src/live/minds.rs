@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use host::Host;
 use host::world::Robot;
-use page::{Intent, RobotDetail, Timer, Vitals, milli};
+use page::{Intent, LinkWindow, RobotDetail, Timer, Vitals, milli};
 use protocol::host::Condition;
 use protocol::team::{Progress, Role, Status};
 use protocol::{Instant, RobotId};
@@ -95,7 +95,7 @@ pub(super) fn is_available(host: &Host, id: RobotId, now: Instant) -> bool {
 }
 
 /// State of a robot and its link.
-pub(super) fn vitals(host: &Host, robot: &Robot, now: Instant) -> Option<Vitals> {
+pub(super) fn vitals(host: &Host, robot: &Robot, now: Instant, link: LinkWindow) -> Option<Vitals> {
     let quality = host.quality(robot.who.id)?;
     let received = quality.received_at()?;
     let condition = quality.condition();
@@ -121,6 +121,9 @@ pub(super) fn vitals(host: &Host, robot: &Robot, now: Instant) -> Option<Vitals>
         loss_down: counters(quality.loss_down()),
         loss_up: counters(quality.loss_up()),
         frames: counters(quality.frame_rate().mean()),
+        link,
+        telemetry_ms: quality.telemetry().map(|(at, _)| ms(now.since(*at).0)),
+        governed: condition.has(Condition::GOVERNED),
         refused: quality.refused(),
         lives: quality.lives(),
         unseen_ms: ms(now.since(robot.seen).0),

@@ -4,6 +4,7 @@
 //! answers why a case was chosen. Everything here only observes: no decision is made here.
 
 mod beliefs;
+mod cameras;
 mod composer;
 mod cycles;
 pub(crate) mod description;
@@ -23,6 +24,7 @@ mod raw;
 mod tactics;
 #[cfg(test)]
 mod tests;
+mod windows;
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -38,7 +40,7 @@ use crate::Failure;
 use crate::args::{DirectoryArgs, LibraryArgs};
 use crate::failure::NetworkError;
 use crate::library::LibraryHandle;
-use crate::output::note;
+use crate::output::{note, print_secret, program_log};
 use crate::stop::stopped_by_hand;
 
 pub(crate) use composer::{Composer, Moment};
@@ -87,15 +89,16 @@ impl PageArgs {
         let token = open.then(Token::random).transpose();
         let token = token.map_err(|error| NetworkError::Token(error, self.flag))?;
         let limits = Limits::default();
+        let (listen, log) = (self.listen, program_log());
         let settings =
-            page::PageSettings { listen: self.listen, title, recorded, powers, token: token.clone(), limits };
+            page::PageSettings { listen, title, recorded, powers, token: token.clone(), limits, log };
         let page = Page::open(settings, Arc::new(explanations))
             .map_err(|error| NetworkError::Page(error, self.flag))?;
         let at = page.address();
         match token {
             None => note!("page     http://{at}"),
             Some(token) => {
-                note!("page     http://{at}/?token={}", token.as_str());
+                print_secret(format_args!("page     http://{at}/?token={}", token.as_str()));
                 note!(
                     "page     all that reach this machine can look on at http://{at}; to ask for anything takes the address with the token"
                 );

@@ -6,6 +6,7 @@
 //! without.
 
 mod bench;
+mod health;
 mod look;
 mod program;
 

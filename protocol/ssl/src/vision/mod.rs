@@ -7,6 +7,7 @@
 mod decoder;
 mod detection;
 mod geometry;
+mod head;
 pub mod legacy;
 
 use prost::{Enumeration, Message};
@@ -17,6 +18,7 @@ pub use geometry::{
     BallModelChipFixedLoss, BallModelStraightTwoPhase, FieldCircularArc, FieldLineSegment, FieldShapeType,
     GeometryCameraCalibration, GeometryData, GeometryFieldSize, GeometryModels, Vector2f,
 };
+pub use head::FrameHead;
 
 messages! {
     /// A datagram of vision: a camera's frame, the field, or both.
