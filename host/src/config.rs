@@ -26,6 +26,7 @@
 //! roll = 0.41                     # deceleration of a rolling ball, m/s²; left out: vision's
 //! ```
 
+pub mod parameters;
 mod text;
 
 use std::fmt;
@@ -39,6 +40,8 @@ use serde::Deserialize;
 use ssl::net::addresses;
 
 use crate::referee::{OnSilence, SourcePin};
+
+pub(crate) use parameters::KICK_RANGE;
 
 /// A team's settings: from a file or flags; every field is optional.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -239,24 +242,11 @@ impl TeamSettings {
         let mut kick = [1.0; RobotId::COUNT];
         for Calibration { robot, kick: factor, .. } in self.calibration {
             let id = robot_id("calibration.robot", robot)?;
-            if !KICK_RANGE.contains(&factor) {
-                return Err(error(
-                    "calibration.kick",
-                    format!(
-                        "{factor} for robot {robot}; speed seen over speed ordered, {} to {}",
-                        KICK_RANGE.start(),
-                        KICK_RANGE.end()
-                    ),
-                ));
-            }
-            kick[id.index()] = factor;
+            let named =
+                |refused: ConfigError| error(&refused.key, format!("robot {robot}: {}", refused.description));
+            kick[id.index()] = parameters::KICK.checked(factor).map_err(named)?;
         }
-        if let Some(roll) = self.ball.roll.filter(|roll| !ROLL_RANGE.contains(roll)) {
-            return Err(error(
-                "ball.roll",
-                format!("{roll}; deceleration of a rolling ball, 0.05 to 1.5 m/s²"),
-            ));
-        }
+        let roll = self.ball.roll.map(|roll| parameters::ROLL.checked(roll)).transpose()?;
         Ok(TeamConfig {
             name: self.name.unwrap_or_else(|| "onetwo".to_owned()),
             colour: colour(self.colour.as_deref().unwrap_or("blue"))?,
@@ -274,15 +264,11 @@ impl TeamSettings {
             game_controller: self.game_controller,
             strategy: self.strategy,
             kick,
-            roll: self.ball.roll,
+            roll,
         })
     }
 }
 
-/// Range of a kicker's gain (ball speed over speed ordered), as [`crate::learned`] bounds it.
-pub(crate) const KICK_RANGE: std::ops::RangeInclusive<f32> = 0.4..=2.0;
-/// Deceleration of a rolling ball on a field surface, m/s²: as [`crate::learned`] bounds it.
-const ROLL_RANGE: std::ops::RangeInclusive<f32> = 0.05..=1.5;
 const LEAGUES: [League; 3] = [League::Ssl2013, League::DivisionB, League::DivisionA];
 
 fn colour(label: &str) -> Result<Colour, ConfigError> {

@@ -3,9 +3,7 @@
 
 use std::fmt::{self, Write as _};
 
-use protocol::RobotId;
-use toml::Value;
-
+use super::parameters::{KICK, PARAMETERS};
 use super::{RobotLink, TeamConfig};
 
 impl TeamConfig {
@@ -13,88 +11,27 @@ impl TeamConfig {
     /// are comments with an example.
     pub fn to_toml(&self) -> String {
         let mut text = String::from(HEADING);
-        let text_of = |value: &dyn fmt::Display| Value::from(value.to_string());
-        let path = self.key_file.as_ref().map(|path| text_of(&path.display()));
-        let rows: [(&str, Option<Value>, &str, &str); 15] = [
-            ("name", Some(text_of(&self.name)), "", "as the game controller knows the team"),
-            ("colour", Some(text_of(&self.colour.label())), "", "blue or yellow"),
-            ("league", Some(text_of(&self.league.name())), "", "ssl-2013, division-b or division-a"),
-            (
-                "keeper",
-                Some(Value::from(i64::from(self.keeper.number()))),
-                "",
-                "0 to 15; the referee may change it",
-            ),
-            (
-                "interface",
-                self.interface.map(|ip| text_of(&ip)),
-                "\"192.168.1.7\"",
-                "interface for multicast; left out: every interface",
-            ),
-            (
-                "robots",
-                Some(text_of(&self.robots)),
-                "",
-                "sim://HOST, udp://HOST:PORT or serial:DEVICE[:BAUD]",
-            ),
-            ("key_file", path, "\"team.key\"", "32 hexadecimal digits; may be left out for sim:// only"),
-            (
-                "insecure_zero_key",
-                Some(Value::from(self.insecure_zero_key)),
-                "",
-                "true: real robots may use the key of zeros, which is public",
-            ),
-            ("vision", Some(text_of(&self.vision)), "", "multicast group and port of vision"),
-            ("referee", Some(text_of(&self.referee)), "", "multicast group and port of the referee"),
-            (
-                "referee_source",
-                self.referee_source.as_ref().map(|pin| text_of(pin)),
-                "\"192.168.1.5\"",
-                "only referee obeyed: address or identifier; left out: the strictest",
-            ),
-            (
-                "referee_silence",
-                Some(text_of(&self.referee_silence.label())),
-                "",
-                "after 2 s without a referee: halt, or go-on by its last command",
-            ),
-            ("tracker", Some(text_of(&self.tracker)), "", "where our tracker's packets go"),
-            (
-                "game_controller",
-                self.game_controller.map(|address| text_of(&address)),
-                "\"127.0.0.1:10008\"",
-                "its port for teams; left out: no messages to the controller",
-            ),
-            (
-                "strategy",
-                self.strategy.as_ref().map(|command| text_of(command)),
-                "\"python3 my_team.py\"",
-                "program that gives the orders; left out: the coach does",
-            ),
-        ];
-        for (key, value, example, comment) in rows {
-            let line = match value {
-                Some(value) => format!("{key} = {value}"),
-                None => format!("# {key} = {example}"),
+        let mut table = None;
+        for parameter in PARAMETERS.iter().filter(|parameter| parameter.key != KICK.key) {
+            if parameter.table() != table {
+                table = parameter.table();
+                let _ = writeln!(text, "\n[{}]", table.unwrap_or_default());
+            }
+            let name = parameter.name();
+            let line = match (parameter.once(self), parameter.left_out) {
+                (Some(value), _) => format!("{name} = {value}"),
+                (None, left_out) => format!("# {name} = {}", left_out.map_or("", |(_, example)| example)),
             };
-            let _ = writeln!(text, "{line:<40} # {comment}");
+            let _ = writeln!(text, "{line:<40} # {parameter}");
         }
-        let _ = writeln!(text, "\n[ball]");
-        let roll = self.roll.map_or("# roll = 0.41".to_owned(), |roll| format!("roll = {roll:?}"));
-        let _ = writeln!(
-            text,
-            "{roll:<40} # deceleration of a rolling ball, 0.05 to 1.5 m/s²; left out: vision's"
-        );
-        let _ = writeln!(
-            text,
-            "\n# How robots deviate from what is ordered: balls leave so much faster, 0.4 to 2."
-        );
-        let mut calibrated = RobotId::all().filter(|id| self.kick[id.index()] != 1.0).peekable();
-        if calibrated.peek().is_none() {
-            text.push_str("# [[calibration]]\n# robot = 3\n# kick = 1.06\n");
+        let _ = writeln!(text, "\n# {KICK}");
+        let calibrated = KICK.robots(self);
+        if calibrated.is_empty() {
+            let example = KICK.left_out.map_or("", |(_, example)| example);
+            let _ = writeln!(text, "# [[calibration]]\n# robot = 3\n# kick = {example}");
         }
-        for id in calibrated {
-            let _ = writeln!(text, "[[calibration]]\nrobot = {id}\nkick = {:?}\n", self.kick[id.index()]);
+        for (id, value) in calibrated {
+            let _ = writeln!(text, "[[calibration]]\nrobot = {id}\nkick = {value}\n");
         }
         text
     }

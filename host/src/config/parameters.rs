@@ -1,0 +1,307 @@
+//! `parameters`: what a team sets, each once: key, unit, range, meaning and its value in a
+//! [`TeamConfig`]. The text of a `team.toml`, the errors of its ranges and the list as JSON are made from
+//! [`PARAMETERS`].
+//!
+//! Reading is the other half: the fields of [`super::TeamSettings`]; a test holds the two to the same keys.
+
+use std::fmt;
+use std::ops::RangeInclusive;
+
+use protocol::RobotId;
+use serde::Serialize;
+use toml::Value;
+
+use super::{ConfigError, TeamConfig, TeamSettings, error};
+
+/// One parameter of a team.
+#[derive(Clone, Debug)]
+pub struct Parameter {
+    /// Its key in `team.toml`, after its table and a dot where it is in one: `keeper`, `ball.roll`.
+    pub key: &'static str,
+    /// Its unit; empty where it has none.
+    pub unit: &'static str,
+    /// Least and greatest value, in `unit`; none: not a number, or any that its type takes.
+    pub range: Option<RangeInclusive<f32>>,
+    /// What it means, and which words it takes.
+    pub meaning: &'static str,
+    /// What holds where it is left out, and an example as it stands in the file; none: it always has a value.
+    pub left_out: Option<(&'static str, &'static str)>,
+    /// Its value in a configuration.
+    value: Holds,
+}
+
+/// Where a configuration holds a parameter; `None` is one that is not set.
+#[derive(Clone, Copy, Debug)]
+enum Holds {
+    /// One value for the team.
+    Once(fn(&TeamConfig) -> Option<Value>),
+    /// One value for each robot that has another than the usual.
+    EachRobot(fn(&TeamConfig, RobotId) -> Option<Value>),
+}
+
+/// A parameter with its value, for a list of them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ParameterValue {
+    /// [`Parameter::key`].
+    pub key: &'static str,
+    /// The robot that it is for; none: the team.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub robot: Option<u8>,
+    /// [`Parameter::unit`].
+    pub unit: &'static str,
+    /// [`Parameter::range`], least and greatest.
+    pub range: Option<[f32; 2]>,
+    /// [`Parameter::meaning`].
+    pub meaning: &'static str,
+    /// Its value; none: not set.
+    pub value: Option<Value>,
+    /// Its value in an empty file; none: not set.
+    pub default: Option<Value>,
+}
+
+impl ParameterValue {
+    /// Whether it has another value than in an empty file.
+    pub fn is_changed(&self) -> bool {
+        self.value != self.default
+    }
+}
+
+impl Parameter {
+    /// The table that it is in; none: the top of the file.
+    pub fn table(&self) -> Option<&'static str> {
+        self.key.split_once('.').map(|(table, _)| table)
+    }
+
+    /// Its key within its table.
+    pub fn name(&self) -> &'static str {
+        self.key.split_once('.').map_or(self.key, |(_, name)| name)
+    }
+
+    /// Its value for the team; none: not set, or each robot has its own.
+    pub(super) fn once(&self, config: &TeamConfig) -> Option<Value> {
+        match self.value {
+            Holds::Once(value) => value(config),
+            Holds::EachRobot(_) => None,
+        }
+    }
+
+    /// The robots that have another value than the usual, with it.
+    pub(super) fn robots(&self, config: &TeamConfig) -> Vec<(RobotId, Value)> {
+        match self.value {
+            Holds::Once(_) => Vec::new(),
+            Holds::EachRobot(value) => {
+                RobotId::all().filter_map(|id| Some((id, value(config, id)?))).collect()
+            }
+        }
+    }
+
+    /// `number`, or the error that names key, value and range.
+    pub(super) fn checked(&self, number: f32) -> Result<f32, ConfigError> {
+        match &self.range {
+            Some(range) if !range.contains(&number) => Err(error(self.key, format!("{number}; {self}"))),
+            _ => Ok(number),
+        }
+    }
+}
+
+impl fmt::Display for Parameter {
+    /// Its meaning with range and unit.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.meaning)?;
+        if let Some(range) = &self.range {
+            write!(f, ", {} to {}", range.start(), range.end())?;
+        }
+        if !self.unit.is_empty() {
+            write!(f, " {}", self.unit)?;
+        }
+        self.left_out.map_or(Ok(()), |(then, _)| write!(f, "; left out: {then}"))
+    }
+}
+
+impl TeamConfig {
+    /// Every parameter with its value, in the file's order; one of each robot once for each that has another
+    /// than the usual, and once without a robot where none has.
+    pub fn parameters(&self) -> Vec<ParameterValue> {
+        let usual = TeamSettings::default().complete().ok();
+        let mut list = Vec::new();
+        for parameter in &PARAMETERS {
+            let Parameter { key, unit, meaning, .. } = *parameter;
+            let range = parameter.range.as_ref().map(|range| [*range.start(), *range.end()]);
+            let default = usual.as_ref().and_then(|usual| parameter.once(usual));
+            let one = |robot: Option<RobotId>, value| ParameterValue {
+                key,
+                robot: robot.map(RobotId::number),
+                unit,
+                range,
+                meaning,
+                value,
+                default: default.clone(),
+            };
+            let robots = parameter.robots(self);
+            if robots.is_empty() {
+                list.push(one(None, parameter.once(self)));
+            }
+            list.extend(robots.into_iter().map(|(id, value)| one(Some(id), Some(value))));
+        }
+        list
+    }
+}
+
+/// The value with the digits of its shortest form: 0.41, and not 0.4099999964.
+fn decimal(number: f32) -> Value {
+    Value::from(number.to_string().parse().unwrap_or(f64::from(number)))
+}
+
+fn text_of(value: &dyn fmt::Display) -> Value {
+    Value::from(value.to_string())
+}
+
+const fn usual(
+    key: &'static str,
+    meaning: &'static str,
+    value: fn(&TeamConfig) -> Option<Value>,
+) -> Parameter {
+    Parameter { key, unit: "", range: None, meaning, left_out: None, value: Holds::Once(value) }
+}
+
+const fn optional(
+    key: &'static str,
+    meaning: &'static str,
+    left_out: (&'static str, &'static str),
+    value: fn(&TeamConfig) -> Option<Value>,
+) -> Parameter {
+    Parameter { left_out: Some(left_out), ..usual(key, meaning, value) }
+}
+
+/// How a rolling ball slows down; the range is that of [`crate::learned`].
+pub(super) const ROLL: Parameter = Parameter {
+    key: "ball.roll",
+    unit: "m/s²",
+    range: Some(0.05..=1.5),
+    meaning: "deceleration of a rolling ball",
+    left_out: Some(("vision's", "0.41")),
+    value: Holds::Once(|config| config.roll.map(decimal)),
+};
+
+/// Range of a kicker's gain (ball speed over speed ordered), as [`crate::learned`] bounds it.
+pub(crate) const KICK_RANGE: RangeInclusive<f32> = 0.4..=2.0;
+
+/// The gain of a robot's kicker.
+pub(super) const KICK: Parameter = Parameter {
+    key: "calibration.kick",
+    unit: "",
+    range: Some(KICK_RANGE),
+    meaning: "how much faster than ordered a robot's balls leave: speed seen over speed ordered",
+    left_out: Some(("1", "1.06")),
+    value: Holds::EachRobot(|config, id| {
+        Some(config.kick[id.index()]).filter(|factor| *factor != 1.0).map(decimal)
+    }),
+};
+
+/// Every parameter, in the order of the file: those of no table first.
+pub const PARAMETERS: [Parameter; 17] = [
+    usual("name", "as the game controller knows the team", |c| Some(text_of(&c.name))),
+    usual("colour", "blue or yellow", |c| Some(text_of(&c.colour.label()))),
+    usual("league", "ssl-2013, division-b or division-a", |c| Some(text_of(&c.league.name()))),
+    Parameter {
+        range: Some(0.0..=15.0),
+        ..usual("keeper", "our goalkeeper until the referee names another", |c| {
+            Some(Value::from(i64::from(c.keeper.number())))
+        })
+    },
+    optional("interface", "interface for multicast", ("every interface", "\"192.168.1.7\""), |c| {
+        c.interface.map(|ip| text_of(&ip))
+    }),
+    usual("robots", "sim://HOST, udp://HOST:PORT or serial:DEVICE[:BAUD]", |c| Some(text_of(&c.robots))),
+    optional("key_file", "32 hexadecimal digits", ("zeros, for sim:// only", "\"team.key\""), |c| {
+        c.key_file.as_ref().map(|path| text_of(&path.display()))
+    }),
+    usual("insecure_zero_key", "true: real robots may use the key of zeros, which is public", |c| {
+        Some(Value::from(c.insecure_zero_key))
+    }),
+    usual("vision", "multicast group and port of vision", |c| Some(text_of(&c.vision))),
+    usual("referee", "multicast group and port of the referee", |c| Some(text_of(&c.referee))),
+    optional(
+        "referee_source",
+        "only referee obeyed: address or identifier",
+        ("the strictest", "\"192.168.1.5\""),
+        |c| c.referee_source.as_ref().map(|pin| text_of(pin)),
+    ),
+    usual("referee_silence", "after 2 s without a referee: halt, or go-on by its last command", |c| {
+        Some(text_of(&c.referee_silence.label()))
+    }),
+    usual("tracker", "where our tracker's packets go", |c| Some(text_of(&c.tracker))),
+    optional(
+        "game_controller",
+        "its port for teams",
+        ("no messages to the controller", "\"127.0.0.1:10008\""),
+        |c| c.game_controller.map(|address| text_of(&address)),
+    ),
+    optional(
+        "strategy",
+        "program that gives the orders",
+        ("the coach does", "\"python3 my_team.py\""),
+        |c| c.strategy.as_ref().map(|command| text_of(command)),
+    ),
+    ROLL,
+    KICK,
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<TeamConfig, ConfigError> {
+        TeamSettings::from_toml(text).and_then(TeamSettings::complete)
+    }
+
+    #[test]
+    fn the_written_file_and_the_list_as_json_have_the_same_parameters() {
+        let config = read("[[calibration]]\nrobot = 3\nkick = 1.06").unwrap();
+        let json = serde_json::to_value(config.parameters()).unwrap();
+        let listed: Vec<&str> =
+            json.as_array().unwrap().iter().filter_map(|one| one["key"].as_str()).collect();
+        let mut table = String::new();
+        let mut written = Vec::new();
+        for line in config.to_toml().lines() {
+            let line = line.trim_start_matches("# ");
+            if line.starts_with('[') {
+                table = line.trim_matches(['[', ']']).to_owned() + ".";
+            } else if let Some((name, _)) = line.split_once(" = ")
+                && !name.contains(' ')
+                && name != "robot"
+            {
+                written.push(format!("{table}{name}"));
+            }
+        }
+        assert_eq!(listed, written);
+        assert_eq!(listed.len(), PARAMETERS.len());
+    }
+
+    #[test]
+    fn a_number_out_of_its_range_is_refused_with_key_value_and_range() {
+        let refused = |text: &str| read(text).unwrap_err().to_string();
+        let error = refused("[ball]\nroll = 1.6");
+        assert!(error.contains("ball.roll: 1.6;") && error.contains("0.05 to 1.5 m/s²"), "{error}");
+        let error = refused("[[calibration]]\nrobot = 1\nkick = 0.3");
+        assert!(error.contains("calibration.kick: robot 1: 0.3;") && error.contains("0.4 to 2"), "{error}");
+        for good in ["[ball]\nroll = 1.5", "[[calibration]]\nrobot = 1\nkick = 0.4"] {
+            assert!(read(good).is_ok(), "{good}");
+        }
+        assert!(refused("[ball]\nroll = nan").contains("ball.roll"));
+    }
+
+    #[test]
+    fn what_differs_from_an_empty_file_is_marked_and_nothing_else() {
+        let changed = |text: &str| -> Vec<_> {
+            let list = read(text).unwrap().parameters();
+            list.into_iter().filter(ParameterValue::is_changed).map(|one| (one.key, one.robot)).collect()
+        };
+        assert_eq!(changed(""), []);
+        assert_eq!(changed("keeper = 0\ncolour = 'blue'"), []);
+        let text = "keeper = 4\n[ball]\nroll = 0.41\n[[calibration]]\nrobot = 3\nkick = 1.06";
+        assert_eq!(changed(text), [("keeper", None), ("ball.roll", None), ("calibration.kick", Some(3))]);
+        let list = read(text).unwrap().parameters();
+        assert_eq!(list[15].value, Some(Value::from(0.41)));
+    }
+}
