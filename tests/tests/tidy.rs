@@ -317,13 +317,13 @@ const LINES_MAX: usize = 500;
 const WIDTH: usize = 110;
 
 /// Crates on a robot.
-const NO_STD: [&str; 8] =
-    ["geometry", "protocol", "rules", "motion", "casebase", "case-library", "brain", "runtime"];
+const NO_STD: [&str; 9] =
+    ["geometry", "protocol", "rules", "motion", "casebase", "case-library", "nrf24", "brain", "runtime"];
 /// Crates whose numbers enter a trace hash.
 const SAME_BITS: [&str; 9] =
     ["geometry", "protocol", "rules", "motion", "casebase", "case-library", "brain", "runtime", "hil-sim"];
 /// External crates that only compute: no files, sockets, clocks or threads.
-const PURE: [&str; 10] = [
+const PURE: [&str; 12] = [
     "nalgebra",
     "libm",
     "micromath",
@@ -334,10 +334,13 @@ const PURE: [&str; 10] = [
     "cobs",
     "zerocopy",
     "defmt",
+    // Traits of pins and buses; whoever implements them does the I/O.
+    "embedded-hal",
+    "rf24-rs",
 ];
 
 /// docs/architecture.md §1.2; a crate depends on earlier ones only.
-const LOWEST_FIRST: [&str; 30] = [
+const LOWEST_FIRST: [&str; 32] = [
     "geometry",
     "rules",
     "protocol",
@@ -349,6 +352,8 @@ const LOWEST_FIRST: [&str; 30] = [
     "case-library",
     "drawing",
     "workloads",
+    "nrf24-model",
+    "nrf24",
     "brain",
     "runtime",
     "board-mps2",

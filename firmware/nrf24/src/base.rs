@@ -1,0 +1,333 @@
+//! `base`: the base station's radio. It sends the host's frames, to one robot with acknowledgement and repeats, to
+//! all without, and asks robots that were not spoken to for what they have to say. Times in µs.
+
+use embedded_hal::delay::DelayNs;
+use embedded_hal::digital::OutputPin;
+use embedded_hal::spi::SpiDevice;
+use protocol::frame::HEADER_LEN;
+use protocol::link::Packet;
+use protocol::{Duration, Instant, RobotId};
+use rf24::StatusFlags;
+use rf24::radio::prelude::{EsbFifo, EsbRadio, EsbStatus};
+
+use crate::chip::{Channel, Fault, Lines};
+use crate::fragment::{Assembler, Cutter, Fragments, Joined, NotSent, Payload, question};
+
+/// What a base station's radio sent and dropped.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct BaseCounts {
+    /// Frames of the host given to the air to their last fragment.
+    pub sent: u32,
+    /// Frames to one robot that it did not acknowledge in every repeat; they may have come all the same.
+    pub unacknowledged: u32,
+    /// Frames that waited longer than [`LATE`], or found no room.
+    pub late: u32,
+    /// Questions to robots that had none of the host's frames in time.
+    pub questions: u32,
+    /// Starts of the chip after the first: its supply dipped, or it stood still.
+    pub restarts: u32,
+    /// Robots' frames.
+    pub robots: Joined,
+}
+
+/// Who a frame is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Target {
+    Everyone,
+    One(RobotId),
+}
+
+/// What is going on with one robot.
+#[derive(Clone, Debug)]
+struct Peer {
+    cutter: Cutter,
+    assembler: Assembler,
+    asked: Option<Instant>,
+    heard: Option<Instant>,
+    /// Its last acknowledgement carried something: there may be more.
+    has_more: bool,
+}
+
+/// Payloads of one frame that are not with the chip yet.
+#[derive(Clone, Debug)]
+struct Sending {
+    target: Target,
+    fragments: Fragments,
+    given: usize,
+    is_question: bool,
+}
+
+/// A base station's radio.
+#[allow(missing_debug_implementations, reason = "the chip's driver has none")]
+pub struct Base<S, C, D> {
+    lines: Lines<S, C, D>,
+    channel: Channel,
+    cutter: Cutter,
+    peers: [Peer; RobotId::COUNT],
+    waiting: heapless::Deque<(Instant, Target, Packet), WAITING_MAX>,
+    sending: Option<Sending>,
+    /// The chip has payloads of this target, since then.
+    busy: Option<(Target, Instant)>,
+    /// What the chip has is a question.
+    is_asking: bool,
+    /// Repeats that the chip is set to.
+    repeats: u8,
+    /// The number that is looked for next, and when the last was.
+    search: (u8, Instant),
+    checked: Instant,
+    counts: BaseCounts,
+}
+
+impl<S: SpiDevice, C: OutputPin, D: DelayNs> Base<S, C, D> {
+    /// Sets the chip up.
+    pub fn start(now: Instant, channel: Channel, spi: S, chip_enable: C, pause: D) -> Result<Self, Fault> {
+        let peer = Peer {
+            cutter: Cutter::new(channel.team),
+            assembler: Assembler::new(channel.team, PATIENCE),
+            asked: None,
+            heard: None,
+            has_more: false,
+        };
+        let mut radio = Self {
+            lines: Lines::new(spi, chip_enable, pause),
+            channel,
+            cutter: Cutter::new(channel.team),
+            peers: core::array::from_fn(|_| peer.clone()),
+            waiting: heapless::Deque::new(),
+            sending: None,
+            busy: None,
+            is_asking: false,
+            repeats: 0,
+            search: (0, now),
+            checked: now,
+            counts: BaseCounts::default(),
+        };
+        radio.lines.start(channel)?;
+        Ok(radio)
+    }
+
+    /// Takes a frame of the host. One to a single robot goes to it with acknowledgement, all others to everyone:
+    /// parts of snapshots, and frames of robots that the host passes on.
+    pub fn send(&mut self, now: Instant, frame: &[u8]) -> Result<(), NotSent> {
+        let packet = Packet::from_slice(frame).map_err(|_| NotSent::Length(frame.len()))?;
+        if self.waiting.is_full() {
+            self.waiting.pop_front();
+            self.counts.late = self.counts.late.saturating_add(1);
+        }
+        let _room = self.waiting.push_back((now, target(frame), packet));
+        Ok(())
+    }
+
+    /// Serves the chip; returns a robot's frame that came. Call until `None` when the line IRQ is low, after
+    /// [`Base::send`], and every [`crate::SERVE_EVERY`] at least.
+    pub fn poll(&mut self, now: Instant) -> Result<Option<Packet>, Fault> {
+        let stands = self.busy.is_some_and(|(_, since)| now.since(since) > STANDS_STILL);
+        if stands || (self.busy.is_none() && now.since(self.checked) >= CHECK_EVERY) {
+            self.checked = now;
+            if stands || !self.lines.is_set()? {
+                self.counts.restarts = self.counts.restarts.saturating_add(1);
+                (self.busy, self.sending, self.repeats) = (None, None, 0);
+                self.lines.start(self.channel)?;
+            }
+        }
+        // Before anything arrives: a packet and the payload in its acknowledgement are one event.
+        let events = self.lines.events()?;
+        while let Some((_, payload)) = self.lines.receive()? {
+            if let Some((Target::One(robot), _)) = self.busy
+                && let Some(peer) = self.peers.get_mut(robot.index())
+            {
+                peer.has_more = true;
+                if let Some(frame) = peer.assembler.push(now, &payload) {
+                    return Ok(Some(frame));
+                }
+            }
+        }
+        match self.busy {
+            Some((Target::One(robot), _)) if events.tx_ds() || events.tx_df() => {
+                self.answered(now, robot, events.tx_ds())?;
+            }
+            Some((Target::Everyone, _)) => {
+                if self.lines.radio.get_fifo_state(true)? == rf24::FifoState::Empty {
+                    self.busy = None;
+                    self.lines.radio.clear_status_flags(StatusFlags::default().with_tx_ds(true))?;
+                }
+            }
+            _ => {}
+        }
+        self.give(now)?;
+        Ok(None)
+    }
+
+    /// What was sent and dropped so far.
+    pub fn counts(&self) -> BaseCounts {
+        let robots = self.peers.iter().fold(Joined::default(), |sum, peer| {
+            let own = peer.assembler.joined();
+            Joined {
+                frames: sum.frames.wrapping_add(own.frames),
+                broken: sum.broken.saturating_add(own.broken),
+                stray: sum.stray.saturating_add(own.stray),
+            }
+        });
+        BaseCounts { robots, ..self.counts }
+    }
+
+    /// The end of a packet to one robot.
+    fn answered(&mut self, now: Instant, robot: RobotId, came: bool) -> Result<(), Fault> {
+        self.busy = None;
+        self.lines.radio.clear_status_flags(StatusFlags::default().with_tx_ds(true).with_tx_df(true))?;
+        let Some(peer) = self.peers.get_mut(robot.index()) else { return Ok(()) };
+        if came {
+            peer.heard = Some(now);
+        } else {
+            // The chip keeps the payload (PS 7.4.2). Without this fragment the robot cannot join the others.
+            self.lines.radio.flush_tx()?;
+            peer.has_more = false;
+            // What is next for the chip may be another frame already.
+            self.sending.take_if(|next| next.given > 0);
+            if !self.is_asking {
+                self.counts.unacknowledged = self.counts.unacknowledged.saturating_add(1);
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives the chip what it sends next, as far as it takes it.
+    fn give(&mut self, now: Instant) -> Result<(), Fault> {
+        loop {
+            if let Some(done) = self.sending.take_if(|sending| sending.given == sending.fragments.len())
+                && !done.is_question
+            {
+                self.counts.sent = self.counts.sent.saturating_add(1);
+            }
+            if self.sending.is_none() {
+                self.sending = match self.next_frame(now) {
+                    Some(next) => Some(next),
+                    None if self.busy.is_none() => self.next_question(now),
+                    None => None,
+                };
+            }
+            let Some(sending) = &mut self.sending else { return Ok(()) };
+            let is_open = match (self.busy, sending.target) {
+                (None, _) => true,
+                (Some((Target::Everyone, _)), Target::Everyone) => true,
+                _ => false,
+            };
+            let Some(fragment) = sending.fragments.get(sending.given).filter(|_| is_open) else {
+                return Ok(());
+            };
+            if self.busy.is_none() {
+                let (address, repeats) = match sending.target {
+                    Target::Everyone => (self.channel.everyone(), self.repeats),
+                    Target::One(robot) if sending.is_question => {
+                        let peer = self.peers.get(robot.index());
+                        let is_here = peer.is_some_and(|peer| peer.is_here(now));
+                        (self.channel.robot(robot), if is_here { REPEATS } else { 0 })
+                    }
+                    Target::One(robot) => (self.channel.robot(robot), REPEATS),
+                };
+                if repeats != self.repeats {
+                    self.lines.repeat(repeats)?;
+                    self.repeats = repeats;
+                }
+                self.lines.radio.as_tx(Some(&address))?;
+            }
+            let is_broadcast = sending.target == Target::Everyone;
+            if !self.lines.radio.write(fragment, is_broadcast, true)? {
+                return Ok(());
+            }
+            sending.given += 1;
+            self.busy = Some((sending.target, now));
+            self.is_asking = sending.is_question;
+            if let Target::One(robot) = sending.target
+                && let Some(peer) = self.peers.get_mut(robot.index())
+            {
+                peer.asked = Some(now);
+                peer.has_more = false;
+            }
+        }
+    }
+
+    /// The host's next frame that is not too late.
+    fn next_frame(&mut self, now: Instant) -> Option<Sending> {
+        while let Some((since, target, packet)) = self.waiting.pop_front() {
+            let cutter = match target {
+                Target::Everyone => &mut self.cutter,
+                Target::One(robot) => &mut self.peers.get_mut(robot.index())?.cutter,
+            };
+            match cutter.cut(&packet) {
+                Ok(fragments) if now.since(since) <= LATE => {
+                    return Some(Sending { target, fragments, given: 0, is_question: false });
+                }
+                _ => self.counts.late = self.counts.late.saturating_add(1),
+            }
+        }
+        None
+    }
+
+    /// A robot to ask, where the host has nothing to say: one with more, one that was not spoken to, or one that
+    /// may have been switched on.
+    fn next_question(&mut self, now: Instant) -> Option<Sending> {
+        let due = |peer: &Peer| {
+            peer.is_here(now)
+                && (peer.has_more || peer.asked.is_none_or(|asked| now.since(asked) >= ASK_EVERY))
+        };
+        // Who was asked longest ago.
+        let waiting = RobotId::all().filter(|robot| self.peers.get(robot.index()).is_some_and(due));
+        let longest = waiting.min_by_key(|robot| self.peers.get(robot.index()).map(|peer| peer.asked));
+        let robot = if let Some(robot) = longest {
+            robot
+        } else {
+            let (number, last) = self.search;
+            if now.since(last) < SEARCH_EVERY {
+                return None;
+            }
+            self.search = ((number + 1) % RobotId::COUNT as u8, now);
+            let robot = RobotId::new(number)?;
+            if self.peers.get(robot.index())?.is_here(now) {
+                return None;
+            }
+            robot
+        };
+        self.counts.questions = self.counts.questions.wrapping_add(1);
+        let mut fragments = Fragments::new();
+        let _room = fragments.push(question(self.counts.questions));
+        Some(Sending { target: Target::One(robot), fragments, given: 0, is_question: true })
+    }
+}
+
+impl Peer {
+    fn is_here(&self, now: Instant) -> bool {
+        self.heard.is_some_and(|heard| now.since(heard) <= HERE)
+    }
+}
+
+/// Commands and welcomes name their robot in the first byte after the variant (SPEC.md: HostMessage).
+fn target(frame: &[u8]) -> Target {
+    const SENDER_AT: usize = 2;
+    const HOST: u8 = 16;
+    match (frame.get(SENDER_AT), frame.get(HEADER_LEN), frame.get(HEADER_LEN + 1)) {
+        (Some(&HOST), Some(1 | 2), Some(robot)) => RobotId::new(*robot).map_or(Target::Everyone, Target::One),
+        _ => Target::Everyone,
+    }
+}
+
+const _: () = assert!(core::mem::size_of::<Payload>() <= 40);
+
+/// Frames of the host that wait: those of two snapshots of four parts, twelve commands and what is passed on.
+const WAITING_MAX: usize = 32;
+/// A frame that waited longer than the period of a snapshot is not sent: a newer one is behind it.
+const LATE: Duration = Duration::millis(10);
+/// A packet without acknowledgement is sent twice more: at a loss of 30 % it then arrives in 97 of 100 cases.
+const REPEATS: u8 = 2;
+/// A robot is asked at least this often: a beacon and telemetry are four fragments in 50 ms.
+const ASK_EVERY: Duration = Duration::millis(10);
+/// A robot that was not heard for this long is looked for, and not asked.
+const HERE: Duration = Duration::millis(500);
+/// One number is looked for in this time, so every one in 0.32 s, without repeats: 3 % of the air.
+const SEARCH_EVERY: Duration = Duration::millis(20);
+/// From a frame's first fragment to its last: a robot answers every 10 ms, and its 32 frames take half a second.
+const PATIENCE: Duration = Duration::millis(60);
+/// Three payloads without, or one with every repeat, take 2 ms: a chip that needs longer stands still.
+const STANDS_STILL: Duration = Duration::millis(20);
+/// How often the chip is asked whether it still has its registers.
+const CHECK_EVERY: Duration = Duration::millis(100);

@@ -1,0 +1,167 @@
+//! `robot`: a robot's radio. It listens all the time, and what it has to say leaves in the chip's
+//! acknowledgements. Times in µs.
+
+use embedded_hal::delay::DelayNs;
+use embedded_hal::digital::OutputPin;
+use embedded_hal::spi::SpiDevice;
+use protocol::link::Packet;
+use protocol::{Duration, Instant, RobotId};
+use rf24::StatusFlags;
+use rf24::radio::prelude::{EsbAutoAck, EsbFifo, EsbStatus};
+
+use crate::chip::{Channel, Fault, Lines};
+use crate::fragment::{Assembler, Cutter, Fragments, Joined, NotSent};
+
+/// What a robot's radio dropped, and why.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RobotCounts {
+    /// Own frames for which there was no room, or that waited longer than [`STALE`].
+    pub unsent: u32,
+    /// Starts of the chip after the first: its supply dipped.
+    pub restarts: u32,
+    /// To this robot alone.
+    pub own: Joined,
+    /// To every robot.
+    pub everyone: Joined,
+}
+
+/// A robot's radio.
+#[allow(missing_debug_implementations, reason = "the chip's driver has none")]
+pub struct Robot<S, C, D> {
+    lines: Lines<S, C, D>,
+    channel: Channel,
+    robot: RobotId,
+    cutter: Cutter,
+    own: Assembler,
+    everyone: Assembler,
+    /// Own frames, oldest first, with when they came.
+    waiting: heapless::Deque<(Instant, Fragments), WAITING_MAX>,
+    /// Fragments of the first that the chip has already.
+    given: usize,
+    /// When a packet to this robot came last.
+    asked: Instant,
+    checked: Instant,
+    counts: RobotCounts,
+}
+
+impl<S: SpiDevice, C: OutputPin, D: DelayNs> Robot<S, C, D> {
+    /// Sets the chip up and listens.
+    pub fn start(
+        now: Instant,
+        channel: Channel,
+        robot: RobotId,
+        spi: S,
+        chip_enable: C,
+        pause: D,
+    ) -> Result<Self, Fault> {
+        let mut radio = Self {
+            lines: Lines::new(spi, chip_enable, pause),
+            channel,
+            robot,
+            cutter: Cutter::new(channel.team),
+            own: Assembler::new(channel.team, PATIENCE),
+            everyone: Assembler::new(channel.team, PATIENCE),
+            waiting: heapless::Deque::new(),
+            given: 0,
+            asked: now,
+            checked: now,
+            counts: RobotCounts::default(),
+        };
+        radio.set_up()?;
+        Ok(radio)
+    }
+
+    fn set_up(&mut self) -> Result<(), Fault> {
+        self.lines.start(self.channel)?;
+        self.lines.open(1, self.channel.robot(self.robot))?;
+        self.lines.open(2, self.channel.everyone())?;
+        self.lines.listen()
+    }
+
+    /// Takes a frame to send to the base station; it leaves with the next acknowledgements. `Ok(false)` where
+    /// four frames wait already.
+    pub fn send(&mut self, now: Instant, frame: &[u8]) -> Result<bool, NotSent> {
+        if self.waiting.is_full() {
+            self.counts.unsent = self.counts.unsent.saturating_add(1);
+            return Ok(false);
+        }
+        let fragments = self.cutter.cut(frame)?;
+        Ok(self.waiting.push_back((now, fragments)).is_ok())
+    }
+
+    /// Serves the chip; returns a frame that came. Call until `None` when the line IRQ is low, after
+    /// [`Robot::send`], and every [`SERVE_EVERY`] at least.
+    pub fn poll(&mut self, now: Instant) -> Result<Option<Packet>, Fault> {
+        if now.since(self.checked) >= CHECK_EVERY {
+            self.checked = now;
+            if !self.lines.is_set()? {
+                self.counts.restarts = self.counts.restarts.saturating_add(1);
+                self.given = 0;
+                self.set_up()?;
+            }
+        }
+        while let Some((pipe, payload)) = self.lines.receive()? {
+            let assembler = if pipe == 1 { &mut self.own } else { &mut self.everyone };
+            if pipe == 1 {
+                self.asked = now;
+            }
+            if let Some(frame) = assembler.push(now, &payload) {
+                return Ok(Some(frame));
+            }
+        }
+        self.answer(now)?;
+        Ok(None)
+    }
+
+    /// What was dropped so far.
+    pub fn counts(&self) -> RobotCounts {
+        RobotCounts { own: self.own.joined(), everyone: self.everyone.joined(), ..self.counts }
+    }
+
+    /// Gives the chip what it answers with next.
+    fn answer(&mut self, now: Instant) -> Result<(), Fault> {
+        self.lines.radio.clear_status_flags(StatusFlags::default().with_tx_ds(true))?;
+        if now.since(self.asked) > STALE {
+            // No base station asks: what waits would be out of date when one does, in the chip too.
+            self.asked = now;
+            self.lines.radio.flush_tx()?;
+            self.drop_first_if(self.given > 0);
+        }
+        while let Some((since, fragments)) = self.waiting.front() {
+            if self.given == 0 && now.since(*since) > STALE {
+                self.drop_first_if(true);
+                continue;
+            }
+            let Some(fragment) = fragments.get(self.given) else {
+                self.waiting.pop_front();
+                self.given = 0;
+                continue;
+            };
+            if !self.lines.radio.write_ack_payload(1, fragment)? {
+                break;
+            }
+            self.given += 1;
+        }
+        Ok(())
+    }
+
+    fn drop_first_if(&mut self, is_old: bool) {
+        if is_old && self.waiting.pop_front().is_some() {
+            self.given = 0;
+            self.counts.unsent = self.counts.unsent.saturating_add(1);
+        }
+    }
+}
+
+/// Interval at which a radio is served where its line IRQ says nothing.
+pub const SERVE_EVERY: Duration = Duration::millis(1);
+/// A beacon or telemetry of more than this age is not sent: two of a robot's telemetry periods pass, and the
+/// next one says more.
+const STALE: Duration = Duration::millis(100);
+/// Own frames that wait: a beacon, telemetry, a handshake and a part of a decision.
+const WAITING_MAX: usize = 4;
+/// From a frame's first fragment to its last: four with every repeat take 6 ms; and the base station sends 32
+/// frames in no less than 30 ms.
+const PATIENCE: Duration = Duration::millis(8);
+/// How often the chip is asked whether it still has its registers.
+const CHECK_EVERY: Duration = Duration::millis(100);
