@@ -146,13 +146,13 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Base<S, C, D> {
             Some((Target::One(robot), _)) if events.tx_ds() || events.tx_df() => {
                 self.answered(now, robot, events.tx_ds())?;
             }
-            Some((Target::Everyone, _)) => {
-                if self.lines.radio.get_fifo_state(true)? == rf24::FifoState::Empty {
-                    self.busy = None;
-                    self.lines.radio.clear_status_flags(StatusFlags::default().with_tx_ds(true))?;
-                }
-            }
             _ => {}
+        }
+        if matches!(self.busy, Some((Target::Everyone, _)))
+            && self.lines.radio.get_fifo_state(true)? == rf24::FifoState::Empty
+        {
+            self.busy = None;
+            self.lines.radio.clear_status_flags(StatusFlags::default().with_tx_ds(true))?;
         }
         self.give(now)?;
         Ok(None)
@@ -207,11 +207,9 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Base<S, C, D> {
                 };
             }
             let Some(sending) = &mut self.sending else { return Ok(()) };
-            let is_open = match (self.busy, sending.target) {
-                (None, _) => true,
-                (Some((Target::Everyone, _)), Target::Everyone) => true,
-                _ => false,
-            };
+            let is_open = self.busy.is_none()
+                || (sending.target == Target::Everyone
+                    && self.busy.is_some_and(|(target, _)| target == Target::Everyone));
             let Some(fragment) = sending.fragments.get(sending.given).filter(|_| is_open) else {
                 return Ok(());
             };

@@ -37,7 +37,7 @@ pub type Fragments = heapless::Vec<Payload, FRAGMENTS_MAX>;
 /// chip takes a packet that equals the last one for its repeat, and gives the same answer again (PS 7.3.3.2).
 pub fn question(count: u32) -> Payload {
     let mut payload = Payload::new();
-    let _room = payload.push((count % u32::from(NUMBERS)) as u8 * 8 | LAST);
+    let _room = payload.push(((count % u32::from(NUMBERS)) as u8) << 3 | LAST);
     payload
 }
 

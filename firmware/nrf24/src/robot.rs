@@ -30,7 +30,7 @@ pub struct RobotCounts {
 pub struct Robot<S, C, D> {
     lines: Lines<S, C, D>,
     channel: Channel,
-    robot: RobotId,
+    number: RobotId,
     cutter: Cutter,
     own: Assembler,
     everyone: Assembler,
@@ -57,7 +57,7 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Robot<S, C, D> {
         let mut radio = Self {
             lines: Lines::new(spi, chip_enable, pause),
             channel,
-            robot,
+            number: robot,
             cutter: Cutter::new(channel.team),
             own: Assembler::new(channel.team, PATIENCE),
             everyone: Assembler::new(channel.team, PATIENCE),
@@ -73,7 +73,7 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Robot<S, C, D> {
 
     fn set_up(&mut self) -> Result<(), Fault> {
         self.lines.start(self.channel)?;
-        self.lines.open(1, self.channel.robot(self.robot))?;
+        self.lines.open(1, self.channel.robot(self.number))?;
         self.lines.open(2, self.channel.everyone())?;
         self.lines.listen()
     }

@@ -275,10 +275,7 @@ impl Medium {
         let no_ack = flight.no_ack;
         for to in (0..self.chips.len()).filter(|to| *to != from) {
             let chip = &self.chips[to];
-            let since = match chip.mode {
-                Mode::Listening { since } | Mode::Awaiting { since, .. } => since,
-                _ => continue,
-            };
+            let (Mode::Listening { since } | Mode::Awaiting { since, .. }) = chip.mode else { continue };
             let hears = chip.channel() == flight.channel
                 && chip.bit_time() == flight.bit_time
                 && since <= flight.start;

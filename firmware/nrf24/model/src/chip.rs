@@ -225,10 +225,6 @@ impl Registers {
         self.has_own_lengths(pipe) || usize::from(self.bytes[usize::from(RX_PW_P0 + pipe)]) == len
     }
 
-    pub(crate) fn select(&self) -> Exchange {
-        Exchange::default()
-    }
-
     /// A byte each way; the first answer is STATUS (PS 8.3.1).
     pub(crate) fn exchange(&self, exchange: &mut Exchange, byte: u8) -> u8 {
         let Some(_command) = exchange.command else {

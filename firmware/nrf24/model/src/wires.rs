@@ -7,6 +7,7 @@ use embedded_hal::digital::{self, OutputPin};
 use embedded_hal::spi::{self, Operation, SpiDevice};
 
 use crate::Chip;
+use crate::chip::Exchange;
 
 /// ns of a byte at 8 MHz, the fastest the chip allows at 10 MHz with the board's dividers (PS 8.3.2).
 const BYTE: u64 = 1_000;
@@ -37,7 +38,7 @@ impl SpiDevice for Spi {
     fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
         let mut medium = self.0.medium.borrow_mut();
         let chip = &mut medium.chips[self.0.index];
-        let mut exchange = chip.select();
+        let mut exchange = Exchange::default();
         chip.spent += TRANSACTION;
         for operation in operations {
             match operation {
@@ -48,7 +49,7 @@ impl SpiDevice for Spi {
                     chip.spent += BYTE * words.len() as u64;
                 }
                 Operation::Write(words) => {
-                    for word in words.iter() {
+                    for word in *words {
                         chip.exchange(&mut exchange, *word);
                     }
                     chip.spent += BYTE * words.len() as u64;
