@@ -1,5 +1,5 @@
-//! `latency`: prints how long frames take through the modelled air, and how many arrive, by loss: the tables of
-//! README.md. Times in ms.
+//! `latency`: prints how long frames take through the modelled air, and how many arrive, by loss: the tables
+//! of README.md. Times in ms.
 
 #[path = "../tests/common/mod.rs"]
 mod common;

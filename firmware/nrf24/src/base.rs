@@ -1,5 +1,5 @@
-//! `base`: the base station's radio. It sends the host's frames, to one robot with acknowledgement and repeats, to
-//! all without, and asks robots that were not spoken to for what they have to say. Times in µs.
+//! `base`: the base station's radio. It sends the host's frames, to one robot with acknowledgement and
+//! repeats, to all without, and asks robots that were not spoken to for what they have to say. Times in µs.
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::OutputPin;
@@ -106,8 +106,8 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Base<S, C, D> {
         Ok(radio)
     }
 
-    /// Takes a frame of the host. One to a single robot goes to it with acknowledgement, all others to everyone:
-    /// parts of snapshots, and frames of robots that the host passes on.
+    /// Takes a frame of the host. One to a single robot goes to it with acknowledgement, all others to
+    /// everyone: parts of snapshots, and frames of robots that the host passes on.
     pub fn send(&mut self, now: Instant, frame: &[u8]) -> Result<(), NotSent> {
         let packet = Packet::from_slice(frame).map_err(|_| NotSent::Length(frame.len()))?;
         if self.waiting.is_full() {
@@ -262,8 +262,8 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Base<S, C, D> {
         None
     }
 
-    /// A robot to ask, where the host has nothing to say: one with more, one that was not spoken to, or one that
-    /// may have been switched on.
+    /// A robot to ask, where the host has nothing to say: one with more, one that was not spoken to, or one
+    /// that may have been switched on.
     fn next_question(&mut self, now: Instant) -> Option<Sending> {
         let due = |peer: &Peer| {
             peer.is_here(now)
@@ -323,7 +323,8 @@ const ASK_EVERY: Duration = Duration::millis(10);
 const HERE: Duration = Duration::millis(500);
 /// One number is looked for in this time, so every one in 0.32 s, without repeats: 3 % of the air.
 const SEARCH_EVERY: Duration = Duration::millis(20);
-/// From a frame's first fragment to its last: a robot answers every 10 ms, and its 32 frames take half a second.
+/// From a frame's first fragment to its last: a robot answers every 10 ms, and its 32 frames take half a
+/// second.
 const PATIENCE: Duration = Duration::millis(60);
 /// Three payloads without, or one with every repeat, take 2 ms: a chip that needs longer stands still.
 const STANDS_STILL: Duration = Duration::millis(20);

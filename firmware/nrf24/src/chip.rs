@@ -37,8 +37,8 @@ impl Rate {
 pub struct Channel {
     /// The team's number on the radio.
     pub team: TeamId,
-    /// Frequency, MHz above 2,400: 0 to 125. Two teams in range of each other need two, 2 apart at 2 Mbit/s (PS
-    /// 6.3).
+    /// Frequency, MHz above 2,400: 0 to 125. Two teams in range of each other need two, 2 apart at 2 Mbit/s
+    /// (PS 6.3).
     pub megahertz: u8,
     /// Rate on the air.
     pub rate: Rate,
@@ -55,8 +55,8 @@ impl Channel {
         self.address(0x71)
     }
 
-    /// Team and version are part of the address, so that no fragment of another one is ever joined. The upper two
-    /// bytes are arbitrary; PS 7.3.2 asks for many changes between 0 and 1.
+    /// Team and version are part of the address, so that no fragment of another one is ever joined. The upper
+    /// two bytes are arbitrary; PS 7.3.2 asks for many changes between 0 and 1.
     const fn address(self, low: u8) -> [u8; 5] {
         [low, self.team.0, VERSION, 0xb4, 0x6d]
     }
@@ -105,8 +105,8 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Lines<S, C, D> {
         Self { radio: RF24::new(chip_enable, spi, pause) }
     }
 
-    /// Sets the chip up as after power on: 16 bits of check sum, payloads of any length, acknowledgements that
-    /// carry payloads, packets that ask for none.
+    /// Sets the chip up as after power on: 16 bits of check sum, payloads of any length, acknowledgements
+    /// that carry payloads, packets that ask for none.
     pub(crate) fn start(&mut self, channel: Channel) -> Result<(), Fault> {
         self.radio.init()?;
         let config = RadioConfig::default()
@@ -122,7 +122,8 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Lines<S, C, D> {
             Rate::Mbps1 => DataRate::Mbps1,
             Rate::Mbps2 => DataRate::Mbps2,
         };
-        // `with_config` of rf24-rs 0.3.1 drops the bit of 2 Mbit/s; this call does not, and the answer is read.
+        // `with_config` of rf24-rs 0.3.1 drops the bit of 2 Mbit/s; this call does not, and the answer is
+        // read.
         self.radio.set_data_rate(rate)?;
         if self.radio.get_data_rate()? != rate || !self.is_set()? {
             return Err(Fault::Answer);
@@ -181,6 +182,6 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Lines<S, C, D> {
     }
 }
 
-/// 500 µs from the end of a packet to its repeat: long enough for an acknowledgement of 32 bytes at 1 and at 2
-/// Mbit/s (PS 9.1, SETUP_RETR), in steps of 250 µs, less one.
+/// 500 µs from the end of a packet to its repeat: long enough for an acknowledgement of 32 bytes at 1 and at
+/// 2 Mbit/s (PS 9.1, SETUP_RETR), in steps of 250 µs, less one.
 const REPEAT_DELAY: u8 = 1;

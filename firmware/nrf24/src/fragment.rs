@@ -5,9 +5,9 @@
 //! ```
 //!
 //! Version and team stand in the address of every packet ([`crate::Channel`]), so they are left out and put
-//! back. A frame is joined from fragments of one number in their order without a gap, or not at all; the frame's
-//! own tag is the last check. A number whose frame is complete, or broke off, is not begun again within the
-//! assembler's patience.
+//! back. A frame is joined from fragments of one number in their order without a gap, or not at all; the
+//! frame's own tag is the last check. A number whose frame is complete, or broke off, is not begun again
+//! within the assembler's patience.
 
 use protocol::frame::{FRAME_LEN_MAX, VERSION};
 use protocol::link::Packet;
@@ -33,8 +33,9 @@ pub type Payload = heapless::Vec<u8, PAYLOAD_MAX>;
 /// The payloads of one frame.
 pub type Fragments = heapless::Vec<Payload, FRAGMENTS_MAX>;
 
-/// A payload without any part of a frame: it asks a robot for its answer. Successive ones differ by `count`: the
-/// chip takes a packet that equals the last one for its repeat, and gives the same answer again (PS 7.3.3.2).
+/// A payload without any part of a frame: it asks a robot for its answer. Successive ones differ by `count`:
+/// the chip takes a packet that equals the last one for its repeat, and gives the same answer again (PS
+/// 7.3.3.2).
 pub fn question(count: u32) -> Payload {
     let mut payload = Payload::new();
     let _room = payload.push(((count % u32::from(NUMBERS)) as u8) << 3 | LAST);

@@ -1,5 +1,5 @@
-//! `station`: a base station: the host's serial line on one side, the radio on the other. Sans-IO towards the line:
-//! bytes in, lines out, as `protocol::serial` has them. Times in µs.
+//! `station`: a base station: the host's serial line on one side, the radio on the other. Sans-IO towards the
+//! line: bytes in, lines out, as `protocol::serial` has them. Times in µs.
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::OutputPin;

@@ -1,5 +1,5 @@
-//! `air`: tests: the real driver over modelled chips, with a match's traffic: what arrives under loss, that nothing
-//! is believed twice or altered, and that arithmetic and model agree on the air's budget.
+//! `air`: tests: the real driver over modelled chips, with a match's traffic: what arrives under loss, that
+//! nothing is believed twice or altered, and that arithmetic and model agree on the air's budget.
 
 mod common;
 

@@ -17,8 +17,8 @@ pub struct Faults {
     pub loss: f32,
     /// A packet arrives with one bit of its payload turned, and the check sum fits all the same.
     pub damage: f32,
-    /// A packet arrives once more 0.3 to 20 ms later, under another identity, so that the chip takes it for new:
-    /// a recording, played back.
+    /// A packet arrives once more 0.3 to 20 ms later, under another identity, so that the chip takes it for
+    /// new: a recording, played back.
     pub copies: f32,
 }
 

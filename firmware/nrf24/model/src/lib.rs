@@ -1,5 +1,5 @@
-//! `nrf24_model`: a model of the radio chip nRF24L01+ and of the air between several of them, for tests. A driver
-//! talks to it byte by byte over `embedded-hal`, as to the chip. Times in ns.
+//! `nrf24_model`: a model of the radio chip nRF24L01+ and of the air between several of them, for tests. A
+//! driver talks to it byte by byte over `embedded-hal`, as to the chip. Times in ns.
 //!
 //! Sections cited as "PS" are those of Nordic's *nRF24L01+ Preliminary Product Specification v1.0* (2008).
 //!

@@ -1,4 +1,5 @@
-//! `wires`: the chip's lines as `embedded-hal` has them: SPI with chip select, CE, and the processor's pauses.
+//! `wires`: the chip's lines as `embedded-hal` has them: SPI with chip select, CE, and the processor's
+//! pauses.
 
 use std::convert::Infallible;
 

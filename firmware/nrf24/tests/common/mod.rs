@@ -1,4 +1,5 @@
-//! `common`: teams of robots with their base stations in the modelled air, with a match's traffic. Times in µs.
+//! `common`: teams of robots with their base stations in the modelled air, with a match's traffic. Times in
+//! µs.
 #![allow(dead_code, reason = "the table and each test use a part")]
 
 use std::collections::{BTreeMap, HashMap};
@@ -370,8 +371,8 @@ fn settle(sent: &HashMap<Vec<u8>, (Kind, u64)>, frame: &[u8], now: u64, outcome:
     }
 }
 
-/// What one team asks of the air by arithmetic, ns in a second: its snapshots and commands at `hertz`, 20 beacons
-/// a robot up and on again, 10 welcomes and 10 reports of telemetry.
+/// What one team asks of the air by arithmetic, ns in a second: its snapshots and commands at `hertz`, 20
+/// beacons a robot up and on again, 10 welcomes and 10 reports of telemetry.
 pub(crate) fn demand(rate: Rate, hertz: u64) -> u64 {
     use nrf24::airtime::{broadcast, exchange};
     let robots = u64::from(ROBOTS);
