@@ -112,7 +112,7 @@ fn publish(context: &Context) -> Result<(), Failure> {
 }
 
 /// Libraries that may be published: packages without `publish = false`.
-const PUBLISHED: [&str; 14] = [
+const PUBLISHED: [&str; 15] = [
     "onetwo-geometry",
     "onetwo-rules",
     "onetwo-protocol",
@@ -122,6 +122,7 @@ const PUBLISHED: [&str; 14] = [
     "onetwo-casebase",
     "onetwo-case-tools",
     "onetwo-case-library",
+    "onetwo-nrf24",
     "onetwo-brain",
     "onetwo-runtime",
     "onetwo-drawing",
@@ -137,13 +138,14 @@ fn packages(names: &[&str]) -> String {
 /// once.
 const FIRMWARE: &str = " --profile firmware";
 /// Crates on a robot, lowest first; tests/tests/tidy.rs holds the same crates to `no_std`.
-const ON_ROBOT: [&str; 8] = [
+const ON_ROBOT: [&str; 9] = [
     "onetwo-geometry",
     "onetwo-protocol",
     "onetwo-rules",
     "onetwo-motion",
     "onetwo-casebase",
     "onetwo-case-library",
+    "onetwo-nrf24",
     "onetwo-brain",
     "onetwo-runtime",
 ];
