@@ -33,6 +33,7 @@ use hil_sim::small_size::worlds::WorldModel;
 use hil_sim::small_size::{PhysicsEvent, World};
 use hil_sim::{Backend, McuError, TraceHash};
 use host::Host;
+use protocol::decision::DecisionReport;
 use protocol::{Instant, RobotId, Who};
 use rules::Colour;
 use ssl::Message;
@@ -166,6 +167,12 @@ impl<'a> Game<'a> {
     /// The host of one team.
     pub fn host(&self, team: Colour) -> &Host {
         &self.teams[team as usize].host
+    }
+
+    /// The newest decision of each robot of a team whose computer can be looked into: its own, not what the
+    /// host heard of it. None of emulated robots.
+    pub fn decisions(&self, team: Colour) -> impl Iterator<Item = (RobotId, DecisionReport)> {
+        self.teams[team as usize].decisions()
     }
 
     /// Events of the last tick.

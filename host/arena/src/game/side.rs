@@ -8,6 +8,7 @@ use hil_sim::{Air, AirSettings, Backend, LinkLoss, Mcu, TraceHash};
 use host::external::{StrategyLink, StrategyStarter};
 use host::radio::{RadioSettings, Relay, To};
 use host::{Host, HostSettings, Input};
+use protocol::decision::DecisionReport;
 use protocol::lockstep::TickIn;
 use protocol::{Instant, RobotId, Who};
 use rules::Colour;
@@ -67,6 +68,12 @@ impl<'a> Team<'a> {
         };
         let strategy = setup.strategy.as_ref().map(started).transpose()?;
         Ok(Self { host: Host::new(settings, Instant(0)), strategy, colour, air, players })
+    }
+
+    /// The newest decision of each robot whose computer can be looked into.
+    pub(super) fn decisions(&self) -> impl Iterator<Item = (RobotId, DecisionReport)> {
+        let decision = |player: &Player<'_>| Some((player.who.id, player.computer.as_ref()?.decision()?));
+        self.players.iter().filter_map(decision)
     }
 
     pub(super) fn worst_instructions(&self) -> u32 {
