@@ -50,13 +50,22 @@ async function ask(problem) {
 }
 
 async function decision(decided) {
-  const source = decided.by === undefined ? "" : decided.reported
-    ? `On robot ${decided.by}'s own problem, as it reported it.`
-    : `Robot ${decided.by} reported no problem: this one is rebuilt by the host, and the robot may have decided on another.`;
-  if (!decided.problem) return [el("p", { id: "decided" }, `No case: ${decided.grounds}.`)];
   const heading = decided.cycle === undefined ? "" : `Decided in cycle ${decided.cycle}`;
+  if (decided.by !== undefined && !decided.reported) return [unreported(decided, heading)];
+  if (!decided.problem) return [el("p", { id: "decided" }, `No case: ${decided.grounds}.`)];
+  const source = decided.by === undefined ? "" : `On robot ${decided.by}'s own problem, as it reported it.`;
   return [part("decided", heading, source, await ask(decided.problem), decided.problem, decided)];
 }
+
+/** A decision whose problem is not known has no explanation: retrieval on the host's view may answer otherwise. */
+function unreported(decided, heading) {
+  return el("section", { id: "decided" },
+    el("h3", {}, heading),
+    el("p", { class: "bad" }, `Not reported: the problem that robot ${decided.by} decided on did not arrive, so this decision cannot be explained.`),
+    decided.problem ? el("p", { class: "field-set" }, draftButton("Draft a case for what the host saw", decided.problem)) : null);
+}
+
+const draftButton = (words, problem) => el("button", { "data-draft-on": "", onclick: () => { closeDialog(); changed("draft-on", problem); } }, words);
 
 /** An explanation of one problem, with the decision that rests on it where there is one. */
 function part(id, heading, source, answer, problem, decided) {
@@ -65,7 +74,7 @@ function part(id, heading, source, answer, problem, decided) {
     heading ? el("h3", {}, heading) : null,
     source ? el("p", { class: "muted" }, source) : null,
     decided.grounds ? el("p", { class: "grounds" }, `${decided.grounds}.`) : null,
-    same ? null : el("p", { class: "bad" }, decided.reported ? "The robots decided otherwise: they retrieve with other cases or settings than this page." : "The robots decided otherwise."),
+    same ? null : el("p", { class: "bad" }, "The robots decided otherwise: they retrieve with other cases or settings than this page."),
     body(answer, JSON.stringify(problem), false));
 }
 
@@ -88,7 +97,7 @@ function body(answer, problem, every) {
     el("p", { class: "field-set" },
       rest > 0 ? el("button", { onclick: (event) => event.target.closest(".explanation").replaceWith(body(answer, problem, true)) }, `${rest} more`) : null,
       el("button", { onclick: () => navigator.clipboard?.writeText(problem).then(() => changed("told", "the problem is copied")) }, "Copy the problem"),
-      el("button", { "data-draft-on": "", onclick: () => { closeDialog(); changed("draft-on", JSON.parse(problem)); } }, "Draft a case for it")),
+      draftButton("Draft a case for it", JSON.parse(problem))),
     el("p", { class: "muted" }, `The same on a terminal: paste the problem into onetwo cases explain ${cases}.`));
 }
 

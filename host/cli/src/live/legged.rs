@@ -65,10 +65,18 @@ impl Legged {
                 }
                 _ => continue,
             };
+            // Emulated robots tell the page no problems: what is rebuilt from the field explains nothing.
             let own = self.decided.as_ref().filter(|decided| decided.cycle == cycle.id.counter);
-            let decided = own.filter(|_| kind == MatchEventKind::Case).cloned();
-            let rebuilt = || (kind == MatchEventKind::Case).then(|| problem(moment));
-            let problem = decided.as_ref().and_then(|decided| decided.problem.clone()).or_else(rebuilt);
+            let decided = (kind == MatchEventKind::Case).then(|| {
+                own.cloned().unwrap_or_else(|| DecisionNote {
+                    by: cycle.coordinator.number(),
+                    cycle: cycle.id.counter,
+                    id: cycle.play.as_ref().map(|play| play.case.0),
+                    problem: Some(problem(moment)),
+                    ..DecisionNote::default()
+                })
+            });
+            let problem = decided.as_ref().and_then(|decided| decided.problem.clone());
             self.page.push(MatchEvent {
                 t,
                 kind,
