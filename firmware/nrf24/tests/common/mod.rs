@@ -229,6 +229,7 @@ fn note(outcome: &mut Outcome, team: &mut Team, frame: &[u8], kind: Kind, now: u
 }
 
 fn traffic(plan: &Plan, team: &mut Team, now: u64, offset: u64, counted: bool, outcome: &mut Outcome) {
+    // Before its first round the robots of a team already send, at phases that wrap around zero.
     let at = now.wrapping_sub(offset);
     let robots = u64::from(ROBOTS);
     let mut down = Vec::new();
@@ -263,12 +264,12 @@ fn traffic(plan: &Plan, team: &mut Team, now: u64, offset: u64, counted: bool, o
     }
     for robot in 0..ROBOTS {
         // As robots on wheels do: one after another, in every fifth step of 10 ms (SPEC.md: TeamMessage).
-        let turn = (at + u64::from(robot) * 10_000 + u64::from(robot) * 130) % 50_000;
+        let turn = at.wrapping_add(u64::from(robot) * 10_130) % 50_000;
         let mut up = Vec::new();
         if turn < STEP && now > 0 {
             up.push((team.frame(robot, &[0, robot], BEACON), Kind::Beacon));
         }
-        if (at + 5_000 + u64::from(robot) * 17_000) % 100_000 < STEP {
+        if at.wrapping_add(5_000 + u64::from(robot) * 17_000) % 100_000 < STEP {
             up.push((team.frame(robot, &[1, robot], TELEMETRY), Kind::Telemetry));
         }
         for (frame, kind) in up {
