@@ -20,7 +20,7 @@ pub struct BaseCounts {
     pub sent: u32,
     /// Frames to one robot that it did not acknowledge in every repeat; they may have come all the same.
     pub unacknowledged: u32,
-    /// Frames that waited longer than [`LATE`], or found no room.
+    /// Frames that waited longer than `LATE`, or found no room.
     pub late: u32,
     /// Questions to robots that had none of the host's frames in time.
     pub questions: u32,

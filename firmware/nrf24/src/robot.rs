@@ -15,7 +15,7 @@ use crate::fragment::{Assembler, Cutter, Fragments, Joined, NotSent};
 /// What a robot's radio dropped, and why.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RobotCounts {
-    /// Own frames for which there was no room, or that waited longer than [`STALE`].
+    /// Own frames for which there was no room, or that waited longer than `STALE`.
     pub unsent: u32,
     /// Starts of the chip after the first: its supply dipped.
     pub restarts: u32,
