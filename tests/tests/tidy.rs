@@ -334,7 +334,7 @@ const PURE: [&str; 12] = [
     "cobs",
     "zerocopy",
     "defmt",
-    // Traits of pins and buses; whoever implements them does the I/O.
+    // Traits of pins and buses; their implementations do the I/O.
     "embedded-hal",
     "rf24-rs",
 ];

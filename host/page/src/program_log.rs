@@ -43,7 +43,7 @@ pub struct LogEntry {
     pub text: String,
 }
 
-/// The newest entries; whoever holds it may add and read.
+/// The newest entries, shared between the threads that add and read them.
 #[derive(Debug)]
 pub struct ProgramLog {
     began: Instant,

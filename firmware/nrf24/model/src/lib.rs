@@ -9,8 +9,8 @@
 //! | settling of 130 µs before every packet, length of packets on the air at 1 and 2 Mbit/s | field strength: two packets at once on a channel are both lost to everyone |
 //! | loss, damage that passes the check sum, copies that come again later | neighbouring channels |
 //!
-//! SPI transfers take no time of the air; [`Chip::take_spent`] gives what they would have taken, and whoever
-//! runs the processors of a test lets each wait that long.
+//! SPI transfers take no time of the air; [`Chip::take_spent`] gives what they would have taken, and a test
+//! that runs the processors lets each wait that long.
 #![forbid(unsafe_code)]
 
 mod air;

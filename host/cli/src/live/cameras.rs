@@ -9,7 +9,7 @@ use super::windows::{Peak, Window, Worst};
 
 /// A field has at most this many cameras; further numbers are not kept.
 const CAMERAS_MAX: usize = 16;
-/// A frame number that jumps by more than this is a camera that started anew, not a loss: a second at 100 Hz.
+/// A frame number that jumps by more than this is a restarted camera, not a loss: 1 s at 100 Hz.
 const JUMP_MAX: u32 = 100;
 
 /// All cameras seen.

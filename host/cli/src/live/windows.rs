@@ -11,7 +11,7 @@ use protocol::{RobotId, Who};
 const WINDOW_S: f64 = 1.0;
 /// The worst window is kept for so long, s: an operator looks away for less.
 const PEAK_S: f64 = 10.0;
-/// A window of less than this, s, is not told: it would be a guess.
+/// A window of less than this, s, is not reported: it would be a guess.
 const LEAST_S: f64 = 0.95;
 
 /// Differences of rising sums over the last second.
@@ -28,7 +28,7 @@ impl<const N: usize> Default for Window<N> {
 
 impl<const N: usize> Window<N> {
     /// Adds the sums at `t`; the window's length and what came in it, none before a second has passed. A time
-    /// that steps back starts anew.
+    /// that steps back restarts the window.
     pub(super) fn of(&mut self, t: f64, sums: [f64; N]) -> Option<(f64, [f64; N])> {
         if self.sums.back().is_some_and(|(last, _)| t < *last) {
             self.sums.clear();
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn a_time_that_steps_back_starts_anew() {
+    fn a_time_that_steps_back_restarts_the_window() {
         let mut window = Window::<1>::default();
         for t in [0.0, 0.5, 1.0, 1.5] {
             window.of(t, [t]);
