@@ -34,7 +34,7 @@ pub struct ArchiveSample {
     pub t: f64,
     /// `group/name` of a gauge, with its value.
     pub values: BTreeMap<String, f32>,
-    /// Numbers of each robot, by team and number (`blue3`), in the order of [`ROBOT_NUMBERS`].
+    /// Numbers of each robot, by team and number (`blue3`), in the order of `ROBOT_NUMBERS`.
     pub robots: BTreeMap<String, [Option<f32>; ROBOT_NUMBERS]>,
 }
 
