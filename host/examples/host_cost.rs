@@ -63,6 +63,7 @@ fn count_this_round(host: &mut Host, round: &[Record]) -> (u64, u64) {
             RecordKind::Robot => Input::Robot(&record.bytes),
             RecordKind::Timeout => Input::Timeout,
             RecordKind::Orders => Input::Orders(&record.bytes),
+            RecordKind::Parameter => Input::Parameter(&record.bytes),
             RecordKind::Halt => Input::Halt,
             RecordKind::Sent | RecordKind::Lost => continue,
         };

@@ -16,6 +16,7 @@
 //! tracker = "224.5.23.2:10010"
 //! game_controller = "127.0.0.1:10008"   # the team's port; left out: no messages to the controller
 //! strategy = "python3 my_team.py" # program that gives the orders; left out: the program's own coach does
+//! tactics = "usual"               # of the coach; none, all, or some of their names
 //!
 //! [[calibration]]                 # how a robot deviates from what is ordered
 //! robot = 3
@@ -24,8 +25,13 @@
 //!
 //! [ball]
 //! roll = 0.41                     # deceleration of a rolling ball, m/s²; left out: vision's
+//!
+//! [limits]                        # of our robots' drives; their own hold where they are stricter
+//! speed = 2.0                     # m/s; left out: their own
+//! acceleration = 2.5              # m/s²; left out: their own
 //! ```
 
+mod change;
 pub mod parameters;
 mod text;
 
@@ -40,7 +46,9 @@ use serde::Deserialize;
 use ssl::net::addresses;
 
 use crate::referee::{OnSilence, SourcePin};
+use crate::strategy::Tactics;
 
+pub use change::ParameterChange;
 pub(crate) use parameters::KICK_RANGE;
 
 /// A team's settings: from a file or flags; every field is optional.
@@ -77,12 +85,17 @@ pub struct TeamSettings {
     pub game_controller: Option<SocketAddr>,
     /// Command of the strategy that gives the orders ([`crate::external`]).
     pub strategy: Option<String>,
+    /// The tactics of the program's coach: see [`Tactics::parse`].
+    pub tactics: Option<String>,
     /// Deviations of the robots from what is ordered.
     #[serde(default)]
     pub calibration: Vec<Calibration>,
     /// How the ball moves on this field.
     #[serde(default)]
     pub ball: BallSettings,
+    /// How fast our robots may drive.
+    #[serde(default)]
+    pub limits: DriveSettings,
 }
 
 /// How the ball moves on the field.
@@ -91,6 +104,16 @@ pub struct TeamSettings {
 pub struct BallSettings {
     /// Deceleration of a rolling ball, m/s².
     pub roll: Option<f32>,
+}
+
+/// How fast our robots may drive; their own limits hold where they are stricter.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DriveSettings {
+    /// Greatest speed, m/s.
+    pub speed: Option<f32>,
+    /// Greatest acceleration, m/s².
+    pub acceleration: Option<f32>,
 }
 
 /// How one robot deviates from what is ordered.
@@ -148,6 +171,10 @@ pub struct TeamConfig {
     pub kick: [f32; RobotId::COUNT],
     /// Deceleration of a rolling ball, m/s²; none: from vision.
     pub roll: Option<f32>,
+    /// How fast our robots may drive.
+    pub limits: DriveSettings,
+    /// The tactics of the program's coach.
+    pub tactics: Tactics,
 }
 
 /// Links to the robots.
@@ -228,6 +255,11 @@ impl TeamSettings {
             strategy: self.strategy.or(below.strategy),
             calibration: if self.calibration.is_empty() { below.calibration } else { self.calibration },
             ball: BallSettings { roll: self.ball.roll.or(below.ball.roll) },
+            limits: DriveSettings {
+                speed: self.limits.speed.or(below.limits.speed),
+                acceleration: self.limits.acceleration.or(below.limits.acceleration),
+            },
+            tactics: self.tactics.or(below.tactics),
         }
     }
 
@@ -247,6 +279,7 @@ impl TeamSettings {
             kick[id.index()] = parameters::KICK.checked(factor).map_err(named)?;
         }
         let roll = self.ball.roll.map(|roll| parameters::ROLL.checked(roll)).transpose()?;
+        let tactics = Tactics::parse(self.tactics.as_deref().unwrap_or("usual"));
         Ok(TeamConfig {
             name: self.name.unwrap_or_else(|| "onetwo".to_owned()),
             colour: colour(self.colour.as_deref().unwrap_or("blue"))?,
@@ -265,6 +298,8 @@ impl TeamSettings {
             strategy: self.strategy,
             kick,
             roll,
+            limits: self.limits.checked()?,
+            tactics: tactics.map_err(|description| error("tactics", description))?,
         })
     }
 }

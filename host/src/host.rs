@@ -6,6 +6,7 @@
 //! packets: a trace of the inputs is a recording of the decisions.
 
 mod calibration;
+mod change;
 mod commands;
 mod input;
 mod state;
@@ -21,6 +22,7 @@ use protocol::{Duration, Instant, RobotId, TeamId};
 use rules::{Colour, FieldSpec, League, Limits, Phase};
 use ssl::Message;
 
+use crate::config::DriveSettings;
 use crate::external::External;
 use crate::field_geometry::VisionGeometry;
 use crate::learned::Learned;
@@ -38,7 +40,7 @@ use crate::world::{Ball, World};
 
 pub use input::{Input, InputVerdict, Undecodable};
 
-/// Settings that are fixed while a host runs.
+/// Settings that a host starts with; some change while it runs ([`Input::Parameter`]).
 #[derive(Clone, Debug)]
 pub struct HostSettings {
     /// The colour our robots play with.
@@ -65,6 +67,8 @@ pub struct HostSettings {
     pub radio: RadioSettings,
     /// Which of the second paper's tactics it plays.
     pub tactics: Tactics,
+    /// How fast its robots may drive.
+    pub limits: DriveSettings,
     /// Whether a strategy in another program gives orders ([`crate::external`]).
     pub external: bool,
 }
@@ -86,6 +90,7 @@ impl HostSettings {
             team: Team::Ours,
             radio: RadioSettings { key: TeamKey::ZERO, ..RadioSettings::new(TeamId::of(us), epoch) },
             tactics: Tactics::default(),
+            limits: DriveSettings::default(),
             external: false,
         }
     }
@@ -126,6 +131,8 @@ pub struct Host {
     learned: Learned,
     /// The deceleration of a rolling ball that it uses, where that is not from vision.
     roll: Option<f32>,
+    /// Robots whose kicker's gain was set while it ran: what is learned does not replace it.
+    gain_set: RobotSet,
 }
 
 /// Newest reports of one of our robots.
@@ -171,8 +178,12 @@ impl Host {
             cases: cases_of(settings.league),
             learned: Learned::default(),
             roll: None,
+            gain_set: RobotSet::default(),
             settings,
         };
+        if host.settings.limits != DriveSettings::default() {
+            host.limit();
+        }
         if let Some(roll) = roll {
             host.roll_with(roll);
         }
@@ -186,6 +197,7 @@ impl Host {
             Input::Referee(bytes, from) => self.obey(now, bytes, from),
             Input::Robot(bytes) => self.listen(now, bytes),
             Input::Orders(line) => self.follow(now, line),
+            Input::Parameter(json) => self.change(json),
             Input::Halt => {
                 self.halt(now);
                 InputVerdict::Halted

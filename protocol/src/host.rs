@@ -40,21 +40,28 @@ pub enum HostMessage {
     Command(HostCommand),
     /// To one robot: the host's answer to receiving it for the first time; repeated occasionally.
     Welcome(Welcome),
+    /// To one robot: how fast it may drive, while that differs from its own limits; repeated occasionally.
+    Limits(DriveLimits),
 }
 
 impl HostMessage {
     /// Whether the numbers in it are valid: the index of a part is less than the number of parts, which is
-    /// [`PARTS_MAX`] at most.
+    /// [`PARTS_MAX`] at most; limits are at least [`DriveLimits::SPEED_MIN`] and
+    /// [`DriveLimits::ACCELERATION_MIN`].
     pub fn is_sound(&self) -> bool {
         match self {
             Self::World(part) => part.part < part.parts && usize::from(part.parts) <= PARTS_MAX,
             Self::Command(_) | Self::Welcome(_) => true,
+            Self::Limits(limits) => {
+                limits.speed >= DriveLimits::SPEED_MIN
+                    && limits.acceleration >= DriveLimits::ACCELERATION_MIN
+            }
         }
     }
 
-    /// Whether this payload is a command or a welcome to that robot.
+    /// Whether this payload is a command, a welcome or limits to that robot.
     pub(crate) fn is_to_one(payload: &[u8], me: RobotId) -> bool {
-        matches!(payload, [1 | 2, to, ..] if *to == me.number())
+        matches!(payload, [1..=3, to, ..] if *to == me.number())
     }
 
     /// Whether it is a part of a snapshot.
@@ -76,6 +83,29 @@ pub struct Welcome {
     /// wrapping ([`crate::host_clock`]).
     #[serde(with = "postcard::fixint::le")]
     pub offset: u32,
+}
+
+/// How fast a robot may drive. Its own limits hold where they are stricter, so that no message makes a robot
+/// faster than it is built for; braking is not limited.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct DriveLimits {
+    /// Number of the robot addressed.
+    pub to: RobotId,
+    /// Greatest speed, mm/s; [`DriveLimits::NONE`]: its own.
+    #[serde(with = "postcard::fixint::le")]
+    pub speed: u16,
+    /// Greatest acceleration, mm/s²; [`DriveLimits::NONE`]: its own.
+    #[serde(with = "postcard::fixint::le")]
+    pub acceleration: u16,
+}
+
+impl DriveLimits {
+    /// No limit but the robot's own.
+    pub const NONE: u16 = u16::MAX;
+    /// Least speed limit, mm/s: a slower robot would not reach a ball, and planning divides by it.
+    pub const SPEED_MIN: u16 = 300;
+    /// Least acceleration limit, mm/s², likewise.
+    pub const ACCELERATION_MIN: u16 = 500;
 }
 
 /// A part of the snapshot of the field.
@@ -417,6 +447,15 @@ mod tests {
         }
         let robots_max = |n| (WorldPart::robots_max(n, false), WorldPart::robots_max(n, true));
         assert_eq!((robots_max(6), robots_max(11), robots_max(16)), ((6, 6), (5, 4), (3, 3)));
+    }
+
+    #[test]
+    fn limits_that_would_stop_a_robot_are_not_sound() {
+        let limits = |speed, acceleration| {
+            HostMessage::Limits(DriveLimits { to: RobotId::ZERO, speed, acceleration }).is_sound()
+        };
+        assert!(limits(300, 500) && limits(DriveLimits::NONE, DriveLimits::NONE));
+        assert!(!limits(299, 500) && !limits(300, 499) && !limits(0, DriveLimits::NONE));
     }
 
     #[test]

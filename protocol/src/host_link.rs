@@ -83,6 +83,7 @@ impl HostLink {
             HostMessage::World(_) => None,
             HostMessage::Command(command) => Some(command.to),
             HostMessage::Welcome(welcome) => Some(welcome.to),
+            HostMessage::Limits(limits) => Some(limits.to),
         };
         self.count_up(now);
         let audience = if to.is_none() { Some(self.audience) } else { None };

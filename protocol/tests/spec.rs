@@ -5,7 +5,7 @@ use geometry::{GoalEnd, Vector};
 use protocol::decision::{DecisionReport, Grounds};
 use protocol::frame::{Audience, Frame, Key, Sender, TeamKey};
 use protocol::host::{
-    Condition, Directive, Hint, HostCommand, HostMessage, KickOrder, RuleRole, Telemetry, Welcome, WireBall,
+    Condition, Directive, DriveLimits, Hint, HostCommand, HostMessage, KickOrder, RuleRole, Telemetry, Welcome, WireBall,
     WireRobot, WireWho, WorldPart,
 };
 use protocol::quantized::{WirePoint, WirePose};
@@ -226,6 +226,8 @@ fn the_hosts_messages_have_the_bytes_of_the_specification() {
         );
     }
     both_ways("welcome", &HostMessage::Welcome(Welcome { to: robot(3), boot_epoch: 9, offset: 0xffff_ff38 }));
+    let limits = DriveLimits { to: robot(3), speed: 1500, acceleration: DriveLimits::NONE };
+    both_ways("limits", &HostMessage::Limits(limits));
 }
 
 /// Robot 3's keys of the team key 00 01 02 … 0f.
@@ -283,8 +285,8 @@ fn a_frame_to_several_robots_has_the_bytes_of_the_specification() {
 #[test]
 fn every_example_of_the_specification_is_checked() {
     let examples = SPEC.matches("```hex ").count();
-    // Six of robots, two worlds, a welcome, two keys, three frames and a line.
-    assert_eq!(examples, 6 + worlds().len() + 1 + 2 + 4 + commands().len());
+    // Six of robots, two worlds, a welcome, limits, two keys, three frames and a line.
+    assert_eq!(examples, 6 + worlds().len() + 2 + 2 + 4 + commands().len());
 }
 
 fn hex(bytes: &[u8]) -> String {

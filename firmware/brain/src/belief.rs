@@ -21,7 +21,7 @@ pub mod received;
 
 use geometry::{Field, GoalEnd, Point, Pose, Vector, math};
 use motion::rolling::RollingBall;
-use protocol::host::RuleRole;
+use protocol::host::{DriveLimits, RuleRole};
 use protocol::robot_io::{OPPONENTS_MAX, OmniKick, SensorFrame};
 use protocol::{Duration, Instant, RobotId};
 use rules::{League, Phase, Side};
@@ -122,6 +122,33 @@ impl Default for BelievedGame {
     }
 }
 
+/// Limits of the drive that a host has set; the robot's own hold where they are stricter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DriveCap {
+    /// Greatest speed, m/s; infinite: the robot's own.
+    pub speed: f32,
+    /// Greatest acceleration, m/s²; infinite: the robot's own.
+    pub acceleration: f32,
+}
+
+impl Default for DriveCap {
+    /// The robot's own limits.
+    fn default() -> Self {
+        Self { speed: f32::INFINITY, acceleration: f32::INFINITY }
+    }
+}
+
+impl DriveCap {
+    /// That of a host's message.
+    pub fn of(limits: &DriveLimits) -> Self {
+        let metres = |limit| match limit {
+            DriveLimits::NONE => f32::INFINITY,
+            millimetres => f32::from(millimetres) / 1e3,
+        };
+        Self { speed: metres(limits.speed), acceleration: metres(limits.acceleration) }
+    }
+}
+
 /// The robot's world model.
 #[derive(Clone, Debug)]
 pub struct Belief {
@@ -147,6 +174,8 @@ pub struct Belief {
     pub others: heapless::Vec<Other, OTHERS_MAX>,
     /// Phase of the game, and its role in the team.
     pub game: BelievedGame,
+    /// Limits of its drive that the host has set.
+    pub drive_cap: DriveCap,
     /// Fixed target of the held ball: where it is kicked to, and how.
     pub resolved: Option<(Point<Field>, OmniKick)>,
     handling: Handling,
@@ -185,6 +214,7 @@ impl Belief {
             kicker_ready: false,
             others: heapless::Vec::new(),
             game: BelievedGame::default(),
+            drive_cap: DriveCap::default(),
             resolved: None,
             handling: Handling::default(),
             sight: None,

@@ -6,12 +6,12 @@
 //! most [`LATENCY_MAX`] old, and earlier by its excess age otherwise (`received_at`).
 
 use geometry::{Field, Point};
-use protocol::host::{Directive, HostCommand, HostMessage, RuleRole};
+use protocol::host::{Directive, DriveLimits, HostCommand, HostMessage, RuleRole};
 use protocol::robot_io::SensorFrame;
 use protocol::{Duration, Instant, RobotId};
 use rules::{Phase, Side, contact};
 
-use crate::belief::{Belief, BelievedGame};
+use crate::belief::{Belief, BelievedGame, DriveCap};
 use crate::governor::{Hearing, LATENCY_MAX, SILENCE};
 use crate::snapshot::{HostSnapshot, Taken};
 
@@ -25,6 +25,7 @@ pub struct Hosted {
     /// Arrival of the last frame, of any age.
     arrived: Option<Instant>,
     phase: Option<Phase<Side>>,
+    limits: Option<DriveLimits>,
     restart: Restart,
 }
 
@@ -50,6 +51,7 @@ impl Hosted {
             frame: None,
             arrived: None,
             phase: None,
+            limits: None,
             restart: Restart::None,
         }
     }
@@ -73,6 +75,12 @@ impl Hosted {
                     command.clone(),
                 ));
             }
+            HostMessage::Limits(limits) => {
+                if limits.to != self.me {
+                    return None;
+                }
+                self.limits = Some(*limits);
+            }
             HostMessage::Welcome(_) => {}
         }
         self.arrived = Some(now);
@@ -80,8 +88,10 @@ impl Hosted {
         self.frame
     }
 
-    /// Another host than before has welcomed this robot: its snapshots have numbers of their own.
+    /// Another host than before has welcomed this robot: its snapshots have numbers of their own, and the
+    /// limits of the one before no longer hold.
     pub fn restart(&mut self) {
+        self.limits = None;
         self.snapshot.restart();
     }
 
@@ -101,6 +111,7 @@ impl Hosted {
             defending,
             double_touch_blocked: self.restart == Restart::DoubleTouchBlocked,
         };
+        belief.drive_cap = self.limits.as_ref().map_or_else(DriveCap::default, DriveCap::of);
     }
 
     /// The directive, while it is fresh.
@@ -210,6 +221,28 @@ mod tests {
     }
 
     #[test]
+    fn limits_hold_until_others_come_or_another_host_does_and_those_of_others_are_ignored() {
+        let mut hosted = Hosted::new(id(3));
+        let mut belief = Belief::new(League::DivisionB);
+        let sensors = nothing();
+        let limits = |to, speed, acceleration| {
+            HostMessage::Limits(DriveLimits { to: id(to), speed, acceleration })
+        };
+        let mut cap = |hosted: &mut Hosted| {
+            hosted.see(Instant(0), &sensors, &mut belief);
+            (belief.drive_cap.speed, belief.drive_cap.acceleration)
+        };
+        assert_eq!(hosted.handle(Instant(0), Duration(0), &limits(4, 400, 600)), None);
+        assert_eq!(cap(&mut hosted), (f32::INFINITY, f32::INFINITY));
+        hosted.handle(Instant(0), Duration(0), &limits(3, 1500, DriveLimits::NONE));
+        assert_eq!(cap(&mut hosted), (1.5, f32::INFINITY));
+        hosted.handle(Instant(1), Duration(0), &limits(3, DriveLimits::NONE, 2000));
+        assert_eq!(cap(&mut hosted), (f32::INFINITY, 2.0));
+        hosted.restart();
+        assert_eq!(cap(&mut hosted), (f32::INFINITY, f32::INFINITY));
+    }
+
+    #[test]
     fn a_command_that_was_long_on_its_way_is_stale_200_ms_after_it_was_sent() {
         for (age_ms, fresh_for_ms) in [(0, 100), (100, 100), (120, 80), (150, 50), (199, 1)] {
             let mut hosted = Hosted::new(id(3));
@@ -219,6 +252,19 @@ mod tests {
             assert!(hosted.directive(until - Duration(1)).is_some(), "{age_ms} ms old");
             assert_eq!(hosted.directive(until), None, "{age_ms} ms old");
             assert_eq!(hosted.arrived(), Some(came));
+        }
+    }
+
+    fn nothing() -> SensorFrame {
+        SensorFrame {
+            pose: None,
+            ball: None,
+            opponents: heapless::Vec::new(),
+            ball_contact: false,
+            busy: false,
+            odometry: Twist::default(),
+            health: Health::default(),
+            camera: None,
         }
     }
 
@@ -233,16 +279,7 @@ mod tests {
     fn the_kicker_of_our_free_kick_is_double_touch_blocked_until_another_robot_has_touched_the_ball() {
         let mut hosted = Hosted::new(id(3));
         let mut held = with_ball(0.0);
-        let sensors = SensorFrame {
-            pose: None,
-            ball: None,
-            opponents: heapless::Vec::new(),
-            ball_contact: true,
-            busy: false,
-            odometry: Twist::default(),
-            health: Health::default(),
-            camera: None,
-        };
+        let sensors = SensorFrame { ball_contact: true, ..nothing() };
         held.show(Instant(0), &HostSnapshot::new(id(3)), &sensors);
         let free_kick = Phase::FreeKick(Side::Ours);
         hosted.watch_touches(free_kick, RuleRole::Player, &held);

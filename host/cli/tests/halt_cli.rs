@@ -242,7 +242,7 @@ impl Robots {
         match RobotId::all().take(6).find_map(read)? {
             HostMessage::World(part) => Some(part.phase == Phase::Halt),
             HostMessage::Command(command) => Some(command.phase == Phase::Halt),
-            HostMessage::Welcome(_) => None,
+            HostMessage::Welcome(_) | HostMessage::Limits(_) => None,
         }
     }
 

@@ -51,6 +51,7 @@ files! {
     "course.js": SCRIPT,
     "log.js": SCRIPT,
     "control.js": SCRIPT,
+    "tune.js": SCRIPT,
     "transport.js": SCRIPT,
     "keys.js": SCRIPT,
     "bench.js": SCRIPT,

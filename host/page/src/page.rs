@@ -5,9 +5,9 @@ use std::cell::RefCell;
 use std::fmt;
 use std::io;
 use std::net::{SocketAddr, TcpListener};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::archive::Archive;
 use crate::deferred_scene::DeferredScene;
@@ -97,6 +97,7 @@ pub struct Page {
     /// To the viewer whose request was taken last.
     asker: RefCell<Option<Arc<Mailbox>>>,
     seats: Arc<AtomicUsize>,
+    parameters: Arc<Mutex<String>>,
     pushed: u64,
     left_out: u64,
     _server: Server,
@@ -119,6 +120,7 @@ impl Page {
         let archive = Archive::begin(viewers.clone());
         let (asks, requests) = sync_channel(REQUESTS_MAX);
         let seats = Arc::new(AtomicUsize::new(0));
+        let parameters = Arc::new(Mutex::new(String::from("[]")));
         let shared = Shared {
             port: address.port(),
             settings,
@@ -126,6 +128,7 @@ impl Page {
             viewers,
             kept: archive.kept(),
             asks,
+            parameters: parameters.clone(),
             seats: seats.clone(),
         };
         let server = Server::start(listener, shared).map_err(failed)?;
@@ -135,6 +138,7 @@ impl Page {
             requests,
             asker: RefCell::default(),
             seats,
+            parameters,
             pushed: 0,
             left_out: 0,
             _server: server,
@@ -173,6 +177,11 @@ impl Page {
     /// Passes what became of every case up to `t` to the page, as JSON. Never waits.
     pub fn keep_cases(&self, t: f64, tables: String) {
         self.archive.keep_cases(t, tables);
+    }
+
+    /// Passes the teams' parameters to the page, as a JSON list.
+    pub fn set_parameters(&self, teams: String) {
+        *self.parameters.lock().unwrap_or_else(PoisonError::into_inner) = teams;
     }
 
     /// Drops the history: another match starts.

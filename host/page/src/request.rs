@@ -71,6 +71,20 @@ pub enum UserRequest {
         /// Share of packets lost, 0 to 1.
         share: f32,
     },
+    /// Change a parameter of a team while it plays.
+    Parameter {
+        /// Team whose parameter it is; on a real field ours.
+        team: PageTeam,
+        /// The parameter's key, as in `team.toml`.
+        key: String,
+        /// The robot that it is for, where each robot has its own.
+        #[serde(default)]
+        robot: Option<u8>,
+        /// The value; none: what holds where it is left out.
+        value: Option<serde_json::Value>,
+    },
+    /// Write the parameters that were changed into the team's file.
+    Save {},
     /// The referee's command, by its name in the league: `HALT`, `FORCE_START`, `DIRECT_FREE_BLUE`.
     Referee {
         /// Name of the command.
@@ -86,6 +100,8 @@ pub enum Powers {
     None,
     /// HALT: a real field.
     Halt,
+    /// HALT and parameters: a real field, where the operator has allowed it.
+    Tune,
     /// Everything: the match is simulated.
     Simulation,
 }
@@ -105,7 +121,12 @@ impl std::fmt::Display for Refused {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Malformed(description) => write!(f, "no request: {description}"),
-            Self::NotHere(Powers::Halt) => f.write_str("a real field takes nothing but HALT from the page"),
+            Self::NotHere(Powers::Halt) => f.write_str(
+                "a real field takes nothing but HALT from the page; with --live-parameters parameters too",
+            ),
+            Self::NotHere(Powers::Tune) => {
+                f.write_str("a real field takes nothing but HALT and parameters from the page")
+            }
             Self::NotHere(_) => f.write_str("a recording cannot be changed"),
             Self::Range(description) => f.write_str(description),
         }
@@ -120,6 +141,7 @@ impl UserRequest {
         let allowed = match powers {
             Powers::Simulation => true,
             Powers::Halt => matches!(request, Self::Halt {}),
+            Powers::Tune => matches!(request, Self::Halt {} | Self::Parameter { .. } | Self::Save {}),
             Powers::None => false,
         };
         if !allowed {
@@ -135,6 +157,7 @@ impl UserRequest {
                 (!(SPEED_MIN..=SPEED_MAX).contains(factor)).then_some("speed: 0.05 to 20")
             }
             Self::Situation { name } => (name.len() > NAME_MAX).then_some("a situation: at most 200 bytes"),
+            Self::Parameter { key, .. } => (key.len() > NAME_MAX).then_some("a key: at most 200 bytes"),
             Self::Loss { share } => (!(0.0..=1.0).contains(share)).then_some("loss: 0 to 1"),
             Self::Ball { at } | Self::Robot { at, .. } => {
                 let far = at.iter().any(|x| !(-FARTHEST..=FARTHEST).contains(x));
@@ -143,7 +166,8 @@ impl UserRequest {
             _ => None,
         };
         let id = match &self {
-            Self::Robot { id, .. } | Self::Power { id, .. } if *id > 15 => Some("robots: 0 to 15"),
+            Self::Robot { id, .. } | Self::Power { id, .. } | Self::Parameter { robot: Some(id), .. }
+                if *id > 15 => Some("robots: 0 to 15"),
             _ => None,
         };
         wrong.or(id).map_or(Ok(self), |description| Err(Refused::Range(description)))
@@ -172,6 +196,8 @@ mod tests {
             r#"{"ask":"ball","at":[0,0]}"#,
             r#"{"ask":"situation","name":"center/pass-around"}"#,
             r#"{"ask":"power","team":"blue","id":1,"on":false}"#,
+            r#"{"ask":"parameter","team":"blue","key":"ball.roll","value":0.4}"#,
+            r#"{"ask":"save"}"#,
         ] {
             assert_eq!(
                 UserRequest::read(other, Powers::Halt),
@@ -181,6 +207,19 @@ mod tests {
             assert!(UserRequest::read(other, Powers::Simulation).is_ok(), "{other}");
             assert!(UserRequest::read(other, Powers::None).is_err(), "{other}");
         }
+    }
+
+    #[test]
+    fn a_real_field_takes_parameters_only_where_the_operator_allows_it_and_then_no_more() {
+        let set = r#"{"ask":"parameter","team":"blue","key":"calibration.kick","robot":3,"value":1.06}"#;
+        for text in [set, r#"{"ask":"save"}"#, r#"{"ask":"halt"}"#] {
+            assert!(UserRequest::read(text, Powers::Tune).is_ok(), "{text}");
+        }
+        for other in [r#"{"ask":"pause","on":true}"#, r#"{"ask":"ball","at":[0,0]}"#] {
+            assert_eq!(UserRequest::read(other, Powers::Tune), Err(Refused::NotHere(Powers::Tune)));
+        }
+        let far = set.replace(":3,", ":16,");
+        assert!(matches!(UserRequest::read(&far, Powers::Tune), Err(Refused::Range(_))));
     }
 
     #[test]

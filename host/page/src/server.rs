@@ -36,6 +36,8 @@ const WAKE: Duration = Duration::from_millis(200);
 
 /// State shared by all request handlers.
 pub(crate) struct Shared {
+    /// The teams' parameters, as a JSON list.
+    pub(crate) parameters: Arc<Mutex<String>>,
     pub(crate) port: u16,
     pub(crate) settings: PageSettings,
     pub(crate) explanations: Arc<dyn ExplanationService>,

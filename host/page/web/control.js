@@ -17,7 +17,7 @@ export function showControl() {
   const { powers, life, may_ask: mayAsk } = store.state;
   // A recording takes nothing from anybody: there the token makes no difference.
   const shown = mayAsk === false && powers !== "none" ? "locked" : powers;
-  fill(tab, `${shown} ${life}`, () => ({ simulation, halt, none, locked })[shown]());
+  fill(tab, `${shown} ${life}`, () => ({ simulation, halt, tune: halt, none, locked })[shown]());
   if (shown !== "simulation") return;
   say(byId("pause"), store.latest?.paused ? "Resume" : "Pause");
   const speed = byId("speed-now");
@@ -33,7 +33,7 @@ const none = () => el("p", { class: "muted" }, "A recording cannot be changed. E
 const locked = () => el("p", { class: "muted" }, "You look on. To ask for anything, open the page by the address with ?token= that the program printed when it started.");
 
 const halt = () => [
-  el("p", {}, "On a real field the page can do one thing: our robots stand, whatever the referee says, until the program ends."),
+  el("p", {}, store.state.powers === "tune" ? "On a real field the page can halt our robots, whatever the referee says, until the program ends, and change parameters (the tab of that name)." : "On a real field the page can do one thing: our robots stand, whatever the referee says, until the program ends."),
   el("button", { class: "danger", id: "halt", onclick: () => ask({ ask: "halt" }) }, "HALT our robots"),
 ];
 

@@ -19,6 +19,7 @@ import { filmScene } from "./rehearse.js";
 import { changed, on, recall, remember, store } from "./store.js";
 import { startTimeline } from "./timeline.js";
 import { advance, startTransport, time } from "./transport.js";
+import { showTune } from "./tune.js";
 import { showChosen, showWhy } from "./why.js";
 import { bench as workbenchState } from "./workbench.js";
 
@@ -98,7 +99,7 @@ on("colours", want);
 on("chosen", () => { want(); changed("panels"); showChosen(); });
 on("asked", (tab) => { showTab(tab); showChosen(); });
 on("state", () => { want(); changed("panels"); });
-on("panels", () => { showOver(); showLegend(); showBoard(); showWhy(); showMatch(); showHealth(); showControl(); showCases(); showDraft(); });
+on("panels", () => { showOver(); showLegend(); showBoard(); showWhy(); showMatch(); showHealth(); showControl(); showTune(); showCases(); showDraft(); });
 on("refused", tell);
 on("told", tell);
 new ResizeObserver(want).observe(canvas);

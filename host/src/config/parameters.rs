@@ -26,6 +26,8 @@ pub struct Parameter {
     pub meaning: &'static str,
     /// What holds where it is left out, and an example as it stands in the file; none: it always has a value.
     pub left_out: Option<(&'static str, &'static str)>,
+    /// Whether it can change while a host runs ([`TeamConfig::changed`]).
+    pub live: bool,
     /// Its value in a configuration.
     value: Holds,
 }
@@ -53,6 +55,10 @@ pub struct ParameterValue {
     pub range: Option<[f32; 2]>,
     /// [`Parameter::meaning`].
     pub meaning: &'static str,
+    /// [`Parameter::live`].
+    pub live: bool,
+    /// Whether each robot has its own.
+    pub each_robot: bool,
     /// Its value; none: not set.
     pub value: Option<Value>,
     /// Its value in an empty file; none: not set.
@@ -75,6 +81,11 @@ impl Parameter {
     /// Its key within its table.
     pub fn name(&self) -> &'static str {
         self.key.split_once('.').map_or(self.key, |(_, name)| name)
+    }
+
+    /// Whether each robot has its own value.
+    pub fn is_each_robots(&self) -> bool {
+        matches!(self.value, Holds::EachRobot(_))
     }
 
     /// Its value for the team; none: not set, or each robot has its own.
@@ -125,7 +136,8 @@ impl TeamConfig {
         let usual = TeamSettings::default().complete().ok();
         let mut list = Vec::new();
         for parameter in &PARAMETERS {
-            let Parameter { key, unit, meaning, .. } = *parameter;
+            let Parameter { key, unit, meaning, live, .. } = *parameter;
+            let each_robot = parameter.is_each_robots();
             let range = parameter.range.as_ref().map(|range| [*range.start(), *range.end()]);
             let default = usual.as_ref().and_then(|usual| parameter.once(usual));
             let one = |robot: Option<RobotId>, value| ParameterValue {
@@ -134,6 +146,8 @@ impl TeamConfig {
                 unit,
                 range,
                 meaning,
+                live,
+                each_robot,
                 value,
                 default: default.clone(),
             };
@@ -161,7 +175,7 @@ const fn usual(
     meaning: &'static str,
     value: fn(&TeamConfig) -> Option<Value>,
 ) -> Parameter {
-    Parameter { key, unit: "", range: None, meaning, left_out: None, value: Holds::Once(value) }
+    Parameter { key, unit: "", range: None, meaning, left_out: None, live: false, value: Holds::Once(value) }
 }
 
 const fn optional(
@@ -180,6 +194,7 @@ pub(super) const ROLL: Parameter = Parameter {
     range: Some(0.05..=1.5),
     meaning: "deceleration of a rolling ball",
     left_out: Some(("vision's", "0.41")),
+    live: true,
     value: Holds::Once(|config| config.roll.map(decimal)),
 };
 
@@ -193,13 +208,37 @@ pub(super) const KICK: Parameter = Parameter {
     range: Some(KICK_RANGE),
     meaning: "how much faster than ordered a robot's balls leave: speed seen over speed ordered",
     left_out: Some(("1", "1.06")),
+    live: true,
     value: Holds::EachRobot(|config, id| {
         Some(config.kick[id.index()]).filter(|factor| *factor != 1.0).map(decimal)
     }),
 };
 
+/// How fast robots drive; the least is what a robot accepts
+/// ([`DriveLimits::SPEED_MIN`](protocol::host::DriveLimits)), the greatest beyond every robot of the league.
+pub(super) const SPEED: Parameter = Parameter {
+    key: "limits.speed",
+    unit: "m/s",
+    range: Some(0.3..=6.0),
+    meaning: "greatest speed of our robots",
+    left_out: Some(("their own limit", "2.0")),
+    live: true,
+    value: Holds::Once(|config| config.limits.speed.map(decimal)),
+};
+
+/// How hard robots accelerate; the bounds are those of [`SPEED`], likewise.
+pub(super) const ACCELERATION: Parameter = Parameter {
+    key: "limits.acceleration",
+    unit: "m/s²",
+    range: Some(0.5..=10.0),
+    meaning: "greatest acceleration of our robots; they brake as before",
+    left_out: Some(("their own limit", "2.5")),
+    live: true,
+    value: Holds::Once(|config| config.limits.acceleration.map(decimal)),
+};
+
 /// Every parameter, in the order of the file: those of no table first.
-pub const PARAMETERS: [Parameter; 17] = [
+pub const PARAMETERS: [Parameter; 20] = [
     usual("name", "as the game controller knows the team", |c| Some(text_of(&c.name))),
     usual("colour", "blue or yellow", |c| Some(text_of(&c.colour.label()))),
     usual("league", "ssl-2013, division-b or division-a", |c| Some(text_of(&c.league.name()))),
@@ -243,7 +282,17 @@ pub const PARAMETERS: [Parameter; 17] = [
         ("the coach does", "\"python3 my_team.py\""),
         |c| c.strategy.as_ref().map(|command| text_of(command)),
     ),
+    Parameter {
+        live: true,
+        ..usual(
+            "tactics",
+            "the coach's: usual, none, all, round-1, or some of threats, second-level, pass-ahead, coerce, attack, bridge, rated",
+            |config| Some(text_of(&config.tactics.description())),
+        )
+    },
     ROLL,
+    SPEED,
+    ACCELERATION,
     KICK,
 ];
 
@@ -302,6 +351,6 @@ mod tests {
         let text = "keeper = 4\n[ball]\nroll = 0.41\n[[calibration]]\nrobot = 3\nkick = 1.06";
         assert_eq!(changed(text), [("keeper", None), ("ball.roll", None), ("calibration.kick", Some(3))]);
         let list = read(text).unwrap().parameters();
-        assert_eq!(list[15].value, Some(Value::from(0.41)));
+        assert_eq!(list[16].value, Some(Value::from(0.41)));
     }
 }

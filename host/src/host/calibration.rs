@@ -13,9 +13,16 @@ impl Host {
         self.coach.set_ground(self.tracker.set_roll(roll));
     }
 
-    /// Gain of that robot's kicker: the learned value, else the configured one.
-    fn kicks_by(&self, robot: RobotId) -> f32 {
-        let learned = self.learned.kick(robot).filter(|_| self.settings.learns);
+    /// Takes vision's deceleration of a rolling ball, until another is set or learned.
+    pub(super) fn roll_as_seen(&mut self) {
+        self.roll = None;
+        self.coach.set_ground(self.tracker.clear_roll());
+    }
+
+    /// Gain of that robot's kicker: the learned value, else the configured one; a value set while the host
+    /// runs replaces what is learned.
+    pub(super) fn kicks_by(&self, robot: RobotId) -> f32 {
+        let learned = self.learned.kick(robot).filter(|_| self.settings.learns && !self.gain_set.has(robot));
         learned.map_or(self.settings.kick[robot.index()], |known| known.value.clamp(GAIN_MIN, GAIN_MAX))
     }
 

@@ -3,6 +3,7 @@
 use protocol::RobotId;
 use protocol::frame::Refusal;
 
+use crate::config::ConfigError;
 use crate::external::AnswerError;
 use crate::referee::{self, SenderAddress};
 use crate::tracking;
@@ -18,6 +19,9 @@ pub enum Input<'a> {
     Robot(&'a [u8]),
     /// A line of the strategy in another program ([`crate::external`]).
     Orders(&'a [u8]),
+    /// The operator changes a parameter: the JSON of a
+    /// [`ParameterChange`](crate::config::ParameterChange).
+    Parameter(&'a [u8]),
     /// The operator halts our robots until the end of the program.
     Halt,
     /// A deadline that [`Host::poll_timeout`](crate::Host::poll_timeout) announced.
@@ -43,6 +47,10 @@ pub enum InputVerdict {
     Undecodable,
     /// A deadline was handled.
     Timeout,
+    /// A parameter has another value.
+    Changed,
+    /// A change that is refused; nothing changed.
+    NotChanged(ConfigError),
     /// Our robots halt until the end.
     Halted,
 }

@@ -23,7 +23,7 @@ mod warning;
 
 use protocol::decision::DecisionPart;
 use protocol::frame::{Audience, Frame, Refusal, Sender, TeamKey};
-use protocol::host::{HostCommand, HostMessage, PARTS_MAX, Telemetry};
+use protocol::host::{DriveLimits, HostCommand, HostMessage, PARTS_MAX, Telemetry};
 use protocol::host_link::{HostLink, Opened};
 use protocol::link::Packet;
 use protocol::team::{Beacon, TeamMessage};
@@ -128,6 +128,8 @@ pub struct Radio {
     /// When each snapshot went out, by its number.
     departures: [Option<Instant>; 256],
     robots: [Quality; RobotId::COUNT],
+    /// Limits of the robots' drives, mm/s and mm/s², once the team has set any.
+    limits: Option<[u16; 2]>,
     out: heapless::Deque<(To, Packet), OUT_MAX>,
     dropped: u32,
     refusals: Refusals,
@@ -156,6 +158,7 @@ impl Radio {
             snapshot: u8::MAX,
             departures: [None; 256],
             robots: Default::default(),
+            limits: None,
             out: heapless::Deque::new(),
             dropped: 0,
             refusals: Refusals::default(),
@@ -318,8 +321,21 @@ impl Radio {
                 self.welcome(now, robot);
             }
         }
+        if let Some([speed, acceleration]) = self.limits
+            && let Some(to) = nth(audience, self.snapshot)
+        {
+            let limits = DriveLimits { to, speed, acceleration };
+            self.send_message(now, To::One(to), &HostMessage::Limits(limits));
+        }
         latest.fresh = false;
         self.latest = Some(latest);
+    }
+
+    /// From the next snapshot on robots are told to drive within these limits, mm/s and mm/s²
+    /// ([`DriveLimits`]): with every snapshot one of those present, in turn. Before the first call they are
+    /// told nothing.
+    pub fn limit(&mut self, speed: u16, acceleration: u16) {
+        self.limits = Some([speed, acceleration]);
     }
 
     fn welcome(&mut self, now: Instant, robot: RobotId) {
@@ -362,6 +378,13 @@ impl Radio {
             self.dropped = self.dropped.saturating_add(1);
         }
     }
+}
+
+/// The robot whose turn it is at that snapshot.
+fn nth(audience: Audience, snapshot: u8) -> Option<RobotId> {
+    let present = audience.robots().count();
+    let turn = usize::from(snapshot).checked_rem(present)?;
+    audience.robots().nth(turn)
 }
 
 #[cfg(test)]

@@ -400,3 +400,27 @@ fn more_robots_than_fit_are_left_out_and_no_one_fetching_is_no_harm() {
     // after the first.
     assert_eq!((packets.len(), radio.dropped()), (OUT_MAX, (50 * 24 + 4 * 16 - OUT_MAX) as u32));
 }
+
+#[test]
+fn robots_are_told_their_limits_one_with_each_snapshot_and_only_once_there_are_some() {
+    let mut radio = radio(Relay::No);
+    let mut links = [robot(0), robot(3)];
+    for (link, n) in links.iter_mut().zip([0, 3]) {
+        join(&mut radio, link, n, ms(1));
+    }
+    let mut told = |radio: &mut Radio, now: Instant| {
+        radio.offer(now, &world(now, 2, 2), situation(), &[]);
+        let packets = fetch(radio);
+        let messages = links.iter_mut().zip([0, 3]).flat_map(|(link, n)| deliver(link, n, now, &packets));
+        let limits = messages.filter_map(|message| match message {
+            HostMessage::Limits(limits) => Some((limits.to.number(), limits.speed, limits.acceleration)),
+            _ => None,
+        });
+        limits.collect::<Vec<_>>()
+    };
+    assert_eq!(told(&mut radio, ms(20)), []);
+    radio.limit(1500, DriveLimits::NONE);
+    let mut both = [told(&mut radio, ms(40)), told(&mut radio, ms(60))].concat();
+    both.sort_unstable();
+    assert_eq!(both, [(0, 1500, DriveLimits::NONE), (3, 1500, DriveLimits::NONE)]);
+}

@@ -56,6 +56,7 @@ enum Owned {
     Referee(Vec<u8>, SenderAddress),
     Robot(Vec<u8>),
     Orders(Vec<u8>),
+    Parameter(Vec<u8>),
     Halt,
     Timeout,
 }
@@ -67,6 +68,7 @@ impl Owned {
             Input::Referee(bytes, from) => Self::Referee(bytes.to_vec(), from),
             Input::Robot(bytes) => Self::Robot(bytes.to_vec()),
             Input::Orders(line) => Self::Orders(line.to_vec()),
+            Input::Parameter(json) => Self::Parameter(json.to_vec()),
             Input::Halt => Self::Halt,
             Input::Timeout => Self::Timeout,
         }
@@ -78,6 +80,7 @@ impl Owned {
             Self::Referee(bytes, from) => Input::Referee(bytes, *from),
             Self::Robot(bytes) => Input::Robot(bytes),
             Self::Orders(line) => Input::Orders(line),
+            Self::Parameter(json) => Input::Parameter(json),
             Self::Halt => Input::Halt,
             Self::Timeout => Input::Timeout,
         }
@@ -130,7 +133,7 @@ impl BackgroundRecorder {
     /// Something came to the host of that colour.
     pub fn input(&mut self, now: Instant, host: Colour, input: Input<'_>) {
         let len = match input {
-            Input::Vision(bytes) | Input::Referee(bytes, _) | Input::Robot(bytes) | Input::Orders(bytes) => {
+            Input::Vision(bytes) | Input::Referee(bytes, _) | Input::Robot(bytes) | Input::Orders(bytes) | Input::Parameter(bytes) => {
                 bytes.len()
             }
             Input::Halt | Input::Timeout => 0,

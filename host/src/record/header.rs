@@ -13,7 +13,7 @@ use rules::{Colour, League};
 use serde::{Deserialize, Serialize};
 
 use crate::HostSettings;
-use crate::config::KICK_RANGE;
+use crate::config::{DriveSettings, KICK_RANGE};
 use crate::proposal::cases_of;
 use crate::radio::{RadioSettings, Relay};
 use crate::referee::{OnSilence, SourcePin};
@@ -89,6 +89,12 @@ pub struct HostHeader {
     /// The hash of the case base in which its robots' cases were looked up, where its tactics needed one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cases: Option<String>,
+    /// Greatest speed of its robots, m/s; none: their own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_limit: Option<f32>,
+    /// Greatest acceleration of its robots, m/s²; none: their own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub acceleration_limit: Option<f32>,
     /// Whether a strategy in another program gave orders.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub external: bool,
@@ -182,6 +188,8 @@ impl HostHeader {
             keyed: radio.key != TeamKey::ZERO,
             tactics: Tactics::NONE,
             cases: None,
+            speed_limit: None,
+            acceleration_limit: None,
             external: false,
         }
     }
@@ -197,6 +205,8 @@ impl HostHeader {
             referee_silence: Some(settings.referee_silence.label().to_owned()),
             tactics: settings.tactics,
             cases: settings.tactics.bridge.then(|| hash_of_cases(settings.league)),
+            speed_limit: settings.limits.speed,
+            acceleration_limit: settings.limits.acceleration,
             external: settings.external,
             ..Self::new(who, &settings.kick, &settings.radio, began)
         }
@@ -223,6 +233,7 @@ impl HostHeader {
             team: self.plays,
             radio: self.radio(key)?,
             tactics: self.tactics,
+            limits: self.limits()?,
             external: self.external,
         })
     }
@@ -263,6 +274,12 @@ impl HostHeader {
             let (count, low, high) = (RobotId::COUNT, KICK_RANGE.start(), KICK_RANGE.end());
             wrong(format!("kick: {count} factors of {low} to {high}, one for each robot"))
         })
+    }
+
+    /// How fast its robots may drive.
+    fn limits(&self) -> Result<DriveSettings, HeaderError> {
+        let limits = DriveSettings { speed: self.speed_limit, acceleration: self.acceleration_limit };
+        limits.checked().map_err(|error| wrong(error.to_string()))
     }
 
     /// When it started, on its own clock.

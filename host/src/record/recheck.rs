@@ -143,6 +143,7 @@ impl Recheck {
             RecordKind::Robot => checked.feed_input(record.at, Input::Robot(&record.bytes)),
             RecordKind::Timeout => checked.feed_input(record.at, Input::Timeout),
             RecordKind::Orders => checked.feed_input(record.at, Input::Orders(&record.bytes)),
+            RecordKind::Parameter => checked.feed_input(record.at, Input::Parameter(&record.bytes)),
             RecordKind::Halt => checked.feed_input(record.at, Input::Halt),
             RecordKind::Lost => {}
         }

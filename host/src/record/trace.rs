@@ -52,12 +52,14 @@ pub enum RecordKind {
     Halt,
     /// A line of the strategy in another program came in.
     Orders,
+    /// The operator changed a parameter.
+    Parameter,
 }
 
 impl RecordKind {
     fn from_byte(byte: u8) -> Option<Self> {
         use RecordKind as K;
-        [K::Vision, K::Referee, K::Robot, K::Timeout, K::Sent, K::Lost, K::Halt, K::Orders]
+        [K::Vision, K::Referee, K::Robot, K::Timeout, K::Sent, K::Lost, K::Halt, K::Orders, K::Parameter]
             .get(usize::from(byte))
             .copied()
     }

@@ -180,6 +180,13 @@ impl Coach {
         }
     }
 
+    /// Plays these tactics from now on; plans that run are given up.
+    pub fn set_tactics(&mut self, tactics: Tactics, league: League) {
+        let ground = *self.kicks.ground();
+        *self = Self::new(self.team, tactics, league);
+        self.set_ground(ground);
+    }
+
     /// Sets the model of balls on this field's ground.
     pub fn set_ground(&mut self, ground: BallModel) {
         self.kicks = Kicks::new(*self.kicks.constants(), ground, ChipModel::default());

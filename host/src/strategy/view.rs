@@ -357,6 +357,12 @@ impl RobotSet {
         self.0 |= 1 << id.number();
     }
 
+    /// Adds a robot, or takes it out.
+    pub fn set(&mut self, id: RobotId, is_in: bool) {
+        let bit = 1 << id.number();
+        self.0 = if is_in { self.0 | bit } else { self.0 & !bit };
+    }
+
     /// Whether it contains that robot.
     pub fn has(self, id: RobotId) -> bool {
         self.0 & (1 << id.number()) != 0

@@ -272,6 +272,11 @@ impl Tracker {
         self.scene.set_roll(roll)
     }
 
+    /// Takes vision's deceleration again; returns the resulting model of the ground.
+    pub fn clear_roll(&mut self) -> BallModel {
+        self.scene.clear_roll()
+    }
+
     /// The field when the newest camera frame was taken; empty before the first.
     pub fn snapshot(&self) -> World {
         let at = self.timeline.newest().unwrap_or(0);

@@ -54,6 +54,15 @@ impl Scene {
         self.models.ground
     }
 
+    /// The deceleration is vision's again, where it has sent one.
+    pub(super) fn clear_roll(&mut self) -> BallModel {
+        self.roll = None;
+        if let Some(ground) = self.geometry.ground() {
+            self.models.ground = ground;
+        }
+        self.models.ground
+    }
+
     /// Position of that camera, if it was received.
     pub(super) fn camera(&self, number: u32) -> Option<Camera> {
         self.cameras.get(number as usize).copied().flatten()

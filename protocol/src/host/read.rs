@@ -71,7 +71,7 @@ impl WireRobot {
 mod tests {
     use super::*;
     use crate::RobotId;
-    use crate::host::Welcome;
+    use crate::host::{DriveLimits, Welcome};
 
     fn part(robots: u8) -> HostMessage {
         let robot = |n: u8| WireRobot {
@@ -99,8 +99,10 @@ mod tests {
     fn what_is_read_is_what_postcard_reads_whatever_byte_is_changed_or_cut() {
         let welcome =
             HostMessage::Welcome(Welcome { to: RobotId::new(3).unwrap(), boot_epoch: 9, offset: 7 });
+        let limits = DriveLimits { to: RobotId::ZERO, speed: 1500, acceleration: 900 };
+        let limits = HostMessage::Limits(limits);
         let (mut read, mut refused) = (0, 0);
-        for message in (0..=PART_ROBOTS_MAX as u8).map(part).chain([welcome]) {
+        for message in (0..=PART_ROBOTS_MAX as u8).map(part).chain([welcome, limits]) {
             let mut bytes = [0; 128];
             let len = postcard::to_slice(&message, &mut bytes).unwrap().len();
             assert_eq!(HostMessage::read(&bytes[..len]), Some(message));

@@ -138,7 +138,7 @@ impl Guard {
             }
             HostMessage::Command(_) => return,
             // It contains no game state, but shows that the host runs.
-            HostMessage::Welcome(_) => self.phase,
+            HostMessage::Welcome(_) | HostMessage::Limits(_) => self.phase,
         };
         if phase != Some(Phase::Stop) {
             self.stop_since = None;

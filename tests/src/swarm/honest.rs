@@ -127,6 +127,7 @@ impl Honest {
             HostMessage::World(_) => false,
             HostMessage::Command(command) => command.to != self.me,
             HostMessage::Welcome(welcome) => welcome.to != self.me,
+            HostMessage::Limits(limits) => limits.to != self.me,
         };
         if for_another {
             return None;

@@ -40,6 +40,11 @@ impl FreeLimits {
         Self { speed: math::min(self.speed, speed), ..self }
     }
 
+    /// The same robot, accelerating no harder than `acceleration`, m/s²; it brakes as before.
+    pub fn softened_to(self, acceleration: f32) -> Self {
+        Self { acceleration: math::min(self.acceleration, acceleration), ..self }
+    }
+
     /// All three are positive numbers.
     pub(crate) fn are_usable(&self) -> bool {
         let positive = |x: f32| x > LIMIT_MIN && x.is_finite();

@@ -5,11 +5,13 @@ use geometry::{Field, Point, Pose, Vector};
 use hil_sim::small_size::Ball;
 use hil_sim::small_size::referee::{Card, Restart};
 use hil_sim::{Backend, LinkLoss};
+use host::Input;
+use host::config::{ConfigError, ParameterChange, TeamConfig};
 use protocol::{Duration, RobotId, Who};
 use rules::Colour;
 use rules::state::RefereeCommand;
 
-use super::{Game, GameConfig, GameError};
+use super::{Game, GameConfig, GameError, Watcher};
 
 impl<'a> Game<'a> {
     /// The configuration with which the match started.
@@ -84,6 +86,20 @@ impl<'a> Game<'a> {
     /// Requests a timeout of this length for a team at the next stop; false where it has none left.
     pub fn request_timeout(&mut self, team: Colour, length: Duration) -> bool {
         self.referee.request_timeout(team, length)
+    }
+
+    /// Changes a parameter of a team's host, as its operator does; refused changes change nothing.
+    pub fn change(
+        &mut self,
+        team: Colour,
+        change: &ParameterChange,
+        watcher: &mut dyn Watcher,
+    ) -> Result<(), ConfigError> {
+        let (tick, now) = (self.tick, self.now());
+        let team = &mut self.teams[team as usize];
+        TeamConfig::of(team.host.settings())?.changed(change)?;
+        team.feed(tick, now, Input::Parameter(change.to_json().as_bytes()), watcher);
+        Ok(())
     }
 
     /// Each team's radio loses this share of packets from now on.

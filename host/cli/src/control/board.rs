@@ -1,4 +1,5 @@
-//! `board`: the page beside a real field: displays what the host knows, and accepts HALT, nothing else.
+//! `board`: the page beside a real field: displays what the host knows, and accepts HALT; where the operator
+//! allows it, changes of parameters too.
 
 use std::time::{Duration, Instant};
 
@@ -24,6 +25,7 @@ impl Board {
     pub(super) fn open(
         args: &PageArgs,
         title: String,
+        powers: Powers,
         library_handle: Option<LibraryHandle>,
         settings: casebase::RetrievalSettings,
     ) -> Option<Self> {
@@ -31,7 +33,7 @@ impl Board {
             let composer = Composer::new(library_handle.as_ref());
             let ledger = LedgerFeed::new(library_handle.as_ref());
             let page =
-                args.open(title, false, Powers::Halt, CaseExplanations::new(library_handle, settings))?;
+                args.open(title, false, powers, CaseExplanations::new(library_handle, settings))?;
             Ok::<_, crate::Failure>(Self { page, composer, ledger, drawn_at: None, took: Duration::ZERO })
         };
         open().map_err(|failure| note!("page     there is none: {failure}")).ok()
@@ -56,8 +58,8 @@ impl Board {
         self.took = (self.took * 15 + time) / 16;
     }
 
-    /// Sends the scene to the page if it is due; true: a viewer asks for HALT.
-    pub(super) fn look(&mut self, now: protocol::Instant, host: &Host, alarms: Vec<String>) -> bool {
+    /// Sends the scene to the page if it is due.
+    pub(super) fn look(&mut self, now: protocol::Instant, host: &Host, alarms: Vec<String>) {
         let every = Duration::from_secs_f64(SCENE_EVERY_S);
         let t = now.0 as f64 * 1e-6;
         self.ledger.look(t, host, &[host]);
@@ -73,10 +75,15 @@ impl Board {
             self.page.show(deferred_scene);
             self.ledger.send(t, &[host], false, &self.page);
         }
-        let mut halt = false;
-        while let Some(request) = self.page.next_request() {
-            halt |= request == UserRequest::Halt {};
-        }
-        halt
+    }
+
+    /// The next request of a viewer.
+    pub(super) fn next_request(&self) -> Option<UserRequest> {
+        self.page.next_request()
+    }
+
+    /// The page, to show parameters on it and to refuse what was asked last.
+    pub(super) fn page(&self) -> &Page {
+        &self.page
     }
 }

@@ -13,7 +13,7 @@ use std::sync::mpsc::{self, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use host::config::TeamConfig;
+use host::config::{ParameterChange, TeamConfig};
 use host::learned::Learned;
 use host::radio::RadioSettings;
 use host::record::header::RecordingHeader;
@@ -22,6 +22,7 @@ use host::referee::team_port::TeamPortRequest;
 use host::shell::{Outbox, SimSettings, StrategyProcess};
 use host::tracking::{Publisher, VisionVerdict};
 use host::{Host, HostSettings, Input, InputVerdict};
+use page::{Powers, UserRequest};
 use protocol::RobotId;
 use protocol::frame::TeamKey;
 use rules::Colour;
@@ -35,11 +36,12 @@ use super::inbox::{Inbox, Mail, Source};
 use super::radio_alarms::RadioAlarms;
 use super::terminal::Terminal;
 use super::threads;
+use super::tuning::Tuning;
 use super::watch::Watch;
 use super::{Cases, identity, port_for_teams, simulator};
 use crate::Failure;
 use crate::failure::NetworkError;
-use crate::live::PageArgs;
+use crate::live::{PageArgs, change_of, description_of};
 use crate::net::NetSender;
 use crate::output::{note, printable_path};
 use crate::stop::stopped_by_hand;
@@ -57,12 +59,16 @@ const LEARNED_LEN_MAX: u64 = 1 << 20;
 /// Period of HALT frames.
 const HALT_EVERY: Duration = Duration::from_millis(10);
 
-/// Files that are written.
+/// Files that are written, and by whom.
 pub(super) struct Keeps<'p> {
     /// The recording of the match, as `onetwo replay` takes it.
     pub(super) record: Option<&'p Path>,
     /// Learned values, as lines of `team.toml`.
     pub(super) learned: Option<&'p Path>,
+    /// The team's file that was read; changed parameters are saved to it.
+    pub(super) config: Option<&'p Path>,
+    /// The page may change parameters.
+    pub(super) live: bool,
 }
 
 /// Runs until the operator ends it.
@@ -87,6 +93,8 @@ pub(super) fn run(
         referee_silence: config.referee_silence,
         kick: config.kick,
         roll: config.roll,
+        limits: config.limits,
+        tactics: config.tactics,
         learns,
         radio: RadioSettings { key, relay: link.relay(), ..usual.radio },
         external: config.strategy.is_some(),
@@ -109,7 +117,8 @@ pub(super) fn run(
     );
 
     let title = format!("{}, {}", config.name, config.colour.label());
-    let board = page.and_then(|args| Board::open(args, title, library_handle, retrieval));
+    let powers = if keeps.live { Powers::Tune } else { Powers::Halt };
+    let board = page.and_then(|args| Board::open(args, title, powers, library_handle, retrieval));
 
     let mail = Arc::new(Inbox::new());
     let out = Arc::new(Mutex::new(Outbox::default()));
@@ -152,6 +161,7 @@ pub(super) fn run(
         counts: Counts::default(),
         description: Vec::new(),
         board,
+        tuning: Tuning::new(config, keeps.config),
     };
     let mut terminal = Terminal::open();
     let mut looked = Instant::now();
@@ -276,6 +286,7 @@ struct EventLoop {
     counts: Counts,
     description: Vec<String>,
     board: Option<Board>,
+    tuning: Tuning,
 }
 
 impl EventLoop {
@@ -337,7 +348,9 @@ impl EventLoop {
             let received = match input {
                 Input::Vision(bytes) => Some((MessageKind::Vision2014, bytes)),
                 Input::Referee(bytes, _) => Some((MessageKind::Refbox2013, bytes)),
-                Input::Robot(_) | Input::Orders(_) | Input::Halt | Input::Timeout => None,
+                Input::Robot(_) | Input::Orders(_) | Input::Parameter(_) | Input::Halt | Input::Timeout => {
+                    None
+                }
             };
             if let Some((kind, bytes)) = received {
                 recorder.received(now, kind, bytes);
@@ -351,7 +364,7 @@ impl EventLoop {
             match input {
                 Input::Vision(bytes) => board.vision(bytes),
                 Input::Referee(bytes, _) => board.referee(bytes, now),
-                Input::Robot(_) | Input::Orders(_) | Input::Halt | Input::Timeout => {}
+                Input::Robot(_) | Input::Orders(_) | Input::Parameter(_) | Input::Halt | Input::Timeout => {}
             }
         }
         self.send(now);
@@ -378,16 +391,46 @@ impl EventLoop {
         self.out.lock().unwrap_or_else(PoisonError::into_inner).push(batch, self.host.is_halting());
     }
 
-    /// Sends the scene to the page, and HALT if a viewer asks for it.
+    /// Sends the scene to the page, and does what viewers ask for.
     fn show(&mut self) {
         let now = self.now();
         let Some(board) = &mut self.board else { return };
         let alarms = [self.alarms.now(), self.watch.missing()].concat();
-        if board.look(now, &self.host, alarms) {
-            self.description
-                .push("HALT was asked for on the page: the robots stand until the end".to_owned());
-            self.feed(now, Input::Halt);
+        board.look(now, &self.host, alarms);
+        self.tuning.show(&self.host, board.page());
+        while let Some(request) = self.board.as_ref().and_then(Board::next_request) {
+            let refused = match request {
+                UserRequest::Halt {} => {
+                    let description = "HALT was asked for on the page: the robots stand until the end";
+                    self.description.push(description.to_owned());
+                    self.feed(now, Input::Halt);
+                    None
+                }
+                UserRequest::Parameter { key, robot, value, .. } => {
+                    change_of(&key, robot, value.as_ref()).and_then(|change| self.change(change)).err()
+                }
+                UserRequest::Save {} => self.tuning.save().map(|told| self.description.push(told)).err(),
+                // Requests for a simulation are refused when they are read.
+                _ => None,
+            };
+            if let (Some(description), Some(board)) = (refused, &self.board) {
+                board.page().refuse(description);
+            }
         }
+    }
+
+    /// Changes a parameter; an error says why it stays as it is.
+    fn change(&mut self, change: ParameterChange) -> Result<(), String> {
+        self.tuning.check(&self.host, &change)?;
+        let now = self.now();
+        if let InputVerdict::NotChanged(refused) =
+            self.feed(now, Input::Parameter(change.to_json().as_bytes()))
+        {
+            return Err(refused.to_string());
+        }
+        self.description.push(format!("parameter  {}", description_of(&change)));
+        self.tuning.keep(change);
+        Ok(())
     }
 
     fn publish(&mut self, now: protocol::Instant) {

@@ -14,6 +14,7 @@ mod port_for_teams;
 mod radio_alarms;
 mod terminal;
 mod threads;
+mod tuning;
 mod watch;
 
 use std::ffi::OsString;
@@ -25,7 +26,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use hil_sim::small_size::Parameters;
-use host::config::{BallSettings, Calibration, RobotLink, TeamConfig, TeamSettings};
+use host::config::{BallSettings, Calibration, DriveSettings, RobotLink, TeamConfig, TeamSettings};
 use protocol::RobotId;
 use rules::Colour;
 use ssl::net::addresses;
@@ -131,6 +132,10 @@ pub(crate) struct ControlArgs {
     headless: bool,
     #[command(flatten)]
     page: PageArgs,
+    /// Viewers of the page may change parameters while robots play (kick gains, limits of the drives, tactics,
+    /// the ball), and save them to the file of --config; without this they may ask for HALT only.
+    #[arg(long, conflicts_with = "headless")]
+    live_parameters: bool,
     /// End after this number of seconds; else Ctrl-C ends it, and robots are halted first.
     #[arg(short, long, value_name = "SECONDS", value_parser = seconds)]
     duration: Option<f64>,
@@ -169,7 +174,12 @@ pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
     };
     let page = (!args.headless).then_some(&args.page);
     let cases = Cases::choose(&args.cases, config.league)?;
-    let keeps = event_loop::Keeps { record: args.record.as_deref(), learned: args.learned.as_deref() };
+    let keeps = event_loop::Keeps {
+        record: args.record.as_deref(),
+        learned: args.learned.as_deref(),
+        config: args.config.as_deref(),
+        live: args.live_parameters,
+    };
     event_loop::run(&config, !args.no_learning, &robots, cases, &keeps, args.duration, page)
 }
 
@@ -241,6 +251,8 @@ fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
         strategy: args.strategy.clone(),
         calibration: args.kicks.clone(),
         ball: BallSettings::default(),
+        limits: DriveSettings::default(),
+        tactics: None,
     };
     let settings = flags.over(file);
     let reported = settings.vision.is_some();

@@ -22,7 +22,9 @@ use rules::state::RefereeCommand;
 
 use self::situation::{Sides, of_case};
 use super::gauges::{gauge, tick};
-use super::{Composer, LedgerFeed, Moment, SCENE_EVERY_S, colour};
+use super::{
+    Composer, LedgerFeed, Moment, ParameterFeed, SCENE_EVERY_S, change_of, colour, description_of,
+};
 use crate::Failure;
 use crate::library::LibraryHandle;
 use crate::output::note;
@@ -154,6 +156,7 @@ impl MatchRunner {
         let mut feed = Feed {
             composer: Composer::new(library_handle.as_ref()),
             ledger: LedgerFeed::new(library_handle.as_ref()),
+            parameters: ParameterFeed::default(),
             t: 0.0,
         };
         let ticks = (config.duration_s * 1e6 / TICK_US as f64) as u64;
@@ -161,6 +164,21 @@ impl MatchRunner {
         let stopped = stopped_by_hand();
         while game.now().0 / TICK_US < ticks && !game.is_over() && !stopped.load(Ordering::Relaxed) {
             while let Some(request) = self.page.next_request() {
+                if let UserRequest::Parameter { team, key, robot, value } = &request {
+                    let change = change_of(key, *robot, value.as_ref());
+                    let told = change.and_then(|change| {
+                        let mut watchers = Watchers(vec![&mut feed, watcher.watcher()]);
+                        game.change(colour(*team), &change, &mut watchers)
+                            .map_err(|refused| refused.to_string())?;
+                        Ok(format!("{}: {}", colour(*team).label(), description_of(&change)))
+                    });
+                    feed.parameters.hasten();
+                    match told {
+                        Ok(description) => self.page.push(MatchEvent::fault(game.time(), description)),
+                        Err(description) => self.page.refuse(description),
+                    }
+                    continue;
+                }
                 self.obey(&request, controls, &mut game, &mut backend).map_err(Failure::Game)?;
             }
             if controls.restart.is_some() {
@@ -223,6 +241,7 @@ impl MatchRunner {
     fn tell_cases(&self, game: &Game<'_>, feed: &mut Feed, over: bool) {
         let hosts = [game.host(Colour::Blue), game.host(Colour::Yellow)];
         feed.ledger.send_of(game.ledger(), game.time(), &hosts, over, &self.page);
+        feed.parameters.look(&hosts, None, &self.page);
     }
 
     fn obey<'b>(
@@ -281,6 +300,11 @@ impl MatchRunner {
             UserRequest::Loss { share } => {
                 game.lose(*share);
                 noted = Some(format!("the radio loses {:.0} % of all packets, by hand", share * 100.0));
+            }
+            // Handled before: it goes through the watchers.
+            UserRequest::Parameter { .. } => {}
+            UserRequest::Save {} => {
+                refused = Some("a simulated match has no team's file: copy the text, or download it".into());
             }
             UserRequest::Halt {} => {
                 game.command(RefereeCommand::Halt);
@@ -353,6 +377,7 @@ pub(crate) trait RestartWatcher {
 struct Feed {
     composer: Composer,
     ledger: LedgerFeed,
+    parameters: ParameterFeed,
     t: f64,
 }
 

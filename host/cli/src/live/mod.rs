@@ -18,6 +18,7 @@ mod match_runner;
 mod minds;
 mod names;
 mod overlay_builder;
+mod parameter_feed;
 mod paths;
 mod possession;
 mod raw;
@@ -52,6 +53,7 @@ pub(crate) use ledger_feed::LedgerFeed;
 pub(crate) use legged::Legged;
 pub(crate) use match_runner::{End, MatchRunner, RestartWatcher, command_of};
 pub(crate) use names::Names;
+pub(crate) use parameter_feed::{ParameterFeed, change_of, description_of};
 
 /// Period of scenes, s: smooth motion, with the page interpolating in between.
 pub(crate) const SCENE_EVERY_S: f64 = 0.04;

@@ -255,6 +255,7 @@ pub(super) fn label(kind: RecordKind) -> &'static str {
         RecordKind::Sent => "sent",
         RecordKind::Halt => "halts",
         RecordKind::Orders => "strategy",
+        RecordKind::Parameter => "parameters",
         RecordKind::Lost => "lost",
     }
 }

@@ -132,7 +132,9 @@ impl Board {
                 UserRequest::Halt {}
                 | UserRequest::Situation { .. }
                 | UserRequest::Power { .. }
-                | UserRequest::Loss { .. } => {
+                | UserRequest::Loss { .. }
+                | UserRequest::Parameter { .. }
+                | UserRequest::Save {} => {
                     self.page.refuse("that can be asked of `onetwo play`; here others command the robots");
                 }
             }

@@ -9,6 +9,7 @@ mod bench;
 mod health;
 mod look;
 mod program;
+mod tune;
 
 use std::time::Duration;
 

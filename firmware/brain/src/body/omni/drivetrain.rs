@@ -305,8 +305,19 @@ fn limits(belief: &Belief, drive: &Drive) -> FreeLimits {
     } else {
         LIMITS
     };
+    let limits = capped(limits, belief);
     let stop = if belief.game.phase == Phase::Stop { STOP_SPEED - SLACK } else { f32::INFINITY };
     limits.slowed_to(drive.speed.min(stop))
+}
+
+/// `limits`, within what the host allows this robot.
+fn capped(limits: FreeLimits, belief: &Belief) -> FreeLimits {
+    limits.slowed_to(belief.drive_cap.speed).softened_to(belief.drive_cap.acceleration)
+}
+
+/// The limits with which the robot plans without the ball, within what the host allows it.
+pub fn limits_without_ball(belief: &Belief) -> FreeLimits {
+    capped(LIMITS, belief)
 }
 
 /// Planning limits without the ball.

@@ -20,7 +20,7 @@ use crate::body::{Body, BodySpec, Intent};
 use crate::skills::wheels as skills;
 use crate::skills::{Reception, Step};
 
-pub use drivetrain::{Drivetrain, LIMITS};
+pub use drivetrain::{Drivetrain, LIMITS, limits_without_ball};
 
 /// From the robot's centre to its flat front, m.
 pub const FRONT: f32 = RobotSpec::OURS.hull.front;

@@ -12,7 +12,7 @@ use rules::{Phase, Side};
 
 use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
-use crate::body::omni::{BALL_AT, Drive, LIMITS};
+use crate::body::omni::{BALL_AT, Drive, limits_without_ball};
 use crate::skills::wheels::get_ball::LOOKS_AHEAD;
 
 /// Blocks a ball on `stretch`.
@@ -51,7 +51,7 @@ fn stop(belief: &Belief, ball: &BelievedBall, crossing: Point<Field>) -> Point<F
         reach: BALL_AT,
         until,
     };
-    match question.find(&LIMITS, InterceptRequest::Safest) {
+    match question.find(&limits_without_ball(belief), InterceptRequest::Safest) {
         InterceptVerdict::Intercepts(interception_point) if interception_point.slack() > 0.0 => {
             interception_point.place
         }

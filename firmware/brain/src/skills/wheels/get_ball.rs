@@ -11,7 +11,7 @@ use rules::contact;
 
 use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
-use crate::body::omni::{BALL_AT, Drive, LIMITS};
+use crate::body::omni::{BALL_AT, Drive, limits_without_ball};
 use crate::skills::Step;
 use crate::skills::wheels::place_ball::wall;
 
@@ -102,7 +102,7 @@ pub(super) fn intercept_ball(belief: &Belief, ball: &BelievedBall) -> Drive {
         reach: BALL_AT,
         until,
     };
-    let place = match question.find_within(&LIMITS, LOOKS_MAX) {
+    let place = match question.find_within(&limits_without_ball(belief), LOOKS_MAX) {
         InterceptVerdict::Intercepts(interception_point) => interception_point.place,
         InterceptVerdict::Chase { place, .. } => place,
     };

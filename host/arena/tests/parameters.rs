@@ -1,0 +1,90 @@
+//! `parameters`: tests: a parameter that changes while a match runs changes what that team's robots do in the
+//! simulator, and nothing of the other team's settings; what was changed is in the trace.
+
+use arena::game::{Game, GameConfig, TICK_US, Watcher};
+use casebase::CaseBase;
+use hil_sim::NativeBackend;
+use hil_sim::small_size::PhysicsEvent;
+use host::config::ParameterChange;
+use protocol::Who;
+use rules::{Colour, League};
+
+/// What a team's robots did.
+#[derive(Debug, Default)]
+struct Seen {
+    /// Balls' speeds after its kicks, m/s.
+    kicks: Vec<f32>,
+    /// Greatest speed of a robot, m/s.
+    fastest: f32,
+    /// Greatest gain of a robot's speed within 100 ms, m/s².
+    hardest: f32,
+}
+
+/// A match; blue's parameters are changed so from the start.
+fn blue_and_yellow(seconds: f64, changes: &[&str]) -> [Seen; 2] {
+    let config = GameConfig::new(League::DivisionB, 4, seconds);
+    let mut backend = NativeBackend::new(CaseBase::default());
+    let mut game = Game::new(&config, &mut backend).expect("a match");
+    for json in changes {
+        let change = ParameterChange::from_json(json.as_bytes()).expect("a change");
+        game.change(Colour::Blue, &change, &mut Silent).expect("accepted");
+    }
+    let mut seen = [Seen::default(), Seen::default()];
+    let mut before: Vec<(Who, f32)> = Vec::new();
+    for tick in 0..(seconds * 1e6) as u64 / TICK_US {
+        game.step(&mut Silent).expect("no emulator");
+        for event in game.events() {
+            if let PhysicsEvent::Kicked { robot, velocity, .. } = event {
+                seen[robot.colour as usize].kicks.push(velocity.norm());
+            }
+        }
+        if tick % 10 != 0 {
+            continue;
+        }
+        let now: Vec<(Who, f32)> =
+            game.world().robots().iter().map(|robot| (robot.who, robot.velocity.norm())).collect();
+        for (who, speed) in &now {
+            let team = &mut seen[who.colour as usize];
+            team.fastest = team.fastest.max(*speed);
+            if let Some((_, had)) = before.iter().find(|(known, _)| known == who) {
+                team.hardest = team.hardest.max((speed - had) / 0.1);
+            }
+        }
+        before = now;
+    }
+    seen
+}
+
+struct Silent;
+impl Watcher for Silent {}
+
+fn median(mut values: Vec<f32>) -> f32 {
+    values.sort_unstable_by(f32::total_cmp);
+    values[values.len() / 2]
+}
+
+#[test]
+fn speed_and_acceleration_limits_slow_the_team_that_sets_them() {
+    let [yellow, blue] = blue_and_yellow(40.0, &[
+        r#"{"key":"limits.speed","value":0.8}"#,
+        r#"{"key":"limits.acceleration","value":1.0}"#,
+    ]);
+    // What a robot does beyond its plan is the controller's error and what pushes it: within a quarter of a metre a second.
+    assert!(blue.fastest < 1.05 && yellow.fastest > 1.5, "{blue:?} {yellow:?}");
+    assert!(blue.hardest < 2.0 && yellow.hardest > 2.0, "{} {}", blue.hardest, yellow.hardest);
+}
+
+#[test]
+fn a_kicker_said_to_kick_twice_as_hard_is_ordered_half_the_speed() {
+    let usual = blue_and_yellow(120.0, &[]);
+    let kicks: Vec<String> =
+        (0..6).map(|n| format!(r#"{{"key":"calibration.kick","robot":{n},"value":2.0}}"#)).collect();
+    let changed = blue_and_yellow(120.0, &kicks.iter().map(String::as_str).collect::<Vec<_>>());
+    let [_, blue_usual] = usual;
+    let [yellow, blue] = changed;
+    let counts = [&blue_usual, &blue, &yellow].map(|team| team.kicks.len());
+    assert!(counts.iter().all(|count| *count >= 5), "{counts:?} kicks: too few to compare");
+    let (before, after) = (median(blue_usual.kicks), median(blue.kicks));
+    assert!(after < before * 0.7, "{after} m/s with, {before} m/s without");
+    assert!(median(yellow.kicks) > after * 1.3, "the other team kicks as before");
+}

@@ -1,0 +1,97 @@
+//! `tuning`: the team's parameters while robots play: changes from the page, kept until they are saved to the
+//! team's file.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use host::Host;
+use host::config::{ParameterChange, TeamConfig};
+use page::Page;
+
+use super::CONFIG_LEN_MAX;
+use crate::live::ParameterFeed;
+use crate::output::printable_path;
+
+/// The configuration that the program started with, and what was changed since.
+pub(super) struct Tuning {
+    config: TeamConfig,
+    file: Option<PathBuf>,
+    changes: Vec<ParameterChange>,
+    feed: ParameterFeed,
+}
+
+impl Tuning {
+    /// Nothing changed yet; `file` is the one of `--config`.
+    pub(super) fn new(config: &TeamConfig, file: Option<&Path>) -> Self {
+        let (changes, feed) = (Vec::new(), ParameterFeed::default());
+        Self { config: config.clone(), file: file.map(Path::to_owned), changes, feed }
+    }
+
+    /// Checks a change against what the host plays by now; an error says why it is refused.
+    pub(super) fn check(&self, host: &Host, change: &ParameterChange) -> Result<(), String> {
+        let now = self.config.clone().with_live(host.settings());
+        now.changed(change).map(|_| ()).map_err(|refused| refused.to_string())
+    }
+
+    /// Keeps a change that the host has taken.
+    pub(super) fn keep(&mut self, change: ParameterChange) {
+        let is_same =
+            |had: &ParameterChange| (&had.key, had.robot) == (&change.key, change.robot);
+        self.changes.retain(|had| !is_same(had));
+        self.changes.push(change);
+        self.feed.hasten();
+    }
+
+    /// Sends the parameters to the page if they are due.
+    pub(super) fn show(&mut self, host: &Host, page: &Page) {
+        let name = self.file.as_deref().map(|file| printable_path(file).to_string());
+        self.feed.look(&[host], Some((&self.config, name)), page);
+    }
+
+    /// Writes what was changed into the team's file, whose comments and order stay; says what was done.
+    pub(super) fn save(&mut self) -> Result<String, String> {
+        let Some(file) = &self.file else {
+            return Err("there is no file to save to: start with --config team.toml".to_owned());
+        };
+        if self.changes.is_empty() {
+            return Err("nothing was changed since it was saved".to_owned());
+        }
+        let failed = |error: io::Error| format!("{}: {error}; nothing is saved", printable_path(file));
+        let mut text = foreign::read_text(file, CONFIG_LEN_MAX)
+            .map_err(|error| failed(io::Error::other(error.to_string())))?;
+        for change in &self.changes {
+            text = change.write_into(&text).map_err(|refused| failed(io::Error::other(refused.to_string())))?;
+        }
+        // A crash while writing leaves the file as it was.
+        let beside = file.with_extension("new");
+        fs::write(&beside, text).and_then(|()| fs::rename(&beside, file)).map_err(failed)?;
+        let number = self.changes.len();
+        self.changes.clear();
+        Ok(format!("{number} changed parameters are in {}", printable_path(file)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_changed_is_saved_once_and_the_rest_of_the_file_stays() {
+        let file = std::env::temp_dir().join(format!("onetwo-tuning-{}.toml", std::process::id()));
+        fs::write(&file, "# our team\nkeeper = 2\n").unwrap();
+        let config = host::config::TeamSettings::default().complete().unwrap();
+        let mut tuning = Tuning::new(&config, Some(&file));
+        assert!(tuning.save().unwrap_err().contains("nothing was changed"));
+        for value in [1.5, 1.7] {
+            let value = Some(toml::Value::from(value));
+            tuning.keep(ParameterChange { key: "limits.speed".to_owned(), robot: None, value });
+        }
+        let told = tuning.save().unwrap();
+        assert!(told.starts_with("1 changed"), "{told}");
+        assert_eq!(fs::read_to_string(&file).unwrap(), "# our team\nkeeper = 2\n\n[limits]\nspeed = 1.7\n");
+        assert!(tuning.save().is_err());
+        fs::remove_file(&file).unwrap();
+        assert!(Tuning::new(&config, None).save().unwrap_err().contains("--config"));
+    }
+}

@@ -1,0 +1,123 @@
+//! `parameter_feed`: the teams' parameters for the page: the list with values and ranges, and what is
+//! learned beside it.
+
+use std::time::{Duration, Instant};
+
+use host::Host;
+use host::config::parameters::ParameterValue;
+use host::config::{ParameterChange, TeamConfig};
+use host::learned::Learned;
+use page::{Page, PageTeam};
+use protocol::RobotId;
+use serde::Serialize;
+
+use super::team as page_team;
+
+/// The page gets the list this often: what is learned changes slowly.
+const EVERY: Duration = Duration::from_secs(1);
+
+/// Passes lists to the page.
+#[derive(Default)]
+pub(crate) struct ParameterFeed {
+    sent: Option<Instant>,
+}
+
+/// A team's parameters as the page gets them.
+#[derive(Serialize)]
+struct TeamParameters {
+    team: PageTeam,
+    list: Vec<ParameterValue>,
+    /// What is learned of robots' kickers, by robot.
+    kicks: Vec<LearnedValue>,
+    /// What is learned of the rolling ball, m/s².
+    roll: Option<LearnedValue>,
+    /// The file that changes can be saved to.
+    file: Option<String>,
+    /// A whole `team.toml` of these values, where there is no file.
+    toml: Option<String>,
+}
+
+/// A learned value beside a parameter.
+#[derive(Serialize)]
+struct LearnedValue {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    robot: Option<u8>,
+    value: f32,
+    /// Standard error, in the value's unit.
+    error: f32,
+    /// Number of observations.
+    samples: usize,
+}
+
+impl ParameterFeed {
+    /// The next list is sent at once: a value has changed.
+    pub(crate) fn hasten(&mut self) {
+        self.sent = None;
+    }
+
+    /// Sends the lists of these hosts if they are due. `file`: the configuration and the name of the file
+    /// that the only host was started with.
+    pub(crate) fn look(
+        &mut self,
+        hosts: &[&Host],
+        file: Option<(&TeamConfig, Option<String>)>,
+        page: &Page,
+    ) {
+        if self.sent.is_some_and(|sent| sent.elapsed() < EVERY) {
+            return;
+        }
+        self.sent = Some(Instant::now());
+        let teams: Vec<_> = hosts.iter().filter_map(|host| team(host, file.as_ref())).collect();
+        // Words and finite numbers: JSON can represent all of it.
+        page.set_parameters(serde_json::to_string(&teams).unwrap_or_default());
+    }
+}
+
+fn team(host: &Host, file: Option<&(&TeamConfig, Option<String>)>) -> Option<TeamParameters> {
+    let config = match file {
+        Some((config, _)) => (*config).clone().with_live(host.settings()),
+        None => TeamConfig::of(host.settings()).ok()?,
+    };
+    let learned: &Learned = host.learned();
+    let kick = |robot: RobotId| {
+        let known = learned.kick(robot)?;
+        let (value, error, samples) = (known.value, known.error(), known.samples);
+        Some(LearnedValue { robot: Some(robot.number()), value, error, samples })
+    };
+    let roll = learned.friction().map(|known| LearnedValue {
+        robot: None,
+        value: known.value,
+        error: known.error(),
+        samples: known.samples,
+    });
+    Some(TeamParameters {
+        team: page_team(host.settings().us),
+        list: config.parameters(),
+        kicks: RobotId::all().filter_map(kick).collect(),
+        roll,
+        file: file.and_then(|(_, name)| name.clone()),
+        toml: file.is_none().then(|| config.to_toml()),
+    })
+}
+
+/// The change that a viewer asks for; an error says what its value must be.
+pub(crate) fn change_of(
+    key: &str,
+    robot: Option<u8>,
+    value: Option<&serde_json::Value>,
+) -> Result<ParameterChange, String> {
+    let value = value.filter(|value| !value.is_null()).map(|value| {
+        toml::Value::try_from(value)
+            .map_err(|_| format!("{key}: expected a number, a word, true or false"))
+    });
+    Ok(ParameterChange { key: key.to_owned(), robot, value: value.transpose()? })
+}
+
+/// A change in words, for the page's events and the log.
+pub(crate) fn description_of(change: &ParameterChange) -> String {
+    let robot = change.robot.map(|robot| format!(" of robot {robot}")).unwrap_or_default();
+    match &change.value {
+        Some(value) => format!("{}{robot} is now {value}, by hand", change.key),
+        None => format!("{}{robot} is as if left out, by hand", change.key),
+    }
+}

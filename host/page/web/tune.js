@@ -1,0 +1,121 @@
+// What does a team tune? Its parameters with unit, range and usual value; those that may change while it plays are set here, the rest is read at the start.
+
+import { byId, el, fill, number, say } from "./dom.js";
+import { ask, getJson } from "./link.js";
+import { store } from "./store.js";
+
+/** The program is asked for values so often, ms. */
+const EVERY = 1000;
+
+let teams = [];
+let asked = 0;
+let version = 0;
+let text = "[]";
+
+async function more() {
+  if (performance.now() - asked < EVERY) return;
+  asked = performance.now();
+  const answer = await getJson("/api/parameters");
+  const now = JSON.stringify(answer);
+  if (now === text) return;
+  [teams, text, version] = [answer, now, version + 1];
+}
+
+const mayChange = () => ["simulation", "tune"].includes(store.state.powers) && store.state.may_ask !== false;
+
+export function showTune() {
+  const tab = byId("tab-tune");
+  if (tab.hidden) return;
+  more().then(draw).catch(() => {});
+  draw();
+}
+
+function draw() {
+  const tab = byId("tab-tune");
+  // What is being written is not taken away.
+  if (tab.contains(document.activeElement) && document.activeElement.matches("input")) return;
+  fill(tab, `${version} ${store.state.powers} ${store.state.may_ask} ${store.state.recorded}`, () => [
+    el("p", { id: "tune-note", class: "muted", role: "status" }, note()),
+    ...teams.flatMap(team),
+  ]);
+}
+
+function note() {
+  if (store.state.recorded) return "A recording has its teams' settings in its header: replay FILE --json tells them.";
+  if (teams.length === 0) return "No team's parameters are known yet.";
+  if (store.state.powers === "halt") return "Read only: to change parameters on a real field start control with --live-parameters.";
+  if (!mayChange()) return "You look on: to change something, open the page by the address with ?token= that the program printed.";
+  return "Enter or leaving a box sets a value; an empty box is the usual one. Changes hold from the next plan on.";
+}
+
+const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
+const words = (value) => (value == null ? "" : String(value));
+
+/** The parameters of a team, by table of its file. */
+function team({ team: name, list, kicks, roll, file, toml }) {
+  const tables = Map.groupBy(list, ({ key }) => (key.includes(".") ? key.split(".")[0] : "team"));
+  const changed = list.filter((one) => !same(one.value, one.default)).length;
+  return [
+    el("h2", {}, el("span", { class: `chip ${name}` }, name[0].toUpperCase()), ` ${name}: ${changed} of ${list.length} not as usual`),
+    ...[...tables].map(([table, some]) => el("details", { open: some.some(({ live }) => live), "data-table": table }, el("summary", {}, table),
+      el("div", { class: "params" }, some.flatMap((one) => (one.each_robot ? robots(name, one, list) : [row(name, one)]))),
+      table === "ball" && roll ? el("p", { class: "muted" }, `learned: ${number(roll.value, 3)} ± ${number(roll.error, 3)} m/s² of ${roll.samples}`) : null,
+      table === "calibration" ? learned(name, kicks, list) : null)),
+    el("div", { class: "field-set" },
+      file ? el("button", { "data-save": name, disabled: !mayChange(), onclick: () => ask({ ask: "save" }) }, `Save to ${file}`) : null,
+      toml ? el("a", { class: "button", download: `team-${name}.toml`, href: `data:application/toml;charset=utf-8,${encodeURIComponent(toml)}` }, "Download team.toml") : null),
+  ];
+}
+
+/** One box for each robot that is on the field or has a value of its own. */
+function robots(name, one, list) {
+  if (one !== list.find(({ key }) => key === one.key)) return [];
+  const own = new Map(list.filter(({ key, robot }) => key === one.key && robot != null).map((some) => [some.robot, some]));
+  const on = (store.scene?.robots ?? []).filter((robot) => robot.team === name).map(({ id }) => id);
+  return [...new Set([...on, ...own.keys()])].sort((a, b) => a - b).map((robot) => row(name, own.get(robot) ?? { ...one, robot, value: null }));
+}
+
+function row(name, one) {
+  const label = one.robot == null ? one.key : `${one.key} ${one.robot}`;
+  const id = `tune-${name}-${label.replaceAll(/[ .]/g, "-")}`;
+  const differs = one.value != null && !same(one.value, one.default);
+  const range = one.range ? `, ${one.range[0]} to ${one.range[1]} ${one.unit}` : one.unit ? `, ${one.unit}` : "";
+  const about = el("small", { class: "muted", id: `${id}-about` }, `${one.meaning}${range}${one.default == null ? "" : `; usual: ${one.default}`}`);
+  const value = one.live && mayChange() ? box(name, one, id) : el("output", { id, class: "value" }, words(one.value) || "–");
+  return el("div", { class: differs ? "param differs" : "param", "data-key": label },
+    el("label", { for: id }, label.includes(".") ? label.slice(label.indexOf(".") + 1) : label), value, el("span", { class: "unit" }, one.unit), about);
+}
+
+function box(name, one, id) {
+  const isNumber = one.range != null;
+  const made = el("input", { id, type: isNumber ? "number" : "text", value: words(one.value), placeholder: words(one.default) || "usual", "aria-describedby": `${id}-about`,
+    ...(isNumber ? { min: one.range[0], max: one.range[1], step: "any" } : {}) });
+  let sent = made.value;
+  const set = () => {
+    if (made.value === sent || !made.validity.valid) return;
+    sent = made.value;
+    change(name, one, made.value === "" ? null : isNumber ? Number(made.value) : made.value);
+  };
+  made.addEventListener("change", set);
+  made.addEventListener("keydown", (event) => {
+    if (event.key === "Escape") {
+      made.value = sent;
+      made.blur();
+    }
+  });
+  return made;
+}
+
+function change(name, { key, robot }, value) {
+  ask({ ask: "parameter", team: name, key, ...(robot == null ? {} : { robot }), value });
+  asked = 0;
+  say(byId("tune-note"), `${name}: ${key}${robot == null ? "" : ` of robot ${robot}`} = ${value ?? "usual"}`);
+}
+
+/** What was learned of each robot's kicker; a press takes it as its gain. */
+function learned(name, kicks, list) {
+  if (kicks.length === 0) return el("p", { class: "muted" }, "Nothing learned of kickers yet: robots kick, the tracker fits the speed, the median is shown here.");
+  const kick = list.find(({ key }) => key === "calibration.kick");
+  return el("ul", { class: "learned" }, kicks.map(({ robot, value, error, samples }) => el("li", {}, `robot ${robot}: learned ${number(value, 3)} ± ${number(error, 3)} of ${samples} kicks `,
+    mayChange() ? el("button", { "data-take": `${name}${robot}`, onclick: () => change(name, { ...kick, robot }, Number(value.toFixed(3))) }, "Take") : null)));
+}
