@@ -51,16 +51,17 @@ function note() {
 const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 const words = (value) => (value == null ? "" : String(value));
 
-/** The parameters of a team, by table of its file. */
+/** The parameters of a team: those that can change while it plays, then those that are read at the start. */
 function team({ team: name, list, kicks, roll, file, toml }) {
-  const tables = Map.groupBy(list, ({ key }) => (key.includes(".") ? key.split(".")[0] : "team"));
-  const changed = list.filter((one) => !same(one.value, one.default)).length;
+  const [live, start] = [true, false].map((now) => list.filter((one) => one.live === now));
+  const rows = (some) => el("div", { class: "params" }, some.flatMap((one) => (one.each_robot ? robots(name, one, list) : [row(name, one)])));
+  const changed = list.filter((one) => one.value != null && !same(one.value, one.default)).length;
   return [
     el("h2", {}, el("span", { class: `chip ${name}` }, name[0].toUpperCase()), ` ${name}: ${changed} of ${list.length} not as usual`),
-    ...[...tables].map(([table, some]) => el("details", { open: some.some(({ live }) => live), "data-table": table }, el("summary", {}, table),
-      el("div", { class: "params" }, some.flatMap((one) => (one.each_robot ? robots(name, one, list) : [row(name, one)]))),
-      table === "ball" && roll ? el("p", { class: "muted" }, `learned: ${number(roll.value, 3)} ± ${number(roll.error, 3)} m/s² of ${roll.samples}`) : null,
-      table === "calibration" ? learned(name, kicks, list) : null)),
+    rows(live),
+    roll ? el("p", { class: "muted" }, `Rolling ball: learned ${number(roll.value, 3)} ± ${number(roll.error, 3)} m/s² of ${roll.samples} balls.`) : null,
+    learned(name, kicks, list),
+    el("details", { "data-start": name }, el("summary", {}, "Read when the program starts"), rows(start)),
     el("div", { class: "field-set" },
       file ? el("button", { "data-save": name, disabled: !mayChange(), onclick: () => ask({ ask: "save" }) }, `Save to ${file}`) : null,
       toml ? el("a", { class: "button", download: `team-${name}.toml`, href: `data:application/toml;charset=utf-8,${encodeURIComponent(toml)}` }, "Download team.toml") : null),
@@ -79,11 +80,11 @@ function row(name, one) {
   const label = one.robot == null ? one.key : `${one.key} ${one.robot}`;
   const id = `tune-${name}-${label.replaceAll(/[ .]/g, "-")}`;
   const differs = one.value != null && !same(one.value, one.default);
-  const range = one.range ? `, ${one.range[0]} to ${one.range[1]} ${one.unit}` : one.unit ? `, ${one.unit}` : "";
+  const range = one.range ? `, ${one.range[0]} to ${one.range[1]}${one.unit && ` ${one.unit}`}` : one.unit ? `, ${one.unit}` : "";
   const about = el("small", { class: "muted", id: `${id}-about` }, `${one.meaning}${range}${one.default == null ? "" : `; usual: ${one.default}`}`);
   const value = one.live && mayChange() ? box(name, one, id) : el("output", { id, class: "value" }, words(one.value) || "–");
   return el("div", { class: differs ? "param differs" : "param", "data-key": label },
-    el("label", { for: id }, label.includes(".") ? label.slice(label.indexOf(".") + 1) : label), value, el("span", { class: "unit" }, one.unit), about);
+    el("label", { for: id }, label), value, el("span", { class: "unit" }, one.unit), about);
 }
 
 function box(name, one, id) {
@@ -114,7 +115,7 @@ function change(name, { key, robot }, value) {
 
 /** What was learned of each robot's kicker; a press takes it as its gain. */
 function learned(name, kicks, list) {
-  if (kicks.length === 0) return el("p", { class: "muted" }, "Nothing learned of kickers yet: robots kick, the tracker fits the speed, the median is shown here.");
+  if (kicks.length === 0) return el("p", { class: "muted" }, "Nothing learned of kickers yet: robots kick, the tracker fits the ball's speed, and the median of the last 15 kicks is shown here.");
   const kick = list.find(({ key }) => key === "calibration.kick");
   return el("ul", { class: "learned" }, kicks.map(({ robot, value, error, samples }) => el("li", {}, `robot ${robot}: learned ${number(value, 3)} ± ${number(error, 3)} of ${samples} kicks `,
     mayChange() ? el("button", { "data-take": `${name}${robot}`, onclick: () => change(name, { ...kick, robot }, Number(value.toFixed(3))) }, "Take") : null)));
