@@ -53,8 +53,7 @@ impl HostMessage {
             Self::World(part) => part.part < part.parts && usize::from(part.parts) <= PARTS_MAX,
             Self::Command(_) | Self::Welcome(_) => true,
             Self::Limits(limits) => {
-                limits.speed >= DriveLimits::SPEED_MIN
-                    && limits.acceleration >= DriveLimits::ACCELERATION_MIN
+                limits.speed >= DriveLimits::SPEED_MIN && limits.acceleration >= DriveLimits::ACCELERATION_MIN
             }
         }
     }

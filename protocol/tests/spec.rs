@@ -5,8 +5,8 @@ use geometry::{GoalEnd, Vector};
 use protocol::decision::{DecisionReport, Grounds};
 use protocol::frame::{Audience, Frame, Key, Sender, TeamKey};
 use protocol::host::{
-    Condition, Directive, DriveLimits, Hint, HostCommand, HostMessage, KickOrder, RuleRole, Telemetry, Welcome, WireBall,
-    WireRobot, WireWho, WorldPart,
+    Condition, Directive, DriveLimits, Hint, HostCommand, HostMessage, KickOrder, RuleRole, Telemetry,
+    Welcome, WireBall, WireRobot, WireWho, WorldPart,
 };
 use protocol::quantized::{WirePoint, WirePose};
 use protocol::serial::{Lines, line};

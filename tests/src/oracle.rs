@@ -110,6 +110,12 @@ pub fn answer_line(library: &Library, number: usize, line: &str) -> Option<Value
 
 /// The answer to a problem.
 pub fn retrieve(library: &Library, problem: &Problem, rules: &Rules) -> Answer {
+    let (candidates, near_tie) = ranked(library, problem, rules);
+    Answer { candidates: candidates.len(), winner: candidates.into_iter().next(), near_tie }
+}
+
+/// Every case that passes filters 1–4, in the order of the rank, and the first decision that was nearly a tie.
+pub fn ranked(library: &Library, problem: &Problem, rules: &Rules) -> (Vec<Candidate>, Option<&'static str>) {
     let mut teammates = problem.teammates.clone();
     teammates.sort_by_key(|(id, _)| *id);
     let problem = &Problem { teammates, ..problem.clone() };
@@ -126,8 +132,7 @@ pub fn retrieve(library: &Library, problem: &Problem, rules: &Rules) -> Answer {
             rank(first, other, rules, &close);
         }
     }
-    let count = candidates.len();
-    Answer { winner: candidates.into_iter().next(), candidates: count, near_tie: close.0.get() }
+    (candidates, close.0.get())
 }
 
 /// Filters 1–4, and the numbers of the rank.

@@ -225,9 +225,8 @@ mod tests {
         let mut hosted = Hosted::new(id(3));
         let mut belief = Belief::new(League::DivisionB);
         let sensors = nothing();
-        let limits = |to, speed, acceleration| {
-            HostMessage::Limits(DriveLimits { to: id(to), speed, acceleration })
-        };
+        let limits =
+            |to, speed, acceleration| HostMessage::Limits(DriveLimits { to: id(to), speed, acceleration });
         let mut cap = |hosted: &mut Hosted| {
             hosted.see(Instant(0), &sensors, &mut belief);
             (belief.drive_cap.speed, belief.drive_cap.acceleration)

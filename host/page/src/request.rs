@@ -167,7 +167,10 @@ impl UserRequest {
         };
         let id = match &self {
             Self::Robot { id, .. } | Self::Power { id, .. } | Self::Parameter { robot: Some(id), .. }
-                if *id > 15 => Some("robots: 0 to 15"),
+                if *id > 15 =>
+            {
+                Some("robots: 0 to 15")
+            }
             _ => None,
         };
         wrong.or(id).map_or(Ok(self), |description| Err(Refused::Range(description)))

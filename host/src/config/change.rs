@@ -162,8 +162,9 @@ impl TeamConfig {
 impl DriveSettings {
     /// The same, if both are within their ranges.
     pub(crate) fn checked(self) -> Result<Self, ConfigError> {
-        let within =
-            |parameter: &Parameter, limit: Option<f32>| limit.map(|limit| parameter.checked(limit)).transpose();
+        let within = |parameter: &Parameter, limit: Option<f32>| {
+            limit.map(|limit| parameter.checked(limit)).transpose()
+        };
         Ok(Self {
             speed: within(&SPEED, self.speed)?,
             acceleration: within(&ACCELERATION, self.acceleration)?,

@@ -133,9 +133,11 @@ impl BackgroundRecorder {
     /// Something came to the host of that colour.
     pub fn input(&mut self, now: Instant, host: Colour, input: Input<'_>) {
         let len = match input {
-            Input::Vision(bytes) | Input::Referee(bytes, _) | Input::Robot(bytes) | Input::Orders(bytes) | Input::Parameter(bytes) => {
-                bytes.len()
-            }
+            Input::Vision(bytes)
+            | Input::Referee(bytes, _)
+            | Input::Robot(bytes)
+            | Input::Orders(bytes)
+            | Input::Parameter(bytes) => bytes.len(),
             Input::Halt | Input::Timeout => 0,
         };
         if self.has_record_room(now, len) {

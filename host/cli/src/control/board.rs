@@ -32,8 +32,7 @@ impl Board {
         let open = || {
             let composer = Composer::new(library_handle.as_ref());
             let ledger = LedgerFeed::new(library_handle.as_ref());
-            let page =
-                args.open(title, false, powers, CaseExplanations::new(library_handle, settings))?;
+            let page = args.open(title, false, powers, CaseExplanations::new(library_handle, settings))?;
             Ok::<_, crate::Failure>(Self { page, composer, ledger, drawn_at: None, took: Duration::ZERO })
         };
         open().map_err(|failure| note!("page     there is none: {failure}")).ok()

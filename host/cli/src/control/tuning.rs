@@ -36,8 +36,7 @@ impl Tuning {
 
     /// Keeps a change that the host has taken.
     pub(super) fn keep(&mut self, change: ParameterChange) {
-        let is_same =
-            |had: &ParameterChange| (&had.key, had.robot) == (&change.key, change.robot);
+        let is_same = |had: &ParameterChange| (&had.key, had.robot) == (&change.key, change.robot);
         self.changes.retain(|had| !is_same(had));
         self.changes.push(change);
         self.feed.hasten();
@@ -61,7 +60,8 @@ impl Tuning {
         let mut text = foreign::read_text(file, CONFIG_LEN_MAX)
             .map_err(|error| failed(io::Error::other(error.to_string())))?;
         for change in &self.changes {
-            text = change.write_into(&text).map_err(|refused| failed(io::Error::other(refused.to_string())))?;
+            text =
+                change.write_into(&text).map_err(|refused| failed(io::Error::other(refused.to_string())))?;
         }
         // A crash while writing leaves the file as it was.
         let beside = file.with_extension("new");

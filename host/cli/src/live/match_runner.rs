@@ -22,9 +22,7 @@ use rules::state::RefereeCommand;
 
 use self::situation::{Sides, of_case};
 use super::gauges::{gauge, tick};
-use super::{
-    Composer, LedgerFeed, Moment, ParameterFeed, SCENE_EVERY_S, change_of, colour, description_of,
-};
+use super::{Composer, LedgerFeed, Moment, ParameterFeed, SCENE_EVERY_S, change_of, colour, description_of};
 use crate::Failure;
 use crate::library::LibraryHandle;
 use crate::output::note;

@@ -57,12 +57,7 @@ impl ParameterFeed {
 
     /// Sends the lists of these hosts if they are due. `file`: the configuration and the name of the file
     /// that the only host was started with.
-    pub(crate) fn look(
-        &mut self,
-        hosts: &[&Host],
-        file: Option<(&TeamConfig, Option<String>)>,
-        page: &Page,
-    ) {
+    pub(crate) fn look(&mut self, hosts: &[&Host], file: Option<(&TeamConfig, Option<String>)>, page: &Page) {
         if self.sent.is_some_and(|sent| sent.elapsed() < EVERY) {
             return;
         }
@@ -107,8 +102,7 @@ pub(crate) fn change_of(
     value: Option<&serde_json::Value>,
 ) -> Result<ParameterChange, String> {
     let value = value.filter(|value| !value.is_null()).map(|value| {
-        toml::Value::try_from(value)
-            .map_err(|_| format!("{key}: expected a number, a word, true or false"))
+        toml::Value::try_from(value).map_err(|_| format!("{key}: expected a number, a word, true or false"))
     });
     Ok(ParameterChange { key: key.to_owned(), robot, value: value.transpose()? })
 }

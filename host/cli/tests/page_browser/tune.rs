@@ -51,7 +51,8 @@ fn the_list_is_that_of_the_file_and_a_limit_set_on_the_page_slows_the_robots() {
     )
     .unwrap();
     tab.wait("document.querySelector('#tune-blue-limits-speed').value === '0.4' && document.querySelector('#tune-blue-limits-speed').closest('.param').classList.contains('differs')", 10).unwrap();
-    tab.wait("onetwo.store.matchEvents.some((e) => e.words.includes('limits.speed is now 0.4'))", 10).unwrap();
+    tab.wait("onetwo.store.matchEvents.some((e) => e.words.includes('limits.speed is now 0.4'))", 10)
+        .unwrap();
     tab.eval("globalThis.fastest = { blue: 0, yellow: 0 }; globalThis.from = onetwo.store.scene.t + 3; setInterval(() => { const s = onetwo.store.scene; if (s.t > from) for (const r of s.robots) fastest[r.team] = Math.max(fastest[r.team], Math.hypot(...r.velocity ?? [0, 0])); }, 50)").unwrap();
     tab.wait("onetwo.store.scene.t > from + 15", 60).unwrap();
     let fastest = tab.eval("JSON.stringify(fastest)").unwrap();
