@@ -12,7 +12,7 @@ use host::record::trace::{Reader, Record};
 use protocol::{Instant, RobotId, Who};
 use rules::Colour;
 
-use super::comparison::{Comparison, Ended, settings};
+use super::comparison::{Comparison, Ended, Report, settings};
 use super::decided::Decided;
 use super::decisions::Decisions;
 use super::trace::{all, damage_of, key, unfinished};
@@ -25,11 +25,11 @@ use crate::output::print_text;
 use crate::progress::Progress;
 
 /// A trace that is played.
-struct Playing<'a> {
-    file: &'a Path,
+pub(super) struct Playing<'a> {
+    pub(super) file: &'a Path,
     header: RecordingHeader,
     reader: Reader<Box<dyn std::io::Read>>,
-    recheck: Recheck,
+    pub(super) recheck: Recheck,
     decisions: Decisions,
     /// The first record that was not played yet.
     next: Option<Record>,
@@ -37,7 +37,7 @@ struct Playing<'a> {
 }
 
 impl<'a> Playing<'a> {
-    fn open(args: &ReplayArgs, file: &'a Path) -> Result<Self, Failure> {
+    pub(super) fn open(args: &ReplayArgs, file: &'a Path) -> Result<Self, Failure> {
         if !begins(file)?.starts_with(TRACE) {
             return Err(failed(file)(RecordedError::NoTrace));
         }
@@ -61,7 +61,7 @@ impl<'a> Playing<'a> {
     }
 
     /// Plays all records up to the end of a tick, and returns them.
-    fn play(&mut self, tick: u64) -> Vec<Record> {
+    pub(super) fn play(&mut self, tick: u64) -> Vec<Record> {
         let mut played = Vec::new();
         while self.tick().is_some_and(|next| next <= tick)
             && let Some(record) = self.next.take()
@@ -97,8 +97,24 @@ impl<'a> Playing<'a> {
     }
 }
 
-/// Plays `args.file` and `other` in step.
+/// Plays `args.file` and `other` in step, and prints what differs.
 pub(super) fn run(args: &ReplayArgs, other: &Path) -> Result<ExitCode, Failure> {
+    let report = compare(args, other)?;
+    let output = if args.json {
+        serde_json::to_string(&report).map_err(|error| Failure::Output(error.into()))? + "\n"
+    } else {
+        report.text()
+    };
+    print_text(&output)?;
+    match report.damaged() {
+        Some(i) => Err(failed([&args.file, other][i])(RecordedError::Damaged(report.damage(i)))),
+        None if report.same() => Ok(ExitCode::SUCCESS),
+        None => Ok(ExitCode::FAILURE),
+    }
+}
+
+/// Plays `args.file` and `other` in step; what differs.
+pub(super) fn compare(args: &ReplayArgs, other: &Path) -> Result<Report, Failure> {
     // What cannot be compared is told before hosts are built: a host refuses another case base by itself.
     comparable(&args.file, other)?;
     let mut pair = [Playing::open(args, &args.file)?, Playing::open(args, other)?];
@@ -139,18 +155,7 @@ pub(super) fn run(args: &ReplayArgs, other: &Path) -> Result<ExitCode, Failure> 
     drop(bar);
     let ended = [pair[0].finish()?, pair[1].finish()?];
     comparison.decisions(&pair[0].decisions.all, &pair[1].decisions.all);
-    let report = comparison.report(ended);
-    let output = if args.json {
-        serde_json::to_string(&report).map_err(|error| Failure::Output(error.into()))? + "\n"
-    } else {
-        report.text()
-    };
-    print_text(&output)?;
-    match report.damaged() {
-        Some(i) => Err(failed(pair[i].file)(RecordedError::Damaged(report.damage(i)))),
-        None if report.same() => Ok(ExitCode::SUCCESS),
-        None => Ok(ExitCode::FAILURE),
-    }
+    Ok(comparison.report(ended))
 }
 
 /// Refuses traces that have nothing to compare: other formats, leagues, hosts or case bases.

@@ -275,6 +275,11 @@ impl Report {
         self.files.get(which).and_then(|file| file.damage.clone()).unwrap_or_default()
     }
 
+    /// The earliest difference.
+    pub(super) fn first(&self) -> Option<&Unlike> {
+        self.first.as_ref()
+    }
+
     pub(super) fn text(&self) -> String {
         let mut out = String::new();
         for (name, Ended { file, span_s: (first, last), damage }) in ["A", "B"].into_iter().zip(&self.files) {

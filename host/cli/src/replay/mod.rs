@@ -4,6 +4,7 @@
 //! Two kinds of files, distinguished by their first bytes: the league's log files (of any team) and traces of
 //! ours (docs/architecture.md §7.4).
 
+mod beside;
 mod clock;
 mod compare;
 mod comparison;
@@ -72,8 +73,8 @@ pub(crate) struct ReplayArgs {
     #[arg(long)]
     check: bool,
     /// Play this trace in step with FILE, and print where they differ first: records, orders, positions and
-    /// decisions on cases, with both values.
-    #[arg(long, value_name = "TRACE", conflicts_with_all = ["watch", "at", "event", "problems", "team"])]
+    /// decisions on cases, with both values. With --watch: both on the page, in step, this one as a layer.
+    #[arg(long, value_name = "TRACE", conflicts_with_all = ["at", "event", "problems", "team"])]
     compare: Option<PathBuf>,
     #[command(flatten)]
     directory: DirectoryArgs,

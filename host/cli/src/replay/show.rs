@@ -18,6 +18,7 @@ use protocol::Instant;
 use rules::{Colour, League};
 use ssl::log::MessageKind;
 
+use super::beside::Beside;
 use super::clock::LogClock;
 use super::{ReplayArgs, TRACE, begins, failed, open, trace};
 use crate::Failure;
@@ -34,24 +35,30 @@ pub(super) fn run(args: &ReplayArgs, page: &PageArgs) -> Result<ExitCode, Failur
 }
 
 /// The page and its composer.
-struct Projector {
+struct Projector<'a> {
     page: Page,
     composer: Composer,
     ledger: LedgerFeed,
     due: f64,
     /// The file is cut or damaged.
     broken: bool,
+    /// A second trace.
+    beside: Option<Beside<'a>>,
 }
 
-impl Projector {
-    fn new(args: &ReplayArgs, page: &PageArgs, league: League) -> Result<Self, Failure> {
+impl<'a> Projector<'a> {
+    fn new(args: &'a ReplayArgs, page: &PageArgs, league: League) -> Result<Self, Failure> {
         let library_handle = library_handle_of(league, args.directory.library.as_deref())?;
         let composer = Composer::new(library_handle.as_ref());
         let ledger = LedgerFeed::new(library_handle.as_ref());
         let name = args.file.file_name().map(|name| name.to_string_lossy().into_owned());
         let explanations = CaseExplanations::new(library_handle, casebase::RetrievalSettings::default());
         let page = page.open(name.unwrap_or_default(), true, Powers::None, explanations)?;
-        Ok(Self { page, composer, ledger, due: f64::NEG_INFINITY, broken: false })
+        let beside = args.compare.as_deref().map(|other| Beside::open(args, other)).transpose()?;
+        if let Some(beside) = &beside {
+            note!("{}", printable(&beside.description()));
+        }
+        Ok(Self { page, composer, ledger, due: f64::NEG_INFINITY, broken: false, beside })
     }
 
     /// Displays the moment after a message, if the last scene is long enough ago.
@@ -63,7 +70,13 @@ impl Projector {
         }
         self.due = t + SCENE_EVERY_S;
         let moment = Moment { t, now, feed, hosts, truth: None, referee: None, gauges: Vec::new() };
-        let deferred_scene = self.composer.compose(moment);
+        let mut deferred_scene = self.composer.compose(moment);
+        if let Some(beside) = &mut self.beside {
+            if let Some(differs) = beside.play(now) {
+                self.page.push(differs);
+            }
+            deferred_scene.scene.layers.push(beside.layer(now, &feed.tracker().world(now)));
+        }
         for match_event in self.composer.take_match_events() {
             self.page.push(match_event);
         }
@@ -151,6 +164,9 @@ fn show_trace(args: &ReplayArgs, page: &PageArgs) -> Result<ExitCode, Failure> {
 }
 
 fn show_log(args: &ReplayArgs, page: &PageArgs) -> Result<ExitCode, Failure> {
+    if args.compare.is_some() {
+        return Err(failed(&args.file)(RecordedError::NoTrace));
+    }
     let mut reader = ssl::log::open(&args.file).map_err(RecordedError::Log).map_err(failed(&args.file))?;
     let settings = HostSettings::new(args.team.unwrap_or(Colour::Blue), args.league, 1);
     let mut host = Host::new(settings, Instant(0));

@@ -295,3 +295,30 @@ fn the_cases_of_a_recording_are_counted_up_to_the_moment_and_open_by_key() {
     tab.wait("!document.querySelector('[data-detail]')", 5).unwrap();
     no_errors(&mut tab);
 }
+
+#[test]
+fn two_traces_are_shown_in_step_with_their_first_difference() {
+    let record = |seed: &str| {
+        let stem = std::env::temp_dir().join(format!("onetwo-beside-{}-{seed}", std::process::id()));
+        let stem = stem.to_str().unwrap().to_owned();
+        program::onetwo(&["play", "--headless", "--duration", "20", "--seed", seed, "--record", &stem], "");
+        format!("{stem}.trace")
+    };
+    let (a, b) = (record("5"), record("6"));
+    let program = Program::start(&["replay", &a, "--compare", &b, "--watch", "--listen", "127.0.0.1:0"]);
+    let mut browser = Browser::start().unwrap();
+    let mut tab = browser.open(&program.url("?theme=dark"), 1400, 900).unwrap();
+    tab.wait("onetwo?.store.matchEvents.some((e) => e.words.includes('the traces differ first here'))", 60)
+        .unwrap();
+    tab.wait("onetwo.store.scene?.layers.find((l) => l.name === 'other-trace')?.shapes.filter((s) => s.is === 'ellipse').length === 13", 30).unwrap();
+    tab.wait(
+        "onetwo.layers().some((l) => l.name === 'other-trace' && l.shown && l.label.startsWith('B: '))",
+        5,
+    )
+    .unwrap();
+    no_errors(&mut tab);
+    for trace in [a, b] {
+        std::fs::remove_file(trace.replace(".trace", ".log.gz")).unwrap();
+        std::fs::remove_file(trace).unwrap();
+    }
+}

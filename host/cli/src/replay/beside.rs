@@ -1,0 +1,91 @@
+//! `beside`: a second trace on the page, in step with the first: a layer with its robots and ball, and an
+//! event where the two differ first.
+
+use std::path::Path;
+
+use arena::game::TICK_US;
+use geometry::{Field, Point};
+use page::{Layer, MatchEvent, Shape, Tone, milli};
+use protocol::Instant;
+use rules::Colour;
+use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
+
+use super::ReplayArgs;
+use super::compare::{Playing, compare};
+use crate::Failure;
+
+/// Robots that are closer to each other in the two traces are not joined by a line, m: the width of a line.
+const APART: f32 = 0.02;
+
+/// The second trace, played as far as the first.
+pub(super) struct Beside<'a> {
+    playing: Playing<'a>,
+    /// What differs first, until it was told.
+    first: Option<MatchEvent>,
+}
+
+impl<'a> Beside<'a> {
+    /// Compares both traces as a whole for their first difference, then begins to play the second.
+    pub(super) fn open(args: &'a ReplayArgs, other: &'a Path) -> Result<Self, Failure> {
+        let report = compare(args, other)?;
+        let description = |unlike: &super::unlike::Unlike| {
+            let super::unlike::Unlike { what, of, a, b, .. } = unlike;
+            format!("the traces differ first here: {}: {of}; A: {a}; B: {b}", what.label())
+        };
+        let first = report.first().map(|unlike| MatchEvent::fault(unlike.at_s, description(unlike)));
+        Ok(Self { playing: Playing::open(args, other)?, first })
+    }
+
+    /// What differs first in words, for the terminal.
+    pub(super) fn description(&self) -> String {
+        let found = self.first.as_ref();
+        found.map_or_else(
+            || "the traces are equal".to_owned(),
+            |event| format!("{:.2} s: {}", event.t, event.description),
+        )
+    }
+
+    /// Plays on to `now`; the event of the first difference once it is reached.
+    pub(super) fn play(&mut self, now: Instant) -> Option<MatchEvent> {
+        self.playing.play(now.0 / TICK_US);
+        self.first.take_if(|event| event.t <= now.0 as f64 * 1e-6)
+    }
+
+    /// Where its ball and robots are at `now`, and how far from those of `world`.
+    pub(super) fn layer(&self, now: Instant, world: &host::world::World) -> Layer {
+        let name = self.playing.file.file_name().map_or_else(Default::default, |name| name.to_string_lossy());
+        let mut layer = Layer {
+            name: "other-trace".to_owned(),
+            label: format!("B: {}", foreign::printable(&name)),
+            on: true,
+            shapes: Vec::new(),
+        };
+        let Some(host) = self.playing.recheck.host(0) else { return layer };
+        let other = host.tracker().world(now);
+        let mut add =
+            |at: Point<Field>, with: Option<Point<Field>>, radius: f32, tone: Tone, note: String| {
+                let place = |point: Point<Field>| [milli(point.x()), milli(point.y())];
+                let radii = [radius, radius];
+                layer.shapes.push(Shape::Ellipse { at: place(at), radii, tone, fill: false, note });
+                if let Some(with) = with.filter(|with| with.distance(at) > APART) {
+                    let points = vec![place(with), place(at)];
+                    layer.shapes.push(Shape::Line { points, tone, arrow: true, dashed: true });
+                }
+            };
+        for robot in other.robots() {
+            let tone = match robot.who.colour {
+                Colour::Blue => Tone::Blue,
+                Colour::Yellow => Tone::Yellow,
+            };
+            let with = world.robot(robot.who).map(|robot| robot.pose.position);
+            let note = format!("{} {} of trace B", robot.who.colour.label(), robot.who.id.number());
+            add(robot.pose.position, with, ROBOT_RADIUS, tone, note);
+        }
+        if let Some(ball) = &other.ball {
+            let with = world.ball.as_ref().map(|ball| ball.position);
+            // Larger than the ball: it is seen around it.
+            add(ball.position, with, 2.0 * BALL_RADIUS, Tone::Ball, "the ball of trace B".to_owned());
+        }
+        layer
+    }
+}
