@@ -28,6 +28,7 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod bring_up;
 mod controller;
 #[cfg(all(target_arch = "arm", target_os = "none"))]
 mod copy;
