@@ -114,7 +114,8 @@ pub fn retrieve(library: &Library, problem: &Problem, rules: &Rules) -> Answer {
     Answer { candidates: candidates.len(), winner: candidates.into_iter().next(), near_tie }
 }
 
-/// Every case that passes filters 1–4, in the order of the rank, and the first decision that was nearly a tie.
+/// Every case that passes filters 1–4, in the order of the rank, and the first decision that was nearly a
+/// tie.
 pub fn ranked(library: &Library, problem: &Problem, rules: &Rules) -> (Vec<Candidate>, Option<&'static str>) {
     let mut teammates = problem.teammates.clone();
     teammates.sort_by_key(|(id, _)| *id);

@@ -288,15 +288,11 @@ fn matches(seconds: f64) {
     compared.tell(200);
 }
 
+/// Whole matches take minutes: `DECISIONS_SECONDS=600 cargo test --release -p match-tests --test decisions`.
 #[test]
 fn in_three_matches_every_decision_is_explained_by_its_own_problem() {
-    matches(60.0);
-}
-
-#[test]
-#[ignore = "whole matches take minutes: cargo test --release -p match-tests --test decisions -- --ignored"]
-fn in_three_whole_matches_every_decision_is_explained_by_its_own_problem() {
-    matches(600.0);
+    let seconds = std::env::var("DECISIONS_SECONDS").map(|text| text.parse().expect("seconds of a match"));
+    matches(seconds.unwrap_or(60.0));
 }
 
 #[derive(Default)]

@@ -1,5 +1,5 @@
-//! `bring_up`: plays the checklist of a robot's first start on simulated parts with a fault, as a board plays it on
-//! its own: `cargo run -p onetwo-runtime --example bring_up -- reversed-motor`.
+//! `bring_up`: plays the checks of a robot's first start on simulated parts with a fault, as a board plays it
+//! on its own: `cargo run -p onetwo-runtime --example bring_up -- reversed-motor`.
 
 use std::process::ExitCode;
 

@@ -1,10 +1,11 @@
-//! `bring_up`: the checklist for a robot whose parts are wired for the first time: battery, sensors at rest, each
-//! wheel both ways, radio, break-beam sensor. Sans-IO, stepped at the pace of the control loop; the robot on a
-//! stand, wheels off the ground, the kicker's board unplugged.
+//! `bring_up`: checks of a robot whose parts are wired for the first time: battery, sensors at rest, each
+//! wheel both ways, radio, break-beam sensor. Sans-IO, stepped at the pace of the control loop; the robot on
+//! a stand, wheels off the ground, the kicker's board unplugged.
 //!
-//! Each check takes what the board's ports measure ([`Reading`]), drives at most one wheel, and ends with what it
-//! measured or with what is wrong ([`Finding`]) and what to look at. No check waits for ever, and none depends on
-//! another: one broken part hides no other. [`bench`] is a robot of simulated parts with faults to plant.
+//! Each check takes what the board's ports measure ([`Reading`]), drives at most one wheel, and ends with
+//! what it measured or with what is wrong ([`Finding`]) and what to look at. No check waits for ever, and
+//! none depends on another: one broken part hides no other. [`bench`] is a robot of simulated parts with
+//! faults to plant.
 
 pub mod bench;
 
@@ -183,8 +184,8 @@ impl fmt::Display for Finding {
     }
 }
 
-/// The result of a check; what passed has the value that was measured, in the check's unit (V, rad/s, m/s, frames
-/// received, s of interruption).
+/// The result of a check; what passed has the value that was measured, in the check's unit (V, rad/s, m/s,
+/// frames received, s of interruption).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CheckReport {
     /// Which check.
@@ -204,7 +205,7 @@ pub struct BenchStep {
     pub check: Option<Check>,
 }
 
-/// The checklist under way.
+/// The checks under way.
 #[derive(Clone, Debug)]
 pub struct BringUp {
     next: usize,
@@ -245,7 +246,7 @@ impl BringUp {
         });
         let passed = now.since(since);
         let (result, motors) = match check {
-            Check::Battery => (self.battery(passed, &reading.seen), Motors::Released),
+            Check::Battery => (battery(passed, &reading.seen), Motors::Released),
             Check::Rest => (self.rest(passed, reading), Motors::Released),
             Check::Wheel { wheel, forwards } => self.wheel(passed, reading, wheel, forwards),
             Check::Radio => (self.radio(passed, reading.radio), Motors::Released),
@@ -256,20 +257,6 @@ impl BringUp {
             CheckReport { check, result }
         });
         BenchStep { motors, report, check: Some(check) }
-    }
-
-    fn battery(&mut self, passed: Duration, seen: &Seen) -> Option<Result<f32, Finding>> {
-        let Some(volts) = seen.battery.filter(|volts| volts.is_finite()) else {
-            return (passed >= SETTLES).then_some(Err(Finding::NoVoltage));
-        };
-        if passed < SETTLES {
-            return None;
-        }
-        Some(if (BATTERY_LOW..=VOLTS_MAX).contains(&volts) {
-            Ok(volts)
-        } else {
-            Err(Finding::Voltage(volts))
-        })
     }
 
     fn rest(&mut self, passed: Duration, reading: &Reading) -> Option<Result<f32, Finding>> {
@@ -391,6 +378,17 @@ impl Default for BringUp {
     }
 }
 
+/// What the divider says.
+fn battery(passed: Duration, seen: &Seen) -> Option<Result<f32, Finding>> {
+    let Some(volts) = seen.battery.filter(|volts| volts.is_finite()) else {
+        return (passed >= SETTLES).then_some(Err(Finding::NoVoltage));
+    };
+    if passed < SETTLES {
+        return None;
+    }
+    Some(if (BATTERY_LOW..=BATTERY_FULL).contains(&volts) { Ok(volts) } else { Err(Finding::Voltage(volts)) })
+}
+
 /// What four encoders say of one driven wheel.
 fn judge(means: [f32; WHEELS], wheel: usize, sign: f32) -> Result<f32, Finding> {
     let expected = DUTY * RobotSpec::OURS.wheels.free_speed;
@@ -410,8 +408,8 @@ fn judge(means: [f32; WHEELS], wheel: usize, sign: f32) -> Result<f32, Finding> 
     }
 }
 
-/// Duty of a driven wheel, share of the battery's voltage: 1 m/s at the rim without load, slow enough for fingers
-/// to be withdrawn.
+/// Duty of a driven wheel, share of the battery's voltage: 1 m/s at the rim without load, slow enough for
+/// fingers to be withdrawn.
 const DUTY: f32 = 0.16;
 /// A sensor's first readings are not used.
 const SETTLES: Duration = Duration::millis(200);
@@ -430,7 +428,7 @@ const PERSON: Duration = Duration::millis(20_000);
 /// A ball is held for so long.
 const HELD: Duration = Duration::millis(300);
 /// Four full lithium cells of 4.25 V; from [`BATTERY_LOW`] on the governor lets the robot play.
-const VOLTS_MAX: f32 = 17.0;
+const BATTERY_FULL: f32 = 17.0;
 /// A wheel stands below this speed, m/s: a count of the encoder in a window is a tenth of it.
 const STANDS: f32 = 0.02;
 /// The gyroscope's error at rest, rad/s: ten times the noise of the usual chips.

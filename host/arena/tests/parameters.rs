@@ -69,7 +69,8 @@ fn speed_and_acceleration_limits_slow_the_team_that_sets_them() {
         40.0,
         &[r#"{"key":"limits.speed","value":0.8}"#, r#"{"key":"limits.acceleration","value":1.0}"#],
     );
-    // What a robot does beyond its plan is the controller's error and what pushes it: within a quarter of a metre a second.
+    // What a robot does beyond its plan is the controller's error and what pushes it: within a quarter of a
+    // metre a second.
     assert!(blue.fastest < 1.05 && yellow.fastest > 1.5, "{blue:?} {yellow:?}");
     assert!(blue.hardest < 2.0 && yellow.hardest > 2.0, "{} {}", blue.hardest, yellow.hardest);
 }

@@ -33,7 +33,8 @@ impl ParameterChange {
 
     /// As JSON, for a trace.
     pub fn to_json(&self) -> String {
-        // Strings and numbers: JSON can represent all of it but a number that is none, which reads as no value.
+        // Strings and numbers: JSON can represent all of it but a number that is none, which reads as no
+        // value.
         serde_json::to_string(self).unwrap_or_default()
     }
 

@@ -1,5 +1,5 @@
-//! `bench`: a robot on a stand, of simulated parts, with a fault: what [`BringUp`](super::BringUp) is played against
-//! without hardware. Deterministic by its seed.
+//! `bench`: a robot on a stand, of simulated parts, with a fault: what [`BringUp`](super::BringUp) is played
+//! against without hardware. Deterministic by its seed.
 
 use protocol::{Duration, Instant};
 use rules::RobotSpec;
@@ -139,7 +139,7 @@ impl Bench {
                 _ => ball,
             },
             tipped: self.fault == Fault::ImuUpsideDown,
-            battery: (self.fault != Fault::NoDivider).then(|| volts + self.dice() * VOLTS_NOISE),
+            battery: (self.fault != Fault::NoDivider).then(|| volts + self.dice() * DIVIDER_NOISE),
             kicker_ready: false,
         }
     }
@@ -151,8 +151,8 @@ fn change(values: &mut [f32; WHEELS], n: u8, with: impl Fn(f32) -> f32) {
     }
 }
 
-/// Plays the whole list on that robot, and passes each report on; a person holds a ball for a second, two seconds
-/// after asked to. Returns how long it took.
+/// Plays the whole list on that robot, and passes each report on; a person holds a ball for a second, two
+/// seconds after asked to. Returns how long it took.
 pub fn play(fault: Fault, seed: u32, mut told: impl FnMut(CheckReport)) -> Duration {
     let (mut bench, mut list) = (Bench::new(fault, seed), BringUp::new());
     let (mut motors, mut asked) = (Motors::Released, None);
@@ -169,7 +169,7 @@ pub fn play(fault: Fault, seed: u32, mut told: impl FnMut(CheckReport)) -> Durat
         if check.is_none() {
             return now.since(Instant(0));
         }
-        now = now + CONTROL_PERIOD;
+        now += CONTROL_PERIOD;
     }
 }
 
@@ -182,7 +182,7 @@ const GYRO_NOISE: f32 = 0.01;
 /// The gyroscope knows its offset after so many steps.
 const GYRO_STEPS: u32 = 600;
 /// Noise of the battery's divider, V.
-const VOLTS_NOISE: f32 = 0.05;
+const DIVIDER_NOISE: f32 = 0.05;
 /// A host sends a frame every 10 ms.
 const STEPS_A_FRAME: u32 = 10;
 /// The ball comes so long after it was asked for, and goes.

@@ -14,7 +14,6 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use host::config::{ParameterChange, TeamConfig};
-use host::learned::Learned;
 use host::radio::RadioSettings;
 use host::record::header::RecordingHeader;
 use host::record::{BackgroundRecorder, Recorder};
@@ -36,14 +35,14 @@ use super::inbox::{Inbox, Mail, Source};
 use super::radio_alarms::RadioAlarms;
 use super::terminal::Terminal;
 use super::threads;
-use super::tuning::Tuning;
+use super::tuning::{Tuning, keep_learned};
 use super::watch::Watch;
 use super::{Cases, identity, port_for_teams, simulator};
 use crate::Failure;
 use crate::failure::NetworkError;
 use crate::live::{PageArgs, change_of, description_of};
 use crate::net::NetSender;
-use crate::output::{note, printable_path};
+use crate::output::note;
 use crate::stop::stopped_by_hand;
 
 /// Longest time between two checks for missing sources and Ctrl-C.
@@ -54,8 +53,6 @@ const STRATEGY_PATIENCE: Duration = Duration::from_secs(1);
 /// HALT is sent for this time before the program ends: thirty snapshots, so that one of them arrives over a
 /// lossy radio.
 const HALTING: Duration = Duration::from_millis(300);
-/// A longer file is not read as a settings file, bytes.
-const LEARNED_LEN_MAX: u64 = 1 << 20;
 /// Period of HALT frames.
 const HALT_EVERY: Duration = Duration::from_millis(10);
 
@@ -202,25 +199,6 @@ pub(super) fn run(
     );
     recording.map_err(|error| Failure::Recording { stem: None, error })?;
     Ok(ExitCode::SUCCESS)
-}
-
-/// Saves the learned values to the file `path`; returns a message for the operator.
-fn keep_learned(path: &Path, learned: &Learned) -> String {
-    let write = || -> io::Result<()> {
-        let before = match foreign::read_text(path, LEARNED_LEN_MAX) {
-            Ok(text) => text,
-            Err(_) if !path.exists() => String::new(),
-            Err(error) => return Err(io::Error::other(error.to_string())),
-        };
-        // A crash while writing leaves the file as it was.
-        let beside = path.with_extension("new");
-        std::fs::write(&beside, host::learned::kept(&before, learned))?;
-        std::fs::rename(&beside, path)
-    };
-    match write() {
-        Ok(()) => format!("learned  what is known of kickers and ball is in {}", printable_path(path)),
-        Err(error) => format!("learned  {}: {error}; nothing is kept", printable_path(path)),
-    }
 }
 
 fn header(settings: &HostSettings) -> RecordingHeader {

@@ -132,8 +132,8 @@ pub(crate) struct ControlArgs {
     headless: bool,
     #[command(flatten)]
     page: PageArgs,
-    /// Viewers of the page may change parameters while robots play (kick gains, limits of the drives, tactics,
-    /// the ball), and save them to the file of --config; without this they may ask for HALT only.
+    /// Viewers of the page may change parameters while robots play (kick gains, limits of the drives,
+    /// tactics, the ball), and save them to the file of --config; without this they may ask for HALT only.
     #[arg(long, conflicts_with = "headless")]
     live_parameters: bool,
     /// End after this number of seconds; else Ctrl-C ends it, and robots are halted first.

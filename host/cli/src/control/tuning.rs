@@ -1,5 +1,5 @@
 //! `tuning`: the team's parameters while robots play: changes from the page, kept until they are saved to the
-//! team's file.
+//! team's file, and what was learned, which is saved at the end.
 
 use std::fs;
 use std::io;
@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use host::Host;
 use host::config::{ParameterChange, TeamConfig};
+use host::learned::Learned;
 use page::Page;
 
 use super::CONFIG_LEN_MAX;
@@ -44,8 +45,8 @@ impl Tuning {
 
     /// Sends the parameters to the page if they are due.
     pub(super) fn show(&mut self, host: &Host, page: &Page) {
-        let name = self.file.as_deref().map(|file| printable_path(file).to_string());
-        self.feed.look(&[host], Some((&self.config, name)), page);
+        let name = self.file.as_deref().map(printable_path);
+        self.feed.look(&[host], Some((&self.config, name.as_deref())), page);
     }
 
     /// Writes what was changed into the team's file, whose comments and order stay; says what was done.
@@ -63,13 +64,34 @@ impl Tuning {
             text =
                 change.write_into(&text).map_err(|refused| failed(io::Error::other(refused.to_string())))?;
         }
-        // A crash while writing leaves the file as it was.
-        let beside = file.with_extension("new");
-        fs::write(&beside, text).and_then(|()| fs::rename(&beside, file)).map_err(failed)?;
+        replace(file, &text).map_err(failed)?;
         let number = self.changes.len();
         self.changes.clear();
         Ok(format!("{number} changed parameters are in {}", printable_path(file)))
     }
+}
+
+/// Saves the learned values to the file `path`; returns a message for the operator.
+pub(super) fn keep_learned(path: &Path, learned: &Learned) -> String {
+    let write = || -> io::Result<()> {
+        let before = match foreign::read_text(path, CONFIG_LEN_MAX) {
+            Ok(text) => text,
+            Err(_) if !path.exists() => String::new(),
+            Err(error) => return Err(io::Error::other(error.to_string())),
+        };
+        replace(path, &host::learned::kept(&before, learned))
+    };
+    match write() {
+        Ok(()) => format!("learned  what is known of kickers and ball is in {}", printable_path(path)),
+        Err(error) => format!("learned  {}: {error}; nothing is kept", printable_path(path)),
+    }
+}
+
+/// Replaces a file's text; a crash while writing leaves the file as it was.
+fn replace(file: &Path, text: &str) -> io::Result<()> {
+    let beside = file.with_extension("new");
+    fs::write(&beside, text)?;
+    fs::rename(&beside, file)
 }
 
 #[cfg(test)]

@@ -57,20 +57,20 @@ impl ParameterFeed {
 
     /// Sends the lists of these hosts if they are due. `file`: the configuration and the name of the file
     /// that the only host was started with.
-    pub(crate) fn look(&mut self, hosts: &[&Host], file: Option<(&TeamConfig, Option<String>)>, page: &Page) {
+    pub(crate) fn look(&mut self, hosts: &[&Host], file: Option<(&TeamConfig, Option<&str>)>, page: &Page) {
         if self.sent.is_some_and(|sent| sent.elapsed() < EVERY) {
             return;
         }
         self.sent = Some(Instant::now());
-        let teams: Vec<_> = hosts.iter().filter_map(|host| team(host, file.as_ref())).collect();
+        let teams: Vec<_> = hosts.iter().filter_map(|host| team(host, file)).collect();
         // Words and finite numbers: JSON can represent all of it.
         page.set_parameters(serde_json::to_string(&teams).unwrap_or_default());
     }
 }
 
-fn team(host: &Host, file: Option<&(&TeamConfig, Option<String>)>) -> Option<TeamParameters> {
+fn team(host: &Host, file: Option<(&TeamConfig, Option<&str>)>) -> Option<TeamParameters> {
     let config = match file {
-        Some((config, _)) => (*config).clone().with_live(host.settings()),
+        Some((config, _)) => config.clone().with_live(host.settings()),
         None => TeamConfig::of(host.settings()).ok()?,
     };
     let learned: &Learned = host.learned();
@@ -90,7 +90,7 @@ fn team(host: &Host, file: Option<&(&TeamConfig, Option<String>)>) -> Option<Tea
         list: config.parameters(),
         kicks: RobotId::all().filter_map(kick).collect(),
         roll,
-        file: file.and_then(|(_, name)| name.clone()),
+        file: file.and_then(|(_, name)| name.map(str::to_owned)),
         toml: file.is_none().then(|| config.to_toml()),
     })
 }
