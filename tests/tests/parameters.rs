@@ -1,12 +1,20 @@
 //! `parameters`: tests: a parameter that changes while a match runs changes what that team's robots do in the
 //! simulator, and nothing of the other team's settings; what was changed is in the trace.
 
-use arena::game::{Game, GameConfig, TICK_US, Watcher};
+use std::io::BufReader;
+use std::path::Path;
+
+use arena::game::{Game, GameConfig, TICK_US, Watcher, header};
 use casebase::CaseBase;
 use hil_sim::NativeBackend;
 use hil_sim::small_size::PhysicsEvent;
 use host::config::ParameterChange;
-use protocol::Who;
+use host::record::Recorder;
+use host::record::header::RecordingHeader;
+use host::record::recheck::Recheck;
+use host::record::trace::{Reader, RecordKind};
+use protocol::frame::TeamKey;
+use protocol::{RobotId, Who};
 use rules::{Colour, League};
 
 /// What a team's robots did.
@@ -88,4 +96,56 @@ fn a_kicker_said_to_kick_twice_as_hard_is_ordered_half_the_speed() {
     let (before, after) = (median(blue_usual.kicks), median(blue.kicks));
     assert!(after < before * 0.7, "{after} m/s with, {before} m/s without");
     assert!(median(yellow.kicks) > after * 1.3, "the other team kicks as before");
+}
+
+#[test]
+fn a_trace_has_the_changes_and_gives_the_same_packets_again() {
+    let config = GameConfig::new(League::DivisionB, 4, 10.0);
+    let stem = Path::new(env!("CARGO_TARGET_TMPDIR")).join("parameters");
+    let mut recorder = Recorder::begin(&stem, &header("test", "test", &config)).expect("a recording");
+    let mut backend = NativeBackend::new(CaseBase::default());
+    let mut game = Game::new(&config, &mut backend).expect("a match");
+    let changes = [
+        r#"{"key":"limits.speed","value":1.2}"#,
+        r#"{"key":"calibration.kick","robot":2,"value":1.3}"#,
+        r#"{"key":"tactics","value":"none"}"#,
+        r#"{"key":"ball.roll","value":0.5}"#,
+        r#"{"key":"limits.speed","value":null}"#,
+    ];
+    for json in changes {
+        for _ in 0..200 {
+            game.step(&mut recorder).expect("no emulator");
+        }
+        let change = ParameterChange::from_json(json.as_bytes()).expect("a change");
+        game.change(Colour::Yellow, &change, &mut recorder).expect("accepted");
+        let far = ParameterChange::from_json(br#"{"key":"limits.speed","value":99.0}"#).expect("a change");
+        assert!(game.change(Colour::Yellow, &far, &mut recorder).is_err());
+    }
+    for _ in 0..100 {
+        game.step(&mut recorder).expect("no emulator");
+    }
+    recorder.finish().expect("written");
+    let [log, trace] = Recorder::files(&stem);
+    let reader = Reader::new(flate2::bufread::MultiGzDecoder::new(BufReader::new(
+        foreign::open(&trace).expect("a trace"),
+    )))
+    .expect("its header");
+    let read = RecordingHeader::from_json(reader.header()).expect("a header");
+    let mut again = Recheck::new(&read, TeamKey::ZERO).expect("hosts");
+    let mut changed = 0;
+    for record in reader {
+        changed += usize::from(record.kind == RecordKind::Parameter);
+        assert!(again.feed(&record));
+    }
+    assert_eq!(changed, changes.len());
+    for (counts, difference) in again.results() {
+        assert!(difference.is_none() && counts.same > 1000, "{difference:?}");
+    }
+    let yellow = (0..2).filter_map(|i| again.host(i)).find(|host| host.settings().us == Colour::Yellow);
+    let settings = yellow.expect("its host").settings();
+    let robot = RobotId::new(2).expect("a number");
+    assert_eq!((settings.kick[robot.index()], settings.roll, settings.limits.speed), (1.3, Some(0.5), None));
+    for file in [log, trace] {
+        std::fs::remove_file(file).expect("it was there");
+    }
 }
