@@ -7,6 +7,8 @@
 //! [`CaseTrial`] plays single cases from their own situation, many times, and reports whether a case does
 //! what its author intended.
 //!
+//! [`cases`] opens a case library and answers questions to it.
+//!
 //! [`game`] plays matches of the Small Size League, a host and its robots on each side.
 //!
 //! [`ledger`] counts what became of every case that was played.
@@ -27,6 +29,7 @@ mod activity;
 pub mod attack;
 mod backups;
 mod case_trial;
+pub mod cases;
 mod cycles;
 mod defaults;
 pub mod evaluation;

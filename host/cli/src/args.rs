@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use casebase::RetrievalSettings;
+use arena::cases::Chosen;
 use clap::Args;
 
 use crate::Failure;
@@ -33,14 +33,6 @@ pub(crate) struct SettingsArgs {
     assignments: Vec<(String, String)>,
 }
 
-/// Settings of the retrieval.
-#[derive(Debug)]
-pub(crate) struct Chosen {
-    pub(crate) settings: RetrievalSettings,
-    /// Name and value of every setting that is not at its default, recorded with the results.
-    pub(crate) changed: Vec<(String, String)>,
-}
-
 impl SettingsArgs {
     /// The assignments as given on the command line.
     pub(crate) fn given(&self) -> &[(String, String)] {
@@ -49,20 +41,9 @@ impl SettingsArgs {
 
     /// The defaults, changed as the command line orders; of two assignments to a name the later one counts.
     pub(crate) fn choose(&self) -> Result<Chosen, Failure> {
-        let mut settings = RetrievalSettings::default();
-        for (name, value) in &self.assignments {
-            settings.set(name, value).map_err(|error| Failure::setting(name, value, error))?;
-        }
-        let defaults = described(&RetrievalSettings::default());
-        let changed =
-            described(&settings).into_iter().filter(|setting| !defaults.contains(setting)).collect();
-        Ok(Chosen { settings, changed })
+        let given = self.assignments.iter().map(|(name, value)| (name.as_str(), value.as_str()));
+        Chosen::of(given).map_err(Failure::Setting)
     }
-}
-
-/// Every setting's name and value.
-pub(crate) fn described(settings: &RetrievalSettings) -> Vec<(String, String)> {
-    settings.describe().map(|(name, value)| (name.to_string(), value.to_string())).collect()
 }
 
 fn assignment(text: &str) -> Result<(String, String), String> {

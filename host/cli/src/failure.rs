@@ -6,9 +6,10 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use arena::cases::{LibraryError, SettingFailure};
 use arena::evaluation::EvaluationError;
 use arena::game::GameError;
-use case_tools::{Finding, Severity};
+use case_tools::Finding;
 use casebase::SettingError;
 use foreign::printable;
 use hil_sim::SimulationError;
@@ -31,17 +32,8 @@ use crate::virtual_robot::RobotError;
 /// One variant for each failure that the operator can fix.
 #[derive(Debug)]
 pub(crate) enum Failure {
-    /// `--library` names no directory.
-    NoDirectory(PathBuf),
-    /// The case files in a directory are faulty.
-    FaultyLibrary {
-        /// The league's directory.
-        directory: PathBuf,
-        /// The findings, errors among them.
-        findings: Vec<Finding>,
-    },
-    /// `--league` names no built-in league.
-    UnknownLeague(String),
+    /// There is no library.
+    Library(LibraryError),
     /// A case requested by a name or id that the library lacks.
     UnknownCase {
         /// The name or id as given.
@@ -60,12 +52,7 @@ pub(crate) enum Failure {
     /// A case to be drawn under a problem that defends the other goal.
     OtherGoal(String),
     /// `--set` with a name or value that retrieval does not know.
-    Setting {
-        /// As given.
-        assignment: String,
-        /// The error of the retrieval.
-        error: SettingError,
-    },
+    Setting(SettingFailure),
     /// A library without a case has nothing to count.
     EmptyLibrary(String),
     /// Problems could not be drawn, read or counted.
@@ -104,11 +91,6 @@ pub(crate) enum Failure {
         /// The league of the library.
         league: String,
     },
-    /// Cases of a field that no simulator plays on.
-    NoSimulator {
-        /// The league of the library.
-        league: String,
-    },
     /// No case can be drafted from the problem.
     Draft(DraftError),
     /// A virtual robot cannot run.
@@ -138,11 +120,19 @@ pub(crate) enum Failure {
 
 impl Failure {
     pub(crate) fn setting(name: &str, value: &str, error: SettingError) -> Self {
-        Self::Setting { assignment: format!("{name}={value}"), error }
+        Self::Setting(SettingFailure::new(name, value, error))
     }
 
     pub(crate) fn missing_directory(directory: &Path) -> Self {
-        Self::NoDirectory(directory.to_owned())
+        Self::Library(LibraryError::NoDirectory(directory.to_owned()))
+    }
+
+    pub(crate) fn faulty_library(directory: impl Into<PathBuf>, findings: Vec<Finding>) -> Self {
+        Self::Library(LibraryError::Faulty { directory: directory.into(), findings })
+    }
+
+    pub(crate) fn unknown_league(name: &str) -> Self {
+        Self::Library(LibraryError::UnknownLeague(name.to_owned()))
     }
 
     /// Prints it on stderr. A closed stdout is not an error: the reader has read enough.
@@ -176,23 +166,7 @@ impl From<EvaluationError> for Failure {
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoDirectory(directory) => write!(
-                f,
-                "no library at {}: no such directory; --library takes one league's directory, the one that holds league.toml",
-                printable_path(directory)
-            ),
-            Self::FaultyLibrary { directory, findings } => {
-                let errors = findings.iter().filter(|finding| finding.severity == Severity::Error);
-                writeln!(f, "the library at {} is refused:", printable_path(directory))?;
-                for finding in errors {
-                    writeln!(f, "  {finding}")?;
-                }
-                f.write_str("correct the files; `onetwo cases check --library DIR` lists the errors again, with warnings")
-            }
-            Self::UnknownLeague(name) => {
-                let known: Vec<_> = case_library::LEAGUES.iter().map(|league| league.name).collect();
-                write!(f, "no built-in league {name:?}; --league takes one of: {}", known.join(", "))
-            }
+            Self::Library(error) => error.fmt(f),
             Self::UnknownCase { asked, league, stored, near } => {
                 write!(f, "no case {asked:?} in {league}; ")?;
                 if let Some(near) = near {
@@ -213,7 +187,7 @@ impl fmt::Display for Failure {
                 f,
                 "{name} defends the other goal than the problem; take the id of its copy from `onetwo cases list`"
             ),
-            Self::Setting { assignment, error } => write!(f, "--set {assignment}: {error}"),
+            Self::Setting(error) => write!(f, "--set {error}"),
             Self::EmptyLibrary(league) => {
                 write!(f, "the library {league} holds no case; add one at <region>/<name>.toml")
             }
@@ -237,11 +211,6 @@ impl fmt::Display for Failure {
             Self::UnknownName { asked, league } => write!(
                 f,
                 "no case {asked:?} in {league}; take a region/name that `onetwo cases list` prints, or a region"
-            ),
-            Self::NoSimulator { league } => write!(
-                f,
-                "the cases of {league} cannot be played: the simulator plays on the four-legged league's field of \
-                 5400 x 3600 mm, and theirs is another; take --league four-legged or a library for that field"
             ),
             Self::Evaluation(error) => write!(f, "{error}"),
             Self::Learning(error) => error.fmt(f),

@@ -8,6 +8,7 @@ use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 
 use arena::CaseNames;
+use arena::cases::LibraryHandle;
 use arena::game::{self, Game, GameConfig, GameReport, MatchLog, Watcher, Watchers};
 use casebase::CaseBase;
 use clap::Args;
@@ -22,7 +23,6 @@ use rules::{Colour, League};
 
 use crate::Failure;
 use crate::args::{DirectoryArgs, SettingsArgs};
-use crate::library::LibraryHandle;
 use crate::live::{CaseExplanations, End, MatchRunner, PageArgs, RestartWatcher, library_handle_of};
 use crate::output::{self, note};
 use crate::progress::Progress;

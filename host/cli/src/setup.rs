@@ -3,16 +3,15 @@
 //! Each is a change to the paper's team, so that `onetwo trial` can replay any trial of an evaluation or of
 //! an ablation.
 
+use arena::cases::LibraryHandle;
 use arena::evaluation::{Profile, Setup};
 use brain::Positioning;
 use case_tools::Reduction;
-use casebase::FieldMm;
 use clap::{Args, ValueEnum};
-use rules::League;
 
 use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs};
-use crate::library::LibraryHandle;
+use crate::library;
 
 /// The attackers' set-up.
 #[derive(Debug, Args)]
@@ -69,8 +68,8 @@ impl SetupArgs {
 
     /// The cases of that set-up; refused if they are of a field that no simulator has.
     pub(crate) fn open(&self, setup: &Setup) -> Result<LibraryHandle, Failure> {
-        let library_handle = LibraryHandle::open_reduced(&self.library, reduction(setup))?;
-        refuse_other_fields(&library_handle)?;
+        let library_handle = library::open_reduced(&self.library, reduction(setup))?;
+        library_handle.check_field_of_trials()?;
         Ok(library_handle)
     }
 
@@ -129,33 +128,6 @@ impl SetupArgs {
 /// The part of a library that a set-up keeps.
 pub(crate) const fn reduction(setup: &Setup) -> Reduction {
     Reduction { symmetry: setup.symmetry, opponents: setup.opponents }
-}
-
-/// The trials' simulator has one field.
-pub(crate) fn refuse_other_fields(library_handle: &LibraryHandle) -> Result<(), Failure> {
-    if simulated_league(library_handle).is_ok_and(|league| league == League::FourLegged) {
-        Ok(())
-    } else {
-        Err(Failure::NoSimulator { league: library_handle.league().to_owned() })
-    }
-}
-
-/// The league whose simulator has the library's field.
-pub(crate) fn simulated_league(library_handle: &LibraryHandle) -> Result<League, Failure> {
-    let league = league_of(library_handle.base().field(), library_handle.league());
-    league.ok_or_else(|| Failure::NoSimulator { league: library_handle.league().to_owned() })
-}
-
-/// The league with that field: the one of that name, if it has it.
-pub(crate) fn league_of(field: FieldMm, name: &str) -> Option<League> {
-    let in_mm = |metres: f32| (metres * 1000.0).round() as i32;
-    let same = |league: &League| {
-        let played = league.field();
-        [in_mm(played.length), in_mm(played.width)] == [field.length, field.width]
-    };
-    let leagues = [League::FourLegged, League::DivisionB, League::DivisionA, League::Ssl2013];
-    let named = |league: &League| league.name() == name && same(league);
-    leagues.into_iter().find(named).or_else(|| leagues.into_iter().find(same))
 }
 
 /// Parses a scenario, as flags take it.

@@ -6,6 +6,7 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use arena::cases::LibraryHandle;
 use arena::evaluation::Profile;
 use arena::{Recording, TextLog, TrialConfig, TrialReport, Watcher};
 use brain::Approach;
@@ -16,7 +17,6 @@ use page::Powers;
 
 use crate::Failure;
 use crate::failure::FirmwareError;
-use crate::library::LibraryHandle;
 use crate::live::{CaseExplanations, Legged, PageArgs, stay};
 use crate::output;
 use crate::picture::SnapshotError;

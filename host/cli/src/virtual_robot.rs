@@ -22,7 +22,6 @@ use virtual_robot::{Options, RunError, parent_gone, run as play};
 
 use crate::Failure;
 use crate::args::{DirectoryArgs, SettingsArgs};
-use crate::library::LibraryHandle;
 use crate::output::note;
 
 /// The robot's identity and its addresses.
@@ -66,7 +65,7 @@ pub(crate) fn run(args: &VirtualRobotArgs) -> Result<ExitCode, Failure> {
     } else {
         (key_of_file(args.key_file.as_deref())?, Arc::new(AtomicBool::new(false)))
     };
-    let library_handle = args.directory.library.as_deref().map(LibraryHandle::read).transpose()?;
+    let library_handle = args.directory.library.as_deref().map(crate::library::read).transpose()?;
     let base = match &library_handle {
         Some(library_handle) => library_handle.base(),
         // A league without a case library is played without cases.

@@ -6,6 +6,7 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
+use arena::cases::{counted, write_line};
 use case_library::{LEAGUES, League};
 use case_tools::{CODES, Files, Finding, Library, Severity, never_retrieved};
 use clap::Args;
@@ -16,8 +17,6 @@ use crate::args::DirectoryArgs;
 use crate::failure::SurveyError;
 use crate::output;
 
-use super::answer::write_line;
-use super::counted;
 use super::survey;
 
 /// Arguments of `cases check`.

@@ -3,12 +3,12 @@
 
 use std::io::{self, Write};
 
+use arena::cases::LibraryHandle;
 use casebase::{CaseVerdict, Criterion, Match, RetrievalSettings, Symmetry, rank_order};
 use protocol::CaseId;
 use serde::Serialize;
 
 use crate::Failure;
-use crate::library::LibraryHandle;
 
 /// Which of two cases ranks first, and by what.
 #[derive(Debug, Serialize)]

@@ -12,10 +12,8 @@ use learning::{Evidence, JournalPlayer, Kind, LearnError, LearnSettings, Learned
 
 use crate::Failure;
 use crate::args::{LibraryArgs, VERSION};
-use crate::library::LibraryHandle;
 use crate::output::print_text;
 use crate::progress::Progress;
-use crate::setup::refuse_other_fields;
 use crate::stop::stopped_by_hand;
 
 /// Arguments of `cases learn`.
@@ -62,7 +60,7 @@ pub(crate) struct LearnArgs {
 }
 
 pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
-    refuse_other_fields(&LibraryHandle::open(&args.library)?)?;
+    crate::library::open(&args.library)?.check_field_of_trials()?;
     let files = files(args)?;
     let (earlier, earlier_text) = earlier(&args.from)?;
     let kinds: BTreeSet<Kind> =
@@ -112,14 +110,14 @@ pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
 /// The files of the library that the command line names.
 fn files(args: &LearnArgs) -> Result<Files, Failure> {
     if let Some(directory) = &args.library.directory.library {
-        let refused = |findings| Failure::FaultyLibrary { directory: directory.clone(), findings };
+        let refused = |findings| Failure::faulty_library(directory, findings);
         // Names and texts alone count: a library learns the same wherever it lies.
         let files = Files::read(directory).map_err(refused)?;
         let texts = files.cases.iter().map(|file| (file.name.as_str(), file.text.as_str()));
         return Ok(Files::from_texts(&files.league, &files.rules.text, &texts.collect::<Vec<_>>()));
     }
     let league = case_library::league(&args.library.league)
-        .ok_or_else(|| Failure::UnknownLeague(args.library.league.clone()))?;
+        .ok_or_else(|| Failure::unknown_league(&args.library.league))?;
     let texts = league.names.iter().zip(league.sources).map(|(name, text)| (*name, *text));
     Ok(Files::from_texts(league.name, league.rules, &texts.collect::<Vec<_>>()))
 }

@@ -6,9 +6,9 @@
 
 use std::io::{self, BufRead, BufReader, Read, Write};
 
+use arena::cases::problem::{self, Malformed};
 use casebase::Problem;
 
-use super::problem::{self, Malformed};
 use crate::Failure;
 
 /// Passes every line that is not blank to `answer`, with its number: the problem in it, or what is wrong as

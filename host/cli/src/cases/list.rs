@@ -4,12 +4,12 @@
 use std::io::{self, Write};
 use std::process::ExitCode;
 
+use arena::cases::LibraryHandle;
 use clap::Args;
 use serde::Serialize;
 
 use crate::Failure;
 use crate::args::DirectoryArgs;
-use crate::library::LibraryHandle;
 use crate::output;
 
 /// Arguments of `cases list`.
@@ -23,7 +23,7 @@ pub(crate) struct ListArgs {
 }
 
 pub(super) fn run(args: &ListArgs) -> Result<ExitCode, Failure> {
-    let shelves = LibraryHandle::all(args.directory.library.as_deref())?;
+    let shelves = crate::library::all(args.directory.library.as_deref())?;
     let rows: Vec<Row<'_>> = shelves.iter().flat_map(rows).collect();
     let mut output = output::lines();
     let written = if args.json { write_json(&mut output, &rows) } else { write_table(&mut output, &rows) };

@@ -1,6 +1,5 @@
 //! `onetwo cases`: contents, soundness and answers of a case base. The verb `cases` (docs/case-format.md §5).
 
-mod answer;
 mod check;
 mod coverage;
 mod diff;
@@ -11,16 +10,14 @@ mod list;
 pub(crate) mod new;
 mod play;
 mod playable;
-pub(crate) mod problem;
 mod render;
 mod retrieve;
 mod schema;
 mod show;
 mod stats;
 mod survey;
-mod whatif;
 
-pub(crate) use explain::{explained, explained_by};
+pub(crate) use explain::explained;
 pub(crate) use survey::problem_line;
 
 use std::process::ExitCode;
@@ -78,11 +75,6 @@ pub(crate) fn run(verb: &CasesVerb) -> Result<ExitCode, Failure> {
         CasesVerb::Learn(args) => learn::run(args),
         CasesVerb::Render(args) => render::run(args),
     }
-}
-
-/// `1 robot`, `2 robots`.
-fn counted(count: usize, what: &str) -> String {
-    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
 }
 
 /// What a line of stdin looks like.

@@ -8,12 +8,12 @@ use std::io::{self, Read, Write, stdin};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use arena::cases::problem::{self, Malformed};
 use case_tools::{CASE_FILE_LEN_MAX, Files, SkeletonError, SourceFile, skeleton};
 use casebase::Problem;
 use clap::Args;
 
 use super::lines::LINE_MAX;
-use super::problem::{self, Malformed};
 use crate::Failure;
 use crate::args::LibraryArgs;
 use crate::output::{note, print_text, printable_path};
@@ -41,7 +41,7 @@ pub(super) fn run(args: &NewArgs) -> Result<ExitCode, Failure> {
         SkeletonError::NoTeammate => Failure::Draft(DraftError::NoTeammate),
         SkeletonError::League(findings) => {
             let directory = rules.path.parent().map(Path::to_owned).unwrap_or_default();
-            Failure::FaultyLibrary { directory, findings }
+            Failure::faulty_library(directory, findings)
         }
     })?;
     match &args.out {
@@ -71,7 +71,7 @@ fn rules(args: &LibraryArgs) -> Result<SourceFile, Failure> {
         return Ok(SourceFile { path, name: "league".to_owned(), text });
     }
     let league = case_library::league(&args.league);
-    let league = league.ok_or_else(|| Failure::UnknownLeague(args.league.clone()))?;
+    let league = league.ok_or_else(|| Failure::unknown_league(&args.league))?;
     Ok(Files::from_texts(league.name, league.rules, &[]).rules)
 }
 

@@ -9,6 +9,7 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::process::ExitCode;
 
+use arena::cases::LibraryHandle;
 use arena::{AttemptError, CaseNames, CaseTrial, Opposition, Score, Tape};
 use casebase::Case;
 use clap::Args;
@@ -16,10 +17,8 @@ use rules::League;
 
 use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs};
-use crate::library::LibraryHandle;
 use crate::output::{self, print_text};
 use crate::progress::Progress;
-use crate::setup::simulated_league;
 
 /// Arguments of `cases play`.
 #[derive(Debug, Args)]
@@ -57,9 +56,9 @@ pub(crate) struct PlayArgs {
 
 pub(super) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
     let settings = args.settings.choose()?.settings;
-    let library_handle = LibraryHandle::open(&args.library)?;
+    let library_handle = crate::library::open(&args.library)?;
     let case_trial = CaseTrial {
-        league: simulated_league(&library_handle)?,
+        league: library_handle.simulated_league()?,
         base: library_handle.base(),
         names: CaseNames::new(library_handle.names()),
         settings,

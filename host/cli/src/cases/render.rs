@@ -4,6 +4,7 @@ use std::io::{Read, stdin};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use arena::cases::{LibraryHandle, counted, problem};
 use casebase::{CaseVerdict, Match, Problem, Symmetry, rank_order};
 use clap::{Args, ValueEnum};
 use drawing::Theme;
@@ -11,11 +12,9 @@ use drawing::cases::{CasePicture, Overlay, case_picture, sheet};
 
 use super::lines::LINE_MAX;
 use super::show::{find, unknown};
-use super::{counted, problem};
 use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs};
 use crate::failure::ProblemError;
-use crate::library::LibraryHandle;
 use crate::output::print_text;
 use crate::picture::{self, SnapshotError};
 
@@ -65,7 +64,7 @@ impl From<ThemeLabel> for Theme {
 }
 
 pub(super) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
-    let library_handle = LibraryHandle::open(&args.library)?;
+    let library_handle = crate::library::open(&args.library)?;
     if args.all || args.sheet.is_some() {
         return every(args, &library_handle);
     }

@@ -4,13 +4,12 @@
 use std::io::stdin;
 use std::process::ExitCode;
 
+use arena::cases::{Answer, write_line};
 use clap::Args;
 
-use super::answer::{Answer, write_line};
 use super::lines::for_each_problem;
 use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs};
-use crate::library::LibraryHandle;
 use crate::output;
 
 /// Arguments of `cases retrieve`.
@@ -24,7 +23,7 @@ pub(crate) struct RetrieveArgs {
 
 pub(super) fn run(args: &RetrieveArgs) -> Result<ExitCode, Failure> {
     let chosen = args.settings.choose()?;
-    let library_handle = LibraryHandle::open(&args.library)?;
+    let library_handle = crate::library::open(&args.library)?;
     let base = library_handle.base();
     let mut output = output::lines();
     for_each_problem(stdin().lock(), &mut output, |output, _, problem| match problem {

@@ -6,6 +6,7 @@ use std::io::Write as _;
 use std::ops::RangeInclusive;
 use std::process::ExitCode;
 
+use arena::cases::write_line;
 use case_tools::keys;
 use casebase::{
     GoalEnd, OPPONENTS_MAX, PROBLEM_OPPONENTS_MAX, PROBLEM_TEAMMATES_MAX, Primitive, TEAMMATES_MAX,
@@ -13,7 +14,6 @@ use casebase::{
 use clap::Args;
 use serde_json::{Map, Value, json};
 
-use super::answer::write_line;
 use crate::Failure;
 use crate::output;
 

@@ -4,13 +4,13 @@
 use std::io::{self, Write};
 use std::process::ExitCode;
 
+use arena::cases::LibraryHandle;
 use casebase::{Action, Case, CaseBase, GoalEnd, KickAim, KickId, Leg, LegKind, PointMm, TurnTarget};
 use clap::Args;
 use protocol::CaseId;
 
 use crate::Failure;
 use crate::args::LibraryArgs;
-use crate::library::LibraryHandle;
 use crate::output;
 
 /// Arguments of `cases show`.
@@ -24,7 +24,7 @@ pub(crate) struct ShowArgs {
 }
 
 pub(super) fn run(args: &ShowArgs) -> Result<ExitCode, Failure> {
-    let library_handle = LibraryHandle::open(&args.library)?;
+    let library_handle = crate::library::open(&args.library)?;
     let case = find(&library_handle, &args.case).ok_or_else(|| unknown(&library_handle, &args.case))?;
     let mut output = output::lines();
     let written = write_case(&mut output, &library_handle, &case);

@@ -5,6 +5,7 @@
 use std::io::sink;
 use std::path::{Path, PathBuf};
 
+use arena::cases::{Chosen, LibraryHandle};
 use case_tools::coverage::{Cells, Counters, Survey};
 use case_tools::{Files, Sampler, build};
 use casebase::{GoalEnd, Problem, Symmetry};
@@ -14,9 +15,8 @@ use rayon::prelude::*;
 use super::lines::for_each_problem;
 use super::playable::Playable;
 use crate::Failure;
-use crate::args::{Chosen, LibraryArgs, SettingsArgs};
+use crate::args::{LibraryArgs, SettingsArgs};
 use crate::failure::{FromError, LineFault, SurveyError};
-use crate::library::LibraryHandle;
 use crate::progress::Progress;
 
 /// Arguments of both verbs.
@@ -70,7 +70,7 @@ enum Source {
 impl<'a> Trial<'a> {
     pub(crate) fn open(args: &'a SurveyArgs) -> Result<Self, Failure> {
         let chosen = args.settings.choose()?;
-        let library_handle = LibraryHandle::open(&args.library)?;
+        let library_handle = crate::library::open(&args.library)?;
         if library_handle.base().is_empty() {
             return Err(Failure::EmptyLibrary(library_handle.league().to_owned()));
         }
@@ -220,10 +220,8 @@ fn sampler(library_handle: &LibraryHandle, seed: u64) -> Result<Sampler, Failure
         LibraryHandle::Directory(library, ..) => Ok(library.sampler(seed)),
         LibraryHandle::BuiltIn(league, _) => {
             let cases: Vec<_> = league.names.iter().copied().zip(league.sources.iter().copied()).collect();
-            let library =
-                build(&Files::from_texts(league.name, league.rules, &cases)).map_err(|findings| {
-                    Failure::FaultyLibrary { directory: PathBuf::from(league.name), findings }
-                })?;
+            let library = build(&Files::from_texts(league.name, league.rules, &cases))
+                .map_err(|findings| Failure::faulty_library(league.name, findings))?;
             Ok(library.sampler(seed))
         }
     }

@@ -3,10 +3,10 @@
 
 use std::time::{Duration, Instant};
 
+use arena::cases::LibraryHandle;
 use host::Host;
 use page::{MatchEvent, Page, Powers, UserRequest};
 
-use crate::library::LibraryHandle;
 use crate::live::{CaseExplanations, Composer, LedgerFeed, Moment, PageArgs, SCENE_EVERY_S, tick};
 use crate::output::note;
 

@@ -24,6 +24,7 @@ use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use arena::cases::LibraryHandle;
 use clap::Args;
 use hil_sim::small_size::Parameters;
 use host::config::{BallSettings, Calibration, DriveSettings, RobotLink, TeamConfig, TeamSettings};
@@ -34,7 +35,6 @@ use ssl::net::addresses;
 use crate::Failure;
 use crate::args::{DirectoryArgs, SettingsArgs};
 use crate::failure::NetworkError;
-use crate::library::LibraryHandle;
 use crate::live::{PageArgs, library_handle_of};
 use crate::output::{note, print_text, printable_path};
 use crate::simulate::seconds;

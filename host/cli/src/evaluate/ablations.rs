@@ -17,8 +17,7 @@ use super::report::{self, PageArgs};
 use super::work::{self, WorkArgs};
 use crate::Failure;
 use crate::args::LibraryArgs;
-use crate::library::LibraryHandle;
-use crate::setup::{reduction, refuse_other_fields};
+use crate::setup::reduction;
 
 /// Which arms, and how many trials.
 #[derive(Debug, Args)]
@@ -53,8 +52,8 @@ pub(super) fn run(args: &AblationsArgs) -> Result<ExitCode, Failure> {
     let (mut played, mut identity) = (Vec::new(), None);
     for (place, arm) in arms.iter().enumerate() {
         let setup = arm.setup();
-        let library_handle = LibraryHandle::open_reduced(&args.library, reduction(&setup))?;
-        refuse_other_fields(&library_handle)?;
+        let library_handle = crate::library::open_reduced(&args.library, reduction(&setup))?;
+        library_handle.check_field_of_trials()?;
         let evaluation = work::evaluation(plan.clone(), setup, &library_handle, library.clone());
         let title = format!("{} of {}: {}", place + 1, arms.len(), arm.name);
         let file = kept.join(format!("{}.csv", arm.name));

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use arena::CaseNames;
+use arena::cases::LibraryHandle;
 use arena::evaluation::{EvaluationError, Shard, csv_hash, merge, to_csv};
 use arena::matches::{
     Effect, MatchIdentity, MatchPlan, MatchRow, MatchTeam, Matches, Outcome, PAPER, PAPER_PASSES, Passes,
@@ -24,7 +25,6 @@ use super::report::insert;
 use super::work::{self, WorkArgs, write};
 use crate::Failure;
 use crate::args::{DirectoryArgs, SettingsArgs, VERSION};
-use crate::library::LibraryHandle;
 use crate::play::{cases, league, seconds};
 
 /// Which matches, and the output.

@@ -17,7 +17,6 @@ use report::{Ablation, Facts, Map, Picture, Report};
 use super::{merge as shards, work};
 use crate::Failure;
 use crate::args::{DirectoryArgs, LibraryArgs, VERSION};
-use crate::library::LibraryHandle;
 use crate::output::{note, print_text, printable_path};
 use crate::{picture, setup};
 
@@ -180,7 +179,7 @@ fn maps(identity: &Identity, trials: u32) -> Result<Vec<Map>, Failure> {
     }
     let setup = setup_of(identity)?;
     let library_handle =
-        match LibraryHandle::open_reduced(&library(&identity.library), setup::reduction(&setup)) {
+        match crate::library::open_reduced(&library(&identity.library), setup::reduction(&setup)) {
             Ok(library_handle) => library_handle,
             Err(failure) => {
                 note!("no maps, as the cases of these trials are not here: {failure}");

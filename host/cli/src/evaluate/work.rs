@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 
 use arena::CaseNames;
+use arena::cases::LibraryHandle;
 use arena::evaluation::{
     Evaluation, EvaluationError, EvaluationPlan, ROBOTS, Results, RunProgress, Setup, Shard, TrialRow,
     summary, verdicts,
@@ -16,7 +17,6 @@ use clap::Args;
 use super::report::{self, ReportArgs};
 use crate::Failure;
 use crate::args::VERSION;
-use crate::library::LibraryHandle;
 use crate::output;
 use crate::progress;
 use crate::setup::SetupArgs;

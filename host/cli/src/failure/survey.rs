@@ -5,10 +5,10 @@ use std::fmt;
 use std::io;
 use std::path::PathBuf;
 
+use arena::cases::problem::Malformed;
 use case_tools::coverage::CellsError;
 use casebase::SettingError;
 
-use crate::cases::problem::Malformed;
 use crate::output::printable_path;
 
 /// Why a problem to draw cannot be read.

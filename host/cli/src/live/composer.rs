@@ -3,6 +3,7 @@
 
 use std::collections::VecDeque;
 
+use arena::cases::LibraryHandle;
 use casebase::CaseBase;
 use hil_sim::small_size::World as Truth;
 use hil_sim::small_size::referee::InternalReferee;
@@ -30,7 +31,6 @@ use super::possession::Possession;
 use super::raw::Images;
 use super::windows::Links;
 use super::{spaced, team};
-use crate::library::LibraryHandle;
 use crate::output::program_log;
 use crate::replay::phase_description;
 

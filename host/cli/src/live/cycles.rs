@@ -15,7 +15,6 @@ use serde_json::Value;
 use super::layers::Played;
 use super::names::Names;
 use super::{description, minds, team};
-use crate::cases;
 
 /// Cycles of one team.
 #[derive(Debug, Default)]
@@ -194,7 +193,7 @@ pub(crate) fn reported(by: RobotId, report: &DecisionReport) -> DecisionNote {
         cycle: report.cycle.counter,
         id: report.case.map(|case| case.0),
         grounds: description::grounds(report.grounds),
-        problem: Problem::of(report).map(|problem| cases::problem::value(&problem)),
+        problem: Problem::of(report).map(|problem| arena::cases::problem::value(&problem)),
     }
 }
 
@@ -206,7 +205,7 @@ fn problem(host: &Host, ball: WirePoint) -> Value {
     let available = |id: RobotId| minds::is_available(host, id, world.time);
     let place = |robot: &Robot| WirePoint::from(robot.pose.position).into();
     let ours = world.ours(us).filter(|robot| available(robot.who.id));
-    cases::problem::value(&Problem {
+    arena::cases::problem::value(&Problem {
         ball: ball.into(),
         defending: host.game().own_goal(us).unwrap_or(host.settings().defending),
         teammates: ours.map(|robot| (robot.who.id, place(robot))).take(PROBLEM_TEAMMATES_MAX).collect(),

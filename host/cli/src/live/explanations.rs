@@ -1,12 +1,11 @@
 //! `explanations`: answers to the page's questions about cases, by the same code as `onetwo cases explain`,
 //! and its case workbench.
 
+use arena::cases::{Chosen, LibraryHandle};
 use casebase::RetrievalSettings;
 use page::WorkbenchRequest;
 
-use crate::args::Chosen;
 use crate::cases;
-use crate::library::LibraryHandle;
 use crate::workbench::{CaseWorkbench, SharedLibrary};
 
 /// A library, with settings of retrieval.

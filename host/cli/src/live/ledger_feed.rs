@@ -1,12 +1,11 @@
 //! `ledger_feed`: what became of every case, for the page: a table a second.
 
 use arena::CaseNames;
+use arena::cases::LibraryHandle;
 use arena::game::TICK_US;
 use arena::ledger::MatchLedger;
 use host::Host;
 use page::Page;
-
-use crate::library::LibraryHandle;
 
 /// The page gets a table at most this often, s of the match.
 const TABLE_EVERY_S: f64 = 1.0;

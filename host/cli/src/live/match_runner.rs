@@ -10,6 +10,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use arena::CaseNames;
+use arena::cases::LibraryHandle;
 use arena::game::{Game, GameConfig, GameReport, TICK_US, Watcher, Watchers};
 use casebase::CaseBase;
 use foreign::{excerpt, printable};
@@ -24,7 +25,6 @@ use self::situation::{Sides, of_case};
 use super::gauges::{gauge, tick};
 use super::{Composer, LedgerFeed, Moment, ParameterFeed, SCENE_EVERY_S, change_of, colour, description_of};
 use crate::Failure;
-use crate::library::LibraryHandle;
 use crate::output::note;
 use crate::stop::stopped_by_hand;
 use crate::workbench::SharedLibrary;

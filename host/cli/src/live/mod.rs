@@ -33,6 +33,7 @@ use std::sync::atomic::Ordering;
 use std::thread;
 use std::time::Duration;
 
+use arena::cases::LibraryHandle;
 use clap::Args;
 use page::{Limits, Page, PageTeam, Powers, Token};
 use rules::{Colour, League};
@@ -40,7 +41,6 @@ use rules::{Colour, League};
 use crate::Failure;
 use crate::args::{DirectoryArgs, LibraryArgs};
 use crate::failure::NetworkError;
-use crate::library::LibraryHandle;
 use crate::output::{note, print_secret, program_log};
 use crate::stop::stopped_by_hand;
 
@@ -129,7 +129,7 @@ pub(crate) fn library_handle_of(
         return Ok(None);
     }
     let directory = DirectoryArgs { library: directory.map(std::path::Path::to_owned) };
-    LibraryHandle::open(&LibraryArgs { directory, league: league.name().to_owned() }).map(Some)
+    crate::library::open(&LibraryArgs { directory, league: league.name().to_owned() }).map(Some)
 }
 
 /// A colour in the page's format.

@@ -1,8 +1,7 @@
 //! `names`: names and intents of a library's cases, for the page.
 
+use arena::cases::LibraryHandle;
 use protocol::CaseId;
-
-use crate::library::LibraryHandle;
 
 /// Names and intents of the cases.
 #[derive(Debug, Default)]

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeSet;
 
+use arena::cases::Chosen;
 use arena::game::{Game, GameConfig, Watcher, Watchers};
 use casebase::RetrievalSettings;
 use hil_sim::NativeBackend;
@@ -11,7 +12,6 @@ use page::{MatchEvent, MatchEventKind, PageTeam, Scene, Shape};
 use rules::{Colour, League};
 
 use super::{Composer, Moment, library_handle_of};
-use crate::args::Chosen;
 use crate::cases::explained;
 
 struct Feed(Composer);

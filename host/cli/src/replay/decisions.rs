@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use arena::CaseNames;
+use arena::cases::{LibraryHandle, problem::parse};
 use arena::game::TICK_US;
 use arena::ledger::{CaseTable, MatchLedger};
 use host::Host;
@@ -12,9 +13,7 @@ use protocol::{CaseId, Instant, RobotId};
 use rules::Colour;
 use serde::Serialize;
 
-use crate::cases::problem::parse;
 use crate::cases::problem_line;
-use crate::library::LibraryHandle;
 use crate::live::{Names, TeamCycles, reported};
 
 /// A report may come after this many newer decisions of both teams: teams decide at most every tick or so,

@@ -2,12 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use arena::cases::problem;
 use case_tools::Library;
 use casebase::{Problem, RetrievalSettings, retrieve_best};
 use page::MatchProblem;
 use serde::Serialize;
-
-use crate::cases::problem;
 
 /// The problems of a match that can be read.
 pub(super) struct Problems(Vec<Problem>);

@@ -12,6 +12,7 @@ mod shared_library;
 
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
+use arena::cases::{Chosen, described, explained_by, problem};
 use case_tools::workbench::{FindingNote, Sheet, Workbench, case_name, is_case_name};
 use case_tools::{Finding, Library, SkeletonError, never_retrieved, skeleton};
 use casebase::RetrievalSettings;
@@ -20,8 +21,6 @@ use protocol::CaseId;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use crate::args::{Chosen, described};
-use crate::cases::{self, problem};
 use asked::Asked;
 use count::Problems;
 use rehearsal::{Rehearsal, RehearsalOrder};
@@ -199,7 +198,7 @@ impl CaseWorkbench {
         let authored = library.names.iter().position(|known| known == name).unwrap_or(0);
         let chosen = Chosen { settings: self.settings.clone(), changed: Vec::new() };
         let name_of = |id: CaseId| library.names[usize::from(id.0) / 4].as_str();
-        let answer = cases::explained_by(&library.base(), &name_of, &chosen, &problem.to_string())?;
+        let answer = explained_by(&library.base(), &name_of, &chosen, &problem.to_string())?;
         let answer: Value = serde_json::from_str(&answer).map_err(|error| error.to_string())?;
         Ok(json!({ "ids": (0..4).map(|copy| 4 * authored + copy).collect::<Vec<_>>(), "answer": answer }))
     }

@@ -5,13 +5,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
+use arena::cases::league_of;
 use arena::{Attempt, CaseNames, CaseTrial, Opposition, Retrieved, Score, Tape};
 use case_tools::Library;
 use casebase::RetrievalSettings;
 use page::milli;
 use serde_json::{Value, json};
-
-use crate::setup::league_of;
 
 /// Attempts that are offered to be watched.
 const SAMPLES: usize = 3;

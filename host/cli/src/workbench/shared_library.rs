@@ -4,10 +4,10 @@
 use std::path::Path;
 use std::sync::{Arc, PoisonError, RwLock};
 
+use arena::cases::LibraryHandle;
 use case_tools::Files;
 
 use crate::Failure;
-use crate::library::LibraryHandle;
 
 /// A library that is read again for every match.
 #[derive(Clone, Debug)]
@@ -26,7 +26,7 @@ impl SharedLibrary {
     /// Reads its directory again, if it has one; as it was where that is refused.
     pub(crate) fn read_again(&self) -> Result<(), Failure> {
         if let Some(directory) = self.directory() {
-            let read = LibraryHandle::read(directory)?;
+            let read = crate::library::read(directory)?;
             *self.0.write().unwrap_or_else(PoisonError::into_inner) = Some(read);
         }
         Ok(())

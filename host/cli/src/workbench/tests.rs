@@ -4,10 +4,10 @@ use std::fs;
 use std::path::PathBuf;
 use std::time::Duration;
 
+use arena::cases::LibraryHandle;
 use page::MatchProblem;
 
 use super::*;
-use crate::library::LibraryHandle;
 
 /// A directory that is removed with its value.
 struct Directory(PathBuf);
@@ -34,7 +34,7 @@ impl Directory {
     }
 
     fn workbench(&self) -> CaseWorkbench {
-        let library = SharedLibrary::new(Some(LibraryHandle::read(&self.library()).unwrap()));
+        let library = SharedLibrary::new(Some(crate::library::read(&self.library()).unwrap()));
         CaseWorkbench::new(library, RetrievalSettings::default())
     }
 }

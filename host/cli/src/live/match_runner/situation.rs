@@ -1,13 +1,12 @@
 //! `situation`: start of a match in a case's situation. Ball, players and opponents as the case's author drew
 //! them, all other robots at free places of a kick-off. m, rad, field frame.
 
+use arena::cases::LibraryHandle;
 use casebase::CaseBase;
 use geometry::{Angle, Field, GoalEnd, Point, Pose};
 use protocol::{CaseId, RobotId, Who};
 use rules::restart::kickoff_places;
 use rules::{Colour, FieldSpec};
-
-use crate::library::LibraryHandle;
 
 /// Least distance to other robots and to the ball at which a robot without a place in the case is put, m: two
 /// robots and as much free space between.

@@ -4,7 +4,7 @@ use case_tools::{Counterfactual, CounterfactualObstacle, Entity};
 use serde::Serialize;
 
 use super::answer::rounded;
-use crate::library::LibraryHandle;
+use super::explanation::NameOf;
 
 /// What would make one case the winner, or why no single change does.
 #[derive(Debug, Serialize)]
@@ -36,7 +36,7 @@ enum WhatIfLine {
 
 impl WhatIf {
     /// `None` for the winner itself.
-    pub(super) fn new(library_handle: &LibraryHandle, id: u16, found: &Counterfactual) -> Option<Self> {
+    pub(super) fn new(name_of: NameOf<'_, '_>, id: u16, found: &Counterfactual) -> Option<Self> {
         let answer = match *found {
             Counterfactual::Winner => return None,
             Counterfactual::Move(found) => {
@@ -49,7 +49,7 @@ impl WhatIf {
                 WhatIfLine::Move { moved, number, from, to, distance_mm: rounded(found.distance_mm, 1.0) }
             }
             Counterfactual::NoSingleMove(obstacle) => {
-                let (no_single_move, description) = reported_obstacle(library_handle, obstacle);
+                let (no_single_move, description) = reported_obstacle(name_of, obstacle);
                 WhatIfLine::Nothing { no_single_move, description }
             }
         };
@@ -73,16 +73,13 @@ impl WhatIf {
     }
 }
 
-fn reported_obstacle(
-    library_handle: &LibraryHandle,
-    obstacle: CounterfactualObstacle,
-) -> (&'static str, String) {
+fn reported_obstacle(name_of: NameOf<'_, '_>, obstacle: CounterfactualObstacle) -> (&'static str, String) {
     match obstacle {
         CounterfactualObstacle::Robots { needed, present } => {
             ("robots", format!("cannot win: it needs {needed} robots, {present} are present"))
         }
         CounterfactualObstacle::Conditions { winner, fulfilled, most } => {
-            let name = library_handle.name(winner);
+            let name = name_of(winner);
             (
                 "conditions",
                 format!("cannot win while {name} fulfils {fulfilled} conditions: it has {most} at most"),

@@ -9,13 +9,12 @@ use casebase::{
 use protocol::RobotId;
 use serde::{Serialize, Serializer};
 
-use crate::args::Chosen;
-use crate::library::LibraryHandle;
+use super::{Chosen, LibraryHandle};
 
 /// The answer to one line of `cases retrieve`.
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
-pub(crate) enum Answer<'a> {
+pub enum Answer<'a> {
     /// The best case.
     Found(Found<'a>),
     /// No case fits.
@@ -37,7 +36,7 @@ pub(crate) enum Answer<'a> {
 
 /// A retrieved case and the roles and places of the robots.
 #[derive(Debug, Serialize)]
-pub(crate) struct Found<'a> {
+pub struct Found<'a> {
     case: &'a str,
     id: u16,
     symmetry: &'static str,
@@ -57,7 +56,8 @@ pub(crate) struct Found<'a> {
 }
 
 impl<'a> Answer<'a> {
-    pub(crate) fn new(
+    /// Of a retrieval from that library.
+    pub fn new(
         library_handle: &'a LibraryHandle,
         base: &CaseBase<'_>,
         problem: &Problem,
@@ -127,7 +127,7 @@ pub(super) fn as_object<K: Serialize, V: Serialize, S: Serializer>(
 }
 
 /// One value on one line.
-pub(super) fn write_line(output: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
+pub fn write_line(output: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
     serde_json::to_writer(&mut *output, value)?;
     output.write_all(b"\n")
 }

@@ -15,7 +15,7 @@ use serde_json::value::RawValue;
 use serde_json::{Value, json};
 
 /// Parses the problem of a line.
-pub(crate) fn parse(line: &str) -> Result<Problem, Malformed> {
+pub fn parse(line: &str) -> Result<Problem, Malformed> {
     let Members(members) = serde_json::from_str(line).map_err(|error| not_an_object(&error))?;
     let (mut ball, mut defending, mut teammates, mut opponents) = (None, None, None, None);
     let mut unavailable = None;
@@ -40,7 +40,7 @@ pub(crate) fn parse(line: &str) -> Result<Problem, Malformed> {
 }
 
 /// A problem as [`parse`] takes it.
-pub(crate) fn value(problem: &Problem) -> Value {
+pub fn value(problem: &Problem) -> Value {
     let mm = |at: &PointMm| [at.x, at.y];
     let teammates: serde_json::Map<String, Value> =
         problem.teammates.iter().map(|(id, at)| (id.number().to_string(), json!(mm(at)))).collect();
@@ -57,7 +57,7 @@ const PLACE_LEN: usize = 60;
 
 /// Why a line is not a valid problem.
 #[derive(Debug, PartialEq, Eq)]
-pub(crate) struct Malformed {
+pub struct Malformed {
     /// Where in the line, if not all of it.
     place: Option<String>,
     /// What was expected there.
@@ -65,11 +65,13 @@ pub(crate) struct Malformed {
 }
 
 impl Malformed {
-    pub(crate) fn at(place: &str, reason: impl Into<String>) -> Self {
+    /// At a place in the line.
+    pub fn at(place: &str, reason: impl Into<String>) -> Self {
         Self { place: Some(excerpt(place, PLACE_LEN)), reason: reason.into() }
     }
 
-    pub(crate) fn line(reason: impl Into<String>) -> Self {
+    /// Of the whole line.
+    pub fn line(reason: impl Into<String>) -> Self {
         Self { place: None, reason: reason.into() }
     }
 }
