@@ -1,0 +1,131 @@
+//! `library`: case libraries in Python, and what they answer. mm, field frame.
+
+use std::path::PathBuf;
+
+use arena::cases::{Answer, Chosen, LibraryHandle, explained_by, problem};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyString};
+
+use crate::{from_json, refused};
+
+/// A case library, opened once and asked many times.
+#[pyclass(frozen, module = "onetwo")]
+pub struct Library {
+    handle: LibraryHandle,
+}
+
+#[pymethods]
+impl Library {
+    /// Opens a built-in league's library, or one league's directory of case files.
+    #[new]
+    #[pyo3(signature = (league = "four-legged", *, directory = None))]
+    fn new(py: Python<'_>, league: &str, directory: Option<PathBuf>) -> PyResult<Self> {
+        let handle = py.detach(|| match &directory {
+            Some(directory) => LibraryHandle::read(directory, |_, _| ()),
+            None => LibraryHandle::named(league),
+        });
+        Ok(Self { handle: handle.map_err(refused)? })
+    }
+
+    /// The league's name.
+    #[getter]
+    fn league(&self) -> &str {
+        self.handle.league()
+    }
+
+    /// `region/name` of every authored case, in order.
+    #[getter]
+    fn names(&self) -> Vec<String> {
+        self.handle.names()
+    }
+
+    /// The number of stored cases: four for each authored one.
+    fn __len__(&self) -> usize {
+        self.handle.base().len()
+    }
+
+    /// The case that fits a problem, as a dict; its "case" is None where none fits.
+    #[pyo3(signature = (problem, *, settings = None))]
+    fn retrieve<'py>(
+        &self,
+        problem: &Bound<'py, PyAny>,
+        settings: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let chosen = chosen(settings)?;
+        let line = line_of(problem)?;
+        let problem_read = problem::parse(&line).map_err(refused)?;
+        let base = self.handle.base();
+        let retrieval = casebase::retrieve(&base, &problem_read, &chosen.settings);
+        let answer = Answer::new(&self.handle, &base, &problem_read, &chosen, &retrieval);
+        from_json(problem.py(), &serde_json::to_string(&answer).map_err(refused)?)
+    }
+
+    /// Every case's verdict on a problem, as a dict.
+    #[pyo3(signature = (problem, *, settings = None))]
+    fn explain<'py>(
+        &self,
+        problem: &Bound<'py, PyAny>,
+        settings: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let chosen = chosen(settings)?;
+        let line = line_of(problem)?;
+        let name_of = |id| self.handle.name(id);
+        let answer = explained_by(&self.handle.base(), &name_of, &chosen, &line).map_err(refused)?;
+        from_json(problem.py(), &answer)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Library({:?}, {} stored cases)", self.handle.league(), self.handle.base().len())
+    }
+}
+
+impl Library {
+    /// Its handle.
+    pub fn handle(&self) -> LibraryHandle {
+        self.handle
+    }
+}
+
+/// `Library.retrieve` of a library, or of the built-in four-legged league's.
+#[pyfunction]
+#[pyo3(signature = (problem, *, library = None, settings = None))]
+pub fn retrieve<'py>(
+    problem: &Bound<'py, PyAny>,
+    library: Option<&Library>,
+    settings: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    Library { handle: handle_or_default(library)? }.retrieve(problem, settings)
+}
+
+/// `Library.explain` of a library, or of the built-in four-legged league's.
+#[pyfunction]
+#[pyo3(signature = (problem, *, library = None, settings = None))]
+pub fn explain<'py>(
+    problem: &Bound<'py, PyAny>,
+    library: Option<&Library>,
+    settings: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    Library { handle: handle_or_default(library)? }.explain(problem, settings)
+}
+
+/// The library's handle, or that of the league that the program takes by default.
+pub fn handle_or_default(library: Option<&Library>) -> PyResult<LibraryHandle> {
+    library.map_or_else(|| LibraryHandle::named("four-legged").map_err(refused), |one| Ok(one.handle()))
+}
+
+/// Retrieval's settings from names and values.
+pub fn chosen(settings: Option<&Bound<'_, PyDict>>) -> PyResult<Chosen> {
+    let mut given = Vec::new();
+    for (name, value) in settings.into_iter().flat_map(PyDictMethods::iter) {
+        given.push((name.str()?.to_string(), value.str()?.to_string()));
+    }
+    Chosen::of(given.iter().map(|(name, value)| (name.as_str(), value.as_str()))).map_err(refused)
+}
+
+/// The line of JSON in which the program takes a problem: a string as it is, anything else through `json.dumps`.
+fn line_of(problem: &Bound<'_, PyAny>) -> PyResult<String> {
+    if let Ok(text) = problem.cast::<PyString>() {
+        return Ok(text.to_string());
+    }
+    problem.py().import("json")?.call_method1("dumps", (problem,))?.extract()
+}
