@@ -1,5 +1,5 @@
-//! `episode`: one attempt to score in the Small Size simulator, in steps of one control period. m, s, rad; own
-//! robots are blue and attack the goal at +x.
+//! `episode`: one attempt to score in the Small Size simulator, in steps of one control period. m, s, rad;
+//! own robots are blue and attack the goal at +x.
 
 use geometry::{Angle, Body, Field, Point, Pose, Twist, Vector};
 use hil_sim::small_size::{Ball, Drive, KickCommand, Order, Parameters, World};
@@ -81,8 +81,8 @@ impl Episode {
         Some(episode)
     }
 
-    /// Plays one control period with these orders, [`ACTION_LEN`] numbers for each robot; an empty slice for the
-    /// opponents lets them stand. A finished episode stays as it is.
+    /// Plays one control period with these orders, [`ACTION_LEN`] numbers for each robot; an empty slice
+    /// for the opponents lets them stand. A finished episode stays as it is.
     pub fn step(&mut self, own: &[f32], opponents: &[f32]) {
         self.reward = 0.0;
         if self.end.is_some() {
@@ -163,7 +163,8 @@ impl Episode {
         let [forward, left, turn, kick, dribbler] =
             std::array::from_fn(|at| action.get(at).copied().unwrap_or(0.0).clamp(-1.0, 1.0));
         let linear = Vector::<Body>::new(forward, left) * drive.speed;
-        let kick = (kick > 0.0).then(|| KickCommand { speed: kick * self.parameters.kick.flat, angle: 0.0 });
+        let kick =
+            (kick > 0.0).then_some(KickCommand { speed: kick * self.parameters.kick.flat, angle: 0.0 });
         Order {
             drive: Drive::Local(Twist {
                 linear: linear.clamped(drive.speed),
@@ -175,8 +176,8 @@ impl Episode {
         }
     }
 
-    /// Minus the ball's distance to the opponents' goal, m, and minus a share of the distance between the ball and
-    /// the nearest own robot, m.
+    /// Minus the ball's distance to the opponents' goal, m, and minus a share of the distance between the
+    /// ball and the nearest own robot, m.
     fn potential(&self) -> f32 {
         let ball = self.world.ball.position;
         let goal = Point::<Field>::new(self.world.pitch().field.length * 0.5, 0.0);
@@ -197,7 +198,8 @@ impl Episode {
     }
 }
 
-/// The ball within the middle of the field; own robots in their half, opponents in theirs, apart from each other.
+/// The ball within the middle of the field; own robots in their half, opponents in theirs, apart from each
+/// other.
 fn line_up(world: &mut World, settings: &Settings, seed: u64) {
     let field = world.pitch().field;
     let (length, width) = (field.length * 0.5 - EDGE, field.width * 0.5 - EDGE);
@@ -232,7 +234,8 @@ pub fn observation_len(settings: &Settings) -> usize {
 pub const ACTION_LEN: usize = 5;
 /// Values of the ball in an observation: x, y, height, velocity along x and y.
 pub const BALL_LEN: usize = 5;
-/// Values of a robot: x, y, sine and cosine of the heading, velocity along x and y, turning rate, ball contact.
+/// Values of a robot: x, y, sine and cosine of the heading, velocity along x and y, turning rate, ball
+/// contact.
 pub const ROBOT_LEN: usize = 8;
 /// Reward of a goal, and minus that of an own goal: more than any way across the field adds up to, m.
 const GOAL_REWARD: f32 = 10.0;

@@ -1,5 +1,5 @@
-//! `onetwo_native`: the Rust side of the Python package `onetwo`. Case retrieval and its explanation, trials of
-//! the first paper, and the Small Size simulator step by step (docs/python.md).
+//! `onetwo_native`: the Rust side of the Python package `onetwo`. Case retrieval and its explanation,
+//! trials of the first paper, and the Small Size simulator step by step (README.md).
 //!
 //! Answers are those of the command line: the same functions of crate `arena`, as JSON, read by Python's own
 //! `json`. Bad input raises `ValueError` with the program's message; nothing is printed.

@@ -122,7 +122,8 @@ pub fn chosen(settings: Option<&Bound<'_, PyDict>>) -> PyResult<Chosen> {
     Chosen::of(given.iter().map(|(name, value)| (name.as_str(), value.as_str()))).map_err(refused)
 }
 
-/// The line of JSON in which the program takes a problem: a string as it is, anything else through `json.dumps`.
+/// The line of JSON in which the program takes a problem: a string as it is, anything else through
+/// `json.dumps`.
 fn line_of(problem: &Bound<'_, PyAny>) -> PyResult<String> {
     if let Ok(text) = problem.cast::<PyString>() {
         return Ok(text.to_string());

@@ -1,5 +1,5 @@
-//! `simulator`: the Small Size simulator in Python, step by step. Numbers come and go through buffers, such as
-//! NumPy's arrays, without NumPy being needed.
+//! `simulator`: the Small Size simulator in Python, step by step. Numbers come and go through buffers, such
+//! as NumPy's arrays, without NumPy being needed.
 
 use geometry::{Angle, Point, Pose, Vector};
 use hil_sim::small_size::Ball;

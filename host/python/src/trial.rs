@@ -12,7 +12,8 @@ use pyo3::types::PyDict;
 use crate::library::{Library, chosen, handle_or_default};
 use crate::{from_json, refused};
 
-/// Plays one trial and returns its report as a dict; flags, defaults and keys are those of `onetwo trial --json`.
+/// Plays one trial and returns its report as a dict; flags, defaults and keys are those of `onetwo trial
+/// --json`.
 #[pyfunction]
 #[pyo3(signature = (
     *,

@@ -13,16 +13,13 @@ use serde::Serialize;
 use super::answer::{as_object, cost, roles, rounded, similarity};
 use super::problem::parse;
 use super::whatif::WhatIf;
-use super::{Chosen, counted};
-
-/// `region/name` of a stored case.
-pub type NameOf<'a, 'f> = &'f dyn Fn(CaseId) -> &'a str;
+use super::{Chosen, NameOf, counted};
 
 /// Number of cases that are explained without being candidates: those that miss by the least.
 pub const NEAREST: usize = 5;
 
-/// The explanation of a problem's line as JSON, over any case base, whose cases have these names; or the error
-/// in the line.
+/// The explanation of a problem's line as JSON, over any case base, whose cases have these names; or the
+/// error in the line.
 pub fn explained_by<'a>(
     base: &CaseBase<'_>,
     name_of: NameOf<'a, '_>,

@@ -9,9 +9,12 @@ mod settings;
 mod whatif;
 
 pub use answer::{Answer, Found, write_line};
-pub use explanation::{Explanation, NEAREST, NameOf, candidate, explained_by, reason};
+pub use explanation::{Explanation, NEAREST, candidate, explained_by, reason};
 pub use handle::{LibraryError, LibraryHandle, league_of};
 pub use settings::{Chosen, SettingFailure, described};
+
+/// Gives `region/name` of a stored case.
+pub type NameOf<'a, 'f> = &'f dyn Fn(protocol::CaseId) -> &'a str;
 
 /// `1 robot`, `2 robots`.
 pub fn counted(count: usize, what: &str) -> String {

@@ -3,8 +3,8 @@
 use case_tools::{Counterfactual, CounterfactualObstacle, Entity};
 use serde::Serialize;
 
+use super::NameOf;
 use super::answer::rounded;
-use super::explanation::NameOf;
 
 /// What would make one case the winner, or why no single change does.
 #[derive(Debug, Serialize)]
