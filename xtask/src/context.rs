@@ -90,6 +90,8 @@ pub(crate) enum Failure {
     Qemu(QemuError),
     /// No browser for tests of the page.
     Browser,
+    /// No Python for tests of the Python package.
+    Python,
     /// The firmware image cannot be built.
     Image(BuildError),
     /// A firmware image is too large, or contains a panic that is not permitted.
@@ -112,6 +114,10 @@ impl fmt::Display for Failure {
             Self::Qemu(error) => error.fmt(f),
             Self::Browser => f.write_str(
                 "no Chromium is found: install it (Debian: apt-get install chromium), or name one in ONETWO_BROWSER",
+            ),
+            Self::Python => f.write_str(
+                "no Python of 3.11 or later that makes virtual environments is found: install it (Debian: apt-get install \
+                 python3 python3-venv)",
             ),
             Self::Image(error) => error.fmt(f),
             Self::Firmware(faults) => {

@@ -18,6 +18,7 @@ mod game_cost;
 mod images;
 mod page;
 mod pictures;
+mod python;
 mod readme;
 mod release;
 mod report;

@@ -7,7 +7,7 @@
 use firmware_build::Install;
 
 use crate::context::{Context, Failure, run};
-use crate::{deny, determinism, emulate, first_build, images, page, readme};
+use crate::{deny, determinism, emulate, first_build, images, page, python, readme};
 
 /// One checked property.
 #[derive(Debug)]
@@ -19,7 +19,7 @@ pub(crate) struct Step {
     pub(crate) run: fn(&Context) -> Result<(), Failure>,
 }
 
-pub(crate) const STEPS: [Step; 15] = [
+pub(crate) const STEPS: [Step; 16] = [
     Step { name: "fmt", what: "sources are formatted as rustfmt.toml says", run: fmt },
     Step { name: "clippy", what: "the linter has no warning, on the PC", run: clippy },
     Step { name: "deny", what: deny::WHAT, run: deny::check },
@@ -46,6 +46,7 @@ pub(crate) const STEPS: [Step; 15] = [
         run: publish,
     },
     Step { name: "page", what: page::WHAT, run: page::check },
+    Step { name: "python", what: python::WHAT, run: python::check },
     Step { name: "readme", what: readme::WHAT, run: readme::check },
 ];
 

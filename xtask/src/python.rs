@@ -1,0 +1,136 @@
+//! `python`: the Python package in a virtual environment of its own below the target directory. Formatting,
+//! the linter, an installation as a user's, and its tests against the built program.
+//!
+//! Crates of others are in the shared target directory already; ours are built again, because cargo tells
+//! crates of two workspaces apart.
+
+use std::env;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use crate::context::{Context, Failure, run};
+
+/// The property checked by the step.
+pub(crate) const WHAT: &str =
+    "the Python package installs, answers as the program does and passes Gymnasium's own checker";
+
+/// Runs it.
+pub(crate) fn check(context: &Context) -> Result<(), Failure> {
+    context.ensure_component("fmt", "rustfmt")?;
+    run(&mut context.cargo(&format!("fmt --check {MANIFEST}")))?;
+    let environment = Environment::ensure(context)?;
+    context.ensure_component("clippy", "clippy")?;
+    let clippy = format!("clippy --locked {MANIFEST} --all-targets -- -D warnings");
+    run(environment.in_it(&mut context.cargo(&clippy)))?;
+    run(&mut context.cargo("build --release --bin onetwo"))?;
+    let mut install = environment.python(context);
+    install.args([
+        "-m",
+        "pip",
+        "install",
+        "--quiet",
+        "--no-build-isolation",
+        "--no-deps",
+        "--force-reinstall",
+    ]);
+    run(install.arg(PACKAGE))?;
+    let mut tests = environment.python(context);
+    tests.args(["-m", "unittest", "discover", "--start-directory"]).arg(format!("{PACKAGE}/tests"));
+    let program = format!("onetwo{}", env::consts::EXE_SUFFIX);
+    run(tests.env("ONETWO", environment.target.join("release").join(program)))
+}
+
+/// The virtual environment with what building and testing need.
+struct Environment {
+    target: PathBuf,
+    programs: PathBuf,
+}
+
+impl Environment {
+    /// Makes it where it is missing.
+    fn ensure(context: &Context) -> Result<Self, Failure> {
+        let target = firmware_build::target_dir(context.root());
+        let directory = target.join("python-venv");
+        let programs = directory.join(if cfg!(windows) { "Scripts" } else { "bin" });
+        let environment = Self { target, programs };
+        if !environment
+            .python(context)
+            .args(["-c", "import pip"])
+            .output()
+            .is_ok_and(|out| out.status.success())
+        {
+            let python = ensure_python()?;
+            run(Command::new(python).args(["-m", "venv", "--clear"]).arg(&directory))?;
+        }
+        run(environment.python(context).args(["-m", "pip", "install", "--quiet"]).args(NEEDED))?;
+        Ok(environment)
+    }
+
+    /// Its Python, at the workspace's root.
+    fn python(&self, context: &Context) -> Command {
+        let mut command = Command::new(self.programs.join("python"));
+        command.current_dir(context.root());
+        self.in_it(&mut command);
+        command
+    }
+
+    /// The command with the environment's programs first, and the shared target directory.
+    fn in_it<'a>(&self, command: &'a mut Command) -> &'a mut Command {
+        let path = env::var_os("PATH").unwrap_or_default();
+        let all = std::iter::once(self.programs.clone()).chain(env::split_paths(&path));
+        let joined = env::join_paths(all).unwrap_or_else(|_| OsString::from(&self.programs));
+        command
+            .env("PATH", joined)
+            .env("CARGO_TARGET_DIR", &self.target)
+            .env("PYO3_PYTHON", self.programs.join("python"))
+    }
+}
+
+/// A Python that can make environments, installed first where that is possible.
+fn ensure_python() -> Result<&'static str, Failure> {
+    let found = || NAMES.into_iter().find(|name| is_fit(Path::new(name)));
+    if let Some(name) = found() {
+        return Ok(name);
+    }
+    // The next check shows whether it helped.
+    let _ = run(Command::new("apt-get").args(["install", "-y", "python3", "python3-venv"]));
+    found().ok_or(Failure::Python)
+}
+
+fn is_fit(python: &Path) -> bool {
+    let mut question = Command::new(python);
+    question.args(["-c", "import ensurepip, sys, venv; sys.exit(sys.version_info < (3, 11))"]);
+    question.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    question.status().is_ok_and(|status| status.success())
+}
+
+/// The package, from the workspace's root.
+const PACKAGE: &str = "./host/python";
+/// The same for cargo: a workspace of its own.
+const MANIFEST: &str = "--manifest-path host/python/Cargo.toml";
+/// Names of Python on various systems.
+const NAMES: [&str; 2] = ["python3", "python"];
+/// What builds and tests the package: the build tool and the checker by version, so that a run can be
+/// repeated.
+const NEEDED: [&str; 3] = ["maturin==1.16.0", "gymnasium==1.4.0", "numpy>=1.26"];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_python_is_not_taken() {
+        assert!(!is_fit(Path::new("onetwo-has-no-such-program")));
+        assert!(!is_fit(Path::new("false")));
+    }
+
+    #[test]
+    fn the_environments_programs_come_first() {
+        let environment = Environment { target: "there".into(), programs: "there/bin".into() };
+        let mut command = Command::new("true");
+        let set = environment.in_it(&mut command).get_envs().find(|(name, _)| *name == "PATH");
+        let path = set.and_then(|(_, value)| value).unwrap_or_default();
+        assert_eq!(env::split_paths(path).next(), Some(PathBuf::from("there/bin")));
+    }
+}
