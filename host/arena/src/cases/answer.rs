@@ -23,7 +23,7 @@ pub enum Answer<'a> {
         case: (),
         /// Number of candidates: 0.
         candidates: u16,
-        /// See [`Found::settings`].
+        /// What differs from retrieval's defaults.
         #[serde(skip_serializing_if = "<[_]>::is_empty", serialize_with = "as_object")]
         settings: &'a [(String, String)],
     },
