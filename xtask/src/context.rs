@@ -8,7 +8,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 
-use firmware_build::{BuildError, QemuError, TargetError, ThumbToolchain};
+use firmware_build::{Board, BuildError, QemuError, TargetError, ThumbToolchain};
 
 /// The workspace and its tools. A tool is searched for once, when the first step needs it.
 pub(crate) struct Context {
@@ -37,6 +37,16 @@ impl Context {
         let (verb, rest) = line.split_once(' ').unwrap_or((line, ""));
         let mut command = self.ensure_target()?.cargo(&self.root, verb);
         command.args(rest.split_whitespace());
+        Ok(command)
+    }
+
+    /// `cargo` for the processor of that board, and its package alone: two boards of one family may ask its
+    /// drivers for different chips.
+    pub(crate) fn cargo_board(&self, verb: &str, board: &Board, more: &str) -> Result<Command, Failure> {
+        let toolchain =
+            firmware_build::ensure_target_of(&self.root, &board.target).map_err(Failure::Target)?;
+        let mut command = toolchain.cargo(&self.root, verb);
+        command.args(["--profile", "firmware", "--package", &board.package]).args(more.split_whitespace());
         Ok(command)
     }
 

@@ -1,13 +1,13 @@
 //! `images`: size and panic check of the robots' firmware images (docs/architecture.md §9).
 //!
 //! One image per body, the one that runs by its own clock, and the one for a real robot's board; the list of
-//! places that may panic is `firmware/panics.allow`, for all images together.
+//! places that may panic is `firmware/panics.allow`, with a board's own `panics.allow`, for all images together.
 
 use std::collections::BTreeMap;
 use std::fs;
 
-use firmware_build::Program;
 use firmware_build::inspect::{Allowed, Image, Sizes, panic_sites};
+use firmware_build::{Board, Program, boards};
 
 use crate::context::{Context, Failure};
 
@@ -19,7 +19,7 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
     context.ensure_target()?;
     let mut sites = BTreeMap::new();
     let mut faults = Vec::new();
-    for program in Program::IMAGES {
+    for program in Program::images() {
         let path = firmware_build::build_program(context.root(), program).map_err(Failure::Image)?;
         let unreadable = |why: String| Failure::Firmware(vec![format!("{}: {why}", path.display())]);
         let bytes = fs::read(&path).map_err(|error| unreadable(error.to_string()))?;
@@ -36,11 +36,8 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
             sites.entry(site).or_insert(lines);
         }
     }
-    let list = context.root().join(LIST);
-    let text =
-        fs::read_to_string(&list).map_err(|error| Failure::Firmware(vec![format!("{LIST}: {error}")]))?;
-    let allowed =
-        Allowed::parse(&text).map_err(|error| Failure::Firmware(vec![format!("{LIST}: {error}")]))?;
+    let allowed = Allowed::parse(&allowed_places(context)?)
+        .map_err(|error| Failure::Firmware(vec![format!("{LIST}, and that of each board: {error}")]))?;
     let verdict = allowed.judge(&sites);
     faults.extend(
         verdict.unknown.iter().map(|(site, lines)| format!("may panic: {site} ({})", lines.join(", "))),
@@ -51,5 +48,20 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
     if faults.is_empty() { Ok(()) } else { Err(Failure::Firmware(faults)) }
 }
 
+/// The common list, and those of boards that have one of their own.
+fn allowed_places(context: &Context) -> Result<String, Failure> {
+    let own = |board: &Board| format!("firmware/boards/{}/{OWN_LIST}", board.name);
+    let own = boards().iter().map(own).filter(|list| context.root().join(list).is_file());
+    let mut text = String::new();
+    for list in std::iter::once(LIST.to_owned()).chain(own) {
+        let part = fs::read_to_string(context.root().join(&list));
+        text += &part.map_err(|error| Failure::Firmware(vec![format!("{list}: {error}")]))?;
+        text.push('\n');
+    }
+    Ok(text)
+}
+
+/// Places that may panic in a board's own crate and its chip's drivers, in the board's directory.
+const OWN_LIST: &str = "panics.allow";
 /// Places that may panic, each with its reason.
 const LIST: &str = "firmware/panics.allow";

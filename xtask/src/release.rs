@@ -17,7 +17,7 @@ pub(crate) fn build(context: &Context, names: &[String]) -> Result<(), Failure> 
     context.ensure_target()?;
     let out = firmware_build::target_dir(context.root()).join("release-archives");
     let pages = manuals(context, &out)?;
-    let images: Vec<PathBuf> = Program::IMAGES
+    let images: Vec<PathBuf> = Program::images()
         .into_iter()
         .map(|program| firmware_build::build_program(context.root(), program).map_err(Failure::Image))
         .collect::<Result<_, _>>()?;

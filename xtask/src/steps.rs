@@ -4,7 +4,7 @@
 //! a debug build, QEMU and the trials a release build, the robot's crates and the firmware image a build for
 //! the target.
 
-use firmware_build::Install;
+use firmware_build::{Board, Install, boards};
 
 use crate::context::{Context, Failure, run};
 use crate::{deny, determinism, emulate, first_build, images, page, python, readme};
@@ -67,28 +67,32 @@ fn test(context: &Context) -> Result<(), Failure> {
 
 fn doc(context: &Context) -> Result<(), Failure> {
     // A board is empty on the PC, and its links would be broken: `doc-thumb` documents it.
-    let boards: String = BOARDS.iter().flat_map(|name| [" --exclude ", name]).collect();
+    let boards: String = boards().iter().flat_map(|board| [" --exclude ", &board.package]).collect();
     let line = format!("doc --workspace --no-deps{boards}");
     run(context.cargo(&line).env("RUSTDOCFLAGS", "-D warnings"))
 }
 
 fn doc_thumb(context: &Context) -> Result<(), Failure> {
-    let line = format!("doc --no-deps{FIRMWARE}{}", packages(&BOARDS));
-    run(context.cargo_thumb(&line)?.env("RUSTDOCFLAGS", "-D warnings"))
+    boards().iter().try_for_each(|board| {
+        run(context.cargo_board("doc", board, "--no-deps")?.env("RUSTDOCFLAGS", "-D warnings"))
+    })
 }
 
 fn thumb(context: &Context) -> Result<(), Failure> {
     run(&mut context.cargo_thumb(&format!("build{FIRMWARE}{}", packages(&ON_ROBOT)))?)?;
-    // A real board's programs for testing its parts, which must link too.
-    run(&mut context.cargo_thumb(&format!("build{FIRMWARE} --package board-stm32 --examples"))?)
+    // Programs for testing a board's parts, which must link too.
+    with_examples(context)
+        .try_for_each(|board| run(&mut context.cargo_board("build", board, "--examples")?))
 }
 
 fn clippy_thumb(context: &Context) -> Result<(), Failure> {
     context.ensure_component("clippy", "clippy")?;
-    let packages = packages(&ON_ROBOT) + &packages(&BOARDS);
+    let packages = packages(&ON_ROBOT);
     run(&mut context.cargo_thumb(&format!("clippy{FIRMWARE}{packages} -- -D warnings"))?)?;
-    run(&mut context
-        .cargo_thumb(&format!("clippy{FIRMWARE} --package board-stm32 --examples -- -D warnings"))?)?;
+    boards().iter().try_for_each(|board| run(&mut context.cargo_board("clippy", board, STRICT)?))?;
+    let examples = format!("--examples {STRICT}");
+    with_examples(context)
+        .try_for_each(|board| run(&mut context.cargo_board("clippy", board, &examples)?))?;
     run(&mut context.cargo_thumb(&format!("clippy{FIRMWARE} --package on-target --tests -- -D warnings"))?)
 }
 
@@ -135,6 +139,14 @@ fn packages(names: &[&str]) -> String {
     names.iter().flat_map(|name| [" --package ", name]).collect()
 }
 
+/// Boards with programs that try one part each.
+fn with_examples(context: &Context) -> impl Iterator<Item = &'static Board> {
+    let directory = context.root().join("firmware/boards");
+    boards().iter().filter(move |board| directory.join(&board.name).join("examples").is_dir())
+}
+
+/// What clippy passes to the compiler.
+const STRICT: &str = "-- -D warnings";
 /// The firmware image's profile for all builds for the target, so that macros and build scripts are built
 /// once.
 const FIRMWARE: &str = " --profile firmware";
@@ -150,8 +162,6 @@ const ON_ROBOT: [&str; 9] = [
     "onetwo-brain",
     "onetwo-runtime",
 ];
-/// Programs for the robot's processor.
-const BOARDS: [&str; 2] = ["board-mps2", "board-stm32"];
 
 #[cfg(test)]
 mod tests {

@@ -11,7 +11,7 @@ use std::process::{Command, ExitStatus, Stdio};
 use crate::inspect::Budget;
 use crate::process::{line_of, output_of};
 use crate::target::cargo_program;
-use crate::{TARGET, TargetError, ensure_target};
+use crate::{Board, TARGET, TargetError, boards, ensure_target_of};
 
 /// The firmware of a robot with that body for [`MACHINE`](crate::MACHINE), built first where it is missing or
 /// older than its sources.
@@ -36,11 +36,11 @@ fn shipped(own: &Path, program: Program) -> Option<PathBuf> {
 }
 
 fn build_into(target_dir: &Path, root: &Path, program: Program) -> Result<PathBuf, BuildError> {
-    let image = target_dir.join(TARGET).join(PROFILE).join(program.name());
+    let image = target_dir.join(program.target()).join(PROFILE).join(program.name());
     if let Some(why) = cannot_build(root) {
         return if image.is_file() { Ok(image) } else { Err(BuildError::NothingToBuild { why, image }) };
     }
-    let toolchain = ensure_target(root).map_err(BuildError::Target)?;
+    let toolchain = ensure_target_of(root, program.target()).map_err(BuildError::Target)?;
     let mut build = toolchain.cargo(root, "build");
     build
         .args(["--package", program.package(), "--bin", program.name(), "--profile", PROFILE, "--target-dir"])
@@ -62,8 +62,8 @@ pub enum Program {
     Robot(ImageBody),
     /// A robot on wheels that runs by its own clock, with a serial line for a radio.
     Free,
-    /// A robot on wheels for the chip of a real one, which the emulator does not support.
-    Stm32,
+    /// A robot on wheels for the board of a real one, which the emulator does not support.
+    Board(&'static Board),
     /// Succeeds where `geometry::math` has the bits it has on the PC.
     MathHash,
     /// Program that counts the instructions of retrievals.
@@ -75,17 +75,29 @@ pub enum Program {
 }
 
 impl Program {
-    /// Whole robots, which are held to the budgets of their firmware.
-    pub const IMAGES: [Self; 4] =
-        [Self::Robot(ImageBody::Legged), Self::Robot(ImageBody::Omni), Self::Free, Self::Stm32];
+    /// Whole robots, which are held to the budgets of their firmware: the emulated ones, then one for each
+    /// real board.
+    pub fn images() -> Vec<Self> {
+        let emulated = [Self::Robot(ImageBody::Legged), Self::Robot(ImageBody::Omni), Self::Free];
+        let real = boards().iter().filter(|board| board.firmware.is_some()).map(Self::Board);
+        emulated.into_iter().chain(real).collect()
+    }
+
+    /// The firmware of the real board of that name.
+    pub fn of_board(name: &str) -> Option<Self> {
+        let real = boards().iter().find(|board| board.name == name && board.firmware.is_some());
+        real.map(Self::Board)
+    }
 
     /// The name of the binary.
-    pub const fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Robot(ImageBody::Legged) => "onetwo-mps2-legged",
             Self::Robot(ImageBody::Omni) => "onetwo-mps2-omni",
             Self::Free => "onetwo-mps2-free",
-            Self::Stm32 => "onetwo-stm32",
+            Self::Board(board) => {
+                board.firmware.as_ref().map_or(board.package.as_str(), |firmware| &firmware.image)
+            }
             Self::MathHash => "math-hash",
             Self::RetrievalBench => "retrieval-bench",
             Self::MotionBench => "motion-bench",
@@ -94,18 +106,27 @@ impl Program {
     }
 
     /// Limits of its size.
-    pub const fn budget(self) -> Budget {
-        match self {
-            Self::Stm32 => Budget::BOARD,
-            _ => Budget::IMAGE,
-        }
+    pub fn budget(self) -> Budget {
+        let firmware = match self {
+            Self::Board(board) => board.firmware.as_ref(),
+            _ => None,
+        };
+        firmware.map_or(Budget::IMAGE, |firmware| Budget { flash: firmware.flash, ram: firmware.ram })
     }
 
     /// The board it is for.
-    const fn package(self) -> &'static str {
+    fn package(self) -> &'static str {
         match self {
-            Self::Stm32 => "board-stm32",
+            Self::Board(board) => &board.package,
             _ => PACKAGE,
+        }
+    }
+
+    /// The target it is built for.
+    fn target(self) -> &'static str {
+        match self {
+            Self::Board(board) => &board.target,
+            _ => TARGET,
         }
     }
 }
@@ -286,7 +307,7 @@ mod tests {
         fs::create_dir_all(&images).unwrap();
         fs::write(images.join(ROBOT.name()), b"an image").unwrap();
         assert_eq!(shipped(&own, ROBOT), Some(images.canonicalize().unwrap().join(ROBOT.name())));
-        assert_eq!(shipped(&own, Program::Stm32), None);
+        assert_eq!(shipped(&own, Program::of_board("stm32").unwrap()), None);
         fs::remove_dir_all(&root).unwrap();
     }
 

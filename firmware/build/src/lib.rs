@@ -14,6 +14,7 @@
 //! operations are reported on stderr.
 #![forbid(unsafe_code)]
 
+mod board;
 pub mod count;
 mod image;
 pub mod inspect;
@@ -23,10 +24,12 @@ mod qemu;
 mod target;
 
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
+pub use board::{Board, BoardFirmware};
 pub use image::{BuildError, ImageBody, Program, SHIPPED_IMAGES, build_image, build_program, target_dir};
 pub use qemu::{MACHINE, QEMU, QemuError, ensure_qemu};
-pub use target::{TargetError, ThumbToolchain, ensure_target};
+pub use target::{TargetError, ThumbToolchain, ensure_target, ensure_target_of};
 
 /// Which places a missing tool may be installed to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,12 +48,38 @@ pub fn workspace_root() -> PathBuf {
     here.ancestors().nth(2).unwrap_or(here).to_path_buf()
 }
 
-/// The robots' processor: a Cortex-M4F, hard float.
+/// All boards of the workspace, by name.
+pub fn boards() -> &'static [Board] {
+    static BOARDS: OnceLock<Vec<Board>> = OnceLock::new();
+    const MANIFESTS: &[(&str, &str)] = &include!(concat!(env!("OUT_DIR"), "/boards.rs"));
+    BOARDS.get_or_init(|| {
+        let board = |(name, manifest): &(&str, &str)| Board::parse(name, manifest);
+        MANIFESTS.iter().map(|known| board(known).expect("the build script has read it")).collect()
+    })
+}
+
+/// The robots' processor: a Cortex-M4F, hard float. What all robots' crates are checked for; a board may
+/// have a target of its own.
 pub const TARGET: &str = "thumbv7em-none-eabihf";
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_boards_are_the_directories_and_their_packages_and_images_are_distinct() {
+        let names: Vec<_> = boards().iter().map(|board| board.name.as_str()).collect();
+        assert!(names.contains(&"mps2") && names.contains(&"stm32"), "{names:?}");
+        for (n, board) in boards().iter().enumerate() {
+            let directory = workspace_root().join("firmware/boards").join(&board.name);
+            assert!(directory.join("src/main.rs").is_file(), "{}", directory.display());
+            assert_eq!(board.package, format!("board-{}", board.name));
+            let Some(firmware) = &board.firmware else { continue };
+            for other in boards()[..n].iter().filter_map(|other| other.firmware.as_ref()) {
+                assert_ne!(firmware.image, other.image);
+            }
+        }
+    }
 
     #[test]
     fn the_workspace_holds_this_crate() {

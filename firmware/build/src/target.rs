@@ -10,29 +10,35 @@ use std::time::Duration;
 use crate::TARGET;
 use crate::process::{in_path, output_of, run_within};
 
-/// Makes sure the workspace's toolchain can build for [`TARGET`]; lets rustup fetch it where it is missing.
+/// Makes sure the workspace's toolchain can build for the robots' [`TARGET`]; lets rustup fetch it where it is
+/// missing.
 pub fn ensure_target(root: &Path) -> Result<ThumbToolchain, TargetError> {
-    output_of(rustc().current_dir(root).arg("-vV")).map_err(|why| TargetError::NoCompiler { why })?;
-    let missing = |why| TargetError::NoTarget { why };
-    if prebuilt(root).is_err() {
-        let rustup = in_path("rustup").ok_or_else(|| missing("rustup is not installed".to_owned()))?;
-        run_within(RUSTUP, Command::new(rustup).current_dir(root).args(["target", "add", TARGET]))
-            .map_err(missing)?;
-        prebuilt(root).map_err(missing)?;
-    }
-    Ok(ThumbToolchain(()))
+    ensure_target_of(root, TARGET)
 }
 
-/// A toolchain with `core` for [`TARGET`].
+/// As [`ensure_target`], for any target: a board may have one of its own.
+pub fn ensure_target_of(root: &Path, target: &str) -> Result<ThumbToolchain, TargetError> {
+    output_of(rustc().current_dir(root).arg("-vV")).map_err(|why| TargetError::NoCompiler { why })?;
+    let missing = |why| TargetError::NoTarget { target: target.to_owned(), why };
+    if prebuilt(root, target).is_err() {
+        let rustup = in_path("rustup").ok_or_else(|| missing("rustup is not installed".to_owned()))?;
+        run_within(RUSTUP, Command::new(rustup).current_dir(root).args(["target", "add", target]))
+            .map_err(missing)?;
+        prebuilt(root, target).map_err(missing)?;
+    }
+    Ok(ThumbToolchain(target.to_owned()))
+}
+
+/// A toolchain with `core` for a target of robots.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ThumbToolchain(());
+pub struct ThumbToolchain(String);
 
 impl ThumbToolchain {
     /// `cargo`, in the workspace; add a verb, packages and a profile, then run it. Every build for the target
     /// starts here: other flags would compile all of it again.
     pub fn cargo(&self, root: &Path, verb: &str) -> Command {
         let mut command = Command::new(cargo_program());
-        command.current_dir(root).arg(verb).args(["--target", TARGET]);
+        command.current_dir(root).arg(verb).args(["--target", &self.0]);
         command
     }
 }
@@ -47,6 +53,8 @@ pub enum TargetError {
     },
     /// The compiler has no `core` for the target, and rustup did not fetch it.
     NoTarget {
+        /// The target.
+        target: String,
         /// The obstacle.
         why: String,
     },
@@ -58,10 +66,10 @@ impl fmt::Display for TargetError {
             Self::NoCompiler { why } => {
                 write!(f, "no Rust compiler ({why}); install rustup, then `rustup target add {TARGET}`")
             }
-            Self::NoTarget { why } => {
+            Self::NoTarget { target, why } => {
                 write!(
                     f,
-                    "nothing here compiles for {TARGET} ({why}); install it with `rustup target add {TARGET}`"
+                    "nothing here compiles for {target} ({why}); install it with `rustup target add {target}`"
                 )
             }
         }
@@ -80,9 +88,9 @@ fn rustc() -> Command {
 }
 
 /// Whether the toolchain that the workspace's file, or the caller, has chosen holds `core` for the target.
-fn prebuilt(root: &Path) -> Result<(), String> {
+fn prebuilt(root: &Path, target: &str) -> Result<(), String> {
     let mut question = rustc();
-    question.current_dir(root).args(["--print", "target-libdir", "--target", TARGET]);
+    question.current_dir(root).args(["--print", "target-libdir", "--target", target]);
     let directory = PathBuf::from(output_of(&mut question)?.trim());
     let entries = fs::read_dir(&directory).map_err(|_| "not installed".to_string())?;
     let has_core = entries.flatten().any(|entry| entry.file_name().to_string_lossy().starts_with("libcore-"));
@@ -98,7 +106,8 @@ mod tests {
 
     #[test]
     fn the_reason_is_reported_and_what_to_install() {
-        let text = TargetError::NoTarget { why: "no answer within 120 s".into() }.to_string();
+        let text =
+            TargetError::NoTarget { target: TARGET.into(), why: "no answer within 120 s".into() }.to_string();
         let expected = "nothing here compiles for thumbv7em-none-eabihf (no answer within 120 s); \
             install it with `rustup target add thumbv7em-none-eabihf`";
         assert_eq!(text, expected);

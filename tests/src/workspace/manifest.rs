@@ -9,7 +9,19 @@ pub fn members() -> Vec<Manifest> {
     let workspace: toml::Table =
         Source::read(&root().join("Cargo.toml")).text.parse().expect("the workspace's manifest");
     let members = workspace["workspace"]["members"].as_array().expect("members");
-    members.iter().filter_map(|directory| directory.as_str()).map(Manifest::read).collect()
+    let members = members.iter().filter_map(|directory| directory.as_str());
+    members.flat_map(directories).map(|directory| Manifest::read(&directory)).collect()
+}
+
+/// The directories of an entry of the list: itself, or for `DIRECTORY/*` the packages in it, by name.
+fn directories(entry: &str) -> Vec<String> {
+    let Some(above) = entry.strip_suffix("/*") else { return vec![entry.to_owned()] };
+    let entries = std::fs::read_dir(root().join(above)).expect("the directory of a list's entry");
+    let packages = entries.flatten().filter(|entry| entry.path().join("Cargo.toml").is_file());
+    let mut all: Vec<_> =
+        packages.map(|entry| format!("{above}/{}", entry.file_name().to_string_lossy())).collect();
+    all.sort();
+    all
 }
 
 /// A crate of the workspace, and its dependencies, except dev-dependencies.

@@ -18,11 +18,6 @@ impl Budget {
     /// Budget of a robot's firmware with its cases (docs/architecture.md §9).
     pub const IMAGE: Self = Self { flash: 160 * 1024, ram: 48 * 1024 };
 
-    /// Budget of the firmware for a real robot's board: the same robot, and 27 kB of drivers, clocks and log
-    /// of its chip, which has 2 MiB. The brain is compiled as for the emulator, so that what is counted there
-    /// is what is flashed.
-    pub const BOARD: Self = Self { flash: 192 * 1024, ..Self::IMAGE };
-
     /// Whether `sizes` keep to it.
     pub fn check(self, sizes: &Sizes) -> Result<(), OverBudget> {
         if sizes.flash <= self.flash && sizes.ram <= self.ram {

@@ -159,11 +159,16 @@ fn crate_of(path: &str) -> &str {
     let above = after("src").and_then(|at| segments.get(at.checked_sub(1)?).copied());
     match above {
         Some("library") => "case-library",
-        Some("mps2") => "board-mps2",
-        Some("stm32") => "board-stm32",
-        Some(directory) => directory,
+        Some(directory) => board_in(&segments, directory).unwrap_or(directory),
         None => "core",
     }
+}
+
+/// The package of the board in that directory, where it is one.
+fn board_in(segments: &[&str], directory: &str) -> Option<&'static str> {
+    let is_board = segments.windows(2).any(|pair| pair == ["boards", directory]);
+    let board = crate::boards().iter().find(|board| is_board && board.name == directory)?;
+    Some(&board.package)
 }
 
 const SOFT_DOUBLE: [&str; 12] = [
@@ -197,6 +202,7 @@ mod tests {
             ("protocol/geometry/src/math.rs", "geometry"),
             ("firmware/boards/mps2/src/bin/../lockstep/ticks.rs", "board-mps2"),
             ("firmware/boards/stm32/src/robot/mod.rs", "board-stm32"),
+            ("firmware/elsewhere/stm32/src/lib.rs", "stm32"),
             ("casebase/library/src/lib.rs", "case-library"),
         ] {
             assert_eq!(crate_of(path), name, "{path}");

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use clap::Args;
-use firmware_build::Program;
+use firmware_build::{Board, Program, boards};
 
 use super::{build, failed};
 use crate::Failure;
@@ -18,7 +18,10 @@ use crate::output::note;
 /// What is flashed, and where.
 #[derive(Debug, Args)]
 pub(crate) struct FlashArgs {
-    /// The firmware image: a board's ELF file; by default the one for firmware/boards/stm32, built first.
+    /// The board, by its directory's name: its image is built, and flashed.
+    #[arg(long, value_name = "BOARD", default_value = "stm32", value_parser = real)]
+    board: &'static Board,
+    /// The firmware image: any other ELF file.
     #[arg(long, value_name = "FILE", requires = "chip")]
     elf: Option<PathBuf>,
     /// The chip, as `probe-rs chip list` names it; by default that board's.
@@ -27,7 +30,7 @@ pub(crate) struct FlashArgs {
     /// The page that `provision` wrote.
     #[arg(long, value_name = "FILE")]
     page: Option<PathBuf>,
-    /// Address of the page in the chip's flash; by default the last sector of that board.
+    /// Address of the page in the chip's flash; by default as the board's manifest says.
     #[arg(long, value_name = "ADDRESS", value_parser = address, requires = "page")]
     page_address: Option<u32>,
     /// Which probe, where there are several (`probe-rs list`).
@@ -44,7 +47,7 @@ pub(super) fn run(args: &FlashArgs) -> Result<(), Failure> {
     }
     let image = match &args.elf {
         Some(file) => file.clone(),
-        None => build(Program::Stm32)?,
+        None => build(Program::Board(args.board))?,
     };
     for description in downloads(args, &image) {
         let line = format!("{PROGRAM} {}", description.join(" "));
@@ -63,7 +66,7 @@ pub(super) fn run(args: &FlashArgs) -> Result<(), Failure> {
 /// The arguments of each call of probe-rs; the page first, so that a robot never starts its new firmware
 /// without its key.
 fn downloads(args: &FlashArgs, image: &Path) -> Vec<Vec<String>> {
-    let chip = args.chip.as_deref().unwrap_or(CHIP);
+    let chip = args.chip.as_deref().unwrap_or(&args.board.chip);
     let call = |file: &Path, more: &[&str]| {
         let mut arguments = vec!["download".to_owned(), "--chip".to_owned(), chip.to_owned()];
         if let Some(probe) = &args.probe {
@@ -73,11 +76,22 @@ fn downloads(args: &FlashArgs, image: &Path) -> Vec<Vec<String>> {
         arguments.push(file.display().to_string());
         arguments
     };
+    let page_address = args.board.firmware.as_ref().map_or(0, |firmware| firmware.page);
     let page = args.page.as_deref().map(|file| {
-        let address = format!("{:#010x}", args.page_address.unwrap_or(PAGE_ADDRESS));
+        let address = format!("{:#010x}", args.page_address.unwrap_or(page_address));
         call(file, &["--verify", "--binary-format", "bin", "--base-address", &address])
     });
     page.into_iter().chain([call(image, &["--verify", "--preverify"])]).collect()
+}
+
+/// A board that can be flashed.
+fn real(name: &str) -> Result<&'static Board, String> {
+    let mut real = boards().iter().filter(|board| board.firmware.is_some());
+    real.clone().find(|board| board.name == name).ok_or_else(|| {
+        let first = real.next().map_or("", |board| &board.name);
+        let names = real.fold(first.to_owned(), |names, board| names + ", " + &board.name);
+        format!("no such board; there are: {names}")
+    })
 }
 
 /// `0x081e0000`, or decimal.
@@ -90,10 +104,6 @@ fn address(text: &str) -> Result<u32, String> {
 }
 
 const PROGRAM: &str = "probe-rs";
-/// Of firmware/boards/stm32.
-const CHIP: &str = "STM32H743ZITx";
-/// The last sector of its flash (its `flash.rs`).
-const PAGE_ADDRESS: u32 = 0x081e_0000;
 const MISSING: &str = "\
 probe-rs is not installed; get it from https://probe.rs, or build it with `cargo install probe-rs-tools --locked` (some 30 minutes)";
 
@@ -104,6 +114,7 @@ mod tests {
     #[test]
     fn the_page_goes_first_and_to_its_address() {
         let args = FlashArgs {
+            board: real("stm32").unwrap(),
             elf: None,
             chip: None,
             page: Some("robot.page".into()),

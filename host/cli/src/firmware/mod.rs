@@ -17,9 +17,9 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::{Args, Subcommand, ValueEnum};
+use clap::{Args, Subcommand};
 use firmware_build::inspect::{Image, Sizes};
-use firmware_build::{ImageBody, Program, build_program, workspace_root};
+use firmware_build::{ImageBody, Program, boards, build_program, workspace_root};
 
 use crate::Failure;
 use crate::failure::FirmwareError;
@@ -47,38 +47,29 @@ pub(crate) enum FirmwareVerb {
 /// Which firmware images.
 #[derive(Debug, Args)]
 pub(crate) struct ImagesArgs {
-    /// The firmware image; all of them by default.
-    #[arg(long, value_enum)]
-    image: Option<ImageLabel>,
+    /// The firmware image: legged, omni, free, or a board's name; all of them by default.
+    #[arg(long, value_parser = image)]
+    image: Option<Program>,
 }
 
-/// Name of a firmware image.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum ImageLabel {
-    /// A walking robot, stepped tick by tick by the simulator.
-    Legged,
-    /// A robot on wheels, stepped by the simulator.
-    Omni,
-    /// A robot on wheels that runs by its own clock.
-    Free,
-    /// The same on a real robot's board, STM32H743.
-    Stm32,
-}
-
-impl ImageLabel {
-    const fn program(self) -> Program {
-        match self {
-            Self::Legged => Program::Robot(ImageBody::Legged),
-            Self::Omni => Program::Robot(ImageBody::Omni),
-            Self::Free => Program::Free,
-            Self::Stm32 => Program::Stm32,
-        }
+/// The firmware image of that name: `legged` and `omni`, which the simulator steps tick by tick, `free`, which
+/// runs by its own clock, and each real board by its directory's name.
+fn image(name: &str) -> Result<Program, String> {
+    match name {
+        "legged" => Ok(Program::Robot(ImageBody::Legged)),
+        "omni" => Ok(Program::Robot(ImageBody::Omni)),
+        "free" => Ok(Program::Free),
+        _ => Program::of_board(name).ok_or_else(|| {
+            let real = boards().iter().filter(|board| board.firmware.is_some());
+            let real: Vec<_> = real.map(|board| board.name.as_str()).collect();
+            format!("expected legged, omni, free, or a board: {}", real.join(", "))
+        }),
     }
 }
 
 impl ImagesArgs {
     fn programs(&self) -> Vec<Program> {
-        self.image.map_or_else(|| Program::IMAGES.to_vec(), |label| vec![label.program()])
+        self.image.map_or_else(Program::images, |image| vec![image])
     }
 }
 

@@ -28,7 +28,7 @@ pub(crate) struct ReportArgs {
 
 /// Builds, plays, and writes the report.
 pub(super) fn run(args: &ReportArgs) -> Result<(), Failure> {
-    let all: Vec<_> = Program::IMAGES
+    let all: Vec<_> = Program::images()
         .into_iter()
         .map(|program| Known::of(program, Some(args.seconds)))
         .collect::<Result<_, Failure>>()?;
