@@ -46,7 +46,8 @@ impl Context {
         let toolchain =
             firmware_build::ensure_target_of(&self.root, &board.target).map_err(Failure::Target)?;
         let mut command = toolchain.cargo(&self.root, verb);
-        command.args(["--profile", "firmware", "--package", &board.package]).args(more.split_whitespace());
+        command.args(["--profile", "firmware", "--package", &board.package]);
+        command.args(board.profile().into_iter().flatten()).args(more.split_whitespace());
         Ok(command)
     }
 

@@ -151,7 +151,7 @@ const STRICT: &str = "-- -D warnings";
 /// once.
 const FIRMWARE: &str = " --profile firmware";
 /// Crates on a robot, lowest first; tests/tests/tidy.rs holds the same crates to `no_std`.
-const ON_ROBOT: [&str; 9] = [
+const ON_ROBOT: [&str; 10] = [
     "onetwo-geometry",
     "onetwo-protocol",
     "onetwo-rules",
@@ -161,6 +161,7 @@ const ON_ROBOT: [&str; 9] = [
     "onetwo-nrf24",
     "onetwo-brain",
     "onetwo-runtime",
+    "board-kit",
 ];
 
 #[cfg(test)]

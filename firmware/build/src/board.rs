@@ -34,6 +34,14 @@ pub struct BoardFirmware {
 }
 
 impl Board {
+    /// The option for cargo with which the package of a real board is compiled: its tasks run once a packet or
+    /// less, so it is made small. What it is flashed with from its own directory says the same
+    /// (`.cargo/config.toml`).
+    pub fn profile(&self) -> Option<[String; 2]> {
+        let small = format!("profile.firmware.package.{}.opt-level=\"s\"", self.package);
+        self.firmware.as_ref().map(|_| ["--config".to_owned(), small])
+    }
+
     /// The board of the directory `name`, from the text of its `Cargo.toml`; the error names the key.
     pub fn parse(name: &str, manifest: &str) -> Result<Self, String> {
         let wrong = |what: String| format!("firmware/boards/{name}/Cargo.toml: {what}");

@@ -51,6 +51,9 @@ fn build_into(target_dir: &Path, root: &Path, program: Program) -> Result<PathBu
     if program == Program::Free {
         build.args(["--no-default-features", "--features", ImageBody::Omni.label()]);
     }
+    if let Program::Board(board) = program {
+        build.args(board.profile().into_iter().flatten());
+    }
     run_cargo(&mut build)?;
     if image.is_file() { Ok(image) } else { Err(BuildError::NoImage { image }) }
 }

@@ -10,13 +10,14 @@
 #[cfg(target_os = "none")]
 #[embassy_executor::main]
 async fn main(spawner: embassy_executor::Spawner) {
-    use board_stm32::analog::Analog;
+    use board_kit::sampling::AnalogInputs as _;
+    use board_stm32::drivers;
     use embassy_time::Timer;
     use runtime::sense::BreakBeam;
 
     // One task is enough.
     let _ = spawner;
-    let mut analog = Analog::new(board_stm32::start().analog);
+    let mut analog = drivers::analog(board_stm32::start().analog);
     let mut break_beam = BreakBeam::new();
     loop {
         let (mut ball, mut seen) = (false, [0.0; 2]);

@@ -10,11 +10,12 @@
 #[cfg(target_os = "none")]
 #[embassy_executor::main]
 async fn main(spawner: embassy_executor::Spawner) {
-    use board_stm32::analog::Analog;
+    use board_kit::sampling::AnalogInputs as _;
+    use board_stm32::drivers;
 
     // One task is enough.
     let _ = spawner;
-    let mut analog = Analog::new(board_stm32::start().analog);
+    let mut analog = drivers::analog(board_stm32::start().analog);
     loop {
         defmt::info!("{=f32} V", analog.battery());
         embassy_time::Timer::after_secs(1).await;

@@ -13,8 +13,8 @@
 #[cfg(target_os = "none")]
 #[embassy_executor::main]
 async fn main(spawner: embassy_executor::Spawner) {
-    use board_stm32::analog::Analog;
-    use board_stm32::kicker::Kicker;
+    use board_kit::sampling::AnalogInputs as _;
+    use board_stm32::drivers;
     use embassy_time::{Duration, Instant, Timer};
     use runtime::kicker::KickerAct;
     use runtime::ports::Kicker as _;
@@ -26,7 +26,7 @@ async fn main(spawner: embassy_executor::Spawner) {
     // One task is enough.
     let _ = spawner;
     let parts = board_stm32::start();
-    let (mut kicker, mut analog) = (Kicker::new(parts.kicker), Analog::new(parts.analog));
+    let (mut kicker, mut analog) = (drivers::kicker(parts.kicker), drivers::analog(parts.analog));
     for round in 1..=3_u8 {
         let begun = Instant::now();
         while analog.capacitor() < ENOUGH && begun.elapsed() < Duration::from_secs(2) {

@@ -10,18 +10,22 @@
 #[cfg(target_os = "none")]
 #[embassy_executor::main]
 async fn main(spawner: embassy_executor::Spawner) {
-    use board_stm32::encoders::Encoders;
-    use embassy_time::{Instant, Timer};
+    use board_kit::not_wired::NotWired;
+    use board_kit::wheels::Wheels;
+    use board_stm32::drivers;
+    use embassy_time::Timer;
+    use runtime::ports::WheelsPort as _;
 
     // One task is enough.
     let _ = spawner;
-    let mut encoders = Encoders::new(board_stm32::start().encoders);
+    // Without motors no wheel counts as stuck.
+    let counters = drivers::encoders(board_stm32::start().encoders);
+    let mut wheels = Wheels::new(NotWired, counters);
     loop {
-        let now = protocol::Instant(Instant::now().as_micros());
-        let rims = encoders.rims(now, [0.0; 4]);
+        let rims = wheels.measured();
         defmt::info!(
             "counts {}, rims {} m/s (front right, back right, back left, front left)",
-            encoders.counts(),
+            wheels.counts(),
             rims
         );
         Timer::after_millis(200).await;

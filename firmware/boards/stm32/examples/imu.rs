@@ -10,12 +10,13 @@
 #[cfg(target_os = "none")]
 #[embassy_executor::main]
 async fn main(spawner: embassy_executor::Spawner) {
-    use board_stm32::imu::Imu;
+    use board_kit::imu::Gyroscope as _;
+    use board_stm32::drivers;
     use embassy_time::Timer;
 
     // One task is enough.
     let _ = spawner;
-    let mut imu = Imu::new(board_stm32::start().imu);
+    let mut imu = drivers::imu(board_stm32::start().imu);
     loop {
         match imu.start().await {
             Ok(()) => break,

@@ -9,11 +9,12 @@
 #[cfg(target_os = "none")]
 #[embassy_executor::main]
 async fn main(spawner: embassy_executor::Spawner) {
-    use board_stm32::radio;
+    use board_kit::radio;
+    use board_stm32::drivers;
 
     // One task is enough.
     let _ = spawner;
-    let Some((mut sender, mut receiver)) = radio::open(board_stm32::start().radio) else {
+    let Some((mut sender, mut receiver)) = drivers::radio(board_stm32::start().radio) else {
         defmt::error!("the line cannot have this rate");
         return;
     };

@@ -13,7 +13,8 @@
 #[cfg(target_os = "none")]
 #[embassy_executor::main]
 async fn main(spawner: embassy_executor::Spawner) {
-    use board_stm32::wheels::Drivers;
+    use board_kit::motors::MotorDrivers as _;
+    use board_stm32::drivers;
     use embassy_time::Timer;
 
     const NAMES: [&str; 4] = ["front right", "back right", "back left", "front left"];
@@ -22,7 +23,7 @@ async fn main(spawner: embassy_executor::Spawner) {
 
     // One task is enough.
     let _ = spawner;
-    let mut drivers = Drivers::new(board_stm32::start().motors);
+    let mut drivers = drivers::motors(board_stm32::start().motors);
     Timer::after_secs(2).await;
     for (wheel, name) in NAMES.iter().enumerate() {
         for sign in [1.0, -1.0] {

@@ -7,6 +7,7 @@
 //! | 0x081a_0000, 0x081c_0000 | the two halves that count starts (`runtime::persistent_counter`), a sector each |
 //! | 0x081e_0000 | the key page (`protocol::provision`), the last sector |
 
+use board_kit::ledger::LedgerFlash;
 use embassy_stm32::Peri;
 use embassy_stm32::flash::{Blocking, Flash};
 use embassy_stm32::peripherals::FLASH;
@@ -19,55 +20,43 @@ pub fn page() -> &'static [u8] {
     unsafe { core::slice::from_raw_parts((START + PAGE) as *const u8, PAGE_LEN) }
 }
 
-/// Why no epoch is available.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]
-pub enum CounterError {
-    /// All 2³² epochs are used.
-    Full,
-    /// The flash did not keep the written value in three attempts.
-    Worn,
-}
+/// The two halves of the counter of starts.
+#[allow(missing_debug_implementations, reason = "the chip's driver has none")]
+pub struct Ledger(Flash<'static, Blocking>);
 
-/// Records this start: its epoch, larger than all before. Up to two seconds where a half has to be erased,
-/// once in 4,096 starts.
-pub fn begin(flash: Peri<'static, FLASH>) -> Result<u32, CounterError> {
-    let mut flash = Flash::new_blocking(flash);
-    for _ in 0..TRIES {
-        let plan = persistent_counter::plan(CELLS, read).ok_or(CounterError::Full)?;
-        if plan.erase {
-            let from = HALVES + SECTOR * plan.at.half as u32;
-            if flash.blocking_erase(from, from + SECTOR).is_err() {
-                defmt::warn!("the ledger's half {=usize} cannot be erased", plan.at.half);
-            }
-        }
-        if write(&mut flash, plan.at, plan.epoch).is_ok() && read(plan.at) == CounterCell::Epoch(plan.epoch) {
-            return Ok(plan.epoch);
-        }
-        defmt::warn!("cell {=usize} of the ledger does not keep what is written", plan.at.index);
+impl Ledger {
+    /// The counter in this flash.
+    pub fn new(flash: Peri<'static, FLASH>) -> Self {
+        Self(Flash::new_blocking(flash))
     }
-    Err(CounterError::Worn)
 }
 
-fn write(
-    flash: &mut Flash<'static, Blocking>,
-    at: CounterPlace,
-    epoch: u32,
-) -> Result<(), embassy_stm32::flash::Error> {
-    flash.blocking_write(offset(at), &persistent_counter::cell(epoch))
-}
+impl LedgerFlash for Ledger {
+    const CELLS: usize = SECTOR as usize / CELL_LEN;
 
-/// The content of a cell. A cell that was written while the power went may have wrong check bits, and reading
-/// it is a fault: such a fault is tolerated here, and the bytes read are no valid cell.
-fn read(at: CounterPlace) -> CounterCell {
-    let mut bytes = [0; CELL_LEN];
-    let address = START + offset(at);
-    unfaulted(|| {
-        for (byte, address) in bytes.iter_mut().zip(address..) {
-            // SAFETY: flash behind the firmware (memory.x), written only by `begin`.
-            *byte = unsafe { (address as *const u8).read_volatile() };
-        }
-    });
-    CounterCell::of(&bytes)
+    /// A cell that was written while the power went may have wrong check bits, and reading it is a fault: such
+    /// a fault is tolerated here, and the bytes read are no valid cell.
+    fn read(&self, at: CounterPlace) -> CounterCell {
+        let mut bytes = [0; CELL_LEN];
+        let address = START + offset(at);
+        unfaulted(|| {
+            for (byte, address) in bytes.iter_mut().zip(address..) {
+                // SAFETY: flash behind the firmware (memory.x), written only by `write`.
+                *byte = unsafe { (address as *const u8).read_volatile() };
+            }
+        });
+        CounterCell::of(&bytes)
+    }
+
+    /// Up to two seconds.
+    fn erase(&mut self, half: usize) -> bool {
+        let from = HALVES + SECTOR * half as u32;
+        self.0.blocking_erase(from, from + SECTOR).is_ok()
+    }
+
+    fn write(&mut self, at: CounterPlace, epoch: u32) -> bool {
+        self.0.blocking_write(offset(at), &persistent_counter::cell(epoch)).is_ok()
+    }
 }
 
 /// Runs `work` with faults of data accesses ignored (Armv7-M, B3.2.8: BFHFNMIGN at the priority that
@@ -101,7 +90,3 @@ const START: u32 = 0x0800_0000;
 const HALVES: u32 = 0x001a_0000;
 const PAGE: u32 = 0x001e_0000;
 const SECTOR: u32 = 0x0002_0000;
-/// Number of cells in a half.
-const CELLS: usize = SECTOR as usize / CELL_LEN;
-/// Number of attempts: a cell that does not keep its value is skipped.
-const TRIES: usize = 3;

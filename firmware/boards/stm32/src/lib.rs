@@ -5,34 +5,22 @@
 //! Empty on the PC.
 //!
 //! | part | module |
+//! |---|---|
 //! | assignment of pins | [`pins`] |
-//! | which pin does what | [`pins`] |
 //! | clocks | [`clocks`] |
-//! | motors, dribbler, encoders | [`wheels`], [`encoders`] |
-//! | pulses that end by themselves, kicker | [`pulse`], [`kicker`] |
-//! | gyroscope and accelerometer | [`imu`] |
-//! | readings taken a thousand times a second | [`sampling`], [`analog`] |
-//! | radio | [`radio`] |
+//! | parts as drivers | [`drivers`] |
 //! | key page and counter of starts | [`flash`] |
-//! | watchdog, panics, everything off | [`watchdog`], [`fault`], [`off`](fn@off::everything) |
+//! | panics, everything off | [`fault`], [`off`](fn@off::everything) |
 #![allow(unsafe_code, reason = "registers, interrupts and flash are reached by address")]
 #![cfg(target_os = "none")]
 #![no_std]
 
-pub mod analog;
 pub mod clocks;
-pub mod encoders;
+pub mod drivers;
 pub mod fault;
 pub mod flash;
-pub mod imu;
-pub mod kicker;
 pub mod off;
 pub mod pins;
-pub mod pulse;
-pub mod radio;
-pub mod sampling;
-pub mod watchdog;
-pub mod wheels;
 
 // Transport of the log to the probe.
 use defmt_rtt as _;

@@ -4,34 +4,7 @@
 //! All pins are reachable on a NUCLEO-H743ZI2 and free there, Ethernet, USB and the virtual serial line left
 //! as they are. A line `name: PIN, "what";` is a wire, `name: TIM1, "what";` a part of the chip.
 
-use embassy_stm32::{Peri, Peripherals, peripherals};
-
-macro_rules! parts {
-    ($($(#[$doc:meta])* $part:ident $field:ident { $($name:ident: $pin:ident, $what:literal;)* })*) => {
-        $(
-            $(#[$doc])*
-            #[allow(missing_debug_implementations, reason = "pins have none")]
-            pub struct $part {
-                $(#[doc = $what] pub $name: Peri<'static, peripherals::$pin>,)*
-            }
-        )*
-
-        /// All parts of the board.
-        #[allow(missing_debug_implementations, reason = "pins have none")]
-        pub struct Parts {
-            $(#[doc = concat!("[`", stringify!($part), "`].")] pub $field: $part,)*
-        }
-
-        impl Parts {
-            /// Distributes the chip's peripherals.
-            pub fn of(all: Peripherals) -> Self {
-                Self { $($field: $part { $($name: all.$pin,)* },)* }
-            }
-        }
-    };
-}
-
-parts! {
+stm32_kit::parts! {
     /// Four motor drivers, and the one of the dribbler. Wheels in the order of the wire: front right, back
     /// right, back left, front left.
     Motors motors {

@@ -1,52 +1,26 @@
-//! `radio`: UART driver of the radio. COBS bytes (`protocol::serial`), carried by the DMA: a ring for
-//! received bytes, so that none are lost during the brain's longest step, one line at a time for sending.
+//! `radio`: a radio modem on a serial line of any chip. COBS bytes (`protocol::serial`): a ring for received
+//! bytes, so that none are lost during the brain's longest step, one line at a time for sending.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
-use embassy_stm32::gpio::Pull;
-use embassy_stm32::mode::Async;
-use embassy_stm32::usart::{self, RingBufferedUartRx, Uart, UartTx};
-use embassy_stm32::{bind_interrupts, dma, peripherals};
 use embassy_time::{Duration, Timer};
+use embedded_io_async::{Read, Write};
 use protocol::link::Packet;
 use protocol::serial::{LINE_LEN_MAX, Lines, line};
 use runtime::ports::{RadioReceiver, RadioSender};
-use static_cell::StaticCell;
 
-use crate::pins;
-
-bind_interrupts!(struct Interrupts {
-    USART2 => usart::InterruptHandler<peripherals::USART2>;
-    DMA1_STREAM0 => dma::InterruptHandler<peripherals::DMA1_CH0>;
-    DMA1_STREAM1 => dma::InterruptHandler<peripherals::DMA1_CH1>;
-});
-
-/// Both directions of the line; `None` where the line cannot have this rate. Call once.
-pub fn open(parts: pins::Radio) -> Option<(UartSender, UartReceiver)> {
-    static RING: StaticCell<[u8; RING_LEN]> = StaticCell::new();
-    static LINE: StaticCell<[u8; LINE_LEN_MAX]> = StaticCell::new();
-    let mut config = usart::Config::default();
-    config.baudrate = BAUD;
-    // Where no radio is plugged in, the line is idle.
-    config.rx_pull = Pull::Up;
-    let line =
-        Uart::new(parts.line, parts.rx, parts.tx, parts.tx_dma, parts.rx_dma, Interrupts, config).ok()?;
-    let (tx, rx) = line.split();
-    let rx = rx.into_ring_buffered(RING.init([0; RING_LEN]));
-    Some((UartSender { tx, line: LINE.init([0; LINE_LEN_MAX]) }, UartReceiver::new(rx)))
-}
-
-/// Receives frames by DMA into a ring, and decodes COBS lines.
-pub struct UartReceiver {
-    rx: RingBufferedUartRx<'static>,
+/// Receives frames from a line that buffers [`RING_LEN`] bytes or more, and decodes COBS lines.
+pub struct UartReceiver<R> {
+    rx: R,
     lines: Lines,
     came: [u8; CHUNK],
     /// Range of `came` that is not yet decoded.
     rest: (usize, usize),
 }
 
-impl UartReceiver {
-    fn new(rx: RingBufferedUartRx<'static>) -> Self {
+impl<R: Read> UartReceiver<R> {
+    /// Nothing received yet.
+    pub fn new(rx: R) -> Self {
         Self { rx, lines: Lines::new(), came: [0; CHUNK], rest: (0, 0) }
     }
 
@@ -65,7 +39,7 @@ impl UartReceiver {
     }
 }
 
-impl RadioReceiver for UartReceiver {
+impl<R: Read> RadioReceiver for UartReceiver<R> {
     async fn receive(&mut self) -> Packet {
         loop {
             let (from, to) = self.rest;
@@ -81,27 +55,37 @@ impl RadioReceiver for UartReceiver {
     }
 }
 
-/// Sends frames by DMA, one COBS line at a time.
-pub struct UartSender {
-    tx: UartTx<'static, Async>,
-    /// Buffer from which the DMA sends.
+/// Sends frames, one COBS line at a time.
+pub struct UartSender<W> {
+    tx: W,
+    /// From which the line sends: a static, where a DMA reads it.
     line: &'static mut [u8; LINE_LEN_MAX],
 }
 
-impl UartSender {
+impl<W: Write> UartSender<W> {
+    /// A line that is idle.
+    pub fn new(tx: W, line: &'static mut [u8; LINE_LEN_MAX]) -> Self {
+        Self { tx, line }
+    }
+
     /// Sends bytes unchanged, at most a line's capacity.
     pub async fn send_bytes(&mut self, bytes: &[u8]) {
         let len = bytes.len().min(LINE_LEN_MAX);
         self.line.iter_mut().zip(bytes).for_each(|(to, from)| *to = *from);
-        if let Some(whole) = self.line.get(..len)
-            && self.tx.write(whole).await.is_err()
-        {
-            NOISE.store(noise().wrapping_add(1), Ordering::Relaxed);
+        // Not `write_all`, which panics where a line takes nothing.
+        let mut rest = self.line.get(..len).unwrap_or_default();
+        while !rest.is_empty() {
+            let taken = self.tx.write(rest).await.unwrap_or(0);
+            if taken == 0 {
+                NOISE.store(noise().wrapping_add(1), Ordering::Relaxed);
+                return;
+            }
+            rest = rest.get(taken..).unwrap_or_default();
         }
     }
 }
 
-impl RadioSender for UartSender {
+impl<W: Write> RadioSender for UartSender<W> {
     async fn send(&mut self, packet: Packet) {
         let line = line(&packet);
         self.send_bytes(&line).await;
@@ -114,11 +98,11 @@ pub fn noise() -> u32 {
 }
 
 static NOISE: AtomicU32 = AtomicU32::new(0);
-/// The host's usual rate for serial links (`host::config`).
-const BAUD: u32 = 1_000_000;
+/// The host's usual rate for serial links (`host::config`), bit/s.
+pub const BAUD: u32 = 1_000_000;
 /// Bytes received in 5 ms; half of it raises the interrupt. The brain's longest step takes a fifth of a
-/// millisecond.
-const RING_LEN: usize = 512;
+/// millisecond at 400 MHz.
+pub const RING_LEN: usize = 512;
 /// After an error, before it listens again: shorter than the pause between two of the host's snapshots.
 const REST: Duration = Duration::from_millis(1);
 /// Bytes read in one call.

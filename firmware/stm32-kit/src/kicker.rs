@@ -1,27 +1,28 @@
 //! `kicker`: driver of the kicker board: charger and coils by timers that end by themselves; the capacitor
 //! stays off its discharge resistor only as long as that is requested again.
 
-use embassy_stm32::gpio::{Level, Output, Speed};
+use board_kit::sampling;
+use embassy_stm32::Peri;
+use embassy_stm32::gpio::{Level, Output, Pin, Speed};
+use embassy_stm32::timer::GeneralInstance2Channel;
 use embassy_time::{Duration, Timer};
 use runtime::kicker::{KickerAct, KickerState};
 use runtime::ports;
 
-use crate::pins;
-use crate::pulse::{self, Charger, Coil, Coils};
-use crate::sampling;
+use crate::pulse::{Charger, Coil, Coils};
 
 /// Driver of charger, capacitor and both coils.
-pub struct Kicker {
-    coils: Coils,
-    charger: Charger,
+#[allow(missing_debug_implementations, reason = "the chip's drivers have none")]
+pub struct Kicker<C: GeneralInstance2Channel, P: Charger> {
+    coils: Coils<C>,
+    charger: P,
     /// High keeps the capacitor from its resistor.
     hold: Output<'static>,
 }
 
-impl Kicker {
+impl<C: GeneralInstance2Channel, P: Charger> Kicker<C, P> {
     /// A kicker that discharges.
-    pub fn new(parts: pins::Kicker) -> Self {
-        let (coils, charger, hold) = pulse::of(parts);
+    pub fn new(coils: Coils<C>, charger: P, hold: Peri<'static, impl Pin>) -> Self {
         Self { coils, charger, hold: Output::new(hold, Level::Low, Speed::Low) }
     }
 
@@ -33,10 +34,9 @@ impl Kicker {
     }
 }
 
-impl ports::Kicker for Kicker {
+impl<C: GeneralInstance2Channel, P: Charger> ports::Kicker for Kicker<C, P> {
     fn state(&mut self) -> KickerState {
-        let newest = sampling::newest();
-        KickerState { ball: newest.ball, volts: newest.capacitor }
+        sampling::newest().kicker()
     }
 
     async fn act(&mut self, act: KickerAct) {

@@ -8,15 +8,31 @@ use core::cell::Cell;
 
 use embassy_sync::blocking_mutex::CriticalSectionMutex;
 use embassy_time::{Duration, Instant, Ticker};
-use runtime::kicker::FULL_VOLTS;
+use runtime::kicker::{FULL_VOLTS, KickerState};
 use runtime::ports::{self, Seen};
 use runtime::sense::{BreakBeam, Tilt, Turn};
 
-use crate::analog::Analog;
-use crate::imu::Imu;
+use crate::imu::{Gyroscope, ImuError};
+
+/// Inputs measured as a voltage, and the lamp of the break-beam sensor.
+pub trait AnalogInputs {
+    /// Battery voltage, V; NaN where it is not measured, which brakes the robot.
+    fn battery(&mut self) -> f32;
+
+    /// Voltage of the kicker's capacitor, V; NaN where it is not measured: it neither charges nor fires.
+    fn capacitor(&mut self) -> f32;
+
+    /// Light at the receiver of the break-beam sensor, 0 to 1.
+    fn break_beam(&mut self) -> f32;
+
+    /// Switches the lamp of the break-beam sensor; visible with the next step, because a receiver needs some
+    /// 100 µs.
+    fn light(&mut self, lit: bool);
+}
 
 /// The last reading of all sensors.
-#[derive(Clone, Copy, Debug, PartialEq, defmt::Format)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub struct SensorSample {
     /// Turning rate of the body, rad/s, counter-clockwise.
     pub turn: Option<f32>,
@@ -33,6 +49,11 @@ pub struct SensorSample {
 impl SensorSample {
     const NONE: Self =
         Self { turn: None, tipped: false, ball: false, battery: f32::NAN, capacitor: f32::NAN };
+
+    /// As the kicker's interlock needs it.
+    pub fn kicker(&self) -> KickerState {
+        KickerState { ball: self.ball, volts: self.capacitor }
+    }
 }
 
 /// The newest sample, if it is recent enough; else all readings are unknown, and an unknown battery brakes
@@ -42,9 +63,9 @@ pub fn newest() -> SensorSample {
     if at.elapsed() < STALE { sample } else { SensorSample::NONE }
 }
 
-/// Reads everything, for ever. A sensor that does not answer is reported and tried again each second; until
+/// Reads everything, for ever. A gyroscope that does not answer is reported and tried again each second; until
 /// then the turning rate comes from the wheels.
-pub async fn run(mut imu: Imu, mut analog: Analog) -> ! {
+pub async fn run(mut imu: impl Gyroscope, mut analog: impl AnalogInputs) -> ! {
     let (mut turn, mut tilt, mut break_beam) = (Turn::new(), Tilt::new(), BreakBeam::new());
     let mut answers = false;
     let mut lit = false;
@@ -55,19 +76,19 @@ pub async fn run(mut imu: Imu, mut analog: Analog) -> ! {
             asked = Instant::now();
             match imu.start().await {
                 Ok(()) => answers = true,
-                Err(error) => defmt::warn!("no gyroscope: {}; the wheels tell how the robot turns", error),
+                Err(error) => report(error),
             }
             ticker.reset();
         }
         ticker.next().await;
-        let reading = if answers { imu.reading().ok() } else { None };
-        if answers && reading.is_none() {
+        let reading = if answers { imu.reading() } else { Err(ImuError::Silent) };
+        if let (true, Err(error)) = (answers, &reading) {
             answers = false;
-            defmt::warn!("the gyroscope is gone");
+            report(*error);
         }
         let now = Instant::now();
         let sample = SensorSample {
-            turn: reading.and_then(|reading| turn.step(reading.rate[UP])),
+            turn: reading.ok().and_then(|reading| turn.step(reading.rate[UP])),
             tipped: tilt.step(
                 protocol::Instant(now.as_micros()),
                 reading.map_or(f32::NAN, |reading| reading.acceleration[UP]),
@@ -82,7 +103,16 @@ pub async fn run(mut imu: Imu, mut analog: Analog) -> ! {
     }
 }
 
+/// Logs a missing reading.
+fn report(error: ImuError) {
+    #[cfg(target_os = "none")]
+    defmt::warn!("no gyroscope: {}; the wheels tell how the robot turns", error);
+    #[cfg(not(target_os = "none"))]
+    let _ = error;
+}
+
 /// The probes that the brain reads.
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Probes;
 
 impl ports::Probes for Probes {

@@ -1,24 +1,24 @@
 //! `watchdog`: the chip's independent watchdog, which has an oscillator of its own and cannot be stopped.
 
 use embassy_stm32::Peri;
-use embassy_stm32::peripherals::IWDG1;
-use embassy_stm32::wdg::IndependentWatchdog;
+use embassy_stm32::wdg::{IndependentWatchdog, Instance};
 use protocol::Duration;
 use runtime::ports::Watchdog;
 
 /// The chip's watchdog, once it is running.
-pub struct BoardWatchdog(IndependentWatchdog<'static, IWDG1>);
+#[allow(missing_debug_implementations, reason = "the chip's drivers have none")]
+pub struct BoardWatchdog<T: Instance + 'static>(IndependentWatchdog<'static, T>);
 
-impl BoardWatchdog {
+impl<T: Instance + 'static> BoardWatchdog<T> {
     /// Starts it; from now on it must be fed, and only a reset ends it.
-    pub fn start(watchdog: Peri<'static, IWDG1>) -> Self {
+    pub fn start(watchdog: Peri<'static, T>) -> Self {
         let mut watchdog = IndependentWatchdog::new(watchdog, PATIENCE.0 as u32);
         watchdog.unleash();
         Self(watchdog)
     }
 }
 
-impl Watchdog for BoardWatchdog {
+impl<T: Instance + 'static> Watchdog for BoardWatchdog<T> {
     const PATIENCE: Duration = PATIENCE;
 
     fn feed(&mut self) {
@@ -26,5 +26,6 @@ impl Watchdog for BoardWatchdog {
     }
 }
 
-/// Time-out as on the emulated board: ten steps of the brain. Its oscillator is right within 6 %.
+/// Time-out as on the emulated board: ten steps of the brain. Its oscillator is right within 6 % on an
+/// STM32H7; on an STM32F4 it runs between 17 and 47 kHz, so that the time is 70 to 190 ms.
 const PATIENCE: Duration = Duration::millis(100);

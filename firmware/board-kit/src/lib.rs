@@ -1,0 +1,37 @@
+//! `board_kit`: what real robots' boards share, whatever their chip. A board brings pins, clocks, buses and
+//! timers as [`embedded_hal`]'s traits; here they become what `runtime`'s tasks ask for.
+//!
+//! | part | module |
+//! |---|---|
+//! | the list of what is on a board, its start and its tasks | [`mod@robot`] (robots only) |
+//! | motors, three schemes behind one trait | [`motors`] |
+//! | motors with their encoders | [`wheels`] |
+//! | gyroscope and accelerometer | [`imu`] |
+//! | readings taken a thousand times a second | [`sampling`] |
+//! | radio on a serial line | [`radio`] (robots only) |
+//! | record of panics, counter of starts | [`crash`], [`ledger`] |
+//! | parts that are not wired yet | [`not_wired`] |
+//!
+//! docs/boards.md is the page for whoever makes a board. **Invariants.** Nothing here allocates or panics, and
+//! what is not known (no reading, no answer) leaves motors and coils without current.
+#![no_std]
+#![forbid(unsafe_code)]
+
+#[cfg(test)]
+extern crate std;
+
+pub mod crash;
+pub mod imu;
+pub mod ledger;
+pub mod motors;
+pub mod not_wired;
+#[cfg(target_os = "none")]
+pub mod radio;
+#[cfg(target_os = "none")]
+pub mod robot;
+pub mod sampling;
+pub mod wheels;
+
+// What the macro `robot_tasks` names.
+#[cfg(target_os = "none")]
+pub use {embassy_executor, runtime};

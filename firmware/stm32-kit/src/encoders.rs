@@ -1,0 +1,45 @@
+//! `encoders`: wheel-speed measurement. Four timers count the edges of two channels each.
+
+use board_kit::wheels::EncoderCounts;
+use embassy_stm32::timer::GeneralInstance4Channel;
+use embassy_stm32::timer::qei::Qei;
+use runtime::wheel::WHEELS;
+
+/// The four counters.
+#[allow(missing_debug_implementations, reason = "the chip's drivers have none")]
+pub struct Encoders<A, B, C, D>
+where
+    A: GeneralInstance4Channel,
+    B: GeneralInstance4Channel,
+    C: GeneralInstance4Channel,
+    D: GeneralInstance4Channel,
+{
+    /// Counter of the front right wheel.
+    pub front_right: Qei<'static, A>,
+    /// Counter of the back right wheel.
+    pub back_right: Qei<'static, B>,
+    /// Counter of the back left wheel.
+    pub back_left: Qei<'static, C>,
+    /// Counter of the front left wheel.
+    pub front_left: Qei<'static, D>,
+}
+
+impl<A, B, C, D> EncoderCounts for Encoders<A, B, C, D>
+where
+    A: GeneralInstance4Channel,
+    B: GeneralInstance4Channel,
+    C: GeneralInstance4Channel,
+    D: GeneralInstance4Channel,
+{
+    const RIM_A_COUNT: f32 = 2.0 * core::f32::consts::PI * WHEEL_RADIUS / COUNTS_A_TURN;
+
+    fn counts(&self) -> [u16; WHEELS] {
+        [self.front_right.count(), self.back_right.count(), self.back_left.count(), self.front_left.count()]
+    }
+}
+
+/// Radius of a wheel, m: 27 mm, as most robots' (to be set for yours).
+const WHEEL_RADIUS: f32 = 0.027;
+/// Counts per turn of the wheel: an encoder of 1,024 lines on the wheel's own shaft (to be set for yours;
+/// negative where it counts down when the wheel turns the robot counter-clockwise).
+const COUNTS_A_TURN: f32 = 4096.0;
