@@ -5,8 +5,10 @@
 
 use embassy_time::{Duration, Ticker};
 use embedded_hal::digital::OutputPin;
-use protocol::frame::RobotKeys;
+use protocol::frame::{RobotKeys, TeamKey};
 use protocol::provision::{self, ProvisionError};
+use protocol::{RobotId, TeamId};
+use rules::League;
 use runtime::BrainConfig;
 use runtime::Mailboxes;
 use runtime::ports::{Kicker, RadioReceiver, RadioSender, Watchdog, WheelsPort};
@@ -14,6 +16,7 @@ use runtime::ports::{Kicker, RadioReceiver, RadioSender, Watchdog, WheelsPort};
 use crate::crash::CrashRecord;
 use crate::imu::Gyroscope;
 use crate::ledger::CounterError;
+use crate::not_wired::NotWired;
 use crate::radio;
 use crate::sampling::{self, AnalogInputs};
 
@@ -66,6 +69,16 @@ pub struct Identity {
     pub config: BrainConfig,
     /// Its keys.
     pub keys: RobotKeys,
+}
+
+impl Identity {
+    /// Nobody: keys of zeros, for a board that has no page yet. Only for one without a radio: with keys that
+    /// everybody knows, anybody could command it.
+    pub fn nobody<B: Board<Sender = NotWired, Receiver = NotWired>>() -> Self {
+        let config = BrainConfig::hosted(RobotId::ZERO, TeamId(0), League::DivisionB);
+        let keys = TeamKey::ZERO.of_robot(config.robot);
+        Self { config, keys }
+    }
 }
 
 /// The robot's identity from its provisioned page and its counter of starts; `None`, and the reason on the

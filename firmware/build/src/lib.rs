@@ -18,6 +18,7 @@ mod board;
 pub mod count;
 mod image;
 pub mod inspect;
+mod new_board;
 pub mod on_target;
 mod process;
 mod qemu;
@@ -28,6 +29,7 @@ use std::sync::OnceLock;
 
 pub use board::{Board, BoardFirmware};
 pub use image::{BuildError, ImageBody, Program, SHIPPED_IMAGES, build_image, build_program, target_dir};
+pub use new_board::{CHIPS, ChipTemplate, NewBoard, NewBoardError, new_board};
 pub use qemu::{MACHINE, QEMU, QemuError, ensure_qemu};
 pub use target::{TargetError, ThumbToolchain, ensure_target, ensure_target_of};
 

@@ -110,6 +110,31 @@ fn without_probe_rs_flashing_says_what_to_install() {
 }
 
 #[test]
+fn a_new_board_s_wrong_name_or_chip_is_refused_and_the_known_chips_are_listed() {
+    for (name, chip, description) in [
+        ("mps2", "rp2350", "is there already"),
+        ("Robot", "rp2350", "is no name for a board"),
+        ("../x", "rp2350", "is no name for a board"),
+        ("omni", "rp2350", "names something else"),
+        ("mine", "stm32f103", "there are: nrf52840, rp2350, stm32f407vg, stm32h743zi"),
+    ] {
+        let reported = onetwo(&["firmware", "new-board", name, "--chip", chip]);
+        assert_eq!(reported.status.code(), Some(1), "{name}");
+        let printed = String::from_utf8_lossy(&reported.stderr).into_owned();
+        assert!(printed.contains(description), "{printed}");
+    }
+    let boards = concat!(env!("CARGO_MANIFEST_DIR"), "/../../firmware/boards");
+    assert!(!fs::exists(format!("{boards}/mine")).expect("a directory"));
+}
+
+#[test]
+fn an_image_that_is_none_names_those_there_are() {
+    let reported = onetwo(&["firmware", "build", "--image", "stm"]);
+    let printed = String::from_utf8_lossy(&reported.stderr).into_owned();
+    assert!(printed.contains("legged, omni, free, or a board: f407, stm32"), "{printed}");
+}
+
+#[test]
 fn wrong_words_are_wrong_usage() {
     for description in [
         &["firmware"][..],

@@ -7,7 +7,7 @@ use std::process::ExitStatus;
 
 use arena::game::GameError;
 use firmware_build::inspect::ImageError;
-use firmware_build::{BuildError, QemuError};
+use firmware_build::{BuildError, NewBoardError, QemuError};
 use hil_sim::McuError;
 use host::shell::key::KeyError;
 use protocol::provision::ProvisionError;
@@ -17,6 +17,8 @@ use protocol::provision::ProvisionError;
 pub(crate) enum FirmwareError {
     /// The image cannot be built.
     Build(BuildError),
+    /// There is no new board.
+    NewBoard(NewBoardError),
     /// There is no emulator.
     Qemu(QemuError),
     /// The emulator does not start.
@@ -53,6 +55,7 @@ impl fmt::Display for FirmwareError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Build(error) => write!(f, "{error}"),
+            Self::NewBoard(error) => write!(f, "{error}"),
             Self::Qemu(error) => write!(f, "{error}"),
             Self::Emulator(error) => write!(f, "{error}"),
             Self::Ended(status) => write!(f, "QEMU ended with {status}"),
@@ -87,6 +90,7 @@ macro_rules! from {
 
 from!(
     Build(BuildError),
+    NewBoard(NewBoardError),
     Qemu(QemuError),
     Library(McuError),
     Game(GameError),

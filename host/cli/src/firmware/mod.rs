@@ -2,12 +2,13 @@
 //! QEMU, flash it, and write the page that holds a robot's identity (docs/case-format.md §5).
 //!
 //! One file per verb: [`size`] (with [`measure`], which runs the firmware under QEMU), [`mod@run`],
-//! [`flash`], [`provision`], and [`report`], which writes docs/firmware.md ([`failsafe`] is its table). Runs
+//! [`flash`], [`provision`], [`mod@new_board`], and [`report`], which writes docs/firmware.md ([`failsafe`] is its table). Runs
 //! on a PC.
 
 mod failsafe;
 mod flash;
 mod measure;
+mod new_board;
 mod provision;
 mod report;
 mod run;
@@ -37,6 +38,8 @@ pub(crate) enum FirmwareVerb {
     Run(run::RunArgs),
     /// Put the firmware, or the page of `provision`, into a robot's flash with probe-rs.
     Flash(flash::FlashArgs),
+    /// Write the crate of a new board, a skeleton that builds for its chip (docs/boards.md).
+    NewBoard(new_board::NewBoardArgs),
     /// Write the page with a robot's number, team and key.
     Provision(provision::ProvisionArgs),
     /// Print the resource usage of the firmware, and what robots do when something breaks, as in
@@ -88,6 +91,7 @@ pub(crate) fn run(verb: &FirmwareVerb) -> Result<ExitCode, Failure> {
         FirmwareVerb::Size(args) => size::run(args)?,
         FirmwareVerb::Run(args) => run::run(args)?,
         FirmwareVerb::Flash(args) => flash::run(args)?,
+        FirmwareVerb::NewBoard(args) => new_board::run(args)?,
         FirmwareVerb::Provision(args) => provision::run(args)?,
         FirmwareVerb::Report(args) => report::run(args)?,
     }
