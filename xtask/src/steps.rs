@@ -36,7 +36,7 @@ pub(crate) const STEPS: [Step; 16] = [
     },
     Step { name: "clippy-thumb", what: "the linter has no warning, on the robot's side", run: clippy_thumb },
     Step { name: "doc-thumb", what: "the boards' documentation builds likewise", run: doc_thumb },
-    Step { name: "image", what: images::WHAT, run: images::check },
+    Step { name: "image", what: images::WHAT, run: image },
     Step { name: "qemu", what: "the tests that run the image on QEMU pass", run: qemu },
     Step { name: "determinism", what: determinism::WHAT, run: determinism::run },
     Step { name: "first-build", what: first_build::WHAT, run: first_build::check },
@@ -94,6 +94,13 @@ fn clippy_thumb(context: &Context) -> Result<(), Failure> {
     with_examples(context)
         .try_for_each(|board| run(&mut context.cargo_board("clippy", board, &examples)?))?;
     run(&mut context.cargo_thumb(&format!("clippy{FIRMWARE} --package on-target --tests -- -D warnings"))?)
+}
+
+fn image(context: &Context) -> Result<(), Failure> {
+    images::check(context)?;
+    // A new board's skeleton, in a copy of the workspace.
+    let line = "test --package onetwo-firmware-build --test new_board -- --include-ignored";
+    run(&mut context.cargo(&format!("{line} a_skeleton_builds")))
 }
 
 fn qemu(context: &Context) -> Result<(), Failure> {

@@ -123,7 +123,7 @@ stacks by the step `qemu` (`qemu_equals_native`, `qemu_wheels`, `qemu_match`, `q
 `qemu_wheels` and `qemu_match` on wheels. A share above 100 % is over its budget. The table of what robots do when something breaks is
 compared with this file by a test of `onetwo`; sizes and steps are those of the day they were written. What a radio frame costs stands in
 [protocol](../protocol/README.md), what retrieval and motion cost in [casebase](../casebase/README.md) and
-[motion](../firmware/motion/README.md).
+[motion](../firmware/motion/README.md); what a board is and how to add one in [boards](boards.md).
 
 ## What images take
 
