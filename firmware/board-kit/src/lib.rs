@@ -10,6 +10,7 @@
 //! | readings taken a thousand times a second | [`sampling`] |
 //! | radio on a serial line | [`radio`] (robots only) |
 //! | record of panics, counter of starts | [`crash`], [`ledger`] |
+//! | the checks of a robot's first start, on a board | [`bring_up`] (robots only) |
 //! | parts that are not wired yet | [`not_wired`] |
 //!
 //! docs/boards.md is the page for whoever makes a board. **Invariants.** Nothing here allocates or panics, and
@@ -20,6 +21,8 @@
 #[cfg(test)]
 extern crate std;
 
+#[cfg(target_os = "none")]
+pub mod bring_up;
 pub mod crash;
 pub mod imu;
 pub mod ledger;

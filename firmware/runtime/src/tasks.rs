@@ -125,7 +125,7 @@ fn empty(controller: &mut impl Controller, now: Instant, boxes: &Mailboxes) {
 }
 
 /// Embassy's clock in the project's time.
-pub(crate) fn now() -> Instant {
+pub fn now() -> Instant {
     Instant(embassy_time::Instant::now().as_ticks())
 }
 
