@@ -1,5 +1,5 @@
-//! Build script: the manifests of all boards, so that an installed program knows them, too. A manifest without
-//! a right table ends the build.
+//! Build script: the manifests of all boards, so that an installed program knows them, too. A manifest
+//! without a right table ends the build.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

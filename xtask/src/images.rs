@@ -1,7 +1,8 @@
 //! `images`: size and panic check of the robots' firmware images (docs/architecture.md §9).
 //!
 //! One image per body, the one that runs by its own clock, and the one for a real robot's board; the list of
-//! places that may panic is `firmware/panics.allow`, with a board's own `panics.allow`, for all images together.
+//! places that may panic is `firmware/panics.allow`, with a board's own `panics.allow`, for all images
+//! together.
 
 use std::collections::BTreeMap;
 use std::fs;

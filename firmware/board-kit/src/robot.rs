@@ -150,8 +150,8 @@ const BLINK: Duration = Duration::from_millis(500);
 /// Declares the tasks of a robot (embassy's tasks cannot be generic) and `run`, which starts them and never
 /// returns. `$board` implements [`Board`](crate::robot::Board); `$executor` is the executor, taken once.
 ///
-/// All tasks run on one executor in one thread, in the order in which they are woken: the same order as on the
-/// emulated board.
+/// All tasks run on one executor in one thread, in the order in which they are woken: the same order as on
+/// the emulated board.
 #[macro_export]
 macro_rules! robot_tasks {
     ($board:ty) => {

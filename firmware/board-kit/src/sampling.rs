@@ -63,8 +63,8 @@ pub fn newest() -> SensorSample {
     if at.elapsed() < STALE { sample } else { SensorSample::NONE }
 }
 
-/// Reads everything, for ever. A gyroscope that does not answer is reported and tried again each second; until
-/// then the turning rate comes from the wheels.
+/// Reads everything, for ever. A gyroscope that does not answer is reported and tried again each second;
+/// until then the turning rate comes from the wheels.
 pub async fn run(mut imu: impl Gyroscope, mut analog: impl AnalogInputs) -> ! {
     let (mut turn, mut tilt, mut break_beam) = (Turn::new(), Tilt::new(), BreakBeam::new());
     let mut answers = false;

@@ -115,7 +115,7 @@ pub fn new_board(root: &Path, name: &str, chip: &str) -> Result<NewBoard, NewBoa
         return Err(NewBoardError::Reserved(name.to_owned()));
     }
     let chip = CHIPS.iter().find(|known| known.name == chip);
-    let chip = chip.ok_or_else(|| NewBoardError::Chip)?;
+    let chip = chip.ok_or(NewBoardError::Chip)?;
     let boards = root.join("firmware/boards");
     if !boards.is_dir() {
         return Err(NewBoardError::NoWorkspace(boards));

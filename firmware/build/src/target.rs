@@ -10,8 +10,8 @@ use std::time::Duration;
 use crate::TARGET;
 use crate::process::{in_path, output_of, run_within};
 
-/// Makes sure the workspace's toolchain can build for the robots' [`TARGET`]; lets rustup fetch it where it is
-/// missing.
+/// Makes sure the workspace's toolchain can build for the robots' [`TARGET`]; lets rustup fetch it where it
+/// is missing.
 pub fn ensure_target(root: &Path) -> Result<ThumbToolchain, TargetError> {
     ensure_target_of(root, TARGET)
 }

@@ -187,7 +187,8 @@ pub fn wire(pin: Peri<'static, impl Pin>, function: u8) -> Flex<'static> {
 pub const PULSE_MAX: Duration = Duration::millis(6);
 /// How long the charger runs on without another request: three steps of the kicker.
 pub const CHARGE_RUNS_ON: Duration = Duration::millis(3);
-/// Output compare mode, low until the compare value, then high (OC1M; its type has another name on each family).
+/// Output compare mode, low until the compare value, then high (OC1M; its type has another name on each
+/// family).
 const PWM_MODE2: u8 = 7;
 /// A count that no pulse reaches.
 const NEVER: u16 = u16::MAX;

@@ -3,8 +3,8 @@
 //!
 //! The sensors stand at the zero crossings of the voltages between two terminals, as makers draw them: bit 0
 //! is high while terminal A is above B when the motor is turned forwards, bit 1 while B is above C, bit 2
-//! while C is above A. A motor with other sensors has other names for its wires, in one of six orders; none of
-//! them but the right one turns it evenly both ways.
+//! while C is above A. A motor with other sensors has other names for its wires, in one of six orders; none
+//! of them but the right one turns it evenly both ways.
 //!
 //! **Timing.** [`ThreePwm::commutate`] belongs into the interrupt of the sensors' edges, not into the control
 //! loop: a motor with `p` pairs of poles needs it `6 p` times a turn.

@@ -34,8 +34,8 @@ impl Ledger {
 impl LedgerFlash for Ledger {
     const CELLS: usize = SECTOR as usize / CELL_LEN;
 
-    /// A cell that was written while the power went may have wrong check bits, and reading it is a fault: such
-    /// a fault is tolerated here, and the bytes read are no valid cell.
+    /// A cell that was written while the power went may have wrong check bits, and reading it is a fault:
+    /// such a fault is tolerated here, and the bytes read are no valid cell.
     fn read(&self, at: CounterPlace) -> CounterCell {
         let mut bytes = [0; CELL_LEN];
         let address = START + offset(at);

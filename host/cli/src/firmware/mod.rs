@@ -2,8 +2,8 @@
 //! QEMU, flash it, and write the page that holds a robot's identity (docs/case-format.md §5).
 //!
 //! One file per verb: [`size`] (with [`measure`], which runs the firmware under QEMU), [`mod@run`],
-//! [`flash`], [`provision`], [`mod@new_board`], and [`report`], which writes docs/firmware.md ([`failsafe`] is its table). Runs
-//! on a PC.
+//! [`flash`], [`provision`], [`mod@new_board`], and [`report`], which writes docs/firmware.md ([`failsafe`]
+//! is its table). Runs on a PC.
 
 mod failsafe;
 mod flash;
@@ -55,8 +55,8 @@ pub(crate) struct ImagesArgs {
     image: Option<Program>,
 }
 
-/// The firmware image of that name: `legged` and `omni`, which the simulator steps tick by tick, `free`, which
-/// runs by its own clock, and each real board by its directory's name.
+/// The firmware image of that name: `legged` and `omni`, which the simulator steps tick by tick, `free`,
+/// which runs by its own clock, and each real board by its directory's name.
 fn image(name: &str) -> Result<Program, String> {
     match name {
         "legged" => Ok(Program::Robot(ImageBody::Legged)),
