@@ -3,14 +3,14 @@
 //!
 //! | part | module |
 //! |---|---|
-//! | the list of what is on a board, its start and its tasks | [`mod@robot`] (robots only) |
+//! | the list of what is on a board, its start and its tasks | `robot` (robots only) |
 //! | motors, three schemes behind one trait | [`motors`] |
 //! | motors with their encoders | [`wheels`] |
 //! | gyroscope and accelerometer | [`imu`] |
 //! | readings taken a thousand times a second | [`sampling`] |
-//! | radio on a serial line | [`radio`] (robots only) |
+//! | radio on a serial line | `radio` (robots only) |
 //! | record of panics, counter of starts | [`crash`], [`ledger`] |
-//! | the checks of a robot's first start, on a board | [`bring_up`] (robots only) |
+//! | the checks of a robot's first start, on a board | `bring_up` (robots only) |
 //! | parts that are not wired yet | [`not_wired`] |
 //!
 //! docs/boards.md is the page for whoever makes a board. **Invariants.** Nothing here allocates or panics,

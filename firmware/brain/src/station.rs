@@ -42,6 +42,8 @@ impl<'a> Station<'a> {
 
     /// Handles a packet; anything but a genuine, new message of this team is counted and dropped. Where steps
     /// are short nothing is sent before the next step.
+    // In its caller it would be there twice, with its stack.
+    #[inline(never)]
     pub fn handle_packet(&mut self, now: Instant, packet: &[u8]) {
         if !self.brain.has_short_steps() {
             self.stirred = true;

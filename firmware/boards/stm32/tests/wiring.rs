@@ -53,5 +53,5 @@ fn every_example_is_in_the_readme_and_says_what_to_connect_and_what_to_see() {
         assert!(text.contains("Connect: ") && text.contains(" See:"), "{name}");
         seen += 1;
     }
-    assert_eq!(seen, 8);
+    assert_eq!(seen, 9);
 }
