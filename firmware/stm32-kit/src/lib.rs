@@ -3,14 +3,14 @@
 //!
 //! | part | module |
 //! |---|---|
-//! | table of pins | [`parts!`](crate::parts) |
-//! | wheels' and dribbler's PWM | [`pwm`] |
-//! | encoders | [`encoders`] |
-//! | pulses that end by themselves, kicker | [`pulse`], [`kicker`] |
-//! | measured voltages | [`analog`] |
-//! | radio's line, IMU's bus | [`lines`] |
-//! | record of panics | [`words`] |
-//! | watchdog | [`watchdog`] |
+//! | table of pins | `parts!` |
+//! | wheels' and dribbler's PWM | `pwm` |
+//! | encoders | `encoders` |
+//! | pulses that end by themselves, kicker | `pulse`, `kicker` |
+//! | measured voltages | `analog` |
+//! | radio's line, IMU's bus | `lines` |
+//! | record of panics | `words` |
+//! | watchdog | `watchdog` |
 #![cfg(target_os = "none")]
 #![no_std]
 #![forbid(unsafe_code)]

@@ -1,4 +1,4 @@
-//! `bench`: a robot on a stand, of simulated parts, with a fault: what [`BringUp`](super::BringUp) is played
+//! `bench`: a robot on a stand, of simulated parts, with a fault: what [`BringUp`] is played
 //! against without hardware. Deterministic by its seed.
 
 use protocol::{Duration, Instant};
