@@ -13,7 +13,7 @@
 //! | the checks of a robot's first start, on a board | `bring_up` (robots only) |
 //! | parts that are not wired yet | [`not_wired`] |
 //!
-//! docs/boards.md is the page for whoever makes a board. **Invariants.** Nothing here allocates or panics,
+//! How to make a board: docs/boards.md. **Invariants.** Nothing here allocates or panics,
 //! and what is not known (no reading, no answer) leaves motors and coils without current.
 #![no_std]
 #![forbid(unsafe_code)]

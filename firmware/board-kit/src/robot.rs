@@ -63,7 +63,7 @@ pub struct BoardParts<B: Board> {
 
 /// Who a robot is and which start this is.
 #[derive(Clone)]
-#[allow(missing_debug_implementations, reason = "keys are nobody's business")]
+#[allow(missing_debug_implementations, reason = "keys must not be printed")]
 pub struct Identity {
     /// Configuration of its brain.
     pub config: BrainConfig,
@@ -72,9 +72,9 @@ pub struct Identity {
 }
 
 impl Identity {
-    /// Nobody: keys of zeros, for a board that has no page yet. Only for one without a radio: with keys that
-    /// everybody knows, anybody could command it.
-    pub fn nobody<B: Board<Sender = NotWired, Receiver = NotWired>>() -> Self {
+    /// Without an identity: keys of zeros, for a board that has no page yet. Only for one without a radio: with
+    /// keys that are public, any sender could command it.
+    pub fn unprovisioned<B: Board<Sender = NotWired, Receiver = NotWired>>() -> Self {
         let config = BrainConfig::hosted(RobotId::ZERO, TeamId(0), League::DivisionB);
         let keys = TeamKey::ZERO.of_robot(config.robot);
         Self { config, keys }

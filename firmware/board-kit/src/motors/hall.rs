@@ -71,7 +71,7 @@ impl HallCounter {
             let steps = match (now - before).rem_euclid(SIXTHS) {
                 forwards @ (0..=2) => i16::from(forwards),
                 backwards @ (4..) => i16::from(backwards - SIXTHS),
-                // Half a turn: nobody knows which way.
+                // Half a turn: the direction is unknown.
                 _ => 0,
             };
             self.count = self.count.wrapping_add_signed(steps);
@@ -147,7 +147,7 @@ impl<P: SetDutyCycle, E: OutputPin, H: InputPin> ThreePwm<P, E, H> {
         before && after && (floats || enable.set_high().is_ok())
     }
 
-    /// No current; `false`, for whoever had to.
+    /// No current; returns `false`.
     fn float(&mut self) -> bool {
         for (enable, pwm) in self.enables.iter_mut().zip(&mut self.pwm) {
             // The common enable wire is the other lock.
