@@ -72,8 +72,8 @@ pub struct Identity {
 }
 
 impl Identity {
-    /// Without an identity: keys of zeros, for a board that has no page yet. Only for one without a radio: with
-    /// keys that are public, any sender could command it.
+    /// Without an identity: keys of zeros, for a board that has no page yet. Only for one without a radio:
+    /// with keys that are public, any sender could command it.
     pub fn unprovisioned<B: Board<Sender = NotWired, Receiver = NotWired>>() -> Self {
         let config = BrainConfig::hosted(RobotId::ZERO, TeamId(0), League::DivisionB);
         let keys = TeamKey::ZERO.of_robot(config.robot);

@@ -1,8 +1,8 @@
 //! `robot`: the start of the robot's board, and what it has.
 //!
 //! A step of the brain of 40,000 instructions, its budget, takes half a millisecond here, where no more than
-//! two cycles go to one; the longest in docs/firmware.md takes three times as long. A control step may be late
-//! by this time.
+//! two cycles go to one; the longest in docs/firmware.md takes three times as long. A control step may be
+//! late by this time.
 
 use board_f407::drivers::{self, BoardWatchdog, Drivers, Encoders, Kicker};
 use board_f407::flash::{self, Ledger};

@@ -1,7 +1,7 @@
 //! `robot`: the start of the robot's board, and what it has.
 //!
-//! A step of the brain of 40,000 instructions, its budget, takes a fifth of a millisecond here; the longest in
-//! docs/firmware.md takes three times as long. A control step may be late by this time.
+//! A step of the brain of 40,000 instructions, its budget, takes a fifth of a millisecond here; the longest
+//! in docs/firmware.md takes three times as long. A control step may be late by this time.
 
 use board_kit::robot::{Board, BoardParts, identity, log_crash};
 use board_kit::wheels::Wheels;
