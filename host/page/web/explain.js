@@ -18,9 +18,24 @@ export const explainEvent = (one) => open(`${one.words}, at ${clock(one.t)}`, on
 
 /** The newest decision on its own problem; apart from it, what this moment would give. */
 export async function explainNow(team) {
-  const cycle = store.scene?.cycles.find((one) => one.team === team);
+  const cycle = await settled(team);
   const frozen = async () => JSON.parse(await post("/api/freeze", JSON.stringify({ t: time.at, team })));
   await open(`${team} at ${clock(time.at)}`, cycle?.decided, cycle, frozen);
+}
+
+/** A robot reports its problem within 0.1 s of its decision; a message may be lost and sent again. */
+const REPORT_WITHIN = 600;
+
+/** The team's newest cycle; where its problem is still under way, as it is a moment later. */
+async function settled(team) {
+  const until = performance.now() + REPORT_WITHIN;
+  for (;;) {
+    const cycle = store.scene?.cycles.find((one) => one.team === team);
+    const decided = cycle?.decided;
+    const awaited = time.live && decided?.by !== undefined && !decided.reported;
+    if (!awaited || performance.now() > until) return cycle;
+    await new Promise((later) => setTimeout(later, 40));
+  }
 }
 
 async function open(title, decided, cycle, frozen) {

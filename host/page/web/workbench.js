@@ -129,20 +129,25 @@ export async function preview(change, from) {
 }
 
 /** The text as a hand wrote it, or as it was before. */
-const look = async (text) => show(await request({ do: "look", name: bench.name, text }));
+const look = (text) => request({ do: "look", name: bench.name, text });
 
 export const setText = (text) => inTurn(async () => {
-  if (text === bench.sheet.text) return;
-  bench.past.push(bench.sheet.text);
+  const before = bench.sheet.text;
+  if (text === before) return;
+  const sheet = await look(text);
+  bench.past.push(before);
   bench.future = [];
-  await look(text);
+  show(sheet);
 });
 
 function step(from, to) {
   return inTurn(async () => {
     if (!bench.sheet || bench[from].length === 0) return;
+    // History and sheet change together: a refused answer loses nothing.
+    const sheet = await look(bench[from].at(-1));
+    bench[from].pop();
     bench[to].push(bench.sheet.text);
-    await look(bench[from].pop());
+    show(sheet);
   });
 }
 
@@ -189,7 +194,7 @@ export function restore() {
   if (bench.sheet || !kept?.text) return;
   bench.name = kept.name;
   bench.opened = kept.opened;
-  inTurn(() => look(kept.text));
+  inTurn(async () => show(await look(kept.text)));
 }
 
 export const isOpen = () => store.tab === "bench" && bench.sheet !== null;
