@@ -9,6 +9,7 @@ use std::fmt::Write as _;
 use case_tools::CaseLeague;
 use hil_sim::{Fnv, Stream};
 
+use crate::aim::usable;
 use crate::edit::{Change, Edit};
 use crate::proposals::{Kind, Proposal};
 use crate::trial::{LearningTrial, Situation};
@@ -63,6 +64,7 @@ pub(crate) fn search(
     let work = |occasion: &Occasion, trials| Work::Situation {
         situation: occasion.situation.clone(),
         two_defenders: occasion.two_defenders,
+        first: 0,
         trials,
     };
     let first: Vec<Unit<'_>> = (drafts.iter())
@@ -107,8 +109,8 @@ pub(crate) fn search(
         );
         let proposal = |edit, weight| Proposal { kind: Kind::New, edit, reason: reason.clone(), weight };
         proposals.push(proposal(edit.clone(), with - without));
-        // The same plan for more situations; trials show which scope is right.
-        proposals.extend(widened(edit).map(|wide| proposal(wide, with - without)));
+        // The same plan for more situations; trials show which scopes are right.
+        proposals.extend(widened(edit).into_iter().map(|wide| proposal(wide, with - without)));
     }
     proposals.sort_by(|a, b| b.weight.total_cmp(&a.weight).then_with(|| a.edit.cmp(&b.edit)));
     Ok((proposals, spent))
@@ -118,13 +120,25 @@ fn goals(trials: &[LearningTrial]) -> usize {
     trials.iter().filter(|trial| trial.to_goal()).count()
 }
 
-/// The same draft with wider scopes, under another name.
-fn widened(edit: &Edit) -> Option<Edit> {
-    let Change::New(text) = &edit.change else { return None };
+/// The same draft for more situations, under other names: with wider scopes, then also with the opponent
+/// nearest to the ball alone, then with none.
+fn widened(edit: &Edit) -> Vec<Edit> {
+    let Change::New(text) = &edit.change else { return Vec::new() };
     let scope = |[x, y]: [i32; 2]| format!("scope = [{x}, {y}]");
     let text = text.replace(&scope(BALL_SCOPE), &scope(WIDE_BALL_SCOPE));
     let text = text.replace(&scope(OPPONENT_SCOPE), &scope(WIDE_OPPONENT_SCOPE));
-    Some(Edit { case: format!("{}-wide", edit.case), change: Change::New(text) })
+    let named = |suffix: &str, text: &str| Edit {
+        case: format!("{}-{suffix}", edit.case),
+        change: Change::New(text.to_owned()),
+    };
+    let mut drafts = vec![named("wide", &text)];
+    let opponents: Vec<usize> = text.match_indices(OPPONENT).map(|(at, _)| at).collect();
+    for (left, suffix) in [(1, "nearest"), (0, "alone")] {
+        if let Some(end) = opponents.get(left) {
+            drafts.push(named(suffix, &text[..*end]));
+        }
+    }
+    drafts
 }
 
 /// Occasions, as many without a case as with one where there are enough, drawn with the seed.
@@ -132,12 +146,8 @@ fn choose(occasions: &[Occasion], count: u32, seed: u64) -> Vec<&Occasion> {
     let mut chance = Stream::new(seed, "occasions");
     let mut chosen = Vec::new();
     for without in [true, false] {
-        let usable = |occasion: &&Occasion| {
-            let Situation { defending_positive, teammates, ball, .. } = &occasion.situation;
-            let inside = ball[0].abs() < 2650 && ball[1].abs() < 1750;
-            occasion.without_case == without && !defending_positive && teammates.len() == 2 && inside
-        };
-        let pool: Vec<&Occasion> = occasions.iter().filter(usable).collect();
+        let fits = |occasion: &&Occasion| occasion.without_case == without && usable(&occasion.situation);
+        let pool: Vec<&Occasion> = occasions.iter().filter(fits).collect();
         if let Some(last) = pool.len().checked_sub(1) {
             let wanted = if without { count / 2 } else { count - chosen.len() as u32 };
             chosen.extend((0..wanted).map(|_| pool[chance.whole(0, last as u32) as usize]));
@@ -218,11 +228,13 @@ fn draft(situation: &Situation, plan: &DraftPlan) -> Edit {
         plan.partner[1],
         plan.partners,
     );
-    for [a, b] in &situation.opponents {
+    let mut opponents = situation.opponents.clone();
+    opponents.sort_by_key(|[a, b]| (i64::from(a - x).pow(2) + i64::from(b - y).pow(2), *a, *b));
+    for [a, b] in &opponents {
         let at = [a.clamp(&-2700, &2700) / 10 * 10, b.clamp(&-1800, &1800) / 10 * 10];
         let _ = write!(
             text,
-            "\n[[opponents]]\nat = [{}, {}]\nscope = [{}, {}]\n",
+            "{OPPONENT}at = [{}, {}]\nscope = [{}, {}]\n",
             at[0], at[1], OPPONENT_SCOPE[0], OPPONENT_SCOPE[1]
         );
     }
@@ -238,6 +250,8 @@ fn draft(situation: &Situation, plan: &DraftPlan) -> Edit {
     Edit { case, change: Change::New(text) }
 }
 
+/// What the text of an opponent begins with.
+const OPPONENT: &str = "\n[[opponents]]\n";
 /// Least gain of a draft in its own situation that makes it a proposal, as a share: two standard errors of
 /// the roll-outs would be more, but trials decide.
 const GAIN_MIN: f64 = 0.1;
@@ -259,6 +273,26 @@ const OPPONENT_SCOPE: [i32; 2] = [500, 450];
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_draft_is_widened_step_by_step_until_no_opponent_is_left() {
+        let situation = Situation {
+            ball: [303, 201],
+            defending_positive: false,
+            teammates: vec![(1, [100, 200]), (2, [250, -650])],
+            opponents: vec![[2400, 0], [1200, 300]],
+        };
+        let edit = draft(&situation, &plans(&situation, &[])[0]);
+        let current = Variant::new(case_library_files()).unwrap();
+        let wider = widened(&edit);
+        let opponents = wider.iter().map(|wide| {
+            let Change::New(text) = &wide.change else { panic!("{wide}") };
+            current.edited(wide).unwrap();
+            // The nearest one stays last.
+            (text.matches("[[opponents]]").count(), text.contains("at = [1200, 300]"))
+        });
+        assert_eq!(opponents.collect::<Vec<_>>(), [(2, true), (1, true), (0, false)]);
+    }
 
     #[test]
     fn drafts_are_accepted_by_the_checks_and_retrieved_in_their_situation() {

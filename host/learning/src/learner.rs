@@ -2,11 +2,13 @@
 //!
 //! ```text
 //! exploration starts ─► evidence ─► proposals ─► screening (halving) ─► finalists
-//!                                                                          │ fresh starts, sequential test
-//! held-out starts ◄── library ◄── accepted ◄── validation starts ◄── confirmed
+//!         │                                          ▲                      │ sequential test
+//!         └─► situations of play, moved a little ────┴──────────────────────┤
+//!                                                                           ▼
+//! held-out starts ◄── library ◄── accepted ◄── validation starts ◄──── confirmed
 //! ```
-//! Screening chooses and proves nothing: only trials on starts that no proposal was drawn from or chosen by
-//! count in a test. Everything is a function of the files, the settings and the outcomes of trials.
+//! Screening chooses and proves nothing: a test plays other situations than those that a proposal was chosen
+//! by. Everything is a function of the files, the settings and the outcomes of trials.
 
 mod judging;
 
@@ -14,16 +16,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use case_tools::Files;
+use casebase::CaseBase;
 use hil_sim::{Configuration, Stream, world_hash};
 use rayon::prelude::*;
 
+use crate::aim::{Ground, Purpose};
 use crate::betting::Wager;
 use crate::competence::standings;
 use crate::drafts::{Occasion, SearchSize, search};
-use crate::edit::Edit;
 use crate::evidence::Evidence;
-use crate::proposals::{Kind, Proposal, from_evidence, text_hash};
-use crate::results::{ChangeRecord, CurvePoint, Learned};
+use crate::proposals::{Kind, Proposal, TRIED_MAX, Tried, from_evidence, text_hash};
+use crate::results::{ChangeRecord, CurvePoint, Learned, Verdict};
 use crate::settings::LearnSettings;
 use crate::starts::{CELLS, StartStream, cell};
 use crate::trial::LearningTrial;
@@ -74,8 +77,9 @@ pub fn learn(
         player,
         evidence: earlier,
         libraries: vec![start.hash],
-        tried: BTreeSet::new(),
+        tried: Tried::new(),
         spent: 0,
+        situations: BTreeSet::new(),
         tests: 0,
         accepted: 0,
         used: BTreeMap::new(),
@@ -109,7 +113,11 @@ pub fn learn(
 #[derive(Clone, Copy, Debug)]
 struct Sizes {
     explore: u32,
+    /// Situations that screening draws from.
+    screen: u32,
+    /// Situations that a test draws from, and pairs of a test at most.
     confirm: u32,
+    pairs: u32,
     validate: u32,
     held_out: u32,
     /// Proposals a kind that are screened.
@@ -124,7 +132,9 @@ impl Sizes {
         let explore = (budget / 100 / unit * unit).clamp(8 * unit, 4096) as u32;
         Self {
             explore,
-            confirm: 8 * explore,
+            screen: 5 * explore,
+            confirm: 20 * explore,
+            pairs: (8 * explore).min(TEST_PAIRS),
             validate: explore.max(VALIDATE_MIN.min(8 * explore)),
             held_out: explore,
             proposals: (explore as usize / 100).clamp(4, 10),
@@ -133,6 +143,8 @@ impl Sizes {
     }
 }
 
+/// Most pairs of a test: with a half of them equal, ten points are seen in 600 (`betting`).
+const TEST_PAIRS: u32 = 1536;
 /// Least number of validation starts where the budget allows for it: fewer show nothing of single kinds of
 /// starts.
 const VALIDATE_MIN: u32 = 1024;
@@ -147,9 +159,10 @@ struct Run<'r, P> {
     evidence: Evidence,
     /// Hashes of the libraries so far, oldest first.
     libraries: Vec<u64>,
-    /// Edits that were tried, with the text that they were tried on.
-    tried: BTreeSet<(u64, Edit)>,
+    tried: Tried,
     spent: u64,
+    /// Units of single situations that were played: another proposal's pair may need the same.
+    situations: BTreeSet<u64>,
     tests: u32,
     accepted: u32,
     /// Starts of each stream that were used up.
@@ -158,25 +171,58 @@ struct Run<'r, P> {
     curve: Vec<CurvePoint>,
 }
 
-/// Trials of a library on starts of a stream, with what retrieval answered in each.
+/// Trials of a library on starts of a stream, with what was played and what retrieval answered in each.
 struct Played {
     stream: StartStream,
     first: u32,
     trials: Vec<LearningTrial>,
+    /// Name of the case of every decision.
+    plays: Vec<Vec<Option<String>>>,
     answers: Vec<Vec<Answer>>,
 }
 
+impl Played {
+    fn new(variant: &Variant, stream: StartStream, first: u32, trials: Vec<LearningTrial>) -> Self {
+        let base = variant.base();
+        let plays = trials.iter().map(|trial| names(variant, trial)).collect();
+        let answers = trials.par_iter().map(|trial| answers(variant, &base, trial)).collect();
+        Self { stream, first, trials, plays, answers }
+    }
+
+    /// Replaces a trial by that of a library which plays it otherwise.
+    fn renew(&mut self, variant: &Variant, i: usize, trial: LearningTrial) {
+        self.plays[i] = names(variant, &trial);
+        self.answers[i] = answers(variant, &variant.base(), &trial);
+        self.trials[i] = trial;
+    }
+}
+
+fn names(variant: &Variant, trial: &LearningTrial) -> Vec<Option<String>> {
+    let name = |id: u16| variant.names().get(usize::from(id / 4)).cloned();
+    trial.decisions.iter().map(|decision| decision.case.and_then(name)).collect()
+}
+
+fn answers(variant: &Variant, base: &CaseBase<'_>, trial: &LearningTrial) -> Vec<Answer> {
+    let problems = trial.decisions.iter().map(|decision| decision.situation.problem());
+    problems.map(|problem| variant.answer(base, &problem)).collect()
+}
+
+/// A proposal that is tried.
 struct Candidate {
     proposal: Proposal,
     variant: Variant,
     wager: Wager,
-    /// Played pairs by kind of start.
-    cells: [Wager; CELLS.len()],
+    /// Numbers of the situations that it changes what is played in, of those that were drawn.
+    touched: Vec<usize>,
+    /// Their share.
+    share: f64,
 }
 
 impl Candidate {
-    fn new(proposal: Proposal, variant: Variant) -> Self {
-        Self { proposal, variant, wager: Wager::default(), cells: [Wager::default(); CELLS.len()] }
+    fn new(proposal: Proposal, variant: Variant, ground: &Ground) -> Self {
+        let touched = ground.touched(&proposal.edit, &variant);
+        let share = touched.len() as f64 / ground.occasions.len().max(1) as f64;
+        Self { proposal, variant, wager: Wager::default(), touched, share }
     }
 }
 
@@ -184,18 +230,21 @@ impl<P: Player> Run<'_, P> {
     fn round(&mut self, current: &Variant, round: u32) -> Result<Variant, LearnError> {
         let explored = self.fresh(current, StartStream::Exploration, self.sizes.explore)?;
         self.collect(current, &explored);
-        let proposals = self.propose(current, &explored, round)?;
-        for proposal in &proposals {
-            self.tried.insert((text_hash(current, &proposal.edit.case), proposal.edit.clone()));
-        }
-        let finalists = self.screen(current, &explored, proposals, round)?;
+        let occasions = occasions(&explored);
+        let proposals = self.propose(current, &explored, &occasions, round)?;
+        let before = self.changes.len();
+        let (seed, screen) = (self.settings.seed, self.sizes.screen);
+        let ground = Ground::draw(&occasions, Purpose::Screening, screen, seed, round, current);
+        let finalists = self.screen(current, &ground, proposals, round)?;
         if self.settings.dry_run {
             return Ok(current.clone());
         }
-        let confirmed = self.confirm(current, finalists, round)?;
-        let mut next = current.clone();
-        for (candidate, threshold) in confirmed {
-            next = self.validate(next, &candidate, threshold, round)?;
+        let next = self.judge(current, &occasions, finalists, round)?;
+        for change in &self.changes[before..] {
+            let edit = &change.proposal.edit;
+            let tried = self.tried.entry((text_hash(current, &edit.case), edit.clone())).or_default();
+            // A test or the lack of situations is final; screening may have been bad luck.
+            *tried = if change.verdict == Verdict::ScreenedOut { *tried + 1 } else { TRIED_MAX };
         }
         Ok(next)
     }
@@ -205,25 +254,8 @@ impl<P: Player> Run<'_, P> {
         let used = self.used.entry(stream).or_default();
         let first = *used;
         *used += count;
-        self.recorded(variant, stream, first, count)
-    }
-
-    fn recorded(
-        &mut self,
-        variant: &Variant,
-        stream: StartStream,
-        first: u32,
-        count: u32,
-    ) -> Result<Played, LearnError> {
         let trials = self.starts(variant, stream, &(first..first + count).collect::<Vec<_>>(), true)?;
-        let base = variant.base();
-        let answers = (trials.par_iter())
-            .map(|trial| {
-                let problems = trial.decisions.iter().map(|decision| decision.situation.problem());
-                problems.map(|problem| variant.answer(&base, &problem)).collect()
-            })
-            .collect();
-        Ok(Played { stream, first, trials, answers })
+        Ok(Played::new(variant, stream, first, trials))
     }
 
     fn starts(
@@ -261,24 +293,15 @@ impl<P: Player> Run<'_, P> {
         &mut self,
         current: &Variant,
         played: &Played,
+        occasions: &[Occasion],
         round: u32,
     ) -> Result<Vec<Proposal>, LearnError> {
         let known = standings(&self.evidence, &self.libraries);
         let mut proposals = Vec::new();
         for kind in self.settings.kinds.clone() {
             if kind == Kind::New {
-                let mut occasions = Vec::new();
-                for (index, trial) in (played.first..).zip(&played.trials) {
-                    let two_defenders = CELLS[cell(index).0].0 == Configuration::TwoDefenders;
-                    let retrieved = trial.decisions.iter().filter(|decision| decision.retrieved);
-                    occasions.extend(retrieved.map(|decision| Occasion {
-                        situation: decision.situation.clone(),
-                        two_defenders,
-                        without_case: decision.case.is_none(),
-                    }));
-                }
                 let seed = self.settings.seed ^ (u64::from(round) << 32);
-                let (drafts, spent) = search(current, &occasions, self.sizes.search, seed, self.player)?;
+                let (drafts, spent) = search(current, occasions, self.sizes.search, seed, self.player)?;
                 self.spent += spent;
                 proposals.extend(drafts);
             } else {
@@ -286,7 +309,7 @@ impl<P: Player> Run<'_, P> {
                 all.truncate(self.sizes.proposals);
                 for proposal in all.iter_mut().filter(|proposal| proposal.kind == Kind::Forget) {
                     if let Ok(without) = current.edited(&proposal.edit) {
-                        proposal.reason += &successors(&proposal.edit.case, current, &without, played);
+                        proposal.reason += &successors(&proposal.edit.case, &without, played);
                     }
                 }
                 proposals.extend(all);
@@ -303,13 +326,28 @@ impl<P: Player> Run<'_, P> {
     }
 }
 
+/// The decisions of trials in which retrieval alone answered.
+fn occasions(played: &Played) -> Vec<Occasion> {
+    let mut occasions = Vec::new();
+    for (index, trial) in (played.first..).zip(&played.trials) {
+        let two_defenders = CELLS[cell(index).0].0 == Configuration::TwoDefenders;
+        let retrieved = trial.decisions.iter().filter(|decision| decision.retrieved);
+        occasions.extend(retrieved.map(|decision| Occasion {
+            situation: decision.situation.clone(),
+            two_defenders,
+            without_case: decision.case.is_none(),
+        }));
+    }
+    occasions
+}
+
 /// What would take over from a case: the cases that are retrieved in its place, most often first.
-fn successors(case: &str, current: &Variant, without: &Variant, played: &Played) -> String {
+fn successors(case: &str, without: &Variant, played: &Played) -> String {
     let base = without.base();
     let mut counts: BTreeMap<String, u32> = BTreeMap::new();
-    for decision in played.trials.iter().flat_map(|trial| &trial.decisions) {
-        let name = decision.case.and_then(|id| current.names().get(usize::from(id / 4)));
-        if name.is_some_and(|name| name == case) {
+    let decisions = played.trials.iter().flat_map(|trial| &trial.decisions);
+    for (decision, plays) in decisions.zip(played.plays.iter().flatten()) {
+        if plays.as_ref().is_some_and(|name| name == case) {
             let answer = without.answer(&base, &decision.situation.problem());
             *counts.entry(answer.map_or_else(|| "no case".to_owned(), |(name, _, _)| name)).or_default() += 1;
         }

@@ -6,6 +6,7 @@
 //! sharded.
 #![forbid(unsafe_code)]
 
+mod aim;
 mod betting;
 mod competence;
 mod diff;

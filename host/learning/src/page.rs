@@ -29,7 +29,7 @@ pub fn json(learned: &Learned) -> Value {
             "edit": change.proposal.edit, "text": change.proposal.edit.to_string(),
             "reason": change.proposal.reason, "verdict": change.verdict,
             "raised": change.wager.raised, "lowered": change.wager.lowered, "pairs": change.wager.pairs,
-            "gain": change.wager.gain(), "e_value": change.wager.e_value(), "needed": change.needed,
+            "share": change.share, "gain": change.wager.gain(), "e_value": change.wager.e_value(), "needed": change.needed,
             "validation": validation,
         })
     });
@@ -54,11 +54,12 @@ pub fn summary(learned: &Learned) -> String {
     }) {
         let _ = writeln!(
             text,
-            "{:>2}  {:<9} {}  {:+.2} points, e {:.3e}",
+            "{:>2}  {:<9} {}  {:+.1} points in {:.1} % of the situations, e {:.3e}",
             change.round,
             verdict(change.verdict),
             change.proposal.edit,
             change.wager.gain(),
+            100.0 * change.share,
             change.wager.e_value()
         );
     }
@@ -175,7 +176,8 @@ fn line_class(line: &str) -> &'static str {
 fn evidence(change: &ChangeRecord) -> String {
     let wager = &change.wager;
     format!(
-        "{} pairs: {} raised, {} lowered, {:+.2} points, e {:.3}",
+        "changes {:.1} % of the situations; {} pairs there: {} raised, {} lowered, {:+.1} points, e {:.3}",
+        100.0 * change.share,
         wager.pairs,
         wager.raised,
         wager.lowered,
@@ -187,6 +189,7 @@ fn evidence(change: &ChangeRecord) -> String {
 const fn verdict(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Proposed => "proposed",
+        Verdict::Rare => "rarely played",
         Verdict::ScreenedOut => "screened out",
         Verdict::Unconfirmed => "not confirmed",
         Verdict::Superseded => "superseded",

@@ -5,7 +5,7 @@
 //! half its area at most in one step. A proposal's weight is the number of plays that it touches times how
 //! far they are from what is usual there; trials decide, weights only say what to try first.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use case_tools::CaseLeague;
 use case_tools::workbench::{ActionText, CaseText, Part};
@@ -62,12 +62,18 @@ pub struct Proposal {
     pub weight: f64,
 }
 
-/// Proposals of a kind from evidence, heaviest first, without those of `tried`.
+/// How often an edit was tried, by the hash of the text that it was tried on.
+pub(crate) type Tried = BTreeMap<(u64, Edit), u32>;
+
+/// An edit that was tried as often is not proposed again.
+pub(crate) const TRIED_MAX: u32 = 3;
+
+/// Proposals of a kind from evidence, heaviest first; every time that one was tried halves its weight.
 pub(crate) fn from_evidence(
     variant: &Variant,
     standings: &BTreeMap<String, CaseStanding>,
     kind: Kind,
-    tried: &BTreeSet<(u64, Edit)>,
+    tried: &Tried,
 ) -> Vec<Proposal> {
     let mut proposals = Vec::new();
     let kicks = kicks(variant);
@@ -86,8 +92,11 @@ pub(crate) fn from_evidence(
             Kind::New => {}
         }
     }
-    proposals.retain(|proposal| {
-        !tried.contains(&(text_hash(variant, &proposal.edit.case), proposal.edit.clone()))
+    proposals.retain_mut(|proposal| {
+        let key = (text_hash(variant, &proposal.edit.case), proposal.edit.clone());
+        let times = tried.get(&key).copied().unwrap_or_default();
+        (0..times).for_each(|_| proposal.weight *= 0.5);
+        times < TRIED_MAX
     });
     proposals.sort_by(|a, b| b.weight.total_cmp(&a.weight).then_with(|| a.edit.cmp(&b.edit)));
     proposals

@@ -17,7 +17,9 @@ use crate::variant::Variant;
 pub enum Verdict {
     /// Of a run that changes nothing.
     Proposed,
-    /// Others were better on the starts that it was drawn from.
+    /// It changes what is played in hardly any situation.
+    Rare,
+    /// Others were better in the first situations.
     ScreenedOut,
     /// The sequential test did not reach its threshold.
     Unconfirmed,
@@ -38,8 +40,11 @@ pub struct ChangeRecord {
     pub round: u32,
     /// The change.
     pub proposal: Proposal,
-    /// Its pairs: those of the test, or of screening where it was not tested.
+    /// Its pairs, in situations that it changes what is played in: those of the test, or of screening where it
+    /// was not tested.
     pub wager: Wager,
+    /// The share of such situations among those of play.
+    pub share: f64,
     /// The e-value that the test needed; none where it was not tested.
     pub needed: Option<f64>,
     /// What became of it.

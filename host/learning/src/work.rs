@@ -35,7 +35,9 @@ pub enum Work {
         situation: Situation,
         /// Whether the opponents are two defenders.
         two_defenders: bool,
-        /// Number of trials, with seeds from 0.
+        /// Number of the first trial's seed.
+        first: u32,
+        /// Number of trials, with the seeds from there on.
         trials: u32,
     },
 }
@@ -119,7 +121,7 @@ impl Unit<'_> {
                 };
                 starts.map(trial).collect()
             }
-            Work::Situation { situation, two_defenders, trials } => {
+            Work::Situation { situation, two_defenders, first, trials } => {
                 let configuration =
                     if *two_defenders { Configuration::TwoDefenders } else { Configuration::DefenderGoalie };
                 let layout = layout(situation, configuration);
@@ -136,7 +138,7 @@ impl Unit<'_> {
                     let config = TrialConfig { layout: Some(layout.clone()), ..config };
                     play(&config.with_library(base, names.clone()), false)
                 };
-                (0..*trials).map(trial).collect()
+                (0..*trials).map(|number| trial(first.saturating_add(number))).collect()
             }
         }
     }

@@ -20,7 +20,7 @@ impl<F: Fn(&Variant) -> f32> Player for Rule<F> {
             let share = (self.0)(unit.variant);
             let numbers: Vec<u32> = match &unit.work {
                 Work::Starts { indices, .. } => indices.clone(),
-                Work::Situation { trials, .. } => (0..*trials).collect(),
+                Work::Situation { first, trials, .. } => (*first..first + trials).collect(),
             };
             numbers.iter().map(|number| trial(unit, *number, share)).collect()
         };
@@ -30,12 +30,19 @@ impl<F: Fn(&Variant) -> f32> Player for Rule<F> {
 
 fn trial(unit: &Unit<'_>, number: u32, share: f32) -> LearningTrial {
     let mut hash = Fnv::default();
-    if let Work::Starts { stream, .. } = &unit.work {
-        hash.add(&[*stream as u8]);
-    }
-    hash.add(&number.to_le_bytes());
     // The situation is the start's; the outcome differs from library to library.
-    let situation = situation(hash.value());
+    let situation = match &unit.work {
+        Work::Starts { stream, .. } => {
+            hash.add(&[*stream as u8]);
+            hash.add(&number.to_le_bytes());
+            situation(hash.value())
+        }
+        Work::Situation { situation, .. } => {
+            hash.add(&number.to_le_bytes());
+            hash.add(&serde_json::to_vec(situation).unwrap());
+            situation.clone()
+        }
+    };
     hash.add(&unit.variant.hash.to_le_bytes());
     let goal = Stream::new(hash.value(), "outcome").chance(share);
     let base = unit.variant.base();

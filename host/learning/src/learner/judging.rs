@@ -7,35 +7,44 @@ use hil_sim::{Fnv, Stream};
 use rayon::prelude::*;
 
 use super::{Candidate, LearnError, Played, Run};
+use crate::aim::{Ground, Purpose};
 use crate::betting::{Wager, threshold};
+use crate::drafts::Occasion;
 use crate::edit::Edit;
 use crate::proposals::Proposal;
 use crate::results::{ChangeRecord, Verdict};
-use crate::starts::{StartStream, cell};
+use crate::starts::{CELLS, StartStream, cell};
+use crate::trial::LearningTrial;
 use crate::variant::Variant;
-use crate::work::{BATCH, Player, Unit, Work};
+use crate::work::{Player, Unit, Work};
+
+/// Pairs of a change, all and by kind of start.
+type Cells = (Wager, [Wager; CELLS.len()]);
 
 impl<P: Player> Run<'_, P> {
-    /// Tries proposals on ever more of the explored starts, the better third each time; the best few go on.
+    /// Tries proposals on ever more situations, fewer proposals each time; the best few go on.
     pub(super) fn screen(
         &mut self,
         current: &Variant,
-        explored: &Played,
+        ground: &Ground,
         proposals: Vec<Proposal>,
         round: u32,
     ) -> Result<Vec<Candidate>, LearnError> {
-        let mut open: Vec<Candidate> = (proposals.into_iter())
-            .filter_map(|proposal| {
-                let variant = current.edited(&proposal.edit).ok()?;
-                Some(Candidate::new(proposal, variant))
-            })
-            .collect();
-        let all = explored.trials.len();
+        let mut open = Vec::new();
+        for proposal in proposals {
+            let Ok(variant) = current.edited(&proposal.edit) else { continue };
+            let candidate = Candidate::new(proposal, variant, ground);
+            if candidate.touched.len() < SCREENING[0].0 {
+                self.note(round, &candidate, Verdict::Rare);
+            } else {
+                open.push(candidate);
+            }
+        }
         let mut from = 0;
-        for (to, keep) in [(all / 8, 2), (all / 2, 3), (all, 1)] {
-            self.pairs(current, explored, &mut open, from..to)?;
+        for (to, keep) in SCREENING {
+            self.try_situations(current, ground, &mut open, from..to)?;
             open.sort_by(|a, b| {
-                b.wager.z().total_cmp(&a.wager.z()).then_with(|| a.proposal.edit.cmp(&b.proposal.edit))
+                promise(b).total_cmp(&promise(a)).then_with(|| a.proposal.edit.cmp(&b.proposal.edit))
             });
             let kept = open.len().div_ceil(keep);
             for candidate in open.split_off(kept) {
@@ -43,154 +52,200 @@ impl<P: Player> Run<'_, P> {
             }
             from = to;
         }
-        let kept = open.iter().filter(|candidate| candidate.wager.z() >= FINALIST_Z).count().min(FINALISTS);
-        let rest = if self.settings.dry_run { 0 } else { kept };
-        for candidate in open.split_off(rest) {
-            let verdict = if self.settings.dry_run { Verdict::Proposed } else { Verdict::ScreenedOut };
-            self.note(round, &candidate, verdict);
+        if self.settings.dry_run {
+            for candidate in open.drain(..) {
+                self.note(round, &candidate, Verdict::Proposed);
+            }
         }
-        Ok(open)
+        let good = |candidate: &Candidate| candidate.wager.z() >= FINALIST_Z;
+        let (mut finalists, weak): (Vec<_>, Vec<_>) = open.into_iter().partition(good);
+        for candidate in weak.iter().chain(&finalists.split_off(finalists.len().min(FINALISTS))) {
+            self.note(round, candidate, Verdict::ScreenedOut);
+        }
+        Ok(finalists)
     }
 
-    /// Plays the pairs of candidates on some of the starts that `without` was played on: those that a
-    /// candidate can have an effect on; the others are equal pairs.
-    fn pairs(
+    /// Plays the pairs of candidates in some of the situations that each changes.
+    fn try_situations(
         &mut self,
         current: &Variant,
-        without: &Played,
+        ground: &Ground,
         candidates: &mut [Candidate],
         range: Range<usize>,
     ) -> Result<(), LearnError> {
-        let chosen: Vec<Vec<usize>> = (candidates.iter())
-            .map(|candidate| {
-                let base = candidate.variant.base();
-                let Candidate { proposal, variant, .. } = candidate;
-                let touches = |i: &usize| affects(&proposal.edit, current, variant, &base, without, *i);
-                range.clone().into_par_iter().filter(touches).collect()
-            })
-            .collect();
+        let chosen = |candidate: &Candidate| {
+            let end = range.end.min(candidate.touched.len());
+            candidate.touched[range.start.min(end)..end].to_vec()
+        };
+        let chosen: Vec<Vec<usize>> = candidates.iter().map(chosen).collect();
         let mut units = Vec::new();
         for (candidate, chosen) in candidates.iter().zip(&chosen) {
-            self.spent += chosen.len() as u64;
-            for chunk in chosen.chunks(BATCH as usize) {
-                let indices = chunk.iter().map(|i| without.first + *i as u32).collect();
-                let work = Work::Starts { stream: without.stream, indices, record: false };
-                units.push(Unit { variant: &candidate.variant, work });
+            for number in chosen {
+                let Occasion { situation, two_defenders, .. } = &ground.occasions[*number];
+                let work = Work::Situation {
+                    situation: situation.clone(),
+                    two_defenders: *two_defenders,
+                    first: *number as u32,
+                    trials: 1,
+                };
+                for variant in [&candidate.variant, current] {
+                    units.push(Unit { variant, work: work.clone() });
+                }
             }
         }
-        let mut played = self.player.play(&units)?.into_iter().flatten();
+        for unit in &units {
+            self.spent += u64::from(self.situations.insert(unit.key()));
+        }
+        let played = self.player.play(&units)?;
+        let to_goal: Vec<bool> = played.iter().flatten().map(LearningTrial::to_goal).collect();
+        let mut pairs = to_goal.chunks_exact(2);
         drop(units);
         for (candidate, chosen) in candidates.iter_mut().zip(&chosen) {
-            for (i, with) in chosen.iter().zip(played.by_ref()) {
-                let edit = &candidate.proposal.edit;
-                let (mut a, mut b) = (with.to_goal(), without.trials[*i].to_goal());
-                if self.settings.shuffle && self.coin(edit, without.stream, without.first + *i as u32) {
-                    (a, b) = (b, a);
-                }
-                candidate.wager.add(a, b);
-                candidate.cells[cell(without.first + *i as u32).0].add(a, b);
+            for (number, pair) in chosen.iter().zip(pairs.by_ref()) {
+                let purpose = ground.purpose as u8 + PURPOSES_FROM;
+                let swaps = self.coin(&candidate.proposal.edit, purpose, *number as u32);
+                candidate.wager.add(pair[usize::from(swaps)], pair[usize::from(!swaps)]);
             }
-            candidate.wager.add_equal((range.len() - chosen.len()) as u32);
         }
         Ok(())
     }
 
-    /// Chance for a pair of the null control.
-    fn coin(&self, edit: &Edit, stream: StartStream, index: u32) -> bool {
+    /// Chance for a pair of the null control; always false in other runs.
+    fn coin(&self, edit: &Edit, of: u8, index: u32) -> bool {
         let mut hash = Fnv::default();
-        hash.add(&[stream as u8]);
+        hash.add(&[of]);
         hash.add(&self.settings.seed.to_le_bytes());
         hash.add(edit.to_string().as_bytes());
         hash.add(&index.to_le_bytes());
-        Stream::new(hash.value(), "coin").chance(0.5)
+        self.settings.shuffle && Stream::new(hash.value(), "coin").chance(0.5)
     }
 
-    /// The sequential test, on fresh starts that the finalists share.
-    pub(super) fn confirm(
+    /// Tests the finalists, each against the library with those accepted before it.
+    pub(super) fn judge(
         &mut self,
         current: &Variant,
+        occasions: &[Occasion],
         finalists: Vec<Candidate>,
         round: u32,
-    ) -> Result<Vec<(Candidate, f64)>, LearnError> {
-        let first = {
-            let used = self.used.entry(StartStream::Confirmation).or_default();
-            let first = *used;
-            *used += if finalists.is_empty() { 0 } else { self.sizes.confirm };
-            first
-        };
-        let step = self.sizes.confirm / STEPS;
-        let mut without: Vec<Played> = Vec::new();
-        let mut confirmed = Vec::new();
-        for mut candidate in finalists {
+    ) -> Result<Variant, LearnError> {
+        let mut current = current.clone();
+        if finalists.is_empty() {
+            return Ok(current);
+        }
+        let (seed, count) = (self.settings.seed, self.sizes.confirm);
+        let mut ground = Ground::draw(occasions, Purpose::Confirmation, count, seed, round, &current);
+        let mut validation = None;
+        for finalist in finalists {
             if self.tests >= self.settings.tries {
-                self.note(round, &candidate, Verdict::ScreenedOut);
+                self.note(round, &finalist, Verdict::ScreenedOut);
                 continue;
             }
-            self.tests += 1;
-            let needed = threshold(self.settings.error_rate, self.settings.tries, self.accepted);
-            candidate = Candidate::new(candidate.proposal, candidate.variant);
-            for number in 0..STEPS {
-                if without.len() == number as usize {
-                    let played =
-                        self.recorded(current, StartStream::Confirmation, first + number * step, step)?;
-                    without.push(played);
-                }
-                let all = without[number as usize].trials.len();
-                let one = std::slice::from_mut(&mut candidate);
-                self.pairs(current, &without[number as usize], one, 0..all)?;
-                let hopeless = candidate.wager.z() < HOPELESS_Z + f64::from(number) * HOPELESS_STEP;
-                if candidate.wager.e_value() >= needed || hopeless {
-                    break;
-                }
+            let Ok(variant) = current.edited(&finalist.proposal.edit) else {
+                self.note(round, &finalist, Verdict::Superseded);
+                continue;
+            };
+            let mut candidate = Candidate::new(finalist.proposal, variant, &ground);
+            if candidate.touched.len() < SCREENING[0].0 {
+                self.note(round, &candidate, Verdict::Superseded);
+                continue;
             }
-            if candidate.wager.e_value() >= needed {
-                self.accepted += 1;
-                confirmed.push((candidate, needed));
-            } else {
+            let (needed, confirmed) = self.test(&current, &ground, &mut candidate)?;
+            if !confirmed {
                 self.note_test(round, &candidate, needed, Verdict::Unconfirmed, None);
+                continue;
+            }
+            self.accepted += 1;
+            if self.validate(&current, &candidate, needed, round, &mut validation)? {
+                current = candidate.variant;
+                ground.answer(&current);
             }
         }
-        Ok(confirmed)
+        Ok(current)
     }
 
-    /// Takes a confirmed change over unless it lowers a kind of start, or adds a warning.
-    pub(super) fn validate(
+    /// The sequential test: the e-value that it needed, and whether it was reached.
+    fn test(
         &mut self,
-        current: Variant,
+        current: &Variant,
+        ground: &Ground,
+        candidate: &mut Candidate,
+    ) -> Result<(f64, bool), LearnError> {
+        self.tests += 1;
+        let Self { settings, accepted, tests, .. } = self;
+        let needed = threshold(settings.error_rate, settings.tries, *accepted, *tests);
+        let step = (self.sizes.pairs / LOOKS) as usize;
+        for look in 0..LOOKS {
+            let from = look as usize * step;
+            if from >= candidate.touched.len() {
+                break;
+            }
+            self.try_situations(current, ground, std::slice::from_mut(candidate), from..from + step)?;
+            let hopeless = candidate.wager.z() < HOPELESS_Z + f64::from(look) * HOPELESS_STEP;
+            if candidate.wager.e_value() >= needed || hopeless {
+                break;
+            }
+        }
+        Ok((needed, candidate.wager.e_value() >= needed))
+    }
+
+    /// Whether a confirmed change is taken over: it lowers no kind of whole trials, and adds no warning.
+    fn validate(
+        &mut self,
+        current: &Variant,
         candidate: &Candidate,
         needed: f64,
         round: u32,
-    ) -> Result<Variant, LearnError> {
-        let Ok(variant) = current.edited(&candidate.proposal.edit) else {
-            self.note_test(round, candidate, needed, Verdict::Superseded, None);
-            return Ok(current);
-        };
+        validation: &mut Option<Played>,
+    ) -> Result<bool, LearnError> {
         let warnings = |variant: &Variant| variant.warnings().map_err(LearnError::Library);
-        if !warnings(&variant)?.is_subset(&warnings(&current)?) {
+        if !warnings(&candidate.variant)?.is_subset(&warnings(current)?) {
             self.note_test(round, candidate, needed, Verdict::Warned, None);
-            return Ok(current);
+            return Ok(false);
         }
-        let without = self.fresh(&current, StartStream::Validation, self.sizes.validate)?;
-        let mut again = [Candidate::new(candidate.proposal.clone(), variant)];
-        self.pairs(&current, &without, &mut again, 0..without.trials.len())?;
-        let [Candidate { variant, wager, cells, .. }] = again;
+        let without = match validation {
+            Some(played) => played,
+            None => validation.insert(self.fresh(current, StartStream::Validation, self.sizes.validate)?),
+        };
+        let ((wager, cells), changed) = self.whole_trials(candidate, without)?;
         let lowered = wager.z() < ALL_LOWERED_Z || cells.iter().any(|cell| cell.z() < LOWERED_Z);
         let verdict = if lowered { Verdict::Lowers } else { Verdict::Accepted };
         self.note_test(round, candidate, needed, verdict, Some((wager, cells.to_vec())));
-        Ok(if lowered { current } else { variant })
+        if !lowered {
+            for (i, trial) in changed {
+                without.renew(&candidate.variant, i, trial);
+            }
+        }
+        Ok(!lowered)
+    }
+
+    /// Plays a candidate on the starts of `without` that it can have an effect on; the others are equal
+    /// pairs.
+    fn whole_trials(
+        &mut self,
+        candidate: &Candidate,
+        without: &Played,
+    ) -> Result<(Cells, Vec<(usize, LearningTrial)>), LearnError> {
+        let Candidate { proposal: Proposal { edit, .. }, variant, .. } = candidate;
+        let base = variant.base();
+        let touches = |i: &usize| affects(edit, variant, &base, without, *i);
+        let chosen: Vec<usize> = (0..without.trials.len()).into_par_iter().filter(touches).collect();
+        let indices: Vec<u32> = chosen.iter().map(|i| without.first + *i as u32).collect();
+        let played = self.starts(variant, without.stream, &indices, true)?;
+        let mut wager = Wager::default();
+        let mut cells = [Wager::default(); CELLS.len()];
+        for ((i, index), with) in chosen.iter().zip(&indices).zip(&played) {
+            let pair = [with.to_goal(), without.trials[*i].to_goal()];
+            let swaps = self.coin(edit, without.stream as u8, *index);
+            let (with, without) = (pair[usize::from(swaps)], pair[usize::from(!swaps)]);
+            wager.add(with, without);
+            cells[cell(*index).0].add(with, without);
+        }
+        wager.add_equal((without.trials.len() - chosen.len()) as u32);
+        Ok(((wager, cells), chosen.into_iter().zip(played).collect()))
     }
 
     fn note(&mut self, round: u32, candidate: &Candidate, verdict: Verdict) {
-        let Candidate { proposal, wager, .. } = candidate;
-        let (proposal, screening) = (proposal.clone(), *wager);
-        self.changes.push(ChangeRecord {
-            round,
-            proposal,
-            wager: screening,
-            needed: None,
-            verdict,
-            validation: None,
-        });
+        self.record(round, candidate, None, verdict, None);
     }
 
     fn note_test(
@@ -201,39 +256,57 @@ impl<P: Player> Run<'_, P> {
         verdict: Verdict,
         validation: Option<(Wager, Vec<Wager>)>,
     ) {
-        let Candidate { proposal, wager, .. } = candidate;
-        let (proposal, wager, needed) = (proposal.clone(), *wager, Some(needed));
-        self.changes.push(ChangeRecord { round, proposal, wager, needed, verdict, validation });
+        self.record(round, candidate, Some(needed), verdict, validation);
     }
+
+    fn record(
+        &mut self,
+        round: u32,
+        candidate: &Candidate,
+        needed: Option<f64>,
+        verdict: Verdict,
+        validation: Option<(Wager, Vec<Wager>)>,
+    ) {
+        let Candidate { proposal, wager, share, .. } = candidate;
+        let (proposal, wager, share) = (proposal.clone(), *wager, *share);
+        self.changes.push(ChangeRecord { round, proposal, wager, share, needed, verdict, validation });
+    }
+}
+
+/// What a candidate may give: its gain in the situations that it changes less a standard error, times their
+/// share.
+fn promise(candidate: &Candidate) -> f64 {
+    let Candidate { wager, share, .. } = candidate;
+    let differ = f64::from(wager.raised) + f64::from(wager.lowered);
+    let gain = f64::from(wager.raised) - f64::from(wager.lowered) - differ.sqrt();
+    // Pessimistic gains below zero are not made better by being rare.
+    let gain = gain / f64::from(wager.pairs.max(1));
+    if gain > 0.0 { gain * share } else { gain }
 }
 
 /// Whether an edit can have changed trial `i`: its case was played, or retrieval answers a problem of the
 /// trial otherwise.
-fn affects(
-    edit: &Edit,
-    current: &Variant,
-    edited: &Variant,
-    base: &CaseBase<'_>,
-    played: &Played,
-    i: usize,
-) -> bool {
-    let decisions = &played.trials[i].decisions;
-    decisions.iter().zip(&played.answers[i]).any(|(decision, answer)| {
-        let plays = decision.case.and_then(|id| current.names().get(usize::from(id / 4)));
-        plays.is_some_and(|name| *name == edit.case)
+fn affects(edit: &Edit, edited: &Variant, base: &CaseBase<'_>, played: &Played, i: usize) -> bool {
+    let decisions = played.trials[i].decisions.iter().zip(&played.plays[i]);
+    decisions.zip(&played.answers[i]).any(|((decision, plays), answer)| {
+        plays.as_ref() == Some(&edit.case)
             || edited.answer(base, &decision.situation.problem()) != *answer
     })
 }
 
+/// Steps of screening: pairs of a proposal so far, and of how many proposals one goes on.
+const SCREENING: [(usize, usize); 3] = [(24, 2), (72, 3), (144, 1)];
 /// Most proposals of a round that are tested.
-const FINALISTS: usize = 6;
+const FINALISTS: usize = 10;
 /// Least standard deviations in screening of a proposal that is tested.
 const FINALIST_Z: f64 = 1.3;
 /// Looks that decide whether a test goes on.
-const STEPS: u32 = 16;
+const LOOKS: u32 = 16;
 /// A test ends where the difference is below this, rising by the next a look.
 const HOPELESS_Z: f64 = -1.0;
 const HOPELESS_STEP: f64 = 0.2;
+/// Names of purposes in the null control's chance lie behind those of streams of starts.
+const PURPOSES_FROM: u8 = 16;
 /// All validation starts together count as lowered from here on.
 const ALL_LOWERED_Z: f64 = -1.0;
 /// A kind of starts counts as lowered from here on: p < 0.025 on one side.
@@ -245,7 +318,6 @@ mod tests {
 
     use super::*;
     use crate::edit::Change;
-    use crate::trial::LearningTrial;
 
     fn played(variant: &Variant, record: bool) -> Vec<LearningTrial> {
         let stream = StartStream::Exploration;
@@ -258,14 +330,8 @@ mod tests {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let files = case_tools::Files::read(&root.join("../../casebase/library/cases/four-legged")).unwrap();
         let current = Variant::new(files).unwrap();
-        let base = current.base();
         let trials = played(&current, true);
-        let answers = trials.iter().map(|trial| {
-            let problems = trial.decisions.iter().map(|decision| decision.situation.problem());
-            problems.map(|problem| current.answer(&base, &problem)).collect()
-        });
-        let answers = answers.collect();
-        let without = Played { stream: StartStream::Exploration, first: 0, trials, answers };
+        let without = Played::new(&current, StartStream::Exploration, 0, trials);
         let edit = |case: &str, change| Edit { case: case.to_owned(), change };
         let edits = [
             edit("center/close-in", Change::Forget),
@@ -279,7 +345,7 @@ mod tests {
             for (i, with) in played(&edited, false).iter().enumerate() {
                 let without_it = &without.trials[i];
                 let equal = (with.outcome, with.touches) == (without_it.outcome, without_it.touches);
-                if affects(&edit, &current, &edited, &edited.base(), &without, i) {
+                if affects(&edit, &edited, &edited.base(), &without, i) {
                     touched += 1;
                     changed += usize::from(!equal);
                 } else {
