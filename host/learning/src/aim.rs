@@ -17,6 +17,8 @@ use crate::variant::{Answer, Variant};
 /// What situations are drawn for; no two purposes draw the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
+    /// The search for new cases.
+    Search,
     /// Screening of a round's proposals.
     Screening,
     /// The sequential test of a proposal.
@@ -43,13 +45,9 @@ impl Ground {
         current: &Variant,
     ) -> Self {
         let usable: Vec<&Occasion> = played.iter().filter(|occasion| usable(&occasion.situation)).collect();
-        let name = match purpose {
-            Purpose::Screening => 1_u8,
-            Purpose::Confirmation => 2,
-        };
         let one = |number: u32| {
             let mut hash = Fnv::default();
-            hash.add(&[name]);
+            hash.add(&[purpose as u8]);
             hash.add(&seed.to_le_bytes());
             hash.add(&round.to_le_bytes());
             hash.add(&number.to_le_bytes());

@@ -1,4 +1,5 @@
-//! `edit`: one edit to one case file of a library, as data; the workbench's editor changes the text. mm.
+//! `edit`: one edit to one case file of a library, or to one setting of its retrieval, as data; the
+//! workbench's editor changes the text. mm.
 
 use std::fmt;
 
@@ -22,12 +23,17 @@ pub enum Change {
     Forget,
     /// A new file with this text.
     New(String),
+    /// A setting of retrieval, by name and value (docs/case-format.md §3.2); no file changes.
+    Setting(String, String),
 }
 
-/// One change to one case file.
+/// What edits of settings have in place of a case's name.
+pub const RETRIEVAL: &str = "retrieval";
+
+/// One change to one case file, or to one setting.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Edit {
-    /// `region/name` of the case.
+    /// `region/name` of the case; [`RETRIEVAL`] for a setting.
     pub case: String,
     /// What is done to it.
     pub change: Change,
@@ -60,6 +66,7 @@ impl fmt::Display for Edit {
             Change::Action(n, i, action) => write!(f, "{case}: action {} of tm{} is {action}", i + 1, n + 1),
             Change::Forget => write!(f, "{case}: forgotten"),
             Change::New(_) => write!(f, "{case}: new"),
+            Change::Setting(name, value) => write!(f, "{case}: {name}={value}"),
         }
     }
 }
@@ -69,6 +76,7 @@ impl Edit {
     pub fn apply(&self, files: &Files) -> Result<Files, EditError> {
         let file = files.cases.iter().find(|file| file.name == self.case);
         match (&self.change, file) {
+            (Change::Setting(..), _) => Ok(files.clone()),
             (Change::New(text), None) => Ok(files.with(&self.case, text)),
             (Change::New(_), Some(_)) => Err(self.error("the library has a case of this name; take another")),
             (_, None) => Err(self.error("no such case; `onetwo cases list` names them")),

@@ -11,6 +11,7 @@
 //! by. Everything is a function of the files, the settings and the outcomes of trials.
 
 mod judging;
+mod search;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -23,7 +24,7 @@ use rayon::prelude::*;
 use crate::aim::{Ground, Purpose};
 use crate::betting::Wager;
 use crate::competence::standings;
-use crate::drafts::{Occasion, SearchSize, search};
+use crate::drafts::Occasion;
 use crate::evidence::Evidence;
 use crate::proposals::{Kind, Proposal, TRIED_MAX, Tried, from_evidence, text_hash};
 use crate::results::{ChangeRecord, CurvePoint, Learned, Verdict};
@@ -122,7 +123,8 @@ struct Sizes {
     held_out: u32,
     /// Proposals a kind that are screened.
     proposals: usize,
-    search: SearchSize,
+    /// Situations that plans are searched for.
+    situations: u32,
 }
 
 impl Sizes {
@@ -132,17 +134,21 @@ impl Sizes {
         let explore = (budget / 100 / unit * unit).clamp(8 * unit, 4096) as u32;
         Self {
             explore,
-            screen: 5 * explore,
-            confirm: 20 * explore,
+            screen: SCREEN_GROUND,
+            confirm: TEST_GROUND,
             pairs: (8 * explore).min(TEST_PAIRS),
             validate: explore.max(VALIDATE_MIN.min(8 * explore)),
             held_out: explore,
             proposals: (explore as usize / 100).clamp(4, 10),
-            search: SearchSize { situations: (explore / 64).clamp(4, 16), rollouts: 8 },
+            situations: (explore / 64).clamp(4, 16),
         }
     }
 }
 
+/// Situations that are drawn to try proposals in: a change of one in a hundred finds 80.
+const SCREEN_GROUND: u32 = 8192;
+/// Situations that are drawn for a test: the same finds 650.
+const TEST_GROUND: u32 = 65_536;
 /// Most pairs of a test: with a half of them equal, ten points are seen in 600 (`betting`).
 const TEST_PAIRS: u32 = 1536;
 /// Least number of validation starts where the budget allows for it: fewer show nothing of single kinds of
@@ -212,6 +218,8 @@ struct Candidate {
     proposal: Proposal,
     variant: Variant,
     wager: Wager,
+    /// The same against defender and goalie alone, and against two defenders.
+    against: [Wager; 2],
     /// Numbers of the situations that it changes what is played in, of those that were drawn.
     touched: Vec<usize>,
     /// Their share.
@@ -222,7 +230,8 @@ impl Candidate {
     fn new(proposal: Proposal, variant: Variant, ground: &Ground) -> Self {
         let touched = ground.touched(&proposal.edit, &variant);
         let share = touched.len() as f64 / ground.occasions.len().max(1) as f64;
-        Self { proposal, variant, wager: Wager::default(), touched, share }
+        let (wager, against) = (Wager::default(), [Wager::default(); 2]);
+        Self { proposal, variant, wager, against, touched, share }
     }
 }
 
@@ -300,10 +309,7 @@ impl<P: Player> Run<'_, P> {
         let mut proposals = Vec::new();
         for kind in self.settings.kinds.clone() {
             if kind == Kind::New {
-                let seed = self.settings.seed ^ (u64::from(round) << 32);
-                let (drafts, spent) = search(current, occasions, self.sizes.search, seed, self.player)?;
-                self.spent += spent;
-                proposals.extend(drafts);
+                proposals.extend(self.search(current, occasions, round)?);
             } else {
                 let mut all = from_evidence(current, &known, kind, &self.tried);
                 all.truncate(self.sizes.proposals);

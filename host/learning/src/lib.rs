@@ -8,6 +8,7 @@
 
 mod aim;
 mod betting;
+mod case_evidence;
 mod competence;
 mod diff;
 mod drafts;
@@ -25,9 +26,10 @@ mod variant;
 mod work;
 
 pub use betting::{Wager, threshold};
+pub use case_evidence::{CaseEvidence, ProposalNote, Told, proposals_in};
 pub use competence::{CaseStanding, Standing, standings};
 pub use diff::diff;
-pub use edit::{Change, Edit, EditError};
+pub use edit::{Change, Edit, EditError, RETRIEVAL};
 pub use evidence::{Evidence, EvidenceCounts, EvidenceKey, Posterior, ScopeRing};
 pub use journal::JournalPlayer;
 pub use learner::{LearnError, learn};

@@ -36,6 +36,7 @@ pub fn json(learned: &Learned) -> Value {
     value!({
         "settings": learned.settings,
         "library": { "before": format!("{:016x}", learned.start.hash), "after": format!("{:016x}", learned.end.hash) },
+        "retrieval": learned.end.changed_settings(),
         "world": hil_sim::world_hash(),
         "spent": learned.spent,
         "tests": learned.tests,
@@ -69,6 +70,9 @@ pub fn summary(learned: &Learned) -> String {
             "held-out after round {}: to goal {:.2} %, random starts {:.2} %, touches {:.3}; {} trials",
             point.round, point.to_goal, point.to_goal_random, point.touches, point.spent
         );
+    }
+    for setting in learned.end.changed_settings() {
+        let _ = writeln!(text, "retrieval: --set {setting}");
     }
     let _ = writeln!(
         text,
@@ -115,6 +119,13 @@ pub fn html(learned: &Learned) -> String {
                 h2 { "Accepted" }
                 @if learned.accepted().next().is_none() { p { "None: the learned library is the one before." } }
                 @for change in learned.accepted() { (accepted(learned, change)) }
+                @if !learned.end.changed_settings().is_empty() {
+                    h2 { "Settings of retrieval" }
+                    p {
+                        "They are no part of the library: robots take them with "
+                        @for setting in learned.end.changed_settings() { code { "--set " (setting) } " " }
+                    }
+                }
                 @if !diff.is_empty() {
                     h2 { "Difference of the library" }
                     pre.diff { @for line in diff.lines() { span class=(line_class(line)) { (line) "\n" } } }

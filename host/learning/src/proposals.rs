@@ -12,7 +12,7 @@ use case_tools::workbench::{ActionText, CaseText, Part};
 use serde::{Deserialize, Serialize};
 
 use crate::competence::CaseStanding;
-use crate::edit::{Change, Edit};
+use crate::edit::{Change, Edit, RETRIEVAL};
 use crate::variant::Variant;
 
 /// Kinds of changes.
@@ -27,11 +27,13 @@ pub enum Kind {
     New,
     /// Deleted cases.
     Forget,
+    /// The ranking's order, and the thresholds and rules of retrieval.
+    Order,
 }
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Self; 4] = [Self::Scopes, Self::Actions, Self::New, Self::Forget];
+    pub const ALL: [Self; 5] = [Self::Scopes, Self::Actions, Self::New, Self::Forget, Self::Order];
 
     /// Its name on the command line and in reports.
     pub const fn label(self) -> &'static str {
@@ -40,6 +42,7 @@ impl Kind {
             Self::Actions => "actions",
             Self::New => "new",
             Self::Forget => "forget",
+            Self::Order => "order",
         }
     }
 
@@ -89,8 +92,11 @@ pub(crate) fn from_evidence(
             Kind::Scopes => draft.scopes(&mut proposals),
             Kind::Actions => draft.actions(&kicks, &mut proposals),
             Kind::Forget => draft.forget(&mut proposals),
-            Kind::New => {}
+            Kind::New | Kind::Order => {}
         }
+    }
+    if kind == Kind::Order {
+        proposals.extend(order(variant));
     }
     proposals.retain_mut(|proposal| {
         let key = (text_hash(variant, &proposal.edit.case), proposal.edit.clone());
@@ -101,6 +107,50 @@ pub(crate) fn from_evidence(
     proposals.sort_by(|a, b| b.weight.total_cmp(&a.weight).then_with(|| a.edit.cmp(&b.edit)));
     proposals
 }
+
+/// One setting of retrieval at another value, the others as they are.
+fn order(variant: &Variant) -> Vec<Proposal> {
+    let now: BTreeMap<String, String> = (variant.settings.describe())
+        .map(|(name, value)| (name.to_owned(), value.as_str().to_owned()))
+        .collect();
+    let mut values: Vec<(&str, String)> = Vec::new();
+    let criteria = ["conditions", "teammates", "interval-cost"];
+    for (i, first) in criteria.iter().enumerate() {
+        let [a, b] = [criteria[(i + 1) % 3], criteria[(i + 2) % 3]];
+        values.extend([[a, b], [b, a]].map(|[a, b]| ("ranking", format!("{first},{a},{b}"))));
+    }
+    for (name, rules) in RULES {
+        values.extend(rules.iter().map(|rule| (*name, (*rule).to_owned())));
+    }
+    for (name, factors) in FACTORS {
+        let value: Option<f64> = now.get(*name).and_then(|value| value.parse().ok());
+        values.extend(value.into_iter().flat_map(|value| {
+            factors
+                .iter()
+                .map(move |factor| (*name, format!("{}", (value * factor * 1000.0).round() / 1000.0)))
+        }));
+    }
+    let other = values.into_iter().filter(|(name, value)| now.get(*name) != Some(value));
+    other
+        .map(|(name, value)| Proposal {
+            kind: Kind::Order,
+            reason: format!("{name} is {}", now.get(name).map_or("", String::as_str)),
+            edit: Edit { case: RETRIEVAL.to_owned(), change: Change::Setting(name.to_owned(), value) },
+            weight: 1.0,
+        })
+        .collect()
+}
+
+/// Rules of retrieval with the values that they can have.
+const RULES: &[(&str, &[&str])] = &[
+    ("correspondence", &["min-then-test", "constrained"]),
+    ("cost", &["sum", "max"]),
+    ("out_of_field", &["keep", "clamp", "reject"]),
+    ("scopes", &["translated", "absolute"]),
+    ("free_path", &["crisp", "fuzzy"]),
+];
+/// Lengths and thresholds of retrieval with the factors that are tried.
+const FACTORS: &[(&str, &[f64])] = &[("thr_c", &[0.67, 0.8, 1.25, 1.5]), ("thr", &[0.8, 1.25])];
 
 /// Hash of a case's text; of an empty one where the library lacks it.
 pub(crate) fn text_hash(variant: &Variant, case: &str) -> u64 {
@@ -260,6 +310,34 @@ mod tests {
         assert_eq!((moved.len(), moved[0].as_str()), (6, "{ dribble_to = [650, -150] }"));
         for fixed in ["\"wait\"", "{ pass_ball = 2 }", "{ turn = { face = [1, 2] } }"] {
             assert!(varied(fixed).is_empty(), "{fixed}");
+        }
+    }
+
+    #[test]
+    fn every_order_of_the_ranking_and_every_rule_but_the_present_ones_is_proposed() {
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        let files = case_tools::Files::read(&root.join("../../casebase/library/cases/four-legged")).unwrap();
+        let variant = Variant::new(files).unwrap();
+        let proposals = order(&variant);
+        let of = |name: &str| {
+            let text = format!("retrieval: {name}=");
+            proposals.iter().filter(|one| one.edit.to_string().starts_with(&text)).count()
+        };
+        assert_eq!(
+            ["ranking", "cost", "out_of_field", "free_path", "thr_c", "thr"].map(of),
+            [5, 1, 2, 1, 4, 2]
+        );
+        for proposal in &proposals {
+            let changed = variant.edited(&proposal.edit).unwrap();
+            assert_eq!(changed.changed_settings().len(), 1, "{}", proposal.edit);
+            assert_ne!(changed.hash, variant.hash);
+            // From there the usual value is a proposal again.
+            assert!(
+                order(&changed)
+                    .iter()
+                    .any(|back| { changed.edited(&back.edit).is_ok_and(|back| back.hash == variant.hash) })
+                    || proposal.edit.to_string().contains("thr")
+            );
         }
     }
 

@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use arena::CaseNames;
 use case_tools::{Files, Finding, Library, build, build_without_warnings};
-use casebase::{CaseBase, Problem, RetrievalSettings, retrieve_best};
+use casebase::{CaseBase, Problem, RetrievalSettings, SettingError, retrieve_best};
 use hil_sim::Fnv;
 
-use crate::edit::{Edit, EditError};
+use crate::edit::{Change, Edit, EditError};
 
 /// A library and the files that it was built from.
 #[derive(Clone, Debug)]
@@ -16,7 +16,9 @@ pub struct Variant {
     /// Its files.
     pub files: Files,
     library: Arc<Library>,
-    /// Hash of its files' names and texts.
+    /// The settings that robots retrieve with.
+    pub settings: RetrievalSettings,
+    /// Hash of its files' names and texts, and of settings that are not the usual ones.
     pub hash: u64,
 }
 
@@ -35,6 +37,10 @@ pub type Answer = Option<(String, u16, Vec<u8>)>;
 impl Variant {
     /// The library of these files; warnings are not computed.
     pub fn new(files: Files) -> Result<Self, VariantError> {
+        Self::with_settings(files, RetrievalSettings::default())
+    }
+
+    fn with_settings(files: Files, settings: RetrievalSettings) -> Result<Self, VariantError> {
         let library = build_without_warnings(&files).map_err(VariantError::Refused)?;
         let mut hash = Fnv::default();
         for file in std::iter::once(&files.rules).chain(&files.cases) {
@@ -43,12 +49,27 @@ impl Variant {
                 hash.add(text.as_bytes());
             }
         }
-        Ok(Self { library: Arc::new(library), hash: hash.value(), files })
+        for line in changed(&settings) {
+            hash.add(line.as_bytes());
+        }
+        Ok(Self { library: Arc::new(library), settings, hash: hash.value(), files })
     }
 
     /// The library after an edit.
     pub fn edited(&self, edit: &Edit) -> Result<Self, VariantError> {
-        Self::new(edit.apply(&self.files).map_err(VariantError::Edit)?)
+        let files = edit.apply(&self.files).map_err(VariantError::Edit)?;
+        let mut settings = self.settings.clone();
+        if let Change::Setting(name, value) = &edit.change {
+            let refused =
+                |error: SettingError| EditError { case: edit.case.clone(), what: error.to_string() };
+            settings.set(name, value).map_err(refused).map_err(VariantError::Edit)?;
+        }
+        Self::with_settings(files, settings)
+    }
+
+    /// Settings of retrieval that are not the usual ones, as `name=value`.
+    pub fn changed_settings(&self) -> Vec<String> {
+        changed(&self.settings)
     }
 
     /// Its case base.
@@ -68,7 +89,7 @@ impl Variant {
 
     /// What a robot would retrieve. Ids change with the number of files, names do not.
     pub fn answer(&self, base: &CaseBase<'_>, problem: &Problem) -> Answer {
-        let found = retrieve_best(base, problem, &RetrievalSettings::default())?;
+        let found = retrieve_best(base, problem, &self.settings)?;
         let name = self.names().get(usize::from(found.case.0 / 4)).cloned().unwrap_or_default();
         let robots = found.correspondence.iter().map(|robot| robot.number()).collect();
         Some((name, found.case.0 % 4, robots))
@@ -80,4 +101,10 @@ impl Variant {
         let warning = |finding: &Finding| (finding.file.display().to_string(), finding.code);
         Ok(checked.findings.iter().map(warning).collect())
     }
+}
+
+fn changed(settings: &RetrievalSettings) -> Vec<String> {
+    let usual = RetrievalSettings::default();
+    let both = settings.describe().zip(usual.describe());
+    both.filter(|(own, usual)| own != usual).map(|((name, value), _)| format!("{name}={value}")).collect()
 }

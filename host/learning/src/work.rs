@@ -109,6 +109,10 @@ impl Unit<'_> {
     /// Plays the unit.
     pub fn play(&self, seed: u64) -> Result<Vec<LearningTrial>, SimulationError> {
         let (base, names) = (self.variant.base(), self.variant.case_names());
+        let with_variant = |config: TrialConfig<'static>| TrialConfig {
+            settings: self.variant.settings.clone(),
+            ..config.with_library(base, names.clone())
+        };
         match &self.work {
             Work::Starts { stream, indices, record } => {
                 let plan = StartPlan::new(seed, *stream);
@@ -117,7 +121,7 @@ impl Unit<'_> {
                     let cell = start.cell;
                     let config =
                         TrialConfig::new(cell.scenario, cell.configuration, cell.approach, start.seed);
-                    play(&config.with_library(base, names.clone()), *record)
+                    play(&with_variant(config), *record)
                 };
                 starts.map(trial).collect()
             }
@@ -136,7 +140,7 @@ impl Unit<'_> {
                         hash.value() >> 16,
                     );
                     let config = TrialConfig { layout: Some(layout.clone()), ..config };
-                    play(&config.with_library(base, names.clone()), false)
+                    play(&with_variant(config), false)
                 };
                 (0..*trials).map(|number| trial(first.saturating_add(number))).collect()
             }

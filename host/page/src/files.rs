@@ -64,6 +64,7 @@ files! {
     "draft.js": SCRIPT,
     "judge.js": SCRIPT,
     "rehearse.js": SCRIPT,
+    "evidence.js": SCRIPT,
 }
 
 /// The file with this path; `/` is the page itself.

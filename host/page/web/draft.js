@@ -1,13 +1,14 @@
 // How is a case edited? Which one, its parts and actions, what the checks say, the way back, and the file.
 
 import { byId, clock, el, fill } from "./dom.js";
+import { showEvidence } from "./evidence.js";
 import { actionWords, chooseHandle, handles, nudge, pointOf } from "./ghost.js";
 import { showJudge } from "./judge.js";
 import { showRehearsal } from "./rehearse.js";
 import { changed, on, store } from "./store.js";
 import { bench, checkAll, copyOf, draft, edit, loadList, openCase, redo, rename, restore, save, saveOver, setText, SYMMETRIES, undo } from "./workbench.js";
 
-const PARTS = ["open", "head", "findings", "parts", "actions", "judge", "rehearse", "file"];
+const PARTS = ["open", "head", "findings", "parts", "actions", "judge", "rehearse", "evidence", "file"];
 
 export function showDraft() {
   const tab = byId("tab-bench");
@@ -28,6 +29,7 @@ export function showDraft() {
   fill(byId("bench-actions"), JSON.stringify(sheet.robots.map((one) => [one.actions, one.may_be.map((list) => list.map(actionWords))])), () => [el("h2", {}, "Gameplays"), el("p", { class: "muted" }, "As the file has them, whichever symmetry is shown."), ...sheet.robots.map(robot)]);
   showJudge();
   showRehearsal();
+  showEvidence();
   fill(byId("bench-file"), sheet.text, file);
 }
 

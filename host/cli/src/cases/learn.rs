@@ -33,7 +33,7 @@ pub(crate) struct LearnArgs {
     /// The directory that everything is written to: journals, evidence, report and the learned library.
     #[arg(short, long, value_name = "DIR")]
     out: PathBuf,
-    /// Only these kinds of changes, with commas between: scopes, actions, new, forget.
+    /// Only these kinds of changes, with commas between: scopes, actions, new, forget, order.
     #[arg(long, value_name = "KINDS", value_delimiter = ',', value_parser = kind)]
     only: Vec<Kind>,
     /// Expected share of wrong changes among the accepted ones.

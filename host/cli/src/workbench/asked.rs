@@ -28,6 +28,8 @@ pub(super) enum Asked {
     Rank { name: String, text: String, problem: Value },
     /// What it wins of the match's problems.
     Count { name: String, text: String },
+    /// What learning has found out about it.
+    Learned { name: String },
     /// What other settings of retrieval would change over the match's problems.
     Settings { values: BTreeMap<String, String> },
     /// Attempts in the simulator.

@@ -6,6 +6,7 @@
 
 mod asked;
 mod count;
+mod learned;
 mod rehearsal;
 mod save;
 mod shared_library;
@@ -68,6 +69,9 @@ impl CaseWorkbench {
                 let before = case_tools::build(bench.files()).map_err(|findings| refused(&findings))?;
                 let problems = Problems::of(&(request.problems)());
                 value(&count::wins(&problems, &before, &library, &name, &self.settings))?
+            }
+            Asked::Learned { name } => {
+                learned::of_case(self.library.directory(), self.bench()?.files(), &name)?
             }
             Asked::Settings { values } => {
                 let bench = self.bench()?;

@@ -249,3 +249,26 @@ fn a_rehearsal_counts_what_cases_play_counts_and_offers_three_attempts_to_watch(
     assert_eq!(sample["moments"][0]["robots"].as_array().unwrap().len(), 3);
     assert!(ask(&workbench, &json!({ "do": "sample", "number": 99 })).is_err());
 }
+
+#[test]
+fn what_learning_has_left_beside_the_library_is_told_of_a_case() {
+    let directory = Directory::new("learned");
+    let workbench = directory.workbench();
+    let learned = json!({ "do": "learned", "name": "center/one-two" });
+    let refused = ask(&workbench, &learned).unwrap_err();
+    assert!(refused.contains("no evidence.jsonl and no report.json beside "), "{refused}");
+    let record = json!({ "library": "1", "world": "2", "case": "center/one-two", "symmetry": 1, "ring": "risk",
+        "pattern": "1/1", "opponents": "dg", "area": 4, "plays": 8, "to_goal": 3, "ends": { "finished": 8 } });
+    fs::write(directory.0.join("evidence.jsonl"), format!("{record}\n")).unwrap();
+    let report = json!({ "changes": [{ "edit": { "case": "center/one-two", "change": { "ball-scope": [333, 222] } },
+        "text": "center/one-two: ball scope [333, 222]", "reason": "r", "verdict": "proposed", "pairs": 9, "raised": 5,
+        "lowered": 2, "gain": 33.3 }] });
+    fs::write(directory.0.join("report.json"), report.to_string()).unwrap();
+    let answer = ask(&workbench, &learned).unwrap();
+    assert_eq!(answer["told"]["all"], json!({ "plays": 8, "to_goal": 3 }));
+    assert_eq!(answer["told"]["now"]["plays"], 0, "of another library");
+    assert!(answer["proposals"][0]["after"].as_str().unwrap().contains("scope = [333, 222]"));
+    fs::write(directory.0.join("evidence.jsonl"), "{}\n").unwrap();
+    let refused = ask(&workbench, &learned).unwrap_err();
+    assert!(refused.starts_with("evidence.jsonl: line 1: "), "{refused}");
+}

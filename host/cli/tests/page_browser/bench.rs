@@ -11,7 +11,7 @@ use crate::program::Program;
 use crate::{no_errors, number};
 
 /// A copy of division B's built-in cases, in a directory of that name.
-fn library(of: &str) -> PathBuf {
+pub(crate) fn library(of: &str) -> PathBuf {
     let root = std::env::temp_dir().join(format!("onetwo-bench-{of}-{}", std::process::id()));
     let _ = fs::remove_dir_all(&root);
     let directory = root.join("division-b");

@@ -6,6 +6,7 @@
 //! without.
 
 mod bench;
+mod evidence;
 mod health;
 mod look;
 mod program;

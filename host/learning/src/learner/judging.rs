@@ -66,7 +66,7 @@ impl<P: Player> Run<'_, P> {
     }
 
     /// Plays the pairs of candidates in some of the situations that each changes.
-    fn try_situations(
+    pub(super) fn try_situations(
         &mut self,
         current: &Variant,
         ground: &Ground,
@@ -104,7 +104,10 @@ impl<P: Player> Run<'_, P> {
             for (number, pair) in chosen.iter().zip(pairs.by_ref()) {
                 let purpose = ground.purpose as u8 + PURPOSES_FROM;
                 let swaps = self.coin(&candidate.proposal.edit, purpose, *number as u32);
-                candidate.wager.add(pair[usize::from(swaps)], pair[usize::from(!swaps)]);
+                let (with, without) = (pair[usize::from(swaps)], pair[usize::from(!swaps)]);
+                candidate.wager.add(with, without);
+                let two_defenders = ground.occasions[*number].two_defenders;
+                candidate.against[usize::from(two_defenders)].add(with, without);
             }
         }
         Ok(())
@@ -274,14 +277,19 @@ impl<P: Player> Run<'_, P> {
 }
 
 /// What a candidate may give: its gain in the situations that it changes less a standard error, times their
-/// share.
-fn promise(candidate: &Candidate) -> f64 {
-    let Candidate { wager, share, .. } = candidate;
-    let differ = f64::from(wager.raised) + f64::from(wager.lowered);
-    let gain = f64::from(wager.raised) - f64::from(wager.lowered) - differ.sqrt();
-    // Pessimistic gains below zero are not made better by being rare.
-    let gain = gain / f64::from(wager.pairs.max(1));
-    if gain > 0.0 { gain * share } else { gain }
+/// share. Validation refuses what lowers one kind of starts, so against neither kind of opponents may the gain
+/// be below zero by more than a standard error.
+pub(super) fn promise(candidate: &Candidate) -> f64 {
+    let bound = |wager: &Wager, errors: f64| {
+        let differ = f64::from(wager.raised) + f64::from(wager.lowered);
+        let gain = f64::from(wager.raised) - f64::from(wager.lowered);
+        (gain + errors * differ.sqrt()) / f64::from(wager.pairs.max(1))
+    };
+    let against = candidate.against.iter().filter(|wager| wager.pairs > 0);
+    let worst = against.map(|wager| bound(wager, 1.0)).fold(f64::INFINITY, f64::min);
+    let gain = bound(&candidate.wager, -1.0).min(worst);
+    // A pessimistic gain below zero is not made better by being rare.
+    if gain > 0.0 { gain * candidate.share } else { gain }
 }
 
 /// Whether an edit can have changed trial `i`: its case was played, or retrieval answers a problem of the
@@ -289,8 +297,7 @@ fn promise(candidate: &Candidate) -> f64 {
 fn affects(edit: &Edit, edited: &Variant, base: &CaseBase<'_>, played: &Played, i: usize) -> bool {
     let decisions = played.trials[i].decisions.iter().zip(&played.plays[i]);
     decisions.zip(&played.answers[i]).any(|((decision, plays), answer)| {
-        plays.as_ref() == Some(&edit.case)
-            || edited.answer(base, &decision.situation.problem()) != *answer
+        plays.as_ref() == Some(&edit.case) || edited.answer(base, &decision.situation.problem()) != *answer
     })
 }
 
@@ -307,8 +314,8 @@ const HOPELESS_Z: f64 = -1.0;
 const HOPELESS_STEP: f64 = 0.2;
 /// Names of purposes in the null control's chance lie behind those of streams of starts.
 const PURPOSES_FROM: u8 = 16;
-/// All validation starts together count as lowered from here on.
-const ALL_LOWERED_Z: f64 = -1.0;
+/// All validation starts together count as lowered below this: more lowered than raised.
+const ALL_LOWERED_Z: f64 = 0.0;
 /// A kind of starts counts as lowered from here on: p < 0.025 on one side.
 const LOWERED_Z: f64 = -1.96;
 

@@ -1,0 +1,65 @@
+//! `evidence`: what learning has left beside a library, on the workbench of the page.
+
+use std::fs;
+
+use page_browser::Browser;
+use serde_json::json;
+
+use crate::bench::library;
+use crate::no_errors;
+use crate::program::Program;
+
+const CASE: &str = "center/one-two";
+
+#[test]
+fn evidence_of_a_case_is_shown_and_a_proposal_is_taken_and_undone() {
+    let library = library("evidence");
+    let beside = library.parent().unwrap();
+    let record = |area: u32, plays: u32, to_goal: u32| {
+        let record = json!({ "library": "1", "world": "2", "case": CASE, "symmetry": 1, "ring": "risk", "pattern": "1/1",
+            "opponents": "dg", "area": area, "plays": plays, "to_goal": to_goal, "ends": { "finished": plays } });
+        format!("{record}\n")
+    };
+    fs::write(beside.join("evidence.jsonl"), record(4, 30, 12) + &record(7, 10, 1)).unwrap();
+    let change = json!({ "edit": { "case": CASE, "change": { "ball-scope": [330, 220] } },
+        "text": "center/one-two: ball scope [330, 220]", "reason": "the risk ring fails", "verdict": "proposed",
+        "pairs": 90, "raised": 30, "lowered": 12, "gain": 20.0 });
+    fs::write(beside.join("report.json"), json!({ "changes": [change] }).to_string()).unwrap();
+
+    let directory = library.to_str().unwrap();
+    let program = Program::start(&[
+        "play",
+        "--library",
+        directory,
+        "--seed",
+        "2",
+        "--duration",
+        "600",
+        "--listen",
+        "127.0.0.1:0",
+    ]);
+    let mut browser = Browser::start().unwrap();
+    let mut tab = browser.open(&program.url("?theme=dark"), 1400, 900).unwrap();
+    tab.wait("window.onetwo?.store.scene?.robots.length === 12", 60).unwrap();
+    tab.key("6").unwrap();
+    tab.wait("document.querySelector('#bench-case option[value=\"center/one-two\"]')", 20).unwrap();
+    tab.eval("document.getElementById('bench-case').value = 'center/one-two'").unwrap();
+    tab.click("#bench-open-case").unwrap();
+    tab.wait("onetwo.workbench.sheet?.text.includes('intent')", 20).unwrap();
+    let opened = tab.eval("onetwo.workbench.sheet.text").unwrap();
+
+    tab.click("#bench-learned").unwrap();
+    tab.wait("document.getElementById('bench-told')?.textContent.startsWith('40 plays, 32.5 % to goal; 0 of them')", 20)
+        .unwrap();
+    tab.wait("document.getElementById('bench-told').textContent.includes('beyond the middle')", 5).unwrap();
+    tab.wait("document.getElementById('bench-proposals').textContent.includes('the risk ring fails')", 5)
+        .unwrap();
+    tab.click("[data-take]").unwrap();
+    tab.wait("onetwo.workbench.sheet.text.includes('scope = [330, 220]')", 20).unwrap();
+    tab.wait("document.querySelector('[data-take]').disabled", 20).unwrap();
+    tab.click("#bench-undo").unwrap();
+    tab.wait("!onetwo.workbench.sheet.text.includes('scope = [330, 220]')", 20).unwrap();
+    assert_eq!(tab.eval("onetwo.workbench.sheet.text").unwrap(), opened);
+    no_errors(&mut tab);
+    let _ = fs::remove_dir_all(beside);
+}
