@@ -22,11 +22,11 @@ pub(super) fn of_case(library: Option<&Path>, files: &Files, case: &str) -> Resu
     }
     let variant = Variant::new(files.clone()).map_err(|_| "the library is refused: correct it first")?;
     let told = evidence.map(|path| {
-        let evidence = Evidence::from_jsonl(&read(&path)?).map_err(|what| unreadable(&path, what))?;
+        let evidence = Evidence::from_jsonl(&read(&path)?).map_err(|what| unreadable(&path, &what))?;
         Ok::<_, String>(CaseEvidence::of(&evidence, &variant, case))
     });
     let proposals = report.map(|path| {
-        proposals_in(&read(&path)?, files, case).map_err(|error| unreadable(&path, error.to_string()))
+        proposals_in(&read(&path)?, files, case).map_err(|error| unreadable(&path, &error.to_string()))
     });
     Ok(json!({ "told": told.transpose()?, "proposals": proposals.transpose()? }))
 }
@@ -37,11 +37,11 @@ fn found(directory: &Path, name: &str) -> Option<PathBuf> {
 }
 
 fn read(path: &Path) -> Result<String, String> {
-    foreign::read_text(path, LEN_MAX).map_err(|error| unreadable(path, error.to_string()))
+    foreign::read_text(path, LEN_MAX).map_err(|error| unreadable(path, &error.to_string()))
 }
 
 /// Viewers see the file's name, not where it lies.
-fn unreadable(path: &Path, what: String) -> String {
+fn unreadable(path: &Path, what: &str) -> String {
     let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
     format!("{name}: {what}")
 }
