@@ -1,10 +1,10 @@
-//! `aim`: situations like those of play, as many as a test of a change needs.
+//! `aim`: situations like those of play, as many as a comparison of changes needs.
 //!
-//! An edit of one case changes few trials of all starts, and a test on all starts learns next to nothing
-//! from the others. So a change is tried where it matters: in situations that are drawn from the decisions
-//! of recorded play, each moved a little (a smoothed bootstrap), and kept where the change would be played
-//! or retrieval would answer otherwise. Drawing and looking up cost no trial. The distribution is fixed
-//! before the first outcome of a test is seen. mm.
+//! An edit of one case changes few trials of all starts, and most of them late. So proposals are compared
+//! where they matter: in situations that are drawn from the decisions of recorded play, each moved a little
+//! (a smoothed bootstrap), and kept where the change would be played or retrieval would answer otherwise.
+//! Drawing and looking up cost no trial. Robots and ball stand at first, so this chooses and does not
+//! decide: tests play whole trials. mm.
 
 use hil_sim::{Fnv, Stream};
 use rayon::prelude::*;
@@ -21,8 +21,6 @@ pub(crate) enum Purpose {
     Search,
     /// Screening of a round's proposals.
     Screening,
-    /// The sequential test of a proposal.
-    Confirmation,
 }
 
 /// Situations of a round, with what retrieval answers in each.
@@ -59,8 +57,8 @@ impl Ground {
         ground
     }
 
-    /// Looks all situations up in a library that has changed.
-    pub(crate) fn answer(&mut self, current: &Variant) {
+    /// Looks all situations up.
+    fn answer(&mut self, current: &Variant) {
         let base = current.base();
         let answer = |occasion: &Occasion| current.answer(&base, &occasion.situation.problem());
         self.answers = self.occasions.par_iter().map(answer).collect();
@@ -158,7 +156,7 @@ mod tests {
         let mean = ground.occasions.iter().map(|one| f64::from(one.situation.ball[0])).sum::<f64>();
         // 150 mm over the root of 400, four times.
         assert!((mean / ground.occasions.len() as f64 - 500.0).abs() < 30.0);
-        let other = Ground::draw(&[played()], Purpose::Confirmation, 400, 7, 1, &variant());
+        let other = Ground::draw(&[played()], Purpose::Search, 400, 7, 1, &variant());
         assert!(other.occasions[..50].iter().zip(&ground.occasions).all(|(a, b)| a.situation != b.situation));
     }
 

@@ -53,6 +53,16 @@ impl Wager {
         self.pairs += pairs;
     }
 
+    /// Adds the pairs of another bettor with the same stakes: what was won is bet on with them.
+    pub fn merge(&mut self, other: &Self) {
+        for (capital, factor) in self.capital.iter_mut().zip(other.capital) {
+            *capital *= factor;
+        }
+        self.raised += other.raised;
+        self.lowered += other.lowered;
+        self.pairs += other.pairs;
+    }
+
     /// The e-value: the bettor's capital, 1 at the start.
     pub fn e_value(&self) -> f64 {
         self.capital.iter().sum::<f64>() / STAKES.len() as f64
@@ -71,14 +81,10 @@ impl Wager {
     }
 }
 
-/// The e-value that test number `test`, from 1, must reach: `rate` over all tests, `planned` of which are made
-/// at most, with `accepted` accepted before it.
-///
-/// The weight of a test falls as 1/`test`, and the weights of all planned ones add up to 1: each round tests
-/// its most promising proposals first, and every accepted one makes room for others.
-pub fn threshold(rate: f64, planned: u32, accepted: u32, test: u32) -> f64 {
-    let whole: f64 = (1..=planned.max(1)).map(|n| 1.0 / f64::from(n)).sum();
-    f64::from(test.max(1)) * whole / (rate * f64::from(accepted + 1))
+/// The e-value that a test must reach: `rate` over all tests, `planned` of which are made at most, with
+/// `accepted` before it.
+pub fn threshold(rate: f64, planned: u32, accepted: u32) -> f64 {
+    f64::from(planned.max(1)) / (rate * f64::from(accepted + 1))
 }
 
 #[cfg(test)]
@@ -114,17 +120,26 @@ mod tests {
     }
 
     #[test]
+    fn two_halves_of_a_test_are_the_same_as_the_whole() {
+        let mut chance = Stream::new(3, "betting");
+        let (mut whole, mut halves) = (Wager::default(), [Wager::default(); 2]);
+        for number in 0..200 {
+            let pair = (chance.chance(0.5), chance.chance(0.4));
+            whole.add(pair.0, pair.1);
+            halves[number / 100].add(pair.0, pair.1);
+        }
+        let [mut first, second] = halves;
+        first.merge(&second);
+        assert!((first.e_value() / whole.e_value() - 1.0).abs() < 1e-9);
+        assert_eq!((first.raised, first.lowered, first.pairs), (whole.raised, whole.lowered, whole.pairs));
+    }
+
+    #[test]
     fn one_pair_pays_the_mean_of_the_stakes() {
         let mut wager = Wager::default();
         wager.add(true, false);
         assert!((wager.e_value() - 1.24).abs() < 1e-12);
-    }
-
-    #[test]
-    fn the_weights_of_all_planned_tests_add_up_to_one() {
-        let weights: f64 = (1..=40).map(|test| 1.0 / (0.1 * threshold(0.1, 40, 0, test))).sum();
-        assert!((weights - 1.0).abs() < 1e-12);
-        // By hand: 1 + 1/2 + 1/3 = 11/6; the second of three tests after one accepted.
-        assert!((threshold(0.1, 3, 1, 2) - 2.0 * 11.0 / 6.0 / 0.2).abs() < 1e-12);
+        assert!((threshold(0.1, 60, 0) - 600.0).abs() < 1e-9);
+        assert!((threshold(0.1, 60, 2) - 200.0).abs() < 1e-9);
     }
 }

@@ -2,13 +2,12 @@
 //!
 //! ```text
 //! exploration starts ─► evidence ─► proposals ─► screening (halving) ─► finalists
-//!         │                                          ▲                      │ sequential test
-//!         └─► situations of play, moved a little ────┴──────────────────────┤
-//!                                                                           ▼
+//!         │                                          ▲                      │ fresh starts, sequential test
+//!         └─► situations of play, moved a little ────┘                      ▼
 //! held-out starts ◄── library ◄── accepted ◄── validation starts ◄──── confirmed
 //! ```
-//! Screening chooses and proves nothing: a test plays other situations than those that a proposal was chosen
-//! by. Everything is a function of the files, the settings and the outcomes of trials.
+//! Screening chooses and proves nothing: only whole trials on starts that no proposal was drawn from or
+//! chosen by count in a test. Everything is a function of the files, the settings and the outcomes of trials.
 
 mod judging;
 mod search;
@@ -116,9 +115,8 @@ struct Sizes {
     explore: u32,
     /// Situations that screening draws from.
     screen: u32,
-    /// Situations that a test draws from, and pairs of a test at most.
+    /// Starts of a test, at most.
     confirm: u32,
-    pairs: u32,
     validate: u32,
     held_out: u32,
     /// Proposals a kind that are screened.
@@ -135,8 +133,7 @@ impl Sizes {
         Self {
             explore,
             screen: SCREEN_GROUND,
-            confirm: TEST_GROUND,
-            pairs: (8 * explore).min(TEST_PAIRS),
+            confirm: (8 * explore).min(explore.max(CONFIRM_MAX)),
             validate: explore.max(VALIDATE_MIN.min(8 * explore)),
             held_out: explore,
             proposals: (explore as usize / 100).clamp(4, 10),
@@ -147,10 +144,8 @@ impl Sizes {
 
 /// Situations that are drawn to try proposals in: a change of one in a hundred finds 80.
 const SCREEN_GROUND: u32 = 8192;
-/// Situations that are drawn for a test: the same finds 650.
-const TEST_GROUND: u32 = 65_536;
-/// Most pairs of a test: with a half of them equal, ten points are seen in 600 (`betting`).
-const TEST_PAIRS: u32 = 1536;
+/// Most starts of a test, unless exploration has more: a change of one in eight trials differs in 200 pairs.
+const CONFIRM_MAX: u32 = 4096;
 /// Least number of validation starts where the budget allows for it: fewer show nothing of single kinds of
 /// starts.
 const VALIDATE_MIN: u32 = 1024;
@@ -248,7 +243,7 @@ impl<P: Player> Run<'_, P> {
         if self.settings.dry_run {
             return Ok(current.clone());
         }
-        let next = self.judge(current, &occasions, finalists, round)?;
+        let next = self.judge(current, finalists, round)?;
         for change in &self.changes[before..] {
             let edit = &change.proposal.edit;
             let tried = self.tried.entry((text_hash(current, &edit.case), edit.clone())).or_default();

@@ -55,12 +55,11 @@ pub fn summary(learned: &Learned) -> String {
     }) {
         let _ = writeln!(
             text,
-            "{:>2}  {:<9} {}  {:+.1} points in {:.1} % of the situations, e {:.3e}",
+            "{:>2}  {:<9} {}  {:+.2} points, e {:.3e}",
             change.round,
             verdict(change.verdict),
             change.proposal.edit,
             change.wager.gain(),
-            100.0 * change.share,
             change.wager.e_value()
         );
     }
@@ -187,9 +186,10 @@ fn line_class(line: &str) -> &'static str {
 fn evidence(change: &ChangeRecord) -> String {
     let wager = &change.wager;
     format!(
-        "changes {:.1} % of the situations; {} pairs there: {} raised, {} lowered, {:+.1} points, e {:.3}",
+        "changes {:.1} % of the situations; {} pairs {}: {} raised, {} lowered, {:+.2} points, e {:.3}",
         100.0 * change.share,
         wager.pairs,
+        if change.needed.is_some() { "of all starts" } else { "there" },
         wager.raised,
         wager.lowered,
         wager.gain(),

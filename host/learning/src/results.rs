@@ -40,8 +40,8 @@ pub struct ChangeRecord {
     pub round: u32,
     /// The change.
     pub proposal: Proposal,
-    /// Its pairs, in situations that it changes what is played in: those of the test, or of screening where it
-    /// was not tested.
+    /// Its pairs: whole trials of the test, or situations that it changes what is played in where it was
+    /// screened alone.
     pub wager: Wager,
     /// The share of such situations among those of play.
     pub share: f64,

@@ -40,7 +40,7 @@ pub(crate) struct LearnArgs {
     #[arg(long, default_value_t = 0.1, value_parser = rate)]
     error_rate: f64,
     /// Sequential tests that the error rate is shared among.
-    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, default_value_t = 40, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     tries: u32,
     /// Every n-th unit of trials from the i-th on; all shards run at the same time in one directory.
     #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = shard)]

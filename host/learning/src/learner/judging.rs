@@ -7,7 +7,7 @@ use hil_sim::{Fnv, Stream};
 use rayon::prelude::*;
 
 use super::{Candidate, LearnError, Played, Run};
-use crate::aim::{Ground, Purpose};
+use crate::aim::Ground;
 use crate::betting::{Wager, threshold};
 use crate::drafts::Occasion;
 use crate::edit::Edit;
@@ -123,72 +123,73 @@ impl<P: Player> Run<'_, P> {
         self.settings.shuffle && Stream::new(hash.value(), "coin").chance(0.5)
     }
 
-    /// Tests the finalists, each against the library with those accepted before it.
+    /// Tests the finalists on starts that they share, each against the library with those accepted before it.
     pub(super) fn judge(
         &mut self,
         current: &Variant,
-        occasions: &[Occasion],
         finalists: Vec<Candidate>,
         round: u32,
     ) -> Result<Variant, LearnError> {
         let mut current = current.clone();
-        if finalists.is_empty() {
-            return Ok(current);
-        }
-        let (seed, count) = (self.settings.seed, self.sizes.confirm);
-        let mut ground = Ground::draw(occasions, Purpose::Confirmation, count, seed, round, &current);
+        // Blocks of starts as the present library plays them; more are played when a test needs them.
+        let mut blocks: Vec<Played> = Vec::new();
         let mut validation = None;
-        for finalist in finalists {
+        for mut candidate in finalists {
             if self.tests >= self.settings.tries {
-                self.note(round, &finalist, Verdict::ScreenedOut);
+                self.note(round, &candidate, Verdict::ScreenedOut);
                 continue;
             }
-            let Ok(variant) = current.edited(&finalist.proposal.edit) else {
-                self.note(round, &finalist, Verdict::Superseded);
-                continue;
-            };
-            let mut candidate = Candidate::new(finalist.proposal, variant, &ground);
-            if candidate.touched.len() < SCREENING[0].0 {
+            let Ok(variant) = current.edited(&candidate.proposal.edit) else {
                 self.note(round, &candidate, Verdict::Superseded);
                 continue;
-            }
-            let (needed, confirmed) = self.test(&current, &ground, &mut candidate)?;
-            if !confirmed {
+            };
+            candidate.variant = variant;
+            candidate.wager = Wager::default();
+            let needed = threshold(self.settings.error_rate, self.settings.tries, self.accepted);
+            let mut changed = self.test(&current, &mut candidate, &mut blocks, needed)?;
+            if candidate.wager.e_value() < needed {
                 self.note_test(round, &candidate, needed, Verdict::Unconfirmed, None);
                 continue;
             }
             self.accepted += 1;
             if self.validate(&current, &candidate, needed, round, &mut validation)? {
+                for block in &blocks[changed.len()..] {
+                    changed.push(self.whole_trials(&candidate, block)?.1);
+                }
+                for (block, changed) in blocks.iter_mut().zip(changed) {
+                    for (i, trial) in changed {
+                        block.renew(&candidate.variant, i, trial);
+                    }
+                }
                 current = candidate.variant;
-                ground.answer(&current);
             }
         }
         Ok(current)
     }
 
-    /// The sequential test: the e-value that it needed, and whether it was reached.
+    /// The sequential test; the trials that the candidate changes, by block.
     fn test(
         &mut self,
         current: &Variant,
-        ground: &Ground,
         candidate: &mut Candidate,
-    ) -> Result<(f64, bool), LearnError> {
+        blocks: &mut Vec<Played>,
+        needed: f64,
+    ) -> Result<Vec<Vec<(usize, LearningTrial)>>, LearnError> {
         self.tests += 1;
-        let Self { settings, accepted, tests, .. } = self;
-        let needed = threshold(settings.error_rate, settings.tries, *accepted, *tests);
-        let step = (self.sizes.pairs / LOOKS) as usize;
+        let mut changed = Vec::new();
         for look in 0..LOOKS {
-            let from = look as usize * step;
-            if from >= candidate.touched.len() {
-                break;
+            if blocks.len() == look as usize {
+                blocks.push(self.fresh(current, StartStream::Confirmation, self.sizes.confirm / LOOKS)?);
             }
-            self.try_situations(current, ground, std::slice::from_mut(candidate), from..from + step)?;
+            let ((wager, _), trials) = self.whole_trials(candidate, &blocks[look as usize])?;
+            candidate.wager.merge(&wager);
+            changed.push(trials);
             let hopeless = candidate.wager.z() < HOPELESS_Z + f64::from(look) * HOPELESS_STEP;
             if candidate.wager.e_value() >= needed || hopeless {
                 break;
             }
         }
-        Ok((needed, candidate.wager.e_value() >= needed))
+        Ok(changed)
     }
 
     /// Whether a confirmed change is taken over: it lowers no kind of whole trials, and adds no warning.
