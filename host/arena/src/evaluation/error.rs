@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 use foreign::printable;
 use hil_sim::SimulationError;
 
+use super::difference::{Difference, in_words};
+use super::plan::Shard;
 use crate::game::GameError;
 
 /// Why an evaluation stopped, or could not be merged.
@@ -32,8 +34,10 @@ pub enum EvaluationError {
     Another {
         /// Path of the file.
         file: PathBuf,
-        /// Names of the settings that differ.
-        differences: Vec<&'static str>,
+        /// The file it was to be merged with; none where it was to be continued.
+        merged: Option<PathBuf>,
+        /// The settings that differ, with the file's value first.
+        differences: Vec<Difference>,
     },
     /// Another process writes to the file.
     InUse(PathBuf),
@@ -54,6 +58,8 @@ pub enum EvaluationError {
         of: usize,
         /// Number of the first missing one.
         first: usize,
+        /// The shards that lack them; empty where the files' names do not tell.
+        shards: Vec<LackingShard>,
     },
     /// A trial could not be played.
     Trial {
@@ -73,6 +79,24 @@ pub enum EvaluationError {
     Csv(csv::Error),
     /// The caller stopped it; finished trials are kept.
     Stopped,
+}
+
+/// A shard that is not played to its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LackingShard {
+    /// The shard.
+    pub shard: Shard,
+    /// Number of its missing trials.
+    pub trials: usize,
+    /// Number of its planned trials.
+    pub of: usize,
+}
+
+impl fmt::Display for LackingShard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { shard, trials, of } = self;
+        write!(f, "--shard {shard}: {} lacks {trials} of {of} trials", shard.file_name())
+    }
 }
 
 impl EvaluationError {
@@ -106,13 +130,22 @@ impl fmt::Display for EvaluationError {
                     printable_path(file)
                 )
             }
-            Self::Another { file, differences } => write!(
-                f,
-                "{}: holds trials of another evaluation (other {}); name an empty directory, start again with \
-                 --fresh, or give the options it was begun with",
-                printable_path(file),
-                differences.join(", ")
-            ),
+            Self::Another { file, merged, differences } => {
+                let (file, differences) = (printable_path(file), in_words(differences));
+                match merged {
+                    Some(other) => write!(
+                        f,
+                        "{file}: is not of the evaluation of {}: {differences}; merge shards of one program, \
+                         library, world and plan: play this one again in an empty directory",
+                        printable_path(other)
+                    ),
+                    None => write!(
+                        f,
+                        "{file}: holds trials of another evaluation: {differences}; name an empty directory, \
+                         start again with --fresh, or give the options it was begun with"
+                    ),
+                }
+            }
             Self::InUse(file) => {
                 write!(f, "{}: another process writes to it; wait for it, or stop it", printable_path(file))
             }
@@ -122,11 +155,14 @@ impl fmt::Display for EvaluationError {
                 f,
                 "trial {trial} is there twice and ended differently: the shards were not played by the same program"
             ),
-            Self::Missing { trials, of, first } => write!(
-                f,
-                "{trials} of {of} trials are missing, the first is {first}; play the shards that lack them again: \
-                 they go on where they stopped"
-            ),
+            Self::Missing { trials, of, first, shards } => {
+                write!(
+                    f,
+                    "{trials} of {of} trials are missing, the first is {first}; play the shards that lack them \
+                     again with the options and the directory of the others: they go on where they stopped"
+                )?;
+                shards.iter().try_for_each(|shard| write!(f, "\n  {shard}"))
+            }
             Self::Trial { trial, error } => write!(f, "trial {trial}: {error}"),
             Self::Match { number, error } => write!(f, "match {number}: {error}"),
             Self::Csv(error) => write!(f, "trials as CSV: {error}"),

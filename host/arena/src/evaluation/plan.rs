@@ -5,6 +5,8 @@
 //! same random numbers. A seed is enough to play a trial again alone: `onetwo trial --scenario S --opponents
 //! O --approach A --seed N`.
 
+use std::fmt;
+
 use brain::Approach;
 use hil_sim::{Configuration, Fnv, Scenario};
 use protocol::Duration;
@@ -209,9 +211,25 @@ impl Shard {
         Self::new(index.parse().ok()?, of.parse().ok()?)
     }
 
+    /// Its place among the parts of its plan, from 0.
+    pub fn index(self) -> usize {
+        self.index - 1
+    }
+
+    /// Number of parts of its plan.
+    pub fn parts(self) -> usize {
+        self.of
+    }
+
     /// The name of its file.
     pub fn file_name(self) -> String {
         format!("trials-{}-of-{}.csv", self.index, self.of)
+    }
+}
+
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.index, self.of)
     }
 }
 

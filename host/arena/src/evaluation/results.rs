@@ -20,11 +20,11 @@ use super::ablation::Effect;
 use super::claims::{Claim, claims};
 use super::comparison::{Comparison, compare, with_paper};
 use super::error::EvaluationError;
+use super::identity::Identity;
 use super::judge::{JudgementLine, judge};
 use super::paper::paper;
 use super::row::{TrialRow, csv_hash, to_csv};
 use super::tables::{TableRow, tables};
-use super::trial_store::Identity;
 use super::uses::{CaseUse, uses, uses_to_csv};
 use crate::trial::APPROACHES;
 

@@ -7,18 +7,19 @@
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use casebase::CaseBase;
 use hil_sim::{NativeBackend, Parameters};
 use rayon::prelude::*;
 
-use super::error::EvaluationError;
+use super::error::{EvaluationError, LackingShard};
+use super::identity::Identity;
 use super::plan::{EvaluationPlan, Planned, Shard};
 use super::row::TrialRow;
 use super::setup::Setup;
-use super::trial_store::{Entry as Row, Identity, Kept, TrialStore};
+use super::trial_store::{Entry as Row, Kept, TrialStore};
 use crate::names::CaseNames;
 use crate::trial::{TrialConfig, positioning_label, run};
 
@@ -146,6 +147,7 @@ pub(crate) fn play_open<R: Row>(
 pub fn merge<R: Row>(files: Vec<Kept<R>>) -> Result<(R::Identity, Vec<R>), EvaluationError> {
     let mut files = files.into_iter();
     let first = files.next().ok_or(EvaluationError::Nothing)?;
+    let mut names = vec![first.file.clone()];
     let mut rows = BTreeMap::new();
     for row in first.rows {
         insert(&mut rows, row)?;
@@ -153,18 +155,41 @@ pub fn merge<R: Row>(files: Vec<Kept<R>>) -> Result<(R::Identity, Vec<R>), Evalu
     for file in files {
         let differences = R::differences(&file.identity, &first.identity);
         if !differences.is_empty() {
-            return Err(EvaluationError::Another { file: file.file, differences });
+            return Err(EvaluationError::Another { file: file.file, merged: Some(first.file), differences });
         }
+        names.push(file.file);
         for row in file.rows {
             insert(&mut rows, row)?;
         }
     }
     let of = R::planned(&first.identity);
-    let missing = || (0..of).filter(|number| !rows.contains_key(number));
-    match missing().next() {
-        Some(first) => Err(EvaluationError::Missing { trials: missing().count(), of, first }),
+    let missing: Vec<_> = (0..of).filter(|number| !rows.contains_key(number)).collect();
+    match missing.first() {
+        Some(&first) => {
+            let shards = lacking(&names, of, &missing);
+            Err(EvaluationError::Missing { trials: missing.len(), of, first, shards })
+        }
         None => Ok((first.identity, rows.into_values().collect())),
     }
+}
+
+/// The shards of a plan of `of` trials that lack some. Where the files are of several partitions, the one
+/// with most files counts.
+fn lacking(files: &[PathBuf], of: usize, missing: &[usize]) -> Vec<LackingShard> {
+    let mut partitions: BTreeMap<usize, usize> = BTreeMap::new();
+    let names = files.iter().filter_map(|file| file.file_name().and_then(|name| name.to_str()));
+    for shard in names.filter_map(Shard::from_file_name) {
+        *partitions.entry(shard.parts()).or_default() += 1;
+    }
+    let Some((&parts, _)) = partitions.iter().max_by_key(|(_, files)| **files) else { return Vec::new() };
+    // No more shards than trials can lack some.
+    let shards = (1..=parts.min(of)).filter_map(|index| Shard::new(index, parts));
+    let lacking = shards.map(|shard| LackingShard {
+        shard,
+        trials: missing.iter().filter(|number| shard.has(**number)).count(),
+        of: (0..of).filter(|number| shard.has(*number)).count(),
+    });
+    lacking.filter(|lacking| lacking.trials > 0).collect()
 }
 
 fn insert<R: Row>(rows: &mut BTreeMap<usize, R>, row: R) -> Result<(), EvaluationError> {

@@ -205,9 +205,9 @@ mod tests {
     use hil_sim::TrialOutcome;
 
     use super::*;
+    use crate::evaluation::identity::tests::identity;
     use crate::evaluation::row::TrialRow;
     use crate::evaluation::row::tests::row;
-    use crate::evaluation::trial_store::tests::identity;
     use brain::Approach;
 
     #[test]

@@ -5,17 +5,16 @@
 //! torn by the interrupt: it is cut off, and its trial played again. Lines stand in the order in which trials
 //! ended; the reader sorts.
 
-use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use hil_sim::Parameters;
+use serde::Serialize;
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
 
+use super::difference::Difference;
 use super::error::EvaluationError;
-use super::plan::{EvaluationCell, EvaluationPlan};
+use super::identity::Identity;
 use super::row::{TrialRow, to_csv, to_line};
 
 /// A row of such a file: one of a plan's trials, when it is over.
@@ -30,8 +29,8 @@ pub trait Entry: Clone + PartialEq + Serialize + DeserializeOwned + Send {
     fn is_planned(&self, identity: &Self::Identity) -> bool;
     /// Number of planned rows.
     fn planned(identity: &Self::Identity) -> usize;
-    /// Names of the settings in which two evaluations differ; empty between equals.
-    fn differences(own: &Self::Identity, other: &Self::Identity) -> Vec<&'static str>;
+    /// The settings in which two evaluations differ; empty between equals.
+    fn differences(own: &Self::Identity, other: &Self::Identity) -> Vec<Difference>;
 }
 
 impl Entry for TrialRow {
@@ -46,70 +45,8 @@ impl Entry for TrialRow {
     fn planned(identity: &Identity) -> usize {
         identity.plan.len()
     }
-    fn differences(own: &Identity, other: &Identity) -> Vec<&'static str> {
+    fn differences(own: &Identity, other: &Identity) -> Vec<Difference> {
         own.differences(other)
-    }
-}
-
-/// Identity of the evaluation of a file: all settings that its trials depend on. Only equals are resumed or
-/// merged.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Identity {
-    /// Version and commit of the program.
-    pub program: String,
-    /// The case library: a league's name, or a directory.
-    pub library: String,
-    /// Hash of the case base, 8 hexadecimal digits.
-    pub case_base: String,
-    /// Its authored cases by name, in the order of ids.
-    pub cases: Vec<String>,
-    /// Whether cases are mirrored.
-    pub symmetry: bool,
-    /// Whether cases contain opponents.
-    pub case_opponents: bool,
-    /// The named settings of retrieval, name and value.
-    pub settings: BTreeMap<String, String>,
-    /// When a case's actions start: `dependent` or `independent`.
-    pub positioning: String,
-    /// How many of the two robots may retrieve.
-    pub retrievers: usize,
-    /// Share of packets that a receiver does not get.
-    pub loss: f32,
-    /// Whether opponents stop too where robots pause after a cycle.
-    pub opponents_pause: bool,
-    /// Hash of the world: its data and the version of its model, 8 hexadecimal digits.
-    pub world: String,
-    /// Parameters of the simulated world.
-    pub parameters: Parameters,
-    /// All trials of the evaluation, of all shards.
-    pub plan: EvaluationPlan,
-}
-
-impl Identity {
-    /// Names of the settings in which the other differs; empty between equals.
-    pub fn differences(&self, other: &Self) -> Vec<&'static str> {
-        let Self { program, library: _, case_base, cases: _, symmetry, case_opponents, .. } = self;
-        let Self { settings, positioning, retrievers, loss, parameters, plan, .. } = self;
-        let world = parameters == &other.parameters && self.world == other.world;
-        let cells = |plan: &EvaluationPlan| {
-            plan.cells.iter().map(|cell| EvaluationCell { trials: 0, ..*cell }).collect::<Vec<_>>()
-        };
-        let library = (case_base, symmetry, case_opponents)
-            != (&other.case_base, &other.symmetry, &other.case_opponents);
-        let pairs = [
-            (*program != other.program, "program"),
-            (library, "cases"),
-            (*settings != other.settings, "settings"),
-            (*positioning != other.positioning, "positioning"),
-            (*retrievers != other.retrievers, "retrievers"),
-            (*loss != other.loss, "loss"),
-            (self.opponents_pause != other.opponents_pause, "pause of the opponents"),
-            (!world, "parameters of the world"),
-            (plan.seed != other.plan.seed, "seed"),
-            (cells(plan) != cells(&other.plan), "scenarios, opponents or approaches"),
-            (cells(plan) == cells(&other.plan) && plan.cells != other.plan.cells, "number of trials"),
-        ];
-        pairs.into_iter().filter_map(|(differs, what)| differs.then_some(what)).collect()
     }
 }
 
@@ -209,7 +146,7 @@ impl TrialStore {
         };
         let differences = R::differences(&kept.identity, identity);
         if !differences.is_empty() {
-            return Err(EvaluationError::Another { file: path.to_owned(), differences });
+            return Err(EvaluationError::Another { file: path.to_owned(), merged: None, differences });
         }
         trial_store.cut(kept.whole)?;
         Ok((trial_store, kept.rows))
@@ -238,31 +175,13 @@ impl TrialStore {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
     use super::*;
+    use crate::evaluation::EvaluationPlan;
+    use crate::evaluation::identity::tests::identity;
 
     fn text(identity: &Identity) -> String {
         format!("{}{}\n", TrialRow::MARK, serde_json::to_string(identity).unwrap())
-    }
-
-    /// The identity of an evaluation, for tests.
-    pub(in super::super) fn identity() -> Identity {
-        Identity {
-            program: "test".to_owned(),
-            library: "four-legged".to_owned(),
-            case_base: "00000000".to_owned(),
-            cases: vec!["back/clear".to_owned()],
-            symmetry: true,
-            case_opponents: true,
-            settings: BTreeMap::from([("thr_c".to_owned(), "1500".to_owned())]),
-            positioning: "dependent".to_owned(),
-            retrievers: 2,
-            loss: 0.1,
-            opponents_pause: true,
-            world: hil_sim::world_hash(),
-            parameters: Parameters::four_legged().clone(),
-            plan: EvaluationPlan::paper(1).with_trials(1),
-        }
     }
 
     fn refused(text: &str) -> String {
@@ -275,22 +194,6 @@ pub(super) mod tests {
         for torn in ["", "# one", head.trim_end(), &head, &format!("{head}trial,pro")] {
             assert_eq!(parse::<TrialRow>(Path::new("x.csv"), torn.as_bytes()).unwrap(), None, "{torn}");
         }
-    }
-
-    #[test]
-    fn an_identity_is_read_as_it_was_written_and_says_in_what_another_differs() {
-        let own = identity();
-        let json = serde_json::to_string(&own).unwrap();
-        let read: Identity = serde_json::from_str(&json).unwrap();
-        assert_eq!(read, own);
-        assert_eq!(own.differences(&read), Vec::<&str>::new());
-        let other = Identity { retrievers: 1, plan: own.plan.clone().with_trials(2), ..identity() };
-        assert_eq!(own.differences(&other), ["retrievers", "number of trials"]);
-        let other = Identity { case_base: "1".to_owned(), plan: EvaluationPlan::judge(3), ..identity() };
-        assert_eq!(own.differences(&other), ["cases", "seed", "scenarios, opponents or approaches"]);
-        let mut heavier = identity();
-        heavier.parameters.ball.deceleration += 0.01;
-        assert_eq!(own.differences(&heavier), ["parameters of the world"]);
     }
 
     #[test]

@@ -24,6 +24,7 @@ use std::path::Path;
 
 use casebase::{CaseBase, RetrievalSettings};
 use hil_sim::NativeBackend;
+use hil_sim::small_size::worlds::WorldPlan;
 use host::shell::StrategyProcess;
 use rules::Colour;
 use serde::{Deserialize, Serialize};
@@ -40,7 +41,7 @@ pub use plan::{MatchPlan, Pairing, Planned};
 pub use plot::plot;
 pub use row::MatchRow;
 
-use crate::evaluation::{EvaluationError, RunProgress, Shard, play_open};
+use crate::evaluation::{Difference, EvaluationError, RunProgress, Shard, play_open};
 use crate::game::{GameConfig, NoWatcher, play};
 use crate::names::CaseNames;
 
@@ -73,22 +74,31 @@ pub struct MatchIdentity {
 }
 
 impl MatchIdentity {
-    /// Names of the settings in which the other differs; empty between equals.
-    pub fn differences(&self, other: &Self) -> Vec<&'static str> {
+    /// The settings in which the other differs; empty between equals.
+    pub fn differences(&self, other: &Self) -> Vec<Difference> {
         let (own, theirs) = (&self.plan, &other.plan);
-        let pairs = [
-            (self.program != other.program, "program"),
-            (self.case_base != other.case_base, "cases"),
-            (self.settings != other.settings, "settings"),
-            (own.seed != theirs.seed, "seed"),
-            (own.league != theirs.league, "league"),
-            (own.world != theirs.world, "world"),
-            (own.duration_s.to_bits() != theirs.duration_s.to_bits(), "length of a match"),
-            (own.pairings != theirs.pairings, "teams"),
-            (own.matches != theirs.matches, "number of matches"),
-            (own.strategy != theirs.strategy, "strategy's command"),
+        let shown = |value: &str| value.to_owned();
+        let differences = [
+            Difference::of("program", (self.program.as_str(), other.program.as_str()), shown),
+            Difference::of("cases", (self.case_base.as_str(), other.case_base.as_str()), shown),
+            Difference::of("settings", (&self.settings, &other.settings), |settings| {
+                let pairs: Vec<_> = settings.iter().map(|(name, value)| format!("{name}={value}")).collect();
+                pairs.join(" ")
+            }),
+            Difference::of("seed", (&own.seed, &theirs.seed), u64::to_string),
+            Difference::of("league", (own.league.as_str(), theirs.league.as_str()), shown),
+            Difference::of("world", (&own.world, &theirs.world), WorldPlan::to_string),
+            Difference::of("length of a match", (&own.duration_s, &theirs.duration_s), |s| format!("{s} s")),
+            Difference::of("teams", (&own.pairings, &theirs.pairings), |pairings| {
+                let pairs = pairings.iter().map(|Pairing { own, opponent }| format!("{own}:{opponent}"));
+                pairs.collect::<Vec<_>>().join(" ")
+            }),
+            Difference::of("number of matches", (&own.matches, &theirs.matches), u32::to_string),
+            Difference::of("strategy's command", (&own.strategy, &theirs.strategy), |command| {
+                command.clone().unwrap_or_else(|| "none".to_owned())
+            }),
         ];
-        pairs.into_iter().filter_map(|(differs, what)| differs.then_some(what)).collect()
+        differences.into_iter().flatten().collect()
     }
 }
 

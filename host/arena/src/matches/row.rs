@@ -8,7 +8,7 @@ use super::MatchIdentity;
 use super::match_team::MatchTeam;
 use super::passes;
 use super::plan::Planned;
-use crate::evaluation::Entry;
+use crate::evaluation::{Difference, Entry};
 use crate::game::{GameReport, PerTeam};
 
 /// Identity and measures of one match.
@@ -215,7 +215,7 @@ impl Entry for MatchRow {
     fn planned(identity: &MatchIdentity) -> usize {
         identity.plan.len()
     }
-    fn differences(own: &MatchIdentity, other: &MatchIdentity) -> Vec<&'static str> {
+    fn differences(own: &MatchIdentity, other: &MatchIdentity) -> Vec<Difference> {
         own.differences(other)
     }
 }

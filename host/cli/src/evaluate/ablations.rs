@@ -43,7 +43,7 @@ pub(super) fn run(args: &AblationsArgs) -> Result<ExitCode, Failure> {
     let plan = EvaluationPlan::ablation(args.seed).with_trials(args.trials);
     let wanted = |arm: &&Arm| args.arm.is_empty() || arm.is_default() || args.arm.contains(arm);
     let arms: Vec<Arm> = ARMS.iter().filter(wanted).copied().collect();
-    let (directory, pool) = (args.work.directory()?, args.work.pool()?);
+    let (directory, pool) = (args.work.directory(Shard::WHOLE)?, args.work.pool()?);
     let kept = directory.join("arms");
     work::make(&kept)?;
     let library = args.library.directory.library.as_ref();

@@ -95,7 +95,7 @@ pub(super) fn run(args: &MatchesArgs) -> Result<ExitCode, Failure> {
             kept.extend(shards::<MatchRow>(directory)?);
         }
         let (identity, rows) = merge(kept)?;
-        let directory = args.work.directory()?;
+        let directory = args.work.directory(args.shard)?;
         return args.finish(&Made::new(&identity, &rows)?, directory);
     }
     let library_handle = cases(&args.directory, args.league)?;
@@ -106,7 +106,7 @@ pub(super) fn run(args: &MatchesArgs) -> Result<ExitCode, Failure> {
         program: VERSION.to_owned(),
         names: CaseNames::new(library_handle.as_ref().map_or_else(Vec::new, LibraryHandle::names)),
     };
-    let directory = args.work.directory()?;
+    let directory = args.work.directory(args.shard)?;
     let file = directory.join(args.shard.file_name());
     let pool = args.work.pool()?;
     let rows =

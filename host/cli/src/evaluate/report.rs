@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use arena::evaluation::{Identity, Results, Setup, compare, merge, paper};
+use arena::evaluation::{Identity, Results, Setup, compare, in_words, merge, paper};
 use brain::{Approach, Positioning};
 use casebase::RetrievalSettings;
 use clap::Args;
@@ -192,8 +192,8 @@ fn maps(identity: &Identity, trials: u32) -> Result<Vec<Map>, Failure> {
     if differences.is_empty() {
         return Map::of(&evaluation, trials).map_err(Failure::Trial);
     }
-    let (what, program) = (differences.join(", "), &identity.program);
-    note!("no maps: {program} played these trials, this is {VERSION}; what differs: {what}");
+    let (what, program) = (in_words(&differences), &identity.program);
+    note!("no maps: {program} played these trials, this is {VERSION}; what differs here: {what}");
     Ok(Vec::new())
 }
 

@@ -31,7 +31,7 @@ pub(super) struct WorkArgs {
     /// The directory that everything is written to; the same command continues there after an interrupt.
     #[arg(short, long, value_name = "DIR", default_value = "evaluation")]
     out: PathBuf,
-    /// Start again: the trials stored in the directory are removed.
+    /// Start again: the trials stored in the directory are removed, of a shard its own.
     #[arg(long)]
     fresh: bool,
 }
@@ -43,15 +43,17 @@ impl WorkArgs {
         pool.build().map_err(Failure::Threads)
     }
 
-    /// The directory, created if missing; without earlier trials if `fresh` is set.
-    pub(super) fn directory(&self) -> Result<&Path, Failure> {
+    /// The directory, created if missing; without earlier trials of that shard if `fresh` is set, and without
+    /// those of any shard if it is the whole plan.
+    pub(super) fn directory(&self, shard: Shard) -> Result<&Path, Failure> {
         make(&self.out)?;
         if self.fresh {
             let failed = |error| EvaluationError::File { file: self.out.clone(), error };
             for entry in std::fs::read_dir(&self.out).map_err(failed)? {
                 let entry = entry.map_err(failed)?;
-                let of_shard = entry.file_name().to_str().is_some_and(|n| Shard::from_file_name(n).is_some());
-                if of_shard {
+                let of_shard = entry.file_name().to_str().and_then(Shard::from_file_name);
+                // Other shards may be played by other processes at this moment.
+                if of_shard.is_some_and(|other| shard == Shard::WHOLE || other == shard) {
                     forget(&entry.path())?;
                 }
             }
@@ -129,7 +131,7 @@ pub(super) fn run(
     let setup = setup_args.choose(ROBOTS)?;
     let library_handle = setup_args.open(&setup)?;
     let evaluation = evaluation(plan, setup, &library_handle, setup_args.library_label());
-    let directory = work.directory()?;
+    let directory = work.directory(shard)?;
     let file = directory.join(shard.file_name());
     let pool = work.pool()?;
     let rows = play(&evaluation, shard, &file, &pool, "playing")?;

@@ -100,7 +100,10 @@ fn jobs_shards_and_a_kill_change_no_byte() {
     assert!(reported.contains("onetwo evaluate merge"), "{reported}");
     run(&["--shard", "3/3", "--out", text(&here)]);
     let lacking = refused(&["evaluate", "merge", text(&here), "--out", text(&merged)], 1);
-    assert!(lacking.contains("trials are missing"), "{lacking}");
+    assert!(lacking.contains("12 of 36 trials are missing"), "{lacking}");
+    assert!(lacking.contains("\n  --shard 2/3: trials-2-of-3.csv lacks 12 of 12 trials"), "{lacking}");
+    // A shard that starts again keeps the others' trials.
+    run(&["--shard", "3/3", "--fresh", "--out", text(&here)]);
     run(&["--shard", "2/3", "--out", text(&there)]);
     stdout_of(&["evaluate", "merge", text(&here), text(&there), "--out", text(&merged)]);
     assert_eq!((hash(&merged), fs::read(merged.join("trials.csv")).ok()), (expected.clone(), Some(bytes)));
@@ -218,7 +221,8 @@ fn what_cannot_be_done_is_reported_with_its_hint() {
     };
     stdout_of(&short("1", "0"));
     let error = refused(&short("2", "0.1"), 1);
-    assert!(error.contains("loss, seed") && error.contains("trials-1-of-1.csv"), "{error}");
+    assert!(error.contains("loss 0, not 0.1; seed 1, not 2;"), "{error}");
+    assert!(error.contains("trials-1-of-1.csv: holds trials of another evaluation"), "{error}");
     assert!(error.contains("--fresh"), "{error}");
     stdout_of(&[&short("2", "0.1")[..], &["--fresh"]].concat());
     assert_eq!(json(&out.join("run.json"))["plan"]["seed"], 2);

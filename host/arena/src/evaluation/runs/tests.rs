@@ -85,6 +85,7 @@ fn threads_shards_and_interrupts_change_no_byte() {
     assert_eq!((hash(&merged), identity), (expected.clone(), evaluation().identity()));
     let lacking = merge(files[..2].to_vec()).unwrap_err().to_string();
     assert!(lacking.starts_with("2 of 6 trials are missing, the first is 2;"), "{lacking}");
+    assert!(lacking.ends_with("\n  --shard 3/3: trials-3-of-3.csv lacks 2 of 2 trials"), "{lacking}");
 
     // Stopped after two trials, killed in the middle of a line, continued.
     let torn = Directory::new("torn");
@@ -125,6 +126,14 @@ fn another_evaluation_is_not_mixed_in() {
     assert!(matches!(refused, Err(EvaluationError::Another { .. })), "{refused:?}");
 
     let kept = read::<TrialRow>(&file).unwrap().unwrap();
+    let mut elsewhere = kept.clone();
+    elsewhere.file = directory.0.join("trials-2-of-2.csv");
+    elsewhere.identity.case_base = "12345678".to_owned();
+    let hash = &kept.identity.case_base;
+    let refused = merge(vec![kept.clone(), elsewhere]).unwrap_err().to_string();
+    assert!(refused.contains("trials-2-of-2.csv: is not of the evaluation of "), "{refused}");
+    assert!(refused.contains(&format!("cases 12345678, not {hash}; merge")), "{refused}");
+
     let mut unlike = kept.clone();
     unlike.rows[0].time_s += 1.0;
     assert!(matches!(merge(vec![kept.clone(), kept.clone()]), Ok((_, rows)) if rows == kept.rows));
