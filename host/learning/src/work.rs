@@ -6,6 +6,7 @@ use std::fmt;
 
 use arena::TrialConfig;
 use brain::Approach;
+use foreign::printable;
 use geometry::{Angle, Field, Point, Pose};
 use hil_sim::{Configuration, Fnv, Layout, OpponentRole, Placed, Scenario, SimulationError};
 use serde::{Deserialize, Serialize};
@@ -65,7 +66,21 @@ pub enum PlayError {
     /// The journal cannot be read or written.
     Journal(std::io::Error),
     /// The journal is of another run: other settings, library or world.
-    OtherRun(String),
+    OtherRun {
+        /// The journal.
+        file: String,
+        /// What differs, with the journal's value first.
+        differences: String,
+    },
+    /// A line of a journal is no unit.
+    Damaged {
+        /// The journal.
+        file: String,
+        /// Where the line begins, bytes.
+        at: u64,
+        /// The error in it.
+        what: String,
+    },
     /// Stopped by hand; what is finished is kept.
     Stopped,
 }
@@ -77,9 +92,15 @@ impl fmt::Display for PlayError {
             Self::Journal(error) => {
                 write!(f, "the journal of trials cannot be kept: {error}; make the output directory writable")
             }
-            Self::OtherRun(file) => write!(
+            Self::OtherRun { file, differences } => {
+                let (file, differences) = (printable(file), printable(differences));
+                write!(f, "{file} is of another run: {differences}; take another --out")
+            }
+            Self::Damaged { file, at, what } => write!(
                 f,
-                "{file} is of another run (other seed, settings, library, world or program); take another --out"
+                "{}: the line at byte {at} is no unit of trials: {}; remove the file, its units are played again",
+                printable(file),
+                printable(what)
             ),
             Self::Stopped => f.write_str("stopped; the same command goes on from here"),
         }

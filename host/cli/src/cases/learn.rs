@@ -42,7 +42,8 @@ pub(crate) struct LearnArgs {
     /// Sequential tests that the error rate is shared among.
     #[arg(long, default_value_t = 40, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     tries: u32,
-    /// Every n-th unit of trials from the i-th on; all shards run at the same time in one directory.
+    /// Every n-th unit of trials from the i-th on; shards run at the same time in one directory, and play
+    /// what an absent one lacks. Without it, what all shards have played is read and the rest is played.
     #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = shard)]
     shard: Shard,
     /// Threads; the number of cores by default.
