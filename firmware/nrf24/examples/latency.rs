@@ -18,6 +18,7 @@ fn main() {
                 let what = match kind {
                     Kind::Part => "part of a snapshot",
                     Kind::Command => "command",
+                    Kind::Welcome => "welcome",
                     Kind::Beacon => "beacon to the base",
                     Kind::Telemetry => "telemetry",
                     Kind::Relayed => "beacon passed on",

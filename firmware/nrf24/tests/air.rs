@@ -45,6 +45,18 @@ fn without_loss_a_team_has_room_at_100_hz_on_a_channel_of_2_megabit() {
 }
 
 #[test]
+fn at_1_megabit_every_command_and_welcome_arrives_however_few_snapshots_there_are() {
+    for hertz in [100, 60, 30] {
+        let plan = Plan { period: 1_000_000 / hertz, ..Plan::one_team(Rate::Mbps1, Faults::default()) };
+        let outcome = run(&plan);
+        for kind in [Kind::Command, Kind::Welcome] {
+            let tally = &outcome.tallies[&kind];
+            assert!(tally.expected > 500 && tally.share() > 0.995, "{hertz} Hz, {kind:?}: {}", tally.share());
+        }
+    }
+}
+
+#[test]
 fn arithmetic_and_model_agree_on_what_a_team_takes_of_the_air() {
     for (rate, hertz) in [(Rate::Mbps1, 60), (Rate::Mbps1, 90), (Rate::Mbps2, 100)] {
         let plan = Plan { period: 1_000_000 / hertz, ..Plan::one_team(rate, Faults::default()) };

@@ -46,6 +46,7 @@ const TELEMETRY: usize = 59;
 pub(crate) enum Kind {
     Part,
     Command,
+    Welcome,
     Beacon,
     Telemetry,
     Relayed,
@@ -246,7 +247,7 @@ fn traffic(plan: &Plan, team: &mut Team, now: u64, offset: u64, counted: bool, o
     if at % 100_000 < STEP && now >= offset {
         for robot in 0..ROBOTS {
             let frame = team.frame(16, &[2, robot], WELCOME);
-            down.push((frame, Kind::Command, 1));
+            down.push((frame, Kind::Welcome, 1));
         }
     }
     let due: Vec<_> = team.relay.extract_if(.., |(due, _)| *due <= now).map(|(_, frame)| frame).collect();
