@@ -6,14 +6,18 @@
 //! [`host_clock`]: the age of a frame of the host), [`serial`] puts it on a line; [`team`] has the messages
 //! between robots, [`mod@host`] those between host and robots, [`decision`] what a coordinator decided on;
 //! [`robot_io`] is what a body gives its brain and takes from it; [`lockstep`] carries the latter between
-//! simulator and computer, [`provision`] is a robot's identity in its flash, [`slot`] is where a
-//! computer finds a case table that was not built into it. The bytes are written down in `protocol/SPEC.md`,
-//! and tests hold the code to them.
+//! simulator and computer, [`provision`] is a robot's identity in its flash and [`network_page`] its place in
+//! an IP network, [`slot`] is where a computer finds a case table that was not built into it, [`journal`]
+//! keeps what a brain took in and gave out. The bytes are written down in `protocol/SPEC.md`, and tests hold
+//! the code to them.
 //!
 //! **Invariants.** No I/O, no clock, no allocation; no input from outside can panic.
 #![cfg_attr(doctest, doc = include_str!("../README.md"))]
 #![no_std]
 #![forbid(unsafe_code)]
+
+#[cfg(test)]
+extern crate std;
 
 pub mod decision;
 pub mod frame;
@@ -21,9 +25,11 @@ pub mod host;
 pub mod host_clock;
 pub mod host_link;
 pub mod ids;
+pub mod journal;
 pub mod key;
 pub mod link;
 pub mod lockstep;
+pub mod network_page;
 pub mod peer;
 pub mod provision;
 pub mod quantized;

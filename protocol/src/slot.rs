@@ -15,6 +15,13 @@ pub const PAGE_ADDRESS: usize = 0x002f_f000;
 /// Address of the value that requests a fault on the emulated board.
 pub const TRIAL_ADDRESS: usize = 0x002f_e000;
 
+/// Address of the page with the robot's place in an IP network ([`crate::network_page`]).
+pub const NETWORK_ADDRESS: usize = 0x002f_d000;
+/// The emulated board's second memory, which takes a robot's journal ([`crate::journal`]), and its bytes.
+pub const JOURNAL_ADDRESS: usize = 0x2100_0000;
+/// Bytes of that memory.
+pub const JOURNAL_LEN: usize = 0x0100_0000;
+
 /// The header of a table of this many bytes; `None` if it does not fit.
 pub fn header(table_len: usize) -> Option<[u8; HEADER_LEN]> {
     if table_len > LEN - HEADER_LEN {

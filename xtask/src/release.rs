@@ -19,6 +19,7 @@ pub(crate) fn build(context: &Context, names: &[String]) -> Result<(), Failure> 
     let pages = manuals(context, &out)?;
     let images: Vec<PathBuf> = Program::images()
         .into_iter()
+        .chain([Program::Udp])
         .map(|program| firmware_build::build_program(context.root(), program).map_err(Failure::Image))
         .collect::<Result<_, _>>()?;
     for target in chosen {

@@ -106,7 +106,7 @@ fn qemu(context: &Context) -> Result<(), Failure> {
     images::check(context)?;
     firmware_build::ensure_qemu(Install::SystemWide).map_err(Failure::Qemu)?;
     emulate::on_target(context, &[])?;
-    let line = "test --release --no-fail-fast --features match-tests/qemu --test qemu_*";
+    let line = "test --release --no-fail-fast --features match-tests/qemu,onetwo/qemu --test qemu_*";
     run(&mut context.cargo(line))
 }
 

@@ -25,6 +25,8 @@ pub struct Board {
 pub struct BoardFirmware {
     /// Name of the binary.
     pub image: String,
+    /// Names of its other programs, within the same limits: another radio, a base station.
+    pub more: Vec<String>,
     /// Largest size of the image in flash, bytes.
     pub flash: u64,
     /// Largest size of RAM taken before the program starts, bytes.
@@ -62,6 +64,7 @@ impl Board {
             None => None,
             Some(_) => Some(BoardFirmware {
                 image: text(board, "image")?,
+                more: names(board.get("more")).ok_or_else(|| wrong("`more` is no list of names".into()))?,
                 flash: number("flash")?.into(),
                 ram: number("ram")?.into(),
                 page: number("page")?,
@@ -77,6 +80,12 @@ impl Board {
     }
 }
 
+/// A list of texts; an empty one where there is none.
+fn names(list: Option<&toml::Value>) -> Option<Vec<String>> {
+    let Some(list) = list else { return Some(Vec::new()) };
+    list.as_array()?.iter().map(|name| name.as_str().map(str::to_owned)).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -90,6 +99,9 @@ mod tests {
         assert_eq!((board.name.as_str(), board.package.as_str()), ("x", "board-x"));
         let firmware = board.firmware.unwrap();
         assert_eq!((firmware.flash, firmware.ram, firmware.page), (1024, 512, 0x0800_0000));
+        assert!(firmware.more.is_empty());
+        let more = Board::parse("x", &format!("{REAL}more = [\"onetwo-x-base\"]\n")).unwrap();
+        assert_eq!(more.firmware.unwrap().more, ["onetwo-x-base"]);
     }
 
     #[test]
@@ -98,6 +110,7 @@ mod tests {
             ("chip = \"X\"", "", "`chip`"),
             ("target = \"t\"", "target = 5", "`target`"),
             ("flash = 1024", "flash = -1", "`flash`"),
+            ("ram = 512", "ram = 512\nmore = [5]", "`more`"),
             ("page = 0x0800_0000", "page = 0x1_0000_0000", "`page`"),
             ("[package.metadata.board]", "[package.metadata.other]", "`[package.metadata.board]`"),
         ] {

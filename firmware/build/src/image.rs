@@ -48,10 +48,13 @@ fn build_into(target_dir: &Path, root: &Path, program: Program) -> Result<PathBu
     if let Program::Robot(body) = program {
         build.args(["--no-default-features", "--features", body.label()]);
     }
-    if program == Program::Free {
+    if let Program::Free | Program::Udp = program {
         build.args(["--no-default-features", "--features", ImageBody::Omni.label()]);
     }
-    if let Program::Board(board) = program {
+    if program == Program::Udp {
+        build.args(["--features", "ethernet"]);
+    }
+    if let Program::Board(board) | Program::More(board, _) = program {
         build.args(board.profile().into_iter().flatten());
     }
     run_cargo(&mut build)?;
@@ -65,8 +68,13 @@ pub enum Program {
     Robot(ImageBody),
     /// A robot on wheels that runs by its own clock, with a serial line for a radio.
     Free,
+    /// The same with UDP over Ethernet for a radio, and a body in a simulator. No robot's image: its network
+    /// stack, of others, has places that may panic, and it is larger (`qemu_udp` holds its size).
+    Udp,
     /// A robot on wheels for the board of a real one, which the emulator does not support.
     Board(&'static Board),
+    /// Another program of a real board, by its binary's name.
+    More(&'static Board, &'static str),
     /// Succeeds where `geometry::math` has the bits it has on the PC.
     MathHash,
     /// Program that counts the instructions of retrievals.
@@ -82,7 +90,11 @@ impl Program {
     /// real board.
     pub fn images() -> Vec<Self> {
         let emulated = [Self::Robot(ImageBody::Legged), Self::Robot(ImageBody::Omni), Self::Free];
-        let real = boards().iter().filter(|board| board.firmware.is_some()).map(Self::Board);
+        let real = boards().iter().filter_map(|board| Some((board, board.firmware.as_ref()?)));
+        let real = real.flat_map(|(board, firmware)| {
+            let more = firmware.more.iter().map(move |name| Self::More(board, name));
+            std::iter::once(Self::Board(board)).chain(more)
+        });
         emulated.into_iter().chain(real).collect()
     }
 
@@ -98,9 +110,11 @@ impl Program {
             Self::Robot(ImageBody::Legged) => "onetwo-mps2-legged",
             Self::Robot(ImageBody::Omni) => "onetwo-mps2-omni",
             Self::Free => "onetwo-mps2-free",
+            Self::Udp => "onetwo-mps2-udp",
             Self::Board(board) => {
                 board.firmware.as_ref().map_or(board.package.as_str(), |firmware| &firmware.image)
             }
+            Self::More(_, name) => name,
             Self::MathHash => "math-hash",
             Self::RetrievalBench => "retrieval-bench",
             Self::MotionBench => "motion-bench",
@@ -111,7 +125,7 @@ impl Program {
     /// Limits of its size.
     pub fn budget(self) -> Budget {
         let firmware = match self {
-            Self::Board(board) => board.firmware.as_ref(),
+            Self::Board(board) | Self::More(board, _) => board.firmware.as_ref(),
             _ => None,
         };
         firmware.map_or(Budget::IMAGE, |firmware| Budget { flash: firmware.flash, ram: firmware.ram })
@@ -120,7 +134,7 @@ impl Program {
     /// The board it is for.
     fn package(self) -> &'static str {
         match self {
-            Self::Board(board) => &board.package,
+            Self::Board(board) | Self::More(board, _) => &board.package,
             _ => PACKAGE,
         }
     }
@@ -128,7 +142,7 @@ impl Program {
     /// The target it is built for.
     fn target(self) -> &'static str {
         match self {
-            Self::Board(board) => &board.target,
+            Self::Board(board) | Self::More(board, _) => &board.target,
             _ => TARGET,
         }
     }

@@ -5,14 +5,24 @@
 //! [`SimulatedBody`] that the simulation protocol moves. [`run`] gives it a socket and a clock. `onetwo
 //! control --robots sim://HOST` starts one for each robot.
 //!
-//! **Invariants.** Times come from the caller everywhere but in [`run`]. Invalid input from outside is
-//! counted and dropped.
+//! Robots whose brains are firmware images have here what is around them: [`AccessPoint`] carries their
+//! frames over UDP, [`Bodies`] moves their bodies in a simulator, and [`replay`] gives a native brain what an
+//! image was given, and compares.
+//!
+//! **Invariants.** Times come from the caller everywhere but in [`run`], [`AccessPoint`] and [`Bodies`].
+//! Invalid input from outside is counted and dropped.
 #![forbid(unsafe_code)]
 
+mod access_point;
+mod bodies;
 mod body;
+mod replayed;
 mod robot;
 mod run;
 
+pub use access_point::{AccessPoint, PassedCounts};
+pub use bodies::Bodies;
 pub use body::{SimulatedBody, TICK};
+pub use replayed::{ReplayError, Replayed, replay};
 pub use robot::VirtualRobot;
 pub use run::{Options, ProcessEnd, RunError, parent_gone, run};

@@ -39,6 +39,7 @@ mod mailboxes;
 pub mod persistent_counter;
 pub mod ports;
 pub mod progress;
+mod recorded;
 pub mod sense;
 pub mod setup;
 pub mod tasks;

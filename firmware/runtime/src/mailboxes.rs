@@ -10,7 +10,7 @@ use embassy_sync::signal::Signal;
 use protocol::link::Packet;
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
 
-use crate::progress::TaskProgress;
+use crate::progress::{RobotPart, TaskProgress};
 
 /// Inputs that may wait for the brain. When full, radio and sensors wait with the next one: their drivers
 /// count what is lost then.
@@ -76,6 +76,11 @@ impl Mailboxes {
     /// Whether the next arrival has to wait.
     pub fn is_full(&self) -> bool {
         self.inbox.is_full()
+    }
+
+    /// Records that a part of the robot runs, where a board has a task of its own for it.
+    pub fn mark(&self, part: RobotPart) {
+        self.progress.mark(part);
     }
 
     /// Waits until [`Mailboxes::deliver`] has room for one arrival.

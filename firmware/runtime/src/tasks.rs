@@ -11,12 +11,14 @@ use casebase::CaseBase;
 use embassy_sync::channel::TryReceiveError;
 use embassy_time::with_deadline;
 use protocol::frame::{RobotKeys, TeamKey};
+use protocol::journal::Writer;
 use protocol::{Duration, Instant};
 
 use crate::controller::Controller;
 use crate::mailboxes::{Arrival, Mailboxes};
 use crate::ports::{BodyPort, RadioReceiver, RadioSender, Senses};
 use crate::progress::RobotPart;
+use crate::recorded::Recorded;
 
 /// The robot's task: starts the boot epoch with its first poll.
 pub async fn brain(config: &BrainConfig, base: CaseBase<'_>, boxes: &Mailboxes) -> ! {
@@ -33,6 +35,20 @@ pub async fn brain_with_keys(
     // Constructed in place; moving it would store it twice in this future, and on the stack in between.
     let mut station = Station::with_keys(now(), config, base, keys);
     think(&mut station, boxes).await
+}
+
+/// As [`brain_with_keys`], with everything it takes in and gives out in a journal.
+pub async fn brain_with_journal(
+    config: &BrainConfig,
+    base: CaseBase<'_>,
+    keys: RobotKeys,
+    boxes: &Mailboxes,
+    journal: Writer<'_>,
+) -> ! {
+    let start = now();
+    let station = Station::with_keys(start, config, base, keys);
+    let mut recorded = Recorded::new(start, config.epoch, station, journal);
+    think(&mut recorded, boxes).await
 }
 
 /// Moves received packets into the inbox.

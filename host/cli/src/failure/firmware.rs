@@ -25,6 +25,12 @@ pub(crate) enum FirmwareError {
     Emulator(io::Error),
     /// The emulator ended with this status.
     Ended(ExitStatus),
+    /// So many pages for robots on one serial line.
+    OneLine(usize),
+    /// `--udp` names no robot, or no longer all of them: what is wrong.
+    Team(String),
+    /// A socket of the robots' radio or bodies cannot be opened.
+    Socket(String, io::Error),
     /// The emulated robot refuses the library.
     Library(McuError),
     /// A match to measure the image in.
@@ -59,6 +65,11 @@ impl fmt::Display for FirmwareError {
             Self::Qemu(error) => write!(f, "{error}"),
             Self::Emulator(error) => write!(f, "{error}"),
             Self::Ended(status) => write!(f, "QEMU ended with {status}"),
+            Self::OneLine(pages) => {
+                write!(f, "{pages} pages for one serial line; give one --page, or --udp for several robots")
+            }
+            Self::Team(what) => f.write_str(what),
+            Self::Socket(what, error) => write!(f, "{what}: {error}"),
             Self::Library(error) => write!(f, "{error}"),
             Self::Game(error) => write!(f, "{error}"),
             Self::File(path, error) => write!(f, "{}: {error}", path.display()),

@@ -50,24 +50,34 @@ pub(crate) enum FirmwareVerb {
 /// Which firmware images.
 #[derive(Debug, Args)]
 pub(crate) struct ImagesArgs {
-    /// The firmware image: legged, omni, free, or a board's name; all of them by default.
+    /// The firmware image: legged, omni, free, udp, a board's name, or the name of another of its programs;
+    /// all of them by default.
     #[arg(long, value_parser = image)]
     image: Option<Program>,
 }
 
 /// The firmware image of that name: `legged` and `omni`, which the simulator steps tick by tick, `free`,
-/// which runs by its own clock, and each real board by its directory's name.
+/// which runs by its own clock, `udp`, which does so on a network, each real board by its directory's name,
+/// and its other programs by theirs.
 fn image(name: &str) -> Result<Program, String> {
     match name {
         "legged" => Ok(Program::Robot(ImageBody::Legged)),
         "omni" => Ok(Program::Robot(ImageBody::Omni)),
         "free" => Ok(Program::Free),
-        _ => Program::of_board(name).ok_or_else(|| {
+        "udp" => Ok(Program::Udp),
+        _ => Program::of_board(name).or_else(|| more(name)).ok_or_else(|| {
             let real = boards().iter().filter(|board| board.firmware.is_some());
             let real: Vec<_> = real.map(|board| board.name.as_str()).collect();
-            format!("expected legged, omni, free, or a board: {}", real.join(", "))
+            format!("expected legged, omni, free, udp, or a board: {}", real.join(", "))
         }),
     }
+}
+
+/// Another program of a real board, by its binary's name.
+fn more(name: &str) -> Option<Program> {
+    Program::images()
+        .into_iter()
+        .find(|program| matches!(program, Program::More(_, _)) && program.name() == name)
 }
 
 impl ImagesArgs {

@@ -1,34 +1,59 @@
-//! `onetwo firmware run`: a robot without hardware. The firmware that runs by its own clock, in QEMU's
-//! emulated board, its radio on a serial line.
+//! `onetwo firmware run`: robots without hardware. The firmware that runs by its own clock, in QEMU's
+//! emulated board: one robot with its radio on a serial line, or a team's with theirs on UDP ([`mod@udp`]).
 
+mod udp;
+
+use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use clap::Args;
 use firmware_build::{Install, MACHINE, Program, ensure_qemu};
-use protocol::provision::read;
+use protocol::provision::{Provision, read};
 use protocol::slot::PAGE_ADDRESS;
 
 use super::{at, build, failed};
 use crate::Failure;
 use crate::failure::FirmwareError;
 
-/// How a robot is run.
+/// How robots are run.
 #[derive(Debug, Args)]
 pub(crate) struct RunArgs {
-    /// The page that `provision` wrote; without it the robot accepts no host.
+    /// The page that `provision` wrote; without it the robot accepts no host. With --udp once for each robot.
     #[arg(long, value_name = "FILE")]
-    page: Option<PathBuf>,
+    page: Vec<PathBuf>,
     /// Where its radio's line ends, in QEMU's syntax: `null`, `pty`, `unix:PATH,server=on`,
     /// `tcp:HOST:PORT,server=on`.
-    #[arg(long, value_name = "LINE", default_value = "pty")]
+    #[arg(long, value_name = "LINE", default_value = "pty", conflicts_with = "udp")]
     serial: String,
+    /// The robots' radio is UDP over the board's Ethernet: this address takes the frames of `control --robots
+    /// udp://ADDRESS:PORT` and passes them to all robots, as a base station would.
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    udp: Option<SocketAddr>,
+    /// Where the robots' bodies are: a simulator, as HOST or HOST:PORT; without a port the league's for their
+    /// team, 10301 blue, 10302 yellow. Without it their orders move nothing.
+    #[arg(long, value_name = "HOST[:PORT]", requires = "udp")]
+    simulator: Option<String>,
+    /// Write what each brain took in and gave out, with its times, to robotN.journal in this directory.
+    #[arg(long, value_name = "DIRECTORY", requires = "udp")]
+    journal: Option<PathBuf>,
+    /// End after this number of seconds.
+    #[arg(short, long, value_name = "SECONDS", value_parser = crate::simulate::seconds, requires = "udp")]
+    duration: Option<f64>,
 }
 
-/// Runs it until it is ended; the robot's log is on stderr.
+/// Runs them until they are ended; the robots' log is on stderr.
 pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
+    if let Some(address) = args.udp {
+        return udp::run(address, args);
+    }
+    let page = match args.page.as_slice() {
+        [] => None,
+        [file] => Some(file.as_path()),
+        [..] => return Err(failed(FirmwareError::OneLine(args.page.len()))),
+    };
     // Checked before anything is built or started.
-    let page = args.page.as_deref().map(|file| check(file).map(|()| file)).transpose()?;
+    page.map(check).transpose()?;
     let qemu = ensure_qemu(Install::ForUser).map_err(failed)?;
     let mut command = Command::new(qemu);
     command.args(qemu_arguments(&build(Program::Free)?, page, &args.serial)).stdin(Stdio::null());
@@ -39,10 +64,10 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
 /// Longest file of a key page that is read, bytes: one sector of flash.
 const PAGE_FILE_LEN_MAX: u64 = 1 << 17;
 
-/// Whether a robot could read the page.
-fn check(file: &Path) -> Result<(), Failure> {
+/// What a robot reads from the page.
+fn check(file: &Path) -> Result<Provision, Failure> {
     let bytes = foreign::read(file, PAGE_FILE_LEN_MAX).map_err(at(file, FirmwareError::File))?;
-    read(&bytes, false).map(|_| ()).map_err(at(file, FirmwareError::PageFile))
+    read(&bytes, false).map_err(at(file, FirmwareError::PageFile))
 }
 
 /// Arguments of QEMU.
@@ -54,12 +79,15 @@ fn qemu_arguments(image: &Path, page: Option<&Path>, serial: &str) -> Vec<String
     arguments.extend(["-semihosting-config", "enable=on,target=native", "-kernel"].map(str::to_owned));
     arguments.push(image.display().to_string());
     if let Some(file) = page {
-        // In QEMU's options a doubled comma stands for one.
-        let path = file.to_string_lossy().replace(',', ",,");
         arguments.push("-device".to_owned());
-        arguments.push(format!("loader,file={path},addr={PAGE_ADDRESS:#x},force-raw=on"));
+        arguments.push(format!("loader,file={},addr={PAGE_ADDRESS:#x},force-raw=on", in_option(file)));
     }
     arguments
+}
+
+/// A path in QEMU's options, where a doubled comma stands for one.
+fn in_option(path: &Path) -> String {
+    path.to_string_lossy().replace(',', ",,")
 }
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
-//! `eth`: Ethernet driver for lockstep messages. One Ethernet frame each, through the board's LAN9118
-//! controller (data sheet DS00002266).
+//! `eth`: Ethernet driver for lockstep messages. One Ethernet frame each, through the board's controller
+//! ([`lan9118`]).
 //!
 //! A frame is the 14-byte header with `protocol::lockstep::ETHERTYPE`, the length (u16 LE), and the message.
 //! Frames that are not of that form are counted and skipped. QEMU needs about 100 µs for a round trip, 30
@@ -7,36 +7,17 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
-use cortex_m::interrupt::InterruptNumber;
-use cortex_m::peripheral::NVIC;
 use protocol::lockstep::{ETHERTYPE, MESSAGE_LEN_MAX};
 use zerocopy::IntoBytes;
 
-use super::register::Register;
+use super::lan9118::{self, CHECKSUM_LEN, FRAME_LEN_MIN};
 
 /// Starts the controller: receiver and sender. Call once; `None` if there is no such controller.
 pub(crate) fn start() -> Option<(Inlet, Outlet)> {
-    if BYTE_TEST.read() != BYTE_TEST_VALUE {
+    if !lan9118::start() {
         return None;
     }
-    MAC_CSR_DATA.write(MAC_CR_PROMISCUOUS | MAC_CR_TX_ON | MAC_CR_RX_ON);
-    MAC_CSR_CMD.write(MAC_CSR_BUSY | MAC_CR_INDEX);
-    while MAC_CSR_CMD.read() & MAC_CSR_BUSY != 0 {}
-    TX_CFG.write(TX_CFG_ON);
-    // One frame received is enough for an interrupt.
-    FIFO_INT.write(FIFO_INT_RX_STATUS_ABOVE_0);
-    RX_CFG.write(0);
-    INT_STS.write(u32::MAX);
-    INT_EN.write(INT_RX_STATUS_LEVEL);
-    IRQ_CFG.write(IRQ_CFG_ENABLE | IRQ_CFG_ACTIVE_HIGH | IRQ_CFG_PUSH_PULL);
-    // SAFETY: the interrupt only runs `acknowledge`; no other code relies on it being masked.
-    unsafe { NVIC::unmask(EthernetIrq) }
     Some((Inlet { frame: [0; FRAME_DESCRIPTION] }, Outlet { frame: [0; FRAME_DESCRIPTION] }))
-}
-
-/// Handles the controller's interrupt; the frame itself is fetched outside.
-pub(crate) fn acknowledge() {
-    INT_STS.write(u32::MAX);
 }
 
 /// Number of foreign or too long frames.
@@ -63,15 +44,8 @@ impl Inlet {
     /// Fetches the next frame into the buffer; returns its length, which is more than the buffer's where it
     /// did not fit.
     fn next_frame(&mut self) -> usize {
-        sleep_until(|| RX_FIFO_INF.read() >> 16 & 0xff != 0);
-        let len = (RX_STATUS_FIFO.read() >> 16 & 0x3fff) as usize;
-        for index in 0..len.div_ceil(4) {
-            let label = RX_DATA_FIFO.read();
-            if let Some(place) = self.frame.get_mut(index) {
-                *place = label;
-            }
-        }
-        len.saturating_sub(CHECKSUM_LEN)
+        sleep_until(lan9118::has_frame);
+        lan9118::take(&mut self.frame)
     }
 }
 
@@ -100,15 +74,7 @@ impl Outlet {
         *header = HEADER;
         *len = (written as u16).to_le_bytes();
         let frame_len = (MESSAGE_AT + written).max(FRAME_LEN_MIN);
-        TX_DATA_FIFO.write(frame_len as u32 | TX_FIRST | TX_LAST);
-        TX_DATA_FIFO.write(frame_len as u32);
-        for label in self.frame.iter().take(frame_len.div_ceil(4)) {
-            TX_DATA_FIFO.write(*label);
-        }
-        // Transmission status is not used; the status queue must not fill up.
-        while TX_FIFO_INF.read() >> 16 & 0xff != 0 {
-            TX_STATUS_FIFO.read();
-        }
+        lan9118::put(&self.frame, frame_len);
     }
 }
 
@@ -138,56 +104,4 @@ const HEADER: [u8; HEADER_LEN] = {
 const HEADER_LEN: usize = 14;
 /// Offset of the message, behind header and length.
 const MESSAGE_AT: usize = HEADER_LEN + 2;
-/// Ethernet's shortest frame, without the checksum.
-const FRAME_LEN_MIN: usize = 60;
-const CHECKSUM_LEN: usize = 4;
 const FRAME_DESCRIPTION: usize = (MESSAGE_AT + MESSAGE_LEN_MAX + CHECKSUM_LEN).div_ceil(4);
-
-/// A register of the controller.
-const fn register(offset: usize) -> Register {
-    // SAFETY: every register below is one of this board's Ethernet controller (MPS2 AN386: at 0x4020_0000).
-    unsafe { Register::at(0x4020_0000 + offset) }
-}
-
-const RX_DATA_FIFO: Register = register(0x00);
-const TX_DATA_FIFO: Register = register(0x20);
-const RX_STATUS_FIFO: Register = register(0x40);
-const TX_STATUS_FIFO: Register = register(0x48);
-const IRQ_CFG: Register = register(0x54);
-const INT_STS: Register = register(0x58);
-const INT_EN: Register = register(0x5c);
-const BYTE_TEST: Register = register(0x64);
-const FIFO_INT: Register = register(0x68);
-const RX_CFG: Register = register(0x6c);
-const TX_CFG: Register = register(0x70);
-const RX_FIFO_INF: Register = register(0x7c);
-const TX_FIFO_INF: Register = register(0x80);
-const MAC_CSR_CMD: Register = register(0xa4);
-const MAC_CSR_DATA: Register = register(0xa8);
-
-const BYTE_TEST_VALUE: u32 = 0x8765_4321;
-const MAC_CSR_BUSY: u32 = 1 << 31;
-const MAC_CR_INDEX: u32 = 1;
-const MAC_CR_PROMISCUOUS: u32 = 1 << 18;
-const MAC_CR_TX_ON: u32 = 1 << 3;
-const MAC_CR_RX_ON: u32 = 1 << 2;
-const TX_CFG_ON: u32 = 1 << 1;
-/// Interrupt levels: transmit data as after a reset, receive status 0.
-const FIFO_INT_RX_STATUS_ABOVE_0: u32 = 0x4800_0000;
-const INT_RX_STATUS_LEVEL: u32 = 1 << 3;
-const IRQ_CFG_ENABLE: u32 = 1 << 8;
-const IRQ_CFG_ACTIVE_HIGH: u32 = 1 << 4;
-const IRQ_CFG_PUSH_PULL: u32 = 1;
-const TX_FIRST: u32 = 1 << 13;
-const TX_LAST: u32 = 1 << 12;
-
-/// The controller's interrupt number.
-#[derive(Clone, Copy)]
-struct EthernetIrq;
-
-// SAFETY: 13 is the number of the Ethernet interrupt on AN386, and it does not change.
-unsafe impl InterruptNumber for EthernetIrq {
-    fn number(self) -> u16 {
-        13
-    }
-}

@@ -9,6 +9,8 @@ mod clock;
 mod eth;
 mod fault;
 mod instructions;
+#[path = "../lan9118.rs"]
+mod lan9118;
 mod library;
 #[path = "../register.rs"]
 mod register;
@@ -26,5 +28,5 @@ fn main() -> ! {
 /// Only the Ethernet controller's interrupt is enabled.
 #[exception]
 unsafe fn DefaultHandler(_number: i16) {
-    eth::acknowledge();
+    lan9118::acknowledge();
 }

@@ -11,8 +11,8 @@ use cortex_m::peripheral::SCB;
 use cortex_m_rt::{ExceptionFrame, exception};
 use runtime::ending::Ending;
 
-use super::body;
 use super::console::print;
+use crate::parts;
 
 /// Record of this boot epoch and the last.
 #[derive(Clone, Copy)]
@@ -73,14 +73,14 @@ static BITTEN: AtomicBool = AtomicBool::new(false);
 
 #[panic_handler]
 fn panic(info: &PanicInfo<'_>) -> ! {
-    body::stop();
+    parts::stop();
     cortex_m::interrupt::disable();
     ended(Ending::Panic(info.location()))
 }
 
 #[exception]
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
-    body::stop();
+    parts::stop();
     ended(Ending::Fault(frame.pc()))
 }
 

@@ -5,7 +5,8 @@ use cortex_m_rt::exception;
 use protocol::Duration;
 use runtime::ports::Watchdog;
 
-use super::{body, console::print, fault};
+use super::{console::print, fault};
+use crate::parts;
 
 /// The watchdog, running.
 pub(crate) struct BoardWatchdog(());
@@ -35,7 +36,7 @@ pub(crate) fn has_bitten() -> bool {
 /// The first time-out: the current goes off at once, the second will reset the board.
 #[exception]
 unsafe fn NonMaskableInt() {
-    body::stop();
+    parts::stop();
     fault::remember_bite();
     print(&[b"watchdog: a task hangs; motors off"]);
     // The interrupt stays pending until it is cleared, and clearing would feed the watchdog: wait for the

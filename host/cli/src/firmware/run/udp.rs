@@ -1,0 +1,241 @@
+//! `udp`: robots of a team as firmware images with UDP for a radio: an emulator for each, an access point
+//! between them and their host, and their bodies in a simulator.
+//!
+//! Each image has QEMU's own network (`-nic user`): it is 10.0.2.15 and this machine is 10.0.2.2, so that no
+//! right and no interface of the system is needed. Robots speak first, and answers find their way back.
+
+use std::fs::OpenOptions;
+use std::io::Write as _;
+use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::atomic::Ordering;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use firmware_build::{Install, MACHINE, Program, ensure_qemu};
+use protocol::journal;
+use protocol::network_page::{NetworkPage, page};
+use protocol::provision::Provision;
+use protocol::slot::{JOURNAL_LEN, NETWORK_ADDRESS};
+use rules::Colour;
+use ssl::net::addresses;
+use virtual_robot::{AccessPoint, Bodies};
+
+use super::{RunArgs, at, build, check, failed, in_option, qemu_arguments};
+use crate::Failure;
+use crate::failure::FirmwareError;
+use crate::output::note;
+use crate::stop::stopped_by_hand;
+
+/// This machine, as an image sees it (QEMU's documentation of `-netdev user`).
+const PC: Ipv4Addr = Ipv4Addr::new(10, 0, 2, 2);
+/// An image, as it is seen by itself.
+const ROBOT: Ipv4Addr = Ipv4Addr::new(10, 0, 2, 15);
+/// Port of an image's radio; that of its body is the next.
+const RADIO_PORT: u16 = 10_400;
+/// The emulators are looked after this often.
+const LOOK: Duration = Duration::from_millis(100);
+/// A port to which nobody listens: `discard` (RFC 863).
+const NOBODY: u16 = 9;
+
+/// Runs them until they are ended.
+pub(super) fn run(address: SocketAddr, args: &RunArgs) -> Result<(), Failure> {
+    let robots: Vec<(&Path, Provision)> =
+        args.page.iter().map(|file| Ok((file.as_path(), check(file)?))).collect::<Result<_, Failure>>()?;
+    let team = one_team(&robots).map_err(|what| failed(FirmwareError::Team(what)))?;
+    let simulator = args.simulator.as_deref().map(|text| simulator(text, team)).transpose()?;
+    let qemu = ensure_qemu(Install::ForUser).map_err(failed)?;
+    let image = build(Program::Udp)?;
+    let socket = |what: String| move |error| failed(FirmwareError::Socket(what, error));
+    let point = AccessPoint::open(address).map_err(socket(format!("robots' radio at {address}")))?;
+    let ids: Vec<_> = robots.iter().map(|(_, who)| who.robot).collect();
+    let bodies = simulator
+        .map(|simulator| Bodies::open(&ids, simulator).map_err(socket("robots' bodies".to_owned())))
+        .transpose()?;
+    note!("radio  {} robots behind udp://{}", robots.len(), point.for_host());
+    if let Some(simulator) = simulator {
+        note!("bodies  in the simulator at {simulator}");
+    }
+    let mut team = Team(Vec::new());
+    for (file, who) in &robots {
+        let body = bodies.iter().flat_map(Bodies::addresses).find(|(id, _)| *id == who.robot);
+        let network = NetworkPage {
+            own: ROBOT,
+            prefix: 24,
+            gateway: PC,
+            port: RADIO_PORT,
+            radio: SocketAddrV4::new(PC, point.for_robots().port()),
+            body: SocketAddrV4::new(PC, body.map_or(NOBODY, |(_, address)| address.port())),
+        };
+        let journal = args.journal.as_deref().map(|directory| prepare(directory, who)).transpose()?;
+        let mut arguments = qemu_arguments(&image, Some(file), "null");
+        arguments.extend(network_arguments(&network, who, journal.as_deref()));
+        let child = Command::new(&qemu)
+            .args(arguments)
+            .stdin(Stdio::null())
+            .spawn()
+            .map_err(FirmwareError::Emulator)
+            .map_err(failed)?;
+        team.0.push((who.robot.number(), child));
+    }
+    let end = args.duration.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
+    while !stopped_by_hand().load(Ordering::Relaxed) && end.is_none_or(|end| Instant::now() < end) {
+        team.look()?;
+        thread::sleep(LOOK);
+    }
+    let counts = point.counts();
+    note!("radio  {} frames of the host, {} of robots passed on", counts.from_host, counts.from_robots);
+    Ok(())
+}
+
+/// The emulators; killed when this is dropped.
+struct Team(Vec<(u8, Child)>);
+
+impl Team {
+    /// An error as soon as one has ended.
+    fn look(&mut self) -> Result<(), Failure> {
+        for (robot, child) in &mut self.0 {
+            if let Some(status) = child.try_wait().map_err(FirmwareError::Emulator).map_err(failed)? {
+                let what = format!("the emulator of robot {robot} ended ({status}); its output is above");
+                return Err(failed(FirmwareError::Team(what)));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Team {
+    fn drop(&mut self) {
+        for (_, child) in &mut self.0 {
+            // It may have ended by itself; either way nothing remains to be done.
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
+}
+
+/// The colour of all robots, each once.
+fn one_team(robots: &[(&Path, Provision)]) -> Result<Option<Colour>, String> {
+    let Some(((_, first), others)) = robots.split_first() else {
+        return Err(
+            "--udp runs a robot for each --page; give at least one (`onetwo firmware provision`)".into()
+        );
+    };
+    if let Some((file, other)) = others.iter().find(|(_, other)| other.team != first.team) {
+        return Err(format!(
+            "{} is of team {}, the first page of team {}: a base station serves one team",
+            file.display(),
+            other.team.0,
+            first.team.0
+        ));
+    }
+    for (n, (file, who)) in robots.iter().enumerate() {
+        if robots.iter().take(n).any(|(_, before)| before.robot == who.robot) {
+            return Err(format!("{} is robot {} again; give each robot one page", file.display(), who.robot));
+        }
+    }
+    let known = [Colour::Blue, Colour::Yellow].into_iter();
+    Ok(known.into_iter().find(|colour| protocol::TeamId::of(*colour) == first.team))
+}
+
+/// The simulator's port for a team.
+fn simulator(text: &str, team: Option<Colour>) -> Result<SocketAddr, Failure> {
+    use std::net::ToSocketAddrs as _;
+    let port = match team {
+        Some(Colour::Yellow) => addresses::ROBOTS_YELLOW_PORT,
+        Some(Colour::Blue) | None => addresses::ROBOTS_BLUE_PORT,
+    };
+    let with_port = text.to_socket_addrs().or_else(|_| (text, port).to_socket_addrs());
+    let found = with_port.ok().and_then(|mut found| found.next());
+    let unknown = || format!("unknown host in --simulator {text}; give HOST or HOST:PORT");
+    found.ok_or_else(|| failed(FirmwareError::Team(unknown())))
+}
+
+/// An empty journal for a robot: the memory of its board, as a file.
+fn prepare(directory: &Path, who: &Provision) -> Result<PathBuf, Failure> {
+    let path = directory.join(format!("robot{}.journal", who.robot));
+    let written = std::fs::create_dir_all(directory).and_then(|()| {
+        let mut file = OpenOptions::new().write(true).create(true).truncate(true).open(&path)?;
+        file.set_len(JOURNAL_LEN as u64)?;
+        file.write_all(&journal::MAGIC)
+    });
+    written.map_err(at(&path, FirmwareError::File))?;
+    Ok(path)
+}
+
+/// QEMU's arguments for a robot's network, and for a memory that is a file.
+fn network_arguments(network: &NetworkPage, who: &Provision, journal: Option<&Path>) -> Vec<String> {
+    // As the image names its controller itself; two robots' networks do not meet.
+    let mut arguments =
+        vec!["-nic".to_owned(), format!("user,mac=02:00:00:00:00:{:02x}", who.robot.number() + 1)];
+    let words = page(network).into_iter().collect::<Vec<_>>();
+    for (n, word) in words.chunks_exact(8).enumerate() {
+        let data = word.iter().rev().fold(0_u64, |value, byte| value << 8 | u64::from(*byte));
+        let address = NETWORK_ADDRESS + 8 * n;
+        arguments.push("-device".to_owned());
+        arguments.push(format!("loader,addr={address:#x},data={data:#x},data-len=8"));
+    }
+    if let Some(file) = journal {
+        let path = in_option(file);
+        arguments.extend([
+            "-object".to_owned(),
+            format!("memory-backend-file,id=journal,size={JOURNAL_LEN},mem-path={path},share=on"),
+            // The last one counts.
+            "-machine".to_owned(),
+            format!("{MACHINE},memory-backend=journal"),
+        ]);
+    }
+    arguments
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use protocol::frame::TeamKey;
+    use protocol::{RobotId, TeamId};
+    use rules::League;
+
+    fn who(robot: u8, team: u8) -> Provision {
+        let robot = RobotId::new(robot).unwrap();
+        Provision {
+            robot,
+            team: TeamId(team),
+            league: League::DivisionB,
+            keys: TeamKey::ZERO.of_robot(robot),
+        }
+    }
+
+    #[test]
+    fn robots_of_one_team_play_and_two_teams_a_robot_twice_and_none_are_refused() {
+        let path = Path::new("x.page");
+        let of = |robots: &[(u8, u8)]| {
+            one_team(&robots.iter().map(|(robot, team)| (path, who(*robot, *team))).collect::<Vec<_>>())
+        };
+        let (yellow, blue) = (TeamId::of(Colour::Yellow).0, TeamId::of(Colour::Blue).0);
+        assert_eq!(of(&[(0, yellow), (1, yellow)]), Ok(Some(Colour::Yellow)));
+        assert_eq!(of(&[(0, blue)]), Ok(Some(Colour::Blue)));
+        assert_eq!(of(&[(0, 77)]), Ok(None));
+        assert!(of(&[]).unwrap_err().contains("--page"));
+        assert!(of(&[(0, yellow), (1, blue)]).unwrap_err().contains("one team"));
+        assert!(of(&[(3, blue), (3, blue)]).unwrap_err().contains("robot 3 again"));
+    }
+
+    #[test]
+    fn the_network_s_page_is_loaded_as_its_bytes_stand() {
+        let network = NetworkPage {
+            own: ROBOT,
+            prefix: 24,
+            gateway: PC,
+            port: RADIO_PORT,
+            radio: SocketAddrV4::new(PC, 5),
+            body: SocketAddrV4::new(PC, NOBODY),
+        };
+        let arguments = network_arguments(&network, &who(3, 1), Some(Path::new("a,b")));
+        // "1-2N", 10.0.2.15 as a number of eight bytes, little endian.
+        assert!(arguments.contains(&"loader,addr=0x2fd000,data=0xf02000a4e322d31,data-len=8".to_owned()));
+        assert_eq!(arguments.iter().filter(|argument| argument.starts_with("loader,")).count(), 4);
+        assert!(arguments.iter().any(|argument| argument.contains("mac=02:00:00:00:00:04")));
+        assert!(arguments.iter().any(|argument| argument.contains("mem-path=a,,b,share=on")));
+    }
+}
