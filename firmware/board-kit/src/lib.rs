@@ -8,7 +8,8 @@
 //! | motors with their encoders | [`wheels`] |
 //! | gyroscope and accelerometer | [`imu`] |
 //! | readings taken a thousand times a second | [`sampling`] |
-//! | radio on a serial line | `radio` (robots only) |
+//! | radio on a serial line; radio chip on a bus | `radio`, `nrf24` (robots only) |
+//! | base station with such a chip | `base_station` (robots only) |
 //! | record of panics, counter of starts | [`crash`], [`ledger`] |
 //! | the checks of a robot's first start, on a board | `bring_up` (robots only) |
 //! | parts that are not wired yet | [`not_wired`] |
@@ -22,12 +23,16 @@
 extern crate std;
 
 #[cfg(target_os = "none")]
+pub mod base_station;
+#[cfg(target_os = "none")]
 pub mod bring_up;
 pub mod crash;
 pub mod imu;
 pub mod ledger;
 pub mod motors;
 pub mod not_wired;
+#[cfg(target_os = "none")]
+pub mod nrf24;
 #[cfg(target_os = "none")]
 pub mod radio;
 #[cfg(target_os = "none")]

@@ -1,14 +1,17 @@
-//! `lines`: the radio's serial line and the IMU's bus, set up for `board_kit`'s drivers.
+//! `lines`: the radio's serial line, the radio chip's bus and the IMU's, set up for `board_kit`'s drivers.
 
 use board_kit::imu::Imu;
+use board_kit::nrf24::{ChipReceiver, ChipWires};
 use board_kit::radio::{BAUD, RING_LEN, UartReceiver, UartSender};
 use embassy_stm32::Peri;
-use embassy_stm32::gpio::{Level, Output, Pin, Pull, Speed};
+use embassy_stm32::gpio::{Input, Level, Output, Pin, Pull, Speed};
 use embassy_stm32::mode::{Async, Blocking};
 use embassy_stm32::spi::mode::Master;
-use embassy_stm32::spi::{self, MODE_3, Spi};
+use embassy_stm32::spi::{self, MODE_0, MODE_3, Spi};
 use embassy_stm32::time::Hertz;
 use embassy_stm32::usart::{self, RingBufferedUartRx, Uart, UartTx};
+use embassy_time::Delay;
+use embedded_hal_bus::spi::ExclusiveDevice;
 use protocol::serial::LINE_LEN_MAX;
 use static_cell::StaticCell;
 
@@ -18,6 +21,13 @@ pub type Sender = UartSender<UartTx<'static, Async>>;
 pub type Receiver = UartReceiver<RingBufferedUartRx<'static>>;
 /// The IMU on a blocking bus.
 pub type BoardImu = Imu<Spi<'static, Blocking, Master>, Output<'static>>;
+
+/// A radio chip nRF24L01+ alone on its blocking bus.
+pub type ChipBus = ExclusiveDevice<Spi<'static, Blocking, Master>, Output<'static>, Delay>;
+/// The chip's wires.
+pub type RadioChip = ChipWires<ChipBus, Output<'static>, Input<'static>, Delay>;
+/// A robot's receiver with such a chip.
+pub type RadioChipReceiver = ChipReceiver<ChipBus, Output<'static>, Input<'static>, Delay>;
 
 /// The radio's rate; where no radio is plugged in, the line is idle.
 pub fn radio_config() -> usart::Config {
@@ -49,5 +59,28 @@ pub fn imu(bus: Spi<'static, Blocking, Master>, select: Peri<'static, impl Pin>)
     Imu::new(bus, Output::new(select, Level::High, Speed::Low))
 }
 
+/// The radio chip's bus settings: mode 0, at most [`CHIP_CLOCK`].
+pub fn chip_config() -> spi::Config {
+    let mut config = spi::Config::default();
+    config.mode = MODE_0;
+    config.frequency = CHIP_CLOCK;
+    config
+}
+
+/// The radio chip on its bus, neither selected nor enabled.
+pub fn chip(
+    bus: Spi<'static, Blocking, Master>,
+    select: Peri<'static, impl Pin>,
+    enable: Peri<'static, impl Pin>,
+    news: Peri<'static, impl Pin>,
+) -> RadioChip {
+    let select = Output::new(select, Level::High, Speed::High);
+    let Ok(spi) = ExclusiveDevice::new(bus, select, Delay);
+    let enable = Output::new(enable, Level::Low, Speed::High);
+    ChipWires { spi, enable, news: Input::new(news, Pull::Up), pause: Delay }
+}
+
+/// SPI clock of the radio chip, which allows 10 MHz (PS 8.3.2).
+pub const CHIP_CLOCK: Hertz = Hertz(8_000_000);
 /// SPI clock; the sensor allows 24 MHz.
 pub const IMU_CLOCK: Hertz = Hertz(8_000_000);

@@ -89,6 +89,13 @@ pub fn radio(parts: pins::Radio) -> Option<(lines::Sender, lines::Receiver)> {
     Some(lines::radio(line))
 }
 
+/// The radio chip's wires.
+pub fn radio_chip(parts: pins::Chip) -> lines::RadioChip {
+    let bus: Spi<'static, Blocking, _> =
+        Spi::new_blocking(parts.bus, parts.clock, parts.to, parts.from, lines::chip_config());
+    lines::chip(bus, parts.select, parts.enable, parts.news)
+}
+
 /// TIM15 on PE5 and PE6, TIM16 on PB8 (DS12110, tables 10 and 13).
 const COILS_FUNCTION: u8 = 4;
 const CHARGER_FUNCTION: u8 = 1;

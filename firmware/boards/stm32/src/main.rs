@@ -6,6 +6,9 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
+#[path = "robot/serial.rs"]
+mod radio;
+#[cfg(target_os = "none")]
 mod robot;
 
 #[cfg(not(target_os = "none"))]

@@ -76,6 +76,17 @@ stm32_kit::parts! {
         rx_dma: DMA1_CH1, "carries what comes";
     }
 
+    /// The radio chip nRF24L01+, instead of a modem on a robot, and on a base station.
+    Chip chip {
+        bus: SPI5, "its bus";
+        clock: PF7, "out: SPI clock of the radio chip";
+        from: PF8, "in: SPI data from the radio chip";
+        to: PF9, "out: SPI data to the radio chip";
+        select: PF10, "out: low selects the radio chip (CSN)";
+        enable: PF6, "out: high lets the radio chip send and listen (CE)";
+        news: PF5, "in, pulled up: the radio chip pulls it low when there is something to do (IRQ)";
+    }
+
     /// Indicator lamps on the board.
     Lamps lamps {
         alive: PB0, "out: green, blinks as long as the robot runs";

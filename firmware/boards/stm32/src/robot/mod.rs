@@ -1,4 +1,4 @@
-//! `robot`: the start of the robot's board, and what it has.
+//! `robot`: the start of the robot's board, and what it has. The program names its radio.
 //!
 //! A step of the brain of 40,000 instructions, its budget, takes a fifth of a millisecond here; the longest
 //! in docs/firmware.md takes three times as long. A control step may be late by this time.
@@ -24,8 +24,8 @@ impl Board for Stm32 {
     type Kicker = Kicker;
     type Gyroscope = lines::BoardImu;
     type Analog = analog::Analog;
-    type Sender = lines::Sender;
-    type Receiver = lines::Receiver;
+    type Sender = crate::radio::Sender;
+    type Receiver = crate::radio::Receiver;
     type Watchdog = BoardWatchdog;
     type Lamp = Output<'static>;
 }
@@ -41,7 +41,8 @@ fn main() -> ! {
     let (mut alarm, alive) = (low(parts.lamps.alarm), low(parts.lamps.alive));
     log_crash(&fault::crash_record());
     let who = identity(flash::page(), ledger::begin(&mut Ledger::new(parts.keeper.flash)));
-    let (Some(who), Some((sender, receiver))) = (who, drivers::radio(parts.radio)) else {
+    let radio = who.as_ref().and_then(|who| crate::radio::open(who, parts.radio, parts.chip));
+    let (Some(who), Some((sender, receiver))) = (who, radio) else {
         alarm.set_high();
         off::everything();
         loop {

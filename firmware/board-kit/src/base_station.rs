@@ -1,0 +1,110 @@
+//! `base_station`: a base station on any chip: the host's serial line on one side, a radio chip nRF24L01+ on
+//! the other. It holds no keys: it neither believes nor makes a frame.
+//!
+//! Its team is that of the host's first frame, so that nothing is written into it; for another team it is
+//! started again.
+
+use core::cell::{Cell, RefCell};
+
+use embassy_futures::select::{Either3, select3};
+use embassy_sync::blocking_mutex::raw::NoopRawMutex;
+use embassy_sync::channel::Channel as Queue;
+use embassy_time::{Duration, Instant, Timer};
+use embedded_hal::delay::DelayNs;
+use embedded_hal::digital::{InputPin, OutputPin};
+use embedded_hal::spi::SpiDevice;
+use embedded_io_async::{Read, Write};
+use nrf24::{Base, Fault, SERVE_EVERY, Station};
+use protocol::TeamId;
+use protocol::frame::VERSION;
+use protocol::serial::{Line, Lines};
+
+use crate::nrf24::{ChipWires, LOOK, channel, now};
+use crate::radio::{UartReceiver, UartSender};
+
+/// Runs until the chip fails: its supply, its wiring, or another chip.
+pub async fn run<S: SpiDevice, E: OutputPin, N: InputPin, D: DelayNs>(
+    mut from_host: UartReceiver<impl Read>,
+    mut to_host: UartSender<impl Write>,
+    mut wires: ChipWires<S, E, N, D>,
+    mut alive: impl OutputPin,
+) -> Fault {
+    let team = first_team(&mut from_host).await;
+    defmt::info!("team {=u8}", team.0);
+    let base = match Base::start(now(), channel(team), wires.spi, wires.enable, wires.pause) {
+        Ok(base) => base,
+        Err(fault) => return fault,
+    };
+    let station = RefCell::new(Station::new(base));
+    let has_news = Cell::new(false);
+    let lines: Queue<NoopRawMutex, Line, LINES> = Queue::new();
+    let take = async {
+        loop {
+            let bytes = from_host.bytes().await;
+            station.borrow_mut().push(now(), bytes);
+            has_news.set(true);
+        }
+    };
+    let give = async {
+        loop {
+            to_host.send_bytes(&lines.receive().await).await;
+        }
+    };
+    let serve = async {
+        let mut served = Instant::now();
+        let mut blink = served;
+        let mut is_lit = false;
+        loop {
+            let is_quiet = served.elapsed() < Duration::from_micros(SERVE_EVERY.0);
+            if has_news.take() || !is_quiet || wires.news.is_low().unwrap_or(true) {
+                served = Instant::now();
+                let line = station.borrow_mut().poll(now());
+                match line {
+                    Ok(Some(line)) => {
+                        // A line that does not keep up loses a robot's frame, and the next one says more.
+                        let _ = lines.try_send(line);
+                        has_news.set(true);
+                    }
+                    Ok(None) => {}
+                    Err(fault) => break fault,
+                }
+            }
+            if blink.elapsed() >= BLINK {
+                blink = Instant::now();
+                is_lit = !is_lit;
+                let _ = alive.set_state(is_lit.into());
+                let counts = station.borrow().counts();
+                defmt::debug!(
+                    "sent {=u32}, unacknowledged {=u32}, late {=u32}",
+                    counts.sent,
+                    counts.unacknowledged,
+                    counts.late
+                );
+            }
+            Timer::after(LOOK).await;
+        }
+    };
+    // Only the chip's part ends.
+    match select3(take, give, serve).await {
+        Either3::First(fault) | Either3::Second(fault) | Either3::Third(fault) => fault,
+    }
+}
+
+/// The team of the host's first frame.
+async fn first_team(from_host: &mut UartReceiver<impl Read>) -> TeamId {
+    let mut lines = Lines::new();
+    loop {
+        for byte in from_host.bytes().await {
+            if let Some(frame) = lines.push(*byte)
+                && let [VERSION, team, _, ..] = frame[..]
+            {
+                return TeamId(team);
+            }
+        }
+    }
+}
+
+/// Robots' frames that wait for the line: a beacon of each robot of the largest team.
+const LINES: usize = 12;
+/// Half of the lamp's period of a second.
+const BLINK: Duration = Duration::from_millis(500);

@@ -1,0 +1,101 @@
+//! `nrf24`: a radio chip nRF24L01+ on any chip's SPI: a robot's radio, and a base station between the host's
+//! serial line and the air. Registers and protocol are those of the crate `nrf24`.
+
+use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use embassy_sync::channel::Channel as Queue;
+use embassy_time::{Duration, Instant, Timer};
+use embedded_hal::delay::DelayNs;
+use embedded_hal::digital::{InputPin, OutputPin};
+use embedded_hal::spi::SpiDevice;
+use nrf24::{Channel, Fault, Rate, Robot, SERVE_EVERY};
+use protocol::link::Packet;
+use protocol::{RobotId, TeamId};
+use runtime::ports::{RadioReceiver, RadioSender};
+
+/// A team's channel, so that base station and robots agree without being told: 2 Mbit/s at 2,402 MHz and
+/// 4 MHz more for each team number, which stays below 2,480 MHz.
+pub fn channel(team: TeamId) -> Channel {
+    Channel { team, megahertz: 2 + 4 * (team.0 % 20), rate: Rate::Mbps2 }
+}
+
+/// The time by embassy's clock.
+pub fn now() -> protocol::Instant {
+    protocol::Instant(Instant::now().as_micros())
+}
+
+/// Wires of a chip, besides its supply.
+#[derive(Debug)]
+pub struct ChipWires<S, E, N, D> {
+    /// Its bus, with its own select.
+    pub spi: S,
+    /// CE.
+    pub enable: E,
+    /// IRQ, low when there is something to do.
+    pub news: N,
+    /// Pauses of microseconds.
+    pub pause: D,
+}
+
+/// Frames that wait for the chip.
+static OUT: Queue<CriticalSectionRawMutex, Packet, 4> = Queue::new();
+
+/// A robot's radio: serves the chip, and receives.
+#[allow(missing_debug_implementations, reason = "the chip's driver has none")]
+pub struct ChipReceiver<S, E, N, D> {
+    robot: Robot<S, E, D>,
+    news: N,
+    served: Instant,
+}
+
+/// A robot's radio: sends.
+#[derive(Debug)]
+pub struct ChipSender(());
+
+/// Both directions of a robot's radio. Call once.
+pub fn robot<S: SpiDevice, E: OutputPin, N: InputPin, D: DelayNs>(
+    team: TeamId,
+    number: RobotId,
+    wires: ChipWires<S, E, N, D>,
+) -> Result<(ChipSender, ChipReceiver<S, E, N, D>), Fault> {
+    let robot = Robot::start(now(), channel(team), number, wires.spi, wires.enable, wires.pause)?;
+    Ok((ChipSender(()), ChipReceiver { robot, news: wires.news, served: Instant::now() }))
+}
+
+impl RadioSender for ChipSender {
+    async fn send(&mut self, packet: Packet) {
+        OUT.send(packet).await;
+    }
+}
+
+impl<S: SpiDevice, E: OutputPin, N: InputPin, D: DelayNs> RadioReceiver for ChipReceiver<S, E, N, D> {
+    async fn receive(&mut self) -> Packet {
+        loop {
+            let mut is_due = is_due(&mut self.news, self.served);
+            while let Ok(packet) = OUT.try_receive() {
+                // No frame, or no room: counted there, and a newer one follows.
+                let _ = self.robot.send(now(), &packet);
+                is_due = true;
+            }
+            if is_due {
+                self.served = Instant::now();
+                match self.robot.poll(now()) {
+                    Ok(Some(packet)) => return packet,
+                    Ok(None) => {}
+                    // The chip's supply dipped, or a wire is loose: its next turn starts it again.
+                    Err(_) => Timer::after(REST).await,
+                }
+            }
+            Timer::after(LOOK).await;
+        }
+    }
+}
+
+/// Whether the chip has to be served. A line that cannot be read is served as if it said something.
+fn is_due(news: &mut impl InputPin, served: Instant) -> bool {
+    news.is_low().unwrap_or(true) || served.elapsed() >= Duration::from_micros(SERVE_EVERY.0)
+}
+
+/// The wire IRQ is looked at this often: a fifth of the shortest exchange at 2 Mbit/s.
+pub const LOOK: Duration = Duration::from_micros(100);
+/// After a fault, before the chip is served again.
+pub const REST: Duration = Duration::from_millis(10);
