@@ -1,5 +1,5 @@
-//! `replayed`: comparison of a robot's journal with a native brain: the native brain gets what the robot's was
-//! given, at the same times, and its outputs are compared byte by byte.
+//! `replayed`: comparison of a robot's journal with a native brain: the native brain gets what the robot's
+//! was given, at the same times, and its outputs are compared byte by byte.
 
 use std::fmt;
 

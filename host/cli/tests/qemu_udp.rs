@@ -1,11 +1,11 @@
 //! `qemu_udp`: tests: six robots as firmware images with UDP for a radio play a match under `onetwo control
 //! --robots udp://`, in real time, and each decides as a native brain with the same inputs does.
 //!
-//! The built program four times: simulator, the images (`firmware run --udp`), their host, and the
-//! opponents' host with six native robots. Each image writes down what its brain took in and gave out; afterwards a
+//! The built program four times: simulator, the images (`firmware run --udp`), their host, and the opponents'
+//! host with six native robots. Each image writes down what its brain took in and gave out; afterwards a
 //! native brain gets the same at the same times, and every packet and every order is compared bit by bit. How
-//! well the match is played depends on the machine, equality does not: an emulator that gets too little of the
-//! processor loses ticks of its clock, so that the length is counted in the robots' own steps.
+//! well the match is played depends on the machine, equality does not: an emulator that gets too little of
+//! the processor loses ticks of its clock, so that the length is counted in the robots' own steps.
 //!
 //! `ONETWO_MATCH_SECONDS=60 cargo test --release -p onetwo --features qemu --test qemu_udp -- --nocapture`
 //! plays longer. Needs QEMU and a compiler for the target (feature `qemu`).
