@@ -348,12 +348,13 @@ const PURE: [&str; 12] = [
 /// Where boards lie; in [`LOWEST_FIRST`] all of them.
 const BOARDS: &str = "firmware/boards/";
 /// docs/architecture.md §1.2; a crate depends on earlier ones only.
-const LOWEST_FIRST: [&str; 33] = [
+const LOWEST_FIRST: [&str; 34] = [
+    "foreign",
+    "robots",
     "geometry",
     "rules",
     "protocol",
     "motion",
-    "foreign",
     "ssl",
     "casebase",
     "case-tools",

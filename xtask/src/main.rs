@@ -22,6 +22,7 @@ mod python;
 mod readme;
 mod release;
 mod report;
+mod robots;
 mod space;
 mod steps;
 mod tasks;

@@ -7,7 +7,7 @@
 use firmware_build::{Board, Install, boards};
 
 use crate::context::{Context, Failure, run};
-use crate::{deny, determinism, emulate, first_build, images, page, python, readme};
+use crate::{deny, determinism, emulate, first_build, images, page, python, readme, robots};
 
 /// One checked property.
 #[derive(Debug)]
@@ -19,7 +19,7 @@ pub(crate) struct Step {
     pub(crate) run: fn(&Context) -> Result<(), Failure>,
 }
 
-pub(crate) const STEPS: [Step; 16] = [
+pub(crate) const STEPS: [Step; 17] = [
     Step { name: "fmt", what: "sources are formatted as rustfmt.toml says", run: fmt },
     Step { name: "clippy", what: "the linter has no warning, on the PC", run: clippy },
     Step { name: "deny", what: deny::WHAT, run: deny::check },
@@ -48,6 +48,7 @@ pub(crate) const STEPS: [Step; 16] = [
     Step { name: "page", what: page::WHAT, run: page::check },
     Step { name: "python", what: python::WHAT, run: python::check },
     Step { name: "readme", what: readme::WHAT, run: readme::check },
+    Step { name: "robots", what: robots::WHAT, run: robots::check },
 ];
 
 fn fmt(context: &Context) -> Result<(), Failure> {
@@ -123,11 +124,12 @@ fn publish(context: &Context) -> Result<(), Failure> {
 }
 
 /// Libraries that may be published: packages without `publish = false`.
-const PUBLISHED: [&str; 15] = [
+const PUBLISHED: [&str; 16] = [
+    "onetwo-foreign",
+    "onetwo-robots",
     "onetwo-geometry",
     "onetwo-rules",
     "onetwo-protocol",
-    "onetwo-foreign",
     "onetwo-ssl",
     "onetwo-motion",
     "onetwo-casebase",

@@ -7,6 +7,7 @@ use embassy_time::{Duration, Timer};
 use embedded_io_async::{Read, Write};
 use protocol::link::Packet;
 use protocol::serial::{LINE_LEN_MAX, Lines, line};
+use rules::RobotSpec;
 use runtime::ports::{RadioReceiver, RadioSender};
 
 /// Receives frames from a line that buffers [`RING_LEN`] bytes or more, and decodes COBS lines.
@@ -98,8 +99,8 @@ pub fn noise() -> u32 {
 }
 
 static NOISE: AtomicU32 = AtomicU32::new(0);
-/// The host's usual rate for serial links (`host::config`), bit/s.
-pub const BAUD: u32 = 1_000_000;
+/// Rate of the line to the radio, bit/s.
+pub const BAUD: u32 = RobotSpec::OURS.parts.baud;
 /// Bytes received in 5 ms; half of it raises the interrupt. The brain's longest step takes a fifth of a
 /// millisecond at 400 MHz.
 pub const RING_LEN: usize = 512;

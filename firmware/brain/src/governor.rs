@@ -356,8 +356,8 @@ pub const BRAKE: f32 = RobotSpec::OURS.governor.brake;
 const BRAKE_TURN: f32 = RobotSpec::OURS.governor.brake_turn;
 /// A robot that turns this fast has gone mad, rad/s (TIGERs' robots use the same).
 const SPINNING: f32 = 30.0;
-/// The battery is too low to play, V: four lithium cells of 3.5 V, where teams change them.
-pub const BATTERY_LOW: f32 = 14.0;
+/// The battery is too low to play, V.
+pub const BATTERY_LOW: f32 = RobotSpec::OURS.battery.low;
 /// Minimum duration of a low battery: the voltage sinks briefly when the motors pull.
 const LOW_FOR: Duration = Duration::millis(1000);
 /// Reasons to brake that may last: no command, or the robot cannot go on.

@@ -27,6 +27,25 @@ pub fn build_program(root: &Path, program: Program) -> Result<PathBuf, BuildErro
     own.map_or_else(|| build_into(&target_dir(root), root, program), Ok)
 }
 
+/// As [`build_program`], for the robot of another description: `source` is a built-in name or an absolute
+/// path, as the environment variable [`ROBOT`] takes it, `name` the robot's. The image is copied to
+/// `robots/NAME` in the target directory, as the next build for another robot replaces the original.
+pub fn build_for_robot(
+    root: &Path,
+    program: Program,
+    source: &str,
+    name: &str,
+) -> Result<PathBuf, BuildError> {
+    let target = target_dir(root);
+    let built = build_as(&target, root, program, Some(source))?;
+    let image = target.join("robots").join(name).join(program.name());
+    let copied = image.parent().map_or(Ok(()), std::fs::create_dir_all);
+    copied
+        .and_then(|()| std::fs::copy(&built, &image))
+        .map_err(|error| BuildError::Copy { image: image.clone(), error })?;
+    Ok(image)
+}
+
 /// The image in the release archive of which `own` is the program.
 fn shipped(own: &Path, program: Program) -> Option<PathBuf> {
     // A link in a directory of programs leads to the archive.
@@ -36,6 +55,17 @@ fn shipped(own: &Path, program: Program) -> Option<PathBuf> {
 }
 
 fn build_into(target_dir: &Path, root: &Path, program: Program) -> Result<PathBuf, BuildError> {
+    build_as(target_dir, root, program, OWN_ROBOT)
+}
+
+/// Builds for the robot that `robot` names, the default where it is `None`: whatever this process was started
+/// with, an image is for the robot it is wanted for.
+fn build_as(
+    target_dir: &Path,
+    root: &Path,
+    program: Program,
+    robot: Option<&str>,
+) -> Result<PathBuf, BuildError> {
     let image = target_dir.join(program.target()).join(PROFILE).join(program.name());
     if let Some(why) = cannot_build(root) {
         return if image.is_file() { Ok(image) } else { Err(BuildError::NothingToBuild { why, image }) };
@@ -57,6 +87,10 @@ fn build_into(target_dir: &Path, root: &Path, program: Program) -> Result<PathBu
     if let Program::Board(board) | Program::More(board, _) = program {
         build.args(board.profile().into_iter().flatten());
     }
+    match robot.filter(|robot| !robot.is_empty()) {
+        Some(robot) => build.env(ROBOT, robot),
+        None => build.env_remove(ROBOT),
+    };
     run_cargo(&mut build)?;
     if image.is_file() { Ok(image) } else { Err(BuildError::NoImage { image }) }
 }
@@ -204,6 +238,13 @@ pub enum BuildError {
         /// Exit status of the command.
         status: ExitStatus,
     },
+    /// The image cannot be put where it is kept.
+    Copy {
+        /// Path at which it is kept.
+        image: PathBuf,
+        /// Error of the copy.
+        error: std::io::Error,
+    },
     /// cargo succeeded, but its output is not where it belongs.
     NoImage {
         /// Path at which it was expected.
@@ -225,6 +266,9 @@ impl fmt::Display for BuildError {
             Self::Failed { command, status } => {
                 write!(f, "the firmware does not build: `{command}` failed ({status})")
             }
+            Self::Copy { image, error } => {
+                write!(f, "the image cannot be copied to {}: {error}", image.display())
+            }
             Self::NoImage { image } => write!(f, "cargo left no image at {}", image.display()),
         }
     }
@@ -234,7 +278,7 @@ impl std::error::Error for BuildError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Self::Target(error) => Some(error),
-            Self::Cargo { error, .. } => Some(error),
+            Self::Cargo { error, .. } | Self::Copy { error, .. } => Some(error),
             _ => None,
         }
     }
@@ -273,6 +317,11 @@ fn cannot_build(root: &Path) -> Option<String> {
     output_of(Command::new(cargo_program()).current_dir(root).arg("--version")).err()
 }
 
+/// The environment variable that names the robot's description for a build (crate `robots`, which this crate
+/// does without).
+pub const ROBOT: &str = "ONETWO_ROBOT";
+/// The robot that this program itself is compiled for: images for it must be for the same.
+const OWN_ROBOT: Option<&str> = option_env!("ONETWO_ROBOT");
 /// Where a release archive has its images; its program is in `bin` beside `share`.
 pub const SHIPPED_IMAGES: &str = "share/onetwo/images";
 /// The board that QEMU emulates.

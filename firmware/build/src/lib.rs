@@ -28,7 +28,10 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 pub use board::{Board, BoardFirmware};
-pub use image::{BuildError, ImageBody, Program, SHIPPED_IMAGES, build_image, build_program, target_dir};
+pub use image::{
+    BuildError, ImageBody, Program, ROBOT, SHIPPED_IMAGES, build_for_robot, build_image, build_program,
+    target_dir,
+};
 pub use new_board::{CHIPS, ChipTemplate, NewBoard, NewBoardError, new_board};
 pub use qemu::{MACHINE, QEMU, QemuError, ensure_qemu};
 pub use target::{TargetError, ThumbToolchain, ensure_target, ensure_target_of};

@@ -430,8 +430,8 @@ const LISTENS: Duration = Duration::millis(2_000);
 const PERSON: Duration = Duration::millis(20_000);
 /// A ball is held for so long.
 const HELD: Duration = Duration::millis(300);
-/// Four full lithium cells of 4.25 V; from [`BATTERY_LOW`] on the governor lets the robot play.
-const BATTERY_FULL: f32 = 17.0;
+/// Full, V; from [`BATTERY_LOW`] on the governor lets the robot play.
+const BATTERY_FULL: f32 = RobotSpec::OURS.battery.full;
 /// A wheel stands below this speed, m/s: a count of the encoder in a window is a tenth of it.
 const STANDS: f32 = 0.02;
 /// The gyroscope's error at rest, rad/s: ten times the noise of the usual chips.

@@ -3,6 +3,7 @@
 //! control loop.
 
 use protocol::{Duration, Instant};
+use rules::{BreakBeamSpec, ImuSpec, RobotSpec};
 
 /// A wheel's encoder: a counter of 16 bits that wraps.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -158,22 +159,23 @@ const HARD: f32 = 0.8;
 const STUCK_FOR: Duration = Duration::millis(200);
 /// Counts by which a broken line, or a blocked wheel, may fluctuate.
 const SHAKES: u16 = 8;
-/// Turning rate of a standing gyroscope, rad/s: noise of 0.3° a second, and a margin.
-const UNREST: f32 = 0.1;
-/// A larger offset is invalid, rad/s: data sheets allow 1° a second.
-const ZERO_MAX: f32 = 0.05;
+const IMU: ImuSpec = RobotSpec::OURS.imu;
+/// Spread of a standing gyroscope's readings, rad/s.
+const UNREST: f32 = IMU.unrest;
+/// A larger offset is invalid, rad/s.
+const ZERO_MAX: f32 = IMU.offset_max;
 /// Number of readings for an offset: half a second of a millisecond each.
 const STILL_SAMPLES: u16 = 500;
 /// Upward part of the acceleration below which the robot lies, g: 60° from upright.
 const UPRIGHT: f32 = 0.5;
 /// Duration after which a kick or a bump is over.
 const TILT_FOR: Duration = Duration::millis(300);
-/// Share of the receiver's range by which the lamp lifts it, with a ball in the beam and without (to be
-/// measured on a robot).
-const LAMP_HIDDEN: f32 = 0.08;
-const LAMP_SEEN: f32 = 0.16;
+const BEAM: BreakBeamSpec = RobotSpec::OURS.break_beam;
+/// Share of the receiver's range by which the lamp lifts it, with a ball in the beam and without.
+const LAMP_HIDDEN: f32 = BEAM.hidden;
+const LAMP_SEEN: f32 = BEAM.seen;
 /// Daylight above which the lamp cannot be distinguished.
-const BLIND: f32 = 0.8;
+const BLIND: f32 = BEAM.blind;
 
 #[cfg(test)]
 mod tests {

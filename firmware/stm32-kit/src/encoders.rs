@@ -3,6 +3,7 @@
 use board_kit::wheels::EncoderCounts;
 use embassy_stm32::timer::GeneralInstance4Channel;
 use embassy_stm32::timer::qei::Qei;
+use rules::{RobotSpec, WheelSpec};
 use runtime::wheel::WHEELS;
 
 /// The four counters.
@@ -31,15 +32,11 @@ where
     C: GeneralInstance4Channel,
     D: GeneralInstance4Channel,
 {
-    const RIM_A_COUNT: f32 = 2.0 * core::f32::consts::PI * WHEEL_RADIUS / COUNTS_A_TURN;
+    const RIM_A_COUNT: f32 = 2.0 * core::f32::consts::PI * SPEC.radius / SPEC.counts_a_turn;
 
     fn counts(&self) -> [u16; WHEELS] {
         [self.front_right.count(), self.back_right.count(), self.back_left.count(), self.front_left.count()]
     }
 }
 
-/// Radius of a wheel, m: 27 mm, as most robots' (to be set for yours).
-const WHEEL_RADIUS: f32 = 0.027;
-/// Counts per turn of the wheel: an encoder of 1,024 lines on the wheel's own shaft (to be set for yours;
-/// negative where it counts down when the wheel turns the robot counter-clockwise).
-const COUNTS_A_TURN: f32 = 4096.0;
+const SPEC: WheelSpec = RobotSpec::OURS.wheels;

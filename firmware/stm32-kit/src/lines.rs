@@ -13,6 +13,7 @@ use embassy_stm32::usart::{self, RingBufferedUartRx, Uart, UartTx};
 use embassy_time::Delay;
 use embedded_hal_bus::spi::ExclusiveDevice;
 use protocol::serial::LINE_LEN_MAX;
+use rules::{ImuModel, RadioLine, RobotSpec};
 use static_cell::StaticCell;
 
 /// Sends by DMA.
@@ -84,3 +85,14 @@ pub fn chip(
 pub const CHIP_CLOCK: Hertz = Hertz(8_000_000);
 /// SPI clock; the sensor allows 24 MHz.
 pub const IMU_CLOCK: Hertz = Hertz(8_000_000);
+/// What these boards are wired for.
+const _: () = {
+    assert!(
+        matches!(RobotSpec::OURS.parts.imu, ImuModel::Icm42688P),
+        "this board has an ICM-42688-P; the robot's description has another `imu.model`"
+    );
+    assert!(
+        matches!(RobotSpec::OURS.parts.radio, RadioLine::Serial),
+        "this board's radio is on a serial line; the robot's description has another `radio.line`"
+    );
+};

@@ -8,6 +8,7 @@ use embassy_stm32::timer::low_level::{CountingMode, Timer};
 use embassy_stm32::timer::simple_pwm::{PwmPin, SimplePwm, SimplePwmChannel};
 use embassy_stm32::timer::{Ch1, Ch2, Ch3, Ch4, GeneralInstance1Channel, GeneralInstance4Channel};
 use embedded_hal::pwm::{ErrorType, SetDutyCycle};
+use rules::{MotorScheme, RobotSpec};
 use runtime::wheel::WHEELS;
 
 /// Drivers with PWM and direction on the timer `T`, and a dribbler with PWM alone.
@@ -118,5 +119,10 @@ impl<T: GeneralInstance1Channel> SetDutyCycle for OneChannelPwm<T> {
 
 /// Output compare mode, high until the compare value, then low (OC1M).
 const PWM_MODE1: u8 = 6;
+/// What these boards are wired for.
+const _: () = assert!(
+    matches!(RobotSpec::OURS.parts.motors, MotorScheme::PwmDirection),
+    "this board drives motors by PWM and direction; the robot's description has another `motors.scheme`"
+);
 /// Above the audible range; motor drivers with current control take 20 to 50 kHz.
 const PWM: Hertz = Hertz(25_000);

@@ -14,6 +14,7 @@ pub mod camera;
 mod collisions;
 pub mod compatibility;
 mod contact;
+mod described;
 mod dribbler;
 mod event;
 mod order;

@@ -6,7 +6,7 @@
 
 use std::sync::LazyLock;
 
-use rules::League;
+use rules::{League, RobotSpec};
 use serde::{Deserialize, Serialize};
 
 use crate::four_legged::parameters::{ParameterError, numbers, within};
@@ -240,14 +240,15 @@ pub struct Parameters {
 }
 
 impl Parameters {
-    /// A league's parameters; `None` for leagues without wheeled robots.
+    /// A league's parameters, with robots as this build describes them; `None` for leagues without wheeled
+    /// robots.
     pub fn of(league: League) -> Option<&'static Self> {
-        match league {
-            League::FourLegged => None,
-            League::Ssl2013 => Some(&SSL_2013),
-            League::DivisionB => Some(&DIVISION_B),
-            League::DivisionA => Some(&DIVISION_A),
-        }
+        Of::league(league).map(|of| &of.described)
+    }
+
+    /// The numbers of a league's own file, which is written for the reference robot.
+    pub fn of_file(league: League) -> Option<&'static Self> {
+        Of::league(league).map(|of| &of.file)
     }
 
     /// Reads and checks a file in the format of `data/division-b.toml`.
@@ -318,14 +319,30 @@ const SPEED_MAX: f32 = 10.0;
 /// Maximum speed of a ball, m/s.
 pub(super) const BALL_SPEED_MAX: f32 = 20.0;
 
-static SSL_2013: LazyLock<Parameters> = LazyLock::new(|| built_in(include_str!("../../data/ssl-2013.toml")));
-static DIVISION_B: LazyLock<Parameters> =
-    LazyLock::new(|| built_in(include_str!("../../data/division-b.toml")));
-static DIVISION_A: LazyLock<Parameters> =
-    LazyLock::new(|| built_in(include_str!("../../data/division-a.toml")));
+/// A league's file, and the same for the robot that is described.
+struct Of {
+    file: Parameters,
+    described: Parameters,
+}
 
-fn built_in(text: &str) -> Parameters {
-    Parameters::from_toml(text).expect("the built-in parameters are checked by a test")
+static SSL_2013: LazyLock<Of> = LazyLock::new(|| Of::new(include_str!("../../data/ssl-2013.toml")));
+static DIVISION_B: LazyLock<Of> = LazyLock::new(|| Of::new(include_str!("../../data/division-b.toml")));
+static DIVISION_A: LazyLock<Of> = LazyLock::new(|| Of::new(include_str!("../../data/division-a.toml")));
+
+impl Of {
+    fn new(text: &str) -> Self {
+        let file = Parameters::from_toml(text).expect("the built-in parameters are checked by a test");
+        Self { described: file.for_robot(&RobotSpec::OURS), file }
+    }
+
+    fn league(league: League) -> Option<&'static Self> {
+        match league {
+            League::FourLegged => None,
+            League::Ssl2013 => Some(&SSL_2013),
+            League::DivisionB => Some(&DIVISION_B),
+            League::DivisionA => Some(&DIVISION_A),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -339,7 +356,7 @@ mod tests {
             assert_eq!(parameters.check(), Ok(()));
             assert_eq!(parameters.ball.roll, league.ball().rolling_deceleration);
             assert_eq!(parameters.ball.radius, league.ball().radius);
-            assert_eq!(parameters.robot.radius, league.robot().radius);
+            assert!(parameters.robot.radius <= league.robot().radius);
         }
         assert!(Parameters::of(League::FourLegged).is_none());
     }

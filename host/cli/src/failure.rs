@@ -14,11 +14,13 @@ use casebase::SettingError;
 use foreign::printable;
 use hil_sim::SimulationError;
 
+mod description;
 mod firmware;
 mod network;
 mod recorded;
 mod survey;
 
+pub(crate) use description::DescriptionError;
 pub(crate) use firmware::FirmwareError;
 pub(crate) use network::NetworkError;
 pub(crate) use recorded::{Asked, Missing, RecordedError};
@@ -93,6 +95,8 @@ pub(crate) enum Failure {
     },
     /// No case can be drafted from the problem.
     Draft(DraftError),
+    /// A robot's description is wrong, or another than this program's.
+    Description(DescriptionError),
     /// A virtual robot cannot run.
     Robot(RobotError),
     /// Threads cannot be started.
@@ -157,6 +161,12 @@ impl From<FirmwareError> for Failure {
     }
 }
 
+impl From<DescriptionError> for Failure {
+    fn from(error: DescriptionError) -> Self {
+        Self::Description(error)
+    }
+}
+
 impl From<EvaluationError> for Failure {
     fn from(error: EvaluationError) -> Self {
         Self::Evaluation(error)
@@ -195,6 +205,7 @@ impl fmt::Display for Failure {
             Self::Survey(error) => write!(f, "{error}"),
             Self::Network(error) => write!(f, "{error}"),
             Self::Robot(error) => write!(f, "{error}"),
+            Self::Description(error) => write!(f, "{error}"),
             Self::Trial(error) => write!(f, "{error}"),
             Self::Firmware(error) => write!(f, "{error}"),
             Self::Game(error) => write!(f, "{error}"),

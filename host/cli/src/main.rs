@@ -21,6 +21,7 @@ mod picture;
 mod play;
 mod progress;
 mod replay;
+mod robot;
 mod setup;
 mod simulate;
 mod stop;
@@ -48,6 +49,7 @@ fn main() -> ExitCode {
         Verb::Control(args) => control::run(&args),
         Verb::Cases { verb } => cases::run(&verb),
         Verb::Firmware { verb } => firmware::run(&verb),
+        Verb::Robot { verb } => robot::run(&verb),
         Verb::VirtualRobot(args) => virtual_robot::run(&args),
         #[cfg(feature = "manuals")]
         Verb::Manuals(args) => manuals::run(&args, <Cli as clap::CommandFactory>::command()),

@@ -26,6 +26,7 @@ use crate::args::{DirectoryArgs, SettingsArgs};
 use crate::live::{CaseExplanations, End, MatchRunner, PageArgs, RestartWatcher, library_handle_of};
 use crate::output::{self, note};
 use crate::progress::Progress;
+use crate::robot;
 use crate::stop::{signal, stopped_by_hand};
 use crate::workbench::SharedLibrary;
 
@@ -84,6 +85,10 @@ pub(crate) struct PlayArgs {
     /// Print the report as JSON, and nothing else; implies --headless.
     #[arg(long)]
     json: bool,
+    /// The robot's description, a file or a built-in name: refused where it is not the one that this program
+    /// is built for (docs/robots.md).
+    #[arg(long, value_name = "FILE")]
+    robot: Option<String>,
     #[command(flatten)]
     directory: DirectoryArgs,
     #[command(flatten)]
@@ -120,6 +125,7 @@ pub(crate) fn team(label: &str) -> Result<Team, String> {
 
 /// `onetwo play`.
 pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
+    robot::ensure_built_for(args.robot.as_deref())?;
     let mut config = GameConfig::new(args.league, args.seed, args.duration).between(args.blue, args.yellow);
     config.world = args.world;
     let settings = args.settings.choose()?.settings;

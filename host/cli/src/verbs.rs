@@ -10,6 +10,7 @@ use crate::firmware::FirmwareVerb;
 use crate::output::ColorChoice;
 use crate::play::PlayArgs;
 use crate::replay::ReplayArgs;
+use crate::robot::RobotVerb;
 use crate::simulate::SimulateArgs;
 use crate::trial::TrialArgs;
 use crate::virtual_robot::VirtualRobotArgs;
@@ -51,6 +52,12 @@ pub(crate) enum Verb {
     Firmware {
         #[command(subcommand)]
         verb: FirmwareVerb,
+    },
+    /// A robot's description, robot.toml: check it, show it with what follows from it, fit it to
+    /// measurements.
+    Robot {
+        #[command(subcommand)]
+        verb: RobotVerb,
     },
     /// One robot's brain as a process, in any simulator of the league; `control` starts them.
     #[command(hide = true)]

@@ -31,6 +31,7 @@ pub use game::{Colour, Phase, RuleRole, Side};
 pub use league::{BallSpec, Footprint, League};
 pub use limits::Limits;
 pub use robot::{
-    AssumedSpec, DribblerSpec, DriveSpec, GovernorSpec, HullSpec, KickerSpec, RobotSpec, TurnSpec,
-    TypicalSpec, WheelSpec,
+    AssumedSpec, BatterySpec, BreakBeamSpec, DribblerSpec, DriveSpec, GovernorSpec, HardwareSpec, HullSpec,
+    ImuModel, ImuSpec, KickerSpec, MotorScheme, PartsSpec, RadioLine, RobotSpec, TurnSpec, TypicalSpec,
+    WheelSpec,
 };

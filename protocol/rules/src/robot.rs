@@ -2,17 +2,19 @@
 //! SI units, body frame.
 //!
 //! Read by the planner and the skills (`brain`), the governor, the wheel and kicker control (`runtime`), the
-//! host's passes and roles, and the robot that plays in another team's simulator. A team with other robots
-//! changes [`RobotSpec::OURS`] and rebuilds: constants cost the robot neither flash nor time. The simulator's
-//! robots have numbers of their own (`hil-sim/data/division-b.toml`), as physics must not agree with the plan
-//! by construction; `tests/tests/robot_spec.rs` compares the two.
+//! boards, the host's passes and roles, the page, and the simulator (what it shares, and what not:
+//! docs/robots.md). The numbers are those of a `robot.toml`, checked by crate `robots` and turned into
+//! constants when this crate is built: they cost the robot neither flash nor time. `ONETWO_ROBOT` names the
+//! description; `tests/tests/robot_spec.rs` compares it with the simulator's robots.
 
 use crate::League;
-use crate::limits::{BALL_RADIUS, ROBOT_RADIUS};
+use crate::limits::BALL_RADIUS;
 
 /// A robot on wheels, and what is assumed of others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RobotSpec {
+    /// Its name.
+    pub name: &'static str,
     /// Its shape, seen from above.
     pub hull: HullSpec,
     /// What a motion is planned with: below what the wheels hold, so that a plan can be kept.
@@ -35,6 +37,16 @@ pub struct RobotSpec {
     pub dribbler: DribblerSpec,
     /// Its wheels and their speed control.
     pub wheels: WheelSpec,
+    /// Its battery.
+    pub battery: BatterySpec,
+    /// The light barrier at the dribbler.
+    pub break_beam: BreakBeamSpec,
+    /// Its gyroscope.
+    pub imu: ImuSpec,
+    /// What its board must be wired for.
+    pub parts: PartsSpec,
+    /// What it can do.
+    pub hardware: HardwareSpec,
 }
 
 /// A robot's shape, seen from above.
@@ -162,101 +174,148 @@ pub struct WheelSpec {
     pub degrees: [f32; 4],
     /// From the robot's centre to a wheel, m.
     pub distance: f32,
+    /// Radius of a wheel, m.
+    pub radius: f32,
+    /// Counts of the encoder for a turn of the wheel; negative where it counts down when the wheel turns the
+    /// robot counter-clockwise.
+    pub counts_a_turn: f32,
     /// Rim speed at full voltage without load, m/s.
     pub free_speed: f32,
+    /// Fastest rim that is ordered, m/s.
+    pub rim_max: f32,
     /// Duty (share of full voltage) for an error of 1 m/s.
     pub proportional: f32,
     /// Duty that an error of 1 m/s adds in a second.
     pub integral: f32,
 }
 
+/// A battery's voltages.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BatterySpec {
+    /// The robot stops to play below it, V.
+    pub low: f32,
+    /// More is no battery but a wrong divider, V.
+    pub full: f32,
+}
+
+/// A break-beam sensor with a lamp that blinks: shares of the receiver's range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BreakBeamSpec {
+    /// The lamp lifts the receiver by less: a ball hides it.
+    pub hidden: f32,
+    /// The lamp lifts it by more: no ball.
+    pub seen: f32,
+    /// Daylight above which nothing is measured.
+    pub blind: f32,
+}
+
+/// A gyroscope at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImuSpec {
+    /// Spread of its readings, rad/s.
+    pub unrest: f32,
+    /// Largest offset that is believed, rad/s.
+    pub offset_max: f32,
+}
+
+/// Parts that a board is wired for, or is not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PartsSpec {
+    /// How its motors are driven.
+    pub motors: MotorScheme,
+    /// Its gyroscope.
+    pub imu: ImuModel,
+    /// Its radio.
+    pub radio: RadioLine,
+    /// Rate of the serial line to the radio, 1/s.
+    pub baud: u32,
+}
+
+/// How motors are driven (docs/boards.md).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MotorScheme {
+    /// A PWM and a direction for each.
+    PwmDirection,
+    /// Three PWMs and hall sensors for each.
+    ThreePwm,
+    /// Drivers on a line, with a control loop of their own.
+    Smart,
+}
+
+/// Gyroscopes with a driver.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ImuModel {
+    /// ICM-42688-P.
+    Icm42688P,
+    /// None: the robot relies on vision.
+    None,
+}
+
+/// A board's end of the radio.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RadioLine {
+    /// A modem on a serial line.
+    Serial,
+    /// A chip nRF24L01+.
+    Nrf24,
+}
+
+/// What the robot can do, measured, and what only the simulator asks for; plans stay below it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HardwareSpec {
+    /// Height of the hull, m.
+    pub height: f32,
+    /// Half the width in which the roller holds a ball, m.
+    pub mouth: f32,
+    /// Mass of the whole robot, kg.
+    pub mass: f32,
+    /// Greatest speed of the centre, m/s.
+    pub speed: f32,
+    /// Greatest turning rate, rad/s.
+    pub turn_speed: f32,
+    /// What the wheels hold, speeding up ahead, m/s².
+    pub forward: f32,
+    /// The same to the side, m/s².
+    pub side: f32,
+    /// The same, braking in any direction, m/s².
+    pub brake: f32,
+    /// Speeding up a turn, rad/s².
+    pub turn: f32,
+    /// Of a free wheel from standing, m/s².
+    pub rim_acceleration: f32,
+    /// Strongest flat kick, m/s.
+    pub flat: f32,
+    /// Strongest chip along its path, m/s.
+    pub chip: f32,
+    /// From kick to kick, s.
+    pub recharge: f32,
+    /// What the roller pulls a ball with at full speed, m/s².
+    pub pull: f32,
+}
+
 impl RobotSpec {
-    /// The specification of our robots, each number with its source.
-    pub const OURS: Self = Self {
-        hull: HullSpec {
-            // The rules' distances assume it.
-            radius: ROBOT_RADIUS,
-            // Usual for robots 180 mm wide.
-            front: 0.073,
-            // Paper 2's robots; docs/papers.md D2.
-            opening: 0.01,
-        },
-        // Wheels hold 3.5 to 5.5 m/s² in the simulator; 3 m/s is what the league's 2013 robots exceed (paper
-        // 2 §1).
-        plan: DriveSpec { speed: 3.0, acceleration: 3.0, braking: 3.5 },
-        // The dribbler pulls with some 6 m/s² and holds aside with 4: it brakes a ball that it caught on the
-        // run before the rules' metre is over (2.2 m/s in 0.97 m), and backs up no harder than the roller
-        // follows.
-        plan_holding: DriveSpec { speed: 1.5, acceleration: 1.8, braking: 2.5 },
-        // Estimates; a simulated robot turns with 50 rad/s² and 15 rad/s at most.
-        turn: TurnSpec { rate: 8.0, acceleration: 30.0 },
-        // ω² · 95 mm stays below 1.2 m/s².
-        turn_holding: TurnSpec { rate: 3.5, acceleration: 12.0 },
-        // 0.4 m/s² along the roller: there is time.
-        turn_placing: TurnSpec { rate: 1.5, acceleration: 4.0 },
-        governor: GovernorSpec {
-            // An estimate: the fastest teams publish 4.
-            speed: 4.0,
-            // An estimate.
-            turn: 20.0,
-            // What wheels hold: the simulator's 5.5, less a tenth.
-            brake: 5.0,
-            // An estimate.
-            brake_turn: 40.0,
-        },
-        assumed: AssumedSpec {
-            // The league's 2013 robots exceed 3 m/s (paper 2 §1); no paper prints accelerations, 3.5 m/s²
-            // lies between published teams' 2 and 4.5. Opponents may have it; our own robots plan with
-            // `plan`.
-            pass: DriveSpec { speed: 3.0, acceleration: 3.5, braking: 3.5 },
-            // ER-Force's simulated robot of 2020 turns with 6 rad/s; half its 60 rad/s², which no wheel on a
-            // field keeps.
-            turn: TurnSpec { rate: 6.0, acceleration: 30.0 },
-            // Of the 3 m/s and more that teams drive, what is left on average; the weakest of the 3 to 4.7
-            // m/s² they publish.
-            role: TypicalSpec { speed: 2.0, acceleration: 3.0 },
-            // Within the 3 to 4.7 m/s² that teams publish; a defence assumes a strong opponent.
-            defence_acceleration: 4.0,
-            // The weakest of the same: from a standing start to the side, where wheels stand steeper
-            // (estimate).
-            blocker_acceleration: 3.0,
-            // A kicker may err by 4 % (estimate).
-            kick_share: 0.96,
-        },
-        kicker: KickerSpec {
-            // The rules' 6.5 less 11 %: a kicker may give 10 % more than it is ordered (the worlds' spread;
-            // docs/fields.md).
-            fastest: 5.8,
-            // The same of 8 (paper 2 §1).
-            fastest_2013: 7.1,
-            // Estimates that stand in for a robot's own calibration.
-            flat_pulses: &[(2.0, 1_500), (4.0, 2_600), (6.5, 4_500)],
-            chip_pulses: &[(2.0, 2_000), (4.0, 3_800), (6.0, 6_000)],
-            // Usual; ER-Force's simulator knows 0° and 45° only.
-            chip_degrees: 45.0,
-            chip_slope: 1.0,
-            // Teams use 180 to 240.
-            full_volts: 200.0,
-            // Half of the 60 V of direct current that count as extra-low voltage.
-            empty_volts: 30.0,
-            // The plunger must come back (estimate).
-            pause_ms: 500,
-        },
-        // What ours and most simulated robots turn at; ER-Force's is full at 1432.
-        dribbler: DribblerSpec { full_rpm: 1000.0 },
-        wheels: WheelSpec {
-            // Usual: 60° in front make room for the dribbler, 135° behind; grSim's default.
-            degrees: [-60.0, -135.0, 135.0, 60.0],
-            // Within the hull of 90 mm (estimate).
-            distance: 0.081,
-            // The simulator's; to be measured on a robot.
-            free_speed: 6.0,
-            // A tenth of full voltage for 0.25 m/s (an estimate, to be tuned on a robot).
-            proportional: 0.4,
-            // An estimate, likewise.
-            integral: 6.0,
-        },
+    /// Our robots, as the description says that this build is for: `robots/ours.toml`, or what `ONETWO_ROBOT`
+    /// named.
+    pub const OURS: Self = described::OURS;
+    /// The default description, whatever this build is for: the robot that the simulator's worlds are
+    /// written for.
+    pub const REFERENCE: Self = described::REFERENCE;
+    /// The text of the description that this build is for; its numbers are [`Self::OURS`].
+    pub const TEXT: &str = described::TEXT;
+    /// Where that text came from: a built-in name, or a path from the workspace's root.
+    pub const SOURCE: &str = described::SOURCE;
+}
+
+/// Written by the build script.
+#[allow(clippy::excessive_precision, clippy::approx_constant, reason = "numbers as the description has them")]
+mod described {
+    use super::{
+        AssumedSpec, BatterySpec, BreakBeamSpec, DribblerSpec, DriveSpec, GovernorSpec, HardwareSpec,
+        HullSpec, ImuModel, ImuSpec, KickerSpec, MotorScheme, PartsSpec, RadioLine, RobotSpec, TurnSpec,
+        TypicalSpec, WheelSpec,
     };
+
+    include!(concat!(env!("OUT_DIR"), "/robot.rs"));
 }
 
 #[cfg(test)]

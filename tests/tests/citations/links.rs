@@ -115,8 +115,10 @@ pub(crate) fn opens_with_a_summary(text: &str) -> bool {
 }
 
 /// The repository's top directories, as starts of file paths.
-const TOP: [&str; 10] =
-    ["casebase", "docs", "firmware", "hil-sim", "host", "protocol", "tests", "xtask", ".ci", ".github"];
+const TOP: [&str; 11] = [
+    "casebase", "docs", "firmware", "hil-sim", "host", "protocol", "robots", "tests", "xtask", ".ci",
+    ".github",
+];
 
 /// A crate's directories, as starts of file paths in its README.
 const OWN: [&str; 9] = ["bench", "benches", "data", "drawing", "examples", "library", "src", "tools", "web"];

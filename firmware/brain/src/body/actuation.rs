@@ -5,7 +5,7 @@ use geometry::Twist;
 use motion::omni::Omni;
 use protocol::Instant;
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
-use rules::League;
+use rules::{League, RobotSpec};
 
 use crate::belief::Belief;
 use crate::body::kind::{self, BodyKind};
@@ -141,5 +141,5 @@ impl Actuation {
 
 /// 20 beacons a second, in steps of 10 ms (docs/architecture.md §2.3, §5.1).
 const BEACON_STEPS: u8 = 5;
-/// Largest rim speed ordered, m/s: below what wheels run free (the simulator's 6).
-const RIM_MAX: f32 = 5.0;
+/// Largest rim speed ordered, m/s: below what wheels run free.
+const RIM_MAX: f32 = RobotSpec::OURS.wheels.rim_max;

@@ -128,12 +128,14 @@ mod tests {
     fn every_profile_loads_in_every_league_and_changes_something() {
         for named in NamedWorld::ALL {
             for league in LEAGUES {
-                let of_league = Parameters::of(league).unwrap();
+                let of_league = Parameters::of_file(league).unwrap();
                 let model = WorldModel::from_toml(named.label(), named.text(), of_league).unwrap();
                 assert_ne!(
                     WorldModel { name: "nominal".into(), ..model.clone() },
                     WorldModel::nominal(of_league.clone())
                 );
+                let described = model.parameters.for_robot(&rules::RobotSpec::OURS);
+                let model = WorldModel { parameters: described, ..model };
                 assert_eq!(WorldModel::of(league, &WorldChoice::Named(named)), Some(model));
             }
             assert_eq!(WorldModel::of(League::FourLegged, &WorldChoice::Named(named)), None);

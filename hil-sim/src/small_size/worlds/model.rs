@@ -1,7 +1,7 @@
 //! `model`: one world of the family: its components, and the league's own values.
 
 use protocol::Who;
-use rules::League;
+use rules::{League, RobotSpec};
 use serde::{Deserialize, Serialize};
 
 use super::WorldChoice;
@@ -77,16 +77,18 @@ pub struct VisionModel {
 }
 
 impl WorldModel {
-    /// That world in that league; `None` for leagues without wheeled robots.
+    /// That world in that league, with robots as this build describes them; `None` for leagues without
+    /// wheeled robots.
     pub fn of(league: League, choice: &WorldChoice) -> Option<Self> {
-        let parameters = Parameters::of(league)?;
-        let model = match choice {
+        let parameters = Parameters::of_file(league)?;
+        let mut model = match choice {
             WorldChoice::Nominal => Self::nominal(parameters.clone()),
             WorldChoice::Named(named) => {
                 Self::from_toml(named.label(), named.text(), parameters).expect("a test reads every profile")
             }
             WorldChoice::Random(seed) => Self::random(parameters, *seed),
         };
+        model.parameters = model.parameters.for_robot(&RobotSpec::OURS);
         Some(Self { name: choice.to_string(), ..model })
     }
 

@@ -37,6 +37,7 @@ use crate::args::{DirectoryArgs, SettingsArgs};
 use crate::failure::NetworkError;
 use crate::live::{PageArgs, library_handle_of};
 use crate::output::{note, print_text, printable_path};
+use crate::robot::ensure_built_for;
 use crate::simulate::seconds;
 
 /// Our team, and the addresses to receive from and send to. What is not given here is taken from the file,
@@ -127,6 +128,10 @@ pub(crate) struct ControlArgs {
     /// Record the match as NAME.log.gz (for the league's tools) and NAME.trace (for `onetwo replay`).
     #[arg(short, long, value_name = "NAME")]
     record: Option<PathBuf>,
+    /// The robot's description, a file or a built-in name: refused where it is not the one that this program
+    /// is built for (docs/robots.md).
+    #[arg(long, value_name = "FILE")]
+    robot: Option<String>,
     /// Run without the page.
     #[arg(long)]
     headless: bool,
@@ -157,6 +162,7 @@ pub(crate) struct Ids(Vec<RobotId>);
 
 /// `onetwo control`.
 pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
+    ensure_built_for(args.robot.as_deref())?;
     let config = configure(args)?;
     if args.print_config {
         print_text(&config.to_toml())?;

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use clap::Args;
-use firmware_build::{Board, Program, boards};
+use firmware_build::{Board, Program, boards, build_for_robot, workspace_root};
 
 use super::{build, failed};
 use crate::Failure;
@@ -21,6 +21,10 @@ pub(crate) struct FlashArgs {
     /// The board, by its directory's name: its image is built, and flashed.
     #[arg(long, value_name = "BOARD", default_value = "stm32", value_parser = real)]
     board: &'static Board,
+    /// The robot's description, a file or a built-in name (docs/robots.md); by default what this program is
+    /// built for.
+    #[arg(long, value_name = "FILE", conflicts_with = "elf")]
+    robot: Option<String>,
     /// The firmware image: any other ELF file.
     #[arg(long, value_name = "FILE", requires = "chip")]
     elf: Option<PathBuf>,
@@ -47,7 +51,14 @@ pub(super) fn run(args: &FlashArgs) -> Result<(), Failure> {
     }
     let image = match &args.elf {
         Some(file) => file.clone(),
-        None => build(Program::Board(args.board))?,
+        None => match &args.robot {
+            None => build(Program::Board(args.board))?,
+            Some(robot) => {
+                let (source, name) = crate::robot::to_build(robot)?;
+                build_for_robot(&workspace_root(), Program::Board(args.board), &source, &name)
+                    .map_err(failed)?
+            }
+        },
     };
     for description in downloads(args, &image) {
         let line = format!("{PROGRAM} {}", description.join(" "));

@@ -20,7 +20,7 @@ use std::process::ExitCode;
 
 use clap::{Args, Subcommand};
 use firmware_build::inspect::{Image, Sizes};
-use firmware_build::{ImageBody, Program, boards, build_program, workspace_root};
+use firmware_build::{ImageBody, Program, boards, build_for_robot, build_program, workspace_root};
 
 use crate::Failure;
 use crate::failure::FirmwareError;
@@ -30,7 +30,7 @@ use crate::output::print_text;
 #[derive(Debug, Subcommand)]
 pub(crate) enum FirmwareVerb {
     /// Build firmware images and print their paths.
-    Build(ImagesArgs),
+    Build(BuildArgs),
     /// Measure firmware: flash and RAM by crate and symbol, stack and worst step under QEMU, and shares of
     /// robots' computers.
     Size(size::SizeArgs),
@@ -54,6 +54,17 @@ pub(crate) struct ImagesArgs {
     /// all of them by default.
     #[arg(long, value_parser = image)]
     image: Option<Program>,
+}
+
+/// Which firmware images, and for which robot.
+#[derive(Debug, Args)]
+pub(crate) struct BuildArgs {
+    #[command(flatten)]
+    images: ImagesArgs,
+    /// The robot's description, a file or a built-in name (docs/robots.md); by default what this program is
+    /// built for.
+    #[arg(long, value_name = "FILE")]
+    robot: Option<String>,
 }
 
 /// The firmware image of that name: `legged` and `omni`, which the simulator steps tick by tick, `free`,
@@ -91,8 +102,14 @@ pub(crate) fn run(verb: &FirmwareVerb) -> Result<ExitCode, Failure> {
     match verb {
         FirmwareVerb::Build(args) => {
             let mut text = String::new();
-            for program in args.programs() {
-                let path = build(program)?;
+            let robot = args.robot.as_deref().map(crate::robot::to_build).transpose()?;
+            for program in args.images.programs() {
+                let path = match &robot {
+                    None => build(program)?,
+                    Some((source, name)) => {
+                        build_for_robot(&workspace_root(), program, source, name).map_err(failed)?
+                    }
+                };
                 let sizes = sizes_of(&path)?;
                 let _ = writeln!(text, "{}: {} B flash, {} B RAM", path.display(), sizes.flash, sizes.ram);
             }

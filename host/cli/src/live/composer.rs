@@ -16,8 +16,8 @@ use page::{
     milli,
 };
 use protocol::Instant;
-use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
-use rules::{AreaForm, Colour, FieldSpec};
+use rules::limits::BALL_RADIUS;
+use rules::{AreaForm, Colour, FieldSpec, RobotSpec};
 
 use super::cameras::Cameras;
 use super::cycles::TeamCycles;
@@ -278,7 +278,7 @@ pub(crate) fn field_of(field: &FieldSpec) -> Field {
         }),
         area_radius: (field.penalty_form == AreaForm::QuarterCircles).then(|| milli(field.penalty_depth)),
         centre_radius: milli(field.center_radius),
-        robot_radius: milli(ROBOT_RADIUS),
+        robot_radius: milli(RobotSpec::OURS.hull.radius),
         ball_radius: milli(BALL_RADIUS),
     }
 }
@@ -337,14 +337,13 @@ fn sheet(game: &Game, referee: Option<&InternalReferee>, seen: &Possession) -> M
 
 /// The true state of everything, to compare with what is believed.
 fn truth(world: &Truth) -> Layer {
-    let radius = milli(ROBOT_RADIUS);
     let mut shapes: Vec<Shape> = world
         .robots()
         .iter()
         .filter(|robot| robot.present)
         .map(|robot| Shape::Ellipse {
             at: [milli(robot.pose.position.x()), milli(robot.pose.position.y())],
-            radii: [radius; 2],
+            radii: [milli(robot.body.radius); 2],
             tone: layers::tone(robot.who.colour),
             fill: false,
             note: format!("{} {}, as it truly stands", robot.who.colour.label(), robot.who.id.number()),

@@ -28,6 +28,7 @@ use ssl::net::addresses;
 use crate::Failure;
 use crate::failure::NetworkError;
 use crate::replay::league;
+use crate::robot;
 
 /// What is simulated, and the addresses to receive from and send to.
 #[derive(Debug, Args)]
@@ -94,6 +95,10 @@ pub(crate) struct SimulateArgs {
     /// Send the output of our own tracker, too: the league's address is 224.5.23.2:10010.
     #[arg(long, value_name = "ADDRESS:PORT")]
     tracker: Option<SocketAddr>,
+    /// The robot's description, a file or a built-in name: refused where it is not the one that this program
+    /// is built for (docs/robots.md).
+    #[arg(long, value_name = "FILE")]
+    robot: Option<String>,
     /// Run without the page.
     #[arg(long)]
     headless: bool,
@@ -139,6 +144,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<ExitCode, Failure> {
     if args.referee == RefereeKind::Internal && (args.assistant || args.autoref.is_some()) {
         return Err(NetworkError::InternalReferee.into());
     }
+    robot::ensure_built_for(args.robot.as_deref())?;
     let unix = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     let profile = match args.profile {
         ProfileLabel::Ours => Profile::Ours,
