@@ -4,8 +4,20 @@ use crate::description::Description;
 use crate::finding::{Finding, Severity};
 use crate::wheels::condition;
 
+impl Description {
+    /// Reads `text`; `file` names it in findings. The error is every fault that was found, in the file's
+    /// order: first those of single values, and where there is none those of values against each other.
+    pub fn read(file: &str, text: &str) -> Result<Self, Vec<Finding>> {
+        let read = Self::parse(file, text)?;
+        let (mut errors, warnings): (Vec<_>, Vec<_>) =
+            findings(&read).into_iter().partition(|finding| finding.severity == Severity::Error);
+        errors.sort_by_key(|finding| finding.line);
+        if errors.is_empty() { Ok(read.doubted(warnings)) } else { Err(errors) }
+    }
+}
+
 /// Every contradiction, and every doubt.
-pub(crate) fn findings(of: &Description) -> Vec<Finding> {
+fn findings(of: &Description) -> Vec<Finding> {
     let mut list = List { of, findings: Vec::new() };
     list.body();
     list.wheels();

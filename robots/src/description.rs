@@ -6,7 +6,6 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::checks;
 use crate::finding::{Finding, Severity};
 use crate::keys::{KEYS, Key, Kind};
 
@@ -35,22 +34,23 @@ pub struct Description {
 }
 
 impl Description {
-    /// Reads `text`; `file` names it in findings. The error is every fault that was found, in the file's order.
-    pub fn read(file: &str, text: &str) -> Result<Self, Vec<Finding>> {
+    /// Reads `text`, without holding values against each other; the error is every fault that was found, in
+    /// the file's order.
+    pub(crate) fn parse(file: &str, text: &str) -> Result<Self, Vec<Finding>> {
         let mut reader = Reader { file, text, findings: Vec::new() };
-        let values = reader.values();
-        let faulty = reader.findings.iter().any(|finding| finding.severity == Severity::Error);
-        let complete: Option<Vec<_>> = values.into_iter().collect();
-        let Some(values) = complete.filter(|_| !faulty) else {
-            reader.findings.sort_by_key(|finding| finding.line);
-            return Err(reader.findings);
-        };
-        let mut read = Self { file: file.to_owned(), values, warnings: Vec::new() };
-        let (mut errors, warnings): (Vec<_>, Vec<_>) =
-            checks::findings(&read).into_iter().partition(|finding| finding.severity == Severity::Error);
-        errors.sort_by_key(|finding| finding.line);
-        read.warnings = warnings;
-        if errors.is_empty() { Ok(read) } else { Err(errors) }
+        let values: Option<Vec<_>> = reader.values().into_iter().collect();
+        match values.filter(|_| reader.findings.is_empty()) {
+            Some(values) => Ok(Self { file: file.to_owned(), values, warnings: Vec::new() }),
+            None => {
+                reader.findings.sort_by_key(|finding| finding.line);
+                Err(reader.findings)
+            }
+        }
+    }
+
+    /// The same with doubts about it.
+    pub(crate) fn doubted(self, warnings: Vec<Finding>) -> Self {
+        Self { warnings, ..self }
     }
 
     /// Its `name`.

@@ -2,8 +2,8 @@
 //! of them against each other. SI units, degrees where a name says so.
 //!
 //! [`KEYS`] lists every key with unit, range and meaning; [`Description::read`] gives the values, or
-//! [`Finding`]s with what is wrong, in which line, and how to mend it. Crate `rules` reads the description that
-//! `ONETWO_ROBOT` names ([`chosen`]) when it is built, and the program checks files with the same code.
+//! [`Finding`]s with what is wrong, in which line, and how to mend it. Crate `rules` reads the description
+//! that `ONETWO_ROBOT` names ([`chosen`]) when it is built, and the program checks files with the same code.
 //!
 //! **Invariants.** No file panics; a description that was read has every key, each within its range.
 #![cfg_attr(doctest, doc = include_str!("../README.md"))]

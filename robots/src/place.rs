@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use crate::built_in;
 
-/// The environment variable with the description that is compiled: a built-in name, or a file. A relative path
-/// starts at the workspace's root. Unset or empty: `ours`.
+/// The environment variable with the description that is compiled: a built-in name, or a file. A relative
+/// path starts at the workspace's root. Unset or empty: `ours`.
 pub const VARIABLE: &str = "ONETWO_ROBOT";
-/// Largest description that is read, bytes: ours has 9 kB.
+/// Largest description that is read, bytes: ours has 5 kB.
 const LEN_MAX: u64 = 1 << 20;
 
 /// A description by its origin, not yet checked.

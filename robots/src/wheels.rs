@@ -1,8 +1,8 @@
 //! `wheels`: how evenly four wheels drive a body in every direction.
 
 /// Condition number of the matrix that gives the rims' speeds for a motion (ahead, to the left, turning, each
-/// as a speed at the wheels' circle): largest over smallest share of the rims' speed that reaches the body.
-/// 1 is even; infinite where a motion moves no wheel. `degrees` are the wheels' places, counter-clockwise from
+/// as a speed at the wheels' circle): most over least that the rims turn for motions of the same size. 1 is
+/// even; infinite where a motion turns no wheel. `degrees` are the wheels' places, counter-clockwise from
 /// ahead.
 pub fn condition(degrees: [f32; 4]) -> f64 {
     // JᵀJ of rows (−sin α, cos α, 1).

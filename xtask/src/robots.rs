@@ -1,4 +1,5 @@
-//! `robots`: the other robots that come with the project, each built, simulated and emulated (docs/robots.md).
+//! `robots`: the other robots that come with the project, each built, simulated and emulated
+//! (docs/robots.md).
 //!
 //! A program is for one robot: each is a build of its own, in the same target directory. The step is the last
 //! one, as the next build for ours compiles again.

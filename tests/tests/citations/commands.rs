@@ -35,6 +35,7 @@ impl Known {
             ("cases", "host/cli/src/cases/mod.rs", "CasesVerb"),
             ("firmware", "host/cli/src/firmware/mod.rs", "FirmwareVerb"),
             ("evaluate", "host/cli/src/evaluate/mod.rs", "EvaluateVerb"),
+            ("robot", "host/cli/src/robot/mod.rs", "RobotVerb"),
         ] {
             verbs.insert(verb.to_owned(), below(path, name));
         }

@@ -1,5 +1,5 @@
-//! `onetwo robot calibrate`: measured kicks and drives into a description. Comments and order of the file stay;
-//! what results is checked before it is written.
+//! `onetwo robot calibrate`: measured kicks and drives into a description. Comments and order of the file
+//! stay; what results is checked before it is written.
 
 use std::fmt::Write as _;
 use std::fs;

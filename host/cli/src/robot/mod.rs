@@ -1,5 +1,5 @@
-//! `onetwo robot`: work with the description of a robot, `robot.toml`. Check it, show it with what follows from
-//! it, fit it to measurements (docs/robots.md). Runs on a PC.
+//! `onetwo robot`: work with the description of a robot, `robot.toml`. Check it, show it with what follows
+//! from it, fit it to measurements (docs/robots.md). Runs on a PC.
 
 mod calibrate;
 mod derived;
