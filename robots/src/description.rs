@@ -39,13 +39,11 @@ impl Description {
     pub(crate) fn parse(file: &str, text: &str) -> Result<Self, Vec<Finding>> {
         let mut reader = Reader { file, text, findings: Vec::new() };
         let values: Option<Vec<_>> = reader.values().into_iter().collect();
-        match values.filter(|_| reader.findings.is_empty()) {
-            Some(values) => Ok(Self { file: file.to_owned(), values, warnings: Vec::new() }),
-            None => {
-                reader.findings.sort_by_key(|finding| finding.line);
-                Err(reader.findings)
-            }
-        }
+        let Some(values) = values.filter(|_| reader.findings.is_empty()) else {
+            reader.findings.sort_by_key(|finding| finding.line);
+            return Err(reader.findings);
+        };
+        Ok(Self { file: file.to_owned(), values, warnings: Vec::new() })
     }
 
     /// The same with doubts about it.
@@ -185,14 +183,12 @@ impl Reader<'_> {
         for part in key.table().split('.').filter(|part| !part.is_empty()) {
             let Some(inner) = table.get(part) else { break };
             span = inner.span();
-            match inner.get_ref().as_table() {
-                Some(inner) => table = inner,
-                None => {
-                    let hint = format!("write [{}] and its keys below", key.table());
-                    self.error("wrong-type", span, format!("{part} is no table"), hint);
-                    return None;
-                }
-            }
+            let Some(inner) = inner.get_ref().as_table() else {
+                let hint = format!("write [{}] and its keys below", key.table());
+                self.error("wrong-type", span, format!("{part} is no table"), hint);
+                return None;
+            };
+            table = inner;
         }
         let node =
             key.table().split('.').filter(|part| !part.is_empty()).try_fold(root.get_ref(), |table, part| {
@@ -273,7 +269,7 @@ fn read(node: Node<'_, '_>, kind: Kind) -> Option<Value> {
 fn pulses(value: &DeValue<'_>) -> Option<Vec<(f32, u64)>> {
     let mut pairs = Vec::new();
     let mut last = (0.0, 0);
-    for pair in value.as_array()?.iter() {
+    for pair in value.as_array()? {
         let pair: Vec<_> = pair.get_ref().as_array()?.iter().collect();
         let [speed, micros] = pair[..] else { return None };
         let pair = (number(speed.get_ref())?, whole(micros.get_ref())?);

@@ -67,8 +67,8 @@ fn retyped(fact: &Fact, sources: &[Source]) -> Vec<String> {
             }
         }
     }
-    // A home that is data has every number as a key of its own.
-    let code = home.ends_with(".rs").then_some(*home);
+    // The description is data: its numbers stand at keys, not in code.
+    let code = (*home != ROBOT).then_some(*home);
     let description = other.iter().map(|(_, description)| *description).chain(code);
     let stale = description.filter(|description| !needed.contains(description));
     findings.extend(stale.map(|description| format!("{description}: nothing there is {name}; mend FACTS")));

@@ -126,6 +126,7 @@ mod tests {
     fn the_page_goes_first_and_to_its_address() {
         let args = FlashArgs {
             board: real("stm32").unwrap(),
+            robot: None,
             elf: None,
             chip: None,
             page: Some("robot.page".into()),
