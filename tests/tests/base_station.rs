@@ -40,21 +40,21 @@ struct Served<T> {
     end: T,
     chip: Chip,
     busy_until: u64,
-    served: u64,
+    last: u64,
     has_news: bool,
 }
 
 impl<T> Served<T> {
     fn new(end: T, chip: Chip) -> Self {
         chip.take_spent();
-        Self { end, chip, busy_until: 0, served: 0, has_news: false }
+        Self { end, chip, busy_until: 0, last: 0, has_news: false }
     }
 
     fn is_due(&mut self, now: u64) -> bool {
-        let wants = self.has_news || self.chip.wants_attention() || now >= self.served + SERVE;
+        let wants = self.has_news || self.chip.wants_attention() || now >= self.last + SERVE;
         let due = now >= self.busy_until && wants;
         if due {
-            (self.served, self.has_news) = (now, false);
+            (self.last, self.has_news) = (now, false);
         }
         due
     }
@@ -151,7 +151,9 @@ fn run(loss: f32, seed: u64) -> Outcome {
         let at = Instant(now);
         if now % TICK == 0 {
             radio.offer(at, &field(at, &players), SITUATION, &commands(&players));
-            players.iter_mut().for_each(|player| player.step(now, &mut sayings));
+            for player in &mut players {
+                player.step(now, &mut sayings);
+            }
         }
         radio.handle_timeout(at);
         while let Some((_, packet)) = radio.poll_packet() {
@@ -167,7 +169,9 @@ fn run(loss: f32, seed: u64) -> Outcome {
                 let _ = radio.handle_packet(at, &packet);
             }
         }
-        players.iter_mut().for_each(|player| player.serve(now, &sayings));
+        for player in &mut players {
+            player.serve(now, &sayings);
+        }
     }
     assert_eq!(station.end.refused(), 0, "the host's line is whole");
     let steps = ((DURATION - START) / TICK) as f64;

@@ -51,12 +51,15 @@ pub struct ChipReceiver<S, E, N, D> {
 #[derive(Debug)]
 pub struct ChipSender(());
 
+/// Both directions of a robot's radio.
+pub type ChipRadio<S, E, N, D> = (ChipSender, ChipReceiver<S, E, N, D>);
+
 /// Both directions of a robot's radio. Call once.
 pub fn robot<S: SpiDevice, E: OutputPin, N: InputPin, D: DelayNs>(
     team: TeamId,
     number: RobotId,
     wires: ChipWires<S, E, N, D>,
-) -> Result<(ChipSender, ChipReceiver<S, E, N, D>), Fault> {
+) -> Result<ChipRadio<S, E, N, D>, Fault> {
     let robot = Robot::start(now(), channel(team), number, wires.spi, wires.enable, wires.pause)?;
     Ok((ChipSender(()), ChipReceiver { robot, news: wires.news, served: Instant::now() }))
 }

@@ -125,7 +125,9 @@ fn run(outer: &UdpSocket, simulator: SocketAddr, seats: &mut [Seat], end: &Atomi
             let response = RobotControlResponse::decode(bytes.get(..len).unwrap_or(&[]));
             // Another sender, or another message: not ours.
             if let (Ok(response), true) = (response, from.port() == simulator.port()) {
-                seats.iter_mut().for_each(|seat| seat.bridge.body.handle_response(now(), &response));
+                for seat in seats.iter_mut() {
+                    seat.bridge.body.handle_response(now(), &response);
+                }
             }
         }
         for seat in seats.iter_mut() {

@@ -80,7 +80,7 @@ pub fn replay(
         if let Entry::Start(epoch) = record.entry {
             let config = BrainConfig { epoch, ..config.clone() };
             replayed.epochs += 1;
-            let station = Station::with_keys(at, &config, base, keys.clone());
+            let station = Station::with_keys(at, &config, base, *keys);
             player = Some(Player { station, now: at, is_drained: true, packets_done: true });
             continue;
         }

@@ -131,7 +131,7 @@ fn a_new_board_s_wrong_name_or_chip_is_refused_and_the_known_chips_are_listed() 
 fn an_image_that_is_none_names_those_there_are() {
     let reported = onetwo(&["firmware", "build", "--image", "stm"]);
     let printed = String::from_utf8_lossy(&reported.stderr).into_owned();
-    assert!(printed.contains("legged, omni, free, or a board: f407, stm32"), "{printed}");
+    assert!(printed.contains("legged, omni, free, udp, or a board: f407, stm32"), "{printed}");
 }
 
 #[test]

@@ -9,9 +9,8 @@
 use hil_sim::{Fnv, Stream};
 use rayon::prelude::*;
 
-use crate::drafts::Occasion;
 use crate::edit::Edit;
-use crate::trial::Situation;
+use crate::occasion::{Occasion, usable};
 use crate::variant::{Answer, Variant};
 
 /// What situations are drawn for; no two purposes draw the same.
@@ -76,16 +75,6 @@ impl Ground {
     }
 }
 
-/// Both robots and both opponents are known, the goal at -x is defended, and the ball is in play.
-pub(crate) fn usable(situation: &Situation) -> bool {
-    let [x, y] = situation.ball;
-    !situation.defending_positive
-        && situation.teammates.len() == 2
-        && situation.opponents.len() == 2
-        && x.abs() < BALL_INSIDE[0]
-        && y.abs() < BALL_INSIDE[1]
-}
-
 /// One of these situations with everything moved a little; a robot close to the ball moves with it.
 fn moved(played: &[&Occasion], chance: &mut Stream) -> Option<Occasion> {
     let last = u32::try_from(played.len().checked_sub(1)?).ok()?;
@@ -118,8 +107,6 @@ const SPREAD: f32 = 150.0;
 const HOLDS: f64 = 250.0;
 /// Least distance of two robots' centres, mm: the width of a robot.
 const APART: f64 = 300.0;
-/// Where the ball is in play, mm: inside the lines of 2700 and 1800 mm.
-const BALL_INSIDE: [i32; 2] = [2650, 1750];
 /// Where a robot may stand, mm: on the lines.
 const ROBOT_INSIDE: [i32; 2] = [2700, 1800];
 
@@ -127,6 +114,7 @@ const ROBOT_INSIDE: [i32; 2] = [2700, 1800];
 mod tests {
     use super::*;
     use crate::edit::Change;
+    use crate::trial::Situation;
 
     fn played() -> Occasion {
         let situation = Situation {

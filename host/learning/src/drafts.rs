@@ -6,21 +6,10 @@ use std::fmt::Write as _;
 use case_tools::CaseLeague;
 use hil_sim::{Fnv, Stream};
 
-use crate::aim::usable;
 use crate::edit::{Change, Edit};
+use crate::occasion::{Occasion, usable};
 use crate::trial::Situation;
 use crate::variant::Variant;
-
-/// A situation of a trial.
-#[derive(Clone, Debug)]
-pub(crate) struct Occasion {
-    /// Where everything stood.
-    pub(crate) situation: Situation,
-    /// Whether the opponents were two defenders.
-    pub(crate) two_defenders: bool,
-    /// Whether no case was played.
-    pub(crate) without_case: bool,
-}
 
 /// A draft for every plan in a situation.
 pub(crate) fn drafts(situation: &Situation, kicks: &[String]) -> Vec<Edit> {

@@ -16,6 +16,7 @@ mod edit;
 mod evidence;
 mod journal;
 mod learner;
+mod occasion;
 mod page;
 mod proposals;
 mod results;

@@ -9,8 +9,8 @@ use rayon::prelude::*;
 use super::{Candidate, LearnError, Played, Run};
 use crate::aim::Ground;
 use crate::betting::{Wager, threshold};
-use crate::drafts::Occasion;
 use crate::edit::Edit;
+use crate::occasion::Occasion;
 use crate::proposals::Proposal;
 use crate::results::{ChangeRecord, Verdict};
 use crate::starts::{CELLS, StartStream, cell};
@@ -278,8 +278,8 @@ impl<P: Player> Run<'_, P> {
 }
 
 /// What a candidate may give: its gain in the situations that it changes less a standard error, times their
-/// share. Validation refuses what lowers one kind of starts, so against neither kind of opponents may the gain
-/// be below zero by more than a standard error.
+/// share. Validation refuses what lowers one kind of starts, so against neither kind of opponents may the
+/// gain be below zero by more than a standard error.
 pub(super) fn promise(candidate: &Candidate) -> f64 {
     let bound = |wager: &Wager, errors: f64| {
         let differ = f64::from(wager.raised) + f64::from(wager.lowered);

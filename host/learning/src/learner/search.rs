@@ -8,7 +8,8 @@
 use super::judging::promise;
 use super::{Candidate, LearnError, Run};
 use crate::aim::{Ground, Purpose};
-use crate::drafts::{Occasion, choose, drafts, kicks, narrowed};
+use crate::drafts::{choose, drafts, kicks, narrowed};
+use crate::occasion::Occasion;
 use crate::proposals::{Kind, Proposal};
 use crate::variant::Variant;
 use crate::work::Player;
