@@ -64,7 +64,7 @@ mod tests {
         // turn has the trace 5.5 and the determinant 6 − (1 − √2)².
         let determinant = 6.0 - (1.0 - 2.0_f64.sqrt()).powi(2);
         let root = (5.5_f64 * 5.5 - 4.0 * determinant).sqrt();
-        let (least, most) = ((5.5 - root) / 2.0, (5.5 + root) / 2.0);
+        let (least, most) = ((5.5 - root) / 2.0, f64::midpoint(5.5, root));
         let by_hand = (most / least.min(2.5)).sqrt();
         assert!((condition([-60.0, -135.0, 135.0, 60.0]) - by_hand).abs() < 1e-9);
     }
