@@ -15,9 +15,9 @@ pub(crate) const WHAT: &str =
     "what a first build compiles and links stays small, and no crate stands in it in two versions";
 
 /// Crates that a first build may compile. On Linux; other systems may need some more. Half of the 218 that it
-/// once had, and six for what came after: the editor of case files (`toml_edit` and its three crates) and
-/// learning (its own crate, and `similar`).
-const CRATES_MAX: usize = 109 + 6;
+/// once had, and seven for what came after: the editor of case files (`toml_edit` and its three crates),
+/// learning (its own crate, and `similar`), and the description of robots (`onetwo-robots`, ours).
+const CRATES_MAX: usize = 109 + 7;
 /// Bytes of the program without symbols.
 const PROGRAM_MAX: u64 = 20_000_000;
 

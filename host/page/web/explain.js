@@ -76,7 +76,7 @@ async function decision(decided) {
 function unreported(decided, heading) {
   return el("section", { id: "decided" },
     el("h3", {}, heading),
-    el("p", { class: "bad" }, `Not reported: the problem that robot ${decided.by} decided on did not arrive, so this decision cannot be explained.`),
+    el("p", { class: "bad", id: "unreported" }, `Not reported: the problem that robot ${decided.by} decided on did not arrive, so this decision cannot be explained.`),
     decided.problem ? el("p", { class: "field-set" }, draftButton("Draft a case for what the host saw", decided.problem)) : null);
 }
 

@@ -97,7 +97,7 @@ fn explained_now(tab: &mut Tab<'_>) {
         let explained = tab
             .eval("document.querySelectorAll('#decided tbody tr').length > 5 || document.getElementById('decided')?.tagName === 'P'")
             .unwrap();
-        let unreported = tab.eval("document.querySelector('#decided .bad') !== null").unwrap();
+        let unreported = tab.eval("document.getElementById('unreported') !== null").unwrap();
         assert_eq!(unreported.as_bool(), explained.as_bool().map(|explained| !explained));
         tab.click("#dialog button").unwrap();
         tab.wait("!document.getElementById('dialog').open", 5).unwrap();
