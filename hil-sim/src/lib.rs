@@ -41,5 +41,5 @@ pub use hash::Fnv;
 pub use mcu::{Backend, Mcu, McuError, Reply};
 pub use meter::{ByTeam, Meter, Metered};
 pub use native::{NativeBackend, NativeMcu};
-pub use qemu::QemuBackend;
+pub use qemu::{QemuBackend, emulator_command};
 pub use rng::Stream;

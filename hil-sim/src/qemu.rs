@@ -58,16 +58,7 @@ impl QemuBackend {
     }
 
     fn command(&self) -> Command {
-        // Where the simulator is killed, its emulators must be killed too: on Linux the kernel does that. It
-        // takes the thread that started a process for its parent, so a robot must not outlive the thread that
-        // booted it.
-        let mut command = if find(Path::new("setpriv")).is_some() {
-            let mut guarded = Command::new("setpriv");
-            guarded.args(["--pdeathsig", "KILL"]).arg(&self.program);
-            guarded
-        } else {
-            Command::new(&self.program)
-        };
+        let mut command = emulator_command(&self.program);
         command.args(MACHINE_ARGS).arg("-kernel").arg(&self.image);
         if let Some(library) = &self.library {
             command.arg("-device").arg(library.loader());
@@ -239,6 +230,18 @@ fn boxed(pipe: impl Read + 'static) -> Box<dyn Read> {
 }
 
 /// A program's file: the path itself, or the first match in PATH.
+/// A command for an emulator that is killed with this process, however that ends: on Linux the kernel does
+/// that. It takes the thread that started a process for its parent, so an emulator must not outlive the
+/// thread that started it.
+pub fn emulator_command(program: &Path) -> Command {
+    if find(Path::new("setpriv")).is_none() {
+        return Command::new(program);
+    }
+    let mut guarded = Command::new("setpriv");
+    guarded.args(["--pdeathsig", "KILL"]).arg(program);
+    guarded
+}
+
 fn find(program: &Path) -> Option<PathBuf> {
     if program.components().count() > 1 {
         return program.is_file().then(|| program.to_path_buf());

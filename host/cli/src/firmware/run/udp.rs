@@ -8,7 +8,7 @@ use std::fs::OpenOptions;
 use std::io::Write as _;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Stdio};
 use std::sync::atomic::Ordering;
 use std::thread;
 use std::time::{Duration, Instant};
@@ -71,7 +71,7 @@ pub(super) fn run(address: SocketAddr, args: &RunArgs) -> Result<(), Failure> {
         let journal = args.journal.as_deref().map(|directory| prepare(directory, who)).transpose()?;
         let mut arguments = qemu_arguments(&image, Some(file), "null");
         arguments.extend(network_arguments(&network, who, journal.as_deref()));
-        let child = Command::new(&qemu)
+        let child = hil_sim::emulator_command(qemu.as_ref())
             .args(arguments)
             .stdin(Stdio::null())
             .spawn()
