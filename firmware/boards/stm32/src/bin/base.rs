@@ -3,6 +3,11 @@
 //! The green lamp blinks once the host has spoken and the chip works; the red one is lit for a second before
 //! it starts again because the chip does not answer. It has no page and no keys.
 #![allow(unsafe_code, reason = "registers, interrupts and flash are reached by address")]
+#![allow(
+    clippy::large_futures,
+    clippy::used_underscore_binding,
+    reason = "the executor's macro keeps the main task, 19 kB, in static memory and names its argument"
+)]
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
