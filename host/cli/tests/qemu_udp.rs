@@ -108,7 +108,8 @@ fn moves(journal: &[u8]) -> bool {
     driving(journal) as u64 > steps_of(0.5)
 }
 
-/// Plays for some seconds, until the robots have moved; the blue robots' journals are in that directory afterwards.
+/// Plays for some seconds, until the robots have moved; the blue robots' journals are in that directory
+/// afterwards.
 fn play(directory: &Path, seconds: f64) {
     let (key_file, key) = (directory.join("team.key"), KEY.0.map(|byte| format!("{byte:02x}")).concat());
     fs::write(&key_file, key).expect("a file");
