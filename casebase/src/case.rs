@@ -5,6 +5,7 @@ use protocol::CaseId;
 use crate::action::{Action, CaseRobot, KickId, TurnTarget};
 use crate::path::{Corridor, Leg, RelativeLeg};
 use crate::plan_simulation::{HandOver, Script, plan_simulation};
+use crate::presence::Presence;
 use crate::settings::SCOPE_EXPONENT;
 use crate::stored::Stored;
 use crate::table::{CaseBase, Group, OpponentRecord, RawAction, RawLeg, RecordHeader, part};
@@ -98,6 +99,11 @@ impl<'a> Case<'a> {
     pub fn opponents(&self) -> impl Iterator<Item = (PointMm, Scope)> + use<'a> {
         let ball = self.ball();
         self.raw_opponents().iter().map(move |raw| (ball.plus(widen(raw.at)), scope(raw.inverse_scope)))
+    }
+
+    /// What the scope of the opponent of that number, from 0, demands.
+    pub const fn presence(&self, opponent: usize) -> Presence {
+        self.record_header.demands().get(opponent)
     }
 
     /// The robot whose first action is `get_ball`.

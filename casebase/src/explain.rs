@@ -2,7 +2,7 @@
 //! its margin).
 //!
 //! Every case listed under the problem's goal is tested, lowest id first, in the fixed order ball, robot
-//! count, field (where the settings require it), travel, free path. No index and no short cut: tests compare
+//! count, field (where the settings require it), travel, free path, opponents demanded. No index and no short cut: tests compare
 //! retrieval with it.
 
 use geometry::math;
@@ -12,8 +12,9 @@ use crate::action::CaseRobot;
 use crate::case::Case;
 use crate::correspondence::{assign, assign_within};
 use crate::path::{Leg, blocked_leg};
+use crate::presence::Presence;
 use crate::problem::Problem;
-use crate::query::Query;
+use crate::query::{Query, UnmetDemand};
 use crate::rank::Match;
 use crate::settings::RetrievalSettings;
 use crate::stored::Stored;
@@ -64,6 +65,15 @@ pub enum CaseVerdict {
         /// Depth of the opponent inside the leg, mm.
         inside_mm: f32,
     },
+    /// An opponent scope demands what the problem does not have.
+    Opponents {
+        /// Number of the case's opponent, from 0.
+        scope: usize,
+        /// What its scope demands.
+        presence: Presence,
+        /// Number of the problem's opponent that stands in an excluding scope, from 0.
+        opponent: Option<usize>,
+    },
     /// The case is a candidate.
     Candidate(Match),
 }
@@ -77,6 +87,7 @@ impl CaseVerdict {
             Self::OutOfField { .. } => "out_of_field",
             Self::TooFar { .. } => "thr_c",
             Self::Path { .. } => "path",
+            Self::Opponents { .. } => "opponents",
             Self::Candidate(_) => "candidate",
         }
     }
@@ -133,6 +144,9 @@ fn judge(base: &CaseBase<'_>, query: &Query<'_>, case: &Case<'_>, stored: &Store
             opponent: blocked.opponent,
             inside_mm: blocked.inside_mm,
         };
+    }
+    if let Some(UnmetDemand { scope, opponent }) = query.unmet_demand(stored) {
+        return CaseVerdict::Opponents { scope, presence: case.presence(scope), opponent };
     }
     let free = query.freedom(stored).unwrap_or(0.0);
     CaseVerdict::Candidate(query.found(stored, exponent, free, assignment.players).into_match())

@@ -11,7 +11,6 @@ use serde::{Deserialize, Serialize};
 use crate::action::{Action, CaseRobot, KickId};
 use crate::case::Case;
 use crate::plan_simulation::{PlanStep, Script, Spot, plan_simulation};
-use crate::point::gauss_exponent;
 use crate::settings::{FreePathRule, OutOfField, RetrievalSettings};
 use crate::stored::Stored;
 use crate::table::{self, CaseBase, RawLeg};
@@ -375,12 +374,7 @@ pub(crate) fn empty_scopes(
 ) -> Option<u32> {
     let mut empty = 0;
     for scope in scopes {
-        let centre = [f32::from(scope.at[0]) + moved[0], f32::from(scope.at[1]) + moved[1]];
-        let [inverse_x, inverse_y] = scope.inverse_scope;
-        let holds = |opponent: &[f32; 2]| {
-            let (dx, dy) = (opponent[0] - centre[0], opponent[1] - centre[1]);
-            gauss_exponent(dx, dy, inverse_x, inverse_y) < limit
-        };
+        let holds = |opponent: &[f32; 2]| scope.holds(moved, *opponent, limit);
         if scope.cells & cells == 0 || !opponents.iter().any(holds) {
             if empty == most {
                 return None;

@@ -12,6 +12,7 @@ use crate::case::{Case, widen};
 use crate::cells::cell_of;
 use crate::correspondence::{Distances, Nearest, Players, assign, nearest};
 use crate::path::{empty_scopes, freedom, is_blocking, is_crisply_blocked, least_exponent};
+use crate::presence::Presence;
 use crate::problem::{PROBLEM_OPPONENTS_MAX, PROBLEM_TEAMMATES_MAX, Problem};
 use crate::rank::{Correspondence, Key, Match};
 use crate::settings::{CorrespondenceRule, CostRule, FreePathRule, OutOfField, RetrievalSettings, ScopeRule};
@@ -82,16 +83,40 @@ impl Query<'_> {
         work(&Query { problem, settings, key, teammates: &teammates, opponents: &opponents, cells })
     }
 
+    /// Displacement of opponent scopes against the problem's ball, mm.
+    fn scopes_moved_by(&self, case: &Stored<'_, '_>) -> [f32; 2] {
+        match self.settings.scopes {
+            ScopeRule::Translated => [0.0; 2],
+            ScopeRule::Absolute => case.ball().minus(self.problem.ball).to_f32(),
+        }
+    }
+
     /// Number of the case's opponent scopes that contain an opponent.
     pub(crate) fn conditions(&self, case: &Stored<'_, '_>) -> u8 {
-        let moved_by = match self.settings.scopes {
-            ScopeRule::Translated => PointMm::new(0, 0),
-            ScopeRule::Absolute => case.ball().minus(self.problem.ball),
-        };
         let scopes = case.opponents().unwrap_or(&[]);
-        let (moved_by, all) = (moved_by.to_f32(), u32::MAX);
+        let (moved_by, all) = (self.scopes_moved_by(case), u32::MAX);
         let empty = empty_scopes(scopes, moved_by, self.opponents, all, self.key.limit, u32::MAX);
         case.record_header.opponents.saturating_sub(empty.unwrap_or(0) as u8)
+    }
+
+    /// The first opponent scope whose demand is not met; few cases demand anything.
+    #[inline]
+    pub(crate) fn unmet_demand(&self, case: &Stored<'_, '_>) -> Option<UnmetDemand> {
+        if case.record_header.demands().is_empty() { None } else { self.search_unmet_demand(case) }
+    }
+
+    #[inline(never)]
+    fn search_unmet_demand(&self, case: &Stored<'_, '_>) -> Option<UnmetDemand> {
+        let (demands, moved_by) = (case.record_header.demands(), self.scopes_moved_by(case));
+        case.opponents()?.iter().enumerate().find_map(|(scope, record)| {
+            let holds = |at: &[f32; 2]| record.holds(moved_by, *at, self.key.limit);
+            let inside = self.opponents.iter().position(holds);
+            match (demands.get(scope), inside) {
+                (Presence::Required, None) => Some(UnmetDemand { scope, opponent: None }),
+                (Presence::Excluded, Some(_)) => Some(UnmetDemand { scope, opponent: inside }),
+                _ => None,
+            }
+        })
     }
 
     /// Number of those that contain none, where scopes move with the ball; `None` once they are more than
@@ -190,6 +215,14 @@ impl Query<'_> {
         }
         at.map(f32::from)
     }
+}
+
+/// An opponent scope whose demand a problem does not meet.
+pub(crate) struct UnmetDemand {
+    /// Number of the case's opponent, from 0.
+    pub(crate) scope: usize,
+    /// Number of the problem's opponent in a scope that excludes it.
+    pub(crate) opponent: Option<usize>,
 }
 
 /// A candidate: its ranking key, and its correspondence.

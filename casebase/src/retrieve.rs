@@ -1,7 +1,7 @@
 //! `retrieve`: case retrieval (Ros et al. 2009, §3, Algorithms 1 and 2; docs/case-format.md §3).
 //!
 //! A case is a candidate if the ball lies in its ball scope, the robots are near enough to their adapted
-//! positions and the ball's path is free; candidates are ranked by [`rank_order`](crate::rank_order). Cheap
+//! positions, the ball's path is free and its opponents' scopes demand nothing else; candidates are ranked by [`rank_order`](crate::rank_order). Cheap
 //! checks come first, and checks that cannot change the answer are skipped; the answer equals that of the
 //! plain order.
 
@@ -66,6 +66,9 @@ fn candidate(query: &Query<'_>, case: &Stored<'_, '_>) -> Option<Found> {
         return None;
     }
     let free = query.freedom(case)?;
+    if query.unmet_demand(case).is_some() {
+        return None;
+    }
     let players = query.cheapest(case)?;
     Some(query.found(case, exponent, free, players))
 }
@@ -199,7 +202,7 @@ impl<'a> Race<'_, 'a> {
     fn look_at(&mut self, id: CaseId, record_header: &'a RecordHeader, exponent: f32, class: Class) {
         let Self { base, query, .. } = *self;
         let case = &Stored { base, id, record_header };
-        if query.is_crisply_blocked(case) {
+        if query.is_crisply_blocked(case) || query.unmet_demand(case).is_some() {
             return;
         }
         let Some(nearest) = query.nearest(case) else { return };

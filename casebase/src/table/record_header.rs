@@ -5,6 +5,7 @@
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 use crate::point::gauss_exponent;
+use crate::presence::Demands;
 
 /// Record header of a stored case: its ball scope, the numbers of its records and the start of its records.
 #[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
@@ -22,8 +23,8 @@ pub struct RecordHeader {
     pub opponents: u8,
     /// Number of legs of the ball path.
     pub legs: u8,
-    /// Always 0; keeps the record free of padding.
-    pub reserved: u8,
+    /// What its opponent scopes demand: [`Demands`].
+    pub demands: u8,
 }
 
 /// An opponent's scope, with its centre relative to the ball.
@@ -36,6 +37,17 @@ pub struct OpponentRecord {
     pub at: [i16; 2],
     /// 1/τx and 1/τy of the opponent's scope, 1/mm.
     pub inverse_scope: [f32; 2],
+}
+
+impl OpponentRecord {
+    /// Whether its scope, displaced by `moved`, contains a point relative to the ball, mm.
+    #[inline(always)]
+    pub(crate) fn holds(&self, moved: [f32; 2], point: [f32; 2], limit: f32) -> bool {
+        let centre = [f32::from(self.at[0]) + moved[0], f32::from(self.at[1]) + moved[1]];
+        let (dx, dy) = (point[0] - centre[0], point[1] - centre[1]);
+        let [inverse_x, inverse_y] = self.inverse_scope;
+        gauss_exponent(dx, dy, inverse_x, inverse_y) < limit
+    }
 }
 
 /// A leg of the ball path. It starts where the ball lies: at the ball's start position or the end of the leg
@@ -70,6 +82,12 @@ impl RecordHeader {
     pub(crate) fn exponent(&self, ball: [f32; 2]) -> f32 {
         let [inverse_x, inverse_y] = self.inverse_scope;
         gauss_exponent(ball[0] - self.ball[0], ball[1] - self.ball[1], inverse_x, inverse_y)
+    }
+
+    /// What its opponent scopes demand.
+    #[inline]
+    pub(crate) const fn demands(&self) -> Demands {
+        Demands::from_bits(self.demands)
     }
 
     /// The case's opponents among the table's places; `None` where those end before (never in a validated

@@ -118,6 +118,9 @@ impl<'a> CaseBase<'a> {
         if !(1..=TEAMMATES_MAX).contains(&teammates) || usize::from(record_header.opponents) > OPPONENTS_MAX {
             return false;
         }
+        if !record_header.demands().fits(record_header.opponents) {
+            return false;
+        }
         let ends = group.list_ends.get(..teammates).unwrap_or(&[]);
         let end = |robot: usize| ends.get(robot).copied().unwrap_or(0);
         let actions_count = end(teammates - 1);

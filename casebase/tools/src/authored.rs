@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use casebase::plan_simulation::Script;
 use casebase::{
-    Action, CaseRobot, GoalEnd, OPPONENTS_MAX, PointMm, Scope, Symmetry, TEAMMATES_MAX, TurnTarget,
+    Action, CaseRobot, GoalEnd, OPPONENTS_MAX, PointMm, Presence, Scope, Symmetry, TEAMMATES_MAX, TurnTarget,
 };
 
 use crate::codes::code;
@@ -43,6 +43,8 @@ pub(crate) struct Opponent {
     pub(crate) at: PointMm,
     pub(crate) span: Range<usize>,
     pub(crate) scope: Scope,
+    /// What its scope demands.
+    pub(crate) presence: Presence,
 }
 
 impl Authored {
@@ -113,7 +115,7 @@ fn read_case(reader: &mut Reader<'_>, root: &Table<'_, '_>, league: Option<&Case
     let defending = root.required(reader, "defending").and_then(|value| read_defending(reader, value));
     let ball = root.required(reader, "ball").and_then(|value| {
         let ball = reader.table(value, "ball")?;
-        ball.refuse_others(reader, keys::SCOPED);
+        ball.refuse_others(reader, keys::BALL);
         let (at, scope) = (ball.point(reader, "at"), read_scope(reader, &ball));
         Some((at?, scope?))
     });
@@ -318,13 +320,27 @@ fn read_opponents(reader: &mut Reader<'_>, root: &Table<'_, '_>) -> Option<Vec<O
         .enumerate()
         .map(|(i, value)| {
             let table = reader.table(value, format!("opp{}", i + 1))?;
-            table.refuse_others(reader, keys::SCOPED);
+            table.refuse_others(reader, keys::OPPONENT);
             let (at, scope) = (table.point(reader, "at"), read_scope(reader, &table));
-            let ((at, span), scope) = (at?, scope?);
-            Some(Opponent { at, span, scope })
+            let presence = read_presence(reader, &table);
+            let ((at, span), scope, presence) = (at?, scope?, presence?);
+            Some(Opponent { at, span, scope, presence })
         })
         .collect();
     read.into_iter().collect()
+}
+
+fn read_presence(reader: &mut Reader<'_>, table: &Table<'_, '_>) -> Option<Presence> {
+    let name = table.name_of("presence");
+    let Some(value) = table.optional("presence") else { return Some(Presence::default()) };
+    let label = reader.text(value, &name)?;
+    let presence = Presence::from_label(label);
+    if presence.is_none() {
+        let known = Presence::ALL.map(|presence| format!("{:?}", presence.label())).join(", ");
+        let message = format!("{name} is {label:?}");
+        reader.error(code::BAD_VALUE, value.span(), message, format!("take one of: {known}"));
+    }
+    presence
 }
 
 /// Maximum number of actions of all robots of a case: the table counts them in a byte.

@@ -2,12 +2,13 @@
 //! (docs/case-format.md §3.3, `explain`).
 //!
 //! Moves tried: the ball towards the case's ball; each robot to each adapted position; each opponent into the
-//! case's scopes, out of its legs, out of the winner's scopes and into the winner's legs. On each line the
+//! case's scopes (out of those that exclude opponents), out of its legs, out of the winner's scopes and into the winner's legs. On each line the
 //! shortest distance is found by bisection, in whole mm, and every answer was retrieved again on the changed
 //! problem: the move is proven to work, but a shorter one on another line may exist.
 
 use casebase::{
-    Case, CaseBase, Criterion, Leg, Match, PointMm, Problem, RetrievalSettings, ScopeRule, retrieve_best,
+    Case, CaseBase, Criterion, Leg, Match, PointMm, Presence, Problem, RetrievalSettings, ScopeRule,
+    retrieve_best,
 };
 use protocol::{CaseId, RobotId};
 
@@ -172,7 +173,13 @@ impl Search<'_, '_> {
         let winner = winner.and_then(|winner| self.base.case(winner.case));
         let ball = self.problem.ball;
         for (index, from) in self.problem.opponents.iter().enumerate() {
-            let mut targets: Vec<PointMm> = self.scopes(case).map(|(at, _)| at).collect();
+            let mut targets = Vec::new();
+            for (number, (at, scope)) in self.scopes(case).enumerate() {
+                match case.presence(number) {
+                    Presence::Excluded => targets.extend(away(*from, at, scope.x.max(scope.y) + ROOM_MM)),
+                    Presence::Preferred | Presence::Required => targets.push(at),
+                }
+            }
             for leg in case.legs(ball) {
                 targets.extend(beside(&leg, *from));
             }

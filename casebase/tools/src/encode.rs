@@ -8,7 +8,7 @@ use casebase::plan_simulation::{PlanStep, Script, plan_simulation};
 use casebase::table::{
     Group, HASHED_FROM, Header, MAGIC, OpponentRecord, RawAction, RawKick, RawLeg, RecordHeader, content_hash,
 };
-use casebase::{Action, CaseRobot, GoalEnd, PointMm, Scope, Symmetry, TurnTarget, cells_of};
+use casebase::{Action, CaseRobot, Demands, GoalEnd, PointMm, Scope, Symmetry, TurnTarget, cells_of};
 use zerocopy::IntoBytes;
 
 use crate::authored::{Authored, Mirrored};
@@ -187,7 +187,7 @@ impl Pools {
             teammates: positions.len() as u8,
             opponents: opponents.len() as u8,
             legs: legs.len() as u8,
-            reserved: 0,
+            demands: Demands::of(copy.case.opponents.iter().map(|opponent| opponent.presence)).bits(),
         });
         // The order in which `RecordHeader` reads them.
         for records in [opponents.as_bytes(), legs.as_bytes(), positions.as_bytes()] {

@@ -5,8 +5,10 @@ use std::ops::RangeInclusive;
 
 /// Keys of a case file, top level.
 pub const CASE: &[&str] = &["intent", "defending", "ball", "teammates", "opponents"];
-/// `ball` of a case, and each of its opponents: a position and a scope.
-pub const SCOPED: &[&str] = &["at", "scope"];
+/// `ball` of a case: a position and a scope.
+pub const BALL: &[&str] = &["at", "scope"];
+/// An opponent of a case.
+pub const OPPONENT: &[&str] = &["at", "scope", "presence"];
 /// A robot of a case.
 pub const TEAMMATE: &[&str] = &["at", "gameplay"];
 /// Actions without an argument, written as a string.
@@ -32,7 +34,8 @@ pub const PROBLEMS: &[&str] = &["teammates", "opponents"];
 /// A rectangle of `[problems]`.
 pub const RECTANGLE: &[&str] = &["x", "y"];
 /// Optional keys, in any table.
-pub const OPTIONAL: &[&str] = &["opponents", "margin", "offset", "primitive", "kicks", "problems", "reach"];
+pub const OPTIONAL: &[&str] =
+    &["opponents", "presence", "margin", "offset", "primitive", "kicks", "problems", "reach"];
 
 /// Coordinates and radii in files, mm: a kilometre in either direction, so that no sum of a few of them
 /// overflows.

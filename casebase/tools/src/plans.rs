@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use casebase::plan_simulation::plan_simulation;
-use casebase::{Action, Case, CaseRobot, Leg, LegKind, PointMm, Symmetry};
+use casebase::{Action, Case, CaseRobot, Leg, LegKind, PointMm, Presence, Symmetry};
 
 use crate::authored::Authored;
 use crate::codes::code;
@@ -30,6 +30,7 @@ fn same_spot(notes: &mut Notes<'_>, case: &Authored) {
     let teammates = CaseRobot::first(case.teammates.len()).zip(&case.teammates);
     let teammates = teammates.map(|(robot, teammate)| (robot.to_string(), teammate.at, &teammate.at_span));
     let opponents = case.opponents.iter().enumerate();
+    let opponents = opponents.filter(|(_, opponent)| opponent.presence != Presence::Excluded);
     let opponents = opponents.map(|(i, opponent)| (format!("opp{}", i + 1), opponent.at, &opponent.span));
     let all: Vec<_> = teammates.chain(opponents).collect();
     for (later, (who, at, span)) in all.iter().enumerate() {

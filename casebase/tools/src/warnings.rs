@@ -5,12 +5,12 @@ use std::collections::HashMap;
 
 use casebase::plan_simulation::{PlanStep, plan_simulation};
 use casebase::{
-    Action, Case, CaseBase, CaseRobot, PointMm, Problem, RetrievalSettings, Scope, Symmetry, TurnTarget,
-    blocked_leg, retrieve_best,
+    Action, Case, CaseBase, CaseRobot, PointMm, Presence, Problem, RetrievalSettings, Scope, Symmetry,
+    TurnTarget, blocked_leg, retrieve_best,
 };
 use protocol::{CaseId, RobotId};
 
-use crate::authored::Authored;
+use crate::authored::{Authored, Opponent};
 use crate::codes::code;
 use crate::files::Files;
 use crate::finding::{Finding, Severity};
@@ -129,7 +129,8 @@ fn gameplays(notes: &mut Notes<'_>, case: &Authored, league: &CaseLeague) {
 /// the path is free of all centres.
 fn scopes_in_path(notes: &mut Notes<'_>, case: &Authored, stored: &Case<'_>, base: &CaseBase<'_>) -> bool {
     let mut free = true;
-    for (i, opponent) in case.opponents.iter().enumerate() {
+    let present = |(_, opponent): &(usize, &Opponent)| opponent.presence != Presence::Excluded;
+    for (i, opponent) in case.opponents.iter().enumerate().filter(present) {
         if let Some(blocked) =
             blocked_leg(stored, base, case.ball, &[opponent.at], &RetrievalSettings::default())
         {
@@ -146,6 +147,10 @@ fn scopes_in_path(notes: &mut Notes<'_>, case: &Authored, stored: &Case<'_>, bas
                 message,
                 "lead the ball around it, or move the scope",
             );
+            continue;
+        }
+        // A required scope says where the case applies, not what speaks for it: the path is tested apart.
+        if opponent.presence == Presence::Required {
             continue;
         }
         let share = self_blocking::share(stored, base, opponent.at, opponent.scope);
@@ -169,7 +174,10 @@ fn beaten(notes: &mut Notes<'_>, files: &Files, stored: &Case<'_>, base: &CaseBa
         ball: stored.ball(),
         defending: stored.defending(),
         teammates: players.collect(),
-        opponents: stored.opponents().map(|(at, _)| at).collect(),
+        opponents: (stored.opponents().enumerate())
+            .filter(|(number, _)| stored.presence(*number) != Presence::Excluded)
+            .map(|(_, (at, _))| at)
+            .collect(),
     };
     let winner = retrieve_best(base, &problem, &RetrievalSettings::default());
     let winner = winner.and_then(|winner| base.case(winner.case));
@@ -195,12 +203,14 @@ fn twins(base: &CaseBase<'_>) -> HashMap<usize, usize> {
 }
 
 /// All data that retrieval uses, in a canonical order.
-type Seen = (bool, PointMm, Scope, Vec<PointMm>, Vec<(PointMm, (i32, i32))>, Vec<[u32; 6]>);
+type Seen = (bool, PointMm, Scope, Vec<PointMm>, Vec<(PointMm, (i32, i32), Presence)>, Vec<[u32; 6]>);
 
 fn seen(case: &Case<'_>) -> Seen {
     let mut positions: Vec<_> = case.robots().map(|robot| case.position(robot)).collect();
     positions.sort_unstable();
-    let mut opponents: Vec<_> = case.opponents().map(|(at, scope)| (at, (scope.x, scope.y))).collect();
+    let mut opponents: Vec<_> = (case.opponents().enumerate())
+        .map(|(number, (at, scope))| (at, (scope.x, scope.y), case.presence(number)))
+        .collect();
     opponents.sort_unstable();
     // −0 and 0 are the same position.
     let bits = |[x, y]: [f32; 2]| [(x + 0.0).to_bits(), (y + 0.0).to_bits()];

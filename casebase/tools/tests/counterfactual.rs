@@ -16,7 +16,7 @@ fn every_move_reported_makes_the_case_win_in_thousands_of_problems() {
         let mut dice = Dice::new(seed);
         let library = dice.library(30);
         let base = library.base();
-        for _ in 0..250 {
+        for _ in 0..350 {
             let problem = dice.problem(&base);
             let winner = retrieve_best(&base, &problem, &settings).map(|found| found.case);
             // One case at random, and all that pass the test of the ball.

@@ -80,6 +80,7 @@ mistakes! {
     a_huge_number_is_told case "[-720, 0]" => "[-720, 99999999999999999999]", BAD_VALUE 6 "a whole number from";
     a_ball_scope_of_radius_0_is_told case "[450, 250]" => "[450, 0]", BAD_SCOPE 3 "both radii in mm, above 0";
     an_opponent_scope_below_0_is_told case "[300, 225]" => "[300, -1]", BAD_SCOPE 15 "both radii in mm, above 0";
+    a_presence_of_another_word_is_told case "scope = [300, 225]" => "scope = [300, 225]\npresence = \"maybe\"", BAD_VALUE 16 "take one of: \"preferred\", \"required\", \"excluded\"";
     a_pass_to_nobody_is_told case "pass_ball = 2" => "pass_ball = 3", ROBOT_NUMBER 7 "another robot of this case";
     a_pass_to_oneself_is_told case "pass_ball = 2" => "pass_ball = 1", ROBOT_NUMBER 7 "another robot of this case";
     nobody_gets_the_ball case "\"get_ball\"" => "\"wait\"", ONE_GETTER 5 "exactly one robot begin with \"get_ball\"";

@@ -3,7 +3,8 @@
 
 mod common;
 
-use casebase::{CaseVerdict, Retrieval, RetrievalSettings, explain, retrieve, retrieve_best};
+use case_tools::Library;
+use casebase::{CaseVerdict, Presence, Retrieval, RetrievalSettings, explain, retrieve, retrieve_best};
 use common::{PASS_AROUND, library, problem, single};
 use protocol::CaseId;
 
@@ -138,6 +139,47 @@ fn a_blocked_path_reports_the_leg_the_opponent_and_how_deep_it_stands() {
         panic!("{:?}", verdicts[0])
     };
     assert!((inside_mm - (200.239 - 150.0)).abs() < 0.01, "{inside_mm}");
+}
+
+#[test]
+fn a_demand_on_a_scope_admits_the_case_with_an_opponent_or_without_alone() {
+    let with = |presence: &str| {
+        let case = single("[0, 0]", "[400, 400]", ", { dribble_to = [300, 0] }");
+        let opponent = "[[opponents]]\nat = [1000, 500]\nscope = [300, 200]\n";
+        library(&[("a/a", &format!("{case}{opponent}{presence}"))])
+    };
+    // The scope moves with the ball by (100, 50) and ends 1.0012 radii from its centre at (1100, 550).
+    let verdict = |library: &Library, opponents: &[(i32, i32)]| {
+        let problem = problem((100, 50), &[(1, (0, 0))], opponents);
+        let mut first = None;
+        explain(&library.base(), &problem, &RetrievalSettings::default(), |_, verdict| {
+            first.get_or_insert(verdict);
+        });
+        let found = ask(library, &problem, &RetrievalSettings::default());
+        let first = first.unwrap();
+        // Across the x axis there is a copy with its scope on the other side.
+        assert!(found.candidates <= 2);
+        (first, found.best.map(|best| best.conditions))
+    };
+    let (inside, outside) = ((1399, 550), (1401, 550));
+    let is_candidate = |verdict: &CaseVerdict| matches!(verdict, CaseVerdict::Candidate(_));
+    let preferred = with("");
+    assert!(
+        is_candidate(&verdict(&preferred, &[inside]).0) && is_candidate(&verdict(&preferred, &[outside]).0)
+    );
+    let required = with("presence = \"required\"\n");
+    assert!(is_candidate(&verdict(&required, &[outside, inside]).0));
+    assert_eq!(verdict(&required, &[outside, inside]).1, Some(1));
+    assert_eq!(
+        verdict(&required, &[outside]).0,
+        CaseVerdict::Opponents { scope: 0, presence: Presence::Required, opponent: None }
+    );
+    let excluded = with("presence = \"excluded\"\n");
+    assert!(is_candidate(&verdict(&excluded, &[outside]).0));
+    assert_eq!(
+        verdict(&excluded, &[outside, inside]).0,
+        CaseVerdict::Opponents { scope: 0, presence: Presence::Excluded, opponent: Some(1) }
+    );
 }
 
 #[test]

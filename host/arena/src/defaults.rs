@@ -62,7 +62,7 @@ impl Causes {
                 CaseVerdict::Ball { .. } => 0,
                 CaseVerdict::Robots { .. } => 1,
                 CaseVerdict::OutOfField { .. } | CaseVerdict::TooFar { .. } => 2,
-                CaseVerdict::Path { .. } => 3,
+                CaseVerdict::Path { .. } | CaseVerdict::Opponents { .. } => 3,
                 CaseVerdict::Candidate(_) => 4,
             });
         });

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use hil_sim::Configuration;
 use serde::Serialize;
 
 use crate::evidence::{Evidence, EvidenceKey, Posterior, ScopeRing};
@@ -52,6 +53,10 @@ pub struct CaseStanding {
     pub met: Standing,
     /// Those with an empty opponent scope.
     pub unmet: Standing,
+    /// Those against defender and goalie.
+    pub goalie: Standing,
+    /// Those against two defenders.
+    pub no_goalie: Standing,
 }
 
 /// The standing of every case that was played; that of "no case" under the empty name. `libraries` are the
@@ -82,6 +87,9 @@ pub fn standings(evidence: &Evidence, libraries: &[u64]) -> BTreeMap<String, Cas
         let met = key.pattern.split_once('/').is_some_and(|(held, of)| held == of);
         let pattern = if met { &mut standing.met } else { &mut standing.unmet };
         pattern.add(counts, weight, usual);
+        let goalie = key.opponents == Configuration::DefenderGoalie.label();
+        let opponents = if goalie { &mut standing.goalie } else { &mut standing.no_goalie };
+        opponents.add(counts, weight, usual);
     }
     standings
 }

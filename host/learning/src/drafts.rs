@@ -4,9 +4,11 @@
 use std::fmt::Write as _;
 
 use case_tools::CaseLeague;
+use casebase::{OPPONENTS_MAX, Presence};
 use hil_sim::{Fnv, Stream};
 
 use crate::edit::{Change, Edit};
+use crate::goalkeeper;
 use crate::occasion::{Occasion, usable};
 use crate::trial::Situation;
 use crate::variant::Variant;
@@ -29,6 +31,14 @@ pub(crate) fn narrowed(edit: &Edit) -> Option<Edit> {
     let scope = |[x, y]: [i32; 2]| format!("scope = [{x}, {y}] }}");
     let text = text.replace(&scope(BALL_SCOPE), &scope(NARROW_BALL_SCOPE));
     Some(Edit { case: format!("{}-narrow", edit.case), change: Change::New(text) })
+}
+
+/// The same draft without a demand on a goalkeeper, under another name: played with one and without.
+pub(crate) fn undemanding(edit: &Edit) -> Option<Edit> {
+    let Change::New(text) = &edit.change else { return None };
+    let excluded = opponent(goalkeeper::PLACE, goalkeeper::SCOPE, Presence::Excluded);
+    let text = text.replace(&excluded, "").replace(&demand(Presence::Required), "");
+    Some(Edit { case: format!("{}-wide", edit.case), change: Change::New(text) })
 }
 
 /// Occasions, as many without a case as with one where there are enough, drawn with the seed.
@@ -112,13 +122,17 @@ fn draft(situation: &Situation, plan: &DraftPlan) -> Edit {
     }
     let mut opponents = situation.opponents.clone();
     opponents.sort_by_key(|[a, b]| (i64::from(a - x).pow(2) + i64::from(b - y).pow(2), *a, *b));
-    for [a, b] in &opponents {
+    let keeper = goalkeeper::among(&opponents);
+    for (number, [a, b]) in opponents.iter().enumerate() {
         let at = [a.clamp(&-2700, &2700) / 10 * 10, b.clamp(&-1800, &1800) / 10 * 10];
-        let _ = write!(
-            text,
-            "\n[[opponents]]\nat = [{}, {}]\nscope = [{}, {}]\n",
-            at[0], at[1], OPPONENT_SCOPE[0], OPPONENT_SCOPE[1]
-        );
+        if keeper == Some(number) {
+            text.push_str(&opponent(at, goalkeeper::SCOPE, Presence::Required));
+        } else {
+            text.push_str(&opponent(at, OPPONENT_SCOPE, Presence::Preferred));
+        }
+    }
+    if keeper.is_none() && opponents.len() < OPPONENTS_MAX {
+        text.push_str(&opponent(goalkeeper::PLACE, goalkeeper::SCOPE, Presence::Excluded));
     }
     let region = match (x, y.abs()) {
         (..-1200, _) => "back",
@@ -130,6 +144,20 @@ fn draft(situation: &Situation, plan: &DraftPlan) -> Edit {
     hash.add(text.as_bytes());
     let case = format!("{region}/learned-{:06x}", hash.value() >> 40);
     Edit { case, change: Change::New(text) }
+}
+
+/// An opponent of a draft.
+fn opponent(at: [i32; 2], scope: [i32; 2], presence: Presence) -> String {
+    let demand = match presence {
+        Presence::Preferred => String::new(),
+        other => demand(other),
+    };
+    format!("\n[[opponents]]\nat = {at:?}\nscope = {scope:?}\n{demand}")
+}
+
+/// The line of an opponent's demand.
+fn demand(presence: Presence) -> String {
+    format!("presence = \"{}\"\n", presence.label())
 }
 
 /// Where a draft carries the ball, from its place, mm: ahead, aslant, to the sides.
@@ -168,6 +196,32 @@ mod tests {
         let edit = draft(&situation, &plans[0]);
         let narrow = variant.edited(&narrowed(&edit).unwrap()).unwrap();
         assert!(narrow.files.cases.iter().any(|file| file.text.contains("scope = [400, 300] }")));
+    }
+
+    #[test]
+    fn drafts_keep_to_opponents_with_a_goalkeeper_or_without() {
+        let variant = Variant::new(case_library_files()).unwrap();
+        let with = |keeper: [i32; 2]| Situation {
+            ball: [303, 201],
+            defending_positive: false,
+            teammates: vec![(1, [100, 200]), (2, [250, -650])],
+            opponents: vec![[1200, 300], keeper],
+        };
+        let (guarded, open) = (with([2400, 50]), with([1500, -600]));
+        for (own, other) in [(&guarded, &open), (&open, &guarded)] {
+            let edit = draft(own, &plans(own, &[])[0]);
+            let wide = undemanding(&edit).unwrap();
+            let played = |edit: &Edit, situation: &Situation| {
+                let drafted = variant.edited(edit).unwrap();
+                drafted
+                    .answer(&drafted.base(), &situation.problem())
+                    .is_some_and(|(name, ..)| name == edit.case)
+            };
+            assert!(played(&edit, own) && !played(&edit, other), "{edit:?}");
+            assert!(played(&wide, own) && !wide.case.is_empty());
+            let Change::New(text) = &wide.change else { panic!("{wide:?}") };
+            assert!(!text.contains("presence"), "{text}");
+        }
     }
 
     fn case_library_files() -> case_tools::Files {

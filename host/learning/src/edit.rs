@@ -5,6 +5,7 @@ use std::fmt;
 
 use case_tools::workbench::{CaseText, Edit as TextEdit, EditError as TextError, Part};
 use case_tools::{Files, SourceFile};
+use casebase::Presence;
 use serde::{Deserialize, Serialize};
 
 /// What a change does to a file.
@@ -15,6 +16,10 @@ pub enum Change {
     BallScope([i32; 2]),
     /// Radii of an opponent's scope, by its number from 0.
     OpponentScope(usize, [i32; 2]),
+    /// What an opponent's scope demands, by its number from 0.
+    OpponentPresence(usize, Presence),
+    /// One more opponent, with the radii of its scope and what that demands.
+    AddOpponent([i32; 2], [i32; 2], Presence),
     /// A robot's position, by its number from 0.
     Position(usize, [i32; 2]),
     /// A robot's action, both numbered from 0, in TOML; one behind the last is added.
@@ -62,6 +67,12 @@ impl fmt::Display for Edit {
         match &self.change {
             Change::BallScope([x, y]) => write!(f, "{case}: ball scope [{x}, {y}]"),
             Change::OpponentScope(n, [x, y]) => write!(f, "{case}: scope of opponent {} [{x}, {y}]", n + 1),
+            Change::OpponentPresence(n, presence) => {
+                write!(f, "{case}: opponent {} {}", n + 1, presence.label())
+            }
+            Change::AddOpponent([x, y], [a, b], presence) => {
+                write!(f, "{case}: opponent at [{x}, {y}], scope [{a}, {b}], {}", presence.label())
+            }
             Change::Position(n, [x, y]) => write!(f, "{case}: tm{} at [{x}, {y}]", n + 1),
             Change::Action(n, i, action) => write!(f, "{case}: action {} of tm{} is {action}", i + 1, n + 1),
             Change::Forget => write!(f, "{case}: forgotten"),
@@ -86,6 +97,17 @@ impl Edit {
             }
             (Change::OpponentScope(n, radii), Some(file)) => {
                 self.rewritten(files, file, &TextEdit::Scope { part: Part::Opponent(n + 1), radii: *radii })
+            }
+            (Change::OpponentPresence(n, presence), Some(file)) => {
+                let edit = TextEdit::Presence { opponent: n + 1, presence: *presence };
+                self.rewritten(files, file, &edit)
+            }
+            (Change::AddOpponent(at, scope, presence), Some(file)) => {
+                let added = self.rewritten(files, file, &TextEdit::AddOpponent { at: *at, scope: *scope })?;
+                let file = added.cases.iter().find(|file| file.name == self.case).unwrap_or(file);
+                let case = CaseText::read(&file.text).map_err(|error| self.error(error.to_string()))?;
+                let edit = TextEdit::Presence { opponent: case.opponents(), presence: *presence };
+                self.rewritten(&added, file, &edit)
             }
             (Change::Position(n, at), Some(file)) => {
                 self.rewritten(files, file, &TextEdit::Move { part: Part::Robot(n + 1), to: *at })
@@ -135,6 +157,16 @@ mod tests {
         let cases = [
             (Change::BallScope([600, 500]), "scope = [900, 700]", "scope = [600, 500]"),
             (Change::OpponentScope(0, [9, 8]), "scope = [300, 200]", "scope = [9, 8]"),
+            (
+                Change::OpponentPresence(0, Presence::Required),
+                "scope = [300, 200]",
+                "scope = [300, 200]\npresence = \"required\"",
+            ),
+            (
+                Change::AddOpponent([600, 0], [500, 400], Presence::Excluded),
+                "scope = [300, 200]\n",
+                "scope = [300, 200]\n\n[[opponents]]\nat = [600, 0]\nscope = [500, 400]\npresence = \"excluded\"\n",
+            ),
             (Change::Position(0, [-5, 6]), "at = [0, 2]", "at = [-5, 6]"),
             (
                 Change::Action(0, 1, "{ kick = \"left\" }".to_owned()),

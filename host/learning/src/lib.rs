@@ -14,6 +14,7 @@ mod diff;
 mod drafts;
 mod edit;
 mod evidence;
+mod goalkeeper;
 mod journal;
 mod learner;
 mod occasion;

@@ -9,10 +9,12 @@ use std::collections::BTreeMap;
 
 use case_tools::CaseLeague;
 use case_tools::workbench::{ActionText, CaseText, Part};
+use casebase::{OPPONENTS_MAX, Presence};
 use serde::{Deserialize, Serialize};
 
-use crate::competence::CaseStanding;
+use crate::competence::{CaseStanding, Standing};
 use crate::edit::{Change, Edit, RETRIEVAL};
+use crate::goalkeeper;
 use crate::variant::Variant;
 
 /// Kinds of changes.
@@ -89,7 +91,10 @@ pub(crate) fn from_evidence(
         }
         let draft = Draft { case: &file.name, text: &text, standing };
         match kind {
-            Kind::Scopes => draft.scopes(&mut proposals),
+            Kind::Scopes => {
+                draft.scopes(&mut proposals);
+                draft.presences(&mut proposals);
+            }
             Kind::Actions => draft.actions(&kicks, &mut proposals),
             Kind::Forget => draft.forget(&mut proposals),
             Kind::New | Kind::Order => {}
@@ -216,6 +221,36 @@ impl Draft<'_> {
             if radii != scope {
                 self.push(proposals, Kind::Scopes, Change::OpponentScope(n, radii), reason, weight);
             }
+        }
+    }
+
+    /// What opponents' scopes demand, and a goalkeeper's own: evidence says where the case does worse than
+    /// usual, and a demand keeps it from being played there.
+    fn presences(&self, proposals: &mut Vec<Proposal>) {
+        let CaseStanding { met, unmet, goalie, no_goalie, .. } = self.standing;
+        let told = |side: &Standing, what: &str| {
+            format!("{what}: {:.0} plays, {:+.1} points", side.plays(), 100.0 * side.advantage())
+        };
+        let mut push = |change, side: &Standing, what: &str| {
+            let weight = side.plays() * -side.advantage();
+            if weight > 0.0 {
+                self.push(proposals, Kind::Scopes, change, told(side, what), weight);
+            }
+        };
+        for (n, presence) in (1..).map_while(|n| self.text.presence_of(n)).enumerate() {
+            for (other, side, what) in [
+                (Presence::Required, unmet, "without an opponent in every scope"),
+                (Presence::Excluded, met, "with an opponent in every scope"),
+            ] {
+                if presence != other {
+                    push(Change::OpponentPresence(n, other), side, what);
+                }
+            }
+        }
+        if self.text.opponents() < OPPONENTS_MAX && !goalkeeper::is_demanded(self.text) {
+            let change = |presence| goalkeeper::demanded(self.text, presence);
+            push(change(Presence::Required), no_goalie, "against two defenders");
+            push(change(Presence::Excluded), goalie, "against defender and goalie");
         }
     }
 

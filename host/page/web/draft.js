@@ -85,6 +85,9 @@ function findings() {
   ];
 }
 
+/** What a scope demands, in words. */
+const PRESENCES = { preferred: "ranks higher", required: "must hold one", excluded: "must be empty" };
+
 function parts() {
   const copy = copyOf();
   if (!copy) return el("p", { class: "muted" }, "The text cannot be read: mend it below.");
@@ -94,11 +97,19 @@ function parts() {
     const change = found[1] === "tm" ? { edit: "remove_robot", robot: Number(found[2]) } : { edit: "remove_opponent", opponent: Number(found[2]) };
     return press("✕", () => edit(change), { "aria-label": `Take ${part} out`, "data-remove": part });
   };
+  const presence = (part) => {
+    const number = /^opp(\d+)$/.exec(part)?.[1];
+    if (!number) return null;
+    const select = el("select", { "data-presence": part, "aria-label": `What ${part}'s scope demands`, onchange: (event) => edit({ edit: "presence", opponent: Number(number), presence: event.target.value }) },
+      ...Object.entries(PRESENCES).map(([value, words]) => el("option", { value }, words)));
+    select.value = copy.opponents[number - 1].presence;
+    return select;
+  };
   const row = (handle) => {
     const chosen = handle.key === bench.chosen;
     const values = handle.axis === undefined ? `${handle.at[0]}, ${handle.at[1]}` : `${handle.scope[handle.axis]}`;
     const button = press(`${handle.label}: ${values}`, () => chooseHandle(handle.key), { "data-handle": handle.key, class: chosen ? "on" : "", "aria-pressed": String(chosen), onfocus: () => chooseHandle(handle.key) });
-    return el("div", { class: "part" }, button, handle.axis === undefined ? remove(handle.part) : null);
+    return el("div", { class: "part" }, button, handle.axis === undefined ? presence(handle.part) : null, handle.axis === undefined ? remove(handle.part) : null);
   };
   const beside = (dy) => [copy.ball.at[0] + (copy.defending === "yellow" ? 500 : -500), copy.ball.at[1] + dy];
   return [

@@ -94,7 +94,7 @@ function part(id, heading, source, answer, problem, decided) {
 }
 
 /** How near a case that is none was to be one: the later the check, the nearer; then by its margin. */
-const ORDER = { candidate: 0, path: 1, thr_c: 2, robots: 3, ball: 4 };
+const ORDER = { candidate: 0, opponents: 1, path: 2, thr_c: 3, robots: 4, ball: 5 };
 const margin = (row) => row.inside_mm ?? row.over_mm ?? row.outside_mm ?? 0;
 
 function body(answer, problem, every) {
@@ -117,7 +117,7 @@ function body(answer, problem, every) {
 }
 
 /** Verdicts in words. */
-export const VERDICTS = { candidate: "fits", path: "path blocked", thr_c: "too far", robots: "too few robots", ball: "ball out of scope" };
+export const VERDICTS = { candidate: "fits", path: "path blocked", opponents: "other opponents", thr_c: "too far", robots: "too few robots", ball: "ball out of scope" };
 
 /** The margin of a verdict. */
 export function told(row) {
@@ -126,6 +126,8 @@ export function told(row) {
       return `${row.conditions} conditions, ${row.teammates} teammates, similarity ${number(row.similarity, 2)}, ${number(row.cost / 1000, 2)} m to travel in all`;
     case "path":
       return `opponent ${row.opponent} stands ${number(row.inside_mm, 0)} mm inside leg ${row.leg}`;
+    case "opponents":
+      return row.opponent === null ? `no opponent stands where opp${row.case_opponent} requires one` : `opponent ${row.opponent} stands where opp${row.case_opponent} excludes one`;
     case "thr_c":
       return row.distance_mm === undefined ? "a place outside the field"
         : `robot ${row.robot} is ${number(row.distance_mm / 1000, 2)} m from its place, ${number(row.over_mm, 0)} mm too far`;

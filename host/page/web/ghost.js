@@ -134,8 +134,8 @@ function shapesOf(copy, radius) {
   }
   copy.opponents.forEach((one, i) => {
     ellipse(one.at, metres(one.scope), "plain", true);
-    ellipse(one.at, [radius, radius], "plain", false);
-    text(one.at, `opp${i + 1}`, "plain");
+    if (one.presence !== "excluded") ellipse(one.at, [radius, radius], "plain", false);
+    text(one.at, `opp${i + 1}${{ required: " required", excluded: " excluded" }[one.presence] ?? ""}`, "plain");
   });
   copy.robots.forEach((robot, i) => {
     let from = robot.at;

@@ -1,6 +1,7 @@
 //! `case_text`: a case file as text that is changed in place. Reads and writes the parts of a case in their
 //! own form, tables or inline tables, and leaves comments, order and layout of all else.
 
+use casebase::{GoalEnd, Presence};
 use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, TableLike, Value};
 
 use super::action_text::{ActionText, point};
@@ -39,6 +40,16 @@ impl CaseText {
     /// Number of robots.
     pub fn robots(&self) -> usize {
         self.count("teammates")
+    }
+
+    /// Number of opponents.
+    pub fn opponents(&self) -> usize {
+        self.count("opponents")
+    }
+
+    /// The goal that is defended.
+    pub fn defending(&self) -> Option<GoalEnd> {
+        self.document.get("defending")?.as_str().and_then(GoalEnd::from_label)
     }
 
     /// Number of entries of a list: `teammates` or `opponents`.
@@ -121,14 +132,31 @@ impl CaseText {
         Ok(())
     }
 
+    /// What an opponent's scope demands, counted from 1; without the key it ranks alone.
+    pub fn presence_of(&self, opponent: usize) -> Option<Presence> {
+        match self.table(&Part::Opponent(opponent))?.get("presence") {
+            Some(item) => item.as_str().and_then(Presence::from_label),
+            None => Some(Presence::default()),
+        }
+    }
+
+    /// Sets what an opponent's scope demands; the default is written without the key.
+    pub(super) fn set_presence(&mut self, opponent: usize, presence: Presence) -> Result<(), EditError> {
+        let none = || EditError::NoPart(Part::Opponent(opponent).to_string());
+        let table = self.entry_mut("opponents", opponent).ok_or_else(none)?;
+        if presence == Presence::default() {
+            table.remove("presence");
+        } else if let Some(item) = table.get_mut("presence") {
+            replace(item, presence.label());
+        } else {
+            table.insert("presence", Item::Value(Value::from(presence.label())));
+        }
+        Ok(())
+    }
+
     /// Sets a text at the top level; its place, and a comment behind it, stay.
     pub(super) fn set_text(&mut self, key: &str, text: &str) {
-        let item = &mut self.document[key];
-        let mut value = Value::from(text);
-        if let Some(old) = item.as_value() {
-            *value.decor_mut() = old.decor().clone();
-        }
-        *item = Item::Value(value);
+        replace(&mut self.document[key], text);
     }
 
     fn gameplay(&mut self, robot: usize) -> Result<&mut Array, EditError> {
@@ -245,6 +273,15 @@ impl CaseText {
         }
         Ok(())
     }
+}
+
+/// Puts a text in the place of a value, in its layout.
+fn replace(item: &mut Item, text: &str) {
+    let mut value = Value::from(text);
+    if let Some(old) = item.as_value() {
+        *value.decor_mut() = old.decor().clone();
+    }
+    *item = Item::Value(value);
 }
 
 fn table(pairs: [(&str, Value); 2]) -> Table {

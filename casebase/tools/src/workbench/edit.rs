@@ -1,6 +1,6 @@
 //! `edit`: one change of a case file's text: comments, order and layout of all else stay. mm, field frame.
 
-use casebase::{OPPONENTS_MAX, PointMm, Symmetry, TEAMMATES_MAX};
+use casebase::{OPPONENTS_MAX, PointMm, Presence, Symmetry, TEAMMATES_MAX};
 use serde::{Deserialize, Serialize};
 
 use super::action_text::{ActionText, TurnText};
@@ -31,6 +31,13 @@ pub enum Edit {
         part: Part,
         /// Both radii.
         radii: [i32; 2],
+    },
+    /// Says what an opponent's scope demands.
+    Presence {
+        /// Which opponent.
+        opponent: usize,
+        /// What it demands.
+        presence: Presence,
     },
     /// Says what the case is for.
     Intent {
@@ -124,6 +131,7 @@ impl Edit {
             Self::Move { part, to } => put(&mut case, part, *to)?,
             Self::MoveAll { by } => move_all(&mut case, *by)?,
             Self::Scope { part, radii } => case.set_point(part, "scope", *radii)?,
+            Self::Presence { opponent, presence } => case.set_presence(*opponent, *presence)?,
             Self::Intent { intent } => case.set_text("intent", intent),
             Self::Defending { goal } => case.set_text("defending", goal),
             Self::SetAction { robot, number, action } => case.set_action(*robot, *number, action)?,

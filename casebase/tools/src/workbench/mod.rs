@@ -28,7 +28,7 @@ pub use case_text::CaseText;
 pub use edit::Edit;
 pub use edit_error::EditError;
 pub use part::Part;
-pub use sheet::{CopySheet, FindingNote, LegSheet, PlacedRobot, RobotSheet, Scoped, Sheet};
+pub use sheet::{CopySheet, FindingNote, LegSheet, PlacedOpponent, PlacedRobot, RobotSheet, Scoped, Sheet};
 
 /// Longest name of a case, bytes.
 const NAME_MAX: usize = 80;

@@ -2,7 +2,7 @@
 //! and its geometry in all four symmetries. mm, field frame.
 
 use casebase::plan_simulation::{PlanStep, Script, Spot, plan_simulation};
-use casebase::{CaseRobot, LegKind, PointMm, Symmetry};
+use casebase::{CaseRobot, LegKind, PointMm, Presence, Symmetry};
 use serde::Serialize;
 
 use super::action_text::ActionText;
@@ -82,7 +82,7 @@ pub struct CopySheet {
     /// The robots.
     pub robots: Vec<PlacedRobot>,
     /// The opponents.
-    pub opponents: Vec<Scoped>,
+    pub opponents: Vec<PlacedOpponent>,
     /// The ball's path.
     pub legs: Vec<LegSheet>,
 }
@@ -94,6 +94,17 @@ pub struct Scoped {
     pub at: [i32; 2],
     /// The radii of its scope.
     pub scope: [i32; 2],
+}
+
+/// An opponent in one symmetry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct PlacedOpponent {
+    /// Its place.
+    pub at: [i32; 2],
+    /// The radii of its scope.
+    pub scope: [i32; 2],
+    /// What the scope demands.
+    pub presence: Presence,
 }
 
 /// A robot in one symmetry.
@@ -147,9 +158,10 @@ fn copy(case: &Authored, league: &CaseLeague, symmetry: Symmetry) -> CopySheet {
         at: pair(mirrored.position(robot)),
         actions: (0..).map_while(|i| mirrored.action(robot, i)).map(|a| ActionText::of(a, league)).collect(),
     });
-    let opponents = case.opponents.iter().map(|opponent| Scoped {
+    let opponents = case.opponents.iter().map(|opponent| PlacedOpponent {
         at: pair(symmetry.point(opponent.at)),
         scope: [opponent.scope.x, opponent.scope.y],
+        presence: opponent.presence,
     });
     let on_field = |spot: Spot| {
         let [x, y] = if spot.on_field { [0.0; 2] } else { ball.to_f32() };

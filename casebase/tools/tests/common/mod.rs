@@ -180,6 +180,10 @@ impl Dice {
             let at = self.near(ball, 1500);
             let (sx, sy) = (self.between(100, 600), self.between(100, 600));
             write!(text, "[[opponents]]\nat = [{}, {}]\nscope = [{sx}, {sy}]\n", at.0, at.1).unwrap();
+            // Most scopes demand nothing, so that a good share of cases remain candidates.
+            if let Some(presence) = ["required", "excluded"].get(self.below(8) as usize) {
+                writeln!(text, "presence = \"{presence}\"").unwrap();
+            }
         }
         text
     }

@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 use std::io::{self, Write};
 
-use casebase::{Case, CaseBase, CaseVerdict, Match, Problem, rank_order};
+use casebase::{Case, CaseBase, CaseVerdict, Match, Presence, Problem, rank_order};
 use protocol::CaseId;
 use serde::Serialize;
 
@@ -94,6 +94,11 @@ enum Evidence {
         leg: usize,
         opponent: usize,
         inside_mm: f64,
+    },
+    Opponents {
+        case_opponent: usize,
+        presence: Presence,
+        opponent: Option<usize>,
     },
 }
 
@@ -233,6 +238,11 @@ impl Evidence {
             CaseVerdict::Path { index, opponent, inside_mm, .. } => {
                 Self::Path { leg: index + 1, opponent: opponent + 1, inside_mm: rounded(*inside_mm, 1e2) }
             }
+            CaseVerdict::Opponents { scope, presence, opponent } => Self::Opponents {
+                case_opponent: scope + 1,
+                presence: *presence,
+                opponent: opponent.map(|index| index + 1),
+            },
         }
     }
 
@@ -243,7 +253,7 @@ impl Evidence {
             Self::Ball { outside_mm: mm, .. }
             | Self::TooFar { over_mm: mm, .. }
             | Self::Path { inside_mm: mm, .. } => (1, *mm),
-            Self::Robots { .. } | Self::OutOfField { .. } => (2, 0.0),
+            Self::Robots { .. } | Self::OutOfField { .. } | Self::Opponents { .. } => (2, 0.0),
         }
     }
 
@@ -272,6 +282,10 @@ impl Evidence {
             Self::Path { leg, opponent, inside_mm } => {
                 format!("opponent {opponent} stands {inside_mm} mm inside leg {leg}")
             }
+            Self::Opponents { case_opponent, opponent, .. } => match opponent {
+                Some(opponent) => format!("opponent {opponent} stands where opp{case_opponent} excludes one"),
+                None => format!("no opponent stands where opp{case_opponent} requires one"),
+            },
         }
     }
 }

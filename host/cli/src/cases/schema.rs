@@ -9,7 +9,7 @@ use std::process::ExitCode;
 use arena::cases::write_line;
 use case_tools::keys;
 use casebase::{
-    GoalEnd, OPPONENTS_MAX, PROBLEM_OPPONENTS_MAX, PROBLEM_TEAMMATES_MAX, Primitive, TEAMMATES_MAX,
+    GoalEnd, OPPONENTS_MAX, PROBLEM_OPPONENTS_MAX, PROBLEM_TEAMMATES_MAX, Presence, Primitive, TEAMMATES_MAX,
 };
 use clap::Args;
 use serde_json::{Map, Value, json};
@@ -41,15 +41,19 @@ fn case() -> Value {
             "enum": [GoalEnd::Negative.label(), GoalEnd::Positive.label()],
             "description": "yellow: the goal at -x (attacks towards +x); cyan: the goal at +x.",
         }),
-        "ball" => scoped(),
+        "ball" => scoped(keys::BALL),
         "teammates" => list(&teammate(), 1, TEAMMATES_MAX),
-        _ => list(&scoped(), 0, OPPONENTS_MAX),
+        _ => list(&scoped(keys::OPPONENT), 0, OPPONENTS_MAX),
     })
 }
 
-fn scoped() -> Value {
-    object(keys::SCOPED, |key| match key {
+fn scoped(known: &[&'static str]) -> Value {
+    object(known, |key| match key {
         "at" => point("[x, y] in mm, field frame."),
+        "presence" => json!({
+            "enum": Presence::ALL.map(Presence::label),
+            "description": "Whether an opponent in the scope ranks the case higher, or must or must not be there.",
+        }),
         _ => pair(&keys::POSITIVE, "Radii [x, y] in mm."),
     })
 }

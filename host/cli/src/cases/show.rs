@@ -5,7 +5,9 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 
 use arena::cases::LibraryHandle;
-use casebase::{Action, Case, CaseBase, GoalEnd, KickAim, KickId, Leg, LegKind, PointMm, TurnTarget};
+use casebase::{
+    Action, Case, CaseBase, GoalEnd, KickAim, KickId, Leg, LegKind, PointMm, Presence, TurnTarget,
+};
 use clap::Args;
 use protocol::CaseId;
 
@@ -93,11 +95,15 @@ fn write_case(output: &mut impl Write, library_handle: &LibraryHandle, case: &Ca
             gameplay.join("; ")
         )?;
     }
-    for (number, (opponent, scope)) in (1..).zip(case.opponents()) {
+    for (index, (opponent, scope)) in case.opponents().enumerate() {
+        let presence = match case.presence(index) {
+            Presence::Preferred => "",
+            other => &format!(", {}", other.label()),
+        };
         writeln!(
             output,
-            "{:5} {:>14}  scope {} x {}",
-            format!("opp{number}"),
+            "{:5} {:>14}  scope {} x {}{presence}",
+            format!("opp{}", index + 1),
             at(opponent),
             scope.x,
             scope.y

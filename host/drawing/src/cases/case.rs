@@ -4,8 +4,8 @@
 //! the case has it.
 
 use casebase::{
-    Action, Case, CaseBase, CaseRobot, CaseVerdict, GoalEnd, Leg, PointMm, Problem, RetrievalSettings, Scope,
-    ScopeRule, adapted_position,
+    Action, Case, CaseBase, CaseRobot, CaseVerdict, GoalEnd, Leg, PointMm, Presence, Problem,
+    RetrievalSettings, Scope, ScopeRule, adapted_position,
 };
 
 use crate::{Anchor, At, Colors, Font, Svg, Theme, draw_field, half_extent, wrapped};
@@ -186,9 +186,16 @@ impl Scene<'_, '_> {
                 r#"fill="{opponent}" fill-opacity="{opacity}" stroke="{opponent}" stroke-width="12" stroke-dasharray="40 28""#
             );
             pen.svg.ellipse(center, radii, style);
+            let presence = self.picture.case.presence(number - 1);
             let ghost = self.picture.overlay.is_some();
-            pen.square(center, if ghost { "none" } else { opponent });
-            pen.labels.name(center, pen.unit * 1.7, format!("opp{number}"), pen.colors.ink);
+            if presence != Presence::Excluded {
+                pen.square(center, if ghost { "none" } else { opponent });
+            }
+            let name = match presence {
+                Presence::Preferred => format!("opp{number}"),
+                other => format!("opp{number} {}", other.label()),
+            };
+            pen.labels.name(center, pen.unit * 1.7, name, pen.colors.ink);
         }
     }
 

@@ -29,5 +29,11 @@ pub(super) fn verdict(verdict: &CaseVerdict, rank: Option<(usize, usize)>) -> St
             opponent + 1,
             index + 1
         ),
+        CaseVerdict::Opponents { scope, opponent: Some(opponent), .. } => {
+            format!("Not applicable: opponent {} stands where opp{} excludes one.", opponent + 1, scope + 1)
+        }
+        CaseVerdict::Opponents { scope, opponent: None, .. } => {
+            format!("Not applicable: no opponent stands where opp{} requires one.", scope + 1)
+        }
     }
 }
