@@ -19,6 +19,9 @@ pub const TRAVEL_MAX_MM: f32 = 1500.0;
 /// Minimum freedom of a fuzzy path: 1 − [`SCOPE_THRESHOLD`], which accepts the same cases as `crisp`.
 pub const FREE_MIN: f32 = 1.0 - SCOPE_THRESHOLD;
 
+/// Longest `lookahead`, s: nothing keeps its velocity for longer.
+const LOOKAHEAD_MAX_S: f32 = 3.0;
+
 /// The options of retrieval.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RetrievalSettings {
@@ -40,6 +43,8 @@ pub struct RetrievalSettings {
     pub threshold: f32,
     /// `free_min`: minimum freedom of a fuzzy path.
     pub free_min: f32,
+    /// `lookahead`: opponents are tested where they will be after so long at their present velocity, s.
+    pub lookahead_s: f32,
 }
 
 /// When the travel limit applies.
@@ -113,6 +118,7 @@ impl Default for RetrievalSettings {
             travel_max_mm: TRAVEL_MAX_MM,
             threshold: SCOPE_THRESHOLD,
             free_min: FREE_MIN,
+            lookahead_s: 0.0,
         }
     }
 }
@@ -293,6 +299,12 @@ const SETTINGS: &[Setting] = &[
         set: |s, v| parse_number(v, |n| (0.0..=1.0).contains(&n)).map(|v| s.free_min = v),
         get: |s, out| write!(out, "{}", s.free_min),
     },
+    Setting {
+        name: "lookahead",
+        expected: "a time in s from 0 to 3",
+        set: |s, v| parse_number(v, |n| (0.0..=LOOKAHEAD_MAX_S).contains(&n)).map(|v| s.lookahead_s = v),
+        get: |s, out| write!(out, "{}", s.lookahead_s),
+    },
 ];
 
 #[cfg(test)]
@@ -323,6 +335,7 @@ mod tests {
             ("thr_c", "900.5"),
             ("thr", "0.5"),
             ("free_min", "0.25"),
+            ("lookahead", "0.5"),
         ] {
             changed.set(name, value).unwrap();
         }
@@ -331,14 +344,14 @@ mod tests {
             copy.set(name, &value).unwrap();
         }
         assert_eq!(copy, changed);
-        assert_eq!(copy.describe().count(), 9);
+        assert_eq!(copy.describe().count(), 10);
     }
 
     #[test]
     fn a_wrong_setting_says_what_is_allowed() {
         let mut settings = RetrievalSettings::default();
         let unknown = settings.set("thr_x", "1").unwrap_err();
-        assert!(unknown.to_string().contains("thr_c, thr, free_min"), "{unknown}");
+        assert!(unknown.to_string().contains("thr_c, thr, free_min, lookahead"), "{unknown}");
         for (name, value) in [
             ("cost", "avg"),
             ("ranking", "conditions,conditions,teammates"),
@@ -346,6 +359,7 @@ mod tests {
             ("thr", "0"),
             ("thr", "nan"),
             ("thr_c", "-1"),
+            ("lookahead", "4"),
         ] {
             let error = settings.set(name, value).unwrap_err();
             assert!(error.to_string().starts_with(name), "{error}");

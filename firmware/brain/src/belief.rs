@@ -183,6 +183,9 @@ pub struct Belief {
     /// Estimators of a robot with a camera.
     #[cfg(feature = "legged")]
     perception: camera::Perception,
+    /// Opponents' velocities are needed, also where frames give exact places.
+    #[cfg(feature = "legged")]
+    follows_opponents: bool,
     /// Its frames are a camera's, with errors.
     #[cfg(feature = "legged")]
     has_camera: bool,
@@ -221,6 +224,8 @@ impl Belief {
             #[cfg(feature = "legged")]
             perception: camera::Perception::default(),
             #[cfg(feature = "legged")]
+            follows_opponents: false,
+            #[cfg(feature = "legged")]
             has_camera: false,
             slow_sights: 0,
             league,
@@ -231,6 +236,16 @@ impl Belief {
     /// A belief that knows only the goal its team defends.
     pub fn defending(league: League, defending: GoalEnd) -> Self {
         Self { game: BelievedGame { defending, ..BelievedGame::default() }, ..Self::new(league) }
+    }
+
+    /// The same with the velocities of opponents, where they are needed.
+    #[must_use]
+    pub fn following_opponents(self, needed: bool) -> Self {
+        #[cfg(feature = "legged")]
+        let belief = Self { follows_opponents: needed, ..self };
+        #[cfg(not(feature = "legged"))]
+        let (_, belief) = (needed, self);
+        belief
     }
 
     /// Takes in what the body perceives and what teammates report.
@@ -254,6 +269,10 @@ impl Belief {
         if let Some(pose) = sensors.pose.filter(|pose| pose.position.is_finite()) {
             self.pose = pose;
         }
+        #[cfg(feature = "legged")]
+        if self.follows_opponents {
+            self.perception.follow(now, &sensors.opponents);
+        }
         self.opponents.clear();
         // Fewer in a frame than opponents have room.
         for seen in sensors.opponents.iter().filter(|p| p.is_finite()) {
@@ -264,6 +283,17 @@ impl Belief {
         }
         let sight = self.sight.filter(|s| now.since(s.at) <= SIGHT_LEASE)?;
         Some(self.cut_at_opponents(rolling(sight.position, sight.velocity, self.league)))
+    }
+
+    /// Where an opponent at `place` will be after `seconds` at its present velocity; stays where nothing
+    /// tells that.
+    pub fn opponent_after(&self, place: Point<Field>, seconds: f32) -> Point<Field> {
+        let theirs = self.others.iter().filter(|other| other.side == Side::Theirs);
+        let sent = theirs.map(|other| (other.pose.position, other.velocity));
+        #[cfg(feature = "legged")]
+        let sent = sent.chain(self.perception.opponents.iter().map(|track| (track.place, track.velocity)));
+        let found = sent.into_iter().find(|(at, _)| *at == place);
+        found.map_or(place, |(at, velocity)| at + velocity * seconds)
     }
 
     /// The opponent whose centre is nearest to `point`, and its distance.
@@ -411,7 +441,7 @@ fn rolling(position: Point<Field>, velocity: Vector<Field>, league: League) -> B
 #[cfg(test)]
 mod tests {
     use super::*;
-    use geometry::Twist;
+    use geometry::{Angle, Twist};
     use protocol::robot_io::{BallSight, Health};
 
     fn seen(x: f32) -> SensorFrame {
@@ -440,6 +470,30 @@ mod tests {
         assert!((ball.rest.x() - 0.728).abs() < 1e-3);
         assert!(ball.rolls_towards(Point::new(0.6, 0.1), 0.2));
         assert!(!ball.rolls_towards(Point::new(-0.6, 0.1), 0.2));
+    }
+
+    #[test]
+    fn an_opponent_that_walks_will_be_farther_on_where_its_velocity_is_followed() {
+        let me = RobotId::new(1).unwrap();
+        let walks = |needed: bool| {
+            let mut belief = Belief::new(League::FourLegged).following_opponents(needed);
+            let mut place = Point::new(1.0, 0.5);
+            // 3 s at 0.25 m/s: the velocity is smoothed over one second.
+            for step in 0..75 {
+                place += Vector::new(-0.25, 0.0) * 0.04;
+                let opponents = heapless::Vec::from_slice(&[place]).unwrap();
+                let frame = SensorFrame { opponents, ..seen(0.0) };
+                belief.update(Instant(40_000 * step), me, &frame, &Teammates::default());
+            }
+            belief.opponent_after(place, 2.0).x() - place.x()
+        };
+        assert!((walks(true) + 0.5).abs() < 0.05, "{}", walks(true));
+        assert_eq!(walks(false), 0.0);
+        let mut hosted = Belief::new(League::DivisionB);
+        let pose = Pose { position: Point::new(1.0, 0.0), heading: Angle::ZERO };
+        let _ =
+            hosted.others.push(Other { side: Side::Theirs, id: me, pose, velocity: Vector::new(0.0, 2.0) });
+        assert_eq!(hosted.opponent_after(pose.position, 0.5), Point::new(1.0, 1.0));
     }
 
     #[test]

@@ -80,7 +80,8 @@ impl<'a> Brain<'a> {
             config: config.clone(),
             body: body::of(config.league),
             base,
-            belief: Belief::defending(config.league, config.defending),
+            belief: Belief::defending(config.league, config.defending)
+                .following_opponents(config.settings.lookahead_s > 0.0),
             teammates: Teammates::default(),
             cycle: Cycle::new(config.robot),
             execution: None,
@@ -236,7 +237,8 @@ impl<'a> Brain<'a> {
     /// The problem for which it would retrieve now.
     pub fn problem(&self, now: Instant) -> Option<Problem> {
         let Self { config, base, belief, teammates, .. } = self;
-        retrieval::problem(now, config.robot, base, belief.game.defending, belief, teammates)
+        let lookahead = config.settings.lookahead_s;
+        retrieval::problem(now, config.robot, base, belief.game.defending, belief, teammates, lookahead)
     }
 }
 

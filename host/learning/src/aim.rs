@@ -68,7 +68,8 @@ impl Ground {
         let base = edited.base();
         let touched = |i: &usize| {
             let before = &self.answers[*i];
-            before.as_ref().is_some_and(|(name, _, _)| *name == edit.case)
+            edit.changes_problems()
+                || before.as_ref().is_some_and(|(name, _, _)| *name == edit.case)
                 || edited.answer(&base, &self.occasions[*i].situation.problem()) != *before
         };
         (0..self.occasions.len()).into_par_iter().filter(touched).collect()

@@ -83,6 +83,12 @@ impl fmt::Display for Edit {
 }
 
 impl Edit {
+    /// Whether the problems themselves change, not retrieval's answers to them: robots look ahead over
+    /// another time.
+    pub(crate) fn changes_problems(&self) -> bool {
+        matches!(&self.change, Change::Setting(name, _) if name == "lookahead")
+    }
+
     /// The library's files after the edit.
     pub fn apply(&self, files: &Files) -> Result<Files, EditError> {
         let file = files.cases.iter().find(|file| file.name == self.case);

@@ -127,6 +127,9 @@ fn order(variant: &Variant) -> Vec<Proposal> {
     for (name, rules) in RULES {
         values.extend(rules.iter().map(|rule| (*name, (*rule).to_owned())));
     }
+    for (name, times) in TIMES {
+        values.extend(times.iter().map(|time| (*name, format!("{time}"))));
+    }
     for (name, factors) in FACTORS {
         let value: Option<f64> = now.get(*name).and_then(|value| value.parse().ok());
         values.extend(value.into_iter().flat_map(|value| {
@@ -154,6 +157,8 @@ const RULES: &[(&str, &[&str])] = &[
     ("scopes", &["translated", "absolute"]),
     ("free_path", &["crisp", "fuzzy"]),
 ];
+/// Times of retrieval with the values that are tried, s.
+const TIMES: &[(&str, &[f64])] = &[("lookahead", &[0.0, 0.3, 0.6, 1.0])];
 /// Lengths and thresholds of retrieval with the factors that are tried.
 const FACTORS: &[(&str, &[f64])] = &[("thr_c", &[0.67, 0.8, 1.25, 1.5]), ("thr", &[0.8, 1.25])];
 

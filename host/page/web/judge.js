@@ -81,7 +81,7 @@ function countPart(old) {
 }
 
 /** Range of the numbers, and choices of the words; the program refuses what it cannot take. */
-const RANGES = { thr: [0.05, 0.95, 0.01], thr_c: [100, 4000, 50], free_min: [0, 1, 0.01] };
+const RANGES = { thr: [0.05, 0.95, 0.01], thr_c: [100, 4000, 50], free_min: [0, 1, 0.01], lookahead: [0, 3, 0.1] };
 const CHOICES = {
   correspondence: ["min-then-test", "constrained"], cost: ["sum", "max"], scopes: ["translated", "absolute"], free_path: ["crisp", "fuzzy"], out_of_field: ["keep", "clamp", "reject"],
   ranking: ["conditions,teammates,interval-cost", "conditions,interval-cost,teammates", "teammates,conditions,interval-cost", "teammates,interval-cost,conditions", "interval-cost,conditions,teammates", "interval-cost,teammates,conditions"],

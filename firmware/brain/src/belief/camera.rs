@@ -1,7 +1,7 @@
 //! `camera`: belief of a walking robot from its camera and legs (docs/belief.md). Pose by [`PoseFilter`],
 //! ball by [`BallFilter`], opponents by [`Tracks`]. SI units, field frame.
 
-use geometry::{Body, Point, Twist, Vector, math};
+use geometry::{Body, Field, Point, Twist, Vector, math};
 use protocol::robot_io::{CameraFrame, SensorFrame, Sight};
 use protocol::{Duration, Instant};
 
@@ -45,6 +45,12 @@ impl Perception {
         }
         self.see_ball(now, sensors.ball_contact, camera.ball, deceleration);
         self.opponents.update(&sensors.opponents, dt);
+    }
+
+    /// Takes in places of opponents alone.
+    pub fn follow(&mut self, now: Instant, opponents: &[Point<Field>]) {
+        let dt = self.at.replace(now).map_or(0.0, |before| now.since(before).as_secs_f32()).min(LONGEST);
+        self.opponents.update(opponents, dt);
     }
 
     fn see_ball(&mut self, now: Instant, holds: bool, sight: Option<Sight>, deceleration: f32) {

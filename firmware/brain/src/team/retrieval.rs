@@ -12,7 +12,7 @@ use protocol::{Instant, RobotId};
 use crate::belief::Belief;
 use crate::teammates::Teammates;
 
-/// The problem from this robot's belief; `None` while no ball is known.
+/// The problem from this robot's belief, with opponents where they will be after `lookahead_s`; `None` while no ball is known.
 pub fn problem(
     now: Instant,
     me: RobotId,
@@ -20,6 +20,7 @@ pub fn problem(
     defending: GoalEnd,
     belief: &Belief,
     teammates: &Teammates,
+    lookahead_s: f32,
 ) -> Option<Problem> {
     let ball = belief.ball?;
     let mut problem = Problem {
@@ -38,7 +39,8 @@ pub fn problem(
         let _ = problem.teammates.push((id, position.into()));
     }
     for opponent in &belief.opponents {
-        let _ = problem.opponents.push((*opponent).into());
+        let at = if lookahead_s > 0.0 { belief.opponent_after(*opponent, lookahead_s) } else { *opponent };
+        let _ = problem.opponents.push(at.into());
     }
     Some(problem)
 }
