@@ -156,6 +156,12 @@ fn a_moment_becomes_a_case_by_hand_and_keys_that_the_next_match_plays() {
         tab.key(letter).unwrap();
     }
     tab.wait("onetwo.workbench.sheet.robots[1].actions.some((a) => a.go_to_point)", 10).unwrap();
+    // The first opponent must be there for the case to be played: so it is in this moment.
+    tab.click("[data-presence=opp1]").unwrap();
+    for letter in ["m", "u", "Enter"] {
+        tab.key(letter).unwrap();
+    }
+    tab.wait(&format!("{COPY}.opponents[0].presence === 'required'"), 10).unwrap();
     tab.click("[data-copy=both]").unwrap();
     let mirrored =
         format!("{COPY}.ball.at.every((mm, i) => mm === -onetwo.workbench.sheet.copies[0].ball.at[i])");
@@ -273,6 +279,7 @@ fn as_drawn(tab: &mut Tab<'_>, library: &Path) {
         }
         for (i, (at, scope)) in case.opponents().enumerate() {
             assert_eq!(copy["opponents"][i]["at"], pair(at), "{label}");
+            assert_eq!(copy["opponents"][i]["presence"], case.presence(i).label(), "{label}");
             assert_eq!(copy["opponents"][i]["scope"], serde_json::json!([scope.x, scope.y]), "{label}");
         }
         for (i, leg) in case.legs(case.ball()).enumerate() {
