@@ -24,7 +24,8 @@ pub const PRESENCE_LEASE: Duration = Duration::millis(400);
 /// (docs/architecture.md §6.1).
 pub const TEAM_MESSAGE_LEN_MAX: usize = 64 - crate::frame::OVERHEAD;
 
-/// A message of a robot.
+/// A message of a robot. Number 4 is no variant: it is [`KIND`](crate::bring_up::KIND), a report of a robot's
+/// first start.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum TeamMessage {
     /// To all: the sender's whole state.
@@ -38,10 +39,10 @@ pub enum TeamMessage {
 }
 
 impl TeamMessage {
-    /// Whether a payload that is one of these is meant for the host alone, by its first byte: the variant's
-    /// number.
+    /// Whether a payload is meant for the host alone, by its first byte: the variant's number, or
+    /// [`KIND`](crate::bring_up::KIND).
     pub(crate) const fn is_for_host(payload: &[u8]) -> bool {
-        matches!(*payload, [1 | 3, ..])
+        matches!(*payload, [1 | 3 | crate::bring_up::KIND, ..])
     }
 }
 

@@ -2,6 +2,7 @@
 //! directions.
 
 use geometry::{GoalEnd, Vector};
+use protocol::bring_up::{self, BringUpReport, Check, CheckState, Finding, Reporter};
 use protocol::decision::{DecisionReport, Grounds};
 use protocol::frame::{Audience, Frame, Key, Sender, TeamKey};
 use protocol::host::{
@@ -209,6 +210,19 @@ fn robots_messages_have_the_bytes_of_the_specification() {
 }
 
 #[test]
+fn a_report_of_a_first_start_has_the_bytes_of_the_specification() {
+    let (check, state) =
+        (Check::Wheel { wheel: 0, forwards: true }, CheckState::Failed(Finding::CountedBy(1, 0.96)));
+    let report = BringUpReport { host: 0x6500_0000, check, state };
+    let key = team_key().of_robot(robot(3)).host;
+    let packet = Reporter { team: TeamId(1), robot: robot(3), key, epoch: 9 }.seal(1, &report);
+    let (frame, who, read) = bring_up::open(&packet, TeamId(1), &team_key().of_team()).unwrap();
+    assert_eq!((who, read), (robot(3), report));
+    assert_eq!(frame.payload, &worked("bring-up")[..], "{}", hex(frame.payload));
+    assert!(postcard::from_bytes::<TeamMessage>(frame.payload).is_err(), "no message to a team");
+}
+
+#[test]
 fn the_hosts_messages_have_the_bytes_of_the_specification() {
     for (name, world) in worlds() {
         both_ways(name, &world);
@@ -285,8 +299,8 @@ fn a_frame_to_several_robots_has_the_bytes_of_the_specification() {
 #[test]
 fn every_example_of_the_specification_is_checked() {
     let examples = SPEC.matches("```hex ").count();
-    // Six of robots, two worlds, a welcome, limits, two keys, three frames and a line.
-    assert_eq!(examples, 6 + worlds().len() + 2 + 2 + 4 + commands().len());
+    // Seven of robots, two worlds, a welcome, limits, two keys, three frames and a line.
+    assert_eq!(examples, 7 + worlds().len() + 2 + 2 + 4 + commands().len());
 }
 
 fn hex(bytes: &[u8]) -> String {

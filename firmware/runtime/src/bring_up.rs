@@ -4,19 +4,20 @@
 //!
 //! Each check takes what the board's ports measure ([`Reading`]), drives at most one wheel, and ends with
 //! what it measured or with what is wrong ([`Finding`]) and what to look at. No check waits for ever, and
-//! none depends on another: one broken part hides no other. [`mod@bench`] is a robot of simulated parts with
-//! faults to plant.
+//! none depends on another: one broken part hides no other. [`Results`] tells the host how each stands.
+//! [`mod@bench`] is a robot of simulated parts with faults to plant.
 
 pub mod bench;
 mod listener;
-
-use core::fmt;
+mod results;
 
 use brain::governor::BATTERY_LOW;
 use protocol::{Duration, Instant};
 use rules::RobotSpec;
 
 pub use listener::Listener;
+pub use protocol::bring_up::{CHECKS, Check, CheckReport, Finding};
+pub use results::{REPORT_EVERY, Results};
 
 use crate::ports::Seen;
 use crate::wheel::{Motors, WHEELS};
@@ -41,160 +42,6 @@ pub struct RadioCounts {
     pub lost: u32,
     /// Errors of the line to the radio: framing, overrun, noise.
     pub line_errors: u32,
-}
-
-/// A check of the list.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Check {
-    /// Its voltage is measured, and within that of four cells.
-    Battery,
-    /// At rest wheels stand, the gyroscope knows its offset and the robot does not lie on its side.
-    Rest,
-    /// One wheel turns the way it is driven, and no other does.
-    Wheel {
-        /// 0 to 3: front right, back right, back left, front left.
-        wheel: u8,
-        /// Its rim runs to the left, seen from the robot's centre: it would turn the robot counter-clockwise.
-        forwards: bool,
-    },
-    /// Frames of the host arrive.
-    Radio,
-    /// The beam is interrupted by a ball that is held before the dribbler, and free again without it.
-    Beam,
-}
-
-/// The list, in its order: what others rest on first.
-pub const CHECKS: [Check; 12] = [
-    Check::Battery,
-    Check::Rest,
-    wheel(0, true),
-    wheel(0, false),
-    wheel(1, true),
-    wheel(1, false),
-    wheel(2, true),
-    wheel(2, false),
-    wheel(3, true),
-    wheel(3, false),
-    Check::Radio,
-    Check::Beam,
-];
-
-const fn wheel(wheel: u8, forwards: bool) -> Check {
-    Check::Wheel { wheel, forwards }
-}
-
-const NAMES: [&str; WHEELS] = ["front right", "back right", "back left", "front left"];
-
-impl fmt::Display for Check {
-    /// What is checked, and what a person has to see or do.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Battery => f.write_str("battery: nothing moves"),
-            Self::Rest => f.write_str("sensors at rest: leave the robot alone"),
-            Self::Wheel { wheel, forwards } => {
-                let name = NAMES.get(usize::from(*wheel)).copied().unwrap_or("no");
-                let way = if *forwards { "counter-clockwise" } else { "clockwise" };
-                write!(f, "{name} wheel: it turns, as to turn the robot {way}")
-            }
-            Self::Radio => f.write_str("radio: a host of its team sends"),
-            Self::Beam => {
-                f.write_str("break-beam sensor: hold a ball before the dribbler, then take it away")
-            }
-        }
-    }
-}
-
-/// What is wrong.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Finding {
-    /// The battery's voltage is not measured.
-    NoVoltage,
-    /// Its voltage, V, is none of four cells.
-    Voltage(f32),
-    /// No gyroscope answers, or it never came to rest.
-    NoGyroscope,
-    /// The turning rate at rest, rad/s.
-    Drifts(f32),
-    /// The accelerometer says that the robot lies on its side.
-    Tipped,
-    /// This wheel moves although none is driven, m/s.
-    MovesAlone(u8, f32),
-    /// This wheel's encoder is known to be broken.
-    NoEncoder(u8),
-    /// It is driven and no encoder sees anything.
-    NoMotion,
-    /// It runs the wrong way, m/s.
-    Reversed(f32),
-    /// Another wheel's encoder counts in its place, m/s.
-    CountedBy(u8, f32),
-    /// Another wheel moves too, m/s.
-    MovesToo(u8, f32),
-    /// Its speed, and what the motor's constant says, m/s.
-    Speed(f32, f32),
-    /// It does not stop without current, m/s.
-    KeepsTurning(f32),
-    /// Nothing was received.
-    Silent,
-    /// Frames received and lost.
-    Loses(u32, u32),
-    /// Errors of the line, and frames received.
-    LineErrors(u32, u32),
-    /// The beam is interrupted without a ball.
-    Blocked,
-    /// The beam was never interrupted.
-    NeverInterrupted,
-    /// The beam stayed interrupted.
-    StaysInterrupted,
-}
-
-impl fmt::Display for Finding {
-    /// What was measured, and what to look at.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = |wheel: &u8| NAMES.get(usize::from(*wheel)).copied().unwrap_or("no");
-        match self {
-            Self::NoVoltage => f.write_str("no voltage is measured: the divider's wire"),
-            Self::Voltage(volts) => write!(f, "{volts:.1} V is none of four cells: charge it, or measure the divider"),
-            Self::NoGyroscope => f.write_str("no gyroscope: power, wires and chip select of the IMU; was it moved?"),
-            Self::Drifts(rate) => write!(f, "it turns by {rate:.2} rad/s at rest: the IMU is loose, or was moved"),
-            Self::Tipped => f.write_str("it lies on its side, says the IMU: its z axis must point up"),
-            Self::MovesAlone(wheel, speed) => {
-                write!(f, "the {} wheel runs {speed:.2} m/s by itself: encoder's ground and shield, or a driver that is always on", name(wheel))
-            }
-            Self::NoEncoder(wheel) => write!(f, "the {} wheel's encoder is broken: cable and supply", name(wheel)),
-            Self::NoMotion => f.write_str("nothing turns: motor's cable, its driver and its enable; if it does turn, the encoder's cable"),
-            Self::Reversed(speed) => {
-                write!(f, "it runs the wrong way, {speed:.2} m/s: if it looks right, swap the encoder's two lines, else two phases or the direction's wire")
-            }
-            Self::CountedBy(wheel, speed) => {
-                write!(f, "the encoder of the {} wheel counts {speed:.2} m/s in its place: swap the two encoders' cables, or the two motors'", name(wheel))
-            }
-            Self::MovesToo(wheel, speed) => {
-                write!(f, "the {} wheel moves too, {speed:.2} m/s: a driver's inputs are joined", name(wheel))
-            }
-            Self::Speed(speed, expected) => {
-                write!(f, "{speed:.2} m/s, not {expected:.2}: gear, friction, lines of the encoder, or the wheel's radius")
-            }
-            Self::KeepsTurning(speed) => write!(f, "{speed:.2} m/s a second after its current was off: its driver's enable"),
-            Self::Silent => f.write_str("nothing received: is a host of its team running; power and wires of the radio"),
-            Self::Loses(received, lost) => write!(f, "{lost} of {} frames lost: antenna, plug, channel", received + lost),
-            Self::LineErrors(errors, received) => {
-                write!(f, "{errors} errors on the radio's line beside {received} frames: its rate, ground and plug")
-            }
-            Self::Blocked => f.write_str("interrupted without a ball: align lamp and sensor; daylight"),
-            Self::NeverInterrupted => f.write_str("never interrupted: lamp and sensor face each other behind the ball, or its wire is stuck"),
-            Self::StaysInterrupted => f.write_str("still interrupted after the ball was taken away, or it was not taken away"),
-        }
-    }
-}
-
-/// The result of a check; what passed has the value that was measured, in the check's unit (V, rad/s, m/s,
-/// frames received, s of interruption).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CheckReport {
-    /// Which check.
-    pub check: Check,
-    /// What it measured, or what is wrong.
-    pub result: Result<f32, Finding>,
 }
 
 /// What the board does until the next step.

@@ -6,7 +6,8 @@
 
 use std::fmt::Debug;
 
-use protocol::frame::{FRAME_LEN_MAX, Frame, SHORT_TAG_LEN, TAG_LEN, TeamKey};
+use protocol::bring_up::{self, CheckState};
+use protocol::frame::{FRAME_LEN_MAX, Frame, SHORT_TAG_LEN, Sender, TAG_LEN, TeamKey};
 use protocol::host::HostMessage;
 use protocol::host_link::HostLink;
 use protocol::link::{Link, Received, overhear, overhear_host};
@@ -69,9 +70,18 @@ pub fn line(bytes: &[u8]) {
     }
 }
 
-/// Target: a robot's message.
+/// Target: a robot's message, or its report of a first start, as it is and in a genuine frame.
 pub fn team(bytes: &[u8]) {
     same_again::<TeamMessage>(bytes);
+    let (team, keys, sender) = (TeamId(1), TeamKey::ZERO.of_team(), Sender::Robot(RobotId::ZERO));
+    let frame = Frame { team, sender, audience: None, epoch: 1, counter: 1, payload: bytes };
+    let genuine = frame.emit(keys.of(RobotId::ZERO));
+    if let Some((_, _, report)) = genuine.iter().find_map(|packet| bring_up::open(packet, team, &keys).ok()) {
+        assert!(bytes.first() == Some(&bring_up::KIND) && !format!("{report:?}").is_empty());
+        if let CheckState::Failed(finding) = report.state {
+            assert!(!format!("{}: {finding}", report.check).is_empty());
+        }
+    }
 }
 
 /// Target: the host's message.

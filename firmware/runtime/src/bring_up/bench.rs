@@ -49,6 +49,30 @@ pub enum Fault {
     StuckBeam,
 }
 
+impl Fault {
+    /// A fault of each kind by name; of wheels the first or the first two.
+    pub const EXAMPLES: [(&'static str, Self); 18] = [
+        ("none", Self::None),
+        ("no-divider", Self::NoDivider),
+        ("empty-battery", Self::EmptyBattery),
+        ("no-imu", Self::NoImu),
+        ("imu-upside-down", Self::ImuUpsideDown),
+        ("swapped-encoders", Self::SwappedEncoders(0, 1)),
+        ("reversed-motor", Self::ReversedMotor(0)),
+        ("reversed-encoder", Self::ReversedEncoder(0)),
+        ("dead-wheel", Self::DeadWheel(0)),
+        ("dead-encoder", Self::DeadEncoder(0)),
+        ("stuck-direction", Self::StuckDirection(0)),
+        ("joined-drivers", Self::JoinedDrivers(0)),
+        ("coarse-encoder", Self::CoarseEncoder(0)),
+        ("no-radio", Self::NoRadio),
+        ("loose-radio", Self::LooseRadio),
+        ("no-antenna", Self::NoAntenna),
+        ("no-lamp", Self::NoLamp),
+        ("stuck-beam", Self::StuckBeam),
+    ];
+}
+
 /// The robot.
 #[derive(Clone, Debug)]
 pub struct Bench {
@@ -154,19 +178,24 @@ fn change(values: &mut [f32; WHEELS], n: u8, with: impl Fn(f32) -> f32) {
 /// Plays the whole list on that robot, and passes each report on; a person holds a ball for a second, two
 /// seconds after asked to. Returns how long it took.
 pub fn play(fault: Fault, seed: u32, mut told: impl FnMut(CheckReport)) -> Duration {
+    play_steps(fault, seed, |step| step.report.into_iter().for_each(&mut told))
+}
+
+/// As [`play`], with each step of 1 ms passed on.
+pub fn play_steps(fault: Fault, seed: u32, mut told: impl FnMut(&BenchStep)) -> Duration {
     let (mut bench, mut list) = (Bench::new(fault, seed), BringUp::new());
     let (mut motors, mut asked) = (Motors::Released, None);
     let mut now = Instant(0);
     loop {
         let held = asked.is_some_and(|asked| (BALL_COMES..BALL_GOES).contains(&now.since(asked)));
         let reading = bench.step(motors, held);
-        let BenchStep { motors: next, report, check } = list.step(now, &reading);
-        motors = next;
-        if check == Some(super::Check::Beam) && asked.is_none() {
+        let step = list.step(now, &reading);
+        motors = step.motors;
+        if step.check == Some(super::Check::Beam) && asked.is_none() {
             asked = Some(now);
         }
-        report.into_iter().for_each(&mut told);
-        if check.is_none() {
+        told(&step);
+        if step.check.is_none() {
             return now.since(Instant(0));
         }
         now += CONTROL_PERIOD;

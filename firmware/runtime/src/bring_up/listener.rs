@@ -1,4 +1,5 @@
-//! `listener`: counts the frames of a host that a robot hears before it knows its team and keys.
+//! `listener`: counts the frames of a host that a robot hears before it knows its team and keys, and keeps the
+//! newest host's epoch.
 
 use protocol::TeamId;
 use protocol::frame::{Frame, Sender};
@@ -12,6 +13,8 @@ pub struct Listener {
     counts: RadioCounts,
     /// Host's epoch, snapshot and part of the last part of a snapshot.
     last: Option<(u32, u8, u8)>,
+    /// Team and epoch of its last frame.
+    host: Option<(TeamId, u32)>,
 }
 
 impl Listener {
@@ -23,6 +26,7 @@ impl Listener {
         if frame.sender != Sender::Host {
             return;
         }
+        self.host = Some((frame.team, frame.epoch));
         // A part of a snapshot as protocol/SPEC.md has it: variant 0, snapshot, part, parts.
         let [0, snapshot, part, parts, ..] = *frame.payload else { return };
         self.counts.received = self.counts.received.wrapping_add(1);
@@ -35,6 +39,11 @@ impl Listener {
             self.counts.lost = self.counts.lost.wrapping_add(missing);
         }
         self.last = Some((frame.epoch, snapshot, part));
+    }
+
+    /// Epoch of the last frame of a host, if it was one of that team; else 0. Its tag was not checked.
+    pub fn host_epoch(&self, team: TeamId) -> u32 {
+        self.host.filter(|(of, _)| *of == team).map_or(0, |(_, epoch)| epoch)
     }
 
     /// Counts so far; `line_errors` are the line's.
@@ -81,6 +90,7 @@ mod tests {
         listener.hear(&host.seal(Instant(200_000), &HostMessage::Limits(limits)));
         listener.hear(b"noise");
         assert_eq!(listener.counts(2), RadioCounts { received: 17, lost: 3, line_errors: 2 });
+        assert_eq!([7, 8].map(|team| listener.host_epoch(TeamId(team))), [3, 0]);
         // Another start of the host counts anew.
         let mut restarted = HostLink::new(TeamId(7), TeamKey([5; 16]), 4);
         listener.hear(&restarted.seal(Instant(0), &part(100, 0)));

@@ -1,0 +1,132 @@
+//! `results`: how each check of a robot's first start stands, and the packets that tell it to the host, again
+//! and again: a lost packet only delays, and a host that starts late still gets them all.
+
+use protocol::bring_up::{BringUpReport, CHECKS, CheckState, Reporter};
+use protocol::link::Packet;
+use protocol::{Duration, TeamId};
+
+use super::BenchStep;
+
+/// A packet goes out this often: each check is told at least four times a second, in 2 kB/s.
+pub const REPORT_EVERY: Duration = Duration::millis(20);
+
+/// How each check stands, to be told by a robot that has its keys.
+#[derive(Clone, Debug)]
+pub struct Results {
+    reporter: Reporter,
+    counter: u32,
+    states: [Option<CheckState>; CHECKS.len()],
+    /// The check whose turn it is.
+    next: usize,
+}
+
+impl Results {
+    /// Before the first check.
+    pub const fn new(reporter: Reporter) -> Self {
+        Self { reporter, counter: 0, states: [None; CHECKS.len()], next: 0 }
+    }
+
+    /// The robot's team.
+    pub const fn team(&self) -> TeamId {
+        self.reporter.team
+    }
+
+    /// Takes what a step of the checks has given.
+    pub fn take(&mut self, step: &BenchStep) {
+        if let Some(check) = step.check {
+            self.put(check, CheckState::Running);
+        }
+        if let Some(report) = step.report {
+            self.put(report.check, report.result.into());
+        }
+    }
+
+    /// The next packet, to be sent every [`REPORT_EVERY`]: the checks that have begun take turns. `host` is
+    /// the epoch of the host that is received, 0 without one. `None` before the first check.
+    pub fn packet(&mut self, host: u32) -> Option<Packet> {
+        let turns = (self.next..CHECKS.len()).chain(0..self.next);
+        let begun = |number: usize| Some((number, *CHECKS.get(number)?, (*self.states.get(number)?)?));
+        let (number, check, state) = turns.into_iter().find_map(begun)?;
+        self.next = (number + 1) % CHECKS.len();
+        self.counter = self.counter.saturating_add(1);
+        Some(self.reporter.seal(self.counter, &BringUpReport { host, check, state }))
+    }
+
+    fn put(&mut self, check: super::Check, state: CheckState) {
+        if let Some(place) = check.number().and_then(|number| self.states.get_mut(number)) {
+            *place = Some(state);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+    use std::vec::Vec;
+
+    use protocol::bring_up::open;
+    use protocol::frame::TeamKey;
+    use protocol::{RobotId, TeamId};
+
+    use super::*;
+    use crate::bring_up::bench::{Fault, play_steps};
+
+    const KEY: TeamKey = TeamKey([3; 16]);
+
+    fn reporter() -> Reporter {
+        let robot = RobotId::new(6).unwrap();
+        Reporter { team: TeamId(2), robot, key: KEY.of_robot(robot).host, epoch: 1 }
+    }
+
+    /// States by check as a receiver has them that loses that share of all packets, and as the robot has them;
+    /// a second after the last check.
+    fn told(fault: Fault, loses: f32) -> (BTreeMap<usize, CheckState>, Vec<CheckState>) {
+        let (mut results, mut own, mut received) = (Results::new(reporter()), Vec::new(), BTreeMap::new());
+        let (mut dice, mut steps) = (1_u32, 0_u32);
+        let mut send = |results: &mut Results| {
+            dice = dice.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let lost = (dice >> 8) as f32 / 16_777_216.0 < loses;
+            if let Some(packet) = results.packet(5).filter(|_| !lost) {
+                let (_, _, report) = open(&packet, TeamId(2), &KEY.of_team()).unwrap();
+                assert_eq!(report.host, 5);
+                received.insert(report.check.number().unwrap(), report.state);
+            }
+        };
+        play_steps(fault, 1, |step| {
+            results.take(step);
+            own.extend(step.report.map(|report| CheckState::from(report.result)));
+            steps += 1;
+            if steps.is_multiple_of(20) {
+                send(&mut results);
+            }
+        });
+        for _ in 0..50 {
+            send(&mut results);
+        }
+        (received, own)
+    }
+
+    #[test]
+    fn every_result_reaches_the_host_with_any_fault_and_with_a_third_of_the_packets_lost() {
+        for fault in Fault::EXAMPLES.map(|(_, fault)| fault) {
+            for loses in [0.0, 0.3] {
+                let (received, own) = told(fault, loses);
+                assert_eq!(own.len(), CHECKS.len());
+                assert_eq!(received.into_values().collect::<Vec<_>>(), own, "{fault:?}, {loses}");
+            }
+        }
+    }
+
+    #[test]
+    fn before_the_first_check_nothing_is_told_and_a_check_that_runs_is_told_as_running() {
+        let mut results = Results::new(reporter());
+        assert_eq!(results.packet(0), None);
+        let motors = crate::wheel::Motors::Released;
+        results.take(&BenchStep { motors, report: None, check: Some(CHECKS[0]) });
+        for _ in 0..2 {
+            let packet = results.packet(0).unwrap();
+            let (_, _, report) = open(&packet, TeamId(2), &KEY.of_team()).unwrap();
+            assert_eq!((report.check, report.state), (CHECKS[0], CheckState::Running));
+        }
+    }
+}

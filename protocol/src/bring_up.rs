@@ -1,0 +1,279 @@
+//! `bring_up`: the checks of a robot's first start, what each can find, and the frame by which a robot tells
+//! the host how each stands (protocol/SPEC.md, BringUpReport). Units are SI.
+//!
+//! Such a frame's payload begins with [`KIND`], which is no [`TeamMessage`](crate::team::TeamMessage): the
+//! images that play, and their host, do not know it. It is sealed under the robot's own key, as telemetry is;
+//! robots do not open it, and `onetwo control` refuses it for its payload. [`Frame`]'s epoch and counter
+//! order the frames, and [`BringUpReport::host`] tells a recording from a robot that is on.
+
+use core::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use crate::frame::{Frame, Key, OVERHEAD, Refusal, Sender, TeamKeys};
+use crate::link::{Packet, decode, packet};
+use crate::{RobotId, TeamId};
+
+/// A check of the list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Check {
+    /// Its voltage is measured, and within that of four cells.
+    Battery,
+    /// At rest wheels stand, the gyroscope knows its offset and the robot does not lie on its side.
+    Rest,
+    /// One wheel turns the way it is driven, and no other does.
+    Wheel {
+        /// 0 to 3: front right, back right, back left, front left.
+        wheel: u8,
+        /// Its rim runs to the left, seen from the robot's centre: it would turn the robot counter-clockwise.
+        forwards: bool,
+    },
+    /// Frames of the host arrive.
+    Radio,
+    /// The beam is interrupted by a ball that is held before the dribbler, and free again without it.
+    Beam,
+}
+
+/// The list, in its order: what others rest on first.
+pub const CHECKS: [Check; 12] = [
+    Check::Battery,
+    Check::Rest,
+    wheel(0, true),
+    wheel(0, false),
+    wheel(1, true),
+    wheel(1, false),
+    wheel(2, true),
+    wheel(2, false),
+    wheel(3, true),
+    wheel(3, false),
+    Check::Radio,
+    Check::Beam,
+];
+
+const fn wheel(wheel: u8, forwards: bool) -> Check {
+    Check::Wheel { wheel, forwards }
+}
+
+impl Check {
+    /// Its place in [`CHECKS`]; `None` of a wheel that does not exist.
+    pub fn number(self) -> Option<usize> {
+        CHECKS.iter().position(|known| *known == self)
+    }
+
+    /// Unit of what it measures when it passes.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Battery => "V",
+            Self::Rest => "rad/s",
+            Self::Wheel { .. } => "m/s",
+            Self::Radio => "frames",
+            Self::Beam => "s",
+        }
+    }
+}
+
+/// Wheels of a robot.
+const WHEELS: usize = 4;
+const NAMES: [&str; WHEELS] = ["front right", "back right", "back left", "front left"];
+
+impl fmt::Display for Check {
+    /// What is checked, and what a person has to see or do.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Battery => f.write_str("battery: nothing moves"),
+            Self::Rest => f.write_str("sensors at rest: leave the robot alone"),
+            Self::Wheel { wheel, forwards } => {
+                let name = NAMES.get(usize::from(*wheel)).copied().unwrap_or("no");
+                let way = if *forwards { "counter-clockwise" } else { "clockwise" };
+                write!(f, "{name} wheel: it turns, as to turn the robot {way}")
+            }
+            Self::Radio => f.write_str("radio: a host of its team sends"),
+            Self::Beam => {
+                f.write_str("break-beam sensor: hold a ball before the dribbler, then take it away")
+            }
+        }
+    }
+}
+
+/// What is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Finding {
+    /// The battery's voltage is not measured.
+    NoVoltage,
+    /// Its voltage, V, is none of four cells.
+    Voltage(f32),
+    /// No gyroscope answers, or it never came to rest.
+    NoGyroscope,
+    /// The turning rate at rest, rad/s.
+    Drifts(f32),
+    /// The accelerometer says that the robot lies on its side.
+    Tipped,
+    /// This wheel moves although none is driven, m/s.
+    MovesAlone(u8, f32),
+    /// This wheel's encoder is known to be broken.
+    NoEncoder(u8),
+    /// It is driven and no encoder sees anything.
+    NoMotion,
+    /// It runs the wrong way, m/s.
+    Reversed(f32),
+    /// Another wheel's encoder counts in its place, m/s.
+    CountedBy(u8, f32),
+    /// Another wheel moves too, m/s.
+    MovesToo(u8, f32),
+    /// Its speed, and what the motor's constant says, m/s.
+    Speed(f32, f32),
+    /// It does not stop without current, m/s.
+    KeepsTurning(f32),
+    /// Nothing was received.
+    Silent,
+    /// Frames received and lost.
+    Loses(u32, u32),
+    /// Errors of the line, and frames received.
+    LineErrors(u32, u32),
+    /// The beam is interrupted without a ball.
+    Blocked,
+    /// The beam was never interrupted.
+    NeverInterrupted,
+    /// The beam stayed interrupted.
+    StaysInterrupted,
+}
+
+impl fmt::Display for Finding {
+    /// What was measured, and what to look at.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = |wheel: &u8| NAMES.get(usize::from(*wheel)).copied().unwrap_or("no");
+        match self {
+            Self::NoVoltage => f.write_str("no voltage is measured: the divider's wire"),
+            Self::Voltage(volts) => write!(f, "{volts:.1} V is none of four cells: charge it, or measure the divider"),
+            Self::NoGyroscope => f.write_str("no gyroscope: power, wires and chip select of the IMU; was it moved?"),
+            Self::Drifts(rate) => write!(f, "it turns by {rate:.2} rad/s at rest: the IMU is loose, or was moved"),
+            Self::Tipped => f.write_str("it lies on its side, says the IMU: its z axis must point up"),
+            Self::MovesAlone(wheel, speed) => {
+                write!(f, "the {} wheel runs {speed:.2} m/s by itself: encoder's ground and shield, or a driver that is always on", name(wheel))
+            }
+            Self::NoEncoder(wheel) => write!(f, "the {} wheel's encoder is broken: cable and supply", name(wheel)),
+            Self::NoMotion => f.write_str("nothing turns: motor's cable, its driver and its enable; if it does turn, the encoder's cable"),
+            Self::Reversed(speed) => {
+                write!(f, "it runs the wrong way, {speed:.2} m/s: if it looks right, swap the encoder's two lines, else two phases or the direction's wire")
+            }
+            Self::CountedBy(wheel, speed) => {
+                write!(f, "the encoder of the {} wheel counts {speed:.2} m/s in its place: swap the two encoders' cables, or the two motors'", name(wheel))
+            }
+            Self::MovesToo(wheel, speed) => {
+                write!(f, "the {} wheel moves too, {speed:.2} m/s: a driver's inputs are joined", name(wheel))
+            }
+            Self::Speed(speed, expected) => {
+                write!(f, "{speed:.2} m/s, not {expected:.2}: gear, friction, lines of the encoder, or the wheel's radius")
+            }
+            Self::KeepsTurning(speed) => write!(f, "{speed:.2} m/s a second after its current was off: its driver's enable"),
+            Self::Silent => f.write_str("nothing received: is a host of its team running; power and wires of the radio"),
+            Self::Loses(received, lost) => write!(f, "{lost} of {} frames lost: antenna, plug, channel", received.saturating_add(*lost)),
+            Self::LineErrors(errors, received) => {
+                write!(f, "{errors} errors on the radio's line beside {received} frames: its rate, ground and plug")
+            }
+            Self::Blocked => f.write_str("interrupted without a ball: align lamp and sensor; daylight"),
+            Self::NeverInterrupted => f.write_str("never interrupted: lamp and sensor face each other behind the ball, or its wire is stuck"),
+            Self::StaysInterrupted => f.write_str("still interrupted after the ball was taken away, or it was not taken away"),
+        }
+    }
+}
+
+/// The result of a check; what passed has the value that was measured, in the check's unit (V, rad/s, m/s,
+/// frames received, s of interruption).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CheckReport {
+    /// Which check.
+    pub check: Check,
+    /// What it measured, or what is wrong.
+    pub result: Result<f32, Finding>,
+}
+
+/// How a check stands.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum CheckState {
+    /// It runs.
+    Running,
+    /// It passed, with what it measured.
+    Passed(f32),
+    /// What is wrong.
+    Failed(Finding),
+}
+
+impl From<Result<f32, Finding>> for CheckState {
+    fn from(result: Result<f32, Finding>) -> Self {
+        result.map_or_else(Self::Failed, Self::Passed)
+    }
+}
+
+/// A robot tells the host how one of its checks stands; each is told again and again, so that a lost frame
+/// only delays.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BringUpReport {
+    /// Epoch of the newest frame of a host of its team that the robot has received, 0 without one. Its tag
+    /// was not checked: it shows that the report is not older than that host.
+    #[serde(with = "postcard::fixint::le")]
+    pub host: u32,
+    /// Which check.
+    pub check: Check,
+    /// How it stands.
+    pub state: CheckState,
+}
+
+/// The payload's first byte; the numbers below are those of [`TeamMessage`](crate::team::TeamMessage).
+pub const KIND: u8 = 4;
+/// The longest payload: kind, host, a wheel's check, and a finding with two counts.
+const REPORT_LEN_MAX: usize = 1 + 4 + 3 + 1 + 1 + 10;
+
+/// Who seals reports.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reporter {
+    /// The robot's team.
+    pub team: TeamId,
+    /// Its number.
+    pub robot: RobotId,
+    /// Its key with the host.
+    pub key: Key,
+    /// Its boot epoch.
+    pub epoch: u32,
+}
+
+impl Reporter {
+    /// The packet that carries `report`; `counter` must rise with each.
+    pub fn seal(&self, counter: u32, report: &BringUpReport) -> Packet {
+        let mut payload = [KIND; REPORT_LEN_MAX];
+        // A report always fits (tested with the longest there is); if it did not, silence is the safe answer.
+        let written = payload.split_first_mut().map(|(_, rest)| postcard::to_slice(report, rest));
+        let Some(Ok(written)) = written else { return Packet::new() };
+        let len = 1 + written.len();
+        let Some(payload) = payload.get(..len) else { return Packet::new() };
+        let (team, sender, epoch) = (self.team, Sender::Robot(self.robot), self.epoch);
+        packet(&Frame { team, sender, audience: None, epoch, counter, payload }, &self.key)
+    }
+}
+
+/// Whether this frame claims to carry a report; nothing is checked.
+pub fn is_report(frame: &Frame<'_>) -> bool {
+    frame.payload.first() == Some(&KIND) && frame.sender.robot().is_some()
+}
+
+/// Reads a genuine report. Order and repetition are the reader's to judge
+/// ([`Sessions`](crate::frame::Sessions)).
+pub fn open<'a>(
+    packet: &'a [u8],
+    team: TeamId,
+    keys: &TeamKeys,
+) -> Result<(Frame<'a>, RobotId, BringUpReport), Refusal> {
+    let frame = Frame::parse(packet, team)?;
+    let Sender::Robot(robot) = frame.sender else { return Err(Refusal::Sender(frame.sender.number())) };
+    if !frame.is_genuine(packet, keys.of(robot), robot) {
+        return Err(Refusal::Tag);
+    }
+    let report: Option<BringUpReport> = frame.payload.strip_prefix(&[KIND]).and_then(decode);
+    let report = report.filter(|report| report.check.number().is_some()).ok_or(Refusal::Payload)?;
+    Ok((frame, robot, report))
+}
+
+const _: () = assert!(OVERHEAD + REPORT_LEN_MAX <= 40, "as short as a command");
+
+#[cfg(test)]
+mod tests;
