@@ -14,12 +14,14 @@ use casebase::SettingError;
 use foreign::printable;
 use hil_sim::SimulationError;
 
+mod bring_up;
 mod description;
 mod firmware;
 mod network;
 mod recorded;
 mod survey;
 
+pub(crate) use bring_up::BringUpError;
 pub(crate) use description::DescriptionError;
 pub(crate) use firmware::FirmwareError;
 pub(crate) use network::NetworkError;
@@ -97,6 +99,8 @@ pub(crate) enum Failure {
     Draft(DraftError),
     /// A robot's description is wrong, or another than this program's.
     Description(DescriptionError),
+    /// The checks of a robot's first start cannot be shown.
+    BringUp(BringUpError),
     /// A virtual robot cannot run.
     Robot(RobotError),
     /// Threads cannot be started.
@@ -161,6 +165,12 @@ impl From<FirmwareError> for Failure {
     }
 }
 
+impl From<BringUpError> for Failure {
+    fn from(error: BringUpError) -> Self {
+        Self::BringUp(error)
+    }
+}
+
 impl From<DescriptionError> for Failure {
     fn from(error: DescriptionError) -> Self {
         Self::Description(error)
@@ -206,6 +216,7 @@ impl fmt::Display for Failure {
             Self::Network(error) => write!(f, "{error}"),
             Self::Robot(error) => write!(f, "{error}"),
             Self::Description(error) => write!(f, "{error}"),
+            Self::BringUp(error) => write!(f, "{error}"),
             Self::Trial(error) => write!(f, "{error}"),
             Self::Firmware(error) => write!(f, "{error}"),
             Self::Game(error) => write!(f, "{error}"),

@@ -32,16 +32,22 @@ pub(super) fn team_key(config: &TeamConfig) -> Result<TeamKey, Failure> {
 
 /// This start's epoch. Robots in a simulator start with their host, so nothing is kept for them.
 pub(super) fn this_epoch(config: &TeamConfig) -> u32 {
-    let unix = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    let calendar = u32::try_from(unix.as_secs()).unwrap_or(u32::MAX);
-    if matches!(config.robots, RobotLink::Simulator(_)) {
-        return calendar;
-    }
-    let epoch = epoch::next(epoch::state_directory().as_deref(), calendar);
+    if matches!(config.robots, RobotLink::Simulator(_)) { calendar() } else { real_epoch() }
+}
+
+/// This start's epoch for real robots, greater than all before.
+pub(crate) fn real_epoch() -> u32 {
+    let epoch = epoch::next(epoch::state_directory().as_deref(), calendar());
     if let Some(warning) = epoch.warning {
         note!("warning: {warning}");
     }
     epoch.epoch
+}
+
+/// Seconds since 1970.
+fn calendar() -> u32 {
+    let unix = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    u32::try_from(unix.as_secs()).unwrap_or(u32::MAX)
 }
 
 #[cfg(test)]

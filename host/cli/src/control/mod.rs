@@ -32,6 +32,8 @@ use protocol::RobotId;
 use rules::Colour;
 use ssl::net::addresses;
 
+pub(crate) use identity::real_epoch;
+
 use crate::Failure;
 use crate::args::{DirectoryArgs, SettingsArgs};
 use crate::failure::NetworkError;

@@ -1,6 +1,8 @@
 //! `onetwo robot`: work with the description of a robot, `robot.toml`. Check it, show it with what follows
-//! from it, fit it to measurements (docs/robots.md). Runs on a PC.
+//! from it, fit it to measurements (docs/robots.md); and show the checks of a robot's first start. Runs on a
+//! PC.
 
+mod bring_up;
 mod calibrate;
 mod derived;
 mod fit;
@@ -28,6 +30,9 @@ pub(crate) enum RobotVerb {
     Show(show::ShowArgs),
     /// Fit pulses, or the wheels' radius or gear, to measurements, and write them into the description.
     Calibrate(calibrate::CalibrateArgs),
+    /// Show the checks of a robot's first start as its image bring_up tells them by radio. Exit 1 if one
+    /// failed.
+    BringUp(bring_up::BringUpArgs),
 }
 
 /// Arguments of `robot check`.
@@ -47,6 +52,7 @@ pub(crate) fn run(verb: &RobotVerb) -> Result<ExitCode, Failure> {
         RobotVerb::Check(args) => check(args)?,
         RobotVerb::Show(args) => show::run(args)?,
         RobotVerb::Calibrate(args) => calibrate::run(args)?,
+        RobotVerb::BringUp(args) => return bring_up::run(args),
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -1,0 +1,150 @@
+//! `onetwo robot bring-up`: the checks of a robot's first start, as its bring-up image tells them by radio
+//! (docs/boards.md). It is that robot's host meanwhile: the check of the radio needs frames of one.
+//!
+//! [`progress`] reads the frames, [`lines`] writes what is printed; here are the link and its clock.
+
+mod lines;
+mod progress;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use host::config::RobotLink;
+use host::radio::To;
+use host::shell::{Link, SerialLink, UdpLink, key};
+use protocol::frame::TeamKey;
+use protocol::host::{HostMessage, WorldPart};
+use protocol::host_link::HostLink;
+use protocol::{RobotId, TeamId};
+use rules::Phase;
+
+use crate::Failure;
+use crate::control::real_epoch;
+use crate::failure::{BringUpError, NetworkError};
+use crate::output::{note, print_text};
+use crate::simulate::seconds;
+use crate::stop::{signal, stopped_by_hand};
+use lines::Format;
+use progress::Progress;
+
+/// Arguments of `robot bring-up`.
+#[derive(Debug, Args)]
+pub(crate) struct BringUpArgs {
+    /// Where the robot is, as for `onetwo control`: `udp://HOST:PORT` or `serial:DEVICE[:BAUD]`.
+    #[arg(long, value_name = "LINK")]
+    robots: String,
+    /// Its team's number on the radio, as in its page.
+    #[arg(long, value_name = "N")]
+    team: u8,
+    /// The team's key: 32 hexadecimal digits in a file; the robot's page must be derived from it.
+    #[arg(long, value_name = "FILE")]
+    key_file: PathBuf,
+    /// The robot's number; by default the first that reports a check.
+    #[arg(long, value_name = "N", value_parser = robot)]
+    robot: Option<RobotId>,
+    /// A JSON object a line: each check when it begins and when it ends, then the counts.
+    #[arg(long)]
+    json: bool,
+    /// Fail after this number of seconds without a report.
+    #[arg(long, value_name = "SECONDS", default_value = "10", value_parser = seconds)]
+    patience: f64,
+}
+
+/// A snapshot goes out this often, as from a host in play.
+const SNAPSHOT_EVERY: Duration = Duration::from_millis(10);
+
+/// Exit code 1 if a check failed.
+pub(super) fn run(args: &BringUpArgs) -> Result<ExitCode, Failure> {
+    let robots = RobotLink::parse(&args.robots).map_err(NetworkError::Config)?;
+    let read = key::read(&args.key_file).map_err(NetworkError::Key)?;
+    if let Some(warning) = &read.warning {
+        note!("warning: {warning}");
+    }
+    if read.key == TeamKey::ZERO {
+        return Err(
+            NetworkError::PublicKey { link: args.robots.clone(), file: Some(args.key_file.clone()) }.into()
+        );
+    }
+    let stopped = stopped_by_hand();
+    let mut link = open(&robots)?;
+    let mut host = HostLink::new(TeamId(args.team), read.key, real_epoch());
+    let mut progress = Progress::new(TeamId(args.team), &read.key, host.epoch(), args.robot);
+    let format = if args.json { Format::Json } else { Format::Text };
+    note!("waiting for a robot's checks over {}; Ctrl-C ends it", args.robots);
+    let began = Instant::now();
+    let (mut news, mut due, mut snapshot) = (began, began, 0_u8);
+    while !progress.is_complete() {
+        if stopped.load(Ordering::Relaxed) {
+            break;
+        }
+        if news.elapsed().as_secs_f64() > args.patience {
+            return Err(silent(&progress, args.patience, &*link).into());
+        }
+        if due <= Instant::now() {
+            due = Instant::now() + SNAPSHOT_EVERY;
+            snapshot = snapshot.wrapping_add(1);
+            if link.has_room() {
+                let now = protocol::Instant(began.elapsed().as_micros() as u64);
+                link.send(To::All, &host.seal(now, &empty(snapshot))).map_err(NetworkError::Link)?;
+            }
+        }
+        let wait = due.saturating_duration_since(Instant::now());
+        if let Some(packet) = link.receive(wait).map_err(NetworkError::Link)? {
+            let taken = progress.take(&packet);
+            if taken.is_report {
+                news = Instant::now();
+            }
+            let text: String = taken.events.iter().map(|event| format.event(event)).collect();
+            print_text(&text)?;
+        }
+        while let Some(notice) = link.notice() {
+            note!("{notice}");
+        }
+    }
+    if let Some(summary) = progress.summary() {
+        if !summary.hears_us {
+            note!(
+                "warning: robot {} has not received this computer, so that these results may be a recording of an earlier start",
+                summary.robot
+            );
+        }
+        print_text(&format.summary(&summary))?;
+        if progress.is_complete() {
+            return Ok(if summary.failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE });
+        }
+    }
+    Ok(signal().map_or(ExitCode::FAILURE, |(_, code)| code))
+}
+
+fn open(robots: &RobotLink) -> Result<Box<dyn Link>, Failure> {
+    Ok(match robots {
+        RobotLink::Udp(address) => Box::new(UdpLink::open(address).map_err(NetworkError::Link)?),
+        RobotLink::Serial { device, baud } => {
+            Box::new(SerialLink::open(device, *baud).map_err(NetworkError::Link)?)
+        }
+        RobotLink::Simulator(_) => return Err(BringUpError::Simulator.into()),
+    })
+}
+
+/// Why nothing arrives.
+fn silent(progress: &Progress, seconds: f64, link: &dyn Link) -> BringUpError {
+    let hint = progress.hint().unwrap_or_else(|| link.advice());
+    match progress.summary() {
+        None => BringUpError::Silent { seconds, hint },
+        Some(summary) => BringUpError::Fell { robot: summary.robot, seconds, open: summary.open },
+    }
+}
+
+/// A snapshot of an empty field, to no robot: what a base station and the check of the radio need.
+fn empty(snapshot: u8) -> HostMessage {
+    let (phase, robots) = (Phase::Halt, Default::default());
+    HostMessage::World(WorldPart { snapshot, part: 0, parts: 1, phase, placement: None, ball: None, robots })
+}
+
+fn robot(text: &str) -> Result<RobotId, String> {
+    let wrong = || "expected a robot's number, 0 to 15".to_owned();
+    text.parse().ok().and_then(RobotId::new).ok_or_else(wrong)
+}
