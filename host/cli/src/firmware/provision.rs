@@ -22,7 +22,7 @@ pub(crate) struct ProvisionArgs {
     /// Its number, 0–15.
     #[arg(long, value_name = "N")]
     robot: u8,
-    /// Its team's number on the radio.
+    /// Its team's number on the radio: 1 yellow, 2 blue.
     #[arg(long, value_name = "N")]
     team: u8,
     /// Its league.
