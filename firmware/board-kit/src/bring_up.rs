@@ -1,30 +1,64 @@
-//! `bring_up`: plays the checks of a robot's first start ([`runtime::bring_up`]) on a board, and logs what
-//! each found and what to look at.
+//! `bring_up`: plays the checks of a robot's first start ([`runtime::bring_up`]) on a board, logs what each
+//! found and what to look at, and tells it to the host by radio (`onetwo robot bring-up`).
 
-use core::cell::Cell;
+use core::cell::{Cell, RefCell};
 
 use defmt::Display2Format;
+use embassy_futures::join::join;
 use embassy_futures::select::select3;
 use embassy_time::{Duration, Ticker};
-use runtime::bring_up::{BringUp, Listener, Reading};
-use runtime::ports::{Probes as _, RadioReceiver, WheelsPort};
+use protocol::bring_up::Reporter;
+use runtime::bring_up::{BringUp, Listener, REPORT_EVERY, Reading, Results};
+use runtime::ports::{Probes as _, RadioReceiver, RadioSender, WheelsPort};
 use runtime::tasks::now;
 use runtime::wheel::{CONTROL_PERIOD, Motors};
 
 use crate::imu::Gyroscope;
 use crate::radio;
+use crate::robot::Identity;
 use crate::sampling::{self, AnalogInputs, Probes};
 
 /// Plays all checks, then leaves the motors without current. The robot on a stand, wheels off the ground, the
-/// kicker's board unplugged: nothing here charges.
+/// kicker's board unplugged: nothing here charges. A robot that has its page tells the results to its host
+/// for as long as it runs; without it they are on the log alone, and this ends.
 pub async fn run(
     wheels: impl WheelsPort,
-    receiver: impl RadioReceiver,
+    (sender, receiver): (impl RadioSender, impl RadioReceiver),
     gyroscope: impl Gyroscope,
     analog: impl AnalogInputs,
+    who: Option<Identity>,
 ) {
     let heard = Cell::new(Listener::default());
-    select3(checks(wheels, &heard), hear(receiver, &heard), sampling::run(gyroscope, analog)).await;
+    let results = who.map(|who| {
+        let (team, robot, epoch) = (who.config.team, who.config.robot, who.config.epoch);
+        RefCell::new(Results::new(Reporter { team, robot, key: who.keys.host, epoch }))
+    });
+    if results.is_none() {
+        defmt::warn!("no host is told: the results are on this log alone");
+    }
+    let tells = async {
+        if let Some(results) = &results {
+            tell(sender, results, &heard).await;
+        }
+    };
+    let plays = join(checks(wheels, &heard, results.as_ref()), tells);
+    select3(plays, hear(receiver, &heard), sampling::run(gyroscope, analog)).await;
+}
+
+/// Tells the host how the checks stand, for ever.
+async fn tell(mut sender: impl RadioSender, results: &RefCell<Results>, heard: &Cell<Listener>) {
+    let mut ticker = Ticker::every(Duration::from_micros(REPORT_EVERY.0));
+    loop {
+        ticker.next().await;
+        // Both borrows end before anything waits.
+        let packet = results.try_borrow_mut().ok().and_then(|mut results| {
+            let team = results.team();
+            results.packet(heard.get().host_epoch(team))
+        });
+        if let Some(packet) = packet {
+            sender.send(packet).await;
+        }
+    }
 }
 
 async fn hear(mut receiver: impl RadioReceiver, heard: &Cell<Listener>) -> ! {
@@ -36,7 +70,7 @@ async fn hear(mut receiver: impl RadioReceiver, heard: &Cell<Listener>) -> ! {
     }
 }
 
-async fn checks(mut wheels: impl WheelsPort, heard: &Cell<Listener>) {
+async fn checks(mut wheels: impl WheelsPort, heard: &Cell<Listener>, results: Option<&RefCell<Results>>) {
     let mut ticker = Ticker::every(Duration::from_micros(CONTROL_PERIOD.0));
     let (mut list, mut shown, mut failed) = (BringUp::new(), None, 0_u8);
     loop {
@@ -46,6 +80,9 @@ async fn checks(mut wheels: impl WheelsPort, heard: &Cell<Listener>) {
         match step.motors {
             Motors::Driven(duty) => wheels.drive(duty, 0.0),
             Motors::Released => wheels.release(),
+        }
+        if let Some(mut results) = results.and_then(|results| results.try_borrow_mut().ok()) {
+            results.take(&step);
         }
         if step.check != shown {
             shown = step.check;

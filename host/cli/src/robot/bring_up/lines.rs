@@ -71,7 +71,11 @@ fn text(check: Check, state: CheckState) -> String {
     let number = number(check);
     match state {
         CheckState::Running => format!("      {number:>2}  {check}\n"),
-        CheckState::Passed(value) => format!("pass  {number:>2}  {check}  ({value:.2} {})\n", check.unit()),
+        CheckState::Passed(value) => {
+            // Frames are whole.
+            let digits = if check == Check::Radio { 0 } else { 2 };
+            format!("pass  {number:>2}  {check}  ({value:.digits$} {})\n", check.unit())
+        }
         CheckState::Failed(finding) => format!("FAIL  {number:>2}  {check}\n          {finding}\n"),
     }
 }

@@ -36,7 +36,7 @@ pub(crate) struct BringUpArgs {
     /// Where the robot is, as for `onetwo control`: `udp://HOST:PORT` or `serial:DEVICE[:BAUD]`.
     #[arg(long, value_name = "LINK")]
     robots: String,
-    /// Its team's number on the radio, as in its page.
+    /// Its team's number on the radio, as in its page: 1 yellow, 2 blue.
     #[arg(long, value_name = "N")]
     team: u8,
     /// The team's key: 32 hexadecimal digits in a file; the robot's page must be derived from it.
@@ -140,7 +140,7 @@ fn silent(progress: &Progress, seconds: f64, link: &dyn Link) -> BringUpError {
 
 /// A snapshot of an empty field, to no robot: what a base station and the check of the radio need.
 fn empty(snapshot: u8) -> HostMessage {
-    let (phase, robots) = (Phase::Halt, Default::default());
+    let (phase, robots) = (Phase::Halt, std::iter::empty().collect());
     HostMessage::World(WorldPart { snapshot, part: 0, parts: 1, phase, placement: None, ball: None, robots })
 }
 
