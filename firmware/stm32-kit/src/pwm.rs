@@ -63,6 +63,18 @@ pub fn dribbler<T: GeneralInstance4Channel>(
     started(pwm.split().ch1)
 }
 
+/// The three phases of a brushless motor on the first three channels of a timer, low.
+pub fn phases<T: GeneralInstance4Channel>(
+    timer: Peri<'static, T>,
+    a: PwmPin<'static, T, Ch1>,
+    b: PwmPin<'static, T, Ch2>,
+    c: PwmPin<'static, T, Ch3>,
+) -> [SimplePwmChannel<'static, T>; 3] {
+    let pwm = SimplePwm::new(timer, Some(a), Some(b), Some(c), None, PWM, CountingMode::EdgeAlignedUp);
+    let channels = pwm.split();
+    [channels.ch1, channels.ch2, channels.ch3].map(started)
+}
+
 fn started<T: GeneralInstance4Channel>(
     mut channel: SimplePwmChannel<'static, T>,
 ) -> SimplePwmChannel<'static, T> {

@@ -7,12 +7,17 @@
 //! of them but the right one turns it evenly both ways.
 //!
 //! **Timing.** [`ThreePwm::commutate`] belongs into the interrupt of the sensors' edges, not into the control
-//! loop: a motor with `p` pairs of poles needs it `6 p` times a turn.
+//! loop: a motor with `p` pairs of poles needs it `6 p` times a turn. [`HallMotor`] is a driver in a static
+//! that both reach.
+
+mod shared;
 
 use embedded_hal::digital::{InputPin, OutputPin};
 use embedded_hal::pwm::SetDutyCycle;
 
 use super::{Bridge, share};
+
+pub use shared::HallMotor;
 
 /// Number of phases of a brushless motor.
 pub const PHASES: usize = 3;

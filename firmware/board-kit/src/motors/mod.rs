@@ -4,7 +4,7 @@
 //! | scheme | wires to a motor's driver | who commutates | measured speed |
 //! |---|---|---|---|
 //! | [`PwmDir`] | PWM, direction | the driver, or brushes | encoder |
-//! | [`ThreePwm`] | three PWMs, three enables, three hall sensors | [`hall`], from the hall sensors' interrupt | encoder, or hall edges |
+//! | [`ThreePwm`] | three PWMs, three enables, three hall sensors | [`HallMotor`], from the hall sensors' interrupt | encoder, or hall edges |
 //! | [`Smart`] | one serial line or SPI for all | the driver | encoder, or the driver's counts |
 
 mod bridges;
@@ -15,7 +15,7 @@ pub mod smart;
 use runtime::wheel::WHEELS;
 
 pub use bridges::{Bridge, Bridges};
-pub use hall::ThreePwm;
+pub use hall::{HallMotor, ThreePwm};
 pub use pwm_dir::PwmDir;
 pub use smart::Smart;
 

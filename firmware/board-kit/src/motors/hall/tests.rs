@@ -3,6 +3,8 @@
 use super::PhaseOutput::{Floating, High, Low};
 use super::*;
 use crate::motors::testing::{Pin, Pwm};
+use crate::motors::{Bridges, MotorDrivers};
+use crate::wheels::EncoderCounts;
 use std::f64::consts::{PI, TAU};
 
 /// A over B, B over C, C over A; then who is highest and who is lowest, worked out by hand.
@@ -39,12 +41,13 @@ fn the_table_is_the_one_made_by_hand_and_backwards_swaps_battery_and_ground() {
     }
 }
 
-/// A motor of one pair of poles, its driver's wires and its sensors. SI units; a phase has resistance and
+/// A motor, its driver's wires and its sensors. SI units; a phase has resistance and
 /// back-EMF, its inductance (0.1 ms) is over within a step.
 struct Motor {
     pwm: [Pwm; 3],
     enables: [Pin; 3],
     sensors: [Pin; 3],
+    pairs: f64,
     angle: f64,
     speed: f64,
 }
@@ -59,8 +62,14 @@ const FRICTION: (f64, f64) = (0.004, 2e-6);
 const STEP: f64 = 20e-6;
 
 impl Motor {
+    /// With one pair of poles.
     fn new(angle: f64) -> Self {
+        Self::with_pairs(1.0, angle)
+    }
+
+    fn with_pairs(pairs: f64, angle: f64) -> Self {
         Self {
+            pairs,
             pwm: core::array::from_fn(|_| Pwm::new()),
             enables: core::array::from_fn(|_| Pin::new()),
             sensors: core::array::from_fn(|_| Pin::new()),
@@ -76,7 +85,7 @@ impl Motor {
 
     /// Back-EMF of a phase for 1 rad/s and torque for 1 A, as a share of [`CONSTANT`].
     fn shape(&self) -> [f64; 3] {
-        [0.0, -TAU / 3.0, TAU / 3.0].map(|lag| (self.angle + lag).cos())
+        [0.0, -TAU / 3.0, TAU / 3.0].map(|lag| (self.pairs * self.angle + lag).cos())
     }
 
     fn sense(&self) {
@@ -175,4 +184,65 @@ fn edges_count_both_ways_and_a_jump_over_half_a_turn_does_not() {
     assert_eq!([0b010, 0b111, 0b011].map(|code| counter.step(code)), [2, 2, 1]);
     assert_eq!(counter.step(0b100), 1, "half a turn");
     assert_eq!(counter.step(0b001), 3, "an edge was missed");
+}
+
+#[test]
+fn four_shared_motors_turn_as_bridges_drive_them_once_a_millisecond_and_edges_commutate_in_between() {
+    let mut motors = [0.3, 1.7, 3.1, 5.0].map(|angle| Motor::with_pairs(8.0, angle));
+    let shared: [HallMotor<Pwm, Pin, Pin>; 4] = core::array::from_fn(|_| HallMotor::new());
+    for (motor, shared) in motors.iter().zip(&shared) {
+        shared.wire(motor.driver());
+    }
+    let (dribbler, enable, fault) = (Pwm::new(), Pin::new(), Pin::new());
+    fault.put(true);
+    let mut bridges = Bridges::new(shared.each_ref(), dribbler, enable.clone(), fault.clone());
+    let encoders = shared.each_ref();
+    let duty = [1.0, -1.0, 0.5, -0.25];
+    let mut milliseconds =
+        |bridges: &mut Bridges<_, _, _, _>, motors: &mut [Motor; 4], duty: [f32; 4], count| {
+            for _ in 0..count {
+                bridges.drive(duty, 0.0);
+                for (motor, shared) in motors.iter_mut().zip(&shared) {
+                    for _ in 0..(0.001 / STEP) as u32 {
+                        let before = motor.sensors.each_ref().map(Pin::is_set);
+                        motor.step();
+                        if motor.sensors.each_ref().map(Pin::is_set) != before {
+                            // The interrupt.
+                            assert!(shared.edge());
+                        }
+                    }
+                }
+            }
+        };
+    milliseconds(&mut bridges, &mut motors, duty, 400);
+    let (angles, counts) = (motors.each_ref().map(|motor| motor.angle), encoders.counts());
+    milliseconds(&mut bridges, &mut motors, duty, 200);
+    for n in 0..4 {
+        let expected = f64::from(duty[n]) * BATTERY / (1.65 * CONSTANT);
+        assert!((motors[n].speed / expected - 1.0).abs() < 0.15, "{n}: {} of {expected}", motors[n].speed);
+        let sixths = 8.0 * (motors[n].angle - angles[n]) / (PI / 3.0);
+        let counted = f64::from(encoders.counts()[n].wrapping_sub(counts[n]).cast_signed());
+        assert!((counted - sixths).abs() <= 2.0, "{n}: {counted} of {sixths}");
+    }
+    // A driver that has switched itself off takes the current off all, and no edge brings it back.
+    fault.put(false);
+    milliseconds(&mut bridges, &mut motors, duty, 1);
+    assert!(bridges.has_fault() && !enable.is_set());
+    assert!(motors.iter().all(|motor| motor.enables.iter().all(|enable| !enable.is_set())));
+}
+
+#[test]
+fn without_interrupts_the_control_loop_alone_does_not_reach_the_speed_and_without_a_driver_nothing_drives() {
+    // So that the test above is known to need the edges.
+    let mut motor = Motor::with_pairs(8.0, 0.3);
+    let shared = HallMotor::new();
+    shared.wire(motor.driver());
+    for _ in 0..600 {
+        (&shared).set(1.0);
+        (0..(0.001 / STEP) as u32).for_each(|_| motor.step());
+    }
+    let reached = motor.speed * 1.65 * CONSTANT / BATTERY;
+    assert!(reached < 0.85, "{reached}");
+    let empty: HallMotor<Pwm, Pin, Pin> = HallMotor::default();
+    assert!(!(&empty).set(0.5) && !empty.edge() && empty.count() == 0);
 }
