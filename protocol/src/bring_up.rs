@@ -219,8 +219,8 @@ pub struct BringUpReport {
     pub state: CheckState,
 }
 
-/// The payload's first byte; the numbers below are those of [`TeamMessage`](crate::team::TeamMessage).
-pub const KIND: u8 = 4;
+/// The payload's first byte.
+pub const KIND: u8 = crate::team::BRING_UP;
 /// The longest payload: kind, host, a wheel's check, and a finding with two counts.
 const REPORT_LEN_MAX: usize = 1 + 4 + 3 + 1 + 1 + 10;
 

@@ -24,8 +24,10 @@ pub const PRESENCE_LEASE: Duration = Duration::millis(400);
 /// (docs/architecture.md §6.1).
 pub const TEAM_MESSAGE_LEN_MAX: usize = 64 - crate::frame::OVERHEAD;
 
-/// A message of a robot. Number 4 is no variant: it is [`KIND`](crate::bring_up::KIND), a report of a robot's
-/// first start.
+/// First byte of a robot's payload that is no [`TeamMessage`]: a report of its first start (`bring_up`).
+pub const BRING_UP: u8 = 4;
+
+/// A message of a robot. Number 4 is no variant: it is [`BRING_UP`].
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum TeamMessage {
     /// To all: the sender's whole state.
@@ -40,9 +42,9 @@ pub enum TeamMessage {
 
 impl TeamMessage {
     /// Whether a payload is meant for the host alone, by its first byte: the variant's number, or
-    /// [`KIND`](crate::bring_up::KIND).
+    /// [`BRING_UP`].
     pub(crate) const fn is_for_host(payload: &[u8]) -> bool {
-        matches!(*payload, [1 | 3 | crate::bring_up::KIND, ..])
+        matches!(*payload, [1 | 3 | BRING_UP, ..])
     }
 }
 

@@ -1,8 +1,8 @@
 //! `bring_up`: plays the checks of a robot's first start on simulated parts with a fault, as a board plays it
 //! on its own: `cargo run -p onetwo-runtime --example bring_up -- reversed-motor`.
 //!
-//! With `--udp 127.0.0.1:10400 --page robot.page` it waits there for a host, plays them in real time and tells
-//! them as a board does by radio: `onetwo robot bring-up --robots udp://127.0.0.1:10400 …` shows them.
+//! With `--udp 127.0.0.1:10400 --page robot.page` it waits there for a host, plays them in real time and
+//! tells them as a board does by radio: `onetwo robot bring-up --robots udp://127.0.0.1:10400 …` shows them.
 
 use std::net::{SocketAddr, UdpSocket};
 use std::process::ExitCode;

@@ -1,5 +1,5 @@
-//! `listener`: counts the frames of a host that a robot hears before it knows its team and keys, and keeps the
-//! newest host's epoch.
+//! `listener`: counts the frames of a host that a robot hears before it knows its team and keys, and keeps
+//! the newest host's epoch.
 
 use protocol::TeamId;
 use protocol::frame::{Frame, Sender};

@@ -78,8 +78,8 @@ mod tests {
         Reporter { team: TeamId(2), robot, key: KEY.of_robot(robot).host, epoch: 1 }
     }
 
-    /// States by check as a receiver has them that loses that share of all packets, and as the robot has them;
-    /// a second after the last check.
+    /// States by check as a receiver has them that loses that share of all packets, and as the robot has
+    /// them; a second after the last check.
     fn told(fault: Fault, loses: f32) -> (BTreeMap<usize, CheckState>, Vec<CheckState>) {
         let (mut results, mut own, mut received) = (Results::new(reporter()), Vec::new(), BTreeMap::new());
         let (mut dice, mut steps) = (1_u32, 0_u32);

@@ -198,22 +198,21 @@ fn four_shared_motors_turn_as_bridges_drive_them_once_a_millisecond_and_edges_co
     let mut bridges = Bridges::new(shared.each_ref(), dribbler, enable.clone(), fault.clone());
     let encoders = shared.each_ref();
     let duty = [1.0, -1.0, 0.5, -0.25];
-    let mut milliseconds =
-        |bridges: &mut Bridges<_, _, _, _>, motors: &mut [Motor; 4], duty: [f32; 4], count| {
-            for _ in 0..count {
-                bridges.drive(duty, 0.0);
-                for (motor, shared) in motors.iter_mut().zip(&shared) {
-                    for _ in 0..(0.001 / STEP) as u32 {
-                        let before = motor.sensors.each_ref().map(Pin::is_set);
-                        motor.step();
-                        if motor.sensors.each_ref().map(Pin::is_set) != before {
-                            // The interrupt.
-                            assert!(shared.edge());
-                        }
+    let milliseconds = |bridges: &mut Bridges<_, _, _, _>, motors: &mut [Motor; 4], duty: [f32; 4], count| {
+        for _ in 0..count {
+            bridges.drive(duty, 0.0);
+            for (motor, shared) in motors.iter_mut().zip(&shared) {
+                for _ in 0..(0.001 / STEP) as u32 {
+                    let before = motor.sensors.each_ref().map(Pin::is_set);
+                    motor.step();
+                    if motor.sensors.each_ref().map(Pin::is_set) != before {
+                        // The interrupt.
+                        assert!(shared.edge());
                     }
                 }
             }
-        };
+        }
+    };
     milliseconds(&mut bridges, &mut motors, duty, 400);
     let (angles, counts) = (motors.each_ref().map(|motor| motor.angle), encoders.counts());
     milliseconds(&mut bridges, &mut motors, duty, 200);
