@@ -32,6 +32,7 @@ use crate::referee::team_port::TeamPortRequest;
 use crate::referee::{Listener, OnSilence, SenderAddress, SourcePin};
 use crate::requests::Requests;
 use crate::strategy::counters::Bookkeeper;
+use crate::strategy::stakes::{Stakes, time_left};
 use crate::strategy::view::{CasePass, RobotSet, ViewGame};
 use crate::strategy::{Coach, Flip, Orders, Tactics, Team, View};
 use crate::tracking::HiddenBall;
@@ -386,7 +387,16 @@ impl Host {
             defending: game.own_goal(us).unwrap_or(self.settings.defending),
             keeper: game.team(us).keeper.unwrap_or(self.settings.keeper),
             their_keeper: game.team(us.other()).keeper.unwrap_or(self.settings.keeper),
+            stakes: if self.settings.tactics.by_score { self.stakes() } else { Stakes::EVEN },
         }
+    }
+
+    /// What goals are worth by score and time left.
+    fn stakes(&self) -> Stakes {
+        let (us, game) = (self.settings.us, self.listener.game());
+        let score = |colour| i32::try_from(game.team(colour).score).unwrap_or(i32::MAX);
+        let ahead = score(us).saturating_sub(score(us.other()));
+        time_left(game.stage, game.stage_time_left).map_or(Stakes::EVEN, |left| Stakes::of(ahead, left))
     }
 
     /// Number of robots the referee allows a team.

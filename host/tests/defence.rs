@@ -5,6 +5,7 @@ use std::path::Path;
 
 use geometry::GoalEnd;
 use host::strategy::View;
+use host::strategy::stakes::Stakes;
 use host::strategy::threat::{Defence, Guards, Memory, ThreatSettings, defend};
 use host::strategy::view::{ROBOTS_MAX, RobotSet, ViewGame};
 use host::tracking::Tracker;
@@ -49,6 +50,7 @@ fn defended(name: &str, field: FieldSpec, remembers: bool) -> Seen {
                 defending,
                 keeper: RobotId::ZERO,
                 their_keeper: RobotId::ZERO,
+                stakes: Stakes::EVEN,
             };
             let view = View::of(&world, us, &game, field, all_robots, RobotSet::default());
             if !remembers {

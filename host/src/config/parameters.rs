@@ -286,7 +286,7 @@ pub const PARAMETERS: [Parameter; 20] = [
         live: true,
         ..usual(
             "tactics",
-            "the coach's: usual, none, all, round-1, or some of threats, second-level, pass-ahead, coerce, attack, bridge, rated",
+            "the coach's: usual, none, all, round-1, or some of threats, second-level, pass-ahead, coerce, attack, bridge, rated, by-score",
             |config| Some(text_of(&config.tactics.description())),
         )
     },

@@ -23,6 +23,7 @@ pub mod rated;
 pub mod restart;
 pub mod retrieved;
 pub mod roles;
+pub mod stakes;
 pub mod support;
 mod tactics;
 pub mod threat;

@@ -1,8 +1,9 @@
 //! `rated`: the actions of the robot that plays the ball, rated on one scale: P(goal for) − P(goal against)
-//! within 10 s. Attack frame, SI units.
+//! within 10 s, each times its worth by score and time left ([`stakes`](super::stakes)). Attack frame, SI
+//! units.
 //!
 //! An action that succeeds leaves the ball with us at a place, or in the goal; one that fails leaves it with
-//! them where they stop it. [`value`] has the worth of both.
+//! them where they stop it. [`value`](super::value) has the worth of both.
 
 use std::fmt;
 
@@ -14,7 +15,6 @@ use super::pass::bridge::{RADIUS, refine};
 use super::pass::shot::shot;
 use super::pass::{Kicks, PassScene, Rating, SAMPLES, Searches};
 use super::retrieved::{CaseStep, CastCase};
-use super::value;
 use super::view::{CasePass, ROBOTS_MAX, View};
 
 /// An action of the robot with the ball.
@@ -204,7 +204,7 @@ fn case_worth(view: &View, kicks: &Kicks, who: RobotId, from: Point<Attack>, cas
             shot_worth(view, from, found.aim, found.value())
         }
         // Either team may be first at it.
-        CaseStep::Kick { to } => 0.5 * (value::of_ours(half, to) + value::of_theirs(half, to)),
+        CaseStep::Kick { to } => 0.5 * (view.stakes.of_ours(half, to) + view.stakes.of_theirs(half, to)),
         CaseStep::Hold => play_on(view, from),
     })
 }
@@ -220,7 +220,7 @@ fn shot_worth(view: &View, from: Point<Attack>, aim: Point<Attack>, goal: f32) -
         .map(|robot| robot.position)
         .min_by(|a, b| a.distance(from).total_cmp(&b.distance(from)));
     // One that misses is theirs at rest, as any restart: worth nothing to either.
-    goal + (1.0 - goal) * blocker.map_or(0.0, |at| value::of_theirs(half, at))
+    view.stakes.ours * goal + (1.0 - goal) * blocker.map_or(0.0, |at| view.stakes.of_theirs(half, at))
 }
 
 fn pass_worth(view: &View, from: Point<Attack>, rating: &Rating) -> f32 {
@@ -228,16 +228,16 @@ fn pass_worth(view: &View, from: Point<Attack>, rating: &Rating) -> f32 {
     let along = (rating.at - from).unit().unwrap_or_default();
     let lost = rating.interceptor.map_or(rating.at, |found| from + along * found.along);
     // P(we have it) is true of passes that were chosen; rating all passes by it cost a fifth of the goals.
-    let (receive, goal) = (rating.receive(), rating.goal());
-    let had = goal.max(value::of_ours(half, rating.at));
-    receive * had + (1.0 - receive) * value::of_theirs(half, lost)
+    let (receive, goal) = (rating.receive(), view.stakes.ours * rating.goal());
+    let had = goal.max(view.stakes.of_ours(half, rating.at));
+    receive * had + (1.0 - receive) * view.stakes.of_theirs(half, lost)
 }
 
 fn play_on(view: &View, from: Point<Attack>) -> f32 {
     let half = view.field.length * 0.5;
     // What is lost with a ball that is lost.
-    let difference = value::of_ours(half, from) - value::of_theirs(half, from);
-    value::of_ours(half, from) - lost(view, from) * difference.max(0.0)
+    let difference = view.stakes.of_ours(half, from) - view.stakes.of_theirs(half, from);
+    view.stakes.of_ours(half, from) - lost(view, from) * difference.max(0.0)
 }
 
 /// Share of the balls at `from` that are lost beyond the mean of all moments with the ball.

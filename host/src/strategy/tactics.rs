@@ -31,6 +31,9 @@ pub struct Tactics {
     /// Open play by possession and one rated list of actions; else by the thresholds of `attack`.
     #[serde(default)]
     pub rated: bool,
+    /// Rated actions by score and time left: risks when behind, none when ahead. No part of the paper.
+    #[serde(default)]
+    pub by_score: bool,
 }
 
 impl Tactics {
@@ -43,6 +46,7 @@ impl Tactics {
         attack: false,
         bridge: false,
         rated: false,
+        by_score: false,
     };
     /// All parts of the paper; the default has fewer.
     pub const ALL: Self = Self {
@@ -53,6 +57,7 @@ impl Tactics {
         attack: true,
         bridge: true,
         rated: true,
+        by_score: false,
     };
 
     /// Open play by thresholds and cases: a reference opponent that stays as it is when the usual tactics
@@ -66,7 +71,7 @@ impl Tactics {
 
     /// As text that [`Tactics::parse`] reads.
     pub fn description(&self) -> String {
-        let Self { threats, second_level, pass_ahead, coerce, attack, bridge, rated } = *self;
+        let Self { threats, second_level, pass_ahead, coerce, attack, bridge, rated, by_score } = *self;
         let named = [
             (threats, "threats"),
             (second_level, "second-level"),
@@ -75,6 +80,7 @@ impl Tactics {
             (attack, "attack"),
             (bridge, "bridge"),
             (rated, "rated"),
+            (by_score, "by-score"),
         ];
         let description: Vec<_> = named.into_iter().filter(|(on, _)| *on).map(|(_, name)| name).collect();
         if description.is_empty() { "none".to_owned() } else { description.join(",") }
@@ -99,9 +105,10 @@ impl Tactics {
                 "attack" => &mut tactics.attack,
                 "bridge" => &mut tactics.bridge,
                 "rated" => &mut tactics.rated,
+                "by-score" => &mut tactics.by_score,
                 _ => {
                     return Err(format!(
-                        "`{label}` is no tactic; none, all, usual, {ROUND_1}, or some of threats, second-level, pass-ahead, coerce, attack, bridge, rated"
+                        "`{label}` is no tactic; none, all, usual, {ROUND_1}, or some of threats, second-level, pass-ahead, coerce, attack, bridge, rated, by-score"
                     ));
                 }
             };

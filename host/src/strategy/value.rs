@@ -8,17 +8,33 @@
 
 use geometry::{Attack, Point, math};
 
+use super::stakes::Stakes;
+
 /// Worth of the ball at `at` for the team that has it and attacks towards +x, −1 to 1; `goal_line`: half the
 /// field's length, m.
 pub fn of_ours(goal_line: f32, at: Point<Attack>) -> f32 {
-    let for_us = FOR * math::exp(-at.distance(Point::new(goal_line, 0.0)) / FOR_FADES);
-    let against = AGAINST * (1.0 - at.distance(Point::new(-goal_line, 0.0)) / AGAINST_WITHIN).max(0.0);
-    for_us - against
+    Stakes::EVEN.of_ours(goal_line, at)
 }
 
-/// Worth for us of the ball at `at` where the opponents have it.
-pub fn of_theirs(goal_line: f32, at: Point<Attack>) -> f32 {
-    -of_ours(goal_line, Point::new(-at.x(), -at.y()))
+impl Stakes {
+    /// The same where goals for and against are worth different amounts.
+    pub fn of_ours(self, goal_line: f32, at: Point<Attack>) -> f32 {
+        let (scored, conceded) = goals(goal_line, at);
+        self.ours * scored - self.theirs * conceded
+    }
+
+    /// Worth for us of the ball at `at` where the opponents have it.
+    pub fn of_theirs(self, goal_line: f32, at: Point<Attack>) -> f32 {
+        let (scored, conceded) = goals(goal_line, Point::new(-at.x(), -at.y()));
+        self.ours * conceded - self.theirs * scored
+    }
+}
+
+/// P(goal) of the team that has the ball at `at` and attacks towards +x, and of the other team.
+fn goals(goal_line: f32, at: Point<Attack>) -> (f32, f32) {
+    let scored = FOR * math::exp(-at.distance(Point::new(goal_line, 0.0)) / FOR_FADES);
+    let conceded = AGAINST * (1.0 - at.distance(Point::new(-goal_line, 0.0)) / AGAINST_WITHIN).max(0.0);
+    (scored, conceded)
 }
 
 /// P(goal for) at their goal, and the distance over which it falls to 1/e, m.
@@ -39,7 +55,11 @@ mod tests {
         for (i, counted) in counted.into_iter().enumerate() {
             let at = Point::new(4.0 - i as f32, 0.0);
             assert!((of_ours(4.5, at) - counted).abs() < 0.035, "{i}: {}", of_ours(4.5, at));
-            assert_eq!(of_theirs(4.5, Point::new(-at.x(), 0.0)), -of_ours(4.5, at));
+            let lost = |stakes: Stakes| stakes.of_theirs(4.5, Point::new(-at.x(), 0.0));
+            assert_eq!(lost(Stakes::EVEN), -of_ours(4.5, at));
+            // A goal against us alone counts: having the ball at our goal is a risk, at theirs none.
+            let careful = Stakes { ours: 0.0, theirs: 2.0 };
+            assert!(careful.of_ours(4.5, at) <= 0.0 && lost(careful) <= careful.of_ours(4.5, at) + 0.21);
         }
     }
 }

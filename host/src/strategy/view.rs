@@ -7,6 +7,7 @@ use protocol::quantized::{WirePoint, WirePose};
 use protocol::{CaseId, Duration, Instant, RobotId};
 use rules::{Colour, FieldSpec, Phase, Side};
 
+use super::stakes::Stakes;
 use crate::world::World;
 
 /// Most robots of a team in a view: one per id.
@@ -131,6 +132,8 @@ pub struct ViewGame {
     pub keeper: RobotId,
     /// Their keeper's number, by the referee.
     pub their_keeper: RobotId,
+    /// What goals are worth by score and time left; even where the tactics do not ask.
+    pub stakes: Stakes,
 }
 
 /// All inputs of the strategy's decisions.
@@ -158,6 +161,8 @@ pub struct View {
     pub keeper: RobotId,
     /// Their keeper's number, by the referee.
     pub their_keeper: RobotId,
+    /// What goals are worth by score and time left.
+    pub stakes: Stakes,
     /// Number of robots the referee allows us on the field.
     pub allowed: usize,
     /// Number of robots the referee allows them.
@@ -214,6 +219,7 @@ impl View {
             theirs: world.theirs(us).map(robot).collect(),
             keeper: game.keeper,
             their_keeper: game.their_keeper,
+            stakes: game.stakes,
             allowed: ROBOTS_MAX,
             theirs_allowed: ROBOTS_MAX,
             in_play,
@@ -246,6 +252,7 @@ impl View {
             theirs: RobotId::all().zip(theirs).map(robot).collect(),
             keeper: RobotId::ZERO,
             their_keeper: RobotId::ZERO,
+            stakes: Stakes::EVEN,
             allowed: ROBOTS_MAX,
             theirs_allowed: ROBOTS_MAX,
             in_play: RobotSet::default(),

@@ -7,6 +7,7 @@
 
 use geometry::{Attack, Point};
 use host::strategy::pass::{Kicks, PassConstants, PassScene};
+use host::strategy::stakes::Stakes;
 use host::strategy::threat::angle::Opening;
 use host::strategy::threat::{Memory, ThreatSettings, defend};
 use host::strategy::view::{RobotSet, ViewGame};
@@ -129,6 +130,7 @@ fn view(picture: &Picture, us: Colour) -> Option<View> {
         defending: game.own_goal(us)?,
         keeper: game.team(us).keeper.unwrap_or(RobotId::ZERO),
         their_keeper: game.team(us.other()).keeper.unwrap_or(RobotId::ZERO),
+        stakes: Stakes::EVEN,
     };
     Some(View::of(&picture.world, us, &sheet, picture.field, all_robots(), RobotSet::default()))
 }
