@@ -87,11 +87,10 @@ impl Results {
     }
 }
 
-/// Goals of a team a second: 375 goals of both in 120 matches of 600 s (docs/matches.md, the table of
-/// opponents).
-const RATE: f32 = 375.0 / (120.0 * 600.0 * 2.0);
-/// Numbers of goals that are told apart, from 0: in 600 s more than 11 come with P < 10⁻⁶.
-const GOALS: usize = 12;
+/// Goals of a team a second: 3.1 and 3.4 in 600 s, our team against itself in 40 matches (docs/strategy.md).
+const RATE: f32 = (3.1 + 3.4) / (2.0 * 600.0);
+/// Numbers of goals that are told apart, from 0: in 600 s more than 15 come with P < 10⁻⁶.
+const GOALS: usize = 16;
 /// A goal of either team moves the result by less than this together: the match is decided.
 const DECIDED: f32 = 0.02;
 /// Least worth of a goal, so that neither kind is ever given away.
