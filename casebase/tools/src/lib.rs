@@ -28,7 +28,7 @@ mod notes;
 mod plans;
 mod sample;
 mod sampled;
-mod self_blocking;
+pub mod self_blocking;
 mod skeleton;
 mod warnings;
 pub mod workbench;

@@ -5,7 +5,7 @@ use casebase::{Case, CaseBase, PointMm, RetrievalSettings, Scope, blocked_leg};
 
 /// The share of the scope about `at`, by the weight that the scope gives to places, in which an opponent
 /// blocks the case with the ball at its own place: 0 to 1.
-pub(crate) fn share(stored: &Case<'_>, base: &CaseBase<'_>, at: PointMm, scope: Scope) -> f32 {
+pub fn share(stored: &Case<'_>, base: &CaseBase<'_>, at: PointMm, scope: Scope) -> f32 {
     let settings = RetrievalSettings::default();
     let (mut blocked, mut all) = (0.0_f32, 0.0_f32);
     for (x, y) in grid() {
@@ -30,7 +30,7 @@ fn grid() -> impl Iterator<Item = (f32, f32)> {
 /// Places from the centre to the border: 193 places a scope, which find a share to about a hundredth.
 const HALF: i32 = 8;
 /// A larger share is a warning.
-pub(crate) const WARNS_ABOVE: f32 = 0.1;
+pub const WARNS_ABOVE: f32 = 0.1;
 
 #[cfg(test)]
 mod tests {

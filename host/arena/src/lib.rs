@@ -19,6 +19,8 @@
 //!
 //! [`skills`] plays tries of single skills through the whole loop, in worlds of any physics.
 //!
+//! [`worked`] finds the plays of recordings that led to a shot or a goal.
+//!
 //! [`evaluation`] plays the paper's thousands of trials and computes its tables.
 //!
 //! **Invariants.** Watching changes nothing; reports come from the true state and the radio, never from
@@ -44,6 +46,7 @@ pub mod scenes;
 pub mod skills;
 mod story;
 mod trial;
+pub mod worked;
 
 pub use case_trial::{Attempt, AttemptError, CaseTrial, Opposition, Retrieved, Score, Tape, markdown};
 pub use cycles::{CycleEnd, CycleEvent, CycleLog, CycleSeen};

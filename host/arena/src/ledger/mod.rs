@@ -191,6 +191,14 @@ impl TeamLedger {
         &self.cycles
     }
 
+    /// Every decision to play a case, in the order of cycles, with the best that followed it.
+    pub fn plays(&self) -> impl Iterator<Item = (&CycleSeen, Followed)> {
+        self.cycles.cycles().iter().filter(|cycle| cycle.play.is_some()).map(|cycle| {
+            let decided = self.decided.get(&cycle.id);
+            (cycle, decided.map_or(Followed::Nothing, |decided| decided.followed))
+        })
+    }
+
     /// The plays by case. Where the match is over, plays that have not ended end with it.
     pub fn table(&self, names: &CaseNames, over: bool) -> CaseTable {
         let (mut table, mut tallies) = (CaseTable::default(), BTreeMap::new());
