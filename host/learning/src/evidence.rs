@@ -8,10 +8,10 @@
 
 use std::collections::BTreeMap;
 
-use casebase::{PointMm, Scope};
+use casebase::{FieldMm, PointMm, Scope};
 use serde::{Deserialize, Serialize};
 
-use crate::trial::{LearningTrial, Situation};
+use crate::trial::{LearningTrial, Situation, TrialDecision};
 use crate::variant::Variant;
 
 /// Part of the ball's scope (Ros & Arcos 2007): the inner one stands, the outer one moves.
@@ -29,7 +29,7 @@ pub enum ScopeRing {
 pub struct EvidenceKey {
     /// Hash of the library's files, 16 hexadecimal digits.
     pub library: String,
-    /// Hash of the simulated world, 8 hexadecimal digits.
+    /// Hash of the trials' world, 8 hexadecimal digits; of a match its world's name, `field` on a real one.
     pub world: String,
     /// `region/name`; empty where no case was played.
     pub case: String,
@@ -39,7 +39,7 @@ pub struct EvidenceKey {
     pub ring: ScopeRing,
     /// Opponent scopes of the case that held an opponent, and all of them: `1/2`.
     pub pattern: String,
-    /// Opponents of the trial: `dg` or `2d`.
+    /// Opponents of the trial: `dg` or `2d`; of a match their number in the problem: `6`.
     pub opponents: String,
     /// Area of the ball in the direction of attack, 0 to 11: six strips along the field, middle and wings.
     pub area: u8,
@@ -50,10 +50,24 @@ pub struct EvidenceKey {
 pub struct EvidenceCounts {
     /// Plays.
     pub plays: u64,
-    /// Of these, in trials that ended with the ball in or close to the goal.
+    /// Of these, in trials that ended with the ball in or close to the goal; in matches those that a goal
+    /// followed in the play's window (`arena::ledger`).
     pub to_goal: u64,
     /// Plays by their ends.
     pub ends: BTreeMap<String, u64>,
+}
+
+/// A decision of play, with what became of it.
+#[derive(Clone, Copy, Debug)]
+pub struct CasePlay<'p> {
+    /// The situation it was made in.
+    pub situation: &'p Situation,
+    /// Id of the case played; none if no case was.
+    pub case: Option<u16>,
+    /// Whether it counts as to goal.
+    pub to_goal: bool,
+    /// How the play ended, as [`arena::CycleEnd::label`] says it.
+    pub end: Option<&'p str>,
 }
 
 /// Records by key.
@@ -105,46 +119,53 @@ struct Record {
 impl Evidence {
     /// Adds the decisions of a trial played with `variant` against `opponents`.
     pub fn add(&mut self, variant: &Variant, world: &str, opponents: &str, trial: &LearningTrial) {
-        let base = variant.base();
         for decision in &trial.decisions {
-            let case = decision.case.and_then(|id| base.case(protocol::CaseId(id)));
-            let [x, y] = decision.situation.ball;
-            let ball = PointMm { x, y };
-            let (name, symmetry, ring, pattern) = case.map_or_else(
-                || (String::new(), 0, ScopeRing::Security, "0/0".to_owned()),
-                |case| {
-                    let scope = case.ball_scope();
-                    let outer = exponent(ball, case.ball(), scope) > 0.5;
-                    let ring = if outer { ScopeRing::Risk } else { ScopeRing::Security };
-                    let shift = case.shift(ball);
-                    let scopes: Vec<_> = case.opponents().collect();
-                    let held = scopes.iter().filter(|(at, scope)| {
-                        let centre = at.plus(shift);
-                        let near =
-                            |[x, y]: &[i32; 2]| exponent(PointMm { x: *x, y: *y }, centre, *scope) < 1.0;
-                        decision.situation.opponents.iter().any(near)
-                    });
-                    let pattern = format!("{}/{}", held.count(), scopes.len());
-                    (variant.names()[case.authored()].clone(), case.symmetry() as u8, ring, pattern)
-                },
-            );
-            let key = EvidenceKey {
-                library: format!("{:016x}", variant.hash),
-                world: world.to_owned(),
-                case: name,
-                symmetry,
-                ring,
-                pattern,
-                opponents: opponents.to_owned(),
-                area: area(&decision.situation),
-            };
-            let counts = self.0.entry(key).or_default();
-            counts.plays += 1;
-            counts.to_goal += u64::from(trial.to_goal());
             let labels = arena::CycleEnd::DESCRIPTION;
-            if let Some(end) = decision.end.and_then(|end| labels.get(usize::from(end))) {
-                *counts.ends.entry((*end).to_owned()).or_default() += 1;
-            }
+            let end = decision.end.and_then(|end| labels.get(usize::from(end)).copied());
+            let TrialDecision { situation, case, .. } = decision;
+            let play = CasePlay { situation, case: *case, to_goal: trial.to_goal(), end };
+            self.add_play(variant, world, opponents, &play);
+        }
+    }
+
+    /// Adds one decision of any play with `variant`.
+    pub fn add_play(&mut self, variant: &Variant, world: &str, opponents: &str, play: &CasePlay<'_>) {
+        let base = variant.base();
+        let case = play.case.and_then(|id| base.case(protocol::CaseId(id)));
+        let [x, y] = play.situation.ball;
+        let ball = PointMm { x, y };
+        let (name, symmetry, ring, pattern) = case.map_or_else(
+            || (String::new(), 0, ScopeRing::Security, "0/0".to_owned()),
+            |case| {
+                let scope = case.ball_scope();
+                let outer = exponent(ball, case.ball(), scope) > 0.5;
+                let ring = if outer { ScopeRing::Risk } else { ScopeRing::Security };
+                let shift = case.shift(ball);
+                let scopes: Vec<_> = case.opponents().collect();
+                let held = scopes.iter().filter(|(at, scope)| {
+                    let centre = at.plus(shift);
+                    let near = |[x, y]: &[i32; 2]| exponent(PointMm { x: *x, y: *y }, centre, *scope) < 1.0;
+                    play.situation.opponents.iter().any(near)
+                });
+                let pattern = format!("{}/{}", held.count(), scopes.len());
+                (variant.names()[case.authored()].clone(), case.symmetry() as u8, ring, pattern)
+            },
+        );
+        let key = EvidenceKey {
+            library: format!("{:016x}", variant.hash),
+            world: world.to_owned(),
+            case: name,
+            symmetry,
+            ring,
+            pattern,
+            opponents: opponents.to_owned(),
+            area: area(play.situation, &base.field()),
+        };
+        let counts = self.0.entry(key).or_default();
+        counts.plays += 1;
+        counts.to_goal += u64::from(play.to_goal);
+        if let Some(end) = play.end {
+            *counts.ends.entry(end.to_owned()).or_default() += 1;
         }
     }
 
@@ -172,20 +193,31 @@ impl Evidence {
         self.0.iter().map(line).collect()
     }
 
-    /// Reads such a text; an error names its line.
+    /// Reads such a text, without the plays in it; an error names its line.
     pub fn from_jsonl(text: &str) -> Result<Self, String> {
         let mut evidence = Self::default();
-        for (number, line) in (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty()) {
+        let counts = |line: &str| !line.trim().is_empty() && !line.starts_with(PLAY_LINE);
+        for (number, line) in (1..).zip(text.lines()).filter(|(_, line)| counts(line)) {
             let record: Record =
                 serde_json::from_str(line).map_err(|error| format!("line {number}: {error}"))?;
             if record.counts.to_goal > record.counts.plays {
                 return Err(format!("line {number}: more goals than plays; collect the evidence again"));
+            }
+            let most = record.counts.ends.values().max().copied().unwrap_or(0).max(record.counts.plays);
+            if most > PLAYS_MAX {
+                return Err(format!("line {number}: {most} plays are none; collect the evidence again"));
             }
             evidence = evidence.merge(Self(BTreeMap::from([(record.key, record.counts)])));
         }
         Ok(evidence)
     }
 }
+
+/// More plays than this of one record are a damaged number: a year of trials on a thousand cores.
+const PLAYS_MAX: u64 = 1 << 40;
+
+/// How lines of `evidence.jsonl` start that hold a play that worked.
+pub(crate) const PLAY_LINE: &str = "{\"play\":";
 
 /// (Δx/τx)² + (Δy/τy)².
 fn exponent(at: PointMm, centre: PointMm, scope: Scope) -> f64 {
@@ -194,12 +226,12 @@ fn exponent(at: PointMm, centre: PointMm, scope: Scope) -> f64 {
     x * x + y * y
 }
 
-/// The area of a situation's ball.
-pub(crate) fn area(situation: &Situation) -> u8 {
+/// The area of a situation's ball: sixths of the field's length, and its middle third or the wings.
+fn area(situation: &Situation, field: &FieldMm) -> u8 {
     let [x, y] = situation.ball;
     let ahead = if situation.defending_positive { -x } else { x };
-    let strip = ((ahead + 2700) / 900).clamp(0, 5);
-    (2 * strip + i32::from(y.abs() > 600)) as u8
+    let strip = ((ahead + field.length / 2) / (field.length / 6).max(1)).clamp(0, 5);
+    (2 * strip + i32::from(y.abs() > field.width / 6)) as u8
 }
 
 #[cfg(test)]
@@ -239,6 +271,8 @@ mod tests {
         assert!(fault.starts_with("line 3: "), "{fault}");
         let fault = Evidence::from_jsonl(&text.replace("\"to_goal\":1", "\"to_goal\":4")).unwrap_err();
         assert!(fault.starts_with("line 1: more goals"), "{fault}");
+        let huge = text.replace("\"plays\":3", "\"plays\":18446744073709551615");
+        assert!(Evidence::from_jsonl(&huge).unwrap_err().contains("are none"));
     }
 
     #[test]

@@ -22,10 +22,12 @@ use rayon::prelude::*;
 
 use crate::aim::{Ground, Purpose};
 use crate::betting::Wager;
+use crate::collected::Collected;
 use crate::competence::standings;
 use crate::evidence::Evidence;
 use crate::occasion::Occasion;
 use crate::proposals::{Kind, Proposal, TRIED_MAX, Tried, from_evidence, text_hash};
+use crate::recorded;
 use crate::results::{ChangeRecord, CurvePoint, Learned, Verdict};
 use crate::settings::LearnSettings;
 use crate::starts::{CELLS, StartStream, cell};
@@ -63,19 +65,21 @@ impl fmt::Display for LearnError {
 
 impl std::error::Error for LearnError {}
 
-/// Learns from a library's files and, if there is any, evidence of earlier play.
+/// Learns from a library's files and what was collected of earlier play, if anything.
 pub fn learn(
     files: Files,
-    earlier: Evidence,
+    earlier: Collected,
     settings: &LearnSettings,
     player: &mut impl Player,
 ) -> Result<Learned, LearnError> {
     let start = Variant::new(files).map_err(LearnError::Library)?;
+    let new = settings.kinds.contains(&Kind::New);
     let mut run = Run {
+        drafts: if new { recorded::proposals(&earlier.plays, &start.files.rules) } else { Vec::new() },
         sizes: Sizes::of(settings.budget),
         settings,
         player,
-        evidence: earlier,
+        evidence: earlier.evidence,
         libraries: vec![start.hash],
         tried: Tried::new(),
         spent: 0,
@@ -158,6 +162,8 @@ struct Run<'r, P> {
     sizes: Sizes,
     player: &'r mut P,
     evidence: Evidence,
+    /// Drafts from plays of recordings.
+    drafts: Vec<Proposal>,
     /// Hashes of the libraries so far, oldest first.
     libraries: Vec<u64>,
     tried: Tried,
@@ -305,6 +311,7 @@ impl<P: Player> Run<'_, P> {
         for kind in self.settings.kinds.clone() {
             if kind == Kind::New {
                 proposals.extend(self.search(current, occasions, round)?);
+                proposals.extend(self.recorded(current));
             } else {
                 let mut all = from_evidence(current, &known, kind, &self.tried);
                 all.truncate(self.sizes.proposals);

@@ -81,7 +81,8 @@ impl Situation {
         }
     }
 
-    fn of(problem: &Problem) -> Self {
+    /// The situation of a problem.
+    pub fn of(problem: &Problem) -> Self {
         let point = |at: PointMm| [at.x, at.y];
         Self {
             ball: point(problem.ball),
@@ -101,19 +102,25 @@ pub(crate) fn play(config: &TrialConfig<'_>, record: bool) -> Result<LearningTri
     }
     debug_assert_eq!(TEAM.0, 1, "the attackers' team");
     let report = run(config, Box::new(NativeBackend::new(config.base)), &mut watchers)?;
-    Ok(LearningTrial {
-        outcome: report.outcome,
-        touches: report.possession.defender + report.possession.midfield,
-        decisions: recorder.decisions.into_iter().map(|(_, decision)| decision).collect(),
-    })
+    Ok(recorder.trial(&report))
 }
 
-#[derive(Default)]
-struct Recorder {
+/// Keeps the decisions of a trial, as a [`Watcher`].
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Recorder {
     decisions: Vec<(CycleId, TrialDecision)>,
 }
 
 impl Recorder {
+    /// The trial that ended with this report.
+    pub(crate) fn trial(self, report: &TrialReport) -> LearningTrial {
+        LearningTrial {
+            outcome: report.outcome,
+            touches: report.possession.defender + report.possession.midfield,
+            decisions: self.decisions.into_iter().map(|(_, decision)| decision).collect(),
+        }
+    }
+
     fn add(&mut self, report: &DecisionReport) {
         let Some(problem) = Problem::of(report) else { return };
         let decision = TrialDecision {

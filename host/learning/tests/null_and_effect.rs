@@ -7,8 +7,8 @@ use std::path::Path;
 use case_tools::Files;
 use hil_sim::{Fnv, Stream, TrialOutcome};
 use learning::{
-    Evidence, Kind, LearnSettings, LearningTrial, PlayError, Player, Situation, TrialDecision, Unit, Variant,
-    Verdict, Work, learn,
+    Collected, Evidence, Kind, LearnSettings, LearningTrial, PlayError, Player, Situation, TrialDecision,
+    Unit, Variant, Verdict, Work, learn,
 };
 
 /// Outcomes by a rule: the chance of a goal for a library and the case that is played.
@@ -97,7 +97,7 @@ fn where_every_change_is_chance_hardly_any_is_accepted() {
         let mut player = Rule(|_: &Variant, _: &str| 0.4);
         let kinds = [Kind::Scopes, Kind::Forget];
         let learned =
-            learn(files(), Evidence::default(), &settings(seed, 60_000, &kinds), &mut player).unwrap();
+            learn(files(), Collected::default(), &settings(seed, 60_000, &kinds), &mut player).unwrap();
         proposed += learned.changes.len();
         tested += learned.tests;
         accepted += learned.accepted().count();
@@ -114,7 +114,7 @@ fn a_harmful_case_is_forgotten_and_nothing_else_is() {
     let rule = |_: &Variant, played: &str| if played == harmful { 0.3 } else { 0.55 };
     let mut player = Rule(rule);
     let learned =
-        learn(files(), Evidence::default(), &settings(3, 100_000, &[Kind::Forget]), &mut player).unwrap();
+        learn(files(), Collected::default(), &settings(3, 100_000, &[Kind::Forget]), &mut player).unwrap();
     let tried = learned.changes.iter().any(|change| change.proposal.edit.case == harmful);
     let accepted: Vec<_> = learned.accepted().map(|change| change.proposal.edit.case.as_str()).collect();
     assert_eq!(accepted, if tried { vec![harmful] } else { vec![] });
@@ -141,7 +141,7 @@ fn a_confirmed_change_that_lowers_the_validation_starts_is_refused() {
         }
     }
     let learned =
-        learn(files(), Evidence::default(), &settings(5, 100_000, &[Kind::Forget]), &mut Turned).unwrap();
+        learn(files(), Collected::default(), &settings(5, 100_000, &[Kind::Forget]), &mut Turned).unwrap();
     assert!(learned.changes.iter().any(|change| change.verdict == Verdict::Lowers));
     // A change of which validation sees less than this many pairs that differ may pass by luck.
     let seen = |change: &learning::ChangeRecord| {
@@ -159,7 +159,7 @@ fn a_confirmed_change_that_lowers_the_validation_starts_is_refused() {
 fn evidence_does_not_depend_on_the_order_of_shards() {
     let mut player = Rule(|_: &Variant, _: &str| 0.4);
     let dry = LearnSettings { dry_run: true, ..settings(1, 20_000, &[Kind::Scopes]) };
-    let learned = learn(files(), Evidence::default(), &dry, &mut player).unwrap();
+    let learned = learn(files(), Collected::default(), &dry, &mut player).unwrap();
     assert_eq!(learned.end.hash, learned.start.hash);
     assert!(learned.changes.iter().all(|change| change.verdict != Verdict::Accepted));
     let halves = learned.evidence.0.iter().enumerate().fold(
@@ -172,4 +172,30 @@ fn evidence_does_not_depend_on_the_order_of_shards() {
     let [a, b] = halves;
     assert_eq!(a.clone().merge(b.clone()), learned.evidence);
     assert_eq!(b.merge(a).to_jsonl(), learned.evidence.to_jsonl());
+}
+
+#[test]
+fn a_draft_of_recorded_play_is_tried_as_others_and_accepted_where_it_raises() {
+    let play = r#"{"play":{"field":[5400,3600],"teammates":[[1,[-350,100]],[2,[900,-700]]],"opponents":[],
+        "holdings":[{"robot":1,"got":[-150,100],"left":[-150,100]},{"robot":2,"got":[900,-700],"left":[900,-700]}],
+        "end":{"shot":280},"goal":true}}"#;
+    let recorded = Collected::from_jsonl(&play.replace('\n', " ")).unwrap();
+    let empty = files().cases.iter().fold(files(), |files, case| files.without(&case.name));
+    let run = |from: &Collected, better: f32| {
+        let mut player =
+            Rule(move |_: &Variant, played: &str| if played.contains("recorded-") { better } else { 0.4 });
+        learn(empty.clone(), from.clone(), &settings(3, 20_000, &[Kind::New]), &mut player).unwrap()
+    };
+    let learned = run(&recorded, 0.9);
+    let of = |verdict: Verdict| {
+        let changes = learned.changes.iter().filter(move |change| change.verdict == verdict);
+        changes.filter(|change| change.proposal.edit.case.contains("recorded-")).count()
+    };
+    assert!(of(Verdict::Accepted) > 0, "{:?}", learned.changes);
+    assert!(learned.end.names().iter().any(|name| name.contains("recorded-")));
+    assert_eq!(learning::json(&learned), learning::json(&run(&recorded, 0.9)), "the same result twice");
+    let worse = run(&recorded, 0.1);
+    assert!(worse.end.names().iter().all(|name| !name.contains("recorded-")));
+    let without = run(&Collected::default(), 0.9);
+    assert!(without.changes.iter().all(|change| !change.proposal.edit.case.contains("recorded-")));
 }

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use arena::evaluation::Shard;
 use case_tools::Files;
-use learning::{Evidence, JournalPlayer, Kind, LearnSettings, PlayError, json, learn};
+use learning::{Collected, JournalPlayer, Kind, LearnSettings, PlayError, json, learn};
 
 static STOPPED: AtomicBool = AtomicBool::new(false);
 
@@ -44,7 +44,7 @@ fn learned_within(directory: &Path, shard: Shard, threads: usize, patience: Dura
     pool.install(|| {
         let player = JournalPlayer::open(directory, "{\"run\":1}", shard, 4, &STOPPED, &|_| {}).unwrap();
         let mut player = player.with_patience(patience);
-        let learned = learn(files, Evidence::default(), &settings(), &mut player).unwrap();
+        let learned = learn(files, Collected::default(), &settings(), &mut player).unwrap();
         json(&learned).to_string() + &learned.evidence.to_jsonl()
     })
 }
@@ -123,7 +123,7 @@ fn a_shard_that_never_starts_or_starts_last_changes_nothing() {
         let player = JournalPlayer::open(&shared, "{\"run\":1}", third(1), 4, &STOPPED, &|_| {}).unwrap();
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let files = Files::read(&root.join("../../casebase/library/cases/four-legged")).unwrap();
-        learn(files, Evidence::default(), &settings, &mut { player }).unwrap_err().to_string()
+        learn(files, Collected::default(), &settings, &mut { player }).unwrap_err().to_string()
     };
     let error = refused();
     assert!(error.contains("journal-2-of-3.jsonl: the line at byte 10 is no unit of trials"), "{error}");
