@@ -2,24 +2,27 @@
 //! §5.1; docs/case-format.md §5.2).
 
 use std::fs;
-use std::io::Write;
-use std::path::PathBuf;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use arena::cases::LibraryHandle;
+use arena::cases::{LibraryHandle, described};
 use arena::evaluation::Profile;
 use arena::{Recording, TextLog, TrialConfig, TrialReport, Watcher};
 use brain::Approach;
+use casebase::RetrievalSettings;
 use clap::{Args, ValueEnum};
 use firmware_build::Install;
 use hil_sim::{Backend, Configuration, NativeBackend, QemuBackend, Scenario};
+use learning::{Change, Edit, LearnError, RETRIEVAL, TrialRecorder};
 use page::Powers;
 
 use crate::Failure;
 use crate::failure::FirmwareError;
 use crate::live::{CaseExplanations, Legged, PageArgs, stay};
-use crate::output;
+use crate::output::{self, note};
 use crate::picture::SnapshotError;
+use crate::replay::Known;
 use crate::setup::{SetupArgs, opponents, profile, scenario};
 
 /// Settings of a trial.
@@ -56,6 +59,10 @@ pub(crate) struct TrialArgs {
     /// Print the report as JSON, and nothing else.
     #[arg(long)]
     json: bool,
+    /// Keep its decisions, what became of them, and its play where it led to goal, for `cases learn --from`,
+    /// `cases evidence` and `cases draft`.
+    #[arg(short, long, value_name = "FILE")]
+    record: Option<PathBuf>,
     /// Draw the trial into this file.
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
@@ -85,10 +92,15 @@ enum BackendLabel {
 pub(crate) fn run(args: &TrialArgs) -> Result<ExitCode, Failure> {
     let svg = args.svg.as_deref();
     let (mut recording, mut story) = (Recording::default(), TextLog::default());
+    let mut recorder = args.record.is_some().then(TrialRecorder::default);
     let mut legged = args.watch.then(|| on_page(args)).transpose()?;
     let mut watchers: Vec<&mut dyn Watcher> = vec![&mut recording, &mut story];
     watchers.extend(legged.as_mut().map(|legged| legged as &mut dyn Watcher));
+    watchers.extend(recorder.as_mut().map(|recorder| recorder as &mut dyn Watcher));
     let report = play(args, &mut watchers)?;
+    if let (Some(file), Some(recorder)) = (&args.record, &recorder) {
+        record(args, recorder, file)?;
+    }
     if let Some(file) = svg {
         fs::write(file, arena::picture(&recording)).map_err(|error| Failure::Picture {
             file: file.to_owned(),
@@ -116,6 +128,36 @@ pub(crate) fn run(args: &TrialArgs) -> Result<ExitCode, Failure> {
     }
     Ok(ExitCode::SUCCESS)
 }
+
+/// Writes what was recorded.
+fn record(args: &TrialArgs, recorder: &TrialRecorder, file: &Path) -> Result<(), Failure> {
+    if matches!(args.backend, BackendLabel::Qemu) {
+        note!("robots under QEMU do not hand out their decisions: {} has none", output::printable_path(file));
+    }
+    let setup = args.setup.choose(usize::from(args.robots))?;
+    let library_handle = args.setup.open(&setup)?;
+    let known = Known::of(library_handle)?;
+    let mut library = known.library;
+    if library.base().hash() != library_handle.base().hash() {
+        return Err(Failure::Recording { stem: Some(file.to_owned()), error: io::Error::other(REDUCED) });
+    }
+    let usual = described(&RetrievalSettings::default());
+    for (name, value) in described(&setup.settings).into_iter().filter(|one| !usual.contains(one)) {
+        let change = Change::Setting(name, value);
+        let changed = library.edited(&Edit { case: RETRIEVAL.to_owned(), change });
+        library = changed.map_err(|error| Failure::Learning(LearnError::Library(error)))?;
+    }
+    let mut world = hil_sim::world_hash();
+    if args.profile == Profile::Robots {
+        world.push_str("/robots");
+    }
+    let collected = recorder.collected(&library, &world, args.opponents.label());
+    let written = fs::write(file, collected.to_jsonl());
+    written.map_err(|error| Failure::Recording { stem: Some(file.to_owned()), error })
+}
+
+/// Why a trial with half a library is not recorded.
+const REDUCED: &str = "evidence is of whole libraries; leave out --no-symmetry and --no-opponents";
 
 /// The page that stores the trial's course.
 fn on_page(args: &TrialArgs) -> Result<Legged, Failure> {

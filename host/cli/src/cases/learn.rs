@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use arena::evaluation::{EvaluationError, Shard};
-use case_tools::Files;
 use clap::Args;
-use learning::{Evidence, JournalPlayer, Kind, LearnError, LearnSettings, Learned, learn};
+use learning::{JournalPlayer, Kind, LearnError, LearnSettings, Learned, learn};
 
 use crate::Failure;
 use crate::args::{LibraryArgs, VERSION};
 use crate::output::print_text;
 use crate::progress::Progress;
+use crate::replay::{Known, collect};
 use crate::stop::stopped_by_hand;
 
 /// Arguments of `cases learn`.
@@ -21,7 +21,8 @@ use crate::stop::stopped_by_hand;
 pub(crate) struct LearnArgs {
     #[command(flatten)]
     library: LibraryArgs,
-    /// Evidence of earlier play, as `evidence.jsonl` of another run; may be repeated.
+    /// What was played before; may be repeated: `evidence.jsonl` of another run or of `cases evidence`, or
+    /// what `trial --record` wrote. Plays that worked become drafts of new cases.
     #[arg(long, value_name = "FILE")]
     from: Vec<PathBuf>,
     /// Trials after which no further round starts.
@@ -61,9 +62,10 @@ pub(crate) struct LearnArgs {
 }
 
 pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
-    crate::library::open(&args.library)?.check_field_of_trials()?;
-    let files = files(args)?;
-    let (earlier, earlier_text) = earlier(&args.from)?;
+    let known = Known::open(&args.library)?;
+    known.library_handle.check_field_of_trials()?;
+    let files = known.library.files.clone();
+    let earlier = collect(&args.from, &known, None, true)?;
     let kinds: BTreeSet<Kind> =
         if args.only.is_empty() { Kind::ALL.into() } else { args.only.iter().copied().collect() };
     let settings = LearnSettings {
@@ -75,10 +77,9 @@ pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
         shuffle: args.shuffle_outcomes,
         dry_run: args.dry_run,
     };
-    let start =
-        learning::Variant::new(files.clone()).map_err(|e| Failure::Learning(LearnError::Library(e)))?;
+    let start = known.library;
     let mut hash = hil_sim::Fnv::default();
-    hash.add(earlier_text.as_bytes());
+    hash.add(earlier.to_jsonl().as_bytes());
     let identity = serde_json::json!({
         "program": VERSION, "settings": settings, "library": format!("{:016x}", start.hash),
         "world": hil_sim::world_hash(), "evidence": hash.to_string(),
@@ -106,34 +107,6 @@ pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
         print_text(&learning::summary(&learned))?;
     }
     Ok(ExitCode::SUCCESS)
-}
-
-/// The files of the library that the command line names.
-fn files(args: &LearnArgs) -> Result<Files, Failure> {
-    if let Some(directory) = &args.library.directory.library {
-        let refused = |findings| Failure::faulty_library(directory, findings);
-        // Names and texts alone count: a library learns the same wherever it lies.
-        let files = Files::read(directory).map_err(refused)?;
-        let texts = files.cases.iter().map(|file| (file.name.as_str(), file.text.as_str()));
-        return Ok(Files::from_texts(&files.league, &files.rules.text, &texts.collect::<Vec<_>>()));
-    }
-    let league = case_library::league(&args.library.league)
-        .ok_or_else(|| Failure::unknown_league(&args.library.league))?;
-    let texts = league.names.iter().zip(league.sources).map(|(name, text)| (*name, *text));
-    Ok(Files::from_texts(league.name, league.rules, &texts.collect::<Vec<_>>()))
-}
-
-/// The evidence of files, and its text.
-fn earlier(paths: &[PathBuf]) -> Result<(Evidence, String), Failure> {
-    let mut evidence = Evidence::default();
-    for path in paths {
-        let failed = |error| EvaluationError::File { file: path.clone(), error };
-        let text = foreign::read_text(path, EVIDENCE_LEN_MAX).map_err(failed)?;
-        let read = Evidence::from_jsonl(&text).map_err(|what| failed(std::io::Error::other(what)))?;
-        evidence = evidence.merge(read);
-    }
-    let text = evidence.to_jsonl();
-    Ok((evidence, text))
 }
 
 /// Writes evidence, report and library.
@@ -183,6 +156,3 @@ fn rate(label: &str) -> Result<f64, String> {
 fn shard(label: &str) -> Result<Shard, String> {
     Shard::from_label(label).ok_or_else(|| "take i/n with i from 1 to n, such as 2/3".to_owned())
 }
-
-/// Longest file of evidence that is read, bytes.
-const EVIDENCE_LEN_MAX: u64 = 1 << 28;

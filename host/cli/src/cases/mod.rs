@@ -3,6 +3,8 @@
 mod check;
 mod coverage;
 mod diff;
+mod draft;
+mod evidence;
 mod explain;
 mod learn;
 mod lines;
@@ -55,6 +57,10 @@ pub(crate) enum CasesVerb {
     Stats(stats::StatsArgs),
     /// Learn from play: revise, add and forget cases, each change tested in paired trials.
     Learn(learn::LearnArgs),
+    /// Collect what became of cases in recordings, and the plays that worked, into one evidence.jsonl.
+    Evidence(evidence::EvidenceArgs),
+    /// Draft cases from the plays of recordings that led to a shot or a goal.
+    Draft(draft::DraftArgs),
     /// Draw a case, and a problem over it, as SVG.
     #[command(after_help = PROBLEM_HELP)]
     Render(render::RenderArgs),
@@ -73,6 +79,8 @@ pub(crate) fn run(verb: &CasesVerb) -> Result<ExitCode, Failure> {
         CasesVerb::Coverage(args) => coverage::run(args),
         CasesVerb::Stats(args) => stats::run(args),
         CasesVerb::Learn(args) => learn::run(args),
+        CasesVerb::Evidence(args) => evidence::run(args),
+        CasesVerb::Draft(args) => draft::run(args),
         CasesVerb::Render(args) => render::run(args),
     }
 }

@@ -37,6 +37,22 @@ pub(crate) enum RecordedError {
     NotThere(Missing),
     /// It cannot be compared with another trace: why, and what to do.
     Unlike(String),
+    /// Its cases or its field are of another league than the library.
+    OtherLeague {
+        /// The recording's league.
+        recorded: String,
+        /// The library's.
+        library: String,
+    },
+    /// Its robots had another case base than the library's.
+    OtherLibrary {
+        /// Hash of theirs.
+        recorded: u32,
+        /// Hash of the library's.
+        library: u32,
+    },
+    /// It is nothing that evidence or plays are collected from.
+    NoRecording,
 }
 
 /// A moment that a recording lacks.
@@ -114,6 +130,22 @@ impl fmt::Display for RecordedError {
             ),
             Self::NoRules => f.write_str("its league has no rules of the Small Size League"),
             Self::Empty => f.write_str("holds no message"),
+            Self::OtherLeague { recorded, library } => write!(
+                f,
+                "a recording of {recorded}, and the library is of {library}: give the library that its robots \
+                 played, with --library DIR or --league NAME of `onetwo cases evidence` or `cases draft`; `cases \
+                 learn` learns the four-legged league alone, from `onetwo trial --record`"
+            ),
+            Self::OtherLibrary { recorded, library } => write!(
+                f,
+                "its robots had case base {recorded:08x}, the library is {library:08x}, so their cases have no \
+                 names here: collect with `onetwo cases evidence --library DIR` of their library, and give what it \
+                 writes"
+            ),
+            Self::NoRecording => f.write_str(
+                "neither evidence.jsonl, nor what `trial --record` wrote, nor a trace (.trace), nor a league log \
+                 (.log, .log.gz)",
+            ),
             Self::Damaged(place) | Self::Unlike(place) => f.write_str(place),
             Self::NotThere(Missing { asked, damage: None }) => write!(f, "{asked}"),
             Self::NotThere(Missing { asked, damage: Some(damage) }) => {

@@ -47,7 +47,7 @@ impl<'a> Playing<'a> {
             .map_err(failed(file))?;
         let league = header.league().map_err(RecordedError::Header).map_err(failed(file))?;
         let library_handle = library_handle_of(league, args.directory.library.as_deref())?;
-        let recheck = Recheck::new(&header, key(args, file, &header)?)
+        let recheck = Recheck::new(&header, key(args.key_file.as_deref(), file, &header)?)
             .map_err(RecordedError::Header)
             .map_err(failed(file))?;
         let next = reader.next();

@@ -114,6 +114,11 @@ impl Decisions {
         self.all.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
     }
 
+    /// What became of every play.
+    pub(super) fn ledger(&self) -> &MatchLedger {
+        &self.ledger
+    }
+
     /// What became of every case, by team.
     pub(super) fn tables(&self, hosts: &[&Host]) -> BTreeMap<&'static str, CaseTable> {
         self.ledger.tables(hosts, &self.case_names, true)

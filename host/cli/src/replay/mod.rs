@@ -6,6 +6,7 @@
 
 mod beside;
 mod clock;
+mod collect;
 mod compare;
 mod comparison;
 mod decided;
@@ -27,6 +28,7 @@ use clap::Args;
 use flate2::bufread::MultiGzDecoder;
 use rules::{Colour, League};
 
+pub(crate) use collect::{Known, collect};
 pub(crate) use moment::phase_description;
 
 use crate::Failure;

@@ -121,7 +121,7 @@ fn show_trace(args: &ReplayArgs, page: &PageArgs) -> Result<ExitCode, Failure> {
     let header =
         RecordingHeader::from_json(reader.header()).map_err(RecordedError::Header).map_err(failed(file))?;
     let league = header.league().map_err(RecordedError::Header).map_err(failed(file))?;
-    let key = trace::key(args, file, &header)?;
+    let key = trace::key(args.key_file.as_deref(), file, &header)?;
     let mut recheck = Recheck::new(&header, key).map_err(RecordedError::Header).map_err(failed(file))?;
     let mut projector = Projector::new(args, page, league)?;
     let stopped = stopped_by_hand();

@@ -70,7 +70,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     let mut reader = Reader::new(open(file)?).map_err(RecordedError::Trace).map_err(failed(file))?;
     let header =
         RecordingHeader::from_json(reader.header()).map_err(RecordedError::Header).map_err(failed(file))?;
-    let key = key(args, file, &header)?;
+    let key = key(args.key_file.as_deref(), file, &header)?;
     let mut recheck = Recheck::new(&header, key).map_err(RecordedError::Header).map_err(failed(file))?;
     let (mut finder, mut match_events, mut sheet) = (Finder::default(), Vec::new(), Sheet::default());
     let (mut records, mut strays, mut met) = (BTreeMap::new(), 0, 0);
@@ -232,8 +232,12 @@ fn show(
 }
 
 /// The key that hosts sealed with, if any.
-pub(super) fn key(args: &ReplayArgs, recording: &Path, header: &RecordingHeader) -> Result<TeamKey, Failure> {
-    match &args.key_file {
+pub(super) fn key(
+    key_file: Option<&Path>,
+    recording: &Path,
+    header: &RecordingHeader,
+) -> Result<TeamKey, Failure> {
+    match key_file {
         Some(file) => {
             let read = host::shell::key::read(file).map_err(RecordedError::Key).map_err(failed(file))?;
             if let Some(warning) = read.warning {
