@@ -26,6 +26,7 @@ use crate::collected::Collected;
 use crate::competence::standings;
 use crate::evidence::Evidence;
 use crate::occasion::Occasion;
+use crate::plays::plays_to_watch;
 use crate::proposals::{Kind, Proposal, TRIED_MAX, Tried, from_evidence, text_hash};
 use crate::recorded;
 use crate::results::{ChangeRecord, CurvePoint, Learned, Verdict};
@@ -89,6 +90,7 @@ pub fn learn(
         used: BTreeMap::new(),
         changes: Vec::new(),
         curve: Vec::new(),
+        held_out: [Vec::new(), Vec::new()],
     };
     let mut current = start.clone();
     run.measure(&current, 0)?;
@@ -109,8 +111,19 @@ pub fn learn(
             break;
         }
     }
-    let Run { evidence, changes, curve, spent, tests, .. } = run;
-    Ok(Learned { settings: settings.clone(), start, end: current, evidence, changes, curve, spent, tests })
+    let Run { evidence, changes, curve, spent, tests, held_out: [before, after], .. } = run;
+    let plays = plays_to_watch(settings.seed, &before, &after);
+    Ok(Learned {
+        settings: settings.clone(),
+        start,
+        end: current,
+        evidence,
+        changes,
+        curve,
+        plays,
+        spent,
+        tests,
+    })
 }
 
 /// Numbers of starts a round.
@@ -176,6 +189,8 @@ struct Run<'r, P> {
     used: BTreeMap<StartStream, u32>,
     changes: Vec<ChangeRecord>,
     curve: Vec<CurvePoint>,
+    /// Whether each held-out start comes to goal, with the library at first and with the newest.
+    held_out: [Vec<bool>; 2],
 }
 
 /// Trials of a library on starts of a stream, with what was played and what retrieval answered in each.
@@ -330,6 +345,11 @@ impl<P: Player> Run<'_, P> {
         let indices: Vec<_> = (0..self.sizes.held_out).collect();
         let trials = self.starts(variant, StartStream::HeldOut, &indices, false)?;
         self.curve.push(CurvePoint::of(round, self.spent, &trials));
+        let to_goal: Vec<bool> = trials.iter().map(LearningTrial::to_goal).collect();
+        if self.held_out[0].is_empty() {
+            self.held_out[0].clone_from(&to_goal);
+        }
+        self.held_out[1] = to_goal;
         Ok(())
     }
 }

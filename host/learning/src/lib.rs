@@ -20,6 +20,7 @@ mod journal;
 mod learner;
 mod occasion;
 mod page;
+mod plays;
 mod proposals;
 mod recorded;
 mod results;
@@ -40,6 +41,7 @@ pub use evidence::{CasePlay, Evidence, EvidenceCounts, EvidenceKey, Posterior, S
 pub use journal::JournalPlayer;
 pub use learner::{LearnError, learn};
 pub use page::{html, json, summary};
+pub use plays::PlayToWatch;
 pub use proposals::{Kind, Proposal};
 pub use recorded::{RecordedDraft, Undrafted, draft};
 pub use results::{ChangeRecord, CurvePoint, Learned, Verdict};

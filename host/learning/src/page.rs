@@ -42,6 +42,7 @@ pub fn json(learned: &Learned) -> Value {
         "tests": learned.tests,
         "accepted": learned.accepted().count(),
         "curve": learned.curve,
+        "plays": learned.plays,
         "changes": changes.collect::<Vec<_>>(),
         "diff": learned.diff(),
     })
@@ -114,6 +115,14 @@ pub fn html(learned: &Learned) -> String {
                             td { (format!("{:.2}", point.to_goal_random)) } td { (format!("{:.3}", point.touches)) }
                         }
                     }
+                }
+                @if !learned.plays.is_empty() {
+                    h2 { "Plays to watch" }
+                    p {
+                        "Held-out starts that the learned library brings to goal and the one before does not. In the "
+                        "directory of this report:"
+                    }
+                    @for play in &learned.plays { pre { (play.command(&learned.end.files.league)) } }
                 }
                 h2 { "Accepted" }
                 @if learned.accepted().next().is_none() { p { "None: the learned library is the one before." } }

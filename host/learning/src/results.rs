@@ -5,6 +5,7 @@ use serde::Serialize;
 use crate::betting::Wager;
 use crate::diff::diff;
 use crate::evidence::Evidence;
+use crate::plays::PlayToWatch;
 use crate::proposals::Proposal;
 use crate::settings::LearnSettings;
 use crate::starts::{CELLS, cell};
@@ -105,6 +106,8 @@ pub struct Learned {
     pub changes: Vec<ChangeRecord>,
     /// The learning curve.
     pub curve: Vec<CurvePoint>,
+    /// Held-out starts that only the learned library brings to goal.
+    pub plays: Vec<PlayToWatch>,
     /// Trials that it took.
     pub spent: u64,
     /// Sequential tests among them.

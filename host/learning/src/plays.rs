@@ -1,0 +1,81 @@
+//! `plays`: plays to watch: held-out starts that the learned library brings to goal and the one before does
+//! not.
+
+use serde::Serialize;
+
+use crate::starts::{StartPlan, StartStream, cell};
+
+/// A trial that can be played and watched again.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct PlayToWatch {
+    /// The scenario, as `onetwo trial --scenario` takes it.
+    pub scenario: &'static str,
+    /// The opponents, as `--opponents` takes them.
+    pub opponents: &'static str,
+    /// The seed.
+    pub seed: u64,
+}
+
+impl PlayToWatch {
+    /// The command that shows it with a library in `directory`.
+    pub fn command(&self, directory: &str) -> String {
+        let Self { scenario, opponents, seed } = self;
+        format!(
+            "onetwo trial --library {directory} --scenario {scenario} --opponents {opponents} --seed {seed} --watch"
+        )
+    }
+}
+
+/// Starts that came to goal after learning and not before, of different kinds where there are; `before` and
+/// `after` tell it of every held-out start of a run with this seed.
+pub(crate) fn plays_to_watch(seed: u64, before: &[bool], after: &[bool]) -> Vec<PlayToWatch> {
+    let raised =
+        || (0_u32..).zip(before.iter().zip(after)).filter(|(_, (before, after))| !**before && **after);
+    let mut chosen: Vec<u32> = Vec::new();
+    for anew in [true, false] {
+        for (index, _) in raised() {
+            let known =
+                chosen.iter().any(|other| *other == index || (anew && cell(*other).0 == cell(index).0));
+            if chosen.len() < MOST && !known {
+                chosen.push(index);
+            }
+        }
+    }
+    let plan = StartPlan::new(seed, StartStream::HeldOut);
+    let starts = chosen.into_iter().filter_map(|index| plan.get(index));
+    let play = |start: arena::evaluation::Planned| PlayToWatch {
+        scenario: start.cell.scenario.label(),
+        opponents: start.cell.configuration.label(),
+        seed: start.seed,
+    };
+    starts.map(play).collect()
+}
+
+/// Plays that are listed.
+const MOST: usize = 3;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plays_are_of_different_kinds_where_there_are_enough() {
+        let before = [false, true, false, false, false, true, false];
+        let after = [true, true, false, true, true, false, true];
+        // Starts 0 and 4 are random ones against the same opponents, 3 and 6 are others.
+        let plays = plays_to_watch(7, &before, &after);
+        let plan = StartPlan::new(7, StartStream::HeldOut);
+        let seeds: Vec<u64> =
+            [0, 3, 6].into_iter().filter_map(|i| plan.get(i)).map(|start| start.seed).collect();
+        assert_eq!(plays.iter().map(|play| play.seed).collect::<Vec<_>>(), seeds);
+        let kinds: Vec<_> = plays.iter().map(|play| (play.scenario, play.opponents)).collect();
+        assert!(kinds[0] != kinds[1] && kinds[1] != kinds[2], "{kinds:?}");
+        // Where only one kind is raised, all of it is taken.
+        let alike: Vec<bool> = (0..16).map(|i| i % 4 == 0).collect();
+        assert_eq!(plays_to_watch(7, &[false; 16], &alike).len(), 3);
+        assert!(plays_to_watch(7, &before, &before).is_empty());
+        assert!(
+            plays[0].command("four-legged").starts_with("onetwo trial --library four-legged --scenario ")
+        );
+    }
+}
