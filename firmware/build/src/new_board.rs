@@ -30,6 +30,8 @@ pub struct ChipTemplate {
     init: &'static str,
     /// Memory map.
     memory: &'static str,
+    /// Lines of `panics.allow` that its drivers need.
+    panics: &'static str,
     /// Further files of `src`.
     sources: &'static [(&'static str, &'static str)],
 }
@@ -50,6 +52,7 @@ pub const CHIPS: [ChipTemplate; 4] = [
             critical-section.workspace = true",
         init: "    let _chip = embassy_nrf::init(embassy_nrf::config::Config::default());\n    crate::clock::start();",
         memory: include_str!("../templates/nrf52840.x"),
+        panics: include_str!("../templates/nrf52840.allow"),
         sources: &[("clock.rs", include_str!("../templates/nrf_clock.rs.in"))],
     },
     ChipTemplate {
@@ -63,6 +66,7 @@ pub const CHIPS: [ChipTemplate; 4] = [
             embassy-rp = { version = \"0.10\", features = [\"rp235xa\", \"time-driver\"] }",
         init: "    let _chip = embassy_rp::init(embassy_rp::config::Config::default());",
         memory: include_str!("../templates/rp2350.x"),
+        panics: include_str!("../templates/rp2350.allow"),
         sources: &[],
     },
     ChipTemplate {
@@ -75,6 +79,7 @@ pub const CHIPS: [ChipTemplate; 4] = [
         dependencies: "embassy-stm32 = { workspace = true, features = [\"stm32f407vg\", \"time-driver-tim5\"] }",
         init: STM32_INIT,
         memory: include_str!("../templates/stm32f407vg.x"),
+        panics: "",
         sources: &[],
     },
     ChipTemplate {
@@ -87,6 +92,7 @@ pub const CHIPS: [ChipTemplate; 4] = [
         dependencies: "embassy-stm32 = { workspace = true, features = [\"stm32h743zi\", \"time-driver-tim12\"] }",
         init: STM32_INIT,
         memory: include_str!("../templates/stm32h743zi.x"),
+        panics: "",
         sources: &[],
     },
 ];
@@ -165,6 +171,7 @@ fn files(name: &str, chip: &ChipTemplate) -> Vec<(String, String)> {
             ("@PAGE_NOTE@", chip.page_note),
             ("@DEPENDENCIES@", chip.dependencies),
             ("@INIT@", chip.init),
+            ("@PANICS@", chip.panics),
             ("@MODULES@", &modules),
             ("@UNSAFE@", guard),
         ]

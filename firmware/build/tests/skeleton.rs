@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use firmware_build::inspect::{Image, Sizes};
+use firmware_build::inspect::{Allowed, Image, Sizes, panic_sites};
 use firmware_build::{Board, ensure_target_of, new_board, target_dir, workspace_root};
 
 /// A copy of the workspace, in git; removed with this value.
@@ -71,7 +71,15 @@ fn built(chip: &str) -> (Sizes, Vec<(u32, u32, String)>) {
     let firmware = board.firmware.unwrap();
     let image = into.join(&board.target).join("firmware").join(&firmware.image);
     let bytes = fs::read(&image).unwrap();
-    let sizes = Sizes::of(&Image::parse(&bytes).unwrap());
+    let image = Image::parse(&bytes).unwrap();
+    let sizes = Sizes::of(&image);
+    // It may panic where every image may, and where its own list says.
+    let own = format!("firmware/boards/{name}/panics.allow");
+    let lists = ["firmware/panics.allow", &own].map(|list| fs::read_to_string(copy.0.join(list)).unwrap());
+    // Only boards of this workspace are known as such: the trial's sites have its directory's name.
+    let lists = lists.join("\n").replace(&format!("{} ", board.package), &format!("{name} "));
+    let verdict = Allowed::parse(&lists).unwrap().judge(&panic_sites(&image));
+    assert!(verdict.unknown.is_empty(), "{name} may panic: {:#?}", verdict.unknown);
     println!("{}: {} B flash, {} B RAM", firmware.image, sizes.flash, sizes.ram);
     assert!(sizes.flash <= firmware.flash && sizes.ram <= firmware.ram);
     (sizes, copy.changes())
