@@ -2,8 +2,8 @@
 //! its margin).
 //!
 //! Every case listed under the problem's goal is tested, lowest id first, in the fixed order ball, robot
-//! count, field (where the settings require it), travel, free path, opponents demanded. No index and no short cut: tests compare
-//! retrieval with it.
+//! count, field (where the settings require it), travel, free path, demands on opponents. No index and no
+//! short cut: tests compare retrieval with it.
 
 use geometry::math;
 use protocol::{CaseId, RobotId};

@@ -1,9 +1,9 @@
 //! `retrieve`: case retrieval (Ros et al. 2009, §3, Algorithms 1 and 2; docs/case-format.md §3).
 //!
 //! A case is a candidate if the ball lies in its ball scope, the robots are near enough to their adapted
-//! positions, the ball's path is free and its opponents' scopes demand nothing else; candidates are ranked by [`rank_order`](crate::rank_order). Cheap
-//! checks come first, and checks that cannot change the answer are skipped; the answer equals that of the
-//! plain order.
+//! positions, the ball's path is free and its opponent scopes' demands are met; candidates are ranked by
+//! [`rank_order`](crate::rank_order). Cheap checks come first, and checks that cannot change the answer are
+//! skipped; the answer equals that of the plain order.
 
 use core::ops::ControlFlow;
 

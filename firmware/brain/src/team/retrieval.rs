@@ -12,7 +12,8 @@ use protocol::{Instant, RobotId};
 use crate::belief::Belief;
 use crate::teammates::Teammates;
 
-/// The problem from this robot's belief, with opponents where they will be after `lookahead_s`; `None` while no ball is known.
+/// The problem from this robot's belief, with opponents where they will be after `lookahead_s`; `None` while
+/// no ball is known.
 pub fn problem(
     now: Instant,
     me: RobotId,
