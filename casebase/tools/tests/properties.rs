@@ -6,8 +6,8 @@ mod common;
 use case_tools::Table;
 use casebase::table::{HASHED_FROM, content_hash};
 use casebase::{
-    Action, CaseBase, CaseVerdict, Match, PointMm, Problem, RetrievalSettings, Symmetry, TableError, explain,
-    rank_order, retrieve, retrieve_best,
+    Action, CaseBase, CaseVerdict, Match, PointMm, Presence, Problem, RetrievalSettings, Symmetry,
+    TableError, explain, rank_order, retrieve, retrieve_best,
 };
 use common::Dice;
 use protocol::CaseId;
@@ -91,7 +91,10 @@ fn a_ball_anywhere_finds_every_case_whose_scope_holds_it() {
         problem.opponents.clear();
         let lenient = RetrievalSettings { travel_max_mm: 1e9, ..RetrievalSettings::default() };
         let inside = base.cases().filter(|case| {
-            let fits = case.teammates() <= problem.teammates.len();
+            // No opponent is there to stand where one is required.
+            let required = |number| case.presence(number) == Presence::Required;
+            let fits =
+                case.teammates() <= problem.teammates.len() && !(0..case.opponents().count()).any(required);
             case.defending() == problem.defending && case.ball_in_scope(problem.ball) && fits
         });
         assert_eq!(
