@@ -1,5 +1,5 @@
-//! `stakes`: what a goal for us and a goal against us are worth by score and time left: who is behind takes
-//! risks, who leads avoids them.
+//! `stakes`: what a goal for us and a goal against us are worth by score and time left: a team that is behind
+//! takes risks, one that leads avoids them.
 //!
 //! A result is worth 1 (won), ½ (drawn) or 0. In the time left both teams score by chance, as often as teams
 //! did on average, each goal independent of the others; so goal difference and time give the expected result,
