@@ -152,7 +152,7 @@ fn where_nothing_arrives_or_another_robot_is_asked_for_the_error_says_what_to_lo
     let error = text(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{error}");
     assert!(
-        error.contains("no robot told of its checks for 0.5 s") && error.contains("base station"),
+        error.contains("no robot reported its checks for 0.5 s") && error.contains("base station"),
         "{error}"
     );
     let (output, _) = played("other", Fault::None, 0.0, &["--robot", "4", "--patience", "0.5"]);
