@@ -3,7 +3,6 @@
 
 use std::fmt::Write as _;
 
-use case_tools::CaseLeague;
 use casebase::{OPPONENTS_MAX, Presence};
 use hil_sim::{Fnv, Stream};
 
@@ -11,18 +10,10 @@ use crate::edit::{Change, Edit};
 use crate::goalkeeper;
 use crate::occasion::{Occasion, usable};
 use crate::trial::Situation;
-use crate::variant::Variant;
 
 /// A draft for every plan in a situation.
 pub(crate) fn drafts(situation: &Situation, kicks: &[String]) -> Vec<Edit> {
     plans(situation, kicks).iter().map(|plan| draft(situation, plan)).collect()
-}
-
-/// The kick kinds of a library's league.
-pub(crate) fn kicks(variant: &Variant) -> Vec<String> {
-    CaseLeague::of(&variant.files.rules)
-        .map(|league| league.kicks.into_iter().map(|(name, _)| name).collect())
-        .unwrap_or_default()
 }
 
 /// The same draft with a smaller scope of the ball, under another name.
@@ -134,16 +125,21 @@ fn draft(situation: &Situation, plan: &DraftPlan) -> Edit {
     if keeper.is_none() && opponents.len() < OPPONENTS_MAX {
         text.push_str(&opponent(goalkeeper::PLACE, goalkeeper::SCOPE, Presence::Excluded));
     }
-    let region = match (x, y.abs()) {
-        (..-1200, _) => "back",
-        (_, 1000..) => "side",
-        (1200.., _) => "front",
-        _ => "center",
-    };
+    let region = region(FIELD, [x, y]);
     let mut hash = Fnv::default();
     hash.add(text.as_bytes());
     let case = format!("{region}/learned-{:06x}", hash.value() >> 40);
     Edit { case, change: Change::New(text) }
+}
+
+/// The region of the library that a case belongs to, by its ball's place on a field of this length and width.
+pub(crate) fn region([length, width]: [i32; 2], [x, y]: [i32; 2]) -> &'static str {
+    match (9 * x, 18 * y.abs()) {
+        (back, _) if back < -2 * length => "back",
+        (_, aside) if aside >= 5 * width => "side",
+        (front, _) if front >= 2 * length => "front",
+        _ => "center",
+    }
 }
 
 /// An opponent of a draft.
@@ -162,8 +158,10 @@ fn demand(presence: Presence) -> String {
 
 /// Where a draft carries the ball, from its place, mm: ahead, aslant, to the sides.
 const CARRIES: [[i32; 2]; 6] = [[500, 0], [400, 350], [400, -350], [100, 500], [100, -500], [900, 0]];
+/// Length and width of the four-legged league's field, mm.
+pub(crate) const FIELD: [i32; 2] = [5400, 3600];
 /// Radii of a draft's ball scope, mm: those that the authors of the four-legged library took most often.
-const BALL_SCOPE: [i32; 2] = [700, 500];
+pub(crate) const BALL_SCOPE: [i32; 2] = [700, 500];
 /// Radii of the narrowed scope, mm: a third of the area.
 const NARROW_BALL_SCOPE: [i32; 2] = [400, 300];
 /// Radii of its opponents' scopes, mm.
@@ -172,6 +170,7 @@ const OPPONENT_SCOPE: [i32; 2] = [500, 450];
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::variant::Variant;
 
     #[test]
     fn drafts_are_accepted_by_the_checks_and_retrieved_in_their_situation() {

@@ -103,6 +103,11 @@ pub(crate) fn from_evidence(
     if kind == Kind::Order {
         proposals.extend(order(variant));
     }
+    weigh(proposals, variant, tried)
+}
+
+/// What may still be tried, heaviest first; every time that one was tried halves its weight.
+pub(crate) fn weigh(mut proposals: Vec<Proposal>, variant: &Variant, tried: &Tried) -> Vec<Proposal> {
     proposals.retain_mut(|proposal| {
         let key = (text_hash(variant, &proposal.edit.case), proposal.edit.clone());
         let times = tried.get(&key).copied().unwrap_or_default();
@@ -171,7 +176,7 @@ pub(crate) fn text_hash(variant: &Variant, case: &str) -> u64 {
 }
 
 /// The league's kick kinds.
-fn kicks(variant: &Variant) -> Vec<String> {
+pub(crate) fn kicks(variant: &Variant) -> Vec<String> {
     CaseLeague::of(&variant.files.rules)
         .map(|league| league.kicks.iter().map(|(name, _)| name.clone()).collect())
         .unwrap_or_default()

@@ -8,9 +8,10 @@ use arena::worked::{Holding, PlayEnd, WorkedPlay};
 use case_tools::self_blocking::{WARNS_ABOVE, share};
 use case_tools::{CaseLeague, Files, SourceFile, build_without_warnings};
 use casebase::{FieldMm, KickAim, OPPONENTS_MAX, PointMm, RetrievalSettings, Scope, retrieve_best};
+use geometry::{Field, Point, Segment};
 use hil_sim::Fnv;
 
-use crate::drafts::narrowed;
+use crate::drafts::{BALL_SCOPE, FIELD, narrowed, region};
 use crate::edit::{Change, Edit};
 use crate::proposals::{Kind, Proposal};
 use crate::trial::Situation;
@@ -175,8 +176,8 @@ impl<'p> Plan<'p> {
     fn text(&self, rules: &SourceFile) -> Result<String, String> {
         let [x, y] = self.ball();
         let scope = [
-            (BALL_SCOPE[0] * self.field.length / SCOPES_FIELD[0]).min(BALL_SCOPE_MAX[0]),
-            (BALL_SCOPE[1] * self.field.width / SCOPES_FIELD[1]).min(BALL_SCOPE_MAX[1]),
+            (BALL_SCOPE[0] * self.field.length / FIELD[0]).min(BALL_SCOPE_MAX[0]),
+            (BALL_SCOPE[1] * self.field.width / FIELD[1]).min(BALL_SCOPE_MAX[1]),
         ];
         let mut text = format!(
             "# Drafted from a recording, as it was played: try it with `onetwo cases play`.\n\
@@ -235,9 +236,9 @@ impl<'p> Plan<'p> {
         }
         let off = |at: &[i32; 2]| {
             let legs = path.windows(2).map(|leg| distance_to_leg(*at, leg[0], leg[1]));
-            legs.fold(f64::INFINITY, f64::min)
+            legs.fold(f32::INFINITY, f32::min)
         };
-        let mut near: Vec<(f64, [i32; 2])> = self.play.opponents.iter().map(|at| (off(at), *at)).collect();
+        let mut near: Vec<(f32, [i32; 2])> = self.play.opponents.iter().map(|at| (off(at), *at)).collect();
         near.retain(|(off, _)| *off <= NEAR_PATH);
         near.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)));
         near.into_iter().take(OPPONENTS_MAX).map(|(_, at)| place(&self.field, at)).collect()
@@ -265,12 +266,7 @@ fn purpose(play: &WorkedPlay) -> String {
 
 fn named(plan: &Plan<'_>, text: String) -> Edit {
     let ([x, y], FieldMm { length, width, .. }) = (plan.ball(), plan.field);
-    let region = match (9 * x, 18 * y.abs()) {
-        (back, _) if back < -2 * length => "back",
-        (_, aside) if aside >= 5 * width => "side",
-        (front, _) if front >= 2 * length => "front",
-        _ => "center",
-    };
+    let region = region([length, width], [x, y]);
     let mut hash = Fnv::default();
     hash.add(text.as_bytes());
     Edit { case: format!("{region}/recorded-{:06x}", hash.value() >> 40), change: Change::New(text) }
@@ -291,13 +287,10 @@ fn distance([a, b]: [i32; 2], [x, y]: [i32; 2]) -> f64 {
     f64::from(a - x).hypot(f64::from(b - y))
 }
 
-fn distance_to_leg(at: [i32; 2], from: [i32; 2], to: [i32; 2]) -> f64 {
-    let part = |to: i32, from: i32| f64::from(to - from);
-    let (dx, dy) = (part(to[0], from[0]), part(to[1], from[1]));
-    let (x, y) = (part(at[0], from[0]), part(at[1], from[1]));
-    let square = dx * dx + dy * dy;
-    let along = if square > 0.0 { ((x * dx + y * dy) / square).clamp(0.0, 1.0) } else { 0.0 };
-    (x - along * dx).hypot(y - along * dy)
+/// Of a point from a leg, all in mm.
+fn distance_to_leg(at: [i32; 2], from: [i32; 2], to: [i32; 2]) -> f32 {
+    let point = |[x, y]: [i32; 2]| Point::<Field>::new(x as f32, y as f32);
+    Segment::new(point(from), point(to)).distance_to(point(at))
 }
 
 /// A receiver that stands as near as this to where it receives waits there, mm: a robot's length.
@@ -305,11 +298,8 @@ const STANDS_WITHIN: f64 = 300.0;
 /// A ball that was moved farther by the robot that had it was carried, mm: more than a turn with it.
 const CARRIED_FROM: f64 = 200.0;
 /// Opponents as near as this to the ball's path take part, mm: what they run in a second.
-const NEAR_PATH: f64 = 1000.0;
-/// Radii of the ball's scope, mm, on a field of this size: those of `drafts`, in proportion …
-const BALL_SCOPE: [i32; 2] = [700, 500];
-const SCOPES_FIELD: [i32; 2] = [5400, 3600];
-/// … up to the limit above which `cases check` warns (docs/case-format.md §1.2).
+const NEAR_PATH: f32 = 1000.0;
+/// Largest radii of the ball's scope, mm: above them `cases check` warns (docs/case-format.md §1.2).
 const BALL_SCOPE_MAX: [i32; 2] = [900, 700];
 /// Radii of opponents' scopes, mm, the first that does not block the case's own path: those of `drafts`,
 /// half of their area, and what still tells an opponent's side.

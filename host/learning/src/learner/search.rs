@@ -8,9 +8,9 @@
 use super::judging::promise;
 use super::{Candidate, LearnError, Run};
 use crate::aim::{Ground, Purpose};
-use crate::drafts::{choose, drafts, kicks, narrowed, undemanding};
+use crate::drafts::{choose, drafts, narrowed, undemanding};
 use crate::occasion::Occasion;
-use crate::proposals::{Kind, Proposal, TRIED_MAX, text_hash};
+use crate::proposals::{Kind, Proposal, kicks, weigh};
 use crate::variant::Variant;
 use crate::work::Player;
 
@@ -76,15 +76,9 @@ impl<P: Player> Run<'_, P> {
     /// Drafts from recordings that were not tried as often as others may be, heaviest first, as many as of
     /// other kinds.
     pub(super) fn recorded(&self, current: &Variant) -> Vec<Proposal> {
-        let weighed = |proposal: &Proposal| {
-            let key = (text_hash(current, &proposal.edit.case), proposal.edit.clone());
-            let times = self.tried.get(&key).copied().unwrap_or_default();
-            let weight = proposal.weight * 0.5_f64.powi(i32::try_from(times).unwrap_or(i32::MAX));
-            (times < TRIED_MAX).then(|| Proposal { weight, ..proposal.clone() })
-        };
-        let mut proposals: Vec<_> = self.drafts.iter().filter_map(weighed).collect();
-        proposals.retain(|proposal| proposal.edit.apply(&current.files).is_ok());
-        proposals.sort_by(|a, b| b.weight.total_cmp(&a.weight).then_with(|| a.edit.cmp(&b.edit)));
+        let fits = |proposal: &&Proposal| proposal.edit.apply(&current.files).is_ok();
+        let proposals = self.drafts.iter().filter(fits).cloned().collect();
+        let mut proposals = weigh(proposals, current, &self.tried);
         proposals.truncate(self.sizes.proposals);
         proposals
     }
