@@ -19,7 +19,7 @@
 //!
 //! [`skills`] plays tries of single skills through the whole loop, in worlds of any physics.
 //!
-//! [`worked`] finds the plays of recordings that led to a shot or a goal.
+//! [`successful_plays`] finds the plays of recordings that led to a shot or a goal.
 //!
 //! [`evaluation`] plays the paper's thousands of trials and computes its tables.
 //!
@@ -45,8 +45,8 @@ mod report;
 pub mod scenes;
 pub mod skills;
 mod story;
+pub mod successful_plays;
 mod trial;
-pub mod worked;
 
 pub use case_trial::{Attempt, AttemptError, CaseTrial, Opposition, Retrieved, Score, Tape, markdown};
 pub use cycles::{CycleEnd, CycleEvent, CycleLog, CycleSeen};

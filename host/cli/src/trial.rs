@@ -22,7 +22,7 @@ use crate::failure::FirmwareError;
 use crate::live::{CaseExplanations, Legged, PageArgs, stay};
 use crate::output::{self, note};
 use crate::picture::SnapshotError;
-use crate::replay::Known;
+use crate::replay::OpenLibrary;
 use crate::setup::{SetupArgs, opponents, profile, scenario};
 
 /// Settings of a trial.
@@ -136,8 +136,8 @@ fn record(args: &TrialArgs, recorder: &TrialRecorder, file: &Path) -> Result<(),
     }
     let setup = args.setup.choose(usize::from(args.robots))?;
     let library_handle = args.setup.open(&setup)?;
-    let known = Known::of(library_handle)?;
-    let mut library = known.library;
+    let known = OpenLibrary::of(library_handle)?;
+    let mut library = known.variant;
     if library.base().hash() != library_handle.base().hash() {
         return Err(Failure::Recording { stem: Some(file.to_owned()), error: io::Error::other(REDUCED) });
     }

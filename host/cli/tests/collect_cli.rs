@@ -93,7 +93,7 @@ fn evidence_of_a_trace_agrees_with_its_ledger_case_by_case_in_any_order_of_files
     // What was collected merges as what it was collected from.
     let [one, other] = [evidence(&[&a], "a.jsonl"), evidence(&[&b], "b.jsonl")];
     assert_eq!(text(&evidence(&[&other, &one], "merged.jsonl")), text(&both));
-    assert!(text(&both).lines().any(|line| line.starts_with("{\"play\"")), "and the plays that worked");
+    assert!(text(&both).lines().any(|line| line.starts_with("{\"play\"")), "and the successful plays");
 }
 
 #[test]

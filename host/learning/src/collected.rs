@@ -1,8 +1,8 @@
-//! `collected`: what recordings give to learning: evidence, and plays that worked. Both merge in any order.
+//! `collected`: what recordings give to learning: evidence, and successful plays. Both merge in any order.
 
 use std::collections::BTreeSet;
 
-use arena::worked::WorkedPlay;
+use arena::successful_plays::SuccessfulPlay;
 use serde::{Deserialize, Serialize};
 
 use crate::evidence::{Evidence, PLAY_LINE};
@@ -13,13 +13,13 @@ pub struct Collected {
     /// What became of cases.
     pub evidence: Evidence,
     /// Plays that led to a shot or a goal. The same play of two files is one.
-    pub plays: BTreeSet<WorkedPlay>,
+    pub plays: BTreeSet<SuccessfulPlay>,
 }
 
 /// A line with a play.
 #[derive(Serialize, Deserialize)]
 struct PlayLine {
-    play: WorkedPlay,
+    play: SuccessfulPlay,
 }
 
 impl From<Evidence> for Collected {
@@ -38,7 +38,7 @@ impl Collected {
 
     /// The text of `evidence.jsonl`.
     pub fn to_jsonl(&self) -> String {
-        let line = |play: &WorkedPlay| {
+        let line = |play: &SuccessfulPlay| {
             // Whole numbers and strings: it always serialises.
             serde_json::to_string(&PlayLine { play: play.clone() }).unwrap_or_default() + "\n"
         };
@@ -62,13 +62,13 @@ impl Collected {
 
 #[cfg(test)]
 pub(crate) mod tests {
-    use arena::worked::{Holding, PlayEnd};
+    use arena::successful_plays::{Holding, PlayEnd};
 
     use super::*;
 
     /// A pass of robot 1 from (-200, 100) to robot 2 at (900, -700), which carries on and shoots.
-    pub(crate) fn play() -> WorkedPlay {
-        WorkedPlay {
+    pub(crate) fn play() -> SuccessfulPlay {
+        SuccessfulPlay {
             field: [5400, 3600],
             teammates: vec![(1, [-350, 100]), (2, [880, -720]), (4, [-2000, 0])],
             opponents: vec![[400, 900], [2500, 0], [-2500, -1500]],
@@ -84,7 +84,7 @@ pub(crate) mod tests {
     #[test]
     fn plays_stand_behind_the_records_and_merge_in_any_order() {
         let one = Collected { plays: BTreeSet::from([play()]), ..Collected::default() };
-        let other = WorkedPlay { goal: false, ..play() };
+        let other = SuccessfulPlay { goal: false, ..play() };
         let two = Collected { plays: BTreeSet::from([other, play()]), ..Collected::default() };
         let both = one.clone().merge(two.clone());
         assert_eq!((both.plays.len(), &both), (2, &two.merge(one)));

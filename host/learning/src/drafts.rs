@@ -25,7 +25,7 @@ pub(crate) fn narrowed(edit: &Edit) -> Option<Edit> {
 }
 
 /// The same draft without a demand on a goalkeeper, under another name: played with one and without.
-pub(crate) fn undemanding(edit: &Edit) -> Option<Edit> {
+pub(crate) fn without_demands(edit: &Edit) -> Option<Edit> {
     let Change::New(text) = &edit.change else { return None };
     let excluded = opponent(goalkeeper::PLACE, goalkeeper::SCOPE, Presence::Excluded);
     let text = text.replace(&excluded, "").replace(&demand(Presence::Required), "");
@@ -209,7 +209,7 @@ mod tests {
         let (guarded, open) = (with([2400, 50]), with([1500, -600]));
         for (own, other) in [(&guarded, &open), (&open, &guarded)] {
             let edit = draft(own, &plans(own, &[])[0]);
-            let wide = undemanding(&edit).unwrap();
+            let wide = without_demands(&edit).unwrap();
             let played = |edit: &Edit, situation: &Situation| {
                 let drafted = variant.edited(edit).unwrap();
                 drafted

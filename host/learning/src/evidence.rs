@@ -216,7 +216,7 @@ impl Evidence {
 /// More plays than this of one record are a damaged number: a year of trials on a thousand cores.
 const PLAYS_MAX: u64 = 1 << 40;
 
-/// How lines of `evidence.jsonl` start that hold a play that worked.
+/// How lines of `evidence.jsonl` start that hold a successful play.
 pub(crate) const PLAY_LINE: &str = "{\"play\":";
 
 /// (Δx/τx)² + (Δy/τy)².

@@ -43,7 +43,7 @@ pub use learner::{LearnError, learn};
 pub use page::{html, json, summary};
 pub use plays::PlayToWatch;
 pub use proposals::{Kind, Proposal};
-pub use recorded::{RecordedDraft, Undrafted, draft};
+pub use recorded::{DraftError, RecordedDraft, draft};
 pub use results::{ChangeRecord, CurvePoint, Learned, Verdict};
 pub use settings::LearnSettings;
 pub use starts::{CELLS, StartPlan, StartStream, cell, cell_label};

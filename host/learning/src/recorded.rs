@@ -1,10 +1,10 @@
-//! `recorded`: drafts of cases from plays of recordings that worked: passes, receptions and the shot as
+//! `recorded`: drafts of cases from successful plays of recordings: passes, receptions and the shot as
 //! actions, the opponents near the ball's path with scopes. mm, attack towards +x.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::{self, Write as _};
 
-use arena::worked::{Holding, PlayEnd, WorkedPlay};
+use arena::successful_plays::{Holding, PlayEnd, SuccessfulPlay};
 use case_tools::self_blocking::{WARNS_ABOVE, share};
 use case_tools::{CaseLeague, Files, SourceFile, build_without_warnings};
 use casebase::{FieldMm, KickAim, OPPONENTS_MAX, PointMm, RetrievalSettings, Scope, retrieve_best};
@@ -18,7 +18,7 @@ use crate::trial::Situation;
 
 /// Why a play becomes no draft.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Undrafted {
+pub enum DraftError {
     /// It was played on another field than the league's; length and width of both, mm.
     Field([i32; 2], [i32; 2]),
     /// `league.toml` is refused, or has no kick at the goal.
@@ -27,7 +27,7 @@ pub enum Undrafted {
     Refused(String),
 }
 
-impl fmt::Display for Undrafted {
+impl fmt::Display for DraftError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Field([length, width], [own_length, own_width]) => write!(
@@ -53,15 +53,15 @@ pub struct RecordedDraft {
 
 /// The draft of a case that plays as the play did, in the league of these rules. Of the kicks that may stand
 /// for the shot the nearest one that is retrieved is taken, else the nearest one.
-pub fn draft(play: &WorkedPlay, rules: &SourceFile) -> Result<RecordedDraft, Undrafted> {
-    let league = CaseLeague::of(rules).ok_or(Undrafted::League)?;
+pub fn draft(play: &SuccessfulPlay, rules: &SourceFile) -> Result<RecordedDraft, DraftError> {
+    let league = CaseLeague::of(rules).ok_or(DraftError::League)?;
     if !play.fits(&league.field) {
-        return Err(Undrafted::Field(play.field, [league.field.length, league.field.width]));
+        return Err(DraftError::Field(play.field, [league.field.length, league.field.width]));
     }
-    let mut best = Err(Undrafted::League);
+    let mut best = Err(DraftError::League);
     for end in ends(play, &league) {
         let plan = Plan::new(play, &league.field, &end);
-        match plan.text(rules).map_err(Undrafted::Refused) {
+        match plan.text(rules).map_err(DraftError::Refused) {
             Ok(text) => {
                 let retrieved = plan.is_retrieved(rules, &text);
                 if retrieved || best.is_err() {
@@ -79,7 +79,7 @@ pub fn draft(play: &WorkedPlay, rules: &SourceFile) -> Result<RecordedDraft, Und
 }
 
 /// Drafts of all plays that fit the league as proposals, each whole and with a narrow scope.
-pub(crate) fn proposals(plays: &BTreeSet<WorkedPlay>, rules: &SourceFile) -> Vec<Proposal> {
+pub(crate) fn proposals(plays: &BTreeSet<SuccessfulPlay>, rules: &SourceFile) -> Vec<Proposal> {
     let mut proposals: Vec<Proposal> = Vec::new();
     let mut known = BTreeSet::new();
     for play in plays {
@@ -97,7 +97,7 @@ pub(crate) fn proposals(plays: &BTreeSet<WorkedPlay>, rules: &SourceFile) -> Vec
 }
 
 /// The last actions that may stand for the play's end, the likeliest first.
-fn ends(play: &WorkedPlay, league: &CaseLeague) -> Vec<String> {
+fn ends(play: &SuccessfulPlay, league: &CaseLeague) -> Vec<String> {
     let PlayEnd::Shot(y) = play.end else {
         let [x, y] = place(&league.field, play.holdings.last().map_or([0, 0], |last| last.left));
         return vec![format!("{{ dribble_to = [{x}, {y}] }}")];
@@ -116,14 +116,14 @@ fn ends(play: &WorkedPlay, league: &CaseLeague) -> Vec<String> {
 
 /// A case's parts.
 struct Plan<'p> {
-    play: &'p WorkedPlay,
+    play: &'p SuccessfulPlay,
     field: FieldMm,
     /// Robots in the order in which they had the ball first: id, place, actions.
     robots: Vec<(u8, [i32; 2], Vec<String>)>,
 }
 
 impl<'p> Plan<'p> {
-    fn new(play: &'p WorkedPlay, field: &FieldMm, end: &str) -> Self {
+    fn new(play: &'p SuccessfulPlay, field: &FieldMm, end: &str) -> Self {
         let at: BTreeMap<u8, [i32; 2]> = play.teammates.iter().copied().collect();
         let mut robots: Vec<(u8, [i32; 2], Vec<String>)> = Vec::new();
         // Where each robot was last, to know whether it has to go to where it receives.
@@ -251,7 +251,7 @@ fn received(holding: &Holding) -> [i32; 2] {
 }
 
 /// The play as a sentence without its end.
-fn purpose(play: &WorkedPlay) -> String {
+fn purpose(play: &SuccessfulPlay) -> String {
     let passes = match play.holdings.len().saturating_sub(1) {
         0 => String::new(),
         1 => "a pass and ".to_owned(),
@@ -349,7 +349,7 @@ mod tests {
     #[test]
     fn of_kicks_at_the_goal_one_is_taken_whose_path_was_free() {
         let rules = files("four-legged").rules;
-        let of = |opponents: Vec<[i32; 2]>| draft(&WorkedPlay { opponents, ..play() }, &rules).unwrap();
+        let of = |opponents: Vec<[i32; 2]>| draft(&SuccessfulPlay { opponents, ..play() }, &rules).unwrap();
         let free = of(vec![[400, 900]]);
         assert!(free.retrieved && text(&free.edit).contains("goal_left"), "{free:?}");
         let goalie = of(vec![[2400, 190]]);
@@ -365,7 +365,7 @@ mod tests {
             Holding { robot: 2, got: [900, -700], left: [900, -700] },
             Holding { robot: 1, got: [1400, 300], left: [1400, 300] },
         ];
-        let edit = draft(&WorkedPlay { holdings, ..play() }, &files("four-legged").rules).unwrap().edit;
+        let edit = draft(&SuccessfulPlay { holdings, ..play() }, &files("four-legged").rules).unwrap().edit;
         let own =
             "[\"get_ball\", { pass_ball = 2 }, { go_to_point = [1400, 300] }, { receive_ball = 2 }, { kick";
         assert!(text(&edit).contains(own), "{edit:?}");
@@ -379,31 +379,31 @@ mod tests {
             Holding { robot: 1, got: [-2200, 100], left: [-2200, 100] },
             Holding { robot: 2, got: [900, -700], left: [900, -700] },
         ];
-        let refused = draft(&WorkedPlay { holdings: far, ..play() }, &rules).unwrap_err();
-        assert!(matches!(refused, Undrafted::Refused(_)), "{refused}");
+        let refused = draft(&SuccessfulPlay { holdings: far, ..play() }, &rules).unwrap_err();
+        assert!(matches!(refused, DraftError::Refused(_)), "{refused}");
         let refused = draft(&play(), &files("division-b").rules).unwrap_err();
         assert!(refused.to_string().contains("5400 x 3600"), "{refused}");
     }
 
     /// Without the opponent before the goal.
-    fn quiet() -> WorkedPlay {
-        WorkedPlay { opponents: Vec::new(), ..play() }
+    fn quiet() -> SuccessfulPlay {
+        SuccessfulPlay { opponents: Vec::new(), ..play() }
     }
 
     #[test]
     fn a_carried_ball_ends_the_case_where_it_counted_and_a_shot_takes_the_nearest_kick() {
         let rules = files("four-legged").rules;
-        let carried = draft(&WorkedPlay { end: PlayEnd::Carried, ..play() }, &rules).unwrap().edit;
+        let carried = draft(&SuccessfulPlay { end: PlayEnd::Carried, ..play() }, &rules).unwrap().edit;
         assert!(text(&carried).contains("{ receive_ball = 1 }, { dribble_to = [1300, -500] }]"));
         for (y, kick) in [(-390, "goal_right"), (10, "\"goal\""), (700, "goal_left")] {
-            let edit = draft(&WorkedPlay { end: PlayEnd::Shot(y), ..quiet() }, &rules).unwrap().edit;
+            let edit = draft(&SuccessfulPlay { end: PlayEnd::Shot(y), ..quiet() }, &rules).unwrap().edit;
             assert!(text(&edit).contains(kick), "{y}");
         }
     }
 
     #[test]
     fn every_play_is_proposed_whole_and_narrow_and_once() {
-        let again = WorkedPlay { opponents: [play().opponents, vec![[-2600, 1700]]].concat(), ..play() };
+        let again = SuccessfulPlay { opponents: [play().opponents, vec![[-2600, 1700]]].concat(), ..play() };
         let proposals = proposals(&BTreeSet::from([play(), again]), &files("four-legged").rules);
         assert_eq!(proposals.len(), 2);
         assert!(text(&proposals[0].edit).contains("scope = [400, 300] }"));

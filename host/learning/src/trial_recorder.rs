@@ -1,7 +1,7 @@
 //! `trial_recorder`: what `onetwo trial --record` keeps: a trial's decisions as evidence, and its play where
 //! it led to goal.
 
-use arena::worked::LeggedPlay;
+use arena::successful_plays::LeggedPlay;
 use arena::{Moment, TrialReport, Watcher};
 
 use crate::collected::Collected;

@@ -12,7 +12,7 @@ use learning::{Change, RecordedDraft, draft};
 use crate::Failure;
 use crate::args::LibraryArgs;
 use crate::output::{note, print_text, printable_path};
-use crate::replay::{Known, collect};
+use crate::replay::{OpenLibrary, collect};
 
 /// Arguments of `cases draft`.
 #[derive(Debug, Args)]
@@ -35,9 +35,9 @@ pub(crate) struct DraftArgs {
 }
 
 pub(super) fn run(args: &DraftArgs) -> Result<ExitCode, Failure> {
-    let known = Known::open(&args.library)?;
+    let known = OpenLibrary::open(&args.library)?;
     let collected = collect(&args.from, &known, args.key_file.as_deref(), false)?;
-    let rules = &known.library.files.rules;
+    let rules = &known.variant.files.rules;
     let (mut written, mut blocked) = (BTreeSet::new(), 0);
     let mut refused = BTreeMap::<String, u32>::new();
     let plays = collected.plays.iter().filter(|play| play.goal || !args.goals);
@@ -63,10 +63,8 @@ pub(super) fn run(args: &DraftArgs) -> Result<ExitCode, Failure> {
         note!("{count} left out: {why}");
     }
     let (count, all, out) = (written.len(), plays.count(), printable_path(&args.out));
-    let told: Vec<String> = written
-        .into_iter()
-        .chain([format!("{count} cases of {all} plays that worked, in {out}\n")])
-        .collect();
+    let told: Vec<String> =
+        written.into_iter().chain([format!("{count} cases of {all} successful plays, in {out}\n")]).collect();
     print_text(&told.join("\n"))?;
     Ok(ExitCode::SUCCESS)
 }

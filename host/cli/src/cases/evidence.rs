@@ -1,4 +1,4 @@
-//! `onetwo cases evidence`: what became of a library's cases in recordings, and the plays that worked, as one
+//! `onetwo cases evidence`: what became of a library's cases in recordings, and the successful plays, as one
 //! `evidence.jsonl` for `cases learn --from`, `cases draft` and the page's workbench.
 
 use std::collections::BTreeSet;
@@ -11,7 +11,7 @@ use clap::Args;
 use crate::Failure;
 use crate::args::LibraryArgs;
 use crate::output::{print_text, printable_path};
-use crate::replay::{Known, collect};
+use crate::replay::{OpenLibrary, collect};
 
 /// Arguments of `cases evidence`.
 #[derive(Debug, Args)]
@@ -31,7 +31,7 @@ pub(crate) struct EvidenceArgs {
 }
 
 pub(super) fn run(args: &EvidenceArgs) -> Result<ExitCode, Failure> {
-    let known = Known::open(&args.library)?;
+    let known = OpenLibrary::open(&args.library)?;
     let collected = collect(&args.files, &known, args.key_file.as_deref(), true)?;
     std::fs::write(&args.out, collected.to_jsonl())
         .map_err(|error| EvaluationError::File { file: args.out.clone(), error })?;
@@ -41,7 +41,7 @@ pub(super) fn run(args: &EvidenceArgs) -> Result<ExitCode, Failure> {
     let cases: BTreeSet<&str> = of_cases().map(|(key, _)| key.case.as_str()).collect();
     let goals = collected.plays.iter().filter(|play| play.goal).count();
     print_text(&format!(
-        "{}: {plays} plays of {} cases, {to_goal} to goal; {} plays that worked, {goals} with a goal\n",
+        "{}: {plays} plays of {} cases, {to_goal} to goal; {} successful plays, {goals} with a goal\n",
         printable_path(&args.out),
         cases.len(),
         collected.plays.len()

@@ -13,7 +13,7 @@ use crate::Failure;
 use crate::args::{LibraryArgs, VERSION};
 use crate::output::print_text;
 use crate::progress::Progress;
-use crate::replay::{Known, collect};
+use crate::replay::{OpenLibrary, collect};
 use crate::stop::stopped_by_hand;
 
 /// Arguments of `cases learn`.
@@ -22,7 +22,7 @@ pub(crate) struct LearnArgs {
     #[command(flatten)]
     library: LibraryArgs,
     /// What was played before; may be repeated: `evidence.jsonl` of another run or of `cases evidence`, or
-    /// what `trial --record` wrote. Plays that worked become drafts of new cases.
+    /// what `trial --record` wrote. Successful plays become drafts of new cases.
     #[arg(long, value_name = "FILE")]
     from: Vec<PathBuf>,
     /// Trials after which no further round starts.
@@ -62,9 +62,9 @@ pub(crate) struct LearnArgs {
 }
 
 pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
-    let known = Known::open(&args.library)?;
-    known.library_handle.check_field_of_trials()?;
-    let files = known.library.files.clone();
+    let known = OpenLibrary::open(&args.library)?;
+    known.handle.check_field_of_trials()?;
+    let files = known.variant.files.clone();
     let earlier = collect(&args.from, &known, None, true)?;
     let kinds: BTreeSet<Kind> =
         if args.only.is_empty() { Kind::ALL.into() } else { args.only.iter().copied().collect() };
@@ -77,7 +77,7 @@ pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
         shuffle: args.shuffle_outcomes,
         dry_run: args.dry_run,
     };
-    let start = known.library;
+    let start = known.variant;
     let mut hash = hil_sim::Fnv::default();
     hash.add(earlier.to_jsonl().as_bytes());
     let identity = serde_json::json!({

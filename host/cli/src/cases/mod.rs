@@ -57,7 +57,7 @@ pub(crate) enum CasesVerb {
     Stats(stats::StatsArgs),
     /// Learn from play: revise, add and forget cases, each change tested in paired trials.
     Learn(learn::LearnArgs),
-    /// Collect what became of cases in recordings, and the plays that worked, into one evidence.jsonl.
+    /// Collect what became of cases in recordings, and the successful plays, into one evidence.jsonl.
     Evidence(evidence::EvidenceArgs),
     /// Draft cases from the plays of recordings that led to a shot or a goal.
     Draft(draft::DraftArgs),

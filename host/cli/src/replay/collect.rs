@@ -8,7 +8,7 @@ use arena::CycleEnd;
 use arena::cases::{LibraryHandle, problem};
 use arena::game::TICK_US;
 use arena::ledger::Followed;
-use arena::worked::PlayFinder;
+use arena::successful_plays::PlayFinder;
 use case_tools::Files;
 use foreign::excerpt;
 use host::record::header::RecordingHeader;
@@ -32,29 +32,29 @@ use crate::output::{note, printable_path};
 use crate::progress::Progress;
 
 /// The library whose cases are counted.
-pub(crate) struct Known {
-    pub(crate) library_handle: LibraryHandle,
+pub(crate) struct OpenLibrary {
+    pub(crate) handle: LibraryHandle,
     /// The same with its files; names and texts alone count, wherever it lies.
-    pub(crate) library: Variant,
+    pub(crate) variant: Variant,
 }
 
-impl Known {
+impl OpenLibrary {
     /// The library that the command line names.
     pub(crate) fn open(args: &LibraryArgs) -> Result<Self, Failure> {
         Self::of(crate::library::open(args)?)
     }
 
     /// An opened one.
-    pub(crate) fn of(library_handle: LibraryHandle) -> Result<Self, Failure> {
+    pub(crate) fn of(handle: LibraryHandle) -> Result<Self, Failure> {
         let refused = |findings| {
-            let directory = library_handle.directory().map_or_else(PathBuf::new, Path::to_owned);
+            let directory = handle.directory().map_or_else(PathBuf::new, Path::to_owned);
             Failure::faulty_library(directory, findings)
         };
-        let files = library_handle.files().map_err(refused)?;
+        let files = handle.files().map_err(refused)?;
         let texts = files.cases.iter().map(|file| (file.name.as_str(), file.text.as_str()));
         let files = Files::from_texts(&files.league, &files.rules.text, &texts.collect::<Vec<_>>());
-        let library = Variant::new(files).map_err(|e| Failure::Learning(LearnError::Library(e)))?;
-        Ok(Self { library_handle, library })
+        let variant = Variant::new(files).map_err(|e| Failure::Learning(LearnError::Library(e)))?;
+        Ok(Self { handle, variant })
     }
 }
 
@@ -62,7 +62,7 @@ impl Known {
 /// twice counts once.
 pub(crate) fn collect(
     files: &[PathBuf],
-    known: &Known,
+    known: &OpenLibrary,
     key_file: Option<&Path>,
     cases: bool,
 ) -> Result<Collected, Failure> {
@@ -97,7 +97,7 @@ fn from_text(file: &Path) -> Result<Collected, Failure> {
 /// A trace of a match: evidence of the teams whose robots had this library.
 fn from_trace(
     file: &Path,
-    known: &Known,
+    known: &OpenLibrary,
     key_file: Option<&Path>,
     cases: bool,
 ) -> Result<Collected, Failure> {
@@ -105,12 +105,12 @@ fn from_trace(
     let header =
         RecordingHeader::from_json(reader.header()).map_err(RecordedError::Header).map_err(failed(file))?;
     let league = header.league().map_err(RecordedError::Header).map_err(failed(file))?;
-    if known.library_handle.simulated_league()? != league {
+    if known.handle.simulated_league()? != league {
         return Err(other_league(file, league.name(), known));
     }
     let key = key(key_file, file, &header)?;
     let mut recheck = Recheck::new(&header, key).map_err(RecordedError::Header).map_err(failed(file))?;
-    let mut decisions = Decisions::new(Some(&known.library_handle));
+    let mut decisions = Decisions::new(Some(&known.handle));
     let (mut finder, mut tick) = (PlayFinder::default(), 0);
     let mut bases: [BTreeSet<u32>; 2] = Default::default();
     let bar = Progress::open();
@@ -151,7 +151,7 @@ fn from_trace(
 /// What is known of a trace's plays.
 struct Counted<'t> {
     file: &'t Path,
-    known: &'t Known,
+    known: &'t OpenLibrary,
     world: &'t str,
     decisions: &'t Decisions,
 }
@@ -161,7 +161,7 @@ impl Counted<'_> {
     /// the ledger: until the team lost the ball or play stopped for another reason. A shot alone does not
     /// count: most cases end with one, whatever it is worth.
     fn add(&self, host: &Host, bases: &BTreeSet<u32>, evidence: &mut Evidence) -> Result<(), Failure> {
-        let (us, own) = (host.settings().us, self.known.library.base().hash());
+        let (us, own) = (host.settings().us, self.known.variant.base().hash());
         let plays: Vec<_> = self.decisions.ledger().team(us).plays().collect();
         if let Some(other) = bases.iter().find(|base| **base != own).filter(|_| !plays.is_empty()) {
             if bases.contains(&own) {
@@ -198,7 +198,7 @@ impl Counted<'_> {
                 end: Some(end.label()),
             };
             let opponents = situation.opponents.len().to_string();
-            evidence.add_play(&self.known.library, self.world, &opponents, &play);
+            evidence.add_play(&self.known.variant, self.world, &opponents, &play);
         }
         if unknown > 0 {
             let file = printable_path(self.file);
@@ -209,8 +209,8 @@ impl Counted<'_> {
 }
 
 /// A league log file: plays of both teams, whoever they are.
-fn from_log(file: &Path, known: &Known) -> Result<Collected, Failure> {
-    let league = known.library_handle.simulated_league()?;
+fn from_log(file: &Path, known: &OpenLibrary) -> Result<Collected, Failure> {
+    let league = known.handle.simulated_league()?;
     if league.limits().is_none() {
         return Err(other_league(file, "the Small Size League", known));
     }
@@ -237,8 +237,8 @@ fn from_log(file: &Path, known: &Known) -> Result<Collected, Failure> {
     Ok(Collected { evidence: Evidence::default(), plays: finder.finish().into_iter().collect() })
 }
 
-fn other_league(file: &Path, recorded: &str, known: &Known) -> Failure {
-    let library = known.library_handle.league().to_owned();
+fn other_league(file: &Path, recorded: &str, known: &OpenLibrary) -> Failure {
+    let library = known.handle.league().to_owned();
     failed(file)(RecordedError::OtherLeague { recorded: recorded.to_owned(), library })
 }
 

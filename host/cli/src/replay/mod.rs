@@ -28,7 +28,7 @@ use clap::Args;
 use flate2::bufread::MultiGzDecoder;
 use rules::{Colour, League};
 
-pub(crate) use collect::{Known, collect};
+pub(crate) use collect::{OpenLibrary, collect};
 pub(crate) use moment::phase_description;
 
 use crate::Failure;

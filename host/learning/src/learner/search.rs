@@ -8,7 +8,7 @@
 use super::judging::promise;
 use super::{Candidate, LearnError, Run};
 use crate::aim::{Ground, Purpose};
-use crate::drafts::{choose, drafts, narrowed, undemanding};
+use crate::drafts::{choose, drafts, narrowed, without_demands};
 use crate::occasion::Occasion;
 use crate::proposals::{Kind, Proposal, kicks, weigh};
 use crate::variant::Variant;
@@ -66,7 +66,7 @@ impl<P: Player> Run<'_, P> {
             let weight = share * wager.gain();
             let proposed = |edit| Proposal { kind: Kind::New, edit, reason: reason.clone(), weight };
             proposals.extend(narrowed(&proposal.edit).map(&proposed));
-            proposals.extend(undemanding(&proposal.edit).map(&proposed));
+            proposals.extend(without_demands(&proposal.edit).map(&proposed));
             proposals.push(proposed(proposal.edit));
         }
         proposals.sort_by(|a, b| b.weight.total_cmp(&a.weight).then_with(|| a.edit.cmp(&b.edit)));

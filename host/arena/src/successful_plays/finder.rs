@@ -9,10 +9,10 @@ use host::Host;
 use protocol::Who;
 use rules::{Colour, FieldSpec};
 
-use super::{HOLDINGS_MAX, Holding, PlayEnd, ROBOTS_MAX, WorkedPlay, seen};
+use super::{HOLDINGS_MAX, Holding, PlayEnd, ROBOTS_MAX, SuccessfulPlay, seen};
 use crate::attack::{AttackWatch, BallContact, BallEvent, BallLook, HostView};
 
-/// Follows a match and keeps the plays of both teams that worked.
+/// Follows a match and keeps the successful plays of both teams.
 #[derive(Clone, Debug, Default)]
 pub struct PlayFinder {
     view: HostView,
@@ -28,7 +28,7 @@ impl PlayFinder {
     }
 
     /// The plays found, in the order of their shots.
-    pub fn finish(self) -> Vec<WorkedPlay> {
+    pub fn finish(self) -> Vec<SuccessfulPlay> {
         self.follower.found.into_iter().map(|found| found.play).collect()
     }
 }
@@ -79,7 +79,7 @@ struct Pass {
 pub(super) struct Found {
     team: Colour,
     at: f64,
-    pub(super) play: WorkedPlay,
+    pub(super) play: SuccessfulPlay,
 }
 
 impl Follower {
@@ -174,7 +174,7 @@ impl Follower {
         }
     }
 
-    fn play(&self, look: &BallLook<'_>, chain: &[Pass], shot: &Kick, goal: bool) -> Option<WorkedPlay> {
+    fn play(&self, look: &BallLook<'_>, chain: &[Pass], shot: &Kick, goal: bool) -> Option<SuccessfulPlay> {
         let passes = &chain[chain.len().saturating_sub(HOLDINGS_MAX - 1)..];
         let kicks = || passes.iter().map(|pass| pass.kick).chain([*shot]);
         let scene = self.beginning(&kicks().collect::<Vec<_>>())?;
@@ -190,7 +190,7 @@ impl Follower {
             let robots = scene.robots.iter().filter(move |(who, _)| (who.colour == team) == own);
             robots.map(|(who, at)| (who.id.number(), seen(*at, sign))).take(ROBOTS_MAX)
         };
-        Some(WorkedPlay {
+        Some(SuccessfulPlay {
             field: size(look.field),
             teammates: of(true).collect(),
             opponents: of(false).map(|(_, at)| at).collect(),

@@ -1,4 +1,4 @@
-//! `worked`: plays of recordings that worked: who had the ball from where to where, until a shot or a goal.
+//! `successful_plays`: successful plays of recordings: who had the ball from where to where, until a shot or a goal.
 //! mm, seen in attack towards +x.
 //!
 //! [`PlayFinder`] finds them in matches of the Small Size League, as a host sees them and
@@ -16,9 +16,9 @@ use serde::{Deserialize, Serialize};
 pub use finder::PlayFinder;
 pub use legged::LeggedPlay;
 
-/// A play that worked.
+/// A successful play.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct WorkedPlay {
+pub struct SuccessfulPlay {
     /// Length and width of the field it was played on, mm.
     pub field: [i32; 2],
     /// The team's robots when it began, by id, all that were seen, mm.
@@ -44,7 +44,7 @@ pub struct Holding {
     pub left: [i32; 2],
 }
 
-/// The end of a play that worked.
+/// The end of a successful play.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PlayEnd {
@@ -54,7 +54,7 @@ pub enum PlayEnd {
     Carried,
 }
 
-impl WorkedPlay {
+impl SuccessfulPlay {
     /// Whether it was played on this field, to 50 mm.
     pub fn fits(&self, field: &FieldMm) -> bool {
         let [length, width] = self.field;

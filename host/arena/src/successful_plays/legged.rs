@@ -5,7 +5,7 @@ use geometry::{Field, Point};
 use hil_sim::TrialOutcome;
 use hil_sim::four_legged::world::WorldEvent;
 
-use super::{HOLDINGS_MAX, Holding, PlayEnd, WorkedPlay, seen};
+use super::{HOLDINGS_MAX, Holding, PlayEnd, SuccessfulPlay, seen};
 use crate::report::TrialReport;
 use crate::trial::{Moment, Watcher};
 
@@ -18,7 +18,7 @@ pub struct LeggedPlay {
     passes: Option<u8>,
     /// Where the last kick of an attacker leads, by its start and its stop position.
     kick: Option<[Point<Field>; 2]>,
-    found: Option<WorkedPlay>,
+    found: Option<SuccessfulPlay>,
 }
 
 /// Both teams at a moment, mm.
@@ -30,7 +30,7 @@ struct Scene {
 
 impl LeggedPlay {
     /// The play that led to goal, once the trial is over.
-    pub fn found(&self) -> Option<&WorkedPlay> {
+    pub fn found(&self) -> Option<&SuccessfulPlay> {
         self.found.as_ref()
     }
 
@@ -109,7 +109,7 @@ impl Watcher for LeggedPlay {
                 PlayEnd::Carried
             }
         };
-        let play = WorkedPlay {
+        let play = SuccessfulPlay {
             field: [field.length, field.width].map(|m| (m * 1000.0).round() as i32),
             teammates: scene.teammates,
             opponents: scene.opponents,
@@ -117,7 +117,7 @@ impl Watcher for LeggedPlay {
             end,
             goal: report.outcome == TrialOutcome::Goal,
         };
-        self.found = Some(play).filter(WorkedPlay::is_sane);
+        self.found = Some(play).filter(SuccessfulPlay::is_sane);
     }
 }
 

@@ -1,4 +1,4 @@
-//! Tests of `worked`: plays of a made-up match, and of trials.
+//! Tests of `successful_plays`: plays of a made-up match, and of trials.
 
 use geometry::{GoalEnd, Vector};
 use hil_sim::{Configuration, NativeBackend, Scenario, TrialOutcome};
@@ -78,7 +78,7 @@ impl Match {
         }
     }
 
-    fn plays(self) -> Vec<WorkedPlay> {
+    fn plays(self) -> Vec<SuccessfulPlay> {
         self.follower.found.into_iter().map(|found| found.play).collect()
     }
 }
