@@ -1,5 +1,5 @@
-//! `successful_plays`: successful plays of recordings: who had the ball from where to where, until a shot or a goal.
-//! mm, seen in attack towards +x.
+//! `successful_plays`: successful plays of recordings: who had the ball from where to where, until a shot or
+//! a goal. mm, seen in attack towards +x.
 //!
 //! [`PlayFinder`] finds them in matches of the Small Size League, as a host sees them and
 //! [`attack`](crate::attack) judges them; [`LeggedPlay`] finds that of a trial, in the true world.
