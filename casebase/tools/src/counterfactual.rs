@@ -2,8 +2,8 @@
 //! (docs/case-format.md §3.3, `explain`).
 //!
 //! Moves tried: the ball towards the case's ball; each robot to each adapted position; each opponent into the
-//! case's scopes (out of those that exclude opponents), out of its legs, out of the winner's scopes and into
-//! the winner's legs. On each line the shortest distance is found by bisection, in whole mm, and every answer
+//! case's scopes, out of its legs, out of the winner's scopes and into the winner's legs; scopes that exclude
+//! opponents the other way round. On each line the shortest distance is found by bisection, in whole mm, and every answer
 //! was retrieved again on the changed problem: the move is proven to work, but a shorter one on another line
 //! may exist.
 
@@ -174,10 +174,11 @@ impl Search<'_, '_> {
         let winner = winner.and_then(|winner| self.base.case(winner.case));
         let ball = self.problem.ball;
         for (index, from) in self.problem.opponents.iter().enumerate() {
+            let leave = |at, scope: casebase::Scope| away(*from, at, scope.x.max(scope.y) + ROOM_MM);
             let mut targets = Vec::new();
             for (number, (at, scope)) in self.scopes(case).enumerate() {
                 match case.presence(number) {
-                    Presence::Excluded => targets.extend(away(*from, at, scope.x.max(scope.y) + ROOM_MM)),
+                    Presence::Excluded => targets.extend(leave(at, scope)),
                     Presence::Preferred | Presence::Required => targets.push(at),
                 }
             }
@@ -185,9 +186,11 @@ impl Search<'_, '_> {
                 targets.extend(beside(&leg, *from));
             }
             if let Some(winner) = &winner {
-                for (at, scope) in self.scopes(winner) {
-                    let reach = scope.x.max(scope.y) + ROOM_MM;
-                    targets.extend(away(*from, at, reach));
+                for (number, (at, scope)) in self.scopes(winner).enumerate() {
+                    match winner.presence(number) {
+                        Presence::Excluded => targets.push(at),
+                        Presence::Preferred | Presence::Required => targets.extend(leave(at, scope)),
+                    }
                 }
                 targets.extend(winner.legs(ball).filter_map(|leg| onto(&leg, *from)));
             }

@@ -17,7 +17,7 @@ pub(crate) enum BringUpError {
         hint: String,
     },
     /// No further report came.
-    Fell {
+    WentSilent {
         /// The robot that had reported.
         robot: RobotId,
         /// For that long.
@@ -38,7 +38,7 @@ impl fmt::Display for BringUpError {
                 "no robot reported its checks for {seconds} s: {hint} It must run its board's example bring_up and have its page \
                  (onetwo firmware provision, onetwo firmware flash --page); what it finds is on its log too (docs/boards.md)"
             ),
-            Self::Fell { robot, seconds, open } => {
+            Self::WentSilent { robot, seconds, open } => {
                 let open: Vec<_> = open.iter().map(usize::to_string).collect();
                 write!(
                     f,

@@ -134,7 +134,7 @@ fn silent(progress: &Progress, seconds: f64, link: &dyn Link) -> BringUpError {
     let hint = progress.hint().unwrap_or_else(|| link.advice());
     match progress.summary() {
         None => BringUpError::Silent { seconds, hint },
-        Some(summary) => BringUpError::Fell { robot: summary.robot, seconds, open: summary.open },
+        Some(summary) => BringUpError::WentSilent { robot: summary.robot, seconds, open: summary.open },
     }
 }
 

@@ -136,8 +136,9 @@ impl Progress {
             && let Some(known) = check.number().and_then(|number| list.states.get_mut(number))
         {
             list.hears_us |= report.host == self.epoch;
-            // By its bits: a value that is no number equals nothing, and would be told again and again.
-            if known.map(|known| format!("{known:?}")) != Some(format!("{state:?}")) {
+            // NaN equals nothing: compared by value, such a report would count as new each time.
+            let text = |state: &CheckState| format!("{state:?}");
+            if known.as_ref().map(text) != Some(text(&state)) {
                 *known = Some(state);
                 events.push(Event::Check { robot, check, state });
             }
