@@ -2,10 +2,10 @@
 //! (docs/case-format.md §3.3, `explain`).
 //!
 //! Moves tried: the ball towards the case's ball; each robot to each adapted position; each opponent into the
-//! case's scopes, out of its legs, out of the winner's scopes and into the winner's legs; scopes that exclude
-//! opponents the other way round. On each line the shortest distance is found by bisection, in whole mm, and every answer
-//! was retrieved again on the changed problem: the move is proven to work, but a shorter one on another line
-//! may exist.
+//! case's scopes, out of its legs, out of the winner's scopes and into the winner's legs; with scopes that
+//! exclude opponents the other way round. On each line the shortest distance is found by bisection, in whole
+//! mm, and every answer was retrieved again on the changed problem: the move is proven to work, but a shorter
+//! one on another line may exist.
 
 use casebase::{
     Case, CaseBase, Criterion, Leg, Match, PointMm, Presence, Problem, RetrievalSettings, ScopeRule,
