@@ -147,10 +147,7 @@ fn record(args: &TrialArgs, recorder: &TrialRecorder, file: &Path) -> Result<(),
         let changed = library.edited(&Edit { case: RETRIEVAL.to_owned(), change });
         library = changed.map_err(|error| Failure::Learning(LearnError::Library(error)))?;
     }
-    let mut world = hil_sim::world_hash();
-    if args.profile == Profile::Robots {
-        world.push_str("/robots");
-    }
+    let world = learning::world_of_trials(args.profile);
     let collected = recorder.collected(&library, &world, args.opponents.label());
     let written = fs::write(file, collected.to_jsonl());
     written.map_err(|error| Failure::Recording { stem: Some(file.to_owned()), error })

@@ -113,6 +113,8 @@ const ROBOT_INSIDE: [i32; 2] = [2700, 1800];
 
 #[cfg(test)]
 mod tests {
+    use arena::evaluation::Profile;
+
     use super::*;
     use crate::edit::Change;
     use crate::trial::Situation;
@@ -124,7 +126,7 @@ mod tests {
             teammates: vec![(1, [350, 200]), (2, [200, -900])],
             opponents: vec![[1500, 300], [2400, 0]],
         };
-        Occasion { situation, two_defenders: false, without_case: false }
+        Occasion { situation, profile: Profile::Simulated, two_defenders: false, without_case: false }
     }
 
     fn variant() -> Variant {

@@ -11,7 +11,7 @@ use crate::evidence::{Evidence, EvidenceKey, Posterior, ScopeRing};
 /// Weight of a library's records for each later library.
 const DECAY: f64 = 0.5;
 
-/// A rate and what is usual in the same areas against the same opponents.
+/// A rate and what is usual in the same world and areas against the same opponents.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Standing {
     /// The rate.
@@ -67,16 +67,17 @@ pub fn standings(evidence: &Evidence, libraries: &[u64]) -> BTreeMap<String, Cas
         let age = names.iter().rev().position(|name| *name == key.library)?;
         Some((0..age).fold(1.0, |weight, _| weight * DECAY))
     };
-    let mut areas: BTreeMap<(&str, u8), Posterior> = BTreeMap::new();
+    let mut areas: BTreeMap<(&str, &str, u8), Posterior> = BTreeMap::new();
     for (key, counts) in &evidence.0 {
         if let Some(weight) = weight(key) {
-            areas.entry((&key.opponents, key.area)).or_default().add(counts, weight);
+            areas.entry((&key.world, &key.opponents, key.area)).or_default().add(counts, weight);
         }
     }
     let mut standings: BTreeMap<String, CaseStanding> = BTreeMap::new();
     for (key, counts) in &evidence.0 {
         let Some(weight) = weight(key) else { continue };
-        let usual = areas.get(&(key.opponents.as_str(), key.area)).map_or(0.5, Posterior::mean);
+        let usual =
+            areas.get(&(key.world.as_str(), key.opponents.as_str(), key.area)).map_or(0.5, Posterior::mean);
         let standing = standings.entry(key.case.clone()).or_default();
         let ring = match key.ring {
             ScopeRing::Security => &mut standing.security,

@@ -8,6 +8,7 @@
 
 use std::collections::BTreeMap;
 
+use arena::evaluation::Profile;
 use casebase::{FieldMm, PointMm, Scope};
 use serde::{Deserialize, Serialize};
 
@@ -29,7 +30,8 @@ pub enum ScopeRing {
 pub struct EvidenceKey {
     /// Hash of the library's files, 16 hexadecimal digits.
     pub library: String,
-    /// Hash of the trials' world, 8 hexadecimal digits; of a match its world's name, `field` on a real one.
+    /// Name of the trials' world as [`world_of_trials`] gives it; of a match its world's name, `field` on a
+    /// real one.
     pub world: String,
     /// `region/name`; empty where no case was played.
     pub case: String,
@@ -43,6 +45,13 @@ pub struct EvidenceKey {
     pub opponents: String,
     /// Area of the ball in the direction of attack, 0 to 11: six strips along the field, middle and wings.
     pub area: u8,
+}
+
+/// Name of the world of trials: its hash, 8 hexadecimal digits, with `/robots` behind it where they are
+/// played as by the paper's robots.
+pub fn world_of_trials(profile: Profile) -> String {
+    let end = if profile == Profile::Robots { "/robots" } else { "" };
+    hil_sim::world_hash() + end
 }
 
 /// Counts of a record.

@@ -15,23 +15,24 @@ mod search;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
+use arena::evaluation::Profile;
 use case_tools::Files;
 use casebase::CaseBase;
-use hil_sim::{Configuration, Stream, world_hash};
+use hil_sim::{Configuration, Stream};
 use rayon::prelude::*;
 
 use crate::aim::{Ground, Purpose};
 use crate::betting::Wager;
 use crate::collected::Collected;
 use crate::competence::standings;
-use crate::evidence::Evidence;
+use crate::evidence::{Evidence, world_of_trials};
 use crate::occasion::Occasion;
 use crate::plays::plays_to_watch;
 use crate::proposals::{Kind, Proposal, TRIED_MAX, Tried, from_evidence, text_hash};
 use crate::recorded;
 use crate::results::{ChangeRecord, CurvePoint, Learned, Verdict};
 use crate::settings::LearnSettings;
-use crate::starts::{CELLS, StartStream, cell};
+use crate::starts::{KINDS, StartKind, StartStream, kind_of};
 use crate::trial::LearningTrial;
 use crate::variant::{Answer, Variant, VariantError};
 use crate::work::{BATCH, PlayError, Player, Unit, Work};
@@ -234,20 +235,28 @@ struct Candidate {
     proposal: Proposal,
     variant: Variant,
     wager: Wager,
-    /// The same against defender and goalie alone, and against two defenders.
-    against: [Wager; 2],
+    /// The same by world and opponents, as [`group`] numbers them.
+    groups: [Wager; GROUPS],
     /// Numbers of the situations that it changes what is played in, of those that were drawn.
     touched: Vec<usize>,
     /// Their share.
     share: f64,
 }
 
+/// Groups of situations that screening looks at one by one.
+const GROUPS: usize = 3;
+
+/// The group of a situation: defender and goalie or two defenders in the paper's simulator, or its robots.
+fn group(occasion: &Occasion) -> usize {
+    if occasion.profile == Profile::Robots { 2 } else { usize::from(occasion.two_defenders) }
+}
+
 impl Candidate {
     fn new(proposal: Proposal, variant: Variant, ground: &Ground) -> Self {
         let touched = ground.touched(&proposal.edit, &variant);
         let share = touched.len() as f64 / ground.occasions.len().max(1) as f64;
-        let (wager, against) = (Wager::default(), [Wager::default(); 2]);
-        Self { proposal, variant, wager, against, touched, share }
+        let (wager, groups) = (Wager::default(), [Wager::default(); GROUPS]);
+        Self { proposal, variant, wager, groups, touched, share }
     }
 }
 
@@ -300,7 +309,6 @@ impl<P: Player> Run<'_, P> {
 
     /// Adds trials to the evidence; in the null control with the outcomes of other trials.
     fn collect(&mut self, current: &Variant, played: &Played) {
-        let world = world_hash();
         let mut outcomes: Vec<_> = played.trials.iter().map(|trial| trial.outcome).collect();
         if self.settings.shuffle {
             let mut chance = Stream::new(self.settings.seed ^ u64::from(played.first), "shuffle");
@@ -309,8 +317,9 @@ impl<P: Player> Run<'_, P> {
             }
         }
         for ((index, trial), outcome) in (played.first..).zip(&played.trials).zip(outcomes) {
-            let opponents = CELLS[cell(index).0].0.label();
-            self.evidence.add(current, &world, opponents, &LearningTrial { outcome, ..trial.clone() });
+            let StartKind { profile, opponents, .. } = KINDS[kind_of(index).0];
+            let (world, trial) = (world_of_trials(profile), LearningTrial { outcome, ..trial.clone() });
+            self.evidence.add(current, &world, opponents.label(), &trial);
         }
     }
 
@@ -358,13 +367,15 @@ impl<P: Player> Run<'_, P> {
 fn occasions(played: &Played) -> Vec<Occasion> {
     let mut occasions = Vec::new();
     for (index, trial) in (played.first..).zip(&played.trials) {
-        let two_defenders = CELLS[cell(index).0].0 == Configuration::TwoDefenders;
+        let StartKind { profile, opponents, .. } = KINDS[kind_of(index).0];
+        let two_defenders = opponents == Configuration::TwoDefenders;
         let retrieved = trial.decisions.iter().filter(|decision| decision.retrieved);
         occasions.extend(retrieved.map(|decision| Occasion {
             situation: decision.situation.clone(),
             two_defenders,
             without_case: decision.case.is_none(),
         }));
+            profile,
     }
     occasions
 }

@@ -1,5 +1,7 @@
 //! `occasion`: a decision of recorded play as a place to try changes in. mm.
 
+use arena::evaluation::Profile;
+
 use crate::trial::Situation;
 
 /// A situation of a trial.
@@ -7,6 +9,8 @@ use crate::trial::Situation;
 pub(crate) struct Occasion {
     /// Where everything stood.
     pub(crate) situation: Situation,
+    /// The world that it was played in.
+    pub(crate) profile: Profile,
     /// Whether the opponents were two defenders.
     pub(crate) two_defenders: bool,
     /// Whether no case was played.

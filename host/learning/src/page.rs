@@ -2,26 +2,35 @@
 
 use std::fmt::Write as _;
 
+use arena::evaluation::Profile;
 use casebase::Symmetry;
 use drawing::Theme;
 use drawing::cases::{CasePicture, case_picture};
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 use serde_json::{Value, json as value};
 
+use crate::paired::{Pairs, WorldPairs};
 use crate::results::{ChangeRecord, Learned, Verdict};
-use crate::starts::cell_label;
+use crate::starts::KINDS;
 use crate::variant::Variant;
 
 /// The report as JSON: settings, curve, every change with its evidence.
 pub fn json(learned: &Learned) -> Value {
     let changes = learned.changes.iter().map(|change| {
-        let validation = change.validation.as_ref().map(|(whole, cells)| {
-            let cells = cells.iter().enumerate().map(|(i, wager)| {
-                value!({ "starts": cell_label(i), "raised": wager.raised, "lowered": wager.lowered, "pairs": wager.pairs })
+        let validation = change.validation.as_ref().map(|Pairs { all, kinds, worlds }| {
+            let cells = kinds.iter().zip(KINDS).map(|(wager, kind)| {
+                value!({ "starts": kind.label(), "raised": wager.raised, "lowered": wager.lowered, "pairs": wager.pairs })
+            });
+            let worlds = worlds.iter().zip([Profile::Simulated, Profile::Robots]).map(|(pairs, profile)| {
+                let WorldPairs { to_goal, touches } = pairs;
+                value!({
+                    "profile": profile.label(), "raised": to_goal.raised, "lowered": to_goal.lowered,
+                    "touches": touches.sum, "touches_z": touches.z(),
+                })
             });
             value!({
-                "raised": whole.raised, "lowered": whole.lowered, "pairs": whole.pairs, "gain": whole.gain(),
-                "cells": cells.collect::<Vec<_>>(),
+                "raised": all.raised, "lowered": all.lowered, "pairs": all.pairs, "gain": all.gain(),
+                "cells": cells.collect::<Vec<_>>(), "worlds": worlds.collect::<Vec<_>>(),
             })
         });
         value!({
@@ -52,7 +61,10 @@ pub fn json(learned: &Learned) -> Value {
 pub fn summary(learned: &Learned) -> String {
     let mut text = String::new();
     for change in learned.changes.iter().filter(|change| {
-        matches!(change.verdict, Verdict::Accepted | Verdict::Lowers | Verdict::Warned | Verdict::Proposed)
+        matches!(
+            change.verdict,
+            Verdict::Accepted | Verdict::Lowers | Verdict::Touches | Verdict::Warned | Verdict::Proposed
+        )
     }) {
         let _ = writeln!(
             text,
@@ -67,8 +79,13 @@ pub fn summary(learned: &Learned) -> String {
     for point in &learned.curve {
         let _ = writeln!(
             text,
-            "held-out after round {}: to goal {:.2} %, random starts {:.2} %, touches {:.3}; {} trials",
-            point.round, point.to_goal, point.to_goal_random, point.touches, point.spent
+            "held-out after round {}: to goal {:.2} %, random starts {:.2} %, robots {:.2} %, touches {:.3}; {} trials",
+            point.round,
+            point.to_goal,
+            point.to_goal_random,
+            point.to_goal_robots,
+            point.touches,
+            point.spent
         );
     }
     for setting in learned.end.changed_settings() {
@@ -108,11 +125,12 @@ pub fn html(learned: &Learned) -> String {
                 h2 { "Learning curve on held-out starts" }
                 (curve(learned))
                 table {
-                    tr { th { "round" } th { "trials" } th { "to goal %" } th { "random starts %" } th { "touches" } }
+                    tr { th { "round" } th { "trials" } th { "to goal %" } th { "random starts %" } th { "as robots %" } th { "touches" } }
                     @for point in &learned.curve {
                         tr {
                             td { (point.round) } td { (point.spent) } td { (format!("{:.2}", point.to_goal)) }
-                            td { (format!("{:.2}", point.to_goal_random)) } td { (format!("{:.3}", point.touches)) }
+                            td { (format!("{:.2}", point.to_goal_random)) } td { (format!("{:.2}", point.to_goal_robots)) }
+                            td { (format!("{:.3}", point.touches)) }
                         }
                     }
                 }
@@ -155,8 +173,8 @@ fn accepted(learned: &Learned, change: &ChangeRecord) -> Markup {
             p { (change.proposal.reason) }
             p {
                 (evidence(change)) ", needed " (format!("{:.0}", change.needed.unwrap_or_default())) "."
-                @if let Some((whole, _)) = &change.validation {
-                    " Validation: " (whole.raised) " raised, " (whole.lowered) " lowered in " (whole.pairs) " starts."
+                @if let Some(Pairs { all, .. }) = &change.validation {
+                    " Validation: " (all.raised) " raised, " (all.lowered) " lowered in " (all.pairs) " starts."
                 }
             }
             div.pictures {
@@ -221,6 +239,7 @@ const fn verdict(verdict: Verdict) -> &'static str {
 
 /// A case as a library has it; none where it lacks the case.
 fn picture(variant: &Variant, name: &str) -> Option<String> {
+        Verdict::Touches => "more touches",
     let base = variant.base();
     let number = variant.names().iter().position(|known| known == name)?;
     let case =

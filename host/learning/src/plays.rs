@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use crate::starts::{StartPlan, StartStream, cell};
+use crate::starts::{StartPlan, StartStream, kind_of};
 
 /// A trial that can be played and watched again.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -12,6 +12,8 @@ pub struct PlayToWatch {
     pub scenario: &'static str,
     /// The opponents, as `--opponents` takes them.
     pub opponents: &'static str,
+    /// The world, as `--profile` takes it.
+    pub profile: &'static str,
     /// The seed.
     pub seed: u64,
 }
@@ -19,9 +21,9 @@ pub struct PlayToWatch {
 impl PlayToWatch {
     /// The command that shows it with a library in `directory`.
     pub fn command(&self, directory: &str) -> String {
-        let Self { scenario, opponents, seed } = self;
+        let Self { scenario, opponents, profile, seed } = self;
         format!(
-            "onetwo trial --library {directory} --scenario {scenario} --opponents {opponents} --seed {seed} --watch"
+            "onetwo trial --library {directory} --scenario {scenario} --opponents {opponents} --profile {profile} --seed {seed} --watch"
         )
     }
 }
@@ -35,7 +37,7 @@ pub(crate) fn plays_to_watch(seed: u64, before: &[bool], after: &[bool]) -> Vec<
     for anew in [true, false] {
         for (index, _) in raised() {
             let known =
-                chosen.iter().any(|other| *other == index || (anew && cell(*other).0 == cell(index).0));
+                chosen.iter().any(|other| *other == index || (anew && kind_of(*other).0 == kind_of(index).0));
             if chosen.len() < MOST && !known {
                 chosen.push(index);
             }
@@ -46,6 +48,7 @@ pub(crate) fn plays_to_watch(seed: u64, before: &[bool], after: &[bool]) -> Vec<
     let play = |start: arena::evaluation::Planned| PlayToWatch {
         scenario: start.cell.scenario.label(),
         opponents: start.cell.configuration.label(),
+        profile: start.cell.profile.label(),
         seed: start.seed,
     };
     starts.map(play).collect()
@@ -60,19 +63,19 @@ mod tests {
 
     #[test]
     fn plays_are_of_different_kinds_where_there_are_enough() {
-        let before = [false, true, false, false, false, true, false];
-        let after = [true, true, false, true, true, false, true];
-        // Starts 0 and 4 are random ones against the same opponents, 3 and 6 are others.
+        let before = [false, true, false, false, false, true, false, false, false, false];
+        let after = [true, true, false, false, false, false, true, true, false, true];
+        // Starts 0 and 6 are random ones against the same opponents, 7 and 9 are others.
         let plays = plays_to_watch(7, &before, &after);
         let plan = StartPlan::new(7, StartStream::HeldOut);
         let seeds: Vec<u64> =
-            [0, 3, 6].into_iter().filter_map(|i| plan.get(i)).map(|start| start.seed).collect();
+            [0, 7, 9].into_iter().filter_map(|i| plan.get(i)).map(|start| start.seed).collect();
         assert_eq!(plays.iter().map(|play| play.seed).collect::<Vec<_>>(), seeds);
         let kinds: Vec<_> = plays.iter().map(|play| (play.scenario, play.opponents)).collect();
         assert!(kinds[0] != kinds[1] && kinds[1] != kinds[2], "{kinds:?}");
         // Where only one kind is raised, all of it is taken.
-        let alike: Vec<bool> = (0..16).map(|i| i % 4 == 0).collect();
-        assert_eq!(plays_to_watch(7, &[false; 16], &alike).len(), 3);
+        let alike: Vec<bool> = (0..24).map(|i| i % 6 == 0).collect();
+        assert_eq!(plays_to_watch(7, &[false; 24], &alike).len(), 3);
         assert!(plays_to_watch(7, &before, &before).is_empty());
         assert!(
             plays[0].command("four-legged").starts_with("onetwo trial --library four-legged --scenario ")

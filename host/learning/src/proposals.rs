@@ -82,6 +82,7 @@ pub(crate) fn from_evidence(
 ) -> Vec<Proposal> {
     let mut proposals = Vec::new();
     let kicks = kicks(variant);
+    let typical = typical_scope(variant);
     for file in &variant.files.cases {
         let (Ok(text), Some(standing)) = (CaseText::read(&file.text), standings.get(&file.name)) else {
             continue;
@@ -92,7 +93,7 @@ pub(crate) fn from_evidence(
         let draft = Draft { case: &file.name, text: &text, standing };
         match kind {
             Kind::Scopes => {
-                draft.scopes(&mut proposals);
+                draft.scopes(typical, &mut proposals);
                 draft.presences(&mut proposals);
             }
             Kind::Actions => draft.actions(&kicks, &mut proposals),
@@ -194,7 +195,8 @@ impl Draft<'_> {
         proposals.push(Proposal { kind, edit, reason, weight });
     }
 
-    fn scopes(&self, proposals: &mut Vec<Proposal>) {
+    /// Scopes scaled as evidence says, and an odd one of the ball with the library's `typical` radii.
+    fn scopes(&self, typical: [i32; 2], proposals: &mut Vec<Proposal>) {
         let CaseStanding { risk, met, unmet, .. } = self.standing;
         let advantage = risk.advantage();
         let grows = advantage > 0.0;
@@ -208,6 +210,19 @@ impl Draft<'_> {
         // Both axes first: one alone moves half as many plays.
         let axes = [([true, true], 1.0), ([true, false], 0.5), ([false, true], 0.5)];
         let scope = self.text.scope_of(&Part::Ball);
+        if let Some(odd) = scope.filter(|scope| is_odd(*scope)) {
+            let all = self.standing.all;
+            let reason = format!(
+                "its scope of {} × {} mm is odd; {:.0} plays, {:+.1} points",
+                odd[0],
+                odd[1],
+                all.plays(),
+                100.0 * all.advantage()
+            );
+            // As heavy as a change of every play.
+            let weight = all.plays() * all.advantage().abs().max(0.05);
+            self.push(proposals, Kind::Scopes, Change::BallScope(typical), reason, weight);
+        }
         for ([x, y], (axes, part)) in scope.into_iter().flat_map(|scope| axes.map(|axes| (scope, axes))) {
             let scaled =
                 |value: i32, axis: bool, most: i32| if axis { scale(value, factor, most) } else { value };
@@ -306,6 +321,24 @@ impl Draft<'_> {
     }
 }
 
+/// The median radii of the ball's scopes, to 10 mm.
+fn typical_scope(variant: &Variant) -> [i32; 2] {
+    let scopes = variant.files.cases.iter().filter_map(|file| {
+        let text = CaseText::read(&file.text).ok()?;
+        text.scope_of(&Part::Ball)
+    });
+    let (mut x, mut y): (Vec<i32>, Vec<i32>) = scopes.map(|[x, y]| (x, y)).unzip();
+    [&mut x, &mut y].map(|radii| {
+        radii.sort_unstable();
+        radii.get(radii.len() / 2).map_or(SCOPE_MIN, |radius| radius / 10 * 10)
+    })
+}
+
+/// Whether a radius of the ball's scope lies outside of what a case has use for.
+fn is_odd(scope: [i32; 2]) -> bool {
+    scope.into_iter().zip(BALL_SCOPE_MAX).any(|(radius, most)| !(SCOPE_MIN..=most).contains(&radius))
+}
+
 /// Variants of an action: its point moved, its kick another.
 fn variants(action: &ActionText, kicks: &[String]) -> Vec<ActionText> {
     let moved = |[x, y]: [i32; 2]| MOVES.map(|[dx, dy]| [x + dx, y + dy]).into_iter();
@@ -343,6 +376,28 @@ const MOVES: [[i32; 2]; 6] = [[250, 0], [-250, 0], [0, 250], [0, -250], [250, 25
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evidence::EvidenceCounts;
+
+    #[test]
+    fn an_odd_scope_is_proposed_with_the_usual_radii_before_anything_else() {
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        let files = case_tools::Files::read(&root.join("../../casebase/library/cases/four-legged")).unwrap();
+        let authored = Variant::new(files).unwrap();
+        let [x, y] = typical_scope(&authored);
+        assert!((600..=800).contains(&x) && (450..=650).contains(&y), "{x} {y}");
+        for (radii, odd) in [([2200, 1500], true), ([60, 650], true), ([900, 700], false)] {
+            let case = "center/close-in".to_owned();
+            let spoiled = Edit { case: case.clone(), change: Change::BallScope(radii) };
+            let spoiled = authored.edited(&spoiled).unwrap();
+            let mut standing = CaseStanding::default();
+            let counts = EvidenceCounts { plays: 100, to_goal: 10, ends: BTreeMap::new() };
+            standing.all.posterior.add(&counts, 1.0);
+            let known = BTreeMap::from([(case.clone(), standing)]);
+            let proposals = from_evidence(&spoiled, &known, Kind::Scopes, &Tried::new());
+            let repaired = Edit { case, change: Change::BallScope(typical_scope(&spoiled)) };
+            assert_eq!(proposals.first().is_some_and(|first| first.edit == repaired), odd, "{radii:?}");
+        }
+    }
 
     #[test]
     fn an_action_varies_in_its_kick_or_its_point_alone() {

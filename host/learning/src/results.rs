@@ -1,14 +1,17 @@
 //! `results`: what a run of learning has found.
 
+use arena::evaluation::Profile;
+use hil_sim::Scenario;
 use serde::Serialize;
 
 use crate::betting::Wager;
 use crate::diff::diff;
 use crate::evidence::Evidence;
+use crate::paired::Pairs;
 use crate::plays::PlayToWatch;
 use crate::proposals::Proposal;
 use crate::settings::LearnSettings;
-use crate::starts::{CELLS, cell};
+use crate::starts::{KINDS, StartKind, kind_of};
 use crate::trial::LearningTrial;
 use crate::variant::Variant;
 
@@ -28,8 +31,10 @@ pub enum Verdict {
     Superseded,
     /// `cases check` would warn.
     Warned,
-    /// It lowers a kind of validation starts, or all of them together.
+    /// It lowers a kind of validation starts, or all of a world together.
     Lowers,
+    /// On validation starts of a world the opponents touch the ball more often with it.
+    Touches,
     /// It is in the learned library.
     Accepted,
 }
@@ -50,8 +55,8 @@ pub struct ChangeRecord {
     pub needed: Option<f64>,
     /// What became of it.
     pub verdict: Verdict,
-    /// Pairs on validation starts, all and by kind of start.
-    pub validation: Option<(Wager, Vec<Wager>)>,
+    /// Pairs on validation starts.
+    pub validation: Option<Pairs>,
 }
 
 /// The library after a round, on held-out starts.
@@ -65,8 +70,10 @@ pub struct CurvePoint {
     pub starts: u32,
     /// Of these, with the ball in or close to the goal, percent.
     pub to_goal: f64,
-    /// The same of random starts alone.
+    /// The same of random starts alone, as in the paper's simulator.
     pub to_goal_random: f64,
+    /// The same of all starts that are played as by the paper's robots.
+    pub to_goal_robots: f64,
     /// Touches of the opponents, a trial.
     pub touches: f64,
 }
@@ -74,18 +81,20 @@ pub struct CurvePoint {
 impl CurvePoint {
     /// The measures of trials on the first held-out starts.
     pub(crate) fn of(round: u32, spent: u64, trials: &[LearningTrial]) -> Self {
-        let percent = |hits: usize, of: usize| 100.0 * hits as f64 / of.max(1) as f64;
-        let random: Vec<_> =
-            (0..).zip(trials).filter(|(index, _)| cell(*index).0 < 2).map(|(_, trial)| trial).collect();
-        let goals = |trials: &mut dyn Iterator<Item = &LearningTrial>| trials.filter(|t| t.to_goal()).count();
-        debug_assert_eq!(CELLS[1].1, hil_sim::Scenario::Random);
+        let to_goal = |of: &dyn Fn(StartKind) -> bool| {
+            let own = (0..).zip(trials).filter(|(index, _)| of(KINDS[kind_of(*index).0]));
+            let own: Vec<bool> = own.map(|(_, trial)| trial.to_goal()).collect();
+            100.0 * own.iter().filter(|to_goal| **to_goal).count() as f64 / own.len().max(1) as f64
+        };
+        let noisy = |kind: StartKind| kind.profile == Profile::Robots;
         let touches: u64 = trials.iter().map(|trial| u64::from(trial.touches)).sum();
         Self {
             round,
             spent,
             starts: trials.len() as u32,
-            to_goal: percent(goals(&mut trials.iter()), trials.len()),
-            to_goal_random: percent(goals(&mut random.iter().copied()), random.len()),
+            to_goal: to_goal(&|_| true),
+            to_goal_random: to_goal(&|kind| kind.scenario == Scenario::Random && !noisy(kind)),
+            to_goal_robots: to_goal(&noisy),
             touches: touches as f64 / trials.len().max(1) as f64,
         }
     }

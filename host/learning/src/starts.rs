@@ -1,8 +1,10 @@
 //! `starts`: streams of start situations for learning: training, validation and held-out starts that never
 //! meet.
 //!
-//! Half of the starts are random ones, half the paper's four scenarios, against both kinds of opponents. A
-//! start is named by stream and index, so that any trial can be played anywhere, in any order.
+//! Two thirds are played as in the paper's simulator, half of them random starts and half the paper's four
+//! scenarios, against both kinds of opponents; one third as by the paper's robots, half of them random starts
+//! and half the scenarios that its robots played. A start is named by stream and index, so that any trial can
+//! be played anywhere, in any order.
 
 use arena::evaluation::{EvaluationCell, EvaluationPlan, Planned, Profile};
 use brain::Approach;
@@ -23,38 +25,61 @@ pub enum StartStream {
     HeldOut,
 }
 
-/// Kinds of starts: opponents and scenario.
-pub const CELLS: [(Configuration, Scenario); 10] = [
-    (Configuration::DefenderGoalie, Scenario::Random),
-    (Configuration::TwoDefenders, Scenario::Random),
-    (Configuration::DefenderGoalie, Scenario::MiddleBack),
-    (Configuration::DefenderGoalie, Scenario::LeftSide),
-    (Configuration::DefenderGoalie, Scenario::DefenderAhead),
-    (Configuration::DefenderGoalie, Scenario::DefenderClose),
-    (Configuration::TwoDefenders, Scenario::MiddleBack),
-    (Configuration::TwoDefenders, Scenario::LeftSide),
-    (Configuration::TwoDefenders, Scenario::DefenderAhead),
-    (Configuration::TwoDefenders, Scenario::DefenderClose),
-];
-/// Starts after which the kinds repeat.
-const CYCLE: u32 = 16;
+/// A kind of starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StartKind {
+    /// The world that they are played in.
+    pub profile: Profile,
+    /// The opponents.
+    pub opponents: Configuration,
+    /// Where everything stands.
+    pub scenario: Scenario,
+}
 
-/// The kind, in [`CELLS`], of the start with this index, and its number within the kind.
-pub fn cell(index: u32) -> (usize, u32) {
-    let (cycle, slot) = (index / CYCLE, index % CYCLE);
-    if slot.is_multiple_of(2) {
-        // Eight random starts a cycle, four against each kind of opponents.
-        ((slot / 2 % 2) as usize, cycle * 4 + slot / 4)
-    } else {
-        (2 + (slot / 2) as usize, cycle)
+impl StartKind {
+    const fn new(profile: Profile, opponents: Configuration, scenario: Scenario) -> Self {
+        Self { profile, opponents, scenario }
+    }
+
+    /// Its name, such as `dg random` or `robots dg 3`.
+    pub fn label(self) -> String {
+        let Self { profile, opponents, scenario } = self;
+        let world = if profile == Profile::Robots { "robots " } else { "" };
+        format!("{world}{} {}", opponents.label(), scenario.label())
     }
 }
 
-/// The name of a kind, such as `dg random`.
-pub fn cell_label(cell: usize) -> String {
-    CELLS.get(cell).map_or_else(String::new, |(configuration, scenario)| {
-        format!("{} {}", configuration.label(), scenario.label())
-    })
+/// The kinds of starts.
+pub const KINDS: [StartKind; 13] = {
+    use Configuration::{DefenderGoalie, TwoDefenders};
+    use Profile::{Robots, Simulated};
+    use Scenario::{DefenderAhead, DefenderClose, LeftSide, MiddleBack, Random};
+    [
+        StartKind::new(Simulated, DefenderGoalie, Random),
+        StartKind::new(Simulated, TwoDefenders, Random),
+        StartKind::new(Simulated, DefenderGoalie, MiddleBack),
+        StartKind::new(Simulated, DefenderGoalie, LeftSide),
+        StartKind::new(Simulated, DefenderGoalie, DefenderAhead),
+        StartKind::new(Simulated, DefenderGoalie, DefenderClose),
+        StartKind::new(Simulated, TwoDefenders, MiddleBack),
+        StartKind::new(Simulated, TwoDefenders, LeftSide),
+        StartKind::new(Simulated, TwoDefenders, DefenderAhead),
+        StartKind::new(Simulated, TwoDefenders, DefenderClose),
+        StartKind::new(Robots, DefenderGoalie, Random),
+        StartKind::new(Robots, DefenderGoalie, DefenderAhead),
+        StartKind::new(Robots, DefenderGoalie, DefenderClose),
+    ]
+};
+
+/// Kinds of successive starts, by number in [`KINDS`], after which they repeat.
+const CYCLE: [usize; 24] = [0, 2, 10, 1, 3, 11, 0, 4, 10, 1, 5, 12, 0, 6, 10, 1, 7, 11, 0, 8, 10, 1, 9, 12];
+
+/// The kind, in [`KINDS`], of the start with this index, and its number within the kind.
+pub fn kind_of(index: u32) -> (usize, u32) {
+    let (cycle, slot) = (index / CYCLE.len() as u32, index as usize % CYCLE.len());
+    let kind = CYCLE[slot];
+    let times = |slots: &[usize]| slots.iter().filter(|other| **other == kind).count() as u32;
+    (kind, cycle * times(&CYCLE) + times(&CYCLE[..slot]))
 }
 
 /// The starts of a run with this seed.
@@ -65,10 +90,10 @@ impl StartPlan {
     /// Starts of `stream`. Streams differ in high bits, so that no seed below 2^40 of another run or of an
     /// evaluation gives the same.
     pub fn new(seed: u64, stream: StartStream) -> Self {
-        let cells = CELLS.map(|(configuration, scenario)| EvaluationCell {
-            profile: Profile::Simulated,
-            configuration,
-            scenario,
+        let cells = KINDS.map(|kind| EvaluationCell {
+            profile: kind.profile,
+            configuration: kind.opponents,
+            scenario: kind.scenario,
             approach: Approach::Cases,
             trials: u32::MAX,
         });
@@ -78,8 +103,8 @@ impl StartPlan {
 
     /// The start with this index.
     pub fn get(&self, index: u32) -> Option<Planned> {
-        let (cell, within) = cell(index);
-        self.0.get(cell * u32::MAX as usize + within as usize)
+        let (kind, within) = kind_of(index);
+        self.0.get(kind * u32::MAX as usize + within as usize)
     }
 }
 
@@ -90,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn half_of_the_starts_are_random_and_no_two_are_the_same() {
+    fn half_of_the_starts_are_random_a_third_noisy_and_no_two_are_the_same() {
         let mut seen = BTreeSet::new();
         let streams = [
             StartStream::Exploration,
@@ -100,16 +125,18 @@ mod tests {
         ];
         for stream in streams {
             let plan = StartPlan::new(7, stream);
-            let starts: Vec<_> = (0..160).filter_map(|index| plan.get(index)).collect();
-            assert_eq!(starts.len(), 160);
+            let starts: Vec<_> = (0..240).filter_map(|index| plan.get(index)).collect();
+            assert_eq!(starts.len(), 240);
             let random = starts.iter().filter(|start| start.cell.scenario == Scenario::Random).count();
-            assert_eq!(random, 80);
-            seen.extend(starts.iter().map(|start| start.seed));
+            let noisy = starts.iter().filter(|start| start.cell.profile == Profile::Robots).count();
+            assert_eq!((random, noisy), (120, 80));
+            // The same seed in both worlds gives the same start.
+            seen.extend(starts.iter().map(|start| (start.cell.profile.label(), start.seed)));
             for (index, start) in (0..).zip(&starts) {
-                let (configuration, scenario) = CELLS[cell(index).0];
-                assert_eq!((start.cell.configuration, start.cell.scenario), (configuration, scenario));
+                let EvaluationCell { profile, configuration, scenario, .. } = start.cell;
+                assert_eq!(StartKind::new(profile, configuration, scenario), KINDS[kind_of(index).0]);
             }
         }
-        assert_eq!(seen.len(), 4 * 160);
+        assert_eq!(seen.len(), 4 * 240);
     }
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use arena::TrialConfig;
+use arena::evaluation::{Planned, Profile};
 use brain::Approach;
 use foreign::printable;
 use geometry::{Angle, Field, Point, Pose};
@@ -19,7 +20,7 @@ use crate::variant::Variant;
 pub(crate) const BATCH: u32 = 16;
 
 /// The trials of a unit.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Work {
     /// Starts of a stream, by index.
     Starts {
@@ -34,6 +35,8 @@ pub enum Work {
     Situation {
         /// Where everything stands.
         situation: Situation,
+        /// The world that it is played in.
+        profile: Profile,
         /// Whether the opponents are two defenders.
         two_defenders: bool,
         /// Number of the first trial's seed.
@@ -138,15 +141,13 @@ impl Unit<'_> {
             Work::Starts { stream, indices, record } => {
                 let plan = StartPlan::new(seed, *stream);
                 let starts = indices.iter().filter_map(|index| plan.get(*index));
-                let trial = |start: arena::evaluation::Planned| {
-                    let cell = start.cell;
-                    let config =
-                        TrialConfig::new(cell.scenario, cell.configuration, cell.approach, start.seed);
-                    play(&with_variant(config), *record)
+                let trial = |Planned { cell, seed, .. }: Planned| {
+                    let config = TrialConfig::new(cell.scenario, cell.configuration, cell.approach, seed);
+                    play(&cell.profile.apply(with_variant(config)), *record)
                 };
                 starts.map(trial).collect()
             }
-            Work::Situation { situation, two_defenders, first, trials } => {
+            Work::Situation { situation, profile, two_defenders, first, trials } => {
                 let configuration =
                     if *two_defenders { Configuration::TwoDefenders } else { Configuration::DefenderGoalie };
                 let layout = layout(situation, configuration);
@@ -161,7 +162,7 @@ impl Unit<'_> {
                         hash.value() >> 16,
                     );
                     let config = TrialConfig { layout: Some(layout.clone()), ..config };
-                    play(&with_variant(config), false)
+                    play(&profile.apply(with_variant(config)), false)
                 };
                 (0..*trials).map(|number| trial(first.saturating_add(number))).collect()
             }

@@ -145,7 +145,7 @@ fn a_confirmed_change_that_lowers_the_validation_starts_is_refused() {
     assert!(learned.changes.iter().any(|change| change.verdict == Verdict::Lowers));
     // A change of which validation sees less than this many pairs that differ may pass by luck.
     let seen = |change: &learning::ChangeRecord| {
-        change.validation.as_ref().is_some_and(|(whole, _)| whole.raised + whole.lowered >= 10)
+        change.validation.as_ref().is_some_and(|pairs| pairs.all.raised + pairs.all.lowered >= 10)
     };
     let confirmed = learned.changes.iter().filter(|change| seen(change));
     let verdicts: Vec<_> = confirmed.map(|change| change.verdict).collect();

@@ -113,12 +113,13 @@ impl EvaluationPlan {
         }
     }
 
-    /// With random starts after the other cells, as many trials as their configuration's.
-    pub fn with_random(mut self) -> Self {
+    /// With random starts in this world after the other cells, as many trials as their configuration's there.
+    pub fn with_random(mut self, profile: Profile) -> Self {
         for configuration in [Configuration::DefenderGoalie, Configuration::TwoDefenders] {
-            let mut alike = self.cells.iter().filter(|cell| cell.configuration == configuration);
-            if let Some(trials) = alike.next().map(|cell| cell.trials) {
-                self.add(Profile::Simulated, configuration, &[Scenario::Random], trials);
+            let alike =
+                |cell: &&EvaluationCell| (cell.profile, cell.configuration) == (profile, configuration);
+            if let Some(trials) = self.cells.iter().find(alike).map(|cell| cell.trials) {
+                self.add(profile, configuration, &[Scenario::Random], trials);
             }
         }
         self
@@ -261,13 +262,19 @@ mod tests {
 
     #[test]
     fn random_starts_stand_behind_and_change_no_other_trial() {
-        let (plan, random) = (EvaluationPlan::paper(1), EvaluationPlan::paper(1).with_random());
+        let with_random = |profile| EvaluationPlan::paper(1).with_random(profile);
+        let (plan, random) = (EvaluationPlan::paper(1), with_random(Profile::Simulated));
         assert_eq!(random.cells[..plan.cells.len()], plan.cells);
         let added = &random.cells[plan.cells.len()..];
         assert!(added.iter().all(|cell| cell.scenario == Scenario::Random));
         assert_eq!(added.iter().map(|cell| cell.trials).sum::<u32>(), 700 * APPROACHES.len() as u32);
-        let alone = EvaluationPlan::paper(1).with_random().only(|cell| cell.scenario == Scenario::Random);
-        assert_eq!(alone.cells, added);
+        let only_random = |plan: EvaluationPlan| plan.only(|cell| cell.scenario == Scenario::Random);
+        assert_eq!(only_random(with_random(Profile::Simulated)).cells, added);
+        let noisy = only_random(with_random(Profile::Robots)).cells;
+        assert_eq!(noisy.len(), APPROACHES.len());
+        assert!(noisy.iter().all(|cell| {
+            (cell.profile, cell.configuration) == (Profile::Robots, Configuration::DefenderGoalie)
+        }));
         let arms = EvaluationPlan::ablation(1);
         assert!(arms.cells.len() == 8 && arms.cells.iter().all(|cell| cell.approach == Approach::Cases));
     }

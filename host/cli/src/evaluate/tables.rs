@@ -39,7 +39,8 @@ pub(super) struct TablesArgs {
     /// Only this world: as the paper's simulator (Tables 1 to 5), or as its robots (Table 6).
     #[arg(long, value_parser = profile)]
     profile: Option<Profile>,
-    /// Random starts too, which no case was written for: a fifth family beside the paper's scenarios.
+    /// Random starts too, which no case was written for: a fifth family beside the paper's scenarios; as
+    /// by the robots only with `--profile robots`.
     #[arg(long)]
     random: bool,
     #[command(flatten)]
@@ -56,7 +57,8 @@ impl TablesArgs {
     fn plan(&self) -> Result<EvaluationPlan, Failure> {
         let wants_random = self.random || self.scenario.contains(&Scenario::Random);
         let plan = EvaluationPlan::paper(self.seed);
-        let plan = if wants_random { plan.with_random() } else { plan };
+        let world = self.profile.unwrap_or(Profile::Simulated);
+        let plan = if wants_random { plan.with_random(world) } else { plan };
         let scenario = |asked: Scenario| {
             self.scenario.is_empty()
                 || self.scenario.contains(&asked)

@@ -6,20 +6,18 @@ use casebase::CaseBase;
 use hil_sim::{Fnv, Stream};
 use rayon::prelude::*;
 
-use super::{Candidate, LearnError, Played, Run};
+use super::{Candidate, LearnError, Played, Run, group};
 use crate::aim::Ground;
 use crate::betting::{Wager, threshold};
 use crate::edit::Edit;
 use crate::occasion::Occasion;
+use crate::paired::{Objection, Pairs};
 use crate::proposals::Proposal;
 use crate::results::{ChangeRecord, Verdict};
-use crate::starts::{CELLS, StartStream, cell};
+use crate::starts::{StartStream, kind_of};
 use crate::trial::LearningTrial;
 use crate::variant::Variant;
 use crate::work::{Player, Unit, Work};
-
-/// Pairs of a change, all and by kind of start.
-type Cells = (Wager, [Wager; CELLS.len()]);
 
 impl<P: Player> Run<'_, P> {
     /// Tries proposals on ever more situations, fewer proposals each time; the best few go on.
@@ -81,9 +79,10 @@ impl<P: Player> Run<'_, P> {
         let mut units = Vec::new();
         for (candidate, chosen) in candidates.iter().zip(&chosen) {
             for number in chosen {
-                let Occasion { situation, two_defenders, .. } = &ground.occasions[*number];
+                let Occasion { situation, profile, two_defenders, .. } = &ground.occasions[*number];
                 let work = Work::Situation {
                     situation: situation.clone(),
+                    profile: *profile,
                     two_defenders: *two_defenders,
                     first: *number as u32,
                     trials: 1,
@@ -106,8 +105,7 @@ impl<P: Player> Run<'_, P> {
                 let swaps = self.coin(&candidate.proposal.edit, purpose, *number as u32);
                 let (with, without) = (pair[usize::from(swaps)], pair[usize::from(!swaps)]);
                 candidate.wager.add(with, without);
-                let two_defenders = ground.occasions[*number].two_defenders;
-                candidate.against[usize::from(two_defenders)].add(with, without);
+                candidate.groups[group(&ground.occasions[*number])].add(with, without);
             }
         }
         Ok(())
@@ -181,8 +179,8 @@ impl<P: Player> Run<'_, P> {
             if blocks.len() == look as usize {
                 blocks.push(self.fresh(current, StartStream::Confirmation, self.sizes.confirm / LOOKS)?);
             }
-            let ((wager, _), trials) = self.whole_trials(candidate, &blocks[look as usize])?;
-            candidate.wager.merge(&wager);
+            let (pairs, trials) = self.whole_trials(candidate, &blocks[look as usize])?;
+            candidate.wager.merge(&pairs.all);
             changed.push(trials);
             let hopeless = candidate.wager.z() < HOPELESS_Z + f64::from(look) * HOPELESS_STEP;
             if candidate.wager.e_value() >= needed || hopeless {
@@ -192,7 +190,8 @@ impl<P: Player> Run<'_, P> {
         Ok(changed)
     }
 
-    /// Whether a confirmed change is taken over: it lowers no kind of whole trials, and adds no warning.
+    /// Whether a confirmed change is taken over: it lowers no world and no kind of whole trials, raises no
+    /// touches, and adds no warning.
     fn validate(
         &mut self,
         current: &Variant,
@@ -210,16 +209,20 @@ impl<P: Player> Run<'_, P> {
             Some(played) => played,
             None => validation.insert(self.fresh(current, StartStream::Validation, self.sizes.validate)?),
         };
-        let ((wager, cells), changed) = self.whole_trials(candidate, without)?;
-        let lowered = wager.z() < ALL_LOWERED_Z || cells.iter().any(|cell| cell.z() < LOWERED_Z);
-        let verdict = if lowered { Verdict::Lowers } else { Verdict::Accepted };
-        self.note_test(round, candidate, needed, verdict, Some((wager, cells.to_vec())));
-        if !lowered {
+        let (pairs, changed) = self.whole_trials(candidate, without)?;
+        let verdict = match pairs.objection() {
+            Some(Objection::Lowers) => Verdict::Lowers,
+            Some(Objection::Touches) => Verdict::Touches,
+            None => Verdict::Accepted,
+        };
+        self.note_test(round, candidate, needed, verdict, Some(pairs));
+        let accepted = verdict == Verdict::Accepted;
+        if accepted {
             for (i, trial) in changed {
                 without.renew(&candidate.variant, i, trial);
             }
         }
-        Ok(!lowered)
+        Ok(accepted)
     }
 
     /// Plays a candidate on the starts of `without` that it can have an effect on; the others are equal
@@ -228,24 +231,21 @@ impl<P: Player> Run<'_, P> {
         &mut self,
         candidate: &Candidate,
         without: &Played,
-    ) -> Result<(Cells, Vec<(usize, LearningTrial)>), LearnError> {
+    ) -> Result<(Pairs, Vec<(usize, LearningTrial)>), LearnError> {
         let Candidate { proposal: Proposal { edit, .. }, variant, .. } = candidate;
         let base = variant.base();
         let touches = |i: &usize| affects(edit, variant, &base, without, *i);
         let chosen: Vec<usize> = (0..without.trials.len()).into_par_iter().filter(touches).collect();
         let indices: Vec<u32> = chosen.iter().map(|i| without.first + *i as u32).collect();
         let played = self.starts(variant, without.stream, &indices, true)?;
-        let mut wager = Wager::default();
-        let mut cells = [Wager::default(); CELLS.len()];
+        let mut pairs = Pairs::default();
         for ((i, index), with) in chosen.iter().zip(&indices).zip(&played) {
-            let pair = [with.to_goal(), without.trials[*i].to_goal()];
+            let pair = [with, &without.trials[*i]];
             let swaps = self.coin(edit, without.stream as u8, *index);
-            let (with, without) = (pair[usize::from(swaps)], pair[usize::from(!swaps)]);
-            wager.add(with, without);
-            cells[cell(*index).0].add(with, without);
+            pairs.add(kind_of(*index).0, pair[usize::from(swaps)], pair[usize::from(!swaps)]);
         }
-        wager.add_equal((without.trials.len() - chosen.len()) as u32);
-        Ok(((wager, cells), chosen.into_iter().zip(played).collect()))
+        pairs.all.add_equal((without.trials.len() - chosen.len()) as u32);
+        Ok((pairs, chosen.into_iter().zip(played).collect()))
     }
 
     fn note(&mut self, round: u32, candidate: &Candidate, verdict: Verdict) {
@@ -258,7 +258,7 @@ impl<P: Player> Run<'_, P> {
         candidate: &Candidate,
         needed: f64,
         verdict: Verdict,
-        validation: Option<(Wager, Vec<Wager>)>,
+        validation: Option<Pairs>,
     ) {
         self.record(round, candidate, Some(needed), verdict, validation);
     }
@@ -269,7 +269,7 @@ impl<P: Player> Run<'_, P> {
         candidate: &Candidate,
         needed: Option<f64>,
         verdict: Verdict,
-        validation: Option<(Wager, Vec<Wager>)>,
+        validation: Option<Pairs>,
     ) {
         let Candidate { proposal, wager, share, .. } = candidate;
         let (proposal, wager, share) = (proposal.clone(), *wager, *share);
@@ -278,16 +278,16 @@ impl<P: Player> Run<'_, P> {
 }
 
 /// What a candidate may give: its gain in the situations that it changes less a standard error, times their
-/// share. Validation refuses what lowers one kind of starts, so against neither kind of opponents may the
-/// gain be below zero by more than a standard error.
+/// share. Validation refuses what lowers one kind of starts, so in no group of situations may the gain be
+/// below zero by more than a standard error.
 pub(super) fn promise(candidate: &Candidate) -> f64 {
     let bound = |wager: &Wager, errors: f64| {
         let differ = f64::from(wager.raised) + f64::from(wager.lowered);
         let gain = f64::from(wager.raised) - f64::from(wager.lowered);
         (gain + errors * differ.sqrt()) / f64::from(wager.pairs.max(1))
     };
-    let against = candidate.against.iter().filter(|wager| wager.pairs > 0);
-    let worst = against.map(|wager| bound(wager, 1.0)).fold(f64::INFINITY, f64::min);
+    let groups = candidate.groups.iter().filter(|wager| wager.pairs > 0);
+    let worst = groups.map(|wager| bound(wager, 1.0)).fold(f64::INFINITY, f64::min);
     let gain = bound(&candidate.wager, -1.0).min(worst);
     // A pessimistic gain below zero is not made better by being rare.
     if gain > 0.0 { gain * candidate.share } else { gain }
@@ -317,10 +317,6 @@ const HOPELESS_Z: f64 = -1.0;
 const HOPELESS_STEP: f64 = 0.2;
 /// Names of purposes in the null control's chance lie behind those of streams of starts.
 const PURPOSES_FROM: u8 = 16;
-/// All validation starts together count as lowered below this: more lowered than raised.
-const ALL_LOWERED_Z: f64 = 0.0;
-/// A kind of starts counts as lowered from here on: p < 0.025 on one side.
-const LOWERED_Z: f64 = -1.96;
 
 #[cfg(test)]
 mod tests {
