@@ -109,6 +109,8 @@ pub(crate) enum Failure {
     Evaluation(EvaluationError),
     /// Learning failed.
     Learning(learning::LearnError),
+    /// The list of refused changes beside a library cannot be read.
+    Refusals(String),
     /// The filters of an evaluation leave nothing.
     NoTrials,
     /// A recording could not be read, or lacks what was requested.
@@ -236,8 +238,9 @@ impl fmt::Display for Failure {
             ),
             Self::Evaluation(error) => write!(f, "{error}"),
             Self::Learning(error) => error.fmt(f),
+            Self::Refusals(what) => f.write_str(what),
             Self::NoTrials => f.write_str(
-                "no trial is left: robots' trials (--profile robots) are of scenarios 3 and 4 against dg; \
+                "no trial is left: robots' trials (--profile robots) are against dg, of scenarios 3 and 4 and, asked for, random; \
                  leave out a filter",
             ),
             Self::Threads(error) => write!(f, "cannot start threads: {error}; try --jobs 1"),

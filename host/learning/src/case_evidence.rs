@@ -1,6 +1,6 @@
 //! `case_evidence`: what evidence and a report of learning say of one case, for the workbench of the page.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use case_tools::Files;
 use serde::{Deserialize, Serialize};
@@ -93,6 +93,8 @@ pub struct ProposalNote {
     pub lowered: u64,
     /// Its gain in the situations that it changes, points.
     pub gain: f64,
+    /// Whether an author has refused it.
+    pub refused: bool,
     /// The case's text with the change; none where it is deleted, or where the library has it already.
     pub after: Option<String>,
 }
@@ -115,7 +117,12 @@ struct Reported {
 }
 
 /// The changes of `case` in the text of a `report.json`, as they would change these files; best first.
-pub fn proposals_in(report: &str, files: &Files, case: &str) -> Result<Vec<ProposalNote>, serde_json::Error> {
+pub fn proposals_in(
+    report: &str,
+    files: &Files,
+    case: &str,
+    refused: &BTreeSet<Edit>,
+) -> Result<Vec<ProposalNote>, serde_json::Error> {
     let report: Report = serde_json::from_str(report)?;
     let own = report.changes.into_iter().filter(|change| {
         // Drafts have names of their own.
@@ -128,11 +135,19 @@ pub fn proposals_in(report: &str, files: &Files, case: &str) -> Result<Vec<Propo
             };
             let after = edit.apply(files).ok().and_then(|after| text_of(&after));
             let after = after.filter(|after| Some(after) != text_of(files).as_ref());
-            ProposalNote { words: text, reason, verdict, pairs, raised, lowered, gain, after }
+            let refused = refused.contains(&edit);
+            ProposalNote { words: text, reason, verdict, pairs, raised, lowered, gain, refused, after }
         })
         .collect();
     notes.sort_by(|a, b| b.gain.total_cmp(&a.gain).then_with(|| a.words.cmp(&b.words)));
     Ok(notes)
+}
+
+/// The change of `case` with these words in the text of a `report.json`, if it has one.
+pub fn edit_in(report: &str, case: &str, words: &str) -> Result<Option<Edit>, serde_json::Error> {
+    let report: Report = serde_json::from_str(report)?;
+    let own = report.changes.into_iter().find(|change| change.edit.case == case && change.text == words);
+    Ok(own.map(|change| change.edit))
 }
 
 #[cfg(test)]
@@ -188,9 +203,9 @@ mod tests {
             change(serde_json::json!({ "case": case, "change": "forget" }), 2.0),
             change(serde_json::json!({ "case": "front/shot", "change": "forget" }), 3.0),
         ] });
-        let notes = proposals_in(&report.to_string(), &files(), case).unwrap();
+        let notes = proposals_in(&report.to_string(), &files(), case, &BTreeSet::new()).unwrap();
         assert_eq!(notes.iter().map(|note| note.after.is_some()).collect::<Vec<_>>(), [false, true]);
         assert!(notes[1].after.as_ref().unwrap().contains("scope = [610, 420]"));
-        assert!(proposals_in("{}", &files(), case).is_err());
+        assert!(proposals_in("{}", &files(), case, &BTreeSet::new()).is_err());
     }
 }

@@ -338,6 +338,8 @@ impl<P: Player> Run<'_, P> {
                 proposals.extend(self.recorded(current));
             } else {
                 let mut all = from_evidence(current, &known, kind, &self.tried);
+                // Before others are left out for want of room.
+                all.retain(|proposal| !self.settings.refused.contains(&proposal.edit));
                 all.truncate(self.sizes.proposals);
                 for proposal in all.iter_mut().filter(|proposal| proposal.kind == Kind::Forget) {
                     if let Ok(without) = current.edited(&proposal.edit) {
@@ -347,6 +349,7 @@ impl<P: Player> Run<'_, P> {
                 proposals.extend(all);
             }
         }
+        proposals.retain(|proposal| !self.settings.refused.contains(&proposal.edit));
         Ok(proposals)
     }
 
@@ -372,10 +375,10 @@ fn occasions(played: &Played) -> Vec<Occasion> {
         let retrieved = trial.decisions.iter().filter(|decision| decision.retrieved);
         occasions.extend(retrieved.map(|decision| Occasion {
             situation: decision.situation.clone(),
+            profile,
             two_defenders,
             without_case: decision.case.is_none(),
         }));
-            profile,
     }
     occasions
 }

@@ -91,6 +91,9 @@ pub fn summary(learned: &Learned) -> String {
     for setting in learned.end.changed_settings() {
         let _ = writeln!(text, "retrieval: --set {setting}");
     }
+    if !learned.settings.refused.is_empty() {
+        let _ = writeln!(text, "changes refused by hand, not proposed: {}", learned.settings.refused.len());
+    }
     let _ = writeln!(
         text,
         "{} of {} proposals accepted after {} tests, {} trials",
@@ -120,6 +123,9 @@ pub fn html(learned: &Learned) -> String {
                     (learned.accepted().count()) " of " (learned.changes.len()) " proposed changes accepted, "
                     (learned.spent) " trials, seed " (settings.seed) ", expected share of wrong changes at most "
                     (settings.error_rate) " over " (settings.tries) " tests."
+                    @if !settings.refused.is_empty() {
+                        " Changes refused by hand, not proposed: " (settings.refused.len()) "."
+                    }
                     @if settings.shuffle { " Null control: chance decides every pair." }
                 }
                 h2 { "Learning curve on held-out starts" }
@@ -233,13 +239,13 @@ const fn verdict(verdict: Verdict) -> &'static str {
         Verdict::Superseded => "superseded",
         Verdict::Warned => "warned",
         Verdict::Lowers => "lowers",
+        Verdict::Touches => "more touches",
         Verdict::Accepted => "accepted",
     }
 }
 
 /// A case as a library has it; none where it lacks the case.
 fn picture(variant: &Variant, name: &str) -> Option<String> {
-        Verdict::Touches => "more touches",
     let base = variant.base();
     let number = variant.names().iter().position(|known| known == name)?;
     let case =

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use crate::edit::Edit;
 use crate::proposals::Kind;
 
 /// Settings of a run; equal ones on equal files learn the same.
@@ -17,6 +18,8 @@ pub struct LearnSettings {
     pub error_rate: f64,
     /// Tests that the error rate is shared among; after as many no change is accepted.
     pub tries: u32,
+    /// Changes that are not proposed, because an author has refused them.
+    pub refused: BTreeSet<Edit>,
     /// The null control: in every pair chance decides which outcome counts as the change's.
     pub shuffle: bool,
     /// Proposes and screens once, changes nothing.

@@ -85,6 +85,7 @@ fn settings(seed: u64, budget: u64, kinds: &[Kind]) -> LearnSettings {
         kinds: kinds.iter().copied().collect::<BTreeSet<_>>(),
         error_rate: 0.1,
         tries: 100,
+        refused: BTreeSet::new(),
         shuffle: false,
         dry_run: false,
     }
@@ -122,6 +123,12 @@ fn a_harmful_case_is_forgotten_and_nothing_else_is() {
     // Another case, or none, would take over from each.
     assert!(learned.changes.iter().all(|change| change.proposal.reason.contains("; in its place: ")));
     assert_eq!(learned.end.names().len(), 33);
+    // A change that an author has refused is not proposed, and others are.
+    let refused = BTreeSet::from([learned.accepted().next().unwrap().proposal.edit.clone()]);
+    let settings = LearnSettings { refused, ..settings(3, 20_000, &[Kind::Forget]) };
+    let without = learn(files(), Collected::default(), &settings, &mut Rule(rule)).unwrap();
+    assert!(!without.changes.is_empty());
+    assert!(without.changes.iter().all(|change| change.proposal.edit.case != harmful));
 }
 
 #[test]

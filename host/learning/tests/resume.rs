@@ -27,6 +27,7 @@ fn settings() -> LearnSettings {
         kinds: BTreeSet::from([Kind::Scopes, Kind::New]),
         error_rate: 0.1,
         tries: 100,
+        refused: BTreeSet::new(),
         shuffle: false,
         dry_run: false,
     }

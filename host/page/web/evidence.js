@@ -15,6 +15,13 @@ async function ask() {
   changed("bench");
 }
 
+/** Refuses a change, or takes the refusal back. */
+async function keep({ words, refused }) {
+  const { name } = told;
+  told = { name, ...(await request({ do: "refuse", name, words, refused: !refused })) };
+  changed("bench");
+}
+
 export function showEvidence() {
   const shown = told?.name === bench.name ? told : null;
   fill(byId("bench-evidence"), JSON.stringify([shown, bench.name, shown && bench.sheet.text]), () => [
@@ -48,7 +55,8 @@ function counts(one) {
 function proposals(list) {
   if (list.length === 0) return el("p", { class: "muted" }, "No change of it was tried.");
   const take = (one) => el("button", { "data-take": one.words, disabled: one.after === bench.sheet.text, onclick: () => setText(one.after) }, "Take");
-  const line = (one) => el("li", {}, el("b", {}, one.words), ` ${one.verdict}, ${number(one.gain)} points in ${one.pairs} pairs (${one.raised} raised, ${one.lowered} lowered). ${one.reason}. `, one.after ? take(one) : null);
-  return el("div", {}, el("p", { class: "muted" }, "Changes that were tried. What is taken is undone like any change, and is in the library once it is saved."),
+  const refuse = (one) => el("button", { "data-refuse": one.words, onclick: () => keep(one).catch(fail) }, one.refused ? "Propose again" : "Refuse");
+  const line = (one) => el("li", { class: one.refused ? "muted" : "" }, el("b", {}, one.words), ` ${one.verdict}, ${number(one.gain)} points in ${one.pairs} pairs (${one.raised} raised, ${one.lowered} lowered). ${one.reason}. `, one.after ? take(one) : null, one.after ? " " : null, refuse(one), one.refused ? " Refused: learning does not propose it again." : null);
+  return el("div", {}, el("p", { class: "muted" }, "Changes that were tried. What is taken is undone like any change, and is in the library once it is saved. What is refused is kept in refused.jsonl beside the report, and learning does not propose it."),
     el("ul", { id: "bench-proposals" }, list.map(line)));
 }

@@ -15,6 +15,7 @@ use crate::output::print_text;
 use crate::progress::Progress;
 use crate::replay::{OpenLibrary, collect};
 use crate::stop::stopped_by_hand;
+use crate::workbench::refusals;
 
 /// Arguments of `cases learn`.
 #[derive(Debug, Args)]
@@ -68,12 +69,14 @@ pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
     let earlier = collect(&args.from, &known, None, true)?;
     let kinds: BTreeSet<Kind> =
         if args.only.is_empty() { Kind::ALL.into() } else { args.only.iter().copied().collect() };
+    let refused = known.handle.directory().map_or_else(|| Ok(BTreeSet::new()), refusals);
     let settings = LearnSettings {
         seed: args.seed,
         budget: args.budget,
         kinds,
         error_rate: args.error_rate,
         tries: args.tries,
+        refused: refused.map_err(Failure::Refusals)?,
         shuffle: args.shuffle_outcomes,
         dry_run: args.dry_run,
     };

@@ -30,6 +30,8 @@ pub(super) enum Asked {
     Count { name: String, text: String },
     /// What learning has found out about it.
     Learned { name: String },
+    /// The change of it with these words is refused, or is proposed again.
+    Refuse { name: String, words: String, refused: bool },
     /// What other settings of retrieval would change over the match's problems.
     Settings { values: BTreeMap<String, String> },
     /// Attempts in the simulator.
@@ -55,7 +57,14 @@ pub(super) enum Asked {
 impl Asked {
     /// It changes something, or takes the machine for long.
     pub(super) const fn needs_token(&self) -> bool {
-        matches!(self, Self::Rehearse { .. } | Self::Stop {} | Self::Save { .. } | Self::Check { .. })
+        matches!(
+            self,
+            Self::Rehearse { .. }
+                | Self::Stop {}
+                | Self::Save { .. }
+                | Self::Check { .. }
+                | Self::Refuse { .. }
+        )
     }
 }
 

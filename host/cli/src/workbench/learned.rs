@@ -1,9 +1,14 @@
-//! `learned`: what `onetwo cases learn` has left beside a library: its evidence and its report.
+//! `learned`: what `onetwo cases learn` has left beside a library: its evidence and its report; and the changes
+//! that the author has refused.
 
+use std::collections::BTreeSet;
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use case_tools::Files;
-use learning::{CaseEvidence, Evidence, Variant, proposals_in};
+use learning::{
+    CaseEvidence, Edit, Evidence, REFUSALS, Variant, edit_in, proposals_in, read_refusals, refusals_to_jsonl,
+};
 use serde_json::{Value, json};
 
 /// Longest file that is read, bytes.
@@ -14,7 +19,7 @@ const LEN_MAX: u64 = 1 << 28;
 pub(super) fn of_case(library: Option<&Path>, files: &Files, case: &str) -> Result<Value, String> {
     let Some(directory) = library else { return Err(super::NO_DIRECTORY.to_owned()) };
     let evidence = found(directory, "evidence.jsonl");
-    let report = found(directory, "report.json");
+    let report = found(directory, REPORT);
     if evidence.is_none() && report.is_none() {
         let hint =
             "open a directory that `onetwo cases learn --out` has written, or copy both files beside it";
@@ -25,11 +30,45 @@ pub(super) fn of_case(library: Option<&Path>, files: &Files, case: &str) -> Resu
         let evidence = Evidence::from_jsonl(&read(&path)?).map_err(|what| unreadable(&path, &what))?;
         Ok::<_, String>(CaseEvidence::of(&evidence, &variant, case))
     });
+    let refused = refusals(directory)?;
     let proposals = report.map(|path| {
-        proposals_in(&read(&path)?, files, case).map_err(|error| unreadable(&path, &error.to_string()))
+        proposals_in(&read(&path)?, files, case, &refused)
+            .map_err(|error| unreadable(&path, &error.to_string()))
     });
     Ok(json!({ "told": told.transpose()?, "proposals": proposals.transpose()? }))
 }
+
+/// The changes that the author of the library in `directory` has refused.
+pub(crate) fn refusals(directory: &Path) -> Result<BTreeSet<Edit>, String> {
+    found(directory, REFUSALS).map_or_else(
+        || Ok(BTreeSet::new()),
+        |path| read_refusals(&read(&path)?).map_err(|what| unreadable(&path, &what)),
+    )
+}
+
+/// Refuses the change of `case` with these words in the report, or takes the refusal back. The list lies
+/// beside the report; it is replaced whole.
+pub(super) fn refuse(library: Option<&Path>, case: &str, words: &str, refuses: bool) -> Result<(), String> {
+    let directory = library.ok_or(super::NO_DIRECTORY)?;
+    let report =
+        found(directory, REPORT).ok_or_else(|| format!("there is no {REPORT} beside the library"))?;
+    let edit =
+        edit_in(&read(&report)?, case, words).map_err(|error| unreadable(&report, &error.to_string()))?;
+    let edit = edit.ok_or("the report has no such change: look again at what learning has found")?;
+    let mut refused = refusals(directory)?;
+    let changed = if refuses { refused.insert(edit) } else { refused.remove(&edit) };
+    if !changed {
+        return Ok(());
+    }
+    let file = found(directory, REFUSALS).unwrap_or_else(|| report.with_file_name(REFUSALS));
+    let failed = |error: std::io::Error| format!("{REFUSALS} cannot be written: {error}");
+    let part = file.with_extension("part");
+    fs::write(&part, refusals_to_jsonl(&refused)).map_err(failed)?;
+    fs::rename(&part, &file).map_err(failed)
+}
+
+/// Name of the report.
+const REPORT: &str = "report.json";
 
 fn found(directory: &Path, name: &str) -> Option<PathBuf> {
     let places = [Some(directory), directory.parent()];

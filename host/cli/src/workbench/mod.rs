@@ -26,6 +26,7 @@ use asked::Asked;
 use count::Problems;
 use rehearsal::{Rehearsal, RehearsalOrder};
 
+pub(crate) use learned::refusals;
 pub(crate) use shared_library::SharedLibrary;
 
 /// Problems that are drawn to find out whether a case is ever retrieved, as by `cases check`.
@@ -71,6 +72,10 @@ impl CaseWorkbench {
                 value(&count::wins(&problems, &before, &library, &name, &self.settings))?
             }
             Asked::Learned { name } => {
+                learned::of_case(self.library.directory(), self.bench()?.files(), &name)?
+            }
+            Asked::Refuse { name, words, refused } => {
+                learned::refuse(self.library.directory(), &name, &words, refused)?;
                 learned::of_case(self.library.directory(), self.bench()?.files(), &name)?
             }
             Asked::Settings { values } => {

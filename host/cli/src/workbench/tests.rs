@@ -268,6 +268,21 @@ fn what_learning_has_left_beside_the_library_is_told_of_a_case() {
     assert_eq!(answer["told"]["all"], json!({ "plays": 8, "to_goal": 3 }));
     assert_eq!(answer["told"]["now"]["plays"], 0, "of another library");
     assert!(answer["proposals"][0]["after"].as_str().unwrap().contains("scope = [333, 222]"));
+    let words = &answer["proposals"][0]["words"];
+    let refuse = |words: &Value, refused: bool| {
+        ask(
+            &workbench,
+            &json!({ "do": "refuse", "name": "center/one-two", "words": words, "refused": refused }),
+        )
+    };
+    assert_eq!(answer["proposals"][0]["refused"], false);
+    assert_eq!(refuse(words, true).unwrap()["proposals"][0]["refused"], true);
+    let kept = fs::read_to_string(directory.0.join("refused.jsonl")).unwrap();
+    assert_eq!(learning::read_refusals(&kept).unwrap(), learned::refusals(&directory.library()).unwrap());
+    assert_eq!((kept.lines().count(), ask(&workbench, &learned).unwrap()), (1, refuse(words, true).unwrap()));
+    assert_eq!(refuse(words, false).unwrap()["proposals"][0]["refused"], false);
+    assert!(learned::refusals(&directory.library()).unwrap().is_empty());
+    assert!(refuse(&json!("another"), true).unwrap_err().starts_with("the report has no such change"));
     fs::write(directory.0.join("evidence.jsonl"), "{}\n").unwrap();
     let refused = ask(&workbench, &learned).unwrap_err();
     assert!(refused.starts_with("evidence.jsonl: line 1: "), "{refused}");

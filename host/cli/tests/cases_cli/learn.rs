@@ -96,3 +96,27 @@ fn an_unknown_kind_of_change_is_refused_with_the_known_ones() {
     }
     assert!(!out.exists());
 }
+
+#[test]
+fn what_the_author_has_refused_is_not_proposed() {
+    let first = out("refuse");
+    assert_eq!(learn(&first, &["--dry-run"]).code, 0);
+    // The library that was learned lies beside the report, and so does the author's list.
+    let (edit, words) = {
+        let changes = &report(&first)["changes"];
+        (changes[0]["edit"].clone(), changes[0]["text"].clone())
+    };
+    fs::write(first.join("refused.jsonl"), format!("{edit}\n")).unwrap();
+    let (library, second) = (first.join("four-legged"), out("refuse-again"));
+    let library = library.to_str().unwrap();
+    let run = learn(&second, &["--dry-run", "--library", library]);
+    assert_eq!((run.code, run.stderr.as_str()), (0, ""));
+    assert!(run.stdout.contains("changes refused by hand, not proposed: 1"), "{}", run.stdout);
+    let again = report(&second)["changes"].as_array().unwrap().clone();
+    assert!(!again.is_empty() && again.iter().all(|change| change["text"] != words), "{words}");
+
+    fs::write(first.join("refused.jsonl"), "{}\n").unwrap();
+    let run = learn(&out("refuse-fault"), &["--library", library]);
+    assert_eq!(run.code, 1);
+    assert!(run.stderr.contains("refused.jsonl: line 1: "), "{}", run.stderr);
+}

@@ -60,6 +60,13 @@ fn evidence_of_a_case_is_shown_and_a_proposal_is_taken_and_undone() {
     tab.click("#bench-undo").unwrap();
     tab.wait("!onetwo.workbench.sheet.text.includes('scope = [330, 220]')", 20).unwrap();
     assert_eq!(tab.eval("onetwo.workbench.sheet.text").unwrap(), opened);
+    tab.click("[data-refuse]").unwrap();
+    tab.wait("document.querySelector('[data-refuse]').textContent === 'Propose again'", 20).unwrap();
+    let refused = fs::read_to_string(beside.join("refused.jsonl")).unwrap();
+    assert_eq!(refused, format!("{{\"case\":\"{CASE}\",\"change\":{{\"ball-scope\":[330,220]}}}}\n"));
+    tab.click("[data-refuse]").unwrap();
+    tab.wait("document.querySelector('[data-refuse]').textContent === 'Refuse'", 20).unwrap();
+    assert_eq!(fs::read_to_string(beside.join("refused.jsonl")).unwrap(), "");
     no_errors(&mut tab);
     let _ = fs::remove_dir_all(beside);
 }
