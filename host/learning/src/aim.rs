@@ -10,7 +10,7 @@ use hil_sim::{Fnv, Stream};
 use rayon::prelude::*;
 
 use crate::edit::Edit;
-use crate::occasion::{Occasion, usable};
+use crate::occasion::Occasion;
 use crate::variant::{Answer, Variant};
 
 /// What situations are drawn for; no two purposes draw the same.
@@ -41,7 +41,8 @@ impl Ground {
         round: u32,
         current: &Variant,
     ) -> Self {
-        let usable: Vec<&Occasion> = played.iter().filter(|occasion| usable(&occasion.situation)).collect();
+        let usable: Vec<&Occasion> =
+            played.iter().filter(|occasion| occasion.situation.is_usable()).collect();
         let one = |number: u32| {
             let mut hash = Fnv::default();
             hash.add(&[purpose as u8]);
@@ -95,7 +96,7 @@ fn moved(played: &[&Occasion], chance: &mut Stream) -> Option<Occasion> {
         situation.teammates.iter().map(|(_, at)| *at).chain(situation.opponents.iter().copied()).collect();
     let inside = robots.iter().all(|[x, y]| x.abs() <= ROBOT_INSIDE[0] && y.abs() <= ROBOT_INSIDE[1]);
     let apart = (0..robots.len()).all(|i| (0..i).all(|j| distance(robots[i], robots[j]) >= APART));
-    (usable(situation) && inside && apart).then_some(occasion)
+    (situation.is_usable() && inside && apart).then_some(occasion)
 }
 
 fn distance([a, b]: [i32; 2], [x, y]: [i32; 2]) -> f64 {

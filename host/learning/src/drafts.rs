@@ -8,7 +8,7 @@ use hil_sim::{Fnv, Stream};
 
 use crate::edit::{Change, Edit};
 use crate::goalkeeper;
-use crate::occasion::{Occasion, usable};
+use crate::occasion::Occasion;
 use crate::trial::Situation;
 
 /// A draft for every plan in a situation.
@@ -37,7 +37,7 @@ pub(crate) fn choose(occasions: &[Occasion], count: u32, seed: u64) -> Vec<&Occa
     let mut chance = Stream::new(seed, "occasions");
     let mut chosen = Vec::new();
     for without in [true, false] {
-        let fits = |occasion: &&Occasion| occasion.without_case == without && usable(&occasion.situation);
+        let fits = |occasion: &&Occasion| occasion.without_case == without && occasion.situation.is_usable();
         let pool: Vec<&Occasion> = occasions.iter().filter(fits).collect();
         if let Some(last) = pool.len().checked_sub(1) {
             let wanted = if without { count / 2 } else { count - chosen.len() as u32 };

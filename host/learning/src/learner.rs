@@ -113,7 +113,8 @@ pub fn learn(
         }
     }
     let Run { evidence, changes, curve, spent, tests, held_out: [before, after], .. } = run;
-    let plays = plays_to_watch(settings.seed, &before, &after);
+    let indices = settings.worlds.indices(0, before.len() as u32);
+    let plays = plays_to_watch(settings.seed, &indices, &before, &after);
     Ok(Learned {
         settings: settings.clone(),
         start,
@@ -197,7 +198,8 @@ struct Run<'r, P> {
 /// Trials of a library on starts of a stream, with what was played and what retrieval answered in each.
 struct Played {
     stream: StartStream,
-    first: u32,
+    /// Indices of their starts.
+    indices: Vec<u32>,
     trials: Vec<LearningTrial>,
     /// Name of the case of every decision.
     plays: Vec<Vec<Option<String>>>,
@@ -205,11 +207,11 @@ struct Played {
 }
 
 impl Played {
-    fn new(variant: &Variant, stream: StartStream, first: u32, trials: Vec<LearningTrial>) -> Self {
+    fn new(variant: &Variant, stream: StartStream, indices: Vec<u32>, trials: Vec<LearningTrial>) -> Self {
         let base = variant.base();
         let plays = trials.iter().map(|trial| names(variant, trial)).collect();
         let answers = trials.par_iter().map(|trial| answers(variant, &base, trial)).collect();
-        Self { stream, first, trials, plays, answers }
+        Self { stream, indices, trials, plays, answers }
     }
 
     /// Replaces a trial by that of a library which plays it otherwise.
@@ -288,8 +290,9 @@ impl<P: Player> Run<'_, P> {
         let used = self.used.entry(stream).or_default();
         let first = *used;
         *used += count;
-        let trials = self.starts(variant, stream, &(first..first + count).collect::<Vec<_>>(), true)?;
-        Ok(Played::new(variant, stream, first, trials))
+        let indices = self.settings.worlds.indices(first, count);
+        let trials = self.starts(variant, stream, &indices, true)?;
+        Ok(Played::new(variant, stream, indices, trials))
     }
 
     fn starts(
@@ -311,13 +314,14 @@ impl<P: Player> Run<'_, P> {
     fn collect(&mut self, current: &Variant, played: &Played) {
         let mut outcomes: Vec<_> = played.trials.iter().map(|trial| trial.outcome).collect();
         if self.settings.shuffle {
-            let mut chance = Stream::new(self.settings.seed ^ u64::from(played.first), "shuffle");
+            let first = played.indices.first().copied().unwrap_or_default();
+            let mut chance = Stream::new(self.settings.seed ^ u64::from(first), "shuffle");
             for i in (1..outcomes.len()).rev() {
                 outcomes.swap(i, chance.whole(0, i as u32) as usize);
             }
         }
-        for ((index, trial), outcome) in (played.first..).zip(&played.trials).zip(outcomes) {
-            let StartKind { profile, opponents, .. } = KINDS[kind_of(index).0];
+        for ((index, trial), outcome) in played.indices.iter().zip(&played.trials).zip(outcomes) {
+            let StartKind { profile, opponents, .. } = KINDS[kind_of(*index).0];
             let (world, trial) = (world_of_trials(profile), LearningTrial { outcome, ..trial.clone() });
             self.evidence.add(current, &world, opponents.label(), &trial);
         }
@@ -354,9 +358,9 @@ impl<P: Player> Run<'_, P> {
     }
 
     fn measure(&mut self, variant: &Variant, round: u32) -> Result<(), LearnError> {
-        let indices: Vec<_> = (0..self.sizes.held_out).collect();
+        let indices = self.settings.worlds.indices(0, self.sizes.held_out);
         let trials = self.starts(variant, StartStream::HeldOut, &indices, false)?;
-        self.curve.push(CurvePoint::of(round, self.spent, &trials));
+        self.curve.push(CurvePoint::of(round, self.spent, &indices, &trials));
         let to_goal: Vec<bool> = trials.iter().map(LearningTrial::to_goal).collect();
         if self.held_out[0].is_empty() {
             self.held_out[0].clone_from(&to_goal);
@@ -369,8 +373,8 @@ impl<P: Player> Run<'_, P> {
 /// The decisions of trials in which retrieval alone answered.
 fn occasions(played: &Played) -> Vec<Occasion> {
     let mut occasions = Vec::new();
-    for (index, trial) in (played.first..).zip(&played.trials) {
-        let StartKind { profile, opponents, .. } = KINDS[kind_of(index).0];
+    for (index, trial) in played.indices.iter().zip(&played.trials) {
+        let StartKind { profile, opponents, .. } = KINDS[kind_of(*index).0];
         let two_defenders = opponents == Configuration::TwoDefenders;
         let retrieved = trial.decisions.iter().filter(|decision| decision.retrieved);
         occasions.extend(retrieved.map(|decision| Occasion {

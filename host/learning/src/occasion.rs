@@ -16,16 +16,3 @@ pub(crate) struct Occasion {
     /// Whether no case was played.
     pub(crate) without_case: bool,
 }
-
-/// Both robots and both opponents are known, the goal at -x is defended, and the ball is in play.
-pub(crate) fn usable(situation: &Situation) -> bool {
-    let [x, y] = situation.ball;
-    !situation.defending_positive
-        && situation.teammates.len() == 2
-        && situation.opponents.len() == 2
-        && x.abs() < BALL_INSIDE[0]
-        && y.abs() < BALL_INSIDE[1]
-}
-
-/// Where the ball is in play, mm: inside the lines of 2700 and 1800 mm.
-const BALL_INSIDE: [i32; 2] = [2650, 1750];

@@ -79,11 +79,11 @@ pub fn summary(learned: &Learned) -> String {
     for point in &learned.curve {
         let _ = writeln!(
             text,
-            "held-out after round {}: to goal {:.2} %, random starts {:.2} %, robots {:.2} %, touches {:.3}; {} trials",
+            "held-out after round {}: to goal {:.2} %, random starts {:.2} %,{} touches {:.3}; {} trials",
             point.round,
             point.to_goal,
             point.to_goal_random,
-            point.to_goal_robots,
+            point.to_goal_robots.map_or_else(String::new, |robots| format!(" robots {robots:.2} %,")),
             point.touches,
             point.spent
         );
@@ -135,7 +135,7 @@ pub fn html(learned: &Learned) -> String {
                     @for point in &learned.curve {
                         tr {
                             td { (point.round) } td { (point.spent) } td { (format!("{:.2}", point.to_goal)) }
-                            td { (format!("{:.2}", point.to_goal_random)) } td { (format!("{:.2}", point.to_goal_robots)) }
+                            td { (format!("{:.2}", point.to_goal_random)) } td { (point.to_goal_robots.map_or_else(String::new, |robots| format!("{robots:.2}"))) }
                             td { (format!("{:.3}", point.touches)) }
                         }
                     }

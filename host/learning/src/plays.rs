@@ -29,10 +29,15 @@ impl PlayToWatch {
 }
 
 /// Starts that came to goal after learning and not before, of different kinds where there are; `before` and
-/// `after` tell it of every held-out start of a run with this seed.
-pub(crate) fn plays_to_watch(seed: u64, before: &[bool], after: &[bool]) -> Vec<PlayToWatch> {
-    let raised =
-        || (0_u32..).zip(before.iter().zip(after)).filter(|(_, (before, after))| !**before && **after);
+/// `after` tell it of the held-out starts with these indices of a run with this seed.
+pub(crate) fn plays_to_watch(
+    seed: u64,
+    indices: &[u32],
+    before: &[bool],
+    after: &[bool],
+) -> Vec<PlayToWatch> {
+    let pairs = || indices.iter().copied().zip(before.iter().zip(after));
+    let raised = || pairs().filter(|(_, (before, after))| !**before && **after);
     let mut chosen: Vec<u32> = Vec::new();
     for anew in [true, false] {
         for (index, _) in raised() {
@@ -60,6 +65,11 @@ const MOST: usize = 3;
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn plays_to_watch(seed: u64, before: &[bool], after: &[bool]) -> Vec<PlayToWatch> {
+        let indices: Vec<u32> = (0..before.len() as u32).collect();
+        super::plays_to_watch(seed, &indices, before, after)
+    }
 
     #[test]
     fn plays_are_of_different_kinds_where_there_are_enough() {

@@ -102,7 +102,7 @@ pub(crate) fn from_evidence(
         }
     }
     if kind == Kind::Order {
-        proposals.extend(order(variant));
+        proposals.extend(order_proposals(variant));
     }
     weigh(proposals, variant, tried)
 }
@@ -119,8 +119,12 @@ pub(crate) fn weigh(mut proposals: Vec<Proposal>, variant: &Variant, tried: &Tri
     proposals
 }
 
-/// One setting of retrieval at another value, the others as they are.
-fn order(variant: &Variant) -> Vec<Proposal> {
+/// One setting of retrieval at another value, the others as they are: the edits that learning tries.
+pub fn order(variant: &Variant) -> Vec<Edit> {
+    order_proposals(variant).into_iter().map(|proposal| proposal.edit).collect()
+}
+
+fn order_proposals(variant: &Variant) -> Vec<Proposal> {
     let now: BTreeMap<String, String> = (variant.settings.describe())
         .map(|(name, value)| (name.to_owned(), value.as_str().to_owned()))
         .collect();
@@ -418,7 +422,7 @@ mod tests {
         let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
         let files = case_tools::Files::read(&root.join("../../casebase/library/cases/four-legged")).unwrap();
         let variant = Variant::new(files).unwrap();
-        let proposals = order(&variant);
+        let proposals = order_proposals(&variant);
         let of = |name: &str| {
             let text = format!("retrieval: {name}=");
             proposals.iter().filter(|one| one.edit.to_string().starts_with(&text)).count()
@@ -433,7 +437,7 @@ mod tests {
             assert_ne!(changed.hash, variant.hash);
             // From there the usual value is a proposal again.
             assert!(
-                order(&changed)
+                order_proposals(&changed)
                     .iter()
                     .any(|back| { changed.edited(&back.edit).is_ok_and(|back| back.hash == variant.hash) })
                     || proposal.edit.to_string().contains("thr")

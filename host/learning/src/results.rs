@@ -70,31 +70,31 @@ pub struct CurvePoint {
     pub starts: u32,
     /// Of these, with the ball in or close to the goal, percent.
     pub to_goal: f64,
-    /// The same of random starts alone, as in the paper's simulator.
+    /// The same of random starts alone.
     pub to_goal_random: f64,
-    /// The same of all starts that are played as by the paper's robots.
-    pub to_goal_robots: f64,
+    /// The same of the starts that are played as by the paper's robots; none where a run has no such.
+    pub to_goal_robots: Option<f64>,
     /// Touches of the opponents, a trial.
     pub touches: f64,
 }
 
 impl CurvePoint {
-    /// The measures of trials on the first held-out starts.
-    pub(crate) fn of(round: u32, spent: u64, trials: &[LearningTrial]) -> Self {
+    /// The measures of trials on held-out starts with these indices.
+    pub(crate) fn of(round: u32, spent: u64, indices: &[u32], trials: &[LearningTrial]) -> Self {
         let to_goal = |of: &dyn Fn(StartKind) -> bool| {
-            let own = (0..).zip(trials).filter(|(index, _)| of(KINDS[kind_of(*index).0]));
+            let own = indices.iter().zip(trials).filter(|(index, _)| of(KINDS[kind_of(**index).0]));
             let own: Vec<bool> = own.map(|(_, trial)| trial.to_goal()).collect();
-            100.0 * own.iter().filter(|to_goal| **to_goal).count() as f64 / own.len().max(1) as f64
+            let goals = own.iter().filter(|to_goal| **to_goal).count();
+            (!own.is_empty()).then(|| 100.0 * goals as f64 / own.len() as f64)
         };
-        let noisy = |kind: StartKind| kind.profile == Profile::Robots;
         let touches: u64 = trials.iter().map(|trial| u64::from(trial.touches)).sum();
         Self {
             round,
             spent,
             starts: trials.len() as u32,
-            to_goal: to_goal(&|_| true),
-            to_goal_random: to_goal(&|kind| kind.scenario == Scenario::Random && !noisy(kind)),
-            to_goal_robots: to_goal(&noisy),
+            to_goal: to_goal(&|_| true).unwrap_or_default(),
+            to_goal_random: to_goal(&|kind| kind.scenario == Scenario::Random).unwrap_or_default(),
+            to_goal_robots: to_goal(&|kind| kind.profile == Profile::Robots),
             touches: touches as f64 / trials.len().max(1) as f64,
         }
     }

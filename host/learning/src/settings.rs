@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::edit::Edit;
 use crate::proposals::Kind;
+use crate::starts::Worlds;
 
 /// Settings of a run; equal ones on equal files learn the same.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -14,6 +15,8 @@ pub struct LearnSettings {
     pub budget: u64,
     /// Kinds of changes that are tried.
     pub kinds: BTreeSet<Kind>,
+    /// The worlds that are learned in.
+    pub worlds: Worlds,
     /// Expected share of wrong changes among the accepted ones.
     pub error_rate: f64,
     /// Tests that the error rate is shared among; after as many no change is accepted.

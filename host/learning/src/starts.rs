@@ -82,6 +82,47 @@ pub fn kind_of(index: u32) -> (usize, u32) {
     (kind, cycle * times(&CYCLE) + times(&CYCLE[..slot]))
 }
 
+/// The worlds that a run learns in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Worlds {
+    /// The paper's simulator, noiseless.
+    Simulated,
+    /// As the paper's robots play: noise, and a pause after every cycle.
+    Robots,
+    /// Both: a change may lower neither.
+    Both,
+}
+
+impl Worlds {
+    /// The worlds with this name on the command line.
+    pub fn from_label(label: &str) -> Option<Self> {
+        match label {
+            "simulated" => Some(Self::Simulated),
+            "robots" => Some(Self::Robots),
+            "both" => Some(Self::Both),
+            _ => None,
+        }
+    }
+
+    /// Whether starts of this kind are played.
+    pub fn has(self, kind: StartKind) -> bool {
+        match self {
+            Self::Simulated => kind.profile == Profile::Simulated,
+            Self::Robots => kind.profile == Profile::Robots,
+            Self::Both => true,
+        }
+    }
+
+    /// Indices of `count` starts from `from` on, of those that are played.
+    pub fn indices(self, from: u32, count: u32) -> Vec<u32> {
+        let own: Vec<u32> =
+            (0..CYCLE.len() as u32).filter(|slot| self.has(KINDS[CYCLE[*slot as usize]])).collect();
+        let (own_len, cycle) = (own.len() as u32, CYCLE.len() as u32);
+        (from..from + count).map(|n| n / own_len * cycle + own[(n % own_len) as usize]).collect()
+    }
+}
+
 /// The starts of a run with this seed.
 #[derive(Clone, Debug)]
 pub struct StartPlan(EvaluationPlan);
@@ -113,6 +154,20 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
+
+    #[test]
+    fn each_world_has_its_own_starts_in_order_and_both_have_all() {
+        assert_eq!(Worlds::Both.indices(5, 60), (5..65).collect::<Vec<_>>());
+        let [simulated, robots] =
+            [Worlds::Simulated, Worlds::Robots].map(|worlds| worlds.indices(0, 800 / 5));
+        for (indices, worlds) in [(&simulated, Worlds::Simulated), (&robots, Worlds::Robots)] {
+            assert!(indices.iter().all(|index| worlds.has(KINDS[kind_of(*index).0])));
+            assert!(indices.is_sorted_by(|a, b| a < b));
+            assert_eq!(worlds.indices(30, 50), indices[30..80]);
+        }
+        let all: BTreeSet<u32> = simulated.iter().chain(&robots[..80]).copied().collect();
+        assert_eq!(all, (0..240).collect(), "16 and 8 of 24");
+    }
 
     #[test]
     fn half_of_the_starts_are_random_a_third_noisy_and_no_two_are_the_same() {

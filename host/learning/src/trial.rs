@@ -63,7 +63,21 @@ impl LearningTrial {
     }
 }
 
+/// Where the ball is in play, mm: inside the lines of 2700 and 1800 mm.
+const BALL_INSIDE: [i32; 2] = [2650, 1750];
+
 impl Situation {
+    /// Whether a trial can be played from here: both robots and both opponents are known, the goal at -x is
+    /// defended, and the ball is in play.
+    pub fn is_usable(&self) -> bool {
+        let [x, y] = self.ball;
+        !self.defending_positive
+            && self.teammates.len() == 2
+            && self.opponents.len() == 2
+            && x.abs() < BALL_INSIDE[0]
+            && y.abs() < BALL_INSIDE[1]
+    }
+
     /// The problem of retrieval; robots with faulty ids and those above the largest team are left out.
     pub fn problem(&self) -> Problem {
         let point = |[x, y]: [i32; 2]| PointMm { x, y };

@@ -8,7 +8,7 @@ use case_tools::Files;
 use hil_sim::{Fnv, Stream, TrialOutcome};
 use learning::{
     Collected, Evidence, Kind, LearnSettings, LearningTrial, PlayError, Player, Situation, TrialDecision,
-    Unit, Variant, Verdict, Work, learn,
+    Unit, Variant, Verdict, Work, Worlds, learn,
 };
 
 /// Outcomes by a rule: the chance of a goal for a library and the case that is played.
@@ -85,6 +85,7 @@ fn settings(seed: u64, budget: u64, kinds: &[Kind]) -> LearnSettings {
         kinds: kinds.iter().copied().collect::<BTreeSet<_>>(),
         error_rate: 0.1,
         tries: 100,
+        worlds: Worlds::Both,
         refused: BTreeSet::new(),
         shuffle: false,
         dry_run: false,

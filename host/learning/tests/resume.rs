@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use arena::evaluation::Shard;
 use case_tools::Files;
-use learning::{Collected, JournalPlayer, Kind, LearnSettings, PlayError, json, learn};
+use learning::{Collected, JournalPlayer, Kind, LearnSettings, PlayError, Worlds, json, learn};
 
 static STOPPED: AtomicBool = AtomicBool::new(false);
 
@@ -27,6 +27,7 @@ fn settings() -> LearnSettings {
         kinds: BTreeSet::from([Kind::Scopes, Kind::New]),
         error_rate: 0.1,
         tries: 100,
+        worlds: Worlds::Both,
         refused: BTreeSet::new(),
         shuffle: false,
         dry_run: false,

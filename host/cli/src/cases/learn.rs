@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use arena::evaluation::{EvaluationError, Shard};
 use clap::Args;
-use learning::{JournalPlayer, Kind, LearnError, LearnSettings, Learned, learn};
+use learning::{JournalPlayer, Kind, LearnError, LearnSettings, Learned, Worlds, learn};
 
 use crate::Failure;
 use crate::args::{LibraryArgs, VERSION};
@@ -38,6 +38,10 @@ pub(crate) struct LearnArgs {
     /// Only these kinds of changes, with commas between: scopes, actions, new, forget, order.
     #[arg(long, value_name = "KINDS", value_delimiter = ',', value_parser = kind)]
     only: Vec<Kind>,
+    /// The world that is learned in: as the paper's simulator, as its robots with noise and pauses, or
+    /// both, where a change may lower neither.
+    #[arg(long, default_value = "simulated", value_parser = worlds)]
+    profile: Worlds,
     /// Expected share of wrong changes among the accepted ones.
     #[arg(long, default_value_t = 0.1, value_parser = rate)]
     error_rate: f64,
@@ -74,6 +78,7 @@ pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
         seed: args.seed,
         budget: args.budget,
         kinds,
+        worlds: args.profile,
         error_rate: args.error_rate,
         tries: args.tries,
         refused: refused.map_err(Failure::Refusals)?,
@@ -149,6 +154,10 @@ fn kind(label: &str) -> Result<Kind, String> {
         let known: Vec<_> = Kind::ALL.into_iter().map(Kind::label).collect();
         format!("take some of {}", known.join(", "))
     })
+}
+
+fn worlds(label: &str) -> Result<Worlds, String> {
+    Worlds::from_label(label).ok_or_else(|| "take simulated, robots or both".to_owned())
 }
 
 fn rate(label: &str) -> Result<f64, String> {

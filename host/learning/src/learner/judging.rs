@@ -236,7 +236,7 @@ impl<P: Player> Run<'_, P> {
         let base = variant.base();
         let touches = |i: &usize| affects(edit, variant, &base, without, *i);
         let chosen: Vec<usize> = (0..without.trials.len()).into_par_iter().filter(touches).collect();
-        let indices: Vec<u32> = chosen.iter().map(|i| without.first + *i as u32).collect();
+        let indices: Vec<u32> = chosen.iter().map(|i| without.indices[*i]).collect();
         let played = self.starts(variant, without.stream, &indices, true)?;
         let mut pairs = Pairs::default();
         for ((i, index), with) in chosen.iter().zip(&indices).zip(&played) {
@@ -337,7 +337,7 @@ mod tests {
         let files = case_tools::Files::read(&root.join("../../casebase/library/cases/four-legged")).unwrap();
         let current = Variant::new(files).unwrap();
         let trials = played(&current, true);
-        let without = Played::new(&current, StartStream::Exploration, 0, trials);
+        let without = Played::new(&current, StartStream::Exploration, (0..96).collect(), trials);
         let edit = |case: &str, change| Edit { case: case.to_owned(), change };
         let edits = [
             edit("center/close-in", Change::Forget),
