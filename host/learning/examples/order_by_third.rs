@@ -1,7 +1,7 @@
 //! `order_by_third`: what the settings of retrieval would give if each third of the field had its own
-//! (docs/learning.md). Situations are drawn from decisions of trials; each setting's change is played from those of a third
-//! of the field against no change, with the same seeds. The best change of each third is chosen in some
-//! situations and judged in others.
+//! (docs/learning.md). Situations are decisions of trials; each setting's change is played from those of a
+//! third of the field against no change, with the same seeds. The two best changes of each third are chosen
+//! in some situations and judged in others.
 //!
 //! `cargo run --release -p onetwo-learning --example order_by_third -- DIR [SEED]`, `DIR` being the library.
 

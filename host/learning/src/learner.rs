@@ -163,8 +163,9 @@ impl Sizes {
 
 /// Situations that are drawn to try proposals in: a change of one in a hundred finds 80.
 const SCREEN_GROUND: u32 = 8192;
-/// Most starts of a test, unless exploration has more: a change of one in eight trials differs in 200 pairs.
-const CONFIRM_MAX: u32 = 4096;
+/// Most starts of a test, unless exploration has more: a change that plays in one of eight trials and raises
+/// a tenth of them (1.2 points) is confirmed more often than not.
+const CONFIRM_MAX: u32 = 8192;
 /// Least number of validation starts where the budget allows for it: fewer show nothing of single kinds of
 /// starts.
 const VALIDATE_MIN: u32 = 1024;

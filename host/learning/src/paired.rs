@@ -54,7 +54,7 @@ pub struct Pairs {
 pub(crate) enum Objection {
     /// To goal is lower in a world or a kind of starts.
     Lowers,
-    /// The opponents touch the ball more often in a world.
+    /// The opponents touch the ball more often in a world where to goal rises by no more than chance gives.
     Touches,
 }
 
@@ -73,7 +73,9 @@ impl Pairs {
     pub(crate) fn objection(&self) -> Option<Objection> {
         let lowers = self.worlds.iter().any(|world| world.to_goal.z() < WORLD_LOWERED_Z)
             || self.kinds.iter().any(|kind| kind.z() < KIND_LOWERED_Z);
-        let touches = self.worlds.iter().any(|world| world.touches.z() > TOUCHES_Z);
+        // A play that ends at once, such as a kick out of the field, has few touches: what mends it has more.
+        let dearer = |world: &WorldPairs| world.touches.z() > TOUCHES_Z && world.to_goal.z() < GAIN_Z;
+        let touches = self.worlds.iter().any(dearer);
         if lowers { Some(Objection::Lowers) } else { touches.then_some(Objection::Touches) }
     }
 }
@@ -84,6 +86,8 @@ const WORLD_LOWERED_Z: f64 = 0.0;
 const KIND_LOWERED_Z: f64 = -1.96;
 /// Touches count as more frequent from here on, as the kinds.
 const TOUCHES_Z: f64 = 1.96;
+/// To goal counts as raised from here on, as the kinds.
+const GAIN_Z: f64 = 1.96;
 
 #[cfg(test)]
 mod tests {
@@ -124,5 +128,10 @@ mod tests {
         assert_eq!(pairs(0, 4, (true, 3), (true, 2)).objection(), Some(Objection::Touches));
         assert_eq!(pairs(0, 3, (true, 3), (true, 2)).objection(), None);
         assert_eq!(pairs(0, 9, (true, 1), (false, 2)).objection(), None);
+        // Four goals more are worth the touches, three may be chance.
+        assert_eq!(pairs(0, 4, (true, 3), (false, 2)).objection(), None);
+        let mut three = pairs(0, 3, (true, 3), (false, 2));
+        three.add(0, &trial(true, 3), &trial(true, 2));
+        assert_eq!(three.objection(), Some(Objection::Touches));
     }
 }

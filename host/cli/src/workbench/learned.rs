@@ -1,5 +1,5 @@
-//! `learned`: what `onetwo cases learn` has left beside a library: its evidence and its report; and the changes
-//! that the author has refused.
+//! `learned`: what `onetwo cases learn` has left beside a library, its evidence and its report, and the
+//! changes that the author has refused.
 
 use std::collections::BTreeSet;
 use std::fs;
