@@ -64,6 +64,7 @@ fn count_this_round(host: &mut Host, round: &[Record]) -> (u64, u64) {
             RecordKind::Timeout => Input::Timeout,
             RecordKind::Orders => Input::Orders(&record.bytes),
             RecordKind::Parameter => Input::Parameter(&record.bytes),
+            RecordKind::Test => Input::Test(&record.bytes),
             RecordKind::Halt => Input::Halt,
             RecordKind::Sent | RecordKind::Lost => continue,
         };

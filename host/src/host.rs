@@ -10,6 +10,7 @@ mod change;
 mod commands;
 mod input;
 mod state;
+mod test;
 
 use casebase::CaseBase;
 use geometry::{GoalEnd, Point};
@@ -31,6 +32,7 @@ use crate::radio::{self, Radio, RadioSettings, RadioSituation, To};
 use crate::referee::team_port::TeamPortRequest;
 use crate::referee::{Listener, OnSilence, SenderAddress, SourcePin};
 use crate::requests::Requests;
+use crate::robot_test::RobotTest;
 use crate::strategy::counters::Bookkeeper;
 use crate::strategy::stakes::{Stakes, time_left};
 use crate::strategy::view::{CasePass, RobotSet, ViewGame};
@@ -127,6 +129,7 @@ pub struct Host {
     halted: bool,
     /// Set in place of the coach's orders.
     drill: Option<Drill>,
+    test: Option<RobotTest>,
     books: Bookkeeper,
     requests: Requests,
     learned: Learned,
@@ -174,6 +177,7 @@ impl Host {
             undecodable: Undecodable::default(),
             halted: false,
             drill: None,
+            test: None,
             books: Bookkeeper::default(),
             requests: Requests::default(),
             cases: cases_of(settings.league),
@@ -199,6 +203,7 @@ impl Host {
             Input::Robot(bytes) => self.listen(now, bytes),
             Input::Orders(line) => self.follow(now, line),
             Input::Parameter(json) => self.change(json),
+            Input::Test(json) => self.begin_test(json),
             Input::Halt => {
                 self.halt(now);
                 InputVerdict::Halted
@@ -335,6 +340,9 @@ impl Host {
         if let Some(external) = &mut self.external {
             self.orders = external.plan(&view, std::mem::take(&mut self.orders));
         }
+        if let Some(test) = &mut self.test {
+            self.orders = test.plan(&view, std::mem::take(&mut self.orders));
+        }
         if !self.halted {
             self.requests.look(&view, self.listener.game().team(us).substitutions_left);
         }
@@ -342,6 +350,9 @@ impl Host {
         self.books.note((&self.world, &view, &view.field), (us, flip), &self.orders, self.coach.take_sent());
         let commands = self.commands(&game);
         self.learned.see(now, (&snapshot, us), game.phase, &commands);
+        if let Some(test) = &mut self.test {
+            test.see(now, &snapshot, us, &commands);
+        }
         if self.settings.learns
             && let Some(known) = self.learned.friction()
             && self.roll.is_none_or(|roll| (known.value - roll).abs() > roll * ROLL_CHANGES)

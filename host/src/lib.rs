@@ -18,6 +18,7 @@ pub mod radio;
 pub mod record;
 pub mod referee;
 mod requests;
+pub mod robot_test;
 pub mod sanity;
 pub mod shell;
 pub mod strategy;

@@ -6,6 +6,7 @@ use protocol::frame::Refusal;
 use crate::config::ConfigError;
 use crate::external::AnswerError;
 use crate::referee::{self, SenderAddress};
+use crate::robot_test::TestRefused;
 use crate::tracking;
 
 /// An input of the host.
@@ -22,6 +23,9 @@ pub enum Input<'a> {
     /// The operator changes a parameter: the JSON of a
     /// [`ParameterChange`](crate::config::ParameterChange).
     Parameter(&'a [u8]),
+    /// The operator begins or ends a test of a kicker: the JSON of a
+    /// [`TestOrder`](crate::robot_test::TestOrder).
+    Test(&'a [u8]),
     /// The operator halts our robots until the end of the program.
     Halt,
     /// A deadline that [`Host::poll_timeout`](crate::Host::poll_timeout) announced.
@@ -51,6 +55,10 @@ pub enum InputVerdict {
     Changed,
     /// A change that is refused; nothing changed.
     NotChanged(ConfigError),
+    /// A test begins or ends.
+    Test,
+    /// A test that does not begin; a running one goes on.
+    NoTest(TestRefused),
     /// Our robots halt until the end.
     Halted,
 }

@@ -11,13 +11,15 @@ use crate::world::{Kick, World};
 
 /// Estimates of all robots' kick gains.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Kicks {
+pub(crate) struct Kicks {
     /// The flat kick that a robot was last ordered, m/s, and when.
     ordered: [Option<(Instant, f32)>; RobotId::COUNT],
     gains: [Samples<KEPT>; RobotId::COUNT],
     watched: Option<Watched>,
     /// The kick that was watched last.
     known: Option<(Instant, Option<Who>)>,
+    /// The newest measured kick: its robot, speed ordered and speed seen, m/s.
+    newest: Option<(RobotId, [f32; 2])>,
 }
 
 /// A kick that has just been seen.
@@ -35,7 +37,7 @@ struct Watched {
 }
 
 impl Kicks {
-    pub(super) fn see(&mut self, now: Instant, world: &World, us: Colour, commands: &[HostCommand]) {
+    pub(crate) fn see(&mut self, now: Instant, world: &World, us: Colour, commands: &[HostCommand]) {
         self.watch(world, us);
         for command in commands {
             if let Directive::Kick { kick: KickOrder::Flat(speed), .. }
@@ -66,6 +68,7 @@ impl Kicks {
         if age.0 > TO.0 {
             if let Some(gain) = watched.gain() {
                 self.gains[watched.robot.index()].add(gain);
+                self.newest = Some((watched.robot, [watched.ordered, gain * watched.ordered]));
             }
             self.watched = None;
         } else if ball.seen > watched.newest && age.0 >= FROM.0 {
@@ -110,6 +113,16 @@ impl Kicks {
     pub(super) fn gain(&self, robot: RobotId) -> Option<Estimate> {
         self.gains[robot.index()].estimate(LEAST).filter(|gain| gain.error() <= ERROR)
     }
+
+    /// The same from the third kick on, however far the kicks scatter: for who looks at each of them.
+    pub(crate) fn estimate(&self, robot: RobotId) -> Option<Estimate> {
+        self.gains[robot.index()].estimate(LEAST_SHOWN)
+    }
+
+    /// The kick measured since this was last asked: its robot, speed ordered and speed seen, m/s.
+    pub(crate) fn take_newest(&mut self) -> Option<(RobotId, [f32; 2])> {
+        self.newest.take()
+    }
 }
 
 impl Watched {
@@ -139,6 +152,8 @@ impl Watched {
 const KEPT: usize = 15;
 /// Number of kicks needed: of three, two with the same error determine the median.
 const LEAST: usize = 5;
+/// Of so many kicks a test shows a gain while it goes on.
+const LEAST_SHOWN: usize = 3;
 /// A gain is known when its standard error is at most this. Chosen to exclude one estimate that was 20 % off
 /// with an error of 0.047, from kicks that left slower than ordered for a reason that is not known; the
 /// largest error of the ten right ones beside it was 0.040.

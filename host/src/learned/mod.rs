@@ -24,12 +24,13 @@ use rules::{Colour, Phase, Side};
 use crate::world::World;
 
 pub use file::kept;
+pub(crate) use kick::Kicks;
 pub use samples::Estimate;
 
 /// Estimates of kick gains, latencies and friction, with their samples.
 #[derive(Clone, Debug, Default)]
 pub struct Learned {
-    kicks: kick::Kicks,
+    kicks: Kicks,
     latencies: latency::Latencies,
     friction: friction::Friction,
 }

@@ -57,6 +57,7 @@ enum Owned {
     Robot(Vec<u8>),
     Orders(Vec<u8>),
     Parameter(Vec<u8>),
+    Test(Vec<u8>),
     Halt,
     Timeout,
 }
@@ -69,6 +70,7 @@ impl Owned {
             Input::Robot(bytes) => Self::Robot(bytes.to_vec()),
             Input::Orders(line) => Self::Orders(line.to_vec()),
             Input::Parameter(json) => Self::Parameter(json.to_vec()),
+            Input::Test(json) => Self::Test(json.to_vec()),
             Input::Halt => Self::Halt,
             Input::Timeout => Self::Timeout,
         }
@@ -81,6 +83,7 @@ impl Owned {
             Self::Robot(bytes) => Input::Robot(bytes),
             Self::Orders(line) => Input::Orders(line),
             Self::Parameter(json) => Input::Parameter(json),
+            Self::Test(json) => Input::Test(json),
             Self::Halt => Input::Halt,
             Self::Timeout => Input::Timeout,
         }
@@ -98,7 +101,9 @@ impl Entry {
                     Owned::Vision(bytes)
                     | Owned::Referee(bytes, _)
                     | Owned::Robot(bytes)
-                    | Owned::Orders(bytes),
+                    | Owned::Orders(bytes)
+                    | Owned::Parameter(bytes)
+                    | Owned::Test(bytes),
                 ) => bytes.len(),
                 _ => 0,
             }
@@ -137,7 +142,8 @@ impl BackgroundRecorder {
             | Input::Referee(bytes, _)
             | Input::Robot(bytes)
             | Input::Orders(bytes)
-            | Input::Parameter(bytes) => bytes.len(),
+            | Input::Parameter(bytes)
+            | Input::Test(bytes) => bytes.len(),
             Input::Halt | Input::Timeout => 0,
         };
         if self.has_record_room(now, len) {

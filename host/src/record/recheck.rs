@@ -144,6 +144,7 @@ impl Recheck {
             RecordKind::Timeout => checked.feed_input(record.at, Input::Timeout),
             RecordKind::Orders => checked.feed_input(record.at, Input::Orders(&record.bytes)),
             RecordKind::Parameter => checked.feed_input(record.at, Input::Parameter(&record.bytes)),
+            RecordKind::Test => checked.feed_input(record.at, Input::Test(&record.bytes)),
             RecordKind::Halt => checked.feed_input(record.at, Input::Halt),
             RecordKind::Lost => {}
         }

@@ -95,6 +95,7 @@ impl Recorder {
             Input::Robot(bytes) => (RecordKind::Robot, [&[], bytes]),
             Input::Orders(line) => (RecordKind::Orders, [&[], line]),
             Input::Parameter(json) => (RecordKind::Parameter, [&[], json]),
+            Input::Test(json) => (RecordKind::Test, [&[], json]),
             Input::Halt => (RecordKind::Halt, [&[], &[]]),
             Input::Timeout => (RecordKind::Timeout, [&[], &[]]),
         };

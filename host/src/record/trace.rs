@@ -54,14 +54,16 @@ pub enum RecordKind {
     Orders,
     /// The operator changed a parameter.
     Parameter,
+    /// The operator began or ended a test of a kicker.
+    Test,
 }
 
 impl RecordKind {
     fn from_byte(byte: u8) -> Option<Self> {
         use RecordKind as K;
-        [K::Vision, K::Referee, K::Robot, K::Timeout, K::Sent, K::Lost, K::Halt, K::Orders, K::Parameter]
-            .get(usize::from(byte))
-            .copied()
+        let first = [K::Vision, K::Referee, K::Robot, K::Timeout, K::Sent];
+        let later = [K::Lost, K::Halt, K::Orders, K::Parameter, K::Test];
+        first.iter().chain(&later).nth(usize::from(byte)).copied()
     }
 
     /// Whether it is an input of the host.

@@ -138,6 +138,8 @@ pub enum OrderReason {
     External,
     /// The strategy of another program has not answered.
     ExternalSilent,
+    /// A robot's kicker is tested.
+    Test,
     /// The referee allows us fewer robots.
     TooMany {
         /// Number of robots allowed.
@@ -262,6 +264,7 @@ impl fmt::Display for OrderReason {
             Self::Idle => f.write_str("the team only stands"),
             Self::External => f.write_str("ordered by the team's own strategy"),
             Self::ExternalSilent => f.write_str("the team's own strategy does not answer"),
+            Self::Test => f.write_str("a kicker is tested"),
             Self::NoBall => f.write_str("no ball is seen"),
             Self::TooMany { allowed } => write!(f, "the referee lets us have {allowed}"),
         }

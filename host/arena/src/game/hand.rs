@@ -7,6 +7,7 @@ use hil_sim::small_size::referee::{Card, Restart};
 use hil_sim::{Backend, LinkLoss};
 use host::Input;
 use host::config::{ConfigError, ParameterChange, TeamConfig};
+use host::robot_test::{TestOrder, TestRefused};
 use protocol::{Duration, RobotId, Who};
 use rules::Colour;
 use rules::state::RefereeCommand;
@@ -99,6 +100,23 @@ impl<'a> Game<'a> {
         let team = &mut self.teams[team as usize];
         TeamConfig::of(team.host.settings())?.changed(change)?;
         team.feed(tick, now, Input::Parameter(change.to_json().as_bytes()), watcher);
+        Ok(())
+    }
+
+    /// Begins or ends a test of a team's kicker, as its operator does; a refused one changes nothing.
+    pub fn test(
+        &mut self,
+        team: Colour,
+        order: TestOrder,
+        watcher: &mut dyn Watcher,
+    ) -> Result<(), TestRefused> {
+        let (tick, now) = (self.tick, self.now());
+        let order = TestOrder::from_json(order.to_json().as_bytes())?;
+        let team = &mut self.teams[team as usize];
+        if team.host.settings().external && matches!(order, TestOrder::Kick { .. }) {
+            return Err(TestRefused::External);
+        }
+        team.feed(tick, now, Input::Test(order.to_json().as_bytes()), watcher);
         Ok(())
     }
 

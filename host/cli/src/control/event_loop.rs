@@ -4,6 +4,8 @@
 //! Event-driven: it waits for mail or for the host's deadline, whichever is first. Times on the host's clock,
 //! which is 0 when the program starts.
 
+mod requests;
+
 use std::ffi::OsString;
 use std::io;
 use std::path::Path;
@@ -13,7 +15,7 @@ use std::sync::mpsc::{self, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use host::config::{ParameterChange, TeamConfig};
+use host::config::TeamConfig;
 use host::radio::RadioSettings;
 use host::record::header::RecordingHeader;
 use host::record::{BackgroundRecorder, Recorder};
@@ -21,7 +23,7 @@ use host::referee::team_port::TeamPortRequest;
 use host::shell::{Outbox, SimSettings, StrategyProcess};
 use host::tracking::{Publisher, VisionVerdict};
 use host::{Host, HostSettings, Input, InputVerdict};
-use page::{Powers, UserRequest};
+use page::Powers;
 use protocol::RobotId;
 use protocol::frame::TeamKey;
 use rules::Colour;
@@ -40,7 +42,7 @@ use super::watch::Watch;
 use super::{Cases, identity, port_for_teams, simulator};
 use crate::Failure;
 use crate::failure::NetworkError;
-use crate::live::{PageArgs, change_of, description_of};
+use crate::live::PageArgs;
 use crate::net::NetSender;
 use crate::output::note;
 use crate::stop::stopped_by_hand;
@@ -326,9 +328,12 @@ impl EventLoop {
             let received = match input {
                 Input::Vision(bytes) => Some((MessageKind::Vision2014, bytes)),
                 Input::Referee(bytes, _) => Some((MessageKind::Refbox2013, bytes)),
-                Input::Robot(_) | Input::Orders(_) | Input::Parameter(_) | Input::Halt | Input::Timeout => {
-                    None
-                }
+                Input::Robot(_)
+                | Input::Orders(_)
+                | Input::Parameter(_)
+                | Input::Test(_)
+                | Input::Halt
+                | Input::Timeout => None,
             };
             if let Some((kind, bytes)) = received {
                 recorder.received(now, kind, bytes);
@@ -342,7 +347,12 @@ impl EventLoop {
             match input {
                 Input::Vision(bytes) => board.vision(bytes),
                 Input::Referee(bytes, _) => board.referee(bytes, now),
-                Input::Robot(_) | Input::Orders(_) | Input::Parameter(_) | Input::Halt | Input::Timeout => {}
+                Input::Robot(_)
+                | Input::Orders(_)
+                | Input::Parameter(_)
+                | Input::Test(_)
+                | Input::Halt
+                | Input::Timeout => {}
             }
         }
         self.send(now);
@@ -367,48 +377,6 @@ impl EventLoop {
             batch.push((to, packet));
         }
         self.out.lock().unwrap_or_else(PoisonError::into_inner).push(batch, self.host.is_halting());
-    }
-
-    /// Sends the scene to the page, and does what viewers ask for.
-    fn show(&mut self) {
-        let now = self.now();
-        let Some(board) = &mut self.board else { return };
-        let alarms = [self.alarms.now(), self.watch.missing()].concat();
-        board.look(now, &self.host, alarms);
-        self.tuning.show(&self.host, board.page());
-        while let Some(request) = self.board.as_ref().and_then(Board::next_request) {
-            let refused = match request {
-                UserRequest::Halt {} => {
-                    let description = "HALT was asked for on the page: the robots stand until the end";
-                    self.description.push(description.to_owned());
-                    self.feed(now, Input::Halt);
-                    None
-                }
-                UserRequest::Parameter { key, robot, value, .. } => {
-                    change_of(&key, robot, value.as_ref()).and_then(|change| self.change(change)).err()
-                }
-                UserRequest::Save {} => self.tuning.save().map(|told| self.description.push(told)).err(),
-                // Requests for a simulation are refused when they are read.
-                _ => None,
-            };
-            if let (Some(description), Some(board)) = (refused, &self.board) {
-                board.page().refuse(description);
-            }
-        }
-    }
-
-    /// Changes a parameter; an error says why it stays as it is.
-    fn change(&mut self, change: ParameterChange) -> Result<(), String> {
-        self.tuning.check(&self.host, &change)?;
-        let now = self.now();
-        if let InputVerdict::NotChanged(refused) =
-            self.feed(now, Input::Parameter(change.to_json().as_bytes()))
-        {
-            return Err(refused.to_string());
-        }
-        self.description.push(format!("parameter  {}", description_of(&change)));
-        self.tuning.keep(change);
-        Ok(())
     }
 
     fn publish(&mut self, now: protocol::Instant) {

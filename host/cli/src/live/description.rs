@@ -78,6 +78,7 @@ fn reason(why: &OrderReason) -> String {
         | OrderReason::Coerces { .. }
         | OrderReason::External
         | OrderReason::ExternalSilent
+        | OrderReason::Test
         | OrderReason::Coercing { .. } => why.to_string(),
         // Reasons without a label of their own are printed by their name.
         other => spaced(&format!("{other:?}")),

@@ -260,6 +260,7 @@ pub(super) fn label(kind: RecordKind) -> &'static str {
         RecordKind::Halt => "halts",
         RecordKind::Orders => "strategy",
         RecordKind::Parameter => "parameters",
+        RecordKind::Test => "tests",
         RecordKind::Lost => "lost",
     }
 }

@@ -95,7 +95,7 @@ pub(super) fn records(a: &Record, b: &Record, colours: &[Colour]) -> (String, St
     let fields = match a.kind {
         RecordKind::Vision => field::<WrapperPacket>(a, b),
         RecordKind::Referee => field::<Referee>(a, b),
-        RecordKind::Orders | RecordKind::Parameter => {
+        RecordKind::Orders | RecordKind::Parameter | RecordKind::Test => {
             let text = |record: &Record| excerpt(&String::from_utf8_lossy(&record.bytes), VALUE_LEN);
             Some(("line".to_owned(), text(a), text(b)))
         }

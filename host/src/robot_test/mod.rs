@@ -1,0 +1,253 @@
+//! `robot_test`: the test of a robot's kicker on the field. One robot kicks a resting ball again and again,
+//! at several speeds; the tracker sees how fast the ball leaves, and the gain of the kicker is fitted. m,
+//! m/s.
+//!
+//! The operator begins and ends it ([`crate::Input::Test`]), so that a trace replays it. It gives orders in
+//! open play alone, and in every other phase the coach does, so that the rules are kept: HALT and STOP hold
+//! as in a match. While it lasts, and when it is over, all other robots of the team stand.
+
+mod line;
+
+use geometry::{Attack, Point, Vector};
+use protocol::host::{HostCommand, KickOrder};
+use protocol::{Instant, RobotId};
+use rules::{Colour, Phase};
+use serde::{Deserialize, Serialize};
+
+use crate::learned::{Estimate, Kicks};
+use crate::strategy::{Order, OrderReason, Orders, Role, Task, View};
+use crate::world::World;
+
+/// What the operator asks for, as JSON in a trace and from the page.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase", deny_unknown_fields)]
+pub enum TestOrder {
+    /// This robot kicks until so many kicks are measured; a running test is replaced.
+    Kick {
+        /// The robot's number.
+        robot: u8,
+        /// Kicks to measure, 5 to 15.
+        kicks: u8,
+    },
+    /// All robots stand in open play: another team tests on this field.
+    Stand,
+    /// The coach gives orders again.
+    End,
+}
+
+/// Why a test does not begin.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum TestRefused {
+    /// The line is no order.
+    Malformed(String),
+    /// There is no robot of this number.
+    NoSuchRobot(u8),
+    /// So many kicks are not measured.
+    Kicks(u8),
+    /// A strategy in another program gives the orders.
+    External,
+}
+
+impl std::fmt::Display for TestRefused {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Malformed(description) => write!(f, "no test: {description}"),
+            Self::NoSuchRobot(number) => write!(f, "{number} is no robot; ids are 0 to 15"),
+            Self::Kicks(kicks) => {
+                write!(f, "{kicks} kicks: a test measures {KICKS_LEAST} to {KICKS_MOST}")
+            }
+            Self::External => f.write_str("a strategy in another program gives the orders: end it first"),
+        }
+    }
+}
+
+impl std::error::Error for TestRefused {}
+
+impl TestOrder {
+    /// From JSON, within what a test can do.
+    pub fn from_json(json: &[u8]) -> Result<Self, TestRefused> {
+        let order =
+            serde_json::from_slice(json).map_err(|error| TestRefused::Malformed(error.to_string()))?;
+        match order {
+            Self::Kick { robot, .. } if RobotId::new(robot).is_none() => Err(TestRefused::NoSuchRobot(robot)),
+            Self::Kick { kicks, .. } if !(KICKS_LEAST..=KICKS_MOST).contains(&kicks) => {
+                Err(TestRefused::Kicks(kicks))
+            }
+            order => Ok(order),
+        }
+    }
+
+    /// As JSON, for a trace.
+    pub fn to_json(self) -> String {
+        // Numbers and words: JSON can represent all of it.
+        serde_json::to_string(&self).unwrap_or_default()
+    }
+}
+
+/// How a test of a kicker stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TestState {
+    /// The referee has not let the game run.
+    WaitsForGame,
+    /// The robot is not on the field, or does not answer.
+    NoRobot,
+    /// The ball's place is unknown.
+    NoBall,
+    /// The ball rolls after a kick.
+    Rolls,
+    /// The robot goes to the ball and kicks it.
+    Kicks,
+    /// All kicks are measured.
+    Done,
+}
+
+/// What a test of a kicker has found so far.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KickReport {
+    /// The robot.
+    pub robot: RobotId,
+    /// Kicks to measure.
+    pub wanted: u8,
+    /// Each measured kick: speed ordered of the kicker, and speed of the ball as it left, m/s.
+    pub kicks: Vec<[f32; 2]>,
+    /// The gain that fits them: speed of the ball over speed ordered; from the third kick on.
+    pub gain: Option<Estimate>,
+    /// How it stands.
+    pub state: TestState,
+}
+
+/// A test that runs, or has come to its end.
+#[derive(Clone, Debug)]
+pub(crate) struct RobotTest {
+    /// The robot that kicks and the number of its kicks; none: all stand.
+    kicker: Option<(RobotId, u8)>,
+    fit: Kicks,
+    kicks: Vec<[f32; 2]>,
+    /// Kicks that were seen, measured or not.
+    tried: usize,
+    /// The last kick still rolls.
+    rolls: bool,
+    /// Where the ball lay when the target was chosen, and the target.
+    target: Option<[Point<Attack>; 2]>,
+    state: TestState,
+}
+
+impl RobotTest {
+    /// The test that is ordered; none: an end.
+    pub(crate) fn of(order: TestOrder) -> Option<Self> {
+        let kicker = match order {
+            TestOrder::Kick { robot, kicks } => Some((RobotId::new(robot)?, kicks)),
+            TestOrder::Stand => None,
+            TestOrder::End => return None,
+        };
+        let (fit, kicks, state) = (Kicks::default(), Vec::new(), TestState::WaitsForGame);
+        Some(Self { kicker, fit, kicks, tried: 0, rolls: false, target: None, state })
+    }
+
+    /// What it has found; none: all stand.
+    pub(crate) fn report(&self) -> Option<KickReport> {
+        let (robot, wanted) = self.kicker?;
+        let (kicks, gain) = (self.kicks.clone(), self.fit.estimate(robot));
+        Some(KickReport { robot, wanted, kicks, gain, state: self.state })
+    }
+
+    /// The orders to be sent now in place of the coach's, `usual`.
+    pub(crate) fn plan(&mut self, view: &View, usual: Orders) -> Orders {
+        let task = self.kick(view);
+        if view.phase != Phase::Run {
+            return usual;
+        }
+        let order = |robot: &crate::strategy::view::ViewRobot| {
+            let role = if robot.id == view.keeper { Role::Keeper } else { Role::Player };
+            let own = task.filter(|_| self.kicker.is_some_and(|(kicker, _)| kicker == robot.id));
+            let task = own.unwrap_or(Task::Stand);
+            Order { robot: robot.id, role, task, why: OrderReason::Test }
+        };
+        view.ours.iter().map(order).collect()
+    }
+
+    /// What the kicker does, and how the test stands.
+    fn kick(&mut self, view: &View) -> Option<Task> {
+        let (robot, wanted) = self.kicker?;
+        self.look(view);
+        let (state, task) = if self.kicks.len() >= usize::from(wanted) {
+            (TestState::Done, None)
+        } else if view.phase != Phase::Run {
+            (TestState::WaitsForGame, None)
+        } else if view.our(robot).is_none() {
+            (TestState::NoRobot, None)
+        } else if self.rolls {
+            (TestState::Rolls, None)
+        } else {
+            match view.ball {
+                None => (TestState::NoBall, None),
+                Some(ball) => {
+                    let at = self.target_from(view, robot, ball.position);
+                    let kick = KickOrder::Flat(SPEEDS_CM_S[self.tried % SPEEDS_CM_S.len()]);
+                    (TestState::Kicks, Some(Task::Kick { at, kick }))
+                }
+            }
+        };
+        self.state = state;
+        task
+    }
+
+    /// Whether the last kick still rolls.
+    fn look(&mut self, view: &View) {
+        let Some(ball) = view.ball else { return };
+        let speed = ball.velocity.norm();
+        if !self.rolls && speed > KICKED {
+            (self.rolls, self.target) = (true, None);
+            self.tried += 1;
+        }
+        self.rolls &= speed > RESTS;
+    }
+
+    /// The same target until the ball lies elsewhere.
+    fn target_from(&mut self, view: &View, robot: RobotId, ball: Point<Attack>) -> Point<Attack> {
+        if let Some([from, to]) = self.target
+            && from.distance(ball) < SAME_PLACE
+        {
+            return to;
+        }
+        let to = line::longest(view, robot, ball);
+        self.target = Some([ball, to]);
+        to
+    }
+
+    /// A snapshot at the newest camera frame, and the orders that go out because of it.
+    pub(crate) fn see(&mut self, now: Instant, world: &World, us: Colour, commands: &[HostCommand]) {
+        let Some((robot, wanted)) = self.kicker else { return };
+        self.fit.see(now, world, us, commands);
+        if let Some((kicker, kick)) = self.fit.take_newest()
+            && kicker == robot
+            && self.kicks.len() < usize::from(wanted)
+        {
+            self.kicks.push(kick);
+        }
+    }
+}
+
+/// Fewest kicks of a test: of five, two may be spoiled.
+const KICKS_LEAST: u8 = 5;
+/// Most: as many as a fit keeps.
+const KICKS_MOST: u8 = 15;
+/// Speeds in turn, cm/s: as passes have them; with the greatest gain the least of them is still ordered
+/// faster than 1.5 m/s, below which a kick is not told from a touch.
+const SPEEDS_CM_S: [u16; 4] = [320, 260, 380, 440];
+/// A ball faster than this was kicked, m/s: the weakest kicker gives 1.04, and a ball at the dribbler of a
+/// robot that lines up moves slower.
+const KICKED: f32 = 0.9;
+/// A ball slower than this is fetched, m/s.
+const RESTS: f32 = 0.3;
+/// A ball that has moved less lies where it was, m: the robot pushes it while it lines up.
+const SAME_PLACE: f32 = 0.4;
+
+/// A step from a place by a distance in a direction.
+fn step(from: Point<Attack>, along: Vector<Attack>, distance: f32) -> Point<Attack> {
+    from + along * distance
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,138 @@
+//! `tests`: tests: who does what while a kicker is tested, by the phase of the game and by what the ball
+//! does.
+
+use protocol::Instant;
+use rules::Side;
+
+use super::*;
+use crate::strategy::view::{ViewBall, tests::view};
+
+fn id(number: u8) -> RobotId {
+    RobotId::new(number).unwrap()
+}
+
+fn begun() -> RobotTest {
+    RobotTest::of(TestOrder::from_json(br#"{"kick":{"robot":2,"kicks":5}}"#).unwrap()).unwrap()
+}
+
+fn field() -> View {
+    View { phase: Phase::Run, ..view((1.0, 0.5), &[(-4.0, 0.0), (-1.0, 1.0), (0.0, 0.0)], &[(3.0, 0.5)]) }
+}
+
+fn usual(view: &View) -> Orders {
+    let order = |robot: RobotId| Order {
+        robot,
+        role: Role::Player,
+        task: Task::Gameplay,
+        why: OrderReason::OpenPlay,
+    };
+    view.ours.iter().map(|robot| order(robot.id)).collect()
+}
+
+fn planned(test: &mut RobotTest, view: &View) -> Vec<Task> {
+    test.plan(view, usual(view)).iter().map(|order| order.task).collect()
+}
+
+#[test]
+fn the_kicker_kicks_inside_the_field_past_everybody_and_all_others_stand() {
+    let (mut test, view) = (begun(), field());
+    let orders = test.plan(&view, usual(&view));
+    assert_eq!(orders.len(), 3);
+    for order in &orders {
+        assert_eq!(order.why, OrderReason::Test);
+        let Task::Kick { at, kick } = order.task else {
+            assert!(order.robot != id(2) && order.task == Task::Stand, "{order:?}");
+            continue;
+        };
+        assert_eq!((order.robot, kick), (id(2), KickOrder::Flat(320)));
+        assert!(at.x().abs() < view.field.length * 0.5 && at.y().abs() < view.field.width * 0.5, "{at:?}");
+        let ball = view.ball.unwrap().position;
+        let line = geometry::Segment::new(ball, at);
+        for other in view.ours.iter().filter(|robot| robot.id != id(2)).chain(&view.theirs) {
+            assert!(line.distance_to(other.position) > 0.25, "{at:?} past {other:?}");
+        }
+        assert!(ball.distance(at) > 3.0, "{at:?}");
+    }
+    assert_eq!(test.report().unwrap().state, TestState::Kicks);
+    // A ball that is pushed a little keeps its target.
+    let before = planned(&mut test, &view);
+    let pushed = View { ball: Some(ViewBall::at_rest(Point::new(1.1, 0.6))), ..view.clone() };
+    assert_eq!(planned(&mut test, &pushed), before);
+}
+
+#[test]
+fn a_rolling_ball_is_waited_for_and_the_next_kick_has_another_speed() {
+    let (mut test, view) = (begun(), field());
+    let ball = |speed: f32| {
+        let velocity = geometry::Vector::new(speed, 0.0);
+        View { ball: Some(ViewBall { velocity, ..view.ball.unwrap() }), ..view.clone() }
+    };
+    planned(&mut test, &view);
+    for speed in [3.0, 1.0, 0.4] {
+        assert!(planned(&mut test, &ball(speed)).iter().all(|task| *task == Task::Stand), "{speed}");
+        assert_eq!(test.report().unwrap().state, TestState::Rolls);
+    }
+    let tasks = planned(&mut test, &ball(0.1));
+    let kicks = tasks.iter().filter_map(|task| match task {
+        Task::Kick { kick, .. } => Some(*kick),
+        _ => None,
+    });
+    assert_eq!(kicks.collect::<Vec<_>>(), [KickOrder::Flat(260)]);
+}
+
+#[test]
+fn the_rules_hold_and_what_is_missing_is_said() {
+    let state = |view: &View| {
+        let mut test = begun();
+        let orders = test.plan(view, usual(view));
+        (test.report().unwrap().state, orders == usual(view))
+    };
+    for phase in [Phase::Halt, Phase::Stop, Phase::FreeKick(Side::Ours), Phase::Kickoff(Side::Theirs)] {
+        let view = View { phase, ..field() };
+        assert_eq!(state(&view), (TestState::WaitsForGame, true), "{phase:?}");
+    }
+    assert_eq!(state(&View { ball: None, ..field() }), (TestState::NoBall, false));
+    assert_eq!(state(&field().without(&[id(2)])), (TestState::NoRobot, false));
+    let mut all_stand = RobotTest::of(TestOrder::Stand).unwrap();
+    assert!(planned(&mut all_stand, &field()).iter().all(|task| *task == Task::Stand));
+    assert_eq!(all_stand.report(), None);
+    assert!(RobotTest::of(TestOrder::End).is_none());
+}
+
+#[test]
+fn orders_are_read_as_they_are_written_and_others_are_refused_with_the_reason() {
+    let orders = [TestOrder::Kick { robot: 15, kicks: 15 }, TestOrder::Stand, TestOrder::End];
+    for order in orders {
+        assert_eq!(TestOrder::from_json(order.to_json().as_bytes()), Ok(order));
+    }
+    for (json, refused) in [
+        (r#"{"kick":{"robot":16,"kicks":5}}"#, TestRefused::NoSuchRobot(16)),
+        (r#"{"kick":{"robot":1,"kicks":4}}"#, TestRefused::Kicks(4)),
+        (r#"{"kick":{"robot":1,"kicks":16}}"#, TestRefused::Kicks(16)),
+    ] {
+        assert_eq!(TestOrder::from_json(json.as_bytes()), Err(refused), "{json}");
+    }
+    for json in ["", "[]", r#"{"kick":{"robot":1}}"#, r#"{"fly":{}}"#] {
+        assert!(matches!(TestOrder::from_json(json.as_bytes()), Err(TestRefused::Malformed(_))), "{json}");
+    }
+    let told = [TestRefused::NoSuchRobot(16), TestRefused::Kicks(4), TestRefused::External];
+    assert!(told.iter().all(|refused| refused.to_string().len() > 10));
+}
+
+#[test]
+fn a_host_begins_a_test_keeps_it_when_another_is_refused_and_ends_it() {
+    let settings = crate::HostSettings::new(Colour::Blue, rules::League::DivisionB, 1);
+    let mut host = crate::Host::new(settings, Instant(0));
+    let ask =
+        |host: &mut crate::Host, json: &str| host.handle(Instant(0), crate::Input::Test(json.as_bytes()));
+    assert_eq!(ask(&mut host, r#"{"kick":{"robot":2,"kicks":5}}"#), crate::InputVerdict::Test);
+    let refused = ask(&mut host, r#"{"kick":{"robot":2,"kicks":50}}"#);
+    assert_eq!(refused, crate::InputVerdict::NoTest(TestRefused::Kicks(50)));
+    assert_eq!(host.kick_test().map(|report| (report.robot, report.wanted)), Some((id(2), 5)));
+    assert_eq!(ask(&mut host, r#""end""#), crate::InputVerdict::Test);
+    assert_eq!(host.kick_test(), None);
+    let external = crate::HostSettings { external: true, ..host.settings().clone() };
+    let mut host = crate::Host::new(external, Instant(0));
+    let refused = ask(&mut host, r#"{"kick":{"robot":2,"kicks":5}}"#);
+    assert_eq!(refused, crate::InputVerdict::NoTest(TestRefused::External));
+}
