@@ -52,6 +52,7 @@ files! {
     "log.js": SCRIPT,
     "control.js": SCRIPT,
     "tune.js": SCRIPT,
+    "kicks.js": SCRIPT,
     "transport.js": SCRIPT,
     "keys.js": SCRIPT,
     "bench.js": SCRIPT,

@@ -85,6 +85,16 @@ pub enum UserRequest {
     },
     /// Write the parameters that were changed into the team's file.
     Save {},
+    /// Test a robot's kicker: it kicks again and again, and the gain is fitted.
+    Kicks {
+        /// Team of the robot; on a real field ours.
+        team: PageTeam,
+        /// The robot that kicks; none: the test ends.
+        robot: Option<u8>,
+        /// Kicks to measure, 5 to 15.
+        #[serde(default)]
+        kicks: u8,
+    },
     /// The referee's command, by its name in the league: `HALT`, `FORCE_START`, `DIRECT_FREE_BLUE`.
     Referee {
         /// Name of the command.
@@ -100,7 +110,7 @@ pub enum Powers {
     None,
     /// HALT: a real field.
     Halt,
-    /// HALT and parameters: a real field, where the operator has allowed it.
+    /// HALT, parameters and tests of kickers: a real field, where the operator has allowed it.
     Tune,
     /// Everything: the match is simulated.
     Simulation,
@@ -122,10 +132,10 @@ impl std::fmt::Display for Refused {
         match self {
             Self::Malformed(description) => write!(f, "no request: {description}"),
             Self::NotHere(Powers::Halt) => f.write_str(
-                "a real field takes nothing but HALT from the page; with --live-parameters parameters too",
+                "a real field takes nothing but HALT from the page; with --live-parameters parameters and kick tests too",
             ),
             Self::NotHere(Powers::Tune) => {
-                f.write_str("a real field takes nothing but HALT and parameters from the page")
+                f.write_str("a real field takes nothing but HALT, parameters and kick tests from the page")
             }
             Self::NotHere(_) => f.write_str("a recording cannot be changed"),
             Self::Range(description) => f.write_str(description),
@@ -141,7 +151,9 @@ impl UserRequest {
         let allowed = match powers {
             Powers::Simulation => true,
             Powers::Halt => matches!(request, Self::Halt {}),
-            Powers::Tune => matches!(request, Self::Halt {} | Self::Parameter { .. } | Self::Save {}),
+            Powers::Tune => {
+                matches!(request, Self::Halt {} | Self::Parameter { .. } | Self::Save {} | Self::Kicks { .. })
+            }
             Powers::None => false,
         };
         if !allowed {
@@ -166,7 +178,10 @@ impl UserRequest {
             _ => None,
         };
         let id = match &self {
-            Self::Robot { id, .. } | Self::Power { id, .. } | Self::Parameter { robot: Some(id), .. }
+            Self::Robot { id, .. }
+            | Self::Power { id, .. }
+            | Self::Parameter { robot: Some(id), .. }
+            | Self::Kicks { robot: Some(id), .. }
                 if *id > 15 =>
             {
                 Some("robots: 0 to 15")
@@ -201,6 +216,7 @@ mod tests {
             r#"{"ask":"power","team":"blue","id":1,"on":false}"#,
             r#"{"ask":"parameter","team":"blue","key":"ball.roll","value":0.4}"#,
             r#"{"ask":"save"}"#,
+            r#"{"ask":"kicks","team":"blue","robot":1,"kicks":10}"#,
         ] {
             assert_eq!(
                 UserRequest::read(other, Powers::Halt),
@@ -215,7 +231,8 @@ mod tests {
     #[test]
     fn a_real_field_takes_parameters_only_where_the_operator_allows_it_and_then_no_more() {
         let set = r#"{"ask":"parameter","team":"blue","key":"calibration.kick","robot":3,"value":1.06}"#;
-        for text in [set, r#"{"ask":"save"}"#, r#"{"ask":"halt"}"#] {
+        let kicks = r#"{"ask":"kicks","team":"blue","robot":null}"#;
+        for text in [set, kicks, r#"{"ask":"save"}"#, r#"{"ask":"halt"}"#] {
             assert!(UserRequest::read(text, Powers::Tune).is_ok(), "{text}");
         }
         for other in [r#"{"ask":"pause","on":true}"#, r#"{"ask":"ball","at":[0,0]}"#] {

@@ -1,6 +1,7 @@
 // What does a team tune? Its parameters with unit, range and usual value; those that may change while it plays are set here, the rest is read at the start.
 
 import { byId, el, fill, number, say } from "./dom.js";
+import { kickTest } from "./kicks.js";
 import { ask, getJson } from "./link.js";
 import { store } from "./store.js";
 
@@ -34,7 +35,7 @@ function draw() {
   const tab = byId("tab-tune");
   // What is being written is not taken away.
   if (tab.contains(document.activeElement) && document.activeElement.matches("input")) return;
-  fill(tab, `${version} ${store.state.powers} ${store.state.may_ask} ${store.state.recorded}`, () => [
+  fill(tab, `${version} ${store.scene?.robots.length} ${store.state.powers} ${store.state.may_ask} ${store.state.recorded}`, () => [
     el("p", { id: "tune-note", class: "muted", role: "status" }, note()),
     ...teams.flatMap(team),
   ]);
@@ -52,7 +53,7 @@ const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 const words = (value) => (value == null ? "" : String(value));
 
 /** The parameters of a team: those that can change while it plays, then those that are read at the start. */
-function team({ team: name, list, kicks, roll, file, toml }) {
+function team({ team: name, list, kicks, roll, test, file, toml }) {
   const [live, start] = [true, false].map((now) => list.filter((one) => one.live === now));
   const rows = (some) => el("div", { class: "params" }, some.flatMap((one) => (one.each_robot ? robots(name, one, list) : [row(name, one)])));
   const changed = list.filter((one) => one.value != null && !same(one.value, one.default)).length;
@@ -61,6 +62,7 @@ function team({ team: name, list, kicks, roll, file, toml }) {
     rows(live),
     roll ? el("p", { class: "muted" }, `Rolling ball: learned ${number(roll.value, 3)} ± ${number(roll.error, 3)} m/s² of ${roll.samples} balls.`) : null,
     learned(name, kicks, list),
+    ...kickTest(name, test, mayChange(), (robot, value) => change(name, { key: "calibration.kick", robot }, value)),
     el("details", { "data-start": name }, el("summary", {}, "Read when the program starts"), rows(start)),
     el("div", { class: "field-set" },
       file ? el("button", { "data-save": name, disabled: !mayChange(), onclick: () => ask({ ask: "save" }) }, `Save to ${file}`) : null,

@@ -3,6 +3,7 @@
 //! The match itself is [`arena::game::Game`], tick by tick as without a page: observing changes nothing.
 //! Where the machine is too slow for the speed ordered, the match runs slower and the page displays that.
 
+mod kick_test;
 mod situation;
 
 use std::sync::atomic::Ordering;
@@ -21,9 +22,13 @@ use protocol::{RobotId, Who};
 use rules::Colour;
 use rules::state::RefereeCommand;
 
+use self::kick_test::KickTests;
 use self::situation::{Sides, of_case};
 use super::gauges::{gauge, tick};
-use super::{Composer, LedgerFeed, Moment, ParameterFeed, SCENE_EVERY_S, change_of, colour, description_of};
+use super::{
+    Composer, LedgerFeed, Moment, ParameterFeed, SCENE_EVERY_S, change_of, colour, description_of,
+    description_of_test, test_of,
+};
 use crate::Failure;
 use crate::output::note;
 use crate::stop::stopped_by_hand;
@@ -159,17 +164,12 @@ impl MatchRunner {
         };
         let ticks = (config.duration_s * 1e6 / TICK_US as f64) as u64;
         let mut displayed = f64::NEG_INFINITY;
+        let mut tests = KickTests::default();
         let stopped = stopped_by_hand();
         while game.now().0 / TICK_US < ticks && !game.is_over() && !stopped.load(Ordering::Relaxed) {
             while let Some(request) = self.page.next_request() {
-                if let UserRequest::Parameter { team, key, robot, value } = &request {
-                    let change = change_of(key, *robot, value.as_ref());
-                    let told = change.and_then(|change| {
-                        let mut watchers = Watchers(vec![&mut feed, watcher.watcher()]);
-                        game.change(colour(*team), &change, &mut watchers)
-                            .map_err(|refused| refused.to_string())?;
-                        Ok(format!("{}: {}", colour(*team).label(), description_of(&change)))
-                    });
+                let mut watchers = Watchers(vec![&mut feed, watcher.watcher()]);
+                if let Some(told) = tell_host(&request, &mut game, &mut tests, &mut watchers) {
                     feed.parameters.hasten();
                     match told {
                         Ok(description) => self.page.push(MatchEvent::fault(game.time(), description)),
@@ -192,6 +192,7 @@ impl MatchRunner {
             feed.t = game.time();
             game.step(&mut Watchers(vec![&mut feed, watcher.watcher()])).map_err(Failure::Game)?;
             controls.took = (controls.took * 15 + begun.elapsed()) / 16;
+            tests.tend(&mut game);
             let every = (SCENE_EVERY_S * f64::from(controls.speed)).min(SCENE_EVERY_MAX_S);
             if game.time() - displayed >= every - 1e-6 || controls.paused {
                 displayed = game.time();
@@ -299,8 +300,8 @@ impl MatchRunner {
                 game.lose(*share);
                 noted = Some(format!("the radio loses {:.0} % of all packets, by hand", share * 100.0));
             }
-            // Handled before: it goes through the watchers.
-            UserRequest::Parameter { .. } => {}
+            // Handled before: they go through the watchers.
+            UserRequest::Parameter { .. } | UserRequest::Kicks { .. } => {}
             UserRequest::Save {} => {
                 refused = Some("a simulated match has no team's file: copy the text, or download it".into());
             }
@@ -323,6 +324,29 @@ impl MatchRunner {
         }
         Ok(())
     }
+}
+
+/// Passes on what a host itself takes, which is recorded; what was done or why not, none: it is for the
+/// match.
+fn tell_host(
+    request: &UserRequest,
+    game: &mut Game<'_>,
+    tests: &mut KickTests,
+    watchers: &mut Watchers<'_>,
+) -> Option<Result<String, String>> {
+    Some(match request {
+        UserRequest::Parameter { team, key, robot, value } => {
+            let team = colour(*team);
+            change_of(key, *robot, value.as_ref()).and_then(|change| {
+                game.change(team, &change, watchers).map_err(|refused| refused.to_string())?;
+                Ok(format!("{}: {}", team.label(), description_of(&change)))
+            })
+        }
+        UserRequest::Kicks { team, robot, kicks } => tests
+            .order(game, colour(*team), (*robot, *kicks), watchers)
+            .map_err(|refused| refused.to_string()),
+        _ => return None,
+    })
 }
 
 /// Puts ball and robots as the case's author drew them, and forces a start; false where that is not possible

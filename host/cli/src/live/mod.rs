@@ -53,7 +53,7 @@ pub(crate) use ledger_feed::LedgerFeed;
 pub(crate) use legged::Legged;
 pub(crate) use match_runner::{End, MatchRunner, RestartWatcher, command_of};
 pub(crate) use names::Names;
-pub(crate) use parameter_feed::{ParameterFeed, change_of, description_of};
+pub(crate) use parameter_feed::{ParameterFeed, change_of, description_of, description_of_test, test_of};
 
 /// Period of scenes, s: smooth motion, with the page interpolating in between.
 pub(crate) const SCENE_EVERY_S: f64 = 0.04;

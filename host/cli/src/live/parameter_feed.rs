@@ -7,7 +7,8 @@ use host::Host;
 use host::config::parameters::ParameterValue;
 use host::config::{ParameterChange, TeamConfig};
 use host::learned::Learned;
-use page::{Page, PageTeam};
+use host::robot_test::{KickReport, TestOrder, TestState};
+use page::{Page, PageTeam, milli};
 use protocol::RobotId;
 use serde::Serialize;
 
@@ -31,10 +32,37 @@ struct TeamParameters {
     kicks: Vec<LearnedValue>,
     /// What is learned of the rolling ball, m/s².
     roll: Option<LearnedValue>,
+    /// The test of a kicker, while there is one.
+    test: Option<KickTest>,
     /// The file that changes can be saved to.
     file: Option<String>,
     /// A whole `team.toml` of these values, where there is no file.
     toml: Option<String>,
+}
+
+/// The test of a kicker as the page gets it.
+#[derive(Serialize)]
+struct KickTest {
+    robot: u8,
+    wanted: u8,
+    /// Speed ordered and speed of the ball of each kick, m/s.
+    kicks: Vec<[f32; 2]>,
+    gain: Option<LearnedValue>,
+    state: TestState,
+}
+
+impl KickTest {
+    fn of(report: KickReport) -> Self {
+        let KickReport { robot, wanted, kicks, gain, state } = report;
+        let kicks = kicks.into_iter().map(|kick| kick.map(milli)).collect();
+        let gain = gain.map(|known| LearnedValue {
+            robot: None,
+            value: milli(known.value),
+            error: known.error(),
+            samples: known.samples,
+        });
+        Self { robot: robot.number(), wanted, kicks, gain, state }
+    }
 }
 
 /// A learned value beside a parameter.
@@ -90,6 +118,7 @@ fn team(host: &Host, file: Option<(&TeamConfig, Option<&str>)>) -> Option<TeamPa
         list: config.parameters(),
         kicks: RobotId::all().filter_map(kick).collect(),
         roll,
+        test: host.kick_test().map(KickTest::of),
         file: file.and_then(|(_, name)| name.map(str::to_owned)),
         toml: file.is_none().then(|| config.to_toml()),
     })
@@ -113,5 +142,19 @@ pub(crate) fn description_of(change: &ParameterChange) -> String {
     match &change.value {
         Some(value) => format!("{}{robot} is now {value}, by hand", change.key),
         None => format!("{}{robot} is as if left out, by hand", change.key),
+    }
+}
+
+/// The test that a viewer asks for.
+pub(crate) fn test_of(robot: Option<u8>, kicks: u8) -> TestOrder {
+    robot.map_or(TestOrder::End, |robot| TestOrder::Kick { robot, kicks })
+}
+
+/// A test in words, for the page's events and the log.
+pub(crate) fn description_of_test(order: TestOrder) -> String {
+    match order {
+        TestOrder::Kick { robot, kicks } => format!("the kicker of robot {robot} is tested, {kicks} kicks"),
+        TestOrder::Stand => "all robots stand while the other team tests a kicker".to_owned(),
+        TestOrder::End => "the test of a kicker has ended".to_owned(),
     }
 }

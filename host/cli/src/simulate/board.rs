@@ -134,6 +134,7 @@ impl Board {
                 | UserRequest::Power { .. }
                 | UserRequest::Loss { .. }
                 | UserRequest::Parameter { .. }
+                | UserRequest::Kicks { .. }
                 | UserRequest::Save {} => {
                     self.page.refuse("that can be asked of `onetwo play`; here others command the robots");
                 }

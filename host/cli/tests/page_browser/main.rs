@@ -10,6 +10,7 @@ mod evidence;
 mod health;
 mod look;
 mod program;
+mod testday;
 mod tune;
 
 use std::time::Duration;

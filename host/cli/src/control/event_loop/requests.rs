@@ -1,13 +1,14 @@
 //! `requests`: what viewers of the page of `onetwo control` ask for: HALT, and where the operator allows it
-//! parameters.
+//! parameters and tests of kickers.
 
 use host::config::ParameterChange;
+use host::robot_test::TestOrder;
 use host::{Input, InputVerdict};
 use page::UserRequest;
 
 use super::EventLoop;
 use crate::control::board::Board;
-use crate::live::{change_of, description_of};
+use crate::live::{change_of, description_of, description_of_test, test_of};
 
 impl EventLoop {
     /// Sends the scene to the page, and does what viewers ask for.
@@ -28,6 +29,7 @@ impl EventLoop {
                 UserRequest::Parameter { key, robot, value, .. } => {
                     change_of(&key, robot, value.as_ref()).and_then(|change| self.change(change)).err()
                 }
+                UserRequest::Kicks { robot, kicks, .. } => self.test(test_of(robot, kicks)).err(),
                 UserRequest::Save {} => self.tuning.save().map(|told| self.description.push(told)).err(),
                 // Requests for a simulation are refused when they are read.
                 _ => None,
@@ -49,6 +51,16 @@ impl EventLoop {
         }
         self.description.push(format!("parameter  {}", description_of(&change)));
         self.tuning.keep(change);
+        Ok(())
+    }
+
+    /// Begins or ends the test of a kicker; an error says why not.
+    fn test(&mut self, order: TestOrder) -> Result<(), String> {
+        let now = self.now();
+        if let InputVerdict::NoTest(refused) = self.feed(now, Input::Test(order.to_json().as_bytes())) {
+            return Err(refused.to_string());
+        }
+        self.description.push(format!("test       {}", description_of_test(order)));
         Ok(())
     }
 }
