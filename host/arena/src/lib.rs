@@ -17,6 +17,8 @@
 //!
 //! [`scenes`] plays short scenes with several variants of a team and tells what a part of its play is worth.
 //!
+//! [`Snapshot`] is a moment of the simulated field, kept to return to.
+//!
 //! [`skills`] plays tries of single skills through the whole loop, in worlds of any physics.
 //!
 //! [`successful_plays`] finds the plays of recordings that led to a shot or a goal.
@@ -44,6 +46,7 @@ mod recording;
 mod report;
 pub mod scenes;
 pub mod skills;
+mod snapshot;
 mod story;
 pub mod successful_plays;
 mod trial;
@@ -56,6 +59,7 @@ pub use recording::{RecordedKick, RecordedSample, Recording, Start};
 pub use report::{
     ActivityReport, Backups, CaseCounts, Causes, CycleReport, DefaultReport, Possession, TrialReport,
 };
+pub use snapshot::{BallState, RobotState, Snapshot, SnapshotError};
 pub use story::TextLog;
 pub use trial::{
     APPROACHES, Moment, TEAM, TrialConfig, Watcher, approach_from_label, approach_label, positioning_label,

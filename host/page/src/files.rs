@@ -51,6 +51,7 @@ files! {
     "course.js": SCRIPT,
     "log.js": SCRIPT,
     "control.js": SCRIPT,
+    "snapshots.js": SCRIPT,
     "tune.js": SCRIPT,
     "kicks.js": SCRIPT,
     "transport.js": SCRIPT,

@@ -98,6 +98,7 @@ pub struct Page {
     asker: RefCell<Option<Arc<Mailbox>>>,
     seats: Arc<AtomicUsize>,
     parameters: Arc<Mutex<String>>,
+    snapshots: Arc<Mutex<String>>,
     pushed: u64,
     left_out: u64,
     _server: Server,
@@ -120,7 +121,7 @@ impl Page {
         let archive = Archive::begin(viewers.clone());
         let (asks, requests) = sync_channel(REQUESTS_MAX);
         let seats = Arc::new(AtomicUsize::new(0));
-        let parameters = Arc::new(Mutex::new(String::from("[]")));
+        let [parameters, snapshots] = [(); 2].map(|()| Arc::new(Mutex::new(String::from("[]"))));
         let shared = Shared {
             port: address.port(),
             settings,
@@ -129,6 +130,7 @@ impl Page {
             kept: archive.kept(),
             asks,
             parameters: parameters.clone(),
+            snapshots: snapshots.clone(),
             seats: seats.clone(),
         };
         let server = Server::start(listener, shared).map_err(failed)?;
@@ -139,6 +141,7 @@ impl Page {
             asker: RefCell::default(),
             seats,
             parameters,
+            snapshots,
             pushed: 0,
             left_out: 0,
             _server: server,
@@ -182,6 +185,11 @@ impl Page {
     /// Passes the teams' parameters to the page, as a JSON list.
     pub fn set_parameters(&self, teams: String) {
         *self.parameters.lock().unwrap_or_else(PoisonError::into_inner) = teams;
+    }
+
+    /// Passes the kept moments of the simulated field to the page, as a JSON list.
+    pub fn set_snapshots(&self, snapshots: String) {
+        *self.snapshots.lock().unwrap_or_else(PoisonError::into_inner) = snapshots;
     }
 
     /// Drops the history: another match starts.

@@ -43,6 +43,18 @@ pub enum UserRequest {
         /// One of the names that the page received.
         name: String,
     },
+    /// Keep this moment of the simulated field.
+    Keep {},
+    /// Return ball and robots to a moment that was kept.
+    Return {
+        /// Its number, from 0 on.
+        number: usize,
+    },
+    /// Keep a moment from a file, as `GET /api/snapshots` lists it.
+    Load {
+        /// The moment.
+        snapshot: serde_json::Value,
+    },
     /// Put the ball there, or move it while the match runs.
     Ball {
         /// Target place, m, field frame.

@@ -1,7 +1,7 @@
 //! `routes`: what is answered to a request: files of the page, seconds that are kept, explanations, frozen
 //! moments.
 
-use std::sync::PoisonError;
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use serde::Deserialize;
@@ -30,7 +30,8 @@ pub(crate) fn answer(shared: &Shared, head: &Head, body: Vec<u8>, within: Durati
         "/api/events" => allowed("GET, HEAD", reads, &|| match_events(shared, head)),
         "/api/plots" => allowed("GET, HEAD", reads, &|| plots(shared)),
         "/api/log" => allowed("GET, HEAD", reads, &|| program_log(shared, head)),
-        "/api/parameters" => allowed("GET, HEAD", reads, &|| parameters(shared)),
+        "/api/parameters" => allowed("GET, HEAD", reads, &|| list(&shared.parameters)),
+        "/api/snapshots" => allowed("GET, HEAD", reads, &|| list(&shared.snapshots)),
         "/api/cases" => allowed("GET, HEAD", reads, &|| cases(shared, head)),
         "/api/freeze" => allowed("POST", head.method == "POST", &|| freeze(shared, &body)),
         "/api/workbench" if head.method == "POST" => workbench(shared, head, body, within),
@@ -104,9 +105,9 @@ fn program_log(shared: &Shared, head: &Head) -> Answer {
     Answer::of(JSON, serde_json::to_string(&entries).unwrap_or_default().into_bytes())
 }
 
-/// The teams' parameters.
-fn parameters(shared: &Shared) -> Answer {
-    let text = shared.parameters.lock().unwrap_or_else(PoisonError::into_inner).clone();
+/// A list that the program keeps: parameters, or moments.
+fn list(of: &Mutex<String>) -> Answer {
+    let text = of.lock().unwrap_or_else(PoisonError::into_inner).clone();
     Answer::of(JSON, text.into_bytes())
 }
 

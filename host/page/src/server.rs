@@ -38,6 +38,8 @@ const WAKE: Duration = Duration::from_millis(200);
 pub(crate) struct Shared {
     /// The teams' parameters, as a JSON list.
     pub(crate) parameters: Arc<Mutex<String>>,
+    /// Kept moments of the simulated field, as a JSON list.
+    pub(crate) snapshots: Arc<Mutex<String>>,
     pub(crate) port: u16,
     pub(crate) settings: PageSettings,
     pub(crate) explanations: Arc<dyn ExplanationService>,

@@ -2,6 +2,7 @@
 
 import { byId, el, fill, say } from "./dom.js";
 import { ask } from "./link.js";
+import { showSnapshots, snapshotPart } from "./snapshots.js";
 import { on, store } from "./store.js";
 
 const COMMANDS = [
@@ -19,6 +20,7 @@ export function showControl() {
   const shown = mayAsk === false && powers !== "none" ? "locked" : powers;
   fill(tab, `${shown} ${life}`, () => ({ simulation, halt, tune: halt, none, locked })[shown]());
   if (shown !== "simulation") return;
+  showSnapshots();
   say(byId("pause"), store.latest?.paused ? "Resume" : "Pause");
   const speed = byId("speed-now");
   if (speed && store.latest) say(speed, `${store.latest.speed} ×`);
@@ -57,6 +59,7 @@ function simulation() {
     set(el("label", {}, "Speed"), speed, el("span", { id: "speed-now" }), press("1 ×", () => ((speed.value = 0), { ask: "speed", factor: 1 }))),
     set(el("label", {}, "Seed"), seed, press("Restart", () => ({ ask: "restart", seed: Number(seed.value) }), { id: "restart" })),
     ...situations(press, set),
+    ...snapshotPart(),
     el("h2", {}, "Referee"),
     set(...COMMANDS.map(([command, words]) => press(words, () => ({ ask: "referee", command }), { "data-command": command }))),
     el("h2", {}, "Faults"),

@@ -13,6 +13,7 @@ use rules::Colour;
 use rules::state::RefereeCommand;
 
 use super::{Game, GameConfig, GameError, Watcher};
+use crate::Snapshot;
 
 impl<'a> Game<'a> {
     /// The configuration with which the match started.
@@ -56,6 +57,11 @@ impl<'a> Game<'a> {
     /// Puts a robot there, standing.
     pub fn put_robot(&mut self, who: Who, pose: Pose<Field>) {
         self.world.put(who, pose);
+    }
+
+    /// Returns ball and robots to a moment that was kept.
+    pub fn restore(&mut self, snapshot: &Snapshot) {
+        snapshot.restore(&mut self.world);
     }
 
     /// Orders the referee to send a command; false where that is not possible now.

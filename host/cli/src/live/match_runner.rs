@@ -26,8 +26,8 @@ use self::kick_test::KickTests;
 use self::situation::{Sides, of_case};
 use super::gauges::{gauge, tick};
 use super::{
-    Composer, LedgerFeed, Moment, ParameterFeed, SCENE_EVERY_S, change_of, colour, description_of,
-    description_of_test, test_of,
+    Composer, LedgerFeed, Moment, ParameterFeed, SCENE_EVERY_S, SnapshotRequest, Snapshots, change_of,
+    colour, description_of, description_of_test, test_of,
 };
 use crate::Failure;
 use crate::output::note;
@@ -54,6 +54,8 @@ pub(crate) struct MatchRunner {
     speed: f32,
     /// It is recorded: it cannot be restarted.
     recorded: bool,
+    /// Moments of this match and those before it.
+    snapshots: Snapshots,
 }
 
 /// State of the viewers' controls.
@@ -87,7 +89,7 @@ impl MatchRunner {
         speed: f32,
         recorded: bool,
     ) -> Self {
-        Self { config, library, page, speed, recorded }
+        Self { config, library, page, speed, recorded, snapshots: Snapshots::default() }
     }
 
     /// Plays until the match is over; `watch` gives the watchers of a match that starts.
@@ -299,6 +301,19 @@ impl MatchRunner {
             UserRequest::Loss { share } => {
                 game.lose(*share);
                 noted = Some(format!("the radio loses {:.0} % of all packets, by hand", share * 100.0));
+            }
+            UserRequest::Keep {} | UserRequest::Return { .. } | UserRequest::Load { .. } => {
+                let league = self.config.league;
+                match self.snapshots.ask(request, game.world(), league, &self.page) {
+                    SnapshotRequest::Return(snapshot) if game.command(RefereeCommand::ForceStart) => {
+                        noted = Some(format!("back at {:.2} s, by hand", snapshot.t));
+                        game.restore(snapshot);
+                    }
+                    SnapshotRequest::Return(_) => refused = Some("the game cannot start now".to_owned()),
+                    SnapshotRequest::Kept(description) => noted = Some(description),
+                    SnapshotRequest::Refused(description) => refused = Some(description),
+                    SnapshotRequest::Other => {}
+                }
             }
             // Handled before: they go through the watchers.
             UserRequest::Parameter { .. } | UserRequest::Kicks { .. } => {}

@@ -22,6 +22,7 @@ mod parameter_feed;
 mod paths;
 mod possession;
 mod raw;
+mod snapshots;
 mod tactics;
 #[cfg(test)]
 mod tests;
@@ -54,6 +55,7 @@ pub(crate) use legged::Legged;
 pub(crate) use match_runner::{End, MatchRunner, RestartWatcher, command_of};
 pub(crate) use names::Names;
 pub(crate) use parameter_feed::{ParameterFeed, change_of, description_of, description_of_test, test_of};
+pub(crate) use snapshots::{SnapshotRequest, Snapshots};
 
 /// Period of scenes, s: smooth motion, with the page interpolating in between.
 pub(crate) const SCENE_EVERY_S: f64 = 0.04;

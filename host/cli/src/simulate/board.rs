@@ -14,7 +14,8 @@ use protocol::{RobotId, Who};
 use rules::{Colour, League};
 
 use crate::live::{
-    CaseExplanations, Composer, Moment, PageArgs, SCENE_EVERY_S, colour, command_of, library_handle_of,
+    CaseExplanations, Composer, Moment, PageArgs, SCENE_EVERY_S, SnapshotRequest, Snapshots, colour,
+    command_of, library_handle_of,
 };
 use crate::output::note;
 
@@ -43,6 +44,7 @@ pub(super) struct Board {
     seed: u64,
     /// Simulated seconds.
     t: f64,
+    snapshots: Snapshots,
 }
 
 impl Board {
@@ -64,6 +66,7 @@ impl Board {
                 speed,
                 seed,
                 t: 0.0,
+                snapshots: Snapshots::default(),
             })
         };
         open().map_err(|failure| note!("page     there is none: {failure}")).ok()
@@ -118,6 +121,14 @@ impl Board {
                     } else {
                         let team = colour(team).label();
                         self.page.refuse(format!("{team} has no robot {id} on the field"));
+                    }
+                }
+                UserRequest::Keep {} | UserRequest::Return { .. } | UserRequest::Load { .. } => {
+                    let league = self.feed.settings().league;
+                    match self.snapshots.ask(&request, server.world(), league, &self.page) {
+                        SnapshotRequest::Return(snapshot) => snapshot.restore(server.world_mut()),
+                        SnapshotRequest::Refused(description) => self.page.refuse(description),
+                        SnapshotRequest::Kept(_) | SnapshotRequest::Other => {}
                     }
                 }
                 UserRequest::Referee { command } => {

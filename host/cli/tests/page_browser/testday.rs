@@ -1,4 +1,5 @@
-//! `testday`: browser test of what a test day needs: a robot's kicker is tested, fitted and its gain taken.
+//! `testday`: browser tests of what a test day needs: a robot's kicker is tested, fitted and its gain taken;
+//! a moment of the simulated field is kept, returned to, saved and loaded.
 
 use page_browser::{Browser, Tab};
 
@@ -59,5 +60,46 @@ fn a_kicker_is_tested_on_the_page_and_its_gain_is_taken() {
     .unwrap();
     tab.click("[data-kicks-end=blue]").unwrap();
     tab.wait("!document.querySelector('[data-kicks-state]')", 10).unwrap();
+    no_errors(&mut tab);
+}
+
+#[test]
+fn a_moment_is_kept_returned_to_and_loaded_from_its_file() {
+    let program = Program::start(&["play", "--duration", "600", "--seed", "2", "--listen", "127.0.0.1:0"]);
+    let mut browser = Browser::start().unwrap();
+    let mut tab = open(&mut browser, &program, "control");
+    tab.wait("onetwo.store.scene.robots.some((r) => Math.hypot(...r.velocity) > 0.3)", 60).unwrap();
+    tab.click("#snapshot-keep").unwrap();
+    tab.wait("document.querySelector('[data-return=\"0\"]')", 10).unwrap();
+    let kept = "fetch('/api/snapshots').then((a) => a.json()).then((all) => { window.kept = all; return all.length; })";
+    assert_eq!(tab.eval(kept).unwrap().as_f64(), Some(1.0));
+    tab.wait("onetwo.store.latest.t > kept[0].t + 4", 30).unwrap();
+    // Paused, so that it is seen where it was put.
+    tab.click("#pause").unwrap();
+    tab.wait("onetwo.store.latest.paused", 10).unwrap();
+    tab.click("[data-return=\"0\"]").unwrap();
+    tab.eval("onetwo.setLayer('truth', true)").unwrap();
+    let back = "(() => { const shapes = onetwo.store.latest.layers.find((l) => l.name === 'truth').shapes; \
+        const near = (at) => shapes.some((s) => Math.hypot(s.at[0] - at[0], s.at[1] - at[1]) < 0.002); \
+        return kept[0].robots.every((r) => near(r.at)) && near(kept[0].ball.at); })()";
+    tab.wait(back, 10).unwrap();
+    // Its file, changed by hand: the ball lies elsewhere; and one that is none is refused.
+    let load = |change: &str| {
+        format!(
+            "(() => {{ const one = JSON.parse(decodeURIComponent(document.querySelector('[download=\"snapshot-0.json\"]').href.split(',').slice(1).join())); {change}; \
+             const files = new DataTransfer(); files.items.add(new File([JSON.stringify(one)], 'snapshot.json')); \
+             const input = document.getElementById('snapshot-file'); input.files = files.files; input.dispatchEvent(new Event('change')); }})()"
+        )
+    };
+    tab.eval(&load("one.ball.at = [1.5, -1]; one.ball.velocity = [0, 0]")).unwrap();
+    tab.wait("document.querySelector('[data-return=\"1\"]')", 10).unwrap();
+    tab.click("[data-return=\"1\"]").unwrap();
+    tab.wait(
+        "(() => { const at = onetwo.store.latest.layers.find((l) => l.name === 'truth').shapes.at(-1).at; return Math.hypot(at[0] - 1.5, at[1] + 1) < 0.01; })()",
+        10,
+    )
+    .unwrap();
+    tab.eval(&load("one.league = 'ssl-2013'")).unwrap();
+    tab.wait("/the snapshot is of ssl-2013/.test(document.getElementById('note').textContent)", 10).unwrap();
     no_errors(&mut tab);
 }
