@@ -52,6 +52,7 @@ files! {
     "log.js": SCRIPT,
     "control.js": SCRIPT,
     "snapshots.js": SCRIPT,
+    "skills.js": SCRIPT,
     "tune.js": SCRIPT,
     "kicks.js": SCRIPT,
     "transport.js": SCRIPT,

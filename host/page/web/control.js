@@ -2,6 +2,7 @@
 
 import { byId, el, fill, say } from "./dom.js";
 import { ask } from "./link.js";
+import { showSkills, skillPart } from "./skills.js";
 import { showSnapshots, snapshotPart } from "./snapshots.js";
 import { on, store } from "./store.js";
 
@@ -21,6 +22,7 @@ export function showControl() {
   fill(tab, `${shown} ${life}`, () => ({ simulation, halt, tune: halt, none, locked })[shown]());
   if (shown !== "simulation") return;
   showSnapshots();
+  showSkills();
   say(byId("pause"), store.latest?.paused ? "Resume" : "Pause");
   const speed = byId("speed-now");
   if (speed && store.latest) say(speed, `${store.latest.speed} ×`);
@@ -60,6 +62,7 @@ function simulation() {
     set(el("label", {}, "Seed"), seed, press("Restart", () => ({ ask: "restart", seed: Number(seed.value) }), { id: "restart" })),
     ...situations(press, set),
     ...snapshotPart(),
+    ...skillPart(),
     el("h2", {}, "Referee"),
     set(...COMMANDS.map(([command, words]) => press(words, () => ({ ask: "referee", command }), { "data-command": command }))),
     el("h2", {}, "Faults"),

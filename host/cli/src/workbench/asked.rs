@@ -50,6 +50,13 @@ pub(super) enum Asked {
     Stop {},
     /// One of them, to be watched.
     Sample { number: u32 },
+    /// Tries of a single skill in the simulator; without one: what can be tried, and how the last tries went.
+    Tries {
+        #[serde(default)]
+        plan: Option<TriesPlan>,
+    },
+    /// No further tries.
+    StopTries {},
     /// Writes the file; `over`: the text that it replaces.
     Save { name: String, text: String, over: Option<String> },
 }
@@ -57,15 +64,28 @@ pub(super) enum Asked {
 impl Asked {
     /// It changes something, or takes the machine for long.
     pub(super) const fn needs_token(&self) -> bool {
-        matches!(
-            self,
+        match self {
             Self::Rehearse { .. }
-                | Self::Stop {}
-                | Self::Save { .. }
-                | Self::Check { .. }
-                | Self::Refuse { .. }
-        )
+            | Self::Stop {}
+            | Self::Save { .. }
+            | Self::Check { .. }
+            | Self::Refuse { .. }
+            | Self::StopTries {} => true,
+            Self::Tries { plan } => plan.is_some(),
+            _ => false,
+        }
     }
+}
+
+/// Which tries of a skill are played.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TriesPlan {
+    pub(super) skill: String,
+    pub(super) world: String,
+    #[serde(deserialize_with = "trials")]
+    pub(super) tries: u32,
+    pub(super) seed: u64,
 }
 
 /// Most attempts of a rehearsal.
@@ -76,7 +96,7 @@ fn trials<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
     if (1..=TRIALS_MAX).contains(&trials) {
         return Ok(trials);
     }
-    Err(serde::de::Error::custom("a rehearsal has 1 to 500 attempts"))
+    Err(serde::de::Error::custom("a rehearsal has 1 to 500 attempts, and a skill as many tries"))
 }
 
 fn opposition<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Opposition, D::Error> {

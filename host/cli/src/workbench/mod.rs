@@ -10,21 +10,26 @@ mod learned;
 mod rehearsal;
 mod save;
 mod shared_library;
+mod skill_tests;
 
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
 use arena::cases::{Chosen, described, explained_by, problem};
+use arena::skills::{Skill, SkillPlan};
 use case_tools::workbench::{FindingNote, Sheet, Workbench, case_name, is_case_name};
 use case_tools::{Finding, Library, SkeletonError, never_retrieved, skeleton};
 use casebase::RetrievalSettings;
+use hil_sim::small_size::worlds::WorldChoice;
 use page::{Powers, WorkbenchRequest};
 use protocol::CaseId;
+use rules::League;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use asked::Asked;
+use asked::{Asked, TriesPlan};
 use count::Problems;
 use rehearsal::{Rehearsal, RehearsalOrder};
+use skill_tests::SkillTests;
 
 pub(crate) use learned::refusals;
 pub(crate) use shared_library::SharedLibrary;
@@ -39,11 +44,18 @@ pub(crate) struct CaseWorkbench {
     /// The files, read when they are first asked for, and after every saving.
     bench: RwLock<Option<Arc<Workbench>>>,
     rehearsal: Mutex<Option<Arc<Rehearsal>>>,
+    tries: Mutex<Option<Arc<SkillTests>>>,
 }
 
 impl CaseWorkbench {
     pub(crate) fn new(library: SharedLibrary, settings: RetrievalSettings) -> Self {
-        Self { library, settings, bench: RwLock::default(), rehearsal: Mutex::default() }
+        Self {
+            library,
+            settings,
+            bench: RwLock::default(),
+            rehearsal: Mutex::default(),
+            tries: Mutex::default(),
+        }
     }
 
     /// Answers a request.
@@ -89,7 +101,7 @@ impl CaseWorkbench {
                 value(&count::changes(&problems, &library, &self.settings, &changed))?
             }
             Asked::Rehearse { name, text, trials, opponents, seed } => {
-                if request.powers == Powers::Halt {
+                if is_real(request.powers) {
                     return Err(REAL_FIELD.to_owned());
                 }
                 let library = self.library_with(&name, &text)?;
@@ -111,6 +123,21 @@ impl CaseWorkbench {
                 let rehearsal = self.rehearsal().clone().ok_or(NO_REHEARSAL)?;
                 rehearsal.sample(number).ok_or("there is no such attempt: rehearse anew")?
             }
+            Asked::Tries { plan: Some(_) } if is_real(request.powers) => return Err(REAL_FIELD.to_owned()),
+            Asked::Tries { plan: Some(plan) } => {
+                let tests = SkillTests::begin(self.tries_plan(plan)?)?;
+                if let Some(old) = self.tries().replace(tests) {
+                    old.stop();
+                }
+                self.tried()
+            }
+            Asked::Tries { plan: None } => self.tried(),
+            Asked::StopTries {} => {
+                if let Some(tests) = &*self.tries() {
+                    tests.stop();
+                }
+                self.tried()
+            }
             Asked::Save { name, text, over } => {
                 let directory = self.library.directory().ok_or(NO_DIRECTORY)?;
                 let sheet = self.bench()?.sheet(&name, &text);
@@ -125,6 +152,27 @@ impl CaseWorkbench {
 
     fn rehearsal(&self) -> std::sync::MutexGuard<'_, Option<Arc<Rehearsal>>> {
         self.rehearsal.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn tries(&self) -> std::sync::MutexGuard<'_, Option<Arc<SkillTests>>> {
+        self.tries.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The tries that are asked for, in the league of the cases.
+    fn tries_plan(&self, plan: TriesPlan) -> Result<SkillPlan, String> {
+        let skill = Skill::from_label(&plan.skill).ok_or("there is no such skill")?;
+        let choice: WorldChoice = plan.world.parse().map_err(|_| "there is no such world".to_owned())?;
+        let named = self.bench().map(|bench| bench.files().league.clone());
+        let has_wheels = [League::Ssl2013, League::DivisionB, League::DivisionA];
+        let named = has_wheels.into_iter().find(|league| named.as_deref() == Ok(league.name()));
+        let league = named.unwrap_or(League::DivisionB);
+        let TriesPlan { world, tries, seed, .. } = plan;
+        Ok(SkillPlan { league, world, worlds: vec![choice], tries, first: 0, seed, skills: vec![skill] })
+    }
+
+    fn tried(&self) -> Value {
+        let report = self.tries().as_ref().map(|tests| tests.report());
+        json!({ "choices": SkillTests::choices(), "report": report })
     }
 
     fn bench(&self) -> Result<Arc<Workbench>, String> {
@@ -151,7 +199,7 @@ impl CaseWorkbench {
             "names": names,
             "kicks": kicks,
             "saves": self.library.directory().is_some(),
-            "rehearses": request.powers != Powers::Halt,
+            "rehearses": !is_real(request.powers),
             "settings": described(&self.settings),
         }))
     }
@@ -218,6 +266,11 @@ impl CaseWorkbench {
     }
 }
 
+/// A field with real robots: the host needs the machine.
+const fn is_real(powers: Powers) -> bool {
+    matches!(powers, Powers::Halt | Powers::Tune)
+}
+
 /// A sheet, and what a draft leaves out of its situation.
 #[derive(Serialize)]
 struct Sheeted {
@@ -253,10 +306,8 @@ fn refused(findings: &[Finding]) -> String {
 const NAME: &str = "a case is named region/name, both of letters, digits, - and _";
 const NO_DIRECTORY: &str = "the cases of this program are built in: to save, start it with --library DIR, a copy of a league's directory";
 const NO_REHEARSAL: &str = "nothing was rehearsed yet";
-const NO_TOKEN: &str =
-    "this page is open to the network: to rehearse and to save, open it by the address with ?token=";
-const REAL_FIELD: &str =
-    "beside a real field nothing is rehearsed: the host needs the machine; use onetwo play";
+const NO_TOKEN: &str = "this page is open to the network: to rehearse, to try skills and to save, open it by the address with ?token=";
+const REAL_FIELD: &str = "beside a real field nothing is rehearsed and no skill tried: the host needs the machine; use onetwo play";
 
 #[cfg(test)]
 mod tests;

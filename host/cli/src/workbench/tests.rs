@@ -144,7 +144,10 @@ fn what_writes_or_takes_the_machine_needs_the_token_and_a_real_field_has_no_rehe
     let workbench = directory.workbench();
     let text = draft(&workbench);
     let rehearse = json!({ "do": "rehearse", "name": "center/new", "text": text, "trials": 2, "opponents": "playing", "seed": 1 });
-    for request in [&rehearse, &json!({ "do": "save", "name": "center/new", "text": text, "over": null })] {
+    let tries =
+        json!({ "do": "tries", "plan": { "skill": "kick", "world": "nominal", "tries": 2, "seed": 1 } });
+    let save = json!({ "do": "save", "name": "center/new", "text": text, "over": null });
+    for request in [&rehearse, &save, &tries] {
         let refused = workbench.answer(&asked(request, false, Powers::Simulation)).unwrap_err();
         assert!(refused.contains("?token="), "{refused}");
     }
@@ -154,13 +157,53 @@ fn what_writes_or_takes_the_machine_needs_the_token_and_a_real_field_has_no_rehe
             .answer(&asked(&json!({ "do": "open", "name": "center/one-two" }), false, Powers::None))
             .is_ok()
     );
-    let refused = workbench.answer(&asked(&rehearse, true, Powers::Halt)).unwrap_err();
-    assert!(refused.contains("real field"), "{refused}");
+    // Parameters that may change on a real field do not give the machine away.
+    for powers in [Powers::Halt, Powers::Tune] {
+        for request in [&rehearse, &tries] {
+            let refused = workbench.answer(&asked(request, true, powers)).unwrap_err();
+            assert!(refused.contains("real field"), "{refused}");
+        }
+    }
     let built_in = SharedLibrary::new(case_library::league("division-b").map(LibraryHandle::built_in));
     let built_in = CaseWorkbench::new(built_in, RetrievalSettings::default());
     let refused = ask(&built_in, &json!({ "do": "save", "name": "center/new", "text": text, "over": null }))
         .unwrap_err();
     assert!(refused.contains("--library DIR"), "{refused}");
+}
+
+#[test]
+fn tries_of_a_skill_are_counted_as_the_command_counts_them_and_what_is_none_is_refused() {
+    let directory = Directory::new("tries");
+    let workbench = directory.workbench();
+    let begin = |skill: &str, world: &str, tries: u32| {
+        let plan = json!({ "skill": skill, "world": world, "tries": tries, "seed": 7 });
+        ask(&workbench, &json!({ "do": "tries", "plan": plan }))
+    };
+    for (skill, world, tries) in [("fly", "nominal", 1), ("kick", "mars", 1), ("kick", "nominal", 501)] {
+        assert!(begin(skill, world, tries).is_err(), "{skill} {world} {tries}");
+    }
+    let choices = ask(&workbench, &json!({ "do": "tries" })).unwrap();
+    assert_eq!(choices["report"], Value::Null);
+    assert!(choices["choices"]["skills"].as_array().unwrap().contains(&json!("get-ball")));
+    begin("kick", "weak-kickers", 3).unwrap();
+    let over = (0..600).find_map(|_| {
+        std::thread::sleep(std::time::Duration::from_millis(50));
+        let report = ask(&workbench, &json!({ "do": "tries" })).unwrap()["report"].take();
+        (report["over"] == true).then_some(report)
+    });
+    let report = over.expect("three tries take seconds");
+    let plan = SkillPlan {
+        league: League::DivisionB,
+        world: "weak-kickers".to_owned(),
+        worlds: vec!["weak-kickers".parse().unwrap()],
+        tries: 3,
+        first: 0,
+        seed: 7,
+        skills: vec![Skill::Kick],
+    };
+    let rows = arena::skills::rows(&plan, &plan.play().unwrap());
+    assert_eq!(report["row"], serde_json::to_value(&rows[0]).unwrap());
+    assert_eq!(report["failed"].as_array().unwrap().len(), 3 - rows[0].succeeded);
 }
 
 /// What retrieval answers on disk to the match's problems under `thr`: names.

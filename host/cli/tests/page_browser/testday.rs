@@ -103,3 +103,24 @@ fn a_moment_is_kept_returned_to_and_loaded_from_its_file() {
     tab.wait("/the snapshot is of ssl-2013/.test(document.getElementById('note').textContent)", 10).unwrap();
     no_errors(&mut tab);
 }
+
+#[test]
+fn a_skill_is_tried_beside_the_match_and_counted() {
+    let program = Program::start(&["play", "--duration", "600", "--seed", "2", "--listen", "127.0.0.1:0"]);
+    let mut browser = Browser::start().unwrap();
+    let mut tab = open(&mut browser, &program, "control");
+    tab.wait("document.querySelector('#skill-skill option')", 20).unwrap();
+    tab.eval(
+        "(() => { const set = (id, value) => { const one = document.getElementById(id); one.value = value; one.dispatchEvent(new Event('change')); }; \
+         set('skill-skill', 'get-ball'); set('skill-tries', '6'); })()",
+    )
+    .unwrap();
+    tab.click("#skill-try").unwrap();
+    tab.wait(
+        "document.querySelector('[data-tries-over=true]')?.textContent.match(/^[0-6] of 6 tries succeeded/)",
+        120,
+    )
+    .unwrap();
+    tab.wait("document.querySelector('#skill-result tbody td').textContent === 'get-ball'", 5).unwrap();
+    no_errors(&mut tab);
+}
