@@ -5,6 +5,7 @@
 //! `cargo xtask test --only page` installs the browser where it can and runs this; plain `cargo test` does
 //! without.
 
+mod access;
 mod bench;
 mod evidence;
 mod health;
