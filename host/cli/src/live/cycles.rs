@@ -141,7 +141,7 @@ impl TeamCycles {
             CycleEvent::Ended(i) => {
                 let Some(cycle) = of(i).filter(|cycle| cycle.play.is_some()) else { return };
                 if let Some((_, end)) = cycle.end {
-                    let description = format!("{}: case {}", us.label(), description::end(end));
+                    let description = format!("{}: case {}", us.label(), description::end_by(host, end));
                     let event = made(MatchEventKind::Cycle, description, None);
                     self.tell(None, into);
                     into.push(event);

@@ -6,7 +6,7 @@ use host::strategy::{Flip, Order, OrderReason, Role};
 use protocol::decision::Grounds;
 use protocol::host::{Directive, KickOrder};
 use protocol::quantized::WirePoint;
-use protocol::team::{Closure, Decision, Progress};
+use protocol::team::{AbortReason, Closure, Decision, Progress};
 
 /// `(1.20, −0.45)`.
 pub(crate) fn place(at: impl Into<geometry::Point<geometry::Field>>) -> String {
@@ -179,6 +179,22 @@ pub(super) fn decision(decision: &Decision) -> String {
 /// ledger of cases.
 pub(super) fn end(end: CycleEnd) -> String {
     end.label().replace('-', " ")
+}
+
+/// The same with the robot that ended it, and its order now where that is why.
+pub(super) fn end_by(host: &host::Host, end: CycleEnd) -> String {
+    let words = self::end(end);
+    let CycleEnd::Closed(Closure::Aborted { by, reason }) = end else { return words };
+    let order = host.orders().iter().find(|order| order.robot == by);
+    match order.filter(|_| reason == AbortReason::Reassigned) {
+        Some(order) => format!("{words}: robot {}, now {}", by.number(), reassigned_to(host, order)),
+        None => format!("{words}: robot {}", by.number()),
+    }
+}
+
+fn reassigned_to(host: &host::Host, order: &Order) -> String {
+    let what = directive(&order.task.directive(flip(host)));
+    format!("{}, {what} ({})", role(order.role), reason(&order.why))
 }
 
 /// Why a decision is not simply retrieval's answer; empty where it is.

@@ -163,6 +163,12 @@ fn a_retrieval_that_is_reported_can_be_explained_and_mostly_comes_to_the_same_ca
         reported += 1;
         same += u32::from(match_event.description.contains(name));
     }
+    // Who was taken away from a play is told, and for what.
+    let ends = match_events.iter().filter(|event| event.description.contains(": case reassigned"));
+    let ends: Vec<_> = ends.map(|event| event.description.as_str()).collect();
+    assert!(!ends.is_empty() && ends.iter().all(|end| end.contains(": robot ")), "{ends:?}");
+    let told = ends.iter().filter(|end| end.contains(", now ") && !end.contains("play cases"));
+    assert!(told.count() * 2 > ends.len(), "{ends:?}");
     // The coordinator retrieved by its own belief of a moment before: where two cases are similar it may
     // differ.
     assert!(reported >= 5 && same * 2 > reported, "{same} of {reported}");
