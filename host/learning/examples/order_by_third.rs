@@ -82,7 +82,9 @@ fn places(current: &Variant, seed: u64) -> Result<[Vec<Place>; 3], Box<dyn Error
             places[third].push(Place { situation, two_defenders, profile: kind.profile });
         }
     }
-    places.iter_mut().for_each(|places| places.truncate(CHOICE + JUDGED));
+    for places in &mut places {
+        places.truncate(CHOICE + JUDGED);
+    }
     Ok(places)
 }
 
@@ -109,6 +111,8 @@ fn compare(
     };
     let pairs: Vec<(bool, bool)> = places.par_iter().enumerate().map(pair).collect::<Result<_, _>>()?;
     let mut wager = Wager::default();
-    pairs.into_iter().for_each(|(with, without)| wager.add(with, without));
+    for (with, without) in pairs {
+        wager.add(with, without);
+    }
     Ok(wager)
 }

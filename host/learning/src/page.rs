@@ -17,7 +17,8 @@ use crate::variant::Variant;
 /// The report as JSON: settings, curve, every change with its evidence.
 pub fn json(learned: &Learned) -> Value {
     let changes = learned.changes.iter().map(|change| {
-        let validation = change.validation.as_ref().map(|Pairs { all, kinds, worlds }| {
+        let validation = change.validation.as_ref().map(|pairs| {
+            let Pairs { all, kinds, worlds } = &**pairs;
             let cells = kinds.iter().zip(KINDS).map(|(wager, kind)| {
                 value!({ "starts": kind.label(), "raised": wager.raised, "lowered": wager.lowered, "pairs": wager.pairs })
             });
@@ -179,7 +180,7 @@ fn accepted(learned: &Learned, change: &ChangeRecord) -> Markup {
             p { (change.proposal.reason) }
             p {
                 (evidence(change)) ", needed " (format!("{:.0}", change.needed.unwrap_or_default())) "."
-                @if let Some(Pairs { all, .. }) = &change.validation {
+                @if let Some(all) = change.validation.as_ref().map(|pairs| &pairs.all) {
                     " Validation: " (all.raised) " raised, " (all.lowered) " lowered in " (all.pairs) " starts."
                 }
             }

@@ -214,12 +214,10 @@ impl Draft<'_> {
         // Both axes first: one alone moves half as many plays.
         let axes = [([true, true], 1.0), ([true, false], 0.5), ([false, true], 0.5)];
         let scope = self.text.scope_of(&Part::Ball);
-        if let Some(odd) = scope.filter(|scope| is_odd(*scope)) {
+        if let Some([x, y]) = scope.filter(|scope| is_odd(*scope)) {
             let all = self.standing.all;
             let reason = format!(
-                "its scope of {} × {} mm is odd; {:.0} plays, {:+.1} points",
-                odd[0],
-                odd[1],
+                "its scope of {x} × {y} mm is odd; {:.0} plays, {:+.1} points",
                 all.plays(),
                 100.0 * all.advantage()
             );

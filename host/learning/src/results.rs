@@ -57,7 +57,7 @@ pub struct ChangeRecord {
     /// What became of it.
     pub verdict: Verdict,
     /// Pairs on validation starts.
-    pub validation: Option<Pairs>,
+    pub validation: Option<Box<Pairs>>,
 }
 
 /// The library after a round, on held-out starts.

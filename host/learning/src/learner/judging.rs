@@ -215,7 +215,7 @@ impl<P: Player> Run<'_, P> {
             Some(Objection::Touches) => Verdict::Touches,
             None => Verdict::Accepted,
         };
-        self.note_test(round, candidate, needed, verdict, Some(pairs));
+        self.note_test(round, candidate, needed, verdict, Some(Box::new(pairs)));
         let accepted = verdict == Verdict::Accepted;
         if accepted {
             for (i, trial) in changed {
@@ -258,7 +258,7 @@ impl<P: Player> Run<'_, P> {
         candidate: &Candidate,
         needed: f64,
         verdict: Verdict,
-        validation: Option<Pairs>,
+        validation: Option<Box<Pairs>>,
     ) {
         self.record(round, candidate, Some(needed), verdict, validation);
     }
@@ -269,7 +269,7 @@ impl<P: Player> Run<'_, P> {
         candidate: &Candidate,
         needed: Option<f64>,
         verdict: Verdict,
-        validation: Option<Pairs>,
+        validation: Option<Box<Pairs>>,
     ) {
         let Candidate { proposal, wager, share, .. } = candidate;
         let (proposal, wager, share) = (proposal.clone(), *wager, *share);
