@@ -3,7 +3,9 @@
 
 use std::fmt::Write as _;
 
-use casebase::{OPPONENTS_MAX, Presence};
+use case_tools::self_blocking::{WARNS_ABOVE, share};
+use case_tools::{Files, SourceFile, build_without_warnings};
+use casebase::{Case, CaseBase, OPPONENTS_MAX, PointMm, Presence, Scope};
 use hil_sim::{Fnv, Stream};
 
 use crate::edit::{Change, Edit};
@@ -11,9 +13,17 @@ use crate::goalkeeper;
 use crate::occasion::Occasion;
 use crate::trial::Situation;
 
-/// A draft for every plan in a situation.
-pub(crate) fn drafts(situation: &Situation, kicks: &[String]) -> Vec<Edit> {
-    plans(situation, kicks).iter().map(|plan| draft(situation, plan)).collect()
+/// A draft for every plan in a situation that the league's rules allow.
+pub(crate) fn drafts(situation: &Situation, kicks: &[String], rules: &SourceFile) -> Vec<Edit> {
+    plans(situation, kicks).iter().filter_map(|plan| draft(situation, plan, rules)).collect()
+}
+
+/// The largest scope of an opponent at `at` in which it does not forbid what it is a condition of; none where
+/// it stands in the way of the case's own ball.
+pub(crate) fn opponent_scope(case: &Case<'_>, base: &CaseBase<'_>, at: [i32; 2]) -> Option<[i32; 2]> {
+    let centre = PointMm { x: at[0], y: at[1] };
+    let fits = |[x, y]: &[i32; 2]| share(case, base, centre, Scope { x: *x, y: *y }) <= WARNS_ABOVE;
+    OPPONENT_SCOPES.into_iter().find(fits)
 }
 
 /// The same draft with a smaller scope of the ball, under another name.
@@ -95,7 +105,7 @@ fn getter(situation: &Situation) -> u8 {
     situation.teammates.iter().min_by_key(|(id, at)| (square(*at), *id)).map_or(0, |(id, _)| *id)
 }
 
-fn draft(situation: &Situation, plan: &DraftPlan) -> Edit {
+fn draft(situation: &Situation, plan: &DraftPlan, rules: &SourceFile) -> Option<Edit> {
     let [x, y] = situation.ball.map(|value| value / 10 * 10);
     let mut text = format!(
         "# Learned from play: the best of the plans that were tried in situations like this one.\n\
@@ -111,6 +121,10 @@ fn draft(situation: &Situation, plan: &DraftPlan) -> Edit {
     if let Some(([a, b], actions)) = &plan.partner {
         let _ = write!(text, "\n[[teammates]]\nat = [{a}, {b}]\ngameplay = [{actions}]\n");
     }
+    let files = Files::from_texts("draft", &rules.text, &[("draft/new", &text)]);
+    let library = build_without_warnings(&files).ok()?;
+    let base = library.base();
+    let stored = base.case(protocol::CaseId(0))?;
     let mut opponents = situation.opponents.clone();
     opponents.sort_by_key(|[a, b]| (i64::from(a - x).pow(2) + i64::from(b - y).pow(2), *a, *b));
     let keeper = goalkeeper::among(&opponents);
@@ -118,8 +132,8 @@ fn draft(situation: &Situation, plan: &DraftPlan) -> Edit {
         let at = [a.clamp(&-2700, &2700) / 10 * 10, b.clamp(&-1800, &1800) / 10 * 10];
         if keeper == Some(number) {
             text.push_str(&opponent(at, goalkeeper::SCOPE, Presence::Required));
-        } else {
-            text.push_str(&opponent(at, OPPONENT_SCOPE, Presence::Preferred));
+        } else if let Some(scope) = opponent_scope(&stored, &base, at) {
+            text.push_str(&opponent(at, scope, Presence::Preferred));
         }
     }
     if keeper.is_none() && opponents.len() < OPPONENTS_MAX {
@@ -129,7 +143,7 @@ fn draft(situation: &Situation, plan: &DraftPlan) -> Edit {
     let mut hash = Fnv::default();
     hash.add(text.as_bytes());
     let case = format!("{region}/learned-{:06x}", hash.value() >> 40);
-    Edit { case, change: Change::New(text) }
+    Some(Edit { case, change: Change::New(text) })
 }
 
 /// The region of the library that a case belongs to, by its ball's place on a field of this length and width.
@@ -164,8 +178,9 @@ pub(crate) const FIELD: [i32; 2] = [5400, 3600];
 pub(crate) const BALL_SCOPE: [i32; 2] = [700, 500];
 /// Radii of the narrowed scope, mm: a third of the area.
 const NARROW_BALL_SCOPE: [i32; 2] = [400, 300];
-/// Radii of its opponents' scopes, mm.
-const OPPONENT_SCOPE: [i32; 2] = [500, 450];
+/// Radii of opponents' scopes, mm, the first that does not block the case's own path: a robot that moves for
+/// half a second, half of that area, and what still tells an opponent's side.
+const OPPONENT_SCOPES: [[i32; 2]; 3] = [[500, 450], [350, 320], [200, 180]];
 
 #[cfg(test)]
 mod tests {
@@ -187,14 +202,38 @@ mod tests {
         let plans = plans(&situation, &kicks);
         assert_eq!(plans.len(), 2 * (6 + 3) + 8);
         let retrieved = plans.iter().filter(|plan| {
-            let edit = draft(&situation, plan);
+            let Some(edit) = draft(&situation, plan, &variant.files.rules) else { return false };
             let Ok(drafted) = variant.edited(&edit) else { return false };
             drafted.answer(&drafted.base(), &problem).is_some_and(|(name, _, _)| name == edit.case)
         });
         assert!(retrieved.count() >= 10);
-        let edit = draft(&situation, &plans[0]);
+        let edit = draft(&situation, &plans[0], &variant.files.rules).unwrap();
         let narrow = variant.edited(&narrowed(&edit).unwrap()).unwrap();
         assert!(narrow.files.cases.iter().any(|file| file.text.contains("scope = [400, 300] }")));
+    }
+
+    #[test]
+    fn no_opponent_of_a_draft_stands_in_the_way_of_its_own_ball() {
+        let variant = Variant::new(case_library_files()).unwrap();
+        let before = variant.warnings().unwrap();
+        let situation = Situation {
+            ball: [370, -800],
+            defending_positive: false,
+            teammates: vec![(1, [220, -800]), (2, [1070, 570])],
+            opponents: vec![[370, -580], [900, -750]],
+        };
+        let drafts = drafts(&situation, &["goal".to_owned()], &variant.files.rules);
+        assert!(drafts.len() >= 10, "{}", drafts.len());
+        for edit in &drafts {
+            let warnings = variant.edited(edit).unwrap().warnings().unwrap();
+            let own = |(file, code): &&(String, &'static str)| {
+                file.contains(&edit.case) && ["self-blocking", "scope-in-path"].contains(code)
+            };
+            assert_eq!(warnings.difference(&before).find(own), None, "{edit:?}");
+        }
+        let kept =
+            |edit: &&Edit| matches!(&edit.change, Change::New(text) if text.contains("at = [370, -580]"));
+        assert!(drafts.iter().any(|edit| kept(&edit)) && !drafts.iter().all(|edit| kept(&edit)));
     }
 
     #[test]
@@ -208,7 +247,7 @@ mod tests {
         };
         let (guarded, open) = (with([2400, 50]), with([1500, -600]));
         for (own, other) in [(&guarded, &open), (&open, &guarded)] {
-            let edit = draft(own, &plans(own, &[])[0]);
+            let edit = draft(own, &plans(own, &[])[0], &variant.files.rules).unwrap();
             let wide = without_demands(&edit).unwrap();
             let played = |edit: &Edit, situation: &Situation| {
                 let drafted = variant.edited(edit).unwrap();

@@ -5,13 +5,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::{self, Write as _};
 
 use arena::successful_plays::{Holding, PlayEnd, SuccessfulPlay};
-use case_tools::self_blocking::{WARNS_ABOVE, share};
 use case_tools::{CaseLeague, Files, SourceFile, build_without_warnings};
-use casebase::{FieldMm, KickAim, OPPONENTS_MAX, PointMm, RetrievalSettings, Scope, retrieve_best};
+use casebase::{FieldMm, KickAim, OPPONENTS_MAX, PointMm, RetrievalSettings, retrieve_best};
 use geometry::{Field, Point, Segment};
 use hil_sim::Fnv;
 
-use crate::drafts::{BALL_SCOPE, FIELD, narrowed, region};
+use crate::drafts::{BALL_SCOPE, FIELD, narrowed, opponent_scope, region};
 use crate::edit::{Change, Edit};
 use crate::proposals::{Kind, Proposal};
 use crate::trial::Situation;
@@ -199,12 +198,7 @@ impl<'p> Plan<'p> {
         let base = library.base();
         let stored = base.case(protocol::CaseId(0));
         for at in self.opponents() {
-            // The largest scope in which the opponent does not forbid what it is a condition of.
-            let fits = |[x, y]: &[i32; 2]| {
-                let (centre, scope) = (PointMm { x: at[0], y: at[1] }, Scope { x: *x, y: *y });
-                stored.as_ref().is_some_and(|case| share(case, &base, centre, scope) <= WARNS_ABOVE)
-            };
-            if let Some([a, b]) = OPPONENT_SCOPES.iter().find(|radii| fits(radii)) {
+            if let Some([a, b]) = stored.as_ref().and_then(|case| opponent_scope(case, &base, at)) {
                 let [x, y] = at;
                 let _ = write!(text, "\n[[opponents]]\nat = [{x}, {y}]\nscope = [{a}, {b}]\n");
             }
@@ -301,9 +295,6 @@ const CARRIED_FROM: f64 = 200.0;
 const NEAR_PATH: f32 = 1000.0;
 /// Largest radii of the ball's scope, mm: above them `cases check` warns (docs/case-format.md §1.2).
 const BALL_SCOPE_MAX: [i32; 2] = [900, 700];
-/// Radii of opponents' scopes, mm, the first that does not block the case's own path: those of `drafts`,
-/// half of their area, and what still tells an opponent's side.
-const OPPONENT_SCOPES: [[i32; 2]; 3] = [[500, 450], [350, 320], [200, 180]];
 /// A play that scored is tried before others.
 const GOAL_WEIGHT: f64 = 2.0;
 

@@ -29,7 +29,7 @@ impl<P: Player> Run<'_, P> {
         // Candidates with the number of their occasion.
         let mut open: Vec<(usize, Candidate)> = Vec::new();
         for (number, occasion) in chosen.iter().enumerate() {
-            for edit in drafts(&occasion.situation, &kicks) {
+            for edit in drafts(&occasion.situation, &kicks, &current.files.rules) {
                 // A plan that the checks refuse, such as a pass beyond its reach, is no plan.
                 let Ok(variant) = current.edited(&edit) else { continue };
                 let proposal = Proposal { kind: Kind::New, edit, reason: String::new(), weight: 0.0 };
