@@ -2,7 +2,7 @@
 //! play equally.
 
 use brain::{Approach, BrainConfig};
-use casebase::RetrievalSettings;
+use casebase::{CaseBase, RetrievalSettings};
 use hil_sim::AirSettings;
 use hil_sim::small_size::referee::{MatchClock, RefereeSettings};
 use hil_sim::small_size::worlds::WorldChoice;
@@ -32,6 +32,9 @@ pub struct GameConfig {
     pub world: WorldChoice,
     /// Names of the cases that its robots play, for reports; by default those that come with the league.
     pub names: CaseNames,
+    /// The case base that hosts retrieve from, which must be that of the robots: a host proposes nothing to
+    /// robots with another one. None: the one that comes with the league.
+    pub cases: Option<CaseBase<'static>>,
 }
 
 /// Configuration of one side of a match.
@@ -87,6 +90,7 @@ impl GameConfig {
                     .iter()
                     .copied(),
             ),
+            cases: None,
         }
     }
 }

@@ -67,7 +67,11 @@ impl<'a> Team<'a> {
             starter.start().map_err(|error| GameError::Strategy { name: starter.name().to_owned(), error })
         };
         let strategy = setup.strategy.as_ref().map(started).transpose()?;
-        Ok(Self { host: Host::new(settings, Instant(0)), strategy, colour, air, players })
+        let mut host = Host::new(settings, Instant(0));
+        if let Some(cases) = config.cases {
+            host.play_cases(cases);
+        }
+        Ok(Self { host, strategy, colour, air, players })
     }
 
     /// The newest decision of each robot whose computer can be looked into.

@@ -47,11 +47,11 @@ use crate::names::CaseNames;
 
 /// All settings that the matches of a plan depend on.
 #[derive(Clone, Debug)]
-pub struct Matches<'a> {
+pub struct Matches {
     /// The matches to be played.
     pub plan: MatchPlan,
-    /// The case base in every robot.
-    pub base: CaseBase<'a>,
+    /// The case base in every robot, and in the hosts.
+    pub base: CaseBase<'static>,
     /// Settings of case retrieval (docs/case-format.md §3.2).
     pub settings: RetrievalSettings,
     /// Version and commit of the program: matches of two programs are never mixed.
@@ -102,7 +102,7 @@ impl MatchIdentity {
     }
 }
 
-impl Matches<'_> {
+impl Matches {
     /// The identity that its files carry.
     pub fn identity(&self) -> MatchIdentity {
         let settings = self.settings.describe();
@@ -122,6 +122,7 @@ impl Matches<'_> {
         let mut config = config.between(blue.team, yellow.team);
         config.world = self.plan.world.of_match(planned.seed);
         config.names = self.names.clone();
+        config.cases = Some(self.base);
         for team in &mut config.teams {
             team.settings = self.settings.clone();
             let match_team = if team.colour == Colour::Blue { blue } else { yellow };

@@ -97,7 +97,7 @@ fn matches_of_different_worlds_are_of_different_evaluations_and_a_plan_keeps_its
     };
     let named: WorldPlan = "grsim".parse().unwrap();
     let (nominal, grsim, random) = (of(WorldPlan::default()), of(named), of(WorldPlan::RandomPerMatch));
-    let differences = |own: &Matches<'_>, other: &Matches<'_>| {
+    let differences = |own: &Matches, other: &Matches| {
         crate::evaluation::in_words(&own.identity().differences(&other.identity()))
     };
     assert_eq!(differences(&nominal, &grsim), "world nominal, not grsim");
@@ -279,4 +279,33 @@ fn the_papers_rows_are_those_it_printed() {
     assert_eq!(goals, [20, 3]);
     assert_eq!(PAPER_PASSES.iter().map(|row| row.attempts).sum::<u32>(), 48);
     assert_eq!(PAPER_PASSES.iter().map(|row| row.successes).sum::<u32>(), 37);
+}
+
+/// A host proposes no case to robots whose case base is not its own, and these seldom retrieve one alone.
+#[test]
+fn a_host_retrieves_from_the_library_that_its_robots_have() {
+    let built_in = case_library::league("division-b").unwrap();
+    let kept = built_in.names.iter().zip(built_in.sources).filter(|(name, _)| **name != "corner/short");
+    let cases: Vec<_> = kept.map(|(name, text)| (*name, *text)).collect();
+    let files = case_tools::Files::from_texts(built_in.name, built_in.rules, &cases);
+    let library = Box::leak(Box::new(case_tools::build_without_warnings(&files).unwrap()));
+    assert_ne!(library.base().hash(), built_in.base().hash());
+    let matches = Matches {
+        plan: MatchPlan {
+            seed: 11,
+            league: "division-b".to_owned(),
+            world: WorldPlan::default(),
+            duration_s: 120.0,
+            pairings: MatchPlan::against(MatchTeam::ours(), &[Team::Reactive.into(), Team::Zone.into()]),
+            matches: 1,
+            strategy: None,
+        },
+        base: library.base(),
+        settings: RetrievalSettings::default(),
+        program: "test".to_owned(),
+        names: CaseNames::default(),
+    };
+    let retrieved =
+        [0, 1].map(|number| crate::ledger::CaseTable::read(&matches.play(number).unwrap().cases).retrieved);
+    assert!(retrieved.iter().sum::<u32>() >= 4, "{retrieved:?}");
 }

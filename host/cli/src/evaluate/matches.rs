@@ -101,7 +101,7 @@ pub(super) fn run(args: &MatchesArgs) -> Result<ExitCode, Failure> {
     let library_handle = cases(&args.directory, args.league)?;
     let matches = Matches {
         plan: args.plan(),
-        base: library_handle.as_ref().map_or_else(CaseBase::default, LibraryHandle::base),
+        base: library_handle.as_ref().map_or_else(CaseBase::default, LibraryHandle::lasting_base),
         settings: args.settings.choose()?.settings,
         program: VERSION.to_owned(),
         names: CaseNames::new(library_handle.as_ref().map_or_else(Vec::new, LibraryHandle::names)),
