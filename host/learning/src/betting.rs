@@ -24,27 +24,35 @@ pub struct Wager {
     pub lowered: u32,
     /// All pairs, equal ones included.
     pub pairs: u32,
+    /// Differences of the pairs, summed, and their squares.
+    sum: f64,
+    squares: f64,
 }
 
 impl Default for Wager {
     fn default() -> Self {
-        Self { capital: [1.0; STAKES.len()], raised: 0, lowered: 0, pairs: 0 }
+        Self { capital: [1.0; STAKES.len()], raised: 0, lowered: 0, pairs: 0, sum: 0.0, squares: 0.0 }
     }
 }
 
 impl Wager {
     /// Adds a pair: the outcome with the change and the one without it.
     pub fn add(&mut self, with: bool, without: bool) {
+        self.add_difference(f64::from(u8::from(with)) - f64::from(u8::from(without)), 1.0);
+    }
+
+    /// Adds a pair by how much higher the value of the trial with the change was; values of pairs differ by
+    /// at most `most`. The bet is against "the mean of the differences is not above 0": a part of the stake
+    /// is won or lost.
+    pub fn add_difference(&mut self, difference: f64, most: f64) {
+        let difference = difference.clamp(-most, most);
         self.pairs += 1;
-        let sign = match (with, without) {
-            (true, false) => 1.0,
-            (false, true) => -1.0,
-            _ => return,
-        };
-        self.raised += u32::from(with);
-        self.lowered += u32::from(without);
+        self.raised += u32::from(difference > 0.0);
+        self.lowered += u32::from(difference < 0.0);
+        self.sum += difference;
+        self.squares += difference * difference;
         for (capital, stake) in self.capital.iter_mut().zip(STAKES) {
-            *capital *= 1.0 + sign * stake;
+            *capital *= 1.0 + stake * difference / most;
         }
     }
 
@@ -61,6 +69,8 @@ impl Wager {
         self.raised += other.raised;
         self.lowered += other.lowered;
         self.pairs += other.pairs;
+        self.sum += other.sum;
+        self.squares += other.squares;
     }
 
     /// The e-value: the bettor's capital, 1 at the start.
@@ -68,16 +78,20 @@ impl Wager {
         self.capital.iter().sum::<f64>() / STAKES.len() as f64
     }
 
-    /// Estimated gain: points of to-goal, percent of all starts.
+    /// Estimated gain: points of to-goal, percent of all starts; of values, hundred times their mean
+    /// difference.
     pub fn gain(&self) -> f64 {
-        let difference = f64::from(self.raised) - f64::from(self.lowered);
-        if self.pairs == 0 { 0.0 } else { 100.0 * difference / f64::from(self.pairs) }
+        if self.pairs == 0 { 0.0 } else { 100.0 * self.sum / f64::from(self.pairs) }
     }
 
     /// The difference in standard deviations of chance.
     pub fn z(&self) -> f64 {
-        let differ = f64::from(self.raised) + f64::from(self.lowered);
-        if differ == 0.0 { 0.0 } else { (f64::from(self.raised) - f64::from(self.lowered)) / differ.sqrt() }
+        if self.squares == 0.0 { 0.0 } else { self.sum / self.squares.sqrt() }
+    }
+
+    /// The mean difference less a standard error of chance, in hundredths.
+    pub(crate) fn cautious_gain(&self) -> f64 {
+        100.0 * (self.sum - self.squares.sqrt()) / f64::from(self.pairs.max(1))
     }
 }
 
@@ -132,6 +146,24 @@ mod tests {
         first.merge(&second);
         assert!((first.e_value() / whole.e_value() - 1.0).abs() < 1e-9);
         assert_eq!((first.raised, first.lowered, first.pairs), (whole.raised, whole.lowered, whole.pairs));
+    }
+
+    #[test]
+    fn a_difference_of_values_wins_its_part_of_the_stakes_and_fair_ones_rarely_pass() {
+        let mut wager = Wager::default();
+        wager.add_difference(0.3, 0.6);
+        assert!((wager.e_value() - 1.12).abs() < 1e-12 && (wager.gain() - 30.0).abs() < 1e-9);
+        wager.add_difference(-0.3, 0.6);
+        assert_eq!((wager.z(), wager.raised, wager.lowered, wager.pairs), (0.0, 1, 1, 2));
+        // Rare large losses against frequent small gains, fair on average.
+        let passed = (0..2000).filter(|seed| {
+            let (mut chance, mut wager) = (Stream::new(*seed, "values"), Wager::default());
+            (0..400).any(|_| {
+                wager.add_difference(if chance.chance(0.2) { -0.4 } else { 0.1 }, 0.6);
+                wager.e_value() >= 20.0
+            })
+        });
+        assert!(passed.count() <= 100);
     }
 
     #[test]

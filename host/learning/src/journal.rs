@@ -16,6 +16,7 @@ use std::time::{Duration, Instant};
 
 use arena::evaluation::Shard;
 use rayon::prelude::*;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -30,21 +31,49 @@ const LOOK: Duration = Duration::from_millis(500);
 /// takes (16 trials, some 0.2 s of a core), so that shards which share a core are rarely played twice.
 const PATIENCE: Duration = Duration::from_secs(10);
 
+/// A unit that a journal can keep.
+pub trait Playable: Sync {
+    /// What is kept of each of its trials.
+    type Played: Clone + Send + Serialize + DeserializeOwned;
+    /// Its name in journals: equal for units that are played equally.
+    fn key(&self) -> u64;
+    /// Plays it, in a run with this seed.
+    fn play(&self, seed: u64) -> Result<Vec<Self::Played>, PlayError>;
+    /// What it took of a budget.
+    fn counts(&self, played: &[Self::Played]) -> u64;
+}
+
+impl Playable for Unit<'_> {
+    type Played = LearningTrial;
+
+    fn key(&self) -> u64 {
+        Unit::key(self)
+    }
+
+    fn play(&self, seed: u64) -> Result<Vec<LearningTrial>, PlayError> {
+        Unit::play(self, seed).map_err(PlayError::Simulation)
+    }
+
+    fn counts(&self, played: &[LearningTrial]) -> u64 {
+        played.len() as u64
+    }
+}
+
 /// A finished unit.
 #[derive(Debug, Serialize, Deserialize)]
-struct Line {
+struct Line<T> {
     unit: u64,
-    trials: Vec<LearningTrial>,
+    trials: Vec<T>,
 }
 
 /// Plays units on all threads of the current rayon pool and keeps them in a directory.
-pub struct JournalPlayer<'s> {
+pub struct JournalPlayer<'s, T = LearningTrial> {
     directory: PathBuf,
     identity: String,
     shard: Shard,
     seed: u64,
     file: File,
-    known: BTreeMap<u64, Vec<LearningTrial>>,
+    known: BTreeMap<u64, Vec<T>>,
     /// Bytes of each other shard's file that were read.
     read: BTreeMap<PathBuf, u64>,
     patience: Duration,
@@ -54,13 +83,13 @@ pub struct JournalPlayer<'s> {
     progress: &'s (dyn Fn(u64) + Sync),
 }
 
-impl std::fmt::Debug for JournalPlayer<'_> {
+impl<T> std::fmt::Debug for JournalPlayer<'_, T> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("JournalPlayer").field("directory", &self.directory).finish_non_exhaustive()
     }
 }
 
-impl<'s> JournalPlayer<'s> {
+impl<'s, T: Clone + Send + Serialize + DeserializeOwned> JournalPlayer<'s, T> {
     /// Opens or creates the journal of a shard of the run that `identity` names; only an equal one goes on.
     pub fn open(
         directory: &Path,
@@ -135,7 +164,7 @@ impl<'s> JournalPlayer<'s> {
     }
 
     /// Plays some units of absent shards, beginning at another place than other shards do.
-    fn play_for_absent(&mut self, missing: &[(u64, &Unit<'_>)]) -> Result<(), PlayError> {
+    fn play_for_absent<U: Playable<Played = T>>(&mut self, missing: &[(u64, &U)]) -> Result<(), PlayError> {
         let parts = self.shard.parts();
         let mut theirs: Vec<_> =
             missing.iter().filter(|(key, _)| self.absent.contains(&part_of(*key, parts))).copied().collect();
@@ -145,29 +174,31 @@ impl<'s> JournalPlayer<'s> {
         self.play_own(&theirs)
     }
 
-    fn play_own(&mut self, own: &[(u64, &Unit<'_>)]) -> Result<(), PlayError> {
+    fn play_own<U: Playable<Played = T>>(&mut self, own: &[(u64, &U)]) -> Result<(), PlayError> {
         let keeper = Mutex::new((&mut self.file, &mut self.known));
         let (stopped, seed, progress) = (self.stopped, self.seed, self.progress);
         own.par_iter().try_for_each(|(key, unit)| {
             if stopped.load(Ordering::Relaxed) {
                 return Err(PlayError::Stopped);
             }
-            let line = Line { unit: *key, trials: unit.play(seed).map_err(PlayError::Simulation)? };
+            let line = Line { unit: *key, trials: unit.play(seed)? };
             let mut text = serde_json::to_vec(&line).map_err(|error| PlayError::Journal(error.into()))?;
             text.push(b'\n');
             let mut keeper = keeper.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
             keeper.0.write_all(&text).map_err(PlayError::Journal)?;
-            progress(line.trials.len() as u64);
+            progress(unit.counts(&line.trials));
             keeper.1.insert(line.unit, line.trials);
             Ok(())
         })
     }
-}
 
-impl Player for JournalPlayer<'_> {
-    fn play(&mut self, units: &[Unit<'_>]) -> Result<Vec<Vec<LearningTrial>>, PlayError> {
+    /// What became of every unit, in order; those that no journal has are played.
+    pub(crate) fn play_all<U: Playable<Played = T>>(
+        &mut self,
+        units: &[U],
+    ) -> Result<Vec<Vec<T>>, PlayError> {
         let keyed: Vec<_> = units.iter().map(|unit| (unit.key(), unit)).collect();
-        let missing = |known: &BTreeMap<u64, Vec<LearningTrial>>| {
+        let missing = |known: &BTreeMap<u64, Vec<T>>| {
             let mut asked = BTreeSet::new();
             let open = keyed.iter().filter(|(key, _)| !known.contains_key(key) && asked.insert(*key));
             open.copied().collect::<Vec<_>>()
@@ -214,6 +245,12 @@ impl Player for JournalPlayer<'_> {
     }
 }
 
+impl Player for JournalPlayer<'_> {
+    fn play(&mut self, units: &[Unit<'_>]) -> Result<Vec<Vec<LearningTrial>>, PlayError> {
+        self.play_all(units)
+    }
+}
+
 /// The number by which a unit belongs to a shard.
 fn unit_number(key: u64) -> usize {
     (key >> 1) as usize
@@ -225,12 +262,12 @@ fn part_of(key: u64, parts: usize) -> usize {
 }
 
 /// Adds the whole lines of a journal's `bytes`, which begin at byte `from`; returns where they end.
-fn absorb(
+fn absorb<T: DeserializeOwned>(
     bytes: &[u8],
     from: u64,
     identity: &str,
     path: &Path,
-    known: &mut BTreeMap<u64, Vec<LearningTrial>>,
+    known: &mut BTreeMap<u64, Vec<T>>,
 ) -> Result<u64, PlayError> {
     let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
     let mut at = from;
@@ -242,7 +279,7 @@ fn absorb(
                 return Err(PlayError::OtherRun { file: path.display().to_string(), differences });
             }
         } else {
-            let line: Line = serde_json::from_slice(line).map_err(|error| PlayError::Damaged {
+            let line: Line<T> = serde_json::from_slice(line).map_err(|error| PlayError::Damaged {
                 file: path.display().to_string(),
                 at,
                 what: error.to_string(),

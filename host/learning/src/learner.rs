@@ -125,6 +125,7 @@ pub fn learn(
         plays,
         spent,
         tests,
+        opponents: Vec::new(),
     })
 }
 

@@ -1,9 +1,9 @@
 //! `learning`: revise and retain: a case library made better by play (docs/learning.md). Runs on the PC.
 //!
 //! [`learn()`] takes a library's files and a [`Player`] of trials and returns a [`Learned`] library, with the
-//! evidence for every change that was accepted and every one that was refused. It does no input or output
-//! itself; [`JournalPlayer`] keeps finished trials in a directory, so that a run may be killed, resumed and
-//! sharded.
+//! evidence for every change that was accepted and every one that was refused; [`learn_matches()`] does so
+//! with matches of the Small Size League. They do no input or output themselves; [`JournalPlayer`] keeps what
+//! was played in a directory, so that a run may be killed, resumed and sharded.
 #![forbid(unsafe_code)]
 
 mod aim;
@@ -18,6 +18,7 @@ mod evidence;
 mod goalkeeper;
 mod journal;
 mod learner;
+mod matches;
 mod occasion;
 mod page;
 mod paired;
@@ -40,15 +41,18 @@ pub use competence::{CaseStanding, Standing, standings};
 pub use diff::diff;
 pub use edit::{Change, Edit, EditError, RETRIEVAL};
 pub use evidence::{CasePlay, Evidence, EvidenceCounts, EvidenceKey, Posterior, ScopeRing, world_of_trials};
-pub use journal::JournalPlayer;
+pub use journal::{JournalPlayer, Playable};
 pub use learner::{LearnError, learn};
+pub use matches::{
+    LearningMatch, Mark, MarkKind, MatchDecision, MatchPlayer, MatchUnit, MatchWork, SCENE_MS, learn_matches,
+};
 pub use page::{html, json, summary};
 pub use paired::{PairedDifference, Pairs, WorldPairs};
 pub use plays::PlayToWatch;
 pub use proposals::{Kind, Proposal, order};
 pub use recorded::{DraftError, RecordedDraft, draft};
 pub use refusals::{REFUSALS, read_refusals, refusals_to_jsonl};
-pub use results::{ChangeRecord, CurvePoint, Learned, Verdict};
+pub use results::{ChangeRecord, CurvePoint, Learned, Validation, Verdict};
 pub use settings::LearnSettings;
 pub use starts::{KINDS, StartKind, StartPlan, StartStream, Worlds, kind_of};
 pub use trial::{LearningTrial, Situation, TrialDecision};

@@ -9,18 +9,19 @@ use drawing::cases::{CasePicture, case_picture};
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 use serde_json::{Value, json as value};
 
-use crate::paired::{Pairs, WorldPairs};
-use crate::results::{ChangeRecord, Learned, Verdict};
-use crate::starts::KINDS;
+use crate::paired::WorldPairs;
+use crate::results::{ChangeRecord, CurvePoint, Learned, Validation, Verdict};
 use crate::variant::Variant;
 
 /// The report as JSON: settings, curve, every change with its evidence.
 pub fn json(learned: &Learned) -> Value {
     let changes = learned.changes.iter().map(|change| {
-        let validation = change.validation.as_ref().map(|pairs| {
-            let Pairs { all, kinds, worlds } = &**pairs;
-            let cells = kinds.iter().zip(KINDS).map(|(wager, kind)| {
-                value!({ "starts": kind.label(), "raised": wager.raised, "lowered": wager.lowered, "pairs": wager.pairs })
+        let validation = change.validation.as_ref().map(|Validation { all, kinds, worlds }| {
+            let cells = kinds.iter().map(|(starts, wager)| {
+                value!({
+                    "starts": starts, "raised": wager.raised, "lowered": wager.lowered, "pairs": wager.pairs,
+                    "gain": wager.gain(),
+                })
             });
             let worlds = worlds.iter().zip([Profile::Simulated, Profile::Robots]).map(|(pairs, profile)| {
                 let WorldPairs { to_goal, touches } = pairs;
@@ -69,11 +70,12 @@ pub fn summary(learned: &Learned) -> String {
     }) {
         let _ = writeln!(
             text,
-            "{:>2}  {:<9} {}  {:+.2} points, e {:.3e}",
+            "{:>2}  {:<9} {}  {:+.2} {}, e {:.3e}",
             change.round,
             verdict(change.verdict),
             change.proposal.edit,
             change.wager.gain(),
+            gained(learned),
             change.wager.e_value()
         );
     }
@@ -97,11 +99,12 @@ pub fn summary(learned: &Learned) -> String {
     }
     let _ = writeln!(
         text,
-        "{} of {} proposals accepted after {} tests, {} trials",
+        "{} of {} proposals accepted after {} tests, {} {}",
         learned.accepted().count(),
         learned.changes.len(),
         learned.tests,
-        learned.spent
+        learned.spent,
+        learned.played()
     );
     text
 }
@@ -122,22 +125,24 @@ pub fn html(learned: &Learned) -> String {
                 h1 { "Learned cases" }
                 p {
                     (learned.accepted().count()) " of " (learned.changes.len()) " proposed changes accepted, "
-                    (learned.spent) " trials, seed " (settings.seed) ", expected share of wrong changes at most "
+                    (learned.spent) " " (learned.played()) ", seed " (settings.seed) ", expected share of wrong changes at most "
                     (settings.error_rate) " over " (settings.tries) " tests."
                     @if !settings.refused.is_empty() {
                         " Changes refused by hand, not proposed: " (settings.refused.len()) "."
                     }
                     @if settings.shuffle { " Null control: chance decides every pair." }
                 }
-                h2 { "Learning curve on held-out starts" }
-                (curve(learned))
-                table {
-                    tr { th { "round" } th { "trials" } th { "to goal %" } th { "random starts %" } th { "as robots %" } th { "touches" } }
-                    @for point in &learned.curve {
-                        tr {
-                            td { (point.round) } td { (point.spent) } td { (format!("{:.2}", point.to_goal)) }
-                            td { (format!("{:.2}", point.to_goal_random)) } td { (point.to_goal_robots.map_or_else(String::new, |robots| format!("{robots:.2}"))) }
-                            td { (format!("{:.3}", point.touches)) }
+                @if !learned.curve.is_empty() {
+                    h2 { "Learning curve on held-out starts" }
+                    (curve(learned))
+                    table {
+                        tr { th { "round" } th { "trials" } th { "to goal %" } th { "random starts %" } th { "as robots %" } th { "touches" } }
+                        @for point in &learned.curve {
+                            tr {
+                                td { (point.round) } td { (point.spent) } td { (format!("{:.2}", point.to_goal)) }
+                                td { (format!("{:.2}", point.to_goal_random)) } td { (robots(point)) }
+                                td { (format!("{:.3}", point.touches)) }
+                            }
                         }
                     }
                 }
@@ -179,9 +184,9 @@ fn accepted(learned: &Learned, change: &ChangeRecord) -> Markup {
             h3 { (edit.to_string()) }
             p { (change.proposal.reason) }
             p {
-                (evidence(change)) ", needed " (format!("{:.0}", change.needed.unwrap_or_default())) "."
-                @if let Some(all) = change.validation.as_ref().map(|pairs| &pairs.all) {
-                    " Validation: " (all.raised) " raised, " (all.lowered) " lowered in " (all.pairs) " starts."
+                (evidence(learned, change)) ", needed " (format!("{:.0}", change.needed.unwrap_or_default())) "."
+                @if let Some(all) = change.validation.as_ref().map(|validation| &validation.all) {
+                    " Validation: " (all.raised) " raised, " (all.lowered) " lowered in " (all.pairs) (validated(learned))
                 }
             }
             div.pictures {
@@ -200,7 +205,7 @@ fn table(learned: &Learned) -> Markup {
             @for change in &learned.changes {
                 tr {
                     td { (change.round) } td { (change.proposal.kind.label()) } td { (change.proposal.edit.to_string()) }
-                    td { (change.proposal.reason) } td { (evidence(change)) } td.word { (verdict(change.verdict)) }
+                    td { (change.proposal.reason) } td { (evidence(learned, change)) } td.word { (verdict(change.verdict)) }
                 }
             }
         }
@@ -217,18 +222,39 @@ fn line_class(line: &str) -> &'static str {
     }
 }
 
-fn evidence(change: &ChangeRecord) -> String {
+fn evidence(learned: &Learned, change: &ChangeRecord) -> String {
     let wager = &change.wager;
+    let (places, pairs) = match (learned.opponents.is_empty(), change.needed.is_some()) {
+        (true, true) => ("situations", "pairs of all starts"),
+        (true, false) => ("situations", "pairs there"),
+        (false, true) => ("matches", "pairs of fresh scenes"),
+        (false, false) => ("matches", "pairs of scenes there"),
+    };
     format!(
-        "changes {:.1} % of the situations; {} pairs {}: {} raised, {} lowered, {:+.2} points, e {:.3}",
+        "changes {:.1} % of the {places}; {} {pairs}: {} raised, {} lowered, {:+.2} {}, e {:.3}",
         100.0 * change.share,
         wager.pairs,
-        if change.needed.is_some() { "of all starts" } else { "there" },
         wager.raised,
         wager.lowered,
         wager.gain(),
+        gained(learned),
         wager.e_value()
     )
+}
+
+/// To goal on starts that are played as by the paper's robots, percent; empty where there are none.
+fn robots(point: &CurvePoint) -> String {
+    point.to_goal_robots.map_or_else(String::new, |robots| format!("{robots:.2}"))
+}
+
+/// What a gain is counted in.
+fn gained(learned: &Learned) -> &'static str {
+    if learned.opponents.is_empty() { "points" } else { "goals in 100 scenes" }
+}
+
+/// What a validation played.
+fn validated(learned: &Learned) -> &'static str {
+    if learned.opponents.is_empty() { " starts." } else { " matches." }
 }
 
 const fn verdict(verdict: Verdict) -> &'static str {

@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::betting::Wager;
 use crate::diff::diff;
 use crate::evidence::Evidence;
-use crate::paired::Pairs;
+use crate::paired::{Pairs, WorldPairs};
 use crate::plays::PlayToWatch;
 use crate::proposals::Proposal;
 use crate::settings::LearnSettings;
@@ -40,6 +40,24 @@ pub enum Verdict {
     Accepted,
 }
 
+/// Pairs on validation starts, or of whole matches.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Validation {
+    /// All of them.
+    pub all: Wager,
+    /// By kind of start or by opponent, with its name.
+    pub kinds: Vec<(String, Wager)>,
+    /// Of trials as in the paper's simulator and as by its robots; empty for matches.
+    pub worlds: Vec<WorldPairs>,
+}
+
+impl From<&Pairs> for Validation {
+    fn from(pairs: &Pairs) -> Self {
+        let kinds = KINDS.iter().zip(pairs.kinds).map(|(kind, wager)| (kind.label(), wager));
+        Self { all: pairs.all, kinds: kinds.collect(), worlds: pairs.worlds.to_vec() }
+    }
+}
+
 /// A proposal and its evidence.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ChangeRecord {
@@ -57,7 +75,7 @@ pub struct ChangeRecord {
     /// What became of it.
     pub verdict: Verdict,
     /// Pairs on validation starts.
-    pub validation: Option<Box<Pairs>>,
+    pub validation: Option<Validation>,
 }
 
 /// The library after a round, on held-out starts.
@@ -122,12 +140,19 @@ pub struct Learned {
     pub spent: u64,
     /// Sequential tests among them.
     pub tests: u32,
+    /// The opponents of matches; empty where trials were played.
+    pub opponents: Vec<String>,
 }
 
 impl Learned {
     /// The changes that are in the learned library.
     pub fn accepted(&self) -> impl Iterator<Item = &ChangeRecord> {
         self.changes.iter().filter(|change| change.verdict == Verdict::Accepted)
+    }
+
+    /// What was played, and what a budget counts.
+    pub fn played(&self) -> &'static str {
+        if self.opponents.is_empty() { "trials" } else { "scenes" }
     }
 
     /// What the learned library has in other files or lines, as a unified diff.

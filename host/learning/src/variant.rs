@@ -77,6 +77,12 @@ impl Variant {
         self.library.base()
     }
 
+    /// The same for the rest of the program, as hosts need it: the library is kept until its end.
+    pub(crate) fn lasting_base(&self) -> CaseBase<'static> {
+        let library: &'static Arc<Library> = Box::leak(Box::new(Arc::clone(&self.library)));
+        library.base()
+    }
+
     /// `region/name` of its cases, in the order of ids.
     pub fn names(&self) -> &[String] {
         &self.library.names

@@ -6,6 +6,7 @@ use std::fmt;
 
 use arena::TrialConfig;
 use arena::evaluation::{Planned, Profile};
+use arena::game::GameError;
 use brain::Approach;
 use foreign::printable;
 use geometry::{Angle, Field, Point, Pose};
@@ -66,6 +67,8 @@ pub trait Player {
 pub enum PlayError {
     /// The simulator cannot go on.
     Simulation(SimulationError),
+    /// A match cannot go on.
+    Match(GameError),
     /// The journal cannot be read or written.
     Journal(std::io::Error),
     /// The journal is of another run: other settings, library or world.
@@ -92,6 +95,7 @@ impl fmt::Display for PlayError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Simulation(error) => write!(f, "a trial cannot be played: {error}"),
+            Self::Match(error) => write!(f, "a match cannot be played: {error}"),
             Self::Journal(error) => {
                 write!(f, "the journal of trials cannot be kept: {error}; make the output directory writable")
             }

@@ -72,7 +72,8 @@ fn threads_shards_and_interrupts_change_nothing() {
     });
     assert_eq!(results, [first.clone(), first], "two shards");
 
-    let other = JournalPlayer::open(&one, "{\"run\":2}", Shard::WHOLE, 4, &STOPPED, &|_| {});
+    let other: Result<JournalPlayer<'_>, _> =
+        JournalPlayer::open(&one, "{\"run\":2}", Shard::WHOLE, 4, &STOPPED, &|_| {});
     let error = other.unwrap_err();
     assert!(matches!(error, PlayError::OtherRun { .. }), "{error}");
     assert!(

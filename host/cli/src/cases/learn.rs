@@ -4,10 +4,11 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Duration;
 
 use arena::evaluation::{EvaluationError, Shard};
 use clap::Args;
-use learning::{JournalPlayer, Kind, LearnError, LearnSettings, Learned, Worlds, learn};
+use learning::{JournalPlayer, Kind, LearnError, LearnSettings, Learned, Worlds, learn, learn_matches};
 
 use crate::Failure;
 use crate::args::{LibraryArgs, VERSION};
@@ -26,16 +27,18 @@ pub(crate) struct LearnArgs {
     /// what `trial --record` wrote. Successful plays become drafts of new cases.
     #[arg(long, value_name = "FILE")]
     from: Vec<PathBuf>,
-    /// Trials after which no further round starts.
-    #[arg(long, default_value_t = 300_000, value_parser = clap::value_parser!(u64).range(1..))]
-    budget: u64,
+    /// Trials after which no further round starts, 300000 by default. Of a library of the Small Size League,
+    /// which learns from matches, scenes of 20 s of them (some 0.2 s of a core each), 10000 by default.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    budget: Option<u64>,
     /// Random seed.
     #[arg(short, long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(..1 << 40))]
     seed: u64,
     /// The directory that everything is written to: journals, evidence, report and the learned library.
     #[arg(short, long, value_name = "DIR")]
     out: PathBuf,
-    /// Only these kinds of changes, with commas between: scopes, actions, new, forget, order.
+    /// Only these kinds of changes, with commas between: scopes, actions, new, forget, order. New cases come
+    /// of trials alone.
     #[arg(long, value_name = "KINDS", value_delimiter = ',', value_parser = kind)]
     only: Vec<Kind>,
     /// The world that is learned in: as the paper's simulator, as its robots with noise and pauses, or
@@ -68,7 +71,11 @@ pub(crate) struct LearnArgs {
 
 pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
     let known = OpenLibrary::open(&args.library)?;
-    known.handle.check_field_of_trials()?;
+    let matches = known.handle.simulated_league()?.limits().is_some();
+    if !matches {
+        known.handle.check_field_of_trials()?;
+    }
+    let budget = args.budget.unwrap_or(if matches { SCENES } else { TRIALS });
     let files = known.variant.files.clone();
     let earlier = collect(&args.from, &known, None, true)?;
     let kinds: BTreeSet<Kind> =
@@ -76,7 +83,7 @@ pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
     let refused = known.handle.directory().map_or_else(|| Ok(BTreeSet::new()), refusals);
     let settings = LearnSettings {
         seed: args.seed,
-        budget: args.budget,
+        budget,
         kinds,
         worlds: args.profile,
         error_rate: args.error_rate,
@@ -95,13 +102,18 @@ pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
     make(&args.out)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(args.jobs.map_or(0, usize::from)).build();
     let pool = pool.map_err(Failure::Threads)?;
-    let bar = Progress::of(args.budget, "trials");
+    let bar = Progress::of(budget, if matches { "scenes" } else { "trials" });
     let on_trials = |trials| bar.add(trials);
     let learned = pool.install(|| {
         let (identity, stopped) = (identity.to_string(), stopped_by_hand());
-        let player = JournalPlayer::open(&args.out, &identity, args.shard, args.seed, stopped, &on_trials);
-        let mut player = player.map_err(LearnError::Play)?;
-        learn(files, earlier, &settings, &mut player)
+        let (out, shard, seed) = (&args.out, args.shard, args.seed);
+        if matches {
+            let player = JournalPlayer::open(out, &identity, shard, seed, stopped, &on_trials);
+            let mut player = player.map_err(LearnError::Play)?.with_patience(PATIENCE);
+            return learn_matches(files, earlier, &settings, &mut player);
+        }
+        let player = JournalPlayer::open(out, &identity, shard, seed, stopped, &on_trials);
+        learn(files, earlier, &settings, &mut player.map_err(LearnError::Play)?)
     });
     drop(bar);
     let learned = learned.map_err(Failure::Learning)?;
@@ -116,6 +128,13 @@ pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
     }
     Ok(ExitCode::SUCCESS)
 }
+
+/// Trials of a run by default.
+const TRIALS: u64 = 300_000;
+/// Scenes of a run with matches by default: some half an hour of a core.
+const SCENES: u64 = 10_000;
+/// Time without a match of a shard after which it counts as absent: several whole matches.
+const PATIENCE: Duration = Duration::from_mins(1);
 
 /// Writes evidence, report and library.
 fn write(learned: &Learned, out: &Path) -> Result<(), Failure> {

@@ -13,7 +13,7 @@ use crate::edit::Edit;
 use crate::occasion::Occasion;
 use crate::paired::{Objection, Pairs};
 use crate::proposals::Proposal;
-use crate::results::{ChangeRecord, Verdict};
+use crate::results::{ChangeRecord, Validation, Verdict};
 use crate::starts::{StartStream, kind_of};
 use crate::trial::LearningTrial;
 use crate::variant::Variant;
@@ -215,7 +215,7 @@ impl<P: Player> Run<'_, P> {
             Some(Objection::Touches) => Verdict::Touches,
             None => Verdict::Accepted,
         };
-        self.note_test(round, candidate, needed, verdict, Some(Box::new(pairs)));
+        self.note_test(round, candidate, needed, verdict, Some((&pairs).into()));
         let accepted = verdict == Verdict::Accepted;
         if accepted {
             for (i, trial) in changed {
@@ -258,7 +258,7 @@ impl<P: Player> Run<'_, P> {
         candidate: &Candidate,
         needed: f64,
         verdict: Verdict,
-        validation: Option<Box<Pairs>>,
+        validation: Option<Validation>,
     ) {
         self.record(round, candidate, Some(needed), verdict, validation);
     }
@@ -269,7 +269,7 @@ impl<P: Player> Run<'_, P> {
         candidate: &Candidate,
         needed: Option<f64>,
         verdict: Verdict,
-        validation: Option<Box<Pairs>>,
+        validation: Option<Validation>,
     ) {
         let Candidate { proposal, wager, share, .. } = candidate;
         let (proposal, wager, share) = (proposal.clone(), *wager, *share);
