@@ -33,8 +33,8 @@ pub enum Verdict {
     Warned,
     /// It lowers a kind of validation starts, or all of a world together.
     Lowers,
-    /// On validation starts of a world the opponents touch the ball more often with it, and its gain there may
-    /// be chance.
+    /// On validation starts of a world the opponents touch the ball more often with it, and its gain there
+    /// may be chance.
     Touches,
     /// It is in the learned library.
     Accepted,
