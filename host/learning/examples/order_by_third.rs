@@ -11,7 +11,7 @@ use std::path::Path;
 use arena::evaluation::Profile;
 use case_tools::Files;
 use hil_sim::Configuration;
-use learning::{Edit, KINDS, Situation, StartStream, Unit, Variant, Wager, Work, kind_of, order};
+use learning::{Edit, KINDS, Situation, StartStream, Unit, Variant, Wager, Work, kind_of, order_edits};
 use rayon::prelude::*;
 
 /// Starts whose decisions are the situations.
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let seed: u64 = arguments.next().map_or(Ok(1), |seed| seed.parse())?;
     let files = Files::read(Path::new(&directory)).map_err(|error| format!("{error:?}"))?;
     let current = Variant::new(files).map_err(|error| format!("{error:?}"))?;
-    let changes: Vec<(Edit, Variant)> = order(&current)
+    let changes: Vec<(Edit, Variant)> = order_edits(&current)
         .into_iter()
         .filter_map(|edit| Some((edit.clone(), current.edited(&edit).ok()?)))
         .collect();

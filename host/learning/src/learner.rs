@@ -18,7 +18,7 @@ use std::fmt;
 use arena::evaluation::Profile;
 use case_tools::Files;
 use casebase::CaseBase;
-use hil_sim::{Configuration, Stream};
+use hil_sim::Configuration;
 use rayon::prelude::*;
 
 use crate::aim::{Ground, Purpose};
@@ -26,11 +26,12 @@ use crate::betting::Wager;
 use crate::collected::Collected;
 use crate::competence::standings;
 use crate::evidence::{Evidence, world_of_trials};
+use crate::null_control;
 use crate::occasion::Occasion;
 use crate::plays::plays_to_watch;
-use crate::proposals::{Kind, Proposal, TRIED_MAX, Tried, from_evidence, text_hash};
+use crate::proposals::{Kind, Proposal, Tried, from_evidence};
 use crate::recorded;
-use crate::results::{ChangeRecord, CurvePoint, Learned, Verdict};
+use crate::results::{ChangeRecord, CurvePoint, Learned, note_tried};
 use crate::settings::LearnSettings;
 use crate::starts::{KINDS, StartKind, StartStream, kind_of};
 use crate::trial::LearningTrial;
@@ -278,12 +279,7 @@ impl<P: Player> Run<'_, P> {
             return Ok(current.clone());
         }
         let next = self.judge(current, finalists, round)?;
-        for change in &self.changes[before..] {
-            let edit = &change.proposal.edit;
-            let tried = self.tried.entry((text_hash(current, &edit.case), edit.clone())).or_default();
-            // A test or the lack of situations is final; screening may have been bad luck.
-            *tried = if change.verdict == Verdict::ScreenedOut { *tried + 1 } else { TRIED_MAX };
-        }
+        note_tried(&mut self.tried, current, &self.changes[before..]);
         Ok(next)
     }
 
@@ -315,13 +311,8 @@ impl<P: Player> Run<'_, P> {
     /// Adds trials to the evidence; in the null control with the outcomes of other trials.
     fn collect(&mut self, current: &Variant, played: &Played) {
         let mut outcomes: Vec<_> = played.trials.iter().map(|trial| trial.outcome).collect();
-        if self.settings.shuffle {
-            let first = played.indices.first().copied().unwrap_or_default();
-            let mut chance = Stream::new(self.settings.seed ^ u64::from(first), "shuffle");
-            for i in (1..outcomes.len()).rev() {
-                outcomes.swap(i, chance.whole(0, i as u32) as usize);
-            }
-        }
+        let first = played.indices.first().copied().unwrap_or_default();
+        null_control::shuffle(self.settings, first, &mut outcomes);
         for ((index, trial), outcome) in played.indices.iter().zip(&played.trials).zip(outcomes) {
             let StartKind { profile, opponents, .. } = KINDS[kind_of(*index).0];
             let (world, trial) = (world_of_trials(profile), LearningTrial { outcome, ..trial.clone() });

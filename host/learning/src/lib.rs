@@ -19,6 +19,7 @@ mod goalkeeper;
 mod journal;
 mod learner;
 mod matches;
+mod null_control;
 mod occasion;
 mod page;
 mod paired;
@@ -49,7 +50,7 @@ pub use matches::{
 pub use page::{html, json, summary};
 pub use paired::{PairedDifference, Pairs, WorldPairs};
 pub use plays::PlayToWatch;
-pub use proposals::{Kind, Proposal, order};
+pub use proposals::{Kind, Proposal, order_edits};
 pub use recorded::{DraftError, RecordedDraft, draft};
 pub use refusals::{REFUSALS, read_refusals, refusals_to_jsonl};
 pub use results::{ChangeRecord, CurvePoint, Learned, Validation, Verdict};

@@ -73,7 +73,7 @@ impl Pairs {
     pub(crate) fn objection(&self) -> Option<Objection> {
         let lowers = self.worlds.iter().any(|world| world.to_goal.z() < WORLD_LOWERED_Z)
             || self.kinds.iter().any(|kind| kind.z() < KIND_LOWERED_Z);
-        // A play that ends at once, such as a kick out of the field, has few touches: what mends it has more.
+        // A play that ends at once, such as a kick out of the field, has few touches; its repair has more.
         let dearer = |world: &WorldPairs| world.touches.z() > TOUCHES_Z && world.to_goal.z() < GAIN_Z;
         let touches = self.worlds.iter().any(dearer);
         if lowers { Some(Objection::Lowers) } else { touches.then_some(Objection::Touches) }

@@ -39,10 +39,11 @@ pub(crate) fn plays_to_watch(
     let pairs = || indices.iter().copied().zip(before.iter().zip(after));
     let raised = || pairs().filter(|(_, (before, after))| !**before && **after);
     let mut chosen: Vec<u32> = Vec::new();
-    for anew in [true, false] {
+    for of_new_kinds in [true, false] {
         for (index, _) in raised() {
-            let known =
-                chosen.iter().any(|other| *other == index || (anew && kind_of(*other).0 == kind_of(index).0));
+            let known = chosen
+                .iter()
+                .any(|other| *other == index || (of_new_kinds && kind_of(*other).0 == kind_of(index).0));
             if chosen.len() < MOST && !known {
                 chosen.push(index);
             }

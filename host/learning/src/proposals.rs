@@ -120,7 +120,7 @@ pub(crate) fn weigh(mut proposals: Vec<Proposal>, variant: &Variant, tried: &Tri
 }
 
 /// One setting of retrieval at another value, the others as they are: the edits that learning tries.
-pub fn order(variant: &Variant) -> Vec<Edit> {
+pub fn order_edits(variant: &Variant) -> Vec<Edit> {
     order_proposals(variant).into_iter().map(|proposal| proposal.edit).collect()
 }
 

@@ -9,7 +9,7 @@ use crate::diff::diff;
 use crate::evidence::Evidence;
 use crate::paired::{Pairs, WorldPairs};
 use crate::plays::PlayToWatch;
-use crate::proposals::Proposal;
+use crate::proposals::{Proposal, TRIED_MAX, Tried, text_hash};
 use crate::settings::LearnSettings;
 use crate::starts::{KINDS, StartKind, kind_of};
 use crate::trial::LearningTrial;
@@ -116,6 +116,15 @@ impl CurvePoint {
             to_goal_robots: to_goal(&|kind| kind.profile == Profile::Robots),
             touches: touches as f64 / trials.len().max(1) as f64,
         }
+    }
+}
+
+/// Notes what became of the changes of a round. A test or the lack of situations is final; screening may have
+/// been bad luck.
+pub(crate) fn note_tried(tried: &mut Tried, current: &Variant, changes: &[ChangeRecord]) {
+    for ChangeRecord { proposal: Proposal { edit, .. }, verdict, .. } in changes {
+        let times = tried.entry((text_hash(current, &edit.case), edit.clone())).or_default();
+        *times = if *verdict == Verdict::ScreenedOut { *times + 1 } else { TRIED_MAX };
     }
 }
 

@@ -3,13 +3,13 @@
 use std::ops::Range;
 
 use casebase::CaseBase;
-use hil_sim::{Fnv, Stream};
 use rayon::prelude::*;
 
 use super::{Candidate, LearnError, Played, Run, group};
 use crate::aim::Ground;
 use crate::betting::{Wager, threshold};
 use crate::edit::Edit;
+use crate::null_control;
 use crate::occasion::Occasion;
 use crate::paired::{Objection, Pairs};
 use crate::proposals::Proposal;
@@ -102,23 +102,14 @@ impl<P: Player> Run<'_, P> {
         for (candidate, chosen) in candidates.iter_mut().zip(&chosen) {
             for (number, pair) in chosen.iter().zip(pairs.by_ref()) {
                 let purpose = ground.purpose as u8 + PURPOSES_FROM;
-                let swaps = self.coin(&candidate.proposal.edit, purpose, *number as u32);
+                let swaps =
+                    null_control::swaps(self.settings, &candidate.proposal.edit, purpose, *number as u32);
                 let (with, without) = (pair[usize::from(swaps)], pair[usize::from(!swaps)]);
                 candidate.wager.add(with, without);
                 candidate.groups[group(&ground.occasions[*number])].add(with, without);
             }
         }
         Ok(())
-    }
-
-    /// Chance for a pair of the null control; always false in other runs.
-    fn coin(&self, edit: &Edit, of: u8, index: u32) -> bool {
-        let mut hash = Fnv::default();
-        hash.add(&[of]);
-        hash.add(&self.settings.seed.to_le_bytes());
-        hash.add(edit.to_string().as_bytes());
-        hash.add(&index.to_le_bytes());
-        self.settings.shuffle && Stream::new(hash.value(), "coin").chance(0.5)
     }
 
     /// Tests the finalists on starts that they share, each against the library with those accepted before it.
@@ -241,7 +232,7 @@ impl<P: Player> Run<'_, P> {
         let mut pairs = Pairs::default();
         for ((i, index), with) in chosen.iter().zip(&indices).zip(&played) {
             let pair = [with, &without.trials[*i]];
-            let swaps = self.coin(edit, without.stream as u8, *index);
+            let swaps = null_control::swaps(self.settings, edit, without.stream as u8, *index);
             pairs.add(kind_of(*index).0, pair[usize::from(swaps)], pair[usize::from(!swaps)]);
         }
         pairs.all.add_equal((without.trials.len() - chosen.len()) as u32);

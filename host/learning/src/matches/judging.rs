@@ -3,14 +3,13 @@
 
 use std::ops::Range;
 
-use hil_sim::{Fnv, Stream};
-
 use super::unit::OPPONENTS;
 use super::value::{DIFFERENCE_MAX, value};
 use super::{Candidate, LearningMatch, MatchPlayer, MatchUnit, MatchWork, Played, Run, Sizes, WHOLE_MS};
 use crate::betting::{Wager, threshold};
 use crate::edit::Edit;
 use crate::learner::LearnError;
+use crate::null_control;
 use crate::proposals::Proposal;
 use crate::results::{ChangeRecord, Validation, Verdict};
 use crate::starts::StartStream;
@@ -97,13 +96,7 @@ impl<P: MatchPlayer> Run<'_, P> {
 
     /// −1 where chance swaps the sides of a pair of the null control; 1 in all other runs.
     pub(super) fn sign(&self, edit: &Edit, work: &MatchWork) -> f64 {
-        let mut hash = Fnv::default();
-        hash.add(&[work.stream as u8]);
-        hash.add(&self.settings.seed.to_le_bytes());
-        hash.add(edit.to_string().as_bytes());
-        hash.add(&work.index.to_le_bytes());
-        let swaps = self.settings.shuffle && Stream::new(hash.value(), "coin").chance(0.5);
-        if swaps { -1.0 } else { 1.0 }
+        if null_control::swaps(self.settings, edit, work.stream as u8, work.index) { -1.0 } else { 1.0 }
     }
 
     /// Tests the finalists in scenes of fresh matches that they share, each against the library with those
@@ -169,7 +162,7 @@ impl<P: MatchPlayer> Run<'_, P> {
     }
 
     /// Whether a confirmed change is taken over: whole matches are not lower against any opponent, and
-    /// `cases check` does not warn anew.
+    /// `cases check` has no new warning.
     fn validate(
         &mut self,
         current: &Variant,

@@ -18,7 +18,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use arena::CycleEnd;
 use case_tools::Files;
-use hil_sim::Stream;
 use hil_sim::small_size::worlds::WorldChoice;
 
 use crate::betting::Wager;
@@ -28,8 +27,9 @@ use crate::edit::{Change, Edit};
 use crate::evidence::{CasePlay, Evidence};
 use crate::journal::{JournalPlayer, Playable};
 use crate::learner::LearnError;
-use crate::proposals::{Kind, Proposal, TRIED_MAX, Tried, from_evidence, text_hash};
-use crate::results::{ChangeRecord, Learned, Verdict};
+use crate::null_control;
+use crate::proposals::{Kind, Proposal, Tried, from_evidence};
+use crate::results::{ChangeRecord, Learned, note_tried};
 use crate::settings::LearnSettings;
 use crate::starts::StartStream;
 use crate::variant::Variant;
@@ -217,11 +217,7 @@ impl<P: MatchPlayer> Run<'_, P> {
             return Ok(current.clone());
         }
         let next = self.judge(current, finalists, round)?;
-        for change in &self.changes[before..] {
-            let edit = &change.proposal.edit;
-            let tried = self.tried.entry((text_hash(current, &edit.case), edit.clone())).or_default();
-            *tried = if change.verdict == Verdict::ScreenedOut { *tried + 1 } else { TRIED_MAX };
-        }
+        note_tried(&mut self.tried, current, &self.changes[before..]);
         Ok(next)
     }
 
@@ -260,13 +256,8 @@ impl<P: MatchPlayer> Run<'_, P> {
         let decisions = played.matches.iter().flat_map(|played| &played.decisions);
         let plays: Vec<_> = decisions.filter(|decision| decision.end.is_some()).collect();
         let mut goals: Vec<bool> = plays.iter().map(|decision| decision.goal).collect();
-        if self.settings.shuffle {
-            let first = played.works.first().map_or(0, |work| work.index);
-            let mut chance = Stream::new(self.settings.seed ^ u64::from(first), "shuffle");
-            for i in (1..goals.len()).rev() {
-                goals.swap(i, chance.whole(0, i as u32) as usize);
-            }
-        }
+        let first = played.works.first().map_or(0, |work| work.index);
+        null_control::shuffle(self.settings, first, &mut goals);
         for (decision, goal) in plays.into_iter().zip(goals) {
             let end = decision.end.and_then(|end| CycleEnd::DESCRIPTION.get(usize::from(end)).copied());
             let situation = &decision.situation;
