@@ -52,7 +52,7 @@ fn test_kicks(game: &mut Game<'_>, watcher: &mut dyn Watcher) -> (KickReport, Ve
         game.step(watcher).expect("no emulator");
         for event in game.events() {
             if let PhysicsEvent::Kicked { robot, velocity, .. } = event {
-                assert_eq!(*robot, tested(), "nobody else kicks");
+                assert_eq!(*robot, tested(), "no other robot kicks");
                 speeds.push(velocity.norm());
             }
         }

@@ -50,7 +50,7 @@ function choice() {
 
 function result() {
   const { report } = told ?? {};
-  if (!report) return el("p", { class: "muted" }, "Each try starts anew, with the usual parameters, through world, cameras, host, radio and robots. On a real field only kickers are tested: tab Parameters.");
+  if (!report) return el("p", { class: "muted" }, "Each try starts from the beginning, with the usual parameters, through world, cameras, host, radio and robots. On a real field only kickers are tested: tab Parameters.");
   const { row, tries, failed, error, over } = report;
   const seconds = (time) => (time == null ? "–" : `${number(time, 2)} s`);
   return [

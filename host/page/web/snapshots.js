@@ -14,7 +14,7 @@ let asked = 0;
 export const snapshotPart = () => [
   el("h2", {}, "Snapshots"),
   el("div", { class: "field-set" },
-    el("button", { id: "snapshot-keep", onclick: () => order({ ask: "keep" }) }, "Keep this moment"),
+    el("button", { id: "snapshot-keep", onclick: () => order({ ask: "keep" }) }, "Keep a snapshot"),
     el("label", { for: "snapshot-file" }, "From a file"),
     el("input", { type: "file", id: "snapshot-file", accept: ".json,application/json", onchange: (event) => load(event.target).catch((error) => changed("refused", `no snapshot: ${error.message}`)) })),
   el("ul", { id: "snapshots", class: "learned" }),

@@ -42,17 +42,17 @@ impl Snapshots {
             UserRequest::Return { number } => {
                 return match self.kept.get(*number) {
                     Some(snapshot) => SnapshotRequest::Return(snapshot),
-                    None => SnapshotRequest::Refused(format!("there is no moment {number}")),
+                    None => SnapshotRequest::Refused(format!("there is no snapshot {number}")),
                 };
             }
             _ => return SnapshotRequest::Other,
         };
         match fresh {
             Ok(_) if self.kept.len() >= KEPT_MAX => {
-                SnapshotRequest::Refused(format!("{KEPT_MAX} moments are kept: no more"))
+                SnapshotRequest::Refused(format!("{KEPT_MAX} snapshots are kept: no more"))
             }
             Ok(snapshot) => {
-                let described = format!("moment {} is kept: {:.2} s", self.kept.len(), snapshot.t);
+                let described = format!("snapshot {} is kept: {:.2} s", self.kept.len(), snapshot.t);
                 self.kept.push(snapshot);
                 self.tell(page);
                 SnapshotRequest::Kept(described)

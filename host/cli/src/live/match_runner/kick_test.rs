@@ -1,5 +1,5 @@
 //! `kick_test`: the test of a kicker in a simulated match: the other team stands, and the ball comes back to
-//! the middle after every kick, as somebody beside a real field would put it there.
+//! the middle after every kick, as a person beside a real field would put it there.
 
 use arena::game::{Game, Watcher};
 use geometry::Point;
