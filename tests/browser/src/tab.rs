@@ -78,10 +78,7 @@ impl<'b> Tab<'b> {
 
     /// Clicks on the middle of the first element of that selector, as a mouse does.
     pub fn click(&mut self, selector: &str) -> Result<(), BrowserError> {
-        let script = format!(
-            "(() => {{ const e = document.querySelector({selector:?}); e.scrollIntoView({{ block: 'nearest' }}); const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; }})()"
-        );
-        let at = self.eval(&script)?;
+        let at = self.middle(selector)?.map(|pixel| json!(pixel));
         self.mouse("mousePressed", &at[0], &at[1], 1)?;
         self.mouse("mouseReleased", &at[0], &at[1], 1)
     }
@@ -111,6 +108,53 @@ impl<'b> Tab<'b> {
             std::thread::sleep(Duration::from_millis(60));
         }
         self.mouse("mouseReleased", &json!(to[0]), &json!(to[1]), 1)
+    }
+
+    /// From now on the page has a touch screen of two fingers and no mouse.
+    pub fn touch_screen(&mut self) -> Result<(), BrowserError> {
+        self.ask("Emulation.setTouchEmulationEnabled", &json!({ "enabled": true, "maxTouchPoints": 2 })).map(drop)
+    }
+
+    /// Taps the middle of the first element of that selector with a finger.
+    pub fn tap(&mut self, selector: &str) -> Result<(), BrowserError> {
+        let at = self.middle(selector)?;
+        self.tap_at(at)
+    }
+
+    /// Taps a point with a finger, CSS pixels.
+    pub fn tap_at(&mut self, at: [f64; 2]) -> Result<(), BrowserError> {
+        self.fingers("touchStart", &[at])?;
+        self.fingers("touchEnd", &[])
+    }
+
+    /// Moves one finger or two, each from its first point to its second, CSS pixels.
+    pub fn swipe(&mut self, ways: &[[[f64; 2]; 2]]) -> Result<(), BrowserError> {
+        for step in 0..=8 {
+            let share = f64::from(step) / 8.0;
+            let at: Vec<_> =
+                ways.iter().map(|[from, to]| [0, 1].map(|i| from[i] + (to[i] - from[i]) * share)).collect();
+            self.fingers(if step == 0 { "touchStart" } else { "touchMove" }, &at)?;
+            std::thread::sleep(Duration::from_millis(60));
+        }
+        self.fingers("touchEnd", &[])
+    }
+
+    fn fingers(&mut self, kind: &str, at: &[[f64; 2]]) -> Result<(), BrowserError> {
+        let points: Vec<_> =
+            at.iter().enumerate().map(|(id, [x, y])| json!({ "x": x, "y": y, "id": id })).collect();
+        self.ask("Input.dispatchTouchEvent", &json!({ "type": kind, "touchPoints": points })).map(drop)
+    }
+
+    /// The middle of the first element of that selector, scrolled into view, CSS pixels.
+    fn middle(&mut self, selector: &str) -> Result<[f64; 2], BrowserError> {
+        let script = format!(
+            "(() => {{ const e = document.querySelector({selector:?}); e.scrollIntoView({{ block: 'nearest' }}); const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; }})()"
+        );
+        let at = self.eval(&script)?;
+        match [at[0].as_f64(), at[1].as_f64()] {
+            [Some(x), Some(y)] => Ok([x, y]),
+            _ => Err(BrowserError::Answer(format!("{selector} lies at {at}"))),
+        }
     }
 
     fn mouse(&mut self, kind: &str, x: &Value, y: &Value, buttons: u8) -> Result<(), BrowserError> {

@@ -31,7 +31,7 @@ fn text(tab: &mut Tab<'_>) -> String {
 }
 
 /// The pixel of a handle, by its place on the sheet.
-fn pixel(tab: &mut Tab<'_>, at: &str) -> [f64; 2] {
+pub(crate) fn pixel(tab: &mut Tab<'_>, at: &str) -> [f64; 2] {
     let script = format!(
         "(() => {{ const b = document.getElementById('field').getBoundingClientRect(); const [x, y] = onetwo.camera.to(({at}).map((mm) => mm / 1000)); return [b.x + x, b.y + y]; }})()"
     );
@@ -65,7 +65,7 @@ const COUNTED: &str = "(() => {
   Storage.prototype.setItem = function (name, value) { if (name === 'onetwo.bench') kept += 1; return set.call(this, name, value); };
 })()";
 
-const COPY: &str = "onetwo.workbench.sheet.copies[onetwo.workbench.copy]";
+pub(crate) const COPY: &str = "onetwo.workbench.sheet.copies[onetwo.workbench.copy]";
 
 fn onetwo(arguments: &[&str], library: &Path) -> (bool, String) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_onetwo"));

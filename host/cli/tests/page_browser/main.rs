@@ -12,6 +12,7 @@ mod health;
 mod look;
 mod program;
 mod testday;
+mod touch;
 mod tune;
 
 use std::time::Duration;

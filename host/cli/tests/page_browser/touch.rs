@@ -1,0 +1,64 @@
+//! `touch`: fingers on a telephone do what the mouse does. They choose and drag robots, zoom the field, and
+//! edit a case on the workbench.
+
+use page_browser::{Browser, Tab};
+
+use crate::bench::{COPY, pixel};
+use crate::program::Program;
+use crate::{no_errors, number};
+
+/// The pixel of a robot, CSS pixels.
+fn robot(tab: &mut Tab<'_>, index: usize) -> [f64; 2] {
+    pixel(tab, &format!("onetwo.store.scene.robots[{index}].at.map((x) => x * 1000)"))
+}
+
+#[test]
+fn fingers_choose_drag_zoom_and_edit_a_case() {
+    let program = Program::start(&["play", "--duration", "600", "--seed", "2", "--listen", "127.0.0.1:0"]);
+    let mut browser = Browser::start().unwrap();
+    let mut tab = browser.open(&program.url(""), 390, 844).unwrap();
+    tab.resize(390, 844, true).unwrap();
+    tab.touch_screen().unwrap();
+    tab.wait("window.onetwo?.store.scene?.robots.length === 12", 60).unwrap();
+    tab.tap("#play").unwrap();
+    tab.wait("onetwo.store.latest.paused", 10).unwrap();
+
+    // A tap chooses a robot; a swipe puts it elsewhere.
+    let chosen = "onetwo.store.chosen";
+    let at = robot(&mut tab, 2);
+    tab.tap_at(at).unwrap();
+    tab.wait(&format!("{chosen} && {chosen}.id === onetwo.store.scene.robots[2].id"), 5).unwrap();
+    let to = [at[0] + 40.0, at[1] + 60.0];
+    let aim = tab.eval(&format!("(() => {{ const b = document.getElementById('field').getBoundingClientRect(); return onetwo.camera.from([{} - b.x, {} - b.y]); }})()", to[0], to[1])).unwrap();
+    tab.swipe(&[[at, to]]).unwrap();
+    let off = format!(
+        "Math.hypot(...onetwo.store.scene.robots[2].at.map((x, i) => x - [{}, {}][i]))",
+        aim[0], aim[1]
+    );
+    tab.wait(&format!("{off} < 0.15"), 10).unwrap();
+
+    // Two fingers that part enlarge the field.
+    let before = number(&mut tab, "onetwo.camera.scale");
+    let middle = pixel(&mut tab, "[0, 0]");
+    let finger = |side: f64| [[middle[0] + side * 30.0, middle[1]], [middle[0] + side * 60.0, middle[1]]];
+    tab.swipe(&[finger(-1.0), finger(1.0)]).unwrap();
+    let after = number(&mut tab, "onetwo.camera.scale");
+    assert!((after / before - 2.0).abs() < 0.2, "{before} px/m became {after}");
+    tab.swipe(&[[finger(-1.0)[1], finger(-1.0)[0]], [finger(1.0)[1], finger(1.0)[0]]]).unwrap();
+
+    // A case is opened, its robot is put elsewhere, and that is undone.
+    tab.tap("[data-tab=bench]").unwrap();
+    tab.wait("document.querySelector('#bench-case option')", 20).unwrap();
+    tab.tap("#bench-open-case").unwrap();
+    tab.wait("onetwo.workbench.sheet?.copies.length === 4", 20).unwrap();
+    tab.eval("document.getElementById('field').scrollIntoView()").unwrap();
+    let from = pixel(&mut tab, &format!("{COPY}.robots[0].at"));
+    let place = tab.eval(&format!("{COPY}.robots[0].at")).unwrap();
+    tab.swipe(&[[from, [from[0] + 30.0, from[1] - 20.0]]]).unwrap();
+    tab.wait("onetwo.workbench.past.length === 1", 10).unwrap();
+    assert_ne!(tab.eval(&format!("{COPY}.robots[0].at")).unwrap(), place);
+    tab.tap("#bench-undo").unwrap();
+    tab.wait("onetwo.workbench.past.length === 0", 10).unwrap();
+    assert_eq!(tab.eval(&format!("{COPY}.robots[0].at")).unwrap(), place);
+    no_errors(&mut tab);
+}
