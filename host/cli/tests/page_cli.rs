@@ -4,7 +4,7 @@
 #[path = "page_browser/program.rs"]
 mod program;
 
-use std::io::{Read, Write};
+use std::io::{Read as _, Write as _};
 use std::net::TcpStream;
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -235,17 +235,8 @@ fn a_recording_that_breaks_off_says_so() {
     // A viewer has it among the events.
     Viewer::of(&replay).until(|scene| scene["t"].as_f64().is_some_and(|t| t > 5.0));
     let begun = Instant::now();
-    while !match_events(&replay).contains("the file breaks off: ") {
+    while !replay.get("/api/events").contains("the file breaks off: ") {
         assert!(begun.elapsed() < PATIENCE, "waited in vain");
         std::thread::sleep(Duration::from_millis(20));
     }
-}
-
-fn match_events(program: &Program) -> String {
-    let mut stream = TcpStream::connect(program.address()).unwrap();
-    let host = program.address();
-    write!(stream, "GET /api/events HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n").unwrap();
-    let mut answer = String::new();
-    stream.read_to_string(&mut answer).unwrap();
-    answer
 }

@@ -10,7 +10,7 @@ const KICKS = 10;
 /** What a test says of itself, by the program's words. */
 const STATES = {
   "waits-for-game": "waits until the referee lets the game run (force start)", "no-robot": "the robot is not on the field, or does not answer", "no-ball": "no camera sees the ball",
-  rolls: "the ball rolls", kicks: "the robot goes to the ball and kicks it", done: "done",
+  rolls: "the ball rolls", "out-of-reach": "the ball lies outside the field or in a defence area: bring it back, the robots stand", kicks: "the robot goes to the ball and kicks it", done: "done",
 };
 
 /** The chosen robot of each team. */

@@ -38,7 +38,7 @@ fn free(view: &View, kicker: RobotId, ball: Point<Attack>, direction: f32) -> (f
     loop {
         let at = step(ball, along, length);
         let inside = at.x().abs() < half_length && at.y().abs() < half_width;
-        // In goal areas a robot may not fetch it again.
+        // In defence areas a robot may not fetch it again.
         let areas = view.in_our_area(at, ROOM) || view.in_their_area(at, ROOM);
         if !inside || areas || others.iter().any(|other| other.distance(at) < ROOM) {
             return (length - STEP, at);

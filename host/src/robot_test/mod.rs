@@ -96,6 +96,8 @@ pub enum TestState {
     NoBall,
     /// The ball rolls after a kick.
     Rolls,
+    /// The ball lies outside the field or in a defence area, where the robot may not fetch it: bring it back.
+    OutOfReach,
     /// The robot goes to the ball and kicks it.
     Kicks,
     /// All kicks are measured.
@@ -182,6 +184,8 @@ impl RobotTest {
         } else {
             match view.ball {
                 None => (TestState::NoBall, None),
+                // All stand while a person goes for the ball.
+                Some(ball) if is_out_of_reach(view, ball.position) => (TestState::OutOfReach, None),
                 Some(ball) => {
                     let at = self.target_from(view, robot, ball.position);
                     let kick = KickOrder::Flat(SPEEDS_CM_S[self.tried % SPEEDS_CM_S.len()]);
@@ -243,6 +247,12 @@ const KICKED: f32 = 0.9;
 const RESTS: f32 = 0.3;
 /// A ball that has moved less lies where it was, m: the robot pushes it while it lines up.
 const SAME_PLACE: f32 = 0.4;
+
+/// Whether the ball lies outside the field or in a defence area.
+fn is_out_of_reach(view: &View, ball: Point<Attack>) -> bool {
+    let outside = ball.x().abs() > view.field.length * 0.5 || ball.y().abs() > view.field.width * 0.5;
+    outside || view.in_our_area(ball, 0.0) || view.in_their_area(ball, 0.0)
+}
 
 /// A step from a place by a distance in a direction.
 fn step(from: Point<Attack>, along: Vector<Attack>, distance: f32) -> Point<Attack> {

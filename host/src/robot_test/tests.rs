@@ -81,6 +81,21 @@ fn a_rolling_ball_is_waited_for_and_the_next_kick_has_another_speed() {
 }
 
 #[test]
+fn a_ball_that_the_robot_may_not_fetch_is_asked_for_while_all_stand() {
+    let (mut test, view) = (begun(), field());
+    let [half_length, half_width] = [view.field.length * 0.5, view.field.width * 0.5];
+    let away = [[half_length + 0.2, 2.0], [0.5, -half_width - 0.1], [0.2 - half_length, 0.3]];
+    for [x, y] in away {
+        let ball = Some(ViewBall::at_rest(Point::new(x, y)));
+        let tasks = planned(&mut test, &View { ball, ..view.clone() });
+        assert!(tasks.iter().all(|task| *task == Task::Stand), "{x} {y}");
+        assert_eq!(test.report().unwrap().state, TestState::OutOfReach);
+    }
+    planned(&mut test, &view);
+    assert_eq!(test.report().unwrap().state, TestState::Kicks, "it is back");
+}
+
+#[test]
 fn the_rules_hold_and_what_is_missing_is_said() {
     let state = |view: &View| {
         let mut test = begun();

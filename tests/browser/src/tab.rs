@@ -112,7 +112,8 @@ impl<'b> Tab<'b> {
 
     /// From now on the page has a touch screen of two fingers and no mouse.
     pub fn touch_screen(&mut self) -> Result<(), BrowserError> {
-        self.ask("Emulation.setTouchEmulationEnabled", &json!({ "enabled": true, "maxTouchPoints": 2 })).map(drop)
+        self.ask("Emulation.setTouchEmulationEnabled", &json!({ "enabled": true, "maxTouchPoints": 2 }))
+            .map(drop)
     }
 
     /// Taps the middle of the first element of that selector with a finger.

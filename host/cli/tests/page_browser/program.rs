@@ -1,6 +1,7 @@
 //! `program`: the built program with its page: started, connected, and ended with the test.
 
-use std::io::{BufRead, BufReader, Write};
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::thread;
@@ -19,6 +20,8 @@ impl Program {
     pub(crate) fn start(arguments: &[&str]) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_onetwo"))
             .args(arguments)
+            // The host's epoch is kept there, not in the home of the user that runs the tests.
+            .env("XDG_STATE_HOME", env!("CARGO_TARGET_TMPDIR"))
             .stdin(Stdio::null())
             .stdout(Stdio::null())
             .stderr(Stdio::piped())
@@ -68,6 +71,16 @@ impl Program {
             }
         }
         panic!("`{arguments}` was not printed");
+    }
+
+    /// The page's whole answer to a request for `path`, with its head.
+    #[allow(dead_code, reason = "tests without a browser ask for it")]
+    pub(crate) fn get(&self, path: &str) -> String {
+        let mut stream = TcpStream::connect(&self.address).unwrap();
+        write!(stream, "GET {path} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n", self.address).unwrap();
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer).unwrap();
+        answer
     }
 
     #[allow(dead_code, reason = "the browser's tests ask for it")]

@@ -43,7 +43,8 @@ impl KickTests {
         if report.state == TestState::Done || game.referee().phase() == Phase::Halt {
             return;
         }
-        if report.kicks.len() > *back || game.referee().phase() != Phase::Run || out_of_reach(game) {
+        let lies_away = report.state == TestState::OutOfReach;
+        if report.kicks.len() > *back || game.referee().phase() != Phase::Run || lies_away {
             *back = report.kicks.len();
             begin_at_the_middle(game);
         }
@@ -55,12 +56,4 @@ fn begin_at_the_middle(game: &mut Game<'_>) {
         game.command(RefereeCommand::ForceStart);
     }
     game.put_ball(Ball::at(Point::new(0.0, 0.0)));
-}
-
-/// Whether the ball lies where no field player fetches it: beyond the lines, or in a defence area.
-fn out_of_reach(game: &Game<'_>) -> bool {
-    let (field, ball) = (game.config().league.field(), game.world().ball.position);
-    let [x, y] = [ball.x().abs(), ball.y().abs()];
-    let outside = x > field.length * 0.5 || y > field.width * 0.5;
-    outside || (x > field.length * 0.5 - field.penalty_depth && y < field.penalty_width * 0.5)
 }
