@@ -39,6 +39,13 @@ pub enum EvaluationError {
         /// The settings that differ, with the file's value first.
         differences: Vec<Difference>,
     },
+    /// The directory holds other matches than those that it is compared with.
+    OtherMatches {
+        /// Path of the directory.
+        directory: PathBuf,
+        /// What differs, with the directory's value first.
+        differences: Vec<Difference>,
+    },
     /// Another process writes to the file.
     InUse(PathBuf),
     /// No file to merge was given.
@@ -130,6 +137,13 @@ impl fmt::Display for EvaluationError {
                     printable_path(file)
                 )
             }
+            Self::OtherMatches { directory, differences } => write!(
+                f,
+                "{}: holds other matches: {}; compare matches of one seed, league, world, length and list of \
+                 opponents",
+                printable_path(directory),
+                in_words(differences)
+            ),
             Self::Another { file, merged, differences } => {
                 let (file, differences) = (printable_path(file), in_words(differences));
                 match merged {

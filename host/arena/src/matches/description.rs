@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+use super::between::Between;
 use super::case_table::case_tables;
 use super::effect::{Change, Effect};
 use super::match_team::MatchTeam;
@@ -49,6 +50,26 @@ fn worth(text: &mut String, effects: &[Effect]) {
         let cells = [e.goals, e.shots, e.offence_ratio, e.attack_ratio].map(changed).join(" | ");
         print!(text, "| {} | {} | {} | {} | {cells} |", e.part, e.with, e.without, e.matches);
     }
+}
+
+/// The table of the same matches by two programs, case bases or settings.
+pub fn between_table(found: &[Between]) -> String {
+    let mut text = String::from(
+        "| against | matches | goals before | goals now | goals a match, difference | p | smallest that 80 % would show | shots a match, difference | p |\n\
+         |---|---|---|---|---|---|---|---|---|\n",
+    );
+    for b in found {
+        let against = b.opponent.map_or_else(|| "all".to_owned(), |opponent| opponent.to_string());
+        let ([for_before, against_before], [for_now, against_now]) = (b.goals_before, b.goals_after);
+        let smallest = b.detectable_goals.map_or_else(|| "–".to_owned(), |goals| format!("{goals:.2}"));
+        let [goals, shots] = [b.goals, b.shots].map(|change| changed(Some(change)));
+        print!(
+            text,
+            "| {against} | {} | {for_before} : {against_before} | {for_now} : {against_now} | {goals} | {smallest} | {shots} |",
+            b.goals.matches
+        );
+    }
+    text
 }
 
 /// Standings over all matches of each team, where one plays several opponents.

@@ -29,7 +29,7 @@ pub struct Change {
 }
 
 impl Change {
-    fn of(values: impl Iterator<Item = f64> + Clone, transform: fn(f64) -> f64) -> Option<Self> {
+    pub(super) fn of(values: impl Iterator<Item = f64> + Clone, transform: fn(f64) -> f64) -> Option<Self> {
         let sample = Sample::of(values)?;
         let interval = student(sample, CONFIDENCE);
         Some(Self {

@@ -7,6 +7,7 @@
 //! Shards, files, resuming and merging are [`crate::evaluation`]'s: equal plans give equal bytes for any
 //! number of threads, shards and interrupts.
 
+mod between;
 mod calibration;
 mod case_table;
 mod description;
@@ -29,9 +30,10 @@ use host::shell::StrategyProcess;
 use rules::Colour;
 use serde::{Deserialize, Serialize};
 
+pub use between::{Between, between, same_matches};
 pub use calibration::calibration_plot;
 pub use case_table::case_table;
-pub use description::{AttackRow, attack_table, markdown};
+pub use description::{AttackRow, attack_table, between_table, markdown};
 pub use effect::{Change, Effect, effects};
 pub use match_team::MatchTeam;
 pub use outcome::{Estimate, Outcome, our_passes, outcomes};

@@ -273,6 +273,41 @@ fn a_part_is_worth_what_the_side_with_it_was_ahead() {
 }
 
 #[test]
+fn the_same_matches_by_two_programs_are_compared_match_by_match() {
+    let identity = |program: &str, seed| MatchIdentity {
+        program: program.to_owned(),
+        case_base: "01234567".to_owned(),
+        settings: Vec::new(),
+        plan: MatchPlan {
+            seed,
+            league: "division-b".to_owned(),
+            world: WorldPlan::default(),
+            duration_s: 600.0,
+            pairings: MatchPlan::against(MatchTeam::ours(), &[Team::Zone.into()]),
+            matches: 3,
+            strategy: None,
+        },
+    };
+    let rows = |goals: [[u32; 2]; 3]| {
+        let of = |(number, goals)| row(number, goals, [1.0, 1.0], [goals[0], 0]);
+        goals.into_iter().enumerate().map(of).collect::<Vec<_>>()
+    };
+    let (before, after) = (rows([[1, 0], [2, 2], [0, 1]]), rows([[3, 0], [2, 1], [0, 1]]));
+    let found = between((&identity("1", 5), &before), (&identity("2", 5), &after)).expect("the same matches");
+    let [all] = &found[..] else { panic!("one opponent: {found:?}") };
+    // 2, 1 and 0 goals better: mean 1, spread 1, t = √3 with 2 degrees, p = 0.2254.
+    assert_eq!((all.goals_before, all.goals_after, all.goals.mean), ([3, 3], [5, 2], 1.0));
+    assert!((all.goals.p.unwrap() - 0.2254).abs() < 1e-4, "{found:?}");
+    assert!((all.detectable_goals.unwrap() - 2.802 / 3.0_f64.sqrt()).abs() < 1e-9);
+    assert!((all.shots.mean - 2.0 / 3.0).abs() < 1e-9);
+    let text = between_table(&found);
+    assert!(text.contains("| zone | 3 | 3 : 3 | 5 : 2 | 1.00 (-1.48 to 3.48) | 0.225 | 1.62 |"), "{text}");
+    // Other matches are refused, with what differs.
+    let refused = same_matches(&identity("1", 5), &identity("2", 6)).unwrap_err();
+    assert_eq!(crate::evaluation::in_words(&refused), "seed 5, not 6");
+}
+
+#[test]
 fn the_papers_rows_are_those_it_printed() {
     let goals = PAPER.iter().fold([0, 0], |sum, game| [sum[0] + game.goals[0], sum[1] + game.goals[1]]);
     // Without the game against an empty field and without shoot-outs.

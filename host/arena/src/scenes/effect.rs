@@ -4,7 +4,7 @@
 use serde::Serialize;
 
 use super::{SceneKind, SceneOutcome, ScenePlan, SceneRow};
-use crate::evaluation::statistics::{Count, Sample, Test, mcnemar, paired, student};
+use crate::evaluation::statistics::{Count, Sample, Test, detectable, mcnemar, paired, student};
 use crate::matches::MatchTeam;
 
 /// What is compared.
@@ -132,7 +132,7 @@ fn effect(
         without: values.map(|(_, without)| without).sum::<f64>() / n,
         interval: student(differences, CONFIDENCE).map(|interval| [interval.low, interval.high]),
         p: test.map(|test| test.p),
-        detectable: differences.sd.map(|sd| DETECTED_AT * sd / n.sqrt()),
+        detectable: detectable(differences),
         planned: [planned.clone().count() as u32, planned.filter(|(with, _)| with.shot).count() as u32],
     })
 }
@@ -146,9 +146,6 @@ impl SceneEffect {
 
 /// Confidence of the intervals.
 const CONFIDENCE: f64 = 0.95;
-/// Standard errors from 0 of a true difference that a two-sided test at 0.05 finds in 80 % of samples:
-/// 1.960 + 0.842.
-const DETECTED_AT: f64 = 2.802;
 
 #[cfg(test)]
 mod tests {

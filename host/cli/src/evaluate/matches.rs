@@ -10,7 +10,7 @@ use arena::cases::LibraryHandle;
 use arena::evaluation::{EvaluationError, Shard, csv_hash, merge, to_csv};
 use arena::matches::{
     Effect, MatchIdentity, MatchPlan, MatchRow, MatchTeam, Matches, Outcome, PAPER, PAPER_PASSES, Passes,
-    calibration_plot, effects, markdown, our_passes, outcomes, plot,
+    between, between_table, calibration_plot, effects, markdown, our_passes, outcomes, plot, same_matches,
 };
 use casebase::CaseBase;
 use clap::Args;
@@ -73,6 +73,10 @@ pub(super) struct MatchesArgs {
     /// Play nothing: merge the shards that were written to this directory; may be repeated.
     #[arg(long, value_name = "DIR")]
     merge: Vec<PathBuf>,
+    /// Compare with the same matches that another program, case base or setting played into this directory:
+    /// the difference match by match.
+    #[arg(long, value_name = "DIR", conflicts_with = "markdown")]
+    compare: Option<PathBuf>,
     /// Put the tables between the markers of this Markdown file, and the plots into a directory of its name
     /// beside it.
     #[arg(long, value_name = "FILE")]
@@ -96,7 +100,7 @@ pub(super) fn run(args: &MatchesArgs) -> Result<ExitCode, Failure> {
         }
         let (identity, rows) = merge(kept)?;
         let directory = args.work.directory(args.shard)?;
-        return args.finish(&Made::new(&identity, &rows)?, directory);
+        return args.finish(&identity, &rows, directory);
     }
     let library_handle = cases(&args.directory, args.league)?;
     let matches = Matches {
@@ -106,13 +110,15 @@ pub(super) fn run(args: &MatchesArgs) -> Result<ExitCode, Failure> {
         program: VERSION.to_owned(),
         names: CaseNames::new(library_handle.as_ref().map_or_else(Vec::new, LibraryHandle::names)),
     };
+    // Before hours are spent on matches that cannot be compared.
+    args.before(&matches.identity())?;
     let directory = args.work.directory(args.shard)?;
     let file = directory.join(args.shard.file_name());
     let pool = args.work.pool()?;
     let rows =
         work::with_bar(&pool, "playing", |on_progress| matches.play_shard(args.shard, &file, on_progress))?;
     if args.shard == Shard::WHOLE {
-        return args.finish(&Made::new(&matches.identity(), &rows)?, directory);
+        return args.finish(&matches.identity(), &rows, directory);
     }
     let (kept, out) = (file.display(), directory.display());
     work::print_text(&format!(
@@ -148,8 +154,31 @@ impl MatchesArgs {
         }
     }
 
+    /// The matches to compare with, those of `now` by another program.
+    fn before(&self, now: &MatchIdentity) -> Result<Option<Vec<MatchRow>>, Failure> {
+        let Some(directory) = &self.compare else { return Ok(None) };
+        let (identity, rows) = merge(shards::<MatchRow>(directory)?)?;
+        same_matches(&identity, now).map_err(|differences| EvaluationError::OtherMatches {
+            directory: directory.clone(),
+            differences,
+        })?;
+        Ok(Some(rows))
+    }
+
     /// Writes `matches.csv`, `matches.json` and the plots, and prints the tables.
-    fn finish(&self, made: &Made<'_>, directory: &Path) -> Result<ExitCode, Failure> {
+    fn finish(
+        &self,
+        identity: &MatchIdentity,
+        rows: &[MatchRow],
+        directory: &Path,
+    ) -> Result<ExitCode, Failure> {
+        let made = Made::new(identity, rows)?;
+        let before = self.before(identity)?;
+        let compared = before.map(|before| {
+            between_table(&between(&identity.plan, &before, rows))
+                + "
+"
+        });
         write(&directory.join("matches.csv"), &made.csv)?;
         write(&directory.join("matches.json"), &made.json()?)?;
         for picture in made.pictures("") {
@@ -161,7 +190,8 @@ impl MatchesArgs {
         }
         let (matches, seed) = (made.matches, made.identity.plan.seed);
         work::print_text(&format!(
-            "{}\n{matches} matches, seed {seed}, csv hash {}, in {}\n",
+            "{}{}\n{matches} matches, seed {seed}, csv hash {}, in {}\n",
+            compared.unwrap_or_default(),
             made.tables(),
             made.hash,
             directory.display()

@@ -130,3 +130,16 @@ fn matches_that_cannot_be_played_are_reported_with_their_hint() {
     let other = reported(&["--duration", "1", "--matches", "1", "--opponents", "zone"], 1);
     assert!(other.contains("teams") && other.contains("--fresh"), "{other}");
 }
+
+#[test]
+fn matches_are_compared_with_the_same_ones_and_others_are_refused() {
+    let plan = of("3", &["--matches", "2", "--seed", "3", "--opponents", "zone"]);
+    let (first, second) = (scratch("matches-before"), scratch("matches-now"));
+    stdout_of(&[&plan[..], &["--out", text(&first)]].concat());
+    let compare = ["--compare", text(&first), "--out", text(&second)];
+    let reported = stdout_of(&[&plan[..], &compare].concat());
+    assert!(reported.contains("| zone | 2 | 0 : 0 | 0 : 0 | 0.00 (0.00 to 0.00) |"), "{reported}");
+    let other = of("3", &["--matches", "2", "--seed", "4", "--opponents", "zone", "--fresh"]);
+    let refusal = refused(&[&other[..], &compare].concat(), 1);
+    assert!(refusal.contains("holds other matches: seed 3, not 4"), "{refusal}");
+}
