@@ -74,6 +74,9 @@ pub struct HostSettings {
     pub limits: DriveSettings,
     /// Whether a strategy in another program gives orders ([`crate::external`]).
     pub external: bool,
+    /// The case base of its robots, to retrieve from and to look up what they report; none: the one that comes
+    /// with the league.
+    pub cases: Option<CaseBase<'static>>,
 }
 
 impl HostSettings {
@@ -95,7 +98,13 @@ impl HostSettings {
             tactics: Tactics::default(),
             limits: DriveSettings::default(),
             external: false,
+            cases: None,
         }
+    }
+
+    /// The case base of its robots.
+    pub fn case_base(&self) -> CaseBase<'static> {
+        self.cases.unwrap_or_else(|| cases_of(self.league))
     }
 }
 
@@ -154,6 +163,7 @@ impl Host {
     /// A host that starts at `now`.
     pub fn new(settings: HostSettings, now: Instant) -> Self {
         let roll = settings.roll;
+        let cases = settings.case_base();
         let mut host = Self {
             listener: Listener::new(
                 settings.league.limits().unwrap_or(LIMITS),
@@ -164,7 +174,7 @@ impl Host {
             radio: Radio::new(settings.radio),
             tracker: Tracker::default(),
             geometry: VisionGeometry::default(),
-            coach: Coach::new(settings.team, settings.tactics, settings.league),
+            coach: Coach::new(settings.team, settings.tactics, settings.league).playing(cases),
             external: settings.external.then(|| External::new(settings.league)),
             robots: Default::default(),
             world: World::default(),
@@ -180,7 +190,7 @@ impl Host {
             test: None,
             books: Bookkeeper::default(),
             requests: Requests::default(),
-            cases: cases_of(settings.league),
+            cases,
             learned: Learned::default(),
             roll: None,
             gain_set: RobotSet::default(),
@@ -193,12 +203,6 @@ impl Host {
             host.roll_with(roll);
         }
         host
-    }
-
-    /// Looks cases up in `base` from now on, which its robots have in place of the league's own.
-    pub fn play_cases(&mut self, base: CaseBase<'static>) {
-        self.cases = base;
-        self.coach.play_cases(base);
     }
 
     /// Handles an input or a deadline.

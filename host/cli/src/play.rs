@@ -10,7 +10,6 @@ use std::sync::atomic::Ordering;
 use arena::CaseNames;
 use arena::cases::LibraryHandle;
 use arena::game::{self, Game, GameConfig, GameReport, MatchLog, Watcher, Watchers};
-use casebase::CaseBase;
 use clap::Args;
 use hil_sim::NativeBackend;
 use hil_sim::small_size::worlds::WorldChoice;
@@ -137,12 +136,11 @@ pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
         team.strategy = command.as_deref().map(StrategyProcess::starter);
     }
     let library_handle = cases(&args.directory, args.league)?;
-    let base = library_handle.as_ref().map_or_else(CaseBase::default, LibraryHandle::base);
     if let Some(library_handle) = &library_handle {
         config.names = CaseNames::new(library_handle.names());
+        config.cases = Some(library_handle.lasting_base());
     }
-    hint_at_foreign_cases(&config, &base);
-    let mut backend = NativeBackend::new(base);
+    let mut backend = NativeBackend::new(config.cases.unwrap_or_default());
     let mut recording = args.record.as_ref().map(|stem| record(stem, &config)).transpose()?;
     let mut teller = Teller::new(args);
     if !args.headless && !args.json {
@@ -256,16 +254,6 @@ pub(crate) fn cases(directory: &DirectoryArgs, league: League) -> Result<Option<
         note!("no cases come with {}: robots that are left free play reactively", league.name());
     }
     Ok(library_handle)
-}
-
-/// Hosts know the cases that come with the league, and no others.
-fn hint_at_foreign_cases(config: &GameConfig, base: &CaseBase<'_>) {
-    let foreign = host::cases_of(config.league).hash() != base.hash();
-    if foreign && config.teams.iter().any(|team| team.tactics.bridge) {
-        note!(
-            "the bridge refines passes of cases that come with the league: those of --library are played as they are"
-        );
-    }
 }
 
 fn record(stem: &std::path::Path, config: &GameConfig) -> Result<Recorder, Failure> {

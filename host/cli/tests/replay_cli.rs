@@ -136,6 +136,7 @@ fn cut_and_foreign_files_are_reported_with_their_place() {
 fn trace(name: &str, change: impl Fn(&mut Vec<u8>, usize)) -> String {
     let settings = HostSettings::new(Colour::Blue, League::DivisionB, 7);
     let header = RecordingHeader {
+        case_table: None,
         version: "0".to_owned(),
         commit: "unknown".to_owned(),
         seed: None,
@@ -396,4 +397,52 @@ fn gaps_are_played(lines: &str) {
     assert!(gaps.lines().all(|gap| lines.lines().any(|line| line == gap)), "{gaps}");
     let answers = asked(&["cases", "retrieve", "--league", "division-b"], &gaps);
     assert!(answers.iter().all(|answer| answer["case"].is_null()), "{answers:?}");
+}
+
+/// Division B's cases but one, as files.
+fn smaller_library() -> PathBuf {
+    let directory = scratch("smaller-library");
+    let league = case_library::league("division-b").expect("it comes with cases");
+    fs::create_dir_all(&directory).expect("a directory");
+    fs::write(directory.join("league.toml"), league.rules).expect("written");
+    let kept = league.names.iter().zip(league.sources).filter(|(name, _)| **name != "corner/short");
+    for (name, text) in kept {
+        let file = directory.join(format!("{name}.toml"));
+        fs::create_dir_all(file.parent().expect("a region")).expect("a directory");
+        fs::write(file, text).expect("written");
+    }
+    directory
+}
+
+/// Cases that hosts ordered of the library while a trace is decided again.
+fn cases_ordered(file: &Path) -> usize {
+    let unpacked = flate2::read::MultiGzDecoder::new(fs::File::open(file).expect("the trace"));
+    let mut reader = Reader::new(unpacked).expect("a trace");
+    let header = RecordingHeader::from_json(reader.header()).expect("a header");
+    let mut recheck = Recheck::new(&header, TeamKey::ZERO).expect("hosts");
+    let mut ordered = BTreeSet::new();
+    for record in reader.by_ref() {
+        recheck.feed(&record);
+        let Some(host) = recheck.host(usize::from(record.host)) else { continue };
+        ordered.extend(host.orders().iter().filter_map(|order| match order.why {
+            OrderReason::PlaysCase { case } => Some(case.0),
+            _ => None,
+        }));
+    }
+    ordered.len()
+}
+
+#[test]
+fn hosts_play_the_cases_of_a_library_and_a_trace_replays_without_it() {
+    let (library, stem) = (smaller_library(), scratch("with-library"));
+    let mut play = Command::new(env!("CARGO_BIN_EXE_onetwo"));
+    play.args(["play", "--headless", "--duration", "90", "--seed", "11", "--library"]).arg(&library);
+    let out = play.arg("--record").arg(&stem).output().expect("the program starts");
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    fs::remove_dir_all(&library).expect("it is there");
+    let trace = stem.with_extension("trace");
+    let out = Command::new(env!("CARGO_BIN_EXE_onetwo")).arg("replay").arg(&trace).output();
+    let out = out.expect("the program starts");
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    assert!(cases_ordered(&trace) >= 2, "hosts propose the library's cases");
 }

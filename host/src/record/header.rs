@@ -6,12 +6,14 @@
 
 use std::fmt;
 
+use casebase::CaseBase;
 use geometry::GoalEnd;
 use protocol::frame::TeamKey;
 use protocol::{Duration, Instant, RobotId, TeamId};
 use rules::{Colour, League};
 use serde::{Deserialize, Serialize};
 
+use super::case_table;
 use crate::HostSettings;
 use crate::config::{DriveSettings, KICK_RANGE};
 use crate::proposal::cases_of;
@@ -39,6 +41,10 @@ pub struct RecordingHeader {
     pub zero_unix_us: Option<u64>,
     /// The hosts, by the number that records have.
     pub hosts: Vec<HostHeader>,
+    /// The table of the hosts' case base where it is not the one that comes with the league, in hexadecimal
+    /// digits.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub case_table: Option<String>,
 }
 
 /// The settings one host started with.
@@ -130,7 +136,23 @@ impl RecordingHeader {
             world: None,
             zero_unix_us: None,
             hosts: vec![HostHeader::of(settings, Instant(0))],
+            case_table: None,
         }
+        .with_cases(settings.cases)
+    }
+
+    /// The same with the table of this case base, unless it comes with the league.
+    #[must_use]
+    pub fn with_cases(mut self, cases: Option<CaseBase<'static>>) -> Self {
+        let own = self.league().map(|league| cases_of(league).hash());
+        self.case_table = cases.filter(|cases| own != Ok(cases.hash())).and_then(case_table::write);
+        self
+    }
+
+    /// The case base of its hosts where it is written down.
+    pub fn cases(&self) -> Result<Option<CaseBase<'static>>, HeaderError> {
+        let read = self.case_table.as_deref().map(case_table::read).transpose();
+        read.map_err(|error| wrong(format!("case_table: {error}")))
     }
 
     /// As JSON, as it is written at the start of a trace.
@@ -155,8 +177,8 @@ impl RecordingHeader {
     }
 }
 
-fn hash_of_cases(league: League) -> String {
-    format!("{:08x}", cases_of(league).hash())
+fn hash_of(cases: CaseBase<'_>) -> String {
+    format!("{:08x}", cases.hash())
 }
 
 const RELAYS: [(&str, Relay); 3] = [("no", Relay::No), ("to-each", Relay::ToEach), ("to-all", Relay::ToAll)];
@@ -204,7 +226,7 @@ impl HostHeader {
             referee_source: settings.referee.as_ref().map(ToString::to_string),
             referee_silence: Some(settings.referee_silence.label().to_owned()),
             tactics: settings.tactics,
-            cases: settings.tactics.bridge.then(|| hash_of_cases(settings.league)),
+            cases: settings.tactics.bridge.then(|| hash_of(settings.case_base())),
             speed_limit: settings.limits.speed,
             acceleration_limit: settings.limits.acceleration,
             external: settings.external,
@@ -212,9 +234,14 @@ impl HostHeader {
         }
     }
 
-    /// The settings it started with; the caller supplies the key.
-    pub fn settings(&self, league: League, key: TeamKey) -> Result<HostSettings, HeaderError> {
-        let ours = hash_of_cases(league);
+    /// The settings it started with; the caller supplies the key, and the case base that the recording has.
+    pub fn settings(
+        &self,
+        league: League,
+        cases: Option<CaseBase<'static>>,
+        key: TeamKey,
+    ) -> Result<HostSettings, HeaderError> {
+        let ours = hash_of(cases.unwrap_or_else(|| cases_of(league)));
         if let Some(theirs) = self.cases.as_ref().filter(|hash| self.tactics.bridge && **hash != ours) {
             return Err(wrong(format!(
                 "cases: it understood its robots by case base {theirs}, this program's is {ours}; take the program of the recording"
@@ -235,6 +262,7 @@ impl HostHeader {
             tactics: self.tactics,
             limits: self.limits()?,
             external: self.external,
+            cases,
         })
     }
 
@@ -323,6 +351,7 @@ mod tests {
             world: Some("random:7".to_owned()),
             zero_unix_us: None,
             hosts: vec![HostHeader::new(who, &kick, &radio, Instant(25))],
+            case_table: None,
         }
     }
 
@@ -356,7 +385,7 @@ mod tests {
         settings.tactics = Tactics { threats: true, ..Tactics::NONE };
         let reported = serde_json::to_string(&HostHeader::of(&settings, Instant(0))).unwrap();
         let read: HostHeader = serde_json::from_str(&reported).unwrap();
-        assert_eq!(read.settings(League::DivisionB, TeamKey::ZERO).unwrap().tactics, settings.tactics);
+        assert_eq!(read.settings(League::DivisionB, None, TeamKey::ZERO).unwrap().tactics, settings.tactics);
         let tactics = reported.find(",\"tactics\"").unwrap();
         let old: HostHeader = serde_json::from_str(&format!("{}}}", &reported[..tactics])).unwrap();
         assert_eq!(old.tactics, Tactics::NONE);
@@ -370,9 +399,9 @@ mod tests {
         settings.tactics.bridge = true;
         let mut reported = HostHeader::of(&settings, Instant(0));
         assert_eq!(reported.cases, Some(format!("{:08x}", case_library::division_b().hash())));
-        assert!(reported.settings(League::DivisionB, TeamKey::ZERO).is_ok());
+        assert!(reported.settings(League::DivisionB, None, TeamKey::ZERO).is_ok());
         reported.cases = Some("01234567".to_owned());
-        let error = reported.settings(League::DivisionB, TeamKey::ZERO).unwrap_err().to_string();
+        let error = reported.settings(League::DivisionB, None, TeamKey::ZERO).unwrap_err().to_string();
         assert!(error.contains("01234567"), "{error}");
     }
 

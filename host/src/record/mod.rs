@@ -2,6 +2,7 @@
 //! written on a thread of its own, read back, and compared with a host's decisions on the same inputs.
 
 mod background;
+mod case_table;
 pub mod header;
 pub mod recheck;
 mod recorder;

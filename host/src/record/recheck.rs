@@ -120,9 +120,9 @@ impl fmt::Display for Difference {
 impl Recheck {
     /// The hosts of a recording as they started; `key` opens sealed frames.
     pub fn new(header: &RecordingHeader, key: TeamKey) -> Result<Self, HeaderError> {
-        let league = header.league()?;
+        let (league, cases) = (header.league()?, header.cases()?);
         let build = |host: &crate::record::header::HostHeader| {
-            let settings = host.settings(league, if host.keyed { key } else { TeamKey::ZERO })?;
+            let settings = host.settings(league, cases, if host.keyed { key } else { TeamKey::ZERO })?;
             Ok(Checked {
                 host: Host::new(settings, host.began()),
                 sent_bytes: VecDeque::new(),

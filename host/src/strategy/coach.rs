@@ -180,16 +180,16 @@ impl Coach {
         }
     }
 
-    /// Retrieves from this case base, in place of the one that comes with the league.
-    pub fn play_cases(&mut self, base: CaseBase<'static>) {
-        self.cases = base;
+    /// The same, retrieving from this case base in place of the one that comes with the league.
+    #[must_use]
+    pub fn playing(self, cases: CaseBase<'static>) -> Self {
+        Self { cases, ..self }
     }
 
     /// Plays these tactics from now on; plans that run are given up.
     pub fn set_tactics(&mut self, tactics: Tactics, league: League) {
         let (ground, cases) = (*self.kicks.ground(), self.cases);
-        *self = Self::new(self.team, tactics, league);
-        self.play_cases(cases);
+        *self = Self::new(self.team, tactics, league).playing(cases);
         self.set_ground(ground);
     }
 

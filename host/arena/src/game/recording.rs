@@ -40,5 +40,7 @@ pub fn header(version: &str, commit: &str, config: &GameConfig) -> RecordingHead
         world: Some(config.world.to_string()),
         zero_unix_us: None,
         hosts: hosts.map(|colour| HostHeader::of(&config.host_settings(colour), Instant(0))).to_vec(),
+        case_table: None,
     }
+    .with_cases(config.cases)
 }

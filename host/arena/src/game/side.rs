@@ -67,10 +67,7 @@ impl<'a> Team<'a> {
             starter.start().map_err(|error| GameError::Strategy { name: starter.name().to_owned(), error })
         };
         let strategy = setup.strategy.as_ref().map(started).transpose()?;
-        let mut host = Host::new(settings, Instant(0));
-        if let Some(cases) = config.cases {
-            host.play_cases(cases);
-        }
+        let host = Host::new(settings, Instant(0));
         Ok(Self { host, strategy, colour, air, players })
     }
 
@@ -216,6 +213,7 @@ pub(super) fn host_settings(config: &GameConfig, colour: Colour) -> HostSettings
         radio: RadioSettings { relay: Relay::No, ..usual.radio },
         tactics: config.teams[colour as usize].tactics,
         external: config.teams[colour as usize].strategy.is_some(),
+        cases: config.cases,
         ..usual
     }
 }

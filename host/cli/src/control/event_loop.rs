@@ -97,6 +97,7 @@ pub(super) fn run(
         learns,
         radio: RadioSettings { key, relay: link.relay(), ..usual.radio },
         external: config.strategy.is_some(),
+        cases: library_handle.as_ref().map(arena::cases::LibraryHandle::lasting_base),
         ..usual
     };
     let strategy =

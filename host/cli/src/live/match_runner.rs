@@ -13,7 +13,6 @@ use std::time::{Duration, Instant};
 use arena::CaseNames;
 use arena::cases::LibraryHandle;
 use arena::game::{Game, GameConfig, GameReport, TICK_US, Watcher, Watchers};
-use casebase::CaseBase;
 use foreign::{excerpt, printable};
 use geometry::Point;
 use hil_sim::NativeBackend;
@@ -144,6 +143,7 @@ impl MatchRunner {
         }
         if let Some(library_handle) = self.library.now() {
             self.config.names = CaseNames::new(library_handle.names());
+            self.config.cases = Some(library_handle.lasting_base());
         }
         self.page.clear();
     }
@@ -155,8 +155,7 @@ impl MatchRunner {
     ) -> Result<GameReport, Failure> {
         let config = self.config.clone();
         let library_handle = self.library.now();
-        let base = library_handle.as_ref().map_or_else(CaseBase::default, LibraryHandle::lasting_base);
-        let mut backend = NativeBackend::new(base);
+        let mut backend = NativeBackend::new(config.cases.unwrap_or_default());
         let mut game = Game::new(&config, &mut backend).map_err(Failure::Game)?;
         let mut feed = Feed {
             composer: Composer::new(library_handle.as_ref()),
