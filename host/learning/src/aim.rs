@@ -99,7 +99,8 @@ fn moved(played: &[&Occasion], chance: &mut Stream) -> Option<Occasion> {
     (situation.is_usable() && inside && apart).then_some(occasion)
 }
 
-fn distance([a, b]: [i32; 2], [x, y]: [i32; 2]) -> f64 {
+/// Between two points in mm.
+pub(crate) fn distance([a, b]: [i32; 2], [x, y]: [i32; 2]) -> f64 {
     f64::from(a - x).hypot(f64::from(b - y))
 }
 

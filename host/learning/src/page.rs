@@ -112,6 +112,7 @@ pub fn summary(learned: &Learned) -> String {
 /// The report as one HTML page without scripts.
 pub fn html(learned: &Learned) -> String {
     let (settings, diff) = (&learned.settings, learned.diff());
+    let as_robots = learned.curve.iter().any(|point| point.to_goal_robots.is_some());
     let page = markup! {
         (DOCTYPE)
         html lang="en" {
@@ -136,11 +137,11 @@ pub fn html(learned: &Learned) -> String {
                     h2 { "Learning curve on held-out starts" }
                     (curve(learned))
                     table {
-                        tr { th { "round" } th { "trials" } th { "to goal %" } th { "random starts %" } th { "as robots %" } th { "touches" } }
+                        tr { th { "round" } th { "trials" } th { "to goal %" } th { "random starts %" } @if as_robots { th { "as robots %" } } th { "touches" } }
                         @for point in &learned.curve {
                             tr {
                                 td { (point.round) } td { (point.spent) } td { (format!("{:.2}", point.to_goal)) }
-                                td { (format!("{:.2}", point.to_goal_random)) } td { (robots(point)) }
+                                td { (format!("{:.2}", point.to_goal_random)) } @if as_robots { td { (robots(point)) } }
                                 td { (format!("{:.3}", point.touches)) }
                             }
                         }

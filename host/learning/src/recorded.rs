@@ -10,6 +10,7 @@ use casebase::{FieldMm, KickAim, OPPONENTS_MAX, PointMm, RetrievalSettings, retr
 use geometry::{Field, Point, Segment};
 use hil_sim::Fnv;
 
+use crate::aim::distance;
 use crate::drafts::{BALL_SCOPE, FIELD, narrowed, opponent_scope, region};
 use crate::edit::{Change, Edit};
 use crate::proposals::{Kind, Proposal};
@@ -275,10 +276,6 @@ fn place(field: &FieldMm, [x, y]: [i32; 2]) -> [i32; 2] {
 
 fn point(action: &str, [x, y]: [i32; 2]) -> String {
     format!("{{ {action} = [{x}, {y}] }}")
-}
-
-fn distance([a, b]: [i32; 2], [x, y]: [i32; 2]) -> f64 {
-    f64::from(a - x).hypot(f64::from(b - y))
 }
 
 /// Of a point from a leg, all in mm.
