@@ -36,7 +36,8 @@ fn feed(file: &str) -> Result<String, Box<dyn std::error::Error>> {
     let mut reader = Reader::new(MultiGzDecoder::new(BufReader::new(File::open(file)?)))?;
     let header = RecordingHeader::from_json(reader.header())?;
     let first = header.hosts.first().ok_or("no host in it")?;
-    let mut host = Host::new(first.settings(header.league()?, TeamKey::ZERO)?, first.began());
+    let mut host =
+        Host::new(first.settings(header.league()?, header.cases()?, TeamKey::ZERO)?, first.began());
     let (mut round, mut rounds, mut packets, mut bytes) = (Vec::<Record>::new(), 0, 0, 0);
     let mut image = None;
     for record in reader.by_ref().filter(|record| record.host == 0 && record.kind.is_input()) {

@@ -9,17 +9,17 @@ mod calibration;
 mod change;
 mod commands;
 mod input;
+mod settings;
 mod state;
 mod test;
 
 use casebase::CaseBase;
 use geometry::{GoalEnd, Point};
 use protocol::decision::{Assembler, DecisionReport};
-use protocol::frame::TeamKey;
 use protocol::host::{Condition, Directive, RuleRole, Telemetry};
 use protocol::link::Packet;
 use protocol::team::{Beacon, PRESENCE_LEASE, Progress};
-use protocol::{Duration, Instant, RobotId, TeamId};
+use protocol::{Duration, Instant, RobotId};
 use rules::{Colour, FieldSpec, League, Limits, Phase};
 use ssl::Message;
 
@@ -27,86 +27,22 @@ use crate::config::DriveSettings;
 use crate::external::External;
 use crate::field_geometry::VisionGeometry;
 use crate::learned::Learned;
-use crate::proposal::{cases_of, proposal};
-use crate::radio::{self, Radio, RadioSettings, RadioSituation, To};
+use crate::proposal::proposal;
+use crate::radio::{self, Radio, RadioSituation, To};
 use crate::referee::team_port::TeamPortRequest;
-use crate::referee::{Listener, OnSilence, SenderAddress, SourcePin};
+use crate::referee::{Listener, SenderAddress};
 use crate::requests::Requests;
 use crate::robot_test::RobotTest;
 use crate::strategy::counters::Bookkeeper;
 use crate::strategy::stakes::{Stakes, time_left};
 use crate::strategy::view::{CasePass, RobotSet, ViewGame};
-use crate::strategy::{Coach, Flip, Orders, Tactics, Team, View};
+use crate::strategy::{Coach, Flip, Orders, View};
 use crate::tracking::HiddenBall;
 use crate::tracking::{self, Tracker};
 use crate::world::{Ball, World};
 
 pub use input::{Input, InputVerdict, Undecodable};
-
-/// Settings that a host starts with; some change while it runs ([`Input::Parameter`]).
-#[derive(Clone, Debug)]
-pub struct HostSettings {
-    /// The colour our robots play with.
-    pub us: Colour,
-    /// The league: its field until vision sends another, and its limits.
-    pub league: League,
-    /// Our keeper, until the referee names one.
-    pub keeper: RobotId,
-    /// The goal we defend, until the referee reports it.
-    pub defending: GoalEnd,
-    /// Ball speed over speed ordered, by robot.
-    pub kick: [f32; RobotId::COUNT],
-    /// Deceleration of a rolling ball, m/s²; none: from vision, or the league's default.
-    pub roll: Option<f32>,
-    /// It uses the learned gains and deceleration; it learns in either case.
-    pub learns: bool,
-    /// The only referee that is obeyed; none: every one, the strictest first.
-    pub referee: Option<SourcePin>,
-    /// What robots do when the referee falls silent.
-    pub referee_silence: OnSilence,
-    /// Which team decides open play: ours or an opponent team.
-    pub team: Team,
-    /// Settings of the radio.
-    pub radio: RadioSettings,
-    /// Which of the second paper's tactics it plays.
-    pub tactics: Tactics,
-    /// How fast its robots may drive.
-    pub limits: DriveSettings,
-    /// Whether a strategy in another program gives orders ([`crate::external`]).
-    pub external: bool,
-    /// The case base of its robots, to retrieve from and to look up what they report; none: the one that comes
-    /// with the league.
-    pub cases: Option<CaseBase<'static>>,
-}
-
-impl HostSettings {
-    /// A team on a league's own field with robots that execute orders without deviation; `epoch` must rise
-    /// with every start.
-    pub fn new(us: Colour, league: League, epoch: u32) -> Self {
-        Self {
-            us,
-            league,
-            keeper: RobotId::ZERO,
-            defending: if us == Colour::Yellow { GoalEnd::Negative } else { GoalEnd::Positive },
-            kick: [1.0; RobotId::COUNT],
-            roll: None,
-            learns: false,
-            referee: None,
-            referee_silence: OnSilence::default(),
-            team: Team::Ours,
-            radio: RadioSettings { key: TeamKey::ZERO, ..RadioSettings::new(TeamId::of(us), epoch) },
-            tactics: Tactics::default(),
-            limits: DriveSettings::default(),
-            external: false,
-            cases: None,
-        }
-    }
-
-    /// The case base of its robots.
-    pub fn case_base(&self) -> CaseBase<'static> {
-        self.cases.unwrap_or_else(|| cases_of(self.league))
-    }
-}
+pub use settings::HostSettings;
 
 /// Orders that replace the coach's: robot, its role, and its directive.
 pub type Drill = heapless::Vec<(RobotId, RuleRole, Directive), { RobotId::COUNT }>;

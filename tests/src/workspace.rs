@@ -140,6 +140,6 @@ fn walk(directory: &Path, wanted: &dyn Fn(&Path) -> bool, paths: &mut Vec<PathBu
 }
 
 /// Extensions of files that are written by hand; everything else is data or generated.
-const TEXT: [&str; 6] = ["rs", "toml", "md", "sh", "svg", "txt"];
+const TEXT: [&str; 7] = ["rs", "js", "toml", "md", "sh", "svg", "txt"];
 /// Directories that git ignores.
 const NO_SOURCES: [&str; 2] = ["target", "out"];

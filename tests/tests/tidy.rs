@@ -27,6 +27,22 @@ fn every_file_opens_with_a_line_that_names_it_and_asks_nothing() {
 }
 
 #[test]
+fn every_script_of_the_page_opens_with_its_name_and_what_it_does() {
+    let scripts: Vec<_> = text_sources()
+        .into_iter()
+        .filter(|source| source.path.starts_with("host/page/web/") && source.path.ends_with(".js"))
+        .collect();
+    assert!(scripts.len() > 30, "{} scripts", scripts.len());
+    check(&scripts, |source| {
+        let name = source.path.trim_start_matches("host/page/web/").trim_end_matches(".js");
+        let first = source.text.lines().next().unwrap_or_default();
+        let named = first.strip_prefix(&format!("// {name}: ")).is_some_and(|rest| !rest.contains('?'));
+        let hint = "open with `// NAME: what it is and does.`";
+        if named { vec![] } else { vec![source.at(1, "its first line does not name it", hint)] }
+    });
+}
+
+#[test]
 fn no_file_is_longer_than_a_reader_holds_in_mind() {
     check(&rust_sources(), |source| {
         let lines = source.text.lines().count();

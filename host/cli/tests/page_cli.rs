@@ -4,7 +4,6 @@
 #[path = "page_browser/program.rs"]
 mod program;
 
-use std::io::{Read as _, Write as _};
 use std::net::TcpStream;
 use std::process::Command;
 use std::time::{Duration, Instant};

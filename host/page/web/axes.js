@@ -1,4 +1,4 @@
-// What stands at an axis? Ticks at round numbers, with their unit; times as on the clock.
+// axes: ticks of an axis: at round numbers, with their unit; times as on the clock.
 
 import { colours, faint } from "./colours.js";
 import { clock } from "./dom.js";

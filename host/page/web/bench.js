@@ -1,4 +1,4 @@
-// What does a frame cost? The script's own time for 22 robots and every layer, beside that of an empty field, in the same run.
+// bench: cost of a frame: the script's own time for 22 robots and every layer, beside that of an empty field, in the same run.
 
 import { Camera } from "./camera.js";
 import { drawFrame } from "./field.js";
@@ -34,11 +34,11 @@ export function bench(full = store.scene) {
     bare.push(timed(empty));
     whole.push(timed(full));
   }
-  // What each part costs beside the empty frame, the dearest first.
+  // What each part costs beside the empty frame, the most expensive first.
   const parts = [["robots", { ...empty, robots: full.robots }], ...full.layers.map((layer) => [layer.name, { ...empty, layers: [layer] }])]
     .map(([name, scene]) => [name, median([0, 1, 2].map(() => timed(scene)))]);
   const shapes = full.layers.reduce((sum, layer) => sum + layer.shapes.length, 0);
   const [emptyMs, fullMs] = [median(bare), median(whole)];
-  const dear = parts.map(([name, ms]) => [name, ms / emptyMs - 1]).sort((a, b) => b[1] - a[1]);
-  return { empty_ms: emptyMs, full_ms: fullMs, times: fullMs / emptyMs, robots: full.robots.length, layers: full.layers.length, shapes, parts: dear };
+  const costs = parts.map(([name, ms]) => [name, ms / emptyMs - 1]).sort((a, b) => b[1] - a[1]);
+  return { empty_ms: emptyMs, full_ms: fullMs, times: fullMs / emptyMs, robots: full.robots.length, layers: full.layers.length, shapes, parts: costs };
 }

@@ -1,4 +1,4 @@
-// Where on the canvas is a point of the field? Zoom, pan, half-turns, and a quarter turn where the canvas is taller than wide.
+// camera: transform from the field to the canvas: zoom, pan, half-turns, and a quarter turn where the canvas is taller than wide.
 
 export class Camera {
   constructor() {

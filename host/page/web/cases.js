@@ -1,4 +1,4 @@
-// What became of every case? How often it was retrieved, how its plays ended, and what followed, up to the shown moment.
+// cases: tab Cases: how often each case was retrieved, how its plays ended, and what followed, up to the shown moment.
 
 import { byId, el, fill, number } from "./dom.js";
 import { getJson } from "./link.js";

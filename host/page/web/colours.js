@@ -1,5 +1,5 @@
-// Which colour means what, by day and by night? They stand in page.css; pictures read them from there. Pairs that have to be told
-// apart differ in lightness as well as in hue, and never by colour alone.
+// colours: colours of both themes, read from page.css. Pairs that must be told apart differ in lightness as well as in hue, and never
+// by colour alone.
 
 import { byId } from "./dom.js";
 import { changed, recall, remember } from "./store.js";

@@ -1,4 +1,4 @@
-// What may be asked of the match? Everything of a simulation, HALT of a real field, nothing of a recording.
+// control: tab Control: the requests that a viewer may send. All in a simulation, HALT on a real field, none in a recording.
 
 import { byId, el, fill, say } from "./dom.js";
 import { ask } from "./link.js";

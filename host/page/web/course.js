@@ -1,4 +1,4 @@
-// Which points has a line? Every kept scene for some seconds, one sample a second for the whole match.
+// course: points of a plotted line: every kept scene for some seconds, one sample a second for the whole match.
 
 import { getJson } from "./link.js";
 import { changed, on, store } from "./store.js";

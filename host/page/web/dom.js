@@ -1,4 +1,4 @@
-// How is a piece of the page made? Elements from data; words are always text, never markup.
+// dom: elements of the page, made from data; text is always text, never markup.
 
 export const byId = (id) => document.getElementById(id);
 
@@ -37,15 +37,15 @@ addEventListener("pointerdown", (event) => (pressed = event.target), true);
 for (const end of ["pointerup", "pointercancel"]) {
   addEventListener(end, () => {
     const released = pressed;
-    // After its click; what is pressed anew until then stays pressed.
+    // After its click; what is pressed again until then stays pressed.
     setTimeout(() => pressed === released && (pressed = null));
   }, true);
 }
 
-/** What an element is known by when it is made anew. */
+/** What an element is known by when it is made again. */
 const face = (element) => `${element.tagName} ${JSON.stringify(element.dataset)} ${element.id}`;
 
-/** Replaces what is in `target` where `key` differs from last time; true where it did. Focus stays with what is made anew. */
+/** Replaces what is in `target` where `key` differs from last time; true where it did. Focus stays with what is made again. */
 export function fill(target, key, make) {
   if (target.dataset.key === key || (pressed && target.contains(pressed))) return false;
   target.dataset.key = key;

@@ -1,4 +1,4 @@
-// How is a case edited? Which one, its parts and actions, what the checks say, the way back, and the file.
+// draft: editor of a case on the workbench: its parts and actions, the findings of the checks, undo and redo, and the file.
 
 import { byId, clock, el, fill } from "./dom.js";
 import { showEvidence } from "./evidence.js";

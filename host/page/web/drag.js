@@ -1,4 +1,4 @@
-// What does a hand on the field do? Drags ball and robots of a simulation, moves and zooms the picture, chooses robots, asks shapes.
+// drag: pointer input on the field: drags ball and robots of a simulation, moves and zooms the view, chooses robots, explains shapes.
 
 import { byId } from "./dom.js";
 import { dropHeld, grab, pullHeld } from "./ghost.js";

@@ -1,4 +1,4 @@
-// What has learning found out about the case? Where it works and where it fails, and changes of it to take over.
+// evidence: what learning found out about a case: where it works and where it fails, and changes of it to take over.
 
 import { byId, el, fill, number, table } from "./dom.js";
 import { changed } from "./store.js";

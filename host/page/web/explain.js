@@ -1,4 +1,4 @@
-// Why that case and none of the others? The candidates by rank, then those that missed by the least, each with its margin.
+// explain: explanation of a retrieval: the candidates by rank, then those that missed by the least, each with its margin.
 
 import { byId, clock, el, number, table } from "./dom.js";
 import { post } from "./link.js";

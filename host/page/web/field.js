@@ -1,4 +1,4 @@
-// What does one frame look like? Field surface, lines, layers, robots, ball; all in field coordinates, m.
+// field: drawing of one frame: field surface, lines, layers, robots, ball; in field coordinates, m.
 
 import { colours, faint, stroke } from "./colours.js";
 import { drawGhost, givesWay } from "./ghost.js";

@@ -1,4 +1,4 @@
-// How does the case on the workbench lie on the field? As a ghost in one of its symmetries, with handles for hand and keys.
+// ghost: the case on the workbench, drawn on the field in one of its symmetries, with handles for pointer and keys.
 
 import { colours, faint, stroke } from "./colours.js";
 import { drawShapes } from "./shapes.js";

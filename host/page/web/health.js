@@ -1,4 +1,4 @@
-// Is everything well? Robots, their links and the cameras at a glance, a plot, the program's log, then numbers with their limits.
+// health: tab Health: robots, their links and the cameras, a plot, the program's log, then gauges with their limits.
 
 import { byId, el, fill, number } from "./dom.js";
 import { buildLog, showLog } from "./log.js";

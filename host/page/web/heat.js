@@ -1,5 +1,5 @@
-// How is a map of values drawn? Once for each map and each place on the screen, then copied: it changes five times a second, frames come
-// sixty times.
+// heat: drawing of heat maps: each is drawn once for each place on the screen, then copied, as it changes five times a second and
+// frames come sixty times.
 
 const scaled = new WeakMap();
 

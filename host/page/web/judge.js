@@ -1,4 +1,5 @@
-// What would retrieval make of the case? Its rank at a moment, what it wins over the match, and what other settings would change.
+// judge: retrieval of the case on the workbench: its rank at a moment, what it wins over the match, and what other settings would
+// change.
 
 import { byId, clock, el, fill, number, table } from "./dom.js";
 import { told, VERDICTS } from "./explain.js";

@@ -1,4 +1,4 @@
-// What does a key do? All of them, and their list for people.
+// keys: keyboard: what each key does, and the list of keys for viewers.
 
 import { toggleTheme } from "./colours.js";
 import { byId } from "./dom.js";

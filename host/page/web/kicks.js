@@ -1,4 +1,4 @@
-// How hard does a robot kick? Its test: it kicks again and again, the ball is tracked, the gain is fitted and taken.
+// kicks: kick test: a robot kicks again and again, the ball is tracked, the gain is fitted and taken.
 
 import { el, number, table } from "./dom.js";
 import { ask } from "./link.js";

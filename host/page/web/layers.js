@@ -1,4 +1,4 @@
-// Which layers are shown? Those of the page and those that the program names; a viewer's choice is kept.
+// layers: choice of layers: those of the page and those that the program names; a viewer's choice is kept.
 
 import { byId, el, fill, number, say } from "./dom.js";
 import { HEAT_SCALE } from "./heat.js";
@@ -65,7 +65,7 @@ function show() {
         el("button", { onclick: every(true), id: "layers-all" }, "all"), el("button", { onclick: every(false), id: "layers-none" }, "none")),
     ];
   });
-  // In its place: a row that is made anew under a finger would lose the click.
+  // In its place: a row that is replaced under a finger would lose the click.
   for (const layer of list) say(panel.querySelector(`[data-now="${CSS.escape(layer.name)}"]`), layer.count === 0 ? "none now" : "");
 }
 

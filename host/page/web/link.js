@@ -1,4 +1,4 @@
-// How do scenes come, and what when they do not? A socket that heals itself; whoever asks for something speaks through it.
+// link: connection to the program: a WebSocket that reconnects, and requests over HTTP.
 
 import { byId, say } from "./dom.js";
 import { changed, store } from "./store.js";
@@ -40,9 +40,9 @@ export async function post(path, body) {
 
 async function refresh() {
   const state = await getJson(withToken("/api/state"));
-  const anew = state.life !== store.state.life;
+  const restarted = state.life !== store.state.life;
   store.state = state;
-  if (anew) {
+  if (restarted) {
     store.matchEvents = [];
     store.samples = [];
   }

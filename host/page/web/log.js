@@ -1,4 +1,4 @@
-// What did the program report? Errors, alarms, warnings and notes, newest first, with a search.
+// log: the program's log: errors, alarms, warnings and notes, newest first, with a search.
 
 import { byId, clock, el, keep, say } from "./dom.js";
 import { getJson } from "./link.js";

@@ -1,4 +1,4 @@
-// How does the page live? Scenes come, frames are drawn when something moved, panels follow ten times a second.
+// main: entry point: receives scenes, draws a frame when something moved, updates the panels ten times a second.
 
 import { bench } from "./bench.js";
 import { Camera } from "./camera.js";

@@ -1,4 +1,4 @@
-// How does the match stand? Score, stage, possession, ratios, and everything that happened.
+// match: tab Match: score, stage, possession, ratios, and all events.
 
 import { byId, clock, el, fill, keep, number, say, table } from "./dom.js";
 import { explainEvent } from "./explain.js";

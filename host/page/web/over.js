@@ -1,4 +1,4 @@
-// What follows a match that is over? Its result, the same once more, or another one.
+// over: dialog after a match: its result, the same match again, or another one.
 
 import { byId, el, fill } from "./dom.js";
 import { ask } from "./link.js";

@@ -1,4 +1,4 @@
-// How did a number go? A plot with axes of any gauge, or of any robots: a cursor tells values, a click goes to its time.
+// plot: plot with axes of any gauge, or of any robots: a cursor shows values, a click goes to its time.
 
 import { Axes, rangeOf, ready } from "./axes.js";
 import { colours, faint, stroke } from "./colours.js";

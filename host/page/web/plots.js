@@ -1,4 +1,4 @@
-// How did a number go over the match? A line a gauge, its limit dashed, the shown moment marked.
+// plots: small plots over the match: a line for each gauge, its limit dashed, the shown moment marked.
 
 import { colours, faint } from "./colours.js";
 import { Axes, rangeOf, ready } from "./axes.js";

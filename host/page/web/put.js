@@ -1,5 +1,5 @@
-// Where did a hand put ball and robots? They are drawn there at once: the host sees it with a later camera frame, and while the match
-// stands still with none.
+// put: places to which the viewer dragged ball and robots: drawn there at once, as the host sees it with a later camera frame only,
+// and in a paused match with none.
 
 import { on, store } from "./store.js";
 

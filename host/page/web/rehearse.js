@@ -1,4 +1,4 @@
-// How does the case play? Many attempts in the simulator beside the match, their results, and some of them to be watched.
+// rehearse: rehearsal of a case: many attempts in the simulator beside the match, their results, and some of them to be watched.
 
 import { byId, el, fill, number, table } from "./dom.js";
 import { changed, store } from "./store.js";

@@ -1,4 +1,4 @@
-// How is a robot drawn? Hull with a flat front, number, velocity, where it wants to be, what it is.
+// robots: drawing of a robot: hull with a flat front, number, velocity, target, role.
 
 import { colours, faint, stroke } from "./colours.js";
 import { shows } from "./layers.js";
@@ -67,7 +67,7 @@ export function drawRobots(pen, scene, next, share) {
 function drawIntent({ context, pixel }, robot, radius) {
   const { path, ball_to: target } = robot.mind.intent;
   if (path.length > 1) {
-    // Thin and whole: dashes of twenty ways are the dearest strokes of a frame.
+    // Thin and whole: dashed paths of twenty robots would be the most expensive strokes of a frame.
     context.strokeStyle = faint(robot.team, isChosen(robot) ? 1 : 0.8);
     context.lineWidth = (isChosen(robot) ? 2.4 : 1.2) * pixel;
     context.beginPath();

@@ -1,4 +1,4 @@
-// How are a layer's shapes drawn? Any layer that the program names, from plain shapes; what they mean is the program's affair.
+// shapes: drawing of a layer's shapes: any layer that the program names, from plain shapes whose meaning the program knows.
 
 import { faint, stroke } from "./colours.js";
 import { drawHeat, heatNote } from "./heat.js";

@@ -1,4 +1,4 @@
-// How well does a skill work? Tries of it in the simulator beside the match, as `onetwo evaluate skills` plays them.
+// skills: tries of a skill in the simulator beside the match, as `onetwo evaluate skills` plays them.
 
 import { byId, el, fill, number, table } from "./dom.js";
 import { changed, store } from "./store.js";

@@ -1,4 +1,4 @@
-// Which moments of the simulated field are kept? To return to them as often as wanted, and to save them as files.
+// snapshots: snapshots of the simulated field: to return to as often as wanted, and to save as files.
 
 import { byId, clock, el, fill } from "./dom.js";
 import { ask, getJson } from "./link.js";

@@ -1,4 +1,4 @@
-// What does the page know? One object, and who wants to hear of changes.
+// store: state of the page: one object, and listeners that are told of changes.
 
 export const store = {
   /** From the program: title, what may be asked, recorded or live. */

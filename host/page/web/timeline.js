@@ -1,4 +1,4 @@
-// Which events, and when? A row for each kind of event under the ruler; a click goes there.
+// timeline: timeline of events: a row for each kind of event under the ruler; a click goes there.
 
 import { colours, faint, stroke } from "./colours.js";
 import { byId, clock, sizeOf } from "./dom.js";

@@ -1,4 +1,4 @@
-// Which moment is shown? The newest one, or any that was kept; with speed, bookmarks and an address for each moment.
+// transport: choice of the shown moment: the newest one, or any that was kept; with speed, bookmarks and an address for each moment.
 
 import { byId, clock, el, fill, say } from "./dom.js";
 import { ask, getJson, post } from "./link.js";
@@ -139,7 +139,7 @@ export function goLive() {
   changed("frame");
 }
 
-/** Space: a simulation stands still for everybody, what was kept for this viewer alone. */
+/** Space: a simulation pauses for all viewers, a recording for this one alone. */
 export function toggle() {
   if (time.live) {
     // A match that is over is watched once more.

@@ -1,4 +1,5 @@
-// What does a team tune? Its parameters with unit, range and usual value; those that may change while it plays are set here, the rest is read at the start.
+// tune: tab Parameters: a team's parameters with unit, range and usual value; those that may change during play are set here, the
+// others are read at the start.
 
 import { byId, el, fill, number, say } from "./dom.js";
 import { kickTest } from "./kicks.js";

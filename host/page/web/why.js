@@ -1,4 +1,4 @@
-// What is every robot thinking? Its role, what it is told and why, the state of its case; and each team's cycle.
+// why: tab Why: each robot's role, its order and the reason, the state of its case; and each team's cycle.
 
 import { byId, el, fill, number } from "./dom.js";
 import { explainEvent, explainNow } from "./explain.js";
@@ -12,11 +12,11 @@ export function showWhy() {
   const key = JSON.stringify([minds.map((r) => [r.team, r.id, r.mind.role, r.mind.directive, r.mind.why, r.mind.state, r.mind.step,
     r.mind.part, r.mind.reactive, isChosen(r) && r.mind.timers.map((t) => t.seconds.toFixed(1))]), scene.cycles.map((c) => [c.team, c.number, c.state, c.case, c.coordinator]), store.state.life]);
   const top = tab.scrollTop;
-  const anew = fill(tab, key, () => {
+  const replaced = fill(tab, key, () => {
     if (minds.length === 0) return el("p", { class: "muted" }, "Nothing is known of any robot's decisions: no host of ours is at work here, or no robot of its team is seen yet (tab Health, and alarms on the field).");
     return ["blue", "yellow"].flatMap((team) => teamPart(scene, team, minds.filter((robot) => robot.team === team)));
   });
-  if (anew) tab.scrollTop = top;
+  if (replaced) tab.scrollTop = top;
   for (const cycle of scene.cycles) {
     const slot = tab.querySelector(`[data-cycle="${cycle.team}"]`);
     if (slot) slot.textContent = `${number(cycle.seconds)} s`;

@@ -1,12 +1,12 @@
-// Where do words stand on the field so that none hides another, or a robot? Everybody asks for a place, then all are drawn at once:
-// beside what they belong to where there is room, else a little farther off, else not at all.
+// words: labels on the field: finds a place for each where it hides no other and no robot. Beside what it belongs to where there is
+// room, else a little farther off, else it is left out.
 
 import { faint, stroke } from "./colours.js";
 import { on } from "./store.js";
 
 const SIZE = 12;
 const LINE = 15;
-/** Ways from the anchor in which a word may stand, the dearest first: below, above, right, left, and the corners. */
+/** Directions from the anchor in which a label may stand, the preferred first: below, above, right, left, and the corners. */
 const BELOW = [[0, 1], [0, -1], [1, 0], [-1, 0], [1, 1], [-1, 1], [1, -1], [-1, -1]];
 const ABOVE = [[0, -1], [0, 1], [1, 0], [-1, 0], [1, -1], [-1, -1], [1, 1], [-1, 1]];
 
@@ -16,12 +16,12 @@ export class Words {
     this.asked = [];
   }
 
-  /** Nothing shall stand there: a robot, in CSS pixels. */
+  /** Reserves the place of a robot, CSS pixels. */
   keepFree([x, y], radius) {
     this.taken.push(x - radius, y - radius, x + radius, y + radius);
   }
 
-  /** A word at a place, in CSS pixels, `gap` away from it; `middle`: upon it if it can be. Words of a higher rank come first. */
+  /** Requests a label at a place, CSS pixels, `gap` away from it; `middle`: on it where there is room. Higher ranks come first. */
   ask({ key, at, text, tone, gap, above = false, middle = false, rank = 0 }) {
     this.asked.push({ key, at, text, tone, gap, above, middle, rank });
   }
@@ -39,7 +39,7 @@ export class Words {
     context.restore();
   }
 
-  /** Tries one place after the other; a flat list of boxes and no new objects, for this is done for every word of every frame. */
+  /** Tries one place after the other; a flat list of boxes and no new objects, as this is done for every label of every frame. */
   place({ key, at: [x, y], gap, above, middle }, wide) {
     const ways = above ? ABOVE : BELOW;
     const last = stood.get(key);
@@ -51,7 +51,7 @@ export class Words {
       const left = x + along * (off + wide / 2) - wide / 2;
       const top = y + down * (off + LINE / 2) - LINE / 2;
       if (!this.isFree(left, top, left + wide, top + LINE)) continue;
-      // Where it stood in the frame before, it stays while it can: words that jump cannot be read. Farther off it does not stay.
+      // It stays where it stood in the frame before while there is room: labels that jump cannot be read. Farther off it does not stay.
       if (i <= ways.length) stood.set(key, i);
       else stood.delete(key);
       this.taken.push(left, top, left + wide, top + LINE);
@@ -74,7 +74,7 @@ export class Words {
 const HERE = [0, 0];
 const stood = new Map();
 
-/** Words as they were drawn once: letters with a rim are dear, and most words stay for many frames. */
+/** Labels drawn once and kept: letters with a rim are expensive to draw, and most labels stay for many frames. */
 const pictures = new Map();
 const PICTURES_MAX = 600;
 on("colours", () => pictures.clear());

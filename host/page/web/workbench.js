@@ -1,4 +1,5 @@
-// What is on the workbench? The text of one case, what the program says of it, and the way back. The text is the one truth.
+// workbench: state of the workbench: the text of one case, the program's findings about it, undo and redo. The text is the only copy of
+// the case.
 
 import { post } from "./link.js";
 import { changed, on, recall, remember, store } from "./store.js";
@@ -171,7 +172,7 @@ export const checkAll = () => inTurn(async () => {
 export const save = () => inTurn(async () => {
   bench.taken = null;
   const sheet = await request({ do: "save", name: bench.name, text: bench.sheet.text, over: bench.opened }).catch((error) => {
-    // Whoever wants to write over it is told what lies there first.
+    // Before a file is overwritten, the viewer is told what it holds.
     if (bench.opened === null && bench.list?.names.includes(bench.name)) bench.taken = bench.name;
     changed("bench");
     throw error;

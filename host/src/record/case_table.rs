@@ -1,5 +1,5 @@
-//! `case_table`: the case base of a recording's hosts, in its header as hexadecimal digits, so that the recording
-//! is replayed when its library has changed or is not at hand.
+//! `case_table`: the case base of a recording's hosts, in its header as hexadecimal digits, so that the
+//! recording is replayed when its library has changed or is not at hand.
 
 use casebase::CaseBase;
 

@@ -253,7 +253,7 @@ mod tests {
 
     /// A second of vision as input of a host of this header, with the packets that it sends.
     fn recorded() -> Vec<Record> {
-        let settings = header().hosts[0].settings(League::DivisionB, TeamKey::ZERO).unwrap();
+        let settings = header().hosts[0].settings(League::DivisionB, None, TeamKey::ZERO).unwrap();
         let mut host = Host::new(settings, Instant(0));
         let mut records = Vec::new();
         for number in 0..60 {

@@ -139,8 +139,8 @@ pub fn paired(differences: Sample) -> Option<Test> {
     Some(Test { statistic: t, p: 2.0 * student.sf(t.abs()) })
 }
 
-/// The smallest true mean difference that the paired test at 0.05 finds in 80 of 100 such samples; `None` where
-/// the spread is not known.
+/// The smallest true mean difference that the paired test at 0.05 finds in 80 of 100 such samples; `None`
+/// where the spread is not known.
 pub fn detectable(differences: Sample) -> Option<f64> {
     differences.sd.map(|sd| DETECTED_AT * sd / f64::from(differences.n).sqrt())
 }

@@ -293,7 +293,8 @@ fn the_same_matches_by_two_programs_are_compared_match_by_match() {
         goals.into_iter().enumerate().map(of).collect::<Vec<_>>()
     };
     let (before, after) = (rows([[1, 0], [2, 2], [0, 1]]), rows([[3, 0], [2, 1], [0, 1]]));
-    let found = between((&identity("1", 5), &before), (&identity("2", 5), &after)).expect("the same matches");
+    same_matches(&identity("1", 5), &identity("2", 5)).expect("the same matches");
+    let found = between(&identity("2", 5).plan, &before, &after);
     let [all] = &found[..] else { panic!("one opponent: {found:?}") };
     // 2, 1 and 0 goals better: mean 1, spread 1, t = √3 with 2 degrees, p = 0.2254.
     assert_eq!((all.goals_before, all.goals_after, all.goals.mean), ([3, 3], [5, 2], 1.0));

@@ -149,7 +149,7 @@ impl Coach {
         }
         let plays_case = may_play_on && view.in_play.has(who);
         let again = match kept.map(|chosen| chosen.action) {
-            // Its robots adapt a case to where the ball is now; a robot that came to the ball in one plays on.
+            // A case is adapted to where the ball is now; a robot that came to the ball in one plays it on.
             Some(action @ (Action::Case(_) | Action::PlayOn)) => Some((action, from)),
             Some(action) => Some((action, there.unwrap_or(from))),
             None => plays_case.then_some((Action::PlayOn, from)),
