@@ -11,6 +11,7 @@ mod circles;
 mod facts;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 use match_tests::workspace::{Finding, Manifest, Source, members, root, rust_sources, text_sources};
 
@@ -30,7 +31,10 @@ fn every_file_opens_with_a_line_that_names_it_and_asks_nothing() {
 fn every_script_of_the_page_opens_with_its_name_and_what_it_does() {
     let scripts: Vec<_> = text_sources()
         .into_iter()
-        .filter(|source| source.path.starts_with("host/page/web/") && source.path.ends_with(".js"))
+        .filter(|source| {
+            let is_script = Path::new(&source.path).extension().is_some_and(|extension| extension == "js");
+            is_script && source.path.starts_with("host/page/web/")
+        })
         .collect();
     assert!(scripts.len() > 30, "{} scripts", scripts.len());
     check(&scripts, |source| {

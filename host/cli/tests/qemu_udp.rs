@@ -185,7 +185,7 @@ impl Copied {
         let (outward, to) = (UdpSocket::bind("127.0.0.1:0").expect("a port"), copies.clone());
         // Ends with the test's process, or when nothing came for long.
         thread::spawn(move || {
-            let mut bytes = [0; 65_536];
+            let mut bytes = vec![0; 65_536];
             while let Ok((len, _)) = inward.recv_from(&mut bytes) {
                 for address in &to {
                     // A team that does not listen yet.

@@ -16,7 +16,7 @@ pub(super) fn write(base: CaseBase<'_>) -> Option<String> {
 /// # Errors
 /// What is wrong with the digits or the table.
 pub(super) fn read(digits: &str) -> Result<CaseBase<'static>, String> {
-    if digits.len() % 2 != 0 || digits.len() > 2 * TABLE_LEN_MAX {
+    if !digits.len().is_multiple_of(2) || digits.len() > 2 * TABLE_LEN_MAX {
         return Err(format!("{} digits", digits.len()));
     }
     let nibbles: Option<Vec<u8>> =
@@ -50,7 +50,7 @@ mod tests {
         let odd = super::read(&digits[1..]).unwrap_err();
         assert!(odd.contains("digits"), "{odd}");
         assert!(super::read(&digits.replace('0', "x")).unwrap_err().contains("hexadecimal"));
-        for cut in [0, 2, digits.len() / 2 & !1, digits.len() - 2] {
+        for cut in [0, 2, (digits.len() / 2) & !1, digits.len() - 2] {
             super::read(&digits[..cut]).unwrap_err();
         }
     }

@@ -5,17 +5,16 @@ use serde::Serialize;
 
 use super::MatchIdentity;
 use super::effect::Change;
-use super::match_team::MatchTeam;
-use super::plan::MatchPlan;
+use super::plan::{MatchPlan, Pairing};
 use super::row::MatchRow;
 use crate::evaluation::Difference;
 use crate::evaluation::statistics::{Sample, detectable};
 
-/// Matches against one opponent, or all of them.
+/// Matches of one pair of teams, or of all.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Between {
-    /// The opponent; none: all of them together.
-    pub opponent: Option<MatchTeam>,
+    /// The pair of teams; none: all of them together.
+    pub pairing: Option<Pairing>,
     /// Goals of the first program's matches, for and against.
     pub goals_before: [u32; 2],
     /// Goals of the second program's matches, for and against.
@@ -39,20 +38,20 @@ pub fn same_matches(before: &MatchIdentity, after: &MatchIdentity) -> Result<(),
     if differences.is_empty() { Ok(()) } else { Err(differences) }
 }
 
-/// Compares [the same matches](same_matches), each list in the order of the plan: one for each opponent, and
-/// one for all where there are several.
+/// Compares [the same matches](same_matches), each list in the order of the plan: one for each pair of teams,
+/// and one for all where there are several.
 pub fn between(plan: &MatchPlan, before: &[MatchRow], after: &[MatchRow]) -> Vec<Between> {
     let pairs: Vec<_> = before.iter().zip(after).collect();
-    let mut opponents: Vec<_> = plan.pairings.iter().map(|pairing| Some(pairing.opponent)).collect();
-    opponents.dedup();
-    if opponents.len() > 1 {
-        opponents.push(None);
+    let mut pairings: Vec<_> = plan.pairings.iter().copied().map(Some).collect();
+    if pairings.len() > 1 {
+        pairings.push(None);
     }
-    opponents.into_iter().filter_map(|opponent| of(opponent, &pairs)).collect()
+    pairings.into_iter().filter_map(|pairing| of(pairing, &pairs)).collect()
 }
 
-fn of(opponent: Option<MatchTeam>, pairs: &[(&MatchRow, &MatchRow)]) -> Option<Between> {
-    let pairs = || pairs.iter().filter(|(_, row)| opponent.is_none_or(|opponent| row.opponent == opponent));
+fn of(pairing: Option<Pairing>, pairs: &[(&MatchRow, &MatchRow)]) -> Option<Between> {
+    let is_of = |row: &MatchRow, Pairing { own, opponent }| (row.own, row.opponent) == (own, opponent);
+    let pairs = || pairs.iter().filter(|(_, row)| pairing.is_none_or(|pairing| is_of(row, pairing)));
     let ahead = |goals: u32, against: u32| f64::from(goals) - f64::from(against);
     let goals = pairs().map(|(before, after)| {
         ahead(after.goals, after.goals_against) - ahead(before.goals, before.goals_against)
@@ -64,7 +63,7 @@ fn of(opponent: Option<MatchTeam>, pairs: &[(&MatchRow, &MatchRow)]) -> Option<B
         rows.fold([0, 0], |[own, theirs], row| [own + row.goals, theirs + row.goals_against])
     };
     Some(Between {
-        opponent,
+        pairing,
         goals_before: sum(&mut pairs().map(|(before, _)| *before)),
         goals_after: sum(&mut pairs().map(|(_, after)| *after)),
         detectable_goals: Sample::of(goals.clone()).and_then(detectable),

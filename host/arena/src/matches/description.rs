@@ -11,6 +11,7 @@ use super::match_team::MatchTeam;
 use super::outcome::{Estimate, Outcome};
 use super::paper::{PAPER, PAPER_PASSES};
 use super::passes::{Passes, Share};
+use super::plan::Pairing;
 use crate::attack::PossessionEnd as E;
 
 /// All tables; `ours` are the passes of our team.
@@ -55,17 +56,20 @@ fn worth(text: &mut String, effects: &[Effect]) {
 /// The table of the same matches by two programs, case bases or settings.
 pub fn between_table(found: &[Between]) -> String {
     let mut text = String::from(
-        "| against | matches | goals before | goals now | goals a match, difference | p | smallest that 80 % would show | shots a match, difference | p |\n\
-         |---|---|---|---|---|---|---|---|---|\n",
+        "| team | against | matches | goals before | goals now | goals a match, difference | p | smallest that 80 % would show | shots a match, difference | p |\n\
+         |---|---|---|---|---|---|---|---|---|---|\n",
     );
     for b in found {
-        let against = b.opponent.map_or_else(|| "all".to_owned(), |opponent| opponent.to_string());
+        let teams = b.pairing.map_or_else(
+            || "all | all".to_owned(),
+            |Pairing { own, opponent }| format!("{own} | {opponent}"),
+        );
         let ([for_before, against_before], [for_now, against_now]) = (b.goals_before, b.goals_after);
         let smallest = b.detectable_goals.map_or_else(|| "–".to_owned(), |goals| format!("{goals:.2}"));
         let [goals, shots] = [b.goals, b.shots].map(|change| changed(Some(change)));
         print!(
             text,
-            "| {against} | {} | {for_before} : {against_before} | {for_now} : {against_now} | {goals} | {smallest} | {shots} |",
+            "| {teams} | {} | {for_before} : {against_before} | {for_now} : {against_now} | {goals} | {smallest} | {shots} |",
             b.goals.matches
         );
     }

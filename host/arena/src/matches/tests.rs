@@ -302,7 +302,10 @@ fn the_same_matches_by_two_programs_are_compared_match_by_match() {
     assert!((all.detectable_goals.unwrap() - 2.802 / 3.0_f64.sqrt()).abs() < 1e-9);
     assert!((all.shots.mean - 2.0 / 3.0).abs() < 1e-9);
     let text = between_table(&found);
-    assert!(text.contains("| zone | 3 | 3 : 3 | 5 : 2 | 1.00 (-1.48 to 3.48) | 0.225 | 1.62 |"), "{text}");
+    assert!(
+        text.contains("| ours | zone | 3 | 3 : 3 | 5 : 2 | 1.00 (-1.48 to 3.48) | 0.225 | 1.62 |"),
+        "{text}"
+    );
     // Other matches are refused, with what differs.
     let refused = same_matches(&identity("1", 5), &identity("2", 6)).unwrap_err();
     assert_eq!(crate::evaluation::in_words(&refused), "seed 5, not 6");

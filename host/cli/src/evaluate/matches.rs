@@ -174,11 +174,7 @@ impl MatchesArgs {
     ) -> Result<ExitCode, Failure> {
         let made = Made::new(identity, rows)?;
         let before = self.before(identity)?;
-        let compared = before.map(|before| {
-            between_table(&between(&identity.plan, &before, rows))
-                + "
-"
-        });
+        let compared = before.map(|before| between_table(&between(&identity.plan, &before, rows)) + "\n");
         write(&directory.join("matches.csv"), &made.csv)?;
         write(&directory.join("matches.json"), &made.json()?)?;
         for picture in made.pictures("") {

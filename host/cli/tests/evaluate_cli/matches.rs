@@ -138,7 +138,7 @@ fn matches_are_compared_with_the_same_ones_and_others_are_refused() {
     stdout_of(&[&plan[..], &["--out", text(&first)]].concat());
     let compare = ["--compare", text(&first), "--out", text(&second)];
     let reported = stdout_of(&[&plan[..], &compare].concat());
-    assert!(reported.contains("| zone | 2 | 0 : 0 | 0 : 0 | 0.00 (0.00 to 0.00) |"), "{reported}");
+    assert!(reported.contains("| ours | zone | 2 | 0 : 0 | 0 : 0 | 0.00 (0.00 to 0.00) |"), "{reported}");
     let other = of("3", &["--matches", "2", "--seed", "4", "--opponents", "zone", "--fresh"]);
     let refusal = refused(&[&other[..], &compare].concat(), 1);
     assert!(refusal.contains("holds other matches: seed 3, not 4"), "{refusal}");
