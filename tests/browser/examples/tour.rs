@@ -111,10 +111,15 @@ fn pictures(program: &str, directory: &Path) -> Reported<()> {
     tab.wait("document.querySelectorAll('#decided tbody tr').length > 0", 20)?;
     take(&mut tab, &directory.join("why.png"))?;
     tab.click("#dialog button")?;
-    for (key, name) in [("2", "match.png"), ("3", "health.png"), ("4", "control.png"), ("5", "cases.png")] {
+    for (key, name) in [("2", "match.png"), ("3", "health.png"), ("4", "control.png")] {
         tab.key(key)?;
         take(&mut tab, &directory.join(name))?;
     }
+    // Cases are counted up to the shown moment.
+    here(&mut tab, f64::from(PLAYED_S))?;
+    tab.key("5")?;
+    take(&mut tab, &directory.join("cases.png"))?;
+    here(&mut tab, at)?;
     tab.key("6")?;
     tab.wait("document.querySelectorAll('#bench-case option').length > 0", 20)?;
     // The team of the play at that moment.
