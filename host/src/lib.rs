@@ -11,6 +11,7 @@
 pub mod config;
 pub mod external;
 pub mod field_geometry;
+mod hex;
 mod host;
 pub mod learned;
 mod proposal;

@@ -11,24 +11,16 @@ use std::time::{Duration, Instant};
 
 use program::Program;
 use running::controller::Controller;
-use running::{Running, free, socket};
+use running::simulator::teleport;
+use running::{Running, free};
 use serde_json::Value;
-use ssl::Message as _;
 use ssl::referee::Command;
-use ssl::simulation::{SimulatorCommand, SimulatorControl, TeleportBall};
+use ssl::simulation::TeleportBall;
 
 /// Kicks of the test.
 const KICKS: usize = 5;
 /// Longest time for all of them; a loaded machine is no failure.
 const LONGEST: Duration = Duration::from_mins(3);
-
-fn ball_to_the_middle(control: SocketAddr) {
-    let ball =
-        TeleportBall { x: Some(0.0), y: Some(0.0), vx: Some(0.0), vy: Some(0.0), ..TeleportBall::default() };
-    let control_message = SimulatorControl { teleport_ball: Some(ball), ..SimulatorControl::default() };
-    let command = SimulatorCommand { control: Some(control_message), config: None };
-    socket().send_to(&command.encode_to_vec(), control).expect("sent");
-}
 
 /// Parameters of our team, as the page gets them.
 fn parameters(control: &Program) -> Value {
@@ -71,7 +63,8 @@ fn a_kick_test_on_robots_over_the_network_fits_the_gain_and_takes_it() {
             break test;
         }
         if test["state"] == "out-of-reach" {
-            ball_to_the_middle(SocketAddr::from(([127, 0, 0, 1], control_port)));
+            let middle = TeleportBall { x: Some(0.0), y: Some(0.0), ..TeleportBall::default() };
+            teleport(SocketAddr::from(([127, 0, 0, 1], control_port)), middle);
         }
         assert!(begun.elapsed() < LONGEST, "{test}");
         std::thread::sleep(Duration::from_millis(200));

@@ -9,6 +9,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use running::controller::Controller;
+use running::simulator::teleport;
 use running::{PATIENCE, Running, free, socket};
 use ssl::Message;
 use ssl::controller::{
@@ -17,7 +18,7 @@ use ssl::controller::{
 use ssl::event::GameEventType;
 use ssl::net::Connection;
 use ssl::referee::{Command, Point};
-use ssl::simulation::{SimulatorCommand, SimulatorControl, TeleportBall};
+use ssl::simulation::TeleportBall;
 use ssl::vision::{DetectionFrame, WrapperPacket};
 
 /// The first image for which `holds`; earlier ones are passed over.
@@ -37,12 +38,6 @@ fn image(socket: &UdpSocket, what: &str, holds: impl Fn(&DetectionFrame) -> bool
 
 fn ball_at(frame: &DetectionFrame, x: f32, y: f32) -> bool {
     frame.balls.iter().any(|ball| (ball.x - x).abs() < 1.0 && (ball.y - y).abs() < 1.0)
-}
-
-fn teleport(to: SocketAddr, ball: TeleportBall) {
-    let control = SimulatorControl { teleport_ball: Some(ball), ..SimulatorControl::default() };
-    let command = SimulatorCommand { control: Some(control), config: None };
-    socket().send_to(&command.encode_to_vec(), to).expect("sent");
 }
 
 #[test]

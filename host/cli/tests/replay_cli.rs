@@ -261,24 +261,28 @@ fn bridged(seed: u32) -> PathBuf {
     stem.with_extension("trace")
 }
 
-/// The reasons of every order of a case's pass while a trace is decided again: the case and its robots, each
-/// once.
-fn parts_in_passes_of_cases(file: &Path) -> BTreeSet<(u16, usize)> {
+/// What is `found` in the reasons of all orders while a trace is decided again, each once.
+fn found_in_orders<T: Ord>(file: &Path, found: impl Fn(OrderReason) -> Option<T>) -> BTreeSet<T> {
     let unpacked = flate2::read::MultiGzDecoder::new(fs::File::open(file).expect("the trace"));
     let mut reader = Reader::new(unpacked).expect("a trace");
     let header = RecordingHeader::from_json(reader.header()).expect("a header");
     assert!(header.hosts.iter().all(|host| host.cases.is_some()), "{header:?}");
     let mut recheck = Recheck::new(&header, TeamKey::ZERO).expect("hosts");
-    let mut parts = BTreeSet::new();
+    let mut all = BTreeSet::new();
     for record in reader.by_ref() {
         recheck.feed(&record);
         let Some(host) = recheck.host(usize::from(record.host)) else { continue };
-        parts.extend(host.orders().iter().filter_map(|order| match order.why {
-            OrderReason::OfCase { case, part, .. } => Some((case.0, part.index())),
-            _ => None,
-        }));
+        all.extend(host.orders().iter().filter_map(|order| found(order.why)));
     }
-    parts
+    all
+}
+
+/// The case and its robots of every order of a case's pass.
+fn parts_in_passes_of_cases(file: &Path) -> BTreeSet<(u16, usize)> {
+    found_in_orders(file, |why| match why {
+        OrderReason::OfCase { case, part, .. } => Some((case.0, part.index())),
+        _ => None,
+    })
 }
 
 #[test]
@@ -414,24 +418,6 @@ fn smaller_library() -> PathBuf {
     directory
 }
 
-/// Cases that hosts ordered of the library while a trace is decided again.
-fn cases_ordered(file: &Path) -> usize {
-    let unpacked = flate2::read::MultiGzDecoder::new(fs::File::open(file).expect("the trace"));
-    let mut reader = Reader::new(unpacked).expect("a trace");
-    let header = RecordingHeader::from_json(reader.header()).expect("a header");
-    let mut recheck = Recheck::new(&header, TeamKey::ZERO).expect("hosts");
-    let mut ordered = BTreeSet::new();
-    for record in reader.by_ref() {
-        recheck.feed(&record);
-        let Some(host) = recheck.host(usize::from(record.host)) else { continue };
-        ordered.extend(host.orders().iter().filter_map(|order| match order.why {
-            OrderReason::PlaysCase { case } => Some(case.0),
-            _ => None,
-        }));
-    }
-    ordered.len()
-}
-
 #[test]
 fn hosts_play_the_cases_of_a_library_and_a_trace_replays_without_it() {
     let (library, stem) = (smaller_library(), scratch("with-library"));
@@ -444,5 +430,9 @@ fn hosts_play_the_cases_of_a_library_and_a_trace_replays_without_it() {
     let out = Command::new(env!("CARGO_BIN_EXE_onetwo")).arg("replay").arg(&trace).output();
     let out = out.expect("the program starts");
     assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
-    assert!(cases_ordered(&trace) >= 2, "hosts propose the library's cases");
+    let proposed = found_in_orders(&trace, |why| match why {
+        OrderReason::PlaysCase { case } => Some(case.0),
+        _ => None,
+    });
+    assert!(proposed.len() >= 2, "hosts propose the library's cases: {proposed:?}");
 }

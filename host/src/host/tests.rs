@@ -3,6 +3,7 @@
 use protocol::host::{Directive, KickOrder};
 
 use super::*;
+use crate::strategy::Tactics;
 
 #[test]
 fn a_learned_gain_scales_the_order_within_its_bounds_and_only_where_the_host_plays_by_it() {
@@ -42,7 +43,7 @@ fn a_parameter_that_changes_holds_at_once_and_a_gain_set_by_hand_replaces_what_i
     assert!((host.kicks_by(id) - 0.9).abs() < 0.01);
 
     assert_eq!(change(&mut host, r#"{"key":"tactics","value":"none"}"#), InputVerdict::Changed);
-    assert_eq!(host.settings().tactics, crate::strategy::Tactics::NONE);
+    assert_eq!(host.settings().tactics, Tactics::NONE);
     assert_eq!(change(&mut host, r#"{"key":"ball.roll","value":0.6}"#), InputVerdict::Changed);
     assert_eq!(host.roll, Some(0.6));
     assert_eq!(change(&mut host, r#"{"key":"ball.roll","value":null}"#), InputVerdict::Changed);

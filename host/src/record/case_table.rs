@@ -3,12 +3,11 @@
 
 use casebase::CaseBase;
 
+use crate::hex;
+
 /// The table's bytes, two digits each; `None` of a table too long for a header.
 pub(super) fn write(base: CaseBase<'_>) -> Option<String> {
-    let digit = |nibble: u8| char::from_digit(u32::from(nibble), 16).unwrap_or('0');
-    let bytes = base.bytes();
-    (bytes.len() <= TABLE_LEN_MAX)
-        .then(|| bytes.iter().flat_map(|byte| [digit(byte >> 4), digit(byte & 15)]).collect())
+    (base.bytes().len() <= TABLE_LEN_MAX).then(|| hex::encode(base.bytes()))
 }
 
 /// The case base that was written; its table is kept until the program ends, as hosts need it.
@@ -16,20 +15,14 @@ pub(super) fn write(base: CaseBase<'_>) -> Option<String> {
 /// # Errors
 /// What is wrong with the digits or the table.
 pub(super) fn read(digits: &str) -> Result<CaseBase<'static>, String> {
-    if !digits.len().is_multiple_of(2) || digits.len() > 2 * TABLE_LEN_MAX {
-        return Err(format!("{} digits", digits.len()));
-    }
-    let nibbles: Option<Vec<u8>> =
-        digits.chars().map(|digit| digit.to_digit(16).and_then(|nibble| u8::try_from(nibble).ok())).collect();
-    let nibbles = nibbles.ok_or_else(|| "expected hexadecimal digits".to_owned())?;
+    let table = hex::decode(digits)?;
     // A table is read where it lies, from a multiple of 4 on.
     let mut bytes = vec![0; ALIGNED];
-    bytes.extend(nibbles.chunks_exact(2).map(|pair| pair[0] << 4 | pair[1]));
-    let length = bytes.len() - ALIGNED;
+    bytes.extend(&table);
     let kept: &'static mut [u8] = Vec::leak(bytes);
     let start = kept.as_ptr().align_offset(ALIGNED) % ALIGNED;
     kept.copy_within(ALIGNED.., start);
-    CaseBase::from_bytes(&kept[start..start + length]).map_err(|error| error.to_string())
+    CaseBase::from_bytes(&kept[start..start + table.len()]).map_err(|error| error.to_string())
 }
 
 /// A table begins at a multiple of this many bytes.

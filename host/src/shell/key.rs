@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 
 use protocol::frame::TeamKey;
 
+use crate::hex;
+
 /// Longest key file that is read, bytes: 32 digits, and room for blanks and line ends around them.
 const KEY_FILE_LEN_MAX: u64 = 4096;
 
@@ -81,22 +83,15 @@ pub fn read(path: &Path) -> Result<KeyFile, KeyError> {
 
 /// Parses 32 hexadecimal digits; the error describes the text found.
 pub fn parse(text: &str) -> Result<TeamKey, String> {
-    let digits = text.trim().as_bytes();
-    if let Some(at) = digits.iter().position(|digit| !digit.is_ascii_hexdigit()) {
-        return Err(format!("something that is no hexadecimal digit at place {}", at + 1));
-    }
-    let (pairs, []) = digits.as_chunks::<2>() else { return Err(format!("{} digits", digits.len())) };
-    let nibble = |digit: u8| char::from(digit).to_digit(16).unwrap_or(0) as u8;
-    let bytes: Vec<u8> = pairs.iter().map(|[high, low]| nibble(*high) << 4 | nibble(*low)).collect();
+    let digits = text.trim();
+    let bytes = hex::decode(digits)?;
     let key = bytes.try_into().map_err(|_| format!("{} digits", digits.len()))?;
     Ok(TeamKey(key))
 }
 
 /// The key as [`parse`] reads it.
 pub fn format(key: &TeamKey) -> String {
-    // The first digit of a byte is its upper half.
-    let halves = key.0.iter().flat_map(|byte| [byte >> 4, byte & 0x0f]);
-    halves.filter_map(|half| char::from_digit(u32::from(half), 16)).collect()
+    hex::encode(&key.0)
 }
 
 #[cfg(unix)]

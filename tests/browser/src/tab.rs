@@ -110,8 +110,8 @@ impl<'b> Tab<'b> {
         self.mouse("mouseReleased", &json!(to[0]), &json!(to[1]), 1)
     }
 
-    /// From now on the page has a touch screen of two fingers and no mouse.
-    pub fn touch_screen(&mut self) -> Result<(), BrowserError> {
+    /// Emulates a touch screen with two points from now on.
+    pub fn emulate_touch(&mut self) -> Result<(), BrowserError> {
         self.ask("Emulation.setTouchEmulationEnabled", &json!({ "enabled": true, "maxTouchPoints": 2 }))
             .map(drop)
     }
@@ -124,8 +124,8 @@ impl<'b> Tab<'b> {
 
     /// Taps a point with a finger, CSS pixels.
     pub fn tap_at(&mut self, at: [f64; 2]) -> Result<(), BrowserError> {
-        self.fingers("touchStart", &[at])?;
-        self.fingers("touchEnd", &[])
+        self.touch("touchStart", &[at])?;
+        self.touch("touchEnd", &[])
     }
 
     /// Moves one finger or two, each from its first point to its second, CSS pixels.
@@ -134,13 +134,13 @@ impl<'b> Tab<'b> {
             let share = f64::from(step) / 8.0;
             let at: Vec<_> =
                 ways.iter().map(|[from, to]| [0, 1].map(|i| from[i] + (to[i] - from[i]) * share)).collect();
-            self.fingers(if step == 0 { "touchStart" } else { "touchMove" }, &at)?;
+            self.touch(if step == 0 { "touchStart" } else { "touchMove" }, &at)?;
             std::thread::sleep(Duration::from_millis(60));
         }
-        self.fingers("touchEnd", &[])
+        self.touch("touchEnd", &[])
     }
 
-    fn fingers(&mut self, kind: &str, at: &[[f64; 2]]) -> Result<(), BrowserError> {
+    fn touch(&mut self, kind: &str, at: &[[f64; 2]]) -> Result<(), BrowserError> {
         let points: Vec<_> =
             at.iter().enumerate().map(|(id, [x, y])| json!({ "x": x, "y": y, "id": id })).collect();
         self.ask("Input.dispatchTouchEvent", &json!({ "type": kind, "touchPoints": points })).map(drop)

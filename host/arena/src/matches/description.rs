@@ -4,8 +4,8 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use super::between::Between;
 use super::case_table::case_tables;
+use super::comparison::MatchComparison;
 use super::effect::{Change, Effect};
 use super::match_team::MatchTeam;
 use super::outcome::{Estimate, Outcome};
@@ -54,9 +54,9 @@ fn worth(text: &mut String, effects: &[Effect]) {
 }
 
 /// The table of the same matches by two programs, case bases or settings.
-pub fn between_table(found: &[Between]) -> String {
+pub fn comparison_table(found: &[MatchComparison]) -> String {
     let mut text = String::from(
-        "| team | against | matches | goals before | goals now | goals a match, difference | p | smallest that 80 % would show | shots a match, difference | p |\n\
+        "| team | against | matches | goals before | goals now | goals a match, difference | p | smallest effect seen | shots a match, difference | p |\n\
          |---|---|---|---|---|---|---|---|---|---|\n",
     );
     for b in found {

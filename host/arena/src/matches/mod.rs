@@ -7,9 +7,9 @@
 //! Shards, files, resuming and merging are [`crate::evaluation`]'s: equal plans give equal bytes for any
 //! number of threads, shards and interrupts.
 
-mod between;
 mod calibration;
 mod case_table;
+mod comparison;
 mod description;
 mod effect;
 mod match_team;
@@ -30,10 +30,10 @@ use host::shell::StrategyProcess;
 use rules::Colour;
 use serde::{Deserialize, Serialize};
 
-pub use between::{Between, between, same_matches};
 pub use calibration::calibration_plot;
 pub use case_table::case_table;
-pub use description::{AttackRow, attack_table, between_table, markdown};
+pub use comparison::{MatchComparison, check_same_matches, compare_matches};
+pub use description::{AttackRow, attack_table, comparison_table, markdown};
 pub use effect::{Change, Effect, effects};
 pub use match_team::MatchTeam;
 pub use outcome::{Estimate, Outcome, our_passes, outcomes};

@@ -293,21 +293,21 @@ fn the_same_matches_by_two_programs_are_compared_match_by_match() {
         goals.into_iter().enumerate().map(of).collect::<Vec<_>>()
     };
     let (before, after) = (rows([[1, 0], [2, 2], [0, 1]]), rows([[3, 0], [2, 1], [0, 1]]));
-    same_matches(&identity("1", 5), &identity("2", 5)).expect("the same matches");
-    let found = between(&identity("2", 5).plan, &before, &after);
+    check_same_matches(&identity("1", 5), &identity("2", 5)).expect("the same matches");
+    let found = compare_matches(&identity("2", 5).plan, &before, &after);
     let [all] = &found[..] else { panic!("one opponent: {found:?}") };
     // 2, 1 and 0 goals better: mean 1, spread 1, t = √3 with 2 degrees, p = 0.2254.
     assert_eq!((all.goals_before, all.goals_after, all.goals.mean), ([3, 3], [5, 2], 1.0));
     assert!((all.goals.p.unwrap() - 0.2254).abs() < 1e-4, "{found:?}");
     assert!((all.detectable_goals.unwrap() - 2.802 / 3.0_f64.sqrt()).abs() < 1e-9);
     assert!((all.shots.mean - 2.0 / 3.0).abs() < 1e-9);
-    let text = between_table(&found);
+    let text = comparison_table(&found);
     assert!(
         text.contains("| ours | zone | 3 | 3 : 3 | 5 : 2 | 1.00 (-1.48 to 3.48) | 0.225 | 1.62 |"),
         "{text}"
     );
     // Other matches are refused, with what differs.
-    let refused = same_matches(&identity("1", 5), &identity("2", 6)).unwrap_err();
+    let refused = check_same_matches(&identity("1", 5), &identity("2", 6)).unwrap_err();
     assert_eq!(crate::evaluation::in_words(&refused), "seed 5, not 6");
 }
 

@@ -10,7 +10,8 @@ use arena::cases::LibraryHandle;
 use arena::evaluation::{EvaluationError, Shard, csv_hash, merge, to_csv};
 use arena::matches::{
     Effect, MatchIdentity, MatchPlan, MatchRow, MatchTeam, Matches, Outcome, PAPER, PAPER_PASSES, Passes,
-    between, between_table, calibration_plot, effects, markdown, our_passes, outcomes, plot, same_matches,
+    calibration_plot, check_same_matches, compare_matches, comparison_table, effects, markdown, our_passes,
+    outcomes, plot,
 };
 use casebase::CaseBase;
 use clap::Args;
@@ -158,7 +159,7 @@ impl MatchesArgs {
     fn before(&self, now: &MatchIdentity) -> Result<Option<Vec<MatchRow>>, Failure> {
         let Some(directory) = &self.compare else { return Ok(None) };
         let (identity, rows) = merge(shards::<MatchRow>(directory)?)?;
-        same_matches(&identity, now).map_err(|differences| EvaluationError::OtherMatches {
+        check_same_matches(&identity, now).map_err(|differences| EvaluationError::OtherMatches {
             directory: directory.clone(),
             differences,
         })?;
@@ -174,7 +175,8 @@ impl MatchesArgs {
     ) -> Result<ExitCode, Failure> {
         let made = Made::new(identity, rows)?;
         let before = self.before(identity)?;
-        let compared = before.map(|before| between_table(&between(&identity.plan, &before, rows)) + "\n");
+        let compared =
+            before.map(|before| comparison_table(&compare_matches(&identity.plan, &before, rows)) + "\n");
         write(&directory.join("matches.csv"), &made.csv)?;
         write(&directory.join("matches.json"), &made.json()?)?;
         for picture in made.pictures("") {

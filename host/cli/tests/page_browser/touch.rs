@@ -1,5 +1,5 @@
-//! `touch`: fingers on a telephone do what the mouse does. They choose and drag robots, zoom the field, and
-//! edit a case on the workbench.
+//! `touch`: touch input on a phone's screen selects and drags robots, zooms the field, and edits a case on
+//! the workbench.
 
 use page_browser::{Browser, Tab};
 
@@ -13,12 +13,12 @@ fn robot(tab: &mut Tab<'_>, index: usize) -> [f64; 2] {
 }
 
 #[test]
-fn fingers_choose_drag_zoom_and_edit_a_case() {
+fn touch_selects_drags_zooms_and_edits_a_case() {
     let program = Program::start(&["play", "--duration", "600", "--seed", "2", "--listen", "127.0.0.1:0"]);
     let mut browser = Browser::start().unwrap();
     let mut tab = browser.open(&program.url(""), 390, 844).unwrap();
     tab.resize(390, 844, true).unwrap();
-    tab.touch_screen().unwrap();
+    tab.emulate_touch().unwrap();
     tab.wait("window.onetwo?.store.scene?.robots.length === 12", 60).unwrap();
     tab.tap("#play").unwrap();
     tab.wait("onetwo.store.latest.paused", 10).unwrap();
@@ -37,7 +37,7 @@ fn fingers_choose_drag_zoom_and_edit_a_case() {
     );
     tab.wait(&format!("{off} < 0.15"), 10).unwrap();
 
-    // Two fingers that part enlarge the field.
+    // A pinch zooms.
     let before = number(&mut tab, "onetwo.camera.scale");
     let middle = pixel(&mut tab, "[0, 0]");
     let finger = |side: f64| [[middle[0] + side * 30.0, middle[1]], [middle[0] + side * 60.0, middle[1]]];

@@ -3,6 +3,8 @@
 
 #[allow(dead_code, reason = "each test program takes what it needs of it")]
 pub(crate) mod controller;
+#[allow(dead_code, reason = "each test program takes what it needs of it")]
+pub(crate) mod simulator;
 
 use std::io::{BufRead, BufReader};
 use std::net::{SocketAddr, UdpSocket};

@@ -1,5 +1,5 @@
-//! `between`: the same matches played by two programs, case bases or settings, and how much better the second
-//! ones were, match by match.
+//! `comparison`: the same matches played by two programs, case bases or settings: the difference match by
+//! match.
 
 use serde::Serialize;
 
@@ -12,7 +12,7 @@ use crate::evaluation::statistics::{Sample, detectable};
 
 /// Matches of one pair of teams, or of all.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Between {
+pub struct MatchComparison {
     /// The pair of teams; none: all of them together.
     pub pairing: Option<Pairing>,
     /// Goals of the first program's matches, for and against.
@@ -31,16 +31,16 @@ pub struct Between {
 ///
 /// # Errors
 /// The differences other than program, cases and settings.
-pub fn same_matches(before: &MatchIdentity, after: &MatchIdentity) -> Result<(), Vec<Difference>> {
+pub fn check_same_matches(before: &MatchIdentity, after: &MatchIdentity) -> Result<(), Vec<Difference>> {
     let compared = ["program", "cases", "settings", "strategy's command"];
     let mut differences = before.differences(after);
     differences.retain(|difference| !compared.contains(&difference.what));
     if differences.is_empty() { Ok(()) } else { Err(differences) }
 }
 
-/// Compares [the same matches](same_matches), each list in the order of the plan: one for each pair of teams,
+/// Compares [the same matches](check_same_matches), each list in the order of the plan: one for each pair of teams,
 /// and one for all where there are several.
-pub fn between(plan: &MatchPlan, before: &[MatchRow], after: &[MatchRow]) -> Vec<Between> {
+pub fn compare_matches(plan: &MatchPlan, before: &[MatchRow], after: &[MatchRow]) -> Vec<MatchComparison> {
     let pairs: Vec<_> = before.iter().zip(after).collect();
     let mut pairings: Vec<_> = plan.pairings.iter().copied().map(Some).collect();
     if pairings.len() > 1 {
@@ -49,7 +49,7 @@ pub fn between(plan: &MatchPlan, before: &[MatchRow], after: &[MatchRow]) -> Vec
     pairings.into_iter().filter_map(|pairing| of(pairing, &pairs)).collect()
 }
 
-fn of(pairing: Option<Pairing>, pairs: &[(&MatchRow, &MatchRow)]) -> Option<Between> {
+fn of(pairing: Option<Pairing>, pairs: &[(&MatchRow, &MatchRow)]) -> Option<MatchComparison> {
     let is_of = |row: &MatchRow, Pairing { own, opponent }| (row.own, row.opponent) == (own, opponent);
     let pairs = || pairs.iter().filter(|(_, row)| pairing.is_none_or(|pairing| is_of(row, pairing)));
     let ahead = |goals: u32, against: u32| f64::from(goals) - f64::from(against);
@@ -62,7 +62,7 @@ fn of(pairing: Option<Pairing>, pairs: &[(&MatchRow, &MatchRow)]) -> Option<Betw
     let sum = |rows: &mut dyn Iterator<Item = &MatchRow>| {
         rows.fold([0, 0], |[own, theirs], row| [own + row.goals, theirs + row.goals_against])
     };
-    Some(Between {
+    Some(MatchComparison {
         pairing,
         goals_before: sum(&mut pairs().map(|(before, _)| *before)),
         goals_after: sum(&mut pairs().map(|(_, after)| *after)),
