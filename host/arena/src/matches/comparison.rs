@@ -38,8 +38,8 @@ pub fn check_same_matches(before: &MatchIdentity, after: &MatchIdentity) -> Resu
     if differences.is_empty() { Ok(()) } else { Err(differences) }
 }
 
-/// Compares [the same matches](check_same_matches), each list in the order of the plan: one for each pair of teams,
-/// and one for all where there are several.
+/// Compares [the same matches](check_same_matches), each list in the order of the plan: one result for each
+/// pair of teams, and one for all where there are several.
 pub fn compare_matches(plan: &MatchPlan, before: &[MatchRow], after: &[MatchRow]) -> Vec<MatchComparison> {
     let pairs: Vec<_> = before.iter().zip(after).collect();
     let mut pairings: Vec<_> = plan.pairings.iter().copied().map(Some).collect();
