@@ -1,15 +1,15 @@
-//! `evaluation`: `cargo xtask evaluation`: figures of `docs/evaluation.md`, and of the tables of matches and
+//! `evaluation`: `cargo xtask evaluation`: figures of `docs/results/evaluation.md`, and of the tables of matches and
 //! skills.
 
 use crate::context::{Context, Failure, run};
 
 /// Plays our team against each other team, each against each, our team without or with each part of the
-/// second paper, and the paper's own league, and writes `docs/matches.md`. Played matches are kept: the same
+/// second paper, and the paper's own league, and writes `docs/results/matches.md`. Played matches are kept: the same
 /// command continues after an interrupt.
 pub(crate) fn write_matches(context: &Context, fresh: bool) -> Result<(), Failure> {
     for (section, description) in MATCHES {
         let line = format!(
-            "evaluate matches {description} --out out/matches/{section} --markdown docs/matches.md --section {section}{}",
+            "evaluate matches {description} --out out/matches/{section} --markdown docs/results/matches.md --section {section}{}",
             if fresh { " --fresh" } else { "" }
         );
         run(&mut context.cargo(&format!("run --release -- {line}")))?;
@@ -17,7 +17,7 @@ pub(crate) fn write_matches(context: &Context, fresh: bool) -> Result<(), Failur
     Ok(())
 }
 
-/// Sections of `docs/matches.md`, and what is played for each: 40 matches distinguish a goal a match from
+/// Sections of `docs/results/matches.md`, and what is played for each: 40 matches distinguish a goal a match from
 /// chance, 10 the order of teams.
 const MATCHES: [(&str, &str); 5] = [
     ("opponents", "--matches 40"),
@@ -45,8 +45,8 @@ pub(crate) fn write(context: &Context) -> Result<(), Failure> {
     // `--fresh`: trials of an earlier uncommitted version of the program would count as its own.
     for line in [
         "evaluate --random --fresh --maps 0 --out out/evaluation",
-        "evaluate report out/evaluation --markdown docs/evaluation.md",
-        "evaluate ablations --fresh --out out/ablations --markdown docs/evaluation.md",
+        "evaluate report out/evaluation --markdown docs/results/evaluation.md",
+        "evaluate ablations --fresh --out out/ablations --markdown docs/results/evaluation.md",
     ] {
         run(&mut context.cargo(&format!("run --release -- {line}")))?;
     }

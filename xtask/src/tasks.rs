@@ -127,13 +127,13 @@ static TASKS: [Task; 20] = [
     task(
         "evaluation",
         "",
-        "play the paper's evaluation and write docs/evaluation.md's figures; the report lies in out/evaluation",
+        "play the paper's evaluation and write docs/results/evaluation.md's figures; the report lies in out/evaluation",
         |context, _| evaluation::write(context),
     ),
     task(
         "matches",
         "[--fresh]",
-        "play our team against each other, each against each, and without each part, and write docs/matches.md; the rest\n\
+        "play our team against each other, each against each, and without each part, and write docs/results/matches.md; the rest\n\
         \x20                lies in out/matches. Some 490 matches, 45 minutes of one core; goes on where it was stopped, --fresh\n\
         \x20                begins anew (another commit's matches are refused)",
         |context, arguments| {

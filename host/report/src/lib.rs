@@ -4,7 +4,7 @@
 //! ```text
 //! tables, paper, comparisons, claims, facts ─┬─► html()      one file: no network, no scripts; light, dark, paper
 //! Mapper: trials played again ─► Map ────────┼─► pictures()  the same plots and maps, one SVG each
-//!                                            └─► markdown()  docs/evaluation.md, between its markers
+//!                                            └─► markdown()  docs/results/evaluation.md, between its markers
 //! ```
 //! Numbers come from `arena::evaluation` and are printed, never changed: what a table prints is rounded for
 //! the reader, and every interval and p stands beside its number.
