@@ -79,8 +79,9 @@ function around(t) {
 export function advance(now, passed) {
   if (time.live) {
     if (!store.latest) return false;
-    const share = Math.min(1, (now - arrived) / interval);
-    [store.scene, store.next, store.share] = [placed(before), placed(store.latest), share];
+    const share = (now - arrived) / interval;
+    // A movement that has ended shows the newest scene itself: the last of a match is followed by none.
+    [store.scene, store.next, store.share] = share < 1 ? [placed(before), placed(store.latest), share] : [placed(store.latest), null, 0];
     time.at = store.latest.t;
     return share < 1;
   }

@@ -35,7 +35,7 @@ impl fmt::Display for BringUpError {
             ),
             Self::Silent { seconds, hint } => write!(
                 f,
-                "no robot reported its checks for {seconds} s: {hint} It must run its board's example bring_up and have its page \
+                "no robot reported its checks for {seconds} s: {hint} It must run its board's example bring_up_BOARD and have its page \
                  (onetwo firmware provision, onetwo firmware flash --page); what it finds is on its log too (docs/boards.md)"
             ),
             Self::WentSilent { robot, seconds, open } => {

@@ -1,5 +1,5 @@
-//! `bring_up`: all checks of a robot's first start, one after the other: battery, sensors at rest, each wheel
-//! both ways, radio, break-beam sensor. It takes a minute at most.
+//! `bring_up_f407`: all checks of a robot's first start, one after the other: battery, sensors at rest, each
+//! wheel both ways, radio, break-beam sensor. It takes a minute at most.
 //!
 //! **The robot on a stand, wheels off the ground, no fingers near them; the kicker's board unplugged.**
 //! Connect: everything else, and let a host run. See: a line for each check on the log, what it measured, or
@@ -13,15 +13,15 @@
 #[cfg(target_os = "none")]
 #[embassy_executor::main]
 async fn main(spawner: embassy_executor::Spawner) {
+    use board_f407::drivers;
+    use board_f407::flash::{self, Ledger};
     use board_kit::ledger;
     use board_kit::robot::identity;
     use board_kit::wheels::Wheels;
-    use board_stm32::drivers;
-    use board_stm32::flash::{self, Ledger};
 
     // One task is enough.
     let _ = spawner;
-    let parts = board_stm32::start();
+    let parts = board_f407::start();
     let wheels = Wheels::new(drivers::motors(parts.motors), drivers::encoders(parts.encoders));
     let who = identity(flash::page(), ledger::begin(&mut Ledger::new(parts.keeper.flash)));
     let Some(radio) = drivers::radio(parts.radio) else {
