@@ -27,6 +27,7 @@
 mod angle;
 mod frame;
 mod goal;
+mod labels;
 pub mod math;
 mod pose;
 mod segment;
