@@ -16,9 +16,9 @@ use serde::{Deserialize, Serialize};
 use super::case_table;
 use crate::HostSettings;
 use crate::config::{DriveSettings, KICK_RANGE};
-use crate::proposal::cases_of;
 use crate::radio::{RadioSettings, Relay};
 use crate::referee::{OnSilence, SourcePin};
+use crate::strategy::cases_of;
 use crate::strategy::{Tactics, Team};
 
 /// The header of a trace.

@@ -8,7 +8,7 @@ use geometry::{Angle, Attack, Point};
 use protocol::host::{Directive, KickOrder, RuleRole};
 use protocol::{CaseId, RobotId};
 
-use super::retrieved::CastCase;
+use super::case_candidate::CastCase;
 use super::threat::Guards;
 use super::view::Flip;
 

@@ -11,10 +11,10 @@ use geometry::{Attack, Point, Segment};
 use protocol::RobotId;
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 
+use super::case_candidate::{CaseStep, CastCase};
 use super::pass::bridge::{RADIUS, refine};
 use super::pass::shot::shot;
 use super::pass::{Kicks, PassScene, Rating, SAMPLES, Searches};
-use super::retrieved::{CaseStep, CastCase};
 use super::view::{CasePass, ROBOTS_MAX, View};
 
 /// An action of the robot with the ball.

@@ -5,10 +5,10 @@
 use geometry::{Attack, Point};
 use protocol::{Duration, Instant, RobotId};
 
+use super::super::case_candidate;
 use super::super::order::{OrderReason, Role, Task};
 use super::super::possession::{Arrival, Possession, arrival};
 use super::super::rated::{self, Action, OfCases, Rated};
-use super::super::retrieved;
 use super::super::roles;
 use super::super::view::{View, ViewBall, ViewRobot};
 use super::open_play::is_left_to_the_keeper;
@@ -164,7 +164,7 @@ impl Coach {
         let pass = view.proposal.filter(|pass| self.tactics.bridge && pass.passer.0 == who);
         let may = |id| id == who || plan.free.contains(&id) && id != view.keeper && receives(id);
         let retrieved = (self.tactics.bridge && may_play_on && !view.in_play.has(who))
-            .then(|| retrieved::retrieve(view, &self.cases, who, from, may))
+            .then(|| case_candidate::retrieve(view, &self.cases, who, from, may))
             .flatten();
         let of_cases = OfCases { pass, retrieved };
         let mut list = rated::rate(view, &self.kicks, &mut self.searches, who, from, receives, of_cases);

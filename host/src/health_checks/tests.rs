@@ -25,7 +25,7 @@ fn host() -> Host {
 /// The first time at which a second host is found, ms, with its evidence; every 100 ms `report` feeds the
 /// host its inputs.
 fn second_host(mut report: impl FnMut(u64, &mut Host)) -> Option<(u64, SecondHost)> {
-    let (mut host, mut sanity) = (host(), Sanity::default());
+    let (mut host, mut sanity) = (host(), HealthChecks::default());
     (0..8_000).step_by(100).find_map(|ms| {
         report(ms, &mut host);
         sanity.look(Instant(ms * 1_000), &host).into_iter().find_map(|found| match found {
@@ -108,7 +108,7 @@ fn robots_that_follow_us_alone_tell_of_no_second_host() {
 
 #[test]
 fn another_programs_packets_on_visions_port_are_reported_within_two_seconds() {
-    let (mut host, mut sanity) = (host(), Sanity::default());
+    let (mut host, mut sanity) = (host(), HealthChecks::default());
     let mut first = None;
     for ms in (0..5_000).step_by(20) {
         let now = Instant(ms * 1_000);

@@ -1,4 +1,4 @@
-//! `sanity`: checks field, network and computer against the host's settings; each finding has its evidence
+//! `health_checks`: checks field, network and computer against the host's settings; each finding has its evidence
 //! and a remedy as text. Sans-IO; times on the host's clock.
 //!
 //! | module | finds |
@@ -9,7 +9,7 @@
 //! | `port` | no camera frames on vision's port, or another program's packets |
 //! | `stall` | a stall of this computer, vision or the radio |
 //!
-//! [`Sanity::look`] is called at least every [`LOOK_EVERY_MAX`]. A finding is given within two seconds of its
+//! [`HealthChecks::look`] is called at least every [`LOOK_EVERY_MAX`]. A finding is given within two seconds of its
 //! cause and for as long as that lasts. A match without a fault has none.
 
 mod field;
@@ -32,7 +32,7 @@ pub use second_host::SecondHost;
 pub use side::{SideEvidence, WrongSide};
 pub use stall::Stall;
 
-/// [`Sanity::look`] is called at least this often, so that "within two seconds" holds.
+/// [`HealthChecks::look`] is called at least this often, so that "within two seconds" holds.
 pub const LOOK_EVERY_MAX: Duration = Duration::millis(200);
 /// A fault on the field must last this long before it is a finding: longer than a misread pattern can persist
 /// in tracking (0.2 s), and half of the two seconds.
@@ -105,7 +105,7 @@ impl fmt::Display for Finding {
 
 /// State of all checks.
 #[derive(Clone, Debug, Default)]
-pub struct Sanity {
+pub struct HealthChecks {
     looked: Option<Instant>,
     crowd: field::RobotCount,
     side: side::Sides,
@@ -113,7 +113,7 @@ pub struct Sanity {
     stalls: stall::Stalls,
 }
 
-impl Sanity {
+impl HealthChecks {
     /// The host's loop runs now. A program that calls this calls it at least every 100 ms: a longer pause is
     /// a stall of the computer. A simulation in virtual time does not call it.
     pub fn ran(&mut self, now: Instant) {

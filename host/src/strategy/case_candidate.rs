@@ -1,4 +1,4 @@
-//! `retrieved`: the case that our robots would retrieve for a ball at a place, with its next step: one of the
+//! `case_candidate`: the case that our robots would retrieve for a ball at a place, with its next step: one of the
 //! actions that the rated list compares. Attack frame, m.
 
 use casebase::{CaseBase, LegKind, Problem, RetrievalSettings};
