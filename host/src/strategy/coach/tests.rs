@@ -2,12 +2,13 @@
 
 use super::*;
 use crate::strategy::pass::bridge::RADIUS;
+use crate::strategy::support;
 use crate::strategy::threat::Guards;
 use crate::strategy::view::ViewBall;
 use crate::strategy::view::tests::view;
 use crate::strategy::view::{CasePass, RobotSet};
 use casebase::CaseRobot;
-use geometry::Vector;
+use geometry::{Attack, Point, Vector};
 use protocol::CaseId;
 use protocol::host::Directive;
 

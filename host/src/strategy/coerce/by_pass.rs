@@ -76,18 +76,15 @@ impl PassValue for ByPassLocation<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::pass::PassConstants;
     use super::super::super::view::tests::view;
     use super::super::attack::Least;
     use super::super::grid::Cell;
     use super::super::{CoerceSettings, Planner, tactics::Models};
     use super::*;
-    use motion::ball::BallModel;
-    use motion::ball::chip::ChipModel;
     use rules::League;
 
     fn kicks(league: League) -> Kicks {
-        Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default())
+        Kicks::of(league)
     }
 
     #[test]

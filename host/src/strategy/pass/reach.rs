@@ -85,7 +85,7 @@ impl Mover {
     fn towards(&self, to: Point<Attack>) -> (f32, f32, f32) {
         let path = to - self.position;
         let distance = path.norm();
-        if distance < ON_THE_SPOT {
+        if distance < SAME_PLACE_WITHIN_M {
             return (0.0, 0.0, self.running);
         }
         let along = path * (1.0 / distance);
@@ -114,7 +114,7 @@ impl Mover {
 }
 
 /// m; nearer, directions are undefined.
-const ON_THE_SPOT: f32 = 1e-3;
+const SAME_PLACE_WITHIN_M: f32 = 1e-3;
 
 #[cfg(test)]
 mod tests {

@@ -2,8 +2,6 @@
 //! (double precision; the ball's path is searched in 100,000 steps, the goal by 400,000 rays), and with
 //! properties of every place.
 
-use motion::ball::BallModel;
-use motion::ball::chip::ChipModel;
 use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro128PlusPlus;
 use rules::League;
@@ -12,7 +10,7 @@ use super::super::super::view::tests::view;
 use super::*;
 
 fn kicks(league: League) -> Kicks {
-    Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default())
+    Kicks::of(league)
 }
 
 /// Ours: 0 passes, 1 receives, the others are teammates.
