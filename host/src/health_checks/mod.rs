@@ -36,7 +36,7 @@ pub use stall::Stall;
 pub const LOOK_EVERY_MAX: Duration = Duration::millis(200);
 /// A fault on the field must last this long before it is a finding: longer than a misread pattern can persist
 /// in tracking (0.2 s), and half of the two seconds.
-const LASTS: Duration = Duration::millis(1_000);
+const FAULT_LASTS_MIN: Duration = Duration::millis(1_000);
 
 /// A deviation from the settings.
 #[derive(Clone, Debug, PartialEq)]
@@ -128,7 +128,7 @@ impl HealthChecks {
         }
         self.looked = Some(now);
         let mut found = Vec::new();
-        let sees = host.imaged().is_some_and(|at| now.since(at) < SEES);
+        let sees = host.imaged().is_some_and(|at| now.since(at) < FRAME_AGE_MAX);
         let reported =
             host.announced_field().and_then(|reported| field::other_field(host.settings().league, reported));
         found.extend(reported.map(Finding::Field));
@@ -141,7 +141,7 @@ impl HealthChecks {
     }
 }
 
-/// Something that must last for [`LASTS`].
+/// Something that must last for [`FAULT_LASTS_MIN`].
 #[derive(Clone, Copy, Debug, Default)]
 struct Lasting {
     since: Option<Instant>,
@@ -151,9 +151,9 @@ impl Lasting {
     /// Whether it has held for long enough; `holds`: whether it holds now.
     fn see(&mut self, now: Instant, holds: bool) -> bool {
         self.since = holds.then(|| self.since.unwrap_or(now));
-        self.since.is_some_and(|since| now.since(since) >= LASTS)
+        self.since.is_some_and(|since| now.since(since) >= FAULT_LASTS_MIN)
     }
 }
 
 /// The field is checked only with camera frames of this age or newer.
-const SEES: Duration = Duration::millis(300);
+const FRAME_AGE_MAX: Duration = Duration::millis(300);

@@ -38,7 +38,8 @@ impl Scene {
             let [x, y, height] = camera.position;
             if let Some(place) = self.cameras.get_mut(*number as usize) {
                 // A camera mounted lower is not used for heights.
-                *place = (height >= HEIGHT_MIN).then_some(Camera { above: Point::new(x, y), height });
+                *place =
+                    (height >= CAMERA_HEIGHT_MIN_M).then_some(Camera { above: Point::new(x, y), height });
             }
         }
         let ground = self.geometry.ground().unwrap_or(self.models.ground);
@@ -79,7 +80,7 @@ impl Scene {
 }
 
 /// No camera is mounted lower than the height of a chipped ball, m.
-const HEIGHT_MIN: f32 = 1.5;
+const CAMERA_HEIGHT_MIN_M: f32 = 1.5;
 
 #[cfg(test)]
 mod tests {
