@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tenth_of_a_second_carries_a_robot_by_a_tenth_of_its_speed_and_its_heading_over_the_seam() {
+    fn extrapolation_by_0_1_s_moves_a_robot_and_wraps_its_heading() {
         let mut world = World::empty(Instant(5_000_000), BallModels::default());
         world.put(robot(Colour::Yellow, 0, 1.0));
         let later = world.at(Instant(5_000_000) + Duration::millis(100));

@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn a_field_laid_out_a_little_wrong_is_the_leagues_and_one_of_no_league_is_said_to_be_none() {
+    fn a_slightly_wrong_field_is_the_leagues_and_an_unknown_one_is_of_no_league() {
         let own = League::DivisionB.field();
         assert_eq!(other_field(League::DivisionB, &FieldSpec { length: 9.3, width: 5.8, ..own }), None);
         let found = other_field(League::DivisionB, &FieldSpec { length: 4.5, width: 3.0, ..own }).unwrap();

@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn teams_at_each_others_goals_are_reported_within_two_seconds_by_each_kind_of_evidence() {
+    fn swapped_sides_are_found_within_two_seconds_by_each_kind_of_evidence() {
         let (goal, halt) = (GoalEnd::Negative, Phase::Halt);
         let both = seen(true, goal, halt);
         let ours_only = Seen { keepers: [both.keepers[0], None], ..both.clone() };
@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn teams_that_do_not_follow_a_change_of_sides_are_reported() {
+    fn teams_that_do_not_follow_a_change_of_sides_are_a_finding() {
         let stays = |t: u64| {
             let goal = if t < 5_000 { GoalEnd::Negative } else { GoalEnd::Positive };
             seen(t >= 5_000, goal, Phase::Stop)

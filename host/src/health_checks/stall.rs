@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn each_stall_is_said_within_half_a_second_by_its_own_words_and_by_no_others() {
+    fn each_stall_is_found_within_half_a_second_and_no_other_with_it() {
         for (still, place, description) in [
             ("host", "host", "this computer did not run"),
             ("vision", "vision", "no camera frame"),

@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_holds_no_epoch_and_a_directory_that_cannot_be_are_reported_and_the_host_starts() {
+    fn the_host_starts_and_reports_a_file_without_epoch_or_an_impossible_directory() {
         let directory = Directory::new("bad");
         fs::create_dir_all(&directory.0).unwrap();
         fs::write(directory.0.join(FILE_NAME), "yesterday").unwrap();

@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_ends_again_and_again_is_given_up_and_reported_of() {
+    fn a_robot_process_that_keeps_failing_is_given_up_and_reported() {
         let mut link = SimLink::start(settings("false", &[0])).unwrap();
         let mut error = None;
         for _ in 0..200 {

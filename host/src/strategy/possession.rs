@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_that_rolls_towards_a_robot_is_met_on_its_way_by_hand() {
+    fn a_ball_that_rolls_towards_a_robot_is_intercepted_on_its_path_by_hand() {
         // 2 m/s from 3 m away: 0.11 m before the robot after 1.71 s with 0.35 m/s² of friction.
         let mut view = view((3.0, 0.0), &[(0.0, 0.0)], &[]);
         let ball = view.ball.as_mut().unwrap();

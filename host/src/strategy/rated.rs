@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn who_has_only_a_marked_teammate_far_behind_plays_on() {
+    fn with_only_a_marked_teammate_far_behind_a_robot_plays_on() {
         let marked = [WALL[0], WALL[1], WALL[2], WALL[3], (-1.8, 2.0)];
         let list = list((-2.0, 2.0), &marked, None);
         assert_eq!(list[0].action, Action::PlayOn, "{list:?}");

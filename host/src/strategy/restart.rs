@@ -182,7 +182,7 @@ mod tests {
     use rules::{League, Side};
 
     #[test]
-    fn no_one_is_sent_into_the_circle_around_the_ball_nor_over_the_line_for_it() {
+    fn no_robot_is_sent_into_the_circle_around_the_ball_nor_over_the_line_for_it() {
         let view = view((4.3, 2.8), &[(0.0, 0.0)], &[]);
         for place in [(4.3, 2.8), (4.2, 2.9), (4.0, 2.5), (4.45, 2.95)] {
             let at = kept_off(&view, Point::new(place.0, place.1));
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn the_way_of_a_ball_being_placed_is_kept_free() {
+    fn the_path_of_a_ball_being_placed_is_kept_free() {
         let mut view = view((0.0, 0.0), &[], &[]);
         view.placement = Some(Point::new(3.0, 0.0));
         let spine = Segment::new(Point::new(0.0, 0.0), Point::new(3.0, 0.0));
@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn at_a_penalty_everyone_else_is_a_metre_behind_the_mark_and_no_two_of_both_teams_in_one_place() {
+    fn at_a_penalty_all_others_are_a_metre_behind_the_mark_each_in_its_own_place() {
         for league in [League::Ssl2013, League::DivisionB, League::DivisionA] {
             let field = league.field();
             // The ball still lies at another place.

@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn who_is_behind_late_values_a_goal_and_who_leads_values_none_against() {
+    fn a_team_behind_late_values_a_goal_and_a_leading_one_a_goal_against() {
         let behind = |left| Stakes::of(-1, left).ours;
         assert!(behind(600.0) < behind(120.0) && behind(120.0) < behind(10.0));
         assert!(behind(10.0) > 1.7 && behind(600.0) > 1.0);

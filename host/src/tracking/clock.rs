@@ -176,14 +176,14 @@ mod tests {
     }
 
     #[test]
-    fn trap_01_a_simulators_clock_that_runs_slower_than_ours_does_not_look_like_a_growing_delay() {
+    fn trap_01_a_simulators_slow_clock_does_not_look_like_a_growing_delay() {
         let mut clock = Clock::default();
         run(&mut clock, 800_000, 0.88, 0..3_600, |_| 1_000);
         assert!(clock.delay() < Duration::millis(40), "{:?}", clock.delay());
     }
 
     #[test]
-    fn a_clock_that_begins_again_is_followed_after_a_fifth_of_a_second() {
+    fn a_restarted_clock_is_followed_after_a_fifth_of_a_second() {
         let mut clock = Clock::default();
         run(&mut clock, 50_000_000, 1.0, 0..100, |_| 0);
         let mut followed = None;

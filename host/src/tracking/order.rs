@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn images_that_come_out_of_order_leave_the_same_state_as_in_order() {
+    fn frames_out_of_order_leave_the_same_state_as_in_order() {
         let sorted: std::vec::Vec<(Captured, u32)> =
             (0..30).map(|i| (i64::from(i / 2) * 10_000, i as u32 % 2)).collect();
         let mut shuffled = sorted.clone();
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn more_cameras_than_it_holds_images_of_are_still_in_order() {
+    fn frames_of_more_cameras_than_are_kept_are_still_in_order() {
         let mut images: std::vec::Vec<(Captured, u32)> = (1..=30).map(|i| (i * 1_000, 0)).collect();
         images.extend([(29_500, 1), (1, 1)]);
         let (seen, placed) = feed(&images);

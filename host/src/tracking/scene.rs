@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn trap_02_cameras_reported_one_a_packet_are_all_at_hand() {
+    fn trap_02_calibrations_sent_one_a_packet_are_all_kept() {
         let mut scene = Scene::default();
         for id in 0..4 {
             scene.receive(&packet(id, 4_000.0)).unwrap();

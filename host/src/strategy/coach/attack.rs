@@ -271,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pass_of_open_play_that_has_left_is_its_receivers_and_is_reported_to_the_books_once() {
+    fn a_pass_of_open_play_that_left_is_its_receivers_and_is_counted_once() {
         let (mut coach, view, orders, at) = pass_leaves(3.0, true);
         assert!(matches!(orders[4].task, Task::Receive { at: there, .. } if there == at), "{:?}", orders[4]);
         let sent = coach.take_sent().unwrap();

@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn who_stands_on_the_way_meets_the_ball_and_who_is_far_off_does_not() {
+    fn a_robot_on_the_path_intercepts_the_ball_and_one_far_off_does_not() {
         let kicks = kicks(League::DivisionB);
         let value = ByPassLocation::new(&kicks);
         let scene = view((0.0, 0.0), &[], &[(1.5, 0.02), (1.5, 2.9)]);

@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn half_a_second_of_places_outweighs_one_snapshot() {
+    fn half_a_second_of_places_outweighs_one_misread_frame() {
         let mut detector = Detector::new(Models::default());
         let kicker = RobotId::new(1);
         for tick in 0..60 {

@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn a_body_on_the_way_has_the_ball_and_one_far_off_never() {
+    fn a_body_on_the_path_has_the_ball_and_one_far_off_never() {
         let kick = kicks().flat(3.0);
         let on_it = path(3.0).flat(&kick, &[opponent(4, (1.5, 0.05), (0.0, 0.0))]).unwrap();
         // It covers every place up to 1.5 + √(0.1115² − 0.05²); the end it has to drive to.
@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn the_margin_beside_the_way_by_hand() {
+    fn the_margin_beside_the_path_by_hand() {
         // 3 m with 3.317774 m/s take 1.299743 s (see `kicks`). At (2.4, 0.6115) a body is √(0.6² + 0.6115²) −
         // 0.1115 = 0.745192 m from touching a ball at the end: 2 √(0.745192 / 3.5) + 0.1 = 1.022853 s, which
         // is 0.276890 s sooner than the ball.

@@ -195,7 +195,7 @@ mod tests {
     use geometry::math;
 
     #[test]
-    fn the_share_of_the_way_is_the_largest_from_which_the_line_is_never_left() {
+    fn the_share_of_the_path_is_the_largest_that_keeps_the_robot_on_the_line() {
         // Python: .1115 / (4 * (.1**2/2 + .1115/4)) = 0.8479
         let settings = ThreatSettings::default();
         let k = share(&settings);

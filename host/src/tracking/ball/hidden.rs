@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_that_vanished_at_ours_unfelt_is_at_the_opponent_beside_it_or_where_it_was_seen() {
+    fn an_unfelt_ball_that_vanished_at_ours_is_at_the_opponent_or_where_it_was_seen() {
         let (ours, theirs) = (Who::yellow(RobotId::ZERO), Who::blue(RobotId::ZERO));
         let (mut hidden, mut world) = (HiddenBall::default(), World::default());
         world.put(robot(ours, 1.0));

@@ -64,7 +64,7 @@ fn a_cross_that_is_shot_at_one_touch_by_hand() {
 }
 
 #[test]
-fn an_opponent_under_the_arch_makes_it_a_chip_and_a_free_way_never_does() {
+fn an_opponent_under_the_arch_makes_it_a_chip_and_a_free_path_never_does() {
     let ours = [(-0.1, 0.0), (3.0, 0.1)];
     let blocked = rated((0.0, 0.0), (3.0, 0.0), &ours, &[(0.8, 0.0)]);
     assert!(blocked.kick.is_chip() && !blocked.shot.one_touch, "{blocked:?}");
