@@ -216,17 +216,17 @@ fn error(key: &str, description: impl Into<String>) -> ConfigError {
 
 /// Error text for a file of settings, with its place; of a long line only the start.
 fn place_of(text: &str, broken: &toml::de::Error) -> String {
-    let what = excerpt(broken.message(), MESSAGE_LEN);
+    let what = excerpt(broken.message(), MESSAGE_CHARS_MAX);
     let before = broken.span().and_then(|span| text.get(..span.start));
     let Some(number) = before.map(|before| before.matches('\n').count()) else { return what };
     let line = text.lines().nth(number).unwrap_or_default();
-    format!("line {}: {what}: `{}`", number + 1, excerpt(line.trim(), LINE_LEN))
+    format!("line {}: {what}: `{}`", number + 1, excerpt(line.trim(), LINE_CHARS_MAX))
 }
 
 /// Longest part of an error in a file of settings that is printed, characters.
-const MESSAGE_LEN: usize = 300;
+const MESSAGE_CHARS_MAX: usize = 300;
 /// Longest part of its line that is printed, characters.
-const LINE_LEN: usize = 80;
+const LINE_CHARS_MAX: usize = 80;
 
 impl TeamSettings {
     /// Reads `team.toml`; unknown keys are errors.
@@ -359,7 +359,7 @@ impl RobotLink {
             Some((device, baud)) if baud.bytes().all(|b| b.is_ascii_digit()) && !baud.is_empty() => {
                 (device, baud.parse().map_err(|_| wrong())?)
             }
-            _ => (line, BAUD),
+            _ => (line, BAUD_DEFAULT),
         };
         if device.is_empty() { Err(wrong()) } else { Ok(Self::Serial { device: device.to_owned(), baud }) }
     }
@@ -367,7 +367,7 @@ impl RobotLink {
 
 /// Default baud rate, bits a second: it carries 100 snapshots a second for a team of six (some 50 kB/s) and
 /// 75 for one of eleven (80).
-const BAUD: u32 = 1_000_000;
+const BAUD_DEFAULT: u32 = 1_000_000;
 
 #[cfg(test)]
 mod tests {
@@ -429,7 +429,7 @@ mod tests {
     #[test]
     fn a_serial_line_has_its_rate_behind_a_colon() {
         let serial = |device: &str, baud| Ok(RobotLink::Serial { device: device.to_owned(), baud });
-        assert_eq!(RobotLink::parse("serial:/dev/ttyACM0"), serial("/dev/ttyACM0", BAUD));
+        assert_eq!(RobotLink::parse("serial:/dev/ttyACM0"), serial("/dev/ttyACM0", BAUD_DEFAULT));
         assert_eq!(RobotLink::parse("serial:COM3:115200"), serial("COM3", 115_200));
     }
 }

@@ -24,7 +24,7 @@ pub const CAMERAS_MAX: u32 = 16;
 
 /// Width of the goal substitution area that the game controller (2026) assumes where vision does not send it,
 /// m.
-const SUBSTITUTION_UNTOLD: f32 = 0.3;
+const SUBSTITUTION_WIDTH_DEFAULT_M: f32 = 0.3;
 
 /// The geometry that vision has sent so far.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -172,7 +172,7 @@ fn field_of(size: &GeometryFieldSize) -> Result<(FieldSpec, AreaSource), FieldFa
         goal_line_margin: announced(size.boundary_width_goal_line).unwrap_or(margin),
         // Here 0 is a value: no such area. If it is not sent, the game controller takes its own default, the
         // same in both divisions.
-        goal_substitution: size.goal_substitution_area_width.map_or(SUBSTITUTION_UNTOLD, metres),
+        goal_substitution: size.goal_substitution_area_width.map_or(SUBSTITUTION_WIDTH_DEFAULT_M, metres),
         goal_width: metres(size.goal_width),
         goal_depth: metres(size.goal_depth),
         goal_height: announced(size.goal_height).unwrap_or(default.goal_height),

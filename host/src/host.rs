@@ -27,13 +27,13 @@ use crate::config::DriveSettings;
 use crate::external::External;
 use crate::field_geometry::VisionGeometry;
 use crate::learned::Learned;
-use crate::proposal::proposal;
 use crate::radio::{self, Radio, RadioSituation, To};
 use crate::referee::team_port::TeamPortRequest;
 use crate::referee::{Listener, SenderAddress};
 use crate::requests::Requests;
 use crate::robot_test::RobotTest;
 use crate::strategy::counters::Bookkeeper;
+use crate::strategy::proposal::proposal;
 use crate::strategy::stakes::{Stakes, time_left};
 use crate::strategy::view::{CasePass, RobotSet, ViewGame};
 use crate::strategy::{Coach, Flip, Orders, View};
@@ -301,7 +301,7 @@ impl Host {
         }
         if self.settings.learns
             && let Some(known) = self.learned.friction()
-            && self.roll.is_none_or(|roll| (known.value - roll).abs() > roll * ROLL_CHANGES)
+            && self.roll.is_none_or(|roll| (known.value - roll).abs() > roll * ROLL_CHANGE_MIN)
         {
             self.roll_with(known.value);
         }
@@ -417,7 +417,8 @@ impl Host {
 
 /// The ball's place if cameras see it; the estimated place of a hidden ball does not count.
 fn plainly_seen(now: Instant, ball: Option<Ball>) -> Option<Point<geometry::Field>> {
-    ball.filter(|ball| now.since(ball.seen) < PLAINLY && ball.confidence > SURE).map(|ball| ball.position)
+    ball.filter(|ball| now.since(ball.seen) < BALL_VISIBLE_WITHIN && ball.confidence > BALL_CONFIDENCE_MIN)
+        .map(|ball| ball.position)
 }
 
 /// The limits used for a league that defines none.
@@ -429,11 +430,11 @@ const LIMITS: Limits = match League::DivisionB.limits() {
 /// Hz.
 const PLAN_EVERY: Duration = Duration::millis(5);
 /// Relative change of the ball's deceleration from which tables are computed again.
-const ROLL_CHANGES: f32 = 0.05;
+const ROLL_CHANGE_MIN: f32 = 0.05;
 /// A ball not seen for this time counts as hidden: the cameras' delay and a few frames.
-const PLAINLY: Duration = Duration::millis(120);
+const BALL_VISIBLE_WITHIN: Duration = Duration::millis(120);
 /// The tracker's confidence in a ball that it has followed for a tenth of a second.
-const SURE: f32 = 0.6;
+const BALL_CONFIDENCE_MIN: f32 = 0.6;
 
 #[cfg(test)]
 mod tests;

@@ -11,20 +11,19 @@
 pub mod config;
 pub mod external;
 pub mod field_geometry;
+pub mod health_checks;
 mod hex;
 mod host;
 pub mod learned;
-mod proposal;
 pub mod radio;
 pub mod record;
 pub mod referee;
 mod requests;
 pub mod robot_test;
-pub mod sanity;
 pub mod shell;
 pub mod strategy;
 pub mod tracking;
 pub mod world;
 
 pub use host::{Drill, Host, HostSettings, Input, InputVerdict, Undecodable};
-pub use proposal::cases_of;
+pub use strategy::cases_of;

@@ -49,8 +49,8 @@ impl Requests {
         }
         let gone = view.now.since(*self.keeper_gone.get_or_insert(view.now));
         let granted = matches!(view.phase, Phase::Halt | Phase::Stop | Phase::Timeout(_));
-        let again = self.keeper_asked.is_none_or(|asked| view.now.since(asked) >= ASK_AGAIN);
-        if gone >= GONE
+        let again = self.keeper_asked.is_none_or(|asked| view.now.since(asked) >= REQUEST_EVERY);
+        if gone >= KEEPER_MISSING_AFTER
             && granted
             && again
             && let Some((robot, _)) = nearest(view.ours.iter(), view.our_goal())
@@ -60,7 +60,7 @@ impl Requests {
         }
     }
 
-    /// A surplus robot that cannot leave by itself blocks the game: after [`STUCK`] in a stop our robot
+    /// A surplus robot that cannot leave by itself blocks the game: after [`LEAVING_TIME_MAX`] in a stop our robot
     /// handler is to take it out.
     ///
     /// Requested once until there is no surplus robot any more, and only while it is free: where no robot
@@ -80,7 +80,7 @@ impl Requests {
             self.crowded = None;
             return;
         }
-        let stuck = view.now.since(*self.crowded.get_or_insert(view.now)) >= STUCK;
+        let stuck = view.now.since(*self.crowded.get_or_insert(view.now)) >= LEAVING_TIME_MAX;
         if stuck && !self.substitution && left != Some(0) {
             self.substitution = true;
             self.out.push_back(TeamPortRequest::Substitute(true));
@@ -106,11 +106,11 @@ impl Requests {
 
 /// A keeper counts as missing after this time: vision loses a robot for less, and the radio link is restored
 /// within half a second.
-const GONE: Duration = Duration::millis(2000);
+const KEEPER_MISSING_AFTER: Duration = Duration::millis(2000);
 /// A keeper is requested again after this time, if the requested one is not named.
-const ASK_AGAIN: Duration = Duration::millis(3000);
+const REQUEST_EVERY: Duration = Duration::millis(3000);
 /// A robot that is leaving needs less: division A's diagonal at the 1.5 m/s of a stop takes 10 s.
-const STUCK: Duration = Duration::millis(12_000);
+const LEAVING_TIME_MAX: Duration = Duration::millis(12_000);
 
 #[cfg(test)]
 mod tests;

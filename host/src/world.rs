@@ -217,7 +217,8 @@ impl Ball {
         if self.is_down() {
             return 0.0;
         }
-        (self.climb + math::sqrt(self.climb * self.climb + 2.0 * GRAVITY * self.height)) * (1.0 / GRAVITY)
+        (self.climb + math::sqrt(self.climb * self.climb + 2.0 * GRAVITY_M_S2 * self.height))
+            * (1.0 / GRAVITY_M_S2)
     }
 
     fn is_down(&self) -> bool {
@@ -226,8 +227,8 @@ impl Ball {
 
     /// This hop from its start, and the time since then, s.
     fn flight(&self, models: &BallModels) -> (motion::ball::chip::ChipPath<Field>, f32) {
-        let launch = math::sqrt(self.climb * self.climb + 2.0 * GRAVITY * self.height.max(0.0));
-        let elapsed = (launch - self.climb) * (1.0 / GRAVITY);
+        let launch = math::sqrt(self.climb * self.climb + 2.0 * GRAVITY_M_S2 * self.height.max(0.0));
+        let elapsed = (launch - self.climb) * (1.0 / GRAVITY_M_S2);
         let from = self.position - self.velocity * elapsed;
         let first = if self.bounced { models.chip.other } else { models.chip.first };
         let chip = ChipModel { first, ..models.chip };
@@ -252,7 +253,7 @@ impl Robot {
 /// league).
 pub const STRAIGHT_MAX: f32 = 0.25;
 /// m/s².
-pub(crate) const GRAVITY: f32 = 9.81;
+pub(crate) const GRAVITY_M_S2: f32 = 9.81;
 
 /// The index of a team in an array of two.
 pub(crate) const fn index(colour: Colour) -> usize {
@@ -297,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tenth_of_a_second_carries_a_robot_by_a_tenth_of_its_speed_and_its_heading_over_the_seam() {
+    fn extrapolation_by_0_1_s_moves_a_robot_and_wraps_its_heading() {
         let mut world = World::empty(Instant(5_000_000), BallModels::default());
         world.put(robot(Colour::Yellow, 0, 1.0));
         let later = world.at(Instant(5_000_000) + Duration::millis(100));

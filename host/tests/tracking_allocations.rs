@@ -22,7 +22,7 @@ fn packets(name: &str) -> Vec<(Instant, WrapperPacket)> {
 }
 
 #[test]
-fn images_snapshots_and_tracker_packets_need_no_heap() {
+fn frames_snapshots_and_tracker_packets_need_no_heap() {
     // The one with geometry in every packet, and the one with four cameras and geometry at intervals.
     for name in ["erforce_divB_realistic_22s.log.gz", "grsim_divB_22s.log.gz"] {
         let packets = packets(name);

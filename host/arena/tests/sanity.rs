@@ -4,7 +4,7 @@
 use arena::game::{Game, GameConfig, NoWatcher};
 use geometry::{Angle, Point, Pose};
 use hil_sim::NativeBackend;
-use host::sanity::{Finding, Sanity, SideEvidence};
+use host::health_checks::{Finding, HealthChecks, SideEvidence};
 use protocol::{RobotId, Who};
 use rules::{Colour, League};
 
@@ -23,7 +23,7 @@ fn play(
     };
     let mut backend = NativeBackend::new(base);
     let mut game = Game::new(config, &mut backend).unwrap();
-    let mut sanity = [Sanity::default(), Sanity::default()];
+    let mut sanity = [HealthChecks::default(), HealthChecks::default()];
     for tick in 0..seconds * 100 {
         hand(&mut game, tick * 10);
         game.step(&mut NoWatcher).unwrap();

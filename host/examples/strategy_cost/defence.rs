@@ -3,11 +3,9 @@
 use host::strategy::View;
 use host::strategy::coerce::tactics::Models;
 use host::strategy::coerce::{self, ByPassLocation, CoerceProgress, Planner};
-use host::strategy::pass::{Kicks, PassConstants};
+use host::strategy::pass::Kicks;
 use host::strategy::threat::{Memory, ThreatSettings, defend};
 use host::strategy::view::RobotSet;
-use motion::ball::BallModel;
-use motion::ball::chip::ChipModel;
 use protocol::{Duration, RobotId};
 use rules::League;
 
@@ -30,7 +28,7 @@ pub(crate) fn defences(league: League, robots: u8, count: u32) -> String {
 
 /// Plans of free kicks, with half of the opponents at one of our robots each.
 pub(crate) fn plans(league: League, robots: u8, count: u32) -> String {
-    let kicks = Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default());
+    let kicks = Kicks::of(league);
     let value = ByPassLocation::new(&kicks);
     let mut random = Random::new(2);
     let scenes: Vec<View> = (0..SCENES).map(|_| random.free_kick(league, robots)).collect();
@@ -49,7 +47,7 @@ pub(crate) fn plans(league: League, robots: u8, count: u32) -> String {
 /// Ticks of a plan being executed; with `attack` each is the tick that replans the attack, planning included.
 pub(crate) fn watches(count: u32, attack: bool) -> String {
     let league = League::DivisionB;
-    let kicks = Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default());
+    let kicks = Kicks::of(league);
     let value = ByPassLocation::new(&kicks);
     let mut random = Random::new(3);
     // A free kick for which coercing is worth it; for most it is not.

@@ -2,9 +2,7 @@
 //! 2014 §3.1).
 
 use host::strategy::View;
-use host::strategy::pass::{Kicks, PassConstants, PassScene, SAMPLES, Search};
-use motion::ball::BallModel;
-use motion::ball::chip::ChipModel;
+use host::strategy::pass::{Kicks, PassScene, SAMPLES, Search};
 use protocol::RobotId;
 use rules::League;
 
@@ -12,7 +10,7 @@ use crate::scenes::{Random, SCENES};
 
 /// Rates `count` places in full, [`PLACES`] a scene (a multiple of them).
 pub(crate) fn locations(league: League, robots: u8, count: u32) -> String {
-    let kicks = Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default());
+    let kicks = Kicks::of(league);
     let mut random = Random::new(1);
     let (mut sum, mut chips) = (0.0_f64, 0);
     // The number of scenes does not depend on the number of places rated: they cost the same for N and 2N.
@@ -32,7 +30,7 @@ pub(crate) fn locations(league: League, robots: u8, count: u32) -> String {
 
 /// Searches among `count` places, [`SAMPLES`] per scene: the search of the team in one snapshot.
 pub(crate) fn searches(league: League, robots: u8, count: u32) -> String {
-    let kicks = Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default());
+    let kicks = Kicks::of(league);
     let mut random = Random::new(1);
     let scenes: Vec<View> = (0..SCENES).map(|_| random.view(league, robots)).collect();
     let (mut sum, mut search) = (0.0_f64, Search::new(0));

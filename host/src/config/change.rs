@@ -41,7 +41,10 @@ impl ParameterChange {
     /// Its parameter, if it names one and a robot where it must.
     fn parameter(&self) -> Result<&'static Parameter, ConfigError> {
         let Some(parameter) = PARAMETERS.iter().find(|parameter| parameter.key == self.key) else {
-            return Err(error("parameter", format!("`{}` is none", foreign::excerpt(&self.key, KEY_LEN))));
+            return Err(error(
+                "parameter",
+                format!("`{}` is none", foreign::excerpt(&self.key, KEY_CHARS_MAX)),
+            ));
         };
         match (parameter.is_each_robots(), self.robot) {
             (true, None) => Err(error(parameter.key, "it is a robot's: name the robot, 0 to 15")),
@@ -118,7 +121,7 @@ impl ParameterChange {
 }
 
 /// Longest part of an unknown key that is told, characters.
-const KEY_LEN: usize = 40;
+const KEY_CHARS_MAX: usize = 40;
 
 impl TeamConfig {
     /// This configuration as it is with `change`, checked as a file is. Refused are parameters that a host

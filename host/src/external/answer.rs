@@ -10,7 +10,7 @@ use rules::Phase;
 use serde::{Deserialize, Serialize};
 
 use super::drawing::{SHAPES_MAX, StrategyDrawing, StrategyShape, TEXT_MAX, VALUES_MAX};
-use super::form::{FAR, Pair, StrategyOrder, StrategyTask, point};
+use super::form::{COORDINATE_MAX_M, Pair, StrategyOrder, StrategyTask, point};
 use crate::strategy::threat::{ThreatSettings, legal_for};
 use crate::strategy::{Order, OrderReason, Role, Task, View};
 
@@ -53,13 +53,13 @@ impl std::fmt::Display for AnswerError {
             Self::Number(robot) => {
                 write!(
                     f,
-                    "the order of robot {robot}: a number is not finite or beyond {FAR} m or {FAST} m/s"
+                    "the order of robot {robot}: a number is not finite or beyond {COORDINATE_MAX_M} m or {KICK_SPEED_MAX_M_S} m/s"
                 )
             }
             Self::Drawing => write!(
                 f,
                 "more than {SHAPES_MAX} shapes or {VALUES_MAX} values, a text of more than {TEXT_MAX} bytes, or a \
-                 number that is not finite or beyond {FAR} m"
+                 number that is not finite or beyond {COORDINATE_MAX_M} m"
             ),
         }
     }
@@ -94,8 +94,10 @@ impl StrategyAnswer {
 impl StrategyTask {
     /// The same as our own task; `None` where a number is out of bounds.
     fn task(self) -> Option<Task> {
-        let at = |pair: Pair| pair.iter().all(|value| value.abs() <= FAR).then(|| point(pair));
-        let speed = |speed: f32| (0.0..=FAST).contains(&speed).then_some((speed * 100.0).round() as u16);
+        let at = |pair: Pair| pair.iter().all(|value| value.abs() <= COORDINATE_MAX_M).then(|| point(pair));
+        let speed = |speed: f32| {
+            (0.0..=KICK_SPEED_MAX_M_S).contains(&speed).then_some((speed * 100.0).round() as u16)
+        };
         Some(match self {
             Self::Stand => Task::Stand,
             Self::PlayCases => Task::Gameplay,
@@ -153,4 +155,4 @@ pub(super) fn order(view: &View, robot: RobotId, task: Task) -> Order {
 
 /// Greatest speed of a kick that is ordered, m/s: robots kick no faster than the rules permit whatever is
 /// ordered.
-const FAST: f32 = 10.0;
+const KICK_SPEED_MAX_M_S: f32 = 10.0;

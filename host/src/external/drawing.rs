@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::form::{FAR, Pair};
+use super::form::{COORDINATE_MAX_M, Pair};
 
 /// A shape on the field.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -50,10 +50,10 @@ impl StrategyDrawing {
     /// Whether the page can show it: the numbers of its parts, their places and the lengths of its texts are
     /// bounded.
     pub(super) fn is_bounded(&self) -> bool {
-        let on_field = |pair: &Pair| pair.iter().all(|value| value.abs() <= FAR);
+        let on_field = |pair: &Pair| pair.iter().all(|value| value.abs() <= COORDINATE_MAX_M);
         let shape = |shape: &StrategyShape| match shape {
             StrategyShape::Line { from, to, .. } => on_field(from) && on_field(to),
-            StrategyShape::Circle { at, radius } => on_field(at) && (0.0..=FAR).contains(radius),
+            StrategyShape::Circle { at, radius } => on_field(at) && (0.0..=COORDINATE_MAX_M).contains(radius),
             StrategyShape::Text { at, text } => on_field(at) && text.len() <= TEXT_MAX,
         };
         self.shapes.len() <= SHAPES_MAX

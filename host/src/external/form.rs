@@ -329,4 +329,4 @@ pub(super) fn is_bound(order: &Order) -> bool {
 }
 
 /// Farthest coordinate of an order, m: beyond the largest field with its surroundings.
-pub(super) const FAR: f32 = 20.0;
+pub(super) const COORDINATE_MAX_M: f32 = 20.0;

@@ -40,7 +40,7 @@ fn tasks(orders: &Orders) -> Vec<(u8, Task)> {
 const KICK: &[u8] = br#"{"orders":[{"robot":1,"task":{"kick":{"at":[4.5,0.2],"speed":6.0}}}]}"#;
 
 #[test]
-fn a_strategy_is_told_the_view_and_the_coach_s_orders_once() {
+fn each_view_goes_to_the_strategy_once_with_the_coachs_orders() {
     let view = view(Phase::FreeKick(Side::Theirs));
     let mut external = External::new(League::DivisionB);
     external.plan(&view, usual(&view));

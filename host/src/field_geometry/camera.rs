@@ -21,7 +21,7 @@ pub enum CameraSource {
 }
 
 /// No camera is mounted farther from the centre than this, m.
-const FARTHEST: f32 = 50.0;
+const CAMERA_DISTANCE_MAX_M: f32 = 50.0;
 /// A quaternion whose squared length is off 1 by more is a dummy (simulators send four times 0.7: 1.96).
 const QUATERNION_TOLERANCE: f32 = 0.02;
 
@@ -36,7 +36,10 @@ impl Camera {
         };
         let [x, y, z] = camera.position;
         // Not finite fails the comparisons too.
-        let sound = x.abs() < FARTHEST && y.abs() < FARTHEST && z > 0.0 && z < FARTHEST;
+        let sound = x.abs() < CAMERA_DISTANCE_MAX_M
+            && y.abs() < CAMERA_DISTANCE_MAX_M
+            && z > 0.0
+            && z < CAMERA_DISTANCE_MAX_M;
         sound.then_some(camera)
     }
 }

@@ -218,7 +218,7 @@ fn a_field_without_any_word_of_the_area_has_its_divisions() {
 }
 
 #[test]
-fn a_round_area_of_old_is_reported_by_its_arcs() {
+fn an_old_round_area_is_read_from_its_arcs() {
     let arc = FieldCircularArc {
         name: "LeftFieldLeftPenaltyArc".into(),
         center: Vector2f { x: -3000.0, y: -175.0 },
@@ -238,7 +238,7 @@ fn a_round_area_of_old_is_reported_by_its_arcs() {
 }
 
 #[test]
-fn the_newest_message_reports_everything_itself() {
+fn a_message_of_the_newest_format_gives_every_size_of_the_field() {
     let size = GeometryFieldSize {
         goal_width: 1800,
         penalty_area_depth: Some(1800),

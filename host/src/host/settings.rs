@@ -8,9 +8,9 @@ use protocol::{RobotId, TeamId};
 use rules::{Colour, League};
 
 use crate::config::DriveSettings;
-use crate::proposal::cases_of;
 use crate::radio::RadioSettings;
 use crate::referee::{OnSilence, SourcePin};
+use crate::strategy::cases_of;
 use crate::strategy::{Tactics, Team};
 
 /// Settings that a host starts with; some change while it runs

@@ -124,7 +124,7 @@ impl Known {
     /// flicker.
     pub(super) fn feels(&self, now: Instant) -> Option<bool> {
         let (at, reported) = self.telemetry.as_ref()?;
-        let flickers = self.felt.is_some_and(|felt| now.since(felt) < FLICKERS);
+        let flickers = self.felt.is_some_and(|felt| now.since(felt) < FLICKER_MAX);
         match reported.condition.has(Condition::BALL_CONTACT) {
             _ if now.since(*at) >= TELEMETRY_LEASE => None,
             true => Some(true),
@@ -137,4 +137,4 @@ impl Known {
 const TELEMETRY_LEASE: Duration = Duration::millis(300);
 /// A sensor that touches may miss a ball at the dribbler for this long: its longest gap is 0.14 s in
 /// ER-Force's simulator, and telemetry reports samples of it.
-const FLICKERS: Duration = Duration::millis(600);
+const FLICKER_MAX: Duration = Duration::millis(600);

@@ -6,7 +6,7 @@ use super::*;
 use crate::strategy::Tactics;
 
 #[test]
-fn a_learned_gain_scales_the_order_within_its_bounds_and_only_where_the_host_plays_by_it() {
+fn a_learned_gain_scales_kicks_within_its_bounds_where_the_host_uses_it() {
     let id = RobotId::new(3).unwrap();
     let ordered = |gain: f32, learns: bool| {
         let settings = HostSettings { learns, ..HostSettings::new(Colour::Blue, League::DivisionB, 1) };
@@ -26,7 +26,7 @@ fn a_learned_gain_scales_the_order_within_its_bounds_and_only_where_the_host_pla
 }
 
 #[test]
-fn a_parameter_that_changes_holds_at_once_and_a_gain_set_by_hand_replaces_what_is_learned() {
+fn a_changed_parameter_holds_at_once_and_a_set_gain_replaces_the_learned_one() {
     let id = RobotId::new(3).unwrap();
     let settings = HostSettings { learns: true, ..HostSettings::new(Colour::Blue, League::DivisionB, 1) };
     let mut host = Host::new(settings, Instant(0));

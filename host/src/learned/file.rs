@@ -8,8 +8,8 @@ use protocol::RobotId;
 use super::Learned;
 
 /// The first and the last line written by the program.
-const BEGINS: &str = "# --- learned by `onetwo control --learned`; lines before this one are kept ---";
-const ENDS: &str = "# --- end of what was learned ---";
+const FIRST_LINE: &str = "# --- learned by `onetwo control --learned`; lines before this one are kept ---";
+const LAST_LINE: &str = "# --- end of what was learned ---";
 
 /// The file's text with the present values in place of those written before. Values not known yet keep their
 /// line.
@@ -19,7 +19,7 @@ pub fn kept(text: &str, learned: &Learned) -> String {
     if !out.is_empty() {
         out.push_str("\n\n");
     }
-    let _ = writeln!(out, "{BEGINS}");
+    let _ = writeln!(out, "{FIRST_LINE}");
     for robot in RobotId::all() {
         let (kick, latency) = (learned.kick(robot), learned.latency(robot));
         let old = |key: &str| of_robot(before, robot).and_then(|lines| value(lines, key));
@@ -38,15 +38,15 @@ pub fn kept(text: &str, learned: &Learned) -> String {
     if let Some(roll) = learned.friction().map(|known| format!("{:.3}", known.value)).or(old) {
         let _ = writeln!(out, "[ball]\nroll = {roll}");
     }
-    let _ = writeln!(out, "{ENDS}");
+    let _ = writeln!(out, "{LAST_LINE}");
     out.push_str(after);
     out
 }
 
 /// The text before the marks, between them and after them.
 fn parts(text: &str) -> (&str, &str, &str) {
-    let Some((own, rest)) = text.split_once(BEGINS) else { return (text, "", "") };
-    let (before, after) = rest.split_once(ENDS).unwrap_or((rest, ""));
+    let Some((own, rest)) = text.split_once(FIRST_LINE) else { return (text, "", "") };
+    let (before, after) = rest.split_once(LAST_LINE).unwrap_or((rest, ""));
     (own, before, after.trim_start_matches('\n'))
 }
 
@@ -73,7 +73,7 @@ mod tests {
     fn what_was_learned_follows_the_teams_own_lines_and_is_read_again() {
         let own = "# ours\ncolour = \"yellow\"\n\n[[calibration]]\nrobot = 1\nkick = 1.1\n";
         let written = format!(
-            "{own}\n{BEGINS}\n[[calibration]]\nrobot = 3\nkick = 0.74\nlatency_ms = 45\n[ball]\nroll = 0.41\n{ENDS}\n"
+            "{own}\n{FIRST_LINE}\n[[calibration]]\nrobot = 3\nkick = 0.74\nlatency_ms = 45\n[ball]\nroll = 0.41\n{LAST_LINE}\n"
         );
         let again = kept(&written, &Learned::default());
         assert_eq!(again, written, "nothing new is known: everything stays");

@@ -10,7 +10,7 @@ use crate::world::World;
 /// The field, as far as balls have rolled on it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Friction {
-    samples: Samples<KEPT>,
+    samples: Samples<ROLLS_KEPT>,
     roll: Option<Roll>,
 }
 
@@ -39,15 +39,16 @@ impl Friction {
             return;
         }
         let speed = ball.velocity.norm();
-        let near = world.nearest(ball.position).is_some_and(|(_, off)| off < CLEAR);
-        let slides = ball.kicked.is_some_and(|kick| kick.is_chip() || ball.seen.since(kick.at).0 < SLIDES.0);
-        if near || slides || !(SLOWEST..FASTEST).contains(&speed) {
+        let near = world.nearest(ball.position).is_some_and(|(_, off)| off < ROBOT_CLEARANCE_M);
+        let slides =
+            ball.kicked.is_some_and(|kick| kick.is_chip() || ball.seen.since(kick.at).0 < SLIDING_TIME_MAX.0);
+        if near || slides || !(SPEED_MIN_M_S..SPEED_MAX_M_S).contains(&speed) {
             self.end();
             return;
         }
         let Some(along) = ball.velocity.unit() else { return };
-        let turned = self.roll.is_some_and(|roll| roll.along.dot(along) < STRAIGHT);
-        if turned || self.roll.is_some_and(|roll| ball.seen.since(roll.began).0 > LONGEST.0) {
+        let turned = self.roll.is_some_and(|roll| roll.along.dot(along) < TURN_COS_MIN);
+        if turned || self.roll.is_some_and(|roll| ball.seen.since(roll.began).0 > ROLL_TIME_DOUBLE.0) {
             self.end();
         }
         let roll = self.roll.get_or_insert(Roll {
@@ -70,7 +71,7 @@ impl Friction {
     }
 
     pub(super) fn deceleration(&self) -> Option<Estimate> {
-        self.samples.estimate(LEAST)
+        self.samples.estimate(ROLLS_MIN)
     }
 }
 
@@ -90,7 +91,7 @@ impl Roll {
 
     /// By least squares, where it rolled for long enough and its deceleration is plausible.
     fn deceleration(&self) -> Option<f32> {
-        if self.newest.since(self.began).0 < SHORTEST.0 || self.times[0] < PLACES {
+        if self.newest.since(self.began).0 < ROLL_TIME_MIN.0 || self.times[0] < FRAMES_MIN {
             return None;
         }
         let [n, t1, t2, t3, t4] = self.times;
@@ -105,35 +106,36 @@ impl Roll {
         let c = (n * (t2 * s2 - t3 * s1) - t1 * (t1 * s2 - t2 * s1) + s0 * (t1 * t3 - t2 * t2)) / det;
         let residual = (self.squares - a * s0 - b * s1 - c * s2) / n;
         let deceleration = (-2.0 * c) as f32;
-        let rolls = residual < ON_PARABOLA * ON_PARABOLA && (LEAST_M_S2..=MOST_M_S2).contains(&deceleration);
+        let rolls = residual < PARABOLA_RMS_MAX_M * PARABOLA_RMS_MAX_M
+            && (DECELERATION_MIN_M_S2..=DECELERATION_MAX_M_S2).contains(&deceleration);
         rolls.then_some(deceleration)
     }
 }
 
 /// Samples kept: a few minutes of play.
-const KEPT: usize = 25;
+const ROLLS_KEPT: usize = 25;
 /// Number of rolls needed.
-const LEAST: usize = 5;
+const ROLLS_MIN: usize = 5;
 /// No robot's centre is nearer to the ball, m: a radius of 0.09 and its motion between two frames.
-const CLEAR: f32 = 0.2;
+const ROBOT_CLEARANCE_M: f32 = 0.2;
 /// A kicked ball slides for at most this time: 6.5 m/s × 2/7 at 3.9 m/s² are 0.48 s.
-const SLIDES: Duration = Duration::millis(500);
+const SLIDING_TIME_MAX: Duration = Duration::millis(500);
 /// Slower balls are stopped by the fibres of the field surface, and faster ones may still slide, m/s.
-const SLOWEST: f32 = 0.25;
-const FASTEST: f32 = 5.0;
+const SPEED_MIN_M_S: f32 = 0.25;
+const SPEED_MAX_M_S: f32 = 5.0;
 /// A roll of this duration gives its deceleration within 0.05 m/s² where places err by 2 mm.
-const SHORTEST: Duration = Duration::millis(500);
+const ROLL_TIME_MIN: Duration = Duration::millis(500);
 /// A longer one counts as two.
-const LONGEST: Duration = Duration::millis(1_500);
+const ROLL_TIME_DOUBLE: Duration = Duration::millis(1_500);
 /// Number of camera frames needed.
-const PLACES: f64 = 20.0;
+const FRAMES_MIN: f64 = 20.0;
 /// Cosine of the turn that ends a roll: 6°, the noise of the slowest.
-const STRAIGHT: f32 = 0.994;
+const TURN_COS_MIN: f32 = 0.994;
 /// Larger deviations from the parabola are no free roll, m (root of the mean square).
-const ON_PARABOLA: f64 = 0.008;
+const PARABOLA_RMS_MAX_M: f64 = 0.008;
 /// Deceleration of a rolling ball on field surfaces, m/s².
-const LEAST_M_S2: f32 = 0.05;
-const MOST_M_S2: f32 = 1.5;
+const DECELERATION_MIN_M_S2: f32 = 0.05;
+const DECELERATION_MAX_M_S2: f32 = 1.5;
 
 #[cfg(test)]
 mod tests {

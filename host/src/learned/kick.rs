@@ -14,7 +14,7 @@ use crate::world::{Kick, World};
 pub(crate) struct Kicks {
     /// The flat kick that a robot was last ordered, m/s, and when.
     ordered: [Option<(Instant, f32)>; RobotId::COUNT],
-    gains: [Samples<KEPT>; RobotId::COUNT],
+    gains: [Samples<KICKS_KEPT>; RobotId::COUNT],
     watched: Option<Watched>,
     /// The kick that was watched last.
     known: Option<(Instant, Option<Who>)>,
@@ -65,13 +65,13 @@ impl Kicks {
             return;
         }
         let age = ball.seen.since(watched.at);
-        if age.0 > TO.0 {
+        if age.0 > OBSERVED_TO.0 {
             if let Some(gain) = watched.gain() {
                 self.gains[watched.robot.index()].add(gain);
                 self.newest = Some((watched.robot, [watched.ordered, gain * watched.ordered]));
             }
             self.watched = None;
-        } else if ball.seen > watched.newest && age.0 >= FROM.0 {
+        } else if ball.seen > watched.newest && age.0 >= OBSERVED_FROM.0 {
             watched.newest = ball.seen;
             let t = age.as_secs_f32();
             let distance =
@@ -83,14 +83,14 @@ impl Kicks {
     fn is_new(&self, kick: &Kick) -> bool {
         self.known.is_none_or(|(at, by)| {
             let apart = if kick.at > at { kick.at.since(at) } else { at.since(kick.at) };
-            by != kick.by || apart.0 > SAME.0
+            by != kick.by || apart.0 > SAME_KICK_WITHIN.0
         })
     }
 
     fn begin(&self, kick: &Kick, us: Colour) -> Option<Watched> {
         let who = kick.by.filter(|who| who.colour == us)?;
         let (at, ordered) = self.ordered[who.id.index()]?;
-        let fits = kick.at.since(at).0 <= ORDERED.0 && ordered >= SLOWEST;
+        let fits = kick.at.since(at).0 <= ORDER_TO_KICK_MAX.0 && ordered >= ORDER_SPEED_MIN_M_S;
         let along = kick.velocity.unit().filter(|_| fits)?;
         Some(Watched {
             robot: who.id,
@@ -105,18 +105,18 @@ impl Kicks {
 
     #[cfg(test)]
     pub(super) fn know(&mut self, robot: RobotId, gain: f32) {
-        for _ in 0..LEAST {
+        for _ in 0..KICKS_MIN {
             self.gains[robot.index()].add(gain);
         }
     }
 
     pub(super) fn gain(&self, robot: RobotId) -> Option<Estimate> {
-        self.gains[robot.index()].estimate(LEAST).filter(|gain| gain.error() <= ERROR)
+        self.gains[robot.index()].estimate(KICKS_MIN).filter(|gain| gain.error() <= GAIN_ERROR_MAX)
     }
 
     /// The same from the third kick on, however far the kicks scatter: for who looks at each of them.
     pub(crate) fn estimate(&self, robot: RobotId) -> Option<Estimate> {
-        self.gains[robot.index()].estimate(LEAST_SHOWN)
+        self.gains[robot.index()].estimate(KICKS_SHOWN_MIN)
     }
 
     /// The kick measured since this was last asked: its robot, speed ordered and speed seen, m/s.
@@ -137,42 +137,42 @@ impl Watched {
     fn gain(&self) -> Option<f32> {
         let [n, t, tt, s, ts, ss] = self.sums;
         let spread = n * tt - t * t;
-        if n < PLACES || spread <= 0.0 {
+        if n < FRAMES_MIN || spread <= 0.0 {
             return None;
         }
         let speed = (n * ts - t * s) / spread;
         let offset = (s - speed * t) / n;
         let residual = (ss - offset * s - speed * ts) / n;
         let gain = speed / self.ordered;
-        (residual < STRAIGHT * STRAIGHT && (GAIN_MIN..=GAIN_MAX).contains(&gain)).then_some(gain)
+        (residual < LINE_RMS_MAX_M * LINE_RMS_MAX_M && (GAIN_MIN..=GAIN_MAX).contains(&gain)).then_some(gain)
     }
 }
 
 /// Samples kept for each robot: a half's kicks, so that a falling battery voltage is followed.
-const KEPT: usize = 15;
+const KICKS_KEPT: usize = 15;
 /// Number of kicks needed: of three, two with the same error determine the median.
-const LEAST: usize = 5;
+const KICKS_MIN: usize = 5;
 /// Of so many kicks a test shows a gain while it goes on.
-const LEAST_SHOWN: usize = 3;
+const KICKS_SHOWN_MIN: usize = 3;
 /// A gain is known when its standard error is at most this. Chosen to exclude one estimate that was 20 % off
 /// with an error of 0.047, from kicks that left slower than ordered for a reason that is not known; the
 /// largest error of the ten right ones beside it was 0.040.
-const ERROR: f32 = 0.04;
+const GAIN_ERROR_MAX: f32 = 0.04;
 /// Longest time from an order to its kick: command, radio, and the ball's path to the kicker's plate.
-const ORDERED: Duration = Duration::millis(400);
+const ORDER_TO_KICK_MAX: Duration = Duration::millis(400);
 /// Two kicks of one robot are farther apart; the moment of one kick shifts by less while it becomes better
 /// known.
-const SAME: Duration = Duration::millis(200);
+const SAME_KICK_WITHIN: Duration = Duration::millis(200);
 /// The ball is observed in this window after the kick: later than the filter needs, and before rolling
 /// changes the deceleration (0.29 s at 4 m/s).
-const FROM: Duration = Duration::millis(50);
-const TO: Duration = Duration::millis(250);
+const OBSERVED_FROM: Duration = Duration::millis(50);
+const OBSERVED_TO: Duration = Duration::millis(250);
 /// Camera frames needed in that time.
-const PLACES: f32 = 6.0;
+const FRAMES_MIN: f32 = 6.0;
 /// Slower orders may be touches of the dribbler instead of kicks, m/s.
-const SLOWEST: f32 = 1.5;
+const ORDER_SPEED_MIN_M_S: f32 = 1.5;
 /// A ball that leaves its line by more has hit something, m (root of the mean square).
-const STRAIGHT: f32 = 0.02;
+const LINE_RMS_MAX_M: f32 = 0.02;
 /// No kicker is softer or harder than this.
 const GAIN_MIN: f32 = 0.4;
 const GAIN_MAX: f32 = 2.0;

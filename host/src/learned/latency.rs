@@ -21,7 +21,7 @@ pub(super) struct Latencies {
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Robot {
-    samples: Samples<KEPT>,
+    samples: Samples<STARTS_KEPT>,
     /// Its stop position, and since when it stands there.
     rests: Option<(Point<Field>, Instant)>,
     /// Its last order was not to go anywhere.
@@ -36,7 +36,7 @@ struct Start {
     from: Point<Field>,
     /// Its newest place: distance moved, and time, s after the order.
     newest: (f32, f32),
-    /// When it had moved by [`NEAR`].
+    /// When it had moved by [`MOVED_FIRST_M`].
     near: Option<f32>,
 }
 
@@ -69,7 +69,7 @@ impl Latencies {
     }
 
     pub(super) fn latency(&self, robot: RobotId) -> Option<Estimate> {
-        self.robots[robot.index()].samples.estimate(LEAST)
+        self.robots[robot.index()].samples.estimate(STARTS_MIN)
     }
 }
 
@@ -82,31 +82,31 @@ impl Robot {
                 let ((w0, t0), (w1, t1)) = (start.newest, (travelled, t));
                 (w0 < mark && w1 >= mark).then(|| t0 + (t1 - t0) * (mark - w0) / (w1 - w0))
             };
-            start.near = start.near.or(crossing(NEAR));
-            let far = crossing(FAR);
+            start.near = start.near.or(crossing(MOVED_FIRST_M));
+            let far = crossing(MOVED_LAST_M);
             start.newest = (travelled, t);
             if let (Some(near), Some(far)) = (start.near, far) {
                 let onset = 0.5 * (3.0 * near - far);
-                if (ONSET_MIN..=ONSET_MAX).contains(&onset) {
+                if (ONSET_MIN_S..=ONSET_MAX_S).contains(&onset) {
                     self.samples.add(onset.max(0.0));
                 }
-            } else if t < GIVEN_UP {
+            } else if t < WAITED_MAX_S {
                 self.start = Some(start);
             }
         }
         self.rests = match self.rests {
-            Some((rest, since)) if rest.distance(place) < STILL => Some((rest, since)),
+            Some((rest, since)) if rest.distance(place) < STILL_WITHIN_M => Some((rest, since)),
             _ => Some((place, at)),
         };
     }
 
     /// It is ordered to that place now, or to none.
     fn order(&mut self, now: Instant, at: Instant, place: Point<Field>, to: Option<Point<Field>>) {
-        let goes = to.is_some_and(|to| to.distance(place) > FAR_OFF);
+        let goes = to.is_some_and(|to| to.distance(place) > ORDER_DISTANCE_MIN_M);
         let Some((from, since)) = self.rests else { return };
         match (goes, self.start) {
             // It has stood still without an order to move for long enough, and now has one.
-            (true, None) if self.was_idle && at.since(since) >= RESTS_FOR => {
+            (true, None) if self.was_idle && at.since(since) >= STILL_FOR => {
                 self.start = Some(Start { ordered: now, from, newest: (0.0, signed(now, at)), near: None });
             }
             // The order is taken back.
@@ -123,23 +123,23 @@ fn signed(from: Instant, to: Instant) -> f32 {
 }
 
 /// Samples kept for each robot.
-const KEPT: usize = 15;
+const STARTS_KEPT: usize = 15;
 /// Number of starts needed.
-const LEAST: usize = 3;
+const STARTS_MIN: usize = 3;
 /// A robot whose place stays within this stands still, m: noise of 3 mm.
-const STILL: f32 = 0.008;
+const STILL_WITHIN_M: f32 = 0.008;
 /// ... and for this time.
-const RESTS_FOR: Duration = Duration::millis(300);
+const STILL_FOR: Duration = Duration::millis(300);
 /// Least distance of the place ordered at which it starts with its full acceleration, m.
-const FAR_OFF: f32 = 0.4;
+const ORDER_DISTANCE_MIN_M: f32 = 0.4;
 /// The distances moved from which the onset is computed, m: above the noise, and nine times that.
-const NEAR: f32 = 0.010;
-const FAR: f32 = 0.090;
+const MOVED_FIRST_M: f32 = 0.010;
+const MOVED_LAST_M: f32 = 0.090;
 /// Range of plausible latencies from order to motion, s; a clearly negative one is an error of the clocks.
-const ONSET_MIN: f32 = -0.03;
-const ONSET_MAX: f32 = 0.3;
+const ONSET_MIN_S: f32 = -0.03;
+const ONSET_MAX_S: f32 = 0.3;
 /// A robot that has not moved 90 mm by then is obstructed, s after the order.
-const GIVEN_UP: f32 = 0.8;
+const WAITED_MAX_S: f32 = 0.8;
 
 #[cfg(test)]
 mod tests {

@@ -117,7 +117,7 @@ fn a_snapshot_of_two_teams_goes_to_all_in_parts_and_each_command_to_its_robot() 
 }
 
 #[test]
-fn eleven_robots_are_displayed_twenty_two_in_parts_that_fit() {
+fn eleven_robots_receive_a_snapshot_of_twenty_two_in_parts_that_fit() {
     let mut radio = radio(Relay::No);
     let mut links: Vec<Link> = (0..11).map(robot).collect();
     for (n, link) in (0..).zip(&mut links) {
@@ -137,7 +137,7 @@ fn eleven_robots_are_displayed_twenty_two_in_parts_that_fit() {
 }
 
 #[test]
-fn a_robot_is_welcomed_when_its_telemetry_is_first_received_and_receives_everything_once_it_names_us() {
+fn a_robot_is_welcomed_at_its_first_telemetry_and_gets_all_once_it_names_our_epoch() {
     let mut radio = radio(Relay::No);
     let mut link = robot(2);
     assert!(radio.handle_packet(ms(1), &link.seal(&beacon())).is_err(), "a beacon proves nothing");
@@ -386,7 +386,7 @@ fn a_robot_that_falls_silent_is_not_present_and_foreign_frames_are_interference(
 }
 
 #[test]
-fn more_robots_than_fit_are_left_out_and_no_one_fetching_is_no_harm() {
+fn robots_beyond_the_capacity_are_left_out_and_packets_not_fetched_are_bounded() {
     let mut radio = radio(Relay::No);
     let commands: Vec<HostCommand> = (0..16).map(stand).collect();
     for n in 0..16 {
@@ -402,7 +402,7 @@ fn more_robots_than_fit_are_left_out_and_no_one_fetching_is_no_harm() {
 }
 
 #[test]
-fn robots_are_told_their_limits_one_with_each_snapshot_and_only_once_there_are_some() {
+fn limits_go_to_one_robot_with_each_snapshot_and_only_if_some_are_set() {
     let mut radio = radio(Relay::No);
     let mut links = [robot(0), robot(3)];
     for (link, n) in links.iter_mut().zip([0, 3]) {

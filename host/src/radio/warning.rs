@@ -8,14 +8,14 @@ use protocol::host::Telemetry;
 use protocol::{Duration, Instant, RobotId, TeamId};
 
 /// Time after which a count restarts.
-const WINDOW: Duration = Duration::millis(1_000);
+const COUNT_WINDOW: Duration = Duration::millis(1_000);
 /// A matter is over when no frame of it came for this time.
-const OVER: Duration = Duration::millis(2_000);
-/// Number of frames within [`WINDOW`] that is no accident: a line that corrupts one bit in 10⁵ breaks fewer.
-const MANY: u32 = 5;
+const QUIET_FOR: Duration = Duration::millis(2_000);
+/// Number of frames within [`COUNT_WINDOW`] that is no accident: a line that corrupts one bit in 10⁵ breaks fewer.
+const FRAMES_MANY: u32 = 5;
 /// After every start senders may be unauthenticated for this time, until each has received each other's epoch
 /// (handshakes every 500 ms, some lost).
-const HANDSHAKES: Duration = Duration::millis(3_000);
+const HANDSHAKE_TIME: Duration = Duration::millis(3_000);
 
 /// A cause that prevents communication between a robot and this host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -125,7 +125,7 @@ impl fmt::Display for RadioWarning {
 /// Frames of a kind, counted as they come.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Rising {
-    /// The first frame after a pause of [`OVER`].
+    /// The first frame after a pause of [`QUIET_FOR`].
     since: Option<Instant>,
     window: Option<Instant>,
     latest: Option<Instant>,
@@ -138,12 +138,12 @@ impl Rising {
         if frames == 0 {
             return;
         }
-        if self.latest.is_none_or(|latest| now.since(latest) >= OVER) {
+        if self.latest.is_none_or(|latest| now.since(latest) >= QUIET_FOR) {
             self.since = Some(now);
         }
         let age = self.window.map(|start| now.since(start));
-        if age.is_none_or(|age| age >= WINDOW) {
-            self.before = if age.is_some_and(|age| age < WINDOW * 2) { self.count } else { 0 };
+        if age.is_none_or(|age| age >= COUNT_WINDOW) {
+            self.before = if age.is_some_and(|age| age < COUNT_WINDOW * 2) { self.count } else { 0 };
             (self.window, self.count) = (Some(now), 0);
         }
         self.count = self.count.saturating_add(frames);
@@ -151,7 +151,8 @@ impl Rising {
     }
 
     fn goes_on(&self, now: Instant) -> bool {
-        self.latest.is_some_and(|latest| now.since(latest) < OVER) && self.count.max(self.before) >= MANY
+        self.latest.is_some_and(|latest| now.since(latest) < QUIET_FOR)
+            && self.count.max(self.before) >= FRAMES_MANY
     }
 
     fn goes_on_for(&self, now: Instant, duration: Duration) -> bool {
@@ -216,12 +217,12 @@ impl Refusals {
     /// The warnings that apply now, for a host of that epoch.
     pub(super) fn warnings(&self, now: Instant, epoch: u32) -> impl Iterator<Item = RadioWarning> {
         let of_robot = move |(robot, known): (RobotId, &OfRobot)| {
-            let later = known.follows.filter(|(host, at)| *host > epoch && now.since(*at) < OVER);
+            let later = known.follows.filter(|(host, at)| *host > epoch && now.since(*at) < QUIET_FOR);
             let later = later.map(|(host, _)| RadioWarning::LaterHost(robot, host));
             let whys = RefusalReason::ALL.into_iter().zip(known.rising).filter(move |(why, rising)| {
                 // That it refuses this host's epoch is reported already.
                 match why {
-                    RefusalReason::Unauthenticated => rising.goes_on_for(now, HANDSHAKES),
+                    RefusalReason::Unauthenticated => rising.goes_on_for(now, HANDSHAKE_TIME),
                     RefusalReason::Epoch => rising.goes_on(now) && later.is_none(),
                     _ => rising.goes_on(now),
                 }

@@ -22,7 +22,7 @@ use crate::referee::SenderAddress;
 
 /// Bytes that wait at most: 16 s of a match (four cameras, eleven robots: 0.5 MB/s), which bounds the memory
 /// used.
-const QUEUE_MAX: usize = 8 << 20;
+const QUEUE_BYTES_MAX: usize = 8 << 20;
 /// What an entry takes beside its bytes.
 const ENTRY_LEN: usize = 96;
 
@@ -113,7 +113,7 @@ impl Entry {
 impl BackgroundRecorder {
     /// Takes over a recorder; at most 8 MiB wait for it.
     pub fn start(recorder: Recorder) -> io::Result<Self> {
-        Self::with_room(recorder, QUEUE_MAX)
+        Self::with_room(recorder, QUEUE_BYTES_MAX)
     }
 
     fn with_room(recorder: Recorder, room: usize) -> io::Result<Self> {

@@ -17,16 +17,16 @@ pub(super) fn write(base: CaseBase<'_>) -> Option<String> {
 pub(super) fn read(digits: &str) -> Result<CaseBase<'static>, String> {
     let table = hex::decode(digits)?;
     // A table is read where it lies, from a multiple of 4 on.
-    let mut bytes = vec![0; ALIGNED];
+    let mut bytes = vec![0; TABLE_ALIGNMENT];
     bytes.extend(&table);
     let kept: &'static mut [u8] = Vec::leak(bytes);
-    let start = kept.as_ptr().align_offset(ALIGNED) % ALIGNED;
-    kept.copy_within(ALIGNED.., start);
+    let start = kept.as_ptr().align_offset(TABLE_ALIGNMENT) % TABLE_ALIGNMENT;
+    kept.copy_within(TABLE_ALIGNMENT.., start);
     CaseBase::from_bytes(&kept[start..start + table.len()]).map_err(|error| error.to_string())
 }
 
 /// A table begins at a multiple of this many bytes.
-const ALIGNED: usize = 4;
+const TABLE_ALIGNMENT: usize = 4;
 /// Longest table that is written, bytes: with it a header of two hosts is shorter than 1 MiB.
 const TABLE_LEN_MAX: usize = 400_000;
 

@@ -16,9 +16,9 @@ use serde::{Deserialize, Serialize};
 use super::case_table;
 use crate::HostSettings;
 use crate::config::{DriveSettings, KICK_RANGE};
-use crate::proposal::cases_of;
 use crate::radio::{RadioSettings, Relay};
 use crate::referee::{OnSilence, SourcePin};
+use crate::strategy::cases_of;
 use crate::strategy::{Tactics, Team};
 
 /// The header of a trace.
@@ -380,7 +380,7 @@ mod tests {
     }
 
     #[test]
-    fn hosts_of_old_recordings_played_no_tactics_and_those_of_new_ones_are_reported() {
+    fn an_old_recordings_header_means_no_tactics_and_a_new_one_names_them() {
         let mut settings = HostSettings::new(Colour::Blue, League::DivisionB, 1);
         settings.tactics = Tactics { threats: true, ..Tactics::NONE };
         let reported = serde_json::to_string(&HostHeader::of(&settings, Instant(0))).unwrap();
@@ -392,7 +392,7 @@ mod tests {
     }
 
     #[test]
-    fn whoever_played_the_bridge_between_the_papers_says_by_which_cases_and_others_do_not_do() {
+    fn a_header_names_its_case_base_only_where_the_bridge_was_played() {
         let mut settings = HostSettings::new(Colour::Blue, League::DivisionB, 1);
         settings.tactics = Tactics { bridge: false, ..Tactics::ALL };
         assert_eq!(HostHeader::of(&settings, Instant(0)).cases, None);

@@ -25,9 +25,9 @@ const MAGIC: &[u8; 12] = b"ONETWO_TRACE";
 /// The version of the format.
 pub const VERSION: u32 = 2;
 /// The oldest version that is read.
-const OLDEST: u32 = 1;
+const OLDEST_VERSION: u32 = 1;
 /// Version 1 did not store a referee's address.
-const WITH_SENDER: u32 = 2;
+const SENDER_SINCE_VERSION: u32 = 2;
 /// The longest record, bytes: a datagram and its sender.
 pub const RECORD_LEN_MAX: usize = 65_536 + SenderAddress::LEN;
 /// The longest header, bytes.
@@ -225,7 +225,7 @@ impl fmt::Display for TraceError {
             Self::Version(seen) => {
                 write!(
                     f,
-                    "a trace of version {seen}, this program reads {OLDEST} to {VERSION}: use the program that wrote it"
+                    "a trace of version {seen}, this program reads {OLDEST_VERSION} to {VERSION}: use the program that wrote it"
                 )
             }
             Self::Header => f.write_str("its header is cut or damaged: the recording cannot be identified"),
@@ -254,7 +254,7 @@ impl<R: Read> Reader<R> {
         let mut label = [0; 4];
         from.read_exact(&mut label)?;
         let version = u32::from_le_bytes(label);
-        if !(OLDEST..=VERSION).contains(&version) {
+        if !(OLDEST_VERSION..=VERSION).contains(&version) {
             return Err(TraceError::Version(version));
         }
         from.read_exact(&mut label)?;
@@ -310,7 +310,7 @@ impl<R: Read> Reader<R> {
         self.last = Some(at);
         let from = match kind {
             RecordKind::Lost => return Err(TraceEnd::Lost { at }),
-            RecordKind::Referee if self.version >= WITH_SENDER => take_sender(&mut bytes)
+            RecordKind::Referee if self.version >= SENDER_SINCE_VERSION => take_sender(&mut bytes)
                 .ok_or_else(|| broken(format!("a referee's record of {length} bytes has no sender")))?,
             _ => SenderAddress::INTERNAL,
         };

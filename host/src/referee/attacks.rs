@@ -127,7 +127,7 @@ fn a_stamp_ahead_of_its_arrival_never_becomes_the_newest() {
 }
 
 #[test]
-fn finding_1_a_clock_that_steps_does_not_delay_halt_and_is_followed_within_the_window() {
+fn finding_1_a_stepping_clock_delays_no_halt_and_is_followed_within_the_window() {
     for step in
         [-3_600 * S as i64, -4_000_000, -310_000, -250_000, 250_000, 310_000, 4_000_000, 3_600 * S as i64]
     {
@@ -161,7 +161,7 @@ fn finding_1_a_clock_that_steps_does_not_delay_halt_and_is_followed_within_the_w
 }
 
 #[test]
-fn finding_2_who_speaks_first_every_2_8_s_does_not_keep_halt_out() {
+fn finding_2_a_source_that_returns_every_2_8_s_does_not_hide_halt() {
     let mut listener = listener(None);
     let evil = Program::new("evil", 66);
     // It sends before the controller does, and then every 2.8 s; HALT for 17.5 s at 40 Hz.
@@ -296,7 +296,7 @@ fn one_controller_on_two_networks_is_followed_without_a_stop() {
 }
 
 #[test]
-fn a_late_copy_of_an_old_stop_stands_in_the_way_once_and_briefly() {
+fn a_late_copy_of_an_old_stop_restrains_once_and_briefly() {
     let mut listener = listener(None);
     let genuine = Program::new("gc", 1);
     let receive = |listener: &mut Listener, sent: u64, now: u64, command, counter| {
@@ -364,7 +364,7 @@ fn a_pinned_referee_is_obeyed_alone_and_the_other_is_reported() {
 }
 
 #[test]
-fn a_second_source_that_halts_for_ever_halts_us_is_reported_and_leaves_through_stop() {
+fn a_second_source_that_halts_for_ever_halts_us_is_reported_and_ends_with_a_stop() {
     let mut listener = listener(None);
     let (mut genuine, mut other) = (Program::new("gc", 1), Program::new("forgotten", 2));
     send_packet(&mut listener, &mut genuine, 0, Wire::Stop);

@@ -10,7 +10,7 @@ use ssl::referee::{HullColor, MatchType, Referee, TeamInfo};
 use super::description;
 
 /// No field reaches farther from its centre than this, m: a designated position beyond it is refused.
-const FARTHEST: f32 = 20.0;
+const POSITION_MAX_M: f32 = 20.0;
 
 /// The game by the referee's packets and the ball's motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -119,7 +119,8 @@ impl Game {
         self.action_time_left = packet.current_action_time_remaining.map(seconds);
         self.designated = packet.designated_position.map(|at| Point::new(place(at.x), place(at.y)));
         // Not finite fails the comparison too.
-        self.designated = self.designated.filter(|at| at.x().abs() < FARTHEST && at.y().abs() < FARTHEST);
+        self.designated =
+            self.designated.filter(|at| at.x().abs() < POSITION_MAX_M && at.y().abs() < POSITION_MAX_M);
         let goal = |positive| if positive { GoalEnd::Positive } else { GoalEnd::Negative };
         self.blue_goal = packet.blue_team_on_positive_half.map(goal).or(self.blue_goal);
         self.match_type = packet.match_type();

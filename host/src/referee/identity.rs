@@ -11,7 +11,7 @@ use std::fmt;
 use std::net::{IpAddr, Ipv6Addr, SocketAddr};
 
 /// Longest part of a foreign identifier that is printed, characters: a controller's own is a UUID of 36.
-const DISPLAYED_MAX: usize = 48;
+const PRINTED_CHARS_MAX: usize = 48;
 
 /// The network address of a packet's sender. IPv4-mapped IPv6 addresses are stored as IPv4; scope and flow
 /// are dropped.
@@ -87,7 +87,7 @@ impl fmt::Display for SourceKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.identifier {
             Some(identifier) => {
-                write!(f, "\"{}\" at {}", foreign::excerpt(identifier, DISPLAYED_MAX), self.address)
+                write!(f, "\"{}\" at {}", foreign::excerpt(identifier, PRINTED_CHARS_MAX), self.address)
             }
             None => write!(f, "a referee without identifier at {}", self.address),
         }

@@ -49,7 +49,7 @@ fn play(
 }
 
 #[test]
-fn two_seconds_without_a_referee_halt_the_robots_and_a_stop_of_two_seconds_follows_when_it_is_back() {
+fn two_silent_seconds_of_the_referee_halt_and_its_return_stops_for_two_seconds() {
     // The last packet is that of 2.975 s.
     let seen = play(OnSilence::Halt, 3 * S..8 * S, false);
     for (now, phase, description) in &seen {
@@ -76,7 +76,7 @@ fn a_pause_of_less_than_two_seconds_changes_nothing() {
 }
 
 #[test]
-fn where_it_is_configured_the_last_command_stands_and_the_silence_is_reported_all_the_same() {
+fn if_configured_the_last_command_stands_and_the_silence_is_still_reported() {
     let seen = play(OnSilence::GoOn, 3 * S..8 * S, false);
     assert!(seen.iter().all(|(_, phase, _)| *phase == Phase::Run));
     let reported: Vec<_> = seen.iter().filter(|(_, _, description)| !description.is_empty()).collect();

@@ -9,7 +9,7 @@
 //! HALT and STOP out of order also restrain, for [`HOLD`] from their arrival, without changing the stored
 //! game. That is safe in both directions: a genuine HALT whose stamp seems old is repeated every 25 ms and
 //! keeps the robots halted, while a late copy of an old STOP delays a newer command once, by 0.3 s. Copies
-//! from a second network are recognised by stamp, command and counter for [`COPY`] and restrain nothing.
+//! from a second network are recognised by stamp, command and counter for [`COPY_WITHIN`] and restrain nothing.
 //!
 //! A clock or a counter that steps is followed when its packets agree with each other for [`CONFIRM`] and
 //! none came in order meanwhile: two programs with the same identity never reach that, and only HALT and STOP
@@ -28,18 +28,18 @@ use super::stamps::{StampClock, WINDOW};
 use super::verdict::{Doubt, Taken};
 use super::{Game, SILENCE, description};
 
-/// Time for which HALT or STOP out of order restrains: 12 periods of the controller, and twice `COPY`, so
+/// Time for which HALT or STOP out of order restrains: 12 periods of the controller, and twice `COPY_WITHIN`, so
 /// that a referee whose stamps stay the same restrains without a gap.
 pub const HOLD: Duration = WINDOW;
 /// A clock or counter that stepped is followed after this: 8 packets of the controller, and within [`WINDOW`]
 /// of the step.
 pub const CONFIRM: Duration = Duration::millis(200);
 /// Packets that are not in order are reported for this time after the last one, and count as one period.
-const REPORTED: Duration = SILENCE;
+const DISORDER_REPORTED_FOR: Duration = SILENCE;
 /// The same packet once more within this time is a copy.
-const COPY: Duration = Duration::millis(150);
-/// Number of packets kept to recognise copies: [`COPY`] at ten times the controller's rate.
-const REMEMBERED: usize = 64;
+const COPY_WITHIN: Duration = Duration::millis(150);
+/// Number of packets kept to recognise copies: [`COPY_WITHIN`] at ten times the controller's rate.
+const PACKETS_KEPT: usize = 64;
 /// The old commands with which the controller announces a goal, once each.
 const GOALS: [i32; 2] = [Wire::GoalYellow as i32, Wire::GoalBlue as i32];
 /// A command without a time, as the controller's first HALT, counts as new, µs.
@@ -169,7 +169,7 @@ impl Source {
             candidate: None,
             stop_until: Instant(0),
             halt_until: Instant(0),
-            recent: VecDeque::with_capacity(REMEMBERED),
+            recent: VecDeque::with_capacity(PACKETS_KEPT),
         };
         let mut taken = Taken::default();
         source.remember(newest, now);
@@ -181,7 +181,7 @@ impl Source {
     /// A packet of this source that came at `now`.
     pub(super) fn receive(&mut self, packet: &Referee, now: Instant, ball: Option<Point<Field>>) -> Outcome {
         let came = Stamped::of(packet);
-        if self.recent.iter().any(|(known, at)| *known == came && now.since(*at).0 < COPY.0) {
+        if self.recent.iter().any(|(known, at)| *known == came && now.since(*at).0 < COPY_WITHIN.0) {
             return Outcome::Copy;
         }
         self.remember(came, now);
@@ -189,7 +189,8 @@ impl Source {
         let mut taken = Taken::default();
         if let Some(doubt) = self.doubt(came, now) {
             if !self.confirmed(came, doubt, now) {
-                let goes_on = self.doubted.filter(|before| now.since(before.last).0 < REPORTED.0);
+                let goes_on =
+                    self.doubted.filter(|before| now.since(before.last).0 < DISORDER_REPORTED_FOR.0);
                 self.doubted =
                     Some(Doubted { doubt, first: goes_on.map_or(now, |before| before.first), last: now });
                 return Outcome::Doubted { doubt, restrains: self.restrain(packet, now) };
@@ -227,7 +228,8 @@ impl Source {
     /// that were overtaken, as is normal with two networks, nor for a counter that is contradicted for less
     /// than [`CONFIRM`], as by the league's controller when it resets a match.
     pub(super) fn reportable_doubt(&self, now: Instant) -> Option<Doubt> {
-        let Doubted { doubt, first, last } = self.doubted.filter(|one| now.since(one.last).0 < REPORTED.0)?;
+        let Doubted { doubt, first, last } =
+            self.doubted.filter(|one| now.since(one.last).0 < DISORDER_REPORTED_FOR.0)?;
         match doubt {
             Doubt::Old(_) => None,
             Doubt::Counter if last.since(first).0 <= CONFIRM.0 => None,
@@ -325,7 +327,7 @@ impl Source {
     }
 
     fn remember(&mut self, came: Stamped, now: Instant) {
-        if self.recent.len() == REMEMBERED {
+        if self.recent.len() == PACKETS_KEPT {
             self.recent.pop_front();
         }
         self.recent.push_back((came, now));

@@ -289,7 +289,7 @@ fn a_command_without_a_meaning_is_taken_for_halt() {
 }
 
 #[test]
-fn who_joins_in_the_middle_knows_the_age_of_the_command() {
+fn a_host_that_starts_late_knows_the_age_of_the_command() {
     // NORMAL_START was given 8 s before the first packet received: 2 s are left until the ball must be in
     // play.
     let mut listener = listener();
@@ -310,7 +310,7 @@ fn who_joins_in_the_middle_knows_the_age_of_the_command() {
 }
 
 #[test]
-fn what_follows_is_reported_in_phases() {
+fn the_next_command_gives_the_next_phase() {
     let mut listener = listener();
     let mut stop = packet(0, Wire::Stop, 1);
     stop.next_command = Some(Wire::DirectFreeBlue as i32);
@@ -335,7 +335,7 @@ fn a_keeper_no_robot_can_be_is_none() {
 }
 
 #[test]
-fn a_side_once_reported_stands_when_a_packet_leaves_it_out() {
+fn a_side_once_received_holds_when_a_packet_omits_it() {
     let mut listener = listener();
     assert_eq!(listener.game().own_goal(B), None);
     let mut reported = packet(0, Wire::Stop, 1);

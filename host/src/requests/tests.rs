@@ -30,7 +30,7 @@ fn asked(requests: &mut Requests, view: &mut View, seconds: f32) -> Vec<TeamPort
 }
 
 #[test]
-fn a_keeper_that_is_gone_is_replaced_by_the_robot_nearest_to_our_goal_once_the_ball_is_out_of_play() {
+fn a_missing_keeper_is_replaced_by_the_robot_nearest_to_our_goal_out_of_play() {
     let mut view = stopped();
     let mut requests = Requests::default();
     assert_eq!(asked(&mut requests, &mut view, 60.0), [], "it is there");
@@ -47,7 +47,7 @@ fn a_keeper_that_is_gone_is_replaced_by_the_robot_nearest_to_our_goal_once_the_b
 }
 
 #[test]
-fn a_substitution_is_wanted_when_a_robot_too_many_stays_on_the_field_and_not_while_it_leaves() {
+fn a_surplus_robot_that_stays_needs_a_substitution_and_one_that_leaves_does_not() {
     let mut view = stopped().allowing(3);
     let mut requests = Requests::default();
     assert_eq!(asked(&mut requests, &mut view, 11.0), []);
@@ -63,7 +63,7 @@ fn a_substitution_is_wanted_when_a_robot_too_many_stays_on_the_field_and_not_whi
 }
 
 #[test]
-fn a_substitution_that_no_one_carries_out_is_asked_for_once_and_never_where_it_is_a_foul() {
+fn an_ignored_substitution_is_requested_once_and_never_where_it_is_a_foul() {
     let mut view = stopped().allowing(3);
     let mut requests = Requests::default();
     assert_eq!(asked(&mut requests, &mut view, 13.0), [TeamPortRequest::Substitute(true)]);

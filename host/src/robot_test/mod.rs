@@ -201,17 +201,17 @@ impl RobotTest {
     fn look(&mut self, view: &View) {
         let Some(ball) = view.ball else { return };
         let speed = ball.velocity.norm();
-        if !self.rolls && speed > KICKED {
+        if !self.rolls && speed > KICKED_SPEED_MIN_M_S {
             (self.rolls, self.target) = (true, None);
             self.tried += 1;
         }
-        self.rolls &= speed > RESTS;
+        self.rolls &= speed > RESTING_SPEED_MAX_M_S;
     }
 
     /// The same target until the ball lies elsewhere.
     fn target_from(&mut self, view: &View, robot: RobotId, ball: Point<Attack>) -> Point<Attack> {
         if let Some([from, to]) = self.target
-            && from.distance(ball) < SAME_PLACE
+            && from.distance(ball) < SAME_PLACE_WITHIN_M
         {
             return to;
         }
@@ -242,11 +242,11 @@ const KICKS_MOST: u8 = 15;
 const SPEEDS_CM_S: [u16; 4] = [320, 260, 380, 440];
 /// A ball faster than this was kicked, m/s: the weakest kicker gives 1.04, and a ball at the dribbler of a
 /// robot that lines up moves slower.
-const KICKED: f32 = 0.9;
+const KICKED_SPEED_MIN_M_S: f32 = 0.9;
 /// A ball slower than this is fetched, m/s.
-const RESTS: f32 = 0.3;
+const RESTING_SPEED_MAX_M_S: f32 = 0.3;
 /// A ball that has moved less lies where it was, m: the robot pushes it while it lines up.
-const SAME_PLACE: f32 = 0.4;
+const SAME_PLACE_WITHIN_M: f32 = 0.4;
 
 /// Whether the ball lies outside the field or in a defence area.
 fn is_out_of_reach(view: &View, ball: Point<Attack>) -> bool {

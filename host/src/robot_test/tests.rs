@@ -96,7 +96,7 @@ fn a_ball_that_the_robot_may_not_fetch_is_asked_for_while_all_stand() {
 }
 
 #[test]
-fn the_rules_hold_and_what_is_missing_is_said() {
+fn a_kick_test_keeps_the_rules_and_names_what_it_waits_for() {
     let state = |view: &View| {
         let mut test = begun();
         let orders = test.plan(view, usual(view));

@@ -11,9 +11,9 @@ use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
 /// The file's name in the directory of [`state_directory`].
-const FILE: &str = "host-epoch";
+const FILE_NAME: &str = "host-epoch";
 /// A number of 32 bits has ten digits.
-const FILE_LEN_MAX: u64 = 16;
+const FILE_BYTES_MAX: u64 = 16;
 
 /// An epoch, with a warning if there is one.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -36,7 +36,7 @@ pub fn state_directory() -> Option<PathBuf> {
 pub fn next(directory: Option<&Path>, calendar: u32) -> Epoch {
     let kept = directory.ok_or_else(|| "there is neither XDG_STATE_HOME nor HOME".to_owned());
     let kept = kept.and_then(|directory| {
-        take(directory, calendar).map_err(|error| format!("{}: {error}", directory.join(FILE).display()))
+        take(directory, calendar).map_err(|error| format!("{}: {error}", directory.join(FILE_NAME).display()))
     });
     match kept {
         Ok(epoch) if epoch > calendar => {
@@ -60,9 +60,9 @@ pub fn next(directory: Option<&Path>, calendar: u32) -> Epoch {
 
 fn take(directory: &Path, calendar: u32) -> io::Result<u32> {
     fs::create_dir_all(directory)?;
-    let lock = File::create(directory.join(format!("{FILE}.lock")))?;
+    let lock = File::create(directory.join(format!("{FILE_NAME}.lock")))?;
     lock.lock()?;
-    let path = directory.join(FILE);
+    let path = directory.join(FILE_NAME);
     let last = read(&path)?;
     let epoch = match last {
         Some(last) => calendar.max(last.checked_add(1).ok_or_else(|| {
@@ -72,7 +72,7 @@ fn take(directory: &Path, calendar: u32) -> io::Result<u32> {
         })?),
         None => calendar.max(1),
     };
-    let new = directory.join(format!("{FILE}.new"));
+    let new = directory.join(format!("{FILE_NAME}.new"));
     let mut file = File::create(&new)?;
     writeln!(file, "{epoch}")?;
     file.sync_all()?;
@@ -90,7 +90,7 @@ fn read(path: &Path) -> io::Result<Option<u32>> {
         return Err(io::Error::other("it is no regular file; delete it"));
     }
     let mut text = String::new();
-    file.take(FILE_LEN_MAX).read_to_string(&mut text)?;
+    file.take(FILE_BYTES_MAX).read_to_string(&mut text)?;
     text.trim()
         .parse()
         .map(Some)
@@ -127,7 +127,7 @@ mod tests {
         let behind = epoch(500);
         assert_eq!(behind.epoch, 2_001);
         assert!(behind.warning.is_some_and(|description| description.contains("1501 s behind")), "told");
-        assert_eq!(fs::read_to_string(directory.0.join(FILE)).unwrap(), "2001\n");
+        assert_eq!(fs::read_to_string(directory.0.join(FILE_NAME)).unwrap(), "2001\n");
     }
 
     #[test]
@@ -143,20 +143,20 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_holds_no_epoch_and_a_directory_that_cannot_be_are_reported_and_the_host_starts() {
+    fn the_host_starts_and_reports_a_file_without_epoch_or_an_impossible_directory() {
         let directory = Directory::new("bad");
         fs::create_dir_all(&directory.0).unwrap();
-        fs::write(directory.0.join(FILE), "yesterday").unwrap();
+        fs::write(directory.0.join(FILE_NAME), "yesterday").unwrap();
         let reported = |directory| {
             let Epoch { epoch, warning } = next(directory, 1_000);
             assert_eq!(epoch, 1_000);
             warning.unwrap()
         };
         assert!(reported(Some(&directory.0)).contains("it holds no epoch; delete it"));
-        let no_directory = directory.0.join(FILE);
+        let no_directory = directory.0.join(FILE_NAME);
         assert!(reported(Some(&no_directory)).contains("cannot be kept"));
         assert!(reported(None).contains("XDG_STATE_HOME"));
-        fs::write(directory.0.join(FILE), u32::MAX.to_string()).unwrap();
+        fs::write(directory.0.join(FILE_NAME), u32::MAX.to_string()).unwrap();
         assert!(reported(Some(&directory.0)).contains("largest"));
     }
 }

@@ -14,11 +14,11 @@ use super::LinkError;
 use super::udp::bind;
 
 /// A robot's process that was silent for this time has ended.
-const GONE: Duration = Duration::from_secs(1);
+const ROBOT_SILENCE_MAX: Duration = Duration::from_secs(1);
 /// Time a thread waits between checks whether it shall end.
-const LOOK: Duration = Duration::from_millis(50);
+const STOP_CHECK_EVERY: Duration = Duration::from_millis(50);
 /// The longest datagram of the simulation protocol that is forwarded.
-const LEN_MAX: usize = 8192;
+const DATAGRAM_LEN_MAX: usize = 8192;
 
 /// Two threads between robots' processes and a simulator; they end when this is dropped.
 #[derive(Debug)]
@@ -37,7 +37,7 @@ impl Hub {
         let inner = Arc::new(UdpSocket::bind("127.0.0.1:0").map_err(system)?);
         let outer = Arc::new(bind(simulator)?);
         for socket in [&inner, &outer] {
-            socket.set_read_timeout(Some(LOOK)).map_err(system)?;
+            socket.set_read_timeout(Some(STOP_CHECK_EVERY)).map_err(system)?;
         }
         let address = inner.local_addr().map_err(system)?;
         let (end, known) = (Arc::new(AtomicBool::new(false)), Known::default());
@@ -90,7 +90,7 @@ fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> Result<JoinHandle<
 }
 
 fn pass(socket: &UdpSocket, end: &AtomicBool, mut to: impl FnMut(&[u8], SocketAddr)) {
-    let mut bytes = [0; LEN_MAX];
+    let mut bytes = [0; DATAGRAM_LEN_MAX];
     while !end.load(Ordering::Relaxed) {
         // A time-out, or a receiver that was not running: try again.
         if let Ok((len, from)) = socket.recv_from(&mut bytes) {
@@ -102,7 +102,7 @@ fn pass(socket: &UdpSocket, end: &AtomicBool, mut to: impl FnMut(&[u8], SocketAd
 fn remember(known: &Known, from: SocketAddr) {
     let now = Instant::now();
     let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
-    known.retain(|(robot, received)| *robot != from && now.duration_since(*received) < GONE);
+    known.retain(|(robot, received)| *robot != from && now.duration_since(*received) < ROBOT_SILENCE_MAX);
     known.push((from, now));
 }
 

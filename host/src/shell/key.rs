@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_key_is_reported_without_telling_what_it_is() {
+    fn an_invalid_key_is_refused_without_printing_it() {
         assert_eq!(parse("00"), Err("2 digits".into()));
         assert_eq!(parse("123"), Err("3 digits".into()));
         assert_eq!(parse("0001secret"), Err("something that is no hexadecimal digit at place 5".into()));

@@ -2,7 +2,7 @@
 //!
 //! Bytes that the system has taken can neither be replaced nor overtaken, and their number is not available
 //! on every system (a pseudo terminal and some USB adapters always report 0). So the link hands over no more
-//! than the line carries at its rate: at most [`LEAD`] waits behind it, and HALT discards even that.
+//! than the line carries at its rate: at most [`BUFFERED_TIME`] waits behind it, and HALT discards even that.
 
 use std::io;
 use std::path::Path;
@@ -20,9 +20,9 @@ use crate::radio::{Relay, To};
 const WRITE_MAX: Duration = Duration::from_millis(10);
 /// Transmission time kept in the system's buffer: twice the period in which the link's thread checks, so that
 /// the line does not pause. At 115,200 bit/s these are 35 bytes.
-const LEAD: Duration = Duration::from_millis(3);
+const BUFFERED_TIME: Duration = Duration::from_millis(3);
 /// Interval of reports that the line takes less than its rate.
-const STUCK_EVERY: Duration = Duration::from_secs(10);
+const STUCK_REPORT_EVERY: Duration = Duration::from_secs(10);
 
 /// A base station at a serial line.
 #[derive(Debug)]
@@ -137,7 +137,7 @@ impl Link for SerialLink {
     }
 
     fn has_room(&mut self) -> bool {
-        self.busy_until.saturating_duration_since(Instant::now()) <= LEAD
+        self.busy_until.saturating_duration_since(Instant::now()) <= BUFFERED_TIME
     }
 
     fn discard(&mut self) {
@@ -154,7 +154,7 @@ impl Link for SerialLink {
 
     fn notice(&mut self) -> Option<String> {
         let (stuck, reported) = self.stuck;
-        if stuck == 0 || reported.is_some_and(|at| at.elapsed() < STUCK_EVERY) {
+        if stuck == 0 || reported.is_some_and(|at| at.elapsed() < STUCK_REPORT_EVERY) {
             return None;
         }
         self.stuck = (0, Some(Instant::now()));

@@ -24,13 +24,13 @@ use crate::radio::{Relay, To};
 
 /// A robot that ended is started again after this time; its next epoch is then greater, as epochs count
 /// seconds.
-const RESTART: Duration = Duration::from_millis(1_100);
-/// A robot that ended this often in a row within [`SHORT`] is not restarted.
-const GIVE_UP: u32 = 5;
+const RESTART_AFTER: Duration = Duration::from_millis(1_100);
+/// A robot that ended this often in a row within [`FAILED_WITHIN`] is not restarted.
+const FAILURES_MAX: u32 = 5;
 /// A process that ran for less than this counts as failed.
-const SHORT: Duration = Duration::from_secs(3);
+const FAILED_WITHIN: Duration = Duration::from_secs(3);
 /// Interval of checks whether all processes run.
-const LOOK: Duration = Duration::from_millis(100);
+const CHECK_EVERY: Duration = Duration::from_millis(100);
 
 /// Which robots to start, and how.
 #[derive(Clone, Debug)]
@@ -139,7 +139,7 @@ impl SimLink {
     /// Detects processes that have ended, and starts those that are due.
     fn look(&mut self) -> Result<(), LinkError> {
         let now = Instant::now();
-        if now.duration_since(self.looked) < LOOK {
+        if now.duration_since(self.looked) < CHECK_EVERY {
             return Ok(());
         }
         self.looked = now;
@@ -152,17 +152,17 @@ impl SimLink {
                         Ok(Some(status)) => status.to_string(),
                         Err(error) => format!("it cannot be watched: {error}"),
                     };
-                    let short = now.duration_since(robot.since) < SHORT;
+                    let short = now.duration_since(robot.since) < FAILED_WITHIN;
                     robot.short_lives = if short { robot.short_lives + 1 } else { 0 };
                     (robot.process, robot.address, robot.since) = (None, None, now);
-                    if robot.short_lives >= GIVE_UP {
+                    if robot.short_lives >= FAILURES_MAX {
                         let times = robot.short_lives;
                         return Err(LinkError::GivesUp { robot: robot.id.number(), how, times });
                     }
                     self.notices
                         .push(format!("virtual robot {} ended ({how}); it is started again", robot.id));
                 }
-                None if now.duration_since(robot.since) >= RESTART => {
+                None if now.duration_since(robot.since) >= RESTART_AFTER => {
                     robot.restarts += 1;
                     self.boot(place)?;
                 }
@@ -279,15 +279,15 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_ends_again_and_again_is_given_up_and_reported_of() {
+    fn a_robot_process_that_keeps_failing_is_given_up_and_reported() {
         let mut link = SimLink::start(settings("false", &[0])).unwrap();
         let mut error = None;
         for _ in 0..200 {
             // The second between two starts need not pass in a test.
             for robot in &mut link.robots {
-                robot.since -= RESTART;
+                robot.since -= RESTART_AFTER;
             }
-            link.looked -= LOOK;
+            link.looked -= CHECK_EVERY;
             std::thread::sleep(Duration::from_millis(5));
             if let Err(why) = link.look() {
                 error = Some(why.to_string());

@@ -40,7 +40,7 @@ impl StrategyProcess {
     /// A starter of this command for matches in the simulator, which wait for the answer.
     pub fn starter(command: &str) -> StrategyStarter {
         let own = command.to_owned();
-        StrategyStarter::new(command, move || Ok(Box::new(Self::start(&own, PATIENCE)?)))
+        StrategyStarter::new(command, move || Ok(Box::new(Self::start(&own, ANSWER_WAIT_MAX)?)))
     }
 
     /// How often it was started.
@@ -93,7 +93,7 @@ impl Drop for Running {
 impl StrategyLink for StrategyProcess {
     fn answer(&mut self, view: &str) -> Option<String> {
         if self.running.is_none() && Instant::now() >= self.again {
-            self.again = Instant::now() + AGAIN_AFTER;
+            self.again = Instant::now() + RESTART_AFTER;
             self.running = Running::start(&self.command).ok();
             self.starts += u32::from(self.running.is_some());
         }
@@ -110,7 +110,7 @@ fn read(output: impl io::Read, send: &SyncSender<String>) {
     let mut lines = BufReader::new(output);
     loop {
         let mut line = Vec::new();
-        let read = lines.by_ref().take(LINE_MAX).read_until(b'\n', &mut line);
+        let read = lines.by_ref().take(LINE_BYTES_MAX).read_until(b'\n', &mut line);
         if read.is_err() || line.last() != Some(&b'\n') {
             return;
         }
@@ -122,11 +122,11 @@ fn read(output: impl io::Read, send: &SyncSender<String>) {
 }
 
 /// Longest time for an answer where nothing runs in real time: a program that plans for longer is stuck.
-const PATIENCE: Duration = Duration::from_secs(5);
+const ANSWER_WAIT_MAX: Duration = Duration::from_secs(5);
 /// A program that ended is started again after this time.
-const AGAIN_AFTER: Duration = Duration::from_millis(500);
+const RESTART_AFTER: Duration = Duration::from_millis(500);
 /// Longest line of an answer, bytes: 16 orders of 200.
-const LINE_MAX: u64 = 64 * 1024;
+const LINE_BYTES_MAX: u64 = 64 * 1024;
 /// Answers that wait to be read.
 const ANSWERS_KEPT: usize = 8;
 

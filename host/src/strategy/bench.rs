@@ -75,9 +75,9 @@ impl Bench {
         let places = waiting_places(view);
         let cost = |robot: &ViewRobot| {
             let out = places.iter().map(|at| at.distance(robot.position)).fold(f32::INFINITY, f32::min);
-            let busy = if first == Some(robot.id) { FIRST_COST } else { 0.0 };
-            let plays = if view.in_play.has(robot.id) { PLAYING_COST } else { 0.0 };
-            out.min(FARTHEST) + busy + plays
+            let busy = if first == Some(robot.id) { BALL_PLAYER_COST_M } else { 0.0 };
+            let plays = if view.in_play.has(robot.id) { CASE_PLAYER_COST_M } else { 0.0 };
+            out.min(PATH_MAX_M) + busy + plays
         };
         let may = |robot: &&ViewRobot| robot.id != view.keeper && !self.off.contains(&robot.id);
         view.ours
@@ -102,28 +102,28 @@ fn waiting_places(view: &View) -> heapless::Vec<Point<Attack>, PLACES_MAX> {
         Some(side) if side == Side::Theirs || !area => {
             let back = if side == Side::Ours { -1.0 } else { 1.0 };
             // Where the ball will lie: the present place of a ball that still moves there has no meaning.
-            let x = restart::penalty_spot(view, side == Side::Ours).x() + back * BEHIND_PENALTY;
+            let x = restart::penalty_spot(view, side == Side::Ours).x() + back * BEHIND_PENALTY_M;
             let y = touch + view.field.margin * 0.5;
-            (Point::new(x, y), Point::new(x + back * SPACING * BESIDE as f32, y))
+            (Point::new(x, y), Point::new(x + back * SPACING_M * PENALTY_PLACES_BESIDE as f32, y))
         }
         // In the middle of where the whole body is in the area, and beside goal and defence area.
         _ if area => {
             let x = half_length + view.field.goal_line_margin - view.field.goal_substitution * 0.5;
             let from = (view.field.goal_width * 0.5 + view.field.goal_wall + limits::ROBOT_RADIUS)
                 .max(view.field.penalty_width * 0.5)
-                + BESIDE_AREA;
-            let to = touch + view.field.margin - limits::ROBOT_RADIUS - FROM_WALL;
+                + BESIDE_AREA_M;
+            let to = touch + view.field.margin - limits::ROBOT_RADIUS - FROM_WALL_M;
             (Point::new(-x, from), Point::new(-x, to.max(from)))
         }
         // In the margin, on our half, so that a kick-off does not wait for them.
         _ => {
             let y = touch + view.field.margin * 0.5;
             let reach = limits::SUBSTITUTION_REACH - limits::ROBOT_RADIUS;
-            (Point::new(-FROM_HALFWAY_LINE, y), Point::new(-reach, y))
+            (Point::new(-FROM_HALFWAY_LINE_M, y), Point::new(-reach, y))
         }
     };
-    let count = ((from.distance(to) / SPACING) as usize + 1).min(PLACES_MAX / 2);
-    let step = (to - from).unit().unwrap_or_default() * SPACING;
+    let count = ((from.distance(to) / SPACING_M) as usize + 1).min(PLACES_MAX / 2);
+    let step = (to - from).unit().unwrap_or_default() * SPACING_M;
     let along = (0..count).map(|i| from + step * i as f32);
     let both = along.flat_map(|at| [at, Point::new(at.x(), -at.y())]);
     let clear = |at: &Point<Attack>| restart::kept_off(view, *at) == *at;
@@ -136,23 +136,23 @@ const RETURN_AFTER: Duration = Duration::millis(1000);
 /// Places on both sides together, at most.
 const PLACES_MAX: usize = 32;
 /// From one waiting robot's centre to the next one's, m: two radii and room for a robot handler's hand.
-const SPACING: f32 = 0.25;
+const SPACING_M: f32 = 0.25;
 /// Places on each side at a penalty.
-const BESIDE: usize = 4;
+const PENALTY_PLACES_BESIDE: usize = 4;
 /// From the goal's wall or the defence area to the first place, m: room for defenders.
-const BESIDE_AREA: f32 = 0.35;
+const BESIDE_AREA_M: f32 = 0.35;
 /// From the field's wall to a robot's side, m: the accuracy with which robots stop.
-const FROM_WALL: f32 = 0.05;
+const FROM_WALL_M: f32 = 0.05;
 /// From the halfway line, m: the controller counts a robot nearer than its radius as in the other half.
-const FROM_HALFWAY_LINE: f32 = 0.3;
+const FROM_HALFWAY_LINE_M: f32 = 0.3;
 /// Behind the ball at a penalty, m: the rules' 1 m, a body and a margin.
-const BEHIND_PENALTY: f32 = 1.3;
+const BEHIND_PENALTY_M: f32 = 1.3;
 /// Cost of replacing the robot that goes for the ball, in m of path.
-const FIRST_COST: f32 = 20.0;
+const BALL_PLAYER_COST_M: f32 = 20.0;
 /// The same for a robot that plays a case.
-const PLAYING_COST: f32 = 5.0;
+const CASE_PLAYER_COST_M: f32 = 5.0;
 /// Longer than every path out of the field, m: twice division A's diagonal.
-const FARTHEST: f32 = 30.0;
+const PATH_MAX_M: f32 = 30.0;
 
 #[cfg(test)]
 mod tests;

@@ -9,7 +9,7 @@ use super::view::{View, ViewBall, nearest};
 
 /// The line on which the keeper blocks the ball: before the opening of our goal, post to post.
 pub fn keeper_line(view: &View) -> Task {
-    let (x, half) = (view.our_goal().x() + KEEPER_OUT, view.field.goal_width * 0.5);
+    let (x, half) = (view.our_goal().x() + KEEPER_OUT_M, view.field.goal_width * 0.5);
     Task::Block { from: Point::new(x, -half), to: Point::new(x, half) }
 }
 
@@ -22,7 +22,7 @@ pub fn keeper_on_goal_line(view: &View) -> Task {
 /// The keeper's task in open play: clears a ball that lies in our area, else guards.
 pub fn keeper(view: &View) -> (Task, OrderReason) {
     let Some(ball) = view.ball else { return (keeper_line(view), OrderReason::NoBall) };
-    let slow = ball.velocity.norm() < LYING && ball.height < ON_THE_GROUND;
+    let slow = ball.velocity.norm() < LYING_SPEED_MAX_M_S && ball.height < GROUND_HEIGHT_MAX_M;
     if slow && view.in_our_area(ball.position, 0.0) && ball.position.x() > view.our_goal().x() {
         let (at, kick, room) = clearance(view, &ball);
         return (Task::Kick { at, kick }, OrderReason::ClearsArea { room });
@@ -33,17 +33,22 @@ pub fn keeper(view: &View) -> (Task, OrderReason) {
 /// Where the ball's path would cross our goal line, or the ball's line to the middle while it does not come.
 fn crossing(view: &View, ball: &ViewBall) -> f32 {
     let (goal, v) = (view.our_goal(), ball.velocity);
-    if v.x() < -LYING { ball.position.y() + v.y() * (goal.x() - ball.position.x()) / v.x() } else { goal.y() }
+    if v.x() < -LYING_SPEED_MAX_M_S {
+        ball.position.y() + v.y() * (goal.x() - ball.position.x()) / v.x()
+    } else {
+        goal.y()
+    }
 }
 
 /// Target, kick and room of a clearance: to the teammate or the wing with the freest path.
 pub fn clearance(view: &View, ball: &ViewBall) -> (Point<Attack>, KickOrder, f32) {
     let wings = [1.0_f32, -1.0].map(|side| {
-        Point::new(ball.position.x() + CLEAR_AHEAD, side * (view.field.width * 0.5 - CLEAR_INSIDE))
+        Point::new(ball.position.x() + CLEAR_AHEAD_M, side * (view.field.width * 0.5 - CLEAR_INSIDE_M))
     });
     let teammates =
         view.ours.iter().filter(|teammate| teammate.id != view.keeper).map(|teammate| teammate.position);
-    let far = |at: &Point<Attack>| at.distance(ball.position) > CLEAR_AT_LEAST && at.x() > ball.position.x();
+    let far =
+        |at: &Point<Attack>| at.distance(ball.position) > CLEAR_LENGTH_MIN_M && at.x() > ball.position.x();
     let best = teammates
         .filter(far)
         .chain(wings)
@@ -58,11 +63,11 @@ pub fn clearance(view: &View, ball: &ViewBall) -> (Point<Attack>, KickOrder, f32
 pub fn clearance_outwards(view: &View, ball: &ViewBall) -> (Point<Attack>, KickOrder, f32) {
     let out = (ball.position - view.our_goal()).unit().unwrap_or(Vector::new(1.0, 0.0));
     let turned = |turn: f32| {
-        let at = ball.position + out.rotated(Angle::new(turn)) * CLEAR_AHEAD;
-        let at = view.clamp(at, CLEAR_INSIDE);
+        let at = ball.position + out.rotated(Angle::new(turn)) * CLEAR_AHEAD_M;
+        let at = view.clamp(at, CLEAR_INSIDE_M);
         (at, room_along(view, ball.position, at))
     };
-    let best = [CLEAR_TURN, -CLEAR_TURN].map(turned);
+    let best = [CLEAR_TURN_RAD, -CLEAR_TURN_RAD].map(turned);
     let (at, room) =
         best.into_iter().fold(turned(0.0), |best, next| if next.1 > best.1 { next } else { best });
     (at, clearing_kick(ball, at, room), room)
@@ -80,18 +85,18 @@ pub fn clearance_beside(
     let best = (-CLEAR_TURNS..=CLEAR_TURNS)
         .filter_map(|turn| {
             let ray = out.rotated(Angle::degrees(CLEAR_STEP_DEG * turn as f32));
-            let lines_up = ball.position - ray * LINES_UP;
+            let lines_up = ball.position - ray * LINES_UP_BEHIND_M;
             if view.in_our_area(lines_up, off) {
                 return None;
             }
-            let at = view.clamp(ball.position + ray * CLEAR_AHEAD, CLEAR_INSIDE);
+            let at = view.clamp(ball.position + ray * CLEAR_AHEAD_M, CLEAR_INSIDE_M);
             let room = room_along(view, ball.position, at);
             let teammates =
                 view.ours.iter().filter(|teammate| teammate.id != who.id && teammate.id != view.keeper);
-            let blocked = nearest(teammates, lines_up).is_some_and(|(_, distance)| distance < BODIES);
-            let costs = CLEAR_TURN_COSTS * turn.unsigned_abs() as f32
-                + CLEAR_WAY_COSTS * who.position.distance(lines_up)
-                + if blocked { ROOM_ENOUGH } else { 0.0 };
+            let blocked = nearest(teammates, lines_up).is_some_and(|(_, distance)| distance < BODIES_APART_M);
+            let costs = CLEAR_TURN_COST_M * turn.unsigned_abs() as f32
+                + CLEAR_PATH_COST * who.position.distance(lines_up)
+                + if blocked { ROOM_ENOUGH_M } else { 0.0 };
             Some((at, room, room - costs))
         })
         .reduce(|best, next| if next.2 > best.2 { next } else { best });
@@ -103,13 +108,13 @@ pub fn clearance_beside(
 /// counts as an aimless kick.
 fn clearing_kick(ball: &ViewBall, at: Point<Attack>, room: f32) -> KickOrder {
     let flat = super::support::push_kick(at.distance(ball.position));
-    if room > ROOM_FOR_FLAT { flat } else { KickOrder::Chip(CLEAR_CHIP) }
+    if room > ROOM_FOR_FLAT_M { flat } else { KickOrder::Chip(CLEAR_CHIP_CM_S) }
 }
 
 /// Distance of the nearest opponent from the path of a ball, m; at most a metre.
 pub fn room_along(view: &View, from: Point<Attack>, to: Point<Attack>) -> f32 {
     let ray = geometry::Segment::new(from, to);
-    view.theirs.iter().map(|robot| ray.distance_to(robot.position)).fold(ROOM_ENOUGH, f32::min)
+    view.theirs.iter().map(|robot| ray.distance_to(robot.position)).fold(ROOM_ENOUGH_M, f32::min)
 }
 
 /// Places of two defenders: side by side at the edge of our area, across the line from the ball to our goal.
@@ -122,14 +127,15 @@ pub fn defenders(view: &View) -> ([Point<Attack>; 2], OrderReason) {
     };
     let goal = view.our_goal();
     let mut to_ball = view.clamp(ball.position, 0.0) - goal;
-    if to_ball.x() < MIN_AHEAD {
-        to_ball = Vector::new(MIN_AHEAD, to_ball.y());
+    if to_ball.x() < BALL_AHEAD_MIN_M {
+        to_ball = Vector::new(BALL_AHEAD_MIN_M, to_ball.y());
     }
     let edge = Edge::of(view);
     let middle = edge.along(at_edge(view, to_ball));
     // Around a corner of the edge bodies come nearer to each other than along it.
-    let mut off = SHOULDER;
-    while edge.point(middle + off).distance(edge.point(middle - off)) < 2.0 * SHOULDER && off < 2.0 * SHOULDER
+    let mut off = BESIDE_LINE_M;
+    while edge.point(middle + off).distance(edge.point(middle - off)) < 2.0 * BESIDE_LINE_M
+        && off < 2.0 * BESIDE_LINE_M
     {
         off += 0.01;
     }
@@ -198,13 +204,15 @@ pub fn marks(view: &View) -> heapless::Vec<(Point<Attack>, protocol::RobotId), {
     let mut them: heapless::Vec<_, { super::view::ROBOTS_MAX }> = view
         .theirs
         .iter()
-        .filter(|robot| robot.id != view.their_keeper && robot.position.x() < MARK_UP_TO)
-        .filter(|robot| view.ball.is_none_or(|ball| ball.position.distance(robot.position) > AT_BALL))
+        .filter(|robot| robot.id != view.their_keeper && robot.position.x() < MARK_UP_TO_X_M)
+        .filter(|robot| {
+            view.ball.is_none_or(|ball| ball.position.distance(robot.position) > PLAYS_BALL_WITHIN_M)
+        })
         .collect();
     them.sort_unstable_by(|a, b| danger(a).total_cmp(&danger(b)).then(a.id.cmp(&b.id)));
     let place = |robot: &&super::view::ViewRobot| {
         let home = (goal - robot.position).unit().unwrap_or_default();
-        let at = robot.position + home * MARK_OFF;
+        let at = robot.position + home * MARK_OFF_M;
         let out = if view.in_our_area(at, EDGE) { at_edge(view, at - goal) } else { at };
         (out, robot.id)
     };
@@ -219,51 +227,51 @@ pub fn contested(view: &View, ours: f32) -> bool {
 }
 
 /// The keeper's line lies this far before the goal line, m: a body, so that the posts do not stop it.
-const KEEPER_OUT: f32 = 0.15;
+const KEEPER_OUT_M: f32 = 0.15;
 /// A ball slower than this can be kicked without stopping it, m/s.
-pub(super) const LYING: f32 = 0.8;
+pub(super) const LYING_SPEED_MAX_M_S: f32 = 0.8;
 /// A ball lower than this can be kicked, m: below a robot's height.
-const ON_THE_GROUND: f32 = 0.1;
+const GROUND_HEIGHT_MAX_M: f32 = 0.1;
 /// Distance of a clearance to the wing ahead of the ball, m.
-const CLEAR_AHEAD: f32 = 2.5;
+const CLEAR_AHEAD_M: f32 = 2.5;
 /// A clearance from before the area turns from straight out by this much, rad: 30°.
-const CLEAR_TURN: f32 = core::f32::consts::FRAC_PI_6;
+const CLEAR_TURN_RAD: f32 = core::f32::consts::FRAC_PI_6;
 /// Number of directions in which a field player may clear to either side, in steps of [`CLEAR_STEP_DEG`]
 /// degrees: up to 105° from straight out.
 const CLEAR_TURNS: i16 = 7;
 const CLEAR_STEP_DEG: f32 = 15.0;
 /// A step must gain more room than this, m.
-const CLEAR_TURN_COSTS: f32 = 0.02;
+const CLEAR_TURN_COST_M: f32 = 0.02;
 /// Room that must be gained per metre of additional path to where it lines up.
-const CLEAR_WAY_COSTS: f32 = 0.6;
+const CLEAR_PATH_COST: f32 = 0.6;
 /// Two robots side by side, m.
-const BODIES: f32 = 0.2;
+const BODIES_APART_M: f32 = 0.2;
 /// A robot's centre is this far behind the ball where it lines up, m (`brain`'s get_ball).
-const LINES_UP: f32 = 0.165;
+const LINES_UP_BEHIND_M: f32 = 0.165;
 /// Distance inside the side line, m.
-const CLEAR_INSIDE: f32 = 0.6;
+const CLEAR_INSIDE_M: f32 = 0.6;
 /// A clearance to a teammate nearer than this is not tried, m.
-const CLEAR_AT_LEAST: f32 = 1.2;
+const CLEAR_LENGTH_MIN_M: f32 = 1.2;
 /// From this room on the ball is kicked along the ground, m: an opponent's reach in the half second that it
 /// takes.
-const ROOM_FOR_FLAT: f32 = 0.35;
+const ROOM_FOR_FLAT_M: f32 = 0.35;
 /// cm/s, 3-D: at 45° the first hop is v²/g = 1.6 m.
-const CLEAR_CHIP: u16 = 400;
+const CLEAR_CHIP_CM_S: u16 = 400;
 /// Room above this gives no further value, m.
-const ROOM_ENOUGH: f32 = 1.0;
+const ROOM_ENOUGH_M: f32 = 1.0;
 /// The ball counts as at least this far before our goal line when defenders place themselves, m.
-const MIN_AHEAD: f32 = 0.15;
+const BALL_AHEAD_MIN_M: f32 = 0.15;
 /// Defenders' centres stand this far outside the area, m: a body (0.09) and the error of tracking and
 /// control.
 pub const EDGE: f32 = 0.13;
 /// Each of two defenders stands this far beside the line, m: bodies side by side, with a margin between.
-const SHOULDER: f32 = 0.105;
+const BESIDE_LINE_M: f32 = 0.105;
 /// Opponents beyond this are not marked, m: in their own half.
-const MARK_UP_TO: f32 = 0.5;
+const MARK_UP_TO_X_M: f32 = 0.5;
 /// A marker stands this far from its opponent, m: two bodies and room to brake.
-const MARK_OFF: f32 = 0.35;
+const MARK_OFF_M: f32 = 0.35;
 /// An opponent this near the ball plays it: the wall and the defenders cover it, m.
-const AT_BALL: f32 = 0.4;
+const PLAYS_BALL_WITHIN_M: f32 = 0.4;
 
 #[cfg(test)]
 mod tests {
@@ -281,9 +289,12 @@ mod tests {
             }
             assert!(places[0].distance(places[1]) > 0.18, "{ball:?}: bodies do not touch {places:?}");
         }
-        // Straight ahead: 1.13 m before the goal, `SHOULDER` to either side.
+        // Straight ahead: 1.13 m before the goal, `BESIDE_LINE_M` to either side.
         let (places, _) = defenders(&view((0.0, 0.0), &[], &[]));
-        assert!((places[0].x() + 3.37).abs() < 1e-3 && (places[0].y() - SHOULDER).abs() < 1e-2, "{places:?}");
+        assert!(
+            (places[0].x() + 3.37).abs() < 1e-3 && (places[0].y() - BESIDE_LINE_M).abs() < 1e-2,
+            "{places:?}"
+        );
     }
 
     #[test]

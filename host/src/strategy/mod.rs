@@ -11,6 +11,7 @@
 //! open play, as a reference for ours.
 
 mod bench;
+pub mod case_candidate;
 mod coach;
 pub mod coerce;
 pub mod counters;
@@ -19,9 +20,9 @@ pub mod opponents;
 mod order;
 pub mod pass;
 pub mod possession;
+pub(crate) mod proposal;
 pub mod rated;
 pub mod restart;
-pub mod retrieved;
 pub mod roles;
 pub mod stakes;
 pub mod support;
@@ -33,5 +34,6 @@ pub mod view;
 pub use coach::{Coach, Orders};
 pub use opponents::Team;
 pub use order::{Order, OrderReason, Role, Task};
+pub use proposal::cases_of;
 pub use tactics::{ROUND_1, Tactics};
 pub use view::{Flip, View};

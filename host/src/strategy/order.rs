@@ -8,7 +8,7 @@ use geometry::{Angle, Attack, Point};
 use protocol::host::{Directive, KickOrder, RuleRole};
 use protocol::{CaseId, RobotId};
 
-use super::retrieved::CastCase;
+use super::case_candidate::CastCase;
 use super::threat::Guards;
 use super::view::Flip;
 
@@ -289,7 +289,7 @@ mod tests {
     use protocol::quantized::WirePoint;
 
     #[test]
-    fn a_reason_is_reported_with_its_numbers() {
+    fn an_orders_reason_prints_its_numbers() {
         let marker = RobotId::new(3).unwrap();
         assert_eq!(OrderReason::Coerces { marker }.to_string(), "opponent 3 follows it, out of the play");
         let chances = OrderReason::Chances { receive: 0.75, goal: 0.2 };

@@ -37,8 +37,9 @@ impl Possession {
         };
         let of = |robots: &[ViewRobot], held: Option<RobotId>, feels: &dyn Fn(RobotId) -> bool| {
             let has = robots.iter().filter(|robot| {
-                let margin = if held == Some(robot.id) { KEEPS } else { 0.0 };
-                has(robot, &ball, margin) || feels(robot.id) && robot.position.distance(ball.position) < FELT
+                let margin = if held == Some(robot.id) { KEPT_MARGIN_M } else { 0.0 };
+                has(robot, &ball, margin)
+                    || feels(robot.id) && robot.position.distance(ball.position) < FELT_WITHIN_M
             });
             nearest(has, ball.position).map(|(robot, _)| robot.id)
         };
@@ -78,8 +79,8 @@ fn has(robot: &ViewRobot, ball: &ViewBall, margin: f32) -> bool {
     let (ahead, across) = (off.dot(heading), heading.cross(off));
     ahead > 0.0
         && ahead < contact::TOUCHES_WITHIN + margin
-        && across.abs() < OPENING_HALF + margin
-        && (ball.velocity - robot.velocity).norm() < GOES_ALONG
+        && across.abs() < OPENING_HALF_M + margin
+        && (ball.velocity - robot.velocity).norm() < RELATIVE_SPEED_MAX_M_S
 }
 
 /// Where and when a robot can play the ball.
@@ -104,47 +105,49 @@ pub fn arrival(
     let path = ground.rolling(ball.position, ball.velocity);
     let speed = ball.velocity.norm();
     let (mut time, mut progress) = (0.0, (0.0, speed));
-    while progress.1 > RESTS {
+    while progress.1 > RESTING_SPEED_MAX_M_S {
         let at = ball.position + path.along() * progress.0;
         let on_field = view.clamp(at, 0.0);
         if on_field != at {
             return Arrival { seconds: mover.time_to(on_field).max(time), ball: on_field };
         }
         // A rolling ball is met on its path.
-        let behind = at + path.along() * BEHIND;
+        let behind = at + path.along() * BEHIND_BALL_M;
         if mover.time_to(behind) <= time {
             return Arrival { seconds: time, ball: at };
         }
-        time += STEP;
+        time += TIME_STEP_S;
         progress = path.progress(time);
     }
-    let at = if speed > RESTS { path.rest() } else { ball.position };
+    let at = if speed > RESTING_SPEED_MAX_M_S { path.rest() } else { ball.position };
     let aim = (goal - at).unit().unwrap_or_default();
     let around = match (robot.position - at).unit() {
         // From the side that the ball shall go to, half a circle around it.
-        Some(from) if robot.position.distance(at) > BEHIND => 0.5 * AROUND * (1.0 + from.dot(aim)),
+        Some(from) if robot.position.distance(at) > BEHIND_BALL_M => {
+            0.5 * AROUND_BALL_COST_S * (1.0 + from.dot(aim))
+        }
         _ => 0.0,
     };
-    let there = mover.time_to(at - aim * BEHIND) + around;
-    Arrival { seconds: there.max(if speed > RESTS { time } else { 0.0 }), ball: at }
+    let there = mover.time_to(at - aim * BEHIND_BALL_M) + around;
+    Arrival { seconds: there.max(if speed > RESTING_SPEED_MAX_M_S { time } else { 0.0 }), ball: at }
 }
 
 /// Half the width of the dribbler opening, m: front plates are 0.12 to 0.16 wide.
-const OPENING_HALF: f32 = 0.06;
+const OPENING_HALF_M: f32 = 0.06;
 /// A robot that has the ball keeps it while that is this much farther off, m: a ball bounces off the roller.
-const KEEPS: f32 = 0.03;
+const KEPT_MARGIN_M: f32 = 0.03;
 /// A ball felt by the sensor of a robot is at most this far from its centre, m: cameras err by less.
-const FELT: f32 = 0.16;
+const FELT_WITHIN_M: f32 = 0.16;
 /// A ball that passes a robot is faster than this against it, m/s.
-const GOES_ALONG: f32 = 1.0;
+const RELATIVE_SPEED_MAX_M_S: f32 = 1.0;
 /// A slower ball rests, m/s.
-const RESTS: f32 = 0.2;
+const RESTING_SPEED_MAX_M_S: f32 = 0.2;
 /// From the ball to the centre of a robot behind it, m.
-const BEHIND: f32 = contact::TOUCHES_WITHIN;
+const BEHIND_BALL_M: f32 = contact::TOUCHES_WITHIN;
 /// Steps along the ball's path, s.
-const STEP: f32 = 0.05;
+const TIME_STEP_S: f32 = 0.05;
 /// Cost of moving around a ball, s: half a circle of 0.2 m radius at moderate speed (estimate).
-const AROUND: f32 = 0.4;
+const AROUND_BALL_COST_S: f32 = 0.4;
 
 #[cfg(test)]
 mod tests {
@@ -207,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_that_rolls_towards_a_robot_is_met_on_its_way_by_hand() {
+    fn a_ball_that_rolls_towards_a_robot_is_intercepted_on_its_path_by_hand() {
         // 2 m/s from 3 m away: 0.11 m before the robot after 1.71 s with 0.35 m/s² of friction.
         let mut view = view((3.0, 0.0), &[(0.0, 0.0)], &[]);
         let ball = view.ball.as_mut().unwrap();

@@ -11,10 +11,10 @@ use geometry::{Attack, Point, Segment};
 use protocol::RobotId;
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 
+use super::case_candidate::{CaseStep, CastCase};
 use super::pass::bridge::{RADIUS, refine};
 use super::pass::shot::shot;
-use super::pass::{Kicks, PassScene, Rating, SAMPLES, Searches};
-use super::retrieved::{CaseStep, CastCase};
+use super::pass::{Kicks, Offer, PassScene, PassSearch, Rating};
 use super::view::{CasePass, ROBOTS_MAX, View};
 
 /// An action of the robot with the ball.
@@ -114,16 +114,16 @@ pub struct OfCases {
 /// All actions, best first.
 pub type RatedList = heapless::Vec<Rated, { ROBOTS_MAX + 4 }>;
 
-/// Rates all actions of `who` for a ball at `from`; a teammate of which `receives` is not true gets no pass.
+/// Rates all actions of `who` for a ball at `from`.
 pub fn rate(
     view: &View,
-    kicks: &Kicks,
-    searches: &mut Searches,
+    passes: &mut PassSearch,
     who: RobotId,
     from: Point<Attack>,
-    receives: impl Fn(RobotId) -> bool,
     of_cases: OfCases,
 ) -> RatedList {
+    let offers = passes.offers(view, from, who, true);
+    let kicks = passes.kicks();
     let mut list = RatedList::new();
     let mut add = |action, worth| {
         let place = list.iter().position(|other: &Rated| other.worth < worth).unwrap_or(list.len());
@@ -137,11 +137,8 @@ pub fn rate(
         add(Action::Shot { at: found.aim, goal }, shot_worth(view, from, found.aim, goal));
     }
     add(Action::PlayOn, play_on(view, from));
-    for offer in searches.offers(view, kicks, from, who, SAMPLES, true) {
-        if receives(offer.receiver) {
-            let (receiver, rating) = (offer.receiver, offer.rating);
-            add(Action::Pass { receiver, rating }, pass_worth(view, from, &rating));
-        }
+    for Offer { receiver, rating } in offers {
+        add(Action::Pass { receiver, rating }, pass_worth(view, from, &rating));
     }
     if let Some(pass) = of_cases.pass
         && let Some(receiver) = view.our(pass.receiver.0)
@@ -243,37 +240,34 @@ fn play_on(view: &View, from: Point<Attack>) -> f32 {
 /// Share of the balls at `from` that are lost beyond the mean of all moments with the ball.
 fn lost(view: &View, from: Point<Attack>) -> f32 {
     let near = view.theirs_within(from);
-    if near < CONTESTED {
-        LOST_CONTESTED
-    } else if near < PRESSED {
-        LOST_PRESSED
+    if near < CONTESTED_WITHIN_M {
+        LOST_SHARE_CONTESTED
+    } else if near < PRESSED_WITHIN_M {
+        LOST_SHARE_PRESSED
     } else {
-        LOST_FREE
+        LOST_SHARE_FREE
     }
 }
 
 /// An opponent this near the ball, m, disputes it, or presses its owner.
-const CONTESTED: f32 = 0.25;
-const PRESSED: f32 = 0.7;
-const LOST_CONTESTED: f32 = 0.4;
-const LOST_PRESSED: f32 = 0.2;
-const LOST_FREE: f32 = 0.0;
+const CONTESTED_WITHIN_M: f32 = 0.25;
+const PRESSED_WITHIN_M: f32 = 0.7;
+const LOST_SHARE_CONTESTED: f32 = 0.4;
+const LOST_SHARE_PRESSED: f32 = 0.2;
+const LOST_SHARE_FREE: f32 = 0.0;
 
 #[cfg(test)]
 mod tests {
-    use super::super::pass::PassConstants;
     use super::super::view::tests::view;
     use super::*;
     use casebase::CaseRobot;
-    use motion::ball::BallModel;
-    use motion::ball::chip::ChipModel;
     use protocol::CaseId;
     use rules::League;
 
     const WALL: [(f32, f32); 4] = [(4.4, 0.0), (2.4, 0.0), (2.45, 0.2), (2.45, -0.2)];
 
     fn kicks() -> Kicks {
-        Kicks::new(PassConstants::of(League::DivisionB), BallModel::default(), ChipModel::default())
+        Kicks::of(League::DivisionB)
     }
 
     /// Our 1 has the ball at (2, 0), our 2 stands at `teammate`.
@@ -282,15 +276,8 @@ mod tests {
         let part = |part, robot: usize| (view.ours[robot].id, CaseRobot::new(part).unwrap());
         let pass = case.map(|at| CasePass { case: CaseId(1), passer: part(0, 1), receiver: part(1, 2), at });
         let from = Point::new(2.0, 0.0);
-        rate(
-            &view,
-            &kicks(),
-            &mut Searches::new(1),
-            view.ours[1].id,
-            from,
-            |_| true,
-            OfCases { pass, retrieved: None },
-        )
+        let passes = &mut PassSearch::new(kicks(), 1);
+        rate(&view, passes, view.ours[1].id, from, OfCases { pass, retrieved: None })
     }
 
     #[test]
@@ -311,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn who_has_only_a_marked_teammate_far_behind_plays_on() {
+    fn with_only_a_marked_teammate_far_behind_a_robot_plays_on() {
         let marked = [WALL[0], WALL[1], WALL[2], WALL[3], (-1.8, 2.0)];
         let list = list((-2.0, 2.0), &marked, None);
         assert_eq!(list[0].action, Action::PlayOn, "{list:?}");
@@ -347,15 +334,8 @@ mod tests {
         assert_eq!(worth(CaseStep::Shot { from }), Some(shot_worth(&seen, from, found.aim, found.value())));
         let gone = CaseStep::Pass { from, receiver: RobotId::new(9).unwrap(), at };
         assert_eq!(worth(gone), None, "its receiver is not there");
-        let list = rate(
-            &seen,
-            &kicks,
-            &mut Searches::new(1),
-            who,
-            from,
-            |_| true,
-            OfCases { pass: None, retrieved: Some(cast(pass)) },
-        );
+        let of_cases = OfCases { pass: None, retrieved: Some(cast(pass)) };
+        let list = rate(&seen, &mut PassSearch::new(kicks.clone(), 1), who, from, of_cases);
         assert!(
             list.iter()
                 .any(|rated| Some(rated.worth) == worth(pass) && matches!(rated.action, Action::Case(_))),

@@ -15,32 +15,32 @@ use super::view::{View, ViewBall};
 /// and the path of a ball kicked at them before all know that it is in play (6 m/s for 20 ms).
 pub const OFF_BALL: f32 = 0.78;
 /// Distance behind the ball at which our kicker waits, m.
-const KICKER_WAITS: f32 = 0.7;
+const KICKER_WAITS_BEHIND_M: f32 = 0.7;
 /// Distance behind the mark of all robots except kicker and keeper at a penalty, m: the rules' 1 m, a body
 /// and a margin, and room for another robot (0.23 m) to pass in front of the row to its place, or for a ball
 /// that lies a little behind the mark.
-const BEHIND_PENALTY: f32 = 1.45;
+const BEHIND_PENALTY_M: f32 = 1.45;
 /// From the middle to the first robot that waits at a penalty, m: the kicker passes between the teams.
-const PENALTY_FIRST: f32 = 0.3;
+const PENALTY_FIRST_M: f32 = 0.3;
 /// Largest distance between robots that wait at a penalty, m: a third passes between two of them.
-const PENALTY_APART: f32 = 0.6;
+const PENALTY_APART_MAX_M: f32 = 0.6;
 /// From the touch line to the last place of a row behind a penalty, m: a body.
-const PENALTY_INSIDE: f32 = 0.1;
+const PENALTY_INSIDE_M: f32 = 0.1;
 /// Margin on either side of a body that passes between two walls, m.
-const ROOM_TO_PASS: f32 = 0.04;
+const ROOM_TO_PASS_M: f32 = 0.04;
 /// Step by which the direction off the ball is turned, degrees: 24 of them are a full turn.
 const TURN_STEP_DEG: f32 = 15.0;
 /// Distance of the two receivers from the halfway line at kick-off, m: a kicker that passes to them lines up
 /// beside the halfway line, not beyond the ball.
-const KICKOFF_BESIDE: f32 = 0.35;
+const KICKOFF_BESIDE_M: f32 = 0.35;
 /// Distance of other field players from the halfway line at kick-off, m: far enough from an opponent to
 /// receive a pass.
-const KICKOFF_BACK: f32 = 0.9;
+const KICKOFF_BACK_M: f32 = 0.9;
 
 /// Waiting place of our kicker for its restart from `ball`: behind it, as seen from their goal.
 pub fn kicker_waits(view: &View, ball: Point<Attack>) -> Point<Attack> {
     let back = (ball - view.their_goal()).unit().unwrap_or(Vector::new(-1.0, 0.0));
-    view.clamp(ball + back * KICKER_WAITS, -0.1)
+    view.clamp(ball + back * KICKER_WAITS_BEHIND_M, -0.1)
 }
 
 /// Our kicker's task for its target; without one it waits behind the ball until its teammates have taken
@@ -67,10 +67,10 @@ pub fn take(view: &View, ball: &ViewBall, target: Option<Target>) -> (Task, Orde
 
 /// Places of field players at our kick-off: on our half, within a pass of the kicker.
 pub fn kickoff_places(view: &View) -> [Point<Attack>; 6] {
-    let (x, wing) = (-KICKOFF_BACK, view.field.width * 0.5);
+    let (x, wing) = (-KICKOFF_BACK_M, view.field.width * 0.5);
     [
-        Point::new(-KICKOFF_BESIDE, wing * 0.55),
-        Point::new(-KICKOFF_BESIDE, -wing * 0.55),
+        Point::new(-KICKOFF_BESIDE_M, wing * 0.55),
+        Point::new(-KICKOFF_BESIDE_M, -wing * 0.55),
         Point::new(x - 0.8, 0.0),
         Point::new(x - 0.3, wing * 0.8),
         Point::new(x - 0.3, -wing * 0.8),
@@ -114,10 +114,10 @@ pub fn behind_penalty(
     waiting: usize,
 ) -> Point<Attack> {
     let back = if ours { -1.0 } else { 1.0 };
-    let wide = view.field.width * 0.5 - PENALTY_INSIDE - PENALTY_FIRST;
-    let apart = PENALTY_APART.min(wide / waiting.saturating_sub(1).max(1) as f32);
-    let at = Point::new(spot.x() + back * BEHIND_PENALTY, PENALTY_FIRST + apart * slot as f32);
-    view.clamp(at, PENALTY_INSIDE)
+    let wide = view.field.width * 0.5 - PENALTY_INSIDE_M - PENALTY_FIRST_M;
+    let apart = PENALTY_APART_MAX_M.min(wide / waiting.saturating_sub(1).max(1) as f32);
+    let at = Point::new(spot.x() + back * BEHIND_PENALTY_M, PENALTY_FIRST_M + apart * slot as f32);
+    view.clamp(at, PENALTY_INSIDE_M)
 }
 
 /// Whether no robot can reach a ball there: between a goal's back and the wall, where that is too narrow for
@@ -127,15 +127,15 @@ pub fn is_out_of_reach(view: &View, ball: Point<Attack>) -> bool {
     let behind = ball.x().abs() - field.length * 0.5 - field.goal_depth;
     let aside = ball.y().abs() - field.goal_width * 0.5 - field.goal_wall;
     let room = field.goal_line_margin - field.goal_depth - field.goal_wall;
-    let hidden = behind > 0.0 && aside < 0.0 && room < 2.0 * ROBOT_RADIUS + ROOM_TO_PASS;
+    let hidden = behind > 0.0 && aside < 0.0 && room < 2.0 * ROBOT_RADIUS + ROOM_TO_PASS_M;
     // A ball pressed against a board is seen slightly beyond it.
-    let off = behind + field.goal_depth > field.goal_line_margin + PRESSED
-        || ball.y().abs() - field.width * 0.5 > field.margin + PRESSED;
+    let off = behind + field.goal_depth > field.goal_line_margin + REACH_BEYOND_EDGE_M
+        || ball.y().abs() - field.width * 0.5 > field.margin + REACH_BEYOND_EDGE_M;
     hidden || off
 }
 
 /// A robot reaches a ball this far beyond the field surface's edge, m: as the league's simulators let one be.
-const PRESSED: f32 = 0.03;
+const REACH_BEYOND_EDGE_M: f32 = 0.03;
 
 /// `at`, moved out of the circle around the ball that no robot may enter, and off the path of a ball being
 /// placed.
@@ -182,7 +182,7 @@ mod tests {
     use rules::{League, Side};
 
     #[test]
-    fn no_one_is_sent_into_the_circle_around_the_ball_nor_over_the_line_for_it() {
+    fn no_robot_is_sent_into_the_circle_around_the_ball_nor_over_the_line_for_it() {
         let view = view((4.3, 2.8), &[(0.0, 0.0)], &[]);
         for place in [(4.3, 2.8), (4.2, 2.9), (4.0, 2.5), (4.45, 2.95)] {
             let at = kept_off(&view, Point::new(place.0, place.1));
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn the_way_of_a_ball_being_placed_is_kept_free() {
+    fn the_path_of_a_ball_being_placed_is_kept_free() {
         let mut view = view((0.0, 0.0), &[], &[]);
         view.placement = Some(Point::new(3.0, 0.0));
         let spine = Segment::new(Point::new(0.0, 0.0), Point::new(3.0, 0.0));
@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn at_a_penalty_everyone_else_is_a_metre_behind_the_mark_and_no_two_of_both_teams_in_one_place() {
+    fn at_a_penalty_all_others_are_a_metre_behind_the_mark_each_in_its_own_place() {
         for league in [League::Ssl2013, League::DivisionB, League::DivisionA] {
             let field = league.field();
             // The ball still lies at another place.

@@ -11,6 +11,18 @@ use rules::RobotSpec;
 
 use super::view::{View, ViewRobot};
 
+/// The robots that have the roles, held until a change is worth it.
+#[derive(Clone, Debug, Default)]
+pub(super) struct RoleMemory {
+    /// Goes for the ball, or takes our restart.
+    pub(super) ball_player: Option<RobotId>,
+    /// The primary defenders, by their places.
+    pub(super) defenders: [Option<RobotId>; 2],
+    /// All other robots that got a place in order, by that place: at most all field players, as behind a
+    /// penalty of the opponents.
+    pub(super) placed: [Option<RobotId>; 10],
+}
+
 /// Estimated time until `robot` could be at `place`, s: at its top speed, after the time it needs to get
 /// there.
 pub fn time_to(robot: &ViewRobot, place: Point<Attack>) -> f32 {
@@ -18,7 +30,7 @@ pub fn time_to(robot: &ViewRobot, place: Point<Attack>) -> f32 {
     let distance = offset.norm();
     let closing = offset.unit().map_or(0.0, |along| robot.velocity.dot(along));
     // From the closing speed with constant acceleration: time gained, or time lost in turning back.
-    (distance / TYPICAL_SPEED + SPEEDING_UP - closing / TYPICAL_ACCELERATION).max(0.0)
+    (distance / TYPICAL_SPEED + SPEEDING_UP_S - closing / TYPICAL_ACCELERATION).max(0.0)
 }
 
 /// The robot of `robots` with the least `cost`; `held` is kept unless another one is better by more than
@@ -76,7 +88,7 @@ const TYPICAL_SPEED: f32 = RobotSpec::OURS.assumed.role.speed;
 /// m/s².
 const TYPICAL_ACCELERATION: f32 = RobotSpec::OURS.assumed.role.acceleration;
 /// Time lost in speeding up and braking, s: v/a with the two above.
-const SPEEDING_UP: f32 = 0.65;
+const SPEEDING_UP_S: f32 = 0.65;
 
 #[cfg(test)]
 mod tests {

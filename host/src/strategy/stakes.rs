@@ -37,10 +37,10 @@ impl Stakes {
         let (now, more, less) = (results.of(ahead), results.of(ahead + 1), results.of(ahead - 1));
         let (gained, lost) = (more - now, now - less);
         let both = gained + lost;
-        if both < DECIDED {
+        if both < DECIDED_BELOW {
             return Self::EVEN;
         }
-        let ours = (2.0 * gained / both).clamp(LEAST, 2.0 - LEAST);
+        let ours = (2.0 * gained / both).clamp(WORTH_MIN, 2.0 - WORTH_MIN);
         Self { ours, theirs: 2.0 - ours }
     }
 }
@@ -56,12 +56,12 @@ pub fn time_left(stage: Stage, stage_time_left: Option<f32>) -> Option<f32> {
 }
 
 /// Probabilities of the numbers of goals that a team scores in the time left.
-struct Results([f32; GOALS]);
+struct Results([f32; GOAL_COUNTS]);
 
 impl Results {
     fn within(left: f32) -> Self {
-        let mean = left * RATE;
-        let mut goals = [0.0; GOALS];
+        let mean = left * GOALS_PER_S;
+        let mut goals = [0.0; GOAL_COUNTS];
         let mut one = math::exp(-mean);
         for (number, probability) in (1_u8..).zip(&mut goals) {
             *probability = one;
@@ -88,13 +88,13 @@ impl Results {
 }
 
 /// Goals of a team a second: 3.1 and 3.4 in 600 s, our team against itself in 40 matches (docs/strategy.md).
-const RATE: f32 = (3.1 + 3.4) / (2.0 * 600.0);
+const GOALS_PER_S: f32 = (3.1 + 3.4) / (2.0 * 600.0);
 /// Numbers of goals that are told apart, from 0: in 600 s more than 15 come with P < 10⁻⁶.
-const GOALS: usize = 16;
+const GOAL_COUNTS: usize = 16;
 /// A goal of either team moves the result by less than this together: the match is decided.
-const DECIDED: f32 = 0.02;
+const DECIDED_BELOW: f32 = 0.02;
 /// Least worth of a goal, so that neither kind is ever given away.
-const LEAST: f32 = 0.2;
+const WORTH_MIN: f32 = 0.2;
 /// A half, and one of overtime, s (rule 7).
 const HALF: f32 = 300.0;
 const EXTRA_HALF: f32 = 150.0;
@@ -107,17 +107,17 @@ mod tests {
     fn the_expected_result_is_that_of_the_difference_of_two_poisson_numbers() {
         // Means of ½ each: by the modified Bessel functions I₀(1), I₁(1) and I₂(1) over e, the difference is
         // 0, 1 and 2 with P = 0.46576, 0.20791 and 0.04994.
-        let results = Results::within(0.5 / RATE);
+        let results = Results::within(0.5 / GOALS_PER_S);
         for (ahead, expected) in [(0, 0.5), (1, 0.83684), (2, 0.96576), (-1, 0.16316)] {
             assert!((results.of(ahead) - expected).abs() < 1e-4, "{ahead}: {}", results.of(ahead));
         }
-        let stakes = Stakes::of(1, 0.5 / RATE);
+        let stakes = Stakes::of(1, 0.5 / GOALS_PER_S);
         // 0.12892 is gained by one more, 0.33684 lost by one less.
         assert!((stakes.ours - 0.5536).abs() < 1e-3 && (stakes.theirs - 1.4464).abs() < 1e-3, "{stakes:?}");
     }
 
     #[test]
-    fn who_is_behind_late_values_a_goal_and_who_leads_values_none_against() {
+    fn a_team_behind_late_values_a_goal_and_a_leading_one_a_goal_against() {
         let behind = |left| Stakes::of(-1, left).ours;
         assert!(behind(600.0) < behind(120.0) && behind(120.0) < behind(10.0));
         assert!(behind(10.0) > 1.7 && behind(600.0) > 1.0);

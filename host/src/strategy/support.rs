@@ -21,7 +21,7 @@ pub fn places(
     for _ in 0..wanted.min(ROBOTS_MAX) {
         let mut best: Option<(Point<Attack>, f32)> = None;
         for place in grid(view, ball) {
-            if chosen.iter().any(|(other, _)| other.distance(place) < APART) {
+            if chosen.iter().any(|(other, _)| other.distance(place) < PLACES_APART_M) {
                 continue;
             }
             let worth = worth(view, ball, place);
@@ -43,7 +43,6 @@ pub fn pass_places(
     kicks: &Kicks,
     ball: Point<Attack>,
     passer: Option<RobotId>,
-    wanted: usize,
     stood: &[Point<Attack>],
 ) -> heapless::Vec<(Point<Attack>, f32), ROBOTS_MAX> {
     let mut chosen: heapless::Vec<(Point<Attack>, f32), ROBOTS_MAX> = heapless::Vec::new();
@@ -51,15 +50,15 @@ pub fn pass_places(
     let placeholder = ViewRobot::at_rest(RobotId::ZERO, ball);
     let scene = PassScene::of(view, kicks, ball, passer, &placeholder).keeping();
     let rated: heapless::Vec<(Point<Attack>, f32), { GRID.0 * GRID.1 }> = grid(view, ball)
-        .chain(stood.iter().copied().filter(|at| at.distance(ball) > PASS_SHORTEST))
+        .chain(stood.iter().copied().filter(|at| at.distance(ball) > PASS_LENGTH_MIN_M))
         .take(GRID.0 * GRID.1)
         .map(|at| {
-            let kept = stood.iter().any(|stood| stood.distance(at) < STAYS);
-            (at, scene.received_at(at).rate(at).value() * if kept { STAYING } else { 1.0 })
+            let kept = stood.iter().any(|stood| stood.distance(at) < STOOD_WITHIN_M);
+            (at, scene.received_at(at).rate(at).value() * if kept { STOOD_FACTOR } else { 1.0 })
         })
         .collect();
-    for _ in 0..wanted.min(ROBOTS_MAX) {
-        let apart = |at: Point<Attack>| chosen.iter().all(|(other, _)| other.distance(at) >= APART);
+    for _ in 0..ROBOTS_MAX {
+        let apart = |at: Point<Attack>| chosen.iter().all(|(other, _)| other.distance(at) >= PLACES_APART_M);
         let best = rated.iter().filter(|(at, _)| apart(*at)).fold(None, |best, next| match best {
             Some((_, most)) if most >= next.1 => best,
             _ => Some(*next),
@@ -74,10 +73,11 @@ pub fn pass_places(
 /// The value of having the ball at `place` after a pass from `ball`: room on the path, room there, and a
 /// clear line to the goal.
 pub fn worth(view: &View, ball: Point<Attack>, place: Point<Attack>) -> f32 {
-    let room_share = room_along(view, ball, place).min(ROOM_GOOD) / ROOM_GOOD;
-    let there = view.nearest_theirs(place).map_or(ROOM_GOOD, |(_, d)| d).min(ROOM_GOOD) / ROOM_GOOD;
+    let room_share = room_along(view, ball, place).min(ROOM_ENOUGH_M) / ROOM_ENOUGH_M;
+    let there =
+        view.nearest_theirs(place).map_or(ROOM_ENOUGH_M, |(_, d)| d).min(ROOM_ENOUGH_M) / ROOM_ENOUGH_M;
     let ahead = ((place.x() - ball.x()) / view.field.length + 0.5).clamp(0.0, 1.0);
-    let shot = room_along(view, place, view.their_goal()).min(ROOM_GOOD) / ROOM_GOOD;
+    let shot = room_along(view, place, view.their_goal()).min(ROOM_ENOUGH_M) / ROOM_ENOUGH_M;
     room_share * there * (0.4 + 0.3 * ahead + 0.3 * shot)
 }
 
@@ -91,11 +91,11 @@ fn grid(view: &View, ball: Point<Attack>) -> impl Iterator<Item = Point<Attack>>
             let share = |k: usize, n: usize| (k as f32 + 0.5) / n as f32 - 0.5;
             Point::new(share(column, columns) * (length - 1.0), share(row, GRID.1) * (width - 0.8))
         })
-        .filter(move |at| !view.in_their_area(*at, KEEP_OFF) && !view.in_our_area(*at, KEEP_OFF))
+        .filter(move |at| !view.in_their_area(*at, OFF_AREAS_M) && !view.in_our_area(*at, OFF_AREAS_M))
         .filter(move |at| {
             let distance = at.distance(ball);
-            let line = (ball.x() - BACKWARDS).min(MIDDLE);
-            (PASS_SHORTEST..PASS_LONGEST).contains(&distance) && at.x() > line
+            let line = (ball.x() - PASS_BACK_MAX_M).min(GRID_FROM_X_MAX_M);
+            (PASS_LENGTH_MIN_M..PASS_LENGTH_MAX_M).contains(&distance) && at.x() > line
         })
 }
 
@@ -131,17 +131,17 @@ pub enum Target {
 /// Chooses the target for the robot `kicker` with the ball at `ball`.
 pub fn target(view: &View, kicker: RobotId, ball: Point<Attack>) -> Target {
     let (shot, room) = best_shot(view, ball);
-    if room > ROOM_TO_SHOOT && ball.distance(view.their_goal()) < SHOOT_WITHIN {
+    if room > SHOT_ROOM_MIN_M && ball.distance(view.their_goal()) < SHOT_LENGTH_MAX_M {
         return Target::Shot { at: shot, room };
     }
     let receivable = |teammate: &&ViewRobot| {
         teammate.id != kicker
             && teammate.id != view.keeper
-            && view.clamp(teammate.position, INSIDE) == teammate.position
+            && view.clamp(teammate.position, INSIDE_LINES_M) == teammate.position
             && {
                 let distance = teammate.position.distance(ball);
-                teammate.position.x() > ball.x() - BACKWARDS
-                    && (PASS_SHORTEST..PASS_LONGEST).contains(&distance)
+                teammate.position.x() > ball.x() - PASS_BACK_MAX_M
+                    && (PASS_LENGTH_MIN_M..PASS_LENGTH_MAX_M).contains(&distance)
             }
     };
     let best = view
@@ -151,16 +151,16 @@ pub fn target(view: &View, kicker: RobotId, ball: Point<Attack>) -> Target {
         .map(|teammate| (teammate, worth(view, ball, teammate.position)))
         .reduce(|best, next| if next.1 > best.1 { next } else { best });
     match best {
-        Some((teammate, worth)) if worth > WORTH_PASSING => {
+        Some((teammate, worth)) if worth > PASS_WORTH_MIN => {
             let room = room_along(view, ball, teammate.position);
             Target::Teammate { id: teammate.id, at: teammate.position, room }
         }
-        _ if room > ROOM_TO_PASS_BY && ball.distance(view.their_goal()) < SHOOT_WITHIN => {
+        _ if room > BODIES_ROOM_M && ball.distance(view.their_goal()) < SHOT_LENGTH_MAX_M => {
             Target::Shot { at: shot, room }
         }
         // A kick at an opponent's body, from beside the touch line, goes out for them: a pass back to any
         // teammate there is better.
-        Some((teammate, _)) if room_along(view, ball, teammate.position) > ROOM_TO_PASS_BY => {
+        Some((teammate, _)) if room_along(view, ball, teammate.position) > BODIES_ROOM_M => {
             let room = room_along(view, ball, teammate.position);
             Target::Teammate { id: teammate.id, at: teammate.position, room }
         }
@@ -179,10 +179,10 @@ pub fn target(view: &View, kicker: RobotId, ball: Point<Attack>) -> Target {
 
 /// The point of their goal with the freest path from `ball`, and the room along that path, m.
 pub fn best_shot(view: &View, ball: Point<Attack>) -> (Point<Attack>, f32) {
-    let (x, half) = (view.their_goal().x(), view.field.goal_width * 0.5 - POST);
+    let (x, half) = (view.their_goal().x(), view.field.goal_width * 0.5 - INSIDE_POST_M);
     let mut best = (view.their_goal(), -1.0);
-    for i in 0..SHOTS {
-        let y = half * (2.0 * i as f32 / (SHOTS - 1) as f32 - 1.0);
+    for i in 0..GOAL_POINTS {
+        let y = half * (2.0 * i as f32 / (GOAL_POINTS - 1) as f32 - 1.0);
         let at = Point::new(x, y);
         let room_share = Segment::new(ball, at);
         let room = view.theirs.iter().map(|robot| room_share.distance_to(robot.position)).fold(1.0, f32::min);
@@ -195,12 +195,12 @@ pub fn best_shot(view: &View, ball: Point<Attack>) -> (Point<Attack>, f32) {
 
 /// The kick that brings the ball over `distance` to a teammate that can still control it.
 pub fn pass_kick(distance: f32) -> KickOrder {
-    flat(distance, ARRIVE_WITH)
+    flat(distance, ARRIVAL_SPEED_M_S)
 }
 
 /// The kick whose ball stops at `distance`.
 pub fn push_kick(distance: f32) -> KickOrder {
-    flat(distance, REST_WITH)
+    flat(distance, STOPPED_SPEED_M_S)
 }
 
 fn flat(distance: f32, arrival: f32) -> KickOrder {
@@ -213,41 +213,41 @@ pub const SHOT: KickOrder = KickOrder::Flat(620);
 
 const GRID: (usize, usize) = (12, 7);
 /// Least distance between teammates, m.
-const APART: f32 = 1.2;
+const PLACES_APART_M: f32 = 1.2;
 /// A place this near to where a supporter stood, m, counts more by this factor.
-const STAYS: f32 = 0.5;
-const STAYING: f32 = 1.2;
+const STOOD_WITHIN_M: f32 = 0.5;
+const STOOD_FACTOR: f32 = 1.2;
 /// Room above this gives no further value, m.
-const ROOM_GOOD: f32 = 0.7;
+const ROOM_ENOUGH_M: f32 = 0.7;
 /// Supporters stay this far off the areas, m: the rules' 0.2 m, a body and as much margin.
-const KEEP_OFF: f32 = 0.4;
+const OFF_AREAS_M: f32 = 0.4;
 /// Shorter passes gain nothing, longer ones are intercepted by other robots, m.
-const PASS_SHORTEST: f32 = 1.0;
-const PASS_LONGEST: f32 = 5.0;
+const PASS_LENGTH_MIN_M: f32 = 1.0;
+const PASS_LENGTH_MAX_M: f32 = 5.0;
 /// A pass may go back this far, m.
-const BACKWARDS: f32 = 1.0;
+const PASS_BACK_MAX_M: f32 = 1.0;
 /// Least room beside the path of a shot, m: bodies of robot and ball (0.11) and the distance a keeper covers
 /// while it flies.
-const ROOM_TO_SHOOT: f32 = 0.2;
+const SHOT_ROOM_MIN_M: f32 = 0.2;
 /// Bodies of robot and ball, m: with less than this beside its path the ball hits a robot.
-const ROOM_TO_PASS_BY: f32 = 0.12;
+const BODIES_ROOM_M: f32 = 0.12;
 /// A teammate nearer to a line than this is no receiver, m: a ball that it misses is out.
-const INSIDE: f32 = 0.3;
+const INSIDE_LINES_M: f32 = 0.3;
 /// Farther shots are caught, m.
-const SHOOT_WITHIN: f32 = 4.0;
+const SHOT_LENGTH_MAX_M: f32 = 4.0;
 /// With the ball far ahead the grid of places starts here, m: short of the halfway line.
-const MIDDLE: f32 = -0.5;
+const GRID_FROM_X_MAX_M: f32 = -0.5;
 /// Below this value a pass is not played, 0–1.
-const WORTH_PASSING: f32 = 0.2;
+const PASS_WORTH_MIN: f32 = 0.2;
 /// Shots are aimed this far inside the posts, m: twice the ball's radius, and the scatter of a kick.
-const POST: f32 = 0.08;
+const INSIDE_POST_M: f32 = 0.08;
 /// Number of points of the goal tried.
-const SHOTS: usize = 9;
+const GOAL_POINTS: usize = 9;
 /// A receiver can control a ball of this speed, m/s; one that it misses rolls 2 m farther (v²/0.7), not off
 /// the field.
-const ARRIVE_WITH: f32 = 1.2;
+const ARRIVAL_SPEED_M_S: f32 = 1.2;
 /// Speed that counts as stopped, m/s.
-const REST_WITH: f32 = 0.2;
+const STOPPED_SPEED_M_S: f32 = 0.2;
 
 #[cfg(test)]
 mod tests {
@@ -263,7 +263,7 @@ mod tests {
             assert!(view.field.contains(Point::new(place.x(), place.y())));
             assert!(!view.in_their_area(*place, 0.2));
             for (other, _) in &places[..i] {
-                assert!(place.distance(*other) >= APART);
+                assert!(place.distance(*other) >= PLACES_APART_M);
             }
         }
         assert!(places[0].1 >= places[2].1, "best first");

@@ -32,17 +32,18 @@ impl Stakes {
 
 /// P(goal) of the team that has the ball at `at` and attacks towards +x, and of the other team.
 fn goals(goal_line: f32, at: Point<Attack>) -> (f32, f32) {
-    let scored = FOR * math::exp(-at.distance(Point::new(goal_line, 0.0)) / FOR_FADES);
-    let conceded = AGAINST * (1.0 - at.distance(Point::new(-goal_line, 0.0)) / AGAINST_WITHIN).max(0.0);
+    let scored = FOR_AT_GOAL * math::exp(-at.distance(Point::new(goal_line, 0.0)) / FOR_FADES_M);
+    let conceded =
+        AGAINST_AT_GOAL * (1.0 - at.distance(Point::new(-goal_line, 0.0)) / AGAINST_WITHIN_M).max(0.0);
     (scored, conceded)
 }
 
 /// P(goal for) at their goal, and the distance over which it falls to 1/e, m.
-const FOR: f32 = 0.24;
-const FOR_FADES: f32 = 2.4;
+const FOR_AT_GOAL: f32 = 0.24;
+const FOR_FADES_M: f32 = 2.4;
 /// P(goal against) of a ball at our goal, and the distance at which it is 0, m.
-const AGAINST: f32 = 0.1;
-const AGAINST_WITHIN: f32 = 5.5;
+const AGAINST_AT_GOAL: f32 = 0.1;
+const AGAINST_WITHIN_M: f32 = 5.5;
 
 #[cfg(test)]
 mod tests {

@@ -398,7 +398,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn who_defends_the_positive_goal_sees_everything_turned_by_half() {
+    fn for_a_team_at_the_positive_goal_the_view_is_turned_by_half_a_turn() {
         let flip = Flip::defending(GoalEnd::Positive);
         assert_eq!(flip.point(Point::new(1.0, -2.0)), Point::new(-1.0, 2.0));
         assert_eq!(flip.to_field(Point::new(-1.0, 2.0)), Point::new(1.0, -2.0));

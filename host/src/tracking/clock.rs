@@ -44,22 +44,22 @@ impl Clock {
     pub(super) fn judge(&mut self, captured: Captured, arrived: Instant) -> Judgement {
         let Some((newest, newest_arrived)) = self.newest else { return Judgement::Ours };
         let (ahead, passed) = (captured - newest, arrived.0 as i64 - newest_arrived);
-        let reported = ahead > FAR && (ahead - passed).abs() <= FAR / 4 + passed / 4;
-        if ahead.abs() <= FAR || reported {
+        let reported = ahead > JUMP_MIN_US && (ahead - passed).abs() <= JUMP_MIN_US / 4 + passed / 4;
+        if ahead.abs() <= JUMP_MIN_US || reported {
             Judgement::Ours
         } else {
-            self.foreign(captured, passed, SILENCE_FAR)
+            self.foreign(captured, passed, SILENCE_AFTER_JUMP_US)
         }
     }
 
     /// Whether the clock we follow still runs, for a camera frame that is too late by it.
     pub(super) fn late(&mut self, captured: Captured, arrived: Instant) -> Judgement {
         let passed = self.newest.map_or(0, |(_, newest_arrived)| arrived.0 as i64 - newest_arrived);
-        self.foreign(captured, passed, SILENCE_NEAR)
+        self.foreign(captured, passed, SILENCE_AFTER_STEP_US)
     }
 
     fn foreign(&mut self, captured: Captured, silent: i64, patience: i64) -> Judgement {
-        let follows = self.candidate.filter(|candidate| (captured - candidate.newest).abs() <= FAR);
+        let follows = self.candidate.filter(|candidate| (captured - candidate.newest).abs() <= JUMP_MIN_US);
         let candidate = match follows {
             Some(candidate) if captured > candidate.newest => {
                 CandidateClock { newest: captured, images: candidate.images + 1 }
@@ -68,7 +68,7 @@ impl Clock {
             None => CandidateClock { newest: captured, images: 1 },
         };
         self.candidate = Some(candidate);
-        if candidate.images >= IMAGES_TO_BELIEVE && silent >= patience {
+        if candidate.images >= FRAMES_TO_BELIEVE && silent >= patience {
             *self = Self::default();
             return Judgement::Restart;
         }
@@ -82,15 +82,15 @@ impl Clock {
             self.newest = Some((captured, arrived));
             self.candidate = None;
         }
-        let sent = sent.filter(|sent| (captured..=captured + PROCESSING_MAX).contains(sent));
+        let sent = sent.filter(|sent| (captured..=captured + PROCESSING_MAX_US).contains(sent));
         let difference = arrived - sent.unwrap_or(captured);
         match &mut self.least {
-            Some([current, _]) if arrived < self.stretch_start + STRETCH => {
+            Some([current, _]) if arrived < self.stretch_start + DELAY_WINDOW_US => {
                 *current = difference.min(*current);
             }
             Some([current, last]) => {
                 // After a pause the window before is out of date.
-                let just_before = arrived < self.stretch_start + 2 * STRETCH;
+                let just_before = arrived < self.stretch_start + 2 * DELAY_WINDOW_US;
                 *last = if just_before { *current } else { difference };
                 *current = difference;
                 self.stretch_start = arrived;
@@ -117,20 +117,20 @@ impl Clock {
 }
 
 /// Frames of one clock are not farther apart without a reason, µs.
-const FAR: i64 = 1_000_000;
+const JUMP_MIN_US: i64 = 1_000_000;
 /// A clock that jumped far is followed when ours has been silent that long, µs: a dozen frames of 60 Hz.
-const SILENCE_FAR: i64 = 200_000;
+const SILENCE_AFTER_JUMP_US: i64 = 200_000;
 /// One that jumped back slightly could be late copies of the clock we follow, so it waits longer, µs.
-const SILENCE_NEAR: i64 = 500_000;
+const SILENCE_AFTER_STEP_US: i64 = 500_000;
 /// Camera frames in order that confirm another clock.
-const IMAGES_TO_BELIEVE: u32 = 5;
+const FRAMES_TO_BELIEVE: u32 = 5;
 /// Window for the least delay; the last one to two windows count, µs: short enough to follow a simulator that
 /// runs at nine tenths of real time (recorded; off by a tenth of the window at most), long enough to contain
 /// eight frames of a 60 Hz camera.
-const STRETCH: i64 = 150_000;
+const DELAY_WINDOW_US: i64 = 150_000;
 /// Longest time of vision from camera frame to packet, µs; a larger difference is no processing time
 /// (recorded: 0 and 10 ms).
-const PROCESSING_MAX: i64 = 250_000;
+const PROCESSING_MAX_US: i64 = 250_000;
 
 #[cfg(test)]
 mod tests {
@@ -176,14 +176,14 @@ mod tests {
     }
 
     #[test]
-    fn trap_01_a_simulators_clock_that_runs_slower_than_ours_does_not_look_like_a_growing_delay() {
+    fn trap_01_a_simulators_slow_clock_does_not_look_like_a_growing_delay() {
         let mut clock = Clock::default();
         run(&mut clock, 800_000, 0.88, 0..3_600, |_| 1_000);
         assert!(clock.delay() < Duration::millis(40), "{:?}", clock.delay());
     }
 
     #[test]
-    fn a_clock_that_begins_again_is_followed_after_a_fifth_of_a_second() {
+    fn a_restarted_clock_is_followed_after_a_fifth_of_a_second() {
         let mut clock = Clock::default();
         run(&mut clock, 50_000_000, 1.0, 0..100, |_| 0);
         let mut followed = None;

@@ -26,7 +26,7 @@ pub(super) enum Placed {
 pub(super) struct Timeline<S> {
     slots: Box<[Slot<S>]>,
     /// Slots in use, oldest frame first.
-    order: Vec<u8, DEPTH>,
+    order: Vec<u8, FRAMES_KEPT>,
 }
 
 #[derive(Clone, Debug)]
@@ -38,7 +38,7 @@ struct Slot<S> {
 impl<S: Copy> Timeline<S> {
     pub(super) fn new(state: S) -> Self {
         let slot = Slot { frame: Frame::empty(), before: state };
-        Self { slots: vec![slot; DEPTH].into(), order: Vec::new() }
+        Self { slots: vec![slot; FRAMES_KEPT].into(), order: Vec::new() }
     }
 
     pub(super) fn clear(&mut self) {
@@ -67,7 +67,7 @@ impl<S: Copy> Timeline<S> {
             return Placed::Repeated;
         }
         let newest = self.newest().unwrap_or(frame.at);
-        if newest - frame.at > WINDOW || (place == 0 && self.order.is_full()) {
+        if newest - frame.at > LATE_MAX_US || (place == 0 && self.order.is_full()) {
             return Placed::Late(newest - frame.at);
         }
         // The oldest frame is dropped; it is not the new one, which would be too late then.
@@ -104,9 +104,9 @@ impl<S: Copy> Timeline<S> {
 
 /// How late a camera frame may be, µs: three ticks of a 60 Hz camera. Waiting for older ones changes
 /// decisions already made.
-const WINDOW: Captured = 50_000;
+const LATE_MAX_US: Captured = 50_000;
 /// Camera frames kept: those of eight cameras of 60 Hz within the window.
-const DEPTH: usize = 24;
+const FRAMES_KEPT: usize = 24;
 
 #[cfg(test)]
 mod tests {
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn images_that_come_out_of_order_leave_the_same_state_as_in_order() {
+    fn frames_out_of_order_leave_the_same_state_as_in_order() {
         let sorted: std::vec::Vec<(Captured, u32)> =
             (0..30).map(|i| (i64::from(i / 2) * 10_000, i as u32 % 2)).collect();
         let mut shuffled = sorted.clone();
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn more_cameras_than_it_holds_images_of_are_still_in_order() {
+    fn frames_of_more_cameras_than_are_kept_are_still_in_order() {
         let mut images: std::vec::Vec<(Captured, u32)> = (1..=30).map(|i| (i * 1_000, 0)).collect();
         images.extend([(29_500, 1), (1, 1)]);
         let (seen, placed) = feed(&images);

@@ -76,8 +76,8 @@ struct Track {
 impl Track {
     fn new(seen: &RobotSeen, at: Captured, noise: RobotNoise) -> Self {
         Self {
-            plane: Plane::new(seen.position, noise.place, SPEED_SIGMA),
-            turning: Turning::new(seen.heading.unwrap_or(Angle::ZERO), noise.heading, RATE_SIGMA),
+            plane: Plane::new(seen.position, noise.place, SPEED_SIGMA_M_S),
+            turning: Turning::new(seen.heading.unwrap_or(Angle::ZERO), noise.heading, RATE_SIGMA_RAD_S),
             at,
             seen: at,
             counted: at,
@@ -89,16 +89,17 @@ impl Track {
     /// Distance of a detection at `at` from the prediction, beyond the robot's possible motion, m.
     fn misses_by(&self, position: Point<Field>, at: Captured) -> f32 {
         let unseen = seconds(at - self.seen);
-        self.moved(at).pose.position.distance(position) - (GATE + GATE_SPEED * unseen.min(GATE_TIME_MAX))
+        self.moved(at).pose.position.distance(position)
+            - (GATE_M + GATE_GROWTH_M_S * unseen.min(GATE_TIME_MAX_S))
     }
 
     fn see(&mut self, seen: &RobotSeen, at: Captured, noise: RobotNoise) {
         let dt = seconds(at - self.at);
-        if dt > COAST {
+        if dt > COASTS_FOR_S {
             // Unseen for long: the place is used, the velocity is not.
             let moved = self.moved(at);
-            self.plane = Plane::new(moved.pose.position, GATE, SPEED_SIGMA);
-            self.turning = Turning::new(moved.pose.heading, LOST_HEADING, RATE_SIGMA);
+            self.plane = Plane::new(moved.pose.position, GATE_M, SPEED_SIGMA_M_S);
+            self.turning = Turning::new(moved.pose.heading, LOST_HEADING_SIGMA_RAD, RATE_SIGMA_RAD_S);
         } else {
             self.plane.pass(dt, PLACE_FREEDOM);
             self.turning.pass(dt, HEADING_FREEDOM);
@@ -108,7 +109,7 @@ impl Track {
             self.turning.see(heading, noise.heading);
         }
         (self.at, self.seen) = (at, at);
-        if at - self.counted >= IMAGE_APART {
+        if at - self.counted >= TICK_US {
             self.counted = at;
             self.images = self.images.saturating_add(1);
         }
@@ -117,8 +118,8 @@ impl Track {
 
     /// Straight on for a while, then at standstill.
     fn moved(&self, at: Captured) -> Moved {
-        let dt = seconds(at - self.at).clamp(0.0, COAST);
-        let rests = at - self.at > micros(COAST);
+        let dt = seconds(at - self.at).clamp(0.0, COASTS_FOR_S);
+        let rests = at - self.at > micros(COASTS_FOR_S);
         let heading = self.turning.heading + Angle::new(self.turning.rate * dt);
         Moved {
             pose: Pose { position: self.plane.position + self.plane.velocity * dt, heading },
@@ -128,8 +129,8 @@ impl Track {
     }
 
     fn confidence(&self, at: Captured) -> f32 {
-        let freshness = 1.0 - seconds(at - self.seen) * (1.0 / GONE);
-        let often = f32::from(self.images.min(IMAGES_FULL)) * (1.0 / IMAGES_FULL as f32);
+        let freshness = 1.0 - seconds(at - self.seen) * (1.0 / FORGOTTEN_AFTER_S);
+        let often = f32::from(self.images.min(FRAMES_FULL)) * (1.0 / FRAMES_FULL as f32);
         (freshness * often * self.quality).clamp(0.0, 1.0)
     }
 }
@@ -141,7 +142,7 @@ impl Robots {
             .believed
             .iter_mut()
             .flatten()
-            .filter(|track| track.is_some_and(|t| at - t.seen > micros(GONE)))
+            .filter(|track| track.is_some_and(|t| at - t.seen > micros(FORGOTTEN_AFTER_S)))
         {
             *track = None;
         }
@@ -152,7 +153,7 @@ impl Robots {
 
     fn see_one(&mut self, seen: &RobotSeen, at: Captured, noise: RobotNoise) {
         let (team, id) = (index(seen.who.colour), seen.who.id.index());
-        let elsewhere = self.believed[team][id].is_some_and(|track| at - track.seen <= micros(ELSEWHERE));
+        let elsewhere = self.believed[team][id].is_some_and(|track| at - track.seen <= micros(SEEN_LATELY_S));
         if !elsewhere && self.stands_another(seen.who, seen.position, at) {
             // A number that is read there only now and then: the robot confirmed under it was that
             // misreading.
@@ -168,12 +169,12 @@ impl Robots {
         }
         let candidate = &mut self.candidates[team][id];
         match candidate {
-            Some(track) if at - track.seen > micros(ELSEWHERE) => *track = Track::new(seen, at, noise),
+            Some(track) if at - track.seen > micros(SEEN_LATELY_S) => *track = Track::new(seen, at, noise),
             Some(track) if track.misses_by(seen.position, at) <= 0.0 => track.see(seen, at, noise),
             Some(_) if elsewhere => {}
             _ => *candidate = Some(Track::new(seen, at, noise)),
         }
-        let believable = candidate.filter(|track| track.images >= IMAGES_TO_BELIEVE && !elsewhere);
+        let believable = candidate.filter(|track| track.images >= FRAMES_TO_BELIEVE && !elsewhere);
         if let Some(track) = believable {
             self.believed[team][id] = Some(track);
             self.candidates[team][id] = None;
@@ -189,8 +190,8 @@ impl Robots {
     fn stands_another(&self, who: Who, position: Point<Field>, at: Captured) -> bool {
         self.each().any(|(other, track)| {
             other != who
-                && at - track.seen <= micros(ELSEWHERE)
-                && track.moved(at).pose.position.distance(position) < SAME_PLACE
+                && at - track.seen <= micros(SEEN_LATELY_S)
+                && track.moved(at).pose.position.distance(position) < SAME_PLACE_WITHIN_M
         })
     }
 
@@ -241,32 +242,32 @@ pub(super) const fn micros(seconds: f32) -> Captured {
 
 /// Camera frames that confirm a robot: 50 ms of one camera; misread patterns of one or two frames are
 /// excluded.
-const IMAGES_TO_BELIEVE: u16 = 3;
+const FRAMES_TO_BELIEVE: u16 = 3;
 /// Camera frames after which confidence is full.
-const IMAGES_FULL: u16 = 10;
+const FRAMES_FULL: u16 = 10;
 /// Detections nearer to each other than this are of one tick (two cameras see the robot), µs.
-const IMAGE_APART: Captured = 5_000;
+const TICK_US: Captured = 5_000;
 /// A robot may be seen this far from its prediction, m: two cameras may disagree by 20 mm each (ER-Force's
 /// "object position offset"), the remainder is margin below a robot's radius.
-const GATE: f32 = 0.08;
+const GATE_M: f32 = 0.08;
 /// ... and farther for every second unseen, m/s: the fastest robots' speed.
-const GATE_SPEED: f32 = 4.0;
+const GATE_GROWTH_M_S: f32 = 4.0;
 /// ... for no longer than this, s.
-const GATE_TIME_MAX: f32 = 0.25;
+const GATE_TIME_MAX_S: f32 = 0.25;
 /// Within this time a robot was seen "just now", s: six frames of 60 Hz, three of a camera with dropouts.
-const ELSEWHERE: f32 = 0.1;
+const SEEN_LATELY_S: f32 = 0.1;
 /// Two robots' centres are never nearer, m: the smallest hulls have a radius of 0.085 m, half of it is
 /// certainly a misreading.
-const SAME_PLACE: f32 = 0.09;
+const SAME_PLACE_WITHIN_M: f32 = 0.09;
 /// An unseen robot is extrapolated straight on for this time, s, then assumed to stand still.
-const COAST: f32 = 0.25;
+const COASTS_FOR_S: f32 = 0.25;
 /// It is forgotten after that time, s.
-const GONE: f32 = 1.0;
+const FORGOTTEN_AFTER_S: f32 = 1.0;
 /// Uncertainty of the heading after extrapolation, rad.
-const LOST_HEADING: f32 = 1.0;
+const LOST_HEADING_SIGMA_RAD: f32 = 1.0;
 /// Standard deviations of a new robot's speed, m/s, and rate, rad/s.
-const SPEED_SIGMA: f32 = 2.0;
-const RATE_SIGMA: f32 = 5.0;
+const SPEED_SIGMA_M_S: f32 = 2.0;
+const RATE_SIGMA_RAD_S: f32 = 5.0;
 /// White acceleration, m²/s³: calm is a robot that holds its speed within 0.1 m/s; changing is 5 m/s² held
 /// for 0.2 s.
 const PLACE_FREEDOM: Freedom = Freedom { stop_rules: 0.15, changing: 10.0 };

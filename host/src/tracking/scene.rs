@@ -38,7 +38,8 @@ impl Scene {
             let [x, y, height] = camera.position;
             if let Some(place) = self.cameras.get_mut(*number as usize) {
                 // A camera mounted lower is not used for heights.
-                *place = (height >= HEIGHT_MIN).then_some(Camera { above: Point::new(x, y), height });
+                *place =
+                    (height >= CAMERA_HEIGHT_MIN_M).then_some(Camera { above: Point::new(x, y), height });
             }
         }
         let ground = self.geometry.ground().unwrap_or(self.models.ground);
@@ -79,7 +80,7 @@ impl Scene {
 }
 
 /// No camera is mounted lower than the height of a chipped ball, m.
-const HEIGHT_MIN: f32 = 1.5;
+const CAMERA_HEIGHT_MIN_M: f32 = 1.5;
 
 #[cfg(test)]
 mod tests {
@@ -106,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn trap_02_cameras_reported_one_a_packet_are_all_at_hand() {
+    fn trap_02_calibrations_sent_one_a_packet_are_all_kept() {
         let mut scene = Scene::default();
         for id in 0..4 {
             scene.receive(&packet(id, 4_000.0)).unwrap();

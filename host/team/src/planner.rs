@@ -3,9 +3,7 @@
 
 use geometry::{Attack, Point, Vector};
 use host::external::{Pair, StrategyBall, StrategyRobot, StrategyTask, StrategyView};
-use host::strategy::pass::{Kicks, PassConstants, SAMPLES, Searches, shot};
-use motion::ball::BallModel;
-use motion::ball::chip::ChipModel;
+use host::strategy::pass::{Kicks, Offer, PassSearch, shot};
 use protocol::RobotId;
 use rules::League;
 
@@ -51,8 +49,7 @@ impl PassOffer {
 #[derive(Debug)]
 pub struct Planner {
     league: League,
-    kicks: Kicks,
-    searches: Searches,
+    passes: PassSearch,
 }
 
 impl Default for Planner {
@@ -63,11 +60,7 @@ impl Default for Planner {
 
 impl Planner {
     fn of(league: League) -> Self {
-        Self {
-            league,
-            kicks: Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default()),
-            searches: Searches::new(SEED),
-        }
+        Self { league, passes: PassSearch::new(Kicks::of(league), SEED) }
     }
 
     /// The league of the view, where it is another than before.
@@ -96,7 +89,8 @@ impl Planner {
     /// The best shot from `from`.
     pub fn shot(&mut self, view: &StrategyView, from: Pair) -> ShotOffer {
         self.follow(view);
-        let shot = shot::shot(&view.snapshot(self.league.field()), &self.kicks, Point::new(from[0], from[1]));
+        let snapshot = view.snapshot(self.league.field());
+        let shot = shot::shot(&snapshot, self.passes.kicks(), Point::new(from[0], from[1]));
         ShotOffer { at: [shot.aim.x(), shot.aim.y()], open: shot.angle, goal: shot.value() }
     }
 
@@ -106,17 +100,21 @@ impl Planner {
         let (Some(ball), Some(passer)) = (view.ball, RobotId::new(passer)) else { return Vec::new() };
         let from = Point::<Attack>::new(ball.at[0], ball.at[1]);
         let snapshot = view.snapshot(self.league.field());
-        let offers = self.searches.offers(&snapshot, &self.kicks, from, passer, SAMPLES, false);
-        let offer = |offer: &host::strategy::pass::Offer| PassOffer {
-            receiver: offer.receiver.number(),
-            at: [offer.rating.at.x(), offer.rating.at.y()],
-            speed: offer.rating.kick.speed(),
-            chip: offer.rating.kick.is_chip(),
-            receive: offer.rating.receive(),
-            goal: offer.rating.goal(),
-            shot_at: [offer.rating.shot.aim.x(), offer.rating.shot.aim.y()],
-        };
-        offers.iter().map(offer).collect()
+        self.passes.offers(&snapshot, from, passer, false).iter().map(PassOffer::from).collect()
+    }
+}
+
+impl From<&Offer> for PassOffer {
+    fn from(Offer { receiver, rating }: &Offer) -> Self {
+        Self {
+            receiver: receiver.number(),
+            at: [rating.at.x(), rating.at.y()],
+            speed: rating.kick.speed(),
+            chip: rating.kick.is_chip(),
+            receive: rating.receive(),
+            goal: rating.goal(),
+            shot_at: [rating.shot.aim.x(), rating.shot.aim.y()],
+        }
     }
 }
 

@@ -29,7 +29,7 @@ fn velocity_of(path: &impl Motion<Field>, t: f64) -> Vector<Field> {
 }
 
 #[test]
-fn a_flat_kick_is_noticed_within_three_images_with_its_speed_its_robot_and_its_rest() {
+fn a_flat_kick_is_detected_within_three_frames_with_its_speed_robot_and_stop() {
     for (seed, four) in [(1, false), (2, false), (3, false), (4, true), (5, true), (6, true)] {
         for speed in [1.5_f32, 3.0, 6.0] {
             let mut stadium = if four { Stadium::four_cameras(seed) } else { Stadium::one_camera(seed) };
@@ -261,7 +261,7 @@ fn a_second_ball_a_shoe_or_a_flicker_does_not_take_over_from_the_ball_in_sight()
 }
 
 #[test]
-fn trap_11_a_ball_far_outside_and_images_with_no_ball_or_two_are_normal() {
+fn trap_11_a_ball_far_outside_and_frames_with_no_ball_or_two_are_normal() {
     let mut stadium = Stadium::one_camera(13);
     stadium.missed = 0.25;
     // It lies at 9 m on a 9 m field; later another one is placed on the field while it still lies there.
@@ -299,7 +299,7 @@ fn a_ball_that_is_put_elsewhere_was_not_kicked_there() {
 }
 
 #[test]
-fn a_ball_that_bounces_off_a_hull_keeps_no_old_kick_and_its_new_way_is_known_in_three_images() {
+fn a_ball_off_a_hull_keeps_no_old_kick_and_its_path_is_known_in_three_frames() {
     let (from, hit) = (Point::new(-2.0, 0.0), KICK + 0.5);
     let model = BallModel::default();
     let first = model.kicked(from, Vector::new(4.0, 0.0));

@@ -12,7 +12,7 @@ fn truth(t: f64) -> Truth {
 }
 
 #[test]
-fn trap_01_simulation_seconds_and_unix_seconds_give_the_same_snapshot_on_our_clock() {
+fn trap_01_simulation_time_and_unix_time_give_the_same_snapshot_on_our_clock() {
     let snapshots = [0.0, 1_795_220_511.25].map(|epoch| {
         let mut stadium = Stadium { epoch, ..Stadium::one_camera(31) };
         let mut tracker = Tracker::default();
@@ -51,7 +51,7 @@ fn run(tracker: &mut Tracker, epoch: f64, from: f64, to: f64) -> Vec<VisionVerdi
 }
 
 #[test]
-fn a_simulator_that_begins_again_is_followed_within_a_quarter_of_a_second() {
+fn a_restarted_simulator_is_followed_within_a_quarter_of_a_second() {
     for epoch in [-2.9, -1.5, 3_600.0, 1_795_220_511.0] {
         let mut tracker = Tracker::default();
         run(&mut tracker, 100.0, 0.0, 3.0);

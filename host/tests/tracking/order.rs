@@ -43,7 +43,7 @@ fn bits(world: &World) -> Vec<u32> {
 }
 
 #[test]
-fn copies_of_half_of_the_images_and_late_copies_of_all_change_nothing_ever() {
+fn copies_of_half_of_the_frames_and_late_copies_of_all_change_nothing() {
     let (mut plain, mut copied) = (Tracker::default(), Tracker::default());
     let images = images();
     let mut late = images.iter().skip(1).map(|(t, packet)| (t + 0.1, packet)).peekable();
@@ -69,7 +69,7 @@ fn copies_of_half_of_the_images_and_late_copies_of_all_change_nothing_ever() {
 }
 
 #[test]
-fn images_that_come_out_of_order_give_the_same_snapshot_as_in_order() {
+fn frames_out_of_order_give_the_same_snapshot_as_in_order() {
     let mut plain = Tracker::default();
     let images = images();
     for (t, packet) in &images {
@@ -95,7 +95,7 @@ fn images_that_come_out_of_order_give_the_same_snapshot_as_in_order() {
 }
 
 #[test]
-fn trap_02_four_images_a_tick_with_a_robot_in_all_of_them_are_one_robot() {
+fn trap_02_four_frames_a_tick_with_a_robot_in_all_of_them_are_one_robot() {
     // As grSim sends: every camera at the same moment with its own number, empty ones included.
     let mut stadium = Stadium::four_cameras(22);
     for camera in &mut stadium.cameras {

@@ -171,12 +171,12 @@ fn compare(name: &str, bounds: [[f64; 3]; 2]) -> Tracker {
 }
 
 #[test]
-fn grsims_22_s_agree_with_the_median_of_the_images() {
+fn grsims_22_s_agree_with_the_median_of_the_frames() {
     compare("grsim_divB_22s.log.gz", [[1.0, 4.0, 8.0], [1.0, 5.0, 15.0]]);
 }
 
 #[test]
-fn grsims_noisy_64_s_agree_with_the_median_of_the_images() {
+fn grsims_noisy_64_s_agree_with_the_median_of_the_frames() {
     // A hundredth of the time the ball flies, and the median of its detections on the field surface is not
     // its place: at 30.4 s a script puts it into the air and four cameras see it up to 0.3 m apart, at 41 s
     // it is chipped over a robot.
@@ -184,7 +184,7 @@ fn grsims_noisy_64_s_agree_with_the_median_of_the_images() {
 }
 
 #[test]
-fn er_forces_22_s_with_noise_and_dropouts_agree_with_the_median_of_the_images() {
+fn er_forces_22_s_with_noise_and_dropouts_agree_with_the_median_of_the_frames() {
     compare("erforce_divB_realistic_22s.log.gz", [[2.0, 5.0, 12.0], [2.0, 5.0, 10.0]]);
 }
 
@@ -234,7 +234,7 @@ fn single_packets_agree_with_what_an_independent_decoder_read_in_them() {
 }
 
 #[test]
-fn the_recorded_trackers_ball_and_ours_agree_while_its_ball_is_where_the_images_show_it() {
+fn our_ball_agrees_with_the_recorded_trackers_where_that_agrees_with_the_frames() {
     // The recorded tracker is a test client that always sends (0, 0): correct until the kick-off.
     for name in ["grsim_divB_22s.log.gz", "erforce_divB_realistic_22s.log.gz"] {
         let (packets, frames) = recording(name);

@@ -96,7 +96,7 @@ fn the_velocity_of_a_robot_that_starts_with_3_m_s2_lags_less_than_60_ms() {
 }
 
 #[test]
-fn a_robot_is_believed_after_three_images_and_a_misread_one_never() {
+fn a_robot_is_believed_after_three_frames_and_a_misread_one_never() {
     let mut stadium = Stadium::one_camera(4);
     let (real, ghost) = (who(Yellow, 3), who(Yellow, 9));
     // The ghost is in two frames in a row, every second.
@@ -151,7 +151,7 @@ fn a_wrong_name_that_was_believed_first_gives_way() {
 }
 
 #[test]
-fn a_robot_seen_elsewhere_now_and_then_stays_where_it_is_but_one_that_is_carried_off_moves() {
+fn misread_places_of_a_robot_are_ignored_and_a_carried_robot_is_followed() {
     let mut stadium = Stadium::one_camera(7);
     let robot = who(Yellow, 1);
     let truth = |t: f64| {

@@ -2,7 +2,7 @@
 //! again every [`AGAIN`] while it lasts. Times on the host's clock.
 
 use host::Host;
-use host::sanity::{Finding, Sanity};
+use host::health_checks::{Finding, HealthChecks};
 use protocol::{Duration, Instant};
 
 use super::inbox::Dropped;
@@ -27,7 +27,7 @@ pub(super) struct Alarm {
 /// Current faults, and when each was printed.
 #[derive(Debug, Default)]
 pub(super) struct Alarms {
-    sanity: Sanity,
+    health_checks: HealthChecks,
     printed: Vec<(String, Instant, Instant)>,
     dropped: Dropped,
     /// What was dropped recently, and until when that is displayed.
@@ -40,7 +40,7 @@ pub(super) struct Alarms {
 impl Alarms {
     /// Records that the host's loop runs: if more than 100 ms have passed, this computer was blocked.
     pub(super) fn ran(&mut self, now: Instant) {
-        self.sanity.ran(now);
+        self.health_checks.ran(now);
     }
 
     /// Records that the robots' line is too slow.
@@ -73,7 +73,7 @@ impl Alarms {
                 repeats: warning.is_urgent(),
             })
             .collect();
-        alarms.extend(self.sanity.look(now, host).into_iter().map(|finding| Alarm {
+        alarms.extend(self.health_checks.look(now, host).into_iter().map(|finding| Alarm {
             matter: finding.matter(),
             description: match finding {
                 Finding::VisionPort(_) => format!("vision   {finding} [{}]", vision()),

@@ -8,8 +8,8 @@ use casebase::CaseBase;
 use hil_sim::small_size::World as Truth;
 use hil_sim::small_size::referee::InternalReferee;
 use host::Host;
+use host::health_checks::HealthChecks;
 use host::referee::Game;
-use host::sanity::Sanity;
 use host::world::{Ball, World};
 use page::{
     DeferredScene, Field, Gauge, Layer, LogLevel, Match, MatchEvent, Scene, SceneRobot, Shape, TeamSheet,
@@ -70,7 +70,7 @@ pub(crate) struct Composer {
     cycles: [TeamCycles; 2],
     clocks: Clocks,
     faults: Faults,
-    sanity: [Sanity; 2],
+    health_checks: [HealthChecks; 2],
     possession: Possession,
     overlay_builder: OverlayBuilder,
     match_events: Vec<MatchEvent>,
@@ -93,7 +93,7 @@ impl Composer {
             cycles: Default::default(),
             clocks: Clocks::default(),
             faults: Faults::default(),
-            sanity: Default::default(),
+            health_checks: Default::default(),
             possession: Possession::default(),
             overlay_builder: OverlayBuilder::default(),
             match_events: Vec::new(),
@@ -132,7 +132,7 @@ impl Composer {
         let (mut alarms, mut alarmed) = (Vec::new(), Vec::new());
         for host in moment.hosts {
             let us = host.settings().us;
-            let found = self.sanity[us as usize].look(now, host);
+            let found = self.health_checks[us as usize].look(now, host);
             for found in &found {
                 // The text changes with its figures; the heading stays.
                 let (source, heading) = (format!("{} host", us.label()), found.heading());

@@ -61,7 +61,7 @@ fn replies_may_come_in_pieces() {
 }
 
 #[test]
-fn a_name_the_controller_does_not_know_is_reported_and_tried_again() {
+fn an_unknown_team_name_is_reported_and_tried_again() {
     let mut port = TeamPort::new("twoone", Colour::Blue);
     port.connected(Instant(0));
     port.receive(&ok("t"), Instant(0));

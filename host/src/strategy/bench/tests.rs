@@ -64,7 +64,7 @@ fn in_division_b_they_wait_in_the_centre_area_on_our_half() {
 }
 
 #[test]
-fn neither_the_keeper_nor_who_goes_for_the_ball_is_sent_while_there_are_others() {
+fn neither_keeper_nor_ball_player_is_benched_while_there_are_others() {
     let view = division_a();
     for allowed in 0..6 {
         let view = View { allowed, ..view.clone() };
@@ -80,7 +80,7 @@ fn neither_the_keeper_nor_who_goes_for_the_ball_is_sent_while_there_are_others()
 }
 
 #[test]
-fn who_is_off_stays_off_and_comes_back_a_second_after_the_card_is_over() {
+fn a_benched_robot_stays_off_and_returns_a_second_after_the_card() {
     let mut view = division_a();
     let mut bench = Bench::default();
     let off: Vec<_> = bench.choose(&view, None).to_vec();
@@ -135,7 +135,7 @@ fn at_a_penalty_they_stand_behind_the_ball_and_in_stop_before_it_they_do_not_cou
 }
 
 #[test]
-fn they_keep_off_the_ball_and_out_of_the_way_of_a_placement_wherever_that_is() {
+fn benched_robots_keep_off_ball_and_placement_wherever_those_are() {
     let mut view = division_a();
     let mut bench = Bench::default();
     bench.choose(&view, None);

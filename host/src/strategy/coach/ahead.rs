@@ -2,16 +2,18 @@
 
 use geometry::{Attack, Point};
 use protocol::{Instant, RobotId};
+use rules::{Phase, Side};
 
 use super::super::counters::Sent;
 use super::super::defence::room_along;
 use super::super::order::{OrderReason, Task};
 use super::super::pass::ahead::{PassAhead, PasserMove, Places, Times};
-use super::super::pass::{PassScene, Rating, SAMPLES};
+use super::super::pass::{PassScene, Rating};
+use super::super::restart;
 use super::super::support::{self, Target};
 use super::super::view::{View, ViewBall, ViewRobot};
-use super::{Coach, restart};
-use rules::{Phase, Side};
+use super::Coach;
+use super::pass_state::RunningPass;
 
 /// A pass being coordinated.
 #[derive(Clone, Copy, Debug)]
@@ -52,14 +54,18 @@ impl Coach {
     pub(super) fn target(&mut self, view: &View, kicker: RobotId, ball: &ViewBall) -> Target {
         let usual = support::target(view, kicker, ball.position);
         let free_kick = view.phase == Phase::FreeKick(Side::Ours);
-        if !self.tactics.pass_ahead || !free_kick || self.gave_up || matches!(usual, Target::Shot { .. }) {
+        if !self.tactics.pass_ahead
+            || !free_kick
+            || self.restart.gave_up
+            || matches!(usual, Target::Shot { .. })
+        {
             return usual;
         }
-        self.searches.forget();
-        let offers = self.searches.offers(view, &self.kicks, ball.position, kicker, SAMPLES, false);
-        let best = offers.iter().find(|offer| offer.rating.receive() > LIKELY);
-        let Some(best) = best else { return usual };
-        self.ahead = Some(Ahead::new(best.receiver, best.rating, view.now, None));
+        self.passes.forget();
+        let offers = self.passes.offers(view, ball.position, kicker, false);
+        let likely = offers.iter().find(|offer| offer.rating.receive() > RESTART_PASS_P_MIN);
+        let Some(best) = likely else { return usual };
+        self.restart.ahead = Some(Ahead::new(best.receiver, best.rating, view.now, None));
         let at = best.rating.at;
         Target::Teammate { id: best.receiver, at, room: room_along(view, ball.position, at) }
     }
@@ -71,19 +77,19 @@ impl Coach {
         kicker: RobotId,
         ball: &ViewBall,
     ) -> Option<(Task, OrderReason)> {
-        let mut ahead = self.ahead?;
+        let mut ahead = self.restart.ahead?;
         let passer = view.our(kicker)?;
         let Some(receiver) = view.our(ahead.receiver) else { return self.give_up(view) };
-        let now =
-            PassScene::of(view, &self.kicks, ball.position, Some(kicker), receiver).rate(ahead.rating.at);
+        let now = PassScene::of(view, self.passes.kicks(), ball.position, Some(kicker), receiver)
+            .rate(ahead.rating.at);
         let planned = ahead.planned.is_some();
-        let least = if planned { SURE } else { ahead.rating.receive() * STILL_LIKELY };
+        let least = if planned { PLANNED_PASS_P_MIN } else { ahead.rating.receive() * KEPT_PASS_P_SHARE };
         if ahead.steps.shot().is_none() && now.receive() < least {
             return self.give_up(view);
         }
-        let times = times(ball, passer, receiver, &ahead.rating, &self.kicks.constants().receiver);
+        let times = times(ball, passer, receiver, &ahead.rating, &self.passes.kicks().constants().receiver);
         let moves = ahead.steps.step(view.now, &times);
-        self.ahead = Some(ahead);
+        self.restart.ahead = Some(ahead);
         let task = match moves.passer {
             PasserMove::GivesUp { .. } => return self.give_up(view),
             PasserMove::Waits if !planned => {
@@ -100,28 +106,39 @@ impl Coach {
         Some((task, ahead.why()))
     }
 
-    /// The pass of our restart that has just left.
-    pub(super) fn sent(&self, view: &View, receiver: RobotId, to: Point<Attack>) -> Option<Sent> {
-        let (passer, from) = (self.first?, self.ball_lay?);
-        let rated = |teammate| PassScene::of(view, &self.kicks, from, Some(passer), teammate).rate(to);
-        let rating = self.ahead.map(|ahead| ahead.rating).or_else(|| view.our(receiver).map(rated))?;
+    /// The pass of our restart that has just been taken; it is reported too.
+    pub(super) fn restart_pass(&mut self, view: &View) -> Option<RunningPass> {
+        if let Some((_, Target::Teammate { id, at, .. })) = self.restart.aim {
+            self.pass.sent = self.sent(view, id, at);
+            let rating = self.restart.ahead.as_ref().map(|ahead| &ahead.rating);
+            return Some(RunningPass::new(id, at, rating, view.now));
+        }
+        self.passing().map(|pass| self.leaves(view, pass))
+    }
+
+    fn sent(&self, view: &View, receiver: RobotId, to: Point<Attack>) -> Option<Sent> {
+        let (passer, from) = (self.roles.ball_player?, self.restart.ball_from?);
+        let rated =
+            |teammate| PassScene::of(view, self.passes.kicks(), from, Some(passer), teammate).rate(to);
+        let rating =
+            self.restart.ahead.map(|ahead| ahead.rating).or_else(|| view.our(receiver).map(rated))?;
         Some(Sent {
             passer,
             receiver,
             from,
             to,
             flight: rating.ball_time,
-            chip: self.ahead.is_some() && rating.kick.is_chip(),
+            chip: self.restart.ahead.is_some() && rating.kick.is_chip(),
             conditions: rating.receive_factors,
             pressed: view.theirs_within(from),
-            planned: self.ahead.and_then(|ahead| ahead.planned),
+            planned: self.restart.ahead.and_then(|ahead| ahead.planned),
         })
     }
 
     fn give_up(&mut self, view: &View) -> Option<(Task, OrderReason)> {
-        let planned = self.ahead.is_some_and(|ahead| ahead.planned.is_some());
+        let planned = self.restart.ahead.is_some_and(|ahead| ahead.planned.is_some());
         let again = planned && self.reconsider(view);
-        (self.ahead, self.aim, self.gave_up) = (None, None, !again);
+        (self.restart.ahead, self.restart.aim, self.restart.gave_up) = (None, None, !again);
         None
     }
 }
@@ -138,19 +155,20 @@ fn times(
     let places = Places::of(ball.position, rating);
     let times = Times::of(&places, passer, receiver, rating.ball_time, limits);
     let (at, facing) = places.passer;
-    let waits = passer.position.distance(at) < WAITS_WITHIN && (passer.heading - facing).abs() < AIMED;
+    let waits =
+        passer.position.distance(at) < WAITING_WITHIN_M && (passer.heading - facing).abs() < AIMED_WITHIN_RAD;
     Times { at_ball: waits, passer: if waits { 0.0 } else { times.passer }, ..times }
 }
 
 /// A pass with a smaller P(receive) is not tried.
-const LIKELY: f32 = 0.3;
+const RESTART_PASS_P_MIN: f32 = 0.3;
 /// A pass whose P(receive) falls below this share of its first value is given up.
-const STILL_LIKELY: f32 = 0.5;
+const KEPT_PASS_P_SHARE: f32 = 0.5;
 /// A planned pass does not leave with a smaller P(receive): of 137 that left with more 85 % arrived (62 of 69
 /// against ours, 54 of 68 against the zone, seed 100), of 59 that left with less than 0.5, 37 %.
-const SURE: f32 = 0.6;
+const PLANNED_PASS_P_MIN: f32 = 0.6;
 /// This near to x_p a passer waits for its receiver, m: the 0.04 m between the robot and the ball, and its
 /// position error.
-const WAITS_WITHIN: f32 = 0.09;
+const WAITING_WITHIN_M: f32 = 0.09;
 /// Looks at x* this exactly, rad: the robot itself corrects the remaining angle before it kicks.
-const AIMED: f32 = 0.15;
+const AIMED_WITHIN_RAD: f32 = 0.15;

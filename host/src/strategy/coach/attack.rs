@@ -14,12 +14,13 @@ use super::super::counters::Sent;
 use super::super::order::{OrderReason, Role, Task};
 use super::super::pass::bridge::{RADIUS, refine};
 use super::super::pass::shot::shot;
-use super::super::pass::{PassScene, Rating, SAMPLES};
+use super::super::pass::{PassScene, Rating};
 use super::super::rated::Action;
 use super::super::support;
 use super::super::view::{View, ViewBall};
+use super::pass_state::RunningPass;
 use super::rated_play::Chosen;
-use super::{Coach, Pass, Plan};
+use super::{Coach, Plan};
 
 /// The shot, pass or case chosen in open play, its robot, and since when.
 #[derive(Clone, Copy, Debug)]
@@ -92,46 +93,46 @@ impl Coach {
             let then = rating.shot.one_touch.then_some(rating.shot.aim);
             plan.order(receiver, Role::Receiver, Task::Receive { at: rating.at, then }, why);
         }
-        let limits = &self.kicks.constants().receiver;
-        let ready =
-            limits.time(teammate.position, teammate.velocity, rating.at) <= rating.ball_time + TOGETHER;
+        let limits = &self.passes.kicks().constants().receiver;
+        let ready = limits.time(teammate.position, teammate.velocity, rating.at)
+            <= rating.ball_time + RECEIVER_LATE_MAX_S;
         Some(Task::Pass { at: rating.at, receiver, kick: rating.kick.order(), ready })
     }
 
     /// The pass that is chosen.
     pub(super) fn passing(&self) -> Option<Passing> {
-        if let Some(Chosen { who, from, action, .. }) = self.chosen {
+        if let Some(Chosen { who, from, action, .. }) = self.open_play.rated.chosen {
             let (receiver, rating) = action.pass()?;
             return Some((who, from, receiver, rating));
         }
-        let Intent { who, from, action, .. } = self.intent?;
+        let Intent { who, from, action, .. } = self.open_play.intent?;
         let (receiver, rating) = action.pass()?;
         Some((who, from, receiver, rating))
     }
 
     /// Detects that the pass of open play leaves: from then on its receiver is ordered to receive it.
     pub(super) fn see_pass_leave(&mut self, view: &View) {
-        let (Some(pass), Some(ball), None) = (self.passing(), view.ball, self.pass) else { return };
+        let (Some(pass), Some(ball), None) = (self.passing(), view.ball, self.pass.running) else { return };
         let (who, from, _, rating) = pass;
         let Some(passer) = view.our(who) else { return };
         if ball.position.distance(passer.position) < LEFT {
-            self.at_ball = Some((who, view.now));
+            self.open_play.at_ball = Some((who, view.now));
             return;
         }
         // A ball that rolls by, or that opponents kicked, is no pass.
-        let had = self.at_ball.is_some_and(|(id, at)| id == who && view.now.since(at) < LEFT_SINCE);
+        let had = self.open_play.at_ball.is_some_and(|(id, at)| id == who && view.now.since(at) < LEFT_SINCE);
         let speed = ball.velocity.norm();
         let along = (rating.at - from).unit().map_or(0.0, |direction| ball.velocity.dot(direction));
         if !had || speed < LEFT_WITH * rating.kick.speed() || along < speed * LEFT_ALONG {
             return;
         }
-        self.pass = Some(self.leaves(view, pass));
-        (self.intent, self.chosen) = (None, None);
+        self.pass.running = Some(self.leaves(view, pass));
+        (self.open_play.intent, self.open_play.rated.chosen) = (None, None);
     }
 
     /// The pass that has just left; it is reported too.
-    pub(super) fn leaves(&mut self, view: &View, (passer, from, receiver, rating): Passing) -> Pass {
-        self.sent = Some(Sent {
+    pub(super) fn leaves(&mut self, view: &View, (passer, from, receiver, rating): Passing) -> RunningPass {
+        self.pass.sent = Some(Sent {
             passer,
             receiver,
             from,
@@ -142,56 +143,57 @@ impl Coach {
             pressed: view.theirs_within(from),
             planned: None,
         });
-        let then = rating.shot.one_touch.then_some(rating.shot.aim);
-        Pass { receiver, at: rating.at, then, since: view.now }
+        RunningPass::new(receiver, rating.at, Some(&rating), view.now)
     }
 
     /// The earlier choice where it is still valid, so that a robot that moves around the ball does not turn
     /// back.
     fn intends(&mut self, view: &View, who: RobotId, ball: &ViewBall) -> Action {
-        if let Some(intent) = self.intent
+        if let Some(intent) = self.open_play.intent
             && intent.who == who
-            && intent.from.distance(ball.position) < MOVED
+            && intent.from.distance(ball.position) < BALL_MOVED_M
             && self.stands(view, &intent, ball)
         {
             return intent.action;
         }
         let action = self.likeliest(view, who, ball);
-        self.intent = Some(Intent { who, since: view.now, from: ball.position, action });
+        self.open_play.intent = Some(Intent { who, since: view.now, from: ball.position, action });
         action
     }
 
     fn stands(&self, view: &View, intent: &Intent, ball: &ViewBall) -> bool {
         let held = match intent.action {
-            Action::PlayOn | Action::Case(_) => ASKED_AGAIN,
-            Action::Shot { .. } | Action::Pass { .. } => HELD,
-            Action::OfCase { .. } => CASE_HELD,
+            Action::PlayOn | Action::Case(_) => PLAY_ON_HELD,
+            Action::Shot { .. } | Action::Pass { .. } => CHOICE_HELD,
+            Action::OfCase { .. } => CASE_PASS_HELD,
         };
         let likely = || {
             let Some((receiver, rating)) = intent.action.pass() else { return true };
             let receive = view.our(receiver).map_or(0.0, |teammate| {
-                let scene = PassScene::of(view, &self.kicks, ball.position, Some(intent.who), teammate);
+                let scene =
+                    PassScene::of(view, self.passes.kicks(), ball.position, Some(intent.who), teammate);
                 scene.rate(rating.at).receive()
             });
-            receive > rating.receive() * STILL_LIKELY
+            receive > rating.receive() * KEPT_PASS_P_SHARE
         };
         view.now.since(intent.since) < held && likely()
     }
 
     fn likeliest(&mut self, view: &View, who: RobotId, ball: &ViewBall) -> Action {
-        let shot = shot(view, &self.kicks, ball.position);
-        self.searches.forget();
-        let offers = self.searches.offers(view, &self.kicks, ball.position, who, SAMPLES, false);
+        let shot = shot(view, self.passes.kicks(), ball.position);
+        self.passes.forget();
+        let offers = self.passes.offers(view, ball.position, who, false);
         // Defenders are not receivers.
-        let pass = offers
-            .iter()
-            .find(|offer| !self.defenders.contains(&Some(offer.receiver)) && offer.rating.receive() > LIKELY);
+        let pass = offers.iter().find(|offer| {
+            !self.roles.defenders.contains(&Some(offer.receiver))
+                && offer.rating.receive() > OPEN_PLAY_PASS_P_MIN
+        });
         let goal = shot.value();
         match pass.map(|pass| (pass, pass.rating.value())) {
-            Some((pass, value)) if value > goal.max(WORTH_IT) => {
+            Some((pass, value)) if value > goal.max(GOAL_P_MIN) => {
                 Action::Pass { receiver: pass.receiver, rating: pass.rating }
             }
-            _ if goal > WORTH_IT => Action::Shot { at: shot.aim, goal },
+            _ if goal > GOAL_P_MIN => Action::Shot { at: shot.aim, goal },
             _ => self.of_the_case(view, who, ball).unwrap_or(Action::PlayOn),
         }
     }
@@ -201,33 +203,37 @@ impl Coach {
     fn of_the_case(&self, view: &View, who: RobotId, ball: &ViewBall) -> Option<Action> {
         let pass = view.proposal.filter(|pass| self.tactics.bridge && pass.passer.0 == who)?;
         let receiver = pass.receiver.0;
-        let teammate = view.our(receiver).filter(|_| !self.defenders.contains(&Some(receiver)))?;
-        let scene = PassScene::of(view, &self.kicks, ball.position, Some(who), teammate);
+        let teammate = view.our(receiver).filter(|_| !self.roles.defenders.contains(&Some(receiver)))?;
+        let scene = PassScene::of(view, self.passes.kicks(), ball.position, Some(who), teammate);
         let refined = refine(&scene, pass.at, RADIUS);
         let rating = refined.best;
-        (rating.receive() > LIKELY).then_some(Action::OfCase { pass, rating, moved: refined.moved() })
+        (rating.receive() > OPEN_PLAY_PASS_P_MIN).then_some(Action::OfCase {
+            pass,
+            rating,
+            moved: refined.moved(),
+        })
     }
 }
 
 /// Least P(goal) of a shot or a pass for which a case is broken off. Chosen over 8 matches against chasers of
 /// the ball: 14.8 scoring chances a match for and 10.9 against; with cases alone 8.6 and 12.8.
-const WORTH_IT: f32 = 0.05;
+const GOAL_P_MIN: f32 = 0.05;
 /// Least P(receive) of a pass in open play; a pass lost there finds teammates out of position.
-const LIKELY: f32 = 0.5;
+const OPEN_PLAY_PASS_P_MIN: f32 = 0.5;
 /// … and is given up below this share of its first value.
-const STILL_LIKELY: f32 = 0.5;
+const KEPT_PASS_P_SHARE: f32 = 0.5;
 /// Time for which a choice is held: to move around the ball and aim.
-const HELD: Duration = Duration::millis(800);
+const CHOICE_HELD: Duration = Duration::millis(800);
 /// A case's pass is held for longer, until its passer is at the ball: a robot that has left the case for it
 /// does not propose it again. Scopes of the cases' robots are less than two seconds' drive.
-const CASE_HELD: Duration = Duration::millis(2000);
+const CASE_PASS_HELD: Duration = Duration::millis(2000);
 /// Interval at which a better choice than a case is searched: as often as the field changes by a robot's
 /// body.
-const ASKED_AGAIN: Duration = Duration::millis(200);
+const PLAY_ON_HELD: Duration = Duration::millis(200);
 /// A ball that moved by more than this is a new situation, m.
-const MOVED: f32 = 0.3;
+const BALL_MOVED_M: f32 = 0.3;
 /// The receiver may arrive this much later than the ball, s: as in pass-ahead at restarts.
-const TOGETHER: f32 = 0.1;
+const RECEIVER_LATE_MAX_S: f32 = 0.1;
 /// A pass has left when the ball is this far from the passer's centre, m (touching it is 0.11 m off), …
 const LEFT: f32 = 0.15;
 /// … from a robot that was at it this recently, …
@@ -265,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pass_of_open_play_that_has_left_is_its_receivers_and_is_reported_to_the_books_once() {
+    fn a_pass_of_open_play_that_left_is_its_receivers_and_is_counted_once() {
         let (mut coach, view, orders, at) = pass_leaves(3.0, true);
         assert!(matches!(orders[4].task, Task::Receive { at: there, .. } if there == at), "{:?}", orders[4]);
         let sent = coach.take_sent().unwrap();

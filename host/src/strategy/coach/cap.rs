@@ -14,7 +14,8 @@ use super::super::order::{OrderReason, Role, Task};
 use super::super::pass::{Kicks, PassScene};
 use super::super::support::{self, Target};
 use super::super::view::{View, ViewBall};
-use super::{Ahead, Coach, Plan};
+use super::ahead::Ahead;
+use super::{Coach, Plan};
 
 /// The planner, and its settings at this free kick.
 #[derive(Clone, Debug)]
@@ -40,7 +41,7 @@ impl Cap {
 impl Coach {
     /// Whether another attack is searched in place of one that has become unlikely.
     pub(super) fn reconsider(&mut self, view: &View) -> bool {
-        self.cap.planner.reconsider(view.now)
+        self.restart.cap.planner.reconsider(view.now)
     }
 
     /// Observes the opponents before our free kick (step 1).
@@ -49,9 +50,9 @@ impl Coach {
         if self.tactics.coerce
             && before
             && view.next.is_none_or(|next| next == Phase::FreeKick(Side::Ours))
-            && let Some(kicker) = self.first
+            && let Some(kicker) = self.roles.ball_player
         {
-            self.cap.planner.observe(view, kicker);
+            self.restart.cap.planner.observe(view, kicker);
         }
     }
 
@@ -64,33 +65,33 @@ impl Coach {
         ball: &ViewBall,
     ) -> Option<(Task, OrderReason)> {
         let view = plan.view;
-        if !self.tactics.coerce || self.gave_up || view.phase != Phase::FreeKick(Side::Ours) {
+        if !self.tactics.coerce || self.restart.gave_up || view.phase != Phase::FreeKick(Side::Ours) {
             return None;
         }
-        let value = ByPassLocation::new(&self.kicks);
-        if !self.cap.asked {
-            self.cap.asked = true;
-            self.cap.seed += 1;
+        let value = ByPassLocation::new(self.passes.kicks());
+        if !self.restart.cap.asked {
+            self.restart.cap.asked = true;
+            self.restart.cap.seed += 1;
             let shot = matches!(support::target(view, kicker, ball.position), Target::Shot { .. });
-            self.gave_up = shot
-                || ball.position.x() < FROM
-                || self.cap.planner.plan(view, &value, kicker, self.cap.seed).is_none();
-            if self.gave_up {
+            self.restart.gave_up = shot
+                || ball.position.x() < COERCE_FROM_X_M
+                || self.restart.cap.planner.plan(view, &value, kicker, self.restart.cap.seed).is_none();
+            if self.restart.gave_up {
                 return None;
             }
         }
-        let progress = self.cap.planner.watch(view, &value);
+        let progress = self.restart.cap.planner.watch(view, &value);
         if let CoerceProgress::Attacking(attack) = progress
-            && self.ahead.is_none()
+            && self.restart.ahead.is_none()
         {
-            self.ahead = begin(view, &self.kicks, kicker, ball, &attack);
-            self.aim = self.ahead.map(|ahead| {
+            self.restart.ahead = begin(view, self.passes.kicks(), kicker, ball, &attack);
+            self.restart.aim = self.restart.ahead.map(|ahead| {
                 let (id, at) = (ahead.receiver, ahead.rating.at);
                 (view.now, Target::Teammate { id, at, room: defence::room_along(view, ball.position, at) })
             });
-            self.gave_up = self.ahead.is_none();
+            self.restart.gave_up = self.restart.ahead.is_none();
         }
-        for posting in self.cap.planner.postings(view) {
+        for posting in self.restart.cap.planner.postings(view) {
             if let CoercePart::Coerces { marker, .. } = posting.part
                 && plan.take(posting.robot)
             {
@@ -105,7 +106,7 @@ impl Coach {
         }
         let CoerceProgress::Coercing { arrived, of, .. } = progress else { return None };
         let why = OrderReason::Coercing { arrived, of };
-        let attack = self.cap.planner.current()?.optimistic;
+        let attack = self.restart.cap.planner.current()?.optimistic;
         Some((
             Task::Pass { at: attack.at, receiver: attack.receiver, kick: attack.worth.kick, ready: false },
             why,
@@ -126,4 +127,4 @@ fn begin(
 }
 
 /// Free kicks farther back than this are taken as soon as possible, m: no pass from there leads to a shot.
-const FROM: f32 = -1.0;
+const COERCE_FROM_X_M: f32 = -1.0;

@@ -1,12 +1,45 @@
 //! `open_play`: assignment while the ball is in play: player, defenders, robots free for cases.
 
+use casebase::CaseBase;
 use geometry::{Attack, Point};
+use protocol::{Instant, RobotId};
 
 use super::super::order::{OrderReason, Role, Task};
 use super::super::threat::receiving::comes_at_goal;
 use super::super::view::{View, ViewBall};
 use super::super::{roles, support};
+use super::attack::Intent;
+use super::rated_play::RatedPlay;
+use super::uncover::Uncovering;
 use super::{Coach, Plan};
+
+/// Memory of open play.
+#[derive(Clone, Debug)]
+pub(super) struct OpenPlayState {
+    /// Opponents have the ball.
+    pub(super) attacked: bool,
+    /// The shot, pass or case chosen by thresholds.
+    pub(super) intent: Option<Intent>,
+    /// The passer that was at the ball last, and when.
+    pub(super) at_ball: Option<(RobotId, Instant)>,
+    /// The robot that makes way so that cameras see the ball.
+    pub(super) uncovering: Option<Uncovering>,
+    pub(super) rated: RatedPlay,
+}
+
+impl OpenPlayState {
+    /// Memory without a ball, retrieving from `cases`.
+    pub(super) fn new(cases: CaseBase<'static>) -> Self {
+        let rated = RatedPlay::new(cases);
+        Self { attacked: false, intent: None, at_ball: None, uncovering: None, rated }
+    }
+
+    /// Drops what was chosen when another phase starts.
+    pub(super) fn reset(&mut self) {
+        self.intent = None;
+        self.rated.reset();
+    }
+}
 
 impl Coach {
     /// Open play: keeper, the robot first at the ball, two defenders, the others.
@@ -22,26 +55,26 @@ impl Coach {
             return plan.all_robots(Role::Player, Task::Gameplay, OrderReason::OpenPlay);
         }
         if keepers || is_left_to_the_keeper(view, &ball) {
-            self.first = None;
-            self.defend(plan, self.attacked || keepers);
+            self.roles.ball_player = None;
+            self.defend(plan, self.open_play.attacked || keepers);
             return self.support(plan, ball.position);
         }
         // A keeper that left its goal for a ball could be passed by it.
         let candidates =
             view.ours.iter().filter(|robot| plan.free.contains(&robot.id) && robot.id != view.keeper);
-        let soonest = roles::choose(candidates, self.first, roles::WORTH, |robot| {
-            let bound = if view.in_play.has(robot.id) { BOUND } else { 0.0 };
+        let soonest = roles::choose(candidates, self.roles.ball_player, roles::WORTH, |robot| {
+            let bound = if view.in_play.has(robot.id) { CASE_PLAYER_BONUS_S } else { 0.0 };
             roles::time_to(robot, ball.rest) - bound
         });
-        self.first = soonest.map(|(id, _)| id);
+        self.roles.ball_player = soonest.map(|(id, _)| id);
         self.see_whose_ball(view, soonest.map_or(f32::INFINITY, |(_, seconds)| seconds));
         if let Some((id, seconds)) = soonest
             && plan.take(id)
         {
-            let clears = self.clears_before_our_area(view, id, &ball);
+            let clears = self.defence.clears_before_our_area(view, id, &ball);
             if let Some((task, why)) = clears.or_else(|| self.attack(plan, id, &ball)) {
                 plan.order(id, Role::Player, task, why);
-                self.defend(plan, self.attacked);
+                self.defend(plan, self.open_play.attacked);
                 return self.support(plan, ball.position);
             }
             plan.order(
@@ -51,19 +84,24 @@ impl Coach {
                 OrderReason::SoonestAtBall { seconds: seconds.max(0.0) },
             );
         }
-        // A robot that plays a case plays it to its end.
+        self.play_cases(plan);
+    }
+
+    /// Orders all remaining robots to defend or to play cases; a robot that plays a case plays it to its end.
+    pub(super) fn play_cases(&mut self, plan: &mut Plan<'_>) {
+        let view = plan.view;
         for robot in view.ours.iter().filter(|robot| view.in_play.has(robot.id)) {
             if plan.free.len() > 2 && plan.take(robot.id) {
                 plan.order(robot.id, Role::Player, Task::Gameplay, OrderReason::OpenPlay);
             }
         }
-        self.defend(plan, self.attacked);
+        self.defend(plan, self.open_play.attacked);
         plan.all_robots(Role::Player, Task::Gameplay, OrderReason::OpenPlay);
     }
 
     /// The robot that must not touch the ball twice goes where a pass can come.
     pub(super) fn order_double_touch_blocked(&self, plan: &mut Plan<'_>, ball: &ViewBall) {
-        if let Some(blocked) = self.double_touch_blocked
+        if let Some(blocked) = self.pass.double_touch_blocked
             && plan.take(blocked)
         {
             let (at, worth) = best_place(plan.view, ball.position);
@@ -74,8 +112,8 @@ impl Coach {
 
     /// The receiver of a pass that is on its way is first at the ball; the place of the reception.
     pub(super) fn order_receiver(&mut self, plan: &mut Plan<'_>, ball: &ViewBall) -> Option<Point<Attack>> {
-        let pass = self.pass.filter(|pass| plan.take(pass.receiver))?;
-        self.first = Some(pass.receiver);
+        let pass = self.pass.running.filter(|pass| plan.take(pass.receiver))?;
+        self.roles.ball_player = Some(pass.receiver);
         let why = OrderReason::BestTarget { room: support::worth(plan.view, ball.position, pass.at) };
         plan.order(pass.receiver, Role::Receiver, Task::Receive { at: pass.at, then: pass.then }, why);
         Some(pass.at)
@@ -86,21 +124,22 @@ impl Coach {
         let Some(ball) = view.ball else { return };
         let theirs =
             view.theirs.iter().map(|robot| roles::time_to(robot, ball.rest)).fold(f32::INFINITY, f32::min);
-        let worth = if self.attacked { -roles::WORTH } else { roles::WORTH };
-        self.attacked = theirs + worth < ours;
+        let worth = if self.open_play.attacked { -roles::WORTH } else { roles::WORTH };
+        self.open_play.attacked = theirs + worth < ours;
     }
 }
 
 /// Only a keeper may, or can, play the ball; a robot that blocks a shot stays there.
 pub(super) fn is_left_to_the_keeper(view: &View, ball: &ViewBall) -> bool {
-    let forbidden = view.in_their_area(ball.position, THEIRS) || view.in_our_area(ball.position, 0.0);
+    let forbidden =
+        view.in_their_area(ball.position, THEIR_AREA_WITHIN_M) || view.in_our_area(ball.position, 0.0);
     forbidden || is_shot_at_us(view, ball)
 }
 
 /// Whether a shot moves at our goal: a robot that ran after it would open the line that it blocks.
 fn is_shot_at_us(view: &View, ball: &ViewBall) -> bool {
     let goal = view.our_goal();
-    ball.velocity.norm() > SHOT
+    ball.velocity.norm() > SHOT_SPEED_MIN_M_S
         && ball.position.x() < 0.0
         && ball.rest.x() < goal.x()
         && comes_at_goal(view, ball.position, ball.velocity)
@@ -112,9 +151,9 @@ fn best_place(view: &View, ball: Point<Attack>) -> (Point<Attack>, f32) {
 
 /// A robot that plays a case counts as this much nearer to the ball, s: a change of robots would end the
 /// case.
-const BOUND: f32 = 1.0;
+const CASE_PLAYER_BONUS_S: f32 = 1.0;
 /// A ball this near their area counts as in it, m: a robot that touches it from outside is 5 mm off the area,
 /// and cameras err by 3.
-const THEIRS: f32 = 0.008;
+const THEIR_AREA_WITHIN_M: f32 = 0.008;
 /// A slower ball at our goal can be reached, m/s.
-const SHOT: f32 = 1.0;
+const SHOT_SPEED_MIN_M_S: f32 = 1.0;

@@ -35,18 +35,18 @@ impl Coach {
             held.iter().flatten().count() == free.len() && held.iter().flatten().all(|id| free.contains(id))
         };
         let mut order: heapless::Vec<usize, ROBOTS_MAX> = (0..places.len()).collect();
-        if !same(&self.others, &plan.free) {
+        if !same(&self.roles.placed, &plan.free) {
             let along = |id: &RobotId| plan.view.our(*id).map_or(0.0, |robot| robot.position.y());
             plan.free.sort_unstable_by(|a, b| along(a).total_cmp(&along(b)).then(a.cmp(b)));
             order.sort_unstable_by(|a, b| places[*a].y().total_cmp(&places[*b].y()));
-            self.others = Default::default();
+            self.roles.placed = Default::default();
             for (slot, id) in order.iter().zip(&plan.free) {
-                if let Some(held) = self.others.get_mut(*slot) {
+                if let Some(held) = self.roles.placed.get_mut(*slot) {
                     *held = Some(*id);
                 }
             }
         }
-        for (slot, id) in self.others.into_iter().enumerate() {
+        for (slot, id) in self.roles.placed.into_iter().enumerate() {
             if let (Some(id), Some(at)) = (id, places.get(slot))
                 && plan.take(id)
             {

@@ -2,13 +2,14 @@
 //! first behind it, takes the best action, and keeps it until another is clearly better. Attack frame, SI
 //! units.
 
+use casebase::CaseBase;
 use geometry::{Attack, Point};
 use protocol::{Duration, Instant, RobotId};
 
+use super::super::case_candidate;
 use super::super::order::{OrderReason, Role, Task};
 use super::super::possession::{Arrival, Possession, arrival};
-use super::super::rated::{self, Action, OfCases, Rated};
-use super::super::retrieved;
+use super::super::rated::{self, Action, OfCases, Rated, RatedList};
 use super::super::roles;
 use super::super::view::{View, ViewBall, ViewRobot};
 use super::open_play::is_left_to_the_keeper;
@@ -24,17 +25,42 @@ pub(super) struct Chosen {
     pub(super) action: Action,
 }
 
+/// Memory of open play by the rated list.
+#[derive(Clone, Debug)]
+pub(super) struct RatedPlay {
+    /// The case base that cases are retrieved from.
+    pub(super) cases: CaseBase<'static>,
+    /// Which robot has the ball.
+    possession: Possession,
+    /// The action chosen from the list.
+    pub(super) chosen: Option<Chosen>,
+    /// The list that it was chosen from.
+    list: RatedList,
+}
+
+impl RatedPlay {
+    /// Memory without a choice.
+    pub(super) fn new(cases: CaseBase<'static>) -> Self {
+        Self { cases, possession: Possession::Free, chosen: None, list: RatedList::new() }
+    }
+
+    /// Drops choice and possession when another phase starts.
+    pub(super) fn reset(&mut self) {
+        (self.chosen, self.possession) = (None, Possession::Free);
+    }
+}
+
 impl Coach {
     /// The robot whose actions were rated, and all of them, best first; none while no list is played by.
     pub fn rated(&self) -> Option<(RobotId, &[Rated])> {
-        self.chosen.map(|chosen| (chosen.who, self.list.as_slice()))
+        self.open_play.rated.chosen.map(|chosen| (chosen.who, self.open_play.rated.list.as_slice()))
     }
 
     /// Open play: the keeper, the robot that plays the ball, its receiver, two defenders, supporters.
     pub(super) fn rated_play(&mut self, plan: &mut Plan<'_>) {
         let view = plan.view;
         let Some(ball) = view.ball else { return self.defend(plan, false) };
-        self.possession = self.possession.next(view, view.contact);
+        self.open_play.rated.possession = self.open_play.rated.possession.next(view, view.contact);
         self.order_double_touch_blocked(plan, &ball);
         self.order_uncovering(plan, &ball);
         self.see_pass_leave(view);
@@ -44,65 +70,61 @@ impl Coach {
             return self.support_pass(plan, at, None);
         }
         if keepers || is_left_to_the_keeper(view, &ball) {
-            self.first = None;
-            self.defend(plan, self.attacked || keepers);
+            self.roles.ball_player = None;
+            self.defend(plan, self.open_play.attacked || keepers);
             return self.support_pass(plan, ball.position, None);
         }
         let first = self.first_at(view, plan, &ball);
-        self.first = first.map(|(id, _)| id);
+        self.roles.ball_player = first.map(|(id, _)| id);
         self.see_whose(view, &ball, first.map_or(f32::INFINITY, |(_, arrival)| arrival.seconds));
         if let Some((id, arrival)) = first
             && plan.take(id)
         {
-            let clears = self.clears_before_our_area(view, id, &ball);
+            let clears = self.defence.clears_before_our_area(view, id, &ball);
             if let Some((task, why)) = clears.or_else(|| self.act(plan, id, &ball, &arrival)) {
                 plan.order(id, Role::Player, task, why);
-                self.defend(plan, self.attacked);
+                self.defend(plan, self.open_play.attacked);
                 return self.support_pass(plan, arrival.ball, Some(id));
             }
             let why = OrderReason::SoonestAtBall { seconds: arrival.seconds };
             plan.order(id, Role::Player, Task::Gameplay, why);
         }
-        // A robot that plays a case plays it to its end.
-        for robot in view.ours.iter().filter(|robot| view.in_play.has(robot.id)) {
-            if plan.free.len() > 2 && plan.take(robot.id) {
-                plan.order(robot.id, Role::Player, Task::Gameplay, OrderReason::OpenPlay);
-            }
-        }
-        self.defend(plan, self.attacked);
-        plan.all_robots(Role::Player, Task::Gameplay, OrderReason::OpenPlay);
+        self.play_cases(plan);
     }
 
     /// The robot that plays the ball: who has it, else who is first behind it.
     fn first_at(&self, view: &View, plan: &Plan<'_>, ball: &ViewBall) -> Option<(RobotId, Arrival)> {
         // A keeper that left its goal for a ball could be passed by it.
         let may = |robot: &&ViewRobot| plan.free.contains(&robot.id) && robot.id != view.keeper;
-        if let Some(owner) = self.possession.owner().and_then(|id| view.our(id)).filter(|r| may(r)) {
+        if let Some(owner) =
+            self.open_play.rated.possession.owner().and_then(|id| view.our(id)).filter(|r| may(r))
+        {
             return Some((owner.id, Arrival { seconds: 0.0, ball: ball.position }));
         }
-        let limits = &self.kicks.constants().receiver;
-        let of =
-            |robot: &ViewRobot| arrival(robot, (ball, view), self.kicks.ground(), limits, view.their_goal());
-        let bound = |robot: &ViewRobot| if view.in_play.has(robot.id) { BOUND } else { 0.0 };
-        let soonest = roles::choose(view.ours.iter().filter(may), self.first, roles::WORTH, |robot| {
-            of(robot).seconds - bound(robot)
-        });
+        let limits = &self.passes.kicks().constants().receiver;
+        let of = |robot: &ViewRobot| {
+            arrival(robot, (ball, view), self.passes.kicks().ground(), limits, view.their_goal())
+        };
+        let bound = |robot: &ViewRobot| if view.in_play.has(robot.id) { CASE_PLAYER_BONUS_S } else { 0.0 };
+        let soonest =
+            roles::choose(view.ours.iter().filter(may), self.roles.ball_player, roles::WORTH, |robot| {
+                of(robot).seconds - bound(robot)
+            });
         soonest.and_then(|(id, _)| view.our(id)).map(|robot| (robot.id, of(robot)))
     }
 
     /// Updates whether the ball is theirs: they have it, or one of them is clearly sooner at it.
     fn see_whose(&mut self, view: &View, ball: &ViewBall, ours: f32) {
-        self.attacked = match self.possession {
+        self.open_play.attacked = match self.open_play.rated.possession {
             Possession::Ours(..) => false,
             Possession::Theirs(..) => true,
             Possession::Contested(..) | Possession::Free => {
-                let limits = &self.kicks.constants().opponent;
+                let limits = &self.passes.kicks().constants().opponent;
                 let goal = view.our_goal();
-                let theirs = view
-                    .theirs
-                    .iter()
-                    .map(|robot| arrival(robot, (ball, view), self.kicks.ground(), limits, goal).seconds);
-                let worth = if self.attacked { -roles::WORTH } else { roles::WORTH };
+                let theirs = view.theirs.iter().map(|robot| {
+                    arrival(robot, (ball, view), self.passes.kicks().ground(), limits, goal).seconds
+                });
+                let worth = if self.open_play.attacked { -roles::WORTH } else { roles::WORTH };
                 theirs.fold(f32::INFINITY, f32::min) + worth < ours
             }
         };
@@ -116,7 +138,8 @@ impl Coach {
         ball: &ViewBall,
         arrival: &Arrival,
     ) -> Option<(Task, OrderReason)> {
-        let from = if self.possession.owner() == Some(who) { ball.position } else { arrival.ball };
+        let from =
+            if self.open_play.rated.possession.owner() == Some(who) { ball.position } else { arrival.ball };
         let action = self.choose(plan, who, from, true);
         self.order_action(plan, &action)
     }
@@ -136,16 +159,16 @@ impl Coach {
     /// is not in play is passed or shot.
     fn choose(&mut self, plan: &Plan<'_>, who: RobotId, from: Point<Attack>, may_play_on: bool) -> Action {
         let view = plan.view;
-        let kept = self.chosen.filter(|chosen| chosen.who == who);
+        let kept = self.open_play.rated.chosen.filter(|chosen| chosen.who == who);
         if let Some(chosen) = kept
             && view.now.since(chosen.rated) < RATED_EVERY
         {
             return chosen.action;
         }
         // A ball that moved is played from where it is; what was chosen for it is still compared.
-        let there = kept.map(|chosen| chosen.from).filter(|there| there.distance(from) < MOVED);
+        let there = kept.map(|chosen| chosen.from).filter(|there| there.distance(from) < BALL_MOVED_M);
         if there.is_none() {
-            self.searches.forget();
+            self.passes.forget();
         }
         let plays_case = may_play_on && view.in_play.has(who);
         let again = match kept.map(|chosen| chosen.action) {
@@ -155,49 +178,54 @@ impl Coach {
             None => plays_case.then_some((Action::PlayOn, from)),
         };
         let again = again.and_then(|(action, at)| {
-            let again = rated::rate_again(view, &self.kicks, who, at, &action)?;
+            let again = rated::rate_again(view, self.passes.kicks(), who, at, &action)?;
             // Kick and volley stay as ordered while the ball is where it was.
             Some(if there.is_some() { again.kicked_as(&action) } else { again })
         });
-        let defenders = self.defenders;
+        let defenders = self.roles.defenders;
         let receives = |id| !defenders.contains(&Some(id));
         let pass = view.proposal.filter(|pass| self.tactics.bridge && pass.passer.0 == who);
         let may = |id| id == who || plan.free.contains(&id) && id != view.keeper && receives(id);
         let retrieved = (self.tactics.bridge && may_play_on && !view.in_play.has(who))
-            .then(|| retrieved::retrieve(view, &self.cases, who, from, may))
+            .then(|| case_candidate::retrieve(view, &self.open_play.rated.cases, who, from, may))
             .flatten();
         let of_cases = OfCases { pass, retrieved };
-        let mut list = rated::rate(view, &self.kicks, &mut self.searches, who, from, receives, of_cases);
-        list.retain(|rated| may_play_on || rated.action != Action::PlayOn);
+        let mut list = rated::rate(view, &mut self.passes, who, from, of_cases);
+        list.retain(|rated| match rated.action {
+            Action::Pass { receiver, .. } => receives(receiver),
+            Action::PlayOn => may_play_on,
+            _ => true,
+        });
         let best = list.first().map_or((Action::PlayOn, 0.0), |best| (best.action, best.worth));
         // Among equals a case: its robots know their parts before the ball leaves.
         let case = list.iter().find(|rated| matches!(rated.action, Action::Case(_)));
-        let best =
-            case.filter(|case| best.1 < case.worth + CLEARLY).map_or(best, |case| (case.action, case.worth));
+        let best = case
+            .filter(|case| best.1 < case.worth + BETTER_BY_MIN)
+            .map_or(best, |case| (case.action, case.worth));
         let is_of_case = |action| matches!(action, Action::Case(_) | Action::PlayOn);
         let better = match again {
             Some(again) if plays_case && is_of_case(again.action) => CASE_MARGIN,
-            _ => CLEARLY,
+            _ => BETTER_BY_MIN,
         };
         let (action, from) = match again {
             Some(again) if best.1 < again.worth + better => (again.action, there.unwrap_or(from)),
             _ => (best.0, from),
         };
-        self.chosen = Some(Chosen { who, rated: view.now, from, action });
-        self.list = list;
+        self.open_play.rated.chosen = Some(Chosen { who, rated: view.now, from, action });
+        self.open_play.rated.list = list;
         action
     }
 }
 
 /// A robot that plays a case counts as this much nearer to the ball, s: a change of robots would end the
 /// case.
-const BOUND: f32 = 0.5;
+const CASE_PLAYER_BONUS_S: f32 = 0.5;
 /// Interval at which the list is rated.
 const RATED_EVERY: Duration = Duration::millis(50);
 /// A ball that moved by more than this is a new situation, m.
-const MOVED: f32 = 0.3;
+const BALL_MOVED_M: f32 = 0.3;
 /// Another action is better by at least this: a robot that turns round loses half a second.
-const CLEARLY: f32 = 0.02;
+const BETTER_BY_MIN: f32 = 0.02;
 /// An action must be better than a running case by at least this, P(goal): its partners have gone to their
 /// places for it. 40 matches each with 0.02, 0.06 and 0.1: 38, 33 and 29 % of the cases were reassigned, and
 /// no difference in goals was seen (docs/strategy.md).
@@ -241,7 +269,7 @@ mod tests {
             let task = orders.iter().find(|order| order.robot == who).map(|order| order.task);
             let keeps = task == Some(Task::Gameplay);
             assert_eq!(keeps, better < CASE_MARGIN, "situation {situation}: {task:?}, {better} better");
-            kept += u32::from(keeps && better > CLEARLY);
+            kept += u32::from(keeps && better > BETTER_BY_MIN);
             broken += u32::from(!keeps);
         }
         assert!(kept > 10 && broken > 10, "{kept} kept for a little, {broken} broken off");

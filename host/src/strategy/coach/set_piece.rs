@@ -1,14 +1,46 @@
 //! `set_piece`: restarts: ours with a kicker and teammates to pass to, theirs with a wall.
 
 use geometry::{Attack, Point};
-use protocol::Duration;
-use rules::{Phase, Side};
+use protocol::{Duration, Instant};
+use rules::{League, Phase, Side};
 
 use super::super::order::{OrderReason, Role, Task};
 use super::super::support::{self, Target};
 use super::super::view::{ROBOTS_MAX, View, ViewBall};
 use super::super::{defence, restart, roles};
+use super::ahead::Ahead;
+use super::cap::Cap;
 use super::{Coach, Plan};
+
+/// Memory of our restart, or ball placement, that is running.
+#[derive(Clone, Debug)]
+pub(super) struct RestartState {
+    /// Its target, since when.
+    pub(super) aim: Option<(Instant, Target)>,
+    /// The pass ahead that it is to be.
+    pub(super) ahead: Option<Ahead>,
+    pub(super) cap: Cap,
+    /// A pass ahead was not completed in time at this restart.
+    pub(super) gave_up: bool,
+    /// Least distance of the ball from its place in our placement, m, and since when.
+    placing: Option<(f32, Instant)>,
+    /// Place of the ball when our kicker was ordered to it last.
+    pub(super) ball_from: Option<Point<Attack>>,
+}
+
+impl RestartState {
+    /// Memory without a restart, by a league's rules.
+    pub(super) fn new(league: League) -> Self {
+        Self { aim: None, ahead: None, cap: Cap::new(league), gave_up: false, placing: None, ball_from: None }
+    }
+
+    /// Drops aim and plans when another phase starts.
+    pub(super) fn reset(&mut self) {
+        (self.aim, self.ahead, self.placing) = (None, None, None);
+        self.gave_up = false;
+        self.cap.forget();
+    }
+}
 
 impl Coach {
     /// Our ball placement: the nearest brings it, the others keep clear of it. One that gets nowhere is
@@ -21,12 +53,14 @@ impl Coach {
             let field_players = view.ours.iter().filter(|robot| robot.id != view.keeper);
             // Who backs off with the ball seems to get away from it: no robot takes over from one that makes
             // progress.
-            let stuck = self.placing.is_some_and(|(_, since)| view.now.since(since) > PLACER_PATIENCE);
-            let chosen = self.age(view) > PLACER_CHOSEN && !stuck;
-            let worth = if chosen { PLACER_WORTH } else { roles::WORTH };
-            let first =
-                roles::choose(field_players, self.first, worth, |robot| roles::time_to(robot, ball.position));
-            self.first = first.map(|(id, _)| id);
+            let stuck =
+                self.restart.placing.is_some_and(|(_, since)| view.now.since(since) > PLACER_STUCK_AFTER);
+            let chosen = self.age(view) > PLACER_CHOSEN_WITHIN && !stuck;
+            let worth = if chosen { PLACER_CHANGE_S } else { roles::WORTH };
+            let first = roles::choose(field_players, self.roles.ball_player, worth, |robot| {
+                roles::time_to(robot, ball.position)
+            });
+            self.roles.ball_player = first.map(|(id, _)| id);
             if let Some((id, seconds)) = first
                 && plan.take(id)
             {
@@ -40,13 +74,14 @@ impl Coach {
     /// Whether the ball has not come nearer to its place for so long that it is given up.
     fn gives_up_placing(&mut self, view: &View, ball: &ViewBall, at: Point<Attack>) -> bool {
         let left = ball.position.distance(at);
-        let (least, since) = *self.placing.get_or_insert((left, view.now));
-        if left < least - PLACING_GAINS {
-            self.placing = Some((left, view.now));
+        let (least, since) = *self.restart.placing.get_or_insert((left, view.now));
+        if left < least - PLACING_GAIN_MIN_M {
+            self.restart.placing = Some((left, view.now));
             return false;
         }
         let waited = view.now.since(since);
-        waited > PLACING_PATIENCE || waited > BALL_ROLLS && restart::is_out_of_reach(view, ball.position)
+        waited > PLACING_GIVEN_UP_AFTER
+            || waited > OUT_OF_REACH_GIVEN_UP_AFTER && restart::is_out_of_reach(view, ball.position)
     }
 
     /// Kick-off: ours with a kicker and teammates to pass to, theirs with all robots at home.
@@ -71,7 +106,7 @@ impl Coach {
             self.defend(plan, false);
             return self.spread(plan);
         }
-        self.first = None;
+        self.roles.ball_player = None;
         let field_players = plan.free.iter().filter(|id| **id != view.keeper).count();
         let places =
             self.model.as_ref().and_then(|model| model.against_free_kick(view, &ball, field_players));
@@ -91,7 +126,7 @@ impl Coach {
         let mut places: heapless::Vec<_, ROBOTS_MAX> = heapless::Vec::new();
         let mut whom: heapless::Vec<_, ROBOTS_MAX> = heapless::Vec::new();
         // Near our area the defenders are the wall already.
-        if ball.position.distance(view.our_goal()) > WALL_BEYOND {
+        if ball.position.distance(view.our_goal()) > WALL_BEYOND_M {
             let _ = places.push(restart::wall(view, &ball));
             let _ = whom.push((Role::Wall, OrderReason::OnBallLine { y: view.our_goal().y() }));
         }
@@ -110,10 +145,10 @@ impl Coach {
         let penalty = matches!(view.phase, Phase::Penalty(_));
         let Some(ball) = view.ball else { return };
         let field_players = view.ours.iter().filter(|robot| robot.id != view.keeper);
-        let chosen = roles::choose(field_players, self.first, KICKER_WORTH, |robot| {
+        let chosen = roles::choose(field_players, self.roles.ball_player, KICKER_CHANGE_S, |robot| {
             roles::time_to(robot, ball.position)
         });
-        self.first = chosen.map(|(id, _)| id);
+        self.roles.ball_player = chosen.map(|(id, _)| id);
         let Some((id, seconds)) = chosen else { return };
         if !plan.take(id) {
             return;
@@ -128,7 +163,7 @@ impl Coach {
                 OrderReason::SoonestAtBall { seconds },
             );
         }
-        self.ball_lay = Some(ball.position);
+        self.restart.ball_from = Some(ball.position);
         if let Some((task, why)) = self.coerce(plan, id, &ball) {
             return plan.order(id, Role::Kicker, task, why);
         }
@@ -140,9 +175,9 @@ impl Coach {
         }
         // At a kick-off all have stood in their places since it was prepared.
         let free_kick = matches!(view.phase, Phase::FreeKick(_));
-        let wait = if free_kick { TEAMMATES_GET_READY } else { Duration(0) };
-        let stands =
-            self.ahead.is_some() || self.aim.is_some_and(|(since, _)| view.now.since(since) < AIM_STANDS);
+        let wait = if free_kick { AIMED_AFTER } else { Duration(0) };
+        let stands = self.restart.ahead.is_some()
+            || self.restart.aim.is_some_and(|(since, _)| view.now.since(since) < AIM_KEPT);
         if self.age(view) >= wait && !stands {
             let target = if penalty {
                 let (at, room) = support::best_shot(view, ball.position);
@@ -150,24 +185,24 @@ impl Coach {
             } else {
                 self.target(view, id, &ball)
             };
-            self.aim = Some((view.now, target));
+            self.restart.aim = Some((view.now, target));
         }
         if let Some((task, why)) = self.pass_ahead(view, id, &ball) {
             return plan.order(id, Role::Kicker, task, why);
         }
-        let (task, why) = restart::take(view, &ball, self.aim.map(|(_, target)| target));
+        let (task, why) = restart::take(view, &ball, self.restart.aim.map(|(_, target)| target));
         plan.order(id, Role::Kicker, task, why);
     }
 
     /// The teammate that our restart is aimed at; of a pass ahead, as soon as it is its time.
     fn receiver(&mut self, plan: &mut Plan<'_>) {
-        if let Some(ahead) = self.ahead {
+        if let Some(ahead) = self.restart.ahead {
             if ahead.receiver_goes() && plan.take(ahead.receiver) {
                 plan.order(ahead.receiver, Role::Receiver, ahead.reception(), ahead.why());
             }
             return;
         }
-        if let Some((_, Target::Teammate { id, at, room })) = self.aim
+        if let Some((_, Target::Teammate { id, at, room })) = self.restart.aim
             && plan.take(id)
         {
             plan.order(
@@ -183,14 +218,15 @@ impl Coach {
     /// against a second-level threat.
     fn their_free_kick(&mut self, plan: &mut Plan<'_>, ball: &ViewBall) {
         let view = plan.view;
-        if ball.position.distance(view.our_goal()) > WALL_BEYOND {
+        if ball.position.distance(view.our_goal()) > WALL_BEYOND_M {
             let at = plan.kept_off(restart::wall(view, ball));
             let primaries = self.primaries(plan);
             let near = view.ours.iter().filter(|robot| {
                 plan.free.contains(&robot.id) && robot.id != view.keeper && !primaries.has(robot.id)
             });
-            let wall = roles::choose(near, self.others[0], roles::WORTH, |robot| roles::time_to(robot, at));
-            self.others[0] = wall.map(|(id, _)| id);
+            let wall =
+                roles::choose(near, self.roles.placed[0], roles::WORTH, |robot| roles::time_to(robot, at));
+            self.roles.placed[0] = wall.map(|(id, _)| id);
             if let Some((id, _)) = wall
                 && plan.take(id)
             {
@@ -209,23 +245,23 @@ impl Coach {
 
 /// How much sooner another robot must be at the ball to become the kicker, s: more than in play, the ball
 /// lies.
-const KICKER_WORTH: f32 = 1.0;
+const KICKER_CHANGE_S: f32 = 1.0;
 /// Mates are given this long to take their places before a restart is aimed, of the 5 s (A) that the rules
 /// give: they are there since the ball was placed, and run on while the kicker goes around it.
-const TEAMMATES_GET_READY: Duration = Duration::millis(200);
+const AIMED_AFTER: Duration = Duration::millis(200);
 /// A target once chosen stands for this long: to walk around the ball, aim and kick.
-const AIM_STANDS: Duration = Duration::millis(3000);
+const AIM_KEPT: Duration = Duration::millis(3000);
 /// Nearer to our goal than this the defenders are the wall, m.
-const WALL_BEYOND: f32 = 2.2;
+const WALL_BEYOND_M: f32 = 2.2;
 /// How much sooner another robot must be at the ball to take a placement over, s: as long as fetching it
 /// takes; and as usual of one that has not brought the ball nearer for this long.
-const PLACER_WORTH: f32 = 4.0;
-const PLACER_PATIENCE: Duration = Duration::millis(6_000);
+const PLACER_CHANGE_S: f32 = 4.0;
+const PLACER_STUCK_AFTER: Duration = Duration::millis(6_000);
 /// Who brings the ball is chosen again for this long: before, it was for a stop.
-const PLACER_CHOSEN: Duration = Duration::millis(100);
+const PLACER_CHOSEN_WITHIN: Duration = Duration::millis(100);
 /// A ball that has come nearer to its place by this much counts as being placed, m.
-const PLACING_GAINS: f32 = 0.1;
+const PLACING_GAIN_MIN_M: f32 = 0.1;
 /// A ball that has not for this long is given up: the 30 s of a placement.
-const PLACING_PATIENCE: Duration = Duration::millis(30_000);
+const PLACING_GIVEN_UP_AFTER: Duration = Duration::millis(30_000);
 /// One that no robot can get at is given up as soon as it lies still.
-const BALL_ROLLS: Duration = Duration::millis(2_000);
+const OUT_OF_REACH_GIVEN_UP_AFTER: Duration = Duration::millis(2_000);

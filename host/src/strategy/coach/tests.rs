@@ -2,12 +2,13 @@
 
 use super::*;
 use crate::strategy::pass::bridge::RADIUS;
+use crate::strategy::support;
 use crate::strategy::threat::Guards;
 use crate::strategy::view::ViewBall;
 use crate::strategy::view::tests::view;
 use crate::strategy::view::{CasePass, RobotSet};
 use casebase::CaseRobot;
-use geometry::Vector;
+use geometry::{Attack, Point, Vector};
 use protocol::CaseId;
 use protocol::host::Directive;
 
@@ -108,7 +109,7 @@ fn the_list_that_an_order_is_from_is_kept_with_what_was_rejected() {
 }
 
 #[test]
-fn by_the_rated_list_a_robot_with_the_ball_keeps_it_though_another_is_nearer_to_its_rest() {
+fn by_the_rated_list_the_owner_plays_on_though_another_is_nearer_to_the_stop() {
     let mut coach = coach();
     // Our 3 has it before its front plate; our 4 is behind it.
     let mut view = view((-0.4, 0.0), &OURS, &THEIRS);
@@ -173,7 +174,7 @@ fn one_too_many_goes_to_the_touch_line_and_it_is_not_the_keeper() {
 }
 
 #[test]
-fn who_took_our_free_kick_leaves_the_ball_to_others_until_somebody_touched_it() {
+fn our_free_kicks_kicker_avoids_the_ball_until_another_robot_touches_it() {
     let mut coach = coach();
     let mut view = view((-0.35, 0.0), &OURS, &THEIRS);
     view.phase = Phase::FreeKick(Side::Ours);
@@ -189,7 +190,7 @@ fn who_took_our_free_kick_leaves_the_ball_to_others_until_somebody_touched_it() 
 }
 
 #[test]
-fn no_one_is_sent_near_the_ball_in_stop_nor_to_a_ball_in_their_area() {
+fn no_robot_is_sent_near_the_ball_in_a_stop_nor_to_a_ball_in_their_area() {
     for ball in [(0.0, 0.0), (-3.2, 0.3), (4.2, 2.7), (-4.3, -2.8)] {
         let mut view = view(ball, &OURS, &THEIRS);
         view.phase = Phase::Stop;
@@ -220,7 +221,7 @@ fn the_same_views_give_the_same_orders_and_roles_hold_between_them() {
 }
 
 #[test]
-fn against_threats_keeper_and_defenders_say_what_is_open_and_others_come_back_only_if_the_ball_is_theirs() {
+fn against_threats_defenders_give_the_open_angle_and_others_return_for_their_ball() {
     let tactics = Tactics { threats: true, second_level: true, ..Tactics::NONE };
     let guards = |orders: &Orders| {
         orders
@@ -252,7 +253,7 @@ fn free_kick(ms: u64, receiver: (f32, f32), theirs: &[(f32, f32)]) -> View {
 }
 
 #[test]
-fn a_pass_ahead_leaves_when_its_receiver_will_be_there_and_whoever_receives_it_is_reported_where() {
+fn a_pass_ahead_leaves_when_its_receiver_will_be_in_time_at_the_place_it_is_sent_to() {
     let tactics = Tactics { pass_ahead: true, ..Tactics::NONE };
     let mut coach = Coach::new(Team::Ours, tactics, League::DivisionB);
     // Six of them before their goal: no shot.
@@ -307,7 +308,7 @@ fn a_pass_ahead_leaves_when_its_receiver_will_be_there_and_whoever_receives_it_i
 }
 
 #[test]
-fn a_shot_at_our_goal_makes_no_one_leave_its_place_and_the_keeper_stays_one() {
+fn at_a_shot_at_our_goal_no_defender_leaves_its_place_nor_the_keeper_its_role() {
     for coach in [by_thresholds, coach] {
         shot_at_our_goal(coach());
     }
@@ -336,7 +337,7 @@ fn shot_at_our_goal(mut coach: Coach) {
 }
 
 #[test]
-fn a_ball_that_lies_before_our_area_is_the_keepers_unless_a_field_player_is_there_first() {
+fn a_ball_before_our_area_is_the_keepers_unless_a_field_player_is_there_first() {
     let kicks = |ball: (f32, f32)| -> Vec<u8> {
         let orders = coach().decide(&view(ball, &OURS, &THEIRS));
         let plays = |order: &&Order| matches!(order.task, Task::Kick { .. } | Task::Gameplay);
@@ -377,7 +378,7 @@ pub(super) fn attack(
 }
 
 #[test]
-fn in_open_play_an_open_goal_is_shot_at_and_a_closed_one_passed_around_and_far_from_both_a_case_is_played() {
+fn open_play_shoots_at_an_open_goal_passes_around_a_closed_one_else_plays_a_case() {
     let far = [(-2.0, 2.0), (-2.0, -2.0)];
     let (_, _, shoots) = attack(far, &[(4.4, 0.3)], Tactics::ROUND_1);
     assert!(
@@ -405,7 +406,7 @@ fn in_open_play_an_open_goal_is_shot_at_and_a_closed_one_passed_around_and_far_f
 }
 
 #[test]
-fn where_a_case_is_played_its_pass_goes_near_its_place_to_its_receiver_if_the_bridge_is_played() {
+fn with_the_bridge_a_running_cases_pass_goes_near_its_place_to_its_receiver() {
     // The goal is closed and no pass may be worth it; the case has 5 receive it in free space.
     let closed = [(4.4, 0.0), (2.4, 0.0), (2.45, 0.2), (2.45, -0.2), (-1.8, 2.0)];
     let ours = [(-4.4, 0.0), (-3.2, 0.3), (-3.2, -0.3), (1.85, 0.0), (-2.0, 2.0), (-0.8, -2.0)];
@@ -482,7 +483,7 @@ fn a_ball_behind_the_goal_that_no_robot_gets_at_is_given_up_at_once() {
 }
 
 #[test]
-fn who_is_left_without_a_ball_is_reported_to_be_where_it_may_rather_than_to_stand() {
+fn without_a_ball_in_a_stop_robots_are_sent_to_legal_places_and_do_not_just_stand() {
     for phase in [Phase::Stop, Phase::PreparePenalty(Side::Theirs), Phase::PrepareKickoff(Side::Ours)] {
         let mut view = view((0.0, 0.0), &OURS, &THEIRS);
         (view.phase, view.ball) = (phase, None);

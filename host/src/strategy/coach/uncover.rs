@@ -26,19 +26,20 @@ impl Coach {
     pub(super) fn order_uncovering(&mut self, plan: &mut Plan<'_>, ball: &ViewBall) {
         let view = plan.view;
         let running =
-            self.uncovering.filter(|uncovering| view.now.since(uncovering.since) < STEPS_BACK_EVERY);
-        self.uncovering = running.or_else(|| {
-            let rests = ball.velocity.norm() < RESTS;
+            self.open_play.uncovering.filter(|uncovering| view.now.since(uncovering.since) < STEP_BACK_EVERY);
+        self.open_play.uncovering = running.or_else(|| {
+            let rests = ball.velocity.norm() < RESTING_SPEED_MAX_M_S;
             let fields = view.ours.iter().filter(|robot| robot.id != view.keeper);
             let (robot, apart) = nearest(fields, ball.position)?;
-            let stuck = ball.unseen > HIDDEN && rests && apart < BESIDE && !view.contact.has(robot.id);
+            let stuck =
+                ball.unseen > HIDDEN_AFTER && rests && apart < HIDES_WITHIN_M && !view.contact.has(robot.id);
             let robot = stuck.then_some(robot)?;
-            let to = ball.position + (robot.position - ball.position).unit()? * STEPS_TO;
+            let to = ball.position + (robot.position - ball.position).unit()? * STEP_BACK_TO_M;
             Some(Uncovering { who: robot.id, to, since: view.now })
         });
-        if let Some(Uncovering { who, to, since }) = self.uncovering
-            && ball.unseen > HIDDEN
-            && view.now.since(since) < STEPS_BACK_FOR
+        if let Some(Uncovering { who, to, since }) = self.open_play.uncovering
+            && ball.unseen > HIDDEN_AFTER
+            && view.now.since(since) < STEP_BACK_TIME
             && plan.take(who)
         {
             let to = plan.kept_off(to);
@@ -48,17 +49,17 @@ impl Coach {
 }
 
 /// A ball unseen for longer is hidden, not missed by the cameras: they miss at most some frames in a row.
-const HIDDEN: Duration = Duration::millis(1000);
+const HIDDEN_AFTER: Duration = Duration::millis(1000);
 /// A slower ball lies, m/s: one that a robot carries is faster.
-const RESTS: f32 = 0.1;
+const RESTING_SPEED_MAX_M_S: f32 = 0.1;
 /// A robot's centre this near a ball hides it, m: its diameter.
-const BESIDE: f32 = 2.0 * rules::limits::ROBOT_RADIUS;
+const HIDES_WITHIN_M: f32 = 2.0 * rules::limits::ROBOT_RADIUS;
 /// It steps back to this distance of the ball, m: two diameters show what lay beside one.
-const STEPS_TO: f32 = 2.0 * BESIDE;
+const STEP_BACK_TO_M: f32 = 2.0 * HIDES_WITHIN_M;
 /// Time for stepping back: 0.2 m from rest at 3 m/s², the radio, and five frames of vision.
-const STEPS_BACK_FOR: Duration = Duration::millis(800);
+const STEP_BACK_TIME: Duration = Duration::millis(800);
 /// It steps back again after this time at the earliest: between, it tries to get the ball.
-const STEPS_BACK_EVERY: Duration = Duration::millis(2500);
+const STEP_BACK_EVERY: Duration = Duration::millis(2500);
 
 #[cfg(test)]
 mod tests {
@@ -96,7 +97,7 @@ mod tests {
     #[test]
     fn a_robot_at_a_hidden_ball_that_it_does_not_have_steps_back() {
         let at = steps_back(&mut coach(), &beside(1500)).unwrap();
-        assert!(at.distance(Point::new(-STEPS_TO, 0.0)) < 0.01, "{at:?}");
+        assert!(at.distance(Point::new(-STEP_BACK_TO_M, 0.0)) < 0.01, "{at:?}");
         assert_eq!(steps_back(&mut coach(), &beside(500)), None, "cameras may have missed it");
         let mut had = beside(1500);
         had.contact = RobotSet::default();

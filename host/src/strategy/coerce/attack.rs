@@ -119,7 +119,7 @@ pub fn best_attack(
     let mut around = (0..SAMPLES).map(|_| {
         let by = gaussian(&mut random);
         // Within the cell: a sample beyond it is moved to its border.
-        let cut = |x: f32, side: f32| (x * side * SPREAD).clamp(-0.5 * side, 0.5 * side);
+        let cut = |x: f32, side: f32| (x * side * SAMPLE_SIGMA_SHARE).clamp(-0.5 * side, 0.5 * side);
         middle + Vector::new(cut(by.x(), size.x()), cut(by.y(), size.y()))
     });
     value.worths(view, ball.position, kicker, receiver, &mut around, &mut |at, worth| {
@@ -141,4 +141,4 @@ fn gaussian(random: &mut Xoshiro128PlusPlus) -> Vector<Attack> {
 /// (docs/papers.md D18).
 pub const SAMPLES: u32 = 24;
 /// Their standard deviation, as a share of the cell's side: nearly all of them lie in the cell.
-const SPREAD: f32 = 0.25;
+const SAMPLE_SIGMA_SHARE: f32 = 0.25;

@@ -76,22 +76,19 @@ impl PassValue for ByPassLocation<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::pass::PassConstants;
     use super::super::super::view::tests::view;
     use super::super::attack::Least;
     use super::super::grid::Cell;
     use super::super::{CoerceSettings, Planner, tactics::Models};
     use super::*;
-    use motion::ball::BallModel;
-    use motion::ball::chip::ChipModel;
     use rules::League;
 
     fn kicks(league: League) -> Kicks {
-        Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default())
+        Kicks::of(league)
     }
 
     #[test]
-    fn who_stands_on_the_way_meets_the_ball_and_who_is_far_off_does_not() {
+    fn a_robot_on_the_path_intercepts_the_ball_and_one_far_off_does_not() {
         let kicks = kicks(League::DivisionB);
         let value = ByPassLocation::new(&kicks);
         let scene = view((0.0, 0.0), &[], &[(1.5, 0.02), (1.5, 2.9)]);

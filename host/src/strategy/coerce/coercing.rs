@@ -136,7 +136,7 @@ pub fn coerce(
                 plan.first[cell.index()] = interference;
             }
             // Likelihoods that differ by less than a hundredth are equal: then the shorter path.
-            let step = (interference * STEPS) as u32;
+            let step = (interference * LIKELIHOOD_STEPS) as u32;
             if best.is_none_or(|(least, shortest, _)| (step, time) < (least, shortest)) {
                 let (robot, marker, interference_now) = (robot.id, pair.marker.opponent, *now);
                 let coercer =
@@ -182,4 +182,4 @@ fn may_go(
 }
 
 /// Likelihoods are compared in hundredths.
-const STEPS: f32 = 100.0;
+const LIKELIHOOD_STEPS: f32 = 100.0;

@@ -62,7 +62,7 @@ impl Detector {
     pub fn watch(&mut self, view: &View, kicker: Option<RobotId>) {
         let since = self.seen.map_or(f32::INFINITY, |seen| view.now.since(seen).as_secs_f32());
         self.seen = Some(view.now);
-        let keeps = if since < FORGOTTEN { geometry::math::exp(-since / MEMORY) } else { 0.0 };
+        let keeps = if since < RESTART_AFTER_S { geometry::math::exp(-since / MEMORY_S) } else { 0.0 };
         let situation = CoerceSituation::new(view, self.models, kicker);
         let mut known = [None; ROBOTS_MAX];
         for robot in &view.theirs {
@@ -74,7 +74,7 @@ impl Detector {
             let mut stand_off = before.map_or(self.models.stand_off, |before| before.stand_off);
             // A marker's distance is learned while it is very likely that it marks.
             if let (likely, Some(ours)) = situation.mark(robot.position)
-                && likely > SURE
+                && likely > MARKING_P_MIN
             {
                 stand_off = mixed(stand_off, view.ours[ours].position.distance(robot.position));
             }
@@ -112,11 +112,11 @@ impl Detector {
 }
 
 /// Snapshots count by e^(−age/this), s (D17: the last half second).
-const MEMORY: f32 = 0.5;
+const MEMORY_S: f32 = 0.5;
 /// After a gap of this length all estimates restart, s.
-const FORGOTTEN: f32 = 2.0;
+const RESTART_AFTER_S: f32 = 2.0;
 /// A mark of at least this likelihood updates the distance.
-const SURE: f32 = 0.5;
+const MARKING_P_MIN: f32 = 0.5;
 
 #[cfg(test)]
 mod tests {
@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn half_a_second_of_places_outweighs_one_snapshot() {
+    fn half_a_second_of_places_outweighs_one_misread_frame() {
         let mut detector = Detector::new(Models::default());
         let kicker = RobotId::new(1);
         for tick in 0..60 {

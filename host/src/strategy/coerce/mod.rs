@@ -55,7 +55,7 @@ pub struct CoerceSettings {
 impl CoerceSettings {
     /// The settings for a league's rules.
     pub fn of(league: League) -> Self {
-        let free_kick = league.limits().map_or(FREE_KICK_TIME, |limits| limits.free_kick_time);
+        let free_kick = league.limits().map_or(FREE_KICK_TIME_S, |limits| limits.free_kick_time);
         Self { coerce_time: COERCE_SHARE * free_kick, ..Self::default() }
     }
 }
@@ -64,12 +64,12 @@ impl Default for CoerceSettings {
     fn default() -> Self {
         Self {
             robot: FreeLimits::default(),
-            coerce_time: COERCE_SHARE * FREE_KICK_TIME,
+            coerce_time: COERCE_SHARE * FREE_KICK_TIME_S,
             arrived: 0.18,
             follow_time: 0.5,
             expected_within: 0.5,
             marked_within: 0.5,
-            least: LEAST,
+            least: ATTACK_MIN,
             off_ways: 0.5,
             off_ball: 0.7,
             off_areas: 0.32,
@@ -81,11 +81,11 @@ impl Default for CoerceSettings {
 /// and receiver get ready. Planned passes worth less than 0.005 led to 0.23 shots of ours within 12 s, the
 /// others to 0.75 (86 and 55 passes, seed 100, against the zone and against ours); free kicks taken at once
 /// against the zone to 0.82 (134).
-const LEAST: attack::Least = attack::Least { receive: 0.7, value: 0.005 };
+const ATTACK_MIN: attack::Least = attack::Least { receive: 0.7, value: 0.005 };
 /// Share of a free kick's time for coercing: 4 s of 10 (D16); the remaining time is for the pass-ahead.
 const COERCE_SHARE: f32 = 0.4;
 /// s (paper §4; division B).
-const FREE_KICK_TIME: f32 = 10.0;
+const FREE_KICK_TIME_S: f32 = 10.0;
 
 #[cfg(test)]
 mod tests;

@@ -194,7 +194,7 @@ fn play(planner: &mut Planner, view: &mut View, follow: bool, seconds: f32) -> C
 }
 
 #[test]
-fn who_is_followed_as_expected_attacks_as_planned_after_the_followers_came() {
+fn a_team_followed_as_expected_attacks_as_planned_once_the_followers_came() {
     let (mut planner, plan, mut view) = run(&TEAMMATES, &[0, 1, 2]);
     let begin = view.now;
     let first = planner.watch(&view, &ByDistance);
@@ -216,7 +216,7 @@ fn who_is_followed_as_expected_attacks_as_planned_after_the_followers_came() {
 }
 
 #[test]
-fn who_does_not_follow_makes_a_new_attack_against_everyone() {
+fn an_opponent_that_does_not_follow_causes_a_new_attack_against_all() {
     let (mut planner, _, mut view) = run(&TEAMMATES, &[0, 1, 2]);
     let CoerceProgress::Attacking(attack) = play(&mut planner, &mut view, false, 5.0) else { panic!() };
     let Followed::Otherwise { off, .. } = attack.followed else { panic!("{attack:?}") };
@@ -229,7 +229,7 @@ fn who_does_not_follow_makes_a_new_attack_against_everyone() {
 }
 
 #[test]
-fn where_all_coerce_one_whom_no_one_follows_is_used_again() {
+fn where_all_coerce_one_that_no_opponent_follows_receives() {
     let (mut planner, plan, mut view) = run(&TEAMMATES, &[0, 1, 2, 3]);
     let marked = plan.optimistic.receiver;
     let CoerceProgress::Attacking(attack) = play(&mut planner, &mut view, true, 5.0) else { panic!() };
@@ -298,7 +298,7 @@ fn without_a_ball_or_teammates_there_is_no_plan() {
 }
 
 #[test]
-fn a_pass_that_hardly_arrives_is_no_attack_and_a_way_is_sought_until_the_time_to_coerce_is_over() {
+fn an_unlikely_pass_is_no_attack_and_is_searched_again_while_there_is_time() {
     let likely = |receive| CoerceSettings {
         least: attack::Least { receive, value: 0.0 },
         ..CoerceSettings::default()

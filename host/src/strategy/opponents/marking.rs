@@ -18,22 +18,22 @@ fn places(view: &View, ball: &ViewBall, wanted: usize) -> Places {
         .theirs
         .iter()
         .filter(|robot| robot.id != view.their_keeper)
-        .filter(|robot| ball.position.distance(robot.position) > AT_BALL)
+        .filter(|robot| ball.position.distance(robot.position) > PLAYS_BALL_WITHIN_M)
         .collect();
     let danger = |robot: &ViewRobot| robot.position.distance(goal);
     them.sort_unstable_by(|a, b| danger(a).total_cmp(&danger(b)).then(a.id.cmp(&b.id)));
     let marks = (0_u8..).zip(them).map(|(i, robot)| {
         // Extrapolated to where it will be when the marker has reacted.
-        let at = robot.position + robot.velocity * ANSWERS;
+        let at = robot.position + robot.velocity * MARKER_LEAD_S;
         let home = (goal - at).unit().unwrap_or(Vector::new(-1.0, 0.0));
-        (at + home * OFF, Role::Marker(i), OrderReason::Marks { opponent: robot.id })
+        (at + home * MARK_OFF_M, Role::Marker(i), OrderReason::Marks { opponent: robot.id })
     });
-    let forward = if is_ours(view, ball) { FORWARD } else { 0 };
+    let forward = if is_ours(view, ball) { FORWARD_ROBOTS } else { 0 };
     let [near, _] = defenders(view);
     let places = [near].into_iter().chain(free_places(view, ball, forward)).chain(marks);
     let mut places: Places = places.take(wanted).collect();
     let missing = wanted - places.len().min(wanted);
-    places.extend(free_places(view, ball, FORWARD + missing).skip(forward).take(missing));
+    places.extend(free_places(view, ball, FORWARD_ROBOTS + missing).skip(forward).take(missing));
     places
 }
 
@@ -42,17 +42,17 @@ fn is_ours(view: &View, ball: &ViewBall) -> bool {
     let soonest = |robots: &[ViewRobot]| {
         robots.iter().map(|robot| roles::time_to(robot, ball.rest)).fold(f32::INFINITY, f32::min)
     };
-    soonest(&view.ours) + SOONER < soonest(&view.theirs)
+    soonest(&view.ours) + OURS_SOONER_BY_S < soonest(&view.theirs)
 }
 
 /// An opponent this near the ball is covered by the robot that goes for the ball, m.
-const AT_BALL: f32 = 0.4;
+const PLAYS_BALL_WITHIN_M: f32 = 0.4;
 /// Distance of a marker's centre from its opponent's, m: two bodies and room to brake.
-const OFF: f32 = 0.3;
+const MARK_OFF_M: f32 = 0.3;
 /// A marker goes to where its opponent will be after this time, s: latency of a command to the robot, and its
 /// first step.
-const ANSWERS: f32 = 0.15;
+const MARKER_LEAD_S: f32 = 0.15;
 /// The ball counts as ours if we are this much sooner at it, s.
-const SOONER: f32 = 0.3;
+const OURS_SOONER_BY_S: f32 = 0.3;
 /// Number of robots that leave their opponents while the ball is ours.
-const FORWARD: usize = 2;
+const FORWARD_ROBOTS: usize = 2;

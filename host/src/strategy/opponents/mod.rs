@@ -67,7 +67,7 @@ pub(super) struct OpponentModel {
     /// Target of the ball, since when, from where.
     aim: Option<(Instant, Point<Attack>, Target)>,
     /// Which robot had which of the style's places.
-    held: [Option<RobotId>; PLACES],
+    held: [Option<RobotId>; PLACES_MAX],
 }
 
 /// The functions that distinguish one opponent team from another.
@@ -96,7 +96,7 @@ impl OpponentModel {
             Team::Zone => zone::STYLE,
             Team::Ours | Team::Idle => return None,
         };
-        Some(Self { style, first: None, aim: None, held: [None; PLACES] })
+        Some(Self { style, first: None, aim: None, held: [None; PLACES_MAX] })
     }
 
     /// Orders in open play for those of `free`, which are removed from it; `double_touch_blocked` must not
@@ -121,7 +121,11 @@ impl OpponentModel {
         if let Some((robot, seconds)) = self.choose_first(view, &ball, free, double_touch_blocked) {
             let target = self.target(view, robot, &ball);
             let (task, why) = restart::take(view, &ball, Some(target));
-            let why = if ball.velocity.norm() > LIES { OrderReason::SoonestAtBall { seconds } } else { why };
+            let why = if ball.velocity.norm() > LYING_SPEED_MAX_M_S {
+                OrderReason::SoonestAtBall { seconds }
+            } else {
+                why
+            };
             order(free, robot, Role::Player, task, why);
             if let Target::Teammate { id, at, room } = target
                 && free.contains(&id)
@@ -185,7 +189,7 @@ impl OpponentModel {
     fn target(&mut self, view: &View, robot: RobotId, ball: &ViewBall) -> Target {
         match self.aim {
             Some((since, from, target))
-                if view.now.since(since) < AIM_STANDS && from.distance(ball.position) < AIM_MOVES =>
+                if view.now.since(since) < AIM_KEPT && from.distance(ball.position) < AIM_MOVED_M =>
             {
                 target
             }
@@ -218,45 +222,45 @@ fn facing(view: &View, at: Point<Attack>) -> Task {
 /// Away from the ball that a teammate plays: a supporting robot does not obstruct it.
 fn off_ball(view: &View, ball: &ViewBall, at: Point<Attack>) -> Point<Attack> {
     let away = at - ball.position;
-    if away.norm() >= OFF_TEAMMATES_BALL {
+    if away.norm() >= OFF_TEAMMATES_BALL_M {
         return at;
     }
     let out = away.unit().or_else(|| (view.our_goal() - ball.position).unit()).unwrap_or_default();
-    ball.position + out * OFF_TEAMMATES_BALL
+    ball.position + out * OFF_TEAMMATES_BALL_M
 }
 
 /// Out of both areas, straight away from their goal lines' middles, and inside the lines.
 fn off_areas(view: &View, at: Point<Attack>) -> Point<Attack> {
-    let mut at = view.clamp(at, INSIDE);
+    let mut at = view.clamp(at, INSIDE_LINES_M);
     for goal in [view.our_goal(), view.their_goal()] {
         let home = goal.x() < 0.0;
         let inside = |p: Point<Attack>| {
-            if home { view.in_our_area(p, defence::EDGE) } else { view.in_their_area(p, OFF_THEIR_AREA) }
+            if home { view.in_our_area(p, defence::EDGE) } else { view.in_their_area(p, OFF_THEIR_AREA_M) }
         };
         let to_middle = (Point::new(0.0, at.y()) - at).unit().unwrap_or_default();
         while inside(at) {
-            at += to_middle * STEP;
+            at += to_middle * AREA_STEP_M;
         }
     }
     at
 }
 
 /// Most places of a style: field players of a team of eleven.
-const PLACES: usize = 10;
+const PLACES_MAX: usize = 10;
 /// A ball slower than this counts as stopped, m/s.
-const LIES: f32 = 0.25;
+const LYING_SPEED_MAX_M_S: f32 = 0.25;
 /// A target is kept for this long, unless the ball moves: to move around it, aim and kick.
-const AIM_STANDS: Duration = Duration::millis(1500);
+const AIM_KEPT: Duration = Duration::millis(1500);
 /// Distance the ball moves from which a new target is chosen, m.
-const AIM_MOVES: f32 = 0.3;
+const AIM_MOVED_M: f32 = 0.3;
 /// A supporting robot keeps this far from the ball, m: two bodies and room to turn with it.
-const OFF_TEAMMATES_BALL: f32 = 0.5;
+const OFF_TEAMMATES_BALL_M: f32 = 0.5;
 /// No robot is sent nearer to a line than this, m.
-const INSIDE: f32 = 0.15;
+const INSIDE_LINES_M: f32 = 0.15;
 /// Centres keep this far off their area, m: the rules' 0.2 m at restarts, a body and the control error.
-const OFF_THEIR_AREA: f32 = 0.35;
+const OFF_THEIR_AREA_M: f32 = 0.35;
 /// Steps out of an area, m.
-const STEP: f32 = 0.02;
+const AREA_STEP_M: f32 = 0.02;
 
 #[cfg(test)]
 mod tests;

@@ -16,11 +16,11 @@ pub(super) const STYLE: Style = Style { target: shoot_or_clear, places, keeps_pl
 /// A shot where one is worth it, else ahead along the freest path: the robot then follows its own ball.
 pub(super) fn shoot_or_clear(view: &View, _robot: RobotId, ball: Point<Attack>) -> Target {
     let (at, room) = best_shot(view, ball);
-    if ball.distance(view.their_goal()) < SHOOTS_WITHIN {
+    if ball.distance(view.their_goal()) < SHOT_LENGTH_MAX_M {
         return Target::Shot { at, room };
     }
     let ahead = |y: f32| {
-        let at = view.clamp(Point::new(ball.x() + AHEAD, ball.y() * INWARDS + y), 0.5);
+        let at = view.clamp(Point::new(ball.x() + CLEAR_LENGTH_M, ball.y() * CLEAR_INWARD_SHARE + y), 0.5);
         (at, room_along(view, ball, at))
     };
     let (at, room) = [1.0, -1.0]
@@ -32,8 +32,11 @@ pub(super) fn shoot_or_clear(view: &View, _robot: RobotId, ball: Point<Attack>) 
 
 fn places(view: &View, ball: &ViewBall, wanted: usize) -> Places {
     let home = (view.our_goal() - ball.position).unit().unwrap_or(Vector::new(-1.0, 0.0));
-    let second: Place =
-        (ball.position + home * BEHIND, Role::Support(0), OrderReason::OnBallLine { y: view.our_goal().y() });
+    let second: Place = (
+        ball.position + home * SECOND_BEHIND_M,
+        Role::Support(0),
+        OrderReason::OnBallLine { y: view.our_goal().y() },
+    );
     let [near, far] = defenders(view);
     [second, near]
         .into_iter()
@@ -45,10 +48,10 @@ fn places(view: &View, ball: &ViewBall, wanted: usize) -> Places {
 }
 
 /// Farther shots are not tried, m.
-const SHOOTS_WITHIN: f32 = 4.0;
+const SHOT_LENGTH_MAX_M: f32 = 4.0;
 /// Distance to the stop position of a clearance, m: as far as the kicker is the first at it again.
-const AHEAD: f32 = 2.0;
+const CLEAR_LENGTH_M: f32 = 2.0;
 /// A clearance goes from the wing to the middle by this share of its distance.
-const INWARDS: f32 = 0.5;
+const CLEAR_INWARD_SHARE: f32 = 0.5;
 /// The second stays this far behind the ball, m: where a ball lost by the first stops.
-const BEHIND: f32 = 0.9;
+const SECOND_BEHIND_M: f32 = 0.9;

@@ -19,7 +19,7 @@ fn orders(team: Team, view: &View) -> Orders {
 }
 
 #[test]
-fn every_robot_has_one_order_and_no_one_but_the_keeper_is_sent_into_an_area_or_over_a_line() {
+fn every_robot_has_one_order_and_only_the_keeper_goes_into_an_area_or_over_a_line() {
     for team in Team::OPPONENTS {
         for ball in [(0.3, 0.2), (-4.2, 0.0), (4.3, 0.1), (4.4, 2.9), (-2.9, -2.8), (-3.3, 0.0)] {
             for robots in 0..=OURS.len() {
@@ -39,7 +39,7 @@ fn every_robot_has_one_order_and_no_one_but_the_keeper_is_sent_into_an_area_or_o
 }
 
 #[test]
-fn no_one_but_the_keeper_goes_for_a_ball_in_an_area_and_the_barred_never_does() {
+fn only_the_keeper_plays_a_ball_in_an_area_and_a_double_touch_is_avoided() {
     for team in Team::OPPONENTS {
         for ball in [(-4.2, 0.3), (4.2, 0.3)] {
             let orders = orders(team, &view(ball, &OURS, &THEIRS));
@@ -133,7 +133,7 @@ fn three_teams_defend_in_three_ways_against_a_free_kick() {
 }
 
 #[test]
-fn no_one_stands_nearer_to_their_free_kick_than_the_rules_permit() {
+fn no_robot_stands_nearer_to_their_free_kick_than_the_rules_permit() {
     for team in Team::OPPONENTS {
         for order in against_free_kick(team).iter().filter(|order| order.role != Role::Keeper) {
             let Task::GoTo { at, .. } = order.task else { panic!("{order:?}") };

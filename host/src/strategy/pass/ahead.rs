@@ -68,7 +68,7 @@ impl Times {
             receiver: time(receiver, places.receiver),
             passer: time(passer, places.passer),
             ball: ball_time,
-            at_ball: off < AT_PLACE && (passer.heading - places.passer.1).abs() < AIMED,
+            at_ball: off < AT_BALL_WITHIN_M && (passer.heading - places.passer.1).abs() < AIMED_WITHIN_RAD,
         }
     }
 
@@ -146,7 +146,7 @@ impl PassAhead {
             self.receiver.get_or_insert(now);
         }
         // T_r ≈ T_p, and T_s is 0 by now.
-        let together = times.receiver <= times.ball + TOGETHER;
+        let together = times.receiver <= times.ball + RECEIVER_LATE_MAX_S;
         if self.passer.is_some() && times.at_ball && together {
             self.shot.get_or_insert(now);
             // When the passer shoots, its receiver has started, however short its path.
@@ -166,11 +166,11 @@ impl PassAhead {
 pub const SEARCH_TIME: Duration = Duration::millis(4000);
 /// The receiver may come this much later than the ball, s: the time in which a body covers 0.09 m while
 /// braking, and the delay of a camera frame (D14).
-const TOGETHER: f32 = 0.08;
+const RECEIVER_LATE_MAX_S: f32 = 0.08;
 /// Nearer to x_p than this the passer has arrived, m: the tolerance of its dribbler opening.
-const AT_PLACE: f32 = 0.03;
+const AT_BALL_WITHIN_M: f32 = 0.03;
 /// … when it faces x* this exactly, rad (3°, as the robots' own kicks).
-const AIMED: f32 = 3.0 * (math::PI / 180.0);
+const AIMED_WITHIN_RAD: f32 = 3.0 * (math::PI / 180.0);
 
 #[cfg(test)]
 mod tests;

@@ -39,10 +39,10 @@ pub fn refine(scene: &PassScene<'_>, place: Point<Attack>, radius: f32) -> Refin
             *best = better;
         }
     };
-    for i in 1..=SEEDS {
+    for i in 1..=SUNFLOWER_PLACES {
         // Even in area: √ of the share; the golden angle apart.
-        let path = radius * math::sqrt(i as f32 * (1.0 / SEEDS as f32)) * INSIDE;
-        look(&mut best, place + Vector::polar(path, Angle::new(i as f32 * GOLDEN_ANGLE)));
+        let path = radius * math::sqrt(i as f32 * (1.0 / SUNFLOWER_PLACES as f32)) * RADIUS_SHARE;
+        look(&mut best, place + Vector::polar(path, Angle::new(i as f32 * GOLDEN_ANGLE_RAD)));
     }
     let mut step = radius * FIRST_STEP;
     for _ in 0..ROUNDS {
@@ -65,11 +65,11 @@ pub const RADIUS: f32 = 0.6;
 /// The case's own place is kept unless another one is better by a twentieth: below, it would follow noise.
 pub const WORTH_MOVING: f32 = 1.05;
 /// Places of the sunflower: 0.15 m apart at a radius of 0.6 m.
-const SEEDS: u32 = 48;
+const SUNFLOWER_PLACES: u32 = 48;
 /// rad: π (3 − √5).
-const GOLDEN_ANGLE: f32 = 2.399_963_2;
+const GOLDEN_ANGLE_RAD: f32 = 2.399_963_2;
 /// Rounding must not place the outermost ones outside.
-const INSIDE: f32 = 0.999;
+const RADIUS_SHARE: f32 = 0.999;
 /// Circles around the best place: radius of the first as a share, their number, and places on each.
 const FIRST_STEP: f32 = 0.125;
 const ROUNDS: u32 = 4;
@@ -78,18 +78,14 @@ const DIRECTIONS: u32 = 8;
 #[cfg(test)]
 mod tests {
     use super::super::super::view::tests::view;
-    use super::super::constants::PassConstants;
     use super::super::kicks::Kicks;
     use super::*;
-    use motion::ball::BallModel;
-    use motion::ball::chip::ChipModel;
     use rules::League;
 
     const OURS: [(f32, f32); 2] = [(0.3, 0.0), (2.4, 1.0)];
 
     fn refined(theirs: &[(f32, f32)], radius: f32) -> (Refined, f32) {
-        let kicks =
-            Kicks::new(PassConstants::of(League::DivisionB), BallModel::default(), ChipModel::default());
+        let kicks = Kicks::of(League::DivisionB);
         let view = view((0.4, 0.0), &OURS, theirs);
         let scene = PassScene::of(&view, &kicks, Point::new(0.4, 0.0), Some(view.ours[0].id), &view.ours[1]);
         let place = Point::new(2.4, 1.0);

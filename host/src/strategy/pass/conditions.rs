@@ -14,9 +14,9 @@ use super::constants::PassConstants;
 pub fn likely(margin: f32, width: f32) -> f32 {
     let x = margin / width;
     // Beyond, it is 0 or 1 to six digits; NaN gives 0.
-    if x > CERTAIN {
+    if x > CERTAIN_WIDTHS {
         1.0
-    } else if x > -CERTAIN {
+    } else if x > -CERTAIN_WIDTHS {
         1.0 / (1.0 + math::exp(-x))
     } else {
         0.0
@@ -87,16 +87,16 @@ pub fn not_stolen(in_their_area: bool, c: &PassConstants) -> f32 {
 /// passes that were not chosen it promises too much.
 #[inline]
 pub fn ours_after(receive: f32) -> f32 {
-    OURS_AT_LEAST + (OURS_AT_MOST - OURS_AT_LEAST) * receive
+    OURS_P_MIN + (OURS_P_MAX - OURS_P_MIN) * receive
 }
 
 /// Shares of passes with the smallest and the greatest P(receive) after which we had the ball: most likely
 /// values for three of four of 1,601 passes (80 matches of 300 s, division B, nominal world, seeds 201 to 216
 /// against five teams; example `passes` of onetwo-arena fits them again).
-const OURS_AT_LEAST: f32 = 0.4;
-const OURS_AT_MOST: f32 = 0.9;
+const OURS_P_MIN: f32 = 0.4;
+const OURS_P_MAX: f32 = 0.9;
 /// Widths of margin at which a logistic equals 0 or 1: exp(−14) is below 10⁻⁶.
-const CERTAIN: f32 = 14.0;
+const CERTAIN_WIDTHS: f32 = 14.0;
 
 #[cfg(test)]
 mod tests {

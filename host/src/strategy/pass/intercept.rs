@@ -92,7 +92,7 @@ impl BallPath {
             let beyond = (foot - self.length).max(-foot).max(0.0);
             let reach = opponent.mover.farthest_touched(arrival + worst.margin - self.reaction)
                 + self.body
-                + REACTION_FADES;
+                + REACTION_FADES_M;
             if beyond * beyond + across * across <= reach * reach {
                 look(opponent, &mut worst);
             }
@@ -142,7 +142,7 @@ impl BallPath {
         let drift = 0.5 * opponent.mover.velocity.dot(self.along) * touched;
         if q < 1.0 {
             let turning = foot + drift + across.abs() * q / math::sqrt(1.0 - q * q);
-            if turning > low && turning < high && (turning - nearest).abs() > WORTH_LOOKING {
+            if turning > low && turning < high && (turning - nearest).abs() > SAME_PLACE_WITHIN_M {
                 self.look(opponent, turning, ball(turning).0, worst);
             }
         }
@@ -164,7 +164,7 @@ impl BallPath {
     fn touch_time(&self, mover: &Mover, place: Point<Attack>) -> f32 {
         let time = mover.time_to_touch(place, self.body);
         // Time and distance are proportional here; 0.24 s are 0.1 m from standstill.
-        time + self.reaction * (time * (1.0 / REACTION_TIME)).min(1.0)
+        time + self.reaction * (time * (1.0 / REACTION_TIME_S)).min(1.0)
     }
 }
 
@@ -173,23 +173,20 @@ impl BallPath {
 pub const SAFE: f32 = 0.6;
 /// From this distance on the whole reaction counts, m: the scatter over 5 m of a kick of 0.5° to 1°; nearer,
 /// a body is likely hit without moving.
-const REACTION_FADES: f32 = 0.1;
+const REACTION_FADES_M: f32 = 0.1;
 /// 2 √(0.1 m / 3.5 m/s²), s.
-const REACTION_TIME: f32 = 0.338;
+const REACTION_TIME_S: f32 = 0.338;
 /// Places nearer to each other than this count as equal, m.
-const WORTH_LOOKING: f32 = 0.02;
+const SAME_PLACE_WITHIN_M: f32 = 0.02;
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use motion::ball::BallModel;
-    use motion::ball::chip::ChipModel;
     use motion::trajectory::FreeLimits;
     use rand_core::{RngCore, SeedableRng};
     use rand_xoshiro::Xoshiro128PlusPlus;
     use rules::League;
 
-    use super::super::constants::PassConstants;
     use super::super::kicks::Kicks;
 
     fn opponent(id: u8, at: (f32, f32), velocity: (f32, f32)) -> PassOpponent {
@@ -204,11 +201,11 @@ mod tests {
     }
 
     fn kicks() -> Kicks {
-        Kicks::new(PassConstants::of(League::DivisionB), BallModel::default(), ChipModel::default())
+        Kicks::of(League::DivisionB)
     }
 
     #[test]
-    fn a_body_on_the_way_has_the_ball_and_one_far_off_never() {
+    fn a_body_on_the_path_has_the_ball_and_one_far_off_never() {
         let kick = kicks().flat(3.0);
         let on_it = path(3.0).flat(&kick, &[opponent(4, (1.5, 0.05), (0.0, 0.0))]).unwrap();
         // It covers every place up to 1.5 + √(0.1115² − 0.05²); the end it has to drive to.
@@ -217,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn the_margin_beside_the_way_by_hand() {
+    fn the_margin_beside_the_path_by_hand() {
         // 3 m with 3.317774 m/s take 1.299743 s (see `kicks`). At (2.4, 0.6115) a body is √(0.6² + 0.6115²) −
         // 0.1115 = 0.745192 m from touching a ball at the end: 2 √(0.745192 / 3.5) + 0.1 = 1.022853 s, which
         // is 0.276890 s sooner than the ball.

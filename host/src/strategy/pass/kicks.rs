@@ -8,6 +8,7 @@ use geometry::{Attack, Point, Vector, math};
 use motion::ball::BallModel;
 use motion::ball::chip::{ChipModel, launch};
 use protocol::host::KickOrder;
+use rules::League;
 
 use super::constants::PassConstants;
 
@@ -90,7 +91,7 @@ impl FlatKick {
         };
         let squared = start * start - 2.0 * deceleration * ball_path;
         if squared < 0.0 {
-            return (NEVER, 0.0);
+            return (NEVER_S, 0.0);
         }
         let speed = math::sqrt(squared);
         // (start − speed) / deceleration, without cancellation.
@@ -135,16 +136,21 @@ impl ChipKick {
 pub struct Kicks {
     constants: PassConstants,
     ground: BallModel,
-    /// Chips by the distance where they roll, [`CHIP_STEP`] apart from [`CHIP_SHORTEST`] on.
+    /// Chips by the distance where they roll, [`CHIP_STEP_M`] apart from [`CHIP_LENGTH_MIN_M`] on.
     chips: heapless::Vec<ChipKick, CHIPS>,
 }
 
 impl Kicks {
+    /// A league's kicks, with the default models of balls.
+    pub fn of(league: League) -> Self {
+        Self::new(PassConstants::of(league), BallModel::default(), ChipModel::default())
+    }
+
     /// Computed once for a league and a field surface.
     pub fn new(constants: PassConstants, ground: BallModel, chip: ChipModel) -> Self {
         let mut kicks = Self { constants, ground, chips: heapless::Vec::new() };
         for i in 0..CHIPS {
-            let rolls = CHIP_SHORTEST + i as f32 * CHIP_STEP;
+            let rolls = CHIP_LENGTH_MIN_M + i as f32 * CHIP_STEP_M;
             let Some(kick) = chip_that_rolls(rolls, &constants, &ground, &chip) else { break };
             if kick.speed > constants.pass_fastest || kicks.chips.push(kick).is_err() {
                 break;
@@ -181,7 +187,7 @@ impl Kicks {
     /// too far.
     #[inline]
     pub fn chip(&self, distance: f32) -> Option<ChipKick> {
-        let place = (distance - CHIP_SHORTEST) * (1.0 / CHIP_STEP);
+        let place = (distance - CHIP_LENGTH_MIN_M) * (1.0 / CHIP_STEP_M);
         if place < 0.0 {
             return None;
         }
@@ -208,7 +214,7 @@ fn chip_that_rolls(
     ground: &BallModel,
     model: &ChipModel,
 ) -> Option<ChipKick> {
-    let mut lands = rolls * FIRST_GUESS;
+    let mut lands = rolls * FIRST_HOP_SHARE;
     let mut found = None;
     for _ in 0..ROUNDS {
         let (along, rise) = launch(lands, constants.chip_slope);
@@ -231,16 +237,16 @@ fn chip_that_rolls(
 }
 
 /// Time of a ball that never arrives, s.
-pub const NEVER: f32 = 1e3;
+pub const NEVER_S: f32 = 1e3;
 /// Chips in the table, and the distance between two of them, m: up to 7.3 m; a chip of 6.2 m/s rolls from 6
 /// m.
 const CHIPS: usize = 64;
-const CHIP_STEP: f32 = 0.1;
+const CHIP_STEP_M: f32 = 0.1;
 /// Shortest chip, m: its first hop of 0.65 m is 0.16 m high, just over a robot.
-const CHIP_SHORTEST: f32 = 1.0;
+const CHIP_LENGTH_MIN_M: f32 = 1.0;
 /// First estimate of the share of a chip's distance up to the first touch: 1 / (1 + 0.8 · 0.47 + 0.68 · 0.22)
 /// of TIGERs' balls.
-const FIRST_GUESS: f32 = 0.65;
+const FIRST_HOP_SHARE: f32 = 0.65;
 /// The ratio changes only where a hop becomes too low to count; it is constant after one round between such
 /// places.
 const ROUNDS: u32 = 6;
@@ -249,10 +255,9 @@ const ROUNDS: u32 = 6;
 mod tests {
     use super::*;
     use motion::trajectory::Motion;
-    use rules::League;
 
     fn kicks() -> Kicks {
-        Kicks::new(PassConstants::of(League::DivisionB), BallModel::default(), ChipModel::default())
+        Kicks::of(League::DivisionB)
     }
 
     #[test]
@@ -280,7 +285,7 @@ mod tests {
                         assert!((time - truth).abs() < 1e-3, "{speed} {distance}");
                         assert!((path.at(truth).velocity.x() - now).abs() < 2e-3, "{speed} {distance}");
                     }
-                    None => assert_eq!((time, now), (NEVER, 0.0)),
+                    None => assert_eq!((time, now), (NEVER_S, 0.0)),
                 }
             }
         }

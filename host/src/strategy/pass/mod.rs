@@ -32,5 +32,5 @@ pub use constants::PassConstants;
 pub use counters::PassCounters;
 pub use kicks::{Kicks, PassKick};
 pub use scene::{PassScene, Rating};
-pub use search::{Offer, SAMPLES, Search, Searches};
+pub use search::{Offer, PassSearch, SAMPLES, Search};
 pub use watch::{Ordered, PassVerdict, PassWatch};

@@ -85,7 +85,7 @@ impl Mover {
     fn towards(&self, to: Point<Attack>) -> (f32, f32, f32) {
         let path = to - self.position;
         let distance = path.norm();
-        if distance < ON_THE_SPOT {
+        if distance < SAME_PLACE_WITHIN_M {
             return (0.0, 0.0, self.running);
         }
         let along = path * (1.0 / distance);
@@ -114,7 +114,7 @@ impl Mover {
 }
 
 /// m; nearer, directions are undefined.
-const ON_THE_SPOT: f32 = 1e-3;
+const SAME_PLACE_WITHIN_M: f32 = 1e-3;
 
 #[cfg(test)]
 mod tests {
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn who_comes_too_fast_to_stop_touches_a_ball_in_passing_by_hand() {
+    fn a_robot_too_fast_to_stop_touches_a_ball_in_passing_by_hand() {
         // 1.1 m less 0.1 m of reach: at standstill there after 1.069045 s as above; with 3 m/s, which stops
         // over 9/7 m, in passing: (3 − √(9 − 7)) / 3.5 = 0.453082 s.
         let at = Point::new(1.1, 0.0);
@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_what_the_planner_answers_for_robots_at_rest_and_close_to_it_for_moving_ones() {
+    fn reach_times_equal_the_planners_from_rest_and_are_close_to_them_in_motion() {
         let limits = FreeLimits::default();
         let mut rng = Xoshiro128PlusPlus::seed_from_u64(3);
         let mut within = |range: f32| ((rng.next_u32() >> 8) as f32 / 8_388_608.0 - 1.0) * range;

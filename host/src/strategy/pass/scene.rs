@@ -210,7 +210,7 @@ impl<'k> PassScene<'k> {
 
     fn path(&self, off: Vector<Attack>) -> BallPath {
         let length = off.norm();
-        let along = if length > ON_THE_SPOT { off * (1.0 / length) } else { Vector::new(1.0, 0.0) };
+        let along = if length > SAME_PLACE_WITHIN_M { off * (1.0 / length) } else { Vector::new(1.0, 0.0) };
         let reaction = self.kicks.constants().reaction;
         BallPath { from: self.from, along, length, body: self.opening.body, reaction }
     }
@@ -254,7 +254,7 @@ impl<'k> PassScene<'k> {
         };
         // The product so far, slightly enlarged for rounding: a floor that it does not exceed is not exceeded
         // by the value either.
-        let place = rating.receive_factors[3] * rating.receive_factors[4] * ROUNDING;
+        let place = rating.receive_factors[3] * rating.receive_factors[4] * ROUNDING_FACTOR;
         if place * rating.goal().max(rating.held) <= floor {
             return rating;
         }
@@ -289,7 +289,7 @@ impl<'k> PassScene<'k> {
     /// c1' for the nearest possible point of the goal, where that matters: near the goal it is 1.
     fn keeper_at_best(&self, at: Point<Attack>, c: &PassConstants) -> f32 {
         let depth = self.opening.x - at.x();
-        if depth < KEEPER_MATTERS {
+        if depth < KEEPER_MATTERS_BEYOND_M {
             return 1.0;
         }
         given::beats_the_keeper(self.shot.at(depth).0, c)
@@ -301,7 +301,7 @@ impl<'k> PassScene<'k> {
         let flat = rating.receive_factors[1] * rating.receive_factors[2];
         let others = rating.value() / flat.max(f32::MIN_POSITIVE);
         // Neither above the flat pass, nor above the floor.
-        if flat >= c.chip_prior || others * c.chip_prior <= floor.max(WORTH_A_CHIP) {
+        if flat >= c.chip_prior || others * c.chip_prior <= floor.max(CHIP_GOAL_P_MIN) {
             return;
         }
         let Some(kick) = self.kicks.chip(path.length) else { return };
@@ -400,13 +400,13 @@ fn enough(floor: f32, others: f32, c: &PassConstants) -> f32 {
 }
 
 /// m; nearer, directions are undefined.
-const ON_THE_SPOT: f32 = 1e-3;
+const SAME_PLACE_WITHIN_M: f32 = 1e-3;
 /// From places farther off the goal line than this most shots are slower than a keeper, m: 0.5 s at 6.24 m/s.
-const KEEPER_MATTERS: f32 = 2.8;
+const KEEPER_MATTERS_BEYOND_M: f32 = 2.8;
 /// Nine factors in another order differ by less than 10⁻⁶.
-const ROUNDING: f32 = 1.0 + 1e-5;
+const ROUNDING_FACTOR: f32 = 1.0 + 1e-5;
 /// A chip that ends in a goal less often than this is not considered: one in two hundred.
-const WORTH_A_CHIP: f32 = 0.005;
+const CHIP_GOAL_P_MIN: f32 = 0.005;
 
 #[cfg(test)]
 pub(crate) mod tests;

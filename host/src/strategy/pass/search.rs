@@ -47,7 +47,7 @@ impl Search {
         let mut near = self.last.map(|at| scene.rate(at));
         if let Some(last) = self.last {
             for _ in anywhere..samples {
-                let at = last + self.bell() * NEAR;
+                let at = last + self.bell() * NEAR_SIGMA_M;
                 near = Some(better(near, scene, at));
             }
         }
@@ -104,18 +104,31 @@ pub struct Offer {
     pub rating: Rating,
 }
 
-/// All receivers' searches: each teammate searches its own place, the passer chooses among them (§3).
+/// A team's search for passes with its kicks: each teammate searches its own place, the passer chooses among
+/// them (§3).
 #[derive(Clone, Debug)]
-pub struct Searches {
-    each: [Search; ROBOTS_MAX],
+pub struct PassSearch {
+    kicks: Kicks,
+    receivers: [Search; ROBOTS_MAX],
 }
 
-impl Searches {
+impl PassSearch {
     /// Every robot has a stream of its own.
-    pub fn new(seed: u64) -> Self {
+    pub fn new(kicks: Kicks, seed: u64) -> Self {
         // 2⁶⁴ / φ apart, as splitmix seeds are.
         let apart = 0x9e37_79b9_7f4a_7c15_u64;
-        Self { each: std::array::from_fn(|i| Search::new(seed.wrapping_add(apart.wrapping_mul(i as u64)))) }
+        let search = |i| Search::new(seed.wrapping_add(apart.wrapping_mul(i as u64)));
+        Self { kicks, receivers: std::array::from_fn(search) }
+    }
+
+    /// The kicks that passes are rated with.
+    pub fn kicks(&self) -> &Kicks {
+        &self.kicks
+    }
+
+    /// Rates passes with these kicks from now on.
+    pub fn set_kicks(&mut self, kicks: Kicks) {
+        self.kicks = kicks;
     }
 
     /// The offer of every robot except `passer` and our keeper for a pass from `from`, best first; of equal
@@ -123,19 +136,17 @@ impl Searches {
     pub fn offers(
         &mut self,
         view: &View,
-        kicks: &Kicks,
         from: Point<Attack>,
         passer: RobotId,
-        samples: u32,
         keeps: bool,
     ) -> heapless::Vec<Offer, ROBOTS_MAX> {
         let mut offers: heapless::Vec<Offer, ROBOTS_MAX> = heapless::Vec::new();
         for teammate in
             view.ours.iter().filter(|teammate| teammate.id != passer && teammate.id != view.keeper)
         {
-            let scene = PassScene::of(view, kicks, from, Some(passer), teammate);
+            let scene = PassScene::of(view, &self.kicks, from, Some(passer), teammate);
             let scene = if keeps { scene.keeping() } else { scene };
-            let rating = self.each[teammate.id.index()].step(&scene, samples);
+            let rating = self.receivers[teammate.id.index()].step(&scene, SAMPLES);
             let worse = |other: &Offer| other.rating.value() < rating.value();
             let place = offers.iter().position(worse).unwrap_or(offers.len());
             // At most one per robot.
@@ -146,14 +157,14 @@ impl Searches {
 
     /// Forgets all places: for another ball or passer.
     pub fn forget(&mut self) {
-        self.each.iter_mut().for_each(Search::forget);
+        self.receivers.iter_mut().for_each(Search::forget);
     }
 }
 
 /// Places rated at one moment (D13).
 pub const SAMPLES: u32 = 200;
 /// Standard deviation of samples near the last optimum, m along each axis (D13).
-const NEAR: f32 = 0.5;
+const NEAR_SIGMA_M: f32 = 0.5;
 /// √3: four uniform numbers have a variance of 1/3.
 const ROOT_OF_3: f32 = 1.732_050_8;
 /// One of this number of samples lies anywhere (D13: 10 %).
@@ -165,14 +176,11 @@ const JUMP_GAIN: f32 = 1.25;
 #[cfg(test)]
 mod tests {
     use super::super::super::view::tests::view;
-    use super::super::constants::PassConstants;
     use super::*;
-    use motion::ball::BallModel;
-    use motion::ball::chip::ChipModel;
     use rules::League;
 
     fn kicks() -> Kicks {
-        Kicks::new(PassConstants::of(League::DivisionB), BallModel::default(), ChipModel::default())
+        Kicks::of(League::DivisionB)
     }
 
     const OURS: [(f32, f32); 4] = [(-4.4, 0.0), (0.4, 0.0), (2.0, 1.5), (1.0, -2.0)];
@@ -180,15 +188,11 @@ mod tests {
 
     #[test]
     fn the_same_seed_finds_the_same_places_and_another_one_similar_worth() {
-        let (kicks, view) = (kicks(), view((0.5, 0.0), &OURS, &THEIRS));
+        let view = view((0.5, 0.0), &OURS, &THEIRS);
         let run = |seed| {
-            let mut searches = Searches::new(seed);
-            (0..10)
-                .map(|_| {
-                    searches.offers(&view, &kicks, Point::new(0.5, 0.0), view.ours[1].id, SAMPLES, false)
-                })
-                .last()
-                .unwrap()
+            let mut search = PassSearch::new(kicks(), seed);
+            let mut offers = || search.offers(&view, Point::new(0.5, 0.0), view.ours[1].id, false);
+            (0..10).map(|_| offers()).last().unwrap()
         };
         let (one, again, other) = (run(1), run(1), run(2));
         assert_eq!(one, again);

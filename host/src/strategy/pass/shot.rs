@@ -50,15 +50,11 @@ pub fn shot(view: &View, kicks: &Kicks, from: Point<Attack>) -> Shot {
 #[cfg(test)]
 mod tests {
     use super::super::super::view::tests::view;
-    use super::super::constants::PassConstants;
     use super::*;
-    use motion::ball::BallModel;
-    use motion::ball::chip::ChipModel;
     use rules::League;
 
     fn shot_from(from: (f32, f32), theirs: &[(f32, f32)]) -> Shot {
-        let kicks =
-            Kicks::new(PassConstants::of(League::DivisionB), BallModel::default(), ChipModel::default());
+        let kicks = Kicks::of(League::DivisionB);
         shot(&view(from, &[], theirs), &kicks, Point::new(from.0, from.1))
     }
 

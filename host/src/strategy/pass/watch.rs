@@ -152,12 +152,12 @@ impl PassWatch {
         let after = world.time.since(self.ordered.at).as_secs_f32();
         if let Some((robot, distance)) = world.nearest(ball.position)
             && robot.who.colour != self.ordered.us
-            && distance < TOUCHING
-            && off > TOUCHING
+            && distance < TOUCHES_WITHIN_M
+            && off > TOUCHES_WITHIN_M
         {
             return Some(PassVerdict::NoKick { after, lost_to: Some(robot.who.id) });
         }
-        if off > LEFT && ball.velocity.norm() > KICKED {
+        if off > LEFT_BEYOND_M && ball.velocity.norm() > KICKED_SPEED_MIN_M_S {
             self.flight = Some(Flight {
                 since: world.time,
                 nearest: ball.position.distance(self.ordered.to),
@@ -167,7 +167,7 @@ impl PassWatch {
             });
             return None;
         }
-        (after > KICK_WITHIN.as_secs_f32()).then_some(PassVerdict::NoKick { after, lost_to: None })
+        (after > KICK_TIME_MAX.as_secs_f32()).then_some(PassVerdict::NoKick { after, lost_to: None })
     }
 
     fn during(
@@ -204,7 +204,7 @@ impl PassWatch {
         if field.clamp(ball.position, -out).distance(ball.position) > 0.0 {
             return Some(PassVerdict::Out { at: ball.position });
         }
-        let stopped = ball.velocity.norm() < STOPPED && after > MOVES_FOR;
+        let stopped = ball.velocity.norm() < STOPPED_SPEED_MAX_M_S && after > KICK_KNOWN_AFTER_S;
         stopped.then(|| flight.end())
     }
 
@@ -212,24 +212,24 @@ impl PassWatch {
     fn touch(&self, flight: &mut Flight, before: Vector<Field>, world: &World, ball: &Ball) -> Option<Who> {
         let near = world
             .nearest(ball.position)
-            .filter(|(_, distance)| *distance < TOUCHING && ball.height < ROBOT_HEIGHT)
+            .filter(|(_, distance)| *distance < TOUCHES_WITHIN_M && ball.height < ROBOT_HEIGHT)
             .map(|(robot, _)| robot.who)
             .filter(|who| *who != Who { colour: self.ordered.us, id: self.ordered.passer });
         match (near, flight.contact) {
             (Some(who), Some((same, came))) if who == same => {
                 let change = (ball.velocity - came).norm();
-                (change > CHANGE + CHANGE_SHARE * came.norm()).then_some(who)
+                (change > SPEED_CHANGE_MIN_M_S + SPEED_CHANGE_MIN_SHARE * came.norm()).then_some(who)
             }
             (Some(who), _) => {
                 flight.contact = Some((who, before));
                 let change = (ball.velocity - before).norm();
-                (change > CHANGE + CHANGE_SHARE * before.norm()).then_some(who)
+                (change > SPEED_CHANGE_MIN_M_S + SPEED_CHANGE_MIN_SHARE * before.norm()).then_some(who)
             }
             // It left the robot again: a touch, if it changed its direction.
             (None, Some((who, came))) => {
                 flight.contact = None;
                 let change = (ball.velocity - came).norm();
-                (change > CHANGE + CHANGE_SHARE * came.norm()).then_some(who)
+                (change > SPEED_CHANGE_MIN_M_S + SPEED_CHANGE_MIN_SHARE * came.norm()).then_some(who)
             }
             (None, None) => None,
         }
@@ -240,12 +240,12 @@ impl PassWatch {
         match self.flight {
             None => {
                 let after = now.since(self.ordered.at);
-                let after = (after > KICK_WITHIN).then_some(after.as_secs_f32())?;
+                let after = (after > KICK_TIME_MAX).then_some(after.as_secs_f32())?;
                 Some(PassVerdict::NoKick { after, lost_to: None })
             }
             Some(flight) => {
                 let after = now.since(flight.since).as_secs_f32();
-                (after > self.ordered.flight + COLLECTED_WITHIN).then(|| flight.end())
+                (after > self.ordered.flight + COLLECTED_TIME_MAX_S).then(|| flight.end())
             }
         }
     }
@@ -255,7 +255,7 @@ impl Flight {
     /// The verdict where no robot received it: late or missed.
     fn end(&self) -> PassVerdict {
         match self.receiver_off {
-            Some(receiver_off) if receiver_off > THERE && self.nearest <= THERE => {
+            Some(receiver_off) if receiver_off > ARRIVED_WITHIN_M && self.nearest <= ARRIVED_WITHIN_M => {
                 PassVerdict::Late { receiver_off }
             }
             _ => PassVerdict::Missed { by: self.nearest },
@@ -264,27 +264,27 @@ impl Flight {
 }
 
 /// A robot's centre this near the ball may touch it, m.
-const TOUCHING: f32 = contact::PASS_TOUCHED_WITHIN;
+const TOUCHES_WITHIN_M: f32 = contact::PASS_TOUCHED_WITHIN;
 /// Farther from the passer the ball has left it, m.
-const LEFT: f32 = contact::PASS_LEFT_BEYOND;
+const LEFT_BEYOND_M: f32 = contact::PASS_LEFT_BEYOND;
 /// … when it is faster than this, m/s: slower than any pass, faster than a ball that is pushed along.
-const KICKED: f32 = 0.8;
+const KICKED_SPEED_MIN_M_S: f32 = 0.8;
 /// A change of velocity that the field surface does not cause between two snapshots, m/s, and as a share of
 /// the speed.
-const CHANGE: f32 = 0.3;
-const CHANGE_SHARE: f32 = 0.15;
+const SPEED_CHANGE_MIN_M_S: f32 = 0.3;
+const SPEED_CHANGE_MIN_SHARE: f32 = 0.15;
 /// A slower ball counts as stopped, m/s.
-const STOPPED: f32 = 0.15;
+const STOPPED_SPEED_MAX_M_S: f32 = 0.15;
 /// A kick is known by its speed only after a few snapshots, s.
-const MOVES_FOR: f32 = 0.3;
+const KICK_KNOWN_AFTER_S: f32 = 0.3;
 /// Distance from x* within which a receiver counts as there, and a ball as arrived, m: two robots' radii and
 /// the ball.
-const THERE: f32 = 0.2;
+const ARRIVED_WITHIN_M: f32 = 0.2;
 /// A pass that has not left by then counts as not kicked: the time in which it may be searched
 /// ([`super::ahead::SEARCH_TIME`]), and a second for the kick.
-const KICK_WITHIN: Duration = Duration::millis(5000);
+const KICK_TIME_MAX: Duration = Duration::millis(5000);
 /// Time in which a receiver that missed it may still reach it, s.
-const COLLECTED_WITHIN: f32 = 1.5;
+const COLLECTED_TIME_MAX_S: f32 = 1.5;
 
 #[cfg(test)]
 mod tests;

@@ -48,9 +48,9 @@ impl Opening {
     /// behind its line is moved to just before it.
     pub fn of(from: Point<Attack>, goal: Point<Attack>, width: f32) -> Self {
         let before = if goal.x() < 0.0 {
-            from.x().max(goal.x() + BEFORE_LINE)
+            from.x().max(goal.x() + BEFORE_LINE_MIN_M)
         } else {
-            from.x().min(goal.x() - BEFORE_LINE)
+            from.x().min(goal.x() - BEFORE_LINE_MIN_M)
         };
         let from = Point::new(before, from.y());
         let post = |y: f32| Point::new(goal.x(), goal.y() + y) - from;
@@ -120,15 +120,15 @@ pub fn half_shadow(distance: f32) -> f32 {
 
 /// The distance at which a body covers this half angle, m: the inverse of [`half_shadow`].
 pub fn distance_for(half: f32) -> f32 {
-    BODY / math::sin_cos(half.clamp(SMALLEST, math::FRAC_PI_2)).0
+    BODY / math::sin_cos(half.clamp(ANGLE_MIN_RAD, math::FRAC_PI_2)).0
 }
 
 /// Bodies that can block at the same time: all of both teams on the largest field.
 pub const BODIES_MAX: usize = 2 * rules::limits::ROBOTS_MAX;
 /// Least distance of a view from the goal line, m: nearer, its posts are a straight line.
-const BEFORE_LINE: f32 = 0.05;
+const BEFORE_LINE_MIN_M: f32 = 0.05;
 /// Smaller angles count as 0, rad: they need a body 110 m away.
-const SMALLEST: f32 = 1e-3;
+const ANGLE_MIN_RAD: f32 = 1e-3;
 
 #[cfg(test)]
 mod tests {

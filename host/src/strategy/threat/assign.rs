@@ -147,7 +147,7 @@ impl Giving<'_> {
         robots.sort_unstable_by(|a, b| along(a).total_cmp(&along(b)).then(a.id.cmp(&b.id)));
         if let [lower, upper] = robots[..]
             && before == [Some(upper.id), Some(lower.id)]
-            && along(&upper) - along(&lower) < PASSED
+            && along(&upper) - along(&lower) < PASSED_BY_M
         {
             robots.swap(0, 1);
         }
@@ -237,7 +237,7 @@ impl Giving<'_> {
 
     /// Whether a robot stands there already; a place that a robot had is given up less easily.
     fn is_taken(&self, at: Point<Attack>, had: bool) -> bool {
-        let room = if had { TAKEN } else { TAKEN + TAKEN_HOLD };
+        let room = if had { TAKEN_WITHIN_M } else { TAKEN_WITHIN_M + TAKEN_MARGIN_M };
         self.given.iter().any(|other| other.at.distance(at) < room)
     }
 
@@ -258,8 +258,8 @@ impl Giving<'_> {
 
 /// Primaries have passed each other when they are past by this, m along the edge: a body's radius and more
 /// than noise.
-const PASSED: f32 = 0.12;
+const PASSED_BY_M: f32 = 0.12;
 /// Two robots do not both stand within this, m: two bodies and a margin between.
-const TAKEN: f32 = 0.2;
+const TAKEN_WITHIN_M: f32 = 0.2;
 /// A new place keeps this much more distance from others, m.
-const TAKEN_HOLD: f32 = 0.1;
+const TAKEN_MARGIN_M: f32 = 0.1;

@@ -118,7 +118,7 @@ impl<'v> Placing<'v> {
     fn on_goal_line(&self, off: f32) -> Point<Attack> {
         let (from, direction) = (self.opening.from, self.opening.direction(off));
         let (goal, half) = (self.view.our_goal(), self.view.field.goal_width * 0.5);
-        let y = from.y() + direction.y() * (goal.x() - from.x()) / direction.x().min(-LEAST_SLOPE);
+        let y = from.y() + direction.y() * (goal.x() - from.x()) / direction.x().min(-SLOPE_MIN);
         Point::new(goal.x(), y.clamp(-half, half))
     }
 
@@ -138,12 +138,12 @@ impl<'v> Placing<'v> {
     fn keeper(&self, off: f32, half: f32) -> (Point<Attack>, f32) {
         let (from, direction) = (self.opening.from, self.opening.direction(off));
         let goal = self.view.our_goal();
-        let out = |x: f32| (goal.x() + x - from.x()) / direction.x().min(-LEAST_SLOPE);
+        let out = |x: f32| (goal.x() + x - from.x()) / direction.x().min(-SLOPE_MIN);
         let (back, front) = (out(self.settings.keeper_back).max(0.0), out(self.settings.keeper_out).max(0.0));
         // No farther aside than the posts: on this ray, not beside it.
         let post = self.view.field.goal_width * 0.5;
         let aside = from.y().abs() - post;
-        let between = if aside > 0.0 { aside / direction.y().abs().max(LEAST_SLOPE) } else { 0.0 };
+        let between = if aside > 0.0 { aside / direction.y().abs().max(SLOPE_MIN) } else { 0.0 };
         let at = from + direction * distance_for(half).max(front).max(between).min(back);
         // A shot along the goal line is blocked before the near post, not beside the goal.
         let at = Point::new(at.x().max(goal.x() + self.settings.keeper_back), at.y().clamp(-post, post));
@@ -272,7 +272,7 @@ pub(super) fn beside(edge: &Edge, along: f32, towards: f32, settings: &ThreatSet
 /// Rounds after which a place that depends on its own distance moves by less than a millimetre.
 const ROUNDS: usize = 4;
 /// Least slope of a ray towards our goal line: below, it counts as parallel to the line.
-const LEAST_SLOPE: f32 = 1e-3;
+const SLOPE_MIN: f32 = 1e-3;
 
 #[cfg(test)]
 mod tests;

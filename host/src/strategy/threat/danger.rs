@@ -86,7 +86,9 @@ pub fn dangers(
 /// The opponent that has the ball: it is the first-level threat by the ball's place.
 fn holder(view: &View, threat: &FirstLevel) -> Option<RobotId> {
     let at_ball = super::super::view::nearest(view.theirs.iter(), threat.at);
-    at_ball.filter(|(_, off)| threat.because == Because::Ball && *off < HOLDS).map(|(robot, _)| robot.id)
+    at_ball
+        .filter(|(_, off)| threat.because == Because::Ball && *off < HAS_BALL_WITHIN_M)
+        .map(|(robot, _)| robot.id)
 }
 
 fn danger(
@@ -119,7 +121,7 @@ pub fn time_to_shoot(pass: f32, shot: f32) -> f32 {
         let velocity = geometry::Vector::<Attack>::new(speed, 0.0);
         model.kicked(Point::default(), velocity).time_to(travel).unwrap_or(f32::INFINITY)
     };
-    time(model.kick_speed(pass, ARRIVES).min(SHOT), pass) + time(SHOT, shot)
+    time(model.kick_speed(pass, PASS_ARRIVAL_M_S).min(SHOT_SPEED_M_S), pass) + time(SHOT_SPEED_M_S, shot)
 }
 
 /// On the line from our goal's middle to the opponent, as far out as our robot can react to its start in time
@@ -180,11 +182,11 @@ impl Position {
 }
 
 /// An opponent whose centre is this near to the ball has the ball, m: radii of body and ball, and a margin.
-const HOLDS: f32 = 0.2;
+const HAS_BALL_WITHIN_M: f32 = 0.2;
 /// Passes arrive with this speed, m/s, at which a receiver can shoot at once.
-const ARRIVES: f32 = 2.5;
+const PASS_ARRIVAL_M_S: f32 = 2.5;
 /// Fastest shot, m/s: the rules' 6.5 less a kicker's error.
-const SHOT: f32 = 6.2;
+const SHOT_SPEED_M_S: f32 = 6.2;
 
 #[cfg(test)]
 mod tests {
@@ -193,7 +195,7 @@ mod tests {
     use geometry::math;
 
     #[test]
-    fn the_share_of_the_way_is_the_largest_from_which_the_line_is_never_left() {
+    fn the_share_of_the_path_is_the_largest_that_keeps_the_robot_on_the_line() {
         // Python: .1115 / (4 * (.1**2/2 + .1115/4)) = 0.8479
         let settings = ThreatSettings::default();
         let k = share(&settings);

@@ -88,8 +88,8 @@ impl Edge {
     /// Where the ray from a point of our goal line in this direction leaves the edge.
     pub fn crossing(&self, from: Point<Attack>, direction: Vector<Attack>) -> Point<Attack> {
         let along = direction.unit().unwrap_or(Vector::new(1.0, 0.0));
-        // Within at the goal line, outside at FAR, and the region is convex.
-        let (mut inside, mut outside) = (0.0, FAR);
+        // Within at the goal line, outside at BEYOND_FIELD_M, and the region is convex.
+        let (mut inside, mut outside) = (0.0, BEYOND_FIELD_M);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (inside + outside);
             if self.distance_to(from + along * middle) < 0.0 { inside = middle } else { outside = middle }
@@ -109,7 +109,7 @@ impl Edge {
 }
 
 /// A distance beyond any field, m.
-const FAR: f32 = 32.0;
+const BEYOND_FIELD_M: f32 = 32.0;
 /// 32 m halved this often: down to 1 µm.
 const HALVINGS: u32 = 25;
 

@@ -45,13 +45,13 @@ pub fn legal_for(
     if view.phase != Phase::Run {
         place = out(restart::kept_off(view, place));
     }
-    let margin = if view.phase == Phase::Run { MARGIN } else { MARGIN_STOPPED };
+    let margin = if view.phase == Phase::Run { AREA_MARGIN_IN_PLAY_M } else { AREA_MARGIN_STOPPED_M };
     let rules = forbidden_to(view, rule_role);
     let free = |place: &Point<Attack>| {
         let body = Point::new(place.x(), place.y());
         rules.offence(body, ROBOT_RADIUS + margin).is_none()
             && !in_the_way(view, rule_role, *place)
-            && taken.iter().all(|other| other.distance(*place) >= SIDE_BY_SIDE)
+            && taken.iter().all(|other| other.distance(*place) >= PLACES_APART_MIN_M)
     };
     if free(&place) {
         return place;
@@ -61,7 +61,7 @@ pub fn legal_for(
     let around = (1..=RINGS).flat_map(|ring| {
         (0..SPOKES).map(move |spoke| {
             let turn = geometry::Angle::new(geometry::math::TAU * spoke as f32 / SPOKES as f32);
-            Vector::polar(RING * ring as f32, turn)
+            Vector::polar(RING_SPACING_M * ring as f32, turn)
         })
     });
     around.map(|by| out(place + by)).find(free).unwrap_or(place)
@@ -75,7 +75,7 @@ fn turned(at: Point<Attack>) -> Point<Attack> {
 /// Whether a robot there leaves our own placer no room at the ball: the rules let it stand there.
 fn in_the_way(view: &View, rule_role: RuleRole, at: Point<Attack>) -> bool {
     let placed = matches!(view.phase, Phase::BallPlacement(Side::Ours)) && rule_role != RuleRole::Kicker;
-    placed && view.ball.is_some_and(|ball| ball.position.distance(at) < PLACER_NEEDS)
+    placed && view.ball.is_some_and(|ball| ball.position.distance(at) < PLACER_ROOM_M)
 }
 
 /// Where a body of that role must not be, in the attack frame: we defend −x in it, as a team of that end does
@@ -94,18 +94,18 @@ fn forbidden_to(view: &View, rule_role: RuleRole) -> KeepOut {
 }
 
 /// Margin of bodies to forbidden areas in play, m: the overshoot of control; less than that of `off_area`.
-const MARGIN: f32 = 0.01;
+const AREA_MARGIN_IN_PLAY_M: f32 = 0.01;
 /// The same while the ball is not in play, m: the robots' own margin (0.04, `brain`'s surroundings), less
 /// rounding. Robots would not go to a nearer place.
-const MARGIN_STOPPED: f32 = 0.038;
+const AREA_MARGIN_STOPPED_M: f32 = 0.038;
 /// From the ball to other robots' centres while we place it, m: the placer goes around it, 0.28 m off, and
 /// needs a body beyond that.
-const PLACER_NEEDS: f32 = 0.5;
+const PLACER_ROOM_M: f32 = 0.5;
 /// Least distance of two places, m: two bodies and the gap between two defenders of one line (`defence`,
 /// `SHOULDER`).
-const SIDE_BY_SIDE: f32 = 0.2;
+const PLACES_APART_MIN_M: f32 = 0.2;
 /// Spacing of the rings, m.
-const RING: f32 = 0.1;
+const RING_SPACING_M: f32 = 0.1;
 const RINGS: u32 = 15;
 const SPOKES: u32 = 24;
 
@@ -125,7 +125,7 @@ mod tests {
         view.placement = Some(Point::new(-2.0, 0.9));
         for at in [(-4.41, 1.13), (-4.4, 1.2), (-4.3, 1.0)] {
             let place = legal_for(&view, RuleRole::Player, Point::new(at.0, at.1), &[], &settings);
-            assert!(place.distance(ball) >= PLACER_NEEDS, "{at:?}: {place:?}");
+            assert!(place.distance(ball) >= PLACER_ROOM_M, "{at:?}: {place:?}");
         }
         let at = Point::new(-4.4, 1.2);
         assert!(in_the_way(&view, RuleRole::Player, at) && !in_the_way(&view, RuleRole::Kicker, at));

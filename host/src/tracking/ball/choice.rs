@@ -4,7 +4,7 @@
 
 use super::kick::Air;
 use super::track::{Glimpse, Track};
-use super::{Around, Balls, UNSEEN};
+use super::{Around, Balls, UNSEEN_AFTER_S};
 use crate::tracking::robots::micros;
 use crate::tracking::scene::Scene;
 use crate::tracking::seen::{BallSeen, Captured, Frame};
@@ -18,7 +18,7 @@ impl Balls {
             let off = match &self.air {
                 Air::Flying(_, flight) => {
                     let off = flight.position(frame.at).distance(glimpse.position);
-                    (off <= FLIGHT_GATE).then_some(off)
+                    (off <= FLIGHT_GATE_M).then_some(off)
                 }
                 _ => track.fits(glimpse.position, frame.at, &around.scene.models),
             };
@@ -33,8 +33,9 @@ impl Balls {
         let models = &around.scene.models;
         let (position, at) = (seen.position, frame.at);
         let glimpse = Glimpse { position, apparent: position, camera: frame.camera, at };
-        let twin =
-            |track: &Track| track.seen == at && track.moved(at, models).0.distance(position) < SAME_BALL;
+        let twin = |track: &Track| {
+            track.seen == at && track.moved(at, models).0.distance(position) < SAME_BALL_WITHIN_M
+        };
         *if self.chosen.is_some() { &mut self.counts.others } else { &mut self.counts.new } += 1;
         if self.chosen_track().is_some_and(twin) {
             return;
@@ -62,7 +63,7 @@ impl Balls {
     pub(super) fn forget(&mut self, now: Captured) {
         let patience = micros(self.patience());
         for (index, place) in self.tracks.iter_mut().enumerate() {
-            let kept = if self.chosen == Some(index) { patience } else { micros(OTHER_GONE) };
+            let kept = if self.chosen == Some(index) { patience } else { micros(OTHER_FORGOTTEN_AFTER_S) };
             if place.is_some_and(|track| now - track.seen > kept) {
                 *place = None;
             }
@@ -75,24 +76,25 @@ impl Balls {
     /// Time for which an unseen ball is kept, s.
     pub(super) fn patience(&self) -> f32 {
         let at_front = self.contact.zip(self.chosen_track());
-        let held = at_front.is_some_and(|(contact, track)| track.seen - contact.until <= micros(UNSEEN));
-        if held { HELD_GONE } else { GONE }
+        let held =
+            at_front.is_some_and(|(contact, track)| track.seen - contact.until <= micros(UNSEEN_AFTER_S));
+        if held { HELD_FORGOTTEN_AFTER_S } else { FORGOTTEN_AFTER_S }
     }
 
     /// Makes another track the ball where this one is not visible, or out of the field.
     pub(super) fn choose(&mut self, now: Captured, scene: &Scene) {
         let playable = |track: &Track| scene.is_playable(track.plane.position);
         let current = self.chosen_track();
-        let lost = current.is_none_or(|track| now - track.seen > micros(LOST));
+        let lost = current.is_none_or(|track| now - track.seen > micros(REPLACED_AFTER_S));
         if !lost && current.is_some_and(playable) {
             return;
         }
-        let needed = if current.is_some() { IMAGES_TO_TAKE_OVER } else { IMAGES_TO_BELIEVE };
+        let needed = if current.is_some() { FRAMES_TO_TAKE_OVER } else { FRAMES_TO_BELIEVE };
         let last = current.map(|track| track.plane.position);
         let mut best: Option<(usize, (bool, f32))> = None;
         for (index, track) in self.tracks.iter().enumerate() {
             let Some(track) = track.as_ref().filter(|_| self.chosen != Some(index)) else { continue };
-            let steady = track.images >= needed && now - track.seen <= micros(UNSEEN);
+            let steady = track.images >= needed && now - track.seen <= micros(UNSEEN_AFTER_S);
             if !steady || (!lost && !playable(track)) {
                 continue;
             }
@@ -114,19 +116,19 @@ impl Balls {
 }
 
 /// Camera frames that make a blob the ball when there is none ...
-const IMAGES_TO_BELIEVE: u16 = 2;
+const FRAMES_TO_BELIEVE: u16 = 2;
 /// ... and when there is one that is not visible.
-const IMAGES_TO_TAKE_OVER: u16 = 5;
+const FRAMES_TO_TAKE_OVER: u16 = 5;
 /// Time without detection after which another ball may be chosen, s: six frames of 60 Hz.
-const LOST: f32 = 0.1;
+const REPLACED_AFTER_S: f32 = 0.1;
 /// An unseen ball is forgotten after this time, s; at a robot's front, where robots hide balls, this time is
 /// longer.
-const GONE: f32 = 1.0;
-const HELD_GONE: f32 = 3.0;
+const FORGOTTEN_AFTER_S: f32 = 1.0;
+const HELD_FORGOTTEN_AFTER_S: f32 = 3.0;
 /// Other balls are forgotten sooner, s.
-const OTHER_GONE: f32 = 0.3;
+const OTHER_FORGOTTEN_AFTER_S: f32 = 0.3;
 /// Two blobs of one camera frame nearer than this are one ball, m: its diameter.
-const SAME_BALL: f32 = 0.045;
+const SAME_BALL_WITHIN_M: f32 = 0.045;
 /// A flying ball appears at most this far from its parabola, m; farther, it is another ball or has hit
 /// something.
-const FLIGHT_GATE: f32 = 0.4;
+const FLIGHT_GATE_M: f32 = 0.4;

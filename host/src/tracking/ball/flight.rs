@@ -15,7 +15,7 @@ use geometry::{Field, Point, Vector};
 use super::super::robots::seconds;
 use super::super::scene::Camera;
 use super::super::seen::Captured;
-use crate::world::GRAVITY;
+use crate::world::GRAVITY_M_S2;
 use protocol::Who;
 
 /// A kick that is being watched.
@@ -60,7 +60,7 @@ impl Launch {
     pub(super) fn add(&mut self, apparent: Point<Field>, at: Captured, camera: Option<Camera>) {
         let Some(camera) = camera.filter(|_| !self.is_full()) else { return };
         let time = seconds(at - self.at);
-        if self.count > 0 && time < self.samples[self.count - 1].time + SAMPLES_APART {
+        if self.count > 0 && time < self.samples[self.count - 1].time + SAMPLES_APART_S {
             return;
         }
         self.samples[self.count] = Sample {
@@ -77,7 +77,7 @@ impl Launch {
 
     /// Whether it is time to ask [`Self::flight`].
     pub(super) fn is_ripe(&self) -> bool {
-        self.count >= SAMPLES_MIN && self.samples[self.count - 1].time >= TIME_MIN
+        self.count >= SAMPLES_MIN && self.samples[self.count - 1].time >= TIME_MIN_S
     }
 
     /// Whether there is no room for another detection.
@@ -89,11 +89,11 @@ impl Launch {
     /// in any case.
     pub(super) fn flight(&self, sigma: f32, slide: f32, decided: bool) -> Option<Flight> {
         let mut best: Option<(f32, f32, [f32; UNKNOWNS])> = None;
-        for share in SHIFTS {
+        for share in MOMENT_SHIFTS_SIGMA {
             let shift = share * self.slack;
             let rows = |sample: &Sample| {
                 let t = sample.time - shift;
-                let fall = 0.5 * GRAVITY * t * t;
+                let fall = 0.5 * GRAVITY_M_S2 * t * t;
                 (t, sample.slant * t, sample.seen + sample.slant * fall)
             };
             let Some((solution, error)) = solve(self.samples(), sigma, None, rows) else {
@@ -108,10 +108,13 @@ impl Launch {
         let freedoms = (2 * self.count).saturating_sub(UNKNOWNS).max(1) as f32;
         let mean = error / freedoms;
         let along = Vector::<Field>::new(vx, vy).norm();
-        if !(CLIMB_MIN..=CLIMB_MAX).contains(&climb) || climb > STEEPEST * along {
+        if !(CLIMB_MIN_M_S..=CLIMB_MAX_M_S).contains(&climb) || climb > LAUNCH_TAN_MAX * along {
             return None;
         }
-        if !decided && (mean > FIT_MAX || self.flat_error(sigma, slide) < error + FLAT_WORSE * (1.0 + mean)) {
+        if !decided
+            && (mean > FIT_VARIANCES_MAX
+                || self.flat_error(sigma, slide) < error + FLAT_WORSE_VARIANCES * (1.0 + mean))
+        {
             return None;
         }
         let at = self.at + (shift * 1e6) as Captured;
@@ -127,7 +130,7 @@ impl Launch {
             let t = sample.time;
             (t, along * (-0.5 * t * t), sample.seen)
         };
-        let most = slide * SLIDE_MORE;
+        let most = slide * SLIDE_FACTOR_MAX;
         let Some((solution, error)) = solve(self.samples(), sigma, None, rows) else { return 0.0 };
         if (0.0..=most).contains(&solution[4]) {
             return error;
@@ -140,7 +143,7 @@ impl Flight {
     /// Height and climb at that time after the kick, until it lands, m and m/s.
     pub(super) fn height(&self, at: Captured) -> (f32, f32) {
         let t = seconds(at - self.at).max(0.0);
-        ((self.climb * t - 0.5 * GRAVITY * t * t).max(0.0), self.climb - GRAVITY * t)
+        ((self.climb * t - 0.5 * GRAVITY_M_S2 * t * t).max(0.0), self.climb - GRAVITY_M_S2 * t)
     }
 
     /// The point below it on the ground.
@@ -150,7 +153,7 @@ impl Flight {
 
     /// Time at which it touches the ground.
     pub(super) fn lands(&self) -> Captured {
-        self.at + (self.climb * (2.0 / GRAVITY) * 1e6) as Captured
+        self.at + (self.climb * (2.0 / GRAVITY_M_S2) * 1e6) as Captured
     }
 }
 
@@ -164,7 +167,7 @@ fn solve(
 ) -> Option<([f32; UNKNOWNS], f32)> {
     let mut normal = [[0.0_f32; UNKNOWNS + 1]; UNKNOWNS];
     // The kick's place is known to some millimetres.
-    let known = (sigma / FROM_SIGMA) * (sigma / FROM_SIGMA);
+    let known = (sigma / PLACE_SIGMA_M) * (sigma / PLACE_SIGMA_M);
     normal[0][0] = known;
     normal[1][1] = known;
     let mut add = |row: [f32; UNKNOWNS + 1]| {
@@ -228,33 +231,33 @@ const UNKNOWNS: usize = 5;
 /// Detections of one flight: 0.4 s and more; later ones improve little.
 const SAMPLES_MAX: usize = 48;
 /// Detections nearer in time to each other than this add nothing, s: four cameras that see the ball at once.
-const SAMPLES_APART: f32 = 0.006;
+const SAMPLES_APART_S: f32 = 0.006;
 /// Fewer detections, or a shorter time (s), do not distinguish a flight from a flat kick: in 60 ms a ball
 /// that rises with 2 m/s is 0.1 m high, which appears as 25 mm at one metre from below a camera 4 m high.
 const SAMPLES_MIN: usize = 5;
-const TIME_MIN: f32 = 0.06;
+const TIME_MIN_S: f32 = 0.06;
 /// Offsets tried around the kick's moment by two detections, in units of its uncertainty.
-const SHIFTS: [f32; 5] = [-2.0, -1.0, 0.0, 1.0, 2.0];
+const MOMENT_SHIFTS_SIGMA: [f32; 5] = [-2.0, -1.0, 0.0, 1.0, 2.0];
 /// Uncertainty of the moment by a turn, s: half a frame.
-pub(super) const SHARP: f32 = 0.008;
+pub(super) const MOMENT_SIGMA_SHARP_S: f32 = 0.008;
 /// Where the turn was detected late, the moment is known to two frames, s.
-pub(super) const VAGUE: f32 = 0.03;
+pub(super) const MOMENT_SIGMA_VAGUE_S: f32 = 0.03;
 /// Uncertainty of the kick's place, m.
-const FROM_SIGMA: f32 = 0.01;
+const PLACE_SIGMA_M: f32 = 0.01;
 /// Climbs that are flights, m/s: slower ones stay below 50 mm; no robot kicks straight up with 10 m/s.
-const CLIMB_MIN: f32 = 1.0;
-const CLIMB_MAX: f32 = 10.0;
+const CLIMB_MIN_M_S: f32 = 1.0;
+const CLIMB_MAX_M_S: f32 = 10.0;
 /// No kicker launches a ball more steeply than this (tangent of 76°; chippers are built for 45°, and a
 /// launch's direction is known to some degrees after 60 ms).
-const STEEPEST: f32 = 4.0;
+const LAUNCH_TAN_MAX: f32 = 4.0;
 /// A flight fits when its mean squared error is less than this, in variances (1 where the noise is as
 /// configured; the noise of cameras that disagree is larger).
-const FIT_MAX: f32 = 6.0;
+const FIT_VARIANCES_MAX: f32 = 6.0;
 /// A flat kick is accepted unless its summed squared error is worse by this, in variances (times the flight's
 /// own mean): 1 in 10⁶ by noise.
-const FLAT_WORSE: f32 = 25.0;
+const FLAT_WORSE_VARIANCES: f32 = 25.0;
 /// A flat kick decelerates by at most this much more than the field surface's sliding deceleration.
-const SLIDE_MORE: f32 = 1.5;
+const SLIDE_FACTOR_MAX: f32 = 1.5;
 /// Normal equations with a smaller pivot have no solution (m², s², as samples weigh 1).
 const PIVOT_MIN: f32 = 1e-9;
 
@@ -265,7 +268,7 @@ mod tests {
     const CAMERA: Camera = Camera { above: Point::new(2.0, 1.0), height: 4.0 };
 
     fn watched(position: impl Fn(f32) -> (Point<Field>, f32), count: usize) -> Launch {
-        let mut launch = Launch::new(1_000_000, Point::new(0.0, 0.0), None, SHARP);
+        let mut launch = Launch::new(1_000_000, Point::new(0.0, 0.0), None, MOMENT_SIGMA_SHARP_S);
         for i in 1..=count {
             let t = i as f32 / 60.0;
             let (p, z) = position(t);
@@ -313,7 +316,7 @@ mod tests {
 
     #[test]
     fn a_kick_that_no_known_camera_saw_is_not_judged() {
-        let mut launch = Launch::new(0, Point::default(), None, SHARP);
+        let mut launch = Launch::new(0, Point::default(), None, MOMENT_SIGMA_SHARP_S);
         launch.add(Point::new(1.0, 0.0), 100_000, None);
         assert!(!launch.is_ripe() && !launch.is_full());
         assert_eq!(launch.flight(0.003, 3.9, true), None);

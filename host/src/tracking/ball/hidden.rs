@@ -43,9 +43,9 @@ impl HiddenBall {
             _ => self.placed = None,
         }
         if let Some(ball) = world.ball {
-            let hides = |robot: &&Robot| dribbler_point(robot).distance(ball.position) < HIDES;
+            let hides = |robot: &&Robot| dribbler_point(robot).distance(ball.position) < HIDES_WITHIN_M;
             let without = |robot: &Robot| hides(&robot) && feels(robot.who.id) == Some(false);
-            if now.since(ball.seen) < UNFELT || !world.ours(us).any(without) {
+            if now.since(ball.seen) < SENSOR_DECIDES_AFTER || !world.ours(us).any(without) {
                 self.last = Some(ball);
                 self.by = world.theirs(us).find(hides).map(|robot| robot.who);
                 return;
@@ -78,7 +78,7 @@ impl HiddenBall {
     fn taken_by(&self, world: &World, us: Colour) -> Option<Who> {
         let last = self.last?.position;
         let fronts = world.theirs(us).map(|robot| (dribbler_point(robot).distance(last), robot.who));
-        let near = fronts.filter(|(off, _)| *off < TAKES);
+        let near = fronts.filter(|(off, _)| *off < TAKES_WITHIN_M);
         near.reduce(|best, next| if next.0 < best.0 { next } else { best }).map(|(_, who)| who)
     }
 }
@@ -90,12 +90,12 @@ fn dribbler_point(robot: &Robot) -> Point<Field> {
 
 /// A ball this near the middle of a robot's front may lie in its dribbler opening, m: the opening's half
 /// width and the vision's noise.
-const HIDES: f32 = 0.06;
+const HIDES_WITHIN_M: f32 = 0.06;
 /// Time unseen after which a robot's sensor decides whether it has the ball: two telemetry periods, and
 /// vision's delay.
-const UNFELT: Duration = Duration::millis(300);
+const SENSOR_DECIDES_AFTER: Duration = Duration::millis(300);
 /// An opponent's front is this near a ball that it takes off ours, m: a robot's diameter.
-const TAKES: f32 = 2.0 * rules::limits::ROBOT_RADIUS;
+const TAKES_WITHIN_M: f32 = 2.0 * rules::limits::ROBOT_RADIUS;
 
 #[cfg(test)]
 mod tests {
@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_that_vanished_at_ours_unfelt_is_at_the_opponent_beside_it_or_where_it_was_seen() {
+    fn an_unfelt_ball_that_vanished_at_ours_is_at_the_opponent_or_where_it_was_seen() {
         let (ours, theirs) = (Who::yellow(RobotId::ZERO), Who::blue(RobotId::ZERO));
         let (mut hidden, mut world) = (HiddenBall::default(), World::default());
         world.put(robot(ours, 1.0));

@@ -7,7 +7,7 @@
 use geometry::{Body, Field, Point, Vector};
 use motion::ball::chip::ChipPath;
 
-use super::flight::{Flight, Launch, SHARP, VAGUE};
+use super::flight::{Flight, Launch, MOMENT_SIGMA_SHARP_S, MOMENT_SIGMA_VAGUE_S};
 use super::track::{Glimpse, Turn};
 use super::{Around, Balls};
 use crate::tracking::filter::Plane;
@@ -55,7 +55,7 @@ pub(super) struct Contact {
 impl Balls {
     /// The ball has changed its direction: a kick, or a bounce.
     pub(super) fn turned(&mut self, turn: &Turn, around: Around<'_>) {
-        let near = around.robots.nearest(turn.from, turn.at).filter(|(_, _, off)| *off <= REACH);
+        let near = around.robots.nearest(turn.from, turn.at).filter(|(_, _, off)| *off <= TURNS_WITHIN_M);
         if let Air::Watched(launch) = &mut self.air
             && near.is_none()
         {
@@ -68,7 +68,7 @@ impl Balls {
         let hopped = matches!(self.air, Air::Hopping(_));
         self.air = Air::Down;
         self.kicked = None;
-        if turn.gap > PUT_GAP {
+        if turn.gap > PLACED_GAP_MIN_M {
             return;
         }
         let (before, after) = (turn.before.norm(), turn.after.norm());
@@ -76,13 +76,13 @@ impl Balls {
             return;
         }
         let in_front = near.is_some_and(|(_, robot, _)| is_in_front(&robot, turn.from));
-        let redirected = in_front && (turn.after - turn.before).norm() >= KICK_REDIRECTS;
+        let redirected = in_front && (turn.after - turn.before).norm() >= KICK_TURN_MIN_M_S;
         let by = near.map(|(who, _, _)| who);
         // Where no robot stands only a robot that no camera recognises can kick, and only a ball at
         // standstill is certainly kicked.
-        let can_be_kicked = by.is_some() || (before < KICK_GAIN && !hopped);
-        let faster = after >= before + KICK_GAIN && can_be_kicked;
-        let kicked = after >= KICK_SPEED && (faster || redirected);
+        let can_be_kicked = by.is_some() || (before < KICK_GAIN_MIN_M_S && !hopped);
+        let faster = after >= before + KICK_GAIN_MIN_M_S && can_be_kicked;
+        let kicked = after >= KICK_SPEED_MIN_M_S && (faster || redirected);
         if kicked {
             self.kick(by, turn.from, turn.after, turn.at, &around.scene.models);
         } else {
@@ -92,7 +92,7 @@ impl Balls {
         // A chip towards the camera appears to move slowly at first, so every ball that leaves a robot's
         // front is watched.
         if kicked || in_front {
-            let mut launch = Launch::new(turn.at, turn.from, by, SHARP);
+            let mut launch = Launch::new(turn.at, turn.from, by, MOMENT_SIGMA_SHARP_S);
             for glimpse in turn.sightings {
                 launch.add(glimpse.apparent, glimpse.at, around.scene.camera(glimpse.camera));
             }
@@ -103,17 +103,20 @@ impl Balls {
     /// A chip towards the camera may hardly appear to move while it rises: when the turn is detected at last,
     /// it was by the robot that had the ball just before.
     fn showed_late(&mut self, turn: &Turn, around: Around<'_>) -> bool {
-        let Some(contact) = self.contact.filter(|contact| turn.at - contact.until <= micros(CONTACT_LATE))
+        let Some(contact) =
+            self.contact.filter(|contact| turn.at - contact.until <= micros(CHIP_CONTACT_KEPT_S))
         else {
             return false;
         };
         let Some(robot) = around.robots.robot(contact.who, contact.until) else { return false };
         let from = robot.pose.to_field(contact.place);
-        if from.distance(turn.from) > LATE_REACH || turn.after.norm() < turn.before.norm() + KICK_GAIN {
+        if from.distance(turn.from) > CHIP_CONTACT_WITHIN_M
+            || turn.after.norm() < turn.before.norm() + KICK_GAIN_MIN_M_S
+        {
             return false;
         }
         self.kick(Some(contact.who), from, turn.after, contact.until, &around.scene.models);
-        let mut launch = Launch::new(contact.until, from, Some(contact.who), VAGUE);
+        let mut launch = Launch::new(contact.until, from, Some(contact.who), MOMENT_SIGMA_VAGUE_S);
         for glimpse in turn.sightings {
             launch.add(glimpse.apparent, glimpse.at, around.scene.camera(glimpse.camera));
         }
@@ -184,7 +187,7 @@ impl Balls {
             self.counts.kicks += u64::from(self.kicked.is_none());
             self.kicked = Some(Kicked { at: launched, from, velocity, climb, by: launch.by });
         }
-        self.put(at, Plane::sent_off(flight.position(at), velocity, sigma, FLIGHT_UNSURE));
+        self.put(at, Plane::sent_off(flight.position(at), velocity, sigma, FLIGHT_SIGMA_M_S));
     }
 
     /// Switches to the next kind of motion of a chip when its time has come.
@@ -195,7 +198,7 @@ impl Balls {
             self.air = Air::Hopping(flight);
             let velocity = flight.velocity * models.chip.first;
             let landing = flight.position(flight.lands());
-            self.put(flight.lands(), Plane::sent_off(landing, velocity, LANDING_UNSURE, BOUNCE_UNSURE));
+            self.put(flight.lands(), Plane::sent_off(landing, velocity, LANDING_SIGMA_M, BOUNCE_SIGMA_M_S));
         }
         if let Air::Hopping(flight) = self.air
             && seconds(now - flight.at) >= hops(&flight, models).roll_time()
@@ -221,19 +224,20 @@ impl Balls {
         let Some(track) = self.chosen_track() else { return };
         let (position, velocity) = (track.plane.position, track.plane.velocity);
         if let Some((who, robot, off)) = around.robots.nearest(position, now)
-            && off <= TOUCH
+            && off <= TOUCHES_WITHIN_M
             && is_in_front(&robot, position)
         {
-            let same = self.contact.filter(|last| last.who == who && now - last.until <= micros(CONTACT));
+            let same =
+                self.contact.filter(|last| last.who == who && now - last.until <= micros(CONTACT_KEPT_S));
             let before = same.map_or(velocity, |contact| contact.before);
             self.contact = Some(Contact { who, place: robot.pose.to_body(position), until: now, before });
-            if self.kicked.is_some_and(|kicked| now - kicked.at > micros(CONTACT_LATE)) {
+            if self.kicked.is_some_and(|kicked| now - kicked.at > micros(CHIP_CONTACT_KEPT_S)) {
                 // Once another robot has the ball, the kick is over.
                 self.kicked = None;
                 self.air = Air::Down;
             }
             // A ball that a robot pushes turns and accelerates without flying.
-            if matches!(&self.air, Air::Watched(launch) if now - launch.at > micros(CONTACT)) {
+            if matches!(&self.air, Air::Watched(launch) if now - launch.at > micros(CONTACT_KEPT_S)) {
                 self.air = Air::Down;
             }
             return;
@@ -241,15 +245,15 @@ impl Balls {
         let Some(contact) = self.contact else { return };
         let Some(robot) = around.robots.robot(contact.who, now) else { return };
         let relative = (velocity - robot.velocity).norm();
-        let changed = (velocity - contact.before).norm() >= KICK_REDIRECTS;
-        let away = robot.pose.position.distance(position) > REACH;
-        if now - contact.until > micros(CONTACT_LATE) {
+        let changed = (velocity - contact.before).norm() >= KICK_TURN_MIN_M_S;
+        let away = robot.pose.position.distance(position) > TURNS_WITHIN_M;
+        if now - contact.until > micros(CHIP_CONTACT_KEPT_S) {
             self.contact = None;
-        } else if now - contact.until <= micros(CONTACT)
+        } else if now - contact.until <= micros(CONTACT_KEPT_S)
             && away
             && changed
-            && relative >= KICK_SPEED
-            && velocity.norm() >= KICK_SPEED
+            && relative >= KICK_SPEED_MIN_M_S
+            && velocity.norm() >= KICK_SPEED_MIN_M_S
         {
             let from = robot.pose.to_field(contact.place);
             self.kick(Some(contact.who), from, velocity, contact.until, &around.scene.models);
@@ -261,9 +265,9 @@ impl Balls {
         let Some(track) = self.chosen_track() else { return };
         let (Some(kicked), speed) = (self.kicked, track.plane.velocity.norm()) else { return };
         let time = seconds(track.at - kicked.at);
-        if speed < REST_SPEED {
+        if speed < STOPPED_SPEED_M_S {
             self.kicked = None;
-        } else if kicked.climb == 0.0 && (REFINE_FROM..REFINE_TO).contains(&time) {
+        } else if kicked.climb == 0.0 && (REFINE_FROM_S..REFINE_TO_S).contains(&time) {
             let travelled = track.plane.position - kicked.from;
             let along = travelled.unit().unwrap_or_default();
             let velocity = along * launch_speed(travelled.norm(), time, models);
@@ -305,32 +309,32 @@ fn is_in_front(robot: &Moved, ball: Point<Field>) -> bool {
 }
 
 /// A robot whose centre is this near the ball may have touched it, m.
-const TOUCH: f32 = rules::contact::TOUCHES_WITHIN;
+const TOUCHES_WITHIN_M: f32 = rules::contact::TOUCHES_WITHIN;
 /// A robot this near can have turned the ball, m: hull, ball, and 7 cm that the robot moved since.
-const REACH: f32 = 0.18;
+const TURNS_WITHIN_M: f32 = 0.18;
 /// A contact ends this long after its last detection, s.
-const CONTACT: f32 = 0.1;
+const CONTACT_KEPT_S: f32 = 0.1;
 /// ... and is kept for this long, s, for chips that are detected late, within this distance, m.
-const CONTACT_LATE: f32 = 0.25;
-const LATE_REACH: f32 = 0.4;
+const CHIP_CONTACT_KEPT_S: f32 = 0.25;
+const CHIP_CONTACT_WITHIN_M: f32 = 0.4;
 /// Slower balls are not kicked but rolled, m/s.
-const KICK_SPEED: f32 = 0.5;
+const KICK_SPEED_MIN_M_S: f32 = 0.5;
 /// A kick makes the ball faster by this, m/s ...
-const KICK_GAIN: f32 = 0.3;
+const KICK_GAIN_MIN_M_S: f32 = 0.3;
 /// ... or a robot's front changes its velocity by this, m/s.
-const KICK_REDIRECTS: f32 = 0.8;
+const KICK_TURN_MIN_M_S: f32 = 0.8;
 /// Where the old path and the new one are farther apart than this, the ball was placed there by hand or by a
 /// script, m.
-const PUT_GAP: f32 = 0.3;
+const PLACED_GAP_MIN_M: f32 = 0.3;
 /// A kicked ball has stopped below this speed, m/s.
-const REST_SPEED: f32 = 0.05;
+const STOPPED_SPEED_M_S: f32 = 0.05;
 /// A flat kick's speed is computed from the distance covered in this time after it, s: two frames, until
 /// robots may intercept it.
-const REFINE_FROM: f32 = 0.03;
-const REFINE_TO: f32 = 0.15;
+const REFINE_FROM_S: f32 = 0.03;
+const REFINE_TO_S: f32 = 0.15;
 /// Each step doubles the digits; the start is within a third.
 const NEWTON_STEPS: usize = 3;
 /// Uncertainty of a fitted flight's velocity, m/s, a landing's place, m, and the speed after a bounce, m/s.
-const FLIGHT_UNSURE: f32 = 0.2;
-const LANDING_UNSURE: f32 = 0.05;
-const BOUNCE_UNSURE: f32 = 0.7;
+const FLIGHT_SIGMA_M_S: f32 = 0.2;
+const LANDING_SIGMA_M: f32 = 0.05;
+const BOUNCE_SIGMA_M_S: f32 = 0.7;

@@ -111,14 +111,15 @@ impl Balls {
     fn hold(&mut self, now: Captured, robots: &Robots) {
         let Some((place, robot)) = self.held(now, robots) else { return };
         if let Some(track) = self.chosen.and_then(|index| self.tracks[index].as_mut()) {
-            let plane = Plane::sent_off(place, robot.velocity, HELD_UNSURE, HELD_SPEED_UNSURE);
+            let plane = Plane::sent_off(place, robot.velocity, HELD_SIGMA_M, HELD_SIGMA_M_S);
             track.put(now.max(track.at), plane);
         }
     }
 
     fn held(&self, now: Captured, robots: &Robots) -> Option<(Point<Field>, Moved)> {
         let (track, contact) = (self.chosen_track()?, self.contact?);
-        let unseen = now - track.seen > micros(UNSEEN) && track.seen - contact.until <= micros(UNSEEN);
+        let unseen =
+            now - track.seen > micros(UNSEEN_AFTER_S) && track.seen - contact.until <= micros(UNSEEN_AFTER_S);
         let robot = robots.robot(contact.who, now).filter(|_| unseen)?;
         Some((robot.pose.to_field(contact.place), robot))
     }
@@ -166,7 +167,7 @@ impl Balls {
 /// Tracks at once: more balls do not occur in a game.
 const TRACKS_MAX: usize = 6;
 /// Time after which it counts as unseen, s: two to three frames of 60 Hz.
-const UNSEEN: f32 = 0.045;
+const UNSEEN_AFTER_S: f32 = 0.045;
 /// Uncertainty of a hidden ball: within a ball's radius of where it was, m; released slowly, m/s.
-const HELD_UNSURE: f32 = 0.02;
-const HELD_SPEED_UNSURE: f32 = 0.5;
+const HELD_SIGMA_M: f32 = 0.02;
+const HELD_SIGMA_M_S: f32 = 0.5;

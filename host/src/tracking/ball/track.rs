@@ -55,7 +55,7 @@ pub(super) struct Track {
 impl Track {
     pub(super) fn new(glimpse: &Glimpse, seen: &BallSeen, sigma: f32) -> Self {
         Self {
-            plane: Plane::new(glimpse.position, sigma, SPEED_SIGMA),
+            plane: Plane::new(glimpse.position, sigma, SPEED_SIGMA_M_S),
             at: glimpse.at,
             seen: glimpse.at,
             counted: glimpse.at,
@@ -80,10 +80,10 @@ impl Track {
     /// Distance of a detection from the prediction, and whether it can be this ball.
     pub(super) fn fits(&self, position: Point<Field>, at: Captured, models: &BallModels) -> Option<f32> {
         let off = self.moved(at, models).0.distance(position);
-        let reach = GATE + GATE_SPEED * seconds(at - self.seen).clamp(0.0, GATE_TIME_MAX);
+        let reach = GATE_M + GATE_GROWTH_M_S * seconds(at - self.seen).clamp(0.0, GATE_TIME_MAX_S);
         // A change that has started may continue there.
         let begun = self.strange.is_some_and(|strange| {
-            let reach = GATE + GATE_SPEED * seconds(at - strange.at).clamp(0.0, GATE_TIME_MAX);
+            let reach = GATE_M + GATE_GROWTH_M_S * seconds(at - strange.at).clamp(0.0, GATE_TIME_MAX_S);
             strange.position.distance(position) <= reach
         });
         (off <= reach || begun).then_some(off)
@@ -97,7 +97,7 @@ impl Track {
     /// Records that it was seen.
     pub(super) fn note(&mut self, at: Captured, seen: &BallSeen) {
         self.seen = self.seen.max(at);
-        if at - self.counted >= IMAGE_APART {
+        if at - self.counted >= TICK_US {
             self.counted = at;
             self.images = self.images.saturating_add(1);
         }
@@ -111,7 +111,9 @@ impl Track {
         let mut plane = self.plane;
         plane.pass_as(dt, position, velocity, FREEDOM);
         let (off, surprise) = plane.surprise(glimpse.position, sigma);
-        if surprise <= SURPRISE_MAX || off.dot(off) <= STRANGE_MIN * STRANGE_MIN {
+        if surprise <= OUTLIER_VARIANCES_MIN
+            || off.dot(off) <= OUTLIER_DISTANCE_MIN_M * OUTLIER_DISTANCE_MIN_M
+        {
             plane.see(glimpse.position, sigma);
             (self.plane, self.at, self.strange) = (plane, self.at.max(glimpse.at), None);
             return None;
@@ -121,16 +123,16 @@ impl Track {
             return None;
         };
         let between = glimpse.at - first.at;
-        if between < IMAGE_APART {
+        if between < TICK_US {
             return None;
         }
         let after = (glimpse.position - first.position) * (1.0 / seconds(between));
-        if after.dot(after) > SPEED_MAX * SPEED_MAX {
+        if after.dot(after) > SPEED_MAX_M_S * SPEED_MAX_M_S {
             self.strange = Some(*glimpse);
             return None;
         }
         let turn = self.turn(&first, glimpse, after);
-        let speed_sigma = SPEED_UNSURE + 2.0 * sigma / seconds(between);
+        let speed_sigma = TURN_SIGMA_M_S + 2.0 * sigma / seconds(between);
         self.put(glimpse.at, Plane::sent_off(glimpse.position, after, sigma, speed_sigma));
         Some(turn)
     }
@@ -151,7 +153,7 @@ impl Track {
 
     pub(super) fn confidence(&self, at: Captured, patience: f32) -> f32 {
         let freshness = 1.0 - seconds(at - self.seen) / patience;
-        let often = f32::from(self.images.min(IMAGES_FULL)) * (1.0 / IMAGES_FULL as f32);
+        let often = f32::from(self.images.min(FRAMES_FULL)) * (1.0 / FRAMES_FULL as f32);
         (freshness * often * self.quality).clamp(0.0, 1.0)
     }
 }
@@ -160,23 +162,23 @@ impl Track {
 /// less than configured; changing is a robot that pushes or dribbles it with 5 m/s² for 0.2 s.
 const FREEDOM: Freedom = Freedom { stop_rules: 0.02, changing: 8.0 };
 /// A detection is an outlier when its distance squared is more variances than this ...
-const SURPRISE_MAX: f32 = 20.0;
+const OUTLIER_VARIANCES_MIN: f32 = 20.0;
 /// ... and it is farther than this off, m: noise between cameras is no turn.
-const STRANGE_MIN: f32 = 0.012;
+const OUTLIER_DISTANCE_MIN_M: f32 = 0.012;
 /// Standard deviation of a new ball's speed, m/s.
-const SPEED_SIGMA: f32 = 2.0;
+const SPEED_SIGMA_M_S: f32 = 2.0;
 /// Uncertainty of a turned ball's speed besides the noise of two detections, m/s.
-const SPEED_UNSURE: f32 = 0.3;
+const TURN_SIGMA_M_S: f32 = 0.3;
 /// Fastest ball, m/s: robots are allowed 6.5, kickers without a limit give 10 or so.
-const SPEED_MAX: f32 = 15.0;
+const SPEED_MAX_M_S: f32 = 15.0;
 /// Largest distance of a detection from its prediction, m, and its growth for every second unseen (m/s), up
 /// to a time (s).
-const GATE: f32 = 0.1;
-const GATE_SPEED: f32 = 10.0;
-const GATE_TIME_MAX: f32 = 0.15;
+const GATE_M: f32 = 0.1;
+const GATE_GROWTH_M_S: f32 = 10.0;
+const GATE_TIME_MAX_S: f32 = 0.15;
 /// Detections nearer to each other are of one tick, µs.
-const IMAGE_APART: Captured = 5_000;
+const TICK_US: Captured = 5_000;
 /// Camera frames after which confidence is full.
-const IMAGES_FULL: u16 = 8;
+const FRAMES_FULL: u16 = 8;
 /// Weight of the newest detection in the quality.
 const QUALITY_SHARE: f32 = 0.1;

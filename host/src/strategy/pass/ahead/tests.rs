@@ -122,7 +122,7 @@ fn everyone_starts_when_the_network_says() {
         let near =
             |is: f64, latest: f64, early: f64| is <= latest + 2.0 * tick && is >= latest - early - tick;
         assert!(near(seconds(ahead.passer_started()), latest[PASSER_STARTS], 0.0), "{ahead:?} {latest:?}");
-        let forgiven = f64::from(TOGETHER);
+        let forgiven = f64::from(RECEIVER_LATE_MAX_S);
         assert!(near(seconds(ahead.shot()), latest[KICK], forgiven), "{ahead:?} {latest:?}");
         // A receiver that has not started when the ball leaves would start later in the network.
         let receiver_starts = latest[RECEIVER_STARTS];

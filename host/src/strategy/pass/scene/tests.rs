@@ -2,8 +2,6 @@
 //! (double precision; the ball's path is searched in 100,000 steps, the goal by 400,000 rays), and with
 //! properties of every place.
 
-use motion::ball::BallModel;
-use motion::ball::chip::ChipModel;
 use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro128PlusPlus;
 use rules::League;
@@ -12,7 +10,7 @@ use super::super::super::view::tests::view;
 use super::*;
 
 fn kicks(league: League) -> Kicks {
-    Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default())
+    Kicks::of(league)
 }
 
 /// Ours: 0 passes, 1 receives, the others are teammates.
@@ -66,7 +64,7 @@ fn a_cross_that_is_shot_at_one_touch_by_hand() {
 }
 
 #[test]
-fn an_opponent_under_the_arch_makes_it_a_chip_and_a_free_way_never_does() {
+fn an_opponent_under_the_arch_makes_it_a_chip_and_a_free_path_never_does() {
     let ours = [(-0.1, 0.0), (3.0, 0.1)];
     let blocked = rated((0.0, 0.0), (3.0, 0.0), &ours, &[(0.8, 0.0)]);
     assert!(blocked.kick.is_chip() && !blocked.shot.one_touch, "{blocked:?}");

@@ -156,7 +156,7 @@ fn a_ball_over_the_line_is_out_there() {
 }
 
 #[test]
-fn a_pass_that_never_leaves_is_no_kick_and_a_stolen_ball_reports_by_whom() {
+fn a_pass_that_never_leaves_is_no_kick_and_an_interceptor_is_named() {
     let lies = |_: f32| (Point::new(0.0, 0.0), Vector::default(), 0.0);
     let verdict = Play::new(lies).verdict();
     assert!(matches!(verdict, PassVerdict::NoKick { after, lost_to: None } if after > 5.0), "{verdict:?}");

@@ -25,7 +25,7 @@ fn host() -> Host {
 /// The first time at which a second host is found, ms, with its evidence; every 100 ms `report` feeds the
 /// host its inputs.
 fn second_host(mut report: impl FnMut(u64, &mut Host)) -> Option<(u64, SecondHost)> {
-    let (mut host, mut sanity) = (host(), Sanity::default());
+    let (mut host, mut sanity) = (host(), HealthChecks::default());
     (0..8_000).step_by(100).find_map(|ms| {
         report(ms, &mut host);
         sanity.look(Instant(ms * 1_000), &host).into_iter().find_map(|found| match found {
@@ -47,7 +47,7 @@ fn robot() -> Link {
 }
 
 #[test]
-fn frames_of_a_second_host_are_reported_within_two_seconds_and_our_own_echo_is_none() {
+fn a_second_hosts_frames_are_a_finding_within_two_seconds_and_our_echo_is_not() {
     for (epoch, expected) in [(EPOCH + 9, true), (EPOCH - 9, true), (EPOCH, false)] {
         let mut other = HostLink::new(TeamId::of(Colour::Blue), TeamKey::ZERO, epoch);
         let found = second_host(|ms, host| {
@@ -70,7 +70,7 @@ fn frames_of_a_second_host_are_reported_within_two_seconds_and_our_own_echo_is_n
 }
 
 #[test]
-fn a_robot_that_leaves_us_for_a_later_host_is_reported_within_two_seconds() {
+fn a_robot_that_leaves_us_for_a_later_host_is_a_finding_within_two_seconds() {
     let mut robot = robot();
     let found = second_host(|ms, host| {
         let follows = if ms < 2_000 { EPOCH } else { EPOCH + 1 };
@@ -82,7 +82,7 @@ fn a_robot_that_leaves_us_for_a_later_host_is_reported_within_two_seconds() {
 }
 
 #[test]
-fn frames_of_an_earlier_host_that_our_robots_refuse_are_reported_within_two_seconds() {
+fn refused_frames_of_an_earlier_host_are_a_finding_within_two_seconds() {
     let mut robot = robot();
     let found = second_host(|ms, host| {
         let refused = (ms.saturating_sub(2_000) / 100 * 6) as u16;
@@ -107,8 +107,8 @@ fn robots_that_follow_us_alone_tell_of_no_second_host() {
 }
 
 #[test]
-fn another_programs_packets_on_visions_port_are_reported_within_two_seconds() {
-    let (mut host, mut sanity) = (host(), Sanity::default());
+fn another_programs_packets_on_visions_port_are_a_finding_within_two_seconds() {
+    let (mut host, mut sanity) = (host(), HealthChecks::default());
     let mut first = None;
     for ms in (0..5_000).step_by(20) {
         let now = Instant(ms * 1_000);

@@ -73,15 +73,15 @@ impl Port {
         if foreign > self.foreign {
             (self.foreign, self.newest) = (foreign, Some(now));
         }
-        if frame.is_some_and(|at| now.since(at) < PATIENCE) {
+        if frame.is_some_and(|at| now.since(at) < SILENCE_MAX) {
             self.before = self.foreign;
             return None;
         }
-        if now.since(began) < PATIENCE {
+        if now.since(began) < SILENCE_MAX {
             return None;
         }
         let packets = self.foreign - self.before;
-        if packets >= FOREIGN_MIN && self.newest.is_some_and(|at| now.since(at) < OVER) {
+        if packets >= FOREIGN_MIN && self.newest.is_some_and(|at| now.since(at) < FOREIGN_SILENCE_MAX) {
             return Some(VisionPort::Foreign { packets });
         }
         match frame {
@@ -94,9 +94,9 @@ impl Port {
 }
 
 /// Time without camera frames after which they count as missing, from the start and from the last one.
-const PATIENCE: Duration = Duration::millis(1_000);
+const SILENCE_MAX: Duration = Duration::millis(1_000);
 /// Another program that has sent nothing for this time has ended.
-const OVER: Duration = Duration::millis(2_000);
+const FOREIGN_SILENCE_MAX: Duration = Duration::millis(2_000);
 /// Fewer packets may come from a program that scans ports.
 const FOREIGN_MIN: u64 = 3;
 

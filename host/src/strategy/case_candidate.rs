@@ -1,4 +1,4 @@
-//! `retrieved`: the case that our robots would retrieve for a ball at a place, with its next step: one of the
+//! `case_candidate`: the case that our robots would retrieve for a ball at a place, with its next step: one of the
 //! actions that the rated list compares. Attack frame, m.
 
 use casebase::{CaseBase, LegKind, Problem, RetrievalSettings};
@@ -99,7 +99,7 @@ pub fn retrieve(
                 LegKind::Pass(receiver) => {
                     CaseStep::Pass { from, receiver: robots.get(receiver.index()).copied()??, at: to }
                 }
-                LegKind::Kick(_) if to.x() >= goal_line - AT_GOAL => CaseStep::Shot { from },
+                LegKind::Kick(_) if to.x() >= goal_line - SHOT_ENDS_WITHIN_M => CaseStep::Shot { from },
                 LegKind::Kick(_) => CaseStep::Kick { to },
             }
         }
@@ -108,7 +108,7 @@ pub fn retrieve(
 }
 
 /// A kick that ends this near the goal line is a shot, m: cases shoot at the line itself, in whole mm.
-const AT_GOAL: f32 = 0.01;
+const SHOT_ENDS_WITHIN_M: f32 = 0.01;
 
 #[cfg(test)]
 mod tests {

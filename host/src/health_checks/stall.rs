@@ -136,17 +136,17 @@ impl Stalls {
     }
 
     fn see(&mut self, now: Instant, last: &Last) -> Option<Stall> {
-        let sends = last.sent.is_some_and(|at| now.since(at) < SENDS) && self.runs_again(now);
+        let sends = last.sent.is_some_and(|at| now.since(at) < SNAPSHOT_GAP_MAX) && self.runs_again(now);
         self.sends_since = sends.then(|| self.sends_since.unwrap_or(now));
         if let Some(stall) = self.goes_on(now, last) {
-            self.current = Some((stall, now + SHOWN));
+            self.current = Some((stall, now + REPORTED_FOR));
         }
         self.current.filter(|(_, until)| now < *until).map(|(stall, _)| stall)
     }
 
     /// Whether the computer runs, and for long enough after its last stall.
     fn runs_again(&self, now: Instant) -> bool {
-        self.host.is_none_or(|(_, since)| now.since(since) >= CATCHES_UP)
+        self.host.is_none_or(|(_, since)| now.since(since) >= CATCH_UP_TIME)
     }
 
     /// The stall that persists now.
@@ -168,7 +168,7 @@ impl Stalls {
         {
             return Some(Stall::RadioUp { since: since(robot) });
         }
-        let long = self.sends_since.is_some_and(|since| now.since(since) >= SENDS_FOR);
+        let long = self.sends_since.is_some_and(|since| now.since(since) >= SENT_FOR_MIN);
         let unheard = last.unheard.filter(|silent| silent.0 >= DOWN_STALL.0 && long);
         unheard.map(|since| Stall::RadioDown { since })
     }
@@ -177,7 +177,7 @@ impl Stalls {
 /// The host's loop wakes at least every 100 ms; at twice that, robots brake.
 const HOST_STALL: Duration = Duration::millis(200);
 /// After a stall of the computer queued packets are received within this time.
-const CATCHES_UP: Duration = Duration::millis(300);
+const CATCH_UP_TIME: Duration = Duration::millis(300);
 /// Twenty camera frames; teams report blackouts of 0.2 s, which the host bridges.
 const VISION_STALL: Duration = Duration::millis(300);
 /// A robot sends beacons at 20 Hz and telemetry at 10 Hz.
@@ -189,12 +189,12 @@ const DOWN_STALL: Duration = Duration::millis(250);
 /// Older telemetry is out of date; it comes at 10 Hz.
 const TELEMETRY_NEW: Duration = Duration::millis(250);
 /// Snapshots go out at 60 Hz or more.
-const SENDS: Duration = Duration::millis(50);
+const SNAPSHOT_GAP_MAX: Duration = Duration::millis(50);
 /// Robots that receive nothing are a stall of the radio once snapshots have gone out for this time:
 /// [`DOWN_STALL`] and the age of telemetry.
-const SENDS_FOR: Duration = Duration::millis(DOWN_STALL.0 / 1_000 + TELEMETRY_NEW.0 / 1_000);
+const SENT_FOR_MIN: Duration = Duration::millis(DOWN_STALL.0 / 1_000 + TELEMETRY_NEW.0 / 1_000);
 /// A stall that is over is reported for this time, so that it can be read.
-const SHOWN: Duration = Duration::millis(3_000);
+const REPORTED_FOR: Duration = Duration::millis(3_000);
 
 #[cfg(test)]
 mod tests {
@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn each_stall_is_said_within_half_a_second_by_its_own_words_and_by_no_others() {
+    fn each_stall_is_found_within_half_a_second_and_no_other_with_it() {
         for (still, place, description) in [
             ("host", "host", "this computer did not run"),
             ("vision", "vision", "no camera frame"),

@@ -57,7 +57,7 @@ impl RobotCount {
         let allowed = league.limits().map_or(usize::MAX, |limits| limits.robots as usize);
         let inside = |robot: &&crate::world::Robot| {
             let at = robot.pose.position;
-            field.clamp(at, -limits::ROBOT_RADIUS) == at && host.world().time.since(robot.seen) < SEEN
+            field.clamp(at, -limits::ROBOT_RADIUS) == at && host.world().time.since(robot.seen) < COUNTED_FOR
         };
         let found = [Colour::Yellow, Colour::Blue].map(|team| {
             let on_field = host.world().team(team).filter(inside).count();
@@ -104,7 +104,7 @@ impl fmt::Display for OtherField {
 pub(super) fn other_field(league: League, announced: &FieldSpec) -> Option<OtherField> {
     let is = |league: League| {
         let field = league.field();
-        let near = |announced: f32, own: f32| (announced - own).abs() <= own * TOLERANCE;
+        let near = |announced: f32, own: f32| (announced - own).abs() <= own * DIMENSION_TOLERANCE;
         near(announced.length, field.length) && near(announced.width, field.width)
     };
     let other = || OtherField {
@@ -116,10 +116,10 @@ pub(super) fn other_field(league: League, announced: &FieldSpec) -> Option<Other
 }
 
 /// A robot not seen for this time is not counted: ten frames of 60 Hz, and fewer than its track lasts (1 s).
-const SEEN: Duration = Duration::millis(170);
+const COUNTED_FOR: Duration = Duration::millis(170);
 /// Tolerance of a field's dimensions as a share of its size (an estimate; the rules allow 10 %, and the
 /// leagues' differ by a third).
-const TOLERANCE: f32 = 0.1;
+const DIMENSION_TOLERANCE: f32 = 0.1;
 
 #[cfg(test)]
 mod tests {
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn a_field_laid_out_a_little_wrong_is_the_leagues_and_one_of_no_league_is_said_to_be_none() {
+    fn a_slightly_wrong_field_is_the_leagues_and_an_unknown_one_is_of_no_league() {
         let own = League::DivisionB.field();
         assert_eq!(other_field(League::DivisionB, &FieldSpec { length: 9.3, width: 5.8, ..own }), None);
         let found = other_field(League::DivisionB, &FieldSpec { length: 4.5, width: 3.0, ..own }).unwrap();

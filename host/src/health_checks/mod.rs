@@ -1,4 +1,4 @@
-//! `sanity`: checks field, network and computer against the host's settings; each finding has its evidence
+//! `health_checks`: checks field, network and computer against the host's settings; each finding has its evidence
 //! and a remedy as text. Sans-IO; times on the host's clock.
 //!
 //! | module | finds |
@@ -9,7 +9,7 @@
 //! | `port` | no camera frames on vision's port, or another program's packets |
 //! | `stall` | a stall of this computer, vision or the radio |
 //!
-//! [`Sanity::look`] is called at least every [`LOOK_EVERY_MAX`]. A finding is given within two seconds of its
+//! [`HealthChecks::look`] is called at least every [`LOOK_EVERY_MAX`]. A finding is given within two seconds of its
 //! cause and for as long as that lasts. A match without a fault has none.
 
 mod field;
@@ -32,11 +32,11 @@ pub use second_host::SecondHost;
 pub use side::{SideEvidence, WrongSide};
 pub use stall::Stall;
 
-/// [`Sanity::look`] is called at least this often, so that "within two seconds" holds.
+/// [`HealthChecks::look`] is called at least this often, so that "within two seconds" holds.
 pub const LOOK_EVERY_MAX: Duration = Duration::millis(200);
 /// A fault on the field must last this long before it is a finding: longer than a misread pattern can persist
 /// in tracking (0.2 s), and half of the two seconds.
-const LASTS: Duration = Duration::millis(1_000);
+const FAULT_LASTS_MIN: Duration = Duration::millis(1_000);
 
 /// A deviation from the settings.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,7 +105,7 @@ impl fmt::Display for Finding {
 
 /// State of all checks.
 #[derive(Clone, Debug, Default)]
-pub struct Sanity {
+pub struct HealthChecks {
     looked: Option<Instant>,
     crowd: field::RobotCount,
     side: side::Sides,
@@ -113,7 +113,7 @@ pub struct Sanity {
     stalls: stall::Stalls,
 }
 
-impl Sanity {
+impl HealthChecks {
     /// The host's loop runs now. A program that calls this calls it at least every 100 ms: a longer pause is
     /// a stall of the computer. A simulation in virtual time does not call it.
     pub fn ran(&mut self, now: Instant) {
@@ -128,7 +128,7 @@ impl Sanity {
         }
         self.looked = Some(now);
         let mut found = Vec::new();
-        let sees = host.imaged().is_some_and(|at| now.since(at) < SEES);
+        let sees = host.imaged().is_some_and(|at| now.since(at) < FRAME_AGE_MAX);
         let reported =
             host.announced_field().and_then(|reported| field::other_field(host.settings().league, reported));
         found.extend(reported.map(Finding::Field));
@@ -141,7 +141,7 @@ impl Sanity {
     }
 }
 
-/// Something that must last for [`LASTS`].
+/// Something that must last for [`FAULT_LASTS_MIN`].
 #[derive(Clone, Copy, Debug, Default)]
 struct Lasting {
     since: Option<Instant>,
@@ -151,9 +151,9 @@ impl Lasting {
     /// Whether it has held for long enough; `holds`: whether it holds now.
     fn see(&mut self, now: Instant, holds: bool) -> bool {
         self.since = holds.then(|| self.since.unwrap_or(now));
-        self.since.is_some_and(|since| now.since(since) >= LASTS)
+        self.since.is_some_and(|since| now.since(since) >= FAULT_LASTS_MIN)
     }
 }
 
 /// The field is checked only with camera frames of this age or newer.
-const SEES: Duration = Duration::millis(300);
+const FRAME_AGE_MAX: Duration = Duration::millis(300);

@@ -115,7 +115,7 @@ impl Sides {
                 if !matches!(seen.phase, Phase::Halt | Phase::Timeout(_)) {
                     *played = Duration(played.0 + passed.0);
                 }
-                if played.0 >= CROSSING.0 {
+                if played.0 >= CROSSING_TIME.0 {
                     self.changed = None;
                 }
             }
@@ -145,7 +145,8 @@ fn evidence(seen: &Seen, field: &FieldSpec) -> Option<SideEvidence> {
     let waits =
         matches!(seen.phase, Phase::Halt | Phase::Stop | Phase::PrepareKickoff(_) | Phase::Kickoff(_));
     let in_half = |places: &[Point<Field>], goal: GoalEnd| {
-        places.len() >= HALVES_MIN && places.iter().all(|at| at.x() * goal.sign() as f32 > ON_LINE)
+        places.len() >= HALVES_MIN
+            && places.iter().all(|at| at.x() * goal.sign() as f32 > HALFWAY_LINE_WITHIN_M)
     };
     let [ours, others] = &seen.robots;
     let swapped = waits && in_half(ours, theirs) && in_half(others, own);
@@ -154,11 +155,11 @@ fn evidence(seen: &Seen, field: &FieldSpec) -> Option<SideEvidence> {
 
 /// After the sides have changed robots have this time of STOP and play to cross the field: 12 m at 1.3 m/s,
 /// and as much again.
-const CROSSING: Duration = Duration::millis(20_000);
+const CROSSING_TIME: Duration = Duration::millis(20_000);
 /// Least number of robots of each team for a check of the halves.
 const HALVES_MIN: usize = 3;
 /// A robot nearer to the halfway line is in neither half, m.
-const ON_LINE: f32 = 0.1;
+const HALFWAY_LINE_WITHIN_M: f32 = 0.1;
 
 #[cfg(test)]
 mod tests {
@@ -194,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn teams_at_each_others_goals_are_reported_within_two_seconds_by_each_kind_of_evidence() {
+    fn swapped_sides_are_found_within_two_seconds_by_each_kind_of_evidence() {
         let (goal, halt) = (GoalEnd::Negative, Phase::Halt);
         let both = seen(true, goal, halt);
         let ours_only = Seen { keepers: [both.keepers[0], None], ..both.clone() };
@@ -235,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn teams_that_do_not_follow_a_change_of_sides_are_reported() {
+    fn teams_that_do_not_follow_a_change_of_sides_are_a_finding() {
         let stays = |t: u64| {
             let goal = if t < 5_000 { GoalEnd::Negative } else { GoalEnd::Positive };
             seen(t >= 5_000, goal, Phase::Stop)

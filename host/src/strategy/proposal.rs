@@ -7,8 +7,8 @@ use protocol::RobotId;
 use protocol::team::{Beacon, CycleState, Progress};
 use rules::League;
 
-use crate::strategy::Flip;
-use crate::strategy::view::CasePass;
+use super::Flip;
+use super::view::CasePass;
 
 /// The cases that come with a league; cases of robots with another case base cannot be looked up.
 pub fn cases_of(league: League) -> CaseBase<'static> {
