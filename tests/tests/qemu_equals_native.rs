@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use arena::evaluation::Profile;
+use arena::Profile;
 use arena::{CaseNames, TrialConfig, TrialReport, run};
 use brain::{Approach, BrainConfig};
 use hil_sim::{

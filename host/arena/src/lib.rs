@@ -13,17 +13,9 @@
 //!
 //! [`ledger`] counts what became of every case that was played.
 //!
-//! [`mod@matches`] plays many of them and reports the results, in the form of the second paper's Table 2.
-//!
-//! [`scenes`] plays short scenes with several variants of a team and tells what a part of its play is worth.
-//!
 //! [`Snapshot`] is a moment of the simulated field, kept to return to.
 //!
-//! [`skills`] plays tries of single skills through the whole loop, in worlds of any physics.
-//!
 //! [`successful_plays`] finds the plays of recordings that led to a shot or a goal.
-//!
-//! [`evaluation`] plays the paper's thousands of trials and computes its tables.
 //!
 //! **Invariants.** Watching changes nothing; reports come from the true state and the radio, never from
 //! inside a brain.
@@ -36,16 +28,14 @@ mod case_trial;
 pub mod cases;
 mod cycles;
 mod defaults;
-pub mod evaluation;
 pub mod game;
 pub mod ledger;
-pub mod matches;
 mod names;
 mod picture;
+mod profile;
 mod recording;
 mod report;
-pub mod scenes;
-pub mod skills;
+mod setup;
 mod snapshot;
 mod story;
 pub mod successful_plays;
@@ -55,10 +45,12 @@ pub use case_trial::{Attempt, AttemptError, CaseTrial, Opposition, Retrieved, Sc
 pub use cycles::{CycleEnd, CycleEvent, CycleLog, CycleSeen};
 pub use names::{CaseNames, Cast, letter};
 pub use picture::picture;
+pub use profile::Profile;
 pub use recording::{RecordedKick, RecordedSample, Recording, Start};
 pub use report::{
     ActivityReport, Backups, CaseCounts, Causes, CycleReport, DefaultReport, Possession, TrialReport,
 };
+pub use setup::{ROBOTS, Setup};
 pub use snapshot::{BallState, RobotState, Snapshot, SnapshotError};
 pub use story::TextLog;
 pub use trial::{

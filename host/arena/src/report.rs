@@ -191,7 +191,7 @@ pub(crate) fn in_seconds(time: f32) -> f64 {
 }
 
 #[allow(clippy::trivially_copy_pass_by_ref, reason = "serde's signature")]
-pub(crate) fn scenario<S: Serializer>(scenario: &Scenario, s: S) -> Result<S::Ok, S::Error> {
+pub fn scenario<S: Serializer>(scenario: &Scenario, s: S) -> Result<S::Ok, S::Error> {
     match scenario.label().parse::<u8>() {
         Ok(number) => s.serialize_u8(number),
         Err(_) => s.serialize_str(scenario.label()),

@@ -7,12 +7,12 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use arena::cases::{LibraryError, SettingFailure};
-use arena::evaluation::EvaluationError;
 use arena::game::GameError;
 use case_tools::Finding;
 use casebase::SettingError;
 use foreign::printable;
 use hil_sim::SimulationError;
+use study::evaluation::EvaluationError;
 
 mod bring_up;
 mod description;
@@ -108,7 +108,7 @@ pub(crate) enum Failure {
     /// An evaluation could not be played, kept or put together.
     Evaluation(EvaluationError),
     /// Learning failed.
-    Learning(learning::LearnError),
+    Learning(study::learning::LearnError),
     /// The list of refused changes beside a library cannot be read.
     Refusals(String),
     /// The filters of an evaluation leave nothing.

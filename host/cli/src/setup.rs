@@ -4,7 +4,7 @@
 //! an ablation.
 
 use arena::cases::LibraryHandle;
-use arena::evaluation::{Profile, Setup};
+use arena::{Profile, Setup};
 use brain::Positioning;
 use case_tools::Reduction;
 use clap::{Args, ValueEnum};

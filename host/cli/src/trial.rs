@@ -6,16 +6,16 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use arena::Profile;
 use arena::cases::{LibraryHandle, described};
-use arena::evaluation::Profile;
 use arena::{Recording, TextLog, TrialConfig, TrialReport, Watcher};
 use brain::Approach;
 use casebase::RetrievalSettings;
 use clap::{Args, ValueEnum};
 use firmware_build::Install;
 use hil_sim::{Backend, Configuration, NativeBackend, QemuBackend, Scenario};
-use learning::{Change, Edit, LearnError, RETRIEVAL, TrialRecorder};
 use page::Powers;
+use study::learning::{Change, Edit, LearnError, RETRIEVAL, TrialRecorder};
 
 use crate::Failure;
 use crate::failure::FirmwareError;
@@ -147,7 +147,7 @@ fn record(args: &TrialArgs, recorder: &TrialRecorder, file: &Path) -> Result<(),
         let changed = library.edited(&Edit { case: RETRIEVAL.to_owned(), change });
         library = changed.map_err(|error| Failure::Learning(LearnError::Library(error)))?;
     }
-    let world = learning::world_of_trials(args.profile);
+    let world = study::learning::world_of_trials(args.profile);
     let collected = recorder.collected(&library, &world, args.opponents.label());
     let written = fs::write(file, collected.to_jsonl());
     written.map_err(|error| Failure::Recording { stem: Some(file.to_owned()), error })

@@ -1,7 +1,7 @@
 //! `trial`: one trial of Ros et al. 2009, as `onetwo trial --json` plays it.
 
 use arena::TrialConfig;
-use arena::evaluation::{Profile, Setup};
+use arena::{Profile, Setup};
 use brain::Positioning;
 use case_tools::Reduction;
 use hil_sim::{Configuration, NativeBackend, Scenario};

@@ -6,10 +6,10 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use arena::evaluation::statistics::{Count, newcombe};
-use arena::evaluation::{Arm, Effect};
 use brain::Approach;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use study::evaluation::{Arm, Effect};
+use study::statistics::{Count, newcombe};
 
 use crate::columns::CONFIDENCE;
 use crate::plot::{Dot, Row, axis, panel};
@@ -232,7 +232,7 @@ const LOOKS: [Look; 7] = [
 
 #[cfg(test)]
 mod tests {
-    use arena::evaluation::ARMS;
+    use study::evaluation::ARMS;
 
     use super::*;
 

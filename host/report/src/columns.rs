@@ -1,7 +1,7 @@
 //! `columns`: columns of the paper's tables. The one list that page, plots and Markdown share.
 
-use arena::evaluation::statistics::{Interval, newcombe, student, wilson};
-use arena::evaluation::{Measure, TableRow};
+use study::evaluation::{Measure, TableRow};
+use study::statistics::{Interval, newcombe, student, wilson};
 
 /// A column of a table.
 #[derive(Clone, Copy, Debug)]

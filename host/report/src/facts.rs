@@ -1,8 +1,8 @@
 //! `facts`: provenance of an evaluation. All provenance in the evaluation's files, by name and value, nothing
 //! left out.
 
-use arena::evaluation::Identity;
 use serde_json::Value;
+use study::evaluation::Identity;
 
 /// Settings that the trials depend on, under one heading.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

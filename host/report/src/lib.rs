@@ -6,7 +6,7 @@
 //! Mapper: trials played again ─► Map ────────┼─► pictures()  the same plots and maps, one SVG each
 //!                                            └─► markdown()  docs/results/evaluation.md, between its markers
 //! ```
-//! Numbers come from `arena::evaluation` and are printed, never changed: what a table prints is rounded for
+//! Numbers come from `study::evaluation` and are printed, never changed: what a table prints is rounded for
 //! the reader, and every interval and p stands beside its number.
 #![forbid(unsafe_code)]
 
@@ -26,7 +26,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use arena::evaluation::{CaseUse, Claim, Comparison, JudgementLine, TableRow};
+use study::evaluation::{CaseUse, Claim, Comparison, JudgementLine, TableRow};
 
 pub use ablation::Ablation;
 pub use facts::Facts;

@@ -4,7 +4,7 @@
 use std::fmt;
 use std::fmt::Write as _;
 
-use arena::evaluation::{Claim, Judgement, JudgementLine};
+use study::evaluation::{Claim, Judgement, JudgementLine};
 
 use crate::facts::HASH;
 use crate::table::{Cell, LineKind, Table, tables};

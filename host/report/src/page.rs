@@ -1,8 +1,8 @@
 //! `page`: layout of the report page. At a glance, the claims, tables with their plots, maps, every
 //! comparison, every parameter.
 
-use arena::evaluation::{Claim, ClaimVerdict, Comparison, Held, Judgement, JudgementLine};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use study::evaluation::{Claim, ClaimVerdict, Comparison, Held, Judgement, JudgementLine};
 
 use crate::plot::{Figure, figures};
 use crate::table::tables;

@@ -4,10 +4,10 @@
 //! The same model becomes HTML here and Markdown in `markdown`. A difference carries Holm's p over the
 //! scenarios of its table.
 
-use arena::evaluation::{Comparison, TableRow};
 use brain::Approach;
 use hil_sim::Scenario;
 use maud::{Markup, html};
+use study::evaluation::{Comparison, TableRow};
 
 use crate::columns::{Column, Kind, columns};
 use crate::{Report, description, numbers};

@@ -2,12 +2,12 @@
 //! in for ours, a little changed.
 
 use arena::TrialConfig;
-use arena::evaluation::{
-    Claim, ClaimVerdict, Comparison, Held, Judgement, JudgementLine, TableRow, compare, paper, with_paper,
-};
 use brain::Approach;
 use hil_sim::{Configuration, Scenario};
 use report::{EDGE, Facts, Map, Report};
+use study::evaluation::{
+    Claim, ClaimVerdict, Comparison, Held, Judgement, JudgementLine, TableRow, compare, paper, with_paper,
+};
 
 /// Rows that could be ours: the paper's, some of them changed.
 fn ours() -> Vec<TableRow> {
@@ -252,8 +252,8 @@ fn view_box(document: &roxmltree::Document<'_>) -> (f64, f64, f64, f64) {
 #[test]
 fn maps_are_drawn_with_what_they_count() {
     let config = TrialConfig::new(Scenario::DefenderAhead, Configuration::DefenderGoalie, Approach::Cases, 5);
-    let cell = arena::evaluation::EvaluationCell {
-        profile: arena::evaluation::Profile::Simulated,
+    let cell = study::evaluation::EvaluationCell {
+        profile: arena::Profile::Simulated,
         configuration: config.opponents,
         scenario: config.scenario,
         approach: config.approach,

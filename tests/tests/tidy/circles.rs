@@ -173,9 +173,9 @@ const KNOWN: [(&str, &[&str]); 12] = [
         ],
     ),
     ("host", &["strategy::defence", "strategy::support"]),
-    ("arena", &["evaluation::comparison", "evaluation::tables"]),
+    ("study", &["evaluation::comparison", "evaluation::tables"]),
     (
-        "arena",
+        "study",
         &[
             "skills::catches",
             "skills::drill",

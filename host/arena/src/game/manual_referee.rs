@@ -8,7 +8,7 @@ use super::{Game, NoWatcher};
 
 /// A command of the referee.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum RefereeOrder {
+pub enum RefereeOrder {
     /// STOP.
     Stop,
     /// The ball is in play.
@@ -18,7 +18,7 @@ pub(crate) enum RefereeOrder {
 }
 
 /// Sends its newest command to both teams, as often as the game controller does; STOP at first.
-pub(crate) struct ManualReferee {
+pub struct ManualReferee {
     packet: ssl::referee::Referee,
     first_stamp: u64,
     next: u64,
@@ -26,7 +26,7 @@ pub(crate) struct ManualReferee {
 
 impl ManualReferee {
     /// The referee of this game, in the first half.
-    pub(crate) fn new(game: &Game<'_>) -> Self {
+    pub fn new(game: &Game<'_>) -> Self {
         let mut packet = ssl::referee::Referee {
             stage: ssl::referee::Stage::NormalFirstHalf as i32,
             command: Command::Stop as i32,
@@ -39,7 +39,7 @@ impl ManualReferee {
     }
 
     /// Gives this command from now on.
-    pub(crate) fn send(&mut self, game: &Game<'_>, order: RefereeOrder) {
+    pub fn send(&mut self, game: &Game<'_>, order: RefereeOrder) {
         let command = match order {
             RefereeOrder::Stop => Command::Stop,
             RefereeOrder::Run => Command::ForceStart,
@@ -57,7 +57,7 @@ impl ManualReferee {
     }
 
     /// Sends its packet when it is due.
-    pub(crate) fn speak(&mut self, game: &mut Game<'_>) {
+    pub fn speak(&mut self, game: &mut Game<'_>) {
         let now = game.now();
         if now.0 < self.next {
             return;

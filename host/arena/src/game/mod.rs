@@ -13,7 +13,6 @@ mod config;
 mod hand;
 mod holds;
 mod manual_referee;
-pub mod penalty;
 mod recording;
 mod report;
 mod side;
@@ -21,7 +20,7 @@ mod story;
 
 pub use config::{GameConfig, TeamSetup};
 pub use holds::Hold;
-pub(crate) use manual_referee::{ManualReferee, RefereeOrder};
+pub use manual_referee::{ManualReferee, RefereeOrder};
 pub use recording::header;
 pub use report::{BlockedReport, GameReport, PerTeam, TeamReport};
 pub use story::{MatchLog, sentence};
@@ -247,7 +246,7 @@ impl<'a> Game<'a> {
     }
 
     /// The same without the referee, as drills have one of their own.
-    pub(crate) fn advance(&mut self, watcher: &mut dyn Watcher) -> Result<(), GameError> {
+    pub fn advance(&mut self, watcher: &mut dyn Watcher) -> Result<(), GameError> {
         let (tick, now) = (self.tick, self.now());
         self.trace.small_size_tick(tick, &self.world);
         for team in &mut self.teams {
@@ -290,12 +289,7 @@ impl<'a> Game<'a> {
     }
 
     /// Delivers a packet of the referee to both teams.
-    pub(crate) fn announce(
-        &mut self,
-        now: Instant,
-        packet: &ssl::referee::Referee,
-        watcher: &mut dyn Watcher,
-    ) {
+    pub fn announce(&mut self, now: Instant, packet: &ssl::referee::Referee, watcher: &mut dyn Watcher) {
         let bytes = packet.encode_to_vec();
         watcher.referee(now, &bytes);
         for team in &mut self.teams {
@@ -305,12 +299,12 @@ impl<'a> Game<'a> {
     }
 
     /// The true world, for placing objects in a drill.
-    pub(crate) fn world_mut(&mut self) -> &mut World {
+    pub fn world_mut(&mut self) -> &mut World {
         &mut self.world
     }
 
     /// A team's robots get these orders in place of its coach's; `None`: the coach's again.
-    pub(crate) fn drill(&mut self, team: Colour, orders: Option<host::Drill>) {
+    pub fn drill(&mut self, team: Colour, orders: Option<host::Drill>) {
         self.teams[team as usize].host.drill(orders);
     }
 }
@@ -344,7 +338,7 @@ pub struct NoWatcher;
 impl Watcher for NoWatcher {}
 
 /// Our robots' numbers in a team of `robots`.
-pub(crate) fn numbers(robots: u8) -> impl Iterator<Item = RobotId> {
+pub fn numbers(robots: u8) -> impl Iterator<Item = RobotId> {
     RobotId::all().take(usize::from(robots))
 }
 

@@ -3,7 +3,7 @@
 
 use hil_sim::{Fault, NativeBackend};
 
-use crate::evaluation::Profile;
+use crate::profile::Profile;
 
 use super::*;
 use crate::story::TextLog;

@@ -5,9 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use arena::evaluation::EvaluationError;
 use clap::Args;
-use learning::{Change, RecordedDraft, draft};
+use study::evaluation::EvaluationError;
+use study::learning::{Change, RecordedDraft, draft};
 
 use crate::Failure;
 use crate::args::LibraryArgs;

@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use arena::evaluation::EvaluationError;
 use clap::Args;
+use study::evaluation::EvaluationError;
 
 use crate::Failure;
 use crate::args::LibraryArgs;

@@ -6,9 +6,11 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use arena::evaluation::{EvaluationError, Shard};
 use clap::Args;
-use learning::{JournalPlayer, Kind, LearnError, LearnSettings, Learned, Worlds, learn, learn_matches};
+use study::evaluation::{EvaluationError, Shard};
+use study::learning::{
+    JournalPlayer, Kind, LearnError, LearnSettings, Learned, Worlds, learn, learn_matches,
+};
 
 use crate::Failure;
 use crate::args::{LibraryArgs, VERSION};
@@ -122,9 +124,9 @@ pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
         write(&learned, &args.out)?;
     }
     if args.json {
-        print_text(&format!("{}\n", learning::json(&learned)))?;
+        print_text(&format!("{}\n", study::learning::json(&learned)))?;
     } else {
-        print_text(&learning::summary(&learned))?;
+        print_text(&study::learning::summary(&learned))?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -143,8 +145,8 @@ fn write(learned: &Learned, out: &Path) -> Result<(), Failure> {
         std::fs::write(&file, text).map_err(|error| Failure::from(EvaluationError::File { file, error }))
     };
     put("evidence.jsonl", &learned.evidence.to_jsonl())?;
-    put("report.json", &format!("{:#}\n", learning::json(learned)))?;
-    put("report.html", &learning::html(learned))?;
+    put("report.json", &format!("{:#}\n", study::learning::json(learned)))?;
+    put("report.html", &study::learning::html(learned))?;
     let library = &learned.end.files;
     let directory = out.join(&library.league);
     if directory.exists() {

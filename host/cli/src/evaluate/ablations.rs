@@ -7,11 +7,11 @@
 use std::process::ExitCode;
 
 use ::report::{Ablation, Facts};
-use arena::evaluation::{
+use clap::Args;
+use study::evaluation::{
     ARMS, Arm, EvaluationError, EvaluationPlan, Shard, ablation_table, csv_hash, effects, to_csv,
     write_effects,
 };
-use clap::Args;
 
 use super::report::{self, PageArgs};
 use super::work::{self, WorkArgs};

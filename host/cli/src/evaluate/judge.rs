@@ -7,8 +7,8 @@
 
 use std::process::ExitCode;
 
-use arena::evaluation::{EvaluationPlan, Shard};
 use clap::Args;
+use study::evaluation::{EvaluationPlan, Shard};
 
 use super::report::ReportArgs;
 use super::work::{self, WorkArgs};

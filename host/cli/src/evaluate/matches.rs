@@ -7,12 +7,6 @@ use std::process::ExitCode;
 
 use arena::CaseNames;
 use arena::cases::LibraryHandle;
-use arena::evaluation::{EvaluationError, Shard, csv_hash, merge, to_csv};
-use arena::matches::{
-    Effect, MatchIdentity, MatchPlan, MatchRow, MatchTeam, Matches, Outcome, PAPER, PAPER_PASSES, Passes,
-    calibration_plot, check_same_matches, compare_matches, comparison_table, effects, markdown, our_passes,
-    outcomes, plot,
-};
 use casebase::CaseBase;
 use clap::Args;
 use hil_sim::small_size::worlds::WorldPlan;
@@ -20,6 +14,12 @@ use host::strategy::{Tactics, Team};
 use report::Picture;
 use rules::League;
 use serde_json::json;
+use study::evaluation::{EvaluationError, Shard, csv_hash, merge, to_csv};
+use study::matches::{
+    Effect, MatchIdentity, MatchPlan, MatchRow, MatchTeam, Matches, Outcome, PAPER, PAPER_PASSES, Passes,
+    calibration_plot, check_same_matches, compare_matches, comparison_table, effects, markdown, our_passes,
+    outcomes, plot,
+};
 
 use super::merge::shards;
 use super::report::insert;

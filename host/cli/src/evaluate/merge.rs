@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use arena::evaluation::{Entry, EvaluationError, Kept, Results, Shard, merge, read};
 use clap::Args;
+use study::evaluation::{Entry, EvaluationError, Kept, Results, Shard, merge, read};
 
 use super::report::{self, ReportArgs};
 use super::work;

@@ -8,11 +8,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use arena::evaluation::{Identity, Results, Setup, compare, in_words, merge, paper};
+use arena::Setup;
 use brain::{Approach, Positioning};
 use casebase::RetrievalSettings;
 use clap::Args;
 use report::{Ablation, Facts, Map, Picture, Report};
+use study::evaluation::{Identity, Results, compare, in_words, merge, paper};
 
 use super::{merge as shards, work};
 use crate::Failure;
@@ -97,7 +98,7 @@ pub(super) fn write(results: &Results, directory: &Path, args: &ReportArgs) -> R
 struct Made {
     facts: Vec<Facts>,
     maps: Vec<Map>,
-    papers_between: Vec<arena::evaluation::Comparison>,
+    papers_between: Vec<study::evaluation::Comparison>,
 }
 
 impl Made {

@@ -4,13 +4,13 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use arena::evaluation::{EvaluationError, csv_hash, to_csv};
-use arena::matches::MatchTeam;
-use arena::scenes::{SceneEffect, ScenePlan, scene_effects, scene_table};
 use clap::Args;
 use hil_sim::small_size::worlds::WorldChoice;
 use host::strategy::{ROUND_1, Team};
 use rules::League;
+use study::evaluation::{EvaluationError, csv_hash, to_csv};
+use study::matches::MatchTeam;
+use study::scenes::{SceneEffect, ScenePlan, scene_effects, scene_table};
 
 use super::report::insert;
 use super::work::{self, write};

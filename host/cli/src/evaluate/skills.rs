@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use arena::skills::{Skill, SkillPlan, SkillRow, TryResult, rows};
 use clap::Args;
 use hil_sim::small_size::worlds::{WorldChoice, WorldPlan};
 use rules::League;
+use study::skills::{Skill, SkillPlan, SkillRow, TryResult, rows};
 
 use super::report::insert;
 use super::work;

@@ -2,10 +2,11 @@
 
 use std::process::ExitCode;
 
-use arena::evaluation::{EvaluationCell, EvaluationPlan, Profile, Shard};
+use arena::Profile;
 use brain::Approach;
 use clap::Args;
 use hil_sim::{Configuration, Scenario};
+use study::evaluation::{EvaluationCell, EvaluationPlan, Shard};
 
 use super::report::ReportArgs;
 use super::work::{self, WorkArgs};

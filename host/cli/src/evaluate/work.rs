@@ -6,13 +6,12 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 
-use arena::CaseNames;
 use arena::cases::LibraryHandle;
-use arena::evaluation::{
-    Evaluation, EvaluationError, EvaluationPlan, ROBOTS, Results, RunProgress, Setup, Shard, TrialRow,
-    summary, verdicts,
-};
+use arena::{CaseNames, ROBOTS, Setup};
 use clap::Args;
+use study::evaluation::{
+    Evaluation, EvaluationError, EvaluationPlan, Results, RunProgress, Shard, TrialRow, summary, verdicts,
+};
 
 use super::report::{self, ReportArgs};
 use crate::Failure;

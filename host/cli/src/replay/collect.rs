@@ -16,10 +16,10 @@ use host::record::recheck::Recheck;
 use host::record::trace::Reader;
 use host::referee::SenderAddress;
 use host::{Host, HostSettings, Input};
-use learning::{CasePlay, Collected, Evidence, LearnError, Situation, Variant};
 use protocol::{Instant, RobotId};
 use rules::Colour;
 use ssl::log::MessageKind;
+use study::learning::{CasePlay, Collected, Evidence, LearnError, Situation, Variant};
 
 use super::clock::LogClock;
 use super::decisions::Decisions;

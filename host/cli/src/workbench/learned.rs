@@ -6,10 +6,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use case_tools::Files;
-use learning::{
+use serde_json::{Value, json};
+use study::learning::{
     CaseEvidence, Edit, Evidence, REFUSALS, Variant, edit_in, proposals_in, read_refusals, refusals_to_jsonl,
 };
-use serde_json::{Value, json};
 
 /// Longest file that is read, bytes.
 const LEN_MAX: u64 = 1 << 28;

@@ -15,7 +15,6 @@ mod skill_tests;
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
 use arena::cases::{Chosen, described, explained_by, problem};
-use arena::skills::{Skill, SkillPlan};
 use case_tools::workbench::{FindingNote, Sheet, Workbench, case_name, is_case_name};
 use case_tools::{Finding, Library, SkeletonError, never_retrieved, skeleton};
 use casebase::RetrievalSettings;
@@ -25,6 +24,7 @@ use protocol::CaseId;
 use rules::League;
 use serde::Serialize;
 use serde_json::{Value, json};
+use study::skills::{Skill, SkillPlan};
 
 use asked::{Asked, TriesPlan};
 use count::Problems;

@@ -5,9 +5,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
-use arena::skills::{Skill, SkillPlan, TryResult, rows};
 use hil_sim::small_size::worlds::WorldChoice;
 use serde_json::{Value, json};
+use study::skills::{Skill, SkillPlan, TryResult, rows};
 
 /// Failed tries that are told.
 const FAILURES: usize = 10;

@@ -201,7 +201,7 @@ fn tries_of_a_skill_are_counted_as_the_command_counts_them_and_what_is_none_is_r
         seed: 7,
         skills: vec![Skill::Kick],
     };
-    let rows = arena::skills::rows(&plan, &plan.play().unwrap());
+    let rows = study::skills::rows(&plan, &plan.play().unwrap());
     assert_eq!(report["row"], serde_json::to_value(&rows[0]).unwrap());
     assert_eq!(report["failed"].as_array().unwrap().len(), 3 - rows[0].succeeded);
 }
@@ -321,7 +321,10 @@ fn what_learning_has_left_beside_the_library_is_told_of_a_case() {
     assert_eq!(answer["proposals"][0]["refused"], false);
     assert_eq!(refuse(words, true).unwrap()["proposals"][0]["refused"], true);
     let kept = fs::read_to_string(directory.0.join("refused.jsonl")).unwrap();
-    assert_eq!(learning::read_refusals(&kept).unwrap(), learned::refusals(&directory.library()).unwrap());
+    assert_eq!(
+        study::learning::read_refusals(&kept).unwrap(),
+        learned::refusals(&directory.library()).unwrap()
+    );
     assert_eq!((kept.lines().count(), ask(&workbench, &learned).unwrap()), (1, refuse(words, true).unwrap()));
     assert_eq!(refuse(words, false).unwrap()["proposals"][0]["refused"], false);
     assert!(learned::refusals(&directory.library()).unwrap().is_empty());

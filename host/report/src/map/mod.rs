@@ -3,13 +3,13 @@
 
 mod draw;
 
-use arena::evaluation::{Evaluation, EvaluationCell, Profile, Shard};
-use arena::{Moment, TrialConfig, TrialReport, Watcher, run};
+use arena::{Moment, Profile, TrialConfig, TrialReport, Watcher, run};
 use geometry::{Field, Point};
 use hil_sim::four_legged::world::{LeggedWorld, WorldEvent};
 use hil_sim::{Layout, NativeBackend, Scenario, SimulationError, TICK_US, TrialOutcome};
 use protocol::robot_io::LeggedKick;
 use rayon::prelude::*;
+use study::evaluation::{Evaluation, EvaluationCell, Shard};
 
 pub(crate) use draw::{CHANCE, LOST, SHADES, html, sheets};
 

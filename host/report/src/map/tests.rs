@@ -1,9 +1,9 @@
 //! Tests: a map agrees with what happened. Hand-made flights, and a trial played twice.
 
-use arena::TEAM;
-use arena::evaluation::{EvaluationPlan, Setup};
+use arena::{Setup, TEAM};
 use brain::Approach;
 use hil_sim::Configuration;
+use study::evaluation::EvaluationPlan;
 
 use super::*;
 

@@ -1,9 +1,9 @@
 //! `bars`: bar plots of frequencies. Bars with intervals: outcomes, backing up, cases; a panel a scenario.
 
-use arena::evaluation::Measure;
-use arena::evaluation::TableRow;
-use arena::evaluation::statistics::Interval;
 use drawing::{Anchor, Font, Svg, Theme};
+use study::evaluation::Measure;
+use study::evaluation::TableRow;
+use study::statistics::Interval;
 
 use super::axis::{Axis, BELOW};
 use super::{Entry, Figure, PANEL, Panel, Shape, entries, keys, scenarios, style};

@@ -1,6 +1,6 @@
 //! `dots`: dot plots of means. Possessions and times with Student's intervals; a panel a measure.
 
-use arena::evaluation::Measure;
+use study::evaluation::Measure;
 
 use super::rows::{Dot, Row, axis, panel};
 use super::{Entry, Figure, Panel, Shape, entries, keys, scenarios};

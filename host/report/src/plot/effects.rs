@@ -1,9 +1,9 @@
 //! `effects`: plot of the differences between approaches. Differences in points with Newcombe's intervals,
 //! ours beside the paper's.
 
-use arena::evaluation::{Measure, TableRow};
 use brain::Approach;
 use hil_sim::Scenario;
+use study::evaluation::{Measure, TableRow};
 
 use super::rows::{Dot, Row, axis, panel};
 use super::{Figure, Key, Shape, entries, scenarios};

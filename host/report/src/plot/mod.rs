@@ -11,11 +11,11 @@ mod effects;
 mod rows;
 mod uses;
 
-use arena::evaluation::{Measure, TableRow};
 use brain::Approach;
 use drawing::{Anchor, Font, Svg, Theme};
 use hil_sim::Scenario;
 use maud::{Markup, PreEscaped, html};
+use study::evaluation::{Measure, TableRow};
 
 pub(crate) use axis::GRID;
 pub(crate) use rows::{Dot, Row, axis, panel};

@@ -1,9 +1,9 @@
 //! `uses`: plot of the use of each case. How often it was played, and how its plays ended; a panel a kind of
 //! trial, the most played first.
 
-use arena::CycleEnd;
-use arena::evaluation::{CaseUse, Profile};
+use arena::{CycleEnd, Profile};
 use drawing::{Anchor, Font, Svg, Theme};
+use study::evaluation::CaseUse;
 
 use super::axis::{Axis, BELOW};
 use super::{Figure, Key, PANEL, Panel, Shape};

@@ -92,7 +92,7 @@ pub fn ours_after(receive: f32) -> f32 {
 
 /// Shares of passes with the smallest and the greatest P(receive) after which we had the ball: most likely
 /// values for three of four of 1,601 passes (80 matches of 300 s, division B, nominal world, seeds 201 to 216
-/// against five teams; example `passes` of onetwo-arena fits them again).
+/// against five teams; example `passes` of onetwo-study fits them again).
 const OURS_P_MIN: f32 = 0.4;
 const OURS_P_MAX: f32 = 0.9;
 /// Widths of margin at which a logistic equals 0 or 1: exp(−14) is below 10⁻⁶.

@@ -1,0 +1,61 @@
+//! `learning`: revise and retain: a case library made better by play (docs/learning.md).
+//!
+//! [`learn()`] takes a library's files and a [`Player`] of trials and returns a [`Learned`] library, with the
+//! evidence for every change that was accepted and every one that was refused; [`learn_matches()`] does so
+//! with matches of the Small Size League. They do no input or output themselves; [`JournalPlayer`] keeps what
+//! was played in a directory, so that a run may be killed, resumed and sharded.
+
+mod aim;
+mod betting;
+mod case_evidence;
+mod collected;
+mod competence;
+mod diff;
+mod drafts;
+mod edit;
+mod evidence;
+mod goalkeeper;
+mod journal;
+mod learner;
+mod matches;
+mod null_control;
+mod occasion;
+mod page;
+mod paired;
+mod plays;
+mod proposals;
+mod recorded;
+mod refusals;
+mod results;
+mod settings;
+mod starts;
+mod trial;
+mod trial_recorder;
+mod variant;
+mod work;
+
+pub use betting::{Wager, threshold};
+pub use case_evidence::{CaseEvidence, ProposalNote, Told, edit_in, proposals_in};
+pub use collected::Collected;
+pub use competence::{CaseStanding, Standing, standings};
+pub use diff::diff;
+pub use edit::{Change, Edit, EditError, RETRIEVAL};
+pub use evidence::{CasePlay, Evidence, EvidenceCounts, EvidenceKey, Posterior, ScopeRing, world_of_trials};
+pub use journal::{JournalPlayer, Playable};
+pub use learner::{LearnError, learn};
+pub use matches::{
+    LearningMatch, Mark, MarkKind, MatchDecision, MatchPlayer, MatchUnit, MatchWork, SCENE_MS, learn_matches,
+};
+pub use page::{html, json, summary};
+pub use paired::{PairedDifference, Pairs, WorldPairs};
+pub use plays::PlayToWatch;
+pub use proposals::{Kind, Proposal, order_edits};
+pub use recorded::{DraftError, RecordedDraft, draft};
+pub use refusals::{REFUSALS, read_refusals, refusals_to_jsonl};
+pub use results::{ChangeRecord, CurvePoint, Learned, Validation, Verdict};
+pub use settings::LearnSettings;
+pub use starts::{KINDS, StartKind, StartPlan, StartStream, Worlds, kind_of};
+pub use trial::{LearningTrial, Situation, TrialDecision};
+pub use trial_recorder::TrialRecorder;
+pub use variant::{Answer, Variant, VariantError};
+pub use work::{PlayError, Player, Unit, Work};

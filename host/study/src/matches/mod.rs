@@ -1,0 +1,161 @@
+//! `matches`: match evaluation against other teams. Many matches, and the second paper's Table 2 of them
+//! (Biswas et al. 2014 §6): offence ratio, attack ratio, goals, with intervals beside the paper's numbers.
+//!
+//! ```text
+//! Plan ─► Matches::play_shard ─► trials-1-of-3.csv … ─► merge ─► rows ─► outcomes, effects ─► matches.json, text tables, plots
+//! ```
+//! Shards, files, resuming and merging are [`crate::evaluation`]'s: equal plans give equal bytes for any
+//! number of threads, shards and interrupts.
+
+mod calibration;
+mod case_table;
+mod comparison;
+mod description;
+mod effect;
+mod match_team;
+mod outcome;
+mod paper;
+mod passes;
+mod plan;
+mod plot;
+mod row;
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use casebase::{CaseBase, RetrievalSettings};
+use hil_sim::NativeBackend;
+use hil_sim::small_size::worlds::WorldPlan;
+use host::shell::StrategyProcess;
+use rules::Colour;
+use serde::{Deserialize, Serialize};
+
+pub use calibration::calibration_plot;
+pub use case_table::case_table;
+pub use comparison::{MatchComparison, check_same_matches, compare_matches};
+pub use description::{AttackRow, attack_table, comparison_table, markdown};
+pub use effect::{Change, Effect, effects};
+pub use match_team::MatchTeam;
+pub use outcome::{Estimate, Outcome, our_passes, outcomes};
+pub use paper::{PAPER, PAPER_PASSES, PaperGame, PaperPasses};
+pub use passes::{Kicked, Passes, Share, Tenth};
+pub use plan::{MatchPlan, Pairing, Planned};
+pub use plot::plot;
+pub use row::MatchRow;
+
+use crate::evaluation::{Difference, EvaluationError, RunProgress, Shard, play_open};
+use arena::CaseNames;
+use arena::game::{GameConfig, NoWatcher, play};
+
+/// All settings that the matches of a plan depend on.
+#[derive(Clone, Debug)]
+pub struct Matches {
+    /// The matches to be played.
+    pub plan: MatchPlan,
+    /// The case base in every robot, and in the hosts.
+    pub base: CaseBase<'static>,
+    /// Settings of case retrieval (docs/case-format.md §3.2).
+    pub settings: RetrievalSettings,
+    /// Version and commit of the program: matches of two programs are never mixed.
+    pub program: String,
+    /// Names of the cases.
+    pub names: CaseNames,
+}
+
+/// Identity of the evaluation of a file of matches.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MatchIdentity {
+    /// Version and commit of the program.
+    pub program: String,
+    /// Hash of the case base, 8 hexadecimal digits.
+    pub case_base: String,
+    /// The named settings of retrieval that are not as usual, name and value.
+    pub settings: Vec<(String, String)>,
+    /// All matches of the evaluation, of all shards.
+    pub plan: MatchPlan,
+}
+
+impl MatchIdentity {
+    /// The settings in which the other differs; empty between equals.
+    pub fn differences(&self, other: &Self) -> Vec<Difference> {
+        let (own, theirs) = (&self.plan, &other.plan);
+        let shown = |value: &str| value.to_owned();
+        let differences = [
+            Difference::of("program", (self.program.as_str(), other.program.as_str()), shown),
+            Difference::of("cases", (self.case_base.as_str(), other.case_base.as_str()), shown),
+            Difference::of("settings", (&self.settings, &other.settings), |settings| {
+                let pairs: Vec<_> = settings.iter().map(|(name, value)| format!("{name}={value}")).collect();
+                pairs.join(" ")
+            }),
+            Difference::of("seed", (&own.seed, &theirs.seed), u64::to_string),
+            Difference::of("league", (own.league.as_str(), theirs.league.as_str()), shown),
+            Difference::of("world", (&own.world, &theirs.world), WorldPlan::to_string),
+            Difference::of("length of a match", (&own.duration_s, &theirs.duration_s), |s| format!("{s} s")),
+            Difference::of("teams", (&own.pairings, &theirs.pairings), |pairings| {
+                let pairs = pairings.iter().map(|Pairing { own, opponent }| format!("{own}:{opponent}"));
+                pairs.collect::<Vec<_>>().join(" ")
+            }),
+            Difference::of("number of matches", (&own.matches, &theirs.matches), u32::to_string),
+            Difference::of("strategy's command", (&own.strategy, &theirs.strategy), |command| {
+                command.clone().unwrap_or_else(|| "none".to_owned())
+            }),
+        ];
+        differences.into_iter().flatten().collect()
+    }
+}
+
+impl Matches {
+    /// The identity that its files carry.
+    pub fn identity(&self) -> MatchIdentity {
+        let settings = self.settings.describe();
+        MatchIdentity {
+            program: self.program.clone(),
+            case_base: format!("{:08x}", self.base.hash()),
+            settings: settings.map(|(name, value)| (name.to_owned(), value.to_string())).collect(),
+            plan: self.plan.clone(),
+        }
+    }
+
+    /// A match of the plan, ready to be played.
+    pub fn config(&self, planned: &Planned) -> Result<GameConfig, EvaluationError> {
+        let league = self.plan.league().ok_or(EvaluationError::Nothing)?;
+        let (blue, yellow) = planned.sides();
+        let config = GameConfig::new(league, planned.seed, self.plan.duration_s);
+        let mut config = config.between(blue.team, yellow.team);
+        config.world = self.plan.world.of_match(planned.seed);
+        config.names = self.names.clone();
+        config.cases = Some(self.base);
+        for team in &mut config.teams {
+            team.settings = self.settings.clone();
+            let match_team = if team.colour == Colour::Blue { blue } else { yellow };
+            (team.tactics, team.approach) = (match_team.host_tactics(), match_team.approach());
+            if match_team.strategy {
+                let command = self.plan.strategy.as_deref().ok_or(EvaluationError::NoStrategy)?;
+                team.strategy = Some(StrategyProcess::starter(command));
+            }
+        }
+        Ok(config)
+    }
+
+    /// Plays the match with this number.
+    pub fn play(&self, number: usize) -> Result<MatchRow, EvaluationError> {
+        let planned = self.plan.get(number).ok_or(EvaluationError::Nothing)?;
+        let report = play(&self.config(&planned)?, &mut NativeBackend::new(self.base), &mut NoWatcher)
+            .map_err(|error| EvaluationError::Match { number, error })?;
+        Ok(MatchRow::new(&planned, &report))
+    }
+
+    /// Plays the matches of a shard that are missing in `file`, on all threads of the current rayon pool;
+    /// returns its rows in the plan's order. As [`crate::evaluation::Evaluation::play_shard`].
+    pub fn play_shard(
+        &self,
+        shard: Shard,
+        file: &Path,
+        progress: &(dyn Fn(RunProgress) -> ControlFlow<()> + Sync),
+    ) -> Result<Vec<MatchRow>, EvaluationError> {
+        play_open(&self.identity(), shard, file, progress, |number| self.play(number))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,178 @@
+//! `effect`: what a part of the play is worth in scenes: differences of pairs, their intervals and tests, and
+//! the smallest effect that as many pairs could have shown.
+
+use serde::Serialize;
+
+use super::{SceneKind, SceneOutcome, ScenePlan, SceneRow};
+use crate::matches::MatchTeam;
+use crate::statistics::{Count, Sample, Test, detectable, mcnemar, paired, student};
+
+/// What is compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SceneMeasure {
+    /// Share of scenes with a shot of ours.
+    Shot,
+    /// Share of scenes with a goal of ours.
+    Goal,
+    /// Goals for less goals against, a scene.
+    NetGoals,
+}
+
+impl SceneMeasure {
+    /// All of them, in the order of a table.
+    pub const ALL: [Self; 3] = [Self::Shot, Self::Goal, Self::NetGoals];
+
+    /// Its name.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Shot => "shot",
+            Self::Goal => "goal",
+            Self::NetGoals => "goals for − against",
+        }
+    }
+
+    fn of(self, outcome: SceneOutcome) -> f64 {
+        let one = |happened: bool| f64::from(u8::from(happened));
+        match self {
+            Self::Shot => one(outcome.shot),
+            Self::Goal => one(outcome.goal),
+            Self::NetGoals => one(outcome.goal) - one(outcome.goal_against),
+        }
+    }
+}
+
+/// Effect of a part on one measure, in scenes of one kind against one opponent, or against all.
+#[derive(Clone, Debug, Serialize)]
+pub struct SceneEffect {
+    /// How the scenes begin.
+    pub kind: SceneKind,
+    /// The opponent; `None`: all together.
+    pub opponent: Option<MatchTeam>,
+    /// Name of the part; several with a `+` between.
+    pub part: String,
+    /// What is compared.
+    pub measure: SceneMeasure,
+    /// Number of pairs in which both sides of the pair came into play.
+    pub pairs: u32,
+    /// Mean with the part.
+    pub with: f64,
+    /// Mean without it.
+    pub without: f64,
+    /// Student's 95 % interval of the difference; `None` of a single pair.
+    pub interval: Option<[f64; 2]>,
+    /// p: McNemar's exact test of a share, the paired t of goals.
+    pub p: Option<f64>,
+    /// Smallest difference that a test at 0.05 finds in 8 of 10 such samples: the differences of pairs spread
+    /// as these did.
+    pub detectable: Option<f64>,
+    /// With the planner: scenes in which its pass left, and those of them with a shot.
+    pub planned: [u32; 2],
+}
+
+/// Effects of all parts, against each opponent and all together.
+pub fn scene_effects(plan: &ScenePlan, rows: &[SceneRow]) -> Vec<SceneEffect> {
+    let mut effects = Vec::new();
+    for kind in [SceneKind::FreeKick, SceneKind::OpenPlay] {
+        for variant in &plan.variants {
+            let Some((part, has)) = variant.part_beside(plan.team) else { continue };
+            let opponents = plan.opponents.iter().copied().map(Some).chain([None]);
+            for opponent in opponents {
+                let pairs = pairs(rows, kind, opponent, *variant, plan.team);
+                let pairs: Vec<_> =
+                    pairs.map(|(varied, base)| if has { (varied, base) } else { (base, varied) }).collect();
+                let of = |measure| effect(measure, &pairs, (kind, opponent, &part));
+                effects.extend(SceneMeasure::ALL.into_iter().filter_map(of));
+            }
+        }
+    }
+    effects
+}
+
+/// Outcomes of the same scenes with one team and the other, where both came into play.
+fn pairs(
+    rows: &[SceneRow],
+    kind: SceneKind,
+    opponent: Option<MatchTeam>,
+    varied: MatchTeam,
+    base: MatchTeam,
+) -> impl Iterator<Item = (SceneOutcome, SceneOutcome)> {
+    let of = move |team: MatchTeam| {
+        rows.iter().filter(move |row| {
+            row.kind == kind && row.team == team && opponent.is_none_or(|opponent| row.opponent == opponent)
+        })
+    };
+    of(varied).zip(of(base)).map(|(a, b)| (a.outcome, b.outcome)).filter(|(a, b)| a.played && b.played)
+}
+
+fn effect(
+    measure: SceneMeasure,
+    pairs: &[(SceneOutcome, SceneOutcome)],
+    (kind, opponent, part): (SceneKind, Option<MatchTeam>, &str),
+) -> Option<SceneEffect> {
+    let values = pairs.iter().map(|&(with, without)| (measure.of(with), measure.of(without)));
+    let differences = Sample::of(values.clone().map(|(with, without)| with - without))?;
+    let n = f64::from(differences.n);
+    let only = |first: bool| {
+        values.clone().filter(|(with, without)| if first { with > without } else { with < without }).count()
+            as u32
+    };
+    let test: Option<Test> = match measure {
+        SceneMeasure::NetGoals => paired(differences),
+        SceneMeasure::Shot | SceneMeasure::Goal => mcnemar(only(true), only(false)),
+    };
+    let planned = pairs.iter().filter(|(with, _)| with.planned);
+    Some(SceneEffect {
+        kind,
+        opponent,
+        part: part.to_owned(),
+        measure,
+        pairs: differences.n,
+        with: values.clone().map(|(with, _)| with).sum::<f64>() / n,
+        without: values.map(|(_, without)| without).sum::<f64>() / n,
+        interval: student(differences, CONFIDENCE).map(|interval| [interval.low, interval.high]),
+        p: test.map(|test| test.p),
+        detectable: detectable(differences),
+        planned: [planned.clone().count() as u32, planned.filter(|(with, _)| with.shot).count() as u32],
+    })
+}
+
+impl SceneEffect {
+    /// Scenes in which the planner's pass left, and those of them with a shot.
+    pub fn planned_with_shot(&self) -> Count {
+        Count { hits: self.planned[1], of: self.planned[0] }
+    }
+}
+
+/// Confidence of the intervals.
+const CONFIDENCE: f64 = 0.95;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn outcome(shot: bool, goal: bool, against: bool) -> SceneOutcome {
+        SceneOutcome { played: true, shot, goal, goal_against: against, ..SceneOutcome::default() }
+    }
+
+    #[test]
+    fn effects_of_pairs_are_those_computed_by_hand() {
+        // Ten pairs: six with a shot on one side alone, five of them with the part; McNemar's exact p is
+        // 2 · (1 + 6) / 2⁶ = 0.21875.
+        let mut pairs = vec![(outcome(true, false, false), outcome(false, false, false)); 5];
+        pairs.push((outcome(false, false, false), outcome(true, false, false)));
+        pairs.extend(vec![(outcome(true, true, false), outcome(true, false, true)); 4]);
+        let of = |measure| effect(measure, &pairs, (SceneKind::FreeKick, None, "coerce")).unwrap();
+        let shot = of(SceneMeasure::Shot);
+        assert_eq!((shot.pairs, shot.with, shot.without), (10, 0.9, 0.5));
+        assert!((shot.p.unwrap() - 0.21875).abs() < 1e-12, "{shot:?}");
+        // Differences: five times 1, once −1, four times 0: mean 0.4, variance (6 − 1.6) / 9.
+        let sd = (4.4_f64 / 9.0).sqrt();
+        assert!((shot.detectable.unwrap() - 2.802 * sd / 10.0_f64.sqrt()).abs() < 1e-12);
+        let [low, high] = shot.interval.unwrap();
+        // t(0.975, 9) = 2.2622.
+        assert!((high - 0.4 - 2.2622 * sd / 10.0_f64.sqrt()).abs() < 1e-4 && (low + high - 0.8).abs() < 1e-9);
+        let net = of(SceneMeasure::NetGoals);
+        assert!((net.with - 0.4).abs() < 1e-12 && (net.without + 0.4).abs() < 1e-12, "{net:?}");
+    }
+}

@@ -1,0 +1,250 @@
+//! `drill`: one try through the whole loop. A start, a referee with one command, orders by hand or by the
+//! coach, and a judge of the true world. SI units, field frame; our team is yellow and defends −x.
+
+use geometry::{Angle, Field, Point, Pose, Segment};
+use hil_sim::small_size::{Ball, PhysicsEvent, Robot, World};
+use hil_sim::{Backend, Fnv};
+use host::Drill as Orders;
+use host::strategy::Team;
+use protocol::host::{Directive, RuleRole};
+use protocol::{RobotId, Who};
+use rules::{Colour, League};
+
+use super::{Skill, Try, TryResult, catches, kicks, placement, save, story};
+pub(super) use arena::game::RefereeOrder;
+use arena::game::{Game, GameConfig, GameError, ManualReferee, NoWatcher};
+
+/// Our team.
+pub(super) const US: Colour = Colour::Yellow;
+
+/// How a try begins.
+#[derive(Clone, Debug)]
+pub(super) struct Start {
+    /// Description.
+    pub(super) description: String,
+    /// Our robots.
+    pub(super) ours: Vec<(u8, Pose<Field>)>,
+    /// Opponents, who stand.
+    pub(super) theirs: Vec<Pose<Field>>,
+    /// The ball at the beginning.
+    pub(super) ball: Ball,
+    /// Where the ball is to go: nothing else stands there.
+    pub(super) path: Option<Segment<Field>>,
+    /// The first command of the referee.
+    pub(super) referee_order: RefereeOrder,
+    /// Time after which it has failed, s.
+    pub(super) limit: f32,
+}
+
+/// How a try stands.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum State {
+    /// It goes on.
+    Going,
+    /// Time until it succeeded, s.
+    Succeeded(f32),
+    /// It failed, and this was wrong.
+    Failed(String),
+}
+
+/// A moment of a try.
+pub(super) struct Moment<'g> {
+    /// Since the beginning, s.
+    pub(super) time: f32,
+    /// The truth.
+    pub(super) world: &'g World,
+    /// What happened in the last 10 ms.
+    pub(super) events: &'g [PhysicsEvent],
+}
+
+impl Moment<'_> {
+    /// One of ours; those of a start are always there.
+    pub(super) fn ours(&self, number: u8) -> Option<&Robot> {
+        self.world.robot(Who { colour: US, id: id(number) })
+    }
+
+    /// The ball lies before a robot's dribbler: this gap, m, and beside the middle, m.
+    pub(super) fn at_dribbler(&self, number: u8) -> Option<[f32; 2]> {
+        let robot = self.ours(number)?;
+        let seen = robot.pose.to_body(self.world.ball.position);
+        Some([seen.x() - robot.body.front - self.world.parameters().ball.radius, seen.y()])
+    }
+
+    /// A robot has the ball at its dribbler.
+    pub(super) fn has(&self, number: u8) -> bool {
+        self.at_dribbler(number).is_some_and(|[gap, beside]| gap.abs() < HAS && beside.abs() < HAS_BESIDE)
+            && self.world.ball.height < HAS
+    }
+}
+
+/// A skill's start, orders and judge.
+pub(super) trait Judge {
+    /// How it begins.
+    fn start(&self) -> &Start;
+    /// Orders to our robots; `None`: those of the coach.
+    fn orders(&mut self, moment: &Moment<'_>) -> Option<Vec<(u8, RuleRole, Directive)>>;
+    /// How it stands.
+    fn judge(&mut self, moment: &Moment<'_>) -> State;
+    /// What is wrong when time is up.
+    fn lacks(&self, moment: &Moment<'_>) -> String;
+    /// What another hand does in the world, and the next command of the referee.
+    fn happens(&mut self, _time: f32, _world: &mut World) -> Option<RefereeOrder> {
+        None
+    }
+}
+
+/// The number of a robot; numbers of starts are below 16.
+pub(super) fn id(number: u8) -> RobotId {
+    RobotId::new(number).unwrap_or(RobotId::ZERO)
+}
+
+/// Random stream of a try: seed, skill and number, the same in every world.
+fn seed_of(tried: &Try) -> u64 {
+    let mut hash = Fnv::default();
+    hash.add(&tried.seed.to_le_bytes());
+    hash.add(tried.skill.label().as_bytes());
+    hash.add(&tried.number.to_le_bytes());
+    hash.value()
+}
+
+fn judge_of(tried: &Try, seed: u64) -> Box<dyn Judge> {
+    let (league, number) = (tried.league, tried.number);
+    match tried.skill {
+        Skill::Placement => Box::new(placement::Placement::new(league, number, seed)),
+        Skill::GetBall => Box::new(catches::GetBall::new(league, number, seed)),
+        Skill::Receive => Box::new(catches::Receive::new(league, seed)),
+        Skill::Dribble => Box::new(catches::Dribble::new(league, seed)),
+        Skill::TurnWithBall => Box::new(catches::Turn::new(league, seed)),
+        Skill::Kick => Box::new(kicks::Kick::flat(league, seed)),
+        Skill::Chip => Box::new(kicks::Kick::chip(league, seed)),
+        Skill::Save => Box::new(save::Save::new(league, seed)),
+    }
+}
+
+/// A game with our robots only; theirs are bodies that stand.
+fn config(tried: &Try, seed: u64, robots: u8) -> GameConfig {
+    let mut config = GameConfig::new(tried.league, seed, 60.0);
+    config.world = tried.world;
+    config.referee.blue_on_positive_half = true;
+    for team in &mut config.teams {
+        let ours = team.colour == US;
+        team.robots = if ours { robots } else { 0 };
+        team.plays = if ours { Team::Ours } else { Team::Idle };
+    }
+    config
+}
+
+/// Plays a try to its end.
+pub(super) fn play(
+    tried: Try,
+    backend: &mut dyn Backend<'_>,
+    lines: &mut Vec<String>,
+) -> Result<TryResult, GameError> {
+    let seed = seed_of(&tried);
+    let mut judge = judge_of(&tried, seed);
+    let start = judge.start().clone();
+    let robots = start.ours.iter().map(|(number, _)| number + 1).max().unwrap_or(1);
+    let mut game = Game::new(&config(&tried, seed, robots), backend)?;
+    place(&mut game, &start, robots);
+    let mut referee = ManualReferee::new(&game);
+    // Cameras and radio first: robots and host must know each other.
+    game.drill(US, Some(Orders::new()));
+    for _ in 0..WARM_UP_TICKS {
+        referee.speak(&mut game);
+        game.advance(&mut NoWatcher)?;
+    }
+    place(&mut game, &start, robots);
+    game.world_mut().put_ball(start.ball);
+    referee.send(&game, start.referee_order);
+    let began = game.time();
+    let end = loop {
+        let time = (game.time() - began) as f32;
+        if let Some(referee_order) = judge.happens(time, game.world_mut()) {
+            referee.send(&game, referee_order);
+        }
+        let moment = Moment { time, world: game.world(), events: game.events() };
+        match judge.judge(&moment) {
+            State::Going if time > start.limit => break Err(judge.lacks(&moment)),
+            State::Going => {}
+            State::Succeeded(after) => break Ok(after),
+            State::Failed(description) => break Err(description),
+        }
+        let orders = judge.orders(&moment).map(|orders| {
+            orders
+                .into_iter()
+                .map(|(number, rule_role, directive)| (id(number), rule_role, directive))
+                .collect()
+        });
+        story::note_events(lines, time, &game);
+        game.drill(US, orders);
+        referee.speak(&mut game);
+        game.advance(&mut NoWatcher)?;
+    };
+    Ok(TryResult { tried, start: start.description, end })
+}
+
+/// Everybody and the ball to their places.
+fn place(game: &mut Game<'_>, start: &Start, robots: u8) {
+    let world = game.world_mut();
+    for number in 0..robots {
+        let who = Who { colour: US, id: id(number) };
+        match start.ours.iter().find(|(placed, _)| *placed == number) {
+            Some((_, pose)) => {
+                world.put(who, *pose);
+            }
+            None => world.remove(who),
+        }
+    }
+    for (number, pose) in (0..).zip(&start.theirs) {
+        world.put(Who { colour: US.other(), id: id(number) }, *pose);
+    }
+    world.put_ball(Ball::at(start.ball.position));
+    // Bystanders of the world stand where they like, but for where the try takes place.
+    let taken = |who: Who| {
+        if who.colour == US {
+            usize::from(who.id.number()) < usize::from(robots)
+        } else {
+            usize::from(who.id.number()) < start.theirs.len()
+        }
+    };
+    let mut needed: Vec<Point<Field>> = start.ours.iter().map(|(_, pose)| pose.position).collect();
+    needed.extend(start.theirs.iter().map(|pose| pose.position));
+    needed.push(start.ball.position);
+    if let RefereeOrder::Place(at) = start.referee_order {
+        needed.push(at);
+    }
+    let in_the_way = |robot: &&Robot| {
+        let at = robot.pose.position;
+        let near = needed.iter().any(|place| place.distance(at) < BYSTANDERS_OFF)
+            || start.path.is_some_and(|path| path.distance_to(at) < BYSTANDERS_OFF);
+        robot.present && !taken(robot.who) && near
+    };
+    let removed: Vec<Who> = world.robots().iter().filter(in_the_way).map(|robot| robot.who).collect();
+    for who in removed {
+        world.remove(who);
+    }
+}
+
+/// A pose of metres and an angle.
+pub(super) fn pose(at: Point<Field>, heading: Angle) -> Pose<Field> {
+    Pose { position: at, heading }
+}
+
+/// A field player's directive.
+pub(super) fn player(number: u8, directive: Directive) -> Vec<(u8, RuleRole, Directive)> {
+    vec![(number, RuleRole::Player, directive)]
+}
+
+/// Robots of a full team of that league.
+pub(super) fn team_size(league: League) -> u8 {
+    if league == League::DivisionA { 11 } else { 6 }
+}
+
+/// Before a try: cameras' first frames, radio's handshake, and tracks that are sure.
+const WARM_UP_TICKS: u32 = 80;
+/// Bystanders keep this far from where a try starts, m: room for a body to pass.
+const BYSTANDERS_OFF: f32 = 0.4;
+/// Ball and dribbler this near, m: as far as a break-beam sensor sees, and a little.
+const HAS: f32 = 0.025;
+/// Beside the middle of the front, m: a dribbler's half width and a little.
+const HAS_BESIDE: f32 = 0.045;
