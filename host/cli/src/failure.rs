@@ -18,6 +18,7 @@ mod bring_up;
 mod description;
 mod firmware;
 mod network;
+#[path = "../../feed/src/recording/failure.rs"]
 mod recorded;
 mod survey;
 

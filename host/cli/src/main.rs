@@ -12,6 +12,7 @@ mod evaluate;
 mod failure;
 mod firmware;
 mod library;
+#[path = "../../feed/src/lib.rs"]
 mod live;
 #[cfg(feature = "manuals")]
 mod manuals;
@@ -28,6 +29,7 @@ mod stop;
 mod trial;
 mod verbs;
 mod virtual_robot;
+#[path = "../../feed/src/workbench/mod.rs"]
 mod workbench;
 
 use std::process::ExitCode;

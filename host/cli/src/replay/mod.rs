@@ -4,20 +4,32 @@
 //! Two kinds of files, distinguished by their first bytes: the league's log files (of any team) and traces of
 //! ours (docs/architecture.md §7.4).
 
+#[path = "../../../feed/src/recording/beside.rs"]
 mod beside;
+#[path = "../../../feed/src/recording/clock.rs"]
 mod clock;
+#[path = "../../../feed/src/recording/collect.rs"]
 mod collect;
+#[path = "../../../feed/src/recording/compare.rs"]
 mod compare;
+#[path = "../../../feed/src/recording/comparison.rs"]
 mod comparison;
+#[path = "../../../feed/src/decided.rs"]
 mod decided;
+#[path = "../../../feed/src/recording/decisions.rs"]
 mod decisions;
 mod league_log;
+#[path = "../../../feed/src/match_event.rs"]
 pub(crate) mod match_event;
+#[path = "../../../feed/src/recording/moment.rs"]
 mod moment;
 mod report;
+#[path = "../../../feed/src/recording/sheet.rs"]
 mod sheet;
+#[path = "../../../feed/src/recording/projector.rs"]
 mod show;
 mod trace;
+#[path = "../../../feed/src/recording/unlike.rs"]
 mod unlike;
 
 use std::io::{BufReader, Read};
