@@ -35,7 +35,6 @@ mod change;
 pub mod parameters;
 mod text;
 
-use std::fmt;
 use std::net::{IpAddr, SocketAddr};
 use std::path::PathBuf;
 
@@ -110,9 +109,9 @@ pub struct BallSettings {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DriveSettings {
-    /// Greatest speed, m/s.
+    /// Greatest speed of our robots, m/s.
     pub speed: Option<f32>,
-    /// Greatest acceleration, m/s².
+    /// Greatest acceleration of our robots, m/s².
     pub acceleration: Option<f32>,
 }
 
@@ -194,21 +193,14 @@ pub enum RobotLink {
 }
 
 /// An error in a team's settings, with its remedy.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{key}: {description}")]
 pub struct ConfigError {
     /// The key or flag.
     pub key: String,
     /// What is wrong, and what to write.
     pub description: String,
 }
-
-impl fmt::Display for ConfigError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.key, self.description)
-    }
-}
-
-impl std::error::Error for ConfigError {}
 
 fn error(key: &str, description: impl Into<String>) -> ConfigError {
     ConfigError { key: key.to_owned(), description: description.into() }

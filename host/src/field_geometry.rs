@@ -53,21 +53,12 @@ pub struct GeometryChange {
 }
 
 /// Why a geometry packet was refused.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum GeometryFault {
     /// A dimension of the field is invalid.
+    #[error("vision's geometry is refused: {0}")]
     Field(FieldFault),
 }
-
-impl std::fmt::Display for GeometryFault {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Field(fault) => write!(f, "vision's geometry is refused: {fault}"),
-        }
-    }
-}
-
-impl std::error::Error for GeometryFault {}
 
 impl VisionGeometry {
     /// The field, once vision has sent it.

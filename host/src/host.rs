@@ -65,7 +65,7 @@ pub struct Host {
     orders: Orders,
     planned: Option<Instant>,
     /// When the newest camera frame came.
-    imaged: Option<Instant>,
+    last_camera_frame: Option<Instant>,
     /// When it last planned because of the referee.
     replanned: Option<Instant>,
     /// The referee's phase in the newest orders.
@@ -117,7 +117,7 @@ impl Host {
             hidden: HiddenBall::default(),
             orders: Orders::new(),
             planned: None,
-            imaged: None,
+            last_camera_frame: None,
             replanned: None,
             ordered: Phase::Halt,
             undecodable: Undecodable::default(),
@@ -133,7 +133,7 @@ impl Host {
             settings,
         };
         if host.settings.limits != DriveSettings::default() {
-            host.limit();
+            host.send_limits();
         }
         if let Some(roll) = roll {
             host.roll_with(roll);
@@ -144,12 +144,12 @@ impl Host {
     /// Handles an input or a deadline.
     pub fn handle(&mut self, now: Instant, input: Input<'_>) -> InputVerdict {
         match input {
-            Input::Vision(bytes) => self.see(now, bytes),
-            Input::Referee(bytes, from) => self.obey(now, bytes, from),
-            Input::Robot(bytes) => self.listen(now, bytes),
-            Input::Orders(line) => self.follow(now, line),
-            Input::Parameter(json) => self.change(json),
-            Input::Test(json) => self.begin_test(json),
+            Input::Vision(bytes) => self.handle_vision(now, bytes),
+            Input::Referee(bytes, from) => self.handle_referee(now, bytes, from),
+            Input::Robot(bytes) => self.handle_robot(now, bytes),
+            Input::Orders(line) => self.handle_orders(now, line),
+            Input::Parameter(json) => self.handle_parameter(json),
+            Input::Test(json) => self.handle_test(json),
             Input::Halt => {
                 self.halt(now);
                 InputVerdict::Halted
@@ -190,7 +190,7 @@ impl Host {
         self.radio.poll_timeout()
     }
 
-    fn see(&mut self, now: Instant, bytes: &[u8]) -> InputVerdict {
+    fn handle_vision(&mut self, now: Instant, bytes: &[u8]) -> InputVerdict {
         let Ok(packet) = ssl::vision::WrapperPacket::decode(bytes) else {
             self.undecodable.vision += 1;
             return InputVerdict::Undecodable;
@@ -198,13 +198,13 @@ impl Host {
         self.undecodable.empty += u64::from(packet.geometry.is_none() && packet.detection.is_none());
         if let Some(data) = &packet.geometry {
             // A field that is refused is counted by the geometry; the previous field is kept.
-            let _told = self.geometry.receive(data);
+            let _verdict = self.geometry.receive(data);
         }
         let received = self.tracker.handle(&packet, now);
         let changes =
             !matches!(received, tracking::VisionVerdict::NoImage | tracking::VisionVerdict::Repeated);
         if changes {
-            self.imaged = Some(now);
+            self.last_camera_frame = Some(now);
         }
         if changes && self.planned.is_none_or(|last| now.since(last) >= PLAN_EVERY) {
             self.plan(now);
@@ -212,13 +212,13 @@ impl Host {
         InputVerdict::Vision(received)
     }
 
-    fn obey(&mut self, now: Instant, bytes: &[u8], from: SenderAddress) -> InputVerdict {
+    fn handle_referee(&mut self, now: Instant, bytes: &[u8], from: SenderAddress) -> InputVerdict {
         let Ok(packet) = ssl::referee::Referee::decode(bytes) else {
             self.undecodable.referee += 1;
             return InputVerdict::Undecodable;
         };
         let before = self.listener.game().phase;
-        let ball = plainly_seen(now, self.tracker.world(now).ball);
+        let ball = visible_place(now, self.tracker.world(now).ball);
         let verdict = self.listener.receive(&packet, from, now, ball);
         let phase = self.listener.game().phase;
         let lately = self.replanned.is_some_and(|last| now.since(last) < PLAN_EVERY);
@@ -232,7 +232,7 @@ impl Host {
         InputVerdict::Referee(Box::new(verdict))
     }
 
-    fn listen(&mut self, now: Instant, bytes: &[u8]) -> InputVerdict {
+    fn handle_robot(&mut self, now: Instant, bytes: &[u8]) -> InputVerdict {
         match self.radio.handle_packet(now, bytes) {
             Ok(radio::RadioReceived::Beacon(robot, beacon)) => {
                 self.robots[robot.index()].beacon = Some((now, beacon));
@@ -271,17 +271,22 @@ impl Host {
         let snapshot = self.tracker.snapshot();
         self.world = snapshot.at(now);
         // Only a visible ball counts as moved: the place of a hidden one is an estimate.
-        self.listener.tick(now, plainly_seen(now, self.world.ball));
+        self.listener.tick(now, visible_place(now, self.world.ball));
         self.remember_ball(now);
         let us = self.settings.us;
         let game = self.our_game();
-        let view = View::of(&self.world, us, &game, self.field(), self.fit(now), self.in_play(now))
+        let view = View::of(&self.world, us, &game, self.field(), self.fit(now))
             .allowing(self.allowed(us))
             .allowing_them(self.allowed(us.other()))
             .proposing(self.proposed(now, Flip::defending(game.defending)));
         let never_answered = self.never_answered(&view.field, game.defending);
-        let (contact, knows_cases) = (self.in_contact(now), self.knows_cases(now));
-        let view = View { never_answered, contact, knows_cases, ..view };
+        let view = View {
+            never_answered,
+            in_play: self.in_play(now),
+            contact: self.in_contact(now),
+            knows_cases: self.knows_cases(now),
+            ..view
+        };
         self.orders = self.coach.decide(&view);
         if let Some(external) = &mut self.external {
             self.orders = external.plan(&view, std::mem::take(&mut self.orders));
@@ -312,12 +317,9 @@ impl Host {
 
     /// Number of robots of our colour on the field that have not reported since this host started.
     fn never_answered(&self, field: &FieldSpec, defending: GoalEnd) -> usize {
-        let stands = |robot: &&crate::world::Robot| field.counts(defending, robot.pose.position);
-        let silent = |robot: &&crate::world::Robot| {
-            let known = &self.robots[robot.who.id.index()];
-            known.telemetry.is_none() && known.beacon.is_none()
-        };
-        self.world.ours(self.settings.us).filter(stands).filter(silent).count()
+        let on_field =
+            self.world.ours(self.settings.us).filter(|robot| field.counts(defending, robot.pose.position));
+        on_field.filter(|robot| !self.robots[robot.who.id.index()].has_reported()).count()
     }
 
     /// Estimates the place of a ball that no camera sees.
@@ -416,7 +418,7 @@ impl Host {
 }
 
 /// The ball's place if cameras see it; the estimated place of a hidden ball does not count.
-fn plainly_seen(now: Instant, ball: Option<Ball>) -> Option<Point<geometry::Field>> {
+fn visible_place(now: Instant, ball: Option<Ball>) -> Option<Point<geometry::Field>> {
     ball.filter(|ball| now.since(ball.seen) < BALL_VISIBLE_WITHIN && ball.confidence > BALL_CONFIDENCE_MIN)
         .map(|ball| ball.position)
 }

@@ -252,7 +252,7 @@ impl Robot {
 /// in that time, and no delay that is worth compensating is longer (capture to motion is 45–65 ms in the
 /// league).
 pub const STRAIGHT_MAX: f32 = 0.25;
-/// m/s².
+/// Acceleration of free fall, m/s².
 pub(crate) const GRAVITY_M_S2: f32 = 9.81;
 
 /// The index of a team in an array of two.

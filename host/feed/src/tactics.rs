@@ -132,7 +132,7 @@ fn view(picture: &Picture, us: Colour) -> Option<View> {
         their_keeper: game.team(us.other()).keeper.unwrap_or(RobotId::ZERO),
         stakes: Stakes::EVEN,
     };
-    Some(View::of(&picture.world, us, &sheet, picture.field, all_robots(), RobotSet::default()))
+    Some(View::of(&picture.world, us, &sheet, picture.field, all_robots()))
 }
 
 fn all_robots() -> RobotSet {

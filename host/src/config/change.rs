@@ -15,7 +15,7 @@ use crate::HostSettings;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ParameterChange {
-    /// [`Parameter::key`].
+    /// The parameter's key, as [`Parameter::key`].
     pub key: String,
     /// The robot that it is for, where the parameter is each robot's.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -44,18 +44,18 @@ enum Holds {
 /// A parameter with its value, for a list of them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ParameterValue {
-    /// [`Parameter::key`].
+    /// The parameter's key in `team.toml`.
     pub key: &'static str,
     /// The robot that it is for; none: the team.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub robot: Option<u8>,
-    /// [`Parameter::unit`].
+    /// Unit of value and range.
     pub unit: &'static str,
     /// [`Parameter::range`], least and greatest.
     pub range: Option<[f32; 2]>,
-    /// [`Parameter::meaning`].
+    /// What the parameter changes, for operators.
     pub meaning: &'static str,
-    /// [`Parameter::live`].
+    /// Whether it can change while a host runs.
     pub live: bool,
     /// Whether each robot has its own.
     pub each_robot: bool,

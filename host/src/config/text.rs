@@ -47,7 +47,7 @@ impl fmt::Display for RobotLink {
     }
 }
 
-/// The first lines.
+/// Comment at the head of a written `team.toml`.
 const HEADING: &str = "\
 # Settings of a team, for `onetwo control --config team.toml`; a flag of the same name overrules each.
 

@@ -29,43 +29,30 @@ pub struct StrategyAnswer {
 }
 
 /// Why an answer is refused.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AnswerError {
     /// It is not the JSON of an answer.
+    #[error("no answer of the form {{\"orders\":[…]}}: {0}")]
     Json(String),
     /// An order is for a robot that is not among ours.
+    #[error("an order for robot {0}: numbers are 0 to 15")]
     Robot(u8),
     /// Two orders are for the same robot.
+    #[error("two orders for robot {0}")]
     Twice(u8),
     /// A number of this robot's order is not finite, or farther off the field or faster than any robot or
     /// ball can be.
+    #[error(
+        "the order of robot {0}: a number is not finite or beyond {COORDINATE_MAX_M} m or {KICK_SPEED_MAX_M_S} m/s"
+    )]
     Number(u8),
     /// There is too much to draw, or in places where it cannot be drawn.
+    #[error(
+        "more than {SHAPES_MAX} shapes or {VALUES_MAX} values, a text of more than {TEXT_MAX} bytes, or a number that \
+         is not finite or beyond {COORDINATE_MAX_M} m"
+    )]
     Drawing,
 }
-
-impl std::fmt::Display for AnswerError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Json(what) => write!(f, "no answer of the form {{\"orders\":[…]}}: {what}"),
-            Self::Robot(robot) => write!(f, "an order for robot {robot}: numbers are 0 to 15"),
-            Self::Twice(robot) => write!(f, "two orders for robot {robot}"),
-            Self::Number(robot) => {
-                write!(
-                    f,
-                    "the order of robot {robot}: a number is not finite or beyond {COORDINATE_MAX_M} m or {KICK_SPEED_MAX_M_S} m/s"
-                )
-            }
-            Self::Drawing => write!(
-                f,
-                "more than {SHAPES_MAX} shapes or {VALUES_MAX} values, a text of more than {TEXT_MAX} bytes, or a \
-                 number that is not finite or beyond {COORDINATE_MAX_M} m"
-            ),
-        }
-    }
-}
-
-impl std::error::Error for AnswerError {}
 
 impl StrategyAnswer {
     /// Adds an order; an earlier one of the same robot is replaced.
@@ -74,7 +61,7 @@ impl StrategyAnswer {
         self.orders.push(StrategyOrder { robot, task });
     }
 
-    /// Reads a line.
+    /// Reads an answer from a line of JSON.
     pub fn read(line: &[u8]) -> Result<(Vec<(RobotId, Task)>, StrategyDrawing), AnswerError> {
         let answer: Self =
             serde_json::from_slice(line).map_err(|error| AnswerError::Json(error.to_string()))?;

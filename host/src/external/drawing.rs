@@ -11,24 +11,24 @@ use super::form::{COORDINATE_MAX_M, Pair};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum StrategyShape {
-    /// A straight line.
+    /// A straight line between two places of the attack frame, m.
     Line {
-        /// Its start.
+        /// Start of the line, m.
         from: Pair,
-        /// Its end.
+        /// End of the line, m.
         to: Pair,
         /// With a head at its end.
         #[serde(default)]
         arrow: bool,
     },
-    /// A circle.
+    /// A circle around a place of the attack frame.
     Circle {
         /// Its centre.
         at: Pair,
-        /// Its radius, m.
+        /// Radius of the circle, m.
         radius: f32,
     },
-    /// A label.
+    /// A short text at a place of the attack frame.
     Text {
         /// Its centre.
         at: Pair,
@@ -46,18 +46,23 @@ pub struct StrategyDrawing {
     pub values: BTreeMap<String, f32>,
 }
 
+impl StrategyShape {
+    fn is_bounded(&self) -> bool {
+        let on_field = |pair: &Pair| pair.iter().all(|value| value.abs() <= COORDINATE_MAX_M);
+        match self {
+            Self::Line { from, to, .. } => on_field(from) && on_field(to),
+            Self::Circle { at, radius } => on_field(at) && (0.0..=COORDINATE_MAX_M).contains(radius),
+            Self::Text { at, text } => on_field(at) && text.len() <= TEXT_MAX,
+        }
+    }
+}
+
 impl StrategyDrawing {
     /// Whether the page can show it: the numbers of its parts, their places and the lengths of its texts are
     /// bounded.
     pub(super) fn is_bounded(&self) -> bool {
-        let on_field = |pair: &Pair| pair.iter().all(|value| value.abs() <= COORDINATE_MAX_M);
-        let shape = |shape: &StrategyShape| match shape {
-            StrategyShape::Line { from, to, .. } => on_field(from) && on_field(to),
-            StrategyShape::Circle { at, radius } => on_field(at) && (0.0..=COORDINATE_MAX_M).contains(radius),
-            StrategyShape::Text { at, text } => on_field(at) && text.len() <= TEXT_MAX,
-        };
         self.shapes.len() <= SHAPES_MAX
-            && self.shapes.iter().all(shape)
+            && self.shapes.iter().all(StrategyShape::is_bounded)
             && self.values.len() <= VALUES_MAX
             && self.values.iter().all(|(name, value)| name.len() <= TEXT_MAX && value.is_finite())
     }

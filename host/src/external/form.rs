@@ -32,11 +32,11 @@ pub struct StrategyView {
     pub ball: Option<StrategyBall>,
     /// Our robots on the field that can be commanded.
     pub ours: Vec<StrategyRobot>,
-    /// Their robots.
+    /// Opponents that vision sees, by number.
     pub theirs: Vec<StrategyRobot>,
-    /// Our keeper's number.
+    /// Number of our keeper, as the referee names it.
     pub keeper: u8,
-    /// Their keeper's number.
+    /// Number of their keeper, as the referee names it.
     pub their_keeper: u8,
     /// Dimensions of the field, m.
     pub field: StrategyField,
@@ -58,7 +58,7 @@ pub struct StrategyPhase {
     pub ours: Option<bool>,
 }
 
-/// The ball.
+/// The ball in the attack frame, SI units.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StrategyBall {
     /// Its place on the ground.
@@ -73,14 +73,14 @@ pub struct StrategyBall {
     pub unseen: f32,
 }
 
-/// A robot.
+/// A robot in the attack frame, SI units.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StrategyRobot {
     /// Its number in its team.
     pub robot: u8,
     /// Place of its centre.
     pub at: Pair,
-    /// Its heading, radians.
+    /// Heading of the robot, radians.
     pub heading: f32,
     /// Velocity of its centre.
     pub velocity: Pair,
@@ -108,9 +108,9 @@ pub struct StrategyField {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StrategyOrder {
-    /// Its number.
+    /// Number of the robot that gets the order.
     pub robot: u8,
-    /// What it does.
+    /// Task of the robot until the next answer.
     pub task: StrategyTask,
 }
 
@@ -118,7 +118,7 @@ pub struct StrategyOrder {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum StrategyTask {
-    /// Stand still.
+    /// Stand still where the robot is.
     Stand,
     /// Play cases with the other robots that have this task.
     PlayCases,
@@ -126,7 +126,7 @@ pub enum StrategyTask {
     GoTo {
         /// Place of its centre.
         at: Pair,
-        /// Heading there, radians.
+        /// Heading at the place, radians.
         face: f32,
     },
     /// Take the ball so as to face this point across it.
@@ -163,9 +163,9 @@ pub enum StrategyTask {
         #[serde(default = "yes")]
         ready: bool,
     },
-    /// Receive a pass.
+    /// Receive a pass at a place, and hold or shoot the ball.
     Receive {
-        /// Where.
+        /// Place of the reception, m.
         at: Pair,
         /// Shoot at this point at first touch; none: stop the ball.
         #[serde(default)]
@@ -175,7 +175,7 @@ pub enum StrategyTask {
     Block {
         /// One end of the line.
         from: Pair,
-        /// The other end.
+        /// Other end of the path, m.
         to: Pair,
     },
     /// Bring the ball to a place.
@@ -215,19 +215,34 @@ impl StrategyPhase {
     }
 }
 
+impl StrategyRobot {
+    fn of(robot: &ViewRobot, ball_contact: bool) -> Self {
+        Self {
+            robot: robot.id.number(),
+            at: pair(robot.position),
+            heading: robot.heading.radians(),
+            velocity: [robot.velocity.x(), robot.velocity.y()],
+            ball_contact,
+        }
+    }
+
+    /// The robot as our planners see it; `None` for a number that no robot has.
+    fn seen(&self) -> Option<ViewRobot> {
+        Some(ViewRobot {
+            id: RobotId::new(self.robot)?,
+            position: point(self.at),
+            heading: Angle::new(self.heading),
+            velocity: Vector::new(self.velocity[0], self.velocity[1]),
+        })
+    }
+}
+
 impl StrategyView {
     /// The present version of the form.
     pub const VERSION: u32 = 1;
 
     /// A view with the coach's orders.
     pub fn of(league: League, view: &View, usual: &Orders) -> Self {
-        let robot = |robot: &ViewRobot, ball_contact| StrategyRobot {
-            robot: robot.id.number(),
-            at: pair(robot.position),
-            heading: robot.heading.radians(),
-            velocity: [robot.velocity.x(), robot.velocity.y()],
-            ball_contact,
-        };
         let field = &view.field;
         Self {
             version: Self::VERSION,
@@ -243,8 +258,8 @@ impl StrategyView {
                 height: ball.height,
                 unseen: ball.unseen.as_secs_f32(),
             }),
-            ours: view.ours.iter().map(|ours| robot(ours, view.contact.has(ours.id))).collect(),
-            theirs: view.theirs.iter().map(|theirs| robot(theirs, false)).collect(),
+            ours: view.ours.iter().map(|ours| StrategyRobot::of(ours, view.contact.has(ours.id))).collect(),
+            theirs: view.theirs.iter().map(|theirs| StrategyRobot::of(theirs, false)).collect(),
             keeper: view.keeper.number(),
             their_keeper: view.their_keeper.number(),
             field: StrategyField {
@@ -263,16 +278,6 @@ impl StrategyView {
     /// keepers are as told, the field's further dimensions those of `field`.
     pub fn snapshot(&self, field: FieldSpec) -> View {
         let none = std::iter::empty;
-        let robots = |robots: &[StrategyRobot]| -> heapless::Vec<ViewRobot, ROBOTS_MAX> {
-            let known = robots.iter().filter_map(|robot| Some((RobotId::new(robot.robot)?, robot)));
-            let view = known.map(|(id, robot)| ViewRobot {
-                id,
-                position: point(robot.at),
-                heading: Angle::new(robot.heading),
-                velocity: Vector::new(robot.velocity[0], robot.velocity[1]),
-            });
-            view.take(ROBOTS_MAX).collect()
-        };
         let keeper = |number| RobotId::new(number).unwrap_or(RobotId::ZERO);
         let mut view = View::still(field, Point::default(), none(), none());
         view.now = Instant((self.time.max(0.0) * 1e6) as u64);
@@ -283,7 +288,8 @@ impl StrategyView {
             height: ball.height,
             unseen: Duration((ball.unseen.max(0.0) * 1e6) as u64),
         });
-        (view.ours, view.theirs) = (robots(&self.ours), robots(&self.theirs));
+        view.ours = self.ours.iter().filter_map(StrategyRobot::seen).take(ROBOTS_MAX).collect();
+        view.theirs = self.theirs.iter().filter_map(StrategyRobot::seen).take(ROBOTS_MAX).collect();
         (view.keeper, view.their_keeper) = (keeper(self.keeper), keeper(self.their_keeper));
         for robot in self.ours.iter().filter(|robot| robot.ball_contact) {
             if let Some(id) = RobotId::new(robot.robot) {

@@ -32,12 +32,12 @@ impl StrategyStarter {
         Self { name: name.into(), start: Arc::new(start) }
     }
 
-    /// Starts it.
+    /// Starts the program.
     pub fn start(&self) -> io::Result<Box<dyn StrategyLink>> {
         (self.start)()
     }
 
-    /// Its name.
+    /// Name of the program, for messages.
     pub fn name(&self) -> &str {
         &self.name
     }

@@ -108,21 +108,27 @@ impl External {
 
     fn orders(&self, view: &View, usual: &Orders) -> Orders {
         let fresh = self.answer.as_ref().filter(|(came, _)| view.now.since(*came) < ANSWERS_WITHIN);
-        let of = |order: &Order| match fresh {
-            _ if form::is_bound(order) => order.clone(),
-            Some((_, tasks)) => {
-                let own = tasks.iter().find(|(robot, _)| *robot == order.robot);
-                own.map_or_else(|| order.clone(), |(robot, task)| answer::order(view, *robot, *task))
-            }
-            None if view.phase == Phase::Run => Order {
-                robot: order.robot,
-                role: if order.robot == view.keeper { Role::Keeper } else { Role::Player },
-                task: Task::Stand,
-                why: OrderReason::ExternalSilent,
-            },
-            None => order.clone(),
-        };
-        usual.iter().map(of).collect()
+        let tasks = fresh.map(|(_, tasks)| tasks.as_slice());
+        usual.iter().map(|order| replaced(view, order, tasks)).collect()
+    }
+}
+
+/// The order that replaces the coach's: of a fresh answer's tasks the robot's own; without an answer the
+/// robot stands in open play.
+fn replaced(view: &View, order: &Order, tasks: Option<&[(RobotId, Task)]>) -> Order {
+    match tasks {
+        _ if form::is_bound(order) => order.clone(),
+        Some(tasks) => {
+            let own = tasks.iter().find(|(robot, _)| *robot == order.robot);
+            own.map_or_else(|| order.clone(), |(robot, task)| answer::order(view, *robot, *task))
+        }
+        None if view.phase == Phase::Run => Order {
+            robot: order.robot,
+            role: if order.robot == view.keeper { Role::Keeper } else { Role::Player },
+            task: Task::Stand,
+            why: OrderReason::ExternalSilent,
+        },
+        None => order.clone(),
     }
 }
 

@@ -102,17 +102,22 @@ impl fmt::Display for OtherField {
 
 /// Compares the field that vision sent with that league's.
 pub(super) fn other_field(league: League, announced: &FieldSpec) -> Option<OtherField> {
-    let is = |league: League| {
-        let field = league.field();
-        let near = |announced: f32, own: f32| (announced - own).abs() <= own * DIMENSION_TOLERANCE;
-        near(announced.length, field.length) && near(announced.width, field.width)
-    };
-    let other = || OtherField {
+    if fits(announced, league) {
+        return None;
+    }
+    let mut leagues = [League::DivisionB, League::DivisionA, League::Ssl2013].into_iter();
+    Some(OtherField {
         league,
         announced: [announced.length, announced.width],
-        fits: [League::DivisionB, League::DivisionA, League::Ssl2013].into_iter().find(|other| is(*other)),
-    };
-    (!is(league)).then(other)
+        fits: leagues.find(|other| fits(announced, *other)),
+    })
+}
+
+/// Whether a field has that league's length and width.
+fn fits(announced: &FieldSpec, league: League) -> bool {
+    let field = league.field();
+    let near = |announced: f32, own: f32| (announced - own).abs() <= own * DIMENSION_TOLERANCE;
+    near(announced.length, field.length) && near(announced.width, field.width)
 }
 
 /// A robot not seen for this time is not counted: ten frames of 60 Hz, and fewer than its track lasts (1 s).

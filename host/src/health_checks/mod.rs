@@ -1,5 +1,5 @@
-//! `health_checks`: checks field, network and computer against the host's settings; each finding has its evidence
-//! and a remedy as text. Sans-IO; times on the host's clock.
+//! `health_checks`: checks field, network and computer against the host's settings; each finding has its
+//! evidence and a remedy as text. Sans-IO; times on the host's clock.
 //!
 //! | module | finds |
 //! |---|---|
@@ -9,8 +9,8 @@
 //! | `port` | no camera frames on vision's port, or another program's packets |
 //! | `stall` | a stall of this computer, vision or the radio |
 //!
-//! [`HealthChecks::look`] is called at least every [`LOOK_EVERY_MAX`]. A finding is given within two seconds of its
-//! cause and for as long as that lasts. A match without a fault has none.
+//! [`HealthChecks::look`] is called at least every [`LOOK_EVERY_MAX`]. A finding is given within two seconds
+//! of its cause and for as long as that lasts. A match without a fault has none.
 
 mod field;
 mod port;
@@ -128,7 +128,7 @@ impl HealthChecks {
         }
         self.looked = Some(now);
         let mut found = Vec::new();
-        let sees = host.imaged().is_some_and(|at| now.since(at) < FRAME_AGE_MAX);
+        let sees = host.last_camera_frame().is_some_and(|at| now.since(at) < FRAME_AGE_MAX);
         let reported =
             host.announced_field().and_then(|reported| field::other_field(host.settings().league, reported));
         found.extend(reported.map(Finding::Field));

@@ -55,7 +55,7 @@ impl Port {
         let undecodable = host.undecodable();
         self.see(
             now,
-            host.imaged(),
+            host.last_camera_frame(),
             undecodable.vision + undecodable.empty,
             host.tracker().counts().packets() > undecodable.empty,
         )

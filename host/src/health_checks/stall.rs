@@ -107,7 +107,7 @@ impl Last {
         let radio = host.radio();
         let received = protocol::RobotId::all().filter_map(|id| radio.quality(id));
         Self {
-            frame: host.imaged(),
+            frame: host.last_camera_frame(),
             robot: received.filter_map(crate::radio::Quality::received_at).max(),
             sent: radio.transmitted(),
             unheard: unheard(radio, now),

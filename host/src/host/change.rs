@@ -7,14 +7,14 @@ use crate::config::{ConfigError, ParameterChange, TeamConfig};
 
 impl Host {
     /// Handles the JSON of a [`ParameterChange`]: all of it holds from the next plan on, or nothing of it.
-    pub(super) fn change(&mut self, json: &[u8]) -> InputVerdict {
-        match self.changed(json) {
+    pub(super) fn handle_parameter(&mut self, json: &[u8]) -> InputVerdict {
+        match self.apply_change(json) {
             Ok(()) => InputVerdict::Changed,
             Err(refused) => InputVerdict::NotChanged(refused),
         }
     }
 
-    fn changed(&mut self, json: &[u8]) -> Result<(), ConfigError> {
+    fn apply_change(&mut self, json: &[u8]) -> Result<(), ConfigError> {
         let change = ParameterChange::from_json(json)?;
         let before = self.settings.clone();
         TeamConfig::of(&before)?.changed(&change)?.apply(&mut self.settings);
@@ -27,7 +27,7 @@ impl Host {
             self.coach.set_tactics(settings.tactics, settings.league);
         }
         if settings.limits != before.limits {
-            self.limit();
+            self.send_limits();
         }
         match self.settings.roll {
             Some(roll) if before.roll != Some(roll) => self.roll_with(roll),
@@ -37,8 +37,8 @@ impl Host {
         Ok(())
     }
 
-    /// Tells the robots their limits from now on.
-    pub(super) fn limit(&mut self) {
+    /// Sends the robots their limits from now on.
+    pub(super) fn send_limits(&mut self) {
         let [speed, acceleration] = self.settings.limits.on_air();
         self.radio.limit(speed, acceleration);
     }

@@ -31,24 +31,26 @@ impl Host {
     /// The orders, or the drill's in their place, as robots get them.
     pub(super) fn commands(&self, game: &ViewGame) -> heapless::Vec<HostCommand, { RobotId::COUNT }> {
         let flip = Flip::defending(game.defending);
-        let command = |(to, rule_role, directive): (RobotId, RuleRole, Directive)| HostCommand {
+        let command = |to: RobotId, rule_role: RuleRole, directive: Directive| HostCommand {
             to,
             defending: game.defending,
             phase: game.phase,
             rule_role,
             directive: self.calibrated(to, directive),
         };
-        let coached = |order: &crate::strategy::Order| {
-            command((order.robot, order.role.rule_role(), order.task.directive(flip)))
-        };
         match &self.drill {
-            Some(drill) => drill.iter().cloned().map(command).collect(),
-            None => self.orders.iter().map(coached).collect(),
+            Some(drill) => {
+                drill.iter().map(|(to, role, directive)| command(*to, *role, directive.clone())).collect()
+            }
+            None => {
+                let orders = self.orders.iter();
+                orders.map(|o| command(o.robot, o.role.rule_role(), o.task.directive(flip))).collect()
+            }
         }
     }
 
     /// Orders of a strategy in another program are sent at once.
-    pub(super) fn follow(&mut self, now: Instant, line: &[u8]) -> InputVerdict {
+    pub(super) fn handle_orders(&mut self, now: Instant, line: &[u8]) -> InputVerdict {
         let Some(external) = &mut self.external else { return InputVerdict::Undecodable };
         match external.answered(now, line) {
             Err(error) => return InputVerdict::NoAnswer(error),

@@ -69,8 +69,8 @@ impl Host {
     }
 
     /// When the newest camera frame came.
-    pub fn imaged(&self) -> Option<Instant> {
-        self.imaged
+    pub fn last_camera_frame(&self) -> Option<Instant> {
+        self.last_camera_frame
     }
 
     /// Whether robots are ordered to halt now, by the referee or by `Host::halt`.
@@ -120,6 +120,11 @@ impl Host {
 }
 
 impl Known {
+    /// Whether telemetry or a beacon came since this host started.
+    pub(super) fn has_reported(&self) -> bool {
+        self.telemetry.is_some() || self.beacon.is_some()
+    }
+
     /// Whether the robot's sensor detects the ball, as it reported lately; unknown while the sensor may
     /// flicker.
     pub(super) fn feels(&self, now: Instant) -> Option<bool> {

@@ -10,7 +10,7 @@ impl Host {
     }
 
     /// Handles the JSON of a [`TestOrder`].
-    pub(super) fn begin_test(&mut self, json: &[u8]) -> InputVerdict {
+    pub(super) fn handle_test(&mut self, json: &[u8]) -> InputVerdict {
         match TestOrder::from_json(json) {
             Ok(TestOrder::Kick { .. }) if self.external.is_some() => {
                 InputVerdict::NoTest(TestRefused::External)

@@ -128,7 +128,7 @@ const STARTS_KEPT: usize = 15;
 const STARTS_MIN: usize = 3;
 /// A robot whose place stays within this stands still, m: noise of 3 mm.
 const STILL_WITHIN_M: f32 = 0.008;
-/// ... and for this time.
+/// Time for which it must stay there to stand still.
 const STILL_FOR: Duration = Duration::millis(300);
 /// Least distance of the place ordered at which it starts with its full acceleration, m.
 const ORDER_DISTANCE_MIN_M: f32 = 0.4;

@@ -1,4 +1,4 @@
-//! `radio`: packs snapshots and commands into frames at a limited rate, unpacks, robots' frames into
+//! `radio`: packs snapshots and commands into frames at a limited rate, unpacks robots' frames into
 //! telemetry and link quality (docs/architecture.md §3.3, §6.1). Sans-IO: times come from the caller, packets
 //! go back to it.
 //!

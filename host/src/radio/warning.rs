@@ -169,6 +169,24 @@ struct OfRobot {
     follows: Option<(u32, Instant)>,
 }
 
+impl OfRobot {
+    /// The warnings that apply to this robot now, for a host of that epoch.
+    fn warnings(&self, robot: RobotId, now: Instant, epoch: u32) -> impl Iterator<Item = RadioWarning> {
+        let later = self.follows.filter(|(host, at)| *host > epoch && now.since(*at) < QUIET_FOR);
+        let later = later.map(|(host, _)| RadioWarning::LaterHost(robot, host));
+        let whys = RefusalReason::ALL.into_iter().zip(self.rising).filter(move |(why, rising)| {
+            // That it refuses this host's epoch is reported already.
+            match why {
+                RefusalReason::Unauthenticated => rising.goes_on_for(now, HANDSHAKE_TIME),
+                RefusalReason::Epoch => rising.goes_on(now) && later.is_none(),
+                _ => rising.goes_on(now),
+            }
+        });
+        let forged = self.forged.goes_on(now).then_some(RadioWarning::WrongKey(robot));
+        later.into_iter().chain(whys.map(move |(why, _)| RadioWarning::Refuses(robot, why))).chain(forged)
+    }
+}
+
 /// Counts refusals between robots and host.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Refusals {
@@ -216,25 +234,16 @@ impl Refusals {
 
     /// The warnings that apply now, for a host of that epoch.
     pub(super) fn warnings(&self, now: Instant, epoch: u32) -> impl Iterator<Item = RadioWarning> {
-        let of_robot = move |(robot, known): (RobotId, &OfRobot)| {
-            let later = known.follows.filter(|(host, at)| *host > epoch && now.since(*at) < QUIET_FOR);
-            let later = later.map(|(host, _)| RadioWarning::LaterHost(robot, host));
-            let whys = RefusalReason::ALL.into_iter().zip(known.rising).filter(move |(why, rising)| {
-                // That it refuses this host's epoch is reported already.
-                match why {
-                    RefusalReason::Unauthenticated => rising.goes_on_for(now, HANDSHAKE_TIME),
-                    RefusalReason::Epoch => rising.goes_on(now) && later.is_none(),
-                    _ => rising.goes_on(now),
-                }
-            });
-            let forged = known.forged.goes_on(now).then_some(RadioWarning::WrongKey(robot));
-            later.into_iter().chain(whys.map(move |(why, _)| RadioWarning::Refuses(robot, why))).chain(forged)
-        };
         let (host, team, version) = (self.host, self.team, self.version);
         let host = host.0.goes_on(now).then_some(RadioWarning::OtherHost(host.1));
         let team = team.0.goes_on(now).then_some(RadioWarning::OtherTeam(TeamId(team.1)));
         let version = version.0.goes_on(now).then_some(RadioWarning::OtherVersion(version.1));
-        RobotId::all().zip(&self.robots).flat_map(of_robot).chain(host).chain(team).chain(version)
+        RobotId::all()
+            .zip(&self.robots)
+            .flat_map(move |(robot, known)| known.warnings(robot, now, epoch))
+            .chain(host)
+            .chain(team)
+            .chain(version)
     }
 }
 

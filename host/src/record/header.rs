@@ -4,8 +4,6 @@
 //! A team's key is never in a file that is passed on: the header states only that there was one
 //! ([`HostHeader::keyed`]), and the caller that rebuilds the host supplies it.
 
-use std::fmt;
-
 use casebase::CaseBase;
 use geometry::GoalEnd;
 use protocol::frame::TeamKey;
@@ -107,19 +105,12 @@ pub struct HostHeader {
 }
 
 /// Why a header builds no host.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the recording's header: {description}")]
 pub struct HeaderError {
     /// What is wrong, with its place.
     pub description: String,
 }
-
-impl fmt::Display for HeaderError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "the recording's header: {}", self.description)
-    }
-}
-
-impl std::error::Error for HeaderError {}
 
 fn wrong(description: impl Into<String>) -> HeaderError {
     HeaderError { description: description.into() }

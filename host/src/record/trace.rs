@@ -205,35 +205,23 @@ impl fmt::Display for TraceEnd {
 }
 
 /// Why a file is no trace.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum TraceError {
     /// An error while reading.
+    #[error("{0}")]
     Io(io::Error),
     /// It does not start as a trace does.
+    #[error("it does not begin with ONETWO_TRACE: no trace of ours")]
     NotATrace,
     /// Another version of the format, which is not read.
+    #[error(
+        "a trace of version {0}, this program reads {OLDEST_VERSION} to {VERSION}: use the program that wrote it"
+    )]
     Version(u32),
     /// The header is cut, too long or not UTF-8.
+    #[error("its header is cut or damaged: the recording cannot be identified")]
     Header,
 }
-
-impl fmt::Display for TraceError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Io(error) => write!(f, "{error}"),
-            Self::NotATrace => f.write_str("it does not begin with ONETWO_TRACE: no trace of ours"),
-            Self::Version(seen) => {
-                write!(
-                    f,
-                    "a trace of version {seen}, this program reads {OLDEST_VERSION} to {VERSION}: use the program that wrote it"
-                )
-            }
-            Self::Header => f.write_str("its header is cut or damaged: the recording cannot be identified"),
-        }
-    }
-}
-
-impl std::error::Error for TraceError {}
 
 impl From<io::Error> for TraceError {
     fn from(error: io::Error) -> Self {

@@ -48,11 +48,11 @@ const NO_TIME: u64 = 0;
 /// Strictness of a command. Ordered: the more restrictive one is greater.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Strictness {
-    /// Robots may play.
+    /// Robots may play the ball.
     Play,
     /// STOP or a timeout: slow and away from the ball.
     Stop,
-    /// Robots halt.
+    /// Robots must not move.
     Halt,
 }
 
@@ -143,7 +143,7 @@ pub(super) enum Outcome {
     Taken(Taken),
     /// Out of order; `restrains`: it is HALT or STOP, and obeyed.
     Doubted { doubt: Doubt, restrains: bool },
-    /// Received before.
+    /// A packet that was received before.
     Copy,
 }
 

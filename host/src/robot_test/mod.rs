@@ -36,32 +36,21 @@ pub enum TestOrder {
 }
 
 /// Why a test does not begin.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TestRefused {
     /// The line is no order.
+    #[error("no test: {0}")]
     Malformed(String),
     /// There is no robot of this number.
+    #[error("{0} is no robot; ids are 0 to 15")]
     NoSuchRobot(u8),
     /// So many kicks are not measured.
+    #[error("{0} kicks: a test measures {KICKS_LEAST} to {KICKS_MOST}")]
     Kicks(u8),
     /// A strategy in another program gives the orders.
+    #[error("a strategy in another program gives the orders: end it first")]
     External,
 }
-
-impl std::fmt::Display for TestRefused {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Malformed(description) => write!(f, "no test: {description}"),
-            Self::NoSuchRobot(number) => write!(f, "{number} is no robot; ids are 0 to 15"),
-            Self::Kicks(kicks) => {
-                write!(f, "{kicks} kicks: a test measures {KICKS_LEAST} to {KICKS_MOST}")
-            }
-            Self::External => f.write_str("a strategy in another program gives the orders: end it first"),
-        }
-    }
-}
-
-impl std::error::Error for TestRefused {}
 
 impl TestOrder {
     /// From JSON, within what a test can do.
@@ -107,15 +96,15 @@ pub enum TestState {
 /// What a test of a kicker has found so far.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KickReport {
-    /// The robot.
+    /// Robot whose kicker is tested.
     pub robot: RobotId,
-    /// Kicks to measure.
+    /// Number of kicks to measure.
     pub wanted: u8,
     /// Each measured kick: speed ordered of the kicker, and speed of the ball as it left, m/s.
     pub kicks: Vec<[f32; 2]>,
     /// The gain that fits them: speed of the ball over speed ordered; from the third kick on.
     pub gain: Option<Estimate>,
-    /// How it stands.
+    /// Progress of the test.
     pub state: TestState,
 }
 
@@ -160,13 +149,13 @@ impl RobotTest {
         if view.phase != Phase::Run {
             return usual;
         }
-        let order = |robot: &crate::strategy::view::ViewRobot| {
+        let orders = view.ours.iter().map(|robot| {
             let role = if robot.id == view.keeper { Role::Keeper } else { Role::Player };
             let own = task.filter(|_| self.kicker.is_some_and(|(kicker, _)| kicker == robot.id));
             let task = own.unwrap_or(Task::Stand);
             Order { robot: robot.id, role, task, why: OrderReason::Test }
-        };
-        view.ours.iter().map(order).collect()
+        });
+        orders.collect()
     }
 
     /// What the kicker does, and how the test stands.

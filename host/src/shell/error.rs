@@ -1,26 +1,30 @@
 //! `error`: connection errors, and how to fix them.
 
-use std::fmt;
 use std::io;
 
 /// One variant per cause that the operator can fix.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum LinkError {
     /// `udp://` names a host that cannot be resolved.
+    #[error("unknown host in `{address}` ({error}); give udp://HOST:PORT of the base station")]
     UnknownHost {
         /// The address as configured.
         address: String,
         /// Error of the name's resolution.
+        #[source]
         error: io::Error,
     },
     /// A socket could not be opened, or failed.
+    #[error("cannot {doing}: {error}")]
     Socket {
         /// The operation that failed.
         doing: String,
         /// The operating system's error.
+        #[source]
         error: io::Error,
     },
     /// The serial line is not there.
+    #[error("there is no serial line {device}{}", other_lines(present))]
     NoSuchLine {
         /// The device as configured.
         device: String,
@@ -28,27 +32,41 @@ pub enum LinkError {
         present: Vec<String>,
     },
     /// This user has no permission for the serial line.
+    #[error(
+        "{device} may not be opened by you; on Linux join its group (`sudo usermod -aG dialout $USER`, then log in again)"
+    )]
     NotAllowed {
         /// The device as configured.
         device: String,
     },
     /// The serial line does not support this rate, or failed.
+    #[error(
+        "cannot {doing} {device}: {error}; is the base station plugged in, and does it run at this rate \
+         (serial:{device}:BAUD)?"
+    )]
     Line {
         /// The device as configured.
         device: String,
         /// The operation that failed.
         doing: String,
         /// The operating system's error.
+        #[source]
         error: io::Error,
     },
     /// A virtual robot could not be started.
+    #[error("cannot start a virtual robot with {program}: {error}")]
     Start {
         /// Path of the program.
         program: String,
         /// The operating system's error.
+        #[source]
         error: io::Error,
     },
     /// A virtual robot ended again and again.
+    #[error(
+        "virtual robot {robot} ended {times} times in a row ({how}); start it by hand to see why: \
+         `onetwo virtual-robot --help`"
+    )]
     GivesUp {
         /// The robot's number in our team.
         robot: u8,
@@ -59,48 +77,11 @@ pub enum LinkError {
     },
 }
 
-impl fmt::Display for LinkError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::UnknownHost { address, error } => {
-                write!(f, "unknown host in `{address}` ({error}); give udp://HOST:PORT of the base station")
-            }
-            Self::Socket { doing, error } => write!(f, "cannot {doing}: {error}"),
-            Self::NoSuchLine { device, present } if present.is_empty() => {
-                write!(f, "there is no serial line {device}, nor any other; plug the base station in")
-            }
-            Self::NoSuchLine { device, present } => {
-                write!(f, "there is no serial line {device}; there are: {}", present.join(", "))
-            }
-            Self::NotAllowed { device } => write!(
-                f,
-                "{device} may not be opened by you; on Linux join its group (`sudo usermod -aG dialout $USER`, then log in again)"
-            ),
-            Self::Line { device, doing, error } => write!(
-                f,
-                "cannot {doing} {device}: {error}; is the base station plugged in, and does it run at this rate \
-                 (serial:{device}:BAUD)?"
-            ),
-            Self::Start { program, error } => {
-                write!(f, "cannot start a virtual robot with {program}: {error}")
-            }
-            Self::GivesUp { robot, how, times } => write!(
-                f,
-                "virtual robot {robot} ended {times} times in a row ({how}); start it by hand to see why: \
-                 `onetwo virtual-robot --help`"
-            ),
-        }
-    }
-}
-
-impl std::error::Error for LinkError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            Self::UnknownHost { error, .. }
-            | Self::Socket { error, .. }
-            | Self::Line { error, .. }
-            | Self::Start { error, .. } => Some(error),
-            Self::NoSuchLine { .. } | Self::NotAllowed { .. } | Self::GivesUp { .. } => None,
-        }
+/// End of the message on a serial line that is not there: the lines that are.
+fn other_lines(present: &[String]) -> String {
+    if present.is_empty() {
+        ", nor any other; plug the base station in".to_owned()
+    } else {
+        format!("; there are: {}", present.join(", "))
     }
 }

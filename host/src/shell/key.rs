@@ -1,7 +1,6 @@
 //! `key`: the team's key file. A file with 32 hexadecimal digits, which other users should not be able to
 //! read.
 
-use std::fmt;
 use std::path::{Path, PathBuf};
 
 use protocol::frame::TeamKey;
@@ -21,9 +20,13 @@ pub struct KeyFile {
 }
 
 /// Why there is no key.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum KeyError {
     /// The file cannot be read.
+    #[error(
+        "the key file {} cannot be read: {error}; `openssl rand -hex 16` makes a key",
+        printable_path(path)
+    )]
     Unreadable {
         /// Path of the file.
         path: PathBuf,
@@ -31,6 +34,11 @@ pub enum KeyError {
         error: std::io::Error,
     },
     /// It does not hold 32 hexadecimal digits.
+    #[error(
+        "the key file {} holds {what}; it must hold 32 hexadecimal digits and nothing else, as `openssl rand -hex 16` \
+         makes them",
+        printable_path(path)
+    )]
     Malformed {
         /// Path of the file.
         path: PathBuf,
@@ -38,28 +46,6 @@ pub enum KeyError {
         what: String,
     },
 }
-
-impl fmt::Display for KeyError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Unreadable { path, error } => {
-                write!(
-                    f,
-                    "the key file {} cannot be read: {error}; `openssl rand -hex 16` makes a key",
-                    printable_path(path)
-                )
-            }
-            Self::Malformed { path, what } => write!(
-                f,
-                "the key file {} holds {what}; it must hold 32 hexadecimal digits and nothing else, as `openssl rand -hex 16` \
-                 makes them",
-                printable_path(path)
-            ),
-        }
-    }
-}
-
-impl std::error::Error for KeyError {}
 
 /// A path as it can be printed.
 fn printable_path(path: &Path) -> String {

@@ -74,6 +74,12 @@ struct Robot {
     short_lives: u32,
 }
 
+impl Robot {
+    fn new(id: RobotId, now: Instant) -> Self {
+        Self { id, process: None, since: now, address: None, restarts: 0, short_lives: 0 }
+    }
+}
+
 impl SimLink {
     /// Starts the processes of all robots.
     pub fn start(settings: SimSettings) -> Result<Self, LinkError> {
@@ -82,15 +88,7 @@ impl SimLink {
         let own = socket.local_addr().map_err(system)?;
         let hub = Hub::start(settings.simulator)?;
         let now = Instant::now();
-        let robot = |id: &RobotId| Robot {
-            id: *id,
-            process: None,
-            since: now,
-            address: None,
-            restarts: 0,
-            short_lives: 0,
-        };
-        let robots = settings.robots.iter().map(robot).collect();
+        let robots = settings.robots.iter().map(|id| Robot::new(*id, now)).collect();
         let keys = settings.key.of_team();
         let mut link = Self { settings, keys, socket, own, hub, robots, looked: now, notices: Vec::new() };
         for place in 0..link.robots.len() {

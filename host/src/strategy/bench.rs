@@ -73,12 +73,7 @@ impl Bench {
     /// The next robot to leave: the one that can be out soonest, and is not needed at the ball or in a case.
     fn next(&self, view: &View, first: Option<RobotId>) -> Option<RobotId> {
         let places = waiting_places(view);
-        let cost = |robot: &ViewRobot| {
-            let out = places.iter().map(|at| at.distance(robot.position)).fold(f32::INFINITY, f32::min);
-            let busy = if first == Some(robot.id) { BALL_PLAYER_COST_M } else { 0.0 };
-            let plays = if view.in_play.has(robot.id) { CASE_PLAYER_COST_M } else { 0.0 };
-            out.min(PATH_MAX_M) + busy + plays
-        };
+        let cost = |robot: &ViewRobot| leaving_cost(view, robot, first, &places);
         let may = |robot: &&ViewRobot| robot.id != view.keeper && !self.off.contains(&robot.id);
         view.ours
             .iter()
@@ -86,6 +81,14 @@ impl Bench {
             .min_by(|a, b| cost(a).total_cmp(&cost(b)).then(b.id.cmp(&a.id)))
             .map(|robot| robot.id)
     }
+}
+
+/// Cost of sending a robot off, m: its path to the nearest waiting place, and what it is doing.
+fn leaving_cost(view: &View, robot: &ViewRobot, first: Option<RobotId>, places: &[Point<Attack>]) -> f32 {
+    let out = places.iter().map(|at| at.distance(robot.position)).fold(f32::INFINITY, f32::min);
+    let busy = if first == Some(robot.id) { BALL_PLAYER_COST_M } else { 0.0 };
+    let plays = if view.in_play.has(robot.id) { CASE_PLAYER_COST_M } else { 0.0 };
+    out.min(PATH_MAX_M) + busy + plays
 }
 
 /// Where robots may wait now, off the ball and clear of a placement.

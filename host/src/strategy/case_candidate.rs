@@ -12,7 +12,7 @@ use super::view::View;
 /// A case, and our robots that play it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CastCase {
-    /// The stored case.
+    /// Number of the stored case.
     pub case: CaseId,
     /// Case robot i is played by entry i.
     pub robots: [Option<RobotId>; CASE_ROBOTS_MAX],
@@ -23,7 +23,7 @@ pub struct CastCase {
 /// The first thing that a case does with the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CaseStep {
-    /// A pass.
+    /// A pass to a robot of the case.
     Pass {
         /// Where the ball is kicked.
         from: Point<Attack>,

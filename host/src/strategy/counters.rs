@@ -38,11 +38,11 @@ pub struct Sent {
 pub struct CapCounters {
     /// Number of passes that left.
     pub attempts: u32,
-    /// … that the receiver, or another teammate, received.
+    /// Passes of free kicks that the receiver, or another teammate, received.
     pub successes: u32,
-    /// … whose receiver had coerced an opponent before.
+    /// Passes of free kicks whose receiver had coerced an opponent before.
     pub reuses: u32,
-    /// … of those, that arrived.
+    /// Number of [`Self::reuses`] that arrived.
     pub reuse_successes: u32,
 }
 

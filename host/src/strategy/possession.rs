@@ -16,7 +16,7 @@ use super::view::{RobotSet, View, ViewBall, ViewRobot, nearest};
 /// Who has the ball.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Possession {
-    /// No robot.
+    /// No robot has the ball.
     #[default]
     Free,
     /// This robot of ours, since.
@@ -35,16 +35,14 @@ impl Possession {
             Self::Ours(id, _) | Self::Contested(id, _) => Some(id),
             Self::Free | Self::Theirs(..) => None,
         };
-        let of = |robots: &[ViewRobot], held: Option<RobotId>, feels: &dyn Fn(RobotId) -> bool| {
-            let has = robots.iter().filter(|robot| {
-                let margin = if held == Some(robot.id) { KEPT_MARGIN_M } else { 0.0 };
-                has(robot, &ball, margin)
-                    || feels(robot.id) && robot.position.distance(ball.position) < FELT_WITHIN_M
-            });
-            nearest(has, ball.position).map(|(robot, _)| robot.id)
-        };
-        let ours = of(&view.ours, held, &|id| contact.has(id));
-        let theirs = of(&view.theirs, None, &|_| false);
+        let ours = view.ours.iter().filter(|robot| {
+            let margin = if held == Some(robot.id) { KEPT_MARGIN_M } else { 0.0 };
+            has(robot, &ball, margin)
+                || contact.has(robot.id) && robot.position.distance(ball.position) < FELT_WITHIN_M
+        });
+        let ours = nearest(ours, ball.position).map(|(robot, _)| robot.id);
+        let theirs = view.theirs.iter().filter(|robot| has(robot, &ball, 0.0));
+        let theirs = nearest(theirs, ball.position).map(|(robot, _)| robot.id);
         match (ours, theirs, self) {
             (None, None, _) => Self::Free,
             (Some(ours), Some(theirs), _) => Self::Contested(ours, theirs),

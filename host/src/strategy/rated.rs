@@ -20,14 +20,14 @@ use super::view::{CasePass, ROBOTS_MAX, View};
 /// An action of the robot with the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
-    /// A shot.
+    /// A shot at the goal.
     Shot {
         /// At this point of the goal line.
         at: Point<Attack>,
-        /// P(goal).
+        /// P(goal) of the shot, 0–1.
         goal: f32,
     },
-    /// A pass.
+    /// A pass to a teammate.
     Pass {
         /// The teammate that receives it.
         receiver: RobotId,
@@ -36,7 +36,7 @@ pub enum Action {
     },
     /// The pass of the case that is played, near its place.
     OfCase {
-        /// The case's pass.
+        /// Pass that the case proposes.
         pass: CasePass,
         /// Place, kick and probabilities.
         rating: Rating,
@@ -63,7 +63,7 @@ impl Action {
 /// An action with its worth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rated {
-    /// The action.
+    /// Action of the robot with the ball.
     pub action: Action,
     /// P(goal for) − P(goal against) within 10 s.
     pub worth: f32,
@@ -125,20 +125,15 @@ pub fn rate(
     let offers = passes.offers(view, from, who, true);
     let kicks = passes.kicks();
     let mut list = RatedList::new();
-    let mut add = |action, worth| {
-        let place = list.iter().position(|other: &Rated| other.worth < worth).unwrap_or(list.len());
-        // A pass a robot, and four more.
-        let _ = list.insert(place, Rated { action, worth });
-    };
     let found = shot(view, kicks, from);
     let goal = found.value();
     // At a closed goal no shot is in the list: 3 of 41 scored.
     if found.angle > 0.0 {
-        add(Action::Shot { at: found.aim, goal }, shot_worth(view, from, found.aim, goal));
+        add(&mut list, Action::Shot { at: found.aim, goal }, shot_worth(view, from, found.aim, goal));
     }
-    add(Action::PlayOn, play_on(view, from));
+    add(&mut list, Action::PlayOn, play_on(view, from));
     for Offer { receiver, rating } in offers {
-        add(Action::Pass { receiver, rating }, pass_worth(view, from, &rating));
+        add(&mut list, Action::Pass { receiver, rating }, pass_worth(view, from, &rating));
     }
     if let Some(pass) = of_cases.pass
         && let Some(receiver) = view.our(pass.receiver.0)
@@ -146,14 +141,21 @@ pub fn rate(
         let scene = PassScene::of(view, kicks, from, Some(who), receiver).keeping();
         let refined = refine(&scene, pass.at, RADIUS);
         let (rating, moved) = (refined.best, refined.moved());
-        add(Action::OfCase { pass, rating, moved }, pass_worth(view, from, &rating));
+        add(&mut list, Action::OfCase { pass, rating, moved }, pass_worth(view, from, &rating));
     }
     if let Some(cast) = of_cases.retrieved
         && let Some(worth) = case_worth(view, kicks, who, from, &cast)
     {
-        add(Action::Case(cast), worth);
+        add(&mut list, Action::Case(cast), worth);
     }
     list
+}
+
+/// Inserts an action before the first that is worth less.
+fn add(list: &mut RatedList, action: Action, worth: f32) {
+    let place = list.iter().position(|other| other.worth < worth).unwrap_or(list.len());
+    // A pass a robot, and four more.
+    let _ = list.insert(place, Rated { action, worth });
 }
 
 /// An action that was chosen earlier, rated now for a ball at `from`; `None` where its receiver is gone.

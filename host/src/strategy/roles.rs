@@ -85,7 +85,7 @@ pub fn assign<const N: usize>(
 pub const WORTH: f32 = 0.4;
 /// Speed of a moving robot, m/s.
 const TYPICAL_SPEED: f32 = RobotSpec::OURS.assumed.role.speed;
-/// m/s².
+/// Acceleration of a moving robot, m/s².
 const TYPICAL_ACCELERATION: f32 = RobotSpec::OURS.assumed.role.acceleration;
 /// Time lost in speeding up and braking, s: v/a with the two above.
 const SPEEDING_UP_S: f32 = 0.65;

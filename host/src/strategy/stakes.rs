@@ -7,6 +7,7 @@
 //! where nothing is known, both are 1.
 
 use geometry::math;
+use rules::limits;
 use rules::state::Stage;
 
 /// Relative worths of a goal for us and a goal against us; their mean is 1.
@@ -48,8 +49,8 @@ impl Stakes {
 /// Time left in a match, s, from that in its stage; `None` where the stage is not played.
 pub fn time_left(stage: Stage, stage_time_left: Option<f32>) -> Option<f32> {
     match stage {
-        Stage::FirstHalf => stage_time_left.map(|left| left + HALF),
-        Stage::ExtraFirstHalf => stage_time_left.map(|left| left + EXTRA_HALF),
+        Stage::FirstHalf => stage_time_left.map(|left| left + limits::HALF_TIME),
+        Stage::ExtraFirstHalf => stage_time_left.map(|left| left + limits::OVERTIME_HALF_TIME),
         Stage::SecondHalf | Stage::ExtraSecondHalf => stage_time_left,
         _ => None,
     }
@@ -95,9 +96,6 @@ const GOAL_COUNTS: usize = 16;
 const DECIDED_BELOW: f32 = 0.02;
 /// Least worth of a goal, so that neither kind is ever given away.
 const WORTH_MIN: f32 = 0.2;
-/// A half, and one of overtime, s (rule 7).
-const HALF: f32 = 300.0;
-const EXTRA_HALF: f32 = 150.0;
 
 #[cfg(test)]
 mod tests {

@@ -128,26 +128,26 @@ pub enum Target {
     },
 }
 
+/// Whether a teammate can receive a pass of the ball: inside the lines, neither far back nor too near or too
+/// far; the keeper never.
+fn is_receivable(view: &View, ball: Point<Attack>, teammate: &ViewRobot) -> bool {
+    let distance = teammate.position.distance(ball);
+    teammate.id != view.keeper
+        && view.clamp(teammate.position, INSIDE_LINES_M) == teammate.position
+        && teammate.position.x() > ball.x() - PASS_BACK_MAX_M
+        && (PASS_LENGTH_MIN_M..PASS_LENGTH_MAX_M).contains(&distance)
+}
+
 /// Chooses the target for the robot `kicker` with the ball at `ball`.
 pub fn target(view: &View, kicker: RobotId, ball: Point<Attack>) -> Target {
     let (shot, room) = best_shot(view, ball);
     if room > SHOT_ROOM_MIN_M && ball.distance(view.their_goal()) < SHOT_LENGTH_MAX_M {
         return Target::Shot { at: shot, room };
     }
-    let receivable = |teammate: &&ViewRobot| {
-        teammate.id != kicker
-            && teammate.id != view.keeper
-            && view.clamp(teammate.position, INSIDE_LINES_M) == teammate.position
-            && {
-                let distance = teammate.position.distance(ball);
-                teammate.position.x() > ball.x() - PASS_BACK_MAX_M
-                    && (PASS_LENGTH_MIN_M..PASS_LENGTH_MAX_M).contains(&distance)
-            }
-    };
     let best = view
         .ours
         .iter()
-        .filter(receivable)
+        .filter(|teammate| teammate.id != kicker && is_receivable(view, ball, teammate))
         .map(|teammate| (teammate, worth(view, ball, teammate.position)))
         .reduce(|best, next| if next.1 > best.1 { next } else { best });
     match best {

@@ -16,7 +16,7 @@ pub const ROBOTS_MAX: usize = RobotId::COUNT;
 /// The next pass of a case that is being played.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CasePass {
-    /// The case.
+    /// Number of the stored case.
     pub case: CaseId,
     /// The passer, and its robot in the case.
     pub passer: (RobotId, CaseRobot),
@@ -46,6 +46,16 @@ impl Flip {
     /// A place in the attack frame.
     pub fn point(self, p: Point<Field>) -> Point<Attack> {
         Point::new(p.x() * self.sign, p.y() * self.sign)
+    }
+
+    /// A robot in the attack frame.
+    fn robot(self, robot: &crate::world::Robot) -> ViewRobot {
+        ViewRobot {
+            id: robot.who.id,
+            position: self.point(robot.pose.position),
+            heading: self.angle(robot.pose.heading),
+            velocity: self.vector(robot.velocity),
+        }
     }
 
     /// A velocity in the attack frame.
@@ -183,21 +193,8 @@ pub struct View {
 
 impl View {
     /// The field as seen by the team of colour `us`; `fit` lists our robots that can be commanded.
-    pub fn of(
-        world: &World,
-        us: Colour,
-        game: &ViewGame,
-        field: FieldSpec,
-        fit: RobotSet,
-        in_play: RobotSet,
-    ) -> Self {
+    pub fn of(world: &World, us: Colour, game: &ViewGame, field: FieldSpec, fit: RobotSet) -> Self {
         let flip = Flip::defending(game.defending);
-        let robot = |robot: &crate::world::Robot| ViewRobot {
-            id: robot.who.id,
-            position: flip.point(robot.pose.position),
-            heading: flip.angle(robot.pose.heading),
-            velocity: flip.vector(robot.velocity),
-        };
         Self {
             now: world.time,
             phase: game.phase,
@@ -210,19 +207,23 @@ impl View {
                 height: ball.height,
                 unseen: world.time.since(ball.seen),
             }),
-            ours: world.ours(us).filter(|robot| fit.has(robot.who.id)).map(robot).collect(),
+            ours: world
+                .ours(us)
+                .filter(|robot| fit.has(robot.who.id))
+                .map(|robot| flip.robot(robot))
+                .collect(),
             uncommanded: world
                 .ours(us)
                 .filter(|robot| !fit.has(robot.who.id) && field.counts(game.defending, robot.pose.position))
                 .count(),
             never_answered: 0,
-            theirs: world.theirs(us).map(robot).collect(),
+            theirs: world.theirs(us).map(|robot| flip.robot(robot)).collect(),
             keeper: game.keeper,
             their_keeper: game.their_keeper,
             stakes: game.stakes,
             allowed: ROBOTS_MAX,
             theirs_allowed: ROBOTS_MAX,
-            in_play,
+            in_play: RobotSet::default(),
             contact: RobotSet::default(),
             proposal: None,
             knows_cases: RobotSet::default(),

@@ -15,7 +15,7 @@ use super::seen::Captured;
 pub(super) enum Judgement {
     /// The clock we follow.
     Ours,
-    /// Another one.
+    /// A clock other than the one that is followed.
     Foreign,
     /// Another one, and ours is silent: follow it from now on, and reset the state.
     Restart,

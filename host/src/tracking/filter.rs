@@ -1,7 +1,7 @@
 //! `filter`: Kalman filters of position and velocity: one for a point of the plane, one for a heading. m,
 //! m/s, rad, rad/s, s.
 //!
-//! Both have two models of motion: calm, and changing. While detections scatter around the prediction the
+//! Both have two models of motion: steady, and changing. While detections scatter around the prediction the
 //! filter smooths; when several in a row lie on one side of it, the body has changed its motion and the
 //! filter follows quickly.
 
@@ -11,15 +11,15 @@ use geometry::{Angle, Field, Point, Vector, math};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Freedom {
     /// Density while predictions fit.
-    pub(super) stop_rules: f32,
+    pub(super) steady: f32,
     /// Density when predictions lag behind.
     pub(super) changing: f32,
 }
 
 impl Freedom {
     fn at(self, lag: f32) -> f32 {
-        let share = ((lag - LAG_STOP_RULES) * (1.0 / (LAG_CHANGING - LAG_STOP_RULES))).clamp(0.0, 1.0);
-        self.stop_rules + (self.changing - self.stop_rules) * share
+        let share = ((lag - LAG_STEADY) * (1.0 / (LAG_CHANGING - LAG_STEADY))).clamp(0.0, 1.0);
+        self.steady + (self.changing - self.steady) * share
     }
 }
 
@@ -56,9 +56,9 @@ impl Spread {
 /// A point and its velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Plane {
-    /// Place, m.
+    /// Estimated place, m.
     pub(super) position: Point<Field>,
-    /// Velocity, m/s.
+    /// Estimated velocity, m/s.
     pub(super) velocity: Vector<Field>,
     spread: Spread,
     /// Innovations in units of their deviation, averaged over the last few.
@@ -106,7 +106,7 @@ impl Plane {
         (off, off.dot(off) / (self.spread.place + sigma * sigma))
     }
 
-    /// Takes a detection.
+    /// Corrects the estimate by a detection.
     pub(super) fn see(&mut self, seen: Point<Field>, sigma: f32) {
         let off = seen - self.position;
         let deviation = math::sqrt(self.spread.place + sigma * sigma);
@@ -120,7 +120,7 @@ impl Plane {
 /// A heading and its rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Turning {
-    /// The heading.
+    /// Estimated heading.
     pub(super) heading: Angle,
     /// Angular velocity, rad/s, counter-clockwise.
     pub(super) rate: f32,
@@ -134,7 +134,7 @@ impl Turning {
         Self { heading, rate: 0.0, spread: Spread::new(sigma * sigma, rate_sigma * rate_sigma), lag: 0.0 }
     }
 
-    /// Predicts over `dt`.
+    /// Predicts over a time of `dt` s.
     pub(super) fn pass(&mut self, dt: f32, freedom: Freedom) {
         self.heading = self.heading + Angle::new(self.rate * dt);
         self.spread.pass(dt, freedom.at(self.lag * self.lag));
@@ -154,7 +154,7 @@ impl Turning {
 /// Weight of the newest innovation in the average: about the last three count.
 const LAG_SHARE: f32 = 0.3;
 /// Squared averages below this are noise: white innovations give 2 · 0.3 / (2 − 0.3) = 0.35 in the mean.
-const LAG_STOP_RULES: f32 = 1.2;
+const LAG_STEADY: f32 = 1.2;
 /// Squared averages above this are certainly a change (probability exp(−4 / 0.35) by noise).
 const LAG_CHANGING: f32 = 4.0;
 /// Least variance of a speed, against rounding: (1 mm/s)², in (m/s)².
@@ -164,7 +164,7 @@ const SPEED_VARIANCE_MIN: f32 = 1e-6;
 mod tests {
     use super::*;
 
-    const FREEDOM: Freedom = Freedom { stop_rules: 0.1, changing: 10.0 };
+    const FREEDOM: Freedom = Freedom { steady: 0.1, changing: 10.0 };
 
     #[test]
     fn two_exact_glimpses_of_a_free_point_give_its_velocity() {
@@ -178,7 +178,7 @@ mod tests {
     fn a_heading_turns_over_the_seam_without_swinging_round() {
         let mut turning = Turning::new(Angle::degrees(170.0), 0.01, 10.0);
         for step in 1..=20 {
-            turning.pass(0.01, Freedom { stop_rules: 1.0, changing: 100.0 });
+            turning.pass(0.01, Freedom { steady: 1.0, changing: 100.0 });
             turning.see(Angle::degrees(170.0 + step as f32 * 2.0), 0.01);
         }
         assert!((turning.rate.to_degrees() - 200.0).abs() < 5.0, "{turning:?}");

@@ -250,9 +250,9 @@ const TICK_US: Captured = 5_000;
 /// A robot may be seen this far from its prediction, m: two cameras may disagree by 20 mm each (ER-Force's
 /// "object position offset"), the remainder is margin below a robot's radius.
 const GATE_M: f32 = 0.08;
-/// ... and farther for every second unseen, m/s: the fastest robots' speed.
+/// Growth of that distance for every second unseen, m/s: the fastest robots' speed.
 const GATE_GROWTH_M_S: f32 = 4.0;
-/// ... for no longer than this, s.
+/// Longest time for which that distance grows, s.
 const GATE_TIME_MAX_S: f32 = 0.25;
 /// Within this time a robot was seen "just now", s: six frames of 60 Hz, three of a camera with dropouts.
 const SEEN_LATELY_S: f32 = 0.1;
@@ -268,10 +268,10 @@ const LOST_HEADING_SIGMA_RAD: f32 = 1.0;
 /// Standard deviations of a new robot's speed, m/s, and rate, rad/s.
 const SPEED_SIGMA_M_S: f32 = 2.0;
 const RATE_SIGMA_RAD_S: f32 = 5.0;
-/// White acceleration, m²/s³: calm is a robot that holds its speed within 0.1 m/s; changing is 5 m/s² held
+/// White acceleration, m²/s³: `steady` is a robot that holds its speed within 0.1 m/s; `changing` is 5 m/s² held
 /// for 0.2 s.
-const PLACE_FREEDOM: Freedom = Freedom { stop_rules: 0.15, changing: 10.0 };
+const PLACE_FREEDOM: Freedom = Freedom { steady: 0.15, changing: 10.0 };
 /// White angular acceleration, rad²/s³: as above with 0.3 rad/s, and 50 rad/s² held for 0.1 s.
-const HEADING_FREEDOM: Freedom = Freedom { stop_rules: 2.0, changing: 250.0 };
+const HEADING_FREEDOM: Freedom = Freedom { steady: 2.0, changing: 250.0 };
 /// Weight of the newest detection in the quality.
 const QUALITY_SHARE: f32 = 0.1;

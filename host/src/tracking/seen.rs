@@ -26,7 +26,7 @@ pub(super) struct BallSeen {
     pub(super) confidence: f32,
 }
 
-/// One camera frame.
+/// Detections of one camera frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Frame {
     pub(super) at: Captured,

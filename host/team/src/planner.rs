@@ -14,7 +14,7 @@ pub struct ShotOffer {
     pub at: Pair,
     /// The open angle around it, rad.
     pub open: f32,
-    /// P(goal), 0–1.
+    /// Probability of a goal, 0–1.
     pub goal: f32,
 }
 
@@ -23,13 +23,13 @@ pub struct ShotOffer {
 pub struct PassOffer {
     /// Number of the receiving teammate.
     pub receiver: u8,
-    /// Where it receives.
+    /// Place of the reception, attack frame, m.
     pub at: Pair,
     /// Speed of the kick, m/s.
     pub speed: f32,
-    /// Through the air.
+    /// Whether the pass flies.
     pub chip: bool,
-    /// P(receive), 0–1.
+    /// Probability that the receiver gets the ball, 0–1.
     pub receive: f32,
     /// P(goal | receive), 0–1.
     pub goal: f32,
@@ -38,7 +38,7 @@ pub struct PassOffer {
 }
 
 impl PassOffer {
-    /// The passer's task.
+    /// Task of the passer for this offer.
     pub fn task(&self) -> StrategyTask {
         let Self { at, receiver, speed, chip, .. } = *self;
         StrategyTask::Pass { at, receiver, speed, chip, ready: true }

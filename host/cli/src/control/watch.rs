@@ -101,7 +101,7 @@ impl Watch {
             return;
         }
         self.missing.clear();
-        let silent = host.imaged().is_none_or(|last| now.since(last) > VISION_SILENT);
+        let silent = host.last_camera_frame().is_none_or(|last| now.since(last) > VISION_SILENT);
         let came =
             self.vision.see(silent, |_| String::new(), || format!("vision comes from {}", config.vision));
         description.extend(came.filter(|description| !description.is_empty()));

@@ -36,7 +36,7 @@ impl Ahead {
         self.steps.receiver_started().is_some()
     }
 
-    /// Its receiver's task.
+    /// Task of the pass's receiver.
     pub(super) fn reception(&self) -> Task {
         let shot = self.rating.shot;
         Task::Receive { at: self.rating.at, then: shot.one_touch.then_some(shot.aim) }

@@ -115,15 +115,17 @@ impl Coach {
         let (Some(pass), Some(ball), None) = (self.passing(), view.ball, self.pass.running) else { return };
         let (who, from, _, rating) = pass;
         let Some(passer) = view.our(who) else { return };
-        if ball.position.distance(passer.position) < LEFT {
+        if ball.position.distance(passer.position) < DEPARTED_DISTANCE_M {
             self.open_play.at_ball = Some((who, view.now));
             return;
         }
         // A ball that rolls by, or that opponents kicked, is no pass.
-        let had = self.open_play.at_ball.is_some_and(|(id, at)| id == who && view.now.since(at) < LEFT_SINCE);
+        let had =
+            self.open_play.at_ball.is_some_and(|(id, at)| id == who && view.now.since(at) < DEPARTED_WITHIN);
         let speed = ball.velocity.norm();
         let along = (rating.at - from).unit().map_or(0.0, |direction| ball.velocity.dot(direction));
-        if !had || speed < LEFT_WITH * rating.kick.speed() || along < speed * LEFT_ALONG {
+        if !had || speed < DEPARTED_SPEED_SHARE_MIN * rating.kick.speed() || along < speed * DEPARTED_COS_MIN
+        {
             return;
         }
         self.pass.running = Some(self.leaves(view, pass));
@@ -152,7 +154,7 @@ impl Coach {
         if let Some(intent) = self.open_play.intent
             && intent.who == who
             && intent.from.distance(ball.position) < BALL_MOVED_M
-            && self.stands(view, &intent, ball)
+            && self.is_still_valid(view, &intent, ball)
         {
             return intent.action;
         }
@@ -161,22 +163,22 @@ impl Coach {
         action
     }
 
-    fn stands(&self, view: &View, intent: &Intent, ball: &ViewBall) -> bool {
+    /// Whether an earlier choice is neither too old nor a pass that has become unlikely.
+    fn is_still_valid(&self, view: &View, intent: &Intent, ball: &ViewBall) -> bool {
         let held = match intent.action {
             Action::PlayOn | Action::Case(_) => PLAY_ON_HELD,
             Action::Shot { .. } | Action::Pass { .. } => CHOICE_HELD,
             Action::OfCase { .. } => CASE_PASS_HELD,
         };
-        let likely = || {
-            let Some((receiver, rating)) = intent.action.pass() else { return true };
-            let receive = view.our(receiver).map_or(0.0, |teammate| {
-                let scene =
-                    PassScene::of(view, self.passes.kicks(), ball.position, Some(intent.who), teammate);
-                scene.rate(rating.at).receive()
-            });
-            receive > rating.receive() * KEPT_PASS_P_SHARE
-        };
-        view.now.since(intent.since) < held && likely()
+        if view.now.since(intent.since) >= held {
+            return false;
+        }
+        let Some((receiver, rating)) = intent.action.pass() else { return true };
+        let receive = view.our(receiver).map_or(0.0, |teammate| {
+            let scene = PassScene::of(view, self.passes.kicks(), ball.position, Some(intent.who), teammate);
+            scene.rate(rating.at).receive()
+        });
+        receive > rating.receive() * KEPT_PASS_P_SHARE
     }
 
     fn likeliest(&mut self, view: &View, who: RobotId, ball: &ViewBall) -> Action {
@@ -220,7 +222,7 @@ impl Coach {
 const GOAL_P_MIN: f32 = 0.05;
 /// Least P(receive) of a pass in open play; a pass lost there finds teammates out of position.
 const OPEN_PLAY_PASS_P_MIN: f32 = 0.5;
-/// … and is given up below this share of its first value.
+/// A chosen pass is given up below this share of its first P(receive).
 const KEPT_PASS_P_SHARE: f32 = 0.5;
 /// Time for which a choice is held: to move around the ball and aim.
 const CHOICE_HELD: Duration = Duration::millis(800);
@@ -234,14 +236,14 @@ const PLAY_ON_HELD: Duration = Duration::millis(200);
 const BALL_MOVED_M: f32 = 0.3;
 /// The receiver may arrive this much later than the ball, s: as in pass-ahead at restarts.
 const RECEIVER_LATE_MAX_S: f32 = 0.1;
-/// A pass has left when the ball is this far from the passer's centre, m (touching it is 0.11 m off), …
-const LEFT: f32 = 0.15;
-/// … from a robot that was at it this recently, …
-const LEFT_SINCE: Duration = Duration::millis(300);
-/// … with this share of the speed ordered: a chip keeps 0.7 of it along the ground, …
-const LEFT_WITH: f32 = 0.5;
-/// … and, by the cosine, rolls in the direction ordered: within 26°.
-const LEFT_ALONG: f32 = 0.9;
+/// A pass has left when the ball is this far from the passer's centre, m (touching it is 0.11 m off).
+const DEPARTED_DISTANCE_M: f32 = 0.15;
+/// A pass leaves a robot that was at the ball within this time.
+const DEPARTED_WITHIN: Duration = Duration::millis(300);
+/// A pass leaves with at least this share of the speed ordered: a chip keeps 0.7 of it along the ground.
+const DEPARTED_SPEED_SHARE_MIN: f32 = 0.5;
+/// A pass leaves in the direction ordered, by the cosine: within 26°.
+const DEPARTED_COS_MIN: f32 = 0.9;
 
 #[cfg(test)]
 mod tests {

@@ -256,9 +256,9 @@ const FRONT_WITHIN_RAD: f32 = 0.4;
 const CLEARANCE_ROOM_M: f32 = 0.4;
 /// Cost of moving around a ball, s: half a circle of 0.2 m radius at moderate speed (estimate).
 const AROUND_BALL_COST_S: f32 = 0.4;
-/// Time for which a clearance is kept: to move around the ball, aim and kick; …
+/// Time for which a clearance is kept: to move around the ball, aim and kick.
 const CLEARANCE_KEPT: Duration = Duration::millis(2500);
-/// … while the ball is within this of where it lay, m.
+/// A clearance is kept while the ball is within this of where it lay, m.
 const BALL_MOVED_M: f32 = 0.3;
 /// A ball that comes at our goal faster than this is intercepted on its path, m/s: slower ones leave time to
 /// approach.

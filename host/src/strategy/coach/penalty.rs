@@ -31,11 +31,10 @@ impl Coach {
     /// Sends remaining robots to the places of a row, in the order in which they stand along it, so that none
     /// has to pass another one's place. A robot that has a place keeps it while the same robots wait.
     fn row(&mut self, plan: &mut Plan<'_>, places: &[Point<Attack>]) {
-        let same = |held: &[Option<RobotId>], free: &[RobotId]| {
-            held.iter().flatten().count() == free.len() && held.iter().flatten().all(|id| free.contains(id))
-        };
+        let mut held = self.roles.placed.iter().flatten();
+        let same_robots = held.clone().count() == plan.free.len() && held.all(|id| plan.free.contains(id));
         let mut order: heapless::Vec<usize, ROBOTS_MAX> = (0..places.len()).collect();
-        if !same(&self.roles.placed, &plan.free) {
+        if !same_robots {
             let along = |id: &RobotId| plan.view.our(*id).map_or(0.0, |robot| robot.position.y());
             plan.free.sort_unstable_by(|a, b| along(a).total_cmp(&along(b)).then(a.cmp(b)));
             order.sort_unstable_by(|a, b| places[*a].y().total_cmp(&places[*b].y()));

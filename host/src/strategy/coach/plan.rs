@@ -44,11 +44,8 @@ impl<'v> Plan<'v> {
 
     /// The places that are taken.
     fn places(&self) -> heapless::Vec<Point<Attack>, ROBOTS_MAX> {
-        let place = |order: &Order| match order.task {
-            Task::GoTo { at, .. } => Some(at),
-            _ => None,
-        };
-        self.orders.iter().filter_map(place).collect()
+        let tasks = self.orders.iter().map(|order| order.task);
+        tasks.filter_map(|task| if let Task::GoTo { at, .. } = task { Some(at) } else { None }).collect()
     }
 
     /// Removes a robot from those without an order; false if it is not among them.

@@ -30,15 +30,23 @@ impl Worth {
     }
 }
 
+/// Where passes start, and the robot that plays them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PassOrigin {
+    /// Place of the ball, m.
+    pub from: Point<Attack>,
+    /// The robot that kicks it.
+    pub kicker: RobotId,
+}
+
 /// Values passes and shots: section 3.1, as the planner needs it.
 pub trait PassValue {
-    /// Values of passes from `from`, played by `kicker` to `receiver`, to each of these places, against all
-    /// opponents of the view and with all our robots in it.
+    /// Values of passes from `origin` to `receiver` at each of these places, against all opponents of the
+    /// view and with all our robots in it.
     fn worths(
         &self,
         view: &View,
-        from: Point<Attack>,
-        kicker: RobotId,
+        origin: PassOrigin,
         receiver: &ViewRobot,
         places: &mut dyn Iterator<Item = Point<Attack>>,
         take: &mut dyn FnMut(Point<Attack>, Worth),
@@ -85,26 +93,37 @@ impl Least {
     }
 }
 
-/// The best attack by one of `receivers` in this view that reaches `least`, and the value of every cell.
+/// A search for the best attack of one kicker.
+#[derive(Clone, Copy, Debug)]
+pub struct AttackSearch {
+    /// The robot at the ball.
+    pub kicker: RobotId,
+    /// What an attack must reach.
+    pub least: Least,
+    /// Seed of the [`SAMPLES`] places.
+    pub seed: u64,
+}
+
+/// The best attack by one of `receivers` in this view that reaches the search's least, and the value of every
+/// cell.
 ///
-/// The middles of all cells decide; then [`SAMPLES`] places around the best one's middle are tried, drawn
-/// from `seed`.
+/// The middles of all cells decide; then [`SAMPLES`] places around the best one's middle are tried.
 pub fn best_attack(
     view: &View,
     value: &dyn PassValue,
-    kicker: RobotId,
+    search: AttackSearch,
     receivers: &[RobotId],
-    least: Least,
-    seed: u64,
 ) -> (Option<AttackPlan>, CellValues) {
     let mut values = [0.0; CELLS];
     let Some(ball) = view.ball else { return (None, values) };
+    let AttackSearch { kicker, least, seed } = search;
+    let origin = PassOrigin { from: ball.position, kicker };
     let mut best: Option<AttackPlan> = None;
     for id in receivers {
         let Some(receiver) = view.our(*id) else { continue };
         let mut cells = Cell::all();
         let mut middles = Cell::all().map(|cell| cell.middle(&view.field));
-        value.worths(view, ball.position, kicker, receiver, &mut middles, &mut |at, worth| {
+        value.worths(view, origin, receiver, &mut middles, &mut |at, worth| {
             let Some(cell) = cells.next() else { return };
             values[cell.index()] = values[cell.index()].max(worth.value());
             if least.allows(&worth) && best.is_none_or(|best| worth.value() > best.worth.value()) {
@@ -122,7 +141,7 @@ pub fn best_attack(
         let cut = |x: f32, side: f32| (x * side * SAMPLE_SIGMA_SHARE).clamp(-0.5 * side, 0.5 * side);
         middle + Vector::new(cut(by.x(), size.x()), cut(by.y(), size.y()))
     });
-    value.worths(view, ball.position, kicker, receiver, &mut around, &mut |at, worth| {
+    value.worths(view, origin, receiver, &mut around, &mut |at, worth| {
         if least.allows(&worth) && worth.value() > found.worth.value() {
             (found.at, found.worth) = (at, worth);
         }

@@ -2,7 +2,6 @@
 //! ([`super::super::pass`]).
 
 use geometry::{Attack, Point, Vector};
-use protocol::RobotId;
 
 use super::super::pass::conditions::not_intercepted;
 use super::super::pass::intercept::{BallPath, PassOpponent, SAFE};
@@ -10,7 +9,7 @@ use super::super::pass::kicks::FlatKick;
 use super::super::pass::reach::Mover;
 use super::super::pass::{Kicks, PassScene};
 use super::super::view::{View, ViewRobot};
-use super::attack::{PassValue, Worth};
+use super::attack::{PassOrigin, PassValue, Worth};
 
 /// P(receive) · P(goal) of the pass location.
 #[derive(Clone, Copy, Debug)]
@@ -51,13 +50,12 @@ impl PassValue for ByPassLocation<'_> {
     fn worths(
         &self,
         view: &View,
-        from: Point<Attack>,
-        kicker: RobotId,
+        origin: PassOrigin,
         receiver: &ViewRobot,
         places: &mut dyn Iterator<Item = Point<Attack>>,
         take: &mut dyn FnMut(Point<Attack>, Worth),
     ) {
-        let scene = PassScene::of(view, self.kicks, from, Some(kicker), receiver);
+        let scene = PassScene::of(view, self.kicks, origin.from, Some(origin.kicker), receiver);
         for at in places {
             let rating = scene.rate(at);
             let (receive, goal) = (rating.receive(), rating.goal());
@@ -108,19 +106,13 @@ mod tests {
         let direct = PassScene::of(&scene, &kicks, from, Some(scene.ours[1].id), &scene.ours[2]);
         let mut places = Cell::all().map(|cell| cell.middle(&scene.field));
         let mut count = 0;
-        let kicker = scene.ours[1].id;
-        ByPassLocation::new(&kicks).worths(
-            &scene,
-            from,
-            kicker,
-            &scene.ours[2],
-            &mut places,
-            &mut |at, worth| {
-                let rating = direct.rate(at);
-                assert_eq!((worth.receive, worth.goal), (rating.receive(), rating.goal()));
-                count += 1;
-            },
-        );
+        let origin = PassOrigin { from, kicker: scene.ours[1].id };
+        let mut compare = |at, worth: Worth| {
+            let rating = direct.rate(at);
+            assert_eq!((worth.receive, worth.goal), (rating.receive(), rating.goal()));
+            count += 1;
+        };
+        ByPassLocation::new(&kicks).worths(&scene, origin, &scene.ours[2], &mut places, &mut compare);
         assert_eq!(count, 24);
     }
 
@@ -165,7 +157,7 @@ mod tests {
                 let mut found = 0.0;
                 let mut place = [plan.optimistic.at].into_iter();
                 let from = Point::new(ball.0, ball.1);
-                value.worths(&then, from, kicker, &receiver, &mut place, &mut |_, worth| {
+                value.worths(&then, PassOrigin { from, kicker }, &receiver, &mut place, &mut |_, worth| {
                     found = worth.value();
                 });
                 found

@@ -32,7 +32,7 @@ pub struct Coercer {
     pub expected: Point<Attack>,
     /// The interference likelihood of that opponent there …
     pub interference: f32,
-    /// … and where it is now.
+    /// Probability that it interferes from where it is now.
     pub interference_now: f32,
     /// When our robot is there, s.
     pub time: f32,
@@ -103,13 +103,13 @@ pub fn interference(
 
 /// The coerce plan for an optimistic attack.
 pub fn coerce(
-    view: &View,
     value: &dyn PassValue,
     situation: &tactics::CoerceSituation<'_>,
     pairs: &[Pair],
     attack: &AttackPlan,
     settings: &CoerceSettings,
 ) -> CoercePlan {
+    let view = situation.view;
     let mut plan = CoercePlan { coercers: heapless::Vec::new(), first: [1.0; CELLS] };
     let Some(ball) = view.ball else { return plan };
     let from = ball.position;
@@ -127,7 +127,8 @@ pub fn coerce(
         for cell in Cell::all() {
             let at = cell.middle(&view.field);
             let time = settings.robot.time(robot.position, robot.velocity, at);
-            if !may_go(view, &plan, attack, from, cell, settings) || time > settings.coerce_time {
+            let taken = cell == attack.cell || plan.coercers.iter().any(|other| other.cell == cell);
+            if taken || time > settings.coerce_time || !may_go(view, attack, from, at, settings) {
                 continue;
             }
             let expected = response(situation, &pair.marker, at);
@@ -163,22 +164,19 @@ pub fn response(
     if marker.ball_side { ball_side } else { goal_side }
 }
 
-/// Whether a robot of ours may be sent to a cell: no other robot is, it is not the attack's, the rules allow
-/// it, and it is off the ball, the pass and the shot.
+/// Whether a robot of ours may be sent to a place: the rules allow it, and it is off the ball, the pass and
+/// the shot.
 fn may_go(
     view: &View,
-    plan: &CoercePlan,
     attack: &AttackPlan,
     from: Point<Attack>,
-    cell: Cell,
+    at: Point<Attack>,
     settings: &CoerceSettings,
 ) -> bool {
-    let at = cell.middle(&view.field);
-    let taken = cell == attack.cell || plan.coercers.iter().any(|other| other.cell == cell);
     let areas = view.in_our_area(at, settings.off_areas) || view.in_their_area(at, settings.off_areas);
     let pass = Segment::new(from, attack.at).distance_to(at);
     let shot = Segment::new(attack.at, attack.worth.aim).distance_to(at);
-    !taken && !areas && pass.min(shot) >= settings.off_ways && at.distance(from) >= settings.off_ball
+    !areas && pass.min(shot) >= settings.off_ways && at.distance(from) >= settings.off_ball
 }
 
 /// Likelihoods are compared in hundredths.

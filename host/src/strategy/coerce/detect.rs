@@ -4,7 +4,7 @@
 use geometry::{Attack, Point};
 use protocol::{Instant, RobotId};
 
-use super::super::view::{ROBOTS_MAX, View};
+use super::super::view::{ROBOTS_MAX, View, ViewRobot};
 use super::tactics::{CoerceSituation, Likelihoods, Models, Tactic, detected};
 
 /// State of an opponent.
@@ -86,28 +86,30 @@ impl Detector {
     /// Estimates for each opponent of the view, by number; one never watched is judged by its present place.
     pub fn read(&self, view: &View, kicker: Option<RobotId>) -> heapless::Vec<Detected, ROBOTS_MAX> {
         let situation = CoerceSituation::new(view, self.models, kicker);
-        let read = |robot: &super::super::view::ViewRobot| {
-            let known = self.known[robot.id.index()];
-            let now = || situation.likelihoods(robot.position);
-            let likelihoods = known.map_or_else(now, |known| known.likelihoods);
-            let stand_off = known.map_or(self.models.stand_off, |known| known.stand_off);
-            let tactic = detected(&likelihoods, &self.models);
-            let follows = situation.mark(robot.position).1.filter(|_| tactic == Some(Tactic::Mark));
-            let ball_side = follows.is_some_and(|ours| {
-                let [goal, ball] = situation.mark_places(view.ours[ours].position, stand_off);
-                ball.distance(robot.position) < goal.distance(robot.position)
-            });
-            Detected {
-                opponent: robot.id,
-                at: robot.position,
-                tactic,
-                likelihoods,
-                follows: follows.map(|ours| view.ours[ours].id),
-                stand_off,
-                ball_side,
-            }
-        };
-        view.theirs.iter().map(read).collect()
+        view.theirs.iter().map(|robot| self.estimate(&situation, robot)).collect()
+    }
+
+    fn estimate(&self, situation: &CoerceSituation<'_>, robot: &ViewRobot) -> Detected {
+        let ours = &situation.view.ours;
+        let known = self.known[robot.id.index()];
+        let likelihoods =
+            known.map_or_else(|| situation.likelihoods(robot.position), |known| known.likelihoods);
+        let stand_off = known.map_or(self.models.stand_off, |known| known.stand_off);
+        let tactic = detected(&likelihoods, &self.models);
+        let follows = situation.mark(robot.position).1.filter(|_| tactic == Some(Tactic::Mark));
+        let ball_side = follows.is_some_and(|followed| {
+            let [goal, ball] = situation.mark_places(ours[followed].position, stand_off);
+            ball.distance(robot.position) < goal.distance(robot.position)
+        });
+        Detected {
+            opponent: robot.id,
+            at: robot.position,
+            tactic,
+            likelihoods,
+            follows: follows.map(|followed| ours[followed].id),
+            stand_off,
+            ball_side,
+        }
     }
 }
 

@@ -46,9 +46,9 @@ pub struct CoerceSettings {
     pub least: attack::Least,
     /// Coercers stay this far from pass and shot, m (D19).
     pub off_ways: f32,
-    /// … from the ball, m: the distance that robots keep from a ball that is not in play.
+    /// Least distance of a coercer from the ball, m: the distance that robots keep from a ball that is not in play.
     pub off_ball: f32,
-    /// … and from both areas, m: the rules' 0.2 m at free kicks, a body, a margin.
+    /// Least distance of a coercer from both areas, m: the rules' 0.2 m at free kicks, a body, a margin.
     pub off_areas: f32,
 }
 

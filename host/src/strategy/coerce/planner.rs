@@ -4,9 +4,9 @@ use geometry::{Attack, Point};
 use protocol::{Instant, RobotId};
 use rules::{Phase, Side};
 
-use super::super::view::{ROBOTS_MAX, View};
+use super::super::view::{ROBOTS_MAX, View, ViewRobot};
 use super::CoerceSettings;
-use super::attack::{AttackPlan, CellValues, PassValue, Worth, best_attack};
+use super::attack::{AttackPlan, AttackSearch, CellValues, PassOrigin, PassValue, Worth, best_attack};
 use super::coercing::{CoercePlan, Coercer, Pair, coerce, pairs};
 use super::detect::{Detected, Detector};
 use super::tactics::{CoerceSituation, Models};
@@ -202,11 +202,10 @@ impl Planner {
         // All of them coerce: one will be used again.
         let receivers = if attackers.is_empty() { &players } else { &attackers };
         let imagined = optimistic(view, &detected, kicker, receivers);
-        let (attack, values) =
-            best_attack(&imagined, value, kicker, receivers, self.settings.least, self.seed);
+        let (attack, values) = best_attack(&imagined, value, self.search(kicker), receivers);
         let attack = attack?;
         let situation = CoerceSituation::new(view, *self.detector.models(), Some(kicker));
-        let coerce = coerce(view, value, &situation, &pairs, &attack, &self.settings);
+        let coerce = coerce(value, &situation, &pairs, &attack, &self.settings);
         Some(CapPlan { kicker, detected, optimistic: attack, values, coerce, attackers })
     }
 
@@ -243,11 +242,8 @@ impl Planner {
         }
         let free_kick = view.phase == Phase::FreeKick(Side::Ours);
         let coercers = &plan.coerce.coercers;
-        let there = |coercer: &&Coercer| {
-            view.our(coercer.robot)
-                .is_none_or(|robot| robot.position.distance(coercer.at) < self.settings.arrived)
-        };
-        let (arrived, of) = (coercers.iter().filter(there).count(), coercers.len());
+        let of = coercers.len();
+        let arrived = coercers.iter().filter(|coercer| self.has_arrived(view, coercer)).count();
         if arrived == of {
             self.arrived.get_or_insert(view.now);
         } else {
@@ -277,6 +273,10 @@ impl Planner {
         CoerceProgress::Over(CoerceEnd::NoAttack)
     }
 
+    fn search(&self, kicker: RobotId) -> AttackSearch {
+        AttackSearch { kicker, least: self.settings.least, seed: self.seed }
+    }
+
     /// Step 6: the final attack.
     fn attack_now(&self, view: &View, value: &dyn PassValue, plan: &CapPlan) -> Option<FinalAttack> {
         let followed = self.verify(view, value, plan);
@@ -293,7 +293,7 @@ impl Planner {
         if receivers.is_empty() {
             receivers.extend(coercers());
         }
-        let (attack, _) = best_attack(view, value, plan.kicker, &receivers, self.settings.least, self.seed);
+        let (attack, _) = best_attack(view, value, self.search(plan.kicker), &receivers);
         attack.map(|attack| FinalAttack { plan: attack, followed, reused: coerced(attack.receiver) })
     }
 
@@ -323,7 +323,8 @@ impl Planner {
         let mut worth: Option<Worth> = None;
         if let (Some(ball), Some(receiver)) = (view.ball, view.our(receiver)) {
             let mut place = [plan.optimistic.at].into_iter();
-            value.worths(view, ball.position, plan.kicker, receiver, &mut place, &mut |_, now| {
+            let origin = PassOrigin { from: ball.position, kicker: plan.kicker };
+            value.worths(view, origin, receiver, &mut place, &mut |_, now| {
                 worth = Some(now);
             });
         }
@@ -345,21 +346,29 @@ impl Planner {
         let Some(plan) = self.plan.as_ref().filter(|_| self.over.is_none()) else {
             return heapless::Vec::new();
         };
-        let post = |robot: &super::super::view::ViewRobot| {
-            let id = robot.id;
-            let (at, part) = if id == plan.kicker {
-                (view.ball.map_or(robot.position, |ball| ball.position), CoercePart::Takes)
-            } else if let Some(attack) = self.attack.filter(|attack| attack.plan.receiver == id) {
-                (attack.plan.at, CoercePart::Receives)
-            } else if let Some(coercer) = plan.coercer(id) {
-                let Coercer { marker, expected, .. } = *coercer;
-                (coercer.at, CoercePart::Coerces { marker, expected })
-            } else {
-                (robot.position, CoercePart::Waits)
-            };
-            Posting { robot: id, at, part }
+        let players = view.ours.iter().filter(|robot| robot.id != view.keeper);
+        players.map(|robot| self.posting(view, plan, robot)).collect()
+    }
+
+    fn posting(&self, view: &View, plan: &CapPlan, robot: &ViewRobot) -> Posting {
+        let id = robot.id;
+        let (at, part) = if id == plan.kicker {
+            (view.ball.map_or(robot.position, |ball| ball.position), CoercePart::Takes)
+        } else if let Some(attack) = self.attack.filter(|attack| attack.plan.receiver == id) {
+            (attack.plan.at, CoercePart::Receives)
+        } else if let Some(coercer) = plan.coercer(id) {
+            let Coercer { marker, expected, .. } = *coercer;
+            (coercer.at, CoercePart::Coerces { marker, expected })
+        } else {
+            (robot.position, CoercePart::Waits)
         };
-        view.ours.iter().filter(|robot| robot.id != view.keeper).map(post).collect()
+        Posting { robot: id, at, part }
+    }
+
+    /// Whether a coercer is at its place; one that left the field holds up no plan.
+    fn has_arrived(&self, view: &View, coercer: &Coercer) -> bool {
+        let robot = view.our(coercer.robot);
+        robot.is_none_or(|robot| robot.position.distance(coercer.at) < self.settings.arrived)
     }
 }
 

@@ -49,10 +49,10 @@ pub struct Models {
     /// Standard deviation of a robot's distance from the place that its tactic gives it, m (docs/papers.md
     /// D17).
     pub spread: f32,
-    /// … of the distance of primary defenders from the edge that they move along, and of walls from the
+    /// Standard deviation of the distance of primary defenders from the edge that they move along, and of walls from the
     /// distance they keep, m.
     pub keeps: f32,
-    /// … of the keeper's distance outside its area, m: it never leaves it; this is the cameras' error.
+    /// Standard deviation of the keeper's distance outside its area, m: it never leaves it; this is the cameras' error.
     pub outside: f32,
     /// A defender's centre is this far outside the area that it must not enter, m: a body and a margin.
     pub off_area: f32,
@@ -71,7 +71,7 @@ impl Default for Models {
 /// The world's part in the models: the ball and the robots of ours that can be marked.
 #[derive(Clone, Debug)]
 pub struct CoerceSituation<'v> {
-    view: &'v View,
+    pub(super) view: &'v View,
     models: Models,
     ball: Point<Attack>,
     /// Our field players except the kicker.
@@ -157,7 +157,7 @@ pub fn detected(likelihoods: &Likelihoods, models: &Models) -> Option<Tactic> {
     best.map(|(tactic, _)| tactic)
 }
 
-/// Bell curve exp(−x²/2σ²).
+/// Bell curve exp(−x²/2σ²) of a deviation, m.
 fn bell(off: f32, spread: f32) -> f32 {
     let x = off / spread;
     math::exp(-0.5 * x * x)

@@ -3,7 +3,7 @@
 
 use super::super::view::tests::view;
 use super::super::view::{View, ViewRobot};
-use super::attack::{PassValue, Worth};
+use super::attack::{AttackSearch, PassOrigin, PassValue, Worth};
 use super::grid::Cell;
 use super::tactics::Models;
 use super::*;
@@ -30,8 +30,7 @@ impl PassValue for ByDistance {
     fn worths(
         &self,
         view: &View,
-        from: Point<Attack>,
-        _: RobotId,
+        PassOrigin { from, .. }: PassOrigin,
         _: &ViewRobot,
         places: &mut dyn Iterator<Item = Point<Attack>>,
         take: &mut dyn FnMut(Point<Attack>, Worth),
@@ -80,6 +79,10 @@ fn free_kick(teammates: &[(f32, f32)], marked: &[usize]) -> View {
 
 /// Passes of any value.
 const ANY: attack::Least = attack::Least { receive: 0.0, value: 0.0 };
+/// A search for any pass of robot 1.
+fn search() -> AttackSearch {
+    AttackSearch { kicker: id(1), least: ANY, seed: 1 }
+}
 
 fn planner() -> Planner {
     Planner::new(CoerceSettings { least: ANY, ..CoerceSettings::default() }, Models::default())
@@ -124,7 +127,7 @@ fn the_optimistic_attack_sees_ball_followers_only() {
     assert_eq!(plan.optimistic.against, 3);
     // Its value is above that against all opponents, and the best of all cells by hand.
     let mut seen = view.clone();
-    let (_, all_robots) = attack::best_attack(&seen, &ByDistance, id(1), &[id(5)], ANY, 1);
+    let (_, all_robots) = attack::best_attack(&seen, &ByDistance, search(), &[id(5)]);
     assert!(all_robots.iter().zip(&plan.values).all(|(all, some)| all <= some));
     assert!(all_robots.iter().zip(&plan.values).any(|(all, some)| all < some));
     seen.theirs.truncate(3);
@@ -132,11 +135,17 @@ fn the_optimistic_attack_sees_ball_followers_only() {
     let receiver = *seen.our(id(5)).unwrap();
     for cell in Cell::all() {
         let mut places = [cell.middle(&seen.field)].into_iter();
-        ByDistance.worths(&seen, Point::new(0.5, 1.8), id(1), &receiver, &mut places, &mut |_, worth| {
-            if worth.value() > best.0 {
-                best = (worth.value(), Some(cell));
-            }
-        });
+        ByDistance.worths(
+            &seen,
+            PassOrigin { from: Point::new(0.5, 1.8), kicker: id(1) },
+            &receiver,
+            &mut places,
+            &mut |_, worth| {
+                if worth.value() > best.0 {
+                    best = (worth.value(), Some(cell));
+                }
+            },
+        );
     }
     assert_eq!(Some(plan.optimistic.cell), best.1);
     assert!(plan.optimistic.worth.value() >= best.0, "refined within its cell");
@@ -223,7 +232,7 @@ fn an_opponent_that_does_not_follow_causes_a_new_attack_against_all() {
     assert!(off > 0.5 && attack.plan.against == 6);
     // Coercers that no opponent followed are free: they may be used again.
     let candidates = [id(2), id(3), id(4), id(5)];
-    let (best, _) = attack::best_attack(&view, &ByDistance, id(1), &candidates, ANY, 1);
+    let (best, _) = attack::best_attack(&view, &ByDistance, search(), &candidates);
     assert!(attack.plan.worth.value() <= best.unwrap().worth.value() + 1e-6);
     assert_eq!(attack.reused, attack.plan.receiver != id(5));
 }
@@ -352,13 +361,12 @@ impl PassValue for Counting {
     fn worths(
         &self,
         view: &View,
-        from: Point<Attack>,
-        kicker: RobotId,
+        origin: PassOrigin,
         receiver: &ViewRobot,
         places: &mut dyn Iterator<Item = Point<Attack>>,
         take: &mut dyn FnMut(Point<Attack>, Worth),
     ) {
-        ByDistance.worths(view, from, kicker, receiver, places, &mut |at, worth| {
+        ByDistance.worths(view, origin, receiver, places, &mut |at, worth| {
             self.worths.set(self.worths.get() + 1);
             take(at, worth);
         });

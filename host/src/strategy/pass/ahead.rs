@@ -169,7 +169,7 @@ pub const SEARCH_TIME: Duration = Duration::millis(4000);
 const RECEIVER_LATE_MAX_S: f32 = 0.08;
 /// Nearer to x_p than this the passer has arrived, m: the tolerance of its dribbler opening.
 const AT_BALL_WITHIN_M: f32 = 0.03;
-/// … when it faces x* this exactly, rad (3°, as the robots' own kicks).
+/// A passer that has arrived faces x* this exactly, rad (3°, as the robots' own kicks).
 const AIMED_WITHIN_RAD: f32 = 3.0 * (math::PI / 180.0);
 
 #[cfg(test)]

@@ -53,7 +53,7 @@ pub struct PassConstants {
     pub shot_speed: f32,
     /// Fastest pass along the ground, m/s: as shots.
     pub pass_fastest: f32,
-    /// … and no slower, m/s: below, a ball stays at the dribbler opening (D14).
+    /// Slowest pass, m/s: below, a ball stays at the dribbler opening (D14).
     pub pass_slowest: f32,
     /// A receiver can control a ball that arrives with this speed, m/s (Thunderbots receive at 2 and less; an
     /// estimate).

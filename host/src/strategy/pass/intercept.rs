@@ -54,7 +54,7 @@ impl BallPath {
         self.flat_until(kick, opponents, -SAFE)
     }
 
-    /// … the first one below `enough`: the caller needs no smaller one.
+    /// The same, or the first one below `enough`: the caller needs no smaller one.
     pub fn flat_until(
         &self,
         kick: &FlatKick,
@@ -67,7 +67,7 @@ impl BallPath {
         })
     }
 
-    /// … along a chip: while it rises over a robot's height, and from where it comes down below it.
+    /// The same along a chip: while it rises over a robot's height, and from where it comes down below it.
     pub fn chip(&self, kick: &ChipKick, opponents: &[PassOpponent]) -> Option<Interceptor> {
         let end = kick.at(self.length);
         let (up, down) = kick.over;

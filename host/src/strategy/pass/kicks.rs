@@ -114,7 +114,7 @@ pub struct ChipKick {
     pub over: (f32, f32),
     /// Time at which it rolls, s, …
     pub rolls_at: f32,
-    /// … and where: where it is received, m.
+    /// Distance from which it rolls and is received, m.
     pub rolls: f32,
 }
 

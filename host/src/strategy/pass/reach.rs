@@ -14,7 +14,7 @@ pub struct Mover {
     pub position: Point<Attack>,
     /// Velocity of its centre, m/s.
     pub velocity: Vector<Attack>,
-    /// Its speed, m/s.
+    /// Speed towards the place, m/s.
     running: f32,
     /// Speed limit, m/s, > 0.
     speed: f32,

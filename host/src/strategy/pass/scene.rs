@@ -119,18 +119,6 @@ impl<'k> PassScene<'k> {
         passer: Option<RobotId>,
         receiver: &ViewRobot,
     ) -> Self {
-        Self::against(view, kicks, from, passer, receiver, view.theirs.iter())
-    }
-
-    /// … against some of them, or at their expected places (the optimistic attack of §4.2).
-    pub fn against<'r>(
-        view: &View,
-        kicks: &'k Kicks,
-        from: Point<Attack>,
-        passer: Option<RobotId>,
-        receiver: &ViewRobot,
-        opponents: impl Iterator<Item = &'r ViewRobot>,
-    ) -> Self {
         let c = kicks.constants();
         let mover = |robot: &ViewRobot, limits| Mover::new(robot.position, robot.velocity, limits);
         let others =
@@ -141,7 +129,9 @@ impl<'k> PassScene<'k> {
             kicks,
             from,
             receiver: mover(receiver, &c.receiver),
-            opponents: opponents
+            opponents: view
+                .theirs
+                .iter()
                 .map(|robot| PassOpponent { id: robot.id, mover: mover(robot, &c.opponent) })
                 .take(ROBOTS_MAX)
                 .collect(),

@@ -77,13 +77,13 @@ impl Search {
     /// each, which is a normal distribution except for its tails beyond 3, and takes a tenth of the
     /// instructions of a logarithm and a sine.
     fn bell(&mut self) -> Vector<Attack> {
-        let mut one = || {
+        let [x, y] = [(); 2].map(|()| {
             let (a, b) = (self.random.next_u32(), self.random.next_u32());
             let sum = (a >> 16) + (a & 0xffff) + (b >> 16) + (b & 0xffff);
             // Each has mean 1/2 and variance 1/12.
             (sum as f32 * (1.0 / 65_536.0) - 2.0) * ROOT_OF_3
-        };
-        Vector::new(one(), one())
+        });
+        Vector::new(x, y)
     }
 }
 

@@ -267,7 +267,7 @@ impl Flight {
 const TOUCHES_WITHIN_M: f32 = contact::PASS_TOUCHED_WITHIN;
 /// Farther from the passer the ball has left it, m.
 const LEFT_BEYOND_M: f32 = contact::PASS_LEFT_BEYOND;
-/// … when it is faster than this, m/s: slower than any pass, faster than a ball that is pushed along.
+/// A ball faster than this was kicked, m/s: slower than any pass, faster than a ball that is pushed along.
 const KICKED_SPEED_MIN_M_S: f32 = 0.8;
 /// A change of velocity that the field surface does not cause between two snapshots, m/s, and as a share of
 /// the speed.

@@ -23,16 +23,23 @@ struct Primary {
     needed: bool,
 }
 
+/// What our defence faces: the first-level threat, its cover, and the opponents that may become one.
+#[derive(Clone, Copy)]
+pub(super) struct Assessment<'t> {
+    pub(super) threat: &'t FirstLevel,
+    pub(super) cover: &'t Cover,
+    pub(super) dangers: &'t [Danger],
+}
+
 /// Gives every robot of the team at most one place.
 pub(super) fn assign(
     view: &View,
     team: RobotSet,
-    threat: &FirstLevel,
-    cover: &Cover,
-    dangers: &[Danger],
+    assessment: Assessment<'_>,
     memory: &mut Memory,
     settings: &ThreatSettings,
 ) -> Assignments {
+    let Assessment { threat, cover, dangers } = assessment;
     let mut giving = Giving {
         view,
         settings,

@@ -77,7 +77,8 @@ pub fn dangers(
             continue;
         }
         // At most one per robot.
-        let _ = dangers.push(danger(view, threat.at, cover, robot, is_near, settings));
+        let danger = Danger { near: is_near, ..danger(view, threat.at, cover, robot, settings) };
+        let _ = dangers.push(danger);
     }
     memory.near = near;
     dangers
@@ -91,12 +92,12 @@ fn holder(view: &View, threat: &FirstLevel) -> Option<RobotId> {
         .map(|(robot, _)| robot.id)
 }
 
+/// The danger of one opponent, before it is known whether it is near.
 fn danger(
     view: &View,
     threat: Point<Attack>,
     cover: &Cover,
     robot: &ViewRobot,
-    near: bool,
     settings: &ThreatSettings,
 ) -> Danger {
     let (at, goal) = (robot.position, view.our_goal());
@@ -106,7 +107,7 @@ fn danger(
     Danger {
         opponent: robot.id,
         at,
-        near,
+        near: false,
         open: widest(&gaps),
         time_to_shoot: time_to_shoot(threat.distance(at), at.distance(goal)),
         block_shot: block_shot(view, at, settings),

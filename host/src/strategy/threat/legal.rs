@@ -29,17 +29,8 @@ pub fn legal_for(
     let more =
         if matches!(view.phase, Phase::Stop | Phase::FreeKick(_)) { OPPONENT_AREA_DISTANCE } else { 0.0 };
     let theirs = Edge::of(&view.field, settings.off_area + more);
-    let out = |at: Point<Attack>| {
-        if rule_role != RuleRole::Player {
-            return at;
-        }
-        let inside = view.clamp(at, ROBOT_RADIUS);
-        let (back, ahead) = (ours.distance_to(inside), theirs.distance_to(turned(inside)));
-        match (back < 0.0, ahead < 0.0) {
-            (true, _) => ours.nearest(inside),
-            (_, true) => turned(theirs.nearest(turned(inside))),
-            _ => inside,
-        }
+    let out = |at| {
+        if rule_role == RuleRole::Player { out_of_areas(view, at, &ours, &theirs) } else { at }
     };
     let mut place = out(at);
     if view.phase != Phase::Run {
@@ -65,6 +56,17 @@ pub fn legal_for(
         })
     });
     around.map(|by| out(place + by)).find(free).unwrap_or(place)
+}
+
+/// The place inside the lines and out of both areas that is nearest to `at`.
+fn out_of_areas(view: &View, at: Point<Attack>, ours: &Edge, theirs: &Edge) -> Point<Attack> {
+    let inside = view.clamp(at, ROBOT_RADIUS);
+    let (back, ahead) = (ours.distance_to(inside), theirs.distance_to(turned(inside)));
+    match (back < 0.0, ahead < 0.0) {
+        (true, _) => ours.nearest(inside),
+        (_, true) => turned(theirs.nearest(turned(inside))),
+        _ => inside,
+    }
 }
 
 /// Half a turn: maps their end to ours.

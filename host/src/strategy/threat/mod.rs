@@ -54,7 +54,7 @@ pub struct ThreatSettings {
     /// The keeper is no nearer to its goal line than this, m: a body, so that the posts do not stop it, and
     /// less than a ball, so that none rolls along the line behind it.
     pub keeper_back: f32,
-    /// … and no farther from it, m: "staying near the goal"; half of division B's area.
+    /// Largest distance of the keeper from the goal, m: "staying near the goal"; half of division B's area.
     pub keeper_out: f32,
     /// Difference of the widest gap now from that of the primaries at their places at which the keeper covers
     /// only the present gaps, rad: the angle of a body seen from the halfway line.
@@ -238,7 +238,8 @@ pub fn defend(view: &View, team: RobotSet, memory: &mut Memory, settings: &Threa
     let players = view.ours.iter().filter(|robot| robot.id != view.keeper && team.has(robot.id)).count();
     let cover = cover::cover(view, threat.at, players.min(2), memory.cover, settings);
     let dangers = danger::dangers(view, &threat, &cover, memory, settings);
-    let assignments = assign::assign(view, team, &threat, &cover, &dangers, memory, settings);
+    let assessment = assign::Assessment { threat: &threat, cover: &cover, dangers: &dangers };
+    let assignments = assign::assign(view, team, assessment, memory, settings);
     memory.threat = Some(threat);
     memory.cover = Some(cover.remember());
     Defence { threat, cover, dangers, assignments }

@@ -13,7 +13,7 @@ impl Balls {
     /// The blob nearest to where the ball is expected in the camera frame, if one can be it.
     pub(super) fn nearest_to_chosen(&self, frame: &Frame, around: Around<'_>) -> Option<usize> {
         let track = self.chosen_track()?;
-        let fits = |(index, seen): (usize, &BallSeen)| {
+        let near = frame.balls.iter().enumerate().filter_map(|(index, seen)| {
             let glimpse = self.glimpse(frame, seen, around.scene);
             let off = match &self.air {
                 Air::Flying(_, flight) => {
@@ -23,8 +23,7 @@ impl Balls {
                 _ => track.fits(glimpse.position, frame.at, &around.scene.models),
             };
             off.map(|off| (index, off))
-        };
-        let near = frame.balls.iter().enumerate().filter_map(fits);
+        });
         near.reduce(|best, next| if next.1 < best.1 { next } else { best }).map(|(index, _)| index)
     }
 
@@ -115,9 +114,9 @@ impl Balls {
     }
 }
 
-/// Camera frames that make a blob the ball when there is none ...
+/// Camera frames that make a blob the ball when there is none.
 const FRAMES_TO_BELIEVE: u16 = 2;
-/// ... and when there is one that is not visible.
+/// Camera frames that make a blob the ball when there is one that is not visible.
 const FRAMES_TO_TAKE_OVER: u16 = 5;
 /// Time without detection after which another ball may be chosen, s: six frames of 60 Hz.
 const REPLACED_AFTER_S: f32 = 0.1;

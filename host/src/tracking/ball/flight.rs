@@ -187,12 +187,12 @@ fn solve(
     }
     let solution = eliminate(&mut normal)?;
     let [x, y, vx, vy, u] = solution;
-    let error = |sample: &Sample| {
+    let errors = samples.iter().map(|sample| {
         let (t, slope, value) = rows(sample);
         let off = Vector::<Field>::new(x + vx * t, y + vy * t) + slope * u - value;
         off.dot(off)
-    };
-    let sum: f32 = samples.iter().map(error).sum();
+    });
+    let sum: f32 = errors.sum();
     Some((solution, (sum + known * (x * x + y * y)) / (sigma * sigma)))
 }
 

@@ -314,14 +314,14 @@ const TOUCHES_WITHIN_M: f32 = rules::contact::TOUCHES_WITHIN;
 const TURNS_WITHIN_M: f32 = 0.18;
 /// A contact ends this long after its last detection, s.
 const CONTACT_KEPT_S: f32 = 0.1;
-/// ... and is kept for this long, s, for chips that are detected late, within this distance, m.
+/// A contact is kept for this long, s, for chips that are detected late, within this distance, m.
 const CHIP_CONTACT_KEPT_S: f32 = 0.25;
 const CHIP_CONTACT_WITHIN_M: f32 = 0.4;
 /// Slower balls are not kicked but rolled, m/s.
 const KICK_SPEED_MIN_M_S: f32 = 0.5;
-/// A kick makes the ball faster by this, m/s ...
+/// A kick makes the ball faster by this, m/s.
 const KICK_GAIN_MIN_M_S: f32 = 0.3;
-/// ... or a robot's front changes its velocity by this, m/s.
+/// A kick is also a change of velocity at a robot's front by this, m/s.
 const KICK_TURN_MIN_M_S: f32 = 0.8;
 /// Where the old path and the new one are farther apart than this, the ball was placed there by hand or by a
 /// script, m.

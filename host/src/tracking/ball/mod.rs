@@ -34,7 +34,7 @@ pub struct BallCounts {
     pub others: u64,
     /// Kicks detected, flat ones and chips.
     pub kicks: u64,
-    /// ... of these, chips.
+    /// Number of kicks that were chips.
     pub chips: u64,
     /// Turns without a kick: off robots, posts and walls.
     pub bounces: u64,

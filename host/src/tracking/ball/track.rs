@@ -158,12 +158,12 @@ impl Track {
     }
 }
 
-/// White acceleration of a rolling ball, m²/s³: calm is a field surface that decelerates it 0.3 m/s² more or
-/// less than configured; changing is a robot that pushes or dribbles it with 5 m/s² for 0.2 s.
-const FREEDOM: Freedom = Freedom { stop_rules: 0.02, changing: 8.0 };
+/// White acceleration of a rolling ball, m²/s³: `steady` is a field surface that decelerates it 0.3 m/s² more or
+/// less than configured; `changing` is a robot that pushes or dribbles it with 5 m/s² for 0.2 s.
+const FREEDOM: Freedom = Freedom { steady: 0.02, changing: 8.0 };
 /// A detection is an outlier when its distance squared is more variances than this ...
 const OUTLIER_VARIANCES_MIN: f32 = 20.0;
-/// ... and it is farther than this off, m: noise between cameras is no turn.
+/// An outlier is farther than this off, m: noise between cameras is no turn.
 const OUTLIER_DISTANCE_MIN_M: f32 = 0.012;
 /// Standard deviation of a new ball's speed, m/s.
 const SPEED_SIGMA_M_S: f32 = 2.0;
